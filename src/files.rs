@@ -1,0 +1,93 @@
+//! Text in, whole files out. The only place that touches the file system.
+
+use std::io::Write;
+use std::path::Path;
+
+use crate::error::{Error, Place, Result};
+
+/// Reads a text file. A byte-order mark (Excel writes one) is dropped.
+///
+/// # Errors
+/// [`Error::File`] where it cannot be read, [`Error::Input`] with line and column where it is not UTF-8.
+pub fn read_text(path: &Path) -> Result<String> {
+    let bytes = std::fs::read(path)
+        .map_err(|source| Error::File { path: path.to_owned(), action: "read", source })?;
+    text_of_bytes(&path.display().to_string(), bytes)
+}
+
+/// The text of a file's bytes; see [`read_text`]. `file` only names it in errors.
+///
+/// # Errors
+/// [`Error::Input`] where the bytes are not UTF-8.
+pub fn text_of_bytes(file: &str, bytes: Vec<u8>) -> Result<String> {
+    let text = String::from_utf8(bytes).map_err(|e| {
+        let valid = e.utf8_error().valid_up_to();
+        let before = String::from_utf8_lossy(&e.as_bytes()[..valid]).into_owned();
+        Error::Input {
+            at: Place::of_offset(file, &before, valid),
+            found: format!("byte 0x{:02X}", e.as_bytes()[valid]),
+            expected: "UTF-8 text".into(),
+            hint: Some("save the file as UTF-8 (in Excel: \"CSV UTF-8\")".into()),
+        }
+    })?;
+    Ok(text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text))
+}
+
+/// Writes a file whole or not at all: to a temporary file beside it, then renamed onto it.
+/// Missing directories are created.
+///
+/// # Errors
+/// [`Error::File`]; the old file, if any, is then untouched.
+pub fn write_whole(path: &Path, contents: &[u8]) -> Result<()> {
+    let failed = |action| move |source| Error::File { path: path.to_owned(), action, source };
+    let directory = match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    };
+    std::fs::create_dir_all(directory).map_err(failed("create the directory of"))?;
+    let mut temporary = tempfile::Builder::new()
+        .prefix(".rodcal-")
+        .permissions(readable_by_all())
+        .tempfile_in(directory)
+        .map_err(failed("write"))?;
+    temporary.write_all(contents).map_err(failed("write"))?;
+    temporary.persist(path).map_err(|e| e.error).map_err(failed("write"))?;
+    Ok(())
+}
+
+#[cfg(unix)]
+fn readable_by_all() -> std::fs::Permissions {
+    std::os::unix::fs::PermissionsExt::from_mode(0o644)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_byte_order_mark_is_dropped() {
+        assert_eq!(text_of_bytes("f", b"\xEF\xBB\xBFaxis".to_vec()).unwrap(), "axis");
+    }
+
+    #[test]
+    fn latin_1_is_refused_with_its_place() {
+        let error = text_of_bytes("f.csv", b"axis\n\xB5m".to_vec()).unwrap_err();
+        assert_eq!(error.to_string(), "f.csv:2:1: byte 0xB5, expected UTF-8 text");
+    }
+
+    #[test]
+    fn writing_replaces_the_whole_file_and_leaves_nothing_else() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("new").join("a.txt");
+        write_whole(&path, b"long old text").unwrap();
+        write_whole(&path, b"new").unwrap();
+        assert_eq!(std::fs::read(&path).unwrap(), b"new");
+        assert_eq!(std::fs::read_dir(path.parent().unwrap()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn a_missing_file_is_named() {
+        let error = read_text(Path::new("no/such.toml")).unwrap_err();
+        assert!(error.to_string().starts_with("cannot read no/such.toml: "));
+    }
+}

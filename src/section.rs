@@ -1,0 +1,77 @@
+//! Cross-sections of pipes: tubes and solid rounds.
+
+use std::f64::consts::PI;
+
+/// A circular section, hollow (tube) or solid (`inner_diameter = 0`).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Round {
+    /// Outer diameter D, m.
+    pub outer_diameter: f64,
+    /// Inner diameter d, m; 0 for a solid round.
+    pub inner_diameter: f64,
+}
+
+impl Round {
+    /// Area A = π/4 (D² − d²), m².
+    pub fn area(&self) -> f64 {
+        let (outer, inner) = (self.outer_diameter, self.inner_diameter);
+        // (D − d)(D + d) keeps its digits on thin walls, where D² − d² would cancel
+        PI / 4.0 * (outer - inner) * (outer + inner)
+    }
+
+    /// Second moment of area about any diameter, I = π/64 (D⁴ − d⁴), m⁴.
+    pub fn second_moment(&self) -> f64 {
+        // I = A (D² + d²)/16
+        self.area() * (self.outer_diameter.powi(2) + self.inner_diameter.powi(2)) / 16.0
+    }
+
+    /// Torsion constant, for a circular section the polar moment J = 2I, m⁴.
+    pub fn torsion_constant(&self) -> f64 {
+        2.0 * self.second_moment()
+    }
+
+    /// Cowper's shear coefficient κ of a hollow circle (solid: m = 0), dimensionless, for Poisson's ratio ν:
+    ///
+    /// κ = 6(1+ν)(1+m²)² / ((7+6ν)(1+m²)² + (20+12ν)m²), m = d/D.
+    ///
+    /// Source: G. R. Cowper, "The Shear Coefficient in Timoshenko's Beam Theory",
+    /// J. Appl. Mech. 33 (1966) 335–340, table of coefficients.
+    pub fn shear_coefficient(&self, poisson_ratio: f64) -> f64 {
+        let nu = poisson_ratio;
+        let m2 = (self.inner_diameter / self.outer_diameter).powi(2);
+        let ring = (1.0 + m2).powi(2);
+        6.0 * (1.0 + nu) * ring / ((7.0 + 6.0 * nu) * ring + (20.0 + 12.0 * nu) * m2)
+    }
+
+    /// Wall thickness t = (D − d)/2, m; the radius for a solid round.
+    pub fn wall(&self) -> f64 {
+        (self.outer_diameter - self.inner_diameter) / 2.0
+    }
+
+    /// Mean radius of the wall r = (D + d)/4, m.
+    pub fn mean_radius(&self) -> f64 {
+        (self.outer_diameter + self.inner_diameter) / 4.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    const TUBE: Round = Round { outer_diameter: 0.016, inner_diameter: 0.012 };
+
+    #[test]
+    fn tube_16_by_12_has_the_textbook_constants() {
+        // Roark's Formulas, 7th ed., Table A.1, hollow circle: A = π(R² − Ri²), I = π(R⁴ − Ri⁴)/4
+        assert_relative_eq!(TUBE.area(), PI * (64e-6 - 36e-6), max_relative = 1e-14);
+        assert_relative_eq!(TUBE.second_moment(), PI / 4.0 * (4096e-12 - 1296e-12), max_relative = 1e-14);
+        assert_relative_eq!(TUBE.torsion_constant(), PI / 2.0 * (4096e-12 - 1296e-12), max_relative = 1e-14);
+    }
+
+    #[test]
+    fn wall_and_mean_radius_describe_the_tube() {
+        assert_relative_eq!(TUBE.wall(), 0.002, max_relative = 1e-14);
+        assert_relative_eq!(TUBE.mean_radius(), 0.007, max_relative = 1e-14);
+    }
+}

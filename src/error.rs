@@ -23,6 +23,15 @@ pub enum Error {
         source: std::io::Error,
     },
 
+    /// An input file does not follow its format: no valid TOML, an unknown or a missing key.
+    #[error("{at}: {message}")]
+    Syntax {
+        /// File, line and column.
+        at: Place,
+        /// What the parser found and what it expected.
+        message: String,
+    },
+
     /// Something in an input file is not what it should be.
     #[error("{at}: {found}, expected {expected}")]
     Input {
@@ -59,7 +68,9 @@ pub enum Error {
     },
 
     /// A beam solution failed its own equilibrium, reciprocity or finiteness check.
-    #[error("the beam solution fails its self-check at node {node} (station {station_mm:.3} mm), {freedom}: {check} is off by {relative:.1e} of the scale")]
+    #[error(
+        "the beam solution fails its self-check at node {node} (station {station_mm:.3} mm), {freedom}: {check} is off by {relative:.1e} of the scale"
+    )]
     SelfCheck {
         /// Index of the node, 0 at the clamped end.
         node: usize,

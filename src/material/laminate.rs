@@ -51,14 +51,19 @@ impl Ply {
     pub fn stiffness(&self) -> Matrix3<f64> {
         let nu21 = self.nu12 * self.e2 / self.e1;
         let scale = 1.0 / (1.0 - self.nu12 * nu21);
-        let (q11, q22, q12, q66) =
-            (self.e1 * scale, self.e2 * scale, self.nu12 * self.e2 * scale, self.g12);
+        let (q11, q22, q12, q66) = (self.e1 * scale, self.e2 * scale, self.nu12 * self.e2 * scale, self.g12);
         // Q̄ = Tᵀ Q T, T the transformation of engineering strains to ply axes (Jones Eq 2.78 and 2.79)
         let (s, c) = self.angle.sin_cos();
         let to_ply = Matrix3::new(
-            c * c, s * s, s * c, //
-            s * s, c * c, -s * c, //
-            -2.0 * s * c, 2.0 * s * c, c * c - s * s,
+            c * c,
+            s * s,
+            s * c, //
+            s * s,
+            c * c,
+            -s * c, //
+            -2.0 * s * c,
+            2.0 * s * c,
+            c * c - s * s,
         );
         let q = Matrix3::new(q11, q12, 0.0, q12, q22, 0.0, 0.0, 0.0, q66);
         to_ply.transpose() * q * to_ply

@@ -1,0 +1,215 @@
+//! The elements: straight and circular Timoshenko beams and rotational springs, as flexibilities.
+//!
+//! An element is described by how its far end moves while its near end is held. Force `F` and moment `M` of
+//! everything beyond it are taken at the element's reference point c (its midpoint), and so are the far end's
+//! displacement and rotation, as if c were rigidly attached to it:
+//!
+//! ```text
+//! u = A·F + C·M + U·a        A  m/N        C  1/N = rad/N       U  m per m/s²
+//! θ = Cᵀ·F + B·M + V·a       B  rad/(N·m)                       V  rad per m/s²
+//! ```
+//!
+//! with the element's own weight under the acceleration field a. Every term is the exact integral along the
+//! centreline of the section's flexibilities (principle of virtual forces; S. Timoshenko, *Strength of
+//! Materials* I, 3rd ed., §§ 73–79), so that the number of elements does not change the result. In a straight
+//! element C = 0: force and moment at the midpoint do not interact.
+
+use nalgebra::{Matrix3, Rotation3, Vector3};
+
+use crate::spatial::{rotated, skew};
+
+/// What a cross-section gives way by, per unit length, and what it weighs.
+///
+/// Local axes: z along the centreline, x and y principal axes of the section.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Profile {
+    /// 1/EA, 1/N.
+    pub axial: f64,
+    /// 1/κGA for shear along x and y, 1/N; 0 in Euler–Bernoulli theory.
+    pub shear: [f64; 2],
+    /// 1/EI for bending about x and y, 1/(N·m²).
+    pub bending: [f64; 2],
+    /// 1/GJ, 1/(N·m²).
+    pub torsion: f64,
+    /// Mass per length, kg/m.
+    pub mass_per_length: f64,
+}
+
+impl Profile {
+    /// Flexibility per length to a force in local axes, 1/N.
+    fn force(&self) -> Matrix3<f64> {
+        Matrix3::from_diagonal(&Vector3::new(self.shear[0], self.shear[1], self.axial))
+    }
+
+    /// Flexibility per length to a moment in local axes, 1/(N·m²).
+    fn moment(&self) -> Matrix3<f64> {
+        Matrix3::from_diagonal(&Vector3::new(self.bending[0], self.bending[1], self.torsion))
+    }
+}
+
+/// The matrices of the module's equation, in the frame in which they are needed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Shape {
+    /// A, m/N.
+    pub force: Matrix3<f64>,
+    /// C, rad/N.
+    pub coupling: Matrix3<f64>,
+    /// B, rad/(N·m).
+    pub moment: Matrix3<f64>,
+    /// U, m per m/s².
+    pub weight_translation: Matrix3<f64>,
+    /// V, rad per m/s².
+    pub weight_rotation: Matrix3<f64>,
+    /// Mass, kg.
+    pub mass: f64,
+    /// Centre of mass seen from the reference point, m.
+    pub mass_centre: Vector3<f64>,
+}
+
+impl Shape {
+    /// A straight element of `length` (m) along the local z axis, reference at its midpoint.
+    pub fn straight(profile: &Profile, length: f64) -> Self {
+        let (l, mass) = (length, profile.mass_per_length * length);
+        // A = L·(shear, axial) + L³/12·bending: a force at the midpoint bends both halves like cantilevers;
+        // a force along x bends about y and the other way round
+        let bending = Vector3::new(profile.bending[1], profile.bending[0], 0.0);
+        let force = profile.force() * l + Matrix3::from_diagonal(&(bending * (l.powi(3) / 12.0)));
+        // B = L·(bending, torsion)
+        let moment = profile.moment() * l;
+        Shape {
+            force,
+            coupling: Matrix3::zeros(),
+            moment,
+            // the mean force of its own weight is half of it: U = A·m/2
+            weight_translation: force * (mass / 2.0),
+            // the mean moment of its own weight is (L²/6)(t × q) with q = m a/L: V = B·[t]ₓ·mL/6
+            weight_rotation: moment * skew(&Vector3::z()) * (mass * l / 6.0),
+            mass,
+            mass_centre: Vector3::zeros(),
+        }
+    }
+
+    /// A circular arc of `radius` (m) and `angle` (rad, > 0), reference at its midpoint, where the local z axis
+    /// is its tangent; it bends from z towards x.
+    pub fn arc(profile: &Profile, radius: f64, angle: f64) -> Self {
+        let half = angle / 2.0;
+        let mass_per_angle = profile.mass_per_length * radius;
+        // r(α) = R (1 − cos α, 0, sin α), the tangent there is (sin α, 0, cos α)
+        let point = |a: f64| Vector3::new(2.0 * (a / 2.0).sin().powi(2), 0.0, a.sin()) * radius;
+        // ∫ r dα = R (α − sin α, 0, −cos α)
+        let point_integral = |a: f64| Vector3::new(a - a.sin(), 0.0, -a.cos()) * radius;
+
+        let mut shape = Shape {
+            force: Matrix3::zeros(),
+            coupling: Matrix3::zeros(),
+            moment: Matrix3::zeros(),
+            weight_translation: Matrix3::zeros(),
+            weight_rotation: Matrix3::zeros(),
+            mass: mass_per_angle * angle,
+            mass_centre: (point_integral(half) - point_integral(-half)) / angle,
+        };
+        for (a, da) in gauss_points(-half, half) {
+            let ds = radius * da;
+            let local = Rotation3::from_axis_angle(&Vector3::y_axis(), a);
+            let (section_force, section_moment) =
+                (rotated(&profile.force(), &local) * ds, rotated(&profile.moment(), &local) * ds);
+            // A load at the reference point has the moment M − r×F here, and a rotation here moves the
+            // reference point by θ×(−r) = r×θ.
+            let lever = skew(&point(a));
+            let lever_moment = lever * section_moment;
+            shape.force += section_force - lever_moment * lever;
+            shape.coupling += lever_moment;
+            shape.moment += section_moment;
+            // the weight of the part beyond: μ·a, with the first moment h = ∫ (r(β) − r(α)) μ dβ about this point
+            let beyond = mass_per_angle * (half - a);
+            let first_moment =
+                (point_integral(half) - point_integral(a)) * mass_per_angle - point(a) * beyond;
+            let weight_moment = skew(&first_moment);
+            shape.weight_translation += section_force * beyond + lever_moment * weight_moment;
+            shape.weight_rotation += section_moment * weight_moment;
+        }
+        shape
+    }
+
+    /// A spring of no length with the local z axis as its axis; `bending` and `torsion` in rad/(N·m).
+    pub fn spring(bending: f64, torsion: f64) -> Self {
+        Shape {
+            force: Matrix3::zeros(),
+            coupling: Matrix3::zeros(),
+            moment: Matrix3::from_diagonal(&Vector3::new(bending, bending, torsion)),
+            weight_translation: Matrix3::zeros(),
+            weight_rotation: Matrix3::zeros(),
+            mass: 0.0,
+            mass_centre: Vector3::zeros(),
+        }
+    }
+
+    /// The same element, its local frame turned by `rotation`.
+    pub fn turned(&self, rotation: &Rotation3<f64>) -> Self {
+        Shape {
+            force: rotated(&self.force, rotation),
+            coupling: rotated(&self.coupling, rotation),
+            moment: rotated(&self.moment, rotation),
+            weight_translation: rotated(&self.weight_translation, rotation),
+            weight_rotation: rotated(&self.weight_rotation, rotation),
+            mass: self.mass,
+            mass_centre: rotation * self.mass_centre,
+        }
+    }
+}
+
+/// Gauss–Legendre points and weights on [from, to]: eight for every 45°, where an arc's integrands
+/// (products of at most four sines) are integrated to rounding.
+fn gauss_points(from: f64, to: f64) -> impl Iterator<Item = (f64, f64)> {
+    // Abramowitz & Stegun, Table 25.4, n = 8
+    const ABSCISSAE: [f64; 4] =
+        [0.1834346424956498, 0.525532409916329, 0.7966664774136267, 0.9602898564975363];
+    const WEIGHTS: [f64; 4] = [0.362683783378362, 0.3137066458778873, 0.2223810344533745, 0.1012285362903763];
+    let panels = ((to - from) / std::f64::consts::FRAC_PI_4 - 1e-9).ceil().max(1.0);
+    let half = (to - from) / panels / 2.0;
+    (0..panels as usize).flat_map(move |panel| {
+        let middle = from + half * (2 * panel + 1) as f64;
+        ABSCISSAE
+            .into_iter()
+            .zip(WEIGHTS)
+            .flat_map(move |(x, w)| [(middle - half * x, half * w), (middle + half * x, half * w)])
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PROFILE: Profile = Profile {
+        axial: 1e-7,
+        shear: [4e-7, 4e-7],
+        bending: [2e-3, 3e-3],
+        torsion: 5e-3,
+        mass_per_length: 0.7,
+    };
+
+    #[test]
+    fn gauss_points_integrate_a_fourth_harmonic_over_half_a_turn() {
+        let integral: f64 = gauss_points(0.0, 3.0).map(|(a, w)| w * (4.0 * a).cos()).sum();
+        assert!((integral - 12f64.sin() / 4.0).abs() < 1e-13);
+    }
+
+    /// An arc of radius L/φ tends to the straight element of length L as φ → 0; the difference is O(φ).
+    #[test]
+    fn a_flat_arc_is_a_straight_element() {
+        let (length, angle) = (0.3, 1e-6);
+        let (arc, straight) =
+            (Shape::arc(&PROFILE, length / angle, angle), Shape::straight(&PROFILE, length));
+        let pairs = [
+            (arc.force, straight.force),
+            (arc.coupling, straight.coupling),
+            (arc.moment, straight.moment),
+            (arc.weight_translation, straight.weight_translation),
+            (arc.weight_rotation, straight.weight_rotation),
+        ];
+        for (a, s) in pairs {
+            assert!((a - s).norm() <= 1e-5 * s.norm().max(straight.moment.norm() * length), "{a} {s}");
+        }
+        assert!((arc.mass - straight.mass).abs() < 1e-15);
+    }
+}

@@ -1,0 +1,242 @@
+//! A rod as a chain: nodes wherever something sits, acts or is read.
+
+use nalgebra::{Rotation3, Vector3};
+
+use super::chain::Chain;
+use super::element::Profile;
+use super::solve::{Load, Motion};
+use crate::error::{Error, Result};
+use crate::rod::{BendFlexibility, Pipe, Rod};
+use crate::units::MM;
+
+/// Which physics the model contains; [`Physics::default`] is all of it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Physics {
+    /// Extension of the pipes, 1/EA.
+    pub axial: bool,
+    /// Shear of the pipes, 1/κGA: Timoshenko's theory with it, Euler–Bernoulli's without.
+    pub shear: bool,
+    /// The bend as an arc of its radius; without it the pipes meet in a sharp corner.
+    pub bend: bool,
+    /// The bend's flexibility factor (ovalisation), where the rod file has one.
+    pub bend_flexibility: bool,
+    /// Rotational compliance of the joints.
+    pub joints: bool,
+    /// Weight of sleeves and holders along the rod.
+    pub masses: bool,
+    /// Weight of ball and ball holder at the tip.
+    pub tip_mass: bool,
+}
+
+impl Default for Physics {
+    fn default() -> Self {
+        Physics {
+            axial: true,
+            shear: true,
+            bend: true,
+            bend_flexibility: true,
+            joints: true,
+            masses: true,
+            tip_mass: true,
+        }
+    }
+}
+
+/// A rod's chain in {T}, clamped at the flange.
+#[derive(Debug, Clone)]
+pub struct RodModel {
+    /// Nodes and elements.
+    pub chain: Chain,
+    rod: Rod,
+}
+
+impl RodModel {
+    /// Meshes `rod` with `elements` elements (at least one for each part between two stations of interest).
+    /// `stations` (m) get a node besides the tip, the masses and the joints.
+    ///
+    /// The elements are shared out by length. Their number does not change the result: each element is exact.
+    ///
+    /// # Errors
+    /// [`Error::Argument`] for no elements, or a station that is not on the rod.
+    pub fn new(rod: &Rod, physics: &Physics, elements: usize, stations: &[f64]) -> Result<Self> {
+        if elements == 0 {
+            return Err(Error::Argument {
+                name: "elements",
+                found: "0".into(),
+                expected: "at least 1".into(),
+            });
+        }
+        let rod = physics.applied_to(rod);
+        let cuts = cuts(&rod, stations)?;
+        let counts = share_out(elements, &cuts);
+        let mut chain = Chain::clamped_at(Vector3::zeros(), Rotation3::identity());
+        chain.reserve(counts.iter().sum::<usize>() + rod.joints.len());
+
+        let bend_factor = rod.bend_flexibility.factor(&rod.bend.section, rod.bend_radius);
+        let (pipe1, pipe2) = (physics.profile(&rod.pipe1, 1.0), physics.profile(&rod.pipe2, 1.0));
+        let bend = physics.profile(&rod.bend, bend_factor);
+        let mut corner_ahead = rod.bend_radius == 0.0;
+        place_features(&mut chain, &rod, cuts[0]);
+        for (ends, count) in cuts.windows(2).zip(counts) {
+            let (length, middle) = (ends[1] - ends[0], (ends[0] + ends[1]) / 2.0);
+            if middle < rod.bend_start() {
+                chain.straight(&pipe1, length, count);
+            } else if middle < rod.bend_end() {
+                chain.arc(&bend, rod.bend_radius, length / rod.bend_radius, count);
+            } else {
+                if std::mem::take(&mut corner_ahead) {
+                    chain.turn(&Rotation3::from_axis_angle(&Vector3::y_axis(), rod.turn()));
+                }
+                chain.straight(&pipe2, length, count);
+            }
+            place_features(&mut chain, &rod, ends[1]);
+        }
+        chain.mass(rod.tip_mass);
+        Ok(RodModel { chain, rod })
+    }
+
+    /// The rod that is modelled: without what the physics leaves out.
+    pub fn rod(&self) -> &Rod {
+        &self.rod
+    }
+
+    /// Node at the tip.
+    pub fn tip(&self) -> usize {
+        self.chain.end()
+    }
+
+    /// The node at a `station` (m) that was given to [`RodModel::new`]: the outermost one there, beyond any joint.
+    pub fn node_at(&self, station: f64) -> usize {
+        let distance = |node: usize| (self.chain.station(node) - station).abs();
+        (0..=self.chain.end()).fold(0, |best, node| match distance(node) <= distance(best) + SAME_STATION {
+            true => node,
+            false => best,
+        })
+    }
+
+    /// Displacement (m) and rotation (rad) at one station per unit force (N) at another, both in {T}.
+    ///
+    /// # Errors
+    /// As [`Chain::solve`].
+    pub fn force_response(&self, load_station: f64, read_station: f64) -> Result<Motion> {
+        let load = Load::Force { node: self.node_at(load_station) };
+        let response = self.chain.solve(&[load])?;
+        Ok(*response.motion(self.node_at(read_station), 0))
+    }
+}
+
+/// Stations closer than this are one node, m.
+const SAME_STATION: f64 = 1e-9;
+
+impl Physics {
+    /// The rod without what is left out. Stations beyond a bend shift by what the corner is longer.
+    fn applied_to(&self, rod: &Rod) -> Rod {
+        let mut rod = rod.clone();
+        if !self.bend {
+            let (start, end, tangent) = (rod.bend_start(), rod.bend_end(), rod.tangent_length());
+            let shift = |station: &mut f64| {
+                if *station >= end {
+                    *station += 2.0 * tangent - (end - start);
+                } else if *station > start {
+                    // within the bend: keep the proportion of the way round
+                    *station = start + (*station - start) * 2.0 * tangent / (end - start);
+                }
+            };
+            rod.masses.iter_mut().for_each(|mass| shift(&mut mass.station));
+            rod.joints.iter_mut().for_each(|joint| shift(&mut joint.station));
+            rod.bend_radius = 0.0;
+        }
+        if !self.bend_flexibility {
+            rod.bend_flexibility = BendFlexibility::Beam;
+        }
+        if !self.joints {
+            rod.joints.clear();
+        }
+        if !self.masses {
+            rod.masses.clear();
+        }
+        if !self.tip_mass {
+            rod.tip_mass = 0.0;
+        }
+        rod
+    }
+
+    /// What a pipe gives way by under this physics, its bending flexibility times `bend_factor`.
+    fn profile(&self, pipe: &Pipe, bend_factor: f64) -> Profile {
+        let (section, material) = (&pipe.section, &pipe.material);
+        let (e, g, area) = (material.youngs_modulus, material.shear_modulus, section.area());
+        let kappa = section.shear_coefficient(material.poisson_ratio);
+        let shear = if self.shear { 1.0 / (kappa * g * area) } else { 0.0 };
+        let bending = bend_factor / (e * section.second_moment());
+        Profile {
+            axial: if self.axial { 1.0 / (e * area) } else { 0.0 },
+            shear: [shear; 2],
+            bending: [bending; 2],
+            torsion: 1.0 / (g * section.torsion_constant()),
+            mass_per_length: pipe.mass_per_length(),
+        }
+    }
+}
+
+/// Where the centreline is cut into parts: its ends, the bend's, and wherever something sits or is read.
+fn cuts(rod: &Rod, stations: &[f64]) -> Result<Vec<f64>> {
+    let length = rod.length();
+    let mut cuts = vec![0.0, rod.bend_start(), rod.bend_end(), length];
+    cuts.extend(rod.masses.iter().map(|mass| mass.station));
+    cuts.extend(rod.joints.iter().map(|joint| joint.station));
+    for &station in stations {
+        if !(station >= 0.0 && station <= length + SAME_STATION) {
+            return Err(Error::Argument {
+                name: "station",
+                found: format!("{:.3} mm", station / MM),
+                expected: format!("a station on the rod, 0 to {:.3} mm (the tip)", length / MM),
+            });
+        }
+        cuts.push(station);
+    }
+    cuts.sort_by(f64::total_cmp);
+    cuts.dedup_by(|later, earlier| *later - *earlier <= SAME_STATION);
+    Ok(cuts)
+}
+
+/// Puts on the chain's end whatever the rod has at this station.
+fn place_features(chain: &mut Chain, rod: &Rod, station: f64) {
+    let is_here = |at: f64| (at - station).abs() <= SAME_STATION;
+    for mass in rod.masses.iter().filter(|mass| is_here(mass.station)) {
+        chain.mass(mass.mass);
+    }
+    for joint in rod.joints.iter().filter(|joint| is_here(joint.station)) {
+        chain.spring(joint.bending, joint.torsion);
+    }
+}
+
+/// Shares `total` elements out among the parts between `cuts` by length: at least one each, and exactly `total`
+/// in all where there are that many parts or fewer (largest remainders).
+fn share_out(total: usize, cuts: &[f64]) -> Vec<usize> {
+    let parts = cuts.len() - 1;
+    let spare = total.saturating_sub(parts) as f64;
+    let scale = spare / (cuts[parts] - cuts[0]);
+    let ideal: Vec<f64> = cuts.windows(2).map(|ends| (ends[1] - ends[0]) * scale).collect();
+    let mut counts: Vec<usize> = ideal.iter().map(|share| 1 + *share as usize).collect();
+    let mut by_remainder: Vec<usize> = (0..parts).collect();
+    by_remainder.sort_by(|&a, &b| ideal[b].fract().total_cmp(&ideal[a].fract()));
+    let missing = total.saturating_sub(counts.iter().sum());
+    for &part in by_remainder.iter().take(missing) {
+        counts[part] += 1;
+    }
+    counts
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn elements_are_shared_out_by_length_and_none_is_lost() {
+        assert_eq!(share_out(10, &[0.0, 1.0, 4.0]), [3, 7]);
+        assert_eq!(share_out(1, &[0.0, 1.0, 4.0]), [1, 1]);
+        for total in 3..200 {
+            assert_eq!(share_out(total, &[0.0, 0.1, 0.7, 1.9]).iter().sum::<usize>(), total);
+        }
+    }
+}

@@ -1,0 +1,188 @@
+//! A bent measuring rod: what it is made of and where everything sits along its centreline.
+//!
+//! Tool frame {T}: origin at the flange, pipe I along +Z, both pipes in the X–Z plane.
+//! A *station* is the arc length along the centreline from the flange; the tip is the largest one.
+
+mod file;
+mod warnings;
+
+pub use warnings::Warning;
+
+use std::f64::consts::PI;
+
+use nalgebra::Vector3;
+
+use crate::material::Material;
+use crate::section::Round;
+
+/// A rod as its file describes it, in SI units. Made by [`Rod::read`] or [`Rod::from_toml`], which check it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rod {
+    /// Name, for people.
+    pub name: String,
+    /// Flange to the corner where the two centrelines meet, L1, m.
+    pub l1: f64,
+    /// Corner to the ball centre, L2, m.
+    pub l2: f64,
+    /// Inside angle between the pipes γ, rad: π/2 is the L-shape, π a straight rod.
+    pub gamma: f64,
+    /// Radius of the bend's centreline R, m; 0 is a sharp corner. The arc is tangent to both pipes.
+    pub bend_radius: f64,
+    /// How the bend's cross-section gives way beyond beam theory.
+    pub bend_flexibility: BendFlexibility,
+    /// Flange to bend.
+    pub pipe1: Pipe,
+    /// The bend; without effect while `bend_radius` is 0.
+    pub bend: Pipe,
+    /// Bend to tip.
+    pub pipe2: Pipe,
+    /// Ball and ball holder, lumped at the tip, kg.
+    pub tip_mass: f64,
+    /// Sleeves and holders.
+    pub masses: Vec<LumpedMass>,
+    /// Bonded or threaded connections.
+    pub joints: Vec<Joint>,
+    /// Largest load up to which the rod's maker or user calls it linear, N.
+    pub linear_range: Option<f64>,
+    /// What the reader of the file wants its user to know.
+    pub warnings: Vec<Warning>,
+}
+
+/// A pipe: its section and what it is made of.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pipe {
+    /// Cross-section.
+    pub section: Round,
+    /// Material.
+    pub material: Material,
+}
+
+/// A mass on the centreline that carries no load.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LumpedMass {
+    /// Name, for people.
+    pub name: String,
+    /// Station, m.
+    pub station: f64,
+    /// Mass, kg.
+    pub mass: f64,
+}
+
+/// A connection that yields in rotation, of no length.
+///
+/// At a sharp corner its axis is that of the pipe on the flange's side.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Joint {
+    /// Name, for people and for the diagnosis.
+    pub name: String,
+    /// Station, m.
+    pub station: f64,
+    /// Rotation about each normal of the centreline per moment about it, rad/(N·m).
+    pub bending: f64,
+    /// Rotation about the centreline per moment about it, rad/(N·m).
+    pub torsion: f64,
+}
+
+/// A thin bent pipe ovalises and is more flexible in bending than a beam, by a factor k ≥ 1.
+///
+/// With h = tR/r² (t wall, R radius of the bend, r mean radius of the section).
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum BendFlexibility {
+    /// k = 1: beam theory.
+    #[default]
+    Beam,
+    /// k = (10 + 12h²)/(1 + 12h²). T. von Kármán, "Über die Formänderung dünnwandiger Rohre", Z. VDI 55 (1911) 1889–1895.
+    VonKarman,
+    /// k = 1.65/h, not below 1. ASME B31.3 (2018), Table D300, welding elbow or pipe bend.
+    AsmeB313,
+    /// A factor from elsewhere, for example from a solid finite-element model or from a diagnosis.
+    Factor(f64),
+}
+
+impl BendFlexibility {
+    /// The factor k on the bending flexibility of the bend (in and out of its plane), dimensionless.
+    pub fn factor(&self, section: &Round, bend_radius: f64) -> f64 {
+        // h = tR/r²
+        let h = section.wall() * bend_radius / section.mean_radius().powi(2);
+        match *self {
+            BendFlexibility::Beam => 1.0,
+            BendFlexibility::VonKarman => (10.0 + 12.0 * h * h) / (1.0 + 12.0 * h * h),
+            BendFlexibility::AsmeB313 => (1.65 / h).max(1.0),
+            BendFlexibility::Factor(k) => k,
+        }
+    }
+}
+
+impl Pipe {
+    /// Mass per length ρA, kg/m.
+    pub fn mass_per_length(&self) -> f64 {
+        self.material.density * self.section.area()
+    }
+}
+
+impl Rod {
+    /// Angle the centreline turns through in the bend, π − γ, rad.
+    pub fn turn(&self) -> f64 {
+        PI - self.gamma
+    }
+
+    /// What the bend takes off each pipe's length, R tan((π − γ)/2), m.
+    pub fn tangent_length(&self) -> f64 {
+        tangent_length(self.bend_radius, self.gamma)
+    }
+
+    /// Length of the arc R (π − γ), m; 0 for a sharp corner.
+    pub fn arc_length(&self) -> f64 {
+        self.bend_radius * self.turn()
+    }
+
+    /// Station where the first straight pipe ends, m.
+    pub fn bend_start(&self) -> f64 {
+        self.l1 - self.tangent_length()
+    }
+
+    /// Station where the second straight pipe begins, m.
+    pub fn bend_end(&self) -> f64 {
+        self.bend_start() + self.arc_length()
+    }
+
+    /// Length of the centreline and so the tip's station, m.
+    pub fn length(&self) -> f64 {
+        self.bend_end() + self.l2 - self.tangent_length()
+    }
+
+    /// The undeflected ball centre in {T}, `[L2 sin γ, 0, L1 − L2 cos γ]`, m (the paper's Eq 1).
+    pub fn tip(&self) -> Vector3<f64> {
+        let (sin, cos) = sin_cos_exact(self.gamma);
+        Vector3::new(self.l2 * sin, 0.0, self.l1 - self.l2 * cos)
+    }
+
+    /// Mass of pipes, bend, lumped masses and tip, kg.
+    pub fn mass(&self) -> f64 {
+        self.pipe1.mass_per_length() * self.bend_start()
+            + self.bend.mass_per_length() * self.arc_length()
+            + self.pipe2.mass_per_length() * (self.length() - self.bend_end())
+            + self.masses.iter().map(|m| m.mass).sum::<f64>()
+            + self.tip_mass
+    }
+
+    /// The two pipes are one tube of one material, as the paper's closed form (Calc) assumes.
+    pub fn is_uniform(&self) -> bool {
+        let same = |a: &Material, b: &Material| {
+            (a.youngs_modulus, a.shear_modulus, a.density) == (b.youngs_modulus, b.shear_modulus, b.density)
+        };
+        self.pipe1.section == self.pipe2.section && same(&self.pipe1.material, &self.pipe2.material)
+    }
+}
+
+/// What an arc of radius R takes off each pipe at the inside angle γ, m. A straight rod (γ = π) has no bend.
+fn tangent_length(bend_radius: f64, gamma: f64) -> f64 {
+    bend_radius * ((PI - gamma) / 2.0).tan()
+}
+
+/// Sine and cosine that are exact at the right and the straight angle, where `sin π` would leave 1e-16.
+pub(crate) fn sin_cos_exact(angle: f64) -> (f64, f64) {
+    let (sin, cos) = angle.sin_cos();
+    let clean = |x: f64| if x.abs() < 1e-15 { 0.0 } else { x };
+    (clean(sin), clean(cos))
+}

@@ -1,0 +1,70 @@
+//! What a rod file's reader wants its user to know; `Display` gives the advice.
+
+use std::fmt;
+
+/// Something in a rod file that is allowed but worth a second look.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Warning {
+    /// The bend is tighter than the tube itself.
+    TightBend {
+        /// Radius of the bend, m.
+        radius: f64,
+        /// Outer radius of the bend's tube, m.
+        tube_radius: f64,
+    },
+    /// A bend radius was given but the rod is straight.
+    NoBend,
+    /// The plies do not add up to the wall of the tube that uses them.
+    LaminateThickness {
+        /// Name of the material.
+        material: String,
+        /// Sum of the plies, m.
+        plies: f64,
+        /// The pipe in question.
+        pipe: &'static str,
+        /// Wall of the tube, m.
+        wall: f64,
+    },
+    /// The laminate is not balanced: pulling the tube twists it, which E and G do not describe.
+    LaminateCoupling {
+        /// Name of the material.
+        material: String,
+        /// |a16| / √(a11 a66).
+        coupling: f64,
+    },
+    /// Young's and shear modulus leave the isotropic range; Cowper's κ is then only approximate.
+    Anisotropic {
+        /// Name of the material.
+        material: String,
+        /// E/2G − 1.
+        ratio: f64,
+    },
+}
+
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Warning::TightBend { radius, tube_radius } => write!(
+                f,
+                "the bend radius ({:.1} mm) is smaller than the tube's own radius ({:.1} mm): beam theory does not hold there",
+                radius * 1e3,
+                tube_radius * 1e3
+            ),
+            Warning::NoBend => write!(f, "bend_radius_mm has no effect on a straight rod (gamma_deg = 180)"),
+            Warning::LaminateThickness { material, plies, pipe, wall } => write!(
+                f,
+                "the plies of material `{material}` are {:.3} mm thick together but the wall of {pipe} is {:.3} mm: the laminate's moduli are used for the whole wall",
+                plies * 1e3,
+                wall * 1e3
+            ),
+            Warning::LaminateCoupling { material, coupling } => write!(
+                f,
+                "the laminate of material `{material}` is not balanced (extension–shear coupling {coupling:.2}): a beam with E and G alone leaves its bending–twisting out; pair every +θ ply with a −θ ply"
+            ),
+            Warning::Anisotropic { material, ratio } => write!(
+                f,
+                "material `{material}` has E/2G − 1 = {ratio:.2}, outside the isotropic range: Cowper's shear coefficient is evaluated at the nearest isotropic Poisson's ratio"
+            ),
+        }
+    }
+}

@@ -1,0 +1,8 @@
+//! Validation against published values: one example a test, each with its source and a tolerance with a reason.
+
+#[path = "validation/beams.rs"]
+mod beams;
+#[path = "validation/paper.rs"]
+mod paper;
+#[path = "validation/sections.rs"]
+mod sections;

@@ -4,6 +4,7 @@
 pub mod beam;
 pub mod closed_form;
 pub mod compliance;
+pub mod delimited;
 pub mod error;
 pub mod files;
 pub mod material;

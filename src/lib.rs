@@ -8,6 +8,7 @@ pub mod delimited;
 pub mod error;
 pub mod files;
 pub mod material;
+pub mod rig;
 pub mod rod;
 pub mod section;
 pub mod spatial;

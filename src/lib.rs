@@ -4,9 +4,11 @@
 pub mod beam;
 pub mod closed_form;
 pub mod compliance;
+pub mod delimited;
 pub mod error;
 pub mod files;
 pub mod material;
+pub mod rig;
 pub mod rod;
 pub mod section;
 pub mod spatial;

@@ -1,0 +1,390 @@
+//! Readings of a stiffness rig: which load, along which axis of {T}, gave which offsets.
+//!
+//! A CSV file with one reading per row; its columns and their units are those of [`KNOWN_COLUMNS`].
+//! Offsets are differences from the unloaded, zeroed rod.
+
+mod warning;
+
+use std::fmt;
+use std::path::Path;
+
+use crate::delimited::{Row, Table, nearest_name};
+use crate::error::{Error, Place, Result};
+use crate::files;
+use crate::units::{MM, STANDARD_GRAVITY, UM};
+pub use warning::Warning;
+
+/// The columns that are read. `axis`, one of the loads and one of the offsets must be there.
+pub const KNOWN_COLUMNS: [&str; 12] = [
+    "axis",
+    "load_n",
+    "load_kg",
+    "dx_um",
+    "dy_um",
+    "dz_um",
+    "trial",
+    "phase",
+    "time_s",
+    "temperature_c",
+    "load_station_mm",
+    "read_station_mm",
+];
+const TEXT_COLUMNS: [&str; 3] = ["axis", "trial", "phase"];
+const LOAD_COLUMNS: [&str; 2] = ["load_n", "load_kg"];
+/// By channel: the offset along X, Y and Z.
+const OFFSET_COLUMNS: [&str; 3] = ["dx_um", "dy_um", "dz_um"];
+
+const ABSOLUTE_ZERO_C: f64 = -273.15;
+
+/// The readings of one file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Readings {
+    /// The file as the user named it.
+    pub file: String,
+    /// The readings in the order of the file; at least one (axis, channel) has two different loads.
+    pub rows: Vec<Reading>,
+    /// What a user should know about the file although it can be read.
+    pub warnings: Vec<Warning>,
+}
+
+/// One row: a load and the offsets that it caused.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reading {
+    /// Direction of the load in {T}.
+    pub direction: Direction,
+    /// Magnitude of the load, N, ≥ 0.
+    pub load: f64,
+    /// Offset of the tip (or of the read station) along X, Y, Z of {T}, m; `None`: not measured. One is there.
+    pub offset: [Option<f64>; 3],
+    /// Name or number of the repeat.
+    pub trial: Option<String>,
+    /// Whether the load was reached by loading or by unloading.
+    pub phase: Option<Phase>,
+    /// Time of the reading, s, from any zero.
+    pub time: Option<f64>,
+    /// Temperature, °C.
+    pub temperature: Option<f64>,
+    /// Arc length from the flange to the load, m; `None`: the tip.
+    pub load_station: Option<f64>,
+    /// Arc length from the flange to the sensor, m; `None`: the tip.
+    pub read_station: Option<f64>,
+    /// Line in the file, from 1.
+    pub line: usize,
+}
+
+/// An axis of the tool frame {T}.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[allow(missing_docs)]
+pub enum Axis {
+    X,
+    Y,
+    Z,
+}
+
+/// Along or against an axis of {T}.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Direction {
+    /// The axis.
+    pub axis: Axis,
+    /// +1 along, −1 against it.
+    pub sign: i8,
+}
+
+/// On the way up or down.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Phase {
+    /// The load was raised to this one.
+    Load,
+    /// The load was lowered to this one.
+    Unload,
+}
+
+impl Readings {
+    /// Reads a file of readings.
+    ///
+    /// # Errors
+    /// [`Error::File`] where it cannot be read, else as [`Readings::from_text`].
+    pub fn read(path: &Path) -> Result<Readings> {
+        let file = path.display().to_string();
+        let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
+        let is_workbook = extension.is_some_and(|e| ["xlsx", "xlsm", "xls", "ods"].contains(&e.as_str()));
+        match files::read_text(path) {
+            // a workbook is not UTF-8, which is true but of no help
+            Err(Error::Input { .. }) if is_workbook => Err(Error::Input {
+                at: Place::whole_file(&file),
+                found: "this is an Excel workbook".into(),
+                expected: "CSV text".into(),
+                hint: Some("export it as CSV (in Excel: \"CSV UTF-8\")".into()),
+            }),
+            text => Readings::from_text(&file, &text?),
+        }
+    }
+
+    /// Reads `text`, the contents of `file`.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with line and column: what [`Table::parse`] refuses; `load_n` and `load_kg` both or neither,
+    /// no `axis`, no offset; a cell that is not what its column holds; a row without any offset; and a file in
+    /// which no axis has two different loads, since a slope cannot be found from one.
+    pub fn from_text(file: &str, text: &str) -> Result<Readings> {
+        let table = Table::parse(file, text, |column| {
+            is_one_of(column, &KNOWN_COLUMNS) && !is_one_of(column, &TEXT_COLUMNS)
+        })?;
+        check_columns(&table)?;
+        let rows = table.rows().map(read_row).collect::<Result<Vec<_>>>()?;
+        check_loads(file, &rows)?;
+        Ok(Readings { file: file.to_owned(), warnings: warning::all(&table, &rows), rows })
+    }
+}
+
+impl Axis {
+    /// X, Y, Z: by [`Axis::index`].
+    pub const ALL: [Axis; 3] = [Axis::X, Axis::Y, Axis::Z];
+
+    /// 0 for X, 1 for Y, 2 for Z.
+    pub fn index(self) -> usize {
+        self as usize
+    }
+}
+
+impl Direction {
+    /// `x`, `+y`, `-Z`; a Unicode minus is one too.
+    pub fn from_name(name: &str) -> Option<Direction> {
+        let (sign, axis) = match name.strip_prefix(['-', '\u{2212}']) {
+            Some(axis) => (-1, axis),
+            None => (1, name.strip_prefix('+').unwrap_or(name)),
+        };
+        let axis = Axis::ALL.into_iter().find(|known| known.to_string().eq_ignore_ascii_case(axis.trim()))?;
+        Some(Direction { axis, sign })
+    }
+}
+
+impl Reading {
+    /// The load along the positive axis, N: its magnitude with the sign of its direction.
+    pub fn signed_load(&self) -> f64 {
+        f64::from(self.direction.sign) * self.load
+    }
+}
+
+impl fmt::Display for Axis {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(["x", "y", "z"][self.index()])
+    }
+}
+
+impl fmt::Display for Direction {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}{}", if self.sign < 0 { "-" } else { "" }, self.axis)
+    }
+}
+
+fn is_one_of(column: &str, names: &[&str]) -> bool {
+    names.iter().any(|name| name.eq_ignore_ascii_case(column))
+}
+
+fn check_columns(table: &Table) -> Result<()> {
+    let missing = |what: &str, expected: &str, wanted: &[&str]| {
+        let meant = table.columns().find_map(|column| Some((column, nearest_name(column, wanted)?)));
+        let hint = meant.map(|(column, known)| format!("is the column {column} meant to be {known}?"));
+        Err(table.header_error("", format!("there is no {what}"), expected.into(), hint))
+    };
+    if !table.has("axis") {
+        return missing("column axis", "the direction of each load, such as x or -z", &["axis"]);
+    }
+    match LOAD_COLUMNS.map(|column| table.has(column)) {
+        [true, true] => {
+            return Err(table.header_error(
+                "load_kg",
+                "the load is given twice, in load_n and in load_kg".into(),
+                "one of the two".into(),
+                Some("delete the column that was computed from the other".into()),
+            ));
+        }
+        [false, false] => {
+            return missing("load", "a column load_n (newtons) or load_kg (kilograms)", &LOAD_COLUMNS);
+        }
+        _ => {}
+    }
+    if !OFFSET_COLUMNS.iter().any(|column| table.has(column)) {
+        return missing("offset", "a column dx_um, dy_um or dz_um (micrometres)", &OFFSET_COLUMNS);
+    }
+    Ok(())
+}
+
+fn read_row(row: Row<'_>) -> Result<Reading> {
+    let direction = read_direction(row)?;
+    Ok(Reading {
+        direction,
+        load: read_load(row, direction)?,
+        offset: read_offset(row)?,
+        trial: row.text("trial").map(str::to_owned),
+        phase: read_phase(row)?,
+        time: row.number("time_s")?,
+        temperature: at_least(row, "temperature_c", ABSOLUTE_ZERO_C)?,
+        load_station: at_least(row, "load_station_mm", 0.0)?.map(|mm| mm * MM),
+        read_station: at_least(row, "read_station_mm", 0.0)?.map(|mm| mm * MM),
+        line: row.line(),
+    })
+}
+
+fn read_direction(row: Row<'_>) -> Result<Direction> {
+    row.text("axis").and_then(Direction::from_name).ok_or_else(|| {
+        row.error(
+            "axis",
+            "x, y, z, -x, -y or -z".into(),
+            Some("it is the direction of the load in {T}".into()),
+        )
+    })
+}
+
+fn read_load(row: Row<'_>, direction: Direction) -> Result<f64> {
+    let is_mass = row.table().has("load_kg");
+    let (column, newtons) = if is_mass { ("load_kg", STANDARD_GRAVITY) } else { ("load_n", 1.0) };
+    let load = row.required_number(column)?;
+    if load < 0.0 {
+        let opposite = Direction { sign: -direction.sign, ..direction };
+        return Err(row.error(
+            column,
+            "a magnitude ≥ 0".into(),
+            Some(format!("write the direction into the column axis: {opposite} and {}", -load)),
+        ));
+    }
+    Ok(load * newtons)
+}
+
+fn read_offset(row: Row<'_>) -> Result<[Option<f64>; 3]> {
+    let mut offset = [None; 3];
+    for (column, value) in OFFSET_COLUMNS.into_iter().zip(&mut offset) {
+        *value = row.number(column)?.map(|um| um * UM);
+    }
+    if offset.iter().all(Option::is_none) {
+        return Err(row.row_error(
+            "the row has a load but no offset".into(),
+            "a number in dx_um, dy_um or dz_um".into(),
+            Some("delete the row, or put a # before it".into()),
+        ));
+    }
+    Ok(offset)
+}
+
+fn read_phase(row: Row<'_>) -> Result<Option<Phase>> {
+    match row.text("phase").map(str::to_ascii_lowercase).as_deref() {
+        None => Ok(None),
+        Some("load") => Ok(Some(Phase::Load)),
+        Some("unload") => Ok(Some(Phase::Unload)),
+        Some(_) => Err(row.error("phase", "load, unload or a blank".into(), None)),
+    }
+}
+
+fn at_least(row: Row<'_>, column: &str, least: f64) -> Result<Option<f64>> {
+    match row.number(column)? {
+        Some(value) if value < least => Err(row.error(column, format!("a number ≥ {least}"), None)),
+        value => Ok(value),
+    }
+}
+
+/// A load for a message, to a millinewton: `5 N`, not `5.00000 N`.
+fn newtons(load: f64) -> String {
+    format!("{} N", (load * 1e3).round() / 1e3)
+}
+
+/// The signed loads of the readings in which `channel` was read under a load along `axis`, N.
+fn loads_of(rows: &[Reading], axis: Axis, channel: Axis) -> impl Iterator<Item = f64> {
+    rows.iter()
+        .filter(move |r| r.direction.axis == axis && r.offset[channel.index()].is_some())
+        .map(Reading::signed_load)
+}
+
+/// The one load of an (axis, channel), N; `None` where there are more, or none at all.
+fn only_load(rows: &[Reading], axis: Axis, channel: Axis) -> Option<f64> {
+    let mut loads = loads_of(rows, axis, channel);
+    let first = loads.next()?;
+    loads.all(|load| load == first).then_some(first)
+}
+
+fn check_loads(file: &str, rows: &[Reading]) -> Result<()> {
+    let has_slope = |axis, channel| {
+        loads_of(rows, axis, channel).next().is_some() && only_load(rows, axis, channel).is_none()
+    };
+    if Axis::ALL.into_iter().any(|axis| Axis::ALL.into_iter().any(|channel| has_slope(axis, channel))) {
+        return Ok(());
+    }
+    let found = match rows {
+        [] => "there are no readings under the header".into(),
+        [_] => "there is one reading only".into(),
+        [first, ..] => {
+            let load = |r: &Reading| format!("{} along {}", newtons(r.load), r.direction);
+            let mut loads: Vec<String> = rows.iter().map(load).collect();
+            loads.dedup();
+            match loads.as_slice() {
+                [_] => format!("every load is {}", load(first)),
+                _ => "no offset was read under two different loads along one axis".into(),
+            }
+        }
+    };
+    Err(Error::Input {
+        at: Place { line: rows.first().map_or(0, |r| r.line), ..Place::whole_file(file) },
+        found,
+        expected: "at least two different loads along an axis: a line needs two points".into(),
+        hint: None,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_column_is_read_in_si() {
+        let text = "\
+# a rig
+READ_STATION_MM, load_station_mm, Temperature_C, time_s, phase, trial, dz_um, dy_um, dx_um, load_n, axis
+210, 525, 20.5, -3, Unload, 2b, -12, , 1.5, 5, -Z
+,,,,,,3,,,0,+z
+";
+        let readings = Readings::from_text("rig.csv", text).unwrap();
+        let first = Reading {
+            direction: Direction { axis: Axis::Z, sign: -1 },
+            load: 5.0,
+            offset: [Some(1.5 * UM), None, Some(-12.0 * UM)],
+            trial: Some("2b".into()),
+            phase: Some(Phase::Unload),
+            time: Some(-3.0),
+            temperature: Some(20.5),
+            load_station: Some(525.0 * MM),
+            read_station: Some(210.0 * MM),
+            line: 3,
+        };
+        assert_eq!(readings.rows[0], first);
+        assert_eq!(readings.rows[0].signed_load(), -5.0);
+        assert_eq!(readings.rows[1].direction.to_string(), "z");
+        assert_eq!(readings.rows[1].load_station, None);
+    }
+
+    #[test]
+    fn a_kilogram_weighs_as_much_as_standard_gravity_makes_it() {
+        let readings = Readings::from_text("f", "axis,load_kg,dx_um\n\u{2212}x,1,2\nx,2,4\n").unwrap();
+        assert_eq!(readings.rows[0].signed_load(), -9.80665);
+        assert_eq!(readings.warnings, []);
+    }
+
+    #[test]
+    fn loads_in_both_directions_are_two_loads() {
+        assert!(Readings::from_text("f", "axis,load_n,dx_um\nx,5,2\n-x,5,-2\n").is_ok());
+        assert!(Readings::from_text("f", "axis,load_n,dx_um\nx,5,2\ny,5,-2\n").is_err());
+    }
+
+    #[test]
+    fn a_workbook_is_named_as_such() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("rig.xlsx");
+        std::fs::write(&path, b"PK\x03\x04\xFF").unwrap();
+        let error = Readings::read(&path).unwrap_err();
+        assert!(
+            error.to_string().ends_with("rig.xlsx: this is an Excel workbook, expected CSV text"),
+            "{error}"
+        );
+        let missing = Readings::read(&directory.path().join("none.xlsx")).unwrap_err();
+        assert!(matches!(missing, Error::File { .. }));
+    }
+}

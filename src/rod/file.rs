@@ -278,7 +278,7 @@ impl Check<'_> {
                 let g = self.positive(&key("shear_modulus_gpa"), g)? * GPA;
                 let ratio = isotropic_poisson_ratio(e, g);
                 let material = Material::with_moduli(name, e, g, density);
-                if material.poisson_ratio != ratio {
+                if ratio > 0.5 {
                     warnings.push(Warning::Anisotropic { material: name.to_owned(), ratio });
                 }
                 Ok(Checked { material, laminate_thickness: None })

@@ -63,7 +63,7 @@ impl fmt::Display for Warning {
             ),
             Warning::Anisotropic { material, ratio } => write!(
                 f,
-                "material `{material}` has E/2G − 1 = {ratio:.2}, outside the isotropic range: Cowper's shear coefficient is evaluated at the nearest isotropic Poisson's ratio"
+                "material `{material}` has E/2G − 1 = {ratio:.2}, more than an isotropic material can have: Cowper's shear coefficient, derived for isotropic ones, is only approximate here"
             ),
         }
     }

@@ -3,6 +3,7 @@
 
 pub mod error;
 pub mod files;
+pub mod report;
 pub mod units;
 
 pub use error::{Error, Result};

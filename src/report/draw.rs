@@ -129,7 +129,11 @@ impl<'a> Plan<'a> {
             let y = area.top - TITLE_GAP_PX - (i as f64 + 0.5) * TITLE_LINE_PX;
             canvas.text([self.left, y], line, TITLE, Rgb::INK);
         }
-        self.grid(canvas);
+        if marks::extents(&self.chart.marks, area.width()) == (None, None) {
+            canvas.text(area.centre(), "no data", NOTE, Rgb::GREY);
+        } else {
+            self.grid(canvas);
+        }
         let mut crowd = Crowd::new(area);
         marks::draw(canvas, &self.frame, &self.chart.marks, &mut crowd);
         self.axes(canvas);

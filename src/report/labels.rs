@@ -7,7 +7,7 @@ use super::plot::Px;
 pub(super) fn text_width_px(text: &str, size_px: f64) -> f64 {
     let em = |c| match c {
         'i' | 'j' | 'l' | 'I' | 'J' | '\'' | '|' | '\u{2009}' => 0.29,
-        '.' | ',' | ':' | ';' | ' ' | '·' | '/' | '!' => 0.33,
+        '.' | ',' | ':' | ';' | ' ' | '\u{a0}' | '·' | '/' | '!' => 0.33,
         't' | 'f' | 'r' | '(' | ')' | '[' | ']' | '-' | '⁻' | '¹' | '²' | '³' | '⁴'..='⁹' | '⁰' => {
             0.41
         }
@@ -20,10 +20,10 @@ pub(super) fn text_width_px(text: &str, size_px: f64) -> f64 {
     text.chars().map(em).sum::<f64>() * size_px
 }
 
-/// Breaks a text into lines of at most `width_px`, where its spaces allow.
+/// Breaks a text into lines of at most `width_px`, where its spaces allow; no-break spaces do not.
 pub(super) fn wrap(text: &str, size_px: f64, width_px: f64) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
-    for word in text.split_whitespace() {
+    for word in text.split(' ').filter(|word| !word.is_empty()) {
         match lines.last_mut() {
             Some(line) if text_width_px(&format!("{line} {word}"), size_px) <= width_px => {
                 line.push(' ');
@@ -199,6 +199,7 @@ mod tests {
     #[test]
     fn long_titles_are_broken_at_spaces() {
         assert_eq!(wrap("one two three", 10.0, 60.0), ["one two", "three"]);
+        assert_eq!(wrap("about 33.0\u{a0}µm/N", 10.0, 60.0), ["about", "33.0\u{a0}µm/N"]);
         assert_eq!(wrap("unbreakable", 10.0, 1.0), ["unbreakable"]);
     }
 }

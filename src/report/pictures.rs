@@ -82,7 +82,7 @@ pub fn load_deflection(rods: &[LoadDeflection], unit: LoadUnit) -> Figure {
             let from_n = if crosses { start_n } else { 0.0 };
             let at = |load_n: f64| [load_n / newtons, line.intercept_um + line.slope_um_per_n * load_n];
             chart.marks.push(Mark::Line {
-                label: format!("{}, {} µm/N", line.label, typeset(&significant(line.slope_um_per_n, 3))),
+                label: format!("{}, {}\u{a0}µm/N", line.label, typeset(&significant(line.slope_um_per_n, 3))),
                 points: vec![at(from_n), at(end_n)],
                 style,
             });
@@ -99,10 +99,11 @@ pub fn load_deflection(rods: &[LoadDeflection], unit: LoadUnit) -> Figure {
                 });
             }
         }
+        let any_error = rod.readings.iter().any(|r| r.standard_error_um > 0.0);
         let point =
             |r: &MeanReading| Point { x: r.load_n / newtons, y: r.mean_um, error: r.standard_error_um };
         chart.marks.push(Mark::Points {
-            label: "readings, mean ± standard error".into(),
+            label: if any_error { "readings, mean ± standard error" } else { "readings" }.into(),
             points: rod.readings.iter().map(point).collect(),
             style: Style::nth(0),
         });
@@ -135,7 +136,9 @@ pub fn contributions(groups: &[Contributions]) -> Figure {
         // Beside a panel with the same terms their names need not be repeated.
         let names_of = |g: &Contributions| g.terms.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>();
         let repeats = i % columns > 0 && names_of(&groups[i - 1]) == names_of(group);
-        let mut chart = Chart::new(&group.title, format!("contribution / {}", group.unit), "");
+        let compound = group.unit.contains(['/', '·', ' ']);
+        let unit = if compound { format!("({})", group.unit) } else { group.unit.clone() };
+        let mut chart = Chart::new(&group.title, format!("contribution / {unit}"), "");
         let row = |i: usize| -(i as f64);
         let name = |(i, (name, _)): (usize, &(String, f64))| {
             (row(i), if repeats { String::new() } else { name.clone() })
@@ -222,13 +225,13 @@ mod tests {
     #[test]
     fn friction_is_where_the_fit_meets_the_load_axis() {
         let svg = svg(&load_deflection(&[steel()], LoadUnit::Newton));
-        assert!(svg.contains("friction ≈ 0.90 N") && svg.contains("FEA, 32.6 µm/N"), "{svg}");
+        assert!(svg.contains("friction ≈ 0.90 N") && svg.contains("FEA, 32.6\u{a0}µm/N"), "{svg}");
     }
 
     #[test]
     fn loads_in_kilograms_keep_the_compliance_per_newton() {
         let svg = svg(&load_deflection(&[steel()], LoadUnit::Kilogram));
-        assert!(svg.contains("load / kg") && svg.contains("33.0 µm/N"), "{svg}");
+        assert!(svg.contains("load / kg") && svg.contains("33.0\u{a0}µm/N"), "{svg}");
     }
 
     #[test]

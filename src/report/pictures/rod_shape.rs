@@ -3,8 +3,8 @@
 use serde::Serialize;
 
 use super::super::chart::{Chart, Colour, Dash, Figure, Mark, Marker, Point, Range, Style};
-use super::super::scale::{drawable, extent, one_two_five_below};
-use crate::units::{MM, UM};
+use super::super::scale::{drawable, extent, one_two_five_below, typeset};
+use crate::units::{MM, UM, significant};
 
 /// A rod and how it bends. Coordinates are X, Y, Z of the flange frame, its origin at the flange.
 #[derive(Debug, Clone, Default, Serialize)]
@@ -70,7 +70,10 @@ pub fn rod_shape(rod: &RodShape) -> Figure {
     if let Some((low, high)) = range {
         panels.iter_mut().for_each(|c| c.x.range = Range::Fixed(low, high));
     }
-    Figure { name: "rod-shape".into(), panels, columns: 1, shared_legend: true, ..Figure::default() }
+    // An upright rod leaves room beside it.
+    let upright = extent_mm(rod, 2) > extent_mm(rod, 0);
+    let columns = if upright { 2 } else { 1 };
+    Figure { name: "rod-shape".into(), panels, columns, shared_legend: true, ..Figure::default() }
 }
 
 /// The 1-2-5 factor with which the largest deflection becomes at most a fifth of the rod's size.
@@ -82,13 +85,20 @@ fn exaggeration(rod: &RodShape) -> f64 {
 
 /// The largest of the rod's extents along X, Y and Z, mm.
 fn size_mm(rod: &RodShape) -> f64 {
-    let span =
-        |i: usize| extent(rod.centreline_mm.iter().map(|p| p[i])).map_or(0.0, |(low, high)| high - low);
-    span(0).max(span(1)).max(span(2))
+    extent_mm(rod, 0).max(extent_mm(rod, 1)).max(extent_mm(rod, 2))
+}
+
+/// How far the rod reaches along one axis, mm.
+fn extent_mm(rod: &RodShape, axis: usize) -> f64 {
+    extent(rod.centreline_mm.iter().map(|p| p[axis])).map_or(0.0, |(low, high)| high - low)
 }
 
 fn chart(rod: &RodShape, factor: f64, view: &str, name: &str, axis: usize) -> Chart {
-    let scale = if rod.cases.is_empty() { String::new() } else { format!(", deflection × {factor}") };
+    let scale = if rod.cases.is_empty() {
+        String::new()
+    } else {
+        format!(", deflection ×\u{a0}{}", typeset(&significant(factor, 1)))
+    };
     let title =
         [rod.title.as_str(), view].into_iter().filter(|t| !t.is_empty()).collect::<Vec<_>>().join(", ");
     let mut chart = Chart::new(format!("{title}{scale}"), "X / mm", format!("{name} / mm"));
@@ -185,7 +195,7 @@ mod tests {
     #[test]
     fn the_scale_is_in_the_title_and_a_case_only_where_it_moves_something() {
         let figure = rod_shape(&bent_rod());
-        assert_eq!(figure.panels[1].title, "view from above, deflection × 2000");
+        assert_eq!(figure.panels[1].title, "view from above, deflection ×\u{a0}2000");
         let drawn = |panel: &Chart| {
             panel
                 .marks

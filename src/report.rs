@@ -4,7 +4,7 @@
 //! bytes of a self-contained page and of every table and figure on its own. Nothing here reads or
 //! writes a file, and the same report always gives the same bytes.
 //!
-//! - [`chart`]: charts as data · [`plot`]: charts to SVG · [`png`]: SVG to PNG
+//! - [`chart`]: charts as data, drawn by [`chart::Figure::svg`] · [`png`]: SVG to PNG
 //! - [`pictures`]: the pictures of a rod, from numbers to charts
 //! - [`table`]: tables to text, HTML, Markdown, CSV · [`html`]: the page
 
@@ -15,7 +15,7 @@ mod labels;
 mod legend;
 mod marks;
 pub mod pictures;
-pub mod plot;
+mod plot;
 pub mod png;
 mod scale;
 pub mod table;
@@ -96,7 +96,7 @@ impl Report {
         let mut files = vec![("index.html".to_owned(), html::page(self).into_bytes())];
         for (i, figure) in self.figures().enumerate() {
             let name = file_name("figure", i, &figure.name);
-            let svg = plot::svg(figure);
+            let svg = figure.svg();
             if with_png {
                 files.push((format!("{name}.png"), png::png(&svg)?));
             }

@@ -21,8 +21,15 @@ const TITLE_LINE_PX: f64 = 18.0;
 /// Between title and axes, where half of the topmost tick label stands.
 const TITLE_GAP_PX: f64 = 9.0;
 
-/// Draws the whole figure.
-pub(super) fn figure(figure: &Figure) -> String {
+impl Figure {
+    /// The figure as an SVG document, 760 CSS pixels wide. It holds no ids, so many fit into one page;
+    /// the caption becomes its description, for screen readers, and is not drawn.
+    pub fn svg(&self) -> String {
+        draw(self)
+    }
+}
+
+fn draw(figure: &Figure) -> String {
     let columns = figure.columns.clamp(1, figure.panels.len().max(1));
     let width = (WIDTH_PX - 2.0 * EDGE_PX - GAP_PX * (columns - 1) as f64) / columns as f64;
     let mut plans = plan(figure, columns, width);
@@ -34,7 +41,7 @@ pub(super) fn figure(figure: &Figure) -> String {
     for row in plans.chunks_mut(columns) {
         let title_lines = row.iter().map(|p| p.title.len()).max().unwrap_or(0);
         for (i, plan) in row.iter_mut().enumerate() {
-            plan.lower(top + title_lines as f64 * TITLE_LINE_PX, EDGE_PX + i as f64 * (width + GAP_PX));
+            plan.move_by(top + title_lines as f64 * TITLE_LINE_PX, EDGE_PX + i as f64 * (width + GAP_PX));
         }
         top = row.iter().map(Plan::bottom).fold(top, f64::max) + EDGE_PX;
     }
@@ -107,8 +114,8 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// Moves the chart, whose plotting area so far begins at zero height, to its place.
-    fn lower(&mut self, by_y: f64, by_x: f64) {
+    /// Moves the chart, which so far stands at the origin, to its place.
+    fn move_by(&mut self, by_y: f64, by_x: f64) {
         let area = &mut self.frame.area;
         (area.top, area.bottom) = (area.top + by_y + TITLE_GAP_PX, area.bottom + by_y + TITLE_GAP_PX);
         (area.left, area.right) = (area.left + by_x, area.right + by_x);
@@ -304,25 +311,25 @@ mod tests {
                 let mut chart = every_mark([a, b, odd[(i + 1) % odd.len()]]);
                 for equal_aspect in [false, true] {
                     chart.equal_aspect = equal_aspect;
-                    let svg = figure(&Figure::from(chart.clone()));
+                    let svg = Figure::from(chart.clone()).svg();
                     assert!(Document::parse(&svg).is_ok() && !svg.contains("NaN"), "{a} {b}\n{svg}");
                 }
                 chart.x.range = Range::Fixed(a, b);
                 chart.y.step = Some(a);
                 chart.height_px = Some(b);
                 chart.y.names = vec![(a, "name".into()), (b, "other".into())];
-                let svg = figure(&Figure::from(chart));
+                let svg = Figure::from(chart).svg();
                 assert!(Document::parse(&svg).is_ok() && !svg.contains("NaN"), "{a} {b}\n{svg}");
             }
         }
-        figure(&Figure::default());
-        figure(&Figure { columns: 3, shared_legend: true, ..Figure::default() });
+        Figure::default().svg();
+        Figure { columns: 3, shared_legend: true, ..Figure::default() }.svg();
     }
 
     #[test]
     fn the_view_box_is_the_size_ten_times_and_there_are_no_ids() {
         let panels = vec![every_mark([1.0, 2.0, 3.0]); 3];
-        let svg = figure(&Figure { panels, columns: 2, caption: "Caption".into(), ..Figure::default() });
+        let svg = Figure { panels, columns: 2, caption: "Caption".into(), ..Figure::default() }.svg();
         let document = Document::parse(&svg).expect("is XML");
         let root = document.root_element();
         let number = |name| root.attribute(name).and_then(|v| v.parse::<f64>().ok()).expect("is a number");

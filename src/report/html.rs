@@ -3,7 +3,7 @@
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::chart::Figure;
-use super::{Block, Report, plot};
+use super::{Block, Report};
 
 /// The whole page: style sheet and pictures are inside it.
 pub fn page(report: &Report) -> String {
@@ -91,7 +91,7 @@ fn figure_markup(figure: &Figure, number: usize) -> Markup {
     html! {
         figure {
             // Our own SVG: its texts are escaped where it is drawn, and it holds no ids.
-            div.wide { (PreEscaped(plot::svg(figure))) }
+            div.wide { (PreEscaped(figure.svg())) }
             figcaption { b { "Figure " (number) } ". " (figure.caption) }
         }
     }

@@ -205,7 +205,6 @@ pub fn residuals(data: &Residuals) -> Figure {
 
 #[cfg(test)]
 mod tests {
-    use super::super::plot::svg;
     use super::*;
 
     fn steel() -> LoadDeflection {
@@ -224,28 +223,28 @@ mod tests {
 
     #[test]
     fn friction_is_where_the_fit_meets_the_load_axis() {
-        let svg = svg(&load_deflection(&[steel()], LoadUnit::Newton));
+        let svg = load_deflection(&[steel()], LoadUnit::Newton).svg();
         assert!(svg.contains("friction ≈ 0.90 N") && svg.contains("FEA, 32.6\u{a0}µm/N"), "{svg}");
     }
 
     #[test]
     fn loads_in_kilograms_keep_the_compliance_per_newton() {
-        let svg = svg(&load_deflection(&[steel()], LoadUnit::Kilogram));
+        let svg = load_deflection(&[steel()], LoadUnit::Kilogram).svg();
         assert!(svg.contains("load / kg") && svg.contains("33.0\u{a0}µm/N"), "{svg}");
     }
 
     #[test]
     fn a_bar_too_short_to_see_still_shows_its_number() {
         let terms = vec![("shear".into(), 0.0021), ("bend".into(), -3.0), ("joint".into(), f64::NAN)];
-        let svg = svg(&contributions(&[Contributions { title: "C22".into(), unit: "µm/N".into(), terms }]));
+        let svg = contributions(&[Contributions { title: "C22".into(), unit: "µm/N".into(), terms }]).svg();
         assert!(["0.0021", "−3.0", "unknown", "shear"].iter().all(|text| svg.contains(text)), "{svg}");
     }
 
     #[test]
     fn nothing_to_show_is_shown_as_nothing() {
-        svg(&load_deflection(&[], LoadUnit::Newton));
-        svg(&load_deflection(&[LoadDeflection::default()], LoadUnit::Newton));
-        svg(&contributions(&[Contributions::default()]));
-        svg(&residuals(&Residuals { noise_um: f64::NAN, ..Residuals::default() }));
+        load_deflection(&[], LoadUnit::Newton).svg();
+        load_deflection(&[LoadDeflection::default()], LoadUnit::Newton).svg();
+        contributions(&[Contributions::default()]).svg();
+        residuals(&Residuals { noise_um: f64::NAN, ..Residuals::default() }).svg();
     }
 }

@@ -7,12 +7,7 @@ use plotters::backend::{DrawingBackend, SVGBackend};
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{FontFamily, FontStyle, FontTransform, IntoFont, RGBColor, ShapeStyle, TextStyle};
 
-use super::chart::{Colour, Dash, Figure};
-
-/// Draws a figure as an SVG document. It holds no ids, so many fit into one page.
-pub fn svg(figure: &Figure) -> String {
-    super::draw::figure(figure)
-}
+use super::chart::{Colour, Dash};
 
 /// x, y in CSS pixels.
 pub(super) type Px = [f64; 2];

@@ -178,7 +178,6 @@ fn look(kind: StationKind) -> (&'static str, Style) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::super::plot::svg;
     use super::*;
 
     fn bent_rod() -> RodShape {
@@ -211,13 +210,13 @@ mod tests {
         let mut rod = bent_rod();
         let at_mm = [0.0, 0.0, 150.0];
         rod.stations.push(Station { label: "bend".into(), at_mm, kind: StationKind::Located });
-        assert_eq!(svg(&rod_shape(&rod)).matches(">\nbend\n").count(), 2);
+        assert_eq!(rod_shape(&rod).svg().matches(">\nbend\n").count(), 2);
     }
 
     #[test]
     fn a_rod_of_nothing_draws() {
-        svg(&rod_shape(&RodShape::default()));
+        rod_shape(&RodShape::default()).svg();
         let centreline_mm = vec![[f64::NAN; 3], [0.0; 3]];
-        svg(&rod_shape(&RodShape { centreline_mm, exaggeration: Some(f64::INFINITY), ..bent_rod() }));
+        rod_shape(&RodShape { centreline_mm, exaggeration: Some(f64::INFINITY), ..bent_rod() }).svg();
     }
 }

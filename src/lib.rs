@@ -7,11 +7,15 @@ pub mod compliance;
 pub mod delimited;
 pub mod error;
 pub mod files;
+pub mod least_squares;
+pub mod linalg;
 pub mod material;
+pub mod report;
 pub mod rig;
 pub mod rod;
 pub mod section;
 pub mod spatial;
+pub mod statistics;
 pub mod units;
 
 pub use error::{Error, Result};

@@ -1,0 +1,351 @@
+//! Lays out a figure: panels, titles, axes, legends. What is drawn inside the axes is in `marks`.
+
+use super::chart::{Axis, Chart, Dash, Figure, Mark, Range};
+use super::labels::{Area, Crowd, text_width_px, wrap};
+use super::legend::Legend;
+use super::marks;
+use super::plot::{Anchor, Canvas, Lettering, Px, Rgb};
+use super::scale::{Extent, Scale, drawable, extent};
+
+/// Width of every figure: the text column of the page.
+const WIDTH_PX: f64 = 760.0;
+const GAP_PX: f64 = 28.0;
+const EDGE_PX: f64 = 8.0;
+const TICK_PX: f64 = 4.0;
+
+pub(super) const NOTE: Lettering =
+    Lettering { size_px: 11.5, bold: false, anchor: Anchor::Middle, upwards: false };
+const LABEL: Lettering = Lettering { size_px: 12.5, ..NOTE };
+const TITLE: Lettering = Lettering { size_px: 13.5, bold: true, anchor: Anchor::Left, upwards: false };
+const TITLE_LINE_PX: f64 = 18.0;
+/// Between title and axes, where half of the topmost tick label stands.
+const TITLE_GAP_PX: f64 = 9.0;
+
+impl Figure {
+    /// The figure as an SVG document, 760 CSS pixels wide. It holds no ids, so many fit into one page;
+    /// the caption becomes its description, for screen readers, and is not drawn.
+    pub fn svg(&self) -> String {
+        draw(self)
+    }
+}
+
+fn draw(figure: &Figure) -> String {
+    let columns = figure.columns.clamp(1, figure.panels.len().max(1));
+    let width = (WIDTH_PX - 2.0 * EDGE_PX - GAP_PX * (columns - 1) as f64) / columns as f64;
+    let mut plans = plan(figure, columns, width);
+    let shared = figure
+        .shared_legend
+        .then(|| Legend::of(figure.panels.iter().flat_map(|c| &c.marks), WIDTH_PX - 2.0 * EDGE_PX));
+
+    let mut top = EDGE_PX;
+    for row in plans.chunks_mut(columns) {
+        let title_lines = row.iter().map(|p| p.title.len()).max().unwrap_or(0);
+        for (i, plan) in row.iter_mut().enumerate() {
+            plan.move_by(top + title_lines as f64 * TITLE_LINE_PX, EDGE_PX + i as f64 * (width + GAP_PX));
+        }
+        top = row.iter().map(Plan::bottom).fold(top, f64::max) + EDGE_PX;
+    }
+    let height = top + shared.as_ref().map_or(0.0, |legend| legend.height_px + EDGE_PX);
+
+    let mut canvas = Canvas::new(WIDTH_PX, height);
+    canvas.fill(&Area { left: 0.0, top: 0.0, right: WIDTH_PX, bottom: height }.corners(), Rgb::WHITE);
+    for plan in &plans {
+        plan.draw(&mut canvas);
+    }
+    if let Some(legend) = shared {
+        legend.draw(&mut canvas, [EDGE_PX, top]);
+    }
+    let titles: Vec<&str> = figure.panels.iter().map(|c| c.title.as_str()).collect();
+    canvas.finish(&titles.join("; "), &figure.caption)
+}
+
+fn plan(figure: &Figure, columns: usize, width: f64) -> Vec<Plan<'_>> {
+    let lettered = figure.panels.len() > 1;
+    // Axes that stand below one another stand exactly below one another.
+    let left = |column: usize| {
+        figure.panels.iter().skip(column).step_by(columns).map(|c| left_margin(c, width)).fold(0.0, f64::max)
+    };
+    let mut plans = Vec::new();
+    for (i, chart) in figure.panels.iter().enumerate() {
+        let letter = char::from(b'a' + (i % 26) as u8);
+        let title = if lettered { format!("({letter}) {}", chart.title) } else { chart.title.clone() };
+        plans.push(Plan::new(chart, &title, left(i % columns), width, !figure.shared_legend));
+    }
+    plans
+}
+
+/// Where everything of one chart stands.
+struct Plan<'a> {
+    chart: &'a Chart,
+    title: Vec<String>,
+    frame: Frame,
+    left: f64,
+    legend: Option<Legend<'a>>,
+}
+
+/// The axes: from data to pixels.
+pub(super) struct Frame {
+    pub(super) area: Area,
+    pub(super) x: Scale,
+    pub(super) y: Scale,
+}
+
+impl Frame {
+    /// Where a data point lies on the picture.
+    pub(super) fn px(&self, point: [f64; 2]) -> Px {
+        [
+            self.area.left + self.x.fraction(point[0]) * self.area.width(),
+            self.area.bottom - self.y.fraction(point[1]) * self.area.height(),
+        ]
+    }
+}
+
+impl<'a> Plan<'a> {
+    fn new(chart: &'a Chart, title: &str, left: f64, width: f64, with_legend: bool) -> Self {
+        let plot_width = (width - left - right_margin(chart)).max(60.0);
+        let (x, y, plot_height) = scales(chart, plot_width);
+        let area = Area { left, top: 0.0, right: left + plot_width, bottom: plot_height };
+        Plan {
+            chart,
+            title: wrap(title, TITLE.size_px * 1.1, width),
+            frame: Frame { area, x, y },
+            left: 0.0,
+            legend: with_legend.then(|| Legend::of(&chart.marks, plot_width)),
+        }
+    }
+
+    /// Moves the chart, which so far stands at the origin, to its place.
+    fn move_by(&mut self, by_y: f64, by_x: f64) {
+        let area = &mut self.frame.area;
+        (area.top, area.bottom) = (area.top + by_y + TITLE_GAP_PX, area.bottom + by_y + TITLE_GAP_PX);
+        (area.left, area.right) = (area.left + by_x, area.right + by_x);
+        self.left = by_x;
+    }
+
+    fn legend_top(&self) -> f64 {
+        self.frame.area.bottom + TICK_PX + 18.0 + if self.chart.x.label.is_empty() { 0.0 } else { 20.0 }
+    }
+
+    fn bottom(&self) -> f64 {
+        self.legend_top() + self.legend.as_ref().map_or(0.0, |legend| legend.height_px)
+    }
+
+    fn draw(&self, canvas: &mut Canvas) {
+        let area = self.frame.area;
+        for (i, line) in self.title.iter().rev().enumerate() {
+            let y = area.top - TITLE_GAP_PX - (i as f64 + 0.5) * TITLE_LINE_PX;
+            canvas.text([self.left, y], line, TITLE, Rgb::INK);
+        }
+        if marks::extents(&self.chart.marks, area.width()) == (None, None) {
+            canvas.text(area.centre(), "no data", NOTE, Rgb::GREY);
+        } else {
+            self.grid(canvas);
+        }
+        let mut crowd = Crowd::new(area);
+        marks::draw(canvas, &self.frame, &self.chart.marks, &mut crowd);
+        self.axes(canvas);
+        if let Some(legend) = &self.legend {
+            legend.draw(canvas, [area.left, self.legend_top()]);
+        }
+    }
+
+    fn grid(&self, canvas: &mut Canvas) {
+        let (frame, area) = (&self.frame, self.frame.area);
+        // Zero matters to a quantity; on a drawing it would only be one more line.
+        let zero = !self.chart.equal_aspect;
+        let strength = |value: f64| if zero && value == 0.0 { Rgb::GREY.tint(0.7) } else { Rgb::FAINT };
+        if self.chart.x.names.is_empty() {
+            for (value, _) in &frame.x.ticks {
+                let x = frame.px([*value, 0.0])[0];
+                canvas.line(&[[x, area.top], [x, area.bottom]], strength(*value), 0.8, Dash::Solid);
+            }
+        }
+        if self.chart.y.names.is_empty() {
+            for (value, _) in &frame.y.ticks {
+                let y = frame.px([0.0, *value])[1];
+                canvas.line(&[[area.left, y], [area.right, y]], strength(*value), 0.8, Dash::Solid);
+            }
+        }
+    }
+
+    fn axes(&self, canvas: &mut Canvas) {
+        let (frame, area) = (&self.frame, self.frame.area);
+        canvas.line(
+            &[[area.left, area.top], [area.left, area.bottom], [area.right, area.bottom]],
+            Rgb::INK,
+            1.0,
+            Dash::Solid,
+        );
+        for (value, label) in &frame.x.ticks {
+            let x = frame.px([*value, 0.0])[0];
+            if self.chart.x.names.is_empty() {
+                canvas.line(&[[x, area.bottom], [x, area.bottom + TICK_PX]], Rgb::INK, 1.0, Dash::Solid);
+            }
+            canvas.text([x, area.bottom + TICK_PX + 9.0], label, NOTE, Rgb::INK);
+        }
+        let at_right = Lettering { anchor: Anchor::Right, ..NOTE };
+        for (value, label) in &frame.y.ticks {
+            let y = frame.px([0.0, *value])[1];
+            if self.chart.y.names.is_empty() {
+                canvas.line(&[[area.left - TICK_PX, y], [area.left, y]], Rgb::INK, 1.0, Dash::Solid);
+            }
+            canvas.text([area.left - TICK_PX - 4.0, y], label, at_right, Rgb::INK);
+        }
+        let [middle_x, middle_y] = area.centre();
+        canvas.text([middle_x, area.bottom + TICK_PX + 28.0], &self.chart.x.label, LABEL, Rgb::INK);
+        let upwards = Lettering { upwards: true, ..LABEL };
+        canvas.text([self.left + 8.0, middle_y], &self.chart.y.label, upwards, Rgb::INK);
+    }
+}
+
+/// Room left of the plotting area: axis label and tick labels.
+fn left_margin(chart: &Chart, width: f64) -> f64 {
+    let (_, y, _) = scales(chart, 0.8 * width);
+    let widest = y.ticks.iter().map(|(_, label)| text_width_px(label, NOTE.size_px)).fold(0.0, f64::max);
+    let label = if chart.y.label.is_empty() { 0.0 } else { 22.0 };
+    label + widest.min(0.5 * width) + TICK_PX + 6.0
+}
+
+/// Room right of the plotting area: half of the last tick label.
+fn right_margin(chart: &Chart) -> f64 {
+    let (x, _, _) = scales(chart, 300.0);
+    x.ticks.last().map_or(0.0, |(_, label)| 0.5 * text_width_px(label, NOTE.size_px)).clamp(6.0, 40.0)
+}
+
+/// Both scales and the height of the plotting area.
+fn scales(chart: &Chart, width: f64) -> (Scale, Scale, f64) {
+    let count = |length: f64, each: f64| ((length / each) as usize).clamp(3, 10);
+    let (xs, ys) = marks::extents(&chart.marks, width);
+    let default_height = match chart.y.names.len() {
+        0 => (0.6 * width).clamp(180.0, 330.0),
+        bars => 26.0 * bars as f64 + 10.0,
+    };
+    let height = chart.height_px.filter(|h| drawable(*h)).unwrap_or(default_height).clamp(60.0, 2000.0);
+    if chart.equal_aspect {
+        return equal_scales(chart, xs, ys, width);
+    }
+    let snug = chart.marks.iter().any(|mark| matches!(mark, Mark::Bars { .. }));
+    // As many ticks along x as there is room for their labels.
+    let room = |x: &Scale| {
+        let widest = x.ticks.iter().map(|(_, label)| text_width_px(label, NOTE.size_px)).fold(0.0, f64::max);
+        (widest + 10.0) * x.ticks.len().saturating_sub(1) as f64 <= width
+    };
+    let xs_of = |count| scale(&chart.x, xs, count, snug);
+    let x = (2..=count(width, 62.0)).rev().map(xs_of).find(room).unwrap_or_else(|| xs_of(1));
+    (x, scale(&chart.y, ys, count(height, 36.0), snug), height)
+}
+
+/// The scale of one axis; `snug` does without rounding to whole ticks, which bars do not need.
+fn scale(axis: &Axis, data: Extent, count: usize, snug: bool) -> Scale {
+    let (low, high) = data.unwrap_or((0.0, 1.0));
+    if let Some((first, last)) = extent(axis.names.iter().map(|(at, _)| *at)) {
+        let named = axis.names.iter().filter(|(at, _)| drawable(*at)).cloned().collect();
+        return Scale { ticks: named, ..Scale::fixed(first - 0.6, last + 0.6, count) };
+    }
+    let scale = match axis.range {
+        Range::Auto | Range::AutoWithZero if snug => Scale::fixed(low, high, count),
+        Range::Auto => Scale::rounded(low, high, count),
+        Range::AutoWithZero => Scale::rounded(low.min(0.0), high.max(0.0), count),
+        Range::Fixed(from, to) => Scale::fixed(from, to, count),
+    };
+    scale.with_step(axis.step)
+}
+
+/// One unit of x as long as one unit of y: the height follows from the width, within reason.
+fn equal_scales(chart: &Chart, xs: Extent, ys: Extent, width: f64) -> (Scale, Scale, f64) {
+    let range = |axis: &Axis, data: Extent| match axis.range {
+        Range::Fixed(from, to) if drawable(from) && drawable(to) => (from.min(to), from.max(to)),
+        _ => data.unwrap_or((0.0, 1.0)),
+    };
+    let (x, y) = (range(&chart.x, xs), range(&chart.y, ys));
+    // Air around the drawing, where its notes go; a drawing without extent still gets a unit of it.
+    let largest = (x.1 - x.0).max(y.1 - y.0);
+    let air = if largest > 0.0 { 0.1 * largest } else { 1.0 };
+    let (span_x, span_y) = (x.1 - x.0 + 2.0 * air, y.1 - y.0 + 2.0 * air);
+    let height = (span_y / span_x * width).clamp(0.3 * width, 0.9 * width).min(420.0);
+    let unit_per_px = (span_x / width).max(span_y / height);
+    let around = |(low, high): (f64, f64), length: f64| {
+        let (middle, half) = (0.5 * low + 0.5 * high, 0.5 * length * unit_per_px);
+        (middle - half, middle + half)
+    };
+    let ((x0, x1), (y0, y1)) = (around(x, width), around(y, height));
+    let count = ((width / 65.0) as usize).clamp(2, 10);
+    let ticks_y = ((count as f64 * height / width).round() as usize).max(2);
+    (Scale::fixed(x0, x1, count), Scale::fixed(y0, y1, ticks_y), height)
+}
+
+#[cfg(test)]
+mod tests {
+    use resvg::usvg::roxmltree::Document;
+
+    use super::super::chart::{Bar, Direction, Point, Style};
+    use super::*;
+
+    fn every_mark(values: [f64; 3]) -> Chart {
+        let [a, b, c] = values;
+        let label = || "<&>\u{1}".to_owned();
+        let style = Style::nth(3);
+        let bars = |direction| Mark::Bars {
+            label: label(),
+            bars: vec![Bar { from: a, to: b, value: c, text: label() }],
+            direction,
+            style,
+        };
+        Chart::new(label(), "x / mm", "y / µm")
+            .with(Mark::Line { label: label(), points: vec![[a, b], [b, c], [c, a]], style })
+            .with(Mark::Points { label: label(), points: vec![Point { x: a, y: b, error: c }], style })
+            .with(bars(Direction::Up))
+            .with(bars(Direction::Right))
+            .with(Mark::Band { label: label(), points: vec![[a, b, c], [b, c, a]], style })
+            .with(Mark::Horizontal { at: a, text: label() })
+            .with(Mark::Vertical { at: b, text: label() })
+            .with(Mark::Note { at: [a, c], text: label() })
+            .with(Mark::Arrow { from: [a, b], to: [b, c], text: label(), style })
+    }
+
+    #[test]
+    fn whatever_the_data_the_picture_is_well_formed() {
+        let odd = [0.0, -0.0, 1.0, -7.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e300, -1e199, 1e-300];
+        for (i, a) in odd.into_iter().enumerate() {
+            for b in odd {
+                let mut chart = every_mark([a, b, odd[(i + 1) % odd.len()]]);
+                for equal_aspect in [false, true] {
+                    chart.equal_aspect = equal_aspect;
+                    let svg = Figure::from(chart.clone()).svg();
+                    assert!(Document::parse(&svg).is_ok() && !svg.contains("NaN"), "{a} {b}\n{svg}");
+                }
+                chart.x.range = Range::Fixed(a, b);
+                chart.y.step = Some(a);
+                chart.height_px = Some(b);
+                chart.y.names = vec![(a, "name".into()), (b, "other".into())];
+                let svg = Figure::from(chart).svg();
+                assert!(Document::parse(&svg).is_ok() && !svg.contains("NaN"), "{a} {b}\n{svg}");
+            }
+        }
+        Figure::default().svg();
+        Figure { columns: 3, shared_legend: true, ..Figure::default() }.svg();
+    }
+
+    #[test]
+    fn the_view_box_is_the_size_ten_times_and_there_are_no_ids() {
+        let panels = vec![every_mark([1.0, 2.0, 3.0]); 3];
+        let svg = Figure { panels, columns: 2, caption: "Caption".into(), ..Figure::default() }.svg();
+        let document = Document::parse(&svg).expect("is XML");
+        let root = document.root_element();
+        let number = |name| root.attribute(name).and_then(|v| v.parse::<f64>().ok()).expect("is a number");
+        let view_box = format!("0 0 {} {}", 10.0 * number("width"), 10.0 * number("height"));
+        assert_eq!(root.attribute("viewBox"), Some(view_box.as_str()));
+        assert!(document.descendants().all(|node| node.attribute("id").is_none()));
+        assert!(svg.contains("<desc>Caption</desc>") && svg.contains("(c) "), "{svg}");
+    }
+
+    #[test]
+    fn a_drawing_is_as_long_per_unit_along_x_as_along_y() {
+        let points = vec![[0.0, 0.0], [525.0, 150.0]];
+        let mut chart = Chart::new("", "X / mm", "Z / mm");
+        chart.marks.push(Mark::Line { label: String::new(), points, style: Style::nth(0) });
+        chart.equal_aspect = true;
+        let (x, y, height) = scales(&chart, 600.0);
+        approx::assert_relative_eq!((x.to - x.from) / 600.0, (y.to - y.from) / height, max_relative = 1e-12);
+    }
+}

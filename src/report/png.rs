@@ -1,0 +1,61 @@
+//! SVG to PNG, with an embedded font, so that it comes out the same on every machine.
+
+use std::sync::Arc;
+
+use resvg::tiny_skia::{Pixmap, Transform};
+use resvg::usvg::{Options, Tree, fontdb};
+
+use crate::error::{Error, Result};
+
+/// Device pixels per CSS pixel.
+const SCALE: f32 = 2.0;
+
+/// Renders an SVG at twice its size; returns the bytes of a PNG file.
+///
+/// # Errors
+/// [`Error::Numerical`] where the SVG is none or too large to hold in memory.
+pub fn png(svg: &str) -> Result<Vec<u8>> {
+    let failed = |why: String| Error::Numerical { what: "a picture as PNG", why };
+    let mut fonts = fontdb::Database::new();
+    fonts.load_font_data(epaint_default_fonts::UBUNTU_LIGHT.to_vec());
+    // For the few signs the first one lacks.
+    fonts.load_font_data(epaint_default_fonts::HACK_REGULAR.to_vec());
+    let family = fonts.faces().next().and_then(|face| face.families.first()).map(|(name, _)| name.clone());
+    fonts.set_sans_serif_family(family.unwrap_or_default());
+    let options = Options { fontdb: Arc::new(fonts), ..Options::default() };
+    let tree = Tree::from_str(svg, &options).map_err(|e| failed(e.to_string()))?;
+    let size = tree.size();
+    let (width, height) = ((size.width() * SCALE).ceil() as u32, (size.height() * SCALE).ceil() as u32);
+    let mut pixels = Pixmap::new(width, height)
+        .ok_or_else(|| failed(format!("{width} × {height} pixels are too many")))?;
+    resvg::render(&tree, Transform::from_scale(SCALE, SCALE), &mut pixels.as_mut());
+    pixels.encode_png().map_err(|e| failed(e.to_string()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_png_is_twice_as_large_and_shows_text() {
+        let svg = |text: &str| {
+            format!(
+                "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 400 200\" width=\"40\" height=\"20\">\
+                 <text x=\"0\" y=\"100\" font-family=\"sans-serif\" font-size=\"120\">{text}</text></svg>"
+            )
+        };
+        let bytes = png(&svg("µ")).expect("renders");
+        let pixels = Pixmap::decode_png(&bytes).expect("is a PNG");
+        assert_eq!((pixels.width(), pixels.height()), (80, 40));
+        // Every sign that pictures use is in one of the fonts: it leaves ink.
+        for sign in "µ − · × ≈ ± ⁻ ⁷ ² ₂ σ → ° ≤ #".split(' ') {
+            let pixels = Pixmap::decode_png(&png(&svg(sign)).expect("renders")).expect("is a PNG");
+            assert!(pixels.data().iter().any(|byte| *byte > 0), "{sign}");
+        }
+    }
+
+    #[test]
+    fn what_is_no_svg_is_an_error() {
+        assert!(png("<p>").is_err());
+    }
+}

@@ -59,7 +59,9 @@ pub enum Error {
     },
 
     /// A beam solution failed its own equilibrium, reciprocity or finiteness check.
-    #[error("the beam solution fails its self-check at node {node} (station {station_mm:.3} mm), {freedom}: {check} is off by {relative:.1e} of the scale")]
+    #[error(
+        "the beam solution fails its self-check at node {node} (station {station_mm:.3} mm), {freedom}: {check} is off by {relative:.1e} of the scale"
+    )]
     SelfCheck {
         /// Index of the node, 0 at the clamped end.
         node: usize,

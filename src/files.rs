@@ -10,8 +10,11 @@ use crate::error::{Error, Place, Result};
 /// # Errors
 /// [`Error::File`] where it cannot be read, [`Error::Input`] with line and column where it is not UTF-8.
 pub fn read_text(path: &Path) -> Result<String> {
-    let bytes = std::fs::read(path)
-        .map_err(|source| Error::File { path: path.to_owned(), action: "read", source })?;
+    let bytes = std::fs::read(path).map_err(|source| Error::File {
+        path: path.to_owned(),
+        action: "read",
+        source,
+    })?;
     text_of_bytes(&path.display().to_string(), bytes)
 }
 

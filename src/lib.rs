@@ -3,6 +3,8 @@
 
 pub mod error;
 pub mod files;
+pub mod linalg;
+pub mod statistics;
 pub mod units;
 
 pub use error::{Error, Result};

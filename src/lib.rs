@@ -3,6 +3,7 @@
 
 pub mod error;
 pub mod files;
+pub mod least_squares;
 pub mod linalg;
 pub mod statistics;
 pub mod units;

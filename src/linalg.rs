@@ -1,0 +1,236 @@
+//! Dense decompositions for least squares: QR, thin SVD, rank and condition number.
+//!
+//! The only file that names faer. Matrices come in and go out as nalgebra's; both libraries store columns one
+//! after the other, so faer reads them in place.
+
+use faer::MatRef;
+use faer::linalg::solvers::SolveLstsqCore;
+use nalgebra::{DMatrix, DVector};
+
+use crate::error::{Error, Result};
+
+/// Singular value decomposition A = U·diag(σ)·Vᵀ of an m × n matrix, thin: k = min(m, n) columns in U and V.
+#[derive(Debug, Clone)]
+pub struct Svd {
+    /// Left singular vectors, m × k, orthonormal columns.
+    pub u: DMatrix<f64>,
+    /// Singular values, largest first, k of them.
+    pub singular_values: DVector<f64>,
+    /// Right singular vectors, n × k, orthonormal columns.
+    pub v: DMatrix<f64>,
+}
+
+impl Svd {
+    /// Number of singular values above `tolerance · σ₁`; 0 for a matrix of zeros.
+    ///
+    /// [`rounding_tolerance`] is the tolerance for a matrix known to the last digit; one that was measured or
+    /// differenced deserves a larger one (Golub & Van Loan, *Matrix Computations*, 4th ed., §5.4.1).
+    pub fn rank(&self, tolerance: f64) -> usize {
+        let largest = self.singular_values.iter().fold(0.0, |a: f64, &b| a.max(b));
+        self.singular_values.iter().filter(|&&s| s > tolerance * largest).count()
+    }
+
+    /// σ₁/σₖ; infinite for a singular matrix, 1 for an empty one.
+    pub fn condition_number(&self) -> f64 {
+        match (self.singular_values.iter().next(), self.singular_values.iter().next_back()) {
+            (Some(_), Some(&smallest)) if smallest == 0.0 => f64::INFINITY,
+            (Some(&largest), Some(&smallest)) => largest / smallest,
+            _ => 1.0,
+        }
+    }
+}
+
+/// Rank tolerance for an m × n matrix that is exact to the last digit: max(m, n)·ε.
+pub fn rounding_tolerance(a: &DMatrix<f64>) -> f64 {
+    a.nrows().max(a.ncols()) as f64 * f64::EPSILON
+}
+
+/// Thin singular value decomposition; see [`Svd`].
+///
+/// # Errors
+/// [`Error::Numerical`] where an entry is not finite or the iteration does not converge.
+pub fn thin_svd(a: &DMatrix<f64>) -> Result<Svd> {
+    require_finite("the singular value decomposition", a)?;
+    let (m, n) = a.shape();
+    let k = m.min(n);
+    if k == 0 {
+        return Ok(Svd {
+            u: DMatrix::zeros(m, 0),
+            singular_values: DVector::zeros(0),
+            v: DMatrix::zeros(n, 0),
+        });
+    }
+    let svd = view(a).thin_svd().map_err(|e| Error::Numerical {
+        what: "the singular value decomposition",
+        why: format!("it did not converge ({e:?})"),
+    })?;
+    let sigma = svd.S().column_vector();
+    Ok(Svd { u: owned(svd.U()), singular_values: DVector::from_fn(k, |i, _| sigma[i]), v: owned(svd.V()) })
+}
+
+/// The n × x that minimises ‖A·x − b‖, for an m × n matrix A of full column rank.
+///
+/// Columns are first brought to norm 1, so that their units do not matter, then A·P = Q·R with column pivoting.
+///
+/// # Errors
+/// [`Error::Numerical`] where A has fewer rows than columns, lacks full rank (a pivot below
+/// [`rounding_tolerance`] of the first) or holds an entry that is not finite.
+pub fn least_squares(a: &DMatrix<f64>, b: &DVector<f64>) -> Result<DVector<f64>> {
+    const WHAT: &str = "the least-squares solution";
+    let (m, n) = a.shape();
+    if m < n || b.len() != m {
+        let why = format!("{m} equations with {} right-hand sides do not determine {n} unknowns", b.len());
+        return Err(Error::Numerical { what: WHAT, why });
+    }
+    require_finite(WHAT, a)?;
+    require_finite(WHAT, b)?;
+    let (scaled, norms) = with_unit_columns(a);
+    let qr = view(&scaled).col_piv_qr();
+    let r = qr.thin_R();
+    let rank = (0..n).filter(|&i| r[(i, i)].abs() > rounding_tolerance(a) * r[(0, 0)].abs()).count();
+    if rank < n {
+        return Err(Error::Numerical {
+            what: WHAT,
+            why: format!("the matrix has rank {rank}, {n} are needed"),
+        });
+    }
+    let mut x = b.clone();
+    let right = faer::MatMut::from_column_major_slice_mut(x.as_mut_slice(), m, 1);
+    qr.solve_lstsq_in_place_with_conj(faer::Conj::No, right);
+    Ok(DVector::from_fn(n, |j, _| x[j] / norms[j]))
+}
+
+/// Condition number σ₁/σₖ of a matrix as it stands, without scaling its columns.
+///
+/// # Errors
+/// See [`thin_svd`].
+pub fn condition_number(a: &DMatrix<f64>) -> Result<f64> {
+    Ok(thin_svd(a)?.condition_number())
+}
+
+/// Number of singular values above `tolerance · σ₁`; see [`Svd::rank`].
+///
+/// # Errors
+/// See [`thin_svd`].
+pub fn rank(a: &DMatrix<f64>, tolerance: f64) -> Result<usize> {
+    Ok(thin_svd(a)?.rank(tolerance))
+}
+
+/// The upper triangle R (n × n) and the vector Qᵀb (n) of the thin decomposition A = Q·R.
+///
+/// With them ‖A·x − b‖² = ‖R·x − Qᵀb‖² + a constant, for every x. An A with fewer rows than columns is continued
+/// with rows of zeros.
+///
+/// # Errors
+/// [`Error::Numerical`] where an entry is not finite.
+pub fn triangular(a: &DMatrix<f64>, b: &DVector<f64>) -> Result<(DMatrix<f64>, DVector<f64>)> {
+    const WHAT: &str = "the QR decomposition";
+    require_finite(WHAT, a)?;
+    require_finite(WHAT, b)?;
+    let (m, n) = a.shape();
+    // Qᵀb is the last column of the triangle of [A b]: Q itself is never formed
+    let mut both = DMatrix::zeros(m.max(n + 1), n + 1);
+    both.view_mut((0, 0), (m, n)).copy_from(a);
+    both.view_mut((0, n), (m, 1)).copy_from(b);
+    let qr = view(&both).qr();
+    let r = qr.thin_R();
+    let triangle = DMatrix::from_fn(n, n, |i, j| if i <= j { r[(i, j)] } else { 0.0 });
+    Ok((triangle, DVector::from_fn(n, |i, _| r[(i, n)])))
+}
+
+/// A with every column divided by its Euclidean norm, and the norms. A column of zeros stays, with norm 1.
+pub fn with_unit_columns(a: &DMatrix<f64>) -> (DMatrix<f64>, DVector<f64>) {
+    let norms = DVector::from_iterator(
+        a.ncols(),
+        a.column_iter().map(|c| if c.norm() > 0.0 { c.norm() } else { 1.0 }),
+    );
+    (DMatrix::from_fn(a.nrows(), a.ncols(), |i, j| a[(i, j)] / norms[j]), norms)
+}
+
+fn view(a: &DMatrix<f64>) -> MatRef<'_, f64> {
+    MatRef::from_column_major_slice(a.as_slice(), a.nrows(), a.ncols())
+}
+
+fn owned(a: MatRef<'_, f64>) -> DMatrix<f64> {
+    DMatrix::from_fn(a.nrows(), a.ncols(), |i, j| a[(i, j)])
+}
+
+fn require_finite<'a>(what: &'static str, entries: impl IntoIterator<Item = &'a f64>) -> Result<()> {
+    match entries.into_iter().find(|x| !x.is_finite()) {
+        Some(x) => Err(Error::Numerical { what, why: format!("an entry is {x}") }),
+        None => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{dmatrix, dvector};
+
+    /// The Hilbert matrix 1/(i + j + 1), a standard of bad condition.
+    fn hilbert(n: usize) -> DMatrix<f64> {
+        DMatrix::from_fn(n, n, |i, j| 1.0 / (i + j + 1) as f64)
+    }
+
+    #[test]
+    fn a_straight_line_through_four_points() {
+        // y = 3.5 + 1.4·x is the textbook answer for these four points
+        let a = dmatrix![1.0, 1.0; 1.0, 2.0; 1.0, 3.0; 1.0, 4.0];
+        let x = least_squares(&a, &dvector![6.0, 5.0, 7.0, 10.0]).unwrap();
+        assert!((x - dvector![3.5, 1.4]).norm() < 1e-13);
+    }
+
+    #[test]
+    fn units_of_columns_do_not_decide_the_rank() {
+        let a = dmatrix![1.0, 1e-20; 1.0, 2e-20; 1.0, 3e-20];
+        let x = least_squares(&a, &dvector![1.0, 2.0, 3.0]).unwrap();
+        assert!((x[1] - 1e20).abs() < 1e7 && x[0].abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_dependent_column_is_refused() {
+        let a = dmatrix![1.0, 2.0; 2.0, 4.0; 3.0, 6.0];
+        let error = least_squares(&a, &dvector![1.0, 2.0, 3.0]).unwrap_err();
+        assert_eq!(error.to_string(), "the least-squares solution: the matrix has rank 1, 2 are needed");
+        assert_eq!(rank(&a, rounding_tolerance(&a)).unwrap(), 1);
+    }
+
+    #[test]
+    fn the_svd_reproduces_the_matrix_wide_and_tall() {
+        for a in [dmatrix![3.0, 1.0, 2.0; -1.0, 4.0, 0.5], dmatrix![3.0, -1.0; 1.0, 4.0; 2.0, 0.5]] {
+            let svd = thin_svd(&a).unwrap();
+            let product = &svd.u * DMatrix::from_diagonal(&svd.singular_values) * svd.v.transpose();
+            assert!((product - &a).norm() < 1e-14);
+        }
+    }
+
+    #[test]
+    fn the_condition_of_the_hilbert_matrix_is_the_published_one() {
+        // cond₂(H₅) = 4.76607e5: Higham, Accuracy and Stability of Numerical Algorithms, 2nd ed., ch. 28
+        assert!((condition_number(&hilbert(5)).unwrap() / 4.76607e5 - 1.0).abs() < 1e-5);
+        assert_eq!(condition_number(&DMatrix::zeros(2, 2)).unwrap(), f64::INFINITY);
+    }
+
+    #[test]
+    fn the_triangle_keeps_the_length_of_every_combination() {
+        let a = dmatrix![1.0, 2.0; 3.0, -4.0; 5.0, 6.0];
+        let b = dvector![1.0, 0.5, -2.0];
+        let (r, c) = triangular(&a, &b).unwrap();
+        assert!((r.transpose() * &r - a.transpose() * &a).norm() < 1e-13);
+        assert!((r.transpose() * c - a.transpose() * b).norm() < 1e-13);
+    }
+
+    #[test]
+    fn a_wide_matrix_has_a_triangle_too() {
+        let a = dmatrix![1.0, 2.0, 3.0];
+        let (r, c) = triangular(&a, &dvector![2.0]).unwrap();
+        assert!((r.transpose() * &r - a.transpose() * &a).norm() < 1e-13);
+        assert!((r.transpose() * c - a.transpose() * 2.0).norm() < 1e-13);
+    }
+
+    #[test]
+    fn what_is_not_finite_is_refused() {
+        let error = thin_svd(&dmatrix![1.0, f64::NAN]).unwrap_err();
+        assert_eq!(error.to_string(), "the singular value decomposition: an entry is NaN");
+    }
+}

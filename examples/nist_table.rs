@@ -11,7 +11,9 @@ fn main() {
         println!("no NIST files in {}", Nist::folder().display());
         return;
     };
-    println!("| problem | start | parameters | standard deviations | sum of squares | iterations | evaluations | cosine | stop |");
+    println!(
+        "| problem | start | parameters | standard deviations | sum of squares | iterations | evaluations | cosine | stop |"
+    );
     println!("|---|---|---|---|---|---|---|---|---|");
     for nist in &all {
         for start in 0..2 {

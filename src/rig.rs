@@ -185,14 +185,17 @@ fn compare(readings: &Readings, rod: &Rod, lines: &[Line], options: &Options) ->
 fn predictions(readings: &Readings, rod: &Rod, lines: &[Line], options: &Options) -> Result<Vec<f64>> {
     let tip = rod.length();
     for row in &readings.rows {
-        for (name, station) in
-            [("load_station_mm", row.load_station), ("read_station_mm", row.read_station)]
+        for (name, station) in [("load_station_mm", row.load_station), ("read_station_mm", row.read_station)]
         {
             if let Some(station) = station.filter(|&s| s > tip + UM) {
                 return Err(Error::Input {
                     at: Place { file: readings.file.clone(), line: row.line, column: 0 },
                     found: format!("{name} is {}", station * 1e3),
-                    expected: format!("a station on rod \"{}\", 0 to {:.3} mm (the tip)", rod.name, tip * 1e3),
+                    expected: format!(
+                        "a station on rod \"{}\", 0 to {:.3} mm (the tip)",
+                        rod.name,
+                        tip * 1e3
+                    ),
                     hint: None,
                 });
             }
@@ -218,29 +221,22 @@ fn vanishes(entry: f64, model: &Compliance) -> bool {
 
 /// A rod yields along its load; anything else is a sign error in the file.
 fn check_signs(readings: &Readings, lines: &[Line], ratios: &[Ratio]) -> Result<()> {
-    for ratio in ratios.iter().filter(|r| r.channel == r.load && r.value.value < 0.0) {
-        let first = lines.iter().find(|line| {
-            line.key.channel == ratio.channel && line.key.direction.axis == ratio.load && {
-                f64::from(line.key.direction.sign) * line.slope.value * f64::from(line.key.direction.sign) < 0.0
-            }
-        });
-        let row = first.and_then(|line| {
-            readings.rows.iter().find(|row| key_of(row, line.key.channel) == line.key)
-        });
-        return Err(Error::Input {
-            at: Place { file: readings.file.clone(), line: row.map_or(0, |row| row.line), column: 0 },
-            found: format!(
-                "d{0}_um falls as the load along {0} grows: the rod would move against its load",
-                ratio.load
-            ),
-            expected: "offsets in the direction of the load, both in the tool frame".into(),
-            hint: Some(format!(
-                "turn the sign of d{0}_um, or write the axis of these loads the other way round (-{0})",
-                ratio.load
-            )),
-        });
-    }
-    Ok(())
+    let is_against = |r: &&Ratio| r.channel == r.load && r.value.value < 0.0;
+    let Some(axis) = ratios.iter().find(is_against).map(|ratio| ratio.load) else { return Ok(()) };
+    let is_culprit =
+        |line: &&Line| (line.key.channel, line.key.direction.axis) == (axis, axis) && line.slope.value < 0.0;
+    let culprit = lines.iter().find(is_culprit);
+    let first_row = culprit.and_then(|line| readings.rows.iter().find(|row| key_of(row, axis) == line.key));
+    Err(Error::Input {
+        at: Place { file: readings.file.clone(), line: first_row.map_or(0, |row| row.line), column: 0 },
+        found: format!(
+            "d{axis}_um falls as the load along {axis} grows: the rod would move against its load"
+        ),
+        expected: "offsets in the direction of the load, both in the tool frame".into(),
+        hint: Some(format!(
+            "turn the sign of d{axis}_um, or write the axis of these loads the other way round (-{axis})"
+        )),
+    })
 }
 
 /// Eq 21 for the paper's two directions y and z where both were read, else over the directions that were.
@@ -261,10 +257,8 @@ fn rod_ratio(ratios: &[Ratio], model: &Compliance) -> Option<Estimate> {
 
 fn measured(model: Compliance, ratios: Vec<Ratio>, rod_ratio: Estimate) -> Measured {
     let error = |estimate: &Estimate| estimate.std_error.unwrap_or(f64::NAN);
-    let (mut factor, mut factor_error) = (
-        Matrix3::repeat(rod_ratio.value),
-        Matrix3::repeat(error(&rod_ratio)),
-    );
+    let (mut factor, mut factor_error) =
+        (Matrix3::repeat(rod_ratio.value), Matrix3::repeat(error(&rod_ratio)));
     let mut is_measured = Matrix3::repeat(false);
     for (m, n) in (0..3).flat_map(|m| (0..3).map(move |n| (m, n))) {
         // C^F is symmetric (reciprocity): c_mn and c_nm are two measurements of one number

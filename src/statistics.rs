@@ -2,6 +2,10 @@
 //!
 //! Tail probabilities are computed as tails, never as 1 − p, so that 1e-60 is 1e-60 and not 0.
 
+mod estimate;
+
+pub use estimate::Estimate;
+
 use statrs::function::beta::beta_reg;
 use statrs::function::gamma::{gamma_ur, ln_gamma};
 

@@ -1,6 +1,8 @@
 //! What must hold for every chain, whatever its shape: symmetry, reciprocity, independence of frame, mesh and
 //! direction. Stiffness-method programs fail some of these on members along an axis; so they are drawn often.
 
+#![allow(clippy::unwrap_used)]
+
 use std::f64::consts::PI;
 
 use nalgebra::{Matrix3, Rotation3, Vector3};

@@ -2,6 +2,8 @@
 //! the unit-load integral in 40-digit arithmetic (`tests/references/README.md` says how they were made and which
 //! other solvers agree with them).
 
+#![allow(clippy::unwrap_used)]
+
 use nalgebra::Matrix3;
 use rodcal::beam::{Physics, RodModel};
 use rodcal::compliance::Compliance;

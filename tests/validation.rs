@@ -1,5 +1,7 @@
 //! Validation against published values: one example a test, each with its source and a tolerance with a reason.
 
+#![allow(clippy::unwrap_used)]
+
 #[path = "validation/beams.rs"]
 mod beams;
 #[path = "validation/paper.rs"]

@@ -279,8 +279,11 @@ impl Curve {
         let mut gradient: Vec<f64> = row.iter().take(self.coefficients.len()).map(|w| w / slope).collect();
         gradient[1] -= value / slope;
         let std_error = self.combination(&gradient).std_error;
-        (value.is_finite() && std_error.is_none_or(f64::is_finite))
-            .then(|| Estimate { value, std_error, dof: self.variance.map_or(0, |(_, dof)| dof) })
+        (value.is_finite() && std_error.is_none_or(f64::is_finite)).then(|| Estimate {
+            value,
+            std_error,
+            dof: self.variance.map_or(0, |(_, dof)| dof),
+        })
     }
 }
 

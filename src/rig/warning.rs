@@ -98,7 +98,9 @@ pub(super) fn of_lines(lines: &[Line], readings: &Readings, rod: Option<&Rod>) -
         if is_along && line.slope.value < 0.0 {
             warnings.push(Warning::AgainstTheLoad { line: label.clone() });
         }
-        if let Some(offset) = line.load_offset.filter(|offset| is_along && offset.is_significant(SIGNIFICANCE)) {
+        if let Some(offset) =
+            line.load_offset.filter(|offset| is_along && offset.is_significant(SIGNIFICANCE))
+        {
             warnings.push(Warning::LoadOffset { line: label.clone(), offset });
         }
         if !line.distrusted.is_empty() {

@@ -2,7 +2,6 @@
 //! and which physics a model left out.
 
 pub mod beam;
-pub mod closed_form;
 pub mod compliance;
 pub mod delimited;
 pub mod error;

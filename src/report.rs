@@ -6,9 +6,11 @@
 //!
 //! - [`chart`]: charts as data, drawn by [`chart::Figure::svg`] · [`png`]: SVG to PNG
 //! - [`pictures`]: the pictures of a rod, from numbers to charts
-//! - [`table`]: tables to text, HTML, Markdown, CSV · [`html`]: the page
+//! - [`compliance`] · [`rig`]: results of the library as reports and as JSON
+//! - [`text`]: a report for the terminal · [`table`]: tables to text, HTML, Markdown, CSV · [`html`]: the page
 
 pub mod chart;
+pub mod compliance;
 mod draw;
 pub mod html;
 mod labels;
@@ -17,8 +19,10 @@ mod marks;
 pub mod pictures;
 mod plot;
 pub mod png;
+pub mod rig;
 mod scale;
 pub mod table;
+pub mod text;
 
 use serde::Serialize;
 

@@ -17,7 +17,7 @@ mod warning;
 use nalgebra::Matrix3;
 
 use crate::beam::{Physics, RodModel};
-use crate::compliance::{Compliance, DEFAULT_ELEMENTS};
+use crate::compliance::{Compliance, DEFAULT_ELEMENTS, closed_form};
 use crate::error::{Error, Place, Result};
 use crate::least_squares::Robust;
 use crate::rod::Rod;
@@ -64,6 +64,10 @@ pub struct Measured {
     pub rod_ratio: Estimate,
     /// FEA compliance.
     pub model: Compliance,
+    /// Slope of each of the fit's lines by the FEA model, m/N: at the line's stations.
+    pub predicted: Vec<f64>,
+    /// Calc compliance, where the closed form applies to the rod.
+    pub calc: Option<Compliance>,
     /// Meas compliance.
     pub compliance: Compliance,
     /// Standard errors of the entries of the Meas compliance; NaN where the readings give none.
@@ -178,7 +182,8 @@ fn compare(readings: &Readings, rod: &Rod, lines: &[Line], options: &Options) ->
             hint: None,
         });
     };
-    Ok(measured(model, ratios, rod_ratio))
+    let calc = closed_form::compliance(rod).ok();
+    Ok(Measured { predicted, calc, ..measured(model, ratios, rod_ratio) })
 }
 
 /// What the model says each line's slope is, m/N.
@@ -285,6 +290,8 @@ fn measured(model: Compliance, ratios: Vec<Ratio>, rod_ratio: Estimate) -> Measu
         ratios,
         rod_ratio,
         model,
+        predicted: Vec::new(),
+        calc: None,
         is_measured,
     }
 }

@@ -157,6 +157,22 @@ impl Rod {
         Vector3::new(self.l2 * sin, 0.0, self.l1 - self.l2 * cos)
     }
 
+    /// Point of the undeformed centreline at a station (m; kept on the rod), in {T}, m.
+    pub fn point(&self, station: f64) -> Vector3<f64> {
+        let station = station.clamp(0.0, self.length());
+        if station <= self.bend_start() {
+            return Vector3::new(0.0, 0.0, station);
+        }
+        let (sin, cos) = sin_cos_exact(self.gamma);
+        if station >= self.bend_end() {
+            // back from the tip along pipe II, whose direction is (sin γ, 0, −cos γ)
+            return self.tip() - Vector3::new(sin, 0.0, -cos) * (self.length() - station);
+        }
+        let turned = (station - self.bend_start()) / self.bend_radius;
+        Vector3::new(1.0 - turned.cos(), 0.0, turned.sin()) * self.bend_radius
+            + Vector3::new(0.0, 0.0, self.bend_start())
+    }
+
     /// Mass of pipes, bend, lumped masses and tip, kg.
     pub fn mass(&self) -> f64 {
         self.pipe1.mass_per_length() * self.bend_start()

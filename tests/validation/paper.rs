@@ -2,8 +2,7 @@
 
 use approx::assert_relative_eq;
 use rodcal::beam::Physics;
-use rodcal::closed_form;
-use rodcal::compliance::{Compliance, DEFAULT_ELEMENTS, PAPER_CONTACT_FORCE, steps};
+use rodcal::compliance::{Compliance, DEFAULT_ELEMENTS, closed_form, paper_contact_force, steps};
 use rodcal::rod::Rod;
 
 fn paper_rod(number: usize) -> Rod {
@@ -12,8 +11,7 @@ fn paper_rod(number: usize) -> Rod {
 }
 
 fn index_um(compliance: &Compliance) -> f64 {
-    let [x, y, z] = PAPER_CONTACT_FORCE;
-    compliance.index((x * x + y * y + z * z).sqrt()) * 1e6
+    compliance.index(paper_contact_force()) * 1e6
 }
 
 /// Eqs 15 and 17 are the beam model with bending and torsion only: two derivations, one result.

@@ -5,7 +5,7 @@
 
 use nalgebra::Matrix3;
 
-use crate::compliance::Compliance;
+use super::Compliance;
 use crate::error::{Error, Result};
 use crate::rod::Rod;
 use crate::units::STANDARD_GRAVITY;

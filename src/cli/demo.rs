@@ -1,0 +1,61 @@
+//! `rodcal` without arguments: the whole main job on embedded data.
+
+use std::path::PathBuf;
+
+use rodcal::beam::Physics;
+use rodcal::compliance::{DEFAULT_ELEMENTS, Mode, Study, paper_contact_force};
+use rodcal::report::{self, Report};
+use rodcal::rig::readings::Readings;
+use rodcal::rod::Rod;
+use rodcal::{Result, rig};
+use serde_json::json;
+
+use super::embedded::{LOAD_CELL, LOAD_CELL_FILE, RODS};
+use super::output::Outcome;
+
+pub fn run() -> Result<Outcome> {
+    let mut report = Report { title: "rodcal demo".into(), ..Report::default() };
+    let (mut results, mut words) = (Vec::new(), String::new());
+    for example in &RODS {
+        let rod = Rod::from_toml(example.rod_file, example.rod)?;
+        let readings = Readings::from_text(example.readings_file, example.readings)?;
+        let fit = rig::fit(&readings, Some(&rod), &rig::Options::default())?;
+        let study =
+            Study::new(rod.clone(), Mode::Fea, Physics::default(), DEFAULT_ELEMENTS, paper_contact_force())?;
+        let of_rod = report::compliance::report(&study);
+        let of_rig = report::rig::report(&fit, &readings, Some(&rod));
+        words += &format!("{}\n{}\n\n", of_rod.headline, of_rig.headline);
+        results.push(json!({
+            "compliance": report::compliance::json(&study),
+            "rig": report::rig::json(&fit, &readings, Some(&rod)),
+        }));
+        for part in [of_rod, of_rig] {
+            let warnings = part.warnings.into_iter().map(|warning| format!("rod {}: {warning}", rod.name));
+            report.warnings.extend(warnings);
+            report.sections.extend(part.sections);
+        }
+        report.provenance.push(("rod file".into(), example.rod_file.into()));
+        report.provenance.push(("readings".into(), format!("{} (reconstructed)", example.readings_file)));
+    }
+
+    let readings = Readings::from_text(LOAD_CELL_FILE, LOAD_CELL)?;
+    let fit = rig::fit(&readings, None, &rig::Options::default())?;
+    let of_cell = report::rig::report(&fit, &readings, None);
+    words += &format!("Load cell (NIST): {}.\n", of_cell.headline);
+    report.warnings.extend(of_cell.warnings.into_iter().map(|warning| format!("load cell: {warning}")));
+    report.sections.extend(of_cell.sections);
+    report.provenance.push(("readings".into(), format!("{LOAD_CELL_FILE} (NIST StRD, Pontius)")));
+    report.provenance.push(("program".into(), concat!("rodcal ", env!("CARGO_PKG_VERSION")).into()));
+
+    report.headline = words.trim().replace("\n\n", " ").replace('\n', " ");
+    Ok(Outcome {
+        json: json!({
+            "rods": results,
+            "load_cell": report::rig::json(&fit, &readings, None),
+        }),
+        report: Some(report),
+        text: Some(words),
+        default_directory: Some(PathBuf::from("reports/demo")),
+        status: 0,
+    })
+}

@@ -1,0 +1,74 @@
+//! What a command hands back, and where it goes: the result to stdout, warnings to stderr, the report to files.
+
+use std::io::Write;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use rodcal::report::{Report, text};
+use rodcal::{Error, Result, files};
+use serde_json::Value;
+
+use super::Arguments;
+
+/// The result of a command.
+pub struct Outcome {
+    /// For `--json`.
+    pub json: Value,
+    /// For people; `None` prints `text` as it is and writes no report.
+    pub report: Option<Report>,
+    /// Instead of the report's own words on stdout.
+    pub text: Option<String>,
+    /// Where the report goes without `--out`.
+    pub default_directory: Option<PathBuf>,
+    /// Exit status.
+    pub status: u8,
+}
+
+impl Outcome {
+    /// A result with its report, exit status 0.
+    pub fn new(json: Value, report: Report) -> Self {
+        Outcome { json, report: Some(report), text: None, default_directory: None, status: 0 }
+    }
+}
+
+/// Prints warnings and the result, after the report is written whole.
+///
+/// # Errors
+/// [`Error::File`] where a file cannot be written.
+pub fn deliver(arguments: &Arguments, outcome: Outcome) -> Result<ExitCode> {
+    let Outcome { mut json, report, text, default_directory, status } = outcome;
+    let directory = arguments.out.clone().or(default_directory);
+    if let (Some(report), Some(directory)) = (&report, &directory) {
+        // everything is rendered before anything is written
+        let mut files = report.files(arguments.png)?;
+        json["report"] = directory.join("index.html").display().to_string().into();
+        files.push(("result.json".into(), pretty(&json).into_bytes()));
+        for (name, bytes) in files {
+            files::write_whole(&directory.join(name), &bytes)?;
+        }
+    }
+    let warnings = report.as_ref().map_or(&[][..], |report| &report.warnings);
+    for warning in warnings {
+        eprintln!("warning: {warning}");
+    }
+    let mut words = match (arguments.json, text, &report) {
+        (true, ..) => pretty(&json),
+        (false, Some(text), _) => text,
+        (false, None, Some(report)) => text::text(report),
+        (false, None, None) => String::new(),
+    };
+    if let (false, Some(directory), Some(_)) = (arguments.json, &directory, &report) {
+        words += &format!("\nreport: {}\n", directory.join("index.html").display());
+    }
+    match std::io::stdout().write_all(words.as_bytes()) {
+        // `rodcal … | head` closes the pipe early and means no harm
+        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => {
+            Err(Error::File { path: "stdout".into(), action: "write", source: e })
+        }
+        _ => Ok(ExitCode::from(status)),
+    }
+}
+
+fn pretty(json: &Value) -> String {
+    format!("{json:#}\n")
+}

@@ -1,0 +1,108 @@
+//! Both modes of a rod side by side, with what lies between them and how the rod bends.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::steps::{Step, steps};
+use super::{Compliance, closed_form};
+use crate::beam::{Load, Physics, RodModel};
+use crate::error::Result;
+use crate::rod::Rod;
+use crate::units::STANDARD_GRAVITY;
+
+/// How a rod's compliance is found without measuring it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Mode {
+    /// The paper's closed form, Eqs 15 and 17.
+    Calc,
+    /// The beam finite-element model of the rod as built.
+    Fea,
+}
+
+/// All that the `compliance` command finds out about a rod.
+#[derive(Debug)]
+pub struct Study {
+    /// The rod.
+    pub rod: Rod,
+    /// Which of the two the user asked for.
+    pub mode: Mode,
+    /// Physics of the FEA mode.
+    pub physics: Physics,
+    /// Number of elements of the FEA mode.
+    pub elements: usize,
+    /// Size of the contact force F in c_rod, N.
+    pub contact_force: f64,
+    /// Calc mode, or why it does not apply to this rod.
+    pub calc: Result<Compliance>,
+    /// FEA mode.
+    pub fea: Compliance,
+    /// From Calc to FEA, one left-out term after another.
+    pub steps: Vec<Step>,
+    /// The rod at rest and bent.
+    pub shape: Shape,
+}
+
+/// Centreline and displacements of the FEA model, for pictures, in {T}.
+#[derive(Debug, Clone)]
+pub struct Shape {
+    /// Points of the undeformed centreline from flange to tip, m.
+    pub centreline: Vec<Vector3<f64>>,
+    /// Displacement of each point per unit force at the tip, m/N; column: axis of the force.
+    pub under_force: Vec<Matrix3<f64>>,
+    /// Displacement of each point per g, m; column: axis of gravity.
+    pub under_gravity: Vec<Matrix3<f64>>,
+}
+
+impl Study {
+    /// Studies `rod` with both modes; the one asked for must apply.
+    ///
+    /// # Errors
+    /// As [`closed_form::compliance`] in Calc mode, [`Compliance::of_model`] in both.
+    pub fn new(rod: Rod, mode: Mode, physics: Physics, elements: usize, contact_force: f64) -> Result<Self> {
+        let calc = match (mode, closed_form::compliance(&rod)) {
+            (Mode::Calc, Err(why)) => return Err(why),
+            (_, calc) => calc,
+        };
+        Ok(Study {
+            fea: Compliance::of_model(&rod, &physics, elements)?,
+            steps: steps(&rod, &physics, elements)?,
+            shape: Shape::new(&rod, &physics)?,
+            rod,
+            mode,
+            physics,
+            elements,
+            contact_force,
+            calc,
+        })
+    }
+
+    /// The compliance of the mode that was asked for.
+    pub fn compliance(&self) -> &Compliance {
+        match (&self.calc, self.mode) {
+            (Ok(calc), Mode::Calc) => calc,
+            _ => &self.fea,
+        }
+    }
+
+    /// c_rod of the mode that was asked for, m.
+    pub fn index(&self) -> f64 {
+        self.compliance().index(self.contact_force)
+    }
+}
+
+impl Shape {
+    fn new(rod: &Rod, physics: &Physics) -> Result<Self> {
+        /// Enough for a smooth curve.
+        const POINTS: usize = 60;
+        let model = RodModel::new(rod, physics, POINTS, &[])?;
+        let chain = &model.chain;
+        let response = chain.solve(&[Load::Force { node: model.tip() }, Load::SelfWeight])?;
+        let nodes = 0..=chain.end();
+        Ok(Shape {
+            centreline: nodes.clone().map(|node| chain.position(node)).collect(),
+            under_force: nodes.clone().map(|node| response.motion(node, 0).translation).collect(),
+            under_gravity: nodes
+                .map(|node| response.motion(node, 1).translation * STANDARD_GRAVITY)
+                .collect(),
+        })
+    }
+}

@@ -1,0 +1,281 @@
+//! What the `compliance` command says: JSON, tables and pictures of a [`Study`].
+
+use nalgebra::Matrix3;
+use serde_json::{Value, json};
+
+use super::pictures::{Contributions, RodShape, ShapeCase, Station, StationKind, contributions, rod_shape};
+use super::table::{Column, Table};
+use super::{Block, Report, Section};
+use crate::compliance::{Compliance, Mode, Shape, Study};
+use crate::rod::Rod;
+use crate::units::{GRAM, MM, UM, significant};
+
+/// Digits of a compliance in a table.
+const DIGITS: usize = 5;
+
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+/// The JSON of `rodcal compliance --json`.
+pub fn json(study: &Study) -> Value {
+    let compliance = study.compliance();
+    let steps: Vec<Value> = study
+        .steps
+        .iter()
+        .map(|step| {
+            json!({
+                "term": step.term,
+                "cf_um_per_n": rows(&step.added.force, UM),
+                "cg_um_per_g": rows(&step.added.gravity, UM),
+                "c_rod_um": step.total.index(study.contact_force) / UM,
+            })
+        })
+        .collect();
+    json!({
+        "rod": study.rod.name,
+        "mode": mode_name(study.mode),
+        "theory": theory(study),
+        "elements": study.elements,
+        "cf_um_per_n": rows(&compliance.force, UM),
+        "cg_um_per_g": rows(&compliance.gravity, UM),
+        "c_rod_um": study.index() / UM,
+        "contact_force_n": study.contact_force,
+        "tip_mm": (study.rod.tip() / MM).as_slice(),
+        "mass_g": study.rod.mass() / GRAM,
+        "contributions": steps,
+        "warnings": warnings(study),
+    })
+}
+
+/// The report of `rodcal compliance`.
+pub fn report(study: &Study) -> Report {
+    let rod = &study.rod;
+    Report {
+        title: format!("Compliance of rod {}", rod.name),
+        headline: headline(study),
+        warnings: warnings(study),
+        sections: sections(study),
+        provenance: Vec::new(),
+    }
+}
+
+/// The sections of [`report`], for reports that hold more than one rod.
+pub fn sections(study: &Study) -> Vec<Section> {
+    let rod = &study.rod;
+    let mut tables = vec![Block::Paragraph(
+        "The tip's deflection in the tool frame is C^g·g + C^F·F, with gravity g in units of g and the contact \
+         force F in newtons, both in the tool frame. Rows: axis of the offset; columns: axis of the load."
+            .into(),
+    )];
+    match &study.calc {
+        Ok(calc) => tables.extend(matrices("Calc (closed form, Eqs 15 and 17)", "calc", calc)),
+        Err(why) => tables.push(Block::Paragraph(format!("No Calc mode: {why}."))),
+    }
+    tables.extend(matrices(&format!("FEA ({})", physics_name(study)), "fea", &study.fea));
+    let stations = stations(rod);
+    let force_cases = AXES.map(|axis| format!("1 N along {}", axis.to_uppercase()));
+    let gravity_cases = AXES.map(|axis| format!("1 g along {}", axis.to_uppercase()));
+    vec![
+        Section::new(format!("Compliance of the tip, rod {}", rod.name), tables),
+        Section::new(
+            "What each left-out term is worth",
+            vec![
+                Block::Paragraph(
+                    "From the closed form to the model as built: each row adds its term to all above it, \
+                     so that the rows add up to FEA exactly."
+                        .into(),
+                ),
+                Block::Table(steps_table(study)),
+                Block::Figure(
+                    steps_figure(study)
+                        .captioned(format!("Rod {}: what Calc leaves out, term by term.", rod.name)),
+                ),
+            ],
+        ),
+        Section::new(
+            "Shape",
+            vec![
+                shape_figure(rod, &study.shape, &gravity_cases, &study.shape.under_gravity, &stations)
+                    .named_block(
+                        "shape-gravity",
+                        "Deflection under one g along each axis of the tool frame.",
+                    ),
+                shape_figure(rod, &study.shape, &force_cases, &study.shape.under_force, &stations)
+                    .named_block(
+                        "shape-force",
+                        "Deflection under 1 N at the tip along each axis of the tool frame.",
+                    ),
+            ],
+        ),
+    ]
+}
+
+/// One sentence: how much the rod bends.
+pub fn headline(study: &Study) -> String {
+    let c = study.compliance();
+    let mode = match study.mode {
+        Mode::Calc => "the closed form".to_owned(),
+        Mode::Fea => format!("the beam model ({})", physics_name(study)),
+    };
+    format!(
+        "Rod {} yields at its tip by up to {} µm per newton and {} µm under one g; its compliance index c_rod is {} µm by {mode}.",
+        study.rod.name,
+        significant(largest_column(&c.force) / UM, 4),
+        significant(largest_column(&c.gravity) / UM, 4),
+        significant(study.index() / UM, 4),
+    )
+}
+
+/// The largest deflection a load along one axis causes.
+fn largest_column(matrix: &Matrix3<f64>) -> f64 {
+    matrix.column_iter().fold(0.0, |max, column| column.norm().max(max))
+}
+
+/// Both matrices of a compliance as tables.
+pub fn matrices(title: &str, name: &str, compliance: &Compliance) -> [Block; 2] {
+    [
+        matrix_table(&format!("cf-{name}"), &format!("C^F, µm/N, {title}"), &compliance.force),
+        matrix_table(&format!("cg-{name}"), &format!("C^g, µm per g, {title}"), &compliance.gravity),
+    ]
+    .map(Block::Table)
+}
+
+fn matrix_table(name: &str, caption: &str, matrix: &Matrix3<f64>) -> Table {
+    let mut columns = vec![Column::text("offset")];
+    columns.extend(AXES.map(|axis| Column::number(format!("load {axis}"), "")));
+    let mut table = Table::new(name, caption, columns);
+    for (m, axis) in AXES.iter().enumerate() {
+        let mut cells = vec![(*axis).to_owned()];
+        cells.extend((0..3).map(|n| number(matrix[(m, n)])));
+        table.row(cells);
+    }
+    table
+}
+
+/// A compliance in µm; what symmetry makes zero is shown as 0.
+pub fn number(value: f64) -> String {
+    let value = value / UM;
+    if value.abs() < 1e-9 { "0".into() } else { significant(value, DIGITS) }
+}
+
+fn steps_table(study: &Study) -> Table {
+    let mut table = Table::new(
+        "left-out-terms",
+        format!("Rod {}: compliance added by each term, and where c_rod stands with it.", study.rod.name),
+        vec![
+            Column::text("term"),
+            Column::number("C^F 11", "µm/N"),
+            Column::number("C^F 22", "µm/N"),
+            Column::number("C^F 33", "µm/N"),
+            Column::number("C^g 11", "µm/g"),
+            Column::number("C^g 22", "µm/g"),
+            Column::number("C^g 33", "µm/g"),
+            Column::number("c_rod", "µm"),
+        ],
+    );
+    let row = |term: &str, c: &Compliance, index: f64| {
+        let diagonal = [c.force, c.gravity].map(|matrix| matrix.diagonal());
+        let mut cells = vec![term.to_owned()];
+        cells.extend(diagonal.iter().flat_map(|d| d.iter().map(|value| number(*value)).collect::<Vec<_>>()));
+        cells.push(significant(index / UM, DIGITS));
+        cells
+    };
+    for (i, step) in study.steps.iter().enumerate() {
+        let term = if i == 0 { step.term.to_owned() } else { format!("+ {}", step.term) };
+        table.row(row(&term, &step.added, step.total.index(study.contact_force)));
+    }
+    table.row(row("= FEA", &study.fea, study.fea.index(study.contact_force)));
+    table
+}
+
+fn steps_figure(study: &Study) -> super::chart::Figure {
+    type Entry = fn(&Compliance) -> f64;
+    let groups: [(&str, &str, Entry); 4] = [
+        ("C^F 22", "µm/N", |c| c.force[(1, 1)]),
+        ("C^F 33", "µm/N", |c| c.force[(2, 2)]),
+        ("C^g 22", "µm/g", |c| c.gravity[(1, 1)]),
+        ("C^g 33", "µm/g", |c| c.gravity[(2, 2)]),
+    ];
+    let groups = groups.map(|(title, unit, entry)| Contributions {
+        title: format!("{title}: {} + what follows", significant(entry(&study.steps[0].total) / UM, 4)),
+        unit: unit.into(),
+        terms: study.steps[1..].iter().map(|step| (step.term.to_owned(), entry(&step.added) / UM)).collect(),
+    });
+    contributions(&groups)
+}
+
+/// A figure that becomes a block under its own name.
+trait NamedBlock {
+    fn named_block(self, name: &str, caption: &str) -> Block;
+}
+
+impl NamedBlock for super::chart::Figure {
+    fn named_block(self, name: &str, caption: &str) -> Block {
+        Block::Figure(self.named(name).captioned(caption))
+    }
+}
+
+fn shape_figure(
+    rod: &Rod,
+    shape: &Shape,
+    labels: &[String; 3],
+    displacements: &[Matrix3<f64>],
+    stations: &[Station],
+) -> super::chart::Figure {
+    let cases = labels.iter().enumerate().map(|(axis, label)| ShapeCase {
+        label: label.clone(),
+        deflection_um: displacements.iter().map(|d| (d.column(axis) / UM).into()).collect(),
+    });
+    rod_shape(&RodShape {
+        title: format!("Rod {}", rod.name),
+        centreline_mm: shape.centreline.iter().map(|p| (p / MM).into()).collect(),
+        cases: cases.collect(),
+        stations: stations.to_vec(),
+        exaggeration: None,
+    })
+}
+
+/// Where masses and joints sit.
+fn stations(rod: &Rod) -> Vec<Station> {
+    let at = |station: f64| (rod.point(station) / MM).into();
+    let mass = |m: &crate::rod::LumpedMass| Station {
+        label: format!("{}, {} g", m.name, significant(m.mass / GRAM, 3)),
+        at_mm: at(m.station),
+        kind: StationKind::Mass,
+    };
+    let joint = |j: &crate::rod::Joint| Station {
+        label: j.name.clone(),
+        at_mm: at(j.station),
+        kind: StationKind::Joint,
+    };
+    let tip = (rod.tip_mass > 0.0).then(|| Station {
+        label: format!("tip, {} g", significant(rod.tip_mass / GRAM, 3)),
+        at_mm: (rod.tip() / MM).into(),
+        kind: StationKind::Mass,
+    });
+    rod.masses.iter().map(mass).chain(rod.joints.iter().map(joint)).chain(tip).collect()
+}
+
+fn warnings(study: &Study) -> Vec<String> {
+    study.rod.warnings.iter().map(ToString::to_string).collect()
+}
+
+/// A matrix as JSON rows in the unit.
+pub fn rows(matrix: &Matrix3<f64>, unit: f64) -> Vec<Vec<f64>> {
+    matrix.row_iter().map(|row| row.iter().map(|x| x / unit).collect()).collect()
+}
+
+fn mode_name(mode: Mode) -> &'static str {
+    match mode {
+        Mode::Calc => "calc",
+        Mode::Fea => "fea",
+    }
+}
+
+fn theory(study: &Study) -> &'static str {
+    if study.physics.shear && study.mode == Mode::Fea { "timoshenko" } else { "euler-bernoulli" }
+}
+
+fn physics_name(study: &Study) -> String {
+    let theory = if study.physics.shear { "Timoshenko" } else { "Euler–Bernoulli" };
+    format!("{theory}, {} elements", study.elements)
+}

@@ -1,0 +1,350 @@
+//! What the `rig fit` command says: JSON, tables and pictures of a rig [`Fit`].
+
+use serde_json::{Map, Value, json};
+
+use super::compliance::{matrices, rows};
+use super::pictures::{
+    LoadDeflection, LoadLine, LoadUnit, MeanReading, Residuals, load_deflection, residuals,
+};
+use super::table::{Column, Table};
+use super::{Block, Report, Section};
+use crate::compliance::paper_contact_force;
+use crate::rig::line::{LackOfFit, Line};
+use crate::rig::readings::{Phase, Readings};
+use crate::rig::{Fit, Measured};
+use crate::rod::Rod;
+use crate::statistics::Estimate;
+use crate::units::{MM, UM, significant};
+
+/// The JSON of `rodcal rig fit --json`.
+pub fn json(fit: &Fit, readings: &Readings, rod: Option<&Rod>) -> Value {
+    let measured = fit.measured.as_ref();
+    let by_name = |of: fn(&Estimate) -> Value| -> Value {
+        let ratios = measured.map_or(&[][..], |m| &m.ratios);
+        ratios.iter().map(|ratio| (ratio.name(), of(&ratio.value))).collect::<Map<_, _>>().into()
+    };
+    json!({
+        "rod": rod.map(|rod| &rod.name),
+        "slopes": fit.lines.iter().map(line_json).collect::<Vec<_>>(),
+        "r": by_name(|r| json!(r.value)),
+        "r_std_error": by_name(|r| json!(r.std_error)),
+        "r_rod": measured.map(|m| m.rod_ratio.value),
+        "r_rod_std_error": measured.and_then(|m| m.rod_ratio.std_error),
+        "r_rod_half_width_95": measured.and_then(|m| m.rod_ratio.half_width_95()),
+        "cf_um_per_n": measured.map(|m| rows(&m.compliance.force, UM)),
+        "cf_std_error_um_per_n": measured.map(|m| rows(&m.std_error.force, UM)),
+        "cf_is_measured": measured.map(|m| {
+            m.is_measured.row_iter().map(|row| row.iter().copied().collect::<Vec<_>>()).collect::<Vec<_>>()
+        }),
+        "cg_um_per_g": measured.map(|m| rows(&m.compliance.gravity, UM)),
+        "cg_std_error_um_per_g": measured.map(|m| rows(&m.std_error.gravity, UM)),
+        "c_rod_um": measured.map(|m| m.compliance.index(paper_contact_force()) / UM),
+        "warnings": warnings(fit, readings, rod),
+    })
+}
+
+fn line_json(line: &Line) -> Value {
+    let um = |estimate: &Estimate| estimate.value / UM;
+    let error_um = |estimate: &Estimate| estimate.std_error.map(|error| error / UM);
+    json!({
+        "axis": line.key.direction.to_string(),
+        "channel": format!("d{}", line.key.channel),
+        "um_per_n": um(&line.slope),
+        "std_error": error_um(&line.slope),
+        "half_width_95": line.slope.half_width_95().map(|w| w / UM),
+        "dof": line.slope.dof,
+        "intercept_um": um(&line.intercept),
+        "intercept_std_error_um": error_um(&line.intercept),
+        "load_offset_n": line.load_offset.map(|e| e.value),
+        "load_offset_std_error_n": line.load_offset.and_then(|e| e.std_error),
+        "friction_n": line.friction.map(|e| e.value),
+        "friction_std_error_n": line.friction.and_then(|e| e.std_error),
+        "n": line.count,
+        "residual_sd_um": line.residual_sd.map(|sd| sd / UM),
+        "noise_um": line.noise_sd.map(|sd| sd / UM),
+        "lack_of_fit": line.lack_of_fit.map(lack_of_fit_json),
+        "quadratic": line.quadratic.map(|curve| {
+            let [b0, b1, b2] = curve.coefficients;
+            json!({
+                "b0_um": um(&b0), "b1_um_per_n": um(&b1), "b2_um_per_n2": um(&b2),
+                "b0_std_error_um": error_um(&b0),
+                "b1_std_error_um_per_n": error_um(&b1),
+                "b2_std_error_um_per_n2": error_um(&b2),
+                "residual_sd_um": curve.residual_sd.map(|sd| sd / UM),
+                "lack_of_fit": curve.lack_of_fit.map(lack_of_fit_json),
+            })
+        }),
+        "load_station_mm": line.key.load_station.map(|s| s / MM),
+        "read_station_mm": line.key.read_station.map(|s| s / MM),
+        "distrusted_lines": line.distrusted,
+    })
+}
+
+fn lack_of_fit_json(test: LackOfFit) -> Value {
+    json!({ "f": test.f, "p_value": test.p_value, "dof_fit": test.dof_fit, "dof_repeats": test.dof_repeats })
+}
+
+/// The report of `rodcal rig fit`.
+pub fn report(fit: &Fit, readings: &Readings, rod: Option<&Rod>) -> Report {
+    let name = rod.map_or("a straight line".to_owned(), |rod| format!("rod {}", rod.name));
+    Report {
+        title: format!("Rig readings of {name}"),
+        headline: headline(fit, rod),
+        warnings: warnings(fit, readings, rod),
+        sections: sections(fit, readings, rod),
+        provenance: Vec::new(),
+    }
+}
+
+/// One sentence: what the readings say.
+pub fn headline(fit: &Fit, rod: Option<&Rod>) -> String {
+    match (&fit.measured, rod) {
+        (Some(m), Some(rod)) => {
+            let softer = if m.rod_ratio.value >= 1.0 { "softer" } else { "stiffer" };
+            format!(
+                "Rod {} is {} % {softer} than its model: r_rod = {}{}.",
+                rod.name,
+                significant(100.0 * (m.rod_ratio.value - 1.0).abs(), 2),
+                m.rod_ratio.show(1.0),
+                interval(&m.rod_ratio)
+            )
+        }
+        _ => {
+            let of_line =
+                |line: &Line| format!("{}: {} µm/N{}", line.key.label(), line.slope.show(UM), verdict(line));
+            fit.lines.iter().map(of_line).collect::<Vec<_>>().join("; ")
+        }
+    }
+}
+
+fn interval(estimate: &Estimate) -> String {
+    match estimate.half_width_95() {
+        Some(w) => format!(" (95 %: {} to {})", four(estimate.value - w), four(estimate.value + w)),
+        None => " (no repeats and no third load: no uncertainty)".into(),
+    }
+}
+
+fn four(value: f64) -> String {
+    significant(value, 4)
+}
+
+fn verdict(line: &Line) -> String {
+    match line.lack_of_fit {
+        Some(test) if test.p_value < 0.01 => {
+            format!(", but the readings are no straight line (lack of fit F = {})", four(test.f))
+        }
+        Some(test) => format!(", straight within its noise (lack of fit F = {})", four(test.f)),
+        None => String::new(),
+    }
+}
+
+/// The sections of [`report`], for reports that hold more than one rod.
+pub fn sections(fit: &Fit, readings: &Readings, rod: Option<&Rod>) -> Vec<Section> {
+    let name = rod.map_or("straight line".to_owned(), |rod| format!("rod {}", rod.name));
+    let mut lines = vec![
+        Block::Paragraph(
+            "Repeats are averaged before anything is concluded from them. Each line has an intercept: where it \
+             crosses the load axis is what friction (or a tare) takes off every load. F compares the averages' \
+             distance from the line with the scatter of repeats; a p below 0.01 means the line is not straight."
+                .into(),
+        ),
+        Block::Table(lines_table(fit)),
+    ];
+    lines.extend(quadratic_table(fit).map(Block::Table));
+    lines
+        .push(Block::Figure(load_deflection(&pictures(fit, rod), LoadUnit::Newton).captioned(
+            "Load and deflection: averages with standard errors, the fitted line and the models.",
+        )));
+    if let Some(figure) = residual_figure(fit) {
+        lines.push(Block::Figure(figure));
+    }
+    let mut sections = vec![Section::new(format!("Load–deflection lines, {name}"), lines)];
+    if let (Some(measured), Some(rod)) = (&fit.measured, rod) {
+        sections.push(measured_section(measured, readings, rod));
+    }
+    sections
+}
+
+fn lines_table(fit: &Fit) -> Table {
+    let mut table = Table::new(
+        "lines",
+        "Slopes with standard errors; the force counts along the positive axis.",
+        vec![
+            Column::text("load → offset"),
+            Column::number("slope", "µm/N"),
+            Column::number("± s.e.", "µm/N"),
+            Column::number("± 95 %", "µm/N"),
+            Column::number("crosses load axis at", "N"),
+            Column::number("± s.e.", "N"),
+            Column::number("friction", "N"),
+            Column::number("noise", "µm"),
+            Column::number("readings", ""),
+            Column::number("F", ""),
+            Column::number("p", ""),
+        ],
+    );
+    let shown = |value: Option<f64>, digits| value.map_or("–".into(), |v| significant(v, digits));
+    for line in &fit.lines {
+        table.row([
+            line.key.label(),
+            significant(line.slope.value / UM, 5),
+            shown(line.slope.std_error.map(|e| e / UM), 2),
+            shown(line.slope.half_width_95().map(|e| e / UM), 2),
+            shown(line.load_offset.map(|e| e.value), 3),
+            shown(line.load_offset.and_then(|e| e.std_error), 2),
+            shown(line.friction.map(|e| e.value), 3),
+            shown(line.noise_sd.map(|e| e / UM), 2),
+            line.count.to_string(),
+            shown(line.lack_of_fit.map(|t| t.f), 3),
+            shown(line.lack_of_fit.map(|t| t.p_value), 2),
+        ]);
+    }
+    table
+}
+
+/// The curves through lines that are not straight.
+fn quadratic_table(fit: &Fit) -> Option<Table> {
+    let mut table = Table::new(
+        "quadratic",
+        "The same readings with a quadratic term, offset = b0 + b1·F + b2·F², for the lines that are not straight.",
+        vec![
+            Column::text("load → offset"),
+            Column::number("b0", "µm"),
+            Column::number("b1", "µm/N"),
+            Column::number("b2", "µm/N²"),
+            Column::number("± s.e. of b2", "µm/N²"),
+            Column::number("residual s.d.", "µm"),
+            Column::number("F", ""),
+        ],
+    );
+    let shown = |value: Option<f64>, digits| value.map_or("–".into(), |v| significant(v, digits));
+    let crooked = fit.lines.iter().filter(|line| line.lack_of_fit.is_some_and(|t| t.p_value < 0.01));
+    for (line, curve) in crooked.filter_map(|line| Some((line, line.quadratic?))) {
+        let [b0, b1, b2] = curve.coefficients;
+        table.row([
+            line.key.label(),
+            significant(b0.value / UM, 10),
+            significant(b1.value / UM, 10),
+            significant(b2.value / UM, 10),
+            shown(b2.std_error.map(|e| e / UM), 2),
+            shown(curve.residual_sd.map(|e| e / UM), 5),
+            shown(curve.lack_of_fit.map(|t| t.f), 3),
+        ]);
+    }
+    (!table.rows.is_empty()).then_some(table)
+}
+
+/// One panel for each line along its load, in the manner of the paper's Fig. 8.
+fn pictures(fit: &Fit, rod: Option<&Rod>) -> Vec<LoadDeflection> {
+    let is_along = |line: &&(usize, &Line)| line.1.key.channel == line.1.key.direction.axis;
+    let lines: Vec<(usize, &Line)> = fit.lines.iter().enumerate().collect();
+    let chosen: Vec<&(usize, &Line)> = match lines.iter().filter(is_along).count() {
+        0 => lines.iter().collect(),
+        _ => lines.iter().filter(is_along).collect(),
+    };
+    chosen.into_iter().map(|(i, line)| picture(*i, line, fit, rod)).collect()
+}
+
+fn picture(index: usize, line: &Line, fit: &Fit, rod: Option<&Rod>) -> LoadDeflection {
+    let sign = f64::from(line.key.direction.sign);
+    let mut lines = Vec::new();
+    let mut model = |label: &str, slope: f64| {
+        lines.push(LoadLine {
+            label: label.into(),
+            slope_um_per_n: sign * slope / UM,
+            intercept_um: 0.0,
+            is_fit: false,
+        });
+    };
+    if let Some(measured) = &fit.measured {
+        let is_at_tip = line.key.load_station.is_none() && line.key.read_station.is_none();
+        if let Some(calc) = measured.calc.filter(|_| is_at_tip) {
+            model("Calc", calc.force[(line.key.channel.index(), line.key.direction.axis.index())]);
+        }
+        model("FEA", measured.predicted[index]);
+    }
+    lines.push(LoadLine {
+        label: if rod.is_some() { "Meas".into() } else { "line".into() },
+        slope_um_per_n: sign * line.slope.value / UM,
+        intercept_um: line.intercept.value / UM,
+        is_fit: true,
+    });
+    let name = rod.map_or(String::new(), |rod| format!("rod {}, ", rod.name));
+    let noise = line.noise_sd.unwrap_or(0.0);
+    LoadDeflection {
+        title: format!("{name}load {}", line.key.label()),
+        lines,
+        readings: line
+            .points
+            .iter()
+            .filter(|point| point.phase == Phase::Load || line.unload_intercept.is_none())
+            .map(|point| MeanReading {
+                load_n: point.load,
+                mean_um: point.mean / UM,
+                standard_error_um: noise / point.count.sqrt() / UM,
+            })
+            .collect(),
+    }
+}
+
+fn residual_figure(fit: &Fit) -> Option<super::chart::Figure> {
+    let noise = fit.lines.iter().filter_map(|line| {
+        let smallest = line.points.iter().map(|p| p.count).fold(f64::INFINITY, f64::min);
+        Some(2.0 * line.noise_sd? / smallest.sqrt() / UM)
+    });
+    let noise_um = noise.fold(0.0, f64::max);
+    let series = |line: &Line| {
+        let points = line.points.iter().map(|p| [p.load, p.residual / UM]).collect();
+        (line.key.label(), points)
+    };
+    (!fit.lines.is_empty()).then(|| {
+        residuals(&Residuals {
+            title: "What the lines leave".into(),
+            series: fit.lines.iter().map(series).collect(),
+            noise_um,
+            noise_label: "± 2 standard errors of an average, from repeats".into(),
+        })
+        .captioned(
+            "Averages less the fitted line. Points that follow a curve, or leave the band, are no noise.",
+        )
+    })
+}
+
+fn measured_section(measured: &Measured, readings: &Readings, rod: &Rod) -> Section {
+    let mut table = Table::new(
+        "ratios",
+        "Correction factors: measured over modelled compliance (Eqs 20, 21).",
+        vec![
+            Column::text("factor"),
+            Column::number("value", ""),
+            Column::number("± s.e.", ""),
+            Column::number("± 95 %", ""),
+        ],
+    );
+    let mut row = |name: String, estimate: &Estimate| {
+        let shown = |value: Option<f64>| value.map_or("–".into(), |v| significant(v, 2));
+        let width = estimate.half_width_95();
+        table.row([name, significant(estimate.value, 5), shown(estimate.std_error), shown(width)]);
+    };
+    measured.ratios.iter().for_each(|ratio| row(format!("r{}", ratio.name()), &ratio.value));
+    row("r_rod".into(), &measured.rod_ratio);
+    let mut blocks = vec![
+        Block::Paragraph(format!(
+            "Measured from {}: entries of C^F that were read are the measured ones (by reciprocity also their \
+             transposes); the others, and all of C^g, are r_rod times FEA. With these, c_rod is {} µm.",
+            readings.file,
+            four(measured.compliance.index(paper_contact_force()) / UM)
+        )),
+        Block::Table(table),
+    ];
+    blocks.extend(matrices("Meas", "meas", &measured.compliance));
+    blocks.extend(matrices("Meas, standard errors", "meas-errors", &measured.std_error));
+    blocks.extend(matrices("FEA, for comparison", "model", &measured.model));
+    Section::new(format!("Measured compliance, rod {}", rod.name), blocks)
+}
+
+fn warnings(fit: &Fit, readings: &Readings, rod: Option<&Rod>) -> Vec<String> {
+    let of_rod = rod.map_or(&[][..], |rod| &rod.warnings).iter().map(ToString::to_string);
+    let of_readings = readings.warnings.iter().map(|warning| format!("{}: {warning}", readings.file));
+    of_rod.chain(of_readings).chain(fit.warnings.iter().map(ToString::to_string)).collect()
+}

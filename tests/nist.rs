@@ -63,7 +63,7 @@ fn nothing_is_called_converged_that_is_not_the_certified_minimum() {
     use rodcal::least_squares::{Options, fit};
     // options that make runs fail: what fails must say so
     for nist in problems().unwrap_or_default() {
-        for (max_iterations, first_radius) in [(5, 1.0), (20, 100.0), (200, f64::INFINITY), (1000, 0.01)] {
+        for (max_iterations, first_radius) in [(5, 1.0), (20, 100.0), (1000, f64::INFINITY), (1000, 0.01)] {
             for start in &nist.starts {
                 let options = Options { max_iterations, first_radius, ..Options::default() };
                 let fit = fit(&nist, &DVector::from_vec(start.clone()), &options).unwrap();

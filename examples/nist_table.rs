@@ -12,15 +12,15 @@ fn main() {
         return;
     };
     println!(
-        "| problem | start | parameters | standard deviations | sum of squares | iterations | evaluations | cosine | stop |"
+        "| problem | start | parameters | standard deviations | sum of squares | iterations | evaluations | stop |"
     );
-    println!("|---|---|---|---|---|---|---|---|---|");
+    println!("|---|---|---|---|---|---|---|---|");
     for nist in &all {
         for start in 0..2 {
             let fit = nist.fit(start);
             let digits = nist.digits(&fit);
             println!(
-                "| {} | {} | {:.1} | {:.1} | {:.1} | {} | {} | {:.0e} | {:?} |",
+                "| {} | {} | {:.1} | {:.1} | {:.1} | {} | {} | {:?} |",
                 nist.name,
                 start + 1,
                 digits.parameters,
@@ -28,7 +28,6 @@ fn main() {
                 digits.sum_of_squares,
                 fit.iterations,
                 fit.evaluations,
-                fit.gradient_cosine,
                 fit.reason,
             );
         }

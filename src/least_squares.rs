@@ -72,7 +72,7 @@ impl Default for Options {
             step_tolerance: 1e-10,
             rank_tolerance: 1e-12,
             max_iterations: 1000,
-            first_radius: 100.0,
+            first_radius: 1.0,
         }
     }
 }
@@ -280,7 +280,14 @@ fn check(problem: &dyn Problem, start: &DVector<f64>, options: &Options) -> Resu
     if let RobustScale::Given(tau) = scale {
         require(positive(tau), "robust", &tau, "a scale > 0".into())?;
     }
+    let (m, r, j) = (problem.residual_count(), problem.residuals(start), problem.jacobian(start));
+    require(r.len() == m, "problem", &format!("{} residuals", r.len()), format!("{m}, as it says"))?;
+    let shape = format!("a Jacobian of {} x {}", j.nrows(), j.ncols());
+    require(j.shape() == (m, n), "problem", &shape, format!("{m} x {n}, as it says"))?;
     let radius = options.first_radius;
     require(radius > 0.0, "first_radius", &radius, "a number > 0".into())?;
     require(options.max_iterations > 0, "max_iterations", &0, "at least 1".into())
 }
+
+#[cfg(test)]
+mod tests;

@@ -32,9 +32,10 @@ impl Svd {
 
     /// σ₁/σₖ; infinite for a singular matrix, 1 for an empty one.
     pub fn condition_number(&self) -> f64 {
-        match (self.singular_values.iter().next(), self.singular_values.iter().next_back()) {
-            (Some(_), Some(&smallest)) if smallest == 0.0 => f64::INFINITY,
-            (Some(&largest), Some(&smallest)) => largest / smallest,
+        let sigma = self.singular_values.as_slice();
+        match (sigma.first(), sigma.last()) {
+            (Some(_), Some(0.0)) => f64::INFINITY,
+            (Some(largest), Some(smallest)) => largest / smallest,
             _ => 1.0,
         }
     }

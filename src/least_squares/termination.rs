@@ -18,6 +18,9 @@ pub enum TerminationReason {
     NoProgress,
     /// No free parameter changes any residual here.
     NoInfluence,
+    /// A parameter that changed the residuals at the start ran to where it no longer does: the sum of squares has
+    /// no minimum there, it only levels out.
+    InfluenceLost,
     /// The limit of iterations was reached first.
     MaxIterations,
     /// The robust weights were still changing after their last pass.
@@ -45,6 +48,9 @@ impl std::fmt::Display for TerminationReason {
                 "not converged: no step makes the residuals smaller, yet the gradient is not zero"
             }
             Self::NoInfluence => "not converged: no free parameter changes the residuals here",
+            Self::InfluenceLost => {
+                "not converged: a parameter ran to where it no longer changes the residuals"
+            }
             Self::MaxIterations => "not converged: the limit of iterations was reached",
             Self::WeightsUnsettled => "not converged: the robust weights did not settle",
             Self::NonFiniteStart => "not converged: the residuals at the start are not finite",
@@ -65,6 +71,7 @@ mod tests {
             TerminationReason::Rounding,
             TerminationReason::NoProgress,
             TerminationReason::NoInfluence,
+            TerminationReason::InfluenceLost,
             TerminationReason::MaxIterations,
             TerminationReason::WeightsUnsettled,
             TerminationReason::NonFiniteStart,

@@ -18,8 +18,13 @@ use crate::linalg::with_unit_columns;
 const NEAR: f64 = 1e-6;
 /// What a full step near the minimum has to gain in the cosine to be worth another.
 const WORTHWHILE: f64 = 0.9;
+/// What remains per iteration of the largest norm a column has had. Without fading, a start among huge derivatives
+/// keeps the steps short for ever; with quick fading, a parameter that loses its influence runs away.
+const FADING: f64 = 0.995;
 /// Actual over predicted reduction below which a step is taken back (Moré's 1e-4).
 const ACCEPTABLE: f64 = 1e-4;
+/// Change of the sum of squares, relative to it, that no evaluation can resolve.
+const UNRESOLVED: f64 = 0.01 * f64::EPSILON;
 /// Roundings that may add up in a residual, in units of what one rounding of each parameter causes.
 const ROUNDINGS: f64 = 4.0;
 
@@ -50,7 +55,14 @@ pub(super) struct Minimum {
 
 /// Searches a minimum of the stacked sum of squares from `start`, which must lie within the bounds.
 pub(super) fn minimise(system: &Stacked, start: &DVector<f64>, options: &Options) -> Result<Minimum> {
-    let mut search = Search { system, options, evaluations: 0, iterations: 0 };
+    let mut search = Search {
+        system,
+        options,
+        scale: DVector::zeros(start.len()),
+        first_norms: None,
+        evaluations: 0,
+        iterations: 0,
+    };
     let Some(mut here) = search.evaluate(start.clone()) else {
         return Ok(search.nowhere(start, TerminationReason::NonFiniteStart));
     };
@@ -58,7 +70,7 @@ pub(super) fn minimise(system: &Stacked, start: &DVector<f64>, options: &Options
         return Ok(search.nowhere(start, TerminationReason::NonFiniteJacobian));
     };
     let stood_still = search.verdict(&here, &view, TerminationReason::NoProgress).is_converged();
-    let mut radius = options.first_radius * view.tangent.scaled_length(&here.p);
+    let mut radius = options.first_radius * view.bounded.scaled_length(&here.p);
     if radius.is_nan() || radius == 0.0 {
         radius = f64::INFINITY;
     }
@@ -75,7 +87,7 @@ pub(super) fn minimise(system: &Stacked, start: &DVector<f64>, options: &Options
                 continue;
             }
             let verdict = search.verdict(&here, &view, TerminationReason::NoProgress);
-            if verdict.is_converged() {
+            if verdict != TerminationReason::NoProgress {
                 break verdict;
             }
         }
@@ -98,6 +110,17 @@ pub(super) fn minimise(system: &Stacked, start: &DVector<f64>, options: &Options
         evaluations: search.evaluations,
         reason,
     })
+}
+
+/// Factor on the radius after a step that reduced the squares by `ratio` < ¼ of what was predicted: half for one
+/// that still was a gain, else to the minimum of the parabola through both ends of the step (Moré, §5).
+fn shrink(ratio: f64) -> f64 {
+    match ratio {
+        _ if ratio >= 0.0 => 0.5,
+        // −∞ stands for no number at all
+        _ if ratio.is_finite() => (0.5 / (1.0 - 0.5 * ratio)).clamp(0.1, 0.5),
+        _ => 0.1,
+    }
 }
 
 /// The tangent plane at `p`, columns scaled to norm 1, with the parameters held that are held.
@@ -129,18 +152,28 @@ struct Point {
 
 /// The linearisation at a point.
 struct View {
+    /// With columns scaled to norm 1: judges rank and gradient, and makes full steps.
     tangent: Tangent,
+    /// With columns scaled to their largest norm so far, slowly forgotten: makes steps within the trust region. A parameter that
+    /// loses its influence is thereby not set free to run away.
+    bounded: Tangent,
     held: Vec<Option<Side>>,
     /// Length of the residual vector's projection on the tangent plane, and relative to the vector.
     projection: f64,
     cosine: f64,
     /// What rounding alone can make of the residual vector.
     rounding: f64,
+    /// A free parameter changed the residuals at the start and does so no longer.
+    influence_lost: bool,
 }
 
 struct Search<'a> {
     system: &'a Stacked<'a>,
     options: &'a Options,
+    /// Largest norm each column of the Jacobian has had on the way, slowly forgotten: the D of the trust region.
+    scale: DVector<f64>,
+    /// Norms of the columns at the start.
+    first_norms: Option<Vec<f64>>,
     evaluations: usize,
     iterations: usize,
 }
@@ -163,13 +196,22 @@ impl Search<'_> {
         }
         let held = self.held(&here.p, &j.tr_mul(&here.r));
         let norms = column_norms(&j);
+        self.scale = (&self.scale * FADING).sup(&norms);
+        let first = self.first_norms.get_or_insert_with(|| j.column_iter().map(|c| c.norm()).collect());
+        // a column of zeros from the start is a matter of rank, not of loss
+        let influence_lost = (0..held.len()).any(|k| {
+            held[k].is_none()
+                && first[k] != 0.0
+                && j.column(k).norm() <= self.options.rank_tolerance * first[k]
+        });
         let tangent = Tangent::new(&j, &here.r, free(&held), &norms, self.options.rank_tolerance)?;
+        let bounded = Tangent::new(&j, &here.r, free(&held), &self.scale, f64::EPSILON)?;
         let projection = tangent.projection();
         let cosine = if here.square > 0.0 { projection / here.square.sqrt() } else { 0.0 };
         // one rounding of every parameter: ε·√Σ(‖Jⱼ‖·pⱼ)²
         let of_parameters = f64::EPSILON * norms.component_mul(&here.p).norm();
         let rounding = ROUNDINGS * of_parameters + self.system.rounding();
-        Ok(Some(View { tangent, held, projection, cosine, rounding }))
+        Ok(Some(View { tangent, bounded, held, projection, cosine, rounding, influence_lost }))
     }
 
     /// The bounds that parameters rest on while the gradient would carry them across.
@@ -197,14 +239,16 @@ impl Search<'_> {
     /// A point with a smaller sum of squares, by shrinking the trust region until there is one.
     fn descend(&mut self, here: &Point, view: &View, radius: &mut f64) -> Option<Point> {
         loop {
-            let wanted = view.tangent.step_within(*radius);
+            let wanted = view.bounded.step_within(*radius);
             let p = self.within_bounds(&here.p, &wanted);
             let step = &p - &here.p;
-            let length = view.tangent.scaled_length(&step);
-            if p == here.p || length <= f64::EPSILON * view.tangent.scaled_length(&here.p) {
+            let length = view.bounded.scaled_length(&step);
+            let predicted = view.bounded.predicted_reduction(&step);
+            // below either limit rounding decides, not the step
+            let moves = length > f64::EPSILON * view.bounded.scaled_length(&here.p);
+            if p == here.p || !moves || predicted.abs() <= UNRESOLVED * here.square {
                 return None;
             }
-            let predicted = view.tangent.predicted_reduction(&step);
             let next = self.evaluate(p);
             let ratio = match &next {
                 // ‖r‖² − ‖r₊‖² as a product, which does not cancel
@@ -212,7 +256,7 @@ impl Search<'_> {
                 _ => f64::NEG_INFINITY,
             };
             if ratio < 0.25 {
-                *radius = 0.25 * length.min(*radius);
+                *radius = shrink(ratio) * length.min(*radius);
             } else if ratio > 0.75 {
                 *radius = radius.max(2.0 * length);
             }
@@ -222,7 +266,7 @@ impl Search<'_> {
         }
     }
 
-    /// A point with a smaller cosine, by a full Gauss–Newton step, if it is worth the while.
+    /// A point with a smaller projection on the tangent plane, by a full Gauss–Newton step, if it is worth the while.
     fn polish(&mut self, here: &Point, view: &View) -> Result<Option<(Point, View)>> {
         let p = self.within_bounds(&here.p, &view.tangent.full_step());
         if p == here.p {
@@ -241,12 +285,20 @@ impl Search<'_> {
     fn verdict(&self, here: &Point, view: &View, otherwise: TerminationReason) -> TerminationReason {
         let next_step = view.tangent.scaled_length(&view.tangent.full_step());
         let stands_still = next_step <= self.options.step_tolerance * view.tangent.scaled_length(&here.p);
-        match view.cosine <= self.options.gradient_tolerance {
-            true if stands_still => TerminationReason::GradientAndStep,
-            true => TerminationReason::Gradient,
-            false if view.projection <= view.rounding => TerminationReason::Rounding,
-            false => otherwise,
+        if view.influence_lost {
+            TerminationReason::InfluenceLost
+        } else if view.cosine <= self.options.gradient_tolerance {
+            if stands_still { TerminationReason::GradientAndStep } else { TerminationReason::Gradient }
+        } else if self.gradient_is_zero(view) {
+            TerminationReason::Rounding
+        } else {
+            otherwise
         }
+    }
+
+    /// True where what is left of the gradient is below the tolerance, or rounding.
+    fn gradient_is_zero(&self, view: &View) -> bool {
+        view.cosine <= self.options.gradient_tolerance || view.projection <= view.rounding
     }
 
     /// The result of a search that could not begin.

@@ -67,10 +67,10 @@ pub fn sections(study: &Study) -> Vec<Section> {
             .into(),
     )];
     match &study.calc {
-        Ok(calc) => tables.extend(matrices("Calc (closed form, Eqs 15 and 17)", "calc", calc)),
+        Ok(calc) => tables.push(matrices("calc", "Calc: closed form, Eqs 15 and 17.", calc)),
         Err(why) => tables.push(Block::Paragraph(format!("No Calc mode: {why}."))),
     }
-    tables.extend(matrices(&format!("FEA ({})", physics_name(study)), "fea", &study.fea));
+    tables.push(matrices("fea", &format!("FEA: beam model, {}.", physics_name(study)), &study.fea));
     let stations = stations(rod);
     let force_cases = AXES.map(|axis| format!("1 N along {}", axis.to_uppercase()));
     let gravity_cases = AXES.map(|axis| format!("1 g along {}", axis.to_uppercase()));
@@ -130,25 +130,20 @@ fn largest_column(matrix: &Matrix3<f64>) -> f64 {
     matrix.column_iter().fold(0.0, |max, column| column.norm().max(max))
 }
 
-/// Both matrices of a compliance as tables.
-pub fn matrices(title: &str, name: &str, compliance: &Compliance) -> [Block; 2] {
-    [
-        matrix_table(&format!("cf-{name}"), &format!("C^F, µm/N, {title}"), &compliance.force),
-        matrix_table(&format!("cg-{name}"), &format!("C^g, µm per g, {title}"), &compliance.gravity),
-    ]
-    .map(Block::Table)
-}
-
-fn matrix_table(name: &str, caption: &str, matrix: &Matrix3<f64>) -> Table {
-    let mut columns = vec![Column::text("offset")];
-    columns.extend(AXES.map(|axis| Column::number(format!("load {axis}"), "")));
+/// Both matrices of a compliance as one table.
+pub fn matrices(name: &str, caption: &str, compliance: &Compliance) -> Block {
+    let mut columns = vec![Column::text("offset along")];
+    columns.extend(AXES.map(|axis| Column::number(format!("C^F load {axis}"), "µm/N")));
+    columns.extend(AXES.map(|axis| Column::number(format!("C^g load {axis}"), "µm/g")));
     let mut table = Table::new(name, caption, columns);
     for (m, axis) in AXES.iter().enumerate() {
         let mut cells = vec![(*axis).to_owned()];
-        cells.extend((0..3).map(|n| number(matrix[(m, n)])));
+        cells.extend(
+            [&compliance.force, &compliance.gravity].iter().flat_map(|c| (0..3).map(|n| number(c[(m, n)]))),
+        );
         table.row(cells);
     }
-    table
+    Block::Table(table)
 }
 
 /// A compliance in µm; what symmetry makes zero is shown as 0.

@@ -337,9 +337,11 @@ fn measured_section(measured: &Measured, readings: &Readings, rod: &Rod) -> Sect
         )),
         Block::Table(table),
     ];
-    blocks.extend(matrices("Meas", "meas", &measured.compliance));
-    blocks.extend(matrices("Meas, standard errors", "meas-errors", &measured.std_error));
-    blocks.extend(matrices("FEA, for comparison", "model", &measured.model));
+    blocks.extend([
+        matrices("meas", "Meas.", &measured.compliance),
+        matrices("meas-errors", "Standard errors of Meas.", &measured.std_error),
+        matrices("model", "FEA, for comparison.", &measured.model),
+    ]);
     Section::new(format!("Measured compliance, rod {}", rod.name), blocks)
 }
 

@@ -15,7 +15,7 @@ use super::output::Outcome;
 
 pub fn run() -> Result<Outcome> {
     let mut report = Report { title: "rodcal demo".into(), ..Report::default() };
-    let (mut results, mut words) = (Vec::new(), String::new());
+    let (mut results, mut words, mut headlines) = (Vec::new(), String::new(), Vec::new());
     for example in &RODS {
         let rod = Rod::from_toml(example.rod_file, example.rod)?;
         let readings = Readings::from_text(example.readings_file, example.readings)?;
@@ -25,6 +25,7 @@ pub fn run() -> Result<Outcome> {
         let of_rod = report::compliance::report(&study);
         let of_rig = report::rig::report(&fit, &readings, Some(&rod));
         words += &format!("{}\n{}\n\n", of_rod.headline, of_rig.headline);
+        headlines.push(of_rig.headline.clone());
         results.push(json!({
             "compliance": report::compliance::json(&study),
             "rig": report::rig::json(&fit, &readings, Some(&rod)),
@@ -47,7 +48,7 @@ pub fn run() -> Result<Outcome> {
     report.provenance.push(("readings".into(), format!("{LOAD_CELL_FILE} (NIST StRD, Pontius)")));
     report.provenance.push(("program".into(), concat!("rodcal ", env!("CARGO_PKG_VERSION")).into()));
 
-    report.headline = words.trim().replace("\n\n", " ").replace('\n', " ");
+    report.headline = headlines.join(" ");
     Ok(Outcome {
         json: json!({
             "rods": results,

@@ -68,7 +68,7 @@ pub fn sections(study: &Study) -> Vec<Section> {
     )];
     match &study.calc {
         Ok(calc) => tables.push(matrices("calc", "Calc: closed form, Eqs 15 and 17.", calc)),
-        Err(why) => tables.push(Block::Paragraph(format!("No Calc mode: {why}."))),
+        Err(why) => tables.push(Block::Paragraph(format!("{why}."))),
     }
     tables.push(matrices("fea", &format!("FEA: beam model, {}.", physics_name(study)), &study.fea));
     let stations = stations(rod);
@@ -77,7 +77,7 @@ pub fn sections(study: &Study) -> Vec<Section> {
     vec![
         Section::new(format!("Compliance of the tip, rod {}", rod.name), tables),
         Section::new(
-            "What each left-out term is worth",
+            format!("What each left-out term is worth, rod {}", rod.name),
             vec![
                 Block::Paragraph(
                     "From the closed form to the model as built: each row adds its term to all above it, \
@@ -92,7 +92,7 @@ pub fn sections(study: &Study) -> Vec<Section> {
             ],
         ),
         Section::new(
-            "Shape",
+            format!("Shape, rod {}", rod.name),
             vec![
                 shape_figure(rod, &study.shape, &gravity_cases, &study.shape.under_gravity, &stations)
                     .named_block(

@@ -125,13 +125,14 @@ figcaption, caption { font-size: .9rem; line-height: 1.45; color: #444; text-ali
 figcaption { margin-top: .5rem; max-width: 44rem; }
 caption { caption-side: top; padding-bottom: .5rem; }
 .wide { overflow-x: auto; }
-table { border-collapse: collapse; margin: 1.5rem 0 .75rem; font-size: .93rem; break-inside: avoid;
+table { border-collapse: collapse; margin: 1.5rem 0 .75rem; font-size: .88rem; break-inside: avoid;
   font-variant-numeric: tabular-nums lining-nums; border-top: 1.5px solid #222; border-bottom: 1.5px solid #222; }
 table caption { border: 0; }
-th, td { padding: .32rem 1.6rem .32rem 0; vertical-align: baseline; text-align: left; }
+th, td { padding: .32rem 1.1rem .32rem 0; vertical-align: baseline; text-align: left; }
 th:last-child, td:last-child { padding-right: .4rem; }
 th { font-weight: 600; border-bottom: 1px solid #222; vertical-align: bottom; }
 .unit { display: block; font-weight: 400; color: #555; }
+th:first-child, td:first-child { white-space: nowrap; }
 .number { text-align: right; white-space: nowrap; }
 tbody tr + tr td { border-top: 1px solid #e6e6e6; }
 .note { font-size: .87rem; color: #444; margin: .2rem 0; }

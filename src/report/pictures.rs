@@ -30,7 +30,7 @@ pub struct LoadLine {
     pub slope_um_per_n: f64,
     /// Deflection at no load, µm.
     pub intercept_um: f64,
-    /// The fit through the readings: drawn solid, with its load-axis intercept marked as friction.
+    /// The fit through the readings: drawn solid, with the load at which it crosses the load axis marked.
     pub is_fit: bool,
 }
 
@@ -56,7 +56,7 @@ pub enum LoadUnit {
 }
 
 /// Deflection over load, one panel per rod: lines of the models and of the fit, readings with
-/// standard errors, and the load that friction swallows before anything moves.
+/// standard errors, and the load at which the fit crosses the load axis (what friction takes off every load).
 pub fn load_deflection(rods: &[LoadDeflection], unit: LoadUnit) -> Figure {
     let (symbol, newtons) = match unit {
         LoadUnit::Newton => ("N", 1.0),
@@ -68,7 +68,7 @@ pub fn load_deflection(rods: &[LoadDeflection], unit: LoadUnit) -> Figure {
         let mut chart = Chart::new(&rod.title, format!("load / {symbol}"), "deflection / µm");
         chart.x.range = Range::Fixed(0.0, end_n / newtons);
         chart.y.range = Range::AutoWithZero;
-        let (mut models, mut friction) = (0, Vec::new());
+        let (mut models, mut crossing) = (0, Vec::new());
         for line in &rod.lines {
             let style = if line.is_fit {
                 Style::nth(0)
@@ -88,14 +88,14 @@ pub fn load_deflection(rods: &[LoadDeflection], unit: LoadUnit) -> Figure {
             });
             if crosses {
                 let amount = typeset(&significant(start_n, 2));
-                friction.push(Mark::Points {
+                crossing.push(Mark::Points {
                     label: String::new(),
                     points: vec![Point { x: start_n / newtons, y: 0.0, error: 0.0 }],
                     style: style.marker(Marker::Diamond),
                 });
-                friction.push(Mark::Note {
+                crossing.push(Mark::Note {
                     at: [start_n / newtons, 0.0],
-                    text: format!("friction ≈ {amount} N"),
+                    text: format!("crosses at {amount}\u{a0}N"),
                 });
             }
         }
@@ -107,7 +107,7 @@ pub fn load_deflection(rods: &[LoadDeflection], unit: LoadUnit) -> Figure {
             points: rod.readings.iter().map(point).collect(),
             style: Style::nth(0),
         });
-        chart.marks.extend(friction);
+        chart.marks.extend(crossing);
         chart
     };
     Figure {
@@ -222,9 +222,9 @@ mod tests {
     }
 
     #[test]
-    fn friction_is_where_the_fit_meets_the_load_axis() {
+    fn the_fit_is_marked_where_it_meets_the_load_axis() {
         let svg = load_deflection(&[steel()], LoadUnit::Newton).svg();
-        assert!(svg.contains("friction ≈ 0.90 N") && svg.contains("FEA, 32.6\u{a0}µm/N"), "{svg}");
+        assert!(svg.contains("crosses at 0.90\u{a0}N") && svg.contains("FEA, 32.6\u{a0}µm/N"), "{svg}");
     }
 
     #[test]

@@ -131,7 +131,7 @@ fn four(value: f64) -> String {
 fn verdict(line: &Line) -> String {
     match line.lack_of_fit {
         Some(test) if test.p_value < 0.01 => {
-            format!(", but the readings are no straight line (lack of fit F = {})", four(test.f))
+            format!(", but the readings leave a straight line (lack of fit F = {})", four(test.f))
         }
         Some(test) => format!(", straight within its noise (lack of fit F = {})", four(test.f)),
         None => String::new(),
@@ -144,7 +144,7 @@ pub fn sections(fit: &Fit, readings: &Readings, rod: Option<&Rod>) -> Vec<Sectio
     let mut lines = vec![
         Block::Paragraph(
             "Repeats are averaged before anything is concluded from them. Each line has an intercept: where it \
-             crosses the load axis is what friction (or a tare) takes off every load. F compares the averages' \
+             crosses the load axis is what friction in the slide (or a tare) takes off every load. F compares the averages' \
              distance from the line with the scatter of repeats; a p below 0.01 means the line is not straight."
                 .into(),
         ),
@@ -166,40 +166,46 @@ pub fn sections(fit: &Fit, readings: &Readings, rod: Option<&Rod>) -> Vec<Sectio
 }
 
 fn lines_table(fit: &Fit) -> Table {
-    let mut table = Table::new(
-        "lines",
-        "Slopes with standard errors; the force counts along the positive axis.",
-        vec![
-            Column::text("load → offset"),
-            Column::number("slope", "µm/N"),
-            Column::number("± s.e.", "µm/N"),
-            Column::number("± 95 %", "µm/N"),
-            Column::number("crosses load axis at", "N"),
-            Column::number("± s.e.", "N"),
-            Column::number("friction", "N"),
-            Column::number("noise", "µm"),
-            Column::number("readings", ""),
-            Column::number("F", ""),
-            Column::number("p", ""),
-        ],
-    );
-    let shown = |value: Option<f64>, digits| value.map_or("–".into(), |v| significant(v, digits));
+    let mut columns = vec![
+        Column::text("load → offset"),
+        Column::number("slope", "µm/N"),
+        Column::number("± s.e.", "µm/N"),
+        Column::number("± 95 %", "µm/N"),
+        Column::number("crosses at", "N"),
+        Column::number("± s.e.", "N"),
+        Column::number("noise", "µm"),
+        Column::number("readings", ""),
+        Column::number("F", ""),
+        Column::number("p", ""),
+    ];
+    // only recordings with an unloading line have one
+    let has_friction = fit.lines.iter().any(|line| line.friction.is_some());
+    if has_friction {
+        columns.push(Column::number("friction", "N"));
+    }
+    let caption = "Slopes with standard errors; the force counts along the positive axis.";
+    let mut table = Table::new("lines", caption, columns);
     for line in &fit.lines {
         table.row([
             line.key.label(),
             significant(line.slope.value / UM, 5),
-            shown(line.slope.std_error.map(|e| e / UM), 2),
-            shown(line.slope.half_width_95().map(|e| e / UM), 2),
-            shown(line.load_offset.map(|e| e.value), 3),
-            shown(line.load_offset.and_then(|e| e.std_error), 2),
-            shown(line.friction.map(|e| e.value), 3),
-            shown(line.noise_sd.map(|e| e / UM), 2),
+            shown(line.slope.std_error, UM, 2),
+            shown(line.slope.half_width_95(), UM, 2),
+            shown(line.load_offset.map(|e| e.value), 1.0, 3),
+            shown(line.load_offset.and_then(|e| e.std_error), 1.0, 2),
+            shown(line.noise_sd, UM, 2),
             line.count.to_string(),
-            shown(line.lack_of_fit.map(|t| t.f), 3),
-            shown(line.lack_of_fit.map(|t| t.p_value), 2),
+            shown(line.lack_of_fit.map(|t| t.f), 1.0, 3),
+            shown(line.lack_of_fit.map(|t| t.p_value), 1.0, 2),
+            shown(line.friction.map(|e| e.value), 1.0, 3),
         ]);
     }
     table
+}
+
+/// A number in its unit, or a dash where there is none.
+fn shown(value: Option<f64>, unit: f64, digits: usize) -> String {
+    value.map_or("–".into(), |v| significant(v / unit, digits))
 }
 
 /// The curves through lines that are not straight.
@@ -217,7 +223,6 @@ fn quadratic_table(fit: &Fit) -> Option<Table> {
             Column::number("F", ""),
         ],
     );
-    let shown = |value: Option<f64>, digits| value.map_or("–".into(), |v| significant(v, digits));
     let crooked = fit.lines.iter().filter(|line| line.lack_of_fit.is_some_and(|t| t.p_value < 0.01));
     for (line, curve) in crooked.filter_map(|line| Some((line, line.quadratic?))) {
         let [b0, b1, b2] = curve.coefficients;
@@ -226,9 +231,9 @@ fn quadratic_table(fit: &Fit) -> Option<Table> {
             significant(b0.value / UM, 10),
             significant(b1.value / UM, 10),
             significant(b2.value / UM, 10),
-            shown(b2.std_error.map(|e| e / UM), 2),
-            shown(curve.residual_sd.map(|e| e / UM), 5),
-            shown(curve.lack_of_fit.map(|t| t.f), 3),
+            shown(b2.std_error, UM, 2),
+            shown(curve.residual_sd, UM, 5),
+            shown(curve.lack_of_fit.map(|t| t.f), 1.0, 3),
         ]);
     }
     (!table.rows.is_empty()).then_some(table)
@@ -305,7 +310,7 @@ fn residual_figure(fit: &Fit) -> Option<super::chart::Figure> {
             noise_label: "± 2 standard errors of an average, from repeats".into(),
         })
         .captioned(
-            "Averages less the fitted line. Points that follow a curve, or leave the band, are no noise.",
+            "Averages less the fitted line. Points that follow a curve, or leave the band, are more than noise.",
         )
     })
 }
@@ -322,9 +327,8 @@ fn measured_section(measured: &Measured, readings: &Readings, rod: &Rod) -> Sect
         ],
     );
     let mut row = |name: String, estimate: &Estimate| {
-        let shown = |value: Option<f64>| value.map_or("–".into(), |v| significant(v, 2));
-        let width = estimate.half_width_95();
-        table.row([name, significant(estimate.value, 5), shown(estimate.std_error), shown(width)]);
+        let (error, width) = (estimate.std_error, estimate.half_width_95());
+        table.row([name, significant(estimate.value, 5), shown(error, 1.0, 2), shown(width, 1.0, 2)]);
     };
     measured.ratios.iter().for_each(|ratio| row(format!("r{}", ratio.name()), &ratio.value));
     row("r_rod".into(), &measured.rod_ratio);

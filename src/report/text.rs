@@ -37,6 +37,18 @@ mod tests {
             ..Report::default()
         };
         insta::assert_snapshot!(text(&report), @r"
+        It bends.
+
+        Tip
+        ───
+        See.
+
+        Compliance.
+
+        axis     C
+              µm/N
+        ────  ────
+        x     −1.5
         ");
     }
 }

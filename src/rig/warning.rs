@@ -163,7 +163,7 @@ impl fmt::Display for Warning {
             }
             Warning::LoadOffset { line, offset } => write!(
                 f,
-                "{line} crosses the load axis at {} N, not at zero: friction in the slide takes that off every load, or the loads have a tare",
+                "{line} crosses the load axis at {} N, not at zero: as if friction in the slide took that off every load, or the loads had a tare",
                 offset.show(1.0)
             ),
             Warning::CrossTalk { line, slope } => write!(

@@ -1,11 +1,12 @@
 //! A report for the terminal: the same words and tables as the page, without the pictures.
 
-use super::{Block, Report};
+use super::{Block, Report, Section};
 
 /// The headline, then every section with its words and tables. Warnings are left to stderr.
 pub fn text(report: &Report) -> String {
     let mut text = format!("{}\n", report.headline);
-    for section in &report.sections {
+    let has_words = |section: &&Section| section.blocks.iter().any(|b| !matches!(b, Block::Figure(_)));
+    for section in report.sections.iter().filter(has_words) {
         let heading = &section.heading;
         text += &format!("\n{heading}\n{}\n", "─".repeat(heading.chars().count()));
         for block in &section.blocks {
@@ -24,7 +25,6 @@ pub fn text(report: &Report) -> String {
 mod tests {
     use super::super::table::{Column, Table};
     use super::*;
-    use crate::report::Section;
 
     #[test]
     fn words_and_tables_stand_under_their_heading() {

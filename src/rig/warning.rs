@@ -98,9 +98,10 @@ pub(super) fn of_lines(lines: &[Line], readings: &Readings, rod: Option<&Rod>) -
         if is_along && line.slope.value < 0.0 {
             warnings.push(Warning::AgainstTheLoad { line: label.clone() });
         }
-        if let Some(offset) =
-            line.load_offset.filter(|offset| is_along && offset.is_significant(SIGNIFICANCE))
-        {
+        // a crooked line crosses the axis wherever its curvature sends it
+        let is_straight = line.lack_of_fit.is_none_or(|test| test.p_value >= SIGNIFICANCE);
+        let offset = line.load_offset.filter(|offset| is_straight && offset.is_significant(SIGNIFICANCE));
+        if let Some(offset) = offset.filter(|_| is_along) {
             warnings.push(Warning::LoadOffset { line: label.clone(), offset });
         }
         if !line.distrusted.is_empty() {

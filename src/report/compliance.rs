@@ -72,8 +72,8 @@ pub fn sections(study: &Study) -> Vec<Section> {
     }
     tables.push(matrices("fea", &format!("FEA: beam model, {}.", physics_name(study)), &study.fea));
     let stations = stations(rod);
-    let force_cases = AXES.map(|axis| format!("1 N along {}", axis.to_uppercase()));
-    let gravity_cases = AXES.map(|axis| format!("1 g along {}", axis.to_uppercase()));
+    let force_cases = AXES.map(|axis| format!("1 N along +{}", axis.to_uppercase()));
+    let gravity_cases = AXES.map(|axis| format!("1 g along +{}", axis.to_uppercase()));
     vec![
         Section::new(format!("Compliance of the tip, rod {}", rod.name), tables),
         Section::new(
@@ -148,8 +148,12 @@ pub fn matrices(name: &str, caption: &str, compliance: &Compliance) -> Block {
 
 /// A compliance in µm; what symmetry makes zero is shown as 0.
 pub fn number(value: f64) -> String {
-    let value = value / UM;
-    if value.abs() < 1e-9 { "0".into() } else { significant(value, DIGITS) }
+    significant(in_um(value), DIGITS)
+}
+
+/// In µm, without the rounding (1e-14) of what is zero by symmetry.
+fn in_um(value: f64) -> f64 {
+    if value.abs() < 1e-9 * UM { 0.0 } else { value / UM }
 }
 
 fn steps_table(study: &Study) -> Table {
@@ -191,9 +195,15 @@ fn steps_figure(study: &Study) -> super::chart::Figure {
         ("C^g 33", "µm/g", |c| c.gravity[(2, 2)]),
     ];
     let groups = groups.map(|(title, unit, entry)| Contributions {
-        title: format!("{title}: {} + what follows", significant(entry(&study.steps[0].total) / UM, 4)),
+        title: format!(
+            "{title}, to be added to {} {unit}",
+            significant(entry(&study.steps[0].total) / UM, 4)
+        ),
         unit: unit.into(),
-        terms: study.steps[1..].iter().map(|step| (step.term.to_owned(), entry(&step.added) / UM)).collect(),
+        terms: study.steps[1..]
+            .iter()
+            .map(|step| (step.term.to_owned(), in_um(entry(&step.added))))
+            .collect(),
     });
     contributions(&groups)
 }

@@ -167,7 +167,7 @@ pub fn sections(fit: &Fit, readings: &Readings, rod: Option<&Rod>) -> Vec<Sectio
 
 fn lines_table(fit: &Fit) -> Table {
     let mut columns = vec![
-        Column::text("load → offset"),
+        Column::text("line"),
         Column::number("slope", "µm/N"),
         Column::number("± s.e.", "µm/N"),
         Column::number("± 95 %", "µm/N"),
@@ -214,7 +214,7 @@ fn quadratic_table(fit: &Fit) -> Option<Table> {
         "quadratic",
         "The same readings with a quadratic term, offset = b0 + b1·F + b2·F², for the lines that are not straight.",
         vec![
-            Column::text("load → offset"),
+            Column::text("line"),
             Column::number("b0", "µm"),
             Column::number("b1", "µm/N"),
             Column::number("b2", "µm/N²"),
@@ -277,7 +277,7 @@ fn picture(index: usize, line: &Line, fit: &Fit, rod: Option<&Rod>) -> LoadDefle
     let name = rod.map_or(String::new(), |rod| format!("rod {}, ", rod.name));
     let noise = line.noise_sd.unwrap_or(0.0);
     LoadDeflection {
-        title: format!("{name}load {}", line.key.label()),
+        title: format!("{name}{}", line.key.label()),
         lines,
         readings: line
             .points

@@ -119,14 +119,14 @@ pub struct Quadratic {
 }
 
 impl LineKey {
-    /// "z → dz": load direction and channel, with the stations where they are not the tip.
+    /// "dz under load z": channel and load direction, with the stations where they are not the tip.
     pub fn label(&self) -> String {
         let at = |station: Option<f64>, what| match station {
             Some(s) => format!(", {what} at {:.0} mm", s * 1e3),
             None => String::new(),
         };
         let (load, read) = (at(self.load_station, "loaded"), at(self.read_station, "read"));
-        format!("{} → d{}{load}{read}", self.direction, ["x", "y", "z"][self.channel.index()])
+        format!("d{} under load {}{load}{read}", self.channel, self.direction)
     }
 }
 

@@ -8,7 +8,7 @@ mod steps;
 mod study;
 
 pub use steps::{Step, steps};
-pub use study::{Mode, Shape, Study};
+pub use study::{Mode, Shape, StationResponse, Study};
 
 use nalgebra::Matrix3;
 

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use rodcal::compliance::{DEFAULT_ELEMENTS, Mode, Study, paper_contact_force};
 use rodcal::rod::Rod;
+use rodcal::units::MM;
 use rodcal::{Error, Result, report};
 
 use super::Theory;
@@ -23,6 +24,12 @@ pub struct Compliance {
     /// Number of beam elements (fea); the result does not depend on it.
     #[arg(long, default_value_t = DEFAULT_ELEMENTS, value_parser = super::elements)]
     elements: usize,
+    /// Also show what the rod does when it is loaded at this station (arc length from the flange, mm) …
+    #[arg(long, value_name = "MM")]
+    load_station: Option<f64>,
+    /// … and read at this one; each is the tip unless given (fea).
+    #[arg(long, value_name = "MM")]
+    read_station: Option<f64>,
     /// Size of the contact force F in c_rod, N [default: the paper's, 1.97].
     #[arg(long, value_name = "N")]
     contact_force: Option<f64>,
@@ -52,7 +59,12 @@ impl Compliance {
         }
         let rod = Rod::read(&self.rod)?;
         let physics = self.theory.unwrap_or(Theory::Timoshenko).physics();
-        let study = Study::new(rod, mode, physics, self.elements, force)?;
+        let tip = rod.length();
+        let mut study = Study::new(rod, mode, physics, self.elements, force)?;
+        if self.load_station.is_some() || self.read_station.is_some() {
+            let at = |station: Option<f64>| station.map_or(tip, |mm| mm * MM);
+            study = study.with_stations(at(self.load_station), at(self.read_station))?;
+        }
         let mut report = report::compliance::report(&study);
         if let (CliMode::Calc, Some(Theory::Timoshenko)) = (self.mode, self.theory) {
             report.warnings.push(

@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::steps::{Step, steps};
 use super::{Compliance, closed_form};
-use crate::beam::{Load, Physics, RodModel};
+use crate::beam::{Load, Motion, Physics, RodModel};
 use crate::error::Result;
 use crate::rod::Rod;
 use crate::units::STANDARD_GRAVITY;
@@ -39,6 +39,19 @@ pub struct Study {
     pub steps: Vec<Step>,
     /// The rod at rest and bent.
     pub shape: Shape,
+    /// What one station does under a force at another, where that was asked for.
+    pub stations: Option<StationResponse>,
+}
+
+/// Displacement and rotation at one station under a force at another (FEA model), in {T}.
+#[derive(Debug, Clone, Copy)]
+pub struct StationResponse {
+    /// Station of the force, m.
+    pub load: f64,
+    /// Station that is read, m.
+    pub read: f64,
+    /// m/N and rad/N; column: axis of the force.
+    pub motion: Motion,
 }
 
 /// Centreline and displacements of the FEA model, for pictures, in {T}.
@@ -72,7 +85,19 @@ impl Study {
             elements,
             contact_force,
             calc,
+            stations: None,
         })
+    }
+
+    /// Adds what station `read` does under a force at station `load` (both m, from the flange).
+    ///
+    /// # Errors
+    /// [`crate::Error::Argument`] for a station that is not on the rod.
+    pub fn with_stations(mut self, load: f64, read: f64) -> Result<Self> {
+        let model = RodModel::new(&self.rod, &self.physics, self.elements, &[load, read])?;
+        let motion = model.force_response(load, read)?;
+        self.stations = Some(StationResponse { load, read, motion });
+        Ok(self)
     }
 
     /// The compliance of the mode that was asked for.

@@ -6,9 +6,9 @@ use serde_json::{Value, json};
 use super::pictures::{Contributions, RodShape, ShapeCase, Station, StationKind, contributions, rod_shape};
 use super::table::{Column, Table};
 use super::{Block, Report, Section};
-use crate::compliance::{Compliance, Mode, Shape, Study};
+use crate::compliance::{Compliance, Mode, Shape, StationResponse, Study};
 use crate::rod::Rod;
-use crate::units::{GRAM, MM, UM, significant};
+use crate::units::{GRAM, MM, UM, URAD, significant};
 
 /// Digits of a compliance in a table.
 const DIGITS: usize = 5;
@@ -42,6 +42,12 @@ pub fn json(study: &Study) -> Value {
         "tip_mm": (study.rod.tip() / MM).as_slice(),
         "mass_g": study.rod.mass() / GRAM,
         "contributions": steps,
+        "stations": study.stations.map(|stations| json!({
+            "load_station_mm": stations.load / MM,
+            "read_station_mm": stations.read / MM,
+            "displacement_um_per_n": rows(&stations.motion.translation, UM),
+            "rotation_urad_per_n": rows(&stations.motion.rotation, URAD),
+        })),
         "warnings": warnings(study),
     })
 }
@@ -71,6 +77,7 @@ pub fn sections(study: &Study) -> Vec<Section> {
         Err(why) => tables.push(Block::Paragraph(format!("{why}."))),
     }
     tables.push(matrices("fea", &format!("FEA: beam model, {}.", physics_name(study)), &study.fea));
+    tables.extend(study.stations.as_ref().map(station_table));
     let stations = stations(rod);
     let force_cases = AXES.map(|axis| format!("1 N along +{}", axis.to_uppercase()));
     let gravity_cases = AXES.map(|axis| format!("1 g along +{}", axis.to_uppercase()));
@@ -141,6 +148,27 @@ pub fn matrices(name: &str, caption: &str, compliance: &Compliance) -> Block {
         cells.extend(
             [&compliance.force, &compliance.gravity].iter().flat_map(|c| (0..3).map(|n| number(c[(m, n)]))),
         );
+        table.row(cells);
+    }
+    Block::Table(table)
+}
+
+/// Displacement and rotation at one station under a force at another.
+fn station_table(response: &StationResponse) -> Block {
+    let caption = format!(
+        "Read at station {} mm, force at station {} mm (FEA).",
+        significant(response.read / MM, 6),
+        significant(response.load / MM, 6)
+    );
+    let mut columns = vec![Column::text("axis")];
+    columns.extend(AXES.map(|axis| Column::number(format!("offset, load {axis}"), "µm/N")));
+    columns.extend(AXES.map(|axis| Column::number(format!("rotation, load {axis}"), "µrad/N")));
+    let mut table = Table::new("stations", caption, columns);
+    for (m, axis) in AXES.iter().enumerate() {
+        let mut cells = vec![(*axis).to_owned()];
+        // µm and µrad are the same factor
+        let both = [&response.motion.translation, &response.motion.rotation];
+        cells.extend(both.iter().flat_map(|c| (0..3).map(|n| number(c[(m, n)]))));
         table.row(cells);
     }
     Block::Table(table)

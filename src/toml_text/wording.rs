@@ -17,7 +17,7 @@ impl TomlText<'_> {
             .or_else(|| self.missing_key(message, &span, required))
             .or_else(|| self.wrong_type(message, &span))
             .or_else(|| self.twice(message, &span))
-            .or_else(|| self.no_value(&span))
+            .or_else(|| self.no_value(message, &span))
             .or_else(|| self.no_statement(message, &span));
         known.unwrap_or_else(|| Error::Syntax {
             at: Place::of_offset(self.file, self.text, span.start),
@@ -36,7 +36,7 @@ impl TomlText<'_> {
             Some(near) if is_section => Some(format!("did you mean [{near}]?")),
             Some(near) => Some(format!("did you mean {near}?")),
             None if self.header_above(span.start).is_none() && !is_section => {
-                Some("the keys of a section stand below its [header]".to_owned())
+                Some("if it belongs to a section, write it below that section's [header]".to_owned())
             }
             None => None,
         };
@@ -98,8 +98,14 @@ impl TomlText<'_> {
     }
 
     /// There is no reading what stands behind the `=`.
-    fn no_value(&self, span: &Range<usize>) -> Option<Error> {
-        let Entry { path, value } = self.entry(span.start)?;
+    fn no_value(&self, message: &str, span: &Range<usize>) -> Option<Error> {
+        const ANY: &str = "a number, or a text in quotes";
+        let Some(Entry { path, value, value_start }) = self.entry(span.start) else {
+            // within a list of several lines
+            let bare =
+                self.text.get(span.clone()).filter(|_| message.starts_with("string values must be"))?;
+            return Some(self.input(span.start, cut(bare), ANY.to_owned(), None));
+        };
         if value.starts_with(['"', '\'', '[', '{']) {
             return None;
         }
@@ -109,13 +115,13 @@ impl TomlText<'_> {
             Ok(number) if !number.is_finite() => ("a finite number", None),
             Ok(_) => ("a number", number_hint(value)),
             Err(_) if begins_as_number(value) => ("a number", number_hint(value)),
-            Err(_) => ("a number, or a text in quotes", None),
+            Err(_) => (ANY, None),
         };
         let found = match value {
             "" => format!("`{path}` is blank"),
             value => format!("`{path}` is {}", cut(value)),
         };
-        Some(self.input(span.start, found, expected.to_owned(), hint))
+        Some(self.input(value_start, found, expected.to_owned(), hint))
     }
 
     /// A line that is no `key = value` and no `[section]`.
@@ -151,13 +157,15 @@ impl TomlText<'_> {
         if before.contains('#') {
             return None;
         }
-        let line = self.text[offset - before.len()..].lines().next().unwrap_or_default();
-        let value = line.split_once('=')?.1;
+        let line_start = offset - before.len();
+        let line = self.text[line_start..].lines().next().unwrap_or_default();
+        let value = line.split_once('=')?.1.trim_start();
+        let value_start = line_start + line.len() - value.len();
         let path = match self.header_above(offset) {
             Some(section) => format!("{}.{key}", cut(section)),
             None => key.to_owned(),
         };
-        Some(Entry { path, value: value.split('#').next().unwrap_or(value).trim() })
+        Some(Entry { path, value: value.split('#').next().unwrap_or(value).trim(), value_start })
     }
 
     /// The name in the last `[section]` above the line of `offset`.
@@ -181,6 +189,7 @@ impl TomlText<'_> {
 struct Entry<'t> {
     path: String,
     value: &'t str,
+    value_start: usize,
 }
 
 /// How to write what was meant to be a number.

@@ -8,7 +8,7 @@ use crate::error::{Error, Result};
 use crate::material::{Material, isotropic_poisson_ratio, laminate};
 use crate::rod::Warning;
 use crate::toml_text::Number;
-use crate::units::{GPA, MM};
+use crate::units::{GPA, MM, significant};
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a section [material.NAME], NAME being any name")]
@@ -32,7 +32,8 @@ pub(super) struct Checked {
     pub laminate_thickness: Option<f64>,
 }
 
-const TWO_WAYS: &str = "either youngs_modulus_gpa with shear_modulus_gpa or poisson_ratio, or a laminate's ply_e1_gpa, ply_e2_gpa, ply_g12_gpa, ply_nu12, ply_thickness_mm, ply_angles_deg";
+const LAMINATE: &str =
+    "all of ply_e1_gpa, ply_e2_gpa, ply_g12_gpa, ply_nu12, ply_thickness_mm, ply_angles_deg";
 
 impl RawMaterial {
     fn is_laminate(&self) -> bool {
@@ -77,13 +78,21 @@ impl Check<'_> {
     /// Neither the one way to state a material nor the other.
     fn undecided(&self, name: &str, raw: &Spanned<RawMaterial>) -> Error {
         let fields = raw.get_ref();
-        let found = match (&fields.youngs_modulus_gpa, &fields.shear_modulus_gpa, &fields.poisson_ratio) {
-            _ if fields.is_laminate() => "mixes moduli and plies",
-            (Some(_), Some(_), Some(_)) => "has both shear_modulus_gpa and poisson_ratio",
-            (None, ..) => "has no youngs_modulus_gpa",
-            _ => "has neither shear_modulus_gpa nor poisson_ratio",
-        };
-        self.toml.wrong(raw, format!("material `{name}` {found}"), TWO_WAYS)
+        let (found, expected) =
+            match (&fields.youngs_modulus_gpa, &fields.shear_modulus_gpa, &fields.poisson_ratio) {
+                _ if fields.is_laminate() => (
+                    "has ply_… keys and a modulus or ratio of its own",
+                    "one of the two: the plies alone make E and G".to_owned(),
+                ),
+                (Some(_), Some(_), Some(_)) => {
+                    ("has shear_modulus_gpa and poisson_ratio", "one of the two".to_owned())
+                }
+                (None, ..) => {
+                    ("has no youngs_modulus_gpa", format!("youngs_modulus_gpa, or for a laminate {LAMINATE}"))
+                }
+                _ => ("has neither shear_modulus_gpa nor poisson_ratio", "one of the two".to_owned()),
+            };
+        self.toml.wrong(raw, format!("material `{name}` {found}"), &expected)
     }
 
     fn laminate(&mut self, name: &str, raw: &Spanned<RawMaterial>, density: f64) -> Result<Checked> {
@@ -112,9 +121,10 @@ impl Check<'_> {
             angle: 0.0,
         };
         // a positive definite Q needs ν12² < E1/E2 (Jones Eq 2.56)
-        if ply.nu12 * ply.nu12 >= ply.e1 / ply.e2 {
-            let expected = "less than the root of ply_e1_gpa / ply_e2_gpa";
-            return Err(self.toml.is(&key("ply_nu12"), &nu12, expected));
+        let largest = (ply.e1 / ply.e2).sqrt();
+        if ply.nu12 >= largest {
+            let expected = format!("less than √(ply_e1_gpa / ply_e2_gpa), {}", significant(largest, 4));
+            return Err(self.toml.is(&key("ply_nu12"), &nu12, &expected));
         }
         let mut plies = Vec::new();
         for angle in angles.get_ref() {

@@ -102,8 +102,10 @@ impl TomlText<'_> {
         const ANY: &str = "a number, or a text in quotes";
         let Some(Entry { path, value, value_start }) = self.entry(span.start) else {
             // within a list of several lines
-            let bare =
-                self.text.get(span.clone()).filter(|_| message.starts_with("string values must be"))?;
+            let bare = self.text.get(span.clone())?;
+            if bare.trim().is_empty() || !message.starts_with("string values must be") {
+                return None;
+            }
             return Some(self.input(span.start, cut(bare), ANY.to_owned(), None));
         };
         if value.starts_with(['"', '\'', '[', '{']) {
@@ -162,8 +164,8 @@ impl TomlText<'_> {
         let value = line.split_once('=')?.1.trim_start();
         let value_start = line_start + line.len() - value.len();
         let path = match self.header_above(offset) {
-            Some(section) => format!("{}.{key}", cut(section)),
-            None => key.to_owned(),
+            Some(section) => format!("{}.{}", cut(section), cut(key)),
+            None => cut(key),
         };
         Some(Entry { path, value: value.split('#').next().unwrap_or(value).trim(), value_start })
     }

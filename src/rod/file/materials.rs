@@ -99,12 +99,10 @@ impl Check<'_> {
         let fields = raw.get_ref();
         let missing = |field: &str| {
             let found = format!("laminate `{name}` has no {field}");
-            let all =
-                "all of ply_e1_gpa, ply_e2_gpa, ply_g12_gpa, ply_nu12, ply_thickness_mm, ply_angles_deg";
-            self.toml.wrong(raw, found, all)
+            self.toml.wrong(raw, found, LAMINATE)
         };
         let key = |field: &str| format!("material.{name}.{field}");
-        let given = |number: &'_ Option<Number>, field| number.clone().ok_or_else(|| missing(field));
+        let given = |number: &Option<Number>, field| number.clone().ok_or_else(|| missing(field));
         let e1 = given(&fields.ply_e1_gpa, "ply_e1_gpa")?;
         let e2 = given(&fields.ply_e2_gpa, "ply_e2_gpa")?;
         let g12 = given(&fields.ply_g12_gpa, "ply_g12_gpa")?;

@@ -13,7 +13,7 @@ pub use study::{Mode, Shape, StationResponse, Study};
 use nalgebra::Matrix3;
 
 use crate::beam::{Load, Physics, RodModel};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::rod::Rod;
 use crate::units::STANDARD_GRAVITY;
 
@@ -42,15 +42,23 @@ impl Compliance {
     /// From the beam model with `physics` (FEA mode).
     ///
     /// # Errors
-    /// As [`RodModel::new`] and [`crate::beam::Chain::solve`].
+    /// As [`RodModel::new`] and [`crate::beam::Chain::solve`]; [`Error::Numerical`] where the result overflows.
     pub fn of_model(rod: &Rod, physics: &Physics, elements: usize) -> Result<Self> {
         let model = RodModel::new(rod, physics, elements, &[])?;
         let tip = model.tip();
         let response = model.chain.solve(&[Load::Force { node: tip }, Load::SelfWeight])?;
-        Ok(Compliance {
+        let compliance = Compliance {
             force: response.motion(tip, 0).translation,
             gravity: response.motion(tip, 1).translation * STANDARD_GRAVITY,
-        })
+        };
+        // the solution was finite per m/s²; a rod of extreme numbers may not be per g
+        match compliance.gravity.iter().all(|c| c.is_finite()) {
+            true => Ok(compliance),
+            false => Err(Error::Numerical {
+                what: "compliance under gravity",
+                why: "it is beyond double precision; is there a number of the rod in another unit?".into(),
+            }),
+        }
     }
 
     /// Compliance index c_rod = ΣΣ|C^g| + F ΣΣ|C^F|, m, with F (N) the size of the contact force.

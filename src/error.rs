@@ -106,6 +106,14 @@ impl Error {
             _ => None,
         }
     }
+
+    /// The same error with advice, where it is one about an input file.
+    pub(crate) fn with_hint(mut self, advice: Option<String>) -> Self {
+        if let Error::Input { hint, .. } = &mut self {
+            *hint = advice;
+        }
+        self
+    }
 }
 
 /// A place in an input file. Lines and columns count from 1; 0 means "the file as a whole".

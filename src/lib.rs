@@ -15,6 +15,7 @@ pub mod rod;
 pub mod section;
 pub mod spatial;
 pub mod statistics;
+pub mod toml_text;
 pub mod units;
 
 pub use error::{Error, Result};

@@ -8,7 +8,17 @@ use std::path::{Path, PathBuf};
 /// From the ground up. A room is a top-level module with everything under it.
 const FLOORS: [&[&str]; 8] = [
     // no domain words
-    &["error", "files", "units", "delimited", "linalg", "statistics", "least_squares", "spatial"],
+    &[
+        "error",
+        "files",
+        "units",
+        "delimited",
+        "toml_text",
+        "linalg",
+        "statistics",
+        "least_squares",
+        "spatial",
+    ],
     &["section", "material", "rod"],
     &["beam"],
     &["compliance"],

@@ -2,9 +2,25 @@
 
 use std::fmt;
 
+use crate::units::{MM, significant};
+
 /// Something in a rod file that is allowed but worth a second look.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub enum Warning {
+    /// A number that no measuring rod has: most likely it is in another unit.
+    Unusual {
+        /// Key in the file.
+        key: String,
+        /// Its value, in `unit`.
+        value: f64,
+        /// The unit that the key asks for.
+        unit: &'static str,
+        /// Smallest usual value, in `unit`.
+        least: f64,
+        /// Largest usual value, in `unit`.
+        most: f64,
+    },
     /// The bend is tighter than the tube itself.
     TightBend {
         /// Radius of the bend, m.
@@ -44,18 +60,23 @@ pub enum Warning {
 impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            Warning::Unusual { key, value, unit, least, most } => write!(
+                f,
+                "`{key}` is {} {unit}, where {least} to {most} {unit} is usual: is it given in {unit}?",
+                significant(*value, 4)
+            ),
             Warning::TightBend { radius, tube_radius } => write!(
                 f,
                 "the bend radius ({:.1} mm) is smaller than the tube's own radius ({:.1} mm): beam theory does not hold there",
-                radius * 1e3,
-                tube_radius * 1e3
+                radius / MM,
+                tube_radius / MM
             ),
             Warning::NoBend => write!(f, "bend_radius_mm has no effect on a straight rod (gamma_deg = 180)"),
             Warning::LaminateThickness { material, plies, pipe, wall } => write!(
                 f,
                 "the plies of material `{material}` are {:.3} mm thick together but the wall of {pipe} is {:.3} mm: the laminate's moduli are used for the whole wall",
-                plies * 1e3,
-                wall * 1e3
+                plies / MM,
+                wall / MM
             ),
             Warning::LaminateCoupling { material, coupling } => write!(
                 f,

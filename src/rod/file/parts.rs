@@ -1,0 +1,138 @@
+//! The parts of a rod file: pipes, and what sits along them.
+
+use std::collections::BTreeMap;
+
+use serde::Deserialize;
+use toml::Spanned;
+
+use super::Check;
+use super::materials::Checked;
+use crate::delimited::nearest_name;
+use crate::error::{Error, Result};
+use crate::rod::{Joint, LumpedMass, Pipe, Rod, Warning};
+use crate::section::Round;
+use crate::toml_text::Number;
+use crate::units::{GRAM, MM, URAD_PER_NM};
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a section with material, outer_diameter_mm, inner_diameter_mm")]
+pub(super) struct RawPipe {
+    material: Spanned<String>,
+    outer_diameter_mm: Number,
+    inner_diameter_mm: Number,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a section [tip] with mass_g")]
+pub(super) struct RawTip {
+    mass_g: Number,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a section [[mass]]")]
+pub(super) struct RawMass {
+    name: String,
+    station_mm: Number,
+    mass_g: Number,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a section [[joint]]")]
+pub(super) struct RawJoint {
+    name: Spanned<String>,
+    station_mm: Number,
+    bending_urad_per_nm: Option<Number>,
+    torsion_urad_per_nm: Option<Number>,
+}
+
+impl Check<'_> {
+    pub(super) fn pipe(
+        &mut self,
+        which: &'static str,
+        raw: &RawPipe,
+        materials: &BTreeMap<&str, Checked>,
+    ) -> Result<Pipe> {
+        let key = |field: &str| format!("{which}.{field}");
+        let material = raw.material.get_ref();
+        let Some(checked) = materials.get(material.as_str()) else {
+            return Err(self.unknown_material(&key("material"), &raw.material, materials));
+        };
+        let outer_mm = self.toml.positive(&key("outer_diameter_mm"), &raw.outer_diameter_mm)?;
+        let inner_mm = self.toml.not_negative(&key("inner_diameter_mm"), &raw.inner_diameter_mm)?;
+        if inner_mm >= outer_mm {
+            let outer = self.toml.source(&raw.outer_diameter_mm);
+            let expected = format!("less than the outer diameter, {outer} mm");
+            return Err(self.toml.is(&key("inner_diameter_mm"), &raw.inner_diameter_mm, &expected));
+        }
+        self.usual(&key("outer_diameter_mm"), outer_mm, "mm", 1.0, 1000.0);
+        let section = Round { outer_diameter: outer_mm * MM, inner_diameter: inner_mm * MM };
+        if let Some(plies) = checked.laminate_thickness
+            && (plies / section.wall() - 1.0).abs() > 0.01
+        {
+            let (material, wall) = (material.clone(), section.wall());
+            self.warnings.push(Warning::LaminateThickness { material, plies, pipe: which, wall });
+        }
+        Ok(Pipe { section, material: checked.material.clone() })
+    }
+
+    fn unknown_material(
+        &self,
+        key: &str,
+        name: &Spanned<String>,
+        materials: &BTreeMap<&str, Checked>,
+    ) -> Error {
+        let known: Vec<&str> = materials.keys().copied().collect();
+        let expected = match known.as_slice() {
+            [] => "a material with a section [material.NAME]; the file has none".to_owned(),
+            known => format!("one of the file's materials: \"{}\"", known.join("\", \"")),
+        };
+        let hint = nearest_name(name.get_ref(), &known).map(|near| format!("did you mean \"{near}\"?"));
+        self.toml.is(key, name, &expected).with_hint(hint)
+    }
+
+    pub(super) fn tip(&mut self, raw: &RawTip) -> Result<f64> {
+        self.mass("tip.mass_g", &raw.mass_g)
+    }
+
+    pub(super) fn lumped_mass(&mut self, raw: &RawMass, rod: &Rod) -> Result<LumpedMass> {
+        Ok(LumpedMass {
+            name: raw.name.clone(),
+            station: self.station("mass.station_mm", &raw.station_mm, rod.length())?,
+            mass: self.mass("mass.mass_g", &raw.mass_g)?,
+        })
+    }
+
+    pub(super) fn joint(&self, raw: &RawJoint, rod: &Rod) -> Result<Joint> {
+        let name = raw.name.get_ref().clone();
+        if rod.joints.iter().any(|other| other.name == name) {
+            let found = format!("a second joint is named {}", self.toml.source(&raw.name));
+            return Err(self.toml.wrong(&raw.name, found, "a name of its own for each joint"));
+        }
+        let compliance = |key: &str, number: &Option<Number>| match number {
+            Some(number) => Ok(self.toml.not_negative(key, number)? * URAD_PER_NM),
+            None => Ok(0.0),
+        };
+        Ok(Joint {
+            name,
+            station: self.station("joint.station_mm", &raw.station_mm, rod.length())?,
+            bending: compliance("joint.bending_urad_per_nm", &raw.bending_urad_per_nm)?,
+            torsion: compliance("joint.torsion_urad_per_nm", &raw.torsion_urad_per_nm)?,
+        })
+    }
+
+    /// A station on the rod, m. The tip may be named with the last digit rounded.
+    fn station(&self, key: &str, number: &Number, length: f64) -> Result<f64> {
+        let station = self.toml.finite(key, number)? * MM;
+        if station < 0.0 || station > length + 1e-6 {
+            let expected = format!("a station on the rod, 0 to {:.3} mm (the tip)", length / MM);
+            return Err(self.toml.is(key, number, &expected));
+        }
+        Ok(station.min(length))
+    }
+
+    fn mass(&mut self, key: &str, number: &Number) -> Result<f64> {
+        let grams = self.toml.not_negative(key, number)?;
+        self.usual(key, grams, "g", 0.1, 20_000.0);
+        Ok(grams * GRAM)
+    }
+}

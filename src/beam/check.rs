@@ -84,9 +84,9 @@ fn equilibrium(chain: &Chain, weight: &[Carried]) -> Result<()> {
 fn reciprocity(chain: &Chain, loads: &[Load], weight: &[Carried], response: &Response) -> Result<()> {
     for (a, &load_a) in loads.iter().enumerate() {
         // the displacement at a point load, and through it every element, is compared with all other loads
-        let (node, work_on): (usize, fn(&Motion) -> &Matrix3<f64>) = match load_a {
-            Load::Force { node } => (node, |motion| &motion.translation),
-            Load::Couple { node } => (node, |motion| &motion.rotation),
+        let (node, work_on, what): (usize, fn(&Motion) -> &Matrix3<f64>, &str) = match load_a {
+            Load::Force { node } => (node, |motion| &motion.translation, "displacement along"),
+            Load::Couple { node } => (node, |motion| &motion.rotation, "rotation about"),
             Load::SelfWeight => continue,
         };
         for (b, &load_b) in loads.iter().enumerate() {
@@ -100,15 +100,7 @@ fn reciprocity(chain: &Chain, loads: &[Load], weight: &[Carried], response: &Res
             let relative = error.max() / by_a.amax().max(f64::MIN_POSITIVE);
             if exceeds(relative) {
                 let largest = error.iter().position(|&e| e == error.max()).unwrap_or(0);
-                return Err(failure(
-                    chain,
-                    node,
-                    "displacement along",
-                    largest,
-                    load_b,
-                    "reciprocity",
-                    relative,
-                ));
+                return Err(failure(chain, node, what, largest, load_b, "reciprocity", relative));
             }
         }
     }
@@ -166,5 +158,77 @@ fn failure(
         freedom: format!("{what} {row} under {load}"),
         check,
         relative,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Rotation3;
+
+    use super::super::element::Profile;
+    use super::*;
+
+    /// A bent chain of nine elements with a mass on the way, its weight and its response to all kinds of load.
+    fn solved() -> (Chain, [Load; 3], Vec<Carried>, Response) {
+        let profile = Profile {
+            axial: 2e-7,
+            shear: [5e-7; 2],
+            bending: [2e-3; 2],
+            torsion: 4e-3,
+            mass_per_length: 0.7,
+        };
+        let mut chain = Chain::clamped_at(Vector3::zeros(), Rotation3::identity());
+        chain.straight(&profile, 0.3, 3);
+        chain.mass(0.2);
+        chain.arc(&profile, 0.1, 1.2, 3);
+        chain.straight(&profile, 0.4, 3);
+        let node = chain.end();
+        let loads = [Load::Force { node }, Load::Couple { node: 4 }, Load::SelfWeight];
+        let weight = chain.weight_beyond();
+        let response = chain.deform(&loads, &weight);
+        (chain, loads, weight, response)
+    }
+
+    #[test]
+    fn a_sound_solution_passes() {
+        let (chain, loads, weight, response) = solved();
+        check(&chain, &loads, &weight, &response).unwrap();
+    }
+
+    #[test]
+    fn what_is_not_finite_is_named_with_its_first_node() {
+        let (chain, loads, weight, mut response) = solved();
+        for node in 5..=chain.end() {
+            response.motion_mut(node, 2).rotation[(1, 0)] = f64::NAN;
+        }
+        let error = check(&chain, &loads, &weight, &response).unwrap_err().to_string();
+        assert!(
+            error.contains("node 5") && error.contains("rotation about y under self-weight along x"),
+            "{error}"
+        );
+    }
+
+    #[test]
+    fn a_weight_that_was_lost_breaks_equilibrium_at_its_node() {
+        let (chain, loads, mut weight, response) = solved();
+        weight[4].mass -= 1e-6;
+        let error = check(&chain, &loads, &weight, &response).unwrap_err().to_string();
+        assert!(error.contains("node 4") && error.contains("equilibrium"), "{error}");
+        // a first moment alone is found too
+        let (chain, loads, mut weight, response) = solved();
+        weight[7].first_moment.x += 1e-6;
+        let error = check(&chain, &loads, &weight, &response).unwrap_err().to_string();
+        assert!(error.contains("node 7") && error.contains("moment about"), "{error}");
+    }
+
+    #[test]
+    fn a_displacement_that_is_off_breaks_reciprocity() {
+        for load in 0..3 {
+            let (chain, loads, weight, mut response) = solved();
+            let translation = &mut response.motion_mut(chain.end(), load).translation;
+            translation[(2, 0)] += 1e-6 * translation.amax();
+            let error = check(&chain, &loads, &weight, &response).unwrap_err().to_string();
+            assert!(error.contains("reciprocity"), "load {load}: {error}");
+        }
     }
 }

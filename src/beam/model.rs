@@ -28,17 +28,33 @@ pub struct Physics {
     pub tip_mass: bool,
 }
 
+impl Physics {
+    /// All of it.
+    pub const WHOLE: Physics = Physics {
+        axial: true,
+        shear: true,
+        bend: true,
+        bend_flexibility: true,
+        joints: true,
+        masses: true,
+        tip_mass: true,
+    };
+
+    /// Bending and torsion only: what the paper's closed form contains.
+    pub const BENDING_AND_TORSION: Physics = Physics {
+        axial: false,
+        shear: false,
+        bend: false,
+        bend_flexibility: false,
+        joints: false,
+        masses: false,
+        tip_mass: false,
+    };
+}
+
 impl Default for Physics {
     fn default() -> Self {
-        Physics {
-            axial: true,
-            shear: true,
-            bend: true,
-            bend_flexibility: true,
-            joints: true,
-            masses: true,
-            tip_mass: true,
-        }
+        Physics::WHOLE
     }
 }
 

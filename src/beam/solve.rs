@@ -69,6 +69,11 @@ impl Response {
     pub fn motion(&self, node: usize, load: usize) -> &Motion {
         &self.motions[node * self.loads + load]
     }
+
+    #[cfg(test)]
+    pub(super) fn motion_mut(&mut self, node: usize, load: usize) -> &mut Motion {
+        &mut self.motions[node * self.loads + load]
+    }
 }
 
 impl Chain {
@@ -93,7 +98,7 @@ impl Chain {
     }
 
     /// From the tip to the root: mass of everything at and beyond each node and its first moment about that node.
-    fn weight_beyond(&self) -> Vec<Carried> {
+    pub(super) fn weight_beyond(&self) -> Vec<Carried> {
         let mut carried = Carried::NOTHING;
         let mut all = vec![carried; self.nodes.len()];
         carried.mass = self.nodes[self.end()].mass;
@@ -111,7 +116,7 @@ impl Chain {
     }
 
     /// From the root to the tip: each node moves with the one before it and by its element's deformation.
-    fn deform(&self, loads: &[Load], weight: &[Carried]) -> Response {
+    pub(super) fn deform(&self, loads: &[Load], weight: &[Carried]) -> Response {
         let still = Motion { translation: Matrix3::zeros(), rotation: Matrix3::zeros() };
         let mut motions = vec![still; self.nodes.len() * loads.len()];
         for (k, element) in self.elements.iter().enumerate() {

@@ -24,15 +24,7 @@ pub struct Step {
 /// # Errors
 /// As [`Compliance::of_model`].
 pub fn steps(rod: &Rod, physics: &Physics, elements: usize) -> Result<Vec<Step>> {
-    let mut so_far = Physics {
-        axial: false,
-        shear: false,
-        bend: false,
-        bend_flexibility: false,
-        joints: false,
-        masses: false,
-        tip_mass: false,
-    };
+    let mut so_far = Physics::BENDING_AND_TORSION;
     let base = match closed_form::compliance(rod) {
         Ok(compliance) => Step { term: "Calc (Eqs 15, 17)", total: compliance, added: compliance },
         Err(_) => {

@@ -17,19 +17,12 @@ fn index_um(compliance: &Compliance) -> f64 {
 /// Eqs 15 and 17 are the beam model with bending and torsion only: two derivations, one result.
 #[test]
 fn the_closed_form_is_the_beam_model_without_what_it_leaves_out() {
-    let bare = Physics {
-        axial: false,
-        shear: false,
-        bend: false,
-        bend_flexibility: false,
-        joints: false,
-        masses: false,
-        tip_mass: false,
-    };
     for number in 4..=6 {
         let rod = paper_rod(number);
-        let (calc, beam) =
-            (closed_form::compliance(&rod).unwrap(), Compliance::of_model(&rod, &bare, 20).unwrap());
+        let (calc, beam) = (
+            closed_form::compliance(&rod).unwrap(),
+            Compliance::of_model(&rod, &Physics::BENDING_AND_TORSION, 20).unwrap(),
+        );
         assert!((calc.force - beam.force).amax() < 1e-12 * calc.force.amax(), "{calc:?} {beam:?}");
         assert!((calc.gravity - beam.gravity).amax() < 1e-12 * calc.gravity.amax(), "{calc:?} {beam:?}");
     }

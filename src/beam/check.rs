@@ -81,10 +81,13 @@ fn equilibrium(chain: &Chain, weight: &[Carried]) -> Result<()> {
     Ok(())
 }
 
+/// What a unit load works on: the displacement or the rotation of its node.
+type WorksOn = fn(&Motion) -> &Matrix3<f64>;
+
 fn reciprocity(chain: &Chain, loads: &[Load], weight: &[Carried], response: &Response) -> Result<()> {
     for (a, &load_a) in loads.iter().enumerate() {
         // the displacement at a point load, and through it every element, is compared with all other loads
-        let (node, work_on, what): (usize, fn(&Motion) -> &Matrix3<f64>, &str) = match load_a {
+        let (node, work_on, what): (usize, WorksOn, &str) = match load_a {
             Load::Force { node } => (node, |motion| &motion.translation, "displacement along"),
             Load::Couple { node } => (node, |motion| &motion.rotation, "rotation about"),
             Load::SelfWeight => continue,

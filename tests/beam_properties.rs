@@ -96,7 +96,7 @@ fn rod() -> impl Strategy<Value = Rod> {
                 l1,
                 l2,
                 gamma,
-                bend_radius: bend * l1.min(l2) / ((PI - gamma) / 2.0).tan(),
+                bend_radius: if bend < 0.01 { 0.0 } else { bend * l1.min(l2) / ((PI - gamma) / 2.0).tan() },
                 bend_flexibility: BendFlexibility::Beam,
                 pipe1: pipe(outer, wall),
                 bend: pipe(outer, wall / 2.0),
@@ -113,6 +113,19 @@ fn rod() -> impl Strategy<Value = Rod> {
             rod
         },
     )
+}
+
+/// An arc so short that it is lost between two stations must still turn the rod.
+#[test]
+fn a_bend_of_a_nanometre_is_a_sharp_corner() {
+    let text = include_str!("../rods/5.toml");
+    let rod = |radius: &str| Rod::from_toml("rod", &text.replace("bend_radius_mm = 0.0", radius)).unwrap();
+    let of = |rod: &Rod| Compliance::of_model(rod, &Physics::default(), 20).unwrap();
+    let sharp = of(&rod("bend_radius_mm = 0.0"));
+    for radius in ["1e-7", "1e-6", "1e-5", "1e-4", "1e-3"] {
+        let bent = of(&rod(&format!("bend_radius_mm = {radius}")));
+        assert!((bent.force - sharp.force).amax() < 1e-5 * sharp.force.amax(), "bend radius {radius} mm");
+    }
 }
 
 proptest! {

@@ -96,8 +96,13 @@ impl Shape {
         let mass_per_angle = profile.mass_per_length * radius;
         // r(α) = R (1 − cos α, 0, sin α), the tangent there is (sin α, 0, cos α)
         let point = |a: f64| Vector3::new(2.0 * (a / 2.0).sin().powi(2), 0.0, a.sin()) * radius;
-        // ∫ r dα = R (α − sin α, 0, −cos α)
-        let point_integral = |a: f64| Vector3::new(a - a.sin(), 0.0, -a.cos()) * radius;
+        // ∫ r dβ from a to b = R (d − sin b + sin a, 0, cos a − cos b) with d = b − a and m = (a + b)/2, written
+        // without differences of nearly equal numbers, for a flat arc has a large R and small angles
+        let point_integral = |a: f64, b: f64| {
+            let (d, m) = (b - a, (a + b) / 2.0);
+            let x = d * (2.0 * (m / 2.0).sin().powi(2) + m.cos() * one_minus_sinc(d / 2.0));
+            Vector3::new(x, 0.0, 2.0 * m.sin() * (d / 2.0).sin()) * radius
+        };
 
         let mut shape = Shape {
             force: Matrix3::zeros(),
@@ -106,7 +111,7 @@ impl Shape {
             weight_translation: Matrix3::zeros(),
             weight_rotation: Matrix3::zeros(),
             mass: mass_per_angle * angle,
-            mass_centre: (point_integral(half) - point_integral(-half)) / angle,
+            mass_centre: point_integral(-half, half) / angle,
         };
         for (a, da) in gauss_points(-half, half) {
             let ds = radius * da;
@@ -122,8 +127,7 @@ impl Shape {
             shape.moment += section_moment;
             // the weight of the part beyond: μ·a, with the first moment h = ∫ (r(β) − r(α)) μ dβ about this point
             let beyond = mass_per_angle * (half - a);
-            let first_moment =
-                (point_integral(half) - point_integral(a)) * mass_per_angle - point(a) * beyond;
+            let first_moment = point_integral(a, half) * mass_per_angle - point(a) * beyond;
             let weight_moment = skew(&first_moment);
             shape.weight_translation += section_force * beyond + lever_moment * weight_moment;
             shape.weight_rotation += section_moment * weight_moment;
@@ -155,6 +159,17 @@ impl Shape {
             mass: self.mass,
             mass_centre: rotation * self.mass_centre,
         }
+    }
+}
+
+/// 1 − sin(x)/x, by its series where the difference would cancel.
+fn one_minus_sinc(x: f64) -> f64 {
+    let x2 = x * x;
+    if x2 < 0.01 {
+        // x²/6 − x⁴/120 + x⁶/5040 − x⁸/362880 + …; the next term is below 1e-16 of the first
+        x2 / 6.0 * (1.0 - x2 / 20.0 * (1.0 - x2 / 42.0 * (1.0 - x2 / 72.0 * (1.0 - x2 / 110.0))))
+    } else {
+        1.0 - x.sin() / x
     }
 }
 
@@ -192,6 +207,14 @@ mod tests {
     fn gauss_points_integrate_a_fourth_harmonic_over_half_a_turn() {
         let integral: f64 = gauss_points(0.0, 3.0).map(|(a, w)| w * (4.0 * a).cos()).sum();
         assert!((integral - 12f64.sin() / 4.0).abs() < 1e-13);
+    }
+
+    #[test]
+    fn one_minus_sinc_is_smooth_where_its_two_forms_meet() {
+        let direct = |x: f64| 1.0 - x.sin() / x;
+        assert!((one_minus_sinc(0.0999999) / direct(0.0999999) - 1.0).abs() < 1e-12);
+        assert_eq!(one_minus_sinc(0.5), direct(0.5));
+        assert!((one_minus_sinc(1e-5) / (1e-10 / 6.0) - 1.0).abs() < 1e-10);
     }
 
     /// An arc of radius L/φ tends to the straight element of length L as φ → 0; the difference is O(φ).

@@ -141,6 +141,9 @@ impl RodModel {
     }
 }
 
+/// An arc shorter than this is a sharp corner, m: its angle would be lost in the rounding of stations.
+const SHARPEST_BEND: f64 = 1e-6;
+
 /// Stations closer than this are one node, m.
 const SAME_STATION: f64 = 1e-9;
 
@@ -148,7 +151,7 @@ impl Physics {
     /// The rod without what is left out. Stations beyond a bend shift by what the corner is longer.
     fn applied_to(&self, rod: &Rod) -> Rod {
         let mut rod = rod.clone();
-        if !self.bend {
+        if !self.bend || rod.arc_length() < SHARPEST_BEND {
             let (start, end, tangent) = (rod.bend_start(), rod.bend_end(), rod.tangent_length());
             let shift = |station: &mut f64| {
                 if *station >= end {

@@ -263,3 +263,22 @@ fn a_station_between_flange_and_tip_can_be_loaded_and_read() {
     // rotation there: θ = x(2a − x)/2EI about +y
     assert_relative_eq!(motion.rotation[(1, 0)], 0.2 * (1.0 - 0.2) / (2.0 * ei), max_relative = 1e-9);
 }
+
+/// Flexibility factors of a thin bend: tube 16 × 12, radius 40 mm, so h = tR/r² = 1.6327. Reference: the unit-load
+/// integral with the arc's bending flexibility times k (tests/references/README.md): von Kármán
+/// k = (10 + 12h²)/(1 + 12h²) = 1.272837, ASME B31.3 k = 1.65/h = 1.010625. A solid model gives 212.80 and 270.63.
+#[test]
+fn flexibility_factors_of_the_bend() {
+    let cases = [("\"von-karman\"", 214.0774, 271.5795), ("\"asme-b31.3\"", 206.7106, 267.8805)];
+    for (name, c33, c22) in cases {
+        let c = compliance(&format!("bend_radius_mm = 40.0\nbend_flexibility = {name}"), 20);
+        assert_relative_eq!(c.force[(2, 2)] / UM_PER_N, c33, max_relative = 3e-7);
+        assert_relative_eq!(c.force[(1, 1)] / UM_PER_N, c22, max_relative = 3e-7);
+    }
+    // the same factor given as a number
+    let by_number = compliance("bend_radius_mm = 40.0\nbend_flexibility = 1.272837", 20);
+    assert_relative_eq!(by_number.force[(2, 2)] / UM_PER_N, 214.0774, max_relative = 1e-6);
+    // the solid lies between the beam and von Kármán's factor
+    let beam = compliance("bend_radius_mm = 40.0", 20);
+    assert!(beam.force[(2, 2)] / UM_PER_N < 212.80 && 212.80 < 214.0774);
+}

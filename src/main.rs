@@ -1,7 +1,5 @@
 //! `rodcal` on the command line: parse, run, exit status.
 
-#![allow(clippy::print_stdout, clippy::print_stderr)]
-
 mod cli;
 
 use std::process::ExitCode;
@@ -13,9 +11,9 @@ fn main() -> ExitCode {
     match cli::run(&arguments).and_then(|outcome| cli::output::deliver(&arguments, outcome)) {
         Ok(status) => status,
         Err(error) => {
-            eprintln!("error: {error}");
+            cli::output::say(&format!("error: {error}"));
             if let Some(hint) = error.hint() {
-                eprintln!("hint: {hint}");
+                cli::output::say(&format!("hint: {hint}"));
             }
             ExitCode::from(2)
         }

@@ -36,9 +36,23 @@ impl Outcome {
 /// # Errors
 /// [`Error::File`] where a file cannot be written.
 pub fn deliver(arguments: &Arguments, outcome: Outcome) -> Result<ExitCode> {
-    let Outcome { mut json, report, text, default_directory, status } = outcome;
+    let Outcome { mut json, mut report, text, default_directory, status } = outcome;
     let directory = arguments.out.clone().or(default_directory);
+    if let Some(report) = &mut report {
+        if arguments.png && directory.is_none() {
+            report.warnings.push("--png has no effect without --out".into());
+        }
+        // the same words on stderr, on the page and in the JSON
+        json["warnings"] = report.warnings.as_slice().into();
+    }
     if let (Some(report), Some(directory)) = (&report, &directory) {
+        if directory.exists() && !directory.is_dir() {
+            return Err(Error::Argument {
+                name: "--out",
+                found: format!("{}, which is a file", directory.display()),
+                expected: "a directory, or a name that is still free".into(),
+            });
+        }
         // everything is rendered before anything is written
         let mut files = report.files(arguments.png)?;
         json["report"] = directory.join("index.html").display().to_string().into();
@@ -49,7 +63,7 @@ pub fn deliver(arguments: &Arguments, outcome: Outcome) -> Result<ExitCode> {
     }
     let warnings = report.as_ref().map_or(&[][..], |report| &report.warnings);
     for warning in warnings {
-        eprintln!("warning: {warning}");
+        say(&format!("warning: {warning}"));
     }
     let mut words = match (arguments.json, text, &report) {
         (true, ..) => pretty(&json),
@@ -67,6 +81,11 @@ pub fn deliver(arguments: &Arguments, outcome: Outcome) -> Result<ExitCode> {
         }
         _ => Ok(ExitCode::from(status)),
     }
+}
+
+/// A line on stderr. Nobody may be listening (`2>&1 | head`), and `eprintln!` would panic.
+pub fn say(line: &str) {
+    let _ = writeln!(std::io::stderr(), "{line}");
 }
 
 fn pretty(json: &Value) -> String {

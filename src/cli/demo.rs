@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use rodcal::beam::Physics;
 use rodcal::compliance::{DEFAULT_ELEMENTS, Mode, Study, paper_contact_force};
+use rodcal::report::text::wrapped;
 use rodcal::report::{self, Report};
 use rodcal::rig::readings::Readings;
 use rodcal::rod::Rod;
@@ -24,7 +25,8 @@ pub fn run() -> Result<Outcome> {
             Study::new(rod.clone(), Mode::Fea, Physics::default(), DEFAULT_ELEMENTS, paper_contact_force())?;
         let of_rod = report::compliance::report(&study);
         let of_rig = report::rig::report(&fit, &readings, Some(&rod));
-        words += &format!("{}\n{}\n\n", of_rod.headline, of_rig.headline);
+        words += &wrapped(&format!("{} {}", of_rod.headline, of_rig.headline));
+        words.push('\n');
         headlines.push(of_rig.headline.clone());
         results.push(json!({
             "compliance": report::compliance::json(&study),
@@ -42,7 +44,7 @@ pub fn run() -> Result<Outcome> {
     let readings = Readings::from_text(LOAD_CELL_FILE, LOAD_CELL)?;
     let fit = rig::fit(&readings, None, &rig::Options::default())?;
     let of_cell = report::rig::report(&fit, &readings, None);
-    words += &format!("Load cell (NIST): {}.\n", of_cell.headline);
+    words += &wrapped(&format!("Load cell (NIST): {}.", of_cell.headline));
     report.warnings.extend(of_cell.warnings.into_iter().map(|warning| format!("load cell: {warning}")));
     report.sections.extend(of_cell.sections);
     report.provenance.push(("readings".into(), format!("{LOAD_CELL_FILE} (NIST StRD, Pontius)")));

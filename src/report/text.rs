@@ -1,19 +1,23 @@
 //! A report for the terminal: the same words and tables as the page, without the pictures.
 
+use super::table::Table;
 use super::{Block, Report, Section};
+
+/// Columns that words may take; tables take what they need.
+const WIDTH: usize = 100;
 
 /// The headline, then every section with its words and tables. Warnings are left to stderr.
 pub fn text(report: &Report) -> String {
-    let mut text = format!("{}\n", report.headline);
+    let mut text = wrapped(&report.headline);
     let has_words = |section: &&Section| section.blocks.iter().any(|b| !matches!(b, Block::Figure(_)));
     for section in report.sections.iter().filter(has_words) {
         let heading = &section.heading;
         text += &format!("\n{heading}\n{}\n", "─".repeat(heading.chars().count()));
         for block in &section.blocks {
             match block {
-                Block::Paragraph(words) => text += &format!("{words}\n"),
-                Block::List(points) => points.iter().for_each(|point| text += &format!("- {point}\n")),
-                Block::Table(table) => text += &format!("\n{}", table.text()),
+                Block::Paragraph(words) => text += &wrapped(words),
+                Block::List(points) => points.iter().for_each(|point| text += &hanging("- ", point)),
+                Block::Table(table) => text += &format!("\n{}", table_text(table)),
                 Block::Figure(_) => {}
             }
         }
@@ -21,9 +25,40 @@ pub fn text(report: &Report) -> String {
     text
 }
 
+fn table_text(table: &Table) -> String {
+    let bare = Table { caption: String::new(), notes: Vec::new(), ..table.clone() };
+    let notes: String = table.notes.iter().map(|note| hanging("  ", note)).collect();
+    let caption = if table.caption.is_empty() { String::new() } else { wrapped(&table.caption) + "\n" };
+    caption + &bare.text() + &notes
+}
+
+/// Words in lines of at most 100 columns, each ended by "\n". Lines of the words stay lines.
+pub fn wrapped(words: &str) -> String {
+    words.lines().map(|line| hanging("", line)).collect()
+}
+
+/// One paragraph after `mark`, further lines below its first word. What is longer than a line stays whole.
+fn hanging(mark: &str, words: &str) -> String {
+    let indent = mark.chars().count();
+    let (mut text, mut column) = (mark.to_owned(), indent);
+    for word in words.split(' ').filter(|word| !word.is_empty()) {
+        let length = word.chars().count();
+        if column > indent && column + 1 + length > WIDTH {
+            text += &format!("\n{:indent$}", "");
+            column = indent;
+        } else if column > indent {
+            text.push(' ');
+            column += 1;
+        }
+        text += word;
+        column += length;
+    }
+    text + "\n"
+}
+
 #[cfg(test)]
 mod tests {
-    use super::super::table::{Column, Table};
+    use super::super::table::Column;
     use super::*;
 
     #[test]
@@ -50,5 +85,21 @@ mod tests {
         ────  ────
         x     −1.5
         ");
+    }
+
+    #[test]
+    fn words_wrap_and_nothing_gets_lost() {
+        let words = "Dehnung µm/N ".repeat(40);
+        let long = "x".repeat(120);
+        let text = hanging("- ", &format!("{words}{long} end"));
+        let lines: Vec<&str> = text.lines().collect();
+        assert!(lines.iter().all(|line| line.chars().count() <= WIDTH || line.trim() == long), "{text}");
+        assert!(lines[1..].iter().all(|line| line.starts_with("  ") && !line.ends_with(' ')), "{text}");
+        let back: Vec<&str> = text[2..].split_whitespace().collect();
+        assert_eq!(back.join(" "), format!("{words}{long} end"));
+        assert_eq!(wrapped("one\n\ntwo"), "one\n\ntwo\n");
+        assert_eq!(wrapped(&"y".repeat(WIDTH)).lines().count(), 1);
+        assert_eq!(wrapped(&format!("{} y", "y".repeat(WIDTH - 2))).lines().count(), 1);
+        assert_eq!(wrapped(&format!("{} y", "y".repeat(WIDTH - 1))).lines().count(), 2);
     }
 }

@@ -22,41 +22,58 @@ pub struct Arguments {
     #[command(subcommand)]
     command: Option<Command>,
 
-    /// Print the result as JSON on stdout and nothing else.
-    #[arg(long, global = true)]
+    /// Print the result as JSON on stdout and nothing else (warnings still go to stderr).
+    #[arg(long, global = true, help_heading = OUTPUT)]
     pub json: bool,
 
-    /// Write the report (index.html), its pictures (SVG) and tables (CSV, Markdown) into this directory.
-    #[arg(long, global = true, value_name = "DIR")]
+    /// Write a report into this directory: index.html for a browser, pictures (SVG), tables (CSV,
+    /// Markdown) and result.json. Made if missing; other files in it stay.
+    #[arg(long, global = true, value_name = "DIR", help_heading = OUTPUT)]
     pub out: Option<PathBuf>,
 
     /// With --out: write the pictures as PNG too.
-    #[arg(long, global = true)]
+    #[arg(long, global = true, help_heading = OUTPUT)]
     pub png: bool,
 }
 
+const OUTPUT: &str = "Output";
+
+// Lines of at most 80 columns: a terminal that wraps them would break their indent.
 const EXAMPLES: &str = "\
 Examples:
-  rodcal                                             run everything on embedded data; says where the report is
-  rodcal compliance rods/5.toml                      C^F and C^g of a rod from its file
-  rodcal compliance rods/5.toml --mode calc --json   the paper's closed form, as JSON
+  rodcal
+      try everything on examples inside the program; says where the report is
+  rodcal compliance rods/5.toml
+      how much a rod bends, from its drawing alone
   rodcal rig fit rods/5.toml stiffness_data/5.csv --out reports/5
-                                                     from rig readings to measured compliance, with a report
+      how much it really bends, from readings under known loads, with a report
   rodcal rig fit linear stiffness_data/nist-load-cell.csv
-                                                     any load–deflection recording against a straight line
+      any load-deflection recording: is it a straight line?
 
-Units stand in the names of keys and columns (l1_mm, load_n, dz_um). C^F is in µm/N, C^g in µm per g, both in the
-tool frame: origin at the flange, pipe I along +z, pipe II along +x.
+Words:
+  C^F     deflection of the tip in µm per newton of force on the ball; 3x3,
+          row: axis of the deflection, column: axis of the force
+  C^g     the same in µm under the rod's own weight, gravity along an axis
+  c_rod   all of C^g plus all of C^F under the contact force, added up without
+          signs, in µm: one number to compare rods by
+  r       measured over modelled compliance (r22 along y, r33 along z), r_rod
+          for the rod as a whole; 1.05 is a rod 5 % softer than its model
+  Calc    the paper's closed form; FEA: the beam model; Meas: from readings
+  axes    origin at the flange, pipe I along +z, pipe II towards +x
 
-Exit status: 0 done; 1 a diagnosis found a mismatch; 2 could not run (the error says what and where).";
+The paper is Improved MultiCal, Sensors 2023, 23(12), 5717. Units stand in the
+names of keys and columns (l1_mm, load_n, dz_um).
+
+Exit status: 0 done; 1 a diagnosis found a mismatch; 2 could not run (the error
+says what and where), and nothing has been written.";
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    /// Run the whole main job on embedded data and write its report (the default).
+    /// Try everything on examples inside the program, report in reports/demo (the default).
     Demo,
-    /// How much a rod bends: C^F and C^g from its file.
+    /// How much a rod bends under its weight and the contact force, from its drawing.
     Compliance(compliance::Compliance),
-    /// Readings of a stiffness rig.
+    /// How much a rod really bends, from readings of its tip under known loads.
     #[command(subcommand)]
     Rig(rig::Rig),
     /// Print a completion script for your shell.
@@ -66,9 +83,9 @@ enum Command {
 /// Beam theory.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Theory {
-    /// Bending without shear.
+    /// Slender beams: no shear.
     EulerBernoulli,
-    /// Bending with shear.
+    /// Shear too.
     Timoshenko,
 }
 

@@ -7,10 +7,16 @@ use super::Arguments;
 use super::output::Outcome;
 
 #[derive(Debug, Args)]
+#[command(after_help = INSTALL)]
 pub struct Completions {
     /// Which shell.
     shell: Shell,
 }
+
+const INSTALL: &str = "\
+bash: rodcal completions bash > ~/.local/share/bash-completion/completions/rodcal
+zsh:  rodcal completions zsh > DIR/_rodcal, with DIR in $fpath
+fish: rodcal completions fish > ~/.config/fish/completions/rodcal.fish";
 
 impl Completions {
     pub fn run(&self) -> Outcome {

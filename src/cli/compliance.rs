@@ -6,41 +6,71 @@ use clap::{Args, ValueEnum};
 use rodcal::compliance::{DEFAULT_ELEMENTS, Mode, Study, paper_contact_force};
 use rodcal::rod::Rod;
 use rodcal::units::MM;
-use rodcal::{Error, Result, report};
+use rodcal::{Result, report};
 
 use super::Theory;
 use super::output::Outcome;
 
 #[derive(Debug, Args)]
+#[command(after_long_help = NOTES)]
 pub struct Compliance {
-    /// Rod file (TOML).
+    /// Rod file (TOML): lengths, angle, sections, materials, masses.
     rod: PathBuf,
-    /// Which of the two to report; the tables always show both.
+    /// Which model the headline and the JSON are about; the tables show both.
     #[arg(long, value_enum, default_value_t = CliMode::Fea)]
     mode: CliMode,
-    /// Beam theory of the fea mode (calc is Euler–Bernoulli by definition).
+    /// Beam theory of fea [default: timoshenko]; calc is Euler–Bernoulli by definition.
     #[arg(long, value_enum)]
     theory: Option<Theory>,
-    /// Number of beam elements (fea); the result does not depend on it.
+    /// Number of beam elements of fea. They are exact: the result does not depend on it.
     #[arg(long, default_value_t = DEFAULT_ELEMENTS, value_parser = super::elements)]
     elements: usize,
-    /// Also show what the rod does when it is loaded at this station (arc length from the flange, mm) …
-    #[arg(long, value_name = "MM")]
+    /// Also show one point of the rod under a force at another (fea): where the force acts, as arc
+    /// length from the flange in mm [default: the tip].
+    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     load_station: Option<f64>,
-    /// … and read at this one; each is the tip unless given (fea).
-    #[arg(long, value_name = "MM")]
+    /// Likewise: which point is looked at [default: the tip].
+    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     read_station: Option<f64>,
-    /// Size of the contact force F in c_rod, N [default: the paper's, 1.97].
-    #[arg(long, value_name = "N")]
+    /// Size of the contact force F in c_rod, in N [default: the paper's, 1.97].
+    #[arg(long, value_name = "N", value_parser = contact_force, allow_negative_numbers = true)]
     contact_force: Option<f64>,
 }
 
+const NOTES: &str = "\
+A rod file holds at least this (the six rods of the paper are in rods/):
+
+  name = \"5#\"
+  [geometry]
+  l1_mm = 150.0                  # flange to corner
+  l2_mm = 525.0                  # corner to ball centre; 90° between unless
+                                 # gamma_deg says otherwise
+  [material.steel]
+  youngs_modulus_gpa = 193.0
+  poisson_ratio = 0.29
+  density_kg_m3 = 7930.0
+  [pipe1]                        # and the same under [pipe2]
+  material = \"steel\"
+  outer_diameter_mm = 32.0
+  inner_diameter_mm = 30.0
+
+Without [tip] mass_g the rod carries no ball; expect C^g to be too small then.
+`rodcal --help` explains C^F, C^g and c_rod.";
+
 #[derive(Debug, Clone, Copy, ValueEnum)]
 enum CliMode {
-    /// The paper's closed form: one uniform pipe, 90°, bending and torsion only.
+    /// The paper's closed form, for two equal pipes at 90°: bending and torsion only.
     Calc,
-    /// The beam finite-element model of the rod as built.
+    /// The beam finite-element model of the rod as built: any angle, bend, joints and masses.
     Fea,
+}
+
+/// The size of a force.
+fn contact_force(text: &str) -> std::result::Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(force) if force.is_finite() && force >= 0.0 => Ok(force),
+        _ => Err("expected a force in N, 0 or more".into()),
+    }
 }
 
 impl Compliance {
@@ -50,13 +80,6 @@ impl Compliance {
             CliMode::Fea => Mode::Fea,
         };
         let force = self.contact_force.unwrap_or_else(paper_contact_force);
-        if !(force.is_finite() && force >= 0.0) {
-            return Err(Error::Argument {
-                name: "--contact-force",
-                found: force.to_string(),
-                expected: "a force in N, 0 or more".into(),
-            });
-        }
         let rod = Rod::read(&self.rod)?;
         let physics = self.theory.unwrap_or(Theory::Timoshenko).physics();
         let tip = rod.length();

@@ -14,15 +14,17 @@ use super::output::Outcome;
 
 #[derive(Debug, Subcommand)]
 pub enum Rig {
-    /// Slopes, friction, correction factors r and measured compliance from rig readings.
+    /// Fit a line to each load direction: slopes, friction, straightness, correction factors r and r_rod,
+    /// measured C^F and C^g, each with its uncertainty.
     Fit(Fit),
 }
 
 #[derive(Debug, Args)]
+#[command(after_long_help = NOTES)]
 pub struct Fit {
-    /// Rod file (TOML), or the word `linear`: no model, slopes and lack of fit only.
+    /// Rod file (TOML), or the word `linear`: no model, only slopes and whether the lines are straight.
     rod: PathBuf,
-    /// Readings (CSV): axis, load_n or load_kg, and any of dx_um, dy_um, dz_um.
+    /// Readings (CSV): how far the tip moved under each load.
     readings: PathBuf,
     /// Beam theory of the model the readings are compared with.
     #[arg(long, value_enum, default_value_t = Theory::Timoshenko)]
@@ -30,20 +32,38 @@ pub struct Fit {
     /// Number of beam elements of that model.
     #[arg(long, default_value_t = DEFAULT_ELEMENTS, value_parser = super::elements)]
     elements: usize,
-    /// Weights against outliers.
+    /// What an outlier counts.
     #[arg(long, value_enum, default_value_t = Weights::None)]
     robust: Weights,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
 enum Weights {
-    /// Least squares.
+    /// Least squares: every reading counts the same.
     None,
-    /// Huber, k = 1.345: outliers count less.
+    /// Outliers count less (Huber's weights, k = 1.345).
     Huber,
-    /// Tukey's biweight, c = 4.685: gross outliers do not count.
+    /// Gross outliers do not count at all (Tukey's biweight, c = 4.685).
     Tukey,
 }
+
+const NOTES: &str = "\
+Readings are offsets from the unloaded, zeroed rod, one row for each loading:
+
+  axis,load_kg,trial,dy_um,dz_um
+  y,0.5,1,185,
+  y,1.0,1,416,
+  z,0.5,1,,165
+  z,1.0,1,,358
+
+  axis                  direction of the load: x, y, z or -x, -y, -z
+  load_n or load_kg     its size
+  dx_um, dy_um, dz_um   offsets; at least one column; blank is 'not measured'
+  trial                 number of the repeat, optional
+
+Three loads or more, twice or more each, give every slope a standard error and
+show whether the line is straight. A line that does not pass through zero tells
+of friction in the slide or of a tare. `rodcal --help` explains r and r_rod.";
 
 impl Rig {
     pub fn run(&self) -> Result<Outcome> {
@@ -67,8 +87,9 @@ impl Fit {
         };
         let fit = rig::fit(&readings, rod.as_ref(), &options)?;
         let mut report = report::rig::report(&fit, &readings, rod.as_ref());
+        let model = rod.as_ref().map_or("none, straight lines".into(), |_| self.rod.display().to_string());
         report.provenance = vec![
-            ("rod file".into(), self.rod.display().to_string()),
+            ("rod file".into(), model),
             ("readings".into(), self.readings.display().to_string()),
             ("program".into(), concat!("rodcal ", env!("CARGO_PKG_VERSION")).into()),
         ];

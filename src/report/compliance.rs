@@ -124,7 +124,7 @@ pub fn headline(study: &Study) -> String {
         Mode::Fea => format!("the beam model ({})", physics_name(study)),
     };
     format!(
-        "Rod {} yields at its tip by up to {} µm per newton and {} µm under one g; its compliance index c_rod is {} µm by {mode}.",
+        "Rod {} bends at its tip by up to {} µm per newton and {} µm under one g; its compliance index c_rod is {} µm by {mode}.",
         study.rod.name,
         significant(largest_column(&c.force) / UM, 4),
         significant(largest_column(&c.gravity) / UM, 4),

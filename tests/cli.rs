@@ -1,0 +1,152 @@
+//! The program as its users meet it: what they type, what they read, which files they get.
+
+#![allow(clippy::unwrap_used)]
+
+#[path = "cli/files.rs"]
+mod files;
+#[path = "cli/json.rs"]
+mod json;
+#[path = "cli/page.rs"]
+mod page;
+#[path = "cli/readme.rs"]
+mod readme;
+#[path = "cli/refused.rs"]
+mod refused;
+#[path = "cli/streams.rs"]
+mod streams;
+#[path = "cli/words.rs"]
+mod words;
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+/// A directory of its own for each test, with copies of the project's data: what a test writes harms nobody.
+struct Sandbox(TempDir);
+
+impl Sandbox {
+    fn new() -> Self {
+        let sandbox = Sandbox::empty();
+        let project = Path::new(env!("CARGO_MANIFEST_DIR"));
+        // campaigns and robots as soon as there are some
+        for directory in ["rods", "stiffness_data", "robots", "campaigns"] {
+            copy(&project.join(directory), &sandbox.path().join(directory));
+        }
+        sandbox
+    }
+
+    fn empty() -> Self {
+        Sandbox(tempfile::tempdir().unwrap())
+    }
+
+    fn path(&self) -> &Path {
+        self.0.path()
+    }
+
+    fn write(&self, name: &str, text: &str) {
+        std::fs::write(self.path().join(name), text).unwrap();
+    }
+
+    fn read(&self, name: &str) -> String {
+        std::fs::read_to_string(self.path().join(name)).unwrap_or_else(|e| panic!("{name}: {e}"))
+    }
+
+    /// The program in this directory, at a terminal of a fixed width, without colours.
+    fn command(&self, arguments: &[&str]) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_rodcal"));
+        command.args(arguments).current_dir(self.path()).stdin(Stdio::null());
+        command.env("COLUMNS", "100").env("NO_COLOR", "1").env_remove("CLICOLOR_FORCE");
+        command
+    }
+
+    /// Runs `rodcal` with the words of `line`.
+    fn run(&self, line: &str) -> Answer {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let output = self.command(&words).output().unwrap();
+        Answer {
+            line: line.to_owned(),
+            status: output.status.code(),
+            stdout: String::from_utf8(output.stdout).unwrap(),
+            stderr: String::from_utf8(output.stderr).unwrap(),
+        }
+    }
+
+    /// Every file below the directory with its bytes, every directory with a "/" and none.
+    fn listing(&self) -> BTreeMap<String, Vec<u8>> {
+        let mut found = BTreeMap::new();
+        list(self.path(), "", &mut found);
+        found
+    }
+}
+
+fn copy(from: &Path, to: &Path) {
+    let Ok(entries) = std::fs::read_dir(from) else { return };
+    std::fs::create_dir_all(to).unwrap();
+    for entry in entries.map(Result::unwrap) {
+        let target = to.join(entry.file_name());
+        if entry.path().is_dir() {
+            copy(&entry.path(), &target);
+        } else {
+            std::fs::copy(entry.path(), target).unwrap();
+        }
+    }
+}
+
+fn list(directory: &Path, prefix: &str, found: &mut BTreeMap<String, Vec<u8>>) {
+    for entry in std::fs::read_dir(directory).unwrap().map(Result::unwrap) {
+        let name = format!("{prefix}{}", entry.file_name().to_string_lossy());
+        if entry.path().is_dir() {
+            list(&entry.path(), &format!("{name}/"), found);
+            found.insert(format!("{name}/"), Vec::new());
+        } else {
+            found.insert(name, std::fs::read(entry.path()).unwrap());
+        }
+    }
+}
+
+/// What the program answered.
+#[derive(Debug, PartialEq)]
+struct Answer {
+    line: String,
+    status: Option<i32>,
+    stdout: String,
+    stderr: String,
+}
+
+impl Answer {
+    fn succeeded(self) -> Self {
+        assert_eq!(self.status, Some(0), "rodcal {}\n{}", self.line, self.stderr);
+        self
+    }
+
+    /// All of stdout as JSON; anything else on it is a failure.
+    fn json(self) -> Value {
+        let answer = self.succeeded();
+        let whole = serde_json::from_str(&answer.stdout);
+        whole.unwrap_or_else(|e| panic!("rodcal {}: {e}\n{}", answer.line, answer.stdout))
+    }
+
+    /// The warnings on stderr, on which nothing else stands.
+    fn warnings(&self) -> Vec<String> {
+        let warning = |line: &str| match line.strip_prefix("warning: ") {
+            Some(words) => words.to_owned(),
+            None => panic!("rodcal {}: {line:?} is no warning", self.line),
+        };
+        self.stderr.lines().map(warning).collect()
+    }
+}
+
+/// Steel rod and readings, carbon rod and readings, real readings: every command that makes a report.
+const REPORTS: [&str; 8] = [
+    "compliance rods/5.toml",
+    "compliance rods/5.toml --mode calc --theory timoshenko",
+    "compliance rods/2.toml --theory euler-bernoulli",
+    "rig fit rods/5.toml stiffness_data/5.csv",
+    "rig fit rods/2.toml stiffness_data/2.csv",
+    "rig fit rods/2.toml stiffness_data/2.csv --robust huber",
+    "rig fit linear stiffness_data/nist-load-cell.csv",
+    "demo",
+];

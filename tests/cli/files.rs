@@ -1,0 +1,142 @@
+//! `--out DIR` and the demo: which files there are, whole, alone and the same every time.
+
+use std::time::{Duration, Instant};
+
+use super::{REPORTS, Sandbox};
+
+#[test]
+fn a_report_is_a_page_with_its_pictures_tables_and_result() {
+    for line in REPORTS {
+        let sandbox = Sandbox::new();
+        let out = sandbox.run(&format!("{line} --out a/report --json")).succeeded().stdout;
+        assert_eq!(sandbox.read("a/report/result.json"), out, "{line}");
+        let names: Vec<String> = sandbox
+            .listing()
+            .into_keys()
+            .filter_map(|name| name.strip_prefix("a/report/").map(str::to_owned))
+            .filter(|name| !name.is_empty())
+            .collect();
+        let known = |name: &&String| {
+            let is = |start: &str, ends: &[&str]| {
+                name.starts_with(start) && ends.iter().any(|e| name.ends_with(e))
+            };
+            ["index.html", "result.json"].contains(&name.as_str())
+                || is("figure-", &[".svg"])
+                || is("table-", &[".csv", ".md"])
+        };
+        assert_eq!(names.iter().find(|name| !known(name)), None, "{line}");
+        let page = sandbox.read("a/report/index.html");
+        for (kind, tag, ending) in
+            [("figure", "<figure>", ".svg"), ("table", "<table>", ".csv"), ("table", "<table>", ".md")]
+        {
+            let files = names.iter().filter(|n| n.starts_with(kind) && n.ends_with(ending)).count();
+            assert!(files > 0, "{line}: no {kind} as {ending}");
+            assert_eq!(files, page.matches(tag).count(), "{line}: {kind}s as {ending} and on the page");
+        }
+        for name in &names {
+            let text = sandbox.read(&format!("a/report/{name}"));
+            let starts = match name.rsplit('.').next() {
+                Some("html") => "<!DOCTYPE html>",
+                Some("svg") => "<svg ",
+                Some("json") => "{",
+                _ => "",
+            };
+            assert!(text.len() > 20 && text.starts_with(starts), "{line}: {name}");
+            let nothing = ["NaN", "nan", "inf"]
+                .iter()
+                .find(|word| text.split(|c: char| !c.is_alphabetic()).any(|w| w == **word));
+            assert_eq!(nothing, None, "{line}: {name}");
+        }
+    }
+}
+
+#[test]
+fn png_on_request() {
+    let sandbox = Sandbox::new();
+    sandbox.run("compliance rods/5.toml --out plain").succeeded();
+    sandbox.run("compliance rods/5.toml --out pictures --png").succeeded();
+    let files = sandbox.listing();
+    let pictures: Vec<&String> = files.keys().filter(|name| name.ends_with(".png")).collect();
+    assert!(
+        !pictures.is_empty() && pictures.iter().all(|name| name.starts_with("pictures/")),
+        "{pictures:?}"
+    );
+    for name in pictures {
+        assert!(files[name].starts_with(b"\x89PNG\r\n\x1a\n") && files[name].len() > 1000, "{name}");
+        assert!(files.contains_key(&name.replace(".png", ".svg")), "{name}");
+    }
+    let lone = sandbox.run("compliance rods/5.toml --png").succeeded();
+    assert_eq!(lone.warnings(), ["--png has no effect without --out"]);
+}
+
+#[test]
+fn a_second_report_has_the_same_bytes_and_leaves_other_files_alone() {
+    for line in ["rig fit rods/5.toml stiffness_data/5.csv", "compliance rods/2.toml"] {
+        let sandbox = Sandbox::new();
+        let command = format!("{line} --png --out report");
+        let first = sandbox.run(&command).succeeded();
+        sandbox.write("report/notes.txt", "mine");
+        std::fs::create_dir(sandbox.path().join("report/more")).unwrap();
+        sandbox.write("report/more/index.html", "mine too");
+        let before = sandbox.listing();
+        // what a report writes it also replaces
+        sandbox.write("report/index.html", "old");
+        assert_eq!(sandbox.run(&command), first);
+        assert!(sandbox.listing() == before, "{line}: the bytes differ");
+    }
+}
+
+#[test]
+fn nothing_is_written_unasked() {
+    let sandbox = Sandbox::new();
+    let before = sandbox.listing();
+    for line in REPORTS.into_iter().filter(|line| *line != "demo") {
+        sandbox.run(line).succeeded();
+        sandbox.run(&format!("{line} --json")).succeeded();
+    }
+    assert!(sandbox.listing() == before);
+}
+
+#[test]
+fn the_demo_needs_nothing_and_says_where_its_report_is() {
+    let mut answers = Vec::new();
+    for line in ["", "demo"] {
+        let sandbox = Sandbox::empty();
+        let start = Instant::now();
+        let answer = sandbox.run(line).succeeded();
+        assert!(start.elapsed() < Duration::from_secs(10), "{:?}", start.elapsed());
+        let path = answer.stdout.lines().find_map(|line| line.strip_prefix("report: ")).unwrap();
+        assert_eq!(path, "reports/demo/index.html");
+        assert!(sandbox.read(path).starts_with("<!DOCTYPE html>"));
+        let outside = sandbox
+            .listing()
+            .into_keys()
+            .find(|name| !name.starts_with("reports/demo/") && name != "reports/");
+        assert_eq!(outside, None);
+        answers.push((answer.stdout, answer.stderr, sandbox.listing()));
+    }
+    assert!(answers[0] == answers[1], "rodcal and rodcal demo differ");
+}
+
+#[test]
+fn the_demo_also_goes_where_it_is_told() {
+    let sandbox = Sandbox::empty();
+    let answer = sandbox.run("--out elsewhere").succeeded();
+    assert!(answer.stdout.ends_with("report: elsewhere/index.html\n"), "{}", answer.stdout);
+    assert!(sandbox.listing().keys().all(|name| name.starts_with("elsewhere/")));
+}
+
+/// The files inside the program are those of the project.
+#[test]
+fn the_demo_is_made_of_the_other_commands() {
+    let sandbox = Sandbox::new();
+    let demo = sandbox.run("demo --json").json();
+    for (i, rod) in ["2", "5"].into_iter().enumerate() {
+        let compliance = sandbox.run(&format!("compliance rods/{rod}.toml --json")).json();
+        let fit = sandbox.run(&format!("rig fit rods/{rod}.toml stiffness_data/{rod}.csv --json")).json();
+        assert_eq!(demo["rods"][i]["compliance"], compliance);
+        assert_eq!(demo["rods"][i]["rig"], fit);
+    }
+    let cell = sandbox.run("rig fit linear stiffness_data/nist-load-cell.csv --json").json();
+    assert_eq!(demo["load_cell"], cell);
+}

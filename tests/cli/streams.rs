@@ -1,0 +1,87 @@
+//! Results on stdout, warnings on stderr, and no offence where nobody listens.
+
+use std::process::Stdio;
+
+use super::{REPORTS, Sandbox};
+
+#[test]
+fn warnings_go_to_stderr_and_with_json_also_into_it() {
+    for line in REPORTS {
+        let sandbox = Sandbox::new();
+        let plain = sandbox.run(line).succeeded();
+        let told = plain.warnings();
+        assert!(!plain.stdout.contains("warning"), "{line}");
+        let answer = sandbox.run(&format!("{line} --json"));
+        assert_eq!(answer.warnings(), told, "{line}");
+        let json = answer.json();
+        let inside: Vec<&str> =
+            json["warnings"].as_array().unwrap().iter().map(|w| w.as_str().unwrap()).collect();
+        assert_eq!(inside, told, "{line}");
+    }
+}
+
+#[test]
+fn there_are_warnings_where_there_is_something_to_warn_about() {
+    let sandbox = Sandbox::new();
+    for (line, word) in [
+        ("compliance rods/5.toml --mode calc --theory timoshenko", "calc is Euler–Bernoulli by definition"),
+        ("rig fit rods/2.toml stiffness_data/2.csv", "beyond the 15.0 N"),
+        ("rig fit rods/5.toml stiffness_data/5.csv", "crosses the load axis"),
+        ("rig fit linear stiffness_data/nist-load-cell.csv", "not a straight line"),
+        ("demo", "load cell: "),
+    ] {
+        let warnings = sandbox.run(line).succeeded().warnings();
+        assert!(warnings.iter().any(|warning| warning.contains(word)), "{line}: {warnings:?}");
+    }
+    assert_eq!(sandbox.run("compliance rods/5.toml").warnings(), [""; 0]);
+}
+
+/// `rodcal … | head -1`: the reader leaves before the end.
+#[test]
+fn an_early_leaver_is_no_error() {
+    let sandbox = Sandbox::new();
+    for line in REPORTS.into_iter().chain(["--help", "rig fit --help", "completions zsh", "--version"]) {
+        for more in ["", " --json"] {
+            let line = format!("{line}{more}");
+            let words: Vec<&str> = line.split_whitespace().collect();
+            let mut command = sandbox.command(&words);
+            let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+            drop(child.stdout.take());
+            let output = child.wait_with_output().unwrap();
+            let stderr = String::from_utf8_lossy(&output.stderr);
+            assert_eq!(output.status.code(), Some(0), "{line}\n{stderr}");
+            assert!(!stderr.contains("panicked") && !stderr.contains("error"), "{line}\n{stderr}");
+        }
+    }
+}
+
+/// `rodcal … 2>&1 | head -1`: neither warnings nor errors have a reader.
+#[test]
+fn a_closed_stderr_does_not_change_the_exit_status() {
+    let sandbox = Sandbox::new();
+    for (line, status) in [
+        ("rig fit rods/5.toml stiffness_data/5.csv", 0),
+        ("demo --json", 0),
+        ("compliance nowhere.toml", 2),
+        ("compliance rods/2.toml --mode calc", 2),
+        ("frobnicate", 2),
+    ] {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let mut command = sandbox.command(&words);
+        let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        drop(child.stdout.take());
+        drop(child.stderr.take());
+        assert_eq!(child.wait().unwrap().code(), Some(status), "{line}");
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_result_that_gets_lost_is_an_error() {
+    let sandbox = Sandbox::new();
+    let full = std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+    let output = sandbox.command(&["compliance", "rods/5.toml"]).stdout(full).output().unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert!(stderr.starts_with("error: cannot write stdout: "), "{stderr}");
+}

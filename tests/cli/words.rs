@@ -1,0 +1,108 @@
+//! What a user reads. A changed word is shown by a failing snapshot: read it as somebody who has never seen the
+//! program, and accept it only if it still teaches.
+
+use super::Sandbox;
+
+/// Compares with `tests/snapshots/NAME.snap`.
+pub fn assert_reads(name: &str, text: &str) {
+    let mut settings = insta::Settings::clone_current();
+    settings.set_snapshot_path("../snapshots");
+    settings.set_prepend_module_to_snapshot(false);
+    settings.set_omit_expression(true);
+    settings.bind(|| insta::assert_snapshot!(name, text));
+}
+
+#[test]
+fn help_teaches() {
+    let sandbox = Sandbox::empty();
+    for (name, line) in
+        [("help", "--help"), ("help-compliance", "compliance --help"), ("help-rig-fit", "rig fit --help")]
+    {
+        let answer = sandbox.run(line).succeeded();
+        assert_eq!(answer.stderr, "");
+        assert_reads(name, &answer.stdout);
+    }
+}
+
+#[test]
+fn results_explain_themselves() {
+    let sandbox = Sandbox::new();
+    for (name, line) in [
+        ("compliance", "compliance rods/5.toml"),
+        ("rig-fit", "rig fit rods/5.toml stiffness_data/5.csv"),
+        ("rig-fit-linear", "rig fit linear stiffness_data/nist-load-cell.csv"),
+        ("demo", "demo"),
+    ] {
+        let answer = sandbox.run(line).succeeded();
+        let told = format!("{}\n[stderr]\n{}", answer.stdout, answer.stderr);
+        assert_reads(name, &told);
+    }
+}
+
+/// Only tables may need more, and those say so by their rules.
+#[test]
+fn words_fit_a_terminal() {
+    let sandbox = Sandbox::new();
+    for line in super::REPORTS {
+        let answer = sandbox.run(line).succeeded();
+        // a table is a block of lines, one of which is its rule
+        for block in answer.stdout.split("\n\n").filter(|block| !block.contains("──  ──")) {
+            let long = block.lines().find(|line| line.chars().count() > 100);
+            assert_eq!(long, None, "{line}");
+        }
+    }
+    for line in ["--help", "compliance --help", "rig --help", "rig fit --help", "completions --help"] {
+        let help = sandbox.run(line).succeeded().stdout;
+        assert_eq!(help.lines().find(|line| line.chars().count() > 100), None, "{line}");
+    }
+}
+
+/// The examples in the help are typed by their readers.
+#[test]
+fn the_examples_in_the_help_run() {
+    let sandbox = Sandbox::new();
+    let help = sandbox.run("--help").succeeded().stdout;
+    let examples: Vec<&str> = help.lines().filter_map(|line| line.strip_prefix("  rodcal")).collect();
+    assert!(examples.len() >= 4, "{examples:?}");
+    for example in examples {
+        sandbox.run(example).succeeded();
+    }
+}
+
+/// So are the files that the help shows.
+#[test]
+fn the_files_in_the_help_are_good_files() {
+    let sandbox = Sandbox::empty();
+    let block = |help: &str, start: &str| -> String {
+        let lines = help.lines().skip_while(|line| !line.trim().starts_with(start));
+        lines.take_while(|line| !line.is_empty()).map(|line| format!("{}\n", line.trim())).collect()
+    };
+    let rod = block(&sandbox.run("compliance --help").stdout, "name =");
+    let (_, pipe) = rod.split_once("[pipe1]").unwrap();
+    sandbox.write("rod.toml", &format!("{rod}[pipe2]{pipe}"));
+    sandbox.run("compliance rod.toml").succeeded();
+    let readings = block(&sandbox.run("rig fit --help").stdout, "axis,");
+    sandbox.write("readings.csv", &readings);
+    let fit = sandbox.run("rig fit rod.toml readings.csv --json").json();
+    assert_eq!(fit["slopes"].as_array().unwrap().len(), 2);
+}
+
+#[test]
+fn completions_know_the_commands() {
+    let sandbox = Sandbox::empty();
+    for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
+        let answer = sandbox.run(&format!("completions {shell}")).succeeded();
+        assert_eq!(answer.stderr, "");
+        for word in ["rodcal", "compliance", "fit", "contact-force", "json"] {
+            assert!(answer.stdout.contains(word), "{shell}: {word}");
+        }
+        let json = sandbox.run(&format!("completions {shell} --json")).json();
+        assert_eq!(json["completions"], answer.stdout);
+    }
+}
+
+#[test]
+fn version() {
+    let answer = Sandbox::empty().run("--version").succeeded();
+    assert_eq!(answer.stdout, format!("rodcal {}\n", env!("CARGO_PKG_VERSION")));
+}

@@ -110,7 +110,11 @@ fn compliance_is_in_its_units() {
     // weight q per length along z bends pipe II as a cantilever (q L2⁴/8EI) on the tilted end of pipe I (q L2²/2 · L1/EI · L2)
     let q = 9.80665 * 1e-3 * mass / (l1 + l2);
     let sag = q * l2.powi(4) / (8.0 * ei) + q * l2.powi(3) * l1 / (2.0 * ei);
-    assert_relative_eq!(matrix(&json["cg_um_per_g"])[(2, 2)], 1e6 * sag, max_relative = 1e-12);
+    let cg = matrix(&json["cg_um_per_g"]);
+    assert_relative_eq!(cg[(2, 2)], 1e6 * sag, max_relative = 1e-12);
+    // and moves the corner back along x; C^g is not symmetric, so this also tells rows from columns
+    let back = q * l2.powi(2) * l1.powi(2) / (4.0 * ei);
+    assert_relative_eq!(cg[(0, 2)], -1e6 * back, max_relative = 1e-12);
 }
 
 #[test]

@@ -7,6 +7,11 @@ pub fn skew(v: &Vector3<f64>) -> Matrix3<f64> {
     Matrix3::new(0.0, -v.z, v.y, v.z, 0.0, -v.x, -v.y, v.x, 0.0)
 }
 
+/// `v × m`, column by column: `skew(v) * m` without the products with its zeros.
+pub fn cross(v: &Vector3<f64>, m: &Matrix3<f64>) -> Matrix3<f64> {
+    Matrix3::from_columns(&[v.cross(&m.column(0)), v.cross(&m.column(1)), v.cross(&m.column(2))])
+}
+
 /// A tensor given in a rotated frame, expressed in the frame it was rotated from: `R·T·Rᵀ`.
 pub fn rotated(tensor: &Matrix3<f64>, rotation: &Rotation3<f64>) -> Matrix3<f64> {
     rotation.matrix() * tensor * rotation.matrix().transpose()
@@ -20,6 +25,8 @@ mod tests {
     fn skew_is_the_cross_product() {
         let (v, w) = (Vector3::new(1.0, -2.0, 3.0), Vector3::new(0.5, 4.0, -1.0));
         assert_eq!(skew(&v) * w, v.cross(&w));
+        let m = Matrix3::new(0.5, 4.0, -1.0, 2.0, 0.25, 8.0, -3.0, 1.0, 5.0);
+        assert_eq!(skew(&v) * m, cross(&v, &m));
     }
 
     #[test]

@@ -11,7 +11,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::chain::Chain;
 use super::solve::{Carried, Load, Motion, Response};
 use crate::error::{Error, Result};
-use crate::spatial::skew;
+use crate::spatial::cross;
 use crate::units::MM;
 
 /// Rounding grows like n·ε; 20 000 elements reach 1e-12 in the worst case.
@@ -125,7 +125,7 @@ fn weight_work(
         // the element as a rigid body on its near node: m (u + θ×d) …
         let motion = response.motion(k, index);
         let lever = element.reference + shape.mass_centre - near.position;
-        work += (motion.translation - skew(&lever) * motion.rotation) * shape.mass;
+        work += (motion.translation - cross(&lever, &motion.rotation)) * shape.mass;
         // … and as it deforms, by the element's own reciprocity: Uᵀ·F + Vᵀ·M
         let carried = chain.carried(load, k, weight);
         work += shape.weight_translation.transpose() * carried.mass

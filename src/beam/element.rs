@@ -52,8 +52,8 @@ impl Profile {
 pub(super) struct Shape {
     /// A, m/N.
     pub force: Matrix3<f64>,
-    /// C, rad/N.
-    pub coupling: Matrix3<f64>,
+    /// C, rad/N; none where force and moment do not interact.
+    pub coupling: Option<Matrix3<f64>>,
     /// B, rad/(N·m).
     pub moment: Matrix3<f64>,
     /// U, m per m/s².
@@ -78,7 +78,7 @@ impl Shape {
         let moment = profile.moment() * l;
         Shape {
             force,
-            coupling: Matrix3::zeros(),
+            coupling: None,
             moment,
             // the mean force of its own weight is half of it: U = A·m/2
             weight_translation: force * (mass / 2.0),
@@ -104,9 +104,10 @@ impl Shape {
             Vector3::new(x, 0.0, 2.0 * m.sin() * (d / 2.0).sin()) * radius
         };
 
+        let mut coupling = Matrix3::zeros();
         let mut shape = Shape {
             force: Matrix3::zeros(),
-            coupling: Matrix3::zeros(),
+            coupling: None,
             moment: Matrix3::zeros(),
             weight_translation: Matrix3::zeros(),
             weight_rotation: Matrix3::zeros(),
@@ -123,7 +124,7 @@ impl Shape {
             let lever = skew(&point(a));
             let lever_moment = lever * section_moment;
             shape.force += section_force - lever_moment * lever;
-            shape.coupling += lever_moment;
+            coupling += lever_moment;
             shape.moment += section_moment;
             // the weight of the part beyond: μ·a, with the first moment h = ∫ (r(β) − r(α)) μ dβ about this point
             let beyond = mass_per_angle * (half - a);
@@ -132,6 +133,7 @@ impl Shape {
             shape.weight_translation += section_force * beyond + lever_moment * weight_moment;
             shape.weight_rotation += section_moment * weight_moment;
         }
+        shape.coupling = Some(coupling);
         shape
     }
 
@@ -139,7 +141,7 @@ impl Shape {
     pub fn spring(bending: f64, torsion: f64) -> Self {
         Shape {
             force: Matrix3::zeros(),
-            coupling: Matrix3::zeros(),
+            coupling: None,
             moment: Matrix3::from_diagonal(&Vector3::new(bending, bending, torsion)),
             weight_translation: Matrix3::zeros(),
             weight_rotation: Matrix3::zeros(),
@@ -152,7 +154,7 @@ impl Shape {
     pub fn turned(&self, rotation: &Rotation3<f64>) -> Self {
         Shape {
             force: rotated(&self.force, rotation),
-            coupling: rotated(&self.coupling, rotation),
+            coupling: self.coupling.map(|coupling| rotated(&coupling, rotation)),
             moment: rotated(&self.moment, rotation),
             weight_translation: rotated(&self.weight_translation, rotation),
             weight_rotation: rotated(&self.weight_rotation, rotation),
@@ -225,7 +227,7 @@ mod tests {
             (Shape::arc(&PROFILE, length / angle, angle), Shape::straight(&PROFILE, length));
         let pairs = [
             (arc.force, straight.force),
-            (arc.coupling, straight.coupling),
+            (arc.coupling.unwrap_or_default(), straight.coupling.unwrap_or_default()),
             (arc.moment, straight.moment),
             (arc.weight_translation, straight.weight_translation),
             (arc.weight_rotation, straight.weight_rotation),

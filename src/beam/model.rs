@@ -91,6 +91,7 @@ impl RodModel {
         let bend_factor = rod.bend_flexibility.factor(&rod.bend.section, rod.bend_radius);
         let (pipe1, pipe2) = (physics.profile(&rod.pipe1, 1.0), physics.profile(&rod.pipe2, 1.0));
         let bend = physics.profile(&rod.bend, bend_factor);
+        let bend_length = rod.bend_end() - rod.bend_start();
         let mut corner_ahead = rod.bend_radius == 0.0;
         place_features(&mut chain, &rod, cuts[0]);
         for (ends, count) in cuts.windows(2).zip(counts) {
@@ -98,7 +99,8 @@ impl RodModel {
             if middle < rod.bend_start() {
                 chain.straight(&pipe1, length, count);
             } else if middle < rod.bend_end() {
-                chain.arc(&bend, rod.bend_radius, length / rod.bend_radius, count);
+                // its share of the turn: the rounding of two stations over a tiny radius would turn all beyond it
+                chain.arc(&bend, rod.bend_radius, rod.turn() * (length / bend_length), count);
             } else {
                 if std::mem::take(&mut corner_ahead) {
                     chain.turn(&Rotation3::from_axis_angle(&Vector3::y_axis(), rod.turn()));
@@ -249,6 +251,16 @@ fn share_out(total: usize, cuts: &[f64]) -> Vec<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_tiny_bend_turns_by_the_whole_angle() {
+        let text =
+            include_str!("../../rods/5.toml").replace("bend_radius_mm = 0.0 ", "bend_radius_mm = 0.0001 ");
+        let rod = Rod::from_toml("tiny bend", &text).unwrap();
+        assert!(rod.bend_radius > 0.0);
+        let model = RodModel::new(&rod, &Physics::default(), 3, &[]).unwrap();
+        assert!((model.chain.position(model.tip()) - rod.tip()).norm() < 1e-15);
+    }
 
     #[test]
     fn elements_are_shared_out_by_length_and_none_is_lost() {

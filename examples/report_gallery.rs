@@ -11,10 +11,8 @@ use rodcal::report::{Block, Report, Section};
 
 fn main() -> rodcal::Result<()> {
     let directory = std::env::args().nth(1).unwrap_or_else(|| "reports/gallery".into());
-    for (name, bytes) in report().files(true)? {
-        rodcal::files::write_whole(&std::path::Path::new(&directory).join(name), &bytes)?;
-    }
-    Ok(())
+    let files = report().files(true)?;
+    rodcal::files::write_together(std::path::Path::new(&directory), &files)
 }
 
 fn report() -> Report {

@@ -42,20 +42,43 @@ pub fn text_of_bytes(file: &str, bytes: Vec<u8>) -> Result<String> {
 /// # Errors
 /// [`Error::File`]; the old file, if any, is then untouched.
 pub fn write_whole(path: &Path, contents: &[u8]) -> Result<()> {
-    let failed = |action| move |source| Error::File { path: path.to_owned(), action, source };
-    let directory = match path.parent() {
-        Some(parent) if !parent.as_os_str().is_empty() => parent,
-        _ => Path::new("."),
+    let (directory, name) = match (path.parent(), path.file_name()) {
+        (Some(parent), Some(name)) if !parent.as_os_str().is_empty() => (parent, name),
+        _ => (Path::new("."), path.as_os_str()),
     };
-    std::fs::create_dir_all(directory).map_err(failed("create the directory of"))?;
-    let mut temporary = tempfile::Builder::new()
-        .prefix(".rodcal-")
-        .permissions(readable_by_all())
-        .tempfile_in(directory)
-        .map_err(failed("write"))?;
-    temporary.write_all(contents).map_err(failed("write"))?;
-    temporary.persist(path).map_err(|e| e.error).map_err(failed("write"))?;
+    write_together(directory, &[(name.to_string_lossy().into_owned(), contents.to_vec())])
+}
+
+/// Writes all files, given by name and contents, into `directory`, or none of them: each to a temporary file first,
+/// and only when all of those are complete are they renamed. Missing directories are created.
+///
+/// # Errors
+/// [`Error::File`]; old files are then untouched, unless a rename itself fails in the midst of the others.
+pub fn write_together(directory: &Path, files: &[(String, Vec<u8>)]) -> Result<()> {
+    std::fs::create_dir_all(directory).map_err(failed("create", directory))?;
+    let mut finished = Vec::with_capacity(files.len());
+    for (name, contents) in files {
+        let path = directory.join(name);
+        if path.is_dir() {
+            let source = std::io::Error::from(std::io::ErrorKind::IsADirectory);
+            return Err(failed("write", &path)(source));
+        }
+        let mut temporary = tempfile::Builder::new()
+            .prefix(".rodcal-")
+            .permissions(readable_by_all())
+            .tempfile_in(directory)
+            .map_err(failed("write", &path))?;
+        temporary.write_all(contents).map_err(failed("write", &path))?;
+        finished.push((temporary, path));
+    }
+    for (temporary, path) in finished {
+        temporary.persist(&path).map_err(|e| failed("write", &path)(e.error))?;
+    }
     Ok(())
+}
+
+fn failed(action: &'static str, path: &Path) -> impl Fn(std::io::Error) -> Error {
+    move |source| Error::File { path: path.to_owned(), action, source }
 }
 
 #[cfg(unix)]
@@ -86,6 +109,20 @@ mod tests {
         write_whole(&path, b"new").unwrap();
         assert_eq!(std::fs::read(&path).unwrap(), b"new");
         assert_eq!(std::fs::read_dir(path.parent().unwrap()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn files_are_written_all_or_none() {
+        let directory = tempfile::tempdir().unwrap();
+        let (root, names) = (directory.path(), ["a.txt", "b.txt"]);
+        std::fs::create_dir(root.join("b.txt")).unwrap();
+        let files = names.map(|name| (name.to_owned(), b"new".to_vec()));
+        let error = write_together(root, &files).unwrap_err().to_string();
+        assert!(error.contains("cannot write") && error.contains("b.txt"), "{error}");
+        assert_eq!(std::fs::read_dir(root).unwrap().count(), 1, "only the directory that was in the way");
+        std::fs::remove_dir(root.join("b.txt")).unwrap();
+        write_together(root, &files).unwrap();
+        assert!(names.iter().all(|name| std::fs::read(root.join(name)).unwrap() == b"new"));
     }
 
     #[test]

@@ -57,9 +57,7 @@ pub fn deliver(arguments: &Arguments, outcome: Outcome) -> Result<ExitCode> {
         let mut files = report.files(arguments.png)?;
         json["report"] = directory.join("index.html").display().to_string().into();
         files.push(("result.json".into(), pretty(&json).into_bytes()));
-        for (name, bytes) in files {
-            files::write_whole(&directory.join(name), &bytes)?;
-        }
+        files::write_together(directory, &files)?;
     }
     let warnings = report.as_ref().map_or(&[][..], |report| &report.warnings);
     for warning in warnings {

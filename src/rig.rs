@@ -150,6 +150,7 @@ fn samples(rows: &[Reading], key: &LineKey) -> Vec<Sample> {
                 load: row.load,
                 offset: row.offset[key.channel.index()]?,
                 phase: row.phase.unwrap_or(Phase::Load),
+                trial: rows.iter().position(|first| first.trial == row.trial)?,
                 line: row.line,
             })
         })

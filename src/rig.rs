@@ -150,6 +150,7 @@ fn samples(rows: &[Reading], key: &LineKey) -> Vec<Sample> {
                 load: row.load,
                 offset: row.offset[key.channel.index()]?,
                 phase: row.phase.unwrap_or(Phase::Load),
+                trial: rows.iter().position(|first| first.trial == row.trial)?,
                 line: row.line,
             })
         })
@@ -224,9 +225,10 @@ fn vanishes(entry: f64, model: &Compliance) -> bool {
     entry.abs() < 1e-9 * model.force.amax()
 }
 
-/// A rod yields along its load; anything else is a sign error in the file.
+/// A rod yields along its load; anything else that is more than noise is a sign error in the file.
 fn check_signs(readings: &Readings, lines: &[Line], ratios: &[Ratio]) -> Result<()> {
-    let is_against = |r: &&Ratio| r.channel == r.load && r.value.value < 0.0;
+    let is_against =
+        |r: &&Ratio| r.channel == r.load && r.value.value < -r.value.half_width_95().unwrap_or_default();
     let Some(axis) = ratios.iter().find(is_against).map(|ratio| ratio.load) else { return Ok(()) };
     let is_culprit =
         |line: &&Line| (line.key.channel, line.key.direction.axis) == (axis, axis) && line.slope.value < 0.0;
@@ -244,15 +246,16 @@ fn check_signs(readings: &Readings, lines: &[Line], ratios: &[Ratio]) -> Result<
     })
 }
 
-/// Eq 21 for the paper's two directions y and z where both were read, else over the directions that were.
+/// What r_rod is made of: the paper's two directions y and z, as far as they were read, else x.
+fn ratios_of_rod(ratios: &[Ratio]) -> Vec<&Ratio> {
+    let along = |axis: Axis| ratios.iter().find(move |r| (r.channel, r.load) == (axis, axis));
+    let yz: Vec<&Ratio> = [Axis::Y, Axis::Z].into_iter().filter_map(along).collect();
+    if yz.is_empty() { along(Axis::X).into_iter().collect() } else { yz }
+}
+
+/// Eq 21.
 fn rod_ratio(ratios: &[Ratio], model: &Compliance) -> Option<Estimate> {
-    let diagonal: Vec<&Ratio> = ratios.iter().filter(|ratio| ratio.channel == ratio.load).collect();
-    let of = |axis: Axis| diagonal.iter().copied().find(|ratio| ratio.load == axis);
-    let used = match (of(Axis::Y), of(Axis::Z)) {
-        (Some(y), Some(z)) => vec![y, z],
-        (Some(one), None) | (None, Some(one)) => vec![one],
-        (None, None) => diagonal,
-    };
+    let used = ratios_of_rod(ratios);
     // r_rod = Σ r_ii c'_ii / Σ c'_ii
     let weight = |ratio: &Ratio| model.force[(ratio.load.index(), ratio.load.index())];
     let total: f64 = used.iter().map(|ratio| weight(ratio)).sum();

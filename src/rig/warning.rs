@@ -2,14 +2,14 @@
 
 use std::fmt;
 
-use super::line::Line;
+use super::line::{CROOKED, Line};
 use super::readings::{Axis, Readings};
-use super::{Measured, Ratio};
+use super::{Measured, Ratio, ratios_of_rod, vanishes};
 use crate::rod::Rod;
 use crate::statistics::Estimate;
 use crate::units::{UM, significant};
 
-/// Below this probability a line is called crooked, a difference real.
+/// Below this probability a difference is called real.
 const SIGNIFICANCE: f64 = 0.01;
 
 /// Something about a rig fit that its user should know.
@@ -83,7 +83,7 @@ pub(super) fn of_lines(lines: &[Line], readings: &Readings, rod: Option<&Rod>) -
     for line in lines {
         let label = line.key.label();
         match line.lack_of_fit {
-            Some(test) if test.p_value < SIGNIFICANCE => warnings.push(Warning::NotStraight {
+            Some(test) if test.p_value < CROOKED => warnings.push(Warning::NotStraight {
                 line: label.clone(),
                 f: test.f,
                 p_value: test.p_value,
@@ -99,7 +99,7 @@ pub(super) fn of_lines(lines: &[Line], readings: &Readings, rod: Option<&Rod>) -
             warnings.push(Warning::AgainstTheLoad { line: label.clone() });
         }
         // a crooked line crosses the axis wherever its curvature sends it
-        let is_straight = line.lack_of_fit.is_none_or(|test| test.p_value >= SIGNIFICANCE);
+        let is_straight = line.lack_of_fit.is_none_or(|test| test.p_value >= CROOKED);
         let offset = line.load_offset.filter(|offset| is_straight && offset.is_significant(SIGNIFICANCE));
         if let Some(offset) = offset.filter(|_| is_along) {
             warnings.push(Warning::LoadOffset { line: label.clone(), offset });
@@ -118,15 +118,13 @@ pub(super) fn of_lines(lines: &[Line], readings: &Readings, rod: Option<&Rod>) -
 /// Warnings about the comparison with the model.
 pub(super) fn of_ratios(measured: &Measured, lines: &[Line]) -> Vec<Warning> {
     let mut warnings = Vec::new();
-    for line in lines {
-        let entry = measured.model.force[(line.key.channel.index(), line.key.direction.axis.index())];
-        let is_zero = entry.abs() < 1e-9 * measured.model.force.amax();
-        if is_zero && line.slope.is_significant(SIGNIFICANCE) {
+    for (line, &prediction) in lines.iter().zip(&measured.predicted) {
+        if vanishes(prediction, &measured.model) && line.slope.is_significant(SIGNIFICANCE) {
             warnings.push(Warning::CrossTalk { line: line.key.label(), slope: line.slope });
         }
     }
     let diagonal: Vec<Ratio> = measured.ratios.iter().copied().filter(|r| r.channel == r.load).collect();
-    if let [only] = diagonal[..] {
+    if let [only] = ratios_of_rod(&measured.ratios)[..] {
         warnings.push(Warning::OneDirection { axis: only.load });
     }
     let order = |a: &&Ratio, b: &&Ratio| a.value.value.total_cmp(&b.value.value);

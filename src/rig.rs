@@ -10,8 +10,10 @@
 //!
 //! Source: Improved MultiCal, *Sensors* 23 (2023) 5717, § 4.2.
 
+mod curve;
 pub mod line;
 pub mod readings;
+mod repeats;
 mod warning;
 
 use nalgebra::Matrix3;

@@ -99,10 +99,10 @@ fn one_reading_on_the_way_down_does_not_tilt_the_line() {
 fn blank_cells_leave_the_other_channel_alone() {
     let text = "axis,load_n,dx_um,dz_um\nz,5,,50\nz,10,3,101\nz,15,,149\nz,20,6,200\n";
     let fit = fit(text);
-    assert_eq!((line(&fit, "z → dx").count, line(&fit, "z → dz").count), (2, 4));
-    assert_relative_eq!(line(&fit, "z → dx").slope.value / UM, 0.3, max_relative = 1e-12);
+    assert_eq!((line(&fit, "dx under load z").count, line(&fit, "dz under load z").count), (2, 4));
+    assert_relative_eq!(line(&fit, "dx under load z").slope.value / UM, 0.3, max_relative = 1e-12);
     // Σ(F − F̄)(d − d̄)/Σ(F − F̄)² = 1245/125
-    assert_relative_eq!(line(&fit, "z → dz").slope.value / UM, 9.96, max_relative = 1e-12);
+    assert_relative_eq!(line(&fit, "dz under load z").slope.value / UM, 9.96, max_relative = 1e-12);
 }
 
 #[test]
@@ -235,7 +235,7 @@ fn all_channels(entries: [[f64; 3]; 3], noise: [f64; 3], seed: u64) -> String {
 fn cross_channels_are_two_measurements_of_one_number() {
     let steel = &made::STEEL;
     let (c11, c13) = (steel.c11(), steel.c13());
-    // x → dz says 1.3 times the model, z → dx 1.1 times, with a quarter of the weight
+    // dz under load x says 1.3 times the model, dx under load z 1.1 times, with a quarter of the weight
     let entries =
         [[1.2 * c11, 0.0, 1.1 * c13], [0.0, 1.2 * steel.c22(), 0.0], [1.3 * c13, 0.0, 1.2 * steel.c33()]];
     let fit = with_rod(&all_channels(entries, [0.5, 0.5, 1.0], 3), &rod(steel), Robust::None);
@@ -257,7 +257,7 @@ fn cross_channels_are_two_measurements_of_one_number() {
     assert!(!measured.is_measured[(0, 1)] && measured.is_measured[(0, 2)] && measured.is_measured[(2, 0)]);
     assert!(fit.warnings.iter().all(|w| !matches!(w, Warning::CrossTalk { .. })), "{:?}", fit.warnings);
     // the load offset of a slope that may be zero is anything
-    assert_eq!(fit.lines.iter().find(|l| l.key.label() == "y → dx").unwrap().load_offset, None);
+    assert_eq!(fit.lines.iter().find(|l| l.key.label() == "dx under load y").unwrap().load_offset, None);
 }
 
 #[test]
@@ -271,7 +271,7 @@ fn a_slope_that_symmetry_forbids_is_cross_talk_and_no_compliance() {
         .iter()
         .filter_map(|w| if let Warning::CrossTalk { line, .. } = w { Some(line) } else { None })
         .collect();
-    assert_eq!(lines, ["x → dy", "y → dz"]);
+    assert_eq!(lines, ["dy under load x", "dz under load y"]);
     let measured = fit.measured.unwrap();
     assert!(measured.compliance.force[(1, 0)].abs() < 1e-12 * measured.model.force.amax());
     assert!(measured.compliance.force[(2, 1)].abs() < 1e-12 * measured.model.force.amax());
@@ -285,7 +285,8 @@ fn symmetry_is_judged_where_the_rod_was_loaded_and_read() {
         text += &format!("y,{load},,{},,\nz,{load},{},,200,200\n", made::STEEL.c22() * load, 1.5 * load);
     }
     let fit = with_rod(&text, &rod(&made::STEEL), Robust::None);
-    let is_cross = |w: &Warning| matches!(w, Warning::CrossTalk { line, .. } if line.starts_with("z → dx"));
+    let is_cross =
+        |w: &Warning| matches!(w, Warning::CrossTalk { line, .. } if line.starts_with("dx under load z"));
     assert!(fit.warnings.iter().any(is_cross), "{:?}", fit.warnings);
 }
 

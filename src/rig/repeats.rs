@@ -1,0 +1,204 @@
+//! Repeats of a reading: their averages, their scatter, and whether whole trials differ.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::line::{Point, Sample};
+use crate::error::Result;
+use crate::least_squares::{self, Options};
+use crate::statistics;
+use crate::units::UM;
+
+/// Below this probability trials are said to differ: they are cheap to believe in, and costly to overlook.
+const TRIALS_DIFFER: f64 = 0.05;
+
+/// Averages of the repeats.
+pub(super) fn average(samples: &[Sample], trust: &[f64]) -> Vec<Point> {
+    let mut points: Vec<Point> = Vec::new();
+    for (sample, &weight) in samples.iter().zip(trust).filter(|(_, weight)| **weight > 0.0) {
+        match points.iter_mut().find(|point| point.has(sample)) {
+            Some(point) => {
+                point.count += weight;
+                point.mean += (sample.offset - point.mean) * weight / point.count;
+            }
+            None => points.push(Point {
+                load: sample.load,
+                phase: sample.phase,
+                mean: sample.offset,
+                count: weight,
+                residual: 0.0,
+            }),
+        }
+    }
+    points
+}
+
+/// A sum of squares with its degrees of freedom.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Squares {
+    pub sum: f64,
+    pub dof: usize,
+}
+
+impl Squares {
+    pub(super) fn mean_square(self) -> Option<f64> {
+        mean_square(self.sum, self.dof)
+    }
+}
+
+pub(super) fn mean_square(sum: f64, dof: usize) -> Option<f64> {
+    (dof > 0).then(|| sum / dof as f64)
+}
+
+/// How the repeats scatter about their averages.
+pub(super) struct Repeats {
+    /// About the averages alone.
+    pub all: Squares,
+    /// About the averages and an offset and a slope of each trial.
+    pub within_trials: Squares,
+    /// Number of trials.
+    pub trials: usize,
+}
+
+impl Repeats {
+    pub(super) fn new(samples: &[Sample], trust: &[f64], points: &[Point]) -> Result<Repeats> {
+        let used: Vec<(&Sample, f64)> =
+            samples.iter().zip(trust.iter().copied()).filter(|(_, weight)| *weight > 0.0).collect();
+        let place: Vec<usize> =
+            used.iter().filter_map(|(s, _)| points.iter().position(|p| p.has(s))).collect();
+        // what is left of one number per reading once its weighted average over the repeats is taken off
+        let centred = |of: &dyn Fn(&Sample) -> f64| {
+            let mut averages = vec![0.0; points.len()];
+            for ((sample, weight), &k) in used.iter().zip(&place) {
+                averages[k] += of(sample) * weight / points[k].count;
+            }
+            DVector::from_iterator(
+                used.len(),
+                used.iter().zip(&place).map(|((s, _), &k)| of(s) - averages[k]),
+            )
+        };
+        let deviations = centred(&|s| s.offset);
+        let weights = DVector::from_iterator(used.len(), used.iter().map(|(_, weight)| *weight));
+        let all = Squares {
+            sum: deviations.component_mul(&deviations).dot(&weights),
+            dof: used.len() - points.len(),
+        };
+        let mut trials: Vec<usize> = used.iter().map(|(s, _)| s.trial).collect();
+        trials.sort_unstable();
+        trials.dedup();
+        let mut repeats = Repeats { all, within_trials: all, trials: trials.len() };
+        if trials.len() > 1 && 2 * (trials.len() - 1) < all.dof {
+            let largest = used.iter().fold(0.0, |max: f64, (s, _)| s.load.max(max));
+            let columns: Vec<DVector<f64>> = trials
+                .iter()
+                .flat_map(|&trial| [0, 1].map(|power| (trial, power)))
+                .map(|(trial, power)| {
+                    centred(&|s| if s.trial == trial { (s.load / largest).powi(power) } else { 0.0 })
+                        // a load that only this trial has: nothing but rounding
+                        .map(|x| if x.abs() < 1e-12 { 0.0 } else { x })
+                })
+                .collect();
+            let design = DMatrix::from_columns(&columns);
+            let fit = least_squares::linear(&design, &deviations, Some(&weights), &Options::default())?;
+            repeats.within_trials =
+                Squares { sum: fit.sum_of_squares, dof: all.dof.saturating_sub(fit.covariance.rank) };
+        }
+        Ok(repeats)
+    }
+
+    /// True where offsets and slopes of the trials explain more of the scatter than chance would.
+    pub(super) fn trials_differ(&self) -> Result<bool> {
+        let dof = self.all.dof - self.within_trials.dof;
+        let explained = mean_square(self.all.sum - self.within_trials.sum, dof);
+        let (Some(explained), Some(left)) = (explained, self.within_trials.mean_square()) else {
+            return Ok(false);
+        };
+        let p_value = match left > 0.0 {
+            true => statistics::f_survival(explained / left, dof as f64, self.within_trials.dof as f64)?,
+            false => 1.0,
+        };
+        Ok(p_value < TRIALS_DIFFER)
+    }
+}
+
+/// The decimal place of a micrometre that the offsets are rounded to, m; 0 where they show none.
+pub(super) fn resolution(samples: &[Sample]) -> f64 {
+    const MOST_DECIMALS: i32 = 6;
+    let is_multiple = |offset: f64, place: f64| {
+        let steps = offset / UM / place;
+        (steps - steps.round()).abs() <= 8.0 * f64::EPSILON * steps.abs()
+    };
+    let places = (0..=MOST_DECIMALS).map(|decimals| 10f64.powi(-decimals));
+    let found = places.into_iter().find(|&place| samples.iter().all(|s| is_multiple(s.offset, place)));
+    found.map_or(0.0, |place| place * UM)
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use approx::assert_relative_eq;
+
+    use super::super::readings::Phase;
+    use super::*;
+
+    pub fn samples(rows: &[(f64, usize, f64)]) -> Vec<Sample> {
+        let sample = |&(load, trial, offset): &(f64, usize, f64)| Sample {
+            load,
+            offset,
+            phase: Phase::Load,
+            trial,
+            line: 0,
+        };
+        rows.iter().map(sample).collect()
+    }
+
+    #[test]
+    fn averages_weigh_readings_by_their_trust_and_leave_out_the_distrusted() {
+        let rows = samples(&[(1.0, 0, 2.0), (1.0, 0, 5.0), (2.0, 0, 7.0), (1.0, 0, 99.0)]);
+        let points = average(&rows, &[1.0, 0.5, 1.0, 0.0]);
+        assert_eq!(points.len(), 2);
+        assert_eq!((points[0].mean, points[0].count), (3.0, 1.5));
+        // 1·1² + ½·2²; two trusted readings more than averages would need three
+        let repeats = Repeats::new(&rows, &[1.0, 0.5, 1.0, 0.0], &points).unwrap();
+        assert_relative_eq!(repeats.all.sum, 3.0, max_relative = 1e-14);
+        assert_eq!(repeats.all.dof, 1);
+    }
+
+    /// Trials y = (10 + a)·F + b with wobbles that are neither offset nor slope.
+    fn trials(shifts: &[(f64, f64)], wobble: f64) -> Vec<(f64, usize, f64)> {
+        let mut rows = Vec::new();
+        for (t, (a, b)) in shifts.iter().enumerate() {
+            let w = if t % 2 == 0 { wobble } else { -wobble };
+            for (load, sign) in [(1.0, 1.0), (2.0, -1.0), (3.0, -1.0), (4.0, 1.0)] {
+                rows.push((load, t, (10.0 + a) * load + b + sign * w));
+            }
+        }
+        rows
+    }
+
+    #[test]
+    fn offsets_and_slopes_of_trials_are_told_from_the_rest() {
+        let rows = trials(&[(0.1, 3.0), (-0.2, 0.0), (0.0, -1.0), (0.1, 0.0)], 0.5);
+        let rows = samples(&rows);
+        let trust = vec![1.0; rows.len()];
+        let repeats = Repeats::new(&rows, &trust, &average(&rows, &trust)).unwrap();
+        // what is left is the wobbles: 16 · 0.5²
+        assert_relative_eq!(repeats.within_trials.sum, 4.0, max_relative = 1e-9);
+        assert_eq!((repeats.all.dof, repeats.within_trials.dof, repeats.trials), (12, 6, 4));
+        assert!(repeats.trials_differ().unwrap());
+        // a trial that stopped half way: its offset and slope are still its own
+        let rows = &rows[..14];
+        let repeats = Repeats::new(rows, &trust[..14], &average(rows, &trust[..14])).unwrap();
+        assert_eq!((repeats.all.dof, repeats.within_trials.dof), (10, 4));
+    }
+
+    #[test]
+    fn a_resolution_is_the_last_decimal_that_is_used() {
+        let of = |micrometres: &[f64]| {
+            let rows: Vec<_> = micrometres.iter().map(|um| (1.0, 0, um * UM)).collect();
+            resolution(&samples(&rows)) / UM
+        };
+        assert_eq!(of(&[50.0, -101.0, 0.0]), 1.0);
+        assert_relative_eq!(of(&[50.0, 101.5]), 0.1);
+        assert_relative_eq!(of(&[2798.826, 5576.824]), 0.001);
+        assert_eq!(of(&[std::f64::consts::PI, 1.0]), 0.0);
+    }
+}

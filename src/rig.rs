@@ -106,6 +106,14 @@ pub fn fit(readings: &Readings, rod: Option<&Rod>, options: &Options) -> Result<
     for key in keys(&readings.rows) {
         lines.extend(Line::fit(key, &samples(&readings.rows, &key), options.robust)?);
     }
+    if lines.is_empty() {
+        return Err(Error::Input {
+            at: Place::whole_file(&readings.file),
+            found: "no line has two different loads".into(),
+            expected: "two loads or more along one direction, read and loaded at the same stations".into(),
+            hint: Some("loads along z and along -z are different lines".into()),
+        });
+    }
     let mut warnings = warning::of_lines(&lines, readings, rod);
     let measured = match rod {
         Some(rod) => {

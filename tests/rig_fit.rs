@@ -442,3 +442,12 @@ fn physics_left_out_of_the_model_goes_into_r() {
     let full = r(Physics::default());
     assert!(full < 0.9999 && full > 0.98, "{full}");
 }
+
+#[test]
+fn one_load_each_way_is_no_line() {
+    let readings =
+        rodcal::rig::readings::Readings::from_text("rig.csv", "axis,load_n,dz_um\nz,5,200\n-z,5,-200\n")
+            .unwrap();
+    let error = rodcal::rig::fit(&readings, None, &Options::default()).unwrap_err();
+    assert!(error.to_string().starts_with("rig.csv: no line has two different loads"), "{error}");
+}

@@ -44,7 +44,7 @@ pub fn run() -> Result<Outcome> {
     let readings = Readings::from_text(LOAD_CELL_FILE, LOAD_CELL)?;
     let fit = rig::fit(&readings, None, &rig::Options::default())?;
     let of_cell = report::rig::report(&fit, &readings, None);
-    words += &wrapped(&format!("Load cell (NIST): {}.", of_cell.headline));
+    words += &wrapped(&format!("Load cell (NIST): {}", of_cell.headline));
     report.warnings.extend(of_cell.warnings.into_iter().map(|warning| format!("load cell: {warning}")));
     report.sections.extend(of_cell.sections);
     report.provenance.push(("readings".into(), format!("{LOAD_CELL_FILE} (NIST StRD, Pontius)")));

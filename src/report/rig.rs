@@ -62,6 +62,7 @@ fn line_json(line: &Line) -> Value {
         "n": line.count,
         "residual_sd_um": line.residual_sd.map(|sd| sd / UM),
         "noise_um": line.noise_sd.map(|sd| sd / UM),
+        "trials_differ": line.trials_differ,
         "lack_of_fit": line.lack_of_fit.map(lack_of_fit_json),
         "quadratic": line.quadratic.map(|curve| {
             let [b0, b1, b2] = curve.coefficients;
@@ -100,26 +101,27 @@ pub fn report(fit: &Fit, readings: &Readings, rod: Option<&Rod>) -> Report {
 pub fn headline(fit: &Fit, rod: Option<&Rod>) -> String {
     match (&fit.measured, rod) {
         (Some(m), Some(rod)) => {
-            let softer = if m.rod_ratio.value >= 1.0 { "softer" } else { "stiffer" };
-            format!(
-                "Rod {} is {} % {softer} than its model: r_rod = {}{}.",
-                rod.name,
-                significant(100.0 * (m.rod_ratio.value - 1.0).abs(), 2),
-                m.rod_ratio.show(1.0),
-                interval(&m.rod_ratio)
-            )
+            let (name, r) = (&rod.name, &m.rod_ratio);
+            let percent = significant(100.0 * (r.value - 1.0).abs(), 2);
+            let agrees = r.half_width_95().is_some_and(|w| (r.value - 1.0).abs() <= w);
+            let verdict = match (agrees, r.value >= 1.0) {
+                (true, _) => format!("Rod {name} is as stiff as its model, within the uncertainty"),
+                (false, true) => format!("Rod {name} is {percent} % softer than its model"),
+                (false, false) => format!("Rod {name} is {percent} % stiffer than its model"),
+            };
+            format!("{verdict}: r_rod = {}{}.", significant(r.value, 5), interval(r))
         }
         _ => {
             let of_line =
                 |line: &Line| format!("{}: {} µm/N{}", line.key.label(), line.slope.show(UM), verdict(line));
-            fit.lines.iter().map(of_line).collect::<Vec<_>>().join("; ")
+            format!("{}.", fit.lines.iter().map(of_line).collect::<Vec<_>>().join("; "))
         }
     }
 }
 
 fn interval(estimate: &Estimate) -> String {
     match estimate.half_width_95() {
-        Some(w) => format!(" (95 %: {} to {})", four(estimate.value - w), four(estimate.value + w)),
+        Some(w) => format!(" (95 % interval {} to {})", four(estimate.value - w), four(estimate.value + w)),
         None => " (no repeats and no third load: no uncertainty)".into(),
     }
 }
@@ -199,6 +201,12 @@ fn lines_table(fit: &Fit) -> Table {
             shown(line.lack_of_fit.map(|t| t.p_value), 1.0, 2),
             shown(line.friction.map(|e| e.value), 1.0, 3),
         ]);
+        if line.trials_differ {
+            table.notes.push(format!(
+                "{}: trials differ by more than their noise; the standard errors count whole trials.",
+                line.key.label()
+            ));
+        }
     }
     table
 }

@@ -86,3 +86,16 @@ fn every_command_of_the_readme_runs() {
         assert!(!output.stdout.is_empty(), "README.md: `{command}` says nothing");
     }
 }
+
+/// The README's picture is what the program draws today.
+/// To renew it: `rodcal rig fit rods/5.toml stiffness_data/5.csv --out DIR`, then copy the first figure.
+#[test]
+fn the_picture_in_the_readme_is_current() {
+    let sandbox = Sandbox::new();
+    sandbox.run("rig fit rods/5.toml stiffness_data/5.csv --out report").succeeded();
+    let shown = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/pictures/load-deflection-5.svg");
+    assert!(
+        sandbox.read("report/figure-1-load-deflection.svg") == std::fs::read_to_string(shown).unwrap(),
+        "docs/pictures/load-deflection-5.svg is not what the program draws"
+    );
+}

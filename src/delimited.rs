@@ -142,6 +142,10 @@ impl Table {
                     "name the column or delete it",
                 );
             }
+            if cell.text.contains(" = ") {
+                let found = format!("the first line is {name}");
+                return error(cell, found, "the names of the columns", "is this a TOML file, not a table?");
+            }
             if cell.text.parse::<f64>().is_ok_and(f64::is_finite) {
                 let found = format!("the first line holds the number {name}");
                 return error(cell, found, "the names of the columns", "put a header line above the numbers");

@@ -20,6 +20,8 @@ use crate::section::Round;
 pub struct Rod {
     /// Name, for people.
     pub name: String,
+    /// Where its numbers come from, in the words of its file.
+    pub source: Option<String>,
     /// Flange to the corner where the two centrelines meet, L1, m.
     pub l1: f64,
     /// Corner to the ball centre, L2, m.

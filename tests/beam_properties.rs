@@ -93,6 +93,7 @@ fn rod() -> impl Strategy<Value = Rod> {
         move |(l1, l2, gamma, bend, outer, wall, at)| {
             let mut rod = Rod {
                 name: "drawn".into(),
+                source: None,
                 l1,
                 l2,
                 gamma,

@@ -32,6 +32,7 @@ pub fn json(study: &Study) -> Value {
         .collect();
     json!({
         "rod": study.rod.name,
+        "rod_source": study.rod.source,
         "mode": mode_name(study.mode),
         "theory": theory(study),
         "elements": study.elements,
@@ -72,6 +73,9 @@ pub fn sections(study: &Study) -> Vec<Section> {
          force F in newtons, both in the tool frame. Rows: axis of the offset; columns: axis of the load."
             .into(),
     )];
+    tables.extend(
+        rod.source.iter().map(|source| Block::Paragraph(format!("Source of the rod's numbers: {source}"))),
+    );
     match &study.calc {
         Ok(calc) => tables.push(matrices("calc", "Calc: closed form, Eqs 15 and 17.", calc)),
         Err(why) => tables.push(Block::Paragraph(format!("{why}."))),

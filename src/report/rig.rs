@@ -25,6 +25,8 @@ pub fn json(fit: &Fit, readings: &Readings, rod: Option<&Rod>) -> Value {
     };
     json!({
         "rod": rod.map(|rod| &rod.name),
+        "rod_source": rod.and_then(|rod| rod.source.as_ref()),
+        "readings_source": readings.source,
         "slopes": fit.lines.iter().map(line_json).collect::<Vec<_>>(),
         "r": by_name(|r| json!(r.value)),
         "r_std_error": by_name(|r| json!(r.std_error)),
@@ -150,8 +152,11 @@ pub fn sections(fit: &Fit, readings: &Readings, rod: Option<&Rod>) -> Vec<Sectio
              distance from the line with the scatter of repeats; a p below 0.01 means the line is not straight."
                 .into(),
         ),
-        Block::Table(lines_table(fit)),
     ];
+    lines.extend(
+        readings.source.iter().map(|source| Block::Paragraph(format!("Source of the readings: {source}"))),
+    );
+    lines.push(Block::Table(lines_table(fit)));
     lines.extend(quadratic_table(fit).map(Block::Table));
     lines
         .push(Block::Figure(load_deflection(&pictures(fit, rod), LoadUnit::Newton).captioned(

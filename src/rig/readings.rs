@@ -41,6 +41,8 @@ const ABSOLUTE_ZERO_C: f64 = -273.15;
 pub struct Readings {
     /// The file as the user named it.
     pub file: String,
+    /// Where the readings come from: the comment lines above the header, joined.
+    pub source: Option<String>,
     /// The readings in the order of the file; at least one (axis, channel) has two different loads.
     pub rows: Vec<Reading>,
     /// What a user should know about the file although it can be read.
@@ -133,7 +135,12 @@ impl Readings {
         check_columns(&table)?;
         let rows = table.rows().map(read_row).collect::<Result<Vec<_>>>()?;
         check_loads(file, &rows)?;
-        Ok(Readings { file: file.to_owned(), warnings: warning::all(&table, &rows), rows })
+        Ok(Readings {
+            file: file.to_owned(),
+            source: comments_above(text),
+            warnings: warning::all(&table, &rows),
+            rows,
+        })
     }
 }
 
@@ -176,6 +183,13 @@ impl fmt::Display for Direction {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}{}", if self.sign < 0 { "-" } else { "" }, self.axis)
     }
+}
+
+/// The text of the comment lines that a file begins with.
+fn comments_above(text: &str) -> Option<String> {
+    let comments = text.lines().map_while(|line| line.trim().strip_prefix('#'));
+    let words = comments.map(str::trim).filter(|line| !line.is_empty()).collect::<Vec<_>>().join(" ");
+    (!words.is_empty()).then_some(words)
 }
 
 fn is_one_of(column: &str, names: &[&str]) -> bool {

@@ -38,6 +38,7 @@ impl Rod {
         let mut check = Check { toml, warnings: Vec::new() };
         let mut rod = check.rod(&raw)?;
         rod.name = raw.name.unwrap_or_else(|| file_stem(file));
+        rod.source = raw.source;
         rod.warnings = check.warnings;
         Ok(rod)
     }
@@ -47,6 +48,7 @@ impl Rod {
 #[serde(deny_unknown_fields)]
 struct RawRod {
     name: Option<String>,
+    source: Option<String>,
     linear_range_n: Option<Number>,
     geometry: RawGeometry,
     material: BTreeMap<String, Spanned<RawMaterial>>,
@@ -103,6 +105,7 @@ impl Check<'_> {
         }
         let mut rod = Rod {
             name: String::new(),
+            source: None,
             l1: geometry.l1,
             l2: geometry.l2,
             gamma: geometry.gamma,
@@ -201,6 +204,7 @@ torsion_urad_per_nm = 3.0
         };
         let expected = Rod {
             name: "5#".into(),
+            source: None,
             l1: 0.15,
             l2: 525.0 * MM,
             gamma: std::f64::consts::FRAC_PI_2,
@@ -243,6 +247,7 @@ torsion_urad_per_nm = 3.0
             .fold(required_only.to_owned(), |text, line| text.replace(line, ""));
         let expected = Rod {
             name: "5".into(), // of the file
+            source: None,
             tip_mass: 0.0,
             masses: vec![],
             joints: vec![],

@@ -47,9 +47,9 @@ impl Chain {
         self.elements.reserve(elements);
     }
 
-    /// Goes straight ahead for `length` (m) in `count` equal elements.
+    /// Goes straight ahead for `length` (m) in `count` equal elements (at least one).
     pub fn straight(&mut self, profile: &Profile, length: f64, count: usize) {
-        let Node { position, station, .. } = self.last();
+        let (Node { position, station, .. }, count) = (self.last(), count.max(1));
         let step = length / count as f64;
         let shape = self.share(Shape::straight(profile, step).turned(&self.frame));
         let ahead = self.frame * Vector3::z();
@@ -61,10 +61,10 @@ impl Chain {
         }
     }
 
-    /// Goes along an arc of `radius` (m) through `angle` (rad, > 0) in `count` equal elements,
+    /// Goes along an arc of `radius` (m) through `angle` (rad, > 0) in `count` equal elements (at least one),
     /// bending from the current z axis towards the current x axis.
     pub fn arc(&mut self, profile: &Profile, radius: f64, angle: f64, count: usize) {
-        let Node { position, station, .. } = self.last();
+        let (Node { position, station, .. }, count) = (self.last(), count.max(1));
         let step = angle / count as f64;
         let local = Shape::arc(profile, radius, step);
         let frame = self.frame;

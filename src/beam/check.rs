@@ -225,6 +225,13 @@ mod tests {
     }
 
     #[test]
+    fn a_load_beyond_the_tip_is_refused() {
+        let (chain, ..) = solved();
+        let error = chain.solve(&[Load::Force { node: chain.end() + 1 }]).unwrap_err().to_string();
+        assert_eq!(error, "`node` is 10, expected a node of the chain, 0 to 9");
+    }
+
+    #[test]
     fn a_displacement_that_is_off_breaks_reciprocity() {
         for load in 0..3 {
             let (chain, loads, weight, mut response) = solved();

@@ -10,7 +10,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::chain::Chain;
 use super::check;
 use super::element::Shape;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::spatial::{cross, skew};
 
 /// A block of three load cases, one along each axis of space.
@@ -80,8 +80,21 @@ impl Chain {
     /// Solves for all `loads` at once and checks the solution (see `check.rs`).
     ///
     /// # Errors
-    /// [`crate::Error::SelfCheck`] with node and freedom where equilibrium, reciprocity or finiteness fails.
+    /// [`Error::Argument`] for a load at a node the chain does not have; [`Error::SelfCheck`] with node and freedom
+    /// where equilibrium, reciprocity or finiteness fails.
     pub fn solve(&self, loads: &[Load]) -> Result<Response> {
+        for load in loads {
+            match *load {
+                Load::Force { node } | Load::Couple { node } if node > self.end() => {
+                    return Err(Error::Argument {
+                        name: "node",
+                        found: node.to_string(),
+                        expected: format!("a node of the chain, 0 to {}", self.end()),
+                    });
+                }
+                _ => {}
+            }
+        }
         let weight = self.weight_beyond();
         let response = self.deform(loads, &weight);
         check::check(self, loads, &weight, &response)?;
@@ -89,6 +102,9 @@ impl Chain {
     }
 
     /// Force and moment that everything at and beyond `node` exerts on the part before it.
+    ///
+    /// # Panics
+    /// For a node that the chain does not have.
     pub fn resultant(&self, load: Load, node: usize) -> Resultant {
         let carried = match load {
             Load::SelfWeight => self.weight_beyond()[node],

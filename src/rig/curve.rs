@@ -35,7 +35,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::line::{LackOfFit, Point, Sample};
 use super::readings::Phase;
-use super::repeats::{Repeats, average, mean_square, resolution};
+use super::repeats::{Repeats, average, mean_square};
 use crate::error::Result;
 use crate::least_squares::{self, Noise, Options};
 use crate::statistics::{self, Estimate};
@@ -77,8 +77,8 @@ pub(super) struct Curve {
 }
 
 impl Curve {
-    pub(super) fn fit(columns: Columns, samples: &[Sample], trust: &[f64]) -> Result<Curve> {
-        let mut points = average(samples, trust);
+    pub(super) fn fit(columns: Columns, samples: &[Sample], resolution: f64) -> Result<Curve> {
+        let mut points = average(samples);
         let design = DMatrix::from_fn(points.len(), columns.count(), |k, j| {
             columns.entry(j, points[k].load, points[k].phase)
         });
@@ -93,13 +93,13 @@ impl Curve {
         }
         let between: f64 = points.iter().map(|p| p.count * p.residual.powi(2)).sum();
         let dof_fit = points.len().saturating_sub(fit.covariance.rank);
-        let repeats = Repeats::new(samples, trust, &points)?;
+        let repeats = Repeats::new(samples, &points)?;
         let (trials, noise) = match repeats.trials_differ()? {
             true => (Some(repeats.trials), repeats.within_trials),
             false => (None, repeats.all),
         };
         let fit_variance = mean_square(between, dof_fit);
-        let least = trusted_count(trust) as f64 / points.len() as f64 * resolution(samples).powi(2) / 12.0;
+        let least = samples.len() as f64 / points.len() as f64 * resolution.powi(2) / 12.0;
         let noise_variance = noise.mean_square().map(|variance| variance.max(least));
         let lack_of_fit = match (fit_variance, noise_variance) {
             (Some(fit_variance), Some(variance)) if variance > 0.0 => {
@@ -115,7 +115,7 @@ impl Curve {
         let mut covariances: Vec<(DMatrix<f64>, usize)> = of_fit.into_iter().collect();
         match (trials, noise_variance) {
             (Some(trials), _) => {
-                let of_trials = trial_covariance(columns, &fit.parameters, unit, samples, trust);
+                let of_trials = trial_covariance(columns, &fit.parameters, unit, samples);
                 // trials that agree by luck still have the sensor's resolution
                 covariances.extend([(of_trials, trials - 1), (unit * least, trials - 1)]);
             }
@@ -183,22 +183,16 @@ fn trial_covariance(
     coefficients: &DVector<f64>,
     unit: &DMatrix<f64>,
     samples: &[Sample],
-    trust: &[f64],
 ) -> DMatrix<f64> {
     let mut pulls: BTreeMap<usize, DVector<f64>> = BTreeMap::new();
-    for (sample, weight) in samples.iter().zip(trust).filter(|(_, weight)| **weight > 0.0) {
+    for sample in samples {
         let row = DVector::from_fn(columns.count(), |j, _| columns.entry(j, sample.load, sample.phase));
         let residual = sample.offset - row.dot(coefficients);
-        *pulls.entry(sample.trial).or_insert_with(|| DVector::zeros(columns.count())) +=
-            row * (weight * residual);
+        *pulls.entry(sample.trial).or_insert_with(|| DVector::zeros(columns.count())) += row * residual;
     }
     let trials = pulls.len() as f64;
     let scatter: DMatrix<f64> = pulls.values().map(|g| g * g.transpose()).sum();
     unit * scatter * unit * (trials / (trials - 1.0))
-}
-
-fn trusted_count(trust: &[f64]) -> usize {
-    trust.iter().filter(|weight| **weight > 0.0).count()
 }
 
 #[cfg(test)]
@@ -211,7 +205,7 @@ mod tests {
     const STRAIGHT: Columns = Columns { degree: 1, unload: false };
 
     fn curve(rows: &[(f64, usize, f64)]) -> Curve {
-        Curve::fit(STRAIGHT, &samples(rows), &vec![1.0; rows.len()]).unwrap()
+        Curve::fit(STRAIGHT, &samples(rows), 0.0).unwrap()
     }
 
     #[test]

@@ -6,7 +6,8 @@ use nalgebra::{DMatrix, DVector};
 
 use super::curve::{Columns, Curve};
 use super::readings::{Axis, Direction, Phase};
-use crate::error::Result;
+use super::repeats::resolution;
+use crate::error::{Error, Result};
 use crate::least_squares::{self, Options, Robust};
 use crate::statistics::Estimate;
 
@@ -50,7 +51,7 @@ pub struct Point {
     pub phase: Phase,
     /// Mean offset, m.
     pub mean: f64,
-    /// Number of readings (their weights' sum in a robust fit).
+    /// Number of readings.
     pub count: f64,
     /// Offset less that of the fitted line, m.
     pub residual: f64,
@@ -145,14 +146,15 @@ impl Line {
         }
         let [up, down] = [Phase::Load, Phase::Unload].map(|p| distinct_loads(&samples, Some(p)));
         let columns = Columns { degree: 1, unload: up.min(down) >= 1 && up.max(down) >= 2 };
-        let trust = trust(&samples, columns, robust)?;
-        let line = Curve::fit(columns, &samples, &trust)?;
+        let resolution = resolution(&samples);
+        let (samples, distrusted) = resistant(samples, columns, robust)?;
+        let line = Curve::fit(columns, &samples, resolution)?;
 
         let [b, c] = [0, 1].map(|i| line.estimate(i));
         let sign = f64::from(key.direction.sign);
         let quadratic = match distinct_loads(&samples, None) {
             0..=3 => None,
-            _ => Some(Curve::fit(Columns { degree: 2, ..columns }, &samples, &trust)?),
+            _ => Some(Curve::fit(Columns { degree: 2, ..columns }, &samples, resolution)?),
         };
         Ok(Some(Line {
             key,
@@ -171,16 +173,21 @@ impl Line {
                 residual_sd: curve.residual_sd,
                 lack_of_fit: curve.lack_of_fit,
             }),
-            distrusted: samples.iter().zip(&trust).filter(|(_, t)| **t < 0.5).map(|(s, _)| s.line).collect(),
+            distrusted,
             points: line.points,
         }))
     }
 }
 
-/// How much each single reading is trusted, 0 to 1: all 1 unless the fit is robust.
-fn trust(samples: &[Sample], columns: Columns, robust: Robust) -> Result<Vec<f64>> {
+/// Readings that least squares treats as the robust fit treated the real ones, and the lines of those it trusts
+/// less than half.
+///
+/// Huber's pseudo-observations y* = ŷ + K·ψ(y − ŷ)/ψ̄': their least-squares line is the robust one, and their
+/// residual variance is the robust one too, so that all that follows needs to know nothing of weights
+/// (P. J. Huber, *Robust Statistics*, 1981, § 7.10).
+fn resistant(samples: Vec<Sample>, columns: Columns, robust: Robust) -> Result<(Vec<Sample>, Vec<usize>)> {
     if robust == Robust::None {
-        return Ok(vec![1.0; samples.len()]);
+        return Ok((samples, Vec::new()));
     }
     let design = DMatrix::from_fn(samples.len(), columns.count(), |k, j| {
         columns.entry(j, samples[k].load, samples[k].phase)
@@ -188,7 +195,20 @@ fn trust(samples: &[Sample], columns: Columns, robust: Robust) -> Result<Vec<f64
     let offsets = DVector::from_iterator(samples.len(), samples.iter().map(|s| s.offset));
     let options = Options { robust, ..Options::default() };
     let fit = least_squares::linear(&design, &offsets, None, &options)?;
-    Ok(fit.weights.iter().copied().collect())
+    if !fit.is_converged() {
+        return Err(Error::Numerical { what: "the robust fit of a line", why: fit.reason.to_string() });
+    }
+    // residuals are ŷ − y and ψ = w·(y − ŷ); s² = (K/ψ̄')² Σψ²/dof gives the factor K/ψ̄'
+    let pull = -fit.weights.component_mul(&fit.residuals);
+    let factor = match fit.residual_sd {
+        Some(sd) if pull.norm() > 0.0 => sd * (fit.degrees_of_freedom as f64).sqrt() / pull.norm(),
+        _ => 1.0,
+    };
+    let distrusted = samples.iter().zip(fit.weights.iter()).filter(|(_, w)| **w < 0.5).map(|(s, _)| s.line);
+    let distrusted = distrusted.collect();
+    let fitted = &design * &fit.parameters;
+    let pseudo = |(k, sample): (usize, Sample)| Sample { offset: fitted[k] + factor * pull[k], ..sample };
+    Ok((samples.into_iter().enumerate().map(pseudo).collect(), distrusted))
 }
 
 fn distinct_loads(samples: &[Sample], phase: Option<Phase>) -> usize {

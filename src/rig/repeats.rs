@@ -12,19 +12,19 @@ use crate::units::UM;
 const TRIALS_DIFFER: f64 = 0.05;
 
 /// Averages of the repeats.
-pub(super) fn average(samples: &[Sample], trust: &[f64]) -> Vec<Point> {
+pub(super) fn average(samples: &[Sample]) -> Vec<Point> {
     let mut points: Vec<Point> = Vec::new();
-    for (sample, &weight) in samples.iter().zip(trust).filter(|(_, weight)| **weight > 0.0) {
+    for sample in samples {
         match points.iter_mut().find(|point| point.has(sample)) {
             Some(point) => {
-                point.count += weight;
-                point.mean += (sample.offset - point.mean) * weight / point.count;
+                point.count += 1.0;
+                point.mean += (sample.offset - point.mean) / point.count;
             }
             None => points.push(Point {
                 load: sample.load,
                 phase: sample.phase,
                 mean: sample.offset,
-                count: weight,
+                count: 1.0,
                 residual: 0.0,
             }),
         }
@@ -60,34 +60,25 @@ pub(super) struct Repeats {
 }
 
 impl Repeats {
-    pub(super) fn new(samples: &[Sample], trust: &[f64], points: &[Point]) -> Result<Repeats> {
-        let used: Vec<(&Sample, f64)> =
-            samples.iter().zip(trust.iter().copied()).filter(|(_, weight)| *weight > 0.0).collect();
-        let place: Vec<usize> =
-            used.iter().filter_map(|(s, _)| points.iter().position(|p| p.has(s))).collect();
-        // what is left of one number per reading once its weighted average over the repeats is taken off
+    pub(super) fn new(samples: &[Sample], points: &[Point]) -> Result<Repeats> {
+        let place: Vec<usize> = samples.iter().filter_map(|s| points.iter().position(|p| p.has(s))).collect();
+        // what is left of one number per reading once its average over the repeats is taken off
         let centred = |of: &dyn Fn(&Sample) -> f64| {
             let mut averages = vec![0.0; points.len()];
-            for ((sample, weight), &k) in used.iter().zip(&place) {
-                averages[k] += of(sample) * weight / points[k].count;
+            for (sample, &k) in samples.iter().zip(&place) {
+                averages[k] += of(sample) / points[k].count;
             }
-            DVector::from_iterator(
-                used.len(),
-                used.iter().zip(&place).map(|((s, _), &k)| of(s) - averages[k]),
-            )
+            let left = samples.iter().zip(&place).map(|(s, &k)| of(s) - averages[k]);
+            DVector::from_iterator(samples.len(), left)
         };
         let deviations = centred(&|s| s.offset);
-        let weights = DVector::from_iterator(used.len(), used.iter().map(|(_, weight)| *weight));
-        let all = Squares {
-            sum: deviations.component_mul(&deviations).dot(&weights),
-            dof: used.len() - points.len(),
-        };
-        let mut trials: Vec<usize> = used.iter().map(|(s, _)| s.trial).collect();
+        let all = Squares { sum: deviations.norm_squared(), dof: samples.len() - points.len() };
+        let mut trials: Vec<usize> = samples.iter().map(|s| s.trial).collect();
         trials.sort_unstable();
         trials.dedup();
         let mut repeats = Repeats { all, within_trials: all, trials: trials.len() };
         if trials.len() > 1 && 2 * (trials.len() - 1) < all.dof {
-            let largest = used.iter().fold(0.0, |max: f64, (s, _)| s.load.max(max));
+            let largest = samples.iter().fold(0.0, |max: f64, s| s.load.max(max));
             let columns: Vec<DVector<f64>> = trials
                 .iter()
                 .flat_map(|&trial| [0, 1].map(|power| (trial, power)))
@@ -98,7 +89,7 @@ impl Repeats {
                 })
                 .collect();
             let design = DMatrix::from_columns(&columns);
-            let fit = least_squares::linear(&design, &deviations, Some(&weights), &Options::default())?;
+            let fit = least_squares::linear(&design, &deviations, None, &Options::default())?;
             repeats.within_trials =
                 Squares { sum: fit.sum_of_squares, dof: all.dof.saturating_sub(fit.covariance.rank) };
         }
@@ -151,14 +142,15 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn averages_weigh_readings_by_their_trust_and_leave_out_the_distrusted() {
-        let rows = samples(&[(1.0, 0, 2.0), (1.0, 0, 5.0), (2.0, 0, 7.0), (1.0, 0, 99.0)]);
-        let points = average(&rows, &[1.0, 0.5, 1.0, 0.0]);
-        assert_eq!(points.len(), 2);
-        assert_eq!((points[0].mean, points[0].count), (3.0, 1.5));
-        // 1·1² + ½·2²; two trusted readings more than averages would need three
-        let repeats = Repeats::new(&rows, &[1.0, 0.5, 1.0, 0.0], &points).unwrap();
-        assert_relative_eq!(repeats.all.sum, 3.0, max_relative = 1e-14);
+    fn averages_are_those_of_one_load_and_one_phase() {
+        let mut rows = samples(&[(1.0, 0, 2.0), (1.0, 0, 5.0), (2.0, 0, 7.0), (1.0, 0, 99.0)]);
+        rows[3].phase = Phase::Unload;
+        let points = average(&rows);
+        assert_eq!(points.len(), 3);
+        assert_eq!((points[0].mean, points[0].count), (3.5, 2.0));
+        // 2 · 1.5²
+        let repeats = Repeats::new(&rows, &points).unwrap();
+        assert_relative_eq!(repeats.all.sum, 4.5, max_relative = 1e-14);
         assert_eq!(repeats.all.dof, 1);
     }
 
@@ -178,15 +170,14 @@ pub(super) mod tests {
     fn offsets_and_slopes_of_trials_are_told_from_the_rest() {
         let rows = trials(&[(0.1, 3.0), (-0.2, 0.0), (0.0, -1.0), (0.1, 0.0)], 0.5);
         let rows = samples(&rows);
-        let trust = vec![1.0; rows.len()];
-        let repeats = Repeats::new(&rows, &trust, &average(&rows, &trust)).unwrap();
+        let repeats = Repeats::new(&rows, &average(&rows)).unwrap();
         // what is left is the wobbles: 16 · 0.5²
         assert_relative_eq!(repeats.within_trials.sum, 4.0, max_relative = 1e-9);
         assert_eq!((repeats.all.dof, repeats.within_trials.dof, repeats.trials), (12, 6, 4));
         assert!(repeats.trials_differ().unwrap());
         // a trial that stopped half way: its offset and slope are still its own
         let rows = &rows[..14];
-        let repeats = Repeats::new(rows, &trust[..14], &average(rows, &trust[..14])).unwrap();
+        let repeats = Repeats::new(rows, &average(rows)).unwrap();
         assert_eq!((repeats.all.dof, repeats.within_trials.dof), (10, 4));
     }
 

@@ -73,7 +73,8 @@ impl RodModel {
     /// The elements are shared out by length. Their number does not change the result: each element is exact.
     ///
     /// # Errors
-    /// [`Error::Argument`] for no elements, or a station that is not on the rod.
+    /// [`Error::Argument`] for no elements, or a station that is not on the rod; [`Error::Numerical`] for a rod whose
+    /// pipes are too unequal in length, or too short, for double precision.
     pub fn new(rod: &Rod, physics: &Physics, elements: usize, stations: &[f64]) -> Result<Self> {
         if elements == 0 {
             return Err(Error::Argument {
@@ -83,6 +84,7 @@ impl RodModel {
             });
         }
         let rod = physics.applied_to(rod);
+        check_resolution(&rod)?;
         let cuts = cuts(&rod, stations)?;
         let counts = share_out(elements, &cuts);
         let mut chain = Chain::clamped_at(Vector3::zeros(), Rotation3::identity());
@@ -197,6 +199,25 @@ impl Physics {
             mass_per_length: pipe.mass_per_length(),
         }
     }
+}
+
+/// Refuses a rod of which rounding would lose a pipe: stations of 1e27 m cannot tell the ends of one of 0.5 m apart.
+fn check_resolution(rod: &Rod) -> Result<()> {
+    let (length, tangent) = (rod.length(), rod.tangent_length());
+    let pipes = [(rod.l1 - tangent, rod.bend_start()), (rod.l2 - tangent, length - rod.bend_end())];
+    let is_lost =
+        |(pipe, between_stations): (f64, f64)| (pipe - between_stations).abs() > 1e-6 * rod.l1.min(rod.l2);
+    if pipes.into_iter().any(is_lost) || length < 1e3 * SAME_STATION {
+        return Err(Error::Numerical {
+            what: "the beam model",
+            why: format!(
+                "pipes of {:.3e} and {:.3e} mm are beyond double precision; is a length in another unit?",
+                rod.l1 / MM,
+                rod.l2 / MM
+            ),
+        });
+    }
+    Ok(())
 }
 
 /// Where the centreline is cut into parts: its ends, the bend's, and wherever something sits or is read.

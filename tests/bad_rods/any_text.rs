@@ -13,7 +13,7 @@ use super::{GOOD, changed, read};
 #[test]
 fn extreme_numbers_end_in_a_finite_compliance_or_an_error() {
     for (piece, extreme, is_solved) in [
-        ("l1_mm = 150.0", "l1_mm = 1e30", true),
+        ("l1_mm = 150.0", "l1_mm = 1e30", false),
         ("l1_mm = 150.0", "l1_mm = 1e-300", true),
         ("youngs_modulus_gpa = 193.0", "youngs_modulus_gpa = 1e30", true),
         ("youngs_modulus_gpa = 193.0", "youngs_modulus_gpa = 1e-320", false),
@@ -31,7 +31,8 @@ fn extreme_numbers_end_in_a_finite_compliance_or_an_error() {
         match Compliance::of_model(&rod, &Physics::default(), 20) {
             Ok(compliance) => assert!(is_solved && is_finite(&compliance), "{extreme}: {compliance:?}"),
             Err(error) => {
-                assert!(!is_solved && matches!(error, Error::SelfCheck { .. }), "{extreme}: {error}")
+                let says_so = matches!(error, Error::SelfCheck { .. } | Error::Numerical { .. });
+                assert!(!is_solved && says_so, "{extreme}: {error}")
             }
         }
     }
@@ -41,7 +42,7 @@ fn extreme_numbers_end_in_a_finite_compliance_or_an_error() {
 #[test]
 fn a_compliance_that_overflows_only_per_g_is_an_error() {
     let changes =
-        [("l1_mm = 150.0", "l1_mm = 1e29"), ("youngs_modulus_gpa = 193.0", "youngs_modulus_gpa = 1e-205")];
+        [("l1_mm = 150.0", "l1_mm = 1e12"), ("youngs_modulus_gpa = 193.0", "youngs_modulus_gpa = 3.3e-274")];
     let rod = read(&changed(&changes)).expect("a rod");
     let error = Compliance::of_model(&rod, &Physics::default(), 8).expect_err("an overflow");
     assert_eq!(

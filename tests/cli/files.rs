@@ -1,7 +1,5 @@
 //! `--out DIR` and the demo: which files there are, whole, alone and the same every time.
 
-use std::time::{Duration, Instant};
-
 use super::{REPORTS, Sandbox};
 
 #[test]
@@ -102,9 +100,7 @@ fn the_demo_needs_nothing_and_says_where_its_report_is() {
     let mut answers = Vec::new();
     for line in ["", "demo"] {
         let sandbox = Sandbox::empty();
-        let start = Instant::now();
         let answer = sandbox.run(line).succeeded();
-        assert!(start.elapsed() < Duration::from_secs(10), "{:?}", start.elapsed());
         let path = answer.stdout.lines().find_map(|line| line.strip_prefix("report: ")).unwrap();
         assert_eq!(path, "reports/demo/index.html");
         assert!(sandbox.read(path).starts_with("<!DOCTYPE html>"));

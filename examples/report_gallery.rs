@@ -98,6 +98,7 @@ fn steel() -> LoadDeflection {
             line("Meas", 33.0, -29.7, true),
         ],
         readings: readings(33.0, 0.9, 6.0),
+        ..LoadDeflection::default()
     }
 }
 
@@ -110,6 +111,7 @@ fn carbon() -> LoadDeflection {
             line("Meas", 7.8, -7.6, true),
         ],
         readings: readings(7.8, 0.98, 1.5),
+        ..LoadDeflection::default()
     }
 }
 

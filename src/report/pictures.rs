@@ -19,6 +19,8 @@ pub struct LoadDeflection {
     pub lines: Vec<LoadLine>,
     /// What was read at each load.
     pub readings: Vec<MeanReading>,
+    /// What was read on the way back down, where it was.
+    pub unloading: Vec<MeanReading>,
 }
 
 /// A straight line deflection = intercept + slope × load.
@@ -63,7 +65,8 @@ pub fn load_deflection(rods: &[LoadDeflection], unit: LoadUnit) -> Figure {
         LoadUnit::Kilogram => ("kg", STANDARD_GRAVITY),
     };
     let panel = |rod: &LoadDeflection| {
-        let largest = extent(rod.readings.iter().map(|r| r.load_n)).map_or(0.0, |(_, high)| high);
+        let largest =
+            extent(rod.readings.iter().chain(&rod.unloading).map(|r| r.load_n)).map_or(0.0, |(_, high)| high);
         let end_n = if largest > 0.0 { 1.06 * largest } else { 10.0 };
         let mut chart = Chart::new(&rod.title, format!("load / {symbol}"), "deflection / µm");
         chart.x.range = Range::Fixed(0.0, end_n / newtons);
@@ -99,14 +102,18 @@ pub fn load_deflection(rods: &[LoadDeflection], unit: LoadUnit) -> Figure {
                 });
             }
         }
-        let any_error = rod.readings.iter().any(|r| r.standard_error_um > 0.0);
         let point =
             |r: &MeanReading| Point { x: r.load_n / newtons, y: r.mean_um, error: r.standard_error_um };
-        chart.marks.push(Mark::Points {
-            label: if any_error { "readings, mean ± standard error" } else { "readings" }.into(),
-            points: rod.readings.iter().map(point).collect(),
-            style: Style::nth(0),
-        });
+        let mut points = |what: &str, readings: &[MeanReading], style: Style| {
+            let any_error = readings.iter().any(|r| r.standard_error_um > 0.0);
+            let label = if any_error { format!("{what}, mean ± standard error") } else { what.into() };
+            let points = readings.iter().map(point).collect();
+            chart.marks.push(Mark::Points { label, points, style });
+        };
+        points("readings", &rod.readings, Style::nth(0));
+        if !rod.unloading.is_empty() {
+            points("readings, unloading", &rod.unloading, Style::nth(0).marker(Marker::Triangle));
+        }
         chart.marks.extend(crossing);
         chart
     };
@@ -172,7 +179,7 @@ pub struct Residuals {
     pub title: String,
     /// Name of each series with its load (N) and residual (µm), for example one series per direction.
     pub series: Vec<(String, Vec<[f64; 2]>)>,
-    /// Half width of the band within which noise alone would keep them, µm.
+    /// Half width of the band within which noise alone would keep them, µm; 0 draws none.
     pub noise_um: f64,
     /// What the band is, for example "± 2 standard deviations of repeated readings".
     pub noise_label: String,
@@ -183,18 +190,20 @@ pub fn residuals(data: &Residuals) -> Figure {
     let loads = data.series.iter().flat_map(|(_, points)| points.iter().map(|p| p[0]));
     let (low, high) = extent(loads).unwrap_or((0.0, 1.0));
     let air = if high > low { 0.05 * (high - low) } else { 1.0 };
-    let band = [low - air, high + air].map(|x| [x, -data.noise_um, data.noise_um]).to_vec();
-    let mut chart = Chart::new(&data.title, "load / N", "residual / µm")
-        .with(Mark::Band {
+    let mut chart = Chart::new(&data.title, "load / N", "residual / µm");
+    // without repeats there is no noise to compare with
+    if data.noise_um > 0.0 {
+        chart.marks.push(Mark::Band {
             label: data.noise_label.clone(),
-            points: band,
+            points: [low - air, high + air].map(|x| [x, -data.noise_um, data.noise_um]).to_vec(),
             style: Style::nth(0).colour(Colour::SkyBlue),
-        })
-        .with(Mark::Line {
-            label: String::new(),
-            points: vec![[low - air, 0.0], [high + air, 0.0]],
-            style: Style::nth(0).colour(Colour::Grey).width(1.0).dash(Dash::Solid),
         });
+    }
+    chart.marks.push(Mark::Line {
+        label: String::new(),
+        points: vec![[low - air, 0.0], [high + air, 0.0]],
+        style: Style::nth(0).colour(Colour::Grey).width(1.0).dash(Dash::Solid),
+    });
     chart.x.range = Range::Fixed(low - air, high + air);
     for (i, (label, points)) in data.series.iter().enumerate() {
         let points = points.iter().map(|[x, y]| Point { x: *x, y: *y, error: 0.0 }).collect();
@@ -218,7 +227,29 @@ mod tests {
             title: "5# steel".into(),
             lines: vec![line("Meas", 33.0, -29.7, true), line("FEA", 32.6, 0.0, false)],
             readings: vec![MeanReading { load_n: 9.8, mean_um: 293.7, standard_error_um: 1.5 }],
+            ..LoadDeflection::default()
         }
+    }
+
+    #[test]
+    fn readings_on_the_way_down_are_drawn_too() {
+        let down = MeanReading { load_n: 4.9, mean_um: 191.4, standard_error_um: 0.0 };
+        let figure =
+            |unloading| load_deflection(&[LoadDeflection { unloading, ..steel() }], LoadUnit::Newton);
+        assert!(figure(vec![down]).svg().contains("readings, unloading"));
+        assert!(!figure(vec![]).svg().contains("unloading"));
+    }
+
+    #[test]
+    fn a_noise_that_is_not_known_has_no_band() {
+        let data = |noise_um| Residuals {
+            series: vec![("dz".into(), vec![[5.0, 1.0], [10.0, -1.0]])],
+            noise_um,
+            noise_label: "band".into(),
+            ..Residuals::default()
+        };
+        assert!(residuals(&data(2.0)).svg().contains("band"));
+        assert!(!residuals(&data(0.0)).svg().contains("band"));
     }
 
     #[test]

@@ -9,7 +9,7 @@ use super::pictures::{
 use super::table::{Column, Table};
 use super::{Block, Report, Section};
 use crate::compliance::paper_contact_force;
-use crate::rig::line::{LackOfFit, Line};
+use crate::rig::line::{LackOfFit, Line, Point};
 use crate::rig::readings::{Phase, Readings};
 use crate::rig::{Fit, Measured};
 use crate::rod::Rod;
@@ -134,7 +134,7 @@ fn four(value: f64) -> String {
 
 fn verdict(line: &Line) -> String {
     match line.lack_of_fit {
-        Some(test) if test.p_value < 0.01 => {
+        Some(test) if test.is_crooked() => {
             format!(", but the readings leave a straight line (lack of fit F = {})", four(test.f))
         }
         Some(test) => format!(", straight within its noise (lack of fit F = {})", four(test.f)),
@@ -236,7 +236,7 @@ fn quadratic_table(fit: &Fit) -> Option<Table> {
             Column::number("F", ""),
         ],
     );
-    let crooked = fit.lines.iter().filter(|line| line.lack_of_fit.is_some_and(|t| t.p_value < 0.01));
+    let crooked = fit.lines.iter().filter(|line| line.lack_of_fit.is_some_and(|t| t.is_crooked()));
     for (line, curve) in crooked.filter_map(|line| Some((line, line.quadratic?))) {
         let [b0, b1, b2] = curve.coefficients;
         table.row([
@@ -281,27 +281,31 @@ fn picture(index: usize, line: &Line, fit: &Fit, rod: Option<&Rod>) -> LoadDefle
         }
         model("FEA", measured.predicted[index]);
     }
-    lines.push(LoadLine {
-        label: if rod.is_some() { "Meas".into() } else { "line".into() },
+    let name = if rod.is_some() { "Meas" } else { "line" };
+    let fitted = |label: String, intercept: &Estimate, is_fit| LoadLine {
+        label,
         slope_um_per_n: sign * line.slope.value / UM,
-        intercept_um: line.intercept.value / UM,
-        is_fit: true,
-    });
-    let name = rod.map_or(String::new(), |rod| format!("rod {}, ", rod.name));
+        intercept_um: intercept.value / UM,
+        is_fit,
+    };
+    lines.push(fitted(name.into(), &line.intercept, true));
+    lines.extend(line.unload_intercept.map(|b| fitted(format!("{name}, unloading"), &b, false)));
     let noise = line.noise_sd.unwrap_or(0.0);
+    let readings = |phase: Phase| {
+        let of_phase = line.points.iter().filter(move |point| point.phase == phase);
+        let mean = |point: &Point| MeanReading {
+            load_n: point.load,
+            mean_um: point.mean / UM,
+            standard_error_um: noise / point.count.sqrt() / UM,
+        };
+        of_phase.map(mean).collect()
+    };
+    let of_rod = rod.map_or(String::new(), |rod| format!("rod {}, ", rod.name));
     LoadDeflection {
-        title: format!("{name}{}", line.key.label()),
+        title: format!("{of_rod}{}", line.key.label()),
         lines,
-        readings: line
-            .points
-            .iter()
-            .filter(|point| point.phase == Phase::Load || line.unload_intercept.is_none())
-            .map(|point| MeanReading {
-                load_n: point.load,
-                mean_um: point.mean / UM,
-                standard_error_um: noise / point.count.sqrt() / UM,
-            })
-            .collect(),
+        readings: readings(Phase::Load),
+        unloading: readings(Phase::Unload),
     }
 }
 

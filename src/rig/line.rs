@@ -12,7 +12,7 @@ use crate::least_squares::{self, Options, Robust};
 use crate::statistics::Estimate;
 
 /// Below this probability a line is called crooked.
-pub(super) const CROOKED: f64 = 0.01;
+const CROOKED: f64 = 0.01;
 
 /// What a line is fitted to: one channel under loads along one direction at one place.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -118,6 +118,13 @@ pub struct Quadratic {
     pub residual_sd: Option<f64>,
     /// Whether the curve fits.
     pub lack_of_fit: Option<LackOfFit>,
+}
+
+impl LackOfFit {
+    /// The averages leave the curve by more than the repeats allow (p < 0.01).
+    pub fn is_crooked(&self) -> bool {
+        self.p_value < CROOKED
+    }
 }
 
 impl LineKey {

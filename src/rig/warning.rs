@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::line::{CROOKED, Line};
+use super::line::Line;
 use super::readings::{Axis, Readings};
 use super::{Measured, Ratio, ratios_of_rod, vanishes};
 use crate::rod::Rod;
@@ -83,7 +83,7 @@ pub(super) fn of_lines(lines: &[Line], readings: &Readings, rod: Option<&Rod>) -
     for line in lines {
         let label = line.key.label();
         match line.lack_of_fit {
-            Some(test) if test.p_value < CROOKED => warnings.push(Warning::NotStraight {
+            Some(test) if test.is_crooked() => warnings.push(Warning::NotStraight {
                 line: label.clone(),
                 f: test.f,
                 p_value: test.p_value,
@@ -99,7 +99,7 @@ pub(super) fn of_lines(lines: &[Line], readings: &Readings, rod: Option<&Rod>) -
             warnings.push(Warning::AgainstTheLoad { line: label.clone() });
         }
         // a crooked line crosses the axis wherever its curvature sends it
-        let is_straight = line.lack_of_fit.is_none_or(|test| test.p_value >= CROOKED);
+        let is_straight = line.lack_of_fit.is_none_or(|test| !test.is_crooked());
         let offset = line.load_offset.filter(|offset| is_straight && offset.is_significant(SIGNIFICANCE));
         if let Some(offset) = offset.filter(|_| is_along) {
             warnings.push(Warning::LoadOffset { line: label.clone(), offset });

@@ -371,3 +371,22 @@ fn warnings(fit: &Fit, readings: &Readings, rod: Option<&Rod>) -> Vec<String> {
     let of_readings = readings.warnings.iter().map(|warning| format!("{}: {warning}", readings.file));
     of_rod.chain(of_readings).chain(fit.warnings.iter().map(ToString::to_string)).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rig;
+
+    #[test]
+    fn the_way_down_reaches_the_picture() {
+        let up = "axis,load_n,phase,dz_um\nz,5,load,40\nz,10,load,90\nz,15,load,140\n";
+        let picture = |text: &str| {
+            let readings = Readings::from_text("rig.csv", text).unwrap();
+            let fit = rig::fit(&readings, None, &rig::Options::default()).unwrap();
+            report(&fit, &readings, None).figures().next().unwrap().svg()
+        };
+        assert!(!picture(up).contains("unloading"));
+        let both = picture(&format!("{up}z,10,unload,110\nz,5,unload,60\n"));
+        assert!(both.contains("readings, unloading") && both.contains("line, unloading, 10.0"), "{both}");
+    }
+}

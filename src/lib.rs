@@ -11,6 +11,7 @@ pub mod linalg;
 pub mod material;
 pub mod report;
 pub mod rig;
+pub mod robot;
 pub mod rod;
 pub mod section;
 pub mod spatial;

@@ -1,6 +1,67 @@
-//! Vectors in space: the few operations that nalgebra has no short name for.
+//! Vectors, rotations and frames in space: the few operations that nalgebra has no short name for.
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
+
+/// A frame: rotation matrix and origin. Columns of the rotation are its axes in the frame it is given in.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pose {
+    /// Axes of the frame, as columns.
+    pub rotation: Matrix3<f64>,
+    /// Origin, m.
+    pub origin: Vector3<f64>,
+}
+
+impl Pose {
+    /// The frame itself.
+    pub const IDENTITY: Pose = Pose {
+        rotation: Matrix3::new(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0),
+        origin: Vector3::new(0.0, 0.0, 0.0),
+    };
+
+    /// From position (m) and `[roll, pitch, yaw]` (rad): Rz(yaw)·Ry(pitch)·Rx(roll), the URDF convention.
+    pub fn from_xyz_rpy(xyz: [f64; 3], rpy: [f64; 3]) -> Self {
+        let [r, p, y] = rpy;
+        let rotation = turned_about_x(&turned_about_y(&turned_about_z(&Matrix3::identity(), y), p), r);
+        Pose { rotation, origin: Vector3::from(xyz) }
+    }
+
+    /// This frame followed by `next`, which is given in it.
+    pub fn then(&self, next: &Pose) -> Pose {
+        Pose { rotation: self.rotation * next.rotation, origin: self.point(&next.origin) }
+    }
+
+    /// A point given in this frame, in the frame that this one is given in.
+    pub fn point(&self, p: &Vector3<f64>) -> Vector3<f64> {
+        self.rotation * p + self.origin
+    }
+
+    /// The frame that this one is given in, in this one.
+    pub fn inverse(&self) -> Pose {
+        let rotation = self.rotation.transpose();
+        Pose { rotation, origin: -(rotation * self.origin) }
+    }
+}
+
+/// R·Rz(angle).
+pub fn turned_about_z(r: &Matrix3<f64>, angle: f64) -> Matrix3<f64> {
+    let (s, c) = angle.sin_cos();
+    let (x, y) = (r.column(0), r.column(1));
+    Matrix3::from_columns(&[x * c + y * s, y * c - x * s, r.column(2).into()])
+}
+
+/// R·Rx(angle).
+pub fn turned_about_x(r: &Matrix3<f64>, angle: f64) -> Matrix3<f64> {
+    let (s, c) = angle.sin_cos();
+    let (y, z) = (r.column(1), r.column(2));
+    Matrix3::from_columns(&[r.column(0).into(), y * c + z * s, z * c - y * s])
+}
+
+/// R·Ry(angle).
+pub fn turned_about_y(r: &Matrix3<f64>, angle: f64) -> Matrix3<f64> {
+    let (s, c) = angle.sin_cos();
+    let (z, x) = (r.column(2), r.column(0));
+    Matrix3::from_columns(&[x * c - z * s, r.column(1).into(), z * c + x * s])
+}
 
 /// The cross-product matrix of `v`: `skew(v) * w = v × w`.
 pub fn skew(v: &Vector3<f64>) -> Matrix3<f64> {

@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// From the ground up. A room is a top-level module with everything under it.
-const FLOORS: [&[&str]; 8] = [
+const FLOORS: [&[&str]; 9] = [
     // no domain words
     &[
         "error",
@@ -23,6 +23,7 @@ const FLOORS: [&[&str]; 8] = [
     &["beam"],
     &["compliance"],
     &["rig"],
+    &["robot"],
     &["report"],
     // the library as its users see it
     &["lib"],

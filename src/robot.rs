@@ -1,0 +1,92 @@
+//! A serial robot: which joints move about which axes, and what hangs on them.
+//!
+//! Every robot is one chain, whatever file it came from:
+//!
+//! ```text
+//! T_0^T(q) = root · H₁(q₁) · H₂(q₂) · … · Hₙ(qₙ) · flange
+//! Hⱼ = Rz(θⱼ)·Tz(dⱼ)·Tx(aⱼ)·Rx(αⱼ)·Ry(βⱼ)        (the paper's Table 1)
+//! ```
+//!
+//! with θⱼ = offset + qⱼ + cⱼ·τⱼ for a revolute joint and dⱼ = d + qⱼ for a prismatic one. {0} is the robot's base
+//! frame, {T} the flange's. β is zero but where consecutive axes are nearly parallel: there Denavit and Hartenberg's
+//! common normal jumps with the smallest tilt, and Hayati's β does not (S. Hayati, *IEEE CDC* 22 (1983) 1477–1483).
+
+mod kinematics;
+
+use nalgebra::Vector3;
+
+use crate::spatial::Pose;
+
+/// A robot as its file describes it, in SI units.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Robot {
+    /// Name, for people.
+    pub name: String,
+    /// Where its numbers come from, in the words of its file.
+    pub source: Option<String>,
+    /// Acceleration of gravity in {0}, m/s².
+    pub gravity: Vector3<f64>,
+    /// Frame of the first joint in {0}: its z axis is the joint's axis. The identity for a robot given as a table.
+    pub root: Pose,
+    /// Joints that move, base to flange; at least one.
+    pub joints: Vec<Joint>,
+    /// {T} in the last joint's distal frame. The identity for a robot given as a table.
+    pub flange: Pose,
+}
+
+/// A joint with the link that it moves.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Joint {
+    /// Name, for people.
+    pub name: String,
+    /// What it does.
+    pub motion: Motion,
+    /// From the joint's frame, whose z axis is its axis, to its distal frame.
+    pub link: Hayati,
+    /// Compliance c: how far gravity's torque turns the joint, rad/(N·m). 0 is rigid.
+    pub compliance: f64,
+    /// Mass of the link that moves with the joint, where it is known.
+    pub body: Option<Body>,
+    /// Range of the joint, rad or m.
+    pub limits: Option<[f64; 2]>,
+}
+
+/// What a joint does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Motion {
+    /// Turns about its z axis.
+    Revolute,
+    /// Moves along its z axis.
+    Prismatic,
+}
+
+/// The five parameters of Hⱼ at qⱼ = 0; see [`crate::robot`].
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Hayati {
+    /// About z, rad.
+    pub theta: f64,
+    /// Along z, m.
+    pub d: f64,
+    /// Along the turned x, m.
+    pub a: f64,
+    /// About that x, rad.
+    pub alpha: f64,
+    /// About the y that results, rad.
+    pub beta: f64,
+}
+
+/// A rigid body that hangs on a joint.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Body {
+    /// Mass, kg.
+    pub mass: f64,
+    /// Centre of mass in the joint's distal frame, m.
+    pub centre: Vector3<f64>,
+}
+
+impl Robot {
+    /// True where at least one link has a mass, so that gravity's torques can be computed.
+    pub fn has_masses(&self) -> bool {
+        self.joints.iter().any(|joint| joint.body.is_some_and(|body| body.mass > 0.0))
+    }
+}

@@ -2,6 +2,7 @@
 //! and which physics a model left out.
 
 pub mod beam;
+pub mod calibration;
 pub mod compliance;
 pub mod delimited;
 pub mod error;

@@ -12,6 +12,9 @@
 //! common normal jumps with the smallest tilt, and Hayati's β does not (S. Hayati, *IEEE CDC* 22 (1983) 1477–1483).
 
 mod kinematics;
+mod parameter;
+
+pub use parameter::{Parameter, Unit};
 
 use nalgebra::Vector3;
 

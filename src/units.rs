@@ -14,6 +14,8 @@ pub const UM: f64 = 1e-6;
 pub const GRAM: f64 = 1e-3;
 /// Gigapascal in pascals.
 pub const GPA: f64 = 1e9;
+/// Degree in radians.
+pub const DEG: f64 = std::f64::consts::PI / 180.0;
 /// Microradian in radians.
 pub const URAD: f64 = 1e-6;
 /// µrad/(N·m) in rad/(N·m).

@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// From the ground up. A room is a top-level module with everything under it.
-const FLOORS: [&[&str]; 9] = [
+const FLOORS: [&[&str]; 10] = [
     // no domain words
     &[
         "error",
@@ -24,6 +24,7 @@ const FLOORS: [&[&str]; 9] = [
     &["compliance"],
     &["rig"],
     &["robot"],
+    &["calibration"],
     &["report"],
     // the library as its users see it
     &["lib"],

@@ -1,0 +1,148 @@
+//! A calibration campaign: the robot, its rod, and what was recorded. One TOML file that names the others.
+
+use nalgebra::Vector3;
+
+use crate::rig::readings::Readings;
+use crate::robot::{Parameter, Robot};
+use crate::rod::Rod;
+use crate::spatial::Pose;
+
+/// All that a calibration starts from, read and checked, in SI units.
+#[derive(Debug, Clone)]
+pub struct Campaign {
+    /// The campaign's file as the user named it.
+    pub file: String,
+    /// Nominal robot.
+    pub robot: Robot,
+    /// The robot's file as the campaign names it (`builtin:tx90` is one) and its text, for writing it back.
+    pub robot_file: String,
+    /// Its text.
+    pub robot_text: String,
+    /// Measuring rod on the flange.
+    pub rod: Option<Rod>,
+    /// Rig readings of the rod; they make the Meas mode available.
+    pub readings: Option<Readings>,
+    /// Contact force **on the ball**, in the device frame of each clamp, N.
+    pub contact_force: Option<Vector3<f64>>,
+    /// First guess of the undeflected tip in {T}, m.
+    pub tool: Vector3<f64>,
+    /// First guess of {0} in {W}: position (m) and roll, pitch, yaw (rad).
+    pub base: [f64; 6],
+    /// False where the file says nothing about the base.
+    pub base_is_given: bool,
+    /// What was recorded.
+    pub measurements: Recording,
+    /// What the calibrated robot is judged by.
+    pub validation: Option<Recording>,
+    /// What is fitted again on the validation poses.
+    pub refit: Refit,
+    /// Standard deviation of one measured coordinate, m, where the file states it.
+    pub noise: Option<f64>,
+    /// The user's wishes about single parameters.
+    pub wishes: Wishes,
+    /// What a user should know about the files although they can be read.
+    pub warnings: Vec<Warning>,
+}
+
+/// What is fitted again before the validation errors are computed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Refit {
+    /// Base and tool, as in the paper.
+    BaseTool,
+    /// Nothing: the calibrated robot predicts.
+    Nothing,
+}
+
+/// What the user says about single parameters.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Wishes {
+    /// Held at their nominal values.
+    pub fixed: Vec<Parameter>,
+    /// Estimated although the default set leaves them out.
+    pub freed: Vec<Parameter>,
+    /// Known beforehand: parameter, mean and standard deviation, SI.
+    pub priors: Vec<(Parameter, f64, f64)>,
+}
+
+/// Joint values with what was seen at them, in recording order.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Recording {
+    /// The file as the user named it.
+    pub file: String,
+    /// Number of joints n.
+    pub joint_count: usize,
+    /// Joint values, rad or m, n per row, one row after the other.
+    pub joint_values: Vec<f64>,
+    /// One per row of the file.
+    pub rows: Vec<Row>,
+    /// Clamps or sockets that rows belong to; one of name "" for a tracker.
+    pub groups: Vec<Group>,
+    /// What is known about the points.
+    pub targets: Targets,
+}
+
+/// One row without its numbers.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Row {
+    /// The pose's name as written.
+    pub pose: String,
+    /// Line in the file.
+    pub line: usize,
+    /// Index of its group.
+    pub group: usize,
+    /// Time, s, from any zero.
+    pub time: Option<f64>,
+    /// Temperature, °C.
+    pub temperature: Option<f64>,
+}
+
+/// Where the ball was held.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Group {
+    /// `clamp 3`, `front/0`.
+    pub name: String,
+    /// Device frame in {W}; the identity where there is no device.
+    pub device: Pose,
+}
+
+/// What is known about the points that the tip touched.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Targets {
+    /// Each measured in {W}, m: one per row.
+    Points(Vec<Vector3<f64>>),
+    /// Unknown, one per group; but some distances between them are known.
+    Sockets(Vec<Distance>),
+}
+
+/// A known distance between the sockets of a placement.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Distance {
+    /// Groups of the two sockets.
+    pub between: [usize; 2],
+    /// Distance, m.
+    pub value: f64,
+    /// Its standard deviation, m.
+    pub sd: f64,
+}
+
+/// What a user should know about a campaign's files although they can be read.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum Warning {}
+
+impl Recording {
+    /// Number of rows.
+    pub fn len(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// True without rows.
+    pub fn is_empty(&self) -> bool {
+        self.rows.is_empty()
+    }
+
+    /// Joint values of a row, rad or m.
+    pub fn joints(&self, row: usize) -> &[f64] {
+        &self.joint_values[row * self.joint_count..][..self.joint_count]
+    }
+}

@@ -12,9 +12,16 @@
 //! common normal jumps with the smallest tilt, and Hayati's β does not (S. Hayati, *IEEE CDC* 22 (1983) 1477–1483).
 
 mod kinematics;
+mod minimal;
 mod parameter;
+mod setup;
+mod statics;
 
+pub use kinematics::{JointFrames, Kinematics};
+pub use minimal::minimal_parameters;
 pub use parameter::{Parameter, Unit};
+pub use setup::Setup;
+pub use statics::Loads;
 
 use nalgebra::Vector3;
 

@@ -184,6 +184,27 @@ impl Rod {
             + self.tip_mass
     }
 
+    /// Centre of mass in {T}, m; the flange for a rod without mass.
+    pub fn centre_of_mass(&self) -> Vector3<f64> {
+        let (start, end, length) = (self.bend_start(), self.bend_end(), self.length());
+        let mut moment = self.point(start / 2.0) * (self.pipe1.mass_per_length() * start);
+        moment += self.point((end + length) / 2.0) * (self.pipe2.mass_per_length() * (length - end));
+        if self.arc_length() > 0.0 {
+            // the centroid of an arc lies on its bisector, R·sin(φ/2)/(φ/2) from its centre
+            let half = self.turn() / 2.0;
+            let chord = self.point(end) - self.point(start);
+            let across = Vector3::new(half.cos(), 0.0, -half.sin());
+            let sagitta = self.bend_radius * (half.sin() / half - half.cos());
+            let centroid = (self.point(start) + self.point(end)) / 2.0 - across * sagitta;
+            debug_assert!(chord.dot(&across).abs() <= 1e-9 * chord.norm());
+            moment += centroid * (self.bend.mass_per_length() * self.arc_length());
+        }
+        moment += self.masses.iter().map(|m| self.point(m.station) * m.mass).sum::<Vector3<f64>>();
+        moment += self.tip() * self.tip_mass;
+        let mass = self.mass();
+        if mass > 0.0 { moment / mass } else { Vector3::zeros() }
+    }
+
     /// The two pipes are one tube of one material, as the paper's closed form (Calc) assumes.
     pub fn is_uniform(&self) -> bool {
         let same = |a: &Material, b: &Material| {

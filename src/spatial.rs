@@ -42,6 +42,26 @@ impl Pose {
     }
 }
 
+/// exp([v]×): the rotation about `v` by its length (Rodrigues).
+pub fn exponential(v: &Vector3<f64>) -> Matrix3<f64> {
+    Rotation3::new(*v).into_inner()
+}
+
+/// Jₗ with exp([v + δ]×) = exp([Jₗ·δ]×)·exp([v]×) for small δ:
+///
+/// Jₗ = (sin φ/φ)·1 + ((1 − cos φ)/φ²)·[v]× + ((φ − sin φ)/φ³)·v·vᵀ, φ = |v|
+/// (T. Barfoot, *State Estimation for Robotics*, Eq 7.77).
+pub fn left_jacobian(v: &Vector3<f64>) -> Matrix3<f64> {
+    let phi = v.norm();
+    let square = phi * phi;
+    let (a, b, c) = if phi < 1e-3 {
+        (1.0 - square / 6.0, 0.5 - square / 24.0, 1.0 / 6.0 - square / 120.0)
+    } else {
+        (phi.sin() / phi, (1.0 - phi.cos()) / square, (phi - phi.sin()) / (square * phi))
+    };
+    Matrix3::identity() * a + skew(v) * b + v * v.transpose() * c
+}
+
 /// R·Rz(angle).
 pub fn turned_about_z(r: &Matrix3<f64>, angle: f64) -> Matrix3<f64> {
     let (s, c) = angle.sin_cos();

@@ -89,6 +89,24 @@ pub fn chi_squared_survival(x: f64, dof: f64) -> Result<f64> {
     })
 }
 
+/// The x below which χ² with `dof` degrees of freedom falls with the probability `p`.
+///
+/// # Errors
+/// [`Error::Argument`] unless 0 < p < 1 and dof > 0.
+pub fn chi_squared_quantile(p: f64, dof: f64) -> Result<f64> {
+    require("p", p, "a probability between 0 and 1", p > 0.0 && p < 1.0)?;
+    require_positive("dof", dof)?;
+    let (mut low, mut high) = (0.0, dof.max(1.0));
+    while gamma_ur(dof / 2.0, high / 2.0) > 1.0 - p && high < f64::MAX / 2.0 {
+        (low, high) = (high, 2.0 * high);
+    }
+    for _ in 0..2 * f64::MANTISSA_DIGITS {
+        let middle = 0.5 * (low + high);
+        if gamma_ur(dof / 2.0, middle / 2.0) > 1.0 - p { low = middle } else { high = middle }
+    }
+    Ok(0.5 * (low + high))
+}
+
 /// Arithmetic mean; `None` for no values.
 pub fn mean(values: &[f64]) -> Option<f64> {
     (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
@@ -222,6 +240,9 @@ mod tests {
         for (x, dof, p) in [(3.841, 1.0, 0.05), (18.307, 10.0, 0.05), (135.807, 100.0, 0.01)] {
             assert_relative_eq!(chi_squared_survival(x, dof).unwrap(), p, max_relative = 1e-3);
         }
+        assert_relative_eq!(chi_squared_quantile(0.95, 10.0).unwrap(), 18.307, epsilon = 5e-4);
+        let x = chi_squared_quantile(1e-3, 3.0).unwrap();
+        assert_relative_eq!(chi_squared_survival(x, 3.0).unwrap(), 0.999, max_relative = 1e-12);
         // ν = 2: P(χ² > x) = exp(−x/2)
         for x in [0.1f64, 5.0, 900.0] {
             let exact = (-x / 2.0).exp();

@@ -1,7 +1,124 @@
-//! Where the joints and the flange are for given joint values.
+//! Where joints, flange and tip are for given joint values, and how the tip moves with every parameter.
 
-use super::{Hayati, Motion, Robot};
-use crate::spatial::{Pose, turned_about_x, turned_about_y, turned_about_z};
+use nalgebra::{Matrix3, Vector3};
+
+use super::{Hayati, Motion, Parameter, Robot, Setup};
+use crate::spatial::{Pose, left_jacobian, turned_about_x, turned_about_y, turned_about_z};
+
+/// One configuration of a [`Setup`] in {W}. Made once and moved from pose to pose without allocation.
+#[derive(Debug, Clone)]
+pub struct Kinematics {
+    /// Base to flange, one per joint.
+    pub joints: Vec<JointFrames>,
+    /// {T}.
+    pub flange: Pose,
+    /// The undeflected tip, m.
+    pub tip: Vector3<f64>,
+    /// {0}.
+    base: Pose,
+    /// From a change of the base's rotation vector to the rotation that it makes.
+    base_turn: Matrix3<f64>,
+}
+
+/// What the parameters of one joint's link act along and about, in {W}.
+#[derive(Debug, Clone, Copy)]
+pub struct JointFrames {
+    /// What the joint does.
+    pub motion: Motion,
+    /// The joint's axis: θ turns about it, d moves along it.
+    pub axis: Vector3<f64>,
+    /// A point on the axis, m.
+    pub origin: Vector3<f64>,
+    /// a moves along this x, α turns about it.
+    x: Vector3<f64>,
+    /// β turns about this y.
+    y: Vector3<f64>,
+    /// The joint's distal frame, which its link is fixed to.
+    pub distal: Pose,
+}
+
+impl Kinematics {
+    /// Room for a robot; [`Kinematics::update`] fills it.
+    pub fn new(robot: &Robot) -> Self {
+        let zero = Vector3::zeros();
+        let of_joint = |joint: &super::Joint| JointFrames {
+            motion: joint.motion,
+            axis: zero,
+            origin: zero,
+            x: zero,
+            y: zero,
+            distal: Pose::IDENTITY,
+        };
+        Kinematics {
+            joints: robot.joints.iter().map(of_joint).collect(),
+            flange: Pose::IDENTITY,
+            tip: zero,
+            base: Pose::IDENTITY,
+            base_turn: Matrix3::identity(),
+        }
+    }
+
+    /// Moves to the joint values `q` (rad or m). `torque` (N·m, one per joint) turns compliant joints on; it may be
+    /// empty where no joint is compliant.
+    pub fn update(&mut self, setup: &Setup, q: &[f64], torque: &[f64]) {
+        self.base = setup.base();
+        self.base_turn = left_jacobian(&setup.base_turn);
+        let mut frame = self.base.then(&setup.robot.root);
+        for (j, frames) in self.joints.iter_mut().enumerate() {
+            // θ = offset + q + c·τ
+            let yielding = torque.get(j).map_or(0.0, |torque| setup.compliance[j] * torque);
+            let link = setup.links[j].moved(setup.robot.joints[j].motion, q[j] + yielding);
+            let turned = turned_about_z(&frame.rotation, link.theta);
+            let tilted = turned_about_x(&turned, link.alpha);
+            frames.axis = frame.rotation.column(2).into();
+            frames.origin = frame.origin;
+            frames.x = turned.column(0).into();
+            frames.y = tilted.column(1).into();
+            frames.distal = Pose {
+                rotation: turned_about_y(&tilted, link.beta),
+                origin: frame.origin + frames.axis * link.d + frames.x * link.a,
+            };
+            frame = frames.distal;
+        }
+        self.flange = frame.then(&setup.robot.flange);
+        self.tip = self.flange.point(&setup.tool);
+    }
+
+    /// ∂tip/∂parameter in {W}, m per unit of the parameter (SI). `torque` as for [`Kinematics::update`].
+    pub fn column(&self, parameter: Parameter, torque: &[f64]) -> Vector3<f64> {
+        match parameter {
+            Parameter::BasePosition(axis) => Matrix3::identity().column(axis).into(),
+            // (Jₗ·eₖ) × (p − o)
+            Parameter::BaseRotation(axis) => {
+                let turn: Vector3<f64> = self.base_turn.column(axis).into();
+                turn.cross(&(self.tip - self.base.origin))
+            }
+            // z × (p − o)
+            Parameter::Theta(j) => self.turned(j),
+            Parameter::D(j) => self.joints[j].axis,
+            Parameter::A(j) => self.joints[j].x,
+            // x × (p − o′) and y × (p − o′), o′ beyond d and a
+            Parameter::Alpha(j) => self.joints[j].x.cross(&(self.tip - self.joints[j].distal.origin)),
+            Parameter::Beta(j) => self.joints[j].y.cross(&(self.tip - self.joints[j].distal.origin)),
+            // ∂q/∂c = τ
+            Parameter::Compliance(j) => self.moved(j) * torque.get(j).copied().unwrap_or(0.0),
+            Parameter::Tool(axis) => self.flange.rotation.column(axis).into(),
+        }
+    }
+
+    /// ∂tip/∂q of a joint, m/rad or m/m, in {W}.
+    pub fn moved(&self, joint: usize) -> Vector3<f64> {
+        match self.joints[joint].motion {
+            Motion::Revolute => self.turned(joint),
+            Motion::Prismatic => self.joints[joint].axis,
+        }
+    }
+
+    /// The tip's displacement per radian of a turn about a joint's axis, m/rad.
+    fn turned(&self, joint: usize) -> Vector3<f64> {
+        self.joints[joint].axis.cross(&(self.tip - self.joints[joint].origin))
+    }
+}
 
 impl Hayati {
     /// `frame` after Rz(θ)·Tz(d)·Tx(a)·Rx(α)·Ry(β).

@@ -9,7 +9,8 @@ use crate::units::{DEG, MM, URAD_PER_NM};
 pub enum Parameter {
     /// Position of {0} in {W} along x, y, z (0, 1, 2), m.
     BasePosition(usize),
-    /// Roll, pitch, yaw (0, 1, 2) of {0} in {W}, rad: Rz(yaw)·Ry(pitch)·Rx(roll).
+    /// Turn of {0} away from its first guess: rotation vector along x, y, z (0, 1, 2) of {W}, rad. Unlike roll, pitch
+    /// and yaw it is regular for a robot on a wall too.
     BaseRotation(usize),
     /// θ of a joint's link, rad.
     Theta(usize),
@@ -81,12 +82,12 @@ impl Parameter {
 }
 
 impl fmt::Display for Parameter {
-    /// `base_x`, `base_yaw`, `theta2`, `d2`, `a2`, `alpha2`, `beta2`, `c2`, `tool_z`.
+    /// `base_x`, `base_rz`, `theta2`, `d2`, `a2`, `alpha2`, `beta2`, `c2`, `tool_z`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         const AXES: [&str; 3] = ["x", "y", "z"];
         match *self {
             Parameter::BasePosition(axis) => write!(f, "base_{}", AXES[axis]),
-            Parameter::BaseRotation(axis) => write!(f, "base_{}", ["roll", "pitch", "yaw"][axis]),
+            Parameter::BaseRotation(axis) => write!(f, "base_r{}", AXES[axis]),
             Parameter::Theta(j) => write!(f, "theta{}", j + 1),
             Parameter::D(j) => write!(f, "d{}", j + 1),
             Parameter::A(j) => write!(f, "a{}", j + 1),

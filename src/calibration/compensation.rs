@@ -1,0 +1,140 @@
+//! What bends and yields at each pose: the rod's deflection (Eqs 12–14 and 19) and the torques on the joints.
+
+use nalgebra::Vector3;
+
+use super::campaign::{Campaign, Recording};
+use super::problem::Pass;
+use crate::beam::Physics;
+use crate::compliance::{Compliance, DEFAULT_ELEMENTS, closed_form};
+use crate::error::{Error, Result};
+use crate::rig;
+use crate::robot::{Body, Kinematics, Loads, Setup};
+use crate::units::STANDARD_GRAVITY;
+
+/// How the rod's deflection is known.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Mode {
+    /// It is taken for rigid.
+    None,
+    /// The paper's closed form.
+    Calc,
+    /// The beam finite-element model.
+    Fea,
+    /// Measured on a rig.
+    Meas,
+}
+
+impl Mode {
+    /// All, in the paper's order.
+    pub const ALL: [Mode; 4] = [Mode::None, Mode::Calc, Mode::Fea, Mode::Meas];
+
+    /// `none`, `calc`, `fea`, `meas`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Mode::None => "none",
+            Mode::Calc => "calc",
+            Mode::Fea => "fea",
+            Mode::Meas => "meas",
+        }
+    }
+}
+
+/// The loads that a campaign knows, and the rod's compliance in one mode.
+#[derive(Debug, Clone)]
+pub struct Compensation {
+    /// The mode.
+    pub mode: Mode,
+    /// C^F and C^g of the rod; `None` for a rigid one.
+    pub compliance: Option<Compliance>,
+    /// The rod as a body on the flange.
+    pub payload: Option<Body>,
+    /// Force on the ball in the device frame, N.
+    pub contact_force: Vector3<f64>,
+}
+
+impl Compensation {
+    /// Of a campaign in a mode.
+    ///
+    /// # Errors
+    /// [`Error::NotApplicable`] where the campaign lacks the files that the mode needs; what the beam model and the
+    /// rig fit refuse.
+    pub fn new(campaign: &Campaign, mode: Mode) -> Result<Self> {
+        let lacks = |what: &str, key: &str| Error::NotApplicable {
+            what: format!("mode {} for {}", mode.name(), campaign.file),
+            why: format!("the campaign names no {what}"),
+            hint: format!("add `{key} = \"…\"` to the campaign, or choose another mode"),
+        };
+        let rod = || campaign.rod.as_ref().ok_or_else(|| lacks("rod", "rod"));
+        let compliance = match mode {
+            Mode::None => None,
+            Mode::Calc => Some(closed_form::compliance(rod()?)?),
+            Mode::Fea => Some(Compliance::of_model(rod()?, &Physics::default(), DEFAULT_ELEMENTS)?),
+            Mode::Meas => {
+                let rod = rod()?;
+                let readings = campaign.readings.as_ref().ok_or_else(|| lacks("rig readings", "rig"))?;
+                let fit = rig::fit(readings, Some(rod), &rig::Options::default())?;
+                fit.measured.map(|measured| measured.compliance)
+            }
+        };
+        Ok(Compensation {
+            mode,
+            compliance,
+            payload: campaign.rod.as_ref().map(|rod| Body { mass: rod.mass(), centre: rod.centre_of_mass() }),
+            contact_force: campaign.contact_force.unwrap_or_default(),
+        })
+    }
+
+    /// For poses measured with a short rigid rod and without contact: nothing bends, only the links weigh.
+    pub fn bare() -> Self {
+        Compensation { mode: Mode::None, compliance: None, payload: None, contact_force: Vector3::zeros() }
+    }
+
+    /// Fills in shift and torque of every row for the present `setup`; gives the largest change of a shift, m.
+    pub(super) fn update(&self, setup: &Setup, recording: &Recording, pass: &mut Pass) -> f64 {
+        let robot = setup.robot;
+        let n = recording.joint_count;
+        let mut kinematics = Kinematics::new(robot);
+        let gravity = setup.base().rotation * robot.gravity;
+        let mut change = 0.0f64;
+        for row in 0..recording.len() {
+            let torque = &mut pass.torque[row * n..][..n];
+            kinematics.update(setup, recording.joints(row), torque);
+            let device = &recording.groups[recording.rows[row].group].device;
+            let tip_force = device.rotation * self.contact_force;
+            let loads = Loads { gravity, payload: self.payload, tip_force };
+            kinematics.torques(robot, &loads, torque);
+            let shift = self.deflection(&kinematics, &gravity, &tip_force);
+            change = change.max((shift - pass.shift[row]).norm());
+            pass.shift[row] = shift;
+        }
+        change
+    }
+
+    /// R·(C^g·g_T + C^F·F_T), m in {W}, under gravity (m/s²) and a force on the tip (N), both in {W}.
+    fn deflection(
+        &self,
+        kinematics: &Kinematics,
+        gravity: &Vector3<f64>,
+        force: &Vector3<f64>,
+    ) -> Vector3<f64> {
+        let Some(compliance) = &self.compliance else { return Vector3::zeros() };
+        let r = &kinematics.flange.rotation;
+        // g_T = Rᵀ·g, F_T = Rᵀ·F (Eqs 12–14); C^g is per g (Eq 19)
+        let gravity = r.tr_mul(gravity) / STANDARD_GRAVITY;
+        r * (compliance.gravity * gravity + compliance.force * r.tr_mul(force))
+    }
+}
+
+/// The modes that a campaign's files allow, in the paper's order; Calc only where the closed form applies to the rod.
+pub fn modes(campaign: &Campaign) -> Vec<Mode> {
+    Mode::ALL.into_iter().filter(|&mode| Compensation::new(campaign, mode).is_ok()).collect()
+}
+
+/// The mode without `--mode`: meas with rig readings, else fea with a rod, else none.
+pub fn default_mode(campaign: &Campaign) -> Mode {
+    match (&campaign.rod, &campaign.readings) {
+        (Some(_), Some(_)) => Mode::Meas,
+        (Some(_), None) => Mode::Fea,
+        _ => Mode::None,
+    }
+}

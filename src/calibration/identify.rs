@@ -1,0 +1,101 @@
+//! Which combinations of the free parameters the recording says something about, and which it does not.
+//!
+//! Every kind of parameter has a plausible range: how far a robot as built can be from its drawing. With the Jacobian
+//! whitened by the noise and scaled by those ranges, a singular value below one belongs to a direction that the data
+//! know less about than the drawing. Such a direction is held where the nominal robot has it, and reported; nothing
+//! else is regularised.
+
+use nalgebra::DMatrix;
+
+use crate::error::Result;
+use crate::linalg::thin_svd;
+use crate::robot::{Parameter, Setup};
+
+/// Share of its plausible range that a parameter may owe to held directions and still count as identified.
+const SHARE: f64 = 0.1;
+/// How firmly a direction is held: standard deviation relative to the plausible range.
+const FIRMNESS: f64 = 1e-4;
+
+/// A combination of parameters that the data do not identify.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Held {
+    /// Coefficients of (ρ − ρ₀)/range, of norm 1, one per free parameter.
+    pub direction: Vec<f64>,
+    /// Plausible ranges, SI.
+    pub ranges: Vec<f64>,
+    /// Nominal values ρ₀, SI.
+    pub nominal: Vec<f64>,
+    /// The standard error of the combination by the data alone, relative to the plausible range; ∞ for none.
+    pub relative_error: f64,
+}
+
+impl Held {
+    /// vᵀ·(ρ − ρ₀)/range over the firmness.
+    pub(super) fn residual(&self, p: &[f64]) -> f64 {
+        let offset = p.iter().zip(&self.nominal).map(|(p, p0)| p - p0);
+        offset.zip(self.slopes()).map(|(offset, slope)| offset * slope).sum()
+    }
+
+    /// Its derivatives.
+    pub(super) fn slopes(&self) -> impl Iterator<Item = f64> {
+        self.direction.iter().zip(&self.ranges).map(|(v, range)| v / (range * FIRMNESS))
+    }
+}
+
+/// How far a parameter of a robot as built may be from its nominal value, SI. `largest_torque` on the parameter's
+/// joint, N·m, makes compliances comparable: no drive yields by more than 10 mrad.
+pub fn plausible_range(parameter: Parameter, largest_torque: f64) -> f64 {
+    match parameter {
+        Parameter::BasePosition(_) | Parameter::Tool(_) => 1.0,
+        Parameter::BaseRotation(_) => 1.0,
+        Parameter::D(_) | Parameter::A(_) => 0.02,
+        Parameter::Theta(_) => 0.1,
+        Parameter::Alpha(_) | Parameter::Beta(_) => 0.04,
+        Parameter::Compliance(_) => 0.01 / largest_torque.max(f64::MIN_POSITIVE),
+    }
+}
+
+/// The directions that `jacobian` (whitened, free parameters only, with all else the data can absorb projected out)
+/// does not identify.
+///
+/// # Errors
+/// As [`thin_svd`].
+pub(super) fn unidentified(
+    jacobian: &DMatrix<f64>,
+    ranges: &[f64],
+    setup: &Setup,
+    free: &[Parameter],
+) -> Result<Vec<Held>> {
+    let scaled = DMatrix::from_fn(jacobian.nrows(), free.len(), |i, k| jacobian[(i, k)] * ranges[k]);
+    let svd = thin_svd(&scaled)?;
+    let nominal: Vec<f64> = free.iter().map(|&p| setup.get(p)).collect();
+    Ok((0..free.len())
+        .filter(|&k| svd.singular_values[k] < 1.0)
+        .map(|k| Held {
+            direction: svd.v.column(k).iter().copied().collect(),
+            ranges: ranges.to_vec(),
+            nominal: nominal.clone(),
+            relative_error: 1.0 / svd.singular_values[k],
+        })
+        .collect())
+}
+
+/// For each free parameter whether it stands on data: false where held directions make more than a tenth of its
+/// plausible range.
+pub(super) fn identified(held: &[Held], count: usize) -> Vec<bool> {
+    let share = |k: usize| held.iter().map(|held| held.direction[k].powi(2)).sum::<f64>().sqrt();
+    (0..count).map(|k| share(k) < SHARE).collect()
+}
+
+/// The upper triangle that is left of the first `count` columns once the others are projected out, from the
+/// triangle R of a QR decomposition with the columns in the order (others, first).
+pub(super) fn lower_corner(triangle: &DMatrix<f64>, count: usize) -> DMatrix<f64> {
+    let others = triangle.ncols() - count;
+    triangle.view((others, others), (count, count)).into_owned()
+}
+
+/// Columns of `a`, the last `others` of them first.
+pub(super) fn others_first(a: &DMatrix<f64>, others: usize) -> DMatrix<f64> {
+    let (n, first) = (a.ncols(), a.ncols() - others);
+    DMatrix::from_fn(a.nrows(), n, |i, k| a[(i, (k + first) % n.max(1))])
+}

@@ -1,0 +1,164 @@
+//! How much single measurements scatter, and what they count: groups of unequal noise, outliers.
+
+use crate::error::Result;
+use crate::statistics::{chi_squared_quantile, median};
+
+use super::campaign::Recording;
+use nalgebra::Vector3;
+
+/// Below this probability that all groups scatter alike, each gets a noise of its own.
+const UNEQUAL: f64 = 0.01;
+/// Fewest degrees of freedom for a noise of its own.
+const FEWEST: f64 = 10.0;
+
+/// What an outlier counts. The distance of a pose from the model is judged, not single coordinates.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Robust {
+    /// As much as any other pose.
+    #[default]
+    None,
+    /// Less, the farther out: Huber's weights min(1, k/u), k = 2.21.
+    Huber,
+    /// Nothing, beyond a bound: Tukey's biweight (1 − (u/c)²)², c = 5.49.
+    Tukey,
+}
+
+/// u beyond which Huber's weight falls: exceeded as rarely by the length of a normal vector in space as 1.345 by the
+/// size of a normal number.
+const HUBER: f64 = 2.21;
+/// Tukey's c for 95 % efficiency in three dimensions (R. Maronna et al., *Robust Statistics*, 2nd ed., §6.4).
+const TUKEY: f64 = 5.49;
+
+/// Noise of the recording: standard deviation of one coordinate, m.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Noise {
+    /// Over all poses.
+    pub pooled: f64,
+    /// Of each group.
+    pub of_group: Vec<f64>,
+    /// Probability that groups of equal noise scatter as unequally as these (Bartlett); `None` for a single group.
+    pub p_equal: Option<f64>,
+    /// True where the campaign states it.
+    pub is_stated: bool,
+    /// What each row counts, 0…1.
+    pub weights: Vec<f64>,
+}
+
+impl Noise {
+    /// The same for all rows, before anything is known.
+    pub fn assumed(sd: f64, recording: &Recording, is_stated: bool) -> Self {
+        Noise {
+            pooled: sd,
+            of_group: vec![sd; recording.groups.len()],
+            p_equal: None,
+            is_stated,
+            weights: vec![1.0; recording.len()],
+        }
+    }
+
+    /// From the deviations of a fit of `rank` parameters.
+    ///
+    /// Every group has the share of the degrees of freedom that it has of the rows. Robust weights are judged by the
+    /// median length of the deviations in each group: the length of a normal vector in space has the median 1.538 σ.
+    ///
+    /// # Errors
+    /// As [`chi_squared_quantile`]; none in practice.
+    pub fn estimate(
+        &self,
+        recording: &Recording,
+        deviations: &[Vector3<f64>],
+        rank: usize,
+        robust: Robust,
+    ) -> Result<Noise> {
+        let rows = recording.len();
+        let share = (1.0 - rank as f64 / (3 * rows) as f64).max(1.0 / (3 * rows) as f64);
+        let mut of_rows: Vec<Vec<usize>> = vec![Vec::new(); recording.groups.len()];
+        for (row, entry) in recording.rows.iter().enumerate() {
+            of_rows[entry.group].push(row);
+        }
+        let all: Vec<usize> = (0..rows).collect();
+        let variance = |of: &[usize]| -> f64 {
+            match robust {
+                Robust::None => {
+                    let sum: f64 = of.iter().map(|&row| deviations[row].norm_squared()).sum();
+                    sum / (3.0 * of.len() as f64 * share)
+                }
+                _ => {
+                    let lengths: Vec<f64> = of.iter().map(|&row| deviations[row].norm()).collect();
+                    // the median of χ with three degrees of freedom
+                    const MEDIAN: f64 = 1.538_172_254_5;
+                    (median(&lengths).unwrap_or(0.0) / MEDIAN).powi(2) / share
+                }
+            }
+        };
+        let pooled = variance(&all);
+        let of_group: Vec<f64> =
+            of_rows.iter().map(|of| if of.is_empty() { pooled } else { variance(of) }).collect();
+        let dof: Vec<f64> = of_rows.iter().map(|of| 3.0 * of.len() as f64 * share).collect();
+        let p_equal = match self.is_stated {
+            true => None,
+            false => bartlett(&of_group, &dof)?,
+        };
+        let unequal = p_equal.is_some_and(|p| p < UNEQUAL);
+        let sd = |group: usize| match unequal && dof[group] >= FEWEST {
+            _ if self.is_stated => self.pooled,
+            true => of_group[group].sqrt(),
+            false => pooled.sqrt(),
+        };
+        let of_group: Vec<f64> = (0..of_group.len()).map(sd).collect();
+        let weights = deviations
+            .iter()
+            .zip(&recording.rows)
+            .map(|(deviation, row)| robust.weight(deviation.norm() / of_group[row.group]))
+            .collect();
+        let pooled = if self.is_stated { self.pooled } else { pooled.sqrt() };
+        Ok(Noise { pooled, of_group, p_equal, is_stated: self.is_stated, weights })
+    }
+
+    /// √weight over the noise, 1/m, by row.
+    pub fn row_weights(&self, recording: &Recording) -> Vec<f64> {
+        recording
+            .rows
+            .iter()
+            .zip(&self.weights)
+            .map(|(row, weight)| weight.sqrt() / self.of_group[row.group].max(f64::MIN_POSITIVE))
+            .collect()
+    }
+
+    /// Rows that are farther out than the farthest of so many normal ones would be in one recording of a hundred.
+    ///
+    /// # Errors
+    /// As [`chi_squared_quantile`]; none in practice.
+    pub fn outliers(&self, recording: &Recording, deviations: &[Vector3<f64>]) -> Result<Vec<usize>> {
+        let limit = chi_squared_quantile(1.0 - 0.01 / recording.len().max(1) as f64, 3.0)?.sqrt();
+        let far = |&row: &usize| deviations[row].norm() > limit * self.of_group[recording.rows[row].group];
+        Ok((0..recording.len()).filter(far).collect())
+    }
+}
+
+impl Robust {
+    /// What a pose counts that is `u` standard deviations out.
+    pub fn weight(self, u: f64) -> f64 {
+        match self {
+            Robust::None => 1.0,
+            Robust::Huber => (HUBER / u).min(1.0),
+            Robust::Tukey if u < TUKEY => (1.0 - (u / TUKEY).powi(2)).powi(2),
+            Robust::Tukey => 0.0,
+        }
+    }
+}
+
+/// Bartlett's test over the groups that have enough rows; `None` for fewer than two.
+fn bartlett(variances: &[f64], dof: &[f64]) -> Result<Option<f64>> {
+    let groups: Vec<(f64, f64)> =
+        variances.iter().copied().zip(dof.iter().copied()).filter(|&(s, n)| n >= FEWEST && s > 0.0).collect();
+    if groups.len() < 2 {
+        return Ok(None);
+    }
+    let total: f64 = groups.iter().map(|g| g.1).sum();
+    let pooled = groups.iter().map(|g| g.0 * g.1).sum::<f64>() / total;
+    let k = groups.len() as f64;
+    let c = 1.0 + (groups.iter().map(|g| 1.0 / g.1).sum::<f64>() - 1.0 / total) / (3.0 * (k - 1.0));
+    let t = (total * pooled.ln() - groups.iter().map(|g| g.1 * g.0.ln()).sum::<f64>()) / c;
+    crate::statistics::chi_squared_survival(t, k - 1.0).map(Some)
+}

@@ -1,0 +1,215 @@
+//! Residuals of a recording as a least-squares problem, with the deflections and torques of one pass held fixed.
+//!
+//! ```text
+//! rᵢ = (f(ρ, qᵢ, τᵢ) + R·Δxᵢ − xᵢ) · wᵢ            the ball was measured at xᵢ, or is in socket k: xᵢ = sₖ
+//! r  = (|s_a − s_b| − D) / σ_D                      a known distance between two sockets
+//! r  = (vᵀ·(ρ − ρ₀)/range) / σ_v                    a direction that the data do not identify, held
+//! ```
+//!
+//! f is the rigid tip in {W}, wᵢ one over the standard deviation of a coordinate. The unknowns are the free parameters,
+//! then the three coordinates of every socket.
+
+use nalgebra::{DMatrix, DVector, Vector3};
+
+use super::campaign::{Recording, Targets};
+use super::identify::Held;
+use crate::least_squares::Problem;
+use crate::robot::{Kinematics, Parameter, Setup};
+
+/// Poses per block of the Jacobian.
+const BLOCK: usize = 128;
+
+/// What a pass of the calibration holds fixed.
+#[derive(Debug, Clone)]
+pub(super) struct Pass {
+    /// R·Δx in {W} by row, m: deflected less undeflected tip.
+    pub shift: Vec<Vector3<f64>>,
+    /// Torque on every joint by row, N·m, one row after the other.
+    pub torque: Vec<f64>,
+    /// wᵢ by row, 1/m.
+    pub weight: Vec<f64>,
+}
+
+/// The residuals of `recording`; see the top of the file.
+pub(super) struct Residuals<'a> {
+    pub setup: Setup<'a>,
+    pub free: &'a [Parameter],
+    pub recording: &'a Recording,
+    pub pass: &'a Pass,
+    pub held: &'a [Held],
+}
+
+impl Residuals<'_> {
+    /// Number of unknown sockets.
+    pub fn socket_count(&self) -> usize {
+        match self.recording.targets {
+            Targets::Points(_) => 0,
+            Targets::Sockets(_) => self.recording.groups.len(),
+        }
+    }
+
+    /// Free parameters as they are in the setup, then each socket where the tips of its rows are on average.
+    pub fn start(&self) -> DVector<f64> {
+        let mut start: Vec<f64> = self.free.iter().map(|&p| self.setup.get(p)).collect();
+        let sockets = self.socket_count();
+        if sockets > 0 {
+            let mut sum = vec![(Vector3::zeros(), 0.0); sockets];
+            self.for_each_tip(&self.setup, |row, kinematics| {
+                let weight = self.pass.weight[row].powi(2);
+                let (total, weights) = &mut sum[self.recording.rows[row].group];
+                *total += (kinematics.tip + self.pass.shift[row]) * weight;
+                *weights += weight;
+            });
+            start.extend(sum.iter().flat_map(|(total, weights)| {
+                let mean: [f64; 3] = (total / weights.max(f64::MIN_POSITIVE)).into();
+                mean
+            }));
+        }
+        DVector::from_vec(start)
+    }
+
+    /// The setup with the free parameters of `p`.
+    pub fn setup_at(&self, p: &DVector<f64>) -> Setup<'_> {
+        let mut setup = self.setup.clone();
+        for (&parameter, &value) in self.free.iter().zip(p.iter()) {
+            setup.set(parameter, value);
+        }
+        setup
+    }
+
+    /// Deflected tip less where it was measured or its socket is, in {W}, m: one per row, without weights.
+    pub fn deviations(&self, p: &DVector<f64>) -> Vec<Vector3<f64>> {
+        let setup = self.setup_at(p);
+        let mut deviations = Vec::with_capacity(self.recording.len());
+        self.for_each_tip(&setup, |row, kinematics| {
+            deviations.push(kinematics.tip + self.pass.shift[row] - self.target(p, row));
+        });
+        deviations
+    }
+
+    fn target(&self, p: &DVector<f64>, row: usize) -> Vector3<f64> {
+        match &self.recording.targets {
+            Targets::Points(points) => points[row],
+            Targets::Sockets(_) => self.socket(p, self.recording.rows[row].group),
+        }
+    }
+
+    fn socket(&self, p: &DVector<f64>, group: usize) -> Vector3<f64> {
+        Vector3::from_column_slice(&p.as_slice()[self.free.len() + 3 * group..][..3])
+    }
+
+    fn for_each_tip(&self, setup: &Setup, mut visit: impl FnMut(usize, &Kinematics)) {
+        let mut kinematics = Kinematics::new(setup.robot);
+        for row in 0..self.recording.len() {
+            kinematics.update(setup, self.recording.joints(row), self.torque(row));
+            visit(row, &kinematics);
+        }
+    }
+
+    fn torque(&self, row: usize) -> &[f64] {
+        let n = self.recording.joint_count;
+        &self.pass.torque[row * n..][..n]
+    }
+
+    /// Unit vector from one socket to another, and their distance, m.
+    fn direction(&self, p: &DVector<f64>, between: [usize; 2]) -> (Vector3<f64>, f64) {
+        let apart = self.socket(p, between[0]) - self.socket(p, between[1]);
+        let distance = apart.norm();
+        (apart / distance.max(f64::MIN_POSITIVE), distance)
+    }
+
+    /// Rows of the Jacobian for the poses `rows`.
+    fn pose_block(&self, setup: &Setup, rows: std::ops::Range<usize>) -> DMatrix<f64> {
+        let mut block = DMatrix::zeros(3 * rows.len(), self.parameter_count());
+        let mut kinematics = Kinematics::new(setup.robot);
+        for (at, row) in rows.enumerate() {
+            let (torque, weight) = (self.torque(row), self.pass.weight[row]);
+            kinematics.update(setup, self.recording.joints(row), torque);
+            for (k, &parameter) in self.free.iter().enumerate() {
+                let column = kinematics.column(parameter, torque) * weight;
+                block.view_mut((3 * at, k), (3, 1)).copy_from(&column);
+            }
+            if self.socket_count() > 0 {
+                let first = self.free.len() + 3 * self.recording.rows[row].group;
+                for axis in 0..3 {
+                    block[(3 * at + axis, first + axis)] = -weight;
+                }
+            }
+        }
+        block
+    }
+
+    /// The rows that no pose has: distances, then directions that are held.
+    fn last_block(&self, p: &DVector<f64>) -> DMatrix<f64> {
+        let distances = self.distances();
+        let mut block = DMatrix::zeros(distances.len() + self.held.len(), self.parameter_count());
+        for (row, distance) in distances.iter().enumerate() {
+            let (direction, _) = self.direction(p, distance.between);
+            for (group, sign) in distance.between.into_iter().zip([1.0, -1.0]) {
+                let first = self.free.len() + 3 * group;
+                for axis in 0..3 {
+                    block[(row, first + axis)] = sign * direction[axis] / distance.sd;
+                }
+            }
+        }
+        for (at, held) in self.held.iter().enumerate() {
+            for (k, slope) in held.slopes().enumerate() {
+                block[(distances.len() + at, k)] = slope;
+            }
+        }
+        block
+    }
+
+    fn distances(&self) -> &[super::campaign::Distance] {
+        match &self.recording.targets {
+            Targets::Points(_) => &[],
+            Targets::Sockets(distances) => distances,
+        }
+    }
+}
+
+impl Problem for Residuals<'_> {
+    fn parameter_count(&self) -> usize {
+        self.free.len() + 3 * self.socket_count()
+    }
+
+    fn residual_count(&self) -> usize {
+        3 * self.recording.len() + self.distances().len() + self.held.len()
+    }
+
+    fn residuals(&self, p: &DVector<f64>) -> DVector<f64> {
+        let mut residuals = Vec::with_capacity(self.residual_count());
+        for (row, deviation) in self.deviations(p).into_iter().enumerate() {
+            residuals.extend_from_slice((deviation * self.pass.weight[row]).as_slice());
+        }
+        for distance in self.distances() {
+            let (_, now) = self.direction(p, distance.between);
+            residuals.push((now - distance.value) / distance.sd);
+        }
+        residuals.extend(self.held.iter().map(|held| held.residual(p.as_slice())));
+        DVector::from_vec(residuals)
+    }
+
+    fn jacobian(&self, p: &DVector<f64>) -> DMatrix<f64> {
+        let mut jacobian = DMatrix::zeros(self.residual_count(), self.parameter_count());
+        self.jacobian_blocks(p, &mut |first, block| {
+            jacobian.rows_mut(first, block.nrows()).copy_from(block);
+        });
+        jacobian
+    }
+}
+
+impl Residuals<'_> {
+    /// The Jacobian in blocks of consecutive rows.
+    pub fn jacobian_blocks(&self, p: &DVector<f64>, visit: &mut dyn FnMut(usize, &DMatrix<f64>)) {
+        let setup = self.setup_at(p);
+        let rows = self.recording.len();
+        for first in (0..rows).step_by(BLOCK) {
+            visit(3 * first, &self.pose_block(&setup, first..(first + BLOCK).min(rows)));
+        }
+        let last = self.last_block(p);
+        if last.nrows() > 0 {
+            visit(3 * rows, &last);
+        }
+    }
+}

@@ -1,0 +1,120 @@
+//! How well a calibrated robot predicts poses that it was not calibrated on.
+
+use nalgebra::Vector3;
+
+use super::campaign::{Recording, Refit, Targets};
+use super::compensation::Compensation;
+use super::problem::{Pass, Residuals};
+use super::start::rough_start;
+use crate::error::Result;
+use crate::least_squares;
+use crate::robot::{Kinematics, Parameter, Setup};
+use crate::statistics;
+
+/// Errors of the poses of a validation recording.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Validation {
+    /// Distance of each pose from where it was measured, or from its socket's mean, m.
+    pub errors: Vec<f64>,
+    /// Where the tip was, in {W} (or {0} for sockets), m.
+    pub tips: Vec<Vector3<f64>>,
+    /// Predicted less measured, or less the socket's mean, m.
+    pub deviations: Vec<Vector3<f64>>,
+    /// What was fitted again.
+    pub refit: Refit,
+    /// Base and tool after that, where the recording knows {W}.
+    pub is_converged: bool,
+    /// Mean, maximum, median and standard deviation.
+    pub summary: Summary,
+}
+
+/// What the errors of many poses are summed up to, m.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Summary {
+    /// Mean.
+    pub mean: f64,
+    /// Maximum.
+    pub max: f64,
+    /// Median.
+    pub median: f64,
+    /// Standard deviation.
+    pub sd: f64,
+    /// Root mean square.
+    pub rms: f64,
+}
+
+impl Summary {
+    /// Of lengths, m; zeros for none.
+    pub fn of(lengths: &[f64]) -> Summary {
+        let squares: f64 = lengths.iter().map(|x| x * x).sum();
+        Summary {
+            mean: statistics::mean(lengths).unwrap_or(0.0),
+            max: lengths.iter().fold(0.0, |a, &b| a.max(b)),
+            median: statistics::median(lengths).unwrap_or(0.0),
+            sd: statistics::standard_deviation(lengths).unwrap_or(0.0),
+            rms: (squares / lengths.len().max(1) as f64).sqrt(),
+        }
+    }
+}
+
+/// Predicts `recording` with the calibrated `setup`, with base and tool fitted again where `refit` says so. It was
+/// measured with a short rigid rod and without contact: links weigh on the joints, nothing bends.
+///
+/// # Errors
+/// What the fit refuses.
+pub fn validate(setup: &Setup, recording: &Recording, refit: Refit) -> Result<Validation> {
+    let n = recording.joint_count;
+    let bare = Compensation::bare();
+    let mut pass = Pass {
+        shift: vec![Vector3::zeros(); recording.len()],
+        torque: vec![0.0; recording.len() * n],
+        weight: vec![1.0; recording.len()],
+    };
+    let mut setup = setup.clone();
+    let mut is_converged = true;
+    if let (Targets::Points(_), Refit::BaseTool) = (&recording.targets, refit) {
+        let robot = setup.calibrated();
+        let (base, tool) = rough_start(&robot, recording, setup.base(), setup.tool)?;
+        setup.base_guess = base;
+        setup.base_position = base.origin;
+        setup.base_turn = Vector3::zeros();
+        setup.tool = tool;
+        let free: Vec<Parameter> =
+            Parameter::all(n).into_iter().filter(|&p| super::calibrate::is_placement(p)).collect();
+        // torques depend a little on where the base stands
+        for _ in 0..3 {
+            bare.update(&setup, recording, &mut pass);
+            let problem = Residuals { setup: setup.clone(), free: &free, recording, pass: &pass, held: &[] };
+            let options = least_squares::Options::default();
+            let fit = least_squares::fit(&problem, &problem.start(), &options)?;
+            is_converged = fit.is_converged();
+            for (k, &parameter) in free.iter().enumerate() {
+                setup.set(parameter, fit.parameters[k]);
+            }
+        }
+    }
+    bare.update(&setup, recording, &mut pass);
+    let mut kinematics = Kinematics::new(setup.robot);
+    let tips: Vec<Vector3<f64>> = (0..recording.len())
+        .map(|row| {
+            kinematics.update(&setup, recording.joints(row), &pass.torque[row * n..][..n]);
+            kinematics.tip
+        })
+        .collect();
+    let deviations: Vec<Vector3<f64>> = match &recording.targets {
+        Targets::Points(points) => tips.iter().zip(points).map(|(tip, x)| tip - x).collect(),
+        Targets::Sockets(_) => {
+            let mut means = vec![(Vector3::zeros(), 0.0); recording.groups.len()];
+            for (tip, row) in tips.iter().zip(&recording.rows) {
+                means[row.group].0 += tip;
+                means[row.group].1 += 1.0;
+            }
+            tips.iter()
+                .zip(&recording.rows)
+                .map(|(tip, row)| tip - means[row.group].0 / means[row.group].1)
+                .collect()
+        }
+    };
+    let errors: Vec<f64> = deviations.iter().map(|d| d.norm()).collect();
+    Ok(Validation { summary: Summary::of(&errors), errors, tips, deviations, refit, is_converged })
+}

@@ -1,0 +1,150 @@
+//! Which parameters tip positions can tell apart at all: a complete and minimal set, from the geometry.
+//!
+//! Candidates come in an order of preference, and one is kept where its column of the Jacobian, over many
+//! configurations within the joint limits, is not a combination of those kept before it. For the paper's TX90 this
+//! gives exactly its ρ: θ₁, d₁ (dependent on the base), d₃ (on d₂ along the parallel axes), d₆, y_tool (on θ₆), β₁
+//! and β₃ drop out by themselves (Table 1).
+
+use nalgebra::{DVector, Vector3};
+
+use super::{Body, Kinematics, Loads, Motion, Parameter, Robot, Setup};
+use crate::spatial::Pose;
+
+/// β is a candidate where consecutive axes are closer to parallel than this, rad: |sin α| < sin 10°.
+const NEARLY_PARALLEL: f64 = 10.0 * crate::units::DEG;
+/// What must remain of a column, in metres of tip per metre or per radian times the robot's reach. Less is no
+/// direction of its own but the curvature of another one, or a tip that happens to lie within a percent of an axis.
+const OWN: f64 = 0.01;
+/// Configurations that the columns are compared over.
+const CONFIGURATIONS: usize = 80;
+/// Torque, relative to the largest of the robot, below which a joint has none.
+const NO_TORQUE: f64 = 1e-6;
+
+/// The parameters that positions of the tip at `tool` (m, in {T}) can determine while the robot carries `payload`; see [`crate::robot`] for what they
+/// are. Compliances are among them for joints that gravity loads, where the robot's masses are known.
+pub fn minimal_parameters(robot: &Robot, tool: Vector3<f64>, payload: Option<Body>) -> Vec<Parameter> {
+    let setup = Setup::new(robot, Pose::IDENTITY, tool);
+    let samples = Samples::new(&setup, payload);
+    let mut basis: Vec<DVector<f64>> = Vec::new();
+    let mut kept = Vec::new();
+    for candidate in candidates(robot) {
+        let Some(column) = samples.column(candidate) else { continue };
+        let mut own = column;
+        // twice is enough (Kahan, Parlett)
+        for _ in 0..2 {
+            for b in &basis {
+                own.axpy(-b.dot(&own), b, 1.0);
+            }
+        }
+        let rest = own.norm();
+        if rest > OWN * (CONFIGURATIONS as f64).sqrt() {
+            basis.push(own / rest);
+            kept.push(candidate);
+        }
+    }
+    kept
+}
+
+/// In order of preference. The last link's a, α and d do what the tool does.
+fn candidates(robot: &Robot) -> Vec<Parameter> {
+    let n = robot.joints.len();
+    let mut list: Vec<Parameter> = (0..3).map(Parameter::BasePosition).collect();
+    list.extend((0..3).map(Parameter::BaseRotation));
+    for (j, joint) in robot.joints.iter().enumerate() {
+        let is_last = j + 1 == n;
+        if !is_last {
+            list.extend([Parameter::A(j), Parameter::Alpha(j)]);
+        }
+        list.push(Parameter::Theta(j));
+        if !is_last {
+            list.push(Parameter::D(j));
+            if joint.link.alpha.sin().abs() < NEARLY_PARALLEL.sin() {
+                list.push(Parameter::Beta(j));
+            }
+        }
+    }
+    list.extend([0, 2, 1].map(Parameter::Tool));
+    if robot.has_masses() {
+        let turns = |&j: &usize| robot.joints[j].motion == Motion::Revolute;
+        list.extend((0..n).filter(turns).map(Parameter::Compliance));
+    }
+    list
+}
+
+/// Configurations over the workspace.
+struct Samples {
+    kinematics: Vec<Kinematics>,
+    torques: Vec<Vec<f64>>,
+    /// Largest torque of each joint, N·m.
+    largest: Vec<f64>,
+    /// Largest distance of the tip from the base, m.
+    reach: f64,
+}
+
+impl Samples {
+    fn new(setup: &Setup, payload: Option<Body>) -> Self {
+        let robot = setup.robot;
+        let n = robot.joints.len();
+        let mut kinematics = Kinematics::new(robot);
+        let loads = Loads { gravity: robot.gravity, payload, tip_force: Vector3::zeros() };
+        let mut samples =
+            Samples { kinematics: Vec::new(), torques: Vec::new(), largest: vec![0.0; n], reach: 0.0 };
+        for sample in 1..=CONFIGURATIONS {
+            let q: Vec<f64> = robot
+                .joints
+                .iter()
+                .enumerate()
+                .map(|(j, joint)| {
+                    let widest = match joint.motion {
+                        Motion::Revolute => std::f64::consts::PI,
+                        Motion::Prismatic => 1.0,
+                    };
+                    let [low, high] = joint.limits.unwrap_or([-widest, widest]);
+                    let (low, high) = (low.max(-widest), high.min(widest));
+                    low + (high - low) * spread(sample, j)
+                })
+                .collect();
+            kinematics.update(setup, &q, &[]);
+            let mut torque = vec![0.0; n];
+            kinematics.torques(robot, &loads, &mut torque);
+            for (largest, torque) in samples.largest.iter_mut().zip(&torque) {
+                *largest = largest.max(torque.abs());
+            }
+            samples.reach = samples.reach.max((kinematics.tip - kinematics.joints[0].origin).norm());
+            samples.kinematics.push(kinematics.clone());
+            samples.torques.push(torque);
+        }
+        samples
+    }
+
+    /// The column of a parameter over all samples, in the unit of [`OWN`]; `None` for a joint without torque.
+    fn column(&self, parameter: Parameter) -> Option<DVector<f64>> {
+        let unit = match parameter {
+            Parameter::BasePosition(_) | Parameter::D(_) | Parameter::A(_) | Parameter::Tool(_) => 1.0,
+            Parameter::Compliance(j) => {
+                let most = self.largest.iter().fold(0.0, |a: f64, &b| a.max(b));
+                if self.largest[j] <= NO_TORQUE * most {
+                    return None;
+                }
+                self.reach * self.largest[j]
+            }
+            _ => self.reach,
+        };
+        let tips = self.kinematics.iter().zip(&self.torques);
+        let entries: Vec<f64> = tips
+            .flat_map(|(kinematics, torque)| {
+                let column: [f64; 3] = (kinematics.column(parameter, torque) / unit).into();
+                column
+            })
+            .collect();
+        Some(DVector::from_vec(entries))
+    }
+}
+
+/// The `sample`th of points that fill (0, 1) evenly, on the `joint`th axis: Kronecker's sequence of √p, p prime.
+fn spread(sample: usize, joint: usize) -> f64 {
+    const PRIMES: [f64; 12] = [2.0, 3.0, 5.0, 7.0, 11.0, 13.0, 17.0, 19.0, 23.0, 29.0, 31.0, 37.0];
+    // beyond twelve joints other multiples of the same roots do
+    let root = PRIMES[joint % PRIMES.len()].sqrt() * (1 + joint / PRIMES.len()) as f64;
+    (sample as f64 * root).fract()
+}

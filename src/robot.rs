@@ -11,12 +11,15 @@
 //! frame, {T} the flange's. β is zero but where consecutive axes are nearly parallel: there Denavit and Hartenberg's
 //! common normal jumps with the smallest tilt, and Hayati's β does not (S. Hayati, *IEEE CDC* 22 (1983) 1477–1483).
 
+mod file;
 mod kinematics;
 mod minimal;
 mod parameter;
 mod setup;
 mod statics;
+mod urdf;
 
+pub use file::is_urdf;
 pub use kinematics::{JointFrames, Kinematics};
 pub use minimal::minimal_parameters;
 pub use parameter::{Parameter, Unit};

@@ -1,0 +1,228 @@
+//! The reader of robot files: a table of joints in TOML, or a URDF. Every error names the place and what is right.
+
+use nalgebra::Vector3;
+use serde::Deserialize;
+use toml::Spanned;
+
+use super::{Body, Hayati, Joint, Motion, Robot, urdf};
+use crate::error::{Error, Result};
+use crate::toml_text::{Number, Required, TomlText};
+use crate::units::{DEG, MM, STANDARD_GRAVITY, URAD_PER_NM};
+
+/// Gravity where a file does not state it, m/s²: straight down in a base frame whose z points up.
+pub(super) const DOWN: Vector3<f64> = Vector3::new(0.0, 0.0, -STANDARD_GRAVITY);
+
+impl Robot {
+    /// Reads and checks the text of a robot file; `file` names it in errors (and the robot, where it has no name).
+    ///
+    /// A text that begins with `<` is a URDF, of which the chain from `base_link` to `tip_link` is read (the links
+    /// of these very names unless given). Any other text is a table in TOML, which needs no links.
+    ///
+    /// # Errors
+    /// [`Error::Syntax`] or [`Error::Input`] with line and column.
+    pub fn from_text(
+        file: &str,
+        text: &str,
+        base_link: Option<&str>,
+        tip_link: Option<&str>,
+    ) -> Result<Robot> {
+        match is_urdf(text) {
+            true => urdf::read(file, text, base_link, tip_link),
+            false => read_table(file, text),
+        }
+    }
+
+    /// File name and text of a robot that the program carries: `tx90`.
+    pub fn builtin(name: &str) -> Option<(&'static str, &'static str)> {
+        match name {
+            "tx90" => Some(("robots/tx90.toml", include_str!("../../robots/tx90.toml"))),
+            _ => None,
+        }
+    }
+}
+
+/// True of XML, which no TOML begins like.
+pub fn is_urdf(text: &str) -> bool {
+    text.trim_start_matches(|c: char| c.is_whitespace() || c == '\u{feff}').starts_with('<')
+}
+
+/// `robots/tx90.toml` → `tx90`.
+pub(super) fn file_stem(file: &str) -> String {
+    let path = std::path::Path::new(file);
+    path.file_stem().map_or_else(|| file.to_owned(), |stem| stem.to_string_lossy().into_owned())
+}
+
+/// What a joint is called that has no name.
+pub(super) fn default_name(index: usize) -> String {
+    format!("joint {}", index + 1)
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawRobot {
+    name: Option<String>,
+    source: Option<String>,
+    convention: Option<Spanned<String>>,
+    gravity_m_s2: Option<Spanned<Vec<Number>>>,
+    joint: Spanned<Vec<Spanned<RawJoint>>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a section [[joint]]")]
+struct RawJoint {
+    name: Option<String>,
+    r#type: Option<Spanned<String>>,
+    theta_offset_deg: Option<Number>,
+    d_mm: Number,
+    a_mm: Number,
+    alpha_deg: Number,
+    beta_deg: Option<Number>,
+    compliance_urad_per_nm: Option<Number>,
+    mass_kg: Option<Number>,
+    com_mm: Option<Spanned<Vec<Number>>>,
+    limits_deg: Option<Spanned<Vec<Number>>>,
+    limits_mm: Option<Spanned<Vec<Number>>>,
+}
+
+/// What a robot file cannot do without, in words.
+const REQUIRED: &Required = &[
+    ("[joint]", "a section [[joint]] with d_mm, a_mm, alpha_deg for each joint, base to flange"),
+    ("d_mm", "the offset along the joint's axis in mm"),
+    ("a_mm", "the length of the link in mm"),
+    ("alpha_deg", "the twist of the link in degrees"),
+];
+
+fn read_table(file: &str, text: &str) -> Result<Robot> {
+    let toml = TomlText::new(file, text);
+    let raw: RawRobot = toml.parse(REQUIRED)?;
+    if let Some(convention) = &raw.convention
+        && convention.get_ref() != "hayati"
+    {
+        let expected =
+            "\"hayati\", Rz(θ+offset)·Tz(d)·Tx(a)·Rx(α)·Ry(β); with beta_deg = 0 that is standard DH";
+        return Err(toml.is("convention", convention, expected));
+    }
+    let table = Table(toml);
+    let gravity = match &raw.gravity_m_s2 {
+        Some(list) => table.vector("gravity_m_s2", list, "in m/s² in the robot's base frame")?,
+        None => DOWN,
+    };
+    if raw.joint.get_ref().is_empty() {
+        return Err(toml.wrong(&raw.joint, "the robot has no joint".to_owned(), REQUIRED[0].1));
+    }
+    let joints = raw.joint.get_ref().iter().enumerate();
+    Ok(Robot {
+        name: raw.name.unwrap_or_else(|| file_stem(file)),
+        source: raw.source,
+        gravity,
+        root: crate::spatial::Pose::IDENTITY,
+        joints: joints.map(|(index, joint)| table.joint(index, joint)).collect::<Result<_>>()?,
+        flange: crate::spatial::Pose::IDENTITY,
+    })
+}
+
+/// The checks of a table's values.
+struct Table<'a>(TomlText<'a>);
+
+impl Table<'_> {
+    fn joint(&self, index: usize, spanned: &Spanned<RawJoint>) -> Result<Joint> {
+        let raw = spanned.get_ref();
+        let motion = self.motion(raw)?;
+        let scaled = |key: &str, number: &Number, si: f64| Ok(self.0.finite(key, number)? * si);
+        let or_zero = |key: &str, number: &Option<Number>, si: f64| match number {
+            Some(number) => scaled(key, number, si),
+            None => Ok(0.0),
+        };
+        Ok(Joint {
+            name: raw.name.clone().unwrap_or_else(|| default_name(index)),
+            motion,
+            link: Hayati {
+                theta: or_zero("joint.theta_offset_deg", &raw.theta_offset_deg, DEG)?,
+                d: scaled("joint.d_mm", &raw.d_mm, MM)?,
+                a: scaled("joint.a_mm", &raw.a_mm, MM)?,
+                alpha: scaled("joint.alpha_deg", &raw.alpha_deg, DEG)?,
+                beta: or_zero("joint.beta_deg", &raw.beta_deg, DEG)?,
+            },
+            compliance: or_zero("joint.compliance_urad_per_nm", &raw.compliance_urad_per_nm, URAD_PER_NM)?,
+            body: self.body(raw)?,
+            limits: self.limits(raw, motion)?,
+        })
+    }
+
+    /// What the joint does, with the keys that only the other kind of joint has refused.
+    fn motion(&self, raw: &RawJoint) -> Result<Motion> {
+        let Some(kind) = &raw.r#type else {
+            return self.revolute(raw);
+        };
+        match kind.get_ref().as_str() {
+            "revolute" => self.revolute(raw),
+            "prismatic" => {
+                if let Some(limits) = &raw.limits_deg {
+                    let expected = "limits_mm: a prismatic joint moves in mm";
+                    return Err(self.0.is("joint.limits_deg", limits, expected));
+                }
+                if let Some(compliance) = &raw.compliance_urad_per_nm {
+                    let expected = "no compliance: a prismatic joint does not turn";
+                    return Err(self.0.is("joint.compliance_urad_per_nm", compliance, expected));
+                }
+                Ok(Motion::Prismatic)
+            }
+            _ => Err(self.0.is("joint.type", kind, "\"revolute\" or \"prismatic\"")),
+        }
+    }
+
+    fn revolute(&self, raw: &RawJoint) -> Result<Motion> {
+        match &raw.limits_mm {
+            Some(limits) => {
+                Err(self.0.is("joint.limits_mm", limits, "limits_deg: a revolute joint turns in degrees"))
+            }
+            None => Ok(Motion::Revolute),
+        }
+    }
+
+    fn body(&self, raw: &RawJoint) -> Result<Option<Body>> {
+        let centre = match &raw.com_mm {
+            Some(list) => self.vector("joint.com_mm", list, "in mm in the joint's distal frame")? * MM,
+            None => Vector3::zeros(),
+        };
+        match (&raw.mass_kg, &raw.com_mm) {
+            (Some(mass), _) => {
+                let mass = self.0.not_negative("joint.mass_kg", mass)?;
+                Ok(Some(Body { mass, centre }))
+            }
+            (None, Some(list)) => {
+                Err(self.0.is("joint.com_mm", list, "a mass_kg in the same [[joint]], or no com_mm"))
+            }
+            (None, None) => Ok(None),
+        }
+    }
+
+    fn limits(&self, raw: &RawJoint, motion: Motion) -> Result<Option<[f64; 2]>> {
+        let (key, list, si) = match motion {
+            Motion::Revolute => ("joint.limits_deg", &raw.limits_deg, DEG),
+            Motion::Prismatic => ("joint.limits_mm", &raw.limits_mm, MM),
+        };
+        let Some(list) = list else { return Ok(None) };
+        let wrong = || self.0.is(key, list, "two numbers [lower, upper], the lower one first");
+        let numbers = self.numbers(key, list)?;
+        match numbers.as_slice() {
+            &[lower, upper] if lower < upper => Ok(Some([lower * si, upper * si])),
+            _ => Err(wrong()),
+        }
+    }
+
+    fn vector(&self, key: &str, list: &Spanned<Vec<Number>>, meaning: &str) -> Result<Vector3<f64>> {
+        match self.numbers(key, list)?.as_slice() {
+            &[x, y, z] => Ok(Vector3::new(x, y, z)),
+            _ => Err(self.three(key, list, meaning)),
+        }
+    }
+
+    fn three(&self, key: &str, list: &Spanned<Vec<Number>>, meaning: &str) -> Error {
+        self.0.is(key, list, &format!("three numbers [x, y, z] {meaning}"))
+    }
+
+    fn numbers(&self, key: &str, list: &Spanned<Vec<Number>>) -> Result<Vec<f64>> {
+        list.get_ref().iter().map(|number| self.0.finite(key, number)).collect()
+    }
+}

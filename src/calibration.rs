@@ -7,6 +7,7 @@ mod identify;
 mod noise;
 mod observability;
 mod problem;
+pub mod simulate;
 mod start;
 mod validation;
 mod warning;

@@ -3,8 +3,10 @@
 //! Tail probabilities are computed as tails, never as 1 − p, so that 1e-60 is 1e-60 and not 0.
 
 mod estimate;
+mod random;
 
 pub use estimate::Estimate;
+pub use random::Random;
 
 use statrs::function::beta::beta_reg;
 use statrs::function::gamma::{gamma_ur, ln_gamma};

@@ -102,8 +102,12 @@ pub struct PassRecord {
 /// A fit that does not converge is no error: see [`Calibration::is_converged`].
 pub fn calibrate<'c>(campaign: &'c Campaign, mode: Mode, options: &Options) -> Result<Calibration<'c>> {
     let compensation = Compensation::new(campaign, mode)?;
-    let start = start(campaign)?;
+    let mut start = start(campaign)?;
     let free = free_parameters(campaign, &start, &compensation);
+    // what is not free stays as it is drawn
+    for axis in (0..3).filter(|&axis| !free.contains(&Parameter::Tool(axis))) {
+        start.tool[axis] = campaign.tool[axis];
+    }
     calibrate_from(campaign, &campaign.measurements, start, &free, &compensation, options)
 }
 
@@ -207,7 +211,7 @@ pub fn free_parameters(campaign: &Campaign, start: &Setup, compensation: &Compen
     let has_world = matches!(campaign.measurements.targets, Targets::Points(_));
     let is_base = |p: &Parameter| matches!(p, Parameter::BasePosition(_) | Parameter::BaseRotation(_));
     let wishes = &campaign.wishes;
-    let minimal = minimal_parameters(&campaign.robot, start.tool, compensation.payload);
+    let minimal = minimal_parameters(&campaign.robot, start.tool, campaign.tool, compensation.payload);
     Parameter::all(campaign.robot.joints.len())
         .into_iter()
         .filter(|p| (minimal.contains(p) && (has_world || !is_base(p))) || wishes.freed.contains(p))

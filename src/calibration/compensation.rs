@@ -8,7 +8,8 @@ use crate::beam::Physics;
 use crate::compliance::{Compliance, DEFAULT_ELEMENTS, closed_form};
 use crate::error::{Error, Result};
 use crate::rig;
-use crate::robot::{Body, Kinematics, Loads, Setup};
+use crate::robot::{Body, Kinematics, Loads, Robot, Setup};
+use crate::statistics::Random;
 use crate::units::STANDARD_GRAVITY;
 
 /// How the rod's deflection is known.
@@ -123,6 +124,24 @@ impl Compensation {
         let gravity = r.tr_mul(gravity) / STANDARD_GRAVITY;
         r * (compliance.gravity * gravity + compliance.force * r.tr_mul(force))
     }
+}
+
+/// Largest torque that links and payload put on each joint over the workspace, N·m; at least 1e-9.
+pub(super) fn largest_torques(robot: &Robot, setup: &Setup, payload: Body) -> Vec<f64> {
+    let mut random = Random::seeded(0, 0);
+    let mut kinematics = Kinematics::new(robot);
+    let gravity = setup.base().rotation * robot.gravity;
+    let loads = Loads { gravity, payload: Some(payload), tip_force: Vector3::zeros() };
+    let (mut torque, mut largest) = (vec![0.0; robot.joints.len()], vec![1e-9f64; robot.joints.len()]);
+    for _ in 0..200 {
+        let q: Vec<f64> = robot.joints.iter().map(|_| random.uniform(-3.0, 3.0)).collect();
+        kinematics.update(setup, &q, &[]);
+        kinematics.torques(robot, &loads, &mut torque);
+        for (largest, torque) in largest.iter_mut().zip(&torque) {
+            *largest = largest.max(torque.abs());
+        }
+    }
+    largest
 }
 
 /// The modes that a campaign's files allow, in the paper's order; Calc only where the closed form applies to the rod.

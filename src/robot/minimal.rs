@@ -20,14 +20,23 @@ const CONFIGURATIONS: usize = 80;
 /// Torque, relative to the largest of the robot, below which a joint has none.
 const NO_TORQUE: f64 = 1e-6;
 
-/// The parameters that positions of the tip at `tool` (m, in {T}) can determine while the robot carries `payload`; see [`crate::robot`] for what they
-/// are. Compliances are among them for joints that gravity loads, where the robot's masses are known.
-pub fn minimal_parameters(robot: &Robot, tool: Vector3<f64>, payload: Option<Body>) -> Vec<Parameter> {
+/// The parameters that positions of the tip at `tool` (m, in {T}) can determine while the robot carries `payload`; see
+/// [`crate::robot`] for what they are. Compliances are among them for joints that gravity loads, where the robot's
+/// masses are known.
+///
+/// A turn about the last axis is the same as a shift of the tool around it. θₙ takes it, as in the paper, where the
+/// tool as `drawn` (m, in {T}) lies beside that axis, so that there is a direction to correct; else the tool does.
+pub fn minimal_parameters(
+    robot: &Robot,
+    tool: Vector3<f64>,
+    drawn: Vector3<f64>,
+    payload: Option<Body>,
+) -> Vec<Parameter> {
     let setup = Setup::new(robot, Pose::IDENTITY, tool);
     let samples = Samples::new(&setup, payload);
     let mut basis: Vec<DVector<f64>> = Vec::new();
     let mut kept = Vec::new();
-    for candidate in candidates(robot) {
+    for candidate in candidates(robot, is_beside_last_axis(robot, drawn, samples.reach)) {
         let Some(column) = samples.column(candidate) else { continue };
         let mut own = column;
         // twice is enough (Kahan, Parlett)
@@ -46,7 +55,7 @@ pub fn minimal_parameters(robot: &Robot, tool: Vector3<f64>, payload: Option<Bod
 }
 
 /// In order of preference. The last link's a, α and d do what the tool does.
-fn candidates(robot: &Robot) -> Vec<Parameter> {
+fn candidates(robot: &Robot, turns_tool: bool) -> Vec<Parameter> {
     let n = robot.joints.len();
     let mut list: Vec<Parameter> = (0..3).map(Parameter::BasePosition).collect();
     list.extend((0..3).map(Parameter::BaseRotation));
@@ -55,7 +64,9 @@ fn candidates(robot: &Robot) -> Vec<Parameter> {
         if !is_last {
             list.extend([Parameter::A(j), Parameter::Alpha(j)]);
         }
-        list.push(Parameter::Theta(j));
+        if !is_last || turns_tool {
+            list.push(Parameter::Theta(j));
+        }
         if !is_last {
             list.push(Parameter::D(j));
             if joint.link.alpha.sin().abs() < NEARLY_PARALLEL.sin() {
@@ -69,6 +80,15 @@ fn candidates(robot: &Robot) -> Vec<Parameter> {
         list.extend((0..n).filter(turns).map(Parameter::Compliance));
     }
     list
+}
+
+/// True where the tip lies farther from the last axis than what counts as on it.
+fn is_beside_last_axis(robot: &Robot, tool: Vector3<f64>, reach: f64) -> bool {
+    let mut kinematics = Kinematics::new(robot);
+    kinematics.update(&Setup::new(robot, Pose::IDENTITY, tool), &vec![0.0; robot.joints.len()], &[]);
+    let arm =
+        kinematics.joints.last().map_or(0.0, |last| last.axis.cross(&(kinematics.tip - last.origin)).norm());
+    arm > OWN * reach
 }
 
 /// Configurations over the workspace.

@@ -1,0 +1,281 @@
+//! Simulated campaigns: what the paper's procedure would record with a robot and a rod that are known exactly.
+//!
+//! A robot with small errors of all its parameters brings the ball to five clamps under many orientations; the poses
+//! are picked for their observability. The rod sags and the sensors push, both with physical signs: gravity pulls down,
+//! the contact force pushes the ball up. Everything is drawn from one seed.
+
+mod files;
+mod poses;
+
+pub use files::campaign_files;
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::campaign::{Group, Recording, Row, Targets};
+use super::compensation::{Compensation, Mode};
+use super::problem::Pass;
+use crate::compliance::{Compliance, PAPER_CONTACT_FORCE};
+use crate::error::Result;
+use crate::robot::{Body, Kinematics, Parameter, Robot, Setup, minimal_parameters};
+use crate::rod::Rod;
+use crate::spatial::Pose;
+use crate::statistics::Random;
+use crate::units::{DEG, MM, UM};
+
+/// What is simulated. The defaults are the paper's experiment.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Plan {
+    /// Every random number comes from it.
+    pub seed: u64,
+    /// Poses on every clamp.
+    pub poses_per_clamp: usize,
+    /// Poses of the validation.
+    pub validation_poses: usize,
+    /// The true rod's compliance over that of its model.
+    pub rod_factor: f64,
+    /// Errors of the true robot.
+    pub errors: RobotErrors,
+    /// Standard deviation of a displacement sensor, m.
+    pub sensor_noise: f64,
+    /// Root mean square of the distance by which the robot misses a pose that it takes again, m.
+    pub repeatability: f64,
+    /// Root mean square of the distance by which the scanner misses the ball in the validation, m.
+    pub scanner_noise: f64,
+    /// Root mean square of the error of each clamp's position in the campaign file, m; 0 in the paper's list of noises.
+    pub clamp_error: f64,
+}
+
+/// Standard deviations of the differences between the true and the nominal robot.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RobotErrors {
+    /// Of d and a, m.
+    pub length: f64,
+    /// Of θ, rad.
+    pub offset: f64,
+    /// Of α and β, rad.
+    pub tilt: f64,
+    /// Angle by which each joint yields, on average, under its largest torque, rad.
+    pub yielding: f64,
+}
+
+impl Default for Plan {
+    fn default() -> Self {
+        Plan {
+            seed: 1,
+            poses_per_clamp: 30,
+            validation_poses: 100,
+            rod_factor: 1.0,
+            errors: RobotErrors { length: 0.3 * MM, offset: 1e-3, tilt: 0.3e-3, yielding: 0.5e-3 },
+            sensor_noise: 3.0 * UM,
+            repeatability: 30.0 * UM,
+            scanner_noise: 43.0 * UM,
+            clamp_error: 0.0,
+        }
+    }
+}
+
+/// Where the clamps of the paper's fixture could be (500 × 300 × 151 mm, § 5.2; their places are not published),
+/// position in {W} (m) and turn about the vertical (rad). {W} stands upright in the third clamp.
+const CLAMPS: [([f64; 3], f64); 5] = [
+    ([0.10, 0.20, 0.10], 20.0 * DEG),
+    ([-0.12, 0.12, 0.0], 95.0 * DEG),
+    ([0.0, 0.0, 0.0], 0.0),
+    ([-0.12, -0.12, 0.15], -80.0 * DEG),
+    ([0.10, -0.20, 0.05], 40.0 * DEG),
+];
+/// {0} in {W}, m: the fixture stands in front of the robot, on its table.
+const BASE: [f64; 3] = [-0.62, 0.03, -0.16];
+/// How far from the middle of the sensors' range the ball comes to rest, m.
+const AIM: f64 = 0.2 * MM;
+
+/// A campaign and the truth behind it.
+#[derive(Debug, Clone)]
+pub struct Simulation<'r> {
+    /// What is simulated.
+    pub plan: Plan,
+    /// The true robot, base and tool.
+    pub truth: Setup<'r>,
+    /// The true rod.
+    pub compliance: Compliance,
+    /// The measurements.
+    pub measurements: Recording,
+    /// The validation.
+    pub validation: Recording,
+    /// First guess of {0} in {W} that a user would write down.
+    pub base_guess: Pose,
+}
+
+/// Simulates the campaign of `plan` with a nominal robot and the model compliance of its rod.
+///
+/// # Errors
+/// [`crate::Error::NotApplicable`] where the robot does not reach the clamps with this rod.
+pub fn simulate<'r>(robot: &'r Robot, rod: &Rod, model: &Compliance, plan: &Plan) -> Result<Simulation<'r>> {
+    let payload = Body { mass: rod.mass(), centre: rod.centre_of_mass() };
+    let compliance =
+        Compliance { force: model.force * plan.rod_factor, gravity: model.gravity * plan.rod_factor };
+    let base_guess = Pose { rotation: Matrix3::identity(), origin: Vector3::from(BASE) };
+    let truth = true_setup(robot, base_guess, rod.tip(), payload, plan);
+    let groups: Vec<Group> = (1..)
+        .zip(CLAMPS)
+        .map(|(id, (place, turn))| Group { name: format!("clamp {id}"), device: device_frame(place, turn) })
+        .collect();
+    let compensation = Compensation {
+        mode: Mode::Fea,
+        compliance: Some(compliance),
+        payload: Some(payload),
+        contact_force: Vector3::from(PAPER_CONTACT_FORCE),
+    };
+    let free = minimal_parameters(robot, truth.tool, rod.tip(), Some(payload));
+    let poses = poses::choose(&truth, &free, &groups, plan)?;
+    let measurements = measure(&truth, &compensation, groups, poses, plan);
+    let validation = scan(&truth, plan);
+    Ok(Simulation { plan: plan.clone(), truth, compliance, measurements, validation, base_guess })
+}
+
+/// The frame of a device: its three sensors look up at the same angle, so that (1, 1, 1) in it is vertical.
+fn device_frame(place: [f64; 3], turn: f64) -> Pose {
+    let (z, x) = (Vector3::repeat(1.0).normalize(), Vector3::new(1.0, -1.0, 0.0).normalize());
+    // rows: where x, y and z of {W} are in the device
+    let upright = Matrix3::from_rows(&[x.transpose(), z.cross(&x).transpose(), z.transpose()]);
+    Pose {
+        rotation: crate::spatial::turned_about_z(&Matrix3::identity(), turn) * upright,
+        origin: Vector3::from(place),
+    }
+}
+
+/// The nominal robot with errors on every parameter that positions can show.
+fn true_setup<'r>(robot: &'r Robot, base: Pose, tool: Vector3<f64>, payload: Body, plan: &Plan) -> Setup<'r> {
+    let mut random = Random::seeded(plan.seed, 0);
+    let mut truth = Setup::new(robot, base, tool);
+    let errors = &plan.errors;
+    let torques = super::compensation::largest_torques(robot, &truth, payload);
+    for parameter in minimal_parameters(robot, tool, tool, Some(payload)) {
+        let sd = match parameter {
+            Parameter::BasePosition(_) => 2.0 * MM,
+            Parameter::BaseRotation(_) => 2e-3,
+            Parameter::Tool(_) => 0.5 * MM,
+            Parameter::D(_) | Parameter::A(_) => errors.length,
+            Parameter::Theta(_) => errors.offset,
+            Parameter::Alpha(_) | Parameter::Beta(_) => errors.tilt,
+            Parameter::Compliance(j) => {
+                // drives yield with their torque, never against it
+                let mean = errors.yielding / torques[j];
+                truth.set(parameter, mean * random.uniform(0.5, 1.5));
+                continue;
+            }
+        };
+        truth.set(parameter, truth.get(parameter) + sd * random.normal());
+    }
+    truth
+}
+
+/// A vector of normal components whose length has this root mean square.
+fn scatter(random: &mut Random, rms: f64) -> Vector3<f64> {
+    Vector3::from_fn(|_, _| random.normal()) * (rms / 3.0f64.sqrt())
+}
+
+/// The displacements that the sensors would show at these joint values.
+fn measure(
+    truth: &Setup,
+    compensation: &Compensation,
+    groups: Vec<Group>,
+    poses: Vec<(usize, Vec<f64>)>,
+    plan: &Plan,
+) -> Recording {
+    let mut random = Random::seeded(plan.seed, 2);
+    let joint_count = truth.robot.joints.len();
+    let rows: Vec<Row> = (1..)
+        .zip(&poses)
+        .map(|(pose, &(group, _))| Row {
+            pose: format!("{pose}"),
+            line: pose + 1,
+            group,
+            time: None,
+            temperature: None,
+        })
+        .collect();
+    let joint_values: Vec<f64> = poses.iter().flat_map(|(_, q)| q.iter().copied()).collect();
+    let mut recording = Recording {
+        file: "measurements.csv".into(),
+        joint_count,
+        joint_values,
+        rows,
+        groups,
+        targets: Targets::Sockets(Vec::new()),
+    };
+    let tips = deflected_tips(truth, compensation, &recording);
+    let clamp_errors: Vec<Vector3<f64>> =
+        recording.groups.iter().map(|_| scatter(&mut random, plan.clamp_error)).collect();
+    let points = tips
+        .iter()
+        .zip(&recording.rows)
+        .map(|(tip, row)| {
+            let seen = tip + scatter(&mut random, plan.repeatability);
+            // a wrong place of a clamp moves all that is measured in it
+            seen + scatter(&mut random, plan.sensor_noise * 3.0f64.sqrt()) - clamp_errors[row.group]
+        })
+        .collect();
+    recording.targets = Targets::Points(points);
+    recording
+}
+
+/// The deflected tip of every row, in {W}, m.
+fn deflected_tips(truth: &Setup, compensation: &Compensation, recording: &Recording) -> Vec<Vector3<f64>> {
+    let n = recording.joint_count;
+    let mut pass = Pass {
+        shift: vec![Vector3::zeros(); recording.len()],
+        torque: vec![0.0; recording.len() * n],
+        weight: vec![1.0; recording.len()],
+    };
+    // the torque that turns a joint on is that of the turned joints
+    for _ in 0..5 {
+        compensation.update(truth, recording, &mut pass);
+    }
+    let mut kinematics = Kinematics::new(truth.robot);
+    (0..recording.len())
+        .map(|row| {
+            kinematics.update(truth, recording.joints(row), &pass.torque[row * n..][..n]);
+            kinematics.tip + pass.shift[row]
+        })
+        .collect()
+}
+
+/// The validation: poses all over the workspace with a short rigid rod, scanned in {W}.
+fn scan(truth: &Setup, plan: &Plan) -> Recording {
+    let mut random = Random::seeded(plan.seed, 3);
+    let mut short = truth.clone();
+    short.tool = Vector3::new(0.0004, -0.0003, 0.1202);
+    let joint_count = truth.robot.joints.len();
+    let mut recording = Recording {
+        file: "validation.csv".into(),
+        joint_count,
+        joint_values: Vec::new(),
+        rows: Vec::new(),
+        groups: vec![Group { name: String::new(), device: Pose::IDENTITY }],
+        targets: Targets::Points(Vec::new()),
+    };
+    let mut kinematics = Kinematics::new(truth.robot);
+    while recording.len() < plan.validation_poses {
+        let q = poses::anywhere(truth.robot, &mut random);
+        kinematics.update(&short, &q, &[]);
+        // in front of the robot, above its table
+        let tip = kinematics.tip - truth.base_position;
+        if tip.x > 0.2 && tip.z > 0.1 && poses::is_above_table(&kinematics, truth.base_position.z) {
+            let pose = recording.len() + 1;
+            recording.joint_values.extend(&q);
+            recording.rows.push(Row {
+                pose: format!("{pose}"),
+                line: pose + 1,
+                group: 0,
+                time: None,
+                temperature: None,
+            });
+        }
+    }
+    let tips = deflected_tips(&short, &Compensation::bare(), &recording);
+    let seen = |tip: Vector3<f64>| {
+        tip + scatter(&mut random, plan.repeatability) + scatter(&mut random, plan.scanner_noise)
+    };
+    recording.targets = Targets::Points(tips.into_iter().map(seen).collect());
+    recording
+}

@@ -2,23 +2,30 @@
 
 mod calibrate;
 pub mod campaign;
+mod compare;
 mod compensation;
+mod cross_validation;
 mod identify;
 mod noise;
 mod observability;
 mod problem;
+mod resample;
 pub mod simulate;
 mod start;
 mod validation;
 mod warning;
+mod write_back;
 
 pub use calibrate::{
     Calibration, Estimated, Options, PassRecord, calibrate, calibrate_from, free_parameters, start,
 };
 pub use campaign::Campaign;
+pub use compare::{CompareOptions, Comparison, Difference, compare};
 pub use compensation::{Compensation, Mode, default_mode, modes};
+pub use cross_validation::{CrossValidation, cross_validate};
 pub use identify::{Held, plausible_range};
 pub use noise::{Noise, Robust};
 pub use observability::Observability;
 pub use validation::{Summary, Validation, validate};
 pub use warning::Warning;
+pub use write_back::write_back;

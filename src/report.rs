@@ -9,7 +9,9 @@
 //! - [`compliance`] · [`rig`]: results of the library as reports and as JSON
 //! - [`text`]: a report for the terminal · [`table`]: tables to text, HTML, Markdown, CSV · [`html`]: the page
 
+pub mod calibration;
 pub mod chart;
+pub mod comparison;
 pub mod compliance;
 mod draw;
 pub mod html;

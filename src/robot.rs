@@ -12,12 +12,14 @@
 //! common normal jumps with the smallest tilt, and Hayati's β does not (S. Hayati, *IEEE CDC* 22 (1983) 1477–1483).
 
 mod file;
+mod hayati;
 mod kinematics;
 mod minimal;
 mod parameter;
 mod setup;
 mod statics;
 mod urdf;
+mod write;
 
 pub use file::is_urdf;
 pub use kinematics::{JointFrames, Kinematics};
@@ -25,6 +27,7 @@ pub use minimal::minimal_parameters;
 pub use parameter::{Parameter, Unit};
 pub use setup::Setup;
 pub use statics::Loads;
+pub use urdf::Written;
 
 use nalgebra::Vector3;
 

@@ -25,6 +25,13 @@ impl Pose {
         Pose { rotation, origin: Vector3::from(xyz) }
     }
 
+    /// `[roll, pitch, yaw]` with R = Rz(yaw)·Ry(pitch)·Rx(roll), rad, pitch within ±π/2.
+    pub fn roll_pitch_yaw(&self) -> [f64; 3] {
+        let r = &self.rotation;
+        let pitch = (-r[(2, 0)]).atan2(r[(2, 1)].hypot(r[(2, 2)]));
+        [r[(2, 1)].atan2(r[(2, 2)]), pitch, r[(1, 0)].atan2(r[(0, 0)])]
+    }
+
     /// This frame followed by `next`, which is given in it.
     pub fn then(&self, next: &Pose) -> Pose {
         Pose { rotation: self.rotation * next.rotation, origin: self.point(&next.origin) }

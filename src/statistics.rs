@@ -3,9 +3,11 @@
 //! Tail probabilities are computed as tails, never as 1 − p, so that 1e-60 is 1e-60 and not 0.
 
 mod estimate;
+mod parallel;
 mod random;
 
 pub use estimate::Estimate;
+pub use parallel::in_parallel;
 pub use random::Random;
 
 use statrs::function::beta::beta_reg;
@@ -138,6 +140,12 @@ pub fn quantile(values: &[f64], p: f64) -> Option<f64> {
     let (below, above) = (sorted[place.floor() as usize], sorted[place.ceil() as usize]);
     // equal neighbours need no interpolation, and infinite ones would not survive it
     Some(if below == above { below } else { below + place.fract() * (above - below) })
+}
+
+/// The interval that holds the middle `level` of the samples, by [`quantile`]; NaN for none.
+pub fn percentile_interval(samples: &mut [f64], level: f64) -> (f64, f64) {
+    let at = |p: f64| quantile(samples, p).unwrap_or(f64::NAN);
+    (at((1.0 - level) / 2.0), at((1.0 + level) / 2.0))
 }
 
 /// The middle value; `None` for no values or a NaN among them.

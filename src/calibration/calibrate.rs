@@ -37,6 +37,8 @@ pub struct Options {
 pub struct Calibration<'c> {
     /// How the rod's deflection was compensated.
     pub mode: Mode,
+    /// Base, links, compliances and tool before the first fit: the nominal robot where the rough start puts it.
+    pub start: Setup<'c>,
     /// Base, links, compliances and tool as found.
     pub setup: Setup<'c>,
     /// The free parameters.
@@ -84,6 +86,27 @@ pub struct Estimated {
     pub identifiable: bool,
 }
 
+impl Calibration<'_> {
+    /// Pairs of free parameters whose estimates correlate by more than `limit` in size, strongest first.
+    pub fn correlations_above(&self, limit: f64) -> Vec<(Parameter, Parameter, f64)> {
+        let matrix = self.fit.covariance.correlation();
+        let count = self.parameters.len();
+        let mut pairs: Vec<(Parameter, Parameter, f64)> = (0..count)
+            .flat_map(|i| (0..i).map(move |j| (j, i)))
+            .filter(|&(j, i)| self.parameters[i].identifiable && self.parameters[j].identifiable)
+            .map(|(j, i)| (self.parameters[j].parameter, self.parameters[i].parameter, matrix[(i, j)]))
+            .filter(|(_, _, correlation)| correlation.abs() > limit)
+            .collect();
+        pairs.sort_by(|a, b| b.2.abs().total_cmp(&a.2.abs()));
+        pairs
+    }
+
+    /// Lengths of the deviations, m, one per row.
+    pub fn residuals(&self) -> Vec<f64> {
+        self.deviations.iter().map(|d| d.norm()).collect()
+    }
+}
+
 /// One pass of the compensation loop.
 #[derive(Debug, Clone, Copy)]
 pub struct PassRecord {
@@ -108,10 +131,16 @@ pub fn calibrate<'c>(campaign: &'c Campaign, mode: Mode, options: &Options) -> R
     for axis in (0..3).filter(|&axis| !free.contains(&Parameter::Tool(axis))) {
         start.tool[axis] = campaign.tool[axis];
     }
-    calibrate_from(campaign, &campaign.measurements, start, &free, &compensation, options)
+    let recording = &campaign.measurements;
+    let mut calibration = calibrate_from(campaign, recording, start, &free, &compensation, options)?;
+    if let Some(recording) = &campaign.validation {
+        calibration.validation = Some(validate(&calibration.setup, recording, campaign.refit)?);
+    }
+    Ok(calibration)
 }
 
-/// Calibrates `free` parameters on a recording, from a given start: for folds and resampled recordings.
+/// Calibrates `free` parameters on a recording, from a given start, without validation: for folds and recordings that
+/// were drawn again.
 ///
 /// # Errors
 /// As [`calibrate`].
@@ -163,10 +192,6 @@ pub fn calibrate_from<'c>(
         .collect();
     let observability = Observability::new(&problem, &fit.parameters)?;
     let outliers = noise.outliers(recording, &deviations)?;
-    let validation = match &campaign.validation {
-        Some(recording) => Some(validate(&setup, recording, campaign.refit)?),
-        None => None,
-    };
     let mut calibration = Calibration {
         mode: compensation.mode,
         parameters,
@@ -181,8 +206,9 @@ pub fn calibrate_from<'c>(
         passes,
         is_converged,
         observability,
-        validation,
+        validation: None,
         warnings: Vec::new(),
+        start: nominal,
         setup,
     };
     calibration.warnings = super::warning::all(campaign, recording, &calibration, compensation);
@@ -247,11 +273,7 @@ impl<'a, 'c> Run<'a, 'c> {
             Some(sd) => Noise::assumed(sd, recording, true),
             None => Noise::assumed(ASSUMED_NOISE, recording, false),
         };
-        let pass = Pass {
-            shift: vec![Vector3::zeros(); recording.len()],
-            torque: vec![0.0; recording.len() * recording.joint_count],
-            weight: noise.row_weights(recording),
-        };
+        let pass = Pass { weight: noise.row_weights(recording), ..Pass::at_rest(recording) };
         Run {
             campaign,
             recording,

@@ -30,6 +30,17 @@ pub(super) struct Pass {
     pub weight: Vec<f64>,
 }
 
+impl Pass {
+    /// Nothing bends, no torque, all rows count the same.
+    pub fn at_rest(recording: &Recording) -> Self {
+        Pass {
+            shift: vec![Vector3::zeros(); recording.len()],
+            torque: vec![0.0; recording.len() * recording.joint_count],
+            weight: vec![1.0; recording.len()],
+        }
+    }
+}
+
 /// The residuals of `recording`; see the top of the file.
 pub(super) struct Residuals<'a> {
     pub setup: Setup<'a>,

@@ -222,11 +222,7 @@ fn measure(
 /// The deflected tip of every row, in {W}, m.
 fn deflected_tips(truth: &Setup, compensation: &Compensation, recording: &Recording) -> Vec<Vector3<f64>> {
     let n = recording.joint_count;
-    let mut pass = Pass {
-        shift: vec![Vector3::zeros(); recording.len()],
-        torque: vec![0.0; recording.len() * n],
-        weight: vec![1.0; recording.len()],
-    };
+    let mut pass = Pass::at_rest(recording);
     // the torque that turns a joint on is that of the turned joints
     for _ in 0..5 {
         compensation.update(truth, recording, &mut pass);

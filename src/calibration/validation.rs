@@ -9,6 +9,7 @@ use super::start::rough_start;
 use crate::error::Result;
 use crate::least_squares;
 use crate::robot::{Kinematics, Parameter, Setup};
+use crate::spatial::Pose;
 use crate::statistics;
 
 /// Errors of the poses of a validation recording.
@@ -22,7 +23,9 @@ pub struct Validation {
     pub deviations: Vec<Vector3<f64>>,
     /// What was fitted again.
     pub refit: Refit,
-    /// Base and tool after that, where the recording knows {W}.
+    /// Base and tool (m, in {T}) after that, where they were.
+    pub placement: Option<(Pose, Vector3<f64>)>,
+    /// False where that fit did not converge.
     pub is_converged: bool,
     /// Mean, maximum, median and standard deviation.
     pub summary: Summary,
@@ -63,18 +66,30 @@ impl Summary {
 /// # Errors
 /// What the fit refuses.
 pub fn validate(setup: &Setup, recording: &Recording, refit: Refit) -> Result<Validation> {
+    validate_from(setup, recording, refit, None)
+}
+
+/// As [`validate`], with a first guess of base and tool in place of a rough start.
+///
+/// # Errors
+/// As [`validate`].
+pub(super) fn validate_from(
+    setup: &Setup,
+    recording: &Recording,
+    refit: Refit,
+    guess: Option<(Pose, Vector3<f64>)>,
+) -> Result<Validation> {
     let n = recording.joint_count;
     let bare = Compensation::bare();
-    let mut pass = Pass {
-        shift: vec![Vector3::zeros(); recording.len()],
-        torque: vec![0.0; recording.len() * n],
-        weight: vec![1.0; recording.len()],
-    };
+    let mut pass = Pass::at_rest(recording);
     let mut setup = setup.clone();
     let mut is_converged = true;
+    let mut placement = None;
     if let (Targets::Points(_), Refit::BaseTool) = (&recording.targets, refit) {
-        let robot = setup.calibrated();
-        let (base, tool) = rough_start(&robot, recording, setup.base(), setup.tool)?;
+        let (base, tool) = match guess {
+            Some(guess) => guess,
+            None => rough_start(&setup.calibrated(), recording, setup.base(), setup.tool)?,
+        };
         setup.base_guess = base;
         setup.base_position = base.origin;
         setup.base_turn = Vector3::zeros();
@@ -92,6 +107,7 @@ pub fn validate(setup: &Setup, recording: &Recording, refit: Refit) -> Result<Va
                 setup.set(parameter, fit.parameters[k]);
             }
         }
+        placement = Some((setup.base(), setup.tool));
     }
     bare.update(&setup, recording, &mut pass);
     let mut kinematics = Kinematics::new(setup.robot);
@@ -103,18 +119,8 @@ pub fn validate(setup: &Setup, recording: &Recording, refit: Refit) -> Result<Va
         .collect();
     let deviations: Vec<Vector3<f64>> = match &recording.targets {
         Targets::Points(points) => tips.iter().zip(points).map(|(tip, x)| tip - x).collect(),
-        Targets::Sockets(_) => {
-            let mut means = vec![(Vector3::zeros(), 0.0); recording.groups.len()];
-            for (tip, row) in tips.iter().zip(&recording.rows) {
-                means[row.group].0 += tip;
-                means[row.group].1 += 1.0;
-            }
-            tips.iter()
-                .zip(&recording.rows)
-                .map(|(tip, row)| tip - means[row.group].0 / means[row.group].1)
-                .collect()
-        }
+        Targets::Sockets(_) => recording.less_group_means(&tips),
     };
     let errors: Vec<f64> = deviations.iter().map(|d| d.norm()).collect();
-    Ok(Validation { summary: Summary::of(&errors), errors, tips, deviations, refit, is_converged })
+    Ok(Validation { summary: Summary::of(&errors), errors, tips, deviations, refit, placement, is_converged })
 }

@@ -5,39 +5,183 @@ use std::fmt;
 use super::calibrate::Calibration;
 use super::campaign::{Campaign, Recording};
 use super::compensation::Compensation;
+use super::identify::plausible_range;
+use crate::robot::Parameter;
+use crate::units::{MM, UM, significant};
 
 /// What the user of a calibration should know.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Warning {
-    /// The fit or the compensation loop did not come to rest.
-    NotConverged(String),
-    /// The robot's file has no masses.
+    /// The fit or the compensation loop did not come to rest: why the last fit stopped, and after how many passes.
+    NotConverged {
+        /// In the words of the fit.
+        reason: String,
+        /// Passes of the compensation loop.
+        passes: usize,
+    },
+    /// The robot's file has no masses, so that no joint yields under a known torque.
     NoMasses,
+    /// Clamps and a rod, but no contact force: only gravity bends the rod.
+    GravityOnly,
+    /// A combination of parameters that the data do not identify.
+    NotIdentified {
+        /// The parameters that take part, the largest share first, with their coefficients.
+        combination: Vec<(Parameter, f64)>,
+        /// Its standard error by the data alone, relative to the plausible range; ∞ for none.
+        relative_error: f64,
+    },
+    /// Poses that no noise explains.
+    Outliers {
+        /// Names, with their distances in m, the farthest first.
+        poses: Vec<(String, f64)>,
+        /// True where they still count in full.
+        count_in_full: bool,
+    },
+    /// Groups scatter unequally; each was given a noise of its own.
+    UnequalNoise {
+        /// Name and standard deviation of a coordinate, m, of the quietest group.
+        quietest: (String, f64),
+        /// And of the noisiest.
+        noisiest: (String, f64),
+        /// Probability that chance does this.
+        p_value: f64,
+    },
+    /// A parameter went farther than a robot as built can be from its drawing.
+    Implausible {
+        /// Which.
+        parameter: Parameter,
+        /// Its correction, SI.
+        correction: f64,
+    },
+    /// The fit of base and tool to the validation did not converge.
+    ValidationNotConverged,
 }
 
 /// All that apply.
 pub(super) fn all(
     campaign: &Campaign,
-    _recording: &Recording,
+    recording: &Recording,
     calibration: &Calibration,
-    _compensation: &Compensation,
+    compensation: &Compensation,
 ) -> Vec<Warning> {
     let mut warnings = Vec::new();
     if !calibration.is_converged {
-        warnings.push(Warning::NotConverged(calibration.fit.reason.to_string()));
+        warnings.push(Warning::NotConverged {
+            reason: calibration.fit.reason.to_string(),
+            passes: calibration.passes.len(),
+        });
     }
     if !campaign.robot.has_masses() {
         warnings.push(Warning::NoMasses);
     }
+    let has_clamps = recording.groups.iter().any(|group| group.name.starts_with("clamp"));
+    if compensation.compliance.is_some() && campaign.contact_force.is_none() && has_clamps {
+        warnings.push(Warning::GravityOnly);
+    }
+    warnings.extend(calibration.held.iter().map(|held| {
+        let mut combination: Vec<(Parameter, f64)> = calibration
+            .parameters
+            .iter()
+            .zip(&held.direction)
+            .map(|(estimate, &coefficient)| (estimate.parameter, coefficient))
+            .filter(|(_, coefficient)| coefficient.abs() > 0.1)
+            .collect();
+        combination.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
+        Warning::NotIdentified { combination, relative_error: held.relative_error }
+    }));
+    if !calibration.outliers.is_empty() {
+        let mut poses: Vec<(String, f64)> = calibration
+            .outliers
+            .iter()
+            .map(|&row| (recording.pose_name(row), calibration.deviations[row].norm()))
+            .collect();
+        poses.sort_by(|a, b| b.1.total_cmp(&a.1));
+        let count_in_full = calibration.outliers.iter().all(|&row| calibration.noise.weights[row] == 1.0);
+        warnings.push(Warning::Outliers { poses, count_in_full });
+    }
+    warnings.extend(unequal_noise(recording, calibration));
+    warnings.extend(calibration.parameters.iter().filter_map(|estimate| {
+        let correction = estimate.value - estimate.nominal;
+        let is_link = !matches!(
+            estimate.parameter,
+            Parameter::BasePosition(_)
+                | Parameter::BaseRotation(_)
+                | Parameter::Tool(_)
+                | Parameter::Compliance(_)
+        );
+        let range = plausible_range(estimate.parameter, 0.0);
+        (is_link && estimate.identifiable && correction.abs() > range)
+            .then_some(Warning::Implausible { parameter: estimate.parameter, correction })
+    }));
     warnings
+}
+
+fn unequal_noise(recording: &Recording, calibration: &Calibration) -> Option<Warning> {
+    let noise = &calibration.noise;
+    let p_value = noise.p_equal?;
+    let named = recording.groups.iter().zip(&noise.of_group).map(|(group, &sd)| (group.name.clone(), sd));
+    let quietest = named.clone().min_by(|a, b| a.1.total_cmp(&b.1))?;
+    let noisiest = named.max_by(|a, b| a.1.total_cmp(&b.1))?;
+    (noisiest.1 > quietest.1).then_some(Warning::UnequalNoise { quietest, noisiest, p_value })
 }
 
 impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Warning::NotConverged(why) => write!(f, "the calibration did not come to rest ({why})"),
-            Warning::NoMasses => write!(f, "the robot's file has no masses: joint compliances are off"),
+            Warning::NotConverged { reason, passes } => {
+                write!(f, "the calibration did not come to rest after {passes} passes ({reason}): do not use its numbers")
+            }
+            Warning::NoMasses => f.write_str(
+                "the robot's file has no masses, so the torques on its joints are unknown: joint compliances are off",
+            ),
+            Warning::GravityOnly => f.write_str(
+                "the campaign states no contact force: the rod's deflection is that under gravity only",
+            ),
+            Warning::NotIdentified { combination, relative_error } => {
+                let names: Vec<String> =
+                    combination.iter().map(|(parameter, c)| format!("{c:+.2}·{parameter}")).collect();
+                write!(f, "these poses do not identify the combination {} ", names.join(" "))?;
+                match relative_error.is_finite() && *relative_error < 1e6 {
+                    true => write!(
+                        f,
+                        "(each in its plausible range; the data know it to {} ranges only)",
+                        significant(*relative_error, 2)
+                    )?,
+                    false => write!(f, "(each in its plausible range; the data say nothing about it)")?,
+                }
+                f.write_str(": it is held at its nominal value; more varied poses would show it")
+            }
+            Warning::Outliers { poses, count_in_full } => {
+                let (shown, more) = (poses.iter().take(5), poses.len().saturating_sub(5));
+                let names: Vec<String> =
+                    shown.map(|(name, d)| format!("{name} ({} mm)", significant(d / MM, 2))).collect();
+                let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+                let (noun, verb) = if poses.len() == 1 { ("pose", "lies") } else { ("poses", "lie") };
+                write!(f, "{noun} {}{more} {verb} farther out than noise reaches", names.join(", "))?;
+                match count_in_full {
+                    true => f.write_str(": look at them, or let them count less with --robust huber"),
+                    false => f.write_str(" and were given less weight"),
+                }
+            }
+            Warning::UnequalNoise { quietest, noisiest, p_value } => write!(
+                f,
+                "the groups scatter unequally, from {} µm ({}) to {} µm ({}) per coordinate (Bartlett p = {}): each counts by its own noise",
+                significant(quietest.1 / UM, 3),
+                quietest.0,
+                significant(noisiest.1 / UM, 3),
+                noisiest.0,
+                significant(*p_value, 1)
+            ),
+            Warning::Implausible { parameter, correction } => write!(
+                f,
+                "{parameter} is corrected by {} {}, which is more than a robot as built is off: are the angles' signs and zeros those of the robot's file?",
+                significant(correction / parameter.unit().si, 3),
+                parameter.unit().symbol
+            ),
+            Warning::ValidationNotConverged => {
+                f.write_str("the fit of base and tool to the validation poses did not converge")
+            }
         }
     }
 }

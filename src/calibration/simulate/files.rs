@@ -34,10 +34,7 @@ fn campaign(simulation: &Simulation, robot: &str, rod: &str) -> String {
         simulation.plan.seed, simulation.plan.rod_factor, base.x, base.y, base.z
     );
     for (id, group) in (1..).zip(&simulation.measurements.groups) {
-        let r = &group.device.rotation;
-        // R = Rz(yaw)·Ry(pitch)·Rx(roll)
-        let (roll, pitch, yaw) =
-            (r[(2, 1)].atan2(r[(2, 2)]), (-r[(2, 0)]).clamp(-1.0, 1.0).asin(), r[(1, 0)].atan2(r[(0, 0)]));
+        let [roll, pitch, yaw] = group.device.roll_pitch_yaw();
         let place = group.device.origin / MM;
         text += &format!(
             "\n[[clamp]]\nid = \"{id}\"\nxyz_mm = [{:.4}, {:.4}, {:.4}]\nrpy_deg = [{:.9}, {:.9}, {:.9}]\n",

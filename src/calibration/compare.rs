@@ -1,0 +1,199 @@
+//! All modes of a campaign side by side, and whether they differ by more than chance.
+//!
+//! A paired bootstrap over poses: measurement poses are drawn again within every clamp, validation poses likewise, every
+//! mode is calibrated on the same draw and judged by the same draw. What is left of a difference between two modes
+//! is its uncertainty, measuring noise and choice of poses included (B. Efron, R. Tibshirani, *An Introduction to the
+//! Bootstrap*, 1993, ch. 13). Without a validation file the held-out errors of a cross-validation are compared.
+
+use super::calibrate::{Calibration, Options, calibrate, calibrate_from};
+use super::campaign::Campaign;
+use super::compensation::{Compensation, Mode, modes};
+use super::cross_validation::{CrossValidation, cross_validate};
+use super::validation::{Summary, validate_from};
+use crate::error::Result;
+use crate::statistics::{Random, in_parallel, mean, percentile_interval, standard_deviation};
+
+/// How to compare.
+#[derive(Debug, Clone, Copy)]
+pub struct CompareOptions {
+    /// How each mode is calibrated.
+    pub calibration: Options,
+    /// Draws of the bootstrap.
+    pub draws: usize,
+    /// Seed of the draws.
+    pub seed: u64,
+    /// Folds where there is no validation file.
+    pub folds: usize,
+}
+
+impl Default for CompareOptions {
+    fn default() -> Self {
+        CompareOptions { calibration: Options::default(), draws: 200, seed: 1, folds: 5 }
+    }
+}
+
+/// All modes of a campaign.
+#[derive(Debug, Clone)]
+pub struct Comparison<'c> {
+    /// One calibration per mode that the files allow, in the paper's order.
+    pub calibrations: Vec<Calibration<'c>>,
+    /// Held-out errors of each, where there is no validation file.
+    pub cross_validations: Option<Vec<CrossValidation>>,
+    /// 95 % interval of each mode's mean error, m.
+    pub intervals: Vec<(f64, f64)>,
+    /// Every pair of modes.
+    pub differences: Vec<Difference>,
+    /// Draws that the intervals rest on.
+    pub draws: usize,
+}
+
+/// Mean error of one mode less that of another.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Difference {
+    /// The mode whose error is taken.
+    pub mode: Mode,
+    /// The mode it is compared with.
+    pub against: Mode,
+    /// Difference of the mean errors, m: negative where `mode` is better.
+    pub mean: f64,
+    /// Its 95 % interval, m.
+    pub interval: (f64, f64),
+    /// True where the difference is larger than chance would make the largest of so many differences, 19 times in 20.
+    pub is_significant: bool,
+}
+
+impl Comparison<'_> {
+    /// The errors that mode `index` is judged by, m, one per pose.
+    pub fn errors(&self, index: usize) -> &[f64] {
+        match (&self.cross_validations, &self.calibrations[index].validation) {
+            (Some(cross_validations), _) => &cross_validations[index].errors,
+            (None, Some(validation)) => &validation.errors,
+            (None, None) => &[],
+        }
+    }
+
+    /// What they sum up to.
+    pub fn summary(&self, index: usize) -> Summary {
+        Summary::of(self.errors(index))
+    }
+}
+
+/// Calibrates in every mode that the campaign's files allow, and compares.
+///
+/// `progress` is told after each draw how many are done.
+///
+/// # Errors
+/// As [`calibrate`] and [`cross_validate`].
+pub fn compare<'c>(
+    campaign: &'c Campaign,
+    options: &CompareOptions,
+    progress: &(dyn Fn(usize) + Sync),
+) -> Result<Comparison<'c>> {
+    let modes = modes(campaign);
+    let compensations =
+        modes.iter().map(|&mode| Compensation::new(campaign, mode)).collect::<Result<Vec<_>>>()?;
+    let calibrations = modes
+        .iter()
+        .map(|&mode| calibrate(campaign, mode, &options.calibration))
+        .collect::<Result<Vec<_>>>()?;
+    let cross_validations = match &campaign.validation {
+        Some(_) => None,
+        None => Some(
+            calibrations
+                .iter()
+                .zip(&compensations)
+                .map(|(c, with)| cross_validate(campaign, c, with, options.folds, &options.calibration))
+                .collect::<Result<Vec<_>>>()?,
+        ),
+    };
+    let mut comparison = Comparison {
+        calibrations,
+        cross_validations,
+        intervals: Vec::new(),
+        differences: Vec::new(),
+        draws: options.draws,
+    };
+    let drawn = in_parallel(options.draws, |draw| {
+        let mut random = Random::seeded(options.seed, draw as u64);
+        let means = mean_errors(campaign, &comparison, &compensations, options, &mut random);
+        progress(draw + 1);
+        means
+    });
+    // a draw in which a fit fails says nothing about any mode
+    let drawn: Vec<Vec<f64>> = drawn.into_iter().filter_map(Result::ok).collect();
+    comparison.draws = drawn.len();
+    comparison.intervals = (0..modes.len())
+        .map(|m| interval(comparison.summary(m).mean, drawn.iter().map(|means| means[m]).collect()).0)
+        .collect();
+    let pairs = modes.len() * modes.len().saturating_sub(1) / 2;
+    for (m, &mode) in modes.iter().enumerate() {
+        for (k, &against) in modes.iter().enumerate().take(m) {
+            let difference = comparison.summary(m).mean - comparison.summary(k).mean;
+            let samples: Vec<f64> = drawn.iter().map(|means| means[m] - means[k]).collect();
+            let (interval, sd) = interval(difference, samples);
+            comparison.differences.push(Difference {
+                mode,
+                against,
+                mean: difference,
+                interval,
+                // two-sided 5 % over all pairs (Bonferroni), by the normal distribution of a mean of many errors
+                is_significant: sd > 0.0 && two_sided_normal(difference / sd) * pairs as f64 <= 0.05,
+            });
+        }
+    }
+    Ok(comparison)
+}
+
+/// Mean error of every mode in one draw, m.
+fn mean_errors(
+    campaign: &Campaign,
+    comparison: &Comparison,
+    compensations: &[Compensation],
+    options: &CompareOptions,
+    random: &mut Random,
+) -> Result<Vec<f64>> {
+    let Some(validation) = &campaign.validation else {
+        // the folds are what they are: only the poses that are judged are drawn
+        let rows = campaign.measurements.drawn_again(random);
+        let of_mode = |m: usize| {
+            let errors = comparison.errors(m);
+            mean(&rows.iter().map(|&row| errors[row]).collect::<Vec<_>>()).unwrap_or(0.0)
+        };
+        return Ok((0..compensations.len()).map(of_mode).collect());
+    };
+    let measured = campaign.measurements.subset(&campaign.measurements.drawn_again(random));
+    let judged = validation.subset(&validation.drawn_again(random));
+    comparison
+        .calibrations
+        .iter()
+        .zip(compensations)
+        .map(|(calibration, compensation)| {
+            let free: Vec<_> = calibration.parameters.iter().map(|p| p.parameter).collect();
+            let again = calibrate_from(
+                campaign,
+                &measured,
+                calibration.setup.clone(),
+                &free,
+                compensation,
+                &options.calibration,
+            )?;
+            let start = calibration.validation.as_ref().and_then(|v| v.placement);
+            Ok(validate_from(&again.setup, &judged, campaign.refit, start)?.summary.mean)
+        })
+        .collect()
+}
+
+/// The bootstrap's interval around an estimate, and the standard deviation of the draws.
+///
+/// The draws are centred on the estimate: their own mean carries the bias of drawing the same pose twice.
+fn interval(estimate: f64, mut samples: Vec<f64>) -> ((f64, f64), f64) {
+    let shift = estimate - mean(&samples).unwrap_or(estimate);
+    samples.iter_mut().for_each(|sample| *sample += shift);
+    let sd = standard_deviation(&samples).unwrap_or(0.0);
+    (percentile_interval(&mut samples, 0.95), sd)
+}
+
+/// P(|Z| > |z|) of a standard normal Z: χ² with one degree of freedom.
+fn two_sided_normal(z: f64) -> f64 {
+    crate::statistics::chi_squared_survival(z * z, 1.0).unwrap_or(1.0)
+}

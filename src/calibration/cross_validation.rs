@@ -1,0 +1,89 @@
+//! How well a campaign predicts its own poses, each from a calibration that has not seen it.
+
+use nalgebra::Vector3;
+
+use super::calibrate::{Calibration, Options, calibrate_from};
+use super::campaign::{Campaign, Targets};
+use super::compensation::Compensation;
+use super::problem::Pass;
+use super::validation::Summary;
+use crate::error::Result;
+use crate::robot::{Kinematics, Setup};
+use crate::statistics::in_parallel;
+
+/// Held-out errors of all poses.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CrossValidation {
+    /// Fold of each row.
+    pub fold: Vec<usize>,
+    /// Number of folds.
+    pub folds: usize,
+    /// Predicted less measured, in {W}, m; with sockets less the mean of the socket's predicted tips.
+    pub deviations: Vec<Vector3<f64>>,
+    /// Their lengths, m.
+    pub errors: Vec<f64>,
+    /// What they sum up to.
+    pub summary: Summary,
+}
+
+/// Holds out one fold after the other ([`super::campaign::Recording::folds`]), calibrates on the rest as `calibration`
+/// was, and predicts what was held out.
+///
+/// # Errors
+/// As [`super::calibrate()`], where a fold leaves too few poses.
+pub fn cross_validate(
+    campaign: &Campaign,
+    calibration: &Calibration,
+    compensation: &Compensation,
+    folds: usize,
+    options: &Options,
+) -> Result<CrossValidation> {
+    let recording = &campaign.measurements;
+    let fold = recording.folds(folds);
+    let folds = fold.iter().max().map_or(0, |last| last + 1);
+    let free: Vec<_> = calibration.parameters.iter().map(|p| p.parameter).collect();
+    let predictions = in_parallel(folds, |held_out| -> Result<Vec<(usize, Vector3<f64>)>> {
+        let of = |wanted: bool| -> Vec<usize> {
+            (0..recording.len()).filter(|&row| (fold[row] == held_out) == wanted).collect()
+        };
+        let training = recording.subset(&of(false));
+        let trained =
+            calibrate_from(campaign, &training, calibration.start.clone(), &free, compensation, options)?;
+        let rows = of(true);
+        let deviations = predict(&trained.setup, &recording.subset(&rows), compensation);
+        Ok(rows.into_iter().zip(deviations).collect())
+    });
+    let mut deviations = vec![Vector3::zeros(); recording.len()];
+    for prediction in predictions {
+        for (row, deviation) in prediction? {
+            deviations[row] = deviation;
+        }
+    }
+    let errors: Vec<f64> = deviations.iter().map(|d| d.norm()).collect();
+    Ok(CrossValidation { fold, folds, summary: Summary::of(&errors), errors, deviations })
+}
+
+/// Deflected tips of a recording as `setup` predicts them, less what was measured or less their sockets' means.
+fn predict(
+    setup: &Setup,
+    recording: &super::campaign::Recording,
+    compensation: &Compensation,
+) -> Vec<Vector3<f64>> {
+    let n = recording.joint_count;
+    let mut pass = Pass::at_rest(recording);
+    // torques turn the joints that they act on: the second time they are those of the turned joints
+    for _ in 0..3 {
+        compensation.update(setup, recording, &mut pass);
+    }
+    let mut kinematics = Kinematics::new(setup.robot);
+    let tips: Vec<Vector3<f64>> = (0..recording.len())
+        .map(|row| {
+            kinematics.update(setup, recording.joints(row), &pass.torque[row * n..][..n]);
+            kinematics.tip + pass.shift[row]
+        })
+        .collect();
+    match &recording.targets {
+        Targets::Points(points) => tips.iter().zip(points).map(|(tip, x)| tip - x).collect(),
+        Targets::Sockets(_) => recording.less_group_means(&tips),
+    }
+}

@@ -1,0 +1,116 @@
+//! Parts of a recording: folds that are held out, and poses drawn again.
+
+use nalgebra::Vector3;
+
+use super::campaign::{Distance, Recording, Row, Targets};
+use crate::statistics::Random;
+
+impl Recording {
+    /// The rows of these indices, in this order; an index may come again. Clamps and sockets without a row are left
+    /// out.
+    pub fn subset(&self, rows: &[usize]) -> Recording {
+        let mut place = vec![None; self.groups.len()];
+        let mut groups = Vec::new();
+        let mut kept = Vec::with_capacity(rows.len());
+        for &row in rows {
+            let mut entry = self.rows[row].clone();
+            let old = entry.group;
+            entry.group = *place[old].get_or_insert_with(|| {
+                groups.push(self.groups[old].clone());
+                groups.len() - 1
+            });
+            kept.push(entry);
+        }
+        let targets = match &self.targets {
+            Targets::Points(points) => Targets::Points(rows.iter().map(|&row| points[row]).collect()),
+            Targets::Sockets(distances) => {
+                let still = |distance: &Distance| match distance.between.map(|group| place[group]) {
+                    [Some(a), Some(b)] => Some(Distance { between: [a, b], ..*distance }),
+                    _ => None,
+                };
+                Targets::Sockets(distances.iter().filter_map(still).collect())
+            }
+        };
+        Recording {
+            file: self.file.clone(),
+            joint_count: self.joint_count,
+            joint_values: rows.iter().flat_map(|&row| self.joints(row).iter().copied()).collect(),
+            rows: kept,
+            groups,
+            targets,
+        }
+    }
+
+    /// The name of a row's pose for people, with its clamp or socket.
+    pub fn pose_name(&self, row: usize) -> String {
+        let entry = &self.rows[row];
+        match self.groups[entry.group].name.as_str() {
+            "" => entry.pose.clone(),
+            group => format!("{} of {group}", entry.pose),
+        }
+    }
+
+    /// Which fold each row belongs to, 0 … `folds` − 1: every clamp's rows in so many consecutive blocks. With sockets
+    /// whole placements are held out, so that the folds are as many as there are placements, where there are two or
+    /// more.
+    pub fn folds(&self, folds: usize) -> Vec<usize> {
+        let placements = self.placements();
+        let count = placements.iter().max().map_or(0, |last| last + 1);
+        if matches!(self.targets, Targets::Sockets(_)) && count > 1 {
+            return self.rows.iter().map(|row| placements[row.group]).collect();
+        }
+        let mut size = vec![0usize; self.groups.len()];
+        for row in &self.rows {
+            size[row.group] += 1;
+        }
+        let mut seen = vec![0usize; self.groups.len()];
+        let folds = folds.max(2);
+        self.rows
+            .iter()
+            .map(|row| {
+                let at = seen[row.group];
+                seen[row.group] += 1;
+                at * folds / size[row.group]
+            })
+            .collect()
+    }
+
+    /// As many rows as there are, drawn with replacement within each clamp or socket.
+    pub fn drawn_again(&self, random: &mut Random) -> Vec<usize> {
+        let mut of_group: Vec<Vec<usize>> = vec![Vec::new(); self.groups.len()];
+        for (row, entry) in self.rows.iter().enumerate() {
+            of_group[entry.group].push(row);
+        }
+        let mut draw = |rows: &Vec<usize>| -> Vec<usize> {
+            rows.iter().map(|_| rows[random.index(rows.len())]).collect()
+        };
+        of_group.iter().flat_map(&mut draw).collect()
+    }
+
+    /// Each point less the mean of the points of its group.
+    pub(super) fn less_group_means(&self, points: &[Vector3<f64>]) -> Vec<Vector3<f64>> {
+        let mut sum = vec![(Vector3::zeros(), 0.0); self.groups.len()];
+        for (point, row) in points.iter().zip(&self.rows) {
+            sum[row.group].0 += point;
+            sum[row.group].1 += 1.0;
+        }
+        let less = |(point, row): (&Vector3<f64>, &Row)| point - sum[row.group].0 / sum[row.group].1;
+        points.iter().zip(&self.rows).map(less).collect()
+    }
+
+    /// The placement of every group, counted in order of appearance: what stands before the `/` of its name.
+    fn placements(&self) -> Vec<usize> {
+        let mut names: Vec<&str> = Vec::new();
+        self.groups
+            .iter()
+            .map(|group| {
+                let name =
+                    group.name.rsplit_once('/').map_or(group.name.as_str(), |(placement, _)| placement);
+                names.iter().position(|&known| known == name).unwrap_or_else(|| {
+                    names.push(name);
+                    names.len() - 1
+                })
+            })
+            .collect()
+    }
+}

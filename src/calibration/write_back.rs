@@ -1,0 +1,46 @@
+//! The calibrated robot as a file of the format that it came in.
+
+use super::calibrate::Calibration;
+use super::campaign::{Campaign, Targets};
+use crate::error::Result;
+use crate::robot::is_urdf;
+use crate::units::{DEG, MM};
+
+/// Name and text of the calibrated robot: a table with compliances, or the URDF with new origins, its `tip_link` at the
+/// tip. Comments on top say where base and tip were found.
+///
+/// # Errors
+/// As [`crate::robot::Robot::to_toml`] and [`crate::robot::Robot::to_urdf`]; none in practice.
+pub fn write_back(campaign: &Campaign, calibration: &Calibration) -> Result<(String, String)> {
+    let setup = &calibration.setup;
+    let robot = setup.calibrated();
+    let tool = setup.tool / MM;
+    let mut comments = vec![
+        format!("{}, calibrated by rodcal from {}, mode {}.", robot.name, campaign.file, calibration.mode.name()),
+        format!("Tip in {{T}}: xyz_mm = [{:.4}, {:.4}, {:.4}]", tool.x, tool.y, tool.z),
+    ];
+    if matches!(campaign.measurements.targets, Targets::Points(_)) {
+        let base = setup.base();
+        let (place, turn) = (base.origin / MM, base.roll_pitch_yaw().map(|angle| angle / DEG));
+        comments.push(format!(
+            "Base {{0}} in {{W}}: xyz_mm = [{:.4}, {:.4}, {:.4}], rpy_deg = [{:.6}, {:.6}, {:.6}]",
+            place.x, place.y, place.z, turn[0], turn[1], turn[2]
+        ));
+    }
+    if !calibration.is_converged {
+        comments.push("THE CALIBRATION DID NOT COME TO REST: do not use these numbers.".into());
+    }
+    if !is_urdf(&campaign.robot_text) {
+        return Ok(("calibrated.toml".into(), robot.to_toml(&comments)?));
+    }
+    let (base, tip) = (campaign.base_link.as_deref(), campaign.tip_link.as_deref());
+    let written = robot.to_urdf(
+        &campaign.robot_file,
+        &campaign.robot_text,
+        base,
+        tip,
+        Some(setup.tool),
+        &comments,
+    )?;
+    Ok(("calibrated.urdf".into(), written.text))
+}

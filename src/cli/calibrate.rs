@@ -1,0 +1,110 @@
+//! `rodcal calibrate CAMPAIGN`.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use rodcal::calibration::{self, Calibration, Campaign, Compensation, Mode, Options, Robust};
+use rodcal::{Result, report};
+
+use super::output::Outcome;
+
+#[derive(Debug, Args)]
+pub struct Calibrate {
+    /// Campaign file (TOML): robot, rod, measurements, validation.
+    campaign: PathBuf,
+    /// How the rod's deflection is known [default: meas with rig readings, else fea with a rod, else none].
+    #[arg(long, value_enum)]
+    mode: Option<ModeName>,
+    /// What an outlier counts.
+    #[arg(long, value_enum, default_value_t = Weights::None)]
+    robust: Weights,
+    /// Also predict every pose from a calibration without it, in so many folds of consecutive poses.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(2..=1000))]
+    folds: Option<u16>,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub enum ModeName {
+    /// The rod is taken for rigid.
+    None,
+    /// The paper's closed form.
+    Calc,
+    /// The beam finite-element model.
+    Fea,
+    /// Measured on a rig.
+    Meas,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub enum Weights {
+    /// Least squares: every pose counts the same.
+    None,
+    /// Outliers count less (Huber's weights on distances).
+    Huber,
+    /// Gross outliers do not count at all (Tukey's biweight on distances).
+    Tukey,
+}
+
+impl ModeName {
+    fn mode(self) -> Mode {
+        match self {
+            ModeName::None => Mode::None,
+            ModeName::Calc => Mode::Calc,
+            ModeName::Fea => Mode::Fea,
+            ModeName::Meas => Mode::Meas,
+        }
+    }
+}
+
+impl Weights {
+    pub fn robust(self) -> Robust {
+        match self {
+            Weights::None => Robust::None,
+            Weights::Huber => Robust::Huber,
+            Weights::Tukey => Robust::Tukey,
+        }
+    }
+}
+
+impl Calibrate {
+    pub fn run(&self) -> Result<Outcome> {
+        let campaign = Campaign::read(&self.campaign)?;
+        let mode = self.mode.map_or_else(|| calibration::default_mode(&campaign), ModeName::mode);
+        let options = Options { robust: self.robust.robust() };
+        let calibrated = calibration::calibrate(&campaign, mode, &options)?;
+        let cross_validation = match self.folds {
+            Some(folds) => {
+                let compensation = Compensation::new(&campaign, mode)?;
+                Some(calibration::cross_validate(&campaign, &calibrated, &compensation, folds.into(), &options)?)
+            }
+            None => None,
+        };
+        let cross_validation = cross_validation.as_ref();
+        let mut report = report::calibration::report(&campaign, &calibrated, cross_validation);
+        report.provenance = provenance(&campaign);
+        let mut outcome =
+            Outcome::new(report::calibration::json(&campaign, &calibrated, cross_validation), report);
+        outcome.files = calibrated_robot(&campaign, &calibrated)?;
+        Ok(outcome)
+    }
+}
+
+/// Where it all comes from.
+pub fn provenance(campaign: &Campaign) -> Vec<(String, String)> {
+    let mut list = vec![("campaign".to_owned(), campaign.file.clone()), ("robot".to_owned(), campaign.robot_file.clone())];
+    if let Some(rod) = &campaign.rod {
+        list.push(("rod".into(), rod.name.clone()));
+        list.extend(rod.source.iter().map(|source| ("source of the rod's numbers".to_owned(), source.clone())));
+    }
+    list.extend(campaign.readings.iter().map(|readings| ("rig readings".to_owned(), readings.file.clone())));
+    list.push(("measurements".into(), campaign.measurements.file.clone()));
+    list.extend(campaign.validation.iter().map(|recording| ("validation".to_owned(), recording.file.clone())));
+    list.push(("program".into(), concat!("rodcal ", env!("CARGO_PKG_VERSION")).into()));
+    list
+}
+
+/// The calibrated robot in the format of its file.
+pub fn calibrated_robot(campaign: &Campaign, calibrated: &Calibration) -> Result<Vec<(String, Vec<u8>)>> {
+    let (name, text) = calibration::write_back(campaign, calibrated)?;
+    Ok(vec![(name, text.into_bytes())])
+}

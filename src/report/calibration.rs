@@ -1,0 +1,273 @@
+//! What `rodcal calibrate` says: JSON, tables and pictures of a [`Calibration`].
+
+mod tables;
+
+use serde_json::{Map, Value, json};
+
+use super::{Block, Report, Section};
+use crate::calibration::campaign::{Recording, Refit, Targets};
+use crate::calibration::{Calibration, Campaign, CrossValidation, Mode, Summary, Validation};
+use crate::units::{DEG, MM, UM, significant};
+
+/// Correlation of two estimates from which on they are reported together.
+const HIGH_CORRELATION: f64 = 0.9;
+
+/// The JSON of `rodcal calibrate --json`.
+pub fn json(
+    campaign: &Campaign,
+    calibration: &Calibration,
+    cross_validation: Option<&CrossValidation>,
+) -> Value {
+    let recording = &campaign.measurements;
+    let parameters: Vec<Value> = calibration
+        .parameters
+        .iter()
+        .map(|estimate| {
+            let unit = estimate.parameter.unit();
+            json!({
+                "name": estimate.parameter.to_string(),
+                "value": estimate.value / unit.si,
+                "unit": unit.suffix,
+                "std_error": estimate.std_error.map(|e| e / unit.si),
+                "identifiable": estimate.identifiable,
+                "nominal": estimate.nominal / unit.si,
+                "correction": (estimate.value - estimate.nominal) / unit.si,
+            })
+        })
+        .collect();
+    let base = calibration.setup.base();
+    json!({
+        "robot": campaign.robot.name,
+        "robot_source": campaign.robot.source,
+        "rod": campaign.rod.as_ref().map(|rod| &rod.name),
+        "mode": calibration.mode.name(),
+        "converged": calibration.is_converged,
+        "reason": calibration.fit.reason.to_string(),
+        "poses": recording.len(),
+        "parameters": parameters,
+        "base": match recording.targets {
+            Targets::Points(_) => json!({
+                "xyz_mm": (base.origin / MM).as_slice(),
+                "rpy_deg": base.roll_pitch_yaw().map(|angle| angle / DEG),
+            }),
+            Targets::Sockets(_) => Value::Null,
+        },
+        "tool_mm": (calibration.setup.tool / MM).as_slice(),
+        "residual": summary_json(&Summary::of(&calibration.residuals())),
+        "noise_um": calibration.noise.pooled / UM,
+        "noise_is_stated": calibration.noise.is_stated,
+        "groups": groups_json(recording, calibration),
+        "validation": calibration.validation.as_ref().map(validation_json),
+        "cross_validation": cross_validation.map(|cv| {
+            let mut object = summary_json(&cv.summary);
+            object["folds"] = cv.folds.into();
+            object
+        }),
+        "not_identified": calibration.held.iter().map(|held| {
+            let shares: Map<String, Value> = calibration
+                .parameters
+                .iter()
+                .zip(&held.direction)
+                .filter(|(_, share)| share.abs() > 0.1)
+                .map(|(estimate, &share)| (estimate.parameter.to_string(), share.into()))
+                .collect();
+            json!({ "combination": shares, "error_over_plausible_range": finite(held.relative_error) })
+        }).collect::<Vec<_>>(),
+        "correlations": calibration.correlations_above(HIGH_CORRELATION).iter().map(|(a, b, value)| {
+            json!({ "a": a.to_string(), "b": b.to_string(), "value": value })
+        }).collect::<Vec<_>>(),
+        "condition": finite(calibration.observability.condition),
+        "observability": observability_json(calibration),
+        "outliers": calibration.outliers.iter().map(|&row| json!({
+            "pose": recording.rows[row].pose,
+            "group": recording.groups[recording.rows[row].group].name,
+            "line": recording.rows[row].line,
+            "residual_um": calibration.deviations[row].norm() / UM,
+        })).collect::<Vec<_>>(),
+        "passes": calibration.passes.iter().map(|pass| json!({
+            "deflection_change_um": pass.change / UM, "rms_um": pass.rms / UM, "noise_um": pass.noise / UM,
+        })).collect::<Vec<_>>(),
+        "sockets": recording.groups.iter().zip(&calibration.sockets).map(|(group, socket)| json!({
+            "name": group.name,
+            "xyz_mm": socket.map(|(value, _)| value / MM),
+            "std_error_mm": socket.map(|(_, error)| error.map(|e| e / MM)),
+        })).collect::<Vec<_>>(),
+    })
+}
+
+/// JSON has no infinity.
+fn finite(value: f64) -> Option<f64> {
+    value.is_finite().then_some(value)
+}
+
+fn summary_json(summary: &Summary) -> Value {
+    json!({
+        "rms_um": summary.rms / UM,
+        "mean_um": summary.mean / UM,
+        "max_um": summary.max / UM,
+        "median_um": summary.median / UM,
+        "sd_um": summary.sd / UM,
+    })
+}
+
+fn validation_json(validation: &Validation) -> Value {
+    let mut object = summary_json(&validation.summary);
+    object["poses"] = validation.errors.len().into();
+    object["refit"] = match validation.refit {
+        Refit::BaseTool => "base-tool",
+        Refit::Nothing => "none",
+    }
+    .into();
+    object
+}
+
+fn groups_json(recording: &Recording, calibration: &Calibration) -> Vec<Value> {
+    group_summaries(recording, calibration)
+        .into_iter()
+        .zip(&calibration.noise.of_group)
+        .map(|((name, count, summary), noise)| {
+            let mut object = summary_json(&summary);
+            object["name"] = name.into();
+            object["poses"] = count.into();
+            object["noise_um"] = (noise / UM).into();
+            object
+        })
+        .collect()
+}
+
+/// Name, number of poses and residuals of every clamp or socket.
+fn group_summaries(recording: &Recording, calibration: &Calibration) -> Vec<(String, usize, Summary)> {
+    let residuals = calibration.residuals();
+    recording
+        .groups
+        .iter()
+        .enumerate()
+        .map(|(index, group)| {
+            let of: Vec<f64> = recording
+                .rows
+                .iter()
+                .zip(&residuals)
+                .filter(|(row, _)| row.group == index)
+                .map(|(_, &residual)| residual)
+                .collect();
+            let name = if group.name.is_empty() { "all poses".to_owned() } else { group.name.clone() };
+            (name, of.len(), Summary::of(&of))
+        })
+        .collect()
+}
+
+fn observability_json(calibration: &Calibration) -> Value {
+    let names = ["o1", "o2", "o3", "o4", "o5"];
+    let mut object: Map<String, Value> = names
+        .into_iter()
+        .zip(calibration.observability.indices)
+        .map(|(name, value)| (name.to_owned(), finite(value).into()))
+        .collect();
+    object.insert("units".into(), "residuals in mm; parameters in mm, mrad and urad/(N*m)".into());
+    object.into()
+}
+
+/// The report of `rodcal calibrate`.
+pub fn report(
+    campaign: &Campaign,
+    calibration: &Calibration,
+    cross_validation: Option<&CrossValidation>,
+) -> Report {
+    Report {
+        title: format!("Calibration of {}", campaign.robot.name),
+        headline: headline(campaign, calibration, cross_validation),
+        warnings: warnings(campaign, calibration),
+        sections: sections(campaign, calibration, cross_validation),
+        provenance: Vec::new(),
+    }
+}
+
+/// Of the files and of the calibration.
+pub fn warnings(campaign: &Campaign, calibration: &Calibration) -> Vec<String> {
+    let of_files = campaign.warnings.iter().map(ToString::to_string);
+    of_files.chain(calibration.warnings.iter().map(ToString::to_string)).collect()
+}
+
+/// One sentence: how well the robot is known now.
+pub fn headline(
+    campaign: &Campaign,
+    calibration: &Calibration,
+    cross_validation: Option<&CrossValidation>,
+) -> String {
+    if !calibration.is_converged {
+        return format!("{}: the calibration did not come to rest.", campaign.robot.name);
+    }
+    let residual = Summary::of(&calibration.residuals());
+    let (count, poses) = (calibration.parameters.len(), campaign.measurements.len());
+    let rod = match (&campaign.rod, calibration.mode) {
+        (Some(rod), Mode::None) => format!(", rod {} taken for rigid", rod.name),
+        (Some(rod), mode) => format!(", rod {} compensated ({})", rod.name, mode.name()),
+        (None, _) => String::new(),
+    };
+    let mut words = format!(
+        "{}{rod}: {poses} poses fit {count} parameters to {} rms",
+        campaign.robot.name,
+        length(residual.rms)
+    );
+    let told =
+        |summary: &Summary| format!("{} on average, {} at most", length(summary.mean), length(summary.max));
+    if let Some(validation) = &calibration.validation {
+        let count = validation.errors.len();
+        words += &match (&campaign.measurements.targets, validation.refit) {
+            (Targets::Sockets(_), _) => {
+                format!(
+                    "; {count} validation poses scatter in their sockets by {}",
+                    told(&validation.summary)
+                )
+            }
+            (_, Refit::BaseTool) => format!(
+                "; it predicts {count} validation poses to {} (base and tool fitted again)",
+                told(&validation.summary)
+            ),
+            (_, Refit::Nothing) => {
+                format!("; it predicts {count} validation poses to {}", told(&validation.summary))
+            }
+        };
+    }
+    if let Some(cv) = cross_validation {
+        words += &format!("; held-out poses ({} folds) are predicted to {}", cv.folds, told(&cv.summary));
+    }
+    words + "."
+}
+
+/// In µm below a millimetre, else in mm.
+pub(super) fn length(metres: f64) -> String {
+    match metres < MM {
+        true => format!("{} µm", significant(metres / UM, 3)),
+        false => format!("{} mm", significant(metres / MM, 3)),
+    }
+}
+
+/// The body of [`report`].
+pub fn sections(
+    campaign: &Campaign,
+    calibration: &Calibration,
+    cross_validation: Option<&CrossValidation>,
+) -> Vec<Section> {
+    let recording = &campaign.measurements;
+    vec![
+        Section::new(
+            "How well the robot is known",
+            vec![
+                Block::Table(tables::errors(calibration, cross_validation)),
+                Block::Table(tables::groups(recording, calibration)),
+            ],
+        ),
+        Section::new(
+            "Parameters",
+            vec![
+                Block::Paragraph(tables::PARAMETERS_NOTE.into()),
+                Block::Table(tables::parameters(calibration)),
+                Block::Table(tables::placement(campaign, calibration)),
+                Block::Table(tables::correlations(calibration, HIGH_CORRELATION)),
+                Block::Table(tables::observability(calibration)),
+            ],
+        ),
+        Section::new("How the fit went", vec![Block::Table(tables::passes(calibration))]),
+    ]
+}

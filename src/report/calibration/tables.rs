@@ -1,0 +1,187 @@
+//! The tables of a calibration's report.
+
+use super::group_summaries;
+use crate::calibration::campaign::{Campaign, Recording, Targets};
+use crate::calibration::{Calibration, CrossValidation, Summary};
+use crate::report::table::{Column, Table};
+use crate::units::{DEG, MM, UM, significant};
+
+pub(super) const PARAMETERS_NOTE: &str = "Names are those of the Hayati table: theta, d, a, alpha, beta of each link; c is \
+     a joint's compliance, base_* where {0} stands in {W}, base_r* its turn away from the first guess about the axes of \
+     {W}, tool_* the undeflected tip in {T}. Standard errors are for the noise that the residuals show, unless the \
+     campaign states it.";
+
+/// A number of micrometres for a table.
+fn um(metres: f64) -> String {
+    significant(metres / UM, 3)
+}
+
+pub(super) fn errors(calibration: &Calibration, cross_validation: Option<&CrossValidation>) -> Table {
+    let columns = ["mean", "max", "median", "SD", "rms"].map(|name| Column::number(name, "µm"));
+    let mut table = Table::new(
+        "errors",
+        "Distances of the tip from where it was measured.",
+        [vec![Column::text("of"), Column::number("poses", "")], columns.to_vec()].concat(),
+    );
+    let mut row = |name: &str, count: usize, summary: &Summary| {
+        let numbers = [summary.mean, summary.max, summary.median, summary.sd, summary.rms].map(um);
+        table.row([vec![name.to_owned(), count.to_string()], numbers.to_vec()].concat());
+    };
+    let residuals = calibration.residuals();
+    row("residuals of the calibration", residuals.len(), &Summary::of(&residuals));
+    if let Some(validation) = &calibration.validation {
+        row("validation", validation.errors.len(), &validation.summary);
+    }
+    if let Some(cv) = cross_validation {
+        row(&format!("held-out poses, {} folds", cv.folds), cv.errors.len(), &cv.summary);
+    }
+    table
+}
+
+pub(super) fn groups(recording: &Recording, calibration: &Calibration) -> Table {
+    let mut table = Table::new(
+        "groups",
+        "Residuals by clamp or socket, and the noise of one coordinate that each counts by.",
+        vec![
+            Column::text("group"),
+            Column::number("poses", ""),
+            Column::number("mean", "µm"),
+            Column::number("max", "µm"),
+            Column::number("rms", "µm"),
+            Column::number("noise", "µm"),
+        ],
+    );
+    for ((name, count, summary), &noise) in
+        group_summaries(recording, calibration).into_iter().zip(&calibration.noise.of_group)
+    {
+        table.row([name, count.to_string(), um(summary.mean), um(summary.max), um(summary.rms), um(noise)]);
+    }
+    table
+}
+
+/// Value, correction and standard error, with as many decimals as the error deserves.
+pub(super) fn parameters(calibration: &Calibration) -> Table {
+    let mut table = Table::new(
+        "parameters",
+        "Calibrated parameters.",
+        vec![
+            Column::text("parameter"),
+            Column::text("unit"),
+            Column::number("nominal", ""),
+            Column::number("value", ""),
+            Column::number("correction", ""),
+            Column::number("std error", ""),
+            Column::text(""),
+        ],
+    );
+    for estimate in &calibration.parameters {
+        let unit = estimate.parameter.unit();
+        let error = estimate.std_error.map(|error| error / unit.si);
+        let decimals = match error.filter(|e| *e > 0.0 && e.is_finite()) {
+            Some(e) => (1.0 - e.log10().floor()).clamp(0.0, 9.0) as usize,
+            None => 4,
+        };
+        let show = |value: f64| format!("{:.decimals$}", value / unit.si);
+        table.row([
+            estimate.parameter.to_string(),
+            unit.symbol.to_owned(),
+            show(estimate.nominal),
+            show(estimate.value),
+            show(estimate.value - estimate.nominal),
+            error.map_or("–".into(), |e| format!("{e:.decimals$}")),
+            if estimate.identifiable { "" } else { "not identified" }.to_owned(),
+        ]);
+    }
+    table
+}
+
+/// Where the robot stands and where the tip is, all six and three numbers of them.
+pub(super) fn placement(campaign: &Campaign, calibration: &Calibration) -> Table {
+    let mut table = Table::new(
+        "placement",
+        "Base and tip as calibrated.",
+        ["of", "x / mm", "y / mm", "z / mm", "roll / °", "pitch / °", "yaw / °"]
+            .map(|name| Column::number(name, ""))
+            .to_vec(),
+    );
+    table.columns[0] = Column::text("");
+    if matches!(campaign.measurements.targets, Targets::Points(_)) {
+        let base = calibration.setup.base();
+        let place = (base.origin / MM).iter().map(|x| format!("{x:.4}")).collect::<Vec<_>>();
+        let turn = base.roll_pitch_yaw().map(|angle| format!("{:.5}", angle / DEG)).to_vec();
+        table.row([vec!["{0} in {W}".to_owned()], place, turn].concat());
+    }
+    let tool = (calibration.setup.tool / MM).iter().map(|x| format!("{x:.4}")).collect::<Vec<_>>();
+    table.row([vec!["tip in {T}".to_owned()], tool].concat());
+    table
+}
+
+pub(super) fn correlations(calibration: &Calibration, limit: f64) -> Table {
+    /// More than these nobody reads.
+    const MOST: usize = 20;
+    let pairs = calibration.correlations_above(limit);
+    let caption = match pairs.len() {
+        0 => format!("No two estimates correlate by more than {limit}."),
+        _ => {
+            format!("Estimates that correlate by more than {limit}: the poses tell them apart only roughly.")
+        }
+    };
+    let mut table = Table::new(
+        "correlations",
+        caption,
+        vec![Column::text("parameter"), Column::text("with"), Column::number("correlation", "")],
+    );
+    for (a, b, value) in pairs.iter().take(MOST) {
+        table.row([a.to_string(), b.to_string(), format!("{value:.3}")]);
+    }
+    if pairs.len() > MOST {
+        table.notes.push(format!("and {} more", pairs.len() - MOST));
+    }
+    table
+}
+
+pub(super) fn observability(calibration: &Calibration) -> Table {
+    let mut table = Table::new(
+        "observability",
+        "How well the poses show the parameters.",
+        vec![Column::text("index"), Column::text("meaning"), Column::number("value", "")],
+    );
+    let show = |value: f64| if value.is_finite() { significant(value, 4) } else { "∞".into() };
+    let [o1, o2, o3, o4, o5] = calibration.observability.indices;
+    for (name, meaning, value) in [
+        ("condition", "σ₁/σₘ, columns of norm 1", calibration.observability.condition),
+        ("O1", "(Π σᵢ)^(1/m)/√n", o1),
+        ("O2", "σₘ/σ₁", o2),
+        ("O3", "σₘ", o3),
+        ("O4", "σₘ²/σ₁", o4),
+        ("O5", "1/Σ(1/σᵢ)", o5),
+    ] {
+        table.row([name.to_owned(), meaning.to_owned(), show(value)]);
+    }
+    table.notes.push(
+        "O1 to O5 depend on units (here mm of residual per mm, mrad and µrad/(N·m)): compare ratios between sets of \
+         poses of one robot only. The condition number has no unit."
+            .into(),
+    );
+    table
+}
+
+pub(super) fn passes(calibration: &Calibration) -> Table {
+    let mut table = Table::new(
+        "passes",
+        format!(
+            "Compensation loop: deflections recomputed until they stand still. Last fit: {}.",
+            calibration.fit.reason
+        ),
+        vec![
+            Column::number("pass", ""),
+            Column::number("largest change of a deflection", "µm"),
+            Column::number("rms", "µm"),
+            Column::number("noise of a coordinate", "µm"),
+        ],
+    );
+    for (index, pass) in (1..).zip(&calibration.passes) {
+        table.row([index.to_string(), significant(pass.change / UM, 3), um(pass.rms), um(pass.noise)]);
+    }
+    table
+}

@@ -1,0 +1,182 @@
+//! What `rodcal compare` says: JSON, tables and pictures of all modes of a campaign.
+
+use serde_json::{Value, json};
+
+use super::calibration::{self, length};
+use super::table::{Column, Table};
+use super::{Block, Report, Section};
+use crate::calibration::campaign::Targets;
+use crate::calibration::{Campaign, Comparison, Difference, Mode};
+use crate::units::{UM, significant};
+
+/// The JSON of `rodcal compare --json`.
+pub fn json(campaign: &Campaign, comparison: &Comparison) -> Value {
+    let modes: Vec<Value> = comparison
+        .calibrations
+        .iter()
+        .enumerate()
+        .map(|(index, calibrated)| {
+            let cv = comparison.cross_validations.as_ref().map(|all| &all[index]);
+            let mut object = calibration::json(campaign, calibrated, cv);
+            let (low, high) = comparison.intervals[index];
+            object["mean_error_um"] = (comparison.summary(index).mean / UM).into();
+            object["mean_error_interval_um"] = json!([low / UM, high / UM]);
+            object
+        })
+        .collect();
+    let differences: Vec<Value> = comparison
+        .differences
+        .iter()
+        .map(|d| {
+            json!({
+                "mode": d.mode.name(),
+                "against": d.against.name(),
+                "mean_um": d.mean / UM,
+                "lo_um": d.interval.0 / UM,
+                "hi_um": d.interval.1 / UM,
+                "significant": d.is_significant,
+            })
+        })
+        .collect();
+    json!({
+        "modes": modes,
+        "differences": differences,
+        "judged_by": judged_by(campaign, comparison),
+        "draws": comparison.draws,
+        "verdict": verdict(campaign, comparison),
+    })
+}
+
+/// The report of `rodcal compare`.
+pub fn report(campaign: &Campaign, comparison: &Comparison) -> Report {
+    let mut warnings: Vec<String> = Vec::new();
+    for calibrated in &comparison.calibrations {
+        for warning in calibration::warnings(campaign, calibrated) {
+            if !warnings.contains(&warning) {
+                warnings.push(warning);
+            }
+        }
+    }
+    Report {
+        title: format!("Compensation modes of {}", campaign.robot.name),
+        headline: verdict(campaign, comparison),
+        warnings,
+        sections: sections(campaign, comparison),
+        provenance: Vec::new(),
+    }
+}
+
+fn judged_by(campaign: &Campaign, comparison: &Comparison) -> String {
+    match (&comparison.cross_validations, &campaign.measurements.targets) {
+        (None, Targets::Points(_)) => "validation poses".into(),
+        (None, Targets::Sockets(_)) => "validation sockets".into(),
+        (Some(all), _) => format!("held-out poses ({} folds)", all.first().map_or(0, |cv| cv.folds)),
+    }
+}
+
+/// One or two sentences: which mode is better, if any can be told from chance.
+pub fn verdict(campaign: &Campaign, comparison: &Comparison) -> String {
+    let name = &campaign.robot.name;
+    let on = judged_by(campaign, comparison);
+    let means: Vec<String> = comparison
+        .calibrations
+        .iter()
+        .enumerate()
+        .map(|(index, c)| format!("{} {}", c.mode.name(), length(comparison.summary(index).mean)))
+        .collect();
+    let means = means.join(", ");
+    if comparison.calibrations.len() < 2 {
+        return format!(
+            "{name}: only mode none is possible, for the campaign names no rod; mean error on {on}: {means}."
+        );
+    }
+    let better: Vec<String> =
+        comparison.differences.iter().filter(|d| d.is_significant).map(better_than).collect();
+    let largest = comparison.differences.iter().max_by(|a, b| a.mean.abs().total_cmp(&b.mean.abs()));
+    match (better.as_slice(), largest) {
+        ([], Some(d)) => format!(
+            "{name}: no mode is better than another beyond chance. Mean errors on {on}: {means}; the largest difference, \
+             {} less {}, is {} µm with a 95 % interval of {} to {} µm.",
+            d.mode.name(),
+            d.against.name(),
+            um(d.mean),
+            um(d.interval.0),
+            um(d.interval.1)
+        ),
+        (better, _) => format!("{name}: {}. Mean errors on {on}: {means}.", better.join("; ")),
+    }
+}
+
+fn better_than(d: &Difference) -> String {
+    let (better, worse, sign) = if d.mean < 0.0 { (d.mode, d.against, -1.0) } else { (d.against, d.mode, 1.0) };
+    let (low, high) = (sign * d.interval.0, sign * d.interval.1);
+    format!(
+        "{} is better than {} by {} µm (95 % interval {} to {} µm)",
+        better.name(),
+        worse.name(),
+        um(d.mean.abs()),
+        um(low.min(high)),
+        um(low.max(high))
+    )
+}
+
+fn um(metres: f64) -> String {
+    significant(metres / UM, 3)
+}
+
+/// The body of [`report`].
+pub fn sections(campaign: &Campaign, comparison: &Comparison) -> Vec<Section> {
+    vec![Section::new(
+        "Modes side by side",
+        vec![
+            Block::Paragraph(format!(
+                "Every mode is calibrated on the same {} poses and judged by its errors on {}. Intervals come from a \
+                 paired bootstrap over poses ({} draws): both the calibration and its judgement are repeated on poses \
+                 drawn again.",
+                campaign.measurements.len(),
+                judged_by(campaign, comparison),
+                comparison.draws
+            )),
+            Block::Table(modes_table(comparison)),
+            Block::Table(differences_table(comparison)),
+        ],
+    )]
+}
+
+fn modes_table(comparison: &Comparison) -> Table {
+    let mut columns = vec![Column::text("mode"), Column::text("rod's deflection"), Column::number("residual rms", "µm")];
+    columns.extend(["mean", "95 % from", "to", "max", "median", "SD"].map(|name| Column::number(name, "µm")));
+    let mut table = Table::new("modes", "Errors of each mode.", columns);
+    for (index, calibrated) in comparison.calibrations.iter().enumerate() {
+        let (summary, (low, high)) = (comparison.summary(index), comparison.intervals[index]);
+        let residual = crate::calibration::Summary::of(&calibrated.residuals());
+        let words = match calibrated.mode {
+            Mode::None => "taken for rigid",
+            Mode::Calc => "closed form",
+            Mode::Fea => "beam model",
+            Mode::Meas => "measured on a rig",
+        };
+        let numbers =
+            [residual.rms, summary.mean, low, high, summary.max, summary.median, summary.sd].map(um).to_vec();
+        table.row([vec![calibrated.mode.name().to_owned(), words.to_owned()], numbers].concat());
+    }
+    table
+}
+
+fn differences_table(comparison: &Comparison) -> Table {
+    let mut columns = vec![Column::text("mode"), Column::text("less")];
+    columns.extend(["difference", "95 % from", "to"].map(|name| Column::number(name, "µm")));
+    columns.push(Column::text("more than chance"));
+    let mut table = Table::new("differences", "Differences of the mean errors; negative where the first mode is better.", columns);
+    for d in &comparison.differences {
+        table.row([
+            d.mode.name().to_owned(),
+            d.against.name().to_owned(),
+            um(d.mean),
+            um(d.interval.0),
+            um(d.interval.1),
+            if d.is_significant { "yes" } else { "no" }.to_owned(),
+        ]);
+    }
+    table
+}

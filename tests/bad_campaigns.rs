@@ -150,63 +150,71 @@ fn every_bad_key_is_named_with_its_place() {
         (
             "\"d2\"",
             "\"d2_m\"",
-            "campaign.toml:20:8: `parameters.fix` has \"d2_m\", expected a parameter such as \"a1_mm\" or \"tool_z_mm\" of a robot with 3 joints -> did you mean \"d2_mm\"campaign.toml:20:8: `parameters.fix` has \"gear\", expected a parameter such as \"a1_mm\" or \"tool_z_mm\" of a robot with 3 joints",
+            "campaign.toml:20:8: `parameters.fix` has \"d2_m\", expected a parameter such as \"a1_mm\" or \"tool_z_mm\" of a robot with 3 joints -> did you mean \"d2_mm\"?",
         ),
         (
             "\"d2\"",
             "\"gear\"",
-            "campaign.toml:20:18: \"theta1_deg\" stands in fix already, expected one wish for each parameter",
+            "campaign.toml:20:8: `parameters.fix` has \"gear\", expected a parameter such as \"a1_mm\" or \"tool_z_mm\" of a robot with 3 joints",
         ),
         (
             "\"d2\"",
             "\"theta1\"",
-            "campaign.toml:21:9: \"d2_mm\" stands in fix already, expected one wish for each parameter",
+            "campaign.toml:20:18: \"theta1_deg\" stands in fix already, expected one wish for each parameter",
         ),
         (
             "\"c1_urad_per_nm\"",
             "\"d2_mm\"",
-            "campaign.toml:21:15: \"c1\" stands in free already, expected one wish for each parameter",
+            "campaign.toml:21:9: \"d2_mm\" stands in fix already, expected one wish for each parameter",
         ),
         (
             "\"c1_urad_per_nm\"",
             "\"c1\", \"c1\"",
-            "campaign.toml:23:13: `prior.parameter` is \"a1\", expected \"a1_mm\", with the unit of value and sd",
+            "campaign.toml:21:15: \"c1\" stands in free already, expected one wish for each parameter",
         ),
         (
             "\"a1_mm\"",
             "\"a1\"",
+            "campaign.toml:23:13: `prior.parameter` is \"a1\", expected \"a1_mm\", with the unit of value and sd",
+        ),
+        (
+            "\"a1_mm\"",
+            "\"d2_mm\"",
             "campaign.toml:23:13: \"d2_mm\" stands in fix already, expected one wish for each parameter",
         ),
-        ("\"a1_mm\"", "\"d2_mm\"", "campaign.toml:25:6: `prior.sd` is -0.1, expected a number > 0"),
-        ("sd = 0.1", "sd = -0.1", "campaign.toml:24:9: `prior.value` is inf, expected a finite number"),
+        ("sd = 0.1", "sd = -0.1", "campaign.toml:25:6: `prior.sd` is -0.1, expected a number > 0"),
         (
             "value = 250.5",
             "value = inf",
-            "campaign.toml:27:13: \"a1_mm\" stands in another [[prior]] already, expected one wish for each parameter",
+            "campaign.toml:24:9: `prior.value` is inf, expected a finite number",
         ),
         (
             "sd = 0.1",
             "sd = 0.1\n[[prior]]\nparameter = \"a1_mm\"\nvalue = 1\nsd = 1",
-            "campaign.toml:1:9: `robot` is \"builtin:tx9\", expected \"builtin:tx90\", or the path of a robot's file",
+            "campaign.toml:27:13: \"a1_mm\" stands in another [[prior]] already, expected one wish for each parameter",
         ),
         // files
-        ("\"robot.toml\"", "\"builtin:tx9\"", "none.toml: no such file, expected one on the desk"),
         (
             "\"robot.toml\"",
-            "\"none.toml\"",
-            "measurements.csv:1:5: the line `pose,clamp,q1_deg,q2_deg,q3_mm,x_mm,y_mm …`, expected key = value, or a [section] -> is this a table of readings (CSV)?",
+            "\"builtin:tx9\"",
+            "campaign.toml:1:9: `robot` is \"builtin:tx9\", expected \"builtin:tx90\", or the path of a robot's file",
         ),
+        ("\"robot.toml\"", "\"none.toml\"", "none.toml: no such file, expected one on the desk"),
         (
             "\"robot.toml\"",
             "\"measurements.csv\"",
-            "robot.toml:5:1: unknown key `a_mm`, expected one of name, station_mm, bending_urad_per_nm, torsion_urad_per_nm",
+            "measurements.csv:1:5: the line `pose,clamp,q1_deg,q2_deg,q3_mm,x_mm,y_mm …`, expected key = value, or a [section] -> is this a table of readings (CSV)?",
         ),
         (
             "\"rod.toml\"",
             "\"robot.toml\"",
+            "robot.toml:5:1: unknown key `a_mm`, expected one of name, station_mm, bending_urad_per_nm, torsion_urad_per_nm",
+        ),
+        (
+            "\"measurements.csv\"",
+            "\"rig.csv\"",
             "rig.csv:1: there is no column pose, expected a name for each pose",
         ),
-        ("\"measurements.csv\"", "\"rig.csv\"", "?"),
     ];
     assert_refused(Desk::with_clamps, "campaign.toml", &cases);
 }

@@ -12,12 +12,15 @@
 //! common normal jumps with the smallest tilt, and Hayati's β does not (S. Hayati, *IEEE CDC* 22 (1983) 1477–1483).
 
 mod file;
+mod hayati;
 mod kinematics;
 mod parameter;
 mod urdf;
+mod write;
 
 pub use file::is_urdf;
 pub use parameter::{Parameter, Unit};
+pub use urdf::Written;
 
 use nalgebra::Vector3;
 

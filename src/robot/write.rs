@@ -1,0 +1,92 @@
+//! Writes a robot as a table in TOML, such that reading it gives the same robot.
+
+use std::fmt::Write;
+
+use super::file::default_name;
+use super::{Joint, Motion, Robot};
+use crate::error::{Error, Result};
+use crate::spatial::Pose;
+use crate::units::{DEG, MM, URAD_PER_NM};
+
+impl Robot {
+    /// This robot as a table, the format of [`Robot::from_text`], below `comments`.
+    ///
+    /// Every number has as many digits as it takes to read the very same one again; where the change of units makes that
+    /// impossible, the last bit may differ.
+    ///
+    /// # Errors
+    /// [`Error::NotApplicable`] where the robot has a root or a flange of its own, as one read from a URDF: a table has
+    /// no place for them.
+    pub fn to_toml(&self, comments: &[String]) -> Result<String> {
+        if self.root != Pose::IDENTITY || self.flange != Pose::IDENTITY {
+            return Err(Error::NotApplicable {
+                what: format!("writing robot `{}` as a table", self.name),
+                why: "its first joint or its flange is not where a table has it".to_owned(),
+                hint: "write it into its URDF".to_owned(),
+            });
+        }
+        let mut text = String::new();
+        for line in comments.iter().flat_map(|comment| comment.lines()) {
+            let plain: String = line.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
+            text += format!("# {plain}").trim_end();
+            text.push('\n');
+        }
+        text += &format!("name = {}\n", quoted(&self.name));
+        if let Some(source) = &self.source {
+            text += &format!("source = {}\n", quoted(source));
+        }
+        text += &format!("convention = \"hayati\"\ngravity_m_s2 = {:?}\n", self.gravity.as_slice());
+        for (index, joint) in self.joints.iter().enumerate() {
+            text += "\n[[joint]]\n";
+            // writing to a String cannot fail
+            let _ = write_joint(&mut text, index, joint);
+        }
+        Ok(text)
+    }
+}
+
+fn write_joint(text: &mut String, index: usize, joint: &Joint) -> std::fmt::Result {
+    if joint.name != default_name(index) {
+        writeln!(text, "name = {}", quoted(&joint.name))?;
+    }
+    if joint.motion == Motion::Prismatic {
+        writeln!(text, "type = \"prismatic\"")?;
+    }
+    let link = &joint.link;
+    for (key, value, si) in [
+        ("theta_offset_deg", link.theta, DEG),
+        ("d_mm", link.d, MM),
+        ("a_mm", link.a, MM),
+        ("alpha_deg", link.alpha, DEG),
+        ("beta_deg", link.beta, DEG),
+    ] {
+        writeln!(text, "{key} = {:?}", in_unit(value, si))?;
+    }
+    if joint.compliance != 0.0 {
+        writeln!(text, "compliance_urad_per_nm = {:?}", in_unit(joint.compliance, URAD_PER_NM))?;
+    }
+    if let Some(body) = &joint.body {
+        let centre: Vec<f64> = body.centre.iter().map(|&x| in_unit(x, MM)).collect();
+        writeln!(text, "mass_kg = {:?}\ncom_mm = {centre:?}", body.mass)?;
+    }
+    if let Some(limits) = joint.limits {
+        let (key, si) = match joint.motion {
+            Motion::Revolute => ("limits_deg", DEG),
+            Motion::Prismatic => ("limits_mm", MM),
+        };
+        writeln!(text, "{key} = {:?}", limits.map(|limit| in_unit(limit, si)))?;
+    }
+    Ok(())
+}
+
+/// The number of fewest digits that times `si` is `value`, or the nearest there is.
+pub(super) fn in_unit(value: f64, si: f64) -> f64 {
+    let quotient = value / si;
+    let rounded = (14..17).filter_map(|digits| format!("{quotient:.digits$e}").parse::<f64>().ok());
+    let candidates = rounded.chain([quotient, quotient.next_up(), quotient.next_down()]);
+    candidates.into_iter().find(|candidate| candidate * si == value).unwrap_or(quotient)
+}
+
+fn quoted(text: &str) -> String {
+    toml::Value::from(text).to_string()
+}

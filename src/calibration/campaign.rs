@@ -1,4 +1,14 @@
 //! A calibration campaign: the robot, its rod, and what was recorded. One TOML file that names the others.
+//!
+//! Every key and column is in `docs/campaign-file.md`.
+
+mod columns;
+mod file;
+mod recording;
+mod warning;
+mod wishes;
+
+pub use warning::Warning;
 
 use nalgebra::Vector3;
 
@@ -18,6 +28,10 @@ pub struct Campaign {
     pub robot_file: String,
     /// Its text.
     pub robot_text: String,
+    /// Link of a URDF that is {0}, where the campaign names it.
+    pub base_link: Option<String>,
+    /// Link of a URDF that is {T}, where the campaign names it.
+    pub tip_link: Option<String>,
     /// Measuring rod on the flange.
     pub rod: Option<Rod>,
     /// Rig readings of the rod; they make the Meas mode available.
@@ -28,7 +42,7 @@ pub struct Campaign {
     pub tool: Vector3<f64>,
     /// First guess of {0} in {W}: position (m) and roll, pitch, yaw (rad).
     pub base: [f64; 6],
-    /// False where the file says nothing about the base.
+    /// False where the file says nothing about the base; the guess is then the identity.
     pub base_is_given: bool,
     /// What was recorded.
     pub measurements: Recording,
@@ -124,11 +138,6 @@ pub struct Distance {
     /// Its standard deviation, m.
     pub sd: f64,
 }
-
-/// What a user should know about a campaign's files although they can be read.
-#[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
-pub enum Warning {}
 
 impl Recording {
     /// Number of rows.

@@ -49,11 +49,13 @@ impl TomlText<'_> {
         // the parser places what is missing at the top level nowhere, and the rest at its section's header
         if span.is_empty() {
             let is_blank = |line: &str| line.trim().is_empty() || line.trim_start().starts_with('#');
-            let found = match self.text.lines().all(is_blank) {
-                true => "the file is empty".to_owned(),
-                false => format!("there is no [{name}]"),
+            let (missing, expected) = match words(&format!("[{name}]")) {
+                Some(words) => (format!("there is no [{name}]"), words),
+                None => (format!("there is no `{name}`"), words(name)?),
             };
-            let (at, expected) = (Place::whole_file(self.file), words(&format!("[{name}]"))?);
+            let is_empty = self.text.lines().all(is_blank);
+            let found = if is_empty { "the file is empty".to_owned() } else { missing };
+            let at = Place::whole_file(self.file);
             return Some(Error::Input { at, found, expected, hint: None });
         }
         let section = match self.entry(span.start) {

@@ -1,0 +1,361 @@
+//! The reader of campaign files: the keys, and the files that they name.
+
+use std::path::Path;
+
+use nalgebra::Vector3;
+use serde::Deserialize;
+use toml::Spanned;
+
+use super::recording::{self, Clamp, Role, Seen, Sockets};
+use super::wishes::{RawParameters, RawPrior, wishes};
+use super::{Campaign, Refit, Warning, warning};
+use crate::error::{Error, Result};
+use crate::files;
+use crate::rig::readings::Readings;
+use crate::robot::Robot;
+use crate::rod::Rod;
+use crate::spatial::Pose;
+use crate::toml_text::{Number, Required, TomlText};
+use crate::units::{DEG, MM, UM};
+
+/// Of the known distance between two sockets, unless the file states it, m: what a milled plate keeps easily.
+const DISTANCE_SD: f64 = 0.1 * MM;
+
+/// What `robot` begins with where it names a robot that the program carries.
+const BUILTIN: &str = "builtin:";
+
+impl Campaign {
+    /// Reads and checks a campaign file and all files that it names; their paths are relative to its directory.
+    ///
+    /// # Errors
+    /// [`Error::File`] where it cannot be read; [`Error::Syntax`] or [`Error::Input`] with line and column of
+    /// whichever file is wrong otherwise.
+    pub fn read(path: &Path) -> Result<Campaign> {
+        let directory = path.parent().unwrap_or(Path::new(""));
+        let open = |name: &str| files::read_text(&directory.join(name));
+        Campaign::from_texts(&path.display().to_string(), &files::read_text(path)?, &open)
+    }
+
+    /// Reads and checks the text of a campaign file; `file` names it in errors, and `open` gives the text of a
+    /// file by the name that the campaign has for it.
+    ///
+    /// # Errors
+    /// As [`Campaign::read`].
+    pub fn from_texts(file: &str, text: &str, open: &dyn Fn(&str) -> Result<String>) -> Result<Campaign> {
+        let toml = TomlText::new(file, text);
+        let raw: RawCampaign = toml.parse(REQUIRED).map_err(above_the_sections)?;
+        Reader { file, toml, open, warnings: Vec::new() }.campaign(&raw)
+    }
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawCampaign {
+    robot: Spanned<String>,
+    rod: Option<Spanned<String>>,
+    rig: Option<Spanned<String>>,
+    contact_force_n: Option<Spanned<Vec<Number>>>,
+    measurements: Spanned<String>,
+    validation: Option<Spanned<String>>,
+    base_link: Option<String>,
+    tip_link: Option<String>,
+    validation_refit: Option<Spanned<String>>,
+    tool: Option<RawTool>,
+    base: Option<RawBase>,
+    #[serde(default)]
+    clamp: Vec<RawClamp>,
+    sockets: Option<RawSockets>,
+    noise: Option<RawNoise>,
+    #[serde(default)]
+    parameters: RawParameters,
+    #[serde(default)]
+    prior: Vec<RawPrior>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a section [tool] with xyz_mm")]
+struct RawTool {
+    xyz_mm: Spanned<Vec<Number>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a section [base] with xyz_mm and rpy_deg")]
+struct RawBase {
+    xyz_mm: Option<Spanned<Vec<Number>>>,
+    rpy_deg: Option<Spanned<Vec<Number>>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a section [[clamp]] with id, xyz_mm, rpy_deg")]
+struct RawClamp {
+    id: Spanned<String>,
+    xyz_mm: Spanned<Vec<Number>>,
+    rpy_deg: Option<Spanned<Vec<Number>>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a section [sockets] with distance_mm")]
+struct RawSockets {
+    distance_mm: Number,
+    distance_sd_mm: Option<Number>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a section [noise] with position_um")]
+struct RawNoise {
+    position_um: Number,
+}
+
+/// What a campaign file cannot do without, in words.
+const REQUIRED: &Required = &[
+    ("robot", "`robot = \"FILE\"` in the first lines: a URDF, a robot in TOML, or \"builtin:tx90\""),
+    ("measurements", "`measurements = \"FILE\"` in the first lines: the CSV file of the recorded poses"),
+    ("xyz_mm", "a position [x, y, z] in mm"),
+    ("id", "the clamp's name in quotes, as in the column clamp of the measurements"),
+    ("distance_mm", "the distance between the sockets 0 and 1 of a placement in mm"),
+    ("position_um", "the standard deviation of one measured coordinate in µm"),
+    ("parameter", "the name of a parameter with its unit, such as \"a2_mm\""),
+    ("value", "what the parameter is known to be, in the unit that its name ends with"),
+    ("sd", "the standard deviation of that knowledge, in the unit that the parameter's name ends with"),
+];
+
+/// A key of the file itself that stands below a `[section]` belongs to that section, in TOML, not to the file.
+fn above_the_sections(error: Error) -> Error {
+    const KEYS: [&str; 9] = [
+        "robot",
+        "rod",
+        "rig",
+        "contact_force_n",
+        "measurements",
+        "validation",
+        "base_link",
+        "tip_link",
+        "validation_refit",
+    ];
+    let stray = match &error {
+        Error::Input { found, .. } => found.strip_prefix("unknown key `").and_then(|f| f.strip_suffix('`')),
+        _ => None,
+    };
+    match stray.filter(|key| KEYS.contains(key)) {
+        Some(key) => {
+            let hint = format!("write {key} above the first [section]");
+            error.with_hint(Some(hint))
+        }
+        None => error,
+    }
+}
+
+struct Reader<'a> {
+    file: &'a str,
+    toml: TomlText<'a>,
+    open: &'a dyn Fn(&str) -> Result<String>,
+    warnings: Vec<Warning>,
+}
+
+/// A file that the campaign names, as the user would name it.
+struct Named {
+    file: String,
+    text: String,
+}
+
+impl Reader<'_> {
+    fn campaign(mut self, raw: &RawCampaign) -> Result<Campaign> {
+        // all that the campaign's own text can be blamed for comes before the files that it names
+        let contact_force = self.optional(raw.contact_force_n.as_ref(), "contact_force_n", FORCE)?;
+        let tool = self.optional(raw.tool.as_ref().map(|tool| &tool.xyz_mm), "tool.xyz_mm", POSITION)?;
+        let base = self.base(raw.base.as_ref())?;
+        let clamps = self.clamps(&raw.clamp)?;
+        let sockets = self.sockets(raw)?;
+        let refit = self.refit(raw)?;
+        let noise = match &raw.noise {
+            Some(noise) => Some(self.toml.positive("noise.position_um", &noise.position_um)? * UM),
+            None => None,
+        };
+        if let (Some(rig), None) = (&raw.rig, &raw.rod) {
+            let expected = "a rod (`rod = \"FILE\"`) whose readings these are";
+            return Err(self.toml.is("rig", rig, expected));
+        }
+
+        let (robot, robot_file) = self.robot(raw)?;
+        let wishes = wishes(self.toml, &raw.parameters, &raw.prior, robot.joints.len())?;
+        let rod = match &raw.rod {
+            Some(name) => Some(self.named("rod", name).and_then(|n| Rod::from_toml(&n.file, &n.text))?),
+            None => None,
+        };
+        let readings = match &raw.rig {
+            Some(name) => Some(self.named("rig", name).and_then(|n| Readings::from_text(&n.file, &n.text))?),
+            None => None,
+        };
+
+        let seen = match sockets {
+            Some(sockets) => Seen::Sockets(sockets),
+            None if clamps.is_empty() => Seen::World,
+            None => Seen::Clamps(&clamps),
+        };
+        let measurements =
+            self.recording("measurements", &raw.measurements, &robot, seen, Role::Measurements)?;
+        let validation = match &raw.validation {
+            Some(name) => {
+                let seen = if sockets.is_some() { seen } else { Seen::World };
+                Some(self.recording("validation", name, &robot, seen, Role::Validation)?)
+            }
+            None => None,
+        };
+
+        let mut campaign = Campaign {
+            file: self.file.to_owned(),
+            robot,
+            robot_file: raw.robot.get_ref().clone(),
+            robot_text: robot_file.text,
+            base_link: raw.base_link.clone(),
+            tip_link: raw.tip_link.clone(),
+            tool: tool.or(rod.as_ref().map(Rod::tip)).unwrap_or_default(),
+            rod,
+            readings,
+            contact_force,
+            base: base.unwrap_or_default(),
+            base_is_given: raw.base.is_some(),
+            measurements,
+            validation,
+            refit,
+            noise,
+            wishes,
+            warnings: Vec::new(),
+        };
+        self.warnings.extend(warning::about(&campaign, &clamps));
+        campaign.warnings = self.warnings;
+        Ok(campaign)
+    }
+
+    /// The file that `name`, the value of `key`, stands for.
+    fn named(&self, key: &str, name: &Spanned<String>) -> Result<Named> {
+        let directory = Path::new(self.file).parent().unwrap_or(Path::new(""));
+        let file = directory.join(name.get_ref()).display().to_string();
+        let text = (self.open)(name.get_ref()).map_err(|error| match error {
+            // where it is named is what has to be changed, most likely
+            Error::File { source, .. } => {
+                let found = format!("`{key}` is {}: {source}", self.toml.source(name));
+                let hint = "a path is relative to the directory of the campaign file".to_owned();
+                self.toml.wrong(name, found, "a file that can be read").with_hint(Some(hint))
+            }
+            error => error,
+        })?;
+        Ok(Named { file, text })
+    }
+
+    fn robot(&mut self, raw: &RawCampaign) -> Result<(Robot, Named)> {
+        let named = match raw.robot.get_ref().strip_prefix(BUILTIN) {
+            None => self.named("robot", &raw.robot)?,
+            Some(name) => {
+                let (file, text) = Robot::builtin(name).ok_or_else(|| {
+                    self.toml.is("robot", &raw.robot, "\"builtin:tx90\", or the path of a robot's file")
+                })?;
+                Named { file: file.to_owned(), text: text.to_owned() }
+            }
+        };
+        let (base_link, tip_link) = (raw.base_link.as_deref(), raw.tip_link.as_deref());
+        let robot = Robot::from_text(&named.file, &named.text, base_link, tip_link)?;
+        let is_urdf = named.text.trim_start().starts_with('<');
+        if !is_urdf && (base_link.is_some() || tip_link.is_some()) {
+            self.warnings.push(Warning::LinksWithoutUrdf);
+        }
+        Ok((robot, named))
+    }
+
+    fn recording(
+        &mut self,
+        key: &str,
+        name: &Spanned<String>,
+        robot: &Robot,
+        seen: Seen<'_>,
+        role: Role,
+    ) -> Result<super::Recording> {
+        let Named { file, text } = self.named(key, name)?;
+        let (recording, warnings) = recording::read(&file, &text, robot, seen, role)?;
+        self.warnings.extend(warnings);
+        Ok(recording)
+    }
+
+    fn base(&self, raw: Option<&RawBase>) -> Result<Option<[f64; 6]>> {
+        let Some(raw) = raw else { return Ok(None) };
+        let xyz = self.optional(raw.xyz_mm.as_ref(), "base.xyz_mm", POSITION)?.unwrap_or_default();
+        let rpy = self.optional(raw.rpy_deg.as_ref(), "base.rpy_deg", ANGLES)?.unwrap_or_default();
+        Ok(Some([xyz.x, xyz.y, xyz.z, rpy.x, rpy.y, rpy.z]))
+    }
+
+    fn clamps(&self, raw: &[RawClamp]) -> Result<Vec<Clamp>> {
+        let mut clamps: Vec<Clamp> = Vec::new();
+        for clamp in raw {
+            let id = clamp.id.get_ref().trim();
+            if id.is_empty() {
+                let expected = "the clamp's name, as in the column clamp of the measurements";
+                return Err(self.toml.is("clamp.id", &clamp.id, expected));
+            }
+            if clamps.iter().any(|other| other.id == id) {
+                let found = format!("a second clamp has the id {}", self.toml.source(&clamp.id));
+                return Err(self.toml.wrong(&clamp.id, found, "an id of its own for each clamp"));
+            }
+            let xyz = self.three("clamp.xyz_mm", &clamp.xyz_mm, POSITION)?;
+            let rpy = self.optional(clamp.rpy_deg.as_ref(), "clamp.rpy_deg", ANGLES)?.unwrap_or_default();
+            clamps.push(Clamp { id: id.to_owned(), device: Pose::from_xyz_rpy(xyz.into(), rpy.into()) });
+        }
+        Ok(clamps)
+    }
+
+    fn sockets(&self, raw: &RawCampaign) -> Result<Option<Sockets>> {
+        let Some(sockets) = &raw.sockets else { return Ok(None) };
+        let distance = self.toml.positive("sockets.distance_mm", &sockets.distance_mm)? * MM;
+        let sd = match &sockets.distance_sd_mm {
+            Some(sd) => self.toml.positive("sockets.distance_sd_mm", sd)? * MM,
+            None => DISTANCE_SD,
+        };
+        if let Some(clamp) = raw.clamp.first() {
+            let found = "the file has [[clamp]] and [sockets]".to_owned();
+            let expected = "clamps where positions were measured, or sockets where only distances are known";
+            return Err(self.toml.wrong(&clamp.id, found, expected));
+        }
+        Ok(Some(Sockets { distance, sd }))
+    }
+
+    fn refit(&mut self, raw: &RawCampaign) -> Result<Refit> {
+        let default = if raw.sockets.is_some() { Refit::Nothing } else { Refit::BaseTool };
+        let Some(refit) = &raw.validation_refit else { return Ok(default) };
+        match refit.get_ref().as_str() {
+            "base-tool" if raw.sockets.is_some() => {
+                self.warnings.push(Warning::RefitWithSockets);
+                Ok(Refit::Nothing)
+            }
+            "base-tool" => Ok(Refit::BaseTool),
+            "none" => Ok(Refit::Nothing),
+            _ => Err(self.toml.is("validation_refit", refit, "\"base-tool\" or \"none\"")),
+        }
+    }
+
+    fn optional(
+        &self,
+        list: Option<&Spanned<Vec<Number>>>,
+        key: &str,
+        what: Triple,
+    ) -> Result<Option<Vector3<f64>>> {
+        list.map(|list| self.three(key, list, what)).transpose()
+    }
+
+    fn three(&self, key: &str, list: &Spanned<Vec<Number>>, what: Triple) -> Result<Vector3<f64>> {
+        let [x, y, z] = list.get_ref().as_slice() else {
+            return Err(self.toml.is(key, list, what.words));
+        };
+        let number = |number| Ok(self.toml.finite(key, number)? * what.unit);
+        Ok(Vector3::new(number(x)?, number(y)?, number(z)?))
+    }
+}
+
+/// Three numbers of one unit.
+#[derive(Clone, Copy)]
+struct Triple {
+    words: &'static str,
+    unit: f64,
+}
+
+const POSITION: Triple = Triple { words: "three numbers [x, y, z] in mm", unit: MM };
+const ANGLES: Triple = Triple { words: "three angles [roll, pitch, yaw] in degrees", unit: DEG };
+const FORCE: Triple = Triple { words: "three numbers [x, y, z] in N, the force on the ball", unit: 1.0 };

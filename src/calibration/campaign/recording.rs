@@ -1,0 +1,190 @@
+//! The reader of what was recorded: measurements and validation, one pose per row of a CSV file.
+
+use std::collections::BTreeMap;
+
+use nalgebra::Vector3;
+
+use super::columns::{Columns, POSITION, listed, required};
+use super::{Distance, Group, Recording, Row, Targets, Warning, warning};
+use crate::delimited::{Row as Cells, Table};
+use crate::error::{Error, Place, Result};
+use crate::robot::Robot;
+use crate::spatial::Pose;
+use crate::units::MM;
+
+const ABSOLUTE_ZERO_C: f64 = -273.15;
+
+/// Where the ball was, as the campaign file has it.
+#[derive(Clone, Copy)]
+pub(super) enum Seen<'a> {
+    /// Measured in {W}.
+    World,
+    /// Measured in the device frame of one of these clamps.
+    Clamps(&'a [Clamp]),
+    /// Not measured: in a socket.
+    Sockets(Sockets),
+}
+
+/// A clamp and its device frame in {W}.
+pub(super) struct Clamp {
+    pub id: String,
+    pub device: Pose,
+}
+
+/// What is known about the sockets of every placement.
+#[derive(Clone, Copy)]
+pub(super) struct Sockets {
+    /// Between socket 0 and socket 1, m.
+    pub distance: f64,
+    /// Its standard deviation, m.
+    pub sd: f64,
+}
+
+/// What a recording is for.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Role {
+    Measurements,
+    Validation,
+}
+
+/// Reads `text`, the contents of `file`.
+///
+/// # Errors
+/// [`Error::Input`] with line and column: what [`Table::parse`] refuses; columns that are missing or belong to
+/// another robot; cells that are not what their column holds; a clamp that the campaign does not know; a pose that
+/// is there twice; no rows.
+pub(super) fn read(
+    file: &str,
+    text: &str,
+    robot: &Robot,
+    seen: Seen<'_>,
+    role: Role,
+) -> Result<(Recording, Vec<Warning>)> {
+    let columns = Columns::of(robot, seen);
+    let table = Table::parse(file, text, |column| columns.holds_numbers(column))?;
+    columns.check(&table, role)?;
+    let mut reader = Reader { columns: &columns, seen, groups: Vec::new(), lines: BTreeMap::new() };
+    let (mut rows, mut joint_values, mut points) = (Vec::new(), Vec::new(), Vec::new());
+    for cells in table.rows() {
+        let row = reader.row(cells)?;
+        for value in reader.columns.joint_values(cells) {
+            joint_values.push(value?);
+        }
+        if !matches!(seen, Seen::Sockets(_)) {
+            points.push(reader.groups[row.group].group.device.point(&position(cells)?));
+        }
+        rows.push(row);
+    }
+    if rows.is_empty() {
+        let expected = "at least one pose, and many more to calibrate with".to_owned();
+        let found = "there are no rows under the header".to_owned();
+        return Err(Error::Input { at: Place::whole_file(file), found, expected, hint: None });
+    }
+    let targets = match seen {
+        Seen::Sockets(sockets) => Targets::Sockets(distances(&reader.groups, sockets)),
+        _ => Targets::Points(points),
+    };
+    let recording = Recording {
+        file: file.to_owned(),
+        joint_count: robot.joints.len(),
+        joint_values,
+        rows,
+        groups: reader.groups.into_iter().map(|held| held.group).collect(),
+        targets,
+    };
+    let mut warnings = warning::about_dialect(file, &table);
+    warnings.extend(columns.unused(file, &table));
+    warnings.extend(warning::about_joints(&recording, robot, role));
+    Ok((recording, warnings))
+}
+
+struct Reader<'a> {
+    columns: &'a Columns,
+    seen: Seen<'a>,
+    /// In order of appearance.
+    groups: Vec<Held>,
+    /// Line of each group's poses.
+    lines: BTreeMap<(usize, String), usize>,
+}
+
+/// A group with the cells that name it: clamp and nothing, placement and socket, or nothing at all.
+struct Held {
+    names: [String; 2],
+    group: Group,
+}
+
+impl Reader<'_> {
+    /// All of a row but its joint values and its point.
+    fn row(&mut self, cells: Cells<'_>) -> Result<Row> {
+        let pose = name(cells, "pose", "a name for the pose")?.to_owned();
+        let group = self.group(cells)?;
+        if let Some(line) = self.lines.insert((group, pose.clone()), cells.line()) {
+            let of = match self.groups[group].group.name.as_str() {
+                "" => String::new(),
+                name => format!(" of {name}"),
+            };
+            let expected = format!("a pose{of} that is not in line {line} already");
+            let hint = "give a pose that was measured again a name of its own, such as 7b";
+            return Err(cells.error("pose", expected, Some(hint.to_owned())));
+        }
+        let temperature = match cells.number("temperature_c")? {
+            Some(value) if value < ABSOLUTE_ZERO_C => {
+                return Err(cells.error("temperature_c", format!("a number ≥ {ABSOLUTE_ZERO_C}"), None));
+            }
+            value => value,
+        };
+        Ok(Row { pose, line: cells.line(), group, time: cells.number("time_s")?, temperature })
+    }
+
+    fn group(&mut self, cells: Cells<'_>) -> Result<usize> {
+        let (names, label, device) = match self.seen {
+            Seen::World => ([""; 2], String::new(), Pose::IDENTITY),
+            Seen::Clamps(clamps) => {
+                let clamp = known_clamp(cells, clamps)?;
+                ([&clamp.id, ""], format!("clamp {}", clamp.id), clamp.device)
+            }
+            Seen::Sockets(_) => {
+                let placement = name(cells, "placement", "a name for where the sockets stood")?;
+                let socket = name(cells, "socket", "the number of the socket")?;
+                ([placement, socket], format!("{placement}/{socket}"), Pose::IDENTITY)
+            }
+        };
+        if let Some(index) = self.groups.iter().position(|held| held.names == names) {
+            return Ok(index);
+        }
+        let group = Group { name: label, device };
+        self.groups.push(Held { names: names.map(str::to_owned), group });
+        Ok(self.groups.len() - 1)
+    }
+}
+
+fn known_clamp<'c>(cells: Cells<'_>, clamps: &'c [Clamp]) -> Result<&'c Clamp> {
+    let id = cells.text("clamp");
+    clamps.iter().find(|clamp| Some(clamp.id.as_str()) == id).ok_or_else(|| {
+        let ids: Vec<&str> = clamps.iter().map(|clamp| clamp.id.as_str()).collect();
+        let expected = match ids.as_slice() {
+            [one] => format!("{one}, the campaign's only clamp"),
+            more => format!("one of the campaign's clamps: {}", listed(more)),
+        };
+        cells.error("clamp", expected, None)
+    })
+}
+
+fn name<'t>(cells: Cells<'t>, column: &str, expected: &str) -> Result<&'t str> {
+    cells.text(column).ok_or_else(|| cells.error(column, expected.to_owned(), None))
+}
+
+fn position(cells: Cells<'_>) -> Result<Vector3<f64>> {
+    let [x, y, z] = POSITION.map(|column| required(cells, column));
+    Ok(Vector3::new(x?, y?, z?) * MM)
+}
+
+/// Between the sockets 0 and 1 of each placement that has both.
+fn distances(groups: &[Held], Sockets { distance, sd }: Sockets) -> Vec<Distance> {
+    let socket = |placement: &str, socket: &str| {
+        groups.iter().position(|held| held.names[0] == placement && held.names[1] == socket)
+    };
+    let firsts = groups.iter().enumerate().filter(|(_, held)| held.names[1] == "0");
+    let pairs = firsts.filter_map(|(first, held)| Some([first, socket(&held.names[0], "1")?]));
+    pairs.map(|between| Distance { between, value: distance, sd }).collect()
+}

@@ -1,0 +1,291 @@
+//! What is odd about a campaign that can be read all the same.
+
+use std::collections::HashSet;
+use std::fmt;
+
+use super::recording::{Clamp, Role};
+use super::{Campaign, Recording, Targets};
+use crate::delimited::{Dialect, Table, quoted};
+use crate::robot::{Motion, Robot};
+use crate::units::{DEG, MM, significant};
+
+/// Advice about files that were read; its `Display` is one sentence or two for the user.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum Warning {
+    /// The numbers of a file were read with decimal commas.
+    DecimalCommas {
+        /// The file.
+        file: String,
+        /// Separator and decimal mark.
+        dialect: Dialect,
+    },
+    /// A column is not read.
+    UnusedColumn {
+        /// The file.
+        file: String,
+        /// The column's name as written.
+        column: String,
+        /// The column that it may be meant to be.
+        nearest: Option<String>,
+    },
+    /// No angle of a file is larger than 2π, read as degrees.
+    AnglesInRadians {
+        /// The file.
+        file: String,
+        /// The largest angle in size, as written.
+        largest: f64,
+    },
+    /// A joint is beyond its limits.
+    OutsideLimits {
+        /// The file.
+        file: String,
+        /// Index of the joint.
+        joint: usize,
+        /// What the joint does, which makes the unit.
+        motion: Motion,
+        /// Its limits, rad or m.
+        limits: [f64; 2],
+        /// In how many rows it is beyond them.
+        count: usize,
+        /// The first such pose.
+        pose: String,
+        /// Its line.
+        line: usize,
+        /// The joint's value there, rad or m.
+        value: f64,
+    },
+    /// A joint hardly moves in all the measurements.
+    StillJoint {
+        /// The file.
+        file: String,
+        /// Index of the joint.
+        joint: usize,
+        /// What the joint does.
+        motion: Motion,
+        /// Between its smallest and its largest value, rad or m.
+        range: f64,
+    },
+    /// Poses that the robot is judged by are also those that it is calibrated with.
+    NotIndependent {
+        /// How many.
+        count: usize,
+        /// Of how many.
+        of: usize,
+        /// The first one.
+        pose: String,
+    },
+    /// A clamp that no row names.
+    UnusedClamp {
+        /// Its id.
+        id: String,
+    },
+    /// No placement of a recording has both a socket 0 and a socket 1.
+    NoDistance {
+        /// The file.
+        file: String,
+    },
+    /// A rod and clamps, but no contact force: gravity alone bends the rod.
+    NoContactForce,
+    /// A contact force, but no rod that it could bend.
+    ContactForceWithoutRod,
+    /// A contact force, but no clamp in whose frame it could be given.
+    ContactForceWithoutClamp,
+    /// With sockets there is no base and tool to fit again.
+    RefitWithSockets,
+    /// Links are named, but the robot is not a URDF.
+    LinksWithoutUrdf,
+}
+
+/// The largest angle in size that angles in radians have: a full turn, and some play, rad.
+const LARGEST_IN_RADIANS: f64 = 1.05 * 2.0 * std::f64::consts::PI;
+/// From how many rows on small angles are no accident.
+const ROWS_TO_JUDGE: usize = 10;
+/// A joint that moves less than this hardly moves.
+const LEAST_TURN: f64 = 1.0 * DEG;
+const LEAST_TRAVEL: f64 = 1.0 * MM;
+/// Joint values and limits are rounded in their files, rad or m.
+const ROUNDING: f64 = 1e-5;
+
+/// About how the numbers of a file are written.
+pub(super) fn about_dialect(file: &str, table: &Table) -> Vec<Warning> {
+    let dialect = table.dialect();
+    let commas = Warning::DecimalCommas { file: file.to_owned(), dialect };
+    if dialect.decimal_mark == ',' { vec![commas] } else { vec![] }
+}
+
+/// About the joint values of a recording.
+pub(super) fn about_joints(recording: &Recording, robot: &Robot, role: Role) -> Vec<Warning> {
+    if let Some(warning) = in_radians(recording, robot) {
+        // what else there is to say follows from this
+        return vec![warning];
+    }
+    let count = robot.joints.len();
+    let mut warnings: Vec<Warning> = (0..count).filter_map(|j| outside(recording, robot, j)).collect();
+    if role == Role::Measurements && recording.len() > 1 {
+        warnings.extend((0..count).filter_map(|j| still(recording, robot, j)));
+    }
+    warnings
+}
+
+/// About what belongs together.
+pub(super) fn about(campaign: &Campaign, clamps: &[Clamp]) -> Vec<Warning> {
+    let Campaign { rod, contact_force, measurements, validation, .. } = campaign;
+    let mut warnings = Vec::new();
+    for clamp in clamps {
+        let name = format!("clamp {}", clamp.id);
+        if measurements.groups.iter().all(|group| group.name != name) {
+            warnings.push(Warning::UnusedClamp { id: clamp.id.clone() });
+        }
+    }
+    match contact_force {
+        None if rod.is_some() && !clamps.is_empty() => warnings.push(Warning::NoContactForce),
+        Some(_) if rod.is_none() => warnings.push(Warning::ContactForceWithoutRod),
+        Some(_) if clamps.is_empty() => warnings.push(Warning::ContactForceWithoutClamp),
+        _ => {}
+    }
+    if measurements.targets == Targets::Sockets(vec![]) {
+        warnings.push(Warning::NoDistance { file: measurements.file.clone() });
+    }
+    warnings.extend(validation.as_ref().and_then(|validation| not_independent(measurements, validation)));
+    warnings
+}
+
+fn in_radians(recording: &Recording, robot: &Robot) -> Option<Warning> {
+    let turns: Vec<bool> = robot.joints.iter().map(|joint| joint.motion == Motion::Revolute).collect();
+    let angles = recording.joint_values.iter().zip(turns.iter().cycle()).filter(|(_, turns)| **turns);
+    let largest = angles.map(|(q, _)| q.abs() / DEG).fold(0.0, f64::max);
+    let is_small = largest > 0.0 && largest < LARGEST_IN_RADIANS && recording.len() >= ROWS_TO_JUDGE;
+    is_small.then(|| Warning::AnglesInRadians { file: recording.file.clone(), largest })
+}
+
+/// The values of one joint.
+fn values(recording: &Recording, joint: usize) -> impl Iterator<Item = f64> {
+    (0..recording.len()).map(move |row| recording.joints(row)[joint])
+}
+
+fn outside(recording: &Recording, robot: &Robot, joint: usize) -> Option<Warning> {
+    let limits @ [least, most] = robot.joints[joint].limits?;
+    let is_beyond = |q: f64| q < least - ROUNDING || q > most + ROUNDING;
+    let mut beyond = values(recording, joint).enumerate().filter(|&(_, q)| is_beyond(q));
+    let (row, value) = beyond.next()?;
+    Some(Warning::OutsideLimits {
+        file: recording.file.clone(),
+        joint,
+        motion: robot.joints[joint].motion,
+        limits,
+        count: 1 + beyond.count(),
+        pose: recording.rows[row].pose.clone(),
+        line: recording.rows[row].line,
+        value,
+    })
+}
+
+fn still(recording: &Recording, robot: &Robot, joint: usize) -> Option<Warning> {
+    let least = values(recording, joint).fold(f64::INFINITY, f64::min);
+    let most = values(recording, joint).fold(f64::NEG_INFINITY, f64::max);
+    let (motion, range) = (robot.joints[joint].motion, most - least);
+    let enough = match motion {
+        Motion::Revolute => LEAST_TURN,
+        Motion::Prismatic => LEAST_TRAVEL,
+    };
+    (range < enough).then(|| Warning::StillJoint { file: recording.file.clone(), joint, motion, range })
+}
+
+fn not_independent(measurements: &Recording, validation: &Recording) -> Option<Warning> {
+    let rounded = |q: &[f64]| -> Vec<i64> { q.iter().map(|q| (q / ROUNDING).round() as i64).collect() };
+    let known: HashSet<Vec<i64>> =
+        (0..measurements.len()).map(|row| rounded(measurements.joints(row))).collect();
+    let mut same =
+        (0..validation.len()).filter(|&row| known.contains(&rounded(validation.joints(row)))).peekable();
+    let pose = validation.rows[*same.peek()?].pose.clone();
+    Some(Warning::NotIndependent { count: same.count(), of: validation.len(), pose })
+}
+
+/// A joint's value for a message.
+fn shown(value: f64, motion: Motion) -> String {
+    let (unit, symbol) = match motion {
+        Motion::Revolute => (DEG, "°"),
+        Motion::Prismatic => (MM, " mm"),
+    };
+    format!("{}{symbol}", (value / unit * 1e3).round() / 1e3)
+}
+
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Warning::DecimalCommas { file, dialect } => write!(f, "{file}: {dialect}"),
+            Warning::UnusedColumn { file, column, nearest } => {
+                write!(f, "{file}: the column {} is not read", quoted(column))?;
+                match nearest {
+                    Some(nearest) => write!(f, "; did you mean {nearest}?"),
+                    None => Ok(()),
+                }
+            }
+            Warning::AnglesInRadians { file, largest } => write!(
+                f,
+                "{file}: no angle is larger than {}: the angles look like radians, and are read as degrees",
+                significant(*largest, 3)
+            ),
+            Warning::OutsideLimits {
+                file,
+                joint,
+                motion,
+                limits: [least, most],
+                count,
+                pose,
+                line,
+                value,
+            } => {
+                let [value, least, most] = [value, least, most].map(|q| shown(*q, *motion));
+                let rows = if *count == 1 { "row" } else { "rows" };
+                write!(
+                    f,
+                    "{file}: joint {} is beyond its limits {least} to {most} in {count} {rows}, \
+                     first in pose {pose} (line {line}, {value}): is it the same robot?",
+                    joint + 1
+                )
+            }
+            Warning::StillJoint { file, joint, motion, range } => {
+                let (number, range) = (joint + 1, shown(*range, *motion));
+                let suffering = match motion {
+                    Motion::Revolute => format!("theta{number} and c{number}"),
+                    Motion::Prismatic => format!("d{number}"),
+                };
+                write!(
+                    f,
+                    "{file}: joint {number} moves by {range} in all: {suffering} can hardly be told from their \
+                     neighbours; add poses in which it moves"
+                )
+            }
+            Warning::NotIndependent { count, of, pose } => write!(
+                f,
+                "{count} of {of} validation poses are measurement poses too (pose {pose} first): \
+                 the validation is not independent"
+            ),
+            Warning::UnusedClamp { id } => write!(f, "no row was measured in clamp {id}"),
+            Warning::NoDistance { file } => write!(
+                f,
+                "{file}: no placement has a socket 0 and a socket 1, and so distance_mm is not used: \
+                 nothing fixes the scale of the robot"
+            ),
+            Warning::NoContactForce => write!(
+                f,
+                "there is a rod and there are clamps, but no contact_force_n: the rod bends under gravity only"
+            ),
+            Warning::ContactForceWithoutRod => {
+                write!(f, "there is a contact_force_n, but no rod that it could bend")
+            }
+            Warning::ContactForceWithoutClamp => {
+                write!(f, "there is a contact_force_n, but no clamp: its components are read as along {{W}}")
+            }
+            Warning::RefitWithSockets => write!(
+                f,
+                "validation_refit = \"base-tool\" has no effect with sockets: only their points are fitted again"
+            ),
+            Warning::LinksWithoutUrdf => {
+                write!(f, "base_link and tip_link are for a URDF: they have no effect with this robot's file")
+            }
+        }
+    }
+}

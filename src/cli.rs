@@ -1,11 +1,15 @@
 //! Arguments, and which command runs; one file per subcommand.
 
+mod calibrate;
+mod compare;
 mod completions;
 mod compliance;
 mod demo;
 mod embedded;
 pub mod output;
+mod progress;
 mod rig;
+mod simulate;
 
 use std::path::PathBuf;
 
@@ -76,6 +80,12 @@ enum Command {
     /// How much a rod really bends, from readings of its tip under known loads.
     #[command(subcommand)]
     Rig(rig::Rig),
+    /// How accurate a robot is once its rod's deflection is compensated: kinematic calibration.
+    Calibrate(calibrate::Calibrate),
+    /// Calibrate in every mode of compensation, and tell differences from chance.
+    Compare(compare::Compare),
+    /// Make the files of a campaign of a robot and a rod that are known exactly.
+    Simulate(simulate::Simulate),
     /// Print a completion script for your shell.
     Completions(completions::Completions),
 }
@@ -109,6 +119,9 @@ pub fn run(arguments: &Arguments) -> Result<Outcome> {
         None | Some(Command::Demo) => demo::run(),
         Some(Command::Compliance(command)) => command.run(),
         Some(Command::Rig(command)) => command.run(),
+        Some(Command::Calibrate(command)) => command.run(),
+        Some(Command::Compare(command)) => command.run(),
+        Some(Command::Simulate(command)) => command.run(),
         Some(Command::Completions(command)) => Ok(command.run()),
     }
 }

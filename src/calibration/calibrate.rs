@@ -20,8 +20,8 @@ use crate::robot::{Kinematics, Parameter, Setup, minimal_parameters};
 const ASSUMED_NOISE: f64 = 1e-4;
 /// Change of a deflection from one pass to the next below which the compensation stands still, m.
 const STILL: f64 = 1e-9;
-/// Relative change of noise and weights below which they stand still.
-const STILL_RELATIVE: f64 = 1e-6;
+/// Relative change of noise and weights below which they stand still: far below their own uncertainty.
+const STILL_RELATIVE: f64 = 1e-3;
 /// Most passes of the compensation loop.
 const MOST_PASSES: usize = 60;
 

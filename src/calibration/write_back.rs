@@ -16,7 +16,12 @@ pub fn write_back(campaign: &Campaign, calibration: &Calibration) -> Result<(Str
     let robot = setup.calibrated();
     let tool = setup.tool / MM;
     let mut comments = vec![
-        format!("{}, calibrated by rodcal from {}, mode {}.", robot.name, campaign.file, calibration.mode.name()),
+        format!(
+            "{}, calibrated by rodcal from {}, mode {}.",
+            robot.name,
+            campaign.file,
+            calibration.mode.name()
+        ),
         format!("Tip in {{T}}: xyz_mm = [{:.4}, {:.4}, {:.4}]", tool.x, tool.y, tool.z),
     ];
     if matches!(campaign.measurements.targets, Targets::Points(_)) {
@@ -34,13 +39,7 @@ pub fn write_back(campaign: &Campaign, calibration: &Calibration) -> Result<(Str
         return Ok(("calibrated.toml".into(), robot.to_toml(&comments)?));
     }
     let (base, tip) = (campaign.base_link.as_deref(), campaign.tip_link.as_deref());
-    let written = robot.to_urdf(
-        &campaign.robot_file,
-        &campaign.robot_text,
-        base,
-        tip,
-        Some(setup.tool),
-        &comments,
-    )?;
+    let written =
+        robot.to_urdf(&campaign.robot_file, &campaign.robot_text, base, tip, Some(setup.tool), &comments)?;
     Ok(("calibrated.urdf".into(), written.text))
 }

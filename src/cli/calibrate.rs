@@ -75,7 +75,13 @@ impl Calibrate {
         let cross_validation = match self.folds {
             Some(folds) => {
                 let compensation = Compensation::new(&campaign, mode)?;
-                Some(calibration::cross_validate(&campaign, &calibrated, &compensation, folds.into(), &options)?)
+                Some(calibration::cross_validate(
+                    &campaign,
+                    &calibrated,
+                    &compensation,
+                    folds.into(),
+                    &options,
+                )?)
             }
             None => None,
         };
@@ -91,14 +97,21 @@ impl Calibrate {
 
 /// Where it all comes from.
 pub fn provenance(campaign: &Campaign) -> Vec<(String, String)> {
-    let mut list = vec![("campaign".to_owned(), campaign.file.clone()), ("robot".to_owned(), campaign.robot_file.clone())];
+    let mut list = vec![
+        ("campaign".to_owned(), campaign.file.clone()),
+        ("robot".to_owned(), campaign.robot_file.clone()),
+    ];
     if let Some(rod) = &campaign.rod {
         list.push(("rod".into(), rod.name.clone()));
-        list.extend(rod.source.iter().map(|source| ("source of the rod's numbers".to_owned(), source.clone())));
+        list.extend(
+            rod.source.iter().map(|source| ("source of the rod's numbers".to_owned(), source.clone())),
+        );
     }
     list.extend(campaign.readings.iter().map(|readings| ("rig readings".to_owned(), readings.file.clone())));
     list.push(("measurements".into(), campaign.measurements.file.clone()));
-    list.extend(campaign.validation.iter().map(|recording| ("validation".to_owned(), recording.file.clone())));
+    list.extend(
+        campaign.validation.iter().map(|recording| ("validation".to_owned(), recording.file.clone())),
+    );
     list.push(("program".into(), concat!("rodcal ", env!("CARGO_PKG_VERSION")).into()));
     list
 }

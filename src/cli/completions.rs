@@ -28,6 +28,7 @@ impl Completions {
             report: None,
             text: Some(script),
             default_directory: None,
+            files: Vec::new(),
             status: 0,
         }
     }

@@ -65,6 +65,7 @@ pub fn run() -> Result<Outcome> {
         report: Some(report),
         text: Some(words),
         default_directory: Some(PathBuf::from("reports/demo")),
+        files: Vec::new(),
         status: 0,
     })
 }

@@ -20,6 +20,8 @@ pub struct Outcome {
     pub text: Option<String>,
     /// Where the report goes without `--out`.
     pub default_directory: Option<PathBuf>,
+    /// Names and contents of more files for the report's directory.
+    pub files: Vec<(String, Vec<u8>)>,
     /// Exit status.
     pub status: u8,
 }
@@ -27,7 +29,14 @@ pub struct Outcome {
 impl Outcome {
     /// A result with its report, exit status 0.
     pub fn new(json: Value, report: Report) -> Self {
-        Outcome { json, report: Some(report), text: None, default_directory: None, status: 0 }
+        Outcome {
+            json,
+            report: Some(report),
+            text: None,
+            default_directory: None,
+            files: Vec::new(),
+            status: 0,
+        }
     }
 }
 
@@ -36,7 +45,7 @@ impl Outcome {
 /// # Errors
 /// [`Error::File`] where a file cannot be written.
 pub fn deliver(arguments: &Arguments, outcome: Outcome) -> Result<ExitCode> {
-    let Outcome { mut json, mut report, text, default_directory, status } = outcome;
+    let Outcome { mut json, mut report, text, default_directory, files: more, status } = outcome;
     let directory = arguments.out.clone().or(default_directory);
     if let Some(report) = &mut report {
         if arguments.png && directory.is_none() {
@@ -56,6 +65,7 @@ pub fn deliver(arguments: &Arguments, outcome: Outcome) -> Result<ExitCode> {
         // everything is rendered before anything is written
         let mut files = report.files(arguments.png)?;
         json["report"] = directory.join("index.html").display().to_string().into();
+        files.extend(more);
         files.push(("result.json".into(), pretty(&json).into_bytes()));
         files::write_together(directory, &files)?;
     }

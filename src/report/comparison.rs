@@ -108,7 +108,8 @@ pub fn verdict(campaign: &Campaign, comparison: &Comparison) -> String {
 }
 
 fn better_than(d: &Difference) -> String {
-    let (better, worse, sign) = if d.mean < 0.0 { (d.mode, d.against, -1.0) } else { (d.against, d.mode, 1.0) };
+    let (better, worse, sign) =
+        if d.mean < 0.0 { (d.mode, d.against, -1.0) } else { (d.against, d.mode, 1.0) };
     let (low, high) = (sign * d.interval.0, sign * d.interval.1);
     format!(
         "{} is better than {} by {} µm (95 % interval {} to {} µm)",
@@ -144,7 +145,8 @@ pub fn sections(campaign: &Campaign, comparison: &Comparison) -> Vec<Section> {
 }
 
 fn modes_table(comparison: &Comparison) -> Table {
-    let mut columns = vec![Column::text("mode"), Column::text("rod's deflection"), Column::number("residual rms", "µm")];
+    let mut columns =
+        vec![Column::text("mode"), Column::text("rod's deflection"), Column::number("residual rms", "µm")];
     columns.extend(["mean", "95 % from", "to", "max", "median", "SD"].map(|name| Column::number(name, "µm")));
     let mut table = Table::new("modes", "Errors of each mode.", columns);
     for (index, calibrated) in comparison.calibrations.iter().enumerate() {
@@ -167,7 +169,11 @@ fn differences_table(comparison: &Comparison) -> Table {
     let mut columns = vec![Column::text("mode"), Column::text("less")];
     columns.extend(["difference", "95 % from", "to"].map(|name| Column::number(name, "µm")));
     columns.push(Column::text("more than chance"));
-    let mut table = Table::new("differences", "Differences of the mean errors; negative where the first mode is better.", columns);
+    let mut table = Table::new(
+        "differences",
+        "Differences of the mean errors; negative where the first mode is better.",
+        columns,
+    );
     for d in &comparison.differences {
         table.row([
             d.mode.name().to_owned(),

@@ -5,7 +5,8 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use super::{Body, Hayati, Joint, Motion, Robot, urdf};
-use crate::error::{Error, Result};
+use crate::error::Result;
+use crate::spatial::Pose;
 use crate::toml_text::{Number, Required, TomlText};
 use crate::units::{DEG, MM, STANDARD_GRAVITY, URAD_PER_NM};
 
@@ -15,11 +16,12 @@ pub(super) const DOWN: Vector3<f64> = Vector3::new(0.0, 0.0, -STANDARD_GRAVITY);
 impl Robot {
     /// Reads and checks the text of a robot file; `file` names it in errors (and the robot, where it has no name).
     ///
-    /// A text that begins with `<` is a URDF, of which the chain from `base_link` to `tip_link` is read (the links
-    /// of these very names unless given). Any other text is a table in TOML, which needs no links.
+    /// A text that begins with `<` is a URDF, of which the chain from `base_link` to `tip_link` is read; where none are
+    /// given, from the link named `base_link` to the one named `tip_link`. Any other text is a table in TOML, which
+    /// needs no links.
     ///
     /// # Errors
-    /// [`Error::Syntax`] or [`Error::Input`] with line and column.
+    /// [`crate::Error::Syntax`] or [`crate::Error::Input`] with line and column.
     pub fn from_text(
         file: &str,
         text: &str,
@@ -115,9 +117,9 @@ fn read_table(file: &str, text: &str) -> Result<Robot> {
         name: raw.name.unwrap_or_else(|| file_stem(file)),
         source: raw.source,
         gravity,
-        root: crate::spatial::Pose::IDENTITY,
+        root: Pose::IDENTITY,
         joints: joints.map(|(index, joint)| table.joint(index, joint)).collect::<Result<_>>()?,
-        flange: crate::spatial::Pose::IDENTITY,
+        flange: Pose::IDENTITY,
     })
 }
 
@@ -203,23 +205,17 @@ impl Table<'_> {
             Motion::Prismatic => ("joint.limits_mm", &raw.limits_mm, MM),
         };
         let Some(list) = list else { return Ok(None) };
-        let wrong = || self.0.is(key, list, "two numbers [lower, upper], the lower one first");
-        let numbers = self.numbers(key, list)?;
-        match numbers.as_slice() {
+        match self.numbers(key, list)?.as_slice() {
             &[lower, upper] if lower < upper => Ok(Some([lower * si, upper * si])),
-            _ => Err(wrong()),
+            _ => Err(self.0.is(key, list, "two numbers [lower, upper], the lower one first")),
         }
     }
 
     fn vector(&self, key: &str, list: &Spanned<Vec<Number>>, meaning: &str) -> Result<Vector3<f64>> {
         match self.numbers(key, list)?.as_slice() {
             &[x, y, z] => Ok(Vector3::new(x, y, z)),
-            _ => Err(self.three(key, list, meaning)),
+            _ => Err(self.0.is(key, list, &format!("three numbers [x, y, z] {meaning}"))),
         }
-    }
-
-    fn three(&self, key: &str, list: &Spanned<Vec<Number>>, meaning: &str) -> Error {
-        self.0.is(key, list, &format!("three numbers [x, y, z] {meaning}"))
     }
 
     fn numbers(&self, key: &str, list: &Spanned<Vec<Number>>) -> Result<Vec<f64>> {

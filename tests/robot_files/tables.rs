@@ -87,3 +87,12 @@ fn the_builtin_robot_is_the_paper_s_table() {
     assert_eq!((robot.name.as_str(), robot.joints.len()), ("TX90", 6));
     assert!(robot.has_masses() && Robot::builtin("tx200").is_none());
 }
+
+#[test]
+fn the_example_of_the_documentation_is_read() {
+    let text = include_str!("../../docs/robot-file.md");
+    let example =
+        text.split("```toml\n").nth(1).and_then(|rest| rest.split("```").next()).expect("an example");
+    let robot = Robot::from_text("example.toml", example, None, None).expect(example);
+    assert_eq!((robot.joints[0].name.as_str(), robot.has_masses()), ("shoulder", true));
+}

@@ -22,7 +22,7 @@ fn ros_model() -> String {
     ])
 }
 
-/// Joint values of the table for those of the ROS model.
+/// Joint values (or torques) of the table for those of the ROS model, and back.
 fn of_table(q: &[f64]) -> Vec<f64> {
     vec![q[0], -q[1], -q[2], q[3], -q[4], q[5]]
 }
@@ -48,37 +48,52 @@ fn the_table_has_the_kinematics_of_the_ros_model() {
     }
 }
 
-/// The bodies' centres are those of the ROS model, m in its link frames (which stand upright at zero).
+/// Masses (kg) and centres (m) of the ROS model's links, in its link frames; scaled as `robots/tx90.toml` says.
+const BODIES: [(f64, [f64; 3]); 6] = [
+    (16.9, [0.019, 0.025, -0.065]),
+    (13.0 * 2.3, [0.0, 0.221, 0.173]),
+    (7.5 * 2.5, [0.0, 0.015, 0.004]),
+    (4.5 * 2.7, [-0.003, 0.0, 0.296]),
+    (0.57 * 2.7, [0.0, 0.0, 0.023]),
+    (0.03 * 2.7, [0.0, 0.0, -0.006]),
+];
+
+/// At zero the link frames of the ROS model stand upright, at these points.
 #[test]
 fn the_masses_hang_where_the_ros_model_has_them() {
-    let origins = [
-        [0.0, 0.0, 0.478],
-        [0.05, 0.0, 0.478],
-        [0.05, 0.05, 0.903],
-        [0.05, 0.05, 0.903],
-        [0.05, 0.05, 1.328],
-        [0.05, 0.05, 1.328],
-    ];
-    let centres = [
-        [0.019, 0.025, -0.065],
-        [0.0, 0.221, 0.173],
-        [0.0, 0.015, 0.004],
-        [-0.003, 0.0, 0.296],
-        [0.0, 0.0, 0.023],
-        [0.0, 0.0, -0.006],
-    ];
-    let masses = [16.9, 13.0 * 2.3, 7.5 * 2.5, 4.5 * 2.7, 0.57 * 2.7, 0.03 * 2.7];
-    let table = tx90();
+    let (wrist, elbow) = ([0.05, 0.05, 1.328], [0.05, 0.05, 0.903]);
+    let origins = [[0.0, 0.0, 0.478], [0.05, 0.0, 0.478], elbow, elbow, wrist, wrist];
     let mut frame = Pose::from_xyz_rpy([0.0, 0.0, 0.328], [0.0; 3]);
-    for (j, joint) in table.joints.iter().enumerate() {
+    for (j, joint) in tx90().joints.iter().enumerate() {
         frame = joint.link.beyond(&frame);
         let body = joint.body.expect("a body");
         let centre = frame.point(&body.centre);
         for axis in 0..3 {
-            let expected = origins[j][axis] + centres[j][axis];
+            let expected = origins[j][axis] + BODIES[j].1[axis];
             assert!((centre[axis] - expected).abs() < 1e-12, "joint {}: {centre} along {axis}", j + 1);
         }
-        assert!((body.mass - masses[j]).abs() < 1e-12, "joint {}", j + 1);
+        assert!((body.mass - BODIES[j].0).abs() < 1e-12, "joint {}", j + 1);
+    }
+}
+
+/// The same masses, read from a URDF's inertials, make the same torques about axes that may point the other way.
+#[test]
+fn a_urdf_s_inertials_make_the_torques_of_the_table() {
+    let mut text = ros_model();
+    for (index, (mass, [x, y, z])) in BODIES.iter().enumerate() {
+        let inertial = format!("<inertial><origin xyz=\"{x} {y} {z}\"/><mass value=\"{mass}\"/></inertial>");
+        let link = format!("<link name=\"link_{index}\"");
+        text = text.replace(&format!("{link}/>"), &format!("{link}>{inertial}</link>"));
+    }
+    let (table, chain) = (tx90(), Robot::from_text("tx90.urdf", &text, None, None).expect("a good URDF"));
+    let mut dice = Dice(13);
+    for _ in 0..100 {
+        let q = dice.angles(6);
+        let of_chain = gravity_torques(&chain, &q);
+        let of_table = of_table(&gravity_torques(&table, &of_table(&q)));
+        for (a, b) in of_chain.iter().zip(&of_table) {
+            assert!((a - b).abs() < 1e-10, "{of_chain:?} {of_table:?}");
+        }
     }
 }
 

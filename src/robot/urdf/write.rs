@@ -66,7 +66,7 @@ impl Robot {
                 edits.extend(node.map(|node| edit(text, node, origin)));
             }
         }
-        let notes = self.notes(comments, has_tool);
+        let notes = self.notes(comments, tool.is_some() && !has_tool);
         if !notes.is_empty() {
             let start = document.root_element().range().start;
             edits.push((start..start, comment(&notes)));
@@ -126,7 +126,7 @@ impl Robot {
     }
 
     /// The comments, and what the file cannot say.
-    fn notes(&self, comments: &[String], has_tool: bool) -> Vec<String> {
+    fn notes(&self, comments: &[String], lacks_tool: bool) -> Vec<String> {
         let mut notes = comments.to_vec();
         let compliant = self.joints.iter().filter(|joint| joint.compliance != 0.0);
         let compliances: Vec<String> = compliant
@@ -138,7 +138,7 @@ impl Robot {
                 compliances.join(", ")
             ));
         }
-        if !has_tool && !notes.is_empty() {
+        if lacks_tool {
             notes.push(
                 "Not in this file, no fixed joint is there for it: the tool on the last link.".to_owned(),
             );

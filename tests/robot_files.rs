@@ -46,6 +46,7 @@ impl Dice {
 }
 
 /// A file that nobody here made, where the folder with them is present.
+#[allow(clippy::print_stderr)]
 fn real(name: &str) -> Option<String> {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/real").join(name);
     let text = std::fs::read_to_string(&path).ok();

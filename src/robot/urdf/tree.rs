@@ -113,11 +113,6 @@ impl<'t> Tree<'t> {
             };
             return Err(self.source.wrong(self.links[tip].offset, found, expected).with_hint(hint));
         }
-        if !path.iter().any(|&joint| matches!(self.joints[joint].kind, Kind::Moving(..))) {
-            let found = format!("no joint moves `{tip_name}` against `{base_name}`");
-            let expected = "a revolute, continuous or prismatic joint between base_link and tip_link";
-            return Err(self.source.wrong(self.links[tip].offset, found, expected));
-        }
         for &joint in &path {
             let Joint { name, kind, mimics, offset, .. } = &self.joints[joint];
             if let Kind::Free(kind) = kind {
@@ -130,6 +125,11 @@ impl<'t> Tree<'t> {
                 let expected = "joints that move by themselves between base_link and tip_link";
                 return Err(self.source.wrong(*offset, found, expected));
             }
+        }
+        if !path.iter().any(|&joint| matches!(self.joints[joint].kind, Kind::Moving(..))) {
+            let found = format!("no joint moves `{tip_name}` against `{base_name}`");
+            let expected = "a revolute, continuous or prismatic joint between base_link and tip_link";
+            return Err(self.source.wrong(self.links[tip].offset, found, expected));
         }
         Ok(path)
     }

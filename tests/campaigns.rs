@@ -155,9 +155,9 @@ fn odd_files_are_read_with_a_warning() {
         ]
     );
     assert_eq!(
-        tracker("1,10,20,30,0.4,0.1,0.2\n2,100,20,60,0,0.4,0.2\n".into()),
+        tracker("1,10,20,30,0.4,0.1,0.2\n2,100,25,60,0,0.4,0.2\n".into()),
         [
-            "measurements.csv: the positions spread over 0.250 mm, those of the nominal robot over 313.857 mm: are they in millimetres?"
+            "measurements.csv: the positions spread over 0.250 mm, those of the nominal robot over 318.407 mm: are they in millimetres?"
         ]
     );
     for (desk, file, piece, other, expected) in [

@@ -12,7 +12,7 @@ use super::{Campaign, Refit, Warning, warning};
 use crate::error::{Error, Result};
 use crate::files;
 use crate::rig::readings::Readings;
-use crate::robot::Robot;
+use crate::robot::{Robot, is_urdf};
 use crate::rod::Rod;
 use crate::spatial::Pose;
 use crate::toml_text::{Number, Required, TomlText};
@@ -255,8 +255,8 @@ impl Reader<'_> {
         };
         let (base_link, tip_link) = (raw.base_link.as_deref(), raw.tip_link.as_deref());
         let robot = Robot::from_text(&named.file, &named.text, base_link, tip_link)?;
-        let is_urdf = named.text.trim_start().starts_with('<');
-        if !is_urdf && (base_link.is_some() || tip_link.is_some()) {
+        let is_table = !is_urdf(&named.text);
+        if is_table && (base_link.is_some() || tip_link.is_some()) {
             self.warnings.push(Warning::LinksWithoutUrdf);
         }
         Ok((robot, named))

@@ -3,6 +3,8 @@
 use std::collections::HashSet;
 use std::fmt;
 
+use nalgebra::Vector3;
+
 use super::recording::{Clamp, Role};
 use super::{Campaign, Recording, Targets};
 use crate::delimited::{Dialect, Table, quoted};
@@ -66,6 +68,15 @@ pub enum Warning {
         /// Between its smallest and its largest value, rad or m.
         range: f64,
     },
+    /// The positions spread far less or far more than the nominal robot's.
+    OtherSize {
+        /// The file.
+        file: String,
+        /// Root mean square distance of the positions from their mean, m.
+        measured: f64,
+        /// The same of the nominal robot's tip, m.
+        nominal: f64,
+    },
     /// Poses that the robot is judged by are also those that it is calibrated with.
     NotIndependent {
         /// How many.
@@ -104,6 +115,11 @@ const ROWS_TO_JUDGE: usize = 10;
 /// A joint that moves less than this hardly moves.
 const LEAST_TURN: f64 = 1.0 * DEG;
 const LEAST_TRAVEL: f64 = 1.0 * MM;
+/// No robot is so wrong that its positions spread this many times less or more than they should; metres taken for
+/// millimetres do.
+const IMPOSSIBLE_RATIO: f64 = 50.0;
+/// But the positions of a robot that hardly moves may be nothing but errors, m.
+const LEAST_SPREAD: f64 = 50.0 * MM;
 /// Joint values and limits are rounded in their files, rad or m.
 const ROUNDING: f64 = 1e-5;
 
@@ -147,6 +163,9 @@ pub(super) fn about(campaign: &Campaign, clamps: &[Clamp]) -> Vec<Warning> {
     if measurements.targets == Targets::Sockets(vec![]) {
         warnings.push(Warning::NoDistance { file: measurements.file.clone() });
     }
+    // in clamps the ball hardly moves, whatever the robot does
+    let in_world = if clamps.is_empty() { Some(measurements) } else { None };
+    warnings.extend(in_world.into_iter().chain(validation).filter_map(|recording| size(recording, campaign)));
     warnings.extend(validation.as_ref().and_then(|validation| not_independent(measurements, validation)));
     warnings
 }
@@ -190,6 +209,23 @@ fn still(recording: &Recording, robot: &Robot, joint: usize) -> Option<Warning> 
         Motion::Prismatic => LEAST_TRAVEL,
     };
     (range < enough).then(|| Warning::StillJoint { file: recording.file.clone(), joint, motion, range })
+}
+
+fn size(recording: &Recording, campaign: &Campaign) -> Option<Warning> {
+    let Targets::Points(points) = &recording.targets else { return None };
+    let poses = (0..recording.len()).map(|row| campaign.robot.flange_at(recording.joints(row)));
+    let nominal: Vec<Vector3<f64>> = poses.map(|flange| flange.point(&campaign.tool)).collect();
+    let (measured, nominal) = (spread(points), spread(&nominal));
+    let is_impossible = |small: f64, large: f64| large > LEAST_SPREAD && large > IMPOSSIBLE_RATIO * small;
+    let is_odd = is_impossible(measured, nominal) || is_impossible(nominal, measured);
+    is_odd.then(|| Warning::OtherSize { file: recording.file.clone(), measured, nominal })
+}
+
+/// Root mean square distance from the mean.
+fn spread(points: &[Vector3<f64>]) -> f64 {
+    let count = points.len() as f64;
+    let mean = points.iter().sum::<Vector3<f64>>() / count;
+    (points.iter().map(|point| (point - mean).norm_squared()).sum::<f64>() / count).sqrt()
 }
 
 fn not_independent(measurements: &Recording, validation: &Recording) -> Option<Warning> {
@@ -258,6 +294,13 @@ impl fmt::Display for Warning {
                      neighbours; add poses in which it moves"
                 )
             }
+            Warning::OtherSize { file, measured, nominal } => write!(
+                f,
+                "{file}: the positions spread over {:.3} mm, those of the nominal robot over {:.3} mm: \
+                 are they in millimetres?",
+                measured / MM,
+                nominal / MM
+            ),
             Warning::NotIndependent { count, of, pose } => write!(
                 f,
                 "{count} of {of} validation poses are measurement poses too (pose {pose} first): \

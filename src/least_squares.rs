@@ -12,8 +12,10 @@
 //! still do to it (see [`TerminationReason`]); a direction the data say nothing about is reported, never regularised.
 
 mod covariance;
+mod gauss_newton;
 mod linear;
 mod problem;
+mod reduced;
 mod robust;
 mod stacked;
 mod tangent;
@@ -26,12 +28,12 @@ use crate::error::{Error, Result};
 
 pub use covariance::{Covariance, Standing};
 pub use linear::linear;
-pub use problem::{Problem, central_differences};
+pub use problem::{Problem, assembled, central_differences};
 pub use robust::{Robust, RobustScale};
 pub use termination::TerminationReason;
 
 use stacked::Stacked;
-use trust_region::{Minimum, minimise, tangent_at};
+use trust_region::{Minimum, minimise, tangent_plane};
 
 /// How to fit. The defaults suit a well-posed problem with an exact Jacobian.
 #[derive(Debug, Clone)]
@@ -130,7 +132,8 @@ pub struct Fit {
 /// A search without success is no error; look at [`Fit::reason`].
 ///
 /// # Errors
-/// [`Error::Argument`] for a start, prior, bound or option that makes no sense;
+/// [`Error::Argument`] for a start, prior, bound or option that makes no sense, or a problem whose residuals or
+/// Jacobian have another shape than it says;
 /// [`Error::Numerical`] where the singular value decomposition fails.
 pub fn fit(problem: &dyn Problem, start: &DVector<f64>, options: &Options) -> Result<Fit> {
     check(problem, start, options)?;
@@ -138,17 +141,22 @@ pub fn fit(problem: &dyn Problem, start: &DVector<f64>, options: &Options) -> Re
     let unweighted = Stacked::new(problem, DVector::from_element(m, 1.0), options);
     let minimum = minimise(&unweighted, start, options)?;
     if options.robust == Robust::None || !minimum.reason.is_converged() {
-        let dof = (m + options.priors.len()).saturating_sub(minimum.tangent.rank);
+        let tangent = tangent_plane(&minimum.reduced, &minimum.held, options)?;
+        let dof = (m + options.priors.len()).saturating_sub(tangent.rank);
         let residual_sd = (dof > 0).then(|| (minimum.residuals.norm_squared() / dof as f64).sqrt());
         let sigma = match options.noise {
             Noise::Known(sigma) => Some(sigma),
             Noise::Estimated => residual_sd,
         };
-        let covariance = Covariance::new(&minimum.tangent, &minimum.held, sigma);
+        let covariance = Covariance::new(&tangent, &minimum.held, sigma);
         return Ok(Fit::new(problem, minimum, unweighted.weights(), covariance, residual_sd));
     }
     let (minimum, weights, scale) = reweighted(problem, minimum, options)?;
-    let tangent = tangent_at(&unweighted, &minimum.parameters, &minimum.held, options)?;
+    // J without weights is finite, for J with weights was
+    let stacked = unweighted.residuals(&minimum.parameters);
+    let reduced = unweighted.linearise(&minimum.parameters, &stacked, &mut unweighted.store())?;
+    let reduced = reduced.unwrap_or(minimum.reduced.clone());
+    let tangent = tangent_plane(&reduced, &minimum.held, options)?;
     let residuals = problem.residuals(&minimum.parameters);
     let residual_sd = scale.and_then(|tau| options.robust.residual_sd(&residuals, tau, tangent.rank));
     let covariance = Covariance::new(&tangent, &minimum.held, residual_sd);
@@ -280,10 +288,8 @@ fn check(problem: &dyn Problem, start: &DVector<f64>, options: &Options) -> Resu
     if let RobustScale::Given(tau) = scale {
         require(positive(tau), "robust", &tau, "a scale > 0".into())?;
     }
-    let (m, r, j) = (problem.residual_count(), problem.residuals(start), problem.jacobian(start));
+    let (m, r) = (problem.residual_count(), problem.residuals(start));
     require(r.len() == m, "problem", &format!("{} residuals", r.len()), format!("{m}, as it says"))?;
-    let shape = format!("a Jacobian of {} x {}", j.nrows(), j.ncols());
-    require(j.shape() == (m, n), "problem", &shape, format!("{m} x {n}, as it says"))?;
     let radius = options.first_radius;
     require(radius > 0.0, "first_radius", &radius, "a number > 0".into())?;
     require(options.max_iterations > 0, "max_iterations", &0, "at least 1".into())

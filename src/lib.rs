@@ -10,6 +10,7 @@ pub mod files;
 pub mod least_squares;
 pub mod linalg;
 pub mod material;
+pub mod parallel;
 pub mod report;
 pub mod rig;
 pub mod robot;

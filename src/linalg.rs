@@ -1,10 +1,15 @@
-//! Dense decompositions for least squares: QR, thin SVD, rank and condition number.
+//! Dense decompositions for least squares: QR (of rows that arrive in pieces, too), thin SVD, rank and condition
+//! number. All of them run on the calling thread, so that the same input gives the same bytes.
 //!
 //! The only file that names faer. Matrices come in and go out as nalgebra's; both libraries store columns one
 //! after the other, so faer reads them in place.
 
-use faer::MatRef;
+use std::ops::Range;
+
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::qr::no_pivoting::factor;
 use faer::linalg::solvers::SolveLstsqCore;
+use faer::{Mat, MatMut, MatRef, Par};
 use nalgebra::{DMatrix, DVector};
 
 use crate::error::{Error, Result};
@@ -129,22 +134,116 @@ pub fn triangular(a: &DMatrix<f64>, b: &DVector<f64>) -> Result<(DMatrix<f64>, D
     require_finite(WHAT, a)?;
     require_finite(WHAT, b)?;
     let (m, n) = a.shape();
+    let mut rows = RowReduction::new(n + 1, m);
     // Qᵀb is the last column of the triangle of [A b]: Q itself is never formed
-    let mut both = DMatrix::zeros(m.max(n + 1), n + 1);
-    both.view_mut((0, 0), (m, n)).copy_from(a);
-    both.view_mut((0, n), (m, 1)).copy_from(b);
-    let qr = view(&both).qr();
-    let r = qr.thin_R();
-    let triangle = DMatrix::from_fn(n, n, |i, j| if i <= j { r[(i, j)] } else { 0.0 });
-    Ok((triangle, DVector::from_fn(n, |i, _| r[(i, n)])))
+    rows.push(m, |range, column, entries| {
+        let source = if column == n { b.column(0) } else { a.column(column) };
+        entries.copy_from_slice(&source.as_slice()[range]);
+    });
+    let both = rows.triangle();
+    Ok((both.view((0, 0), (n, n)).into_owned(), both.view((0, n), (n, 1)).column(0).into_owned()))
+}
+
+/// Rows of a tall matrix A, reduced to the triangle R of A = Q·R while they arrive, in the memory of a few hundred.
+///
+/// When the store is full, its rows give way to their triangle, on which the next ones are stacked: [R; Aₖ] → R
+/// (Lawson & Hanson, *Solving Least Squares Problems*, 1974, ch. 27). A matrix that fits the store takes one QR.
+pub struct RowReduction {
+    /// Column after column; rows from `filled` on are free.
+    store: DMatrix<f64>,
+    filled: usize,
+    coefficients: Mat<f64>,
+    scratch: MemBuffer,
+}
+
+impl RowReduction {
+    /// Fewest rows to reduce at once: below, the triangle on top of them costs too much.
+    const ROWS: usize = 512;
+
+    /// For a matrix of `columns` columns and about `rows` rows (more are welcome).
+    pub fn new(columns: usize, rows: usize) -> Self {
+        let capacity = rows.min(columns + Self::ROWS.max(8 * columns)).max(columns + 1);
+        let block = block_size(columns);
+        let scratch =
+            factor::qr_in_place_scratch::<f64>(capacity, columns, block, Par::Seq, Default::default());
+        RowReduction {
+            store: DMatrix::zeros(capacity, columns),
+            filled: 0,
+            coefficients: Mat::zeros(block, columns),
+            scratch: MemBuffer::new(scratch),
+        }
+    }
+
+    /// Forgets all rows and keeps the memory.
+    pub fn clear(&mut self) {
+        self.filled = 0;
+    }
+
+    /// Adds `count` finite rows. `fill(range, column, entries)` writes the entries of one column in the rows
+    /// `range`, counted from the first of these.
+    pub fn push(&mut self, count: usize, mut fill: impl FnMut(Range<usize>, usize, &mut [f64])) {
+        let capacity = self.store.nrows();
+        let mut done = 0;
+        while done < count {
+            if self.filled == capacity {
+                self.reduce();
+            }
+            let taken = (count - done).min(capacity - self.filled);
+            for (column, entries) in self.store.as_mut_slice().chunks_exact_mut(capacity).enumerate() {
+                fill(done..done + taken, column, &mut entries[self.filled..self.filled + taken]);
+            }
+            done += taken;
+            self.filled += taken;
+        }
+    }
+
+    /// R of all rows so far, square, with zeros where there were fewer rows than columns.
+    pub fn triangle(&mut self) -> DMatrix<f64> {
+        self.reduce();
+        let n = self.store.ncols();
+        DMatrix::from_fn(n, n, |i, j| if i < self.filled { self.store[(i, j)] } else { 0.0 })
+    }
+
+    /// Replaces the rows by their triangle.
+    fn reduce(&mut self) {
+        let (capacity, n) = self.store.shape();
+        let size = self.filled.min(n);
+        if size == 0 {
+            return;
+        }
+        let rows = MatMut::from_column_major_slice_mut(self.store.as_mut_slice(), capacity, n);
+        factor::qr_in_place(
+            rows.subrows_mut(0, self.filled),
+            self.coefficients.as_mut().submatrix_mut(0, 0, block_size(size), size),
+            Par::Seq,
+            MemStack::new(&mut self.scratch),
+            Default::default(),
+        );
+        // below the diagonal stand the reflections
+        for j in 0..n {
+            for i in j + 1..size {
+                self.store[(i, j)] = 0.0;
+            }
+        }
+        self.filled = size;
+    }
+}
+
+/// Reflections applied at once: faer's recommendation for the triangle. That for the tall matrix, which goes by its
+/// area, is slower.
+fn block_size(columns: usize) -> usize {
+    factor::recommended_block_size::<f64>(columns, columns)
+}
+
+/// Euclidean norm of every column; 1 for a column of zeros, so that one can divide by it.
+pub fn column_norms(a: &DMatrix<f64>) -> DVector<f64> {
+    let norm_or_one = |norm: f64| if norm > 0.0 { norm } else { 1.0 };
+    DVector::from_iterator(a.ncols(), a.column_iter().map(|c| norm_or_one(c.norm())))
 }
 
 /// A with every column divided by its Euclidean norm, and the norms. A column of zeros stays, with norm 1.
 pub fn with_unit_columns(a: &DMatrix<f64>) -> (DMatrix<f64>, DVector<f64>) {
-    let norms = DVector::from_iterator(
-        a.ncols(),
-        a.column_iter().map(|c| if c.norm() > 0.0 { c.norm() } else { 1.0 }),
-    );
+    let norms = column_norms(a);
     (DMatrix::from_fn(a.nrows(), a.ncols(), |i, j| a[(i, j)] / norms[j]), norms)
 }
 
@@ -227,6 +326,23 @@ mod tests {
         let (r, c) = triangular(&a, &dvector![2.0]).unwrap();
         assert!((r.transpose() * &r - a.transpose() * &a).norm() < 1e-13);
         assert!((r.transpose() * c - a.transpose() * 2.0).norm() < 1e-13);
+    }
+
+    #[test]
+    fn rows_in_pieces_have_the_triangle_of_the_whole() {
+        let a = DMatrix::from_fn(1500, 3, |i, j| ((7 * i + 3 * j) % 11) as f64 + (i * j) as f64 / 100.0);
+        let mut rows = RowReduction::new(3, a.nrows());
+        assert!(rows.store.nrows() < 600);
+        for (first, count) in [(0, 1), (1, 1200), (1201, 299)] {
+            rows.push(count, |range, column, entries| {
+                entries.copy_from_slice(&a.column(column).as_slice()[first + range.start..first + range.end]);
+            });
+        }
+        let r = rows.triangle();
+        assert!((r.transpose() * &r - a.transpose() * &a).norm() < 1e-13 * (a.transpose() * &a).norm());
+        assert!(r.lower_triangle().norm() == r.diagonal().norm());
+        rows.clear();
+        assert_eq!(rows.triangle(), DMatrix::zeros(3, 3));
     }
 
     #[test]

@@ -1,13 +1,15 @@
-//! Distributions, quantiles and robust summaries: what a fit needs to be judged.
+//! Distributions, quantiles, robust summaries and resampling: what a fit needs to be judged.
 //!
 //! Tail probabilities are computed as tails, never as 1 − p, so that 1e-60 is 1e-60 and not 0.
 
+mod bartlett;
+mod bootstrap;
 mod estimate;
-mod parallel;
 mod random;
 
+pub use bartlett::bartlett;
+pub use bootstrap::percentile_interval;
 pub use estimate::Estimate;
-pub use parallel::in_parallel;
 pub use random::Random;
 
 use statrs::function::beta::beta_reg;
@@ -136,16 +138,15 @@ pub fn quantile(values: &[f64], p: f64) -> Option<f64> {
     }
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
+    Some(quantile_of_sorted(&sorted, p))
+}
+
+/// The same of values in ascending order, at least one, for p in [0, 1].
+fn quantile_of_sorted(sorted: &[f64], p: f64) -> f64 {
     let place = p * (sorted.len() - 1) as f64;
     let (below, above) = (sorted[place.floor() as usize], sorted[place.ceil() as usize]);
     // equal neighbours need no interpolation, and infinite ones would not survive it
-    Some(if below == above { below } else { below + place.fract() * (above - below) })
-}
-
-/// The interval that holds the middle `level` of the samples, by [`quantile`]; NaN for none.
-pub fn percentile_interval(samples: &mut [f64], level: f64) -> (f64, f64) {
-    let at = |p: f64| quantile(samples, p).unwrap_or(f64::NAN);
-    (at((1.0 - level) / 2.0), at((1.0 + level) / 2.0))
+    if below == above { below } else { below + place.fract() * (above - below) }
 }
 
 /// The middle value; `None` for no values or a NaN among them.

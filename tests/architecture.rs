@@ -16,6 +16,7 @@ const FLOORS: [&[&str]; 10] = [
         "toml_text",
         "linalg",
         "statistics",
+        "parallel",
         "least_squares",
         "spatial",
     ],
@@ -32,11 +33,15 @@ const FLOORS: [&[&str]; 10] = [
 ];
 
 /// What only one file may name.
-const DOORS: [(&str, &str); 4] = [
+const DOORS: [(&str, &str); 8] = [
     ("faer", "src/linalg.rs"),
     ("plotters", "src/report/plot.rs"),
     ("std::fs", "src/files.rs"),
     ("resvg", "src/report/png.rs"),
+    ("rayon", "src/parallel.rs"),
+    ("rand", "src/statistics/random.rs"),
+    ("rand_chacha", "src/statistics/random.rs"),
+    ("rand_distr", "src/statistics/random.rs"),
 ];
 
 /// Position of a room, counted through all floors: rooms on one floor are ordered too.

@@ -1,6 +1,6 @@
 //! The calibration itself: rough start, fit, compensation recomputed until it stands still (Eqs 7–14).
 
-use nalgebra::{DVector, Vector3};
+use nalgebra::Vector3;
 
 use super::campaign::{Campaign, Recording, Targets};
 use super::compensation::{Compensation, Mode};
@@ -12,8 +12,7 @@ use super::start::{first_guess, rough_start};
 use super::validation::{Validation, validate};
 use super::warning::Warning;
 use crate::error::{Error, Place, Result};
-use crate::least_squares::{self, Fit, Problem};
-use crate::linalg::triangular;
+use crate::least_squares::{self, Fit};
 use crate::robot::{Kinematics, Parameter, Setup, minimal_parameters};
 
 /// Noise of a coordinate that is assumed until the residuals tell, m.
@@ -369,11 +368,7 @@ impl<'a, 'c> Run<'a, 'c> {
         self.held.clear();
         let problem = self.problem();
         let p = problem.start();
-        let jacobian = problem.jacobian(&p);
-        let sockets = 3 * problem.socket_count();
-        let ordered = identify::others_first(&jacobian, sockets);
-        let (triangle, _) = triangular(&ordered, &DVector::zeros(ordered.nrows()))?;
-        let mut corner = identify::lower_corner(&triangle, self.free.len());
+        let mut corner = problem.information_root(&p);
         // what the user knows beforehand identifies too
         for &(parameter, _, sd) in &self.campaign.wishes.priors {
             if let Some(k) = self.free.iter().position(|&p| p == parameter) {

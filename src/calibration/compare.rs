@@ -11,7 +11,8 @@ use super::compensation::{Compensation, Mode, modes};
 use super::cross_validation::{CrossValidation, cross_validate};
 use super::validation::{Summary, validate_from};
 use crate::error::Result;
-use crate::statistics::{Random, in_parallel, mean, percentile_interval, standard_deviation};
+use crate::parallel::in_parallel;
+use crate::statistics::{Random, mean, percentile_interval, standard_deviation};
 
 /// How to compare.
 #[derive(Debug, Clone, Copy)]
@@ -190,7 +191,7 @@ fn interval(estimate: f64, mut samples: Vec<f64>) -> ((f64, f64), f64) {
     let shift = estimate - mean(&samples).unwrap_or(estimate);
     samples.iter_mut().for_each(|sample| *sample += shift);
     let sd = standard_deviation(&samples).unwrap_or(0.0);
-    (percentile_interval(&mut samples, 0.95), sd)
+    (percentile_interval(&mut samples, 0.95).unwrap_or((f64::NAN, f64::NAN)), sd)
 }
 
 /// P(|Z| > |z|) of a standard normal Z: χ² with one degree of freedom.

@@ -8,8 +8,8 @@ use super::compensation::Compensation;
 use super::problem::Pass;
 use super::validation::Summary;
 use crate::error::Result;
+use crate::parallel::in_parallel;
 use crate::robot::{Kinematics, Setup};
-use crate::statistics::in_parallel;
 
 /// Held-out errors of all poses.
 #[derive(Debug, Clone, PartialEq)]

@@ -86,16 +86,3 @@ pub(super) fn identified(held: &[Held], count: usize) -> Vec<bool> {
     let share = |k: usize| held.iter().map(|held| held.direction[k].powi(2)).sum::<f64>().sqrt();
     (0..count).map(|k| share(k) < SHARE).collect()
 }
-
-/// The upper triangle that is left of the first `count` columns once the others are projected out, from the
-/// triangle R of a QR decomposition with the columns in the order (others, first).
-pub(super) fn lower_corner(triangle: &DMatrix<f64>, count: usize) -> DMatrix<f64> {
-    let others = triangle.ncols() - count;
-    triangle.view((others, others), (count, count)).into_owned()
-}
-
-/// Columns of `a`, the last `others` of them first.
-pub(super) fn others_first(a: &DMatrix<f64>, others: usize) -> DMatrix<f64> {
-    let (n, first) = (a.ncols(), a.ncols() - others);
-    DMatrix::from_fn(a.nrows(), n, |i, k| a[(i, (k + first) % n.max(1))])
-}

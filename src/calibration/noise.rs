@@ -155,10 +155,5 @@ fn bartlett(variances: &[f64], dof: &[f64]) -> Result<Option<f64>> {
     if groups.len() < 2 {
         return Ok(None);
     }
-    let total: f64 = groups.iter().map(|g| g.1).sum();
-    let pooled = groups.iter().map(|g| g.0 * g.1).sum::<f64>() / total;
-    let k = groups.len() as f64;
-    let c = 1.0 + (groups.iter().map(|g| 1.0 / g.1).sum::<f64>() - 1.0 / total) / (3.0 * (k - 1.0));
-    let t = (total * pooled.ln() - groups.iter().map(|g| g.1 * g.0.ln()).sum::<f64>()) / c;
-    crate::statistics::chi_squared_survival(t, k - 1.0).map(Some)
+    crate::statistics::bartlett(&groups).map(Some)
 }

@@ -14,7 +14,7 @@ use nalgebra::DVector;
 
 use super::problem::Residuals;
 use crate::error::Result;
-use crate::linalg::{thin_svd, triangular, with_unit_columns};
+use crate::linalg::{thin_svd, with_unit_columns};
 use crate::robot::Parameter;
 use crate::units::{MM, URAD_PER_NM};
 
@@ -32,14 +32,10 @@ impl Observability {
     pub(super) fn new(problem: &Residuals, p: &DVector<f64>) -> Result<Self> {
         let poses = problem.recording.len();
         let unknown = problem.free.len();
-        let others = 3 * problem.socket_count();
         let weight = vec![1.0 / MM; poses];
         let pass = super::problem::Pass { weight, ..problem.pass.clone() };
         let plain = Residuals { setup: problem.setup.clone(), pass: &pass, held: &[], ..*problem };
-        let jacobian = crate::least_squares::Problem::jacobian(&plain, p);
-        let ordered = super::identify::others_first(&jacobian, others);
-        let (triangle, _) = triangular(&ordered, &DVector::zeros(ordered.nrows()))?;
-        let mut corner = super::identify::lower_corner(&triangle, unknown);
+        let mut corner = plain.information_root(p);
         let condition = thin_svd(&with_unit_columns(&corner).0)?.condition_number();
         for (k, parameter) in problem.free.iter().enumerate() {
             let unit = match parameter {

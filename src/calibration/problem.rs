@@ -13,7 +13,8 @@ use nalgebra::{DMatrix, DVector, Vector3};
 
 use super::campaign::{Recording, Targets};
 use super::identify::Held;
-use crate::least_squares::Problem;
+use crate::least_squares::{Problem, assembled};
+use crate::linalg::RowReduction;
 use crate::robot::{Kinematics, Parameter, Setup};
 
 /// Poses per block of the Jacobian.
@@ -122,6 +123,24 @@ impl Residuals<'_> {
         &self.pass.torque[row * n..][..n]
     }
 
+    /// The square root of the information about the free parameters: the triangle that is left of their columns of the
+    /// Jacobian once those of the sockets are projected out, without what is held. Blockwise, as the fit.
+    pub fn information_root(&self, p: &DVector<f64>) -> DMatrix<f64> {
+        let (count, sockets) = (self.free.len(), 3 * self.socket_count());
+        let columns = count + sockets;
+        let rows = 3 * self.recording.len() + self.distances().len();
+        let mut reduction = RowReduction::new(columns, rows);
+        let unheld = Residuals { setup: self.setup.clone(), held: &[], ..*self };
+        unheld.jacobian_blocks(p, &mut |_, block| {
+            reduction.push(block.nrows(), |range, column, entries| {
+                // sockets first
+                let source = block.column((column + count) % columns);
+                entries.copy_from_slice(&source.as_slice()[range]);
+            });
+        });
+        reduction.triangle().view((sockets, sockets), (count, count)).into_owned()
+    }
+
     /// Unit vector from one socket to another, and their distance, m.
     fn direction(&self, p: &DVector<f64>, between: [usize; 2]) -> (Vector3<f64>, f64) {
         let apart = self.socket(p, between[0]) - self.socket(p, between[1]);
@@ -202,17 +221,10 @@ impl Problem for Residuals<'_> {
     }
 
     fn jacobian(&self, p: &DVector<f64>) -> DMatrix<f64> {
-        let mut jacobian = DMatrix::zeros(self.residual_count(), self.parameter_count());
-        self.jacobian_blocks(p, &mut |first, block| {
-            jacobian.rows_mut(first, block.nrows()).copy_from(block);
-        });
-        jacobian
+        assembled(self, p)
     }
-}
 
-impl Residuals<'_> {
-    /// The Jacobian in blocks of consecutive rows.
-    pub fn jacobian_blocks(&self, p: &DVector<f64>, visit: &mut dyn FnMut(usize, &DMatrix<f64>)) {
+    fn jacobian_blocks(&self, p: &DVector<f64>, visit: &mut dyn FnMut(usize, &DMatrix<f64>)) {
         let setup = self.setup_at(p);
         let rows = self.recording.len();
         for first in (0..rows).step_by(BLOCK) {

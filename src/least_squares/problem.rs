@@ -16,11 +16,34 @@ pub trait Problem {
     /// Jᵢⱼ = ∂rᵢ/∂pⱼ, m × n; [`central_differences`] for those who have no formula.
     fn jacobian(&self, parameters: &DVector<f64>) -> DMatrix<f64>;
 
+    /// The same Jacobian in blocks of consecutive rows, from the first to the last: `visit` takes the index of a
+    /// block's first row and the block, as many rows as there are × n.
+    ///
+    /// A fit asks for nothing else and forgets each block: a problem too tall to be held whole overrides this (and
+    /// [`assembled`] is then its [`Problem::jacobian`]). The size of the blocks is free; the fit gathers small ones.
+    fn jacobian_blocks(&self, parameters: &DVector<f64>, visit: &mut dyn FnMut(usize, &DMatrix<f64>)) {
+        visit(0, &self.jacobian(parameters));
+    }
+
     /// Absolute rounding error of one residual where it is more than that of the parameters, for example ε times
     /// the measured values of a model that reproduces them exactly; residuals below it are noise of the arithmetic.
     fn residual_rounding(&self) -> f64 {
         0.0
     }
+}
+
+/// The whole Jacobian, m × n, from [`Problem::jacobian_blocks`]: rows that belong to no block are 0, and what of a
+/// block lies outside of the matrix is left out.
+pub fn assembled(problem: &(impl Problem + ?Sized), parameters: &DVector<f64>) -> DMatrix<f64> {
+    let mut j = DMatrix::zeros(problem.residual_count(), problem.parameter_count());
+    problem.jacobian_blocks(parameters, &mut |first, block| {
+        let rows = block.nrows().min(j.nrows().saturating_sub(first));
+        let columns = block.ncols().min(j.ncols());
+        if rows > 0 {
+            j.view_mut((first, 0), (rows, columns)).copy_from(&block.view((0, 0), (rows, columns)));
+        }
+    });
+    j
 }
 
 /// Jacobian of `residuals` by central differences, m × n:

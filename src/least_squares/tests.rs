@@ -5,6 +5,8 @@ use nalgebra::{DMatrix, DVector, dmatrix, dvector};
 
 use super::*;
 
+mod blocks;
+
 /// A problem from two closures.
 struct Closures<R, J> {
     n: usize,

@@ -5,13 +5,15 @@
 //! where it did not. The sum of squares tells parameters apart only to half of the digits, because it is flat at its
 //! minimum; so the last steps are judged by the gradient instead, which is not.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 
+use super::gauss_newton::GaussNewton;
+use super::reduced::Reduced;
 use super::stacked::Stacked;
-use super::tangent::Tangent;
+use super::tangent::{CLOSE_ENOUGH, Tangent};
 use super::{Options, TerminationReason};
 use crate::error::Result;
-use crate::linalg::with_unit_columns;
+use crate::linalg::RowReduction;
 
 /// Cosine below which the linearisation is trusted altogether and full steps are judged by the gradient:
 /// its square, what is left to gain, is still far above the rounding of the sum of squares.
@@ -40,8 +42,8 @@ pub(super) struct Minimum {
     pub parameters: DVector<f64>,
     /// Stacked residuals: weighted, then priors.
     pub residuals: DVector<f64>,
-    /// Tangent plane with columns scaled to norm 1.
-    pub tangent: Tangent,
+    /// The linearisation there.
+    pub reduced: Reduced,
     /// The bound each parameter rests on and is pushed against.
     pub held: Vec<Option<Side>>,
     /// Cosine between residuals and plane.
@@ -58,6 +60,7 @@ pub(super) fn minimise(system: &Stacked, start: &DVector<f64>, options: &Options
     let mut search = Search {
         system,
         options,
+        store: system.store(),
         scale: DVector::zeros(start.len()),
         first_norms: None,
         evaluations: 0,
@@ -70,7 +73,7 @@ pub(super) fn minimise(system: &Stacked, start: &DVector<f64>, options: &Options
         return Ok(search.nowhere(start, TerminationReason::NonFiniteJacobian));
     };
     let stood_still = search.verdict(&here, &view, TerminationReason::NoProgress).is_converged();
-    let mut radius = options.first_radius * view.bounded.scaled_length(&here.p);
+    let mut radius = options.first_radius * view.length(&view.region, &here.p);
     if radius.is_nan() || radius == 0.0 {
         radius = f64::INFINITY;
     }
@@ -78,10 +81,10 @@ pub(super) fn minimise(system: &Stacked, start: &DVector<f64>, options: &Options
         if search.iterations >= options.max_iterations {
             break search.verdict(&here, &view, TerminationReason::MaxIterations);
         }
-        if view.tangent.rank == 0 && here.square > 0.0 && !view.tangent.free.is_empty() {
+        if view.full.rank == 0 && here.square > 0.0 && !view.free.is_empty() {
             break TerminationReason::NoInfluence;
         }
-        if view.cosine <= NEAR || view.projection <= view.rounding {
+        if view.cosine <= NEAR || view.full.projection <= view.rounding {
             if let Some(better) = search.polish(&here, &view)? {
                 (here, view) = better;
                 continue;
@@ -91,7 +94,7 @@ pub(super) fn minimise(system: &Stacked, start: &DVector<f64>, options: &Options
                 break verdict;
             }
         }
-        let Some(next) = search.descend(&here, &view, &mut radius) else {
+        let Some(next) = search.descend(&here, &view, &mut radius)? else {
             break search.verdict(&here, &view, TerminationReason::NoProgress);
         };
         match search.linearise(&next)? {
@@ -102,7 +105,7 @@ pub(super) fn minimise(system: &Stacked, start: &DVector<f64>, options: &Options
     Ok(Minimum {
         parameters: here.p,
         residuals: here.r,
-        tangent: view.tangent,
+        reduced: view.reduced,
         held: view.held,
         cosine: view.cosine,
         stood_still,
@@ -123,24 +126,19 @@ fn shrink(ratio: f64) -> f64 {
     }
 }
 
-/// The tangent plane at `p`, columns scaled to norm 1, with the parameters held that are held.
-pub(super) fn tangent_at(
-    system: &Stacked,
-    p: &DVector<f64>,
-    held: &[Option<Side>],
-    options: &Options,
-) -> Result<Tangent> {
-    let j = system.jacobian(p);
-    Tangent::new(&j, &system.residuals(p), free(held), &column_norms(&j), options.rank_tolerance)
+/// The tangent plane of a linearisation, columns scaled to norm 1, with the parameters held that are held.
+pub(super) fn tangent_plane(reduced: &Reduced, held: &[Option<Side>], options: &Options) -> Result<Tangent> {
+    let free = free(held);
+    let norms = of_free(&reduced.column_norms(), &free);
+    Tangent::new(reduced, free, norms, options.rank_tolerance)
 }
 
 fn free(held: &[Option<Side>]) -> Vec<usize> {
     (0..held.len()).filter(|&j| held[j].is_none()).collect()
 }
 
-/// Norm of every column, 1 for a column of zeros.
-fn column_norms(j: &DMatrix<f64>) -> DVector<f64> {
-    with_unit_columns(j).1
+fn of_free(all: &DVector<f64>, free: &[usize]) -> DVector<f64> {
+    DVector::from_iterator(free.len(), free.iter().map(|&j| all[j]))
 }
 
 /// Parameters, their residuals and the sum of squares.
@@ -152,14 +150,17 @@ struct Point {
 
 /// The linearisation at a point.
 struct View {
-    /// With columns scaled to norm 1: judges rank and gradient, and makes full steps.
-    tangent: Tangent,
-    /// With columns scaled to their largest norm so far, slowly forgotten: makes steps within the trust region. A parameter that
-    /// loses its influence is thereby not set free to run away.
-    bounded: Tangent,
+    reduced: Reduced,
     held: Vec<Option<Side>>,
-    /// Length of the residual vector's projection on the tangent plane, and relative to the vector.
-    projection: f64,
+    /// Indices of the parameters that are not held.
+    free: Vec<usize>,
+    /// Norms of the columns, n: the scale of what judges rank and gradient, and makes full steps.
+    norms: DVector<f64>,
+    /// Largest norms of the columns so far, slowly forgotten, n: the scale of the trust region. A parameter that
+    /// loses its influence is thereby not set free to run away.
+    region: DVector<f64>,
+    full: GaussNewton,
+    /// The residual vector's projection on the tangent plane, relative to the vector.
     cosine: f64,
     /// What rounding alone can make of the residual vector.
     rounding: f64,
@@ -167,13 +168,40 @@ struct View {
     influence_lost: bool,
 }
 
+impl View {
+    /// ‖D·v‖ over the free parameters, for scales and a vector of all n.
+    fn length(&self, scale: &DVector<f64>, v: &DVector<f64>) -> f64 {
+        self.free.iter().map(|&j| (scale[j] * v[j]).powi(2)).sum::<f64>().sqrt()
+    }
+
+    /// A step of the free parameters as one of all n.
+    fn of_all(&self, step: &DVector<f64>) -> DVector<f64> {
+        let mut all = DVector::zeros(self.held.len());
+        for (&j, &s) in self.free.iter().zip(step.iter()) {
+            all[j] = s;
+        }
+        all
+    }
+
+    /// The tangent plane in the scale of the trust region, for steps that end within it.
+    fn bounded(&self) -> Result<Tangent> {
+        Tangent::new(&self.reduced, self.free.clone(), of_free(&self.region, &self.free), f64::EPSILON)
+    }
+
+    /// The Gauss–Newton step, n.
+    fn full_step(&self) -> DVector<f64> {
+        self.of_all(&self.full.step)
+    }
+}
+
 struct Search<'a> {
     system: &'a Stacked<'a>,
     options: &'a Options,
+    store: RowReduction,
     /// Largest norm each column of the Jacobian has had on the way, slowly forgotten: the D of the trust region.
     scale: DVector<f64>,
-    /// Norms of the columns at the start.
-    first_norms: Option<Vec<f64>>,
+    /// Norms of the columns at the start, 0 for a column of zeros.
+    first_norms: Option<DVector<f64>>,
     evaluations: usize,
     iterations: usize,
 }
@@ -190,28 +218,25 @@ impl Search<'_> {
     /// The tangent plane at a point, if the Jacobian is finite.
     fn linearise(&mut self, here: &Point) -> Result<Option<View>> {
         self.iterations += 1;
-        let j = self.system.jacobian(&here.p);
-        if j.iter().any(|x| !x.is_finite()) {
+        let Some(reduced) = self.system.linearise(&here.p, &here.r, &mut self.store)? else {
             return Ok(None);
-        }
-        let held = self.held(&here.p, &j.tr_mul(&here.r));
-        let norms = column_norms(&j);
+        };
+        let held = self.held(&here.p, &reduced.gradient());
+        let free = free(&held);
+        let norms = reduced.column_norms();
         self.scale = (&self.scale * FADING).sup(&norms);
-        let first = self.first_norms.get_or_insert_with(|| j.column_iter().map(|c| c.norm()).collect());
+        let influences = reduced.influences();
+        let first = self.first_norms.get_or_insert_with(|| influences.clone());
         // a column of zeros from the start is a matter of rank, not of loss
-        let influence_lost = (0..held.len()).any(|k| {
-            held[k].is_none()
-                && first[k] != 0.0
-                && j.column(k).norm() <= self.options.rank_tolerance * first[k]
-        });
-        let tangent = Tangent::new(&j, &here.r, free(&held), &norms, self.options.rank_tolerance)?;
-        let bounded = Tangent::new(&j, &here.r, free(&held), &self.scale, f64::EPSILON)?;
-        let projection = tangent.projection();
-        let cosine = if here.square > 0.0 { projection / here.square.sqrt() } else { 0.0 };
+        let influence_lost =
+            free.iter().any(|&k| first[k] != 0.0 && influences[k] <= self.options.rank_tolerance * first[k]);
+        let full = GaussNewton::new(&reduced, &free, &of_free(&norms, &free), self.options.rank_tolerance)?;
+        let cosine = if here.square > 0.0 { full.projection / here.square.sqrt() } else { 0.0 };
         // one rounding of every parameter: ε·√Σ(‖Jⱼ‖·pⱼ)²
         let of_parameters = f64::EPSILON * norms.component_mul(&here.p).norm();
         let rounding = ROUNDINGS * of_parameters + self.system.rounding();
-        Ok(Some(View { tangent, bounded, held, projection, cosine, rounding, influence_lost }))
+        let region = self.scale.clone();
+        Ok(Some(View { reduced, held, free, norms, region, full, cosine, rounding, influence_lost }))
     }
 
     /// The bounds that parameters rest on while the gradient would carry them across.
@@ -237,17 +262,32 @@ impl Search<'_> {
     }
 
     /// A point with a smaller sum of squares, by shrinking the trust region until there is one.
-    fn descend(&mut self, here: &Point, view: &View, radius: &mut f64) -> Option<Point> {
+    fn descend(&mut self, here: &Point, view: &View, radius: &mut f64) -> Result<Option<Point>> {
+        let full_step = view.full_step();
+        let full_length = view.length(&view.region, &full_step);
+        // where the minimum of the linearisation is one point, it does not depend on the scale
+        let unique = view.full.rank == view.free.len();
+        let mut bounded = None;
         loop {
-            let wanted = view.bounded.step_within(*radius);
+            let wanted = if unique && full_length <= (1.0 + CLOSE_ENOUGH) * *radius {
+                full_step.clone()
+            } else {
+                let tangent = match bounded {
+                    Some(tangent) => tangent,
+                    None => view.bounded()?,
+                };
+                let step = view.of_all(&tangent.step_within(*radius));
+                bounded = Some(tangent);
+                step
+            };
             let p = self.within_bounds(&here.p, &wanted);
             let step = &p - &here.p;
-            let length = view.bounded.scaled_length(&step);
-            let predicted = view.bounded.predicted_reduction(&step);
+            let length = view.length(&view.region, &step);
+            let predicted = view.reduced.predicted_reduction(&step);
             // below either limit rounding decides, not the step
-            let moves = length > f64::EPSILON * view.bounded.scaled_length(&here.p);
+            let moves = length > f64::EPSILON * view.length(&view.region, &here.p);
             if p == here.p || !moves || predicted.abs() <= UNRESOLVED * here.square {
-                return None;
+                return Ok(None);
             }
             let next = self.evaluate(p);
             let ratio = match &next {
@@ -261,14 +301,14 @@ impl Search<'_> {
                 *radius = radius.max(2.0 * length);
             }
             if ratio > ACCEPTABLE {
-                return next;
+                return Ok(next);
             }
         }
     }
 
     /// A point with a smaller projection on the tangent plane, by a full Gauss–Newton step, if it is worth the while.
     fn polish(&mut self, here: &Point, view: &View) -> Result<Option<(Point, View)>> {
-        let p = self.within_bounds(&here.p, &view.tangent.full_step());
+        let p = self.within_bounds(&here.p, &view.full_step());
         if p == here.p {
             return Ok(None);
         }
@@ -277,14 +317,14 @@ impl Search<'_> {
             return Ok(None);
         }
         let Some(next_view) = self.linearise(&next)? else { return Ok(None) };
-        let better = next_view.projection < WORTHWHILE * view.projection;
+        let better = next_view.full.projection < WORTHWHILE * view.full.projection;
         Ok(better.then_some((next, next_view)))
     }
 
     /// Converged where it is; `otherwise` where the gradient is not zero.
     fn verdict(&self, here: &Point, view: &View, otherwise: TerminationReason) -> TerminationReason {
-        let next_step = view.tangent.scaled_length(&view.tangent.full_step());
-        let stands_still = next_step <= self.options.step_tolerance * view.tangent.scaled_length(&here.p);
+        let next_step = view.length(&view.norms, &view.full_step());
+        let stands_still = next_step <= self.options.step_tolerance * view.length(&view.norms, &here.p);
         if view.influence_lost {
             TerminationReason::InfluenceLost
         } else if view.cosine <= self.options.gradient_tolerance {
@@ -298,7 +338,7 @@ impl Search<'_> {
 
     /// True where what is left of the gradient is below the tolerance, or rounding.
     fn gradient_is_zero(&self, view: &View) -> bool {
-        view.cosine <= self.options.gradient_tolerance || view.projection <= view.rounding
+        view.cosine <= self.options.gradient_tolerance || view.full.projection <= view.rounding
     }
 
     /// The result of a search that could not begin.
@@ -306,7 +346,7 @@ impl Search<'_> {
         Minimum {
             parameters: start.clone(),
             residuals: self.system.residuals(start),
-            tangent: Tangent::unknown(start.len()),
+            reduced: Reduced::unknown(start.len()),
             held: vec![None; start.len()],
             cosine: f64::NAN,
             stood_still: false,

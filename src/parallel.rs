@@ -1,0 +1,48 @@
+//! Independent jobs on all processors, with results that do not depend on how many there are.
+
+use rayon::prelude::*;
+
+/// `job(0)`, `job(1)`, … `job(count − 1)`, in this order, worked on by all processors.
+///
+/// The results are the same for every number of threads if each job depends on its index alone; one that needs random
+/// numbers takes the stream of its index ([`Random::seeded`](crate::statistics::Random::seeded)). A job that itself
+/// calls this runs its own jobs one after the other: only the outermost level is parallel.
+pub fn in_parallel<T: Send>(count: usize, job: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
+    // a thread of the pool is at work on a job already
+    match rayon::current_thread_index() {
+        Some(_) => (0..count).map(job).collect(),
+        None => (0..count).into_par_iter().map(job).collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::statistics::Random;
+
+    fn sums(count: usize) -> Vec<f64> {
+        in_parallel(count, |index| {
+            let mut random = Random::seeded(11, index as u64);
+            (0..=index % 7).map(|_| random.normal()).sum()
+        })
+    }
+
+    #[test]
+    fn results_come_in_order_whatever_the_threads() {
+        assert_eq!(in_parallel(1000, |index| index), (0..1000).collect::<Vec<_>>());
+        assert_eq!(in_parallel(0, |index| index), Vec::<usize>::new());
+        let parallel = sums(200);
+        // inside a pool of one thread everything is sequential
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+        assert_eq!(parallel, pool.install(|| sums(200)));
+    }
+
+    #[test]
+    fn a_job_within_a_job_stays_on_its_thread() {
+        let threads = in_parallel(20, |_| {
+            let here = std::thread::current().id();
+            in_parallel(20, |_| std::thread::current().id()).into_iter().all(|there| there == here)
+        });
+        assert!(threads.into_iter().all(|same| same));
+    }
+}

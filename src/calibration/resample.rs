@@ -5,6 +5,9 @@ use nalgebra::Vector3;
 use super::campaign::{Distance, Recording, Row, Targets};
 use crate::statistics::Random;
 
+/// Fewest consecutive rows that are worth a block.
+const LEAST_BLOCK: usize = 5;
+
 impl Recording {
     /// The rows of these indices, in this order; an index may come again. Clamps and sockets without a row are left
     /// out.
@@ -50,9 +53,10 @@ impl Recording {
         }
     }
 
-    /// Which fold each row belongs to, 0 … `folds` − 1: every clamp's rows in so many consecutive blocks. With sockets
-    /// whole placements are held out, so that the folds are as many as there are placements, where there are two or
-    /// more.
+    /// Which fold each row belongs to, 0 … `folds` − 1: the rows of every clamp are cut into blocks of consecutive ones,
+    /// four for every fold where they are long enough, and the blocks dealt to the folds in turn. Neighbours, which
+    /// often share an error, are thereby held out together, and yet no fold is a corner of the workspace. With sockets
+    /// whole placements are held out, as many folds as there are placements, where there are two or more.
     pub fn folds(&self, folds: usize) -> Vec<usize> {
         let placements = self.placements();
         let count = placements.iter().max().map_or(0, |last| last + 1);
@@ -70,7 +74,9 @@ impl Recording {
             .map(|row| {
                 let at = seen[row.group];
                 seen[row.group] += 1;
-                at * folds / size[row.group]
+                let size = size[row.group];
+                let rounds = if size >= 4 * folds * LEAST_BLOCK { 4 } else { 1 };
+                (at * folds * rounds / size) % folds
             })
             .collect()
     }

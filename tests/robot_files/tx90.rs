@@ -51,11 +51,11 @@ fn the_table_has_the_kinematics_of_the_ros_model() {
 /// Masses (kg) and centres (m) of the ROS model's links, in its link frames; scaled as `robots/tx90.toml` says.
 const BODIES: [(f64, [f64; 3]); 6] = [
     (16.9, [0.019, 0.025, -0.065]),
-    (13.0 * 2.3, [0.0, 0.221, 0.173]),
-    (7.5 * 2.5, [0.0, 0.015, 0.004]),
-    (4.5 * 2.7, [-0.003, 0.0, 0.296]),
-    (0.57 * 2.7, [0.0, 0.0, 0.023]),
-    (0.03 * 2.7, [0.0, 0.0, -0.006]),
+    (13.0 * 1.95, [0.0, 0.221, 0.173]),
+    (7.5 * 2.2, [0.0, 0.015, 0.004]),
+    (4.5 * 2.82, [-0.003, 0.0, 0.296]),
+    (0.57 * 2.82, [0.0, 0.0, 0.023]),
+    (0.03 * 2.82, [0.0, 0.0, -0.006]),
 ];
 
 /// At zero the link frames of the ROS model stand upright, at these points.
@@ -115,9 +115,9 @@ fn gravity_torques(robot: &Robot, q: &[f64]) -> Vec<f64> {
     (0..robot.joints.len()).map(torque).collect()
 }
 
-/// Identified on a real TX90: at most about 217, 45, 1.8, 1.0, 0.2 N·m on joints 2 to 6. The big two come out to 6 %,
-/// which is what scaled mesh volumes can do: the factors have two digits. The wrist's do not, and nobody tuned them:
-/// in the model it is symmetrical to 3 mm, so what it has is a third of what was identified; cables and hoses are not in it.
+/// Identified on a real TX90: at most about 217, 45, 1.8, 1.0, 0.2 N·m on joints 2 to 6. The factors on the masses were
+/// found from the big two, so these come out to half of their last digit. The wrist's do not: in the model it is
+/// symmetrical to 3 mm, so what it has is a third of what was identified; cables and hoses are not in it.
 #[test]
 fn gravity_torques_are_near_the_identified_ones() {
     let robot = tx90();
@@ -134,8 +134,8 @@ fn gravity_torques_are_near_the_identified_ones() {
         }
     }
     assert!(most[0] < 1e-12, "the first axis is vertical: {}", most[0]);
-    assert!((most[1] / 217.0 - 1.0).abs() < 0.06, "joint 2: {}", most[1]);
-    assert!((most[2] / 45.0 - 1.0).abs() < 0.06, "joint 3: {}", most[2]);
+    assert!((most[1] - 217.0).abs() < 0.5, "joint 2: {}", most[1]);
+    assert!((most[2] - 45.0).abs() < 0.5, "joint 3: {}", most[2]);
     // below the identified values, and of their size
     for (joint, identified) in [(3, 1.8), (4, 1.0)] {
         assert!(
@@ -157,7 +157,7 @@ fn the_shoulder_s_torque_has_the_identified_shape() {
     for _ in 0..100 {
         let q = dice.angles(6);
         let torque = gravity_torques(&robot, &q)[1];
-        let shape = 186.3 * q[1].sin() + 42.8 * (q[1] + q[2]).sin();
+        let shape = 172.0 * q[1].sin() + 44.6 * (q[1] + q[2]).sin();
         // what is not of that shape: the wrist, and centres beside the links
         assert!((torque - shape).abs() < 1.2, "{torque} {shape}");
     }

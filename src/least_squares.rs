@@ -51,6 +51,9 @@ pub struct Options {
     /// It bounds the distance to the minimum: each parameter is within `gradient_tolerance · √dof` of its
     /// standard errors (Bates & Watts, *Technometrics* 23 (1981) 179–183).
     pub gradient_tolerance: f64,
+    /// Whether the search goes on below the gradient tolerance, to the last digit that the arithmetic gives. Without it
+    /// the search stops at the tolerance: for fits that are repeated, such as the passes of an outer loop.
+    pub to_the_last_digit: bool,
     /// Relative length of the next Gauss–Newton step (scaled by the columns) below which the parameters stand still.
     pub step_tolerance: f64,
     /// Singular value of the Jacobian (columns scaled to norm 1), relative to the largest, below which a direction
@@ -71,6 +74,7 @@ impl Default for Options {
             noise: Noise::Estimated,
             robust: Robust::None,
             gradient_tolerance: 1e-8,
+            to_the_last_digit: true,
             step_tolerance: 1e-10,
             rank_tolerance: 1e-12,
             max_iterations: 1000,

@@ -21,7 +21,8 @@ impl Pose {
     /// From position (m) and `[roll, pitch, yaw]` (rad): Rz(yaw)·Ry(pitch)·Rx(roll), the URDF convention.
     pub fn from_xyz_rpy(xyz: [f64; 3], rpy: [f64; 3]) -> Self {
         let [r, p, y] = rpy;
-        let rotation = turned_about_x(&turned_about_y(&turned_about_z(&Matrix3::identity(), y), p), r);
+        let yawed = turned_about_z(&Matrix3::identity(), y.sin_cos());
+        let rotation = turned_about_x(&turned_about_y(&yawed, p.sin_cos()), r.sin_cos());
         Pose { rotation, origin: Vector3::from(xyz) }
     }
 
@@ -69,23 +70,20 @@ pub fn left_jacobian(v: &Vector3<f64>) -> Matrix3<f64> {
     Matrix3::identity() * a + skew(v) * b + v * v.transpose() * c
 }
 
-/// R·Rz(angle).
-pub fn turned_about_z(r: &Matrix3<f64>, angle: f64) -> Matrix3<f64> {
-    let (s, c) = angle.sin_cos();
+/// R·Rz(angle), the angle given by its sine and cosine.
+pub fn turned_about_z(r: &Matrix3<f64>, (s, c): (f64, f64)) -> Matrix3<f64> {
     let (x, y) = (r.column(0), r.column(1));
     Matrix3::from_columns(&[x * c + y * s, y * c - x * s, r.column(2).into()])
 }
 
-/// R·Rx(angle).
-pub fn turned_about_x(r: &Matrix3<f64>, angle: f64) -> Matrix3<f64> {
-    let (s, c) = angle.sin_cos();
+/// R·Rx(angle), the angle given by its sine and cosine.
+pub fn turned_about_x(r: &Matrix3<f64>, (s, c): (f64, f64)) -> Matrix3<f64> {
     let (y, z) = (r.column(1), r.column(2));
     Matrix3::from_columns(&[r.column(0).into(), y * c + z * s, z * c - y * s])
 }
 
-/// R·Ry(angle).
-pub fn turned_about_y(r: &Matrix3<f64>, angle: f64) -> Matrix3<f64> {
-    let (s, c) = angle.sin_cos();
+/// R·Ry(angle), the angle given by its sine and cosine.
+pub fn turned_about_y(r: &Matrix3<f64>, (s, c): (f64, f64)) -> Matrix3<f64> {
     let (z, x) = (r.column(2), r.column(0));
     Matrix3::from_columns(&[x * c - z * s, r.column(1).into(), z * c + x * s])
 }

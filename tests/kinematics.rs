@@ -153,8 +153,8 @@ const TORQUE: [f64; 4] = [12.0, -40.0, 5.0, 1.5];
 fn tip_and_every_column_are_those_of_dual_numbers() {
     let robot = robot();
     let setup = setup(&robot);
-    let mut kinematics = Kinematics::new(&robot);
-    kinematics.update(&setup, &Q, &TORQUE);
+    let mut kinematics = Kinematics::new(&setup);
+    kinematics.update(&Q, &TORQUE);
     for parameter in Parameter::all(4) {
         // a prismatic joint's compliance moves it along its axis
         let expected = tip(&setup, &Q, &TORQUE, parameter);
@@ -175,8 +175,8 @@ fn tip_and_every_column_are_those_of_dual_numbers() {
 fn the_flange_without_torque_is_the_robots_own() {
     let robot = robot();
     let mut setup = Setup::new(&robot, Pose::IDENTITY, Vector3::zeros());
-    let mut kinematics = Kinematics::new(&robot);
-    kinematics.update(&setup, &Q, &[0.0; 4]);
+    let mut kinematics = Kinematics::new(&setup);
+    kinematics.update(&Q, &[0.0; 4]);
     assert_eq!(kinematics.flange, robot.flange_at(&Q));
     // a setup gives back the robot that it was given, and one that was changed
     assert_eq!(setup.calibrated(), robot);
@@ -196,8 +196,8 @@ fn torques_are_the_work_of_gravity_and_tip_force() {
         tip_force: Vector3::new(1.1, -2.0, 3.0),
     };
     let work = |q: &[f64]| {
-        let mut kinematics = Kinematics::new(&robot);
-        kinematics.update(&setup, q, &[0.0; 4]);
+        let mut kinematics = Kinematics::new(&setup);
+        kinematics.update(q, &[0.0; 4]);
         let links = kinematics.joints.iter().zip(&robot.joints).map(|(frames, joint)| {
             let body = joint.body.unwrap();
             loads.gravity.dot(&frames.distal.point(&body.centre)) * body.mass
@@ -206,10 +206,10 @@ fn torques_are_the_work_of_gravity_and_tip_force() {
             + loads.gravity.dot(&kinematics.flange.point(&payload.centre)) * payload.mass
             + loads.tip_force.dot(&kinematics.tip)
     };
-    let mut kinematics = Kinematics::new(&robot);
-    kinematics.update(&setup, &Q, &[0.0; 4]);
+    let mut kinematics = Kinematics::new(&setup);
+    kinematics.update(&Q, &[0.0; 4]);
     let mut torque = [0.0; 4];
-    kinematics.torques(&robot, &loads, &mut torque);
+    kinematics.torques(&loads, &mut torque);
     for j in 0..4 {
         let h = 1e-5;
         let at = |dq: f64| {

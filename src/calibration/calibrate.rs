@@ -181,11 +181,11 @@ pub fn calibrate_from<'c>(
             })
         })
         .collect();
-    let mut kinematics = Kinematics::new(setup.robot);
+    let mut kinematics = Kinematics::new(&setup);
     let tips = (0..recording.len())
         .map(|row| {
             let torque = &pass.torque[row * recording.joint_count..][..recording.joint_count];
-            kinematics.update(&setup, recording.joints(row), torque);
+            kinematics.update(recording.joints(row), torque);
             kinematics.tip
         })
         .collect();
@@ -315,7 +315,10 @@ impl<'a, 'c> Run<'a, 'c> {
     fn compensate(&mut self, options: &Options) -> Result<Fit> {
         loop {
             let change = self.compensation.update(&self.setup, self.recording, &mut self.pass);
-            self.hold_unidentified()?;
+            // at the start, where the noise is a guess, and then where it is known
+            if self.passes.len() < 2 {
+                self.hold_unidentified()?;
+            }
             let fit = self.fit()?;
             for (k, &parameter) in self.free.iter().enumerate() {
                 self.setup.set(parameter, fit.parameters[k]);
@@ -401,9 +404,15 @@ pub(super) fn is_placement(parameter: Parameter) -> bool {
     matches!(parameter, Parameter::BasePosition(_) | Parameter::BaseRotation(_) | Parameter::Tool(_))
 }
 
-/// Residuals come divided by their noise.
+/// Residuals come divided by their noise. A cosine of 1e-6 leaves every parameter within 1e-6·√dof of its standard errors,
+/// which is no error at all: the loop around the fit needs no more.
 fn known_noise() -> least_squares::Options {
-    least_squares::Options { noise: least_squares::Noise::Known(1.0), ..least_squares::Options::default() }
+    least_squares::Options {
+        noise: least_squares::Noise::Known(1.0),
+        gradient_tolerance: 1e-6,
+        to_the_last_digit: false,
+        ..least_squares::Options::default()
+    }
 }
 
 /// Largest size; zero for no values.

@@ -94,16 +94,16 @@ impl Compensation {
     pub(super) fn update(&self, setup: &Setup, recording: &Recording, pass: &mut Pass) -> f64 {
         let robot = setup.robot;
         let n = recording.joint_count;
-        let mut kinematics = Kinematics::new(robot);
+        let mut kinematics = Kinematics::new(setup);
         let gravity = setup.base().rotation * robot.gravity;
         let mut change = 0.0f64;
         for row in 0..recording.len() {
             let torque = &mut pass.torque[row * n..][..n];
-            kinematics.update(setup, recording.joints(row), torque);
+            kinematics.update(recording.joints(row), torque);
             let device = &recording.groups[recording.rows[row].group].device;
             let tip_force = device.rotation * self.contact_force;
             let loads = Loads { gravity, payload: self.payload, tip_force };
-            kinematics.torques(robot, &loads, torque);
+            kinematics.torques(&loads, torque);
             let shift = self.deflection(&kinematics, &gravity, &tip_force);
             change = change.max((shift - pass.shift[row]).norm());
             pass.shift[row] = shift;
@@ -129,14 +129,14 @@ impl Compensation {
 /// Largest torque that links and payload put on each joint over the workspace, N·m; at least 1e-9.
 pub(super) fn largest_torques(robot: &Robot, setup: &Setup, payload: Body) -> Vec<f64> {
     let mut random = Random::seeded(0, 0);
-    let mut kinematics = Kinematics::new(robot);
+    let mut kinematics = Kinematics::new(setup);
     let gravity = setup.base().rotation * robot.gravity;
     let loads = Loads { gravity, payload: Some(payload), tip_force: Vector3::zeros() };
     let (mut torque, mut largest) = (vec![0.0; robot.joints.len()], vec![1e-9f64; robot.joints.len()]);
     for _ in 0..200 {
         let q: Vec<f64> = robot.joints.iter().map(|_| random.uniform(-3.0, 3.0)).collect();
-        kinematics.update(setup, &q, &[]);
-        kinematics.torques(robot, &loads, &mut torque);
+        kinematics.update(&q, &[]);
+        kinematics.torques(&loads, &mut torque);
         for (largest, torque) in largest.iter_mut().zip(&torque) {
             *largest = largest.max(torque.abs());
         }

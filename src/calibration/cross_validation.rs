@@ -75,10 +75,10 @@ fn predict(
     for _ in 0..3 {
         compensation.update(setup, recording, &mut pass);
     }
-    let mut kinematics = Kinematics::new(setup.robot);
+    let mut kinematics = Kinematics::new(setup);
     let tips: Vec<Vector3<f64>> = (0..recording.len())
         .map(|row| {
-            kinematics.update(setup, recording.joints(row), &pass.torque[row * n..][..n]);
+            kinematics.update(recording.joints(row), &pass.torque[row * n..][..n]);
             kinematics.tip + pass.shift[row]
         })
         .collect();

@@ -111,9 +111,9 @@ impl Residuals<'_> {
     }
 
     fn for_each_tip(&self, setup: &Setup, mut visit: impl FnMut(usize, &Kinematics)) {
-        let mut kinematics = Kinematics::new(setup.robot);
+        let mut kinematics = Kinematics::new(setup);
         for row in 0..self.recording.len() {
-            kinematics.update(setup, self.recording.joints(row), self.torque(row));
+            kinematics.update(self.recording.joints(row), self.torque(row));
             visit(row, &kinematics);
         }
     }
@@ -151,10 +151,10 @@ impl Residuals<'_> {
     /// Rows of the Jacobian for the poses `rows`.
     fn pose_block(&self, setup: &Setup, rows: std::ops::Range<usize>) -> DMatrix<f64> {
         let mut block = DMatrix::zeros(3 * rows.len(), self.parameter_count());
-        let mut kinematics = Kinematics::new(setup.robot);
+        let mut kinematics = Kinematics::new(setup);
         for (at, row) in rows.enumerate() {
             let (torque, weight) = (self.torque(row), self.pass.weight[row]);
-            kinematics.update(setup, self.recording.joints(row), torque);
+            kinematics.update(self.recording.joints(row), torque);
             for (k, &parameter) in self.free.iter().enumerate() {
                 let column = kinematics.column(parameter, torque) * weight;
                 block.view_mut((3 * at, k), (3, 1)).copy_from(&column);

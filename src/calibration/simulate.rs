@@ -138,7 +138,7 @@ fn device_frame(place: [f64; 3], turn: f64) -> Pose {
     // rows: where x, y and z of {W} are in the device
     let upright = Matrix3::from_rows(&[x.transpose(), z.cross(&x).transpose(), z.transpose()]);
     Pose {
-        rotation: crate::spatial::turned_about_z(&Matrix3::identity(), turn) * upright,
+        rotation: crate::spatial::turned_about_z(&Matrix3::identity(), turn.sin_cos()) * upright,
         origin: Vector3::from(place),
     }
 }
@@ -227,10 +227,10 @@ fn deflected_tips(truth: &Setup, compensation: &Compensation, recording: &Record
     for _ in 0..5 {
         compensation.update(truth, recording, &mut pass);
     }
-    let mut kinematics = Kinematics::new(truth.robot);
+    let mut kinematics = Kinematics::new(truth);
     (0..recording.len())
         .map(|row| {
-            kinematics.update(truth, recording.joints(row), &pass.torque[row * n..][..n]);
+            kinematics.update(recording.joints(row), &pass.torque[row * n..][..n]);
             kinematics.tip + pass.shift[row]
         })
         .collect()
@@ -250,10 +250,10 @@ fn scan(truth: &Setup, plan: &Plan) -> Recording {
         groups: vec![Group { name: String::new(), device: Pose::IDENTITY }],
         targets: Targets::Points(Vec::new()),
     };
-    let mut kinematics = Kinematics::new(truth.robot);
+    let mut kinematics = Kinematics::new(&short);
     while recording.len() < plan.validation_poses {
         let q = poses::anywhere(truth.robot, &mut random);
-        kinematics.update(&short, &q, &[]);
+        kinematics.update(&q, &[]);
         // in front of the robot, above its table
         let tip = kinematics.tip - truth.base_position;
         if tip.x > 0.2 && tip.z > 0.1 && poses::is_above_table(&kinematics, truth.base_position.z) {

@@ -110,10 +110,10 @@ pub(super) fn validate_from(
         placement = Some((setup.base(), setup.tool));
     }
     bare.update(&setup, recording, &mut pass);
-    let mut kinematics = Kinematics::new(setup.robot);
+    let mut kinematics = Kinematics::new(&setup);
     let tips: Vec<Vector3<f64>> = (0..recording.len())
         .map(|row| {
-            kinematics.update(&setup, recording.joints(row), &pass.torque[row * n..][..n]);
+            kinematics.update(recording.joints(row), &pass.torque[row * n..][..n]);
             kinematics.tip
         })
         .collect();

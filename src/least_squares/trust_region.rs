@@ -84,6 +84,10 @@ pub(super) fn minimise(system: &Stacked, start: &DVector<f64>, options: &Options
         if view.full.rank == 0 && here.square > 0.0 && !view.free.is_empty() {
             break TerminationReason::NoInfluence;
         }
+        let is_enough = !options.to_the_last_digit && view.cosine <= options.gradient_tolerance;
+        if is_enough {
+            break search.verdict(&here, &view, TerminationReason::Gradient);
+        }
         if view.cosine <= NEAR || view.full.projection <= view.rounding {
             if let Some(better) = search.polish(&here, &view)? {
                 (here, view) = better;

@@ -58,7 +58,7 @@ fn parallel(p: &Vector3<f64>, w: &Vector3<f64>) -> Hayati {
         false => Vector3::x(),
     };
     let theta = x.y.atan2(x.x);
-    let turned = turned_about_z(&nalgebra::Matrix3::identity(), theta).transpose() * w;
+    let turned = turned_about_z(&nalgebra::Matrix3::identity(), theta.sin_cos()).transpose() * w;
     Hayati {
         theta,
         d: 0.0,

@@ -7,15 +7,18 @@ use crate::spatial::{Pose, left_jacobian, turned_about_x, turned_about_y, turned
 
 /// One configuration of a [`Setup`] in {W}. Made once and moved from pose to pose without allocation.
 #[derive(Debug, Clone)]
-pub struct Kinematics {
+pub struct Kinematics<'s> {
     /// Base to flange, one per joint.
     pub joints: Vec<JointFrames>,
     /// {T}.
     pub flange: Pose,
     /// The undeflected tip, m.
     pub tip: Vector3<f64>,
+    setup: &'s Setup<'s>,
     /// {0}.
     base: Pose,
+    /// Frame of the first joint.
+    root: Pose,
     /// From a change of the base's rotation vector to the rotation that it makes.
     base_turn: Matrix3<f64>,
 }
@@ -35,47 +38,54 @@ pub struct JointFrames {
     y: Vector3<f64>,
     /// The joint's distal frame, which its link is fixed to.
     pub distal: Pose,
+    /// Sine and cosine of α and β, the same in every configuration.
+    alpha: (f64, f64),
+    beta: (f64, f64),
 }
 
-impl Kinematics {
-    /// Room for a robot; [`Kinematics::update`] fills it.
-    pub fn new(robot: &Robot) -> Self {
+impl<'s> Kinematics<'s> {
+    /// Of a setup, in no configuration yet: [`Kinematics::update`] moves it to one.
+    pub fn new(setup: &'s Setup<'s>) -> Self {
         let zero = Vector3::zeros();
-        let of_joint = |joint: &super::Joint| JointFrames {
+        let joints = setup.robot.joints.iter().zip(&setup.links).map(|(joint, link)| JointFrames {
             motion: joint.motion,
             axis: zero,
             origin: zero,
             x: zero,
             y: zero,
             distal: Pose::IDENTITY,
-        };
+            alpha: link.alpha.sin_cos(),
+            beta: link.beta.sin_cos(),
+        });
+        let base = setup.base();
         Kinematics {
-            joints: robot.joints.iter().map(of_joint).collect(),
+            joints: joints.collect(),
             flange: Pose::IDENTITY,
             tip: zero,
-            base: Pose::IDENTITY,
-            base_turn: Matrix3::identity(),
+            setup,
+            root: base.then(&setup.robot.root),
+            base,
+            base_turn: left_jacobian(&setup.base_turn),
         }
     }
 
     /// Moves to the joint values `q` (rad or m). `torque` (N·m, one per joint) turns compliant joints on; it may be
     /// empty where no joint is compliant.
-    pub fn update(&mut self, setup: &Setup, q: &[f64], torque: &[f64]) {
-        self.base = setup.base();
-        self.base_turn = left_jacobian(&setup.base_turn);
-        let mut frame = self.base.then(&setup.robot.root);
+    pub fn update(&mut self, q: &[f64], torque: &[f64]) {
+        let setup = self.setup;
+        let mut frame = self.root;
         for (j, frames) in self.joints.iter_mut().enumerate() {
             // θ = offset + q + c·τ
             let yielding = torque.get(j).map_or(0.0, |torque| setup.compliance[j] * torque);
-            let link = setup.links[j].moved(setup.robot.joints[j].motion, q[j] + yielding);
-            let turned = turned_about_z(&frame.rotation, link.theta);
-            let tilted = turned_about_x(&turned, link.alpha);
+            let link = setup.links[j].moved(frames.motion, q[j] + yielding);
+            let turned = turned_about_z(&frame.rotation, link.theta.sin_cos());
+            let tilted = turned_about_x(&turned, frames.alpha);
             frames.axis = frame.rotation.column(2).into();
             frames.origin = frame.origin;
             frames.x = turned.column(0).into();
             frames.y = tilted.column(1).into();
             frames.distal = Pose {
-                rotation: turned_about_y(&tilted, link.beta),
+                rotation: turned_about_y(&tilted, frames.beta),
                 origin: frame.origin + frames.axis * link.d + frames.x * link.a,
             };
             frame = frames.distal;
@@ -114,6 +124,11 @@ impl Kinematics {
         }
     }
 
+    /// The robot that it is the configuration of.
+    pub(super) fn robot(&self) -> &Robot {
+        self.setup.robot
+    }
+
     /// The tip's displacement per radian of a turn about a joint's axis, m/rad.
     fn turned(&self, joint: usize) -> Vector3<f64> {
         self.joints[joint].axis.cross(&(self.tip - self.joints[joint].origin))
@@ -123,9 +138,10 @@ impl Kinematics {
 impl Hayati {
     /// `frame` after Rz(θ)·Tz(d)·Tx(a)·Rx(α)·Ry(β).
     pub fn beyond(&self, frame: &Pose) -> Pose {
-        let turned = turned_about_z(&frame.rotation, self.theta);
+        let turned = turned_about_z(&frame.rotation, self.theta.sin_cos());
         let origin = frame.origin + turned.column(2) * self.d + turned.column(0) * self.a;
-        Pose { rotation: turned_about_y(&turned_about_x(&turned, self.alpha), self.beta), origin }
+        let tilted = turned_about_x(&turned, self.alpha.sin_cos());
+        Pose { rotation: turned_about_y(&tilted, self.beta.sin_cos()), origin }
     }
 
     /// With joint value `q` (rad or m) added where the joint moves.

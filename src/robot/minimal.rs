@@ -84,16 +84,17 @@ fn candidates(robot: &Robot, turns_tool: bool) -> Vec<Parameter> {
 
 /// True where the tip lies farther from the last axis than what counts as on it.
 fn is_beside_last_axis(robot: &Robot, tool: Vector3<f64>, reach: f64) -> bool {
-    let mut kinematics = Kinematics::new(robot);
-    kinematics.update(&Setup::new(robot, Pose::IDENTITY, tool), &vec![0.0; robot.joints.len()], &[]);
+    let setup = Setup::new(robot, Pose::IDENTITY, tool);
+    let mut kinematics = Kinematics::new(&setup);
+    kinematics.update(&vec![0.0; robot.joints.len()], &[]);
     let arm =
         kinematics.joints.last().map_or(0.0, |last| last.axis.cross(&(kinematics.tip - last.origin)).norm());
     arm > OWN * reach
 }
 
 /// Configurations over the workspace.
-struct Samples {
-    kinematics: Vec<Kinematics>,
+struct Samples<'s> {
+    kinematics: Vec<Kinematics<'s>>,
     torques: Vec<Vec<f64>>,
     /// Largest torque of each joint, N·m.
     largest: Vec<f64>,
@@ -101,11 +102,11 @@ struct Samples {
     reach: f64,
 }
 
-impl Samples {
-    fn new(setup: &Setup, payload: Option<Body>) -> Self {
+impl<'s> Samples<'s> {
+    fn new(setup: &'s Setup, payload: Option<Body>) -> Self {
         let robot = setup.robot;
         let n = robot.joints.len();
-        let mut kinematics = Kinematics::new(robot);
+        let mut kinematics = Kinematics::new(setup);
         let loads = Loads { gravity: robot.gravity, payload, tip_force: Vector3::zeros() };
         let mut samples =
             Samples { kinematics: Vec::new(), torques: Vec::new(), largest: vec![0.0; n], reach: 0.0 };
@@ -124,9 +125,9 @@ impl Samples {
                     low + (high - low) * spread(sample, j)
                 })
                 .collect();
-            kinematics.update(setup, &q, &[]);
+            kinematics.update(&q, &[]);
             let mut torque = vec![0.0; n];
-            kinematics.torques(robot, &loads, &mut torque);
+            kinematics.torques(&loads, &mut torque);
             for (largest, torque) in samples.largest.iter_mut().zip(&torque) {
                 *largest = largest.max(torque.abs());
             }

@@ -5,7 +5,7 @@
 
 use nalgebra::Vector3;
 
-use super::{Body, Kinematics, Motion, Robot};
+use super::{Body, Kinematics, Motion};
 
 /// What pulls at the robot in one configuration, in {W}.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -18,11 +18,11 @@ pub struct Loads {
     pub tip_force: Vector3<f64>,
 }
 
-impl Kinematics {
+impl Kinematics<'_> {
     /// The torque of the loads about each joint's axis, N·m (along it for a prismatic joint, N), into `torque`:
     ///
     /// τⱼ = zⱼ · (Σ pₖ × fₖ − oⱼ × Σ fₖ)   over the forces f at the points p beyond the joint
-    pub fn torques(&self, robot: &Robot, loads: &Loads, torque: &mut [f64]) {
+    pub fn torques(&self, loads: &Loads, torque: &mut [f64]) {
         let mut force = loads.tip_force;
         let mut moment = self.tip.cross(&loads.tip_force);
         if let Some(payload) = &loads.payload {
@@ -31,12 +31,12 @@ impl Kinematics {
             moment += self.flange.point(&payload.centre).cross(&weight);
         }
         for (j, frames) in self.joints.iter().enumerate().rev() {
-            if let Some(body) = &robot.joints[j].body {
+            if let Some(body) = &self.robot().joints[j].body {
                 let weight = loads.gravity * body.mass;
                 force += weight;
                 moment += frames.distal.point(&body.centre).cross(&weight);
             }
-            torque[j] = match robot.joints[j].motion {
+            torque[j] = match frames.motion {
                 Motion::Revolute => frames.axis.dot(&(moment - frames.origin.cross(&force))),
                 Motion::Prismatic => frames.axis.dot(&force),
             };

@@ -31,7 +31,7 @@ fn of_table(q: &[f64]) -> Vec<f64> {
 fn as_ros(flange: &Pose) -> Pose {
     let base = Pose::from_xyz_rpy([0.0, 0.0, 0.328], [0.0; 3]);
     let flange = base.then(flange);
-    Pose { rotation: turned_about_z(&flange.rotation, PI), ..flange }
+    Pose { rotation: turned_about_z(&flange.rotation, PI.sin_cos()), ..flange }
 }
 
 #[test]

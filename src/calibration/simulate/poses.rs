@@ -28,7 +28,7 @@ pub(super) fn choose(
 ) -> Result<Vec<(usize, Vec<f64>)>> {
     let mut random = Random::seeded(plan.seed, 1);
     let n = free.len();
-    let mut kinematics = Kinematics::new(truth.robot);
+    let mut kinematics = Kinematics::new(truth);
     let mut crowd = Vec::new();
     for (group, clamp) in groups.iter().enumerate() {
         for _ in 0..CANDIDATES * plan.poses_per_clamp {
@@ -40,7 +40,7 @@ pub(super) fn choose(
                 }
             })?;
             let torque = vec![1.0; q.len()];
-            kinematics.update(truth, &q, &[]);
+            kinematics.update(&q, &[]);
             let column = |k: usize| kinematics.column(free[k], &torque);
             let rows = DMatrix::from_fn(3, n, |i, k| column(k)[i]);
             crowd.push((group, q, rows));
@@ -122,7 +122,7 @@ fn reach(
         let mut q = anywhere(robot, random);
         let aim = point + Vector3::from_fn(|_, _| AIM * random.uniform(-1.0, 1.0));
         for _ in 0..25 {
-            kinematics.update(truth, &q, &[]);
+            kinematics.update(&q, &[]);
             let miss = aim - kinematics.tip;
             if miss.norm() < 1e-6 {
                 break;
@@ -140,7 +140,7 @@ fn reach(
             .iter()
             .zip(&robot.joints)
             .all(|(&q, joint)| joint.limits.is_none_or(|[low, high]| (low..=high).contains(&q)));
-        kinematics.update(truth, &q, &[]);
+        kinematics.update(&q, &[]);
         let arrived = (aim - kinematics.tip).norm() < 1e-5;
         let from_above = kinematics.flange.origin.z > kinematics.tip.z + CLEARANCE;
         if arrived && limits_hold && from_above && is_above_table(kinematics, truth.base_position.z) {

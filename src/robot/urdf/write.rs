@@ -180,7 +180,7 @@ fn edit(text: &str, joint: roxmltree::Node, origin: &Pose) -> (std::ops::Range<u
 /// as good as another and roll makes up for it, so that R is met to rounding everywhere.
 fn rpy(r: &Matrix3<f64>) -> [f64; 3] {
     let yaw = r[(1, 0)].atan2(r[(0, 0)]);
-    let left = turned_about_z(&Matrix3::identity(), yaw).transpose() * r;
+    let left = turned_about_z(&Matrix3::identity(), yaw.sin_cos()).transpose() * r;
     [(-left[(1, 2)]).atan2(left[(1, 1)]), (-left[(2, 0)]).atan2(left[(0, 0)]), yaw]
 }
 

@@ -79,6 +79,8 @@ pub struct Axis {
     pub range: Range,
     /// Distance between ticks, for example 90 for angles in degrees; `None` chooses a 1-2-5 number.
     pub step: Option<f64>,
+    /// Logarithmic, with ticks at powers of ten. What is not above zero is left out.
+    pub log: bool,
     /// Names at given values in place of numbers: for bars of categories.
     pub names: Vec<(f64, String)>,
 }
@@ -87,6 +89,11 @@ impl Axis {
     /// An axis with numbers and an automatic range.
     pub fn new(label: impl Into<String>) -> Self {
         Axis { label: label.into(), ..Axis::default() }
+    }
+
+    /// The same axis, logarithmic.
+    pub fn log(self) -> Self {
+        Axis { log: true, ..self }
     }
 }
 

@@ -98,6 +98,11 @@ impl Frame {
             self.area.bottom - self.y.fraction(point[1]) * self.area.height(),
         ]
     }
+
+    /// Whether a data point has a place on the picture, be it beyond the frame.
+    pub(super) fn places(&self, point: [f64; 2]) -> bool {
+        self.x.places(point[0]) && self.y.places(point[1])
+    }
 }
 
 impl<'a> Plan<'a> {
@@ -136,7 +141,7 @@ impl<'a> Plan<'a> {
             let y = area.top - TITLE_GAP_PX - (i as f64 + 0.5) * TITLE_LINE_PX;
             canvas.text([self.left, y], line, TITLE, Rgb::INK);
         }
-        if marks::extents(&self.chart.marks, area.width()) == (None, None) {
+        if marks::extents(self.chart, area.width()) == (None, None) {
             canvas.text(area.centre(), "no data", NOTE, Rgb::GREY);
         } else {
             self.grid(canvas);
@@ -215,7 +220,7 @@ fn right_margin(chart: &Chart) -> f64 {
 /// Both scales and the height of the plotting area.
 fn scales(chart: &Chart, width: f64) -> (Scale, Scale, f64) {
     let count = |length: f64, each: f64| ((length / each) as usize).clamp(3, 10);
-    let (xs, ys) = marks::extents(&chart.marks, width);
+    let (xs, ys) = marks::extents(chart, width);
     let default_height = match chart.y.names.len() {
         0 => (0.6 * width).clamp(180.0, 330.0),
         bars => 26.0 * bars as f64 + 10.0,
@@ -243,6 +248,8 @@ fn scale(axis: &Axis, data: Extent, count: usize, snug: bool) -> Scale {
         return Scale { ticks: named, ..Scale::fixed(first - 0.6, last + 0.6, count) };
     }
     let scale = match axis.range {
+        Range::Auto | Range::AutoWithZero if axis.log => Scale::log_rounded(low, high, count),
+        Range::Fixed(from, to) if axis.log => Scale::log(from, to, count),
         Range::Auto | Range::AutoWithZero if snug => Scale::fixed(low, high, count),
         Range::Auto => Scale::rounded(low, high, count),
         Range::AutoWithZero => Scale::rounded(low.min(0.0), high.max(0.0), count),
@@ -309,6 +316,8 @@ mod tests {
         for (i, a) in odd.into_iter().enumerate() {
             for b in odd {
                 let mut chart = every_mark([a, b, odd[(i + 1) % odd.len()]]);
+                chart.x.log = i % 2 == 1;
+                chart.y.log = i % 3 == 1;
                 for equal_aspect in [false, true] {
                     chart.equal_aspect = equal_aspect;
                     let svg = Figure::from(chart.clone()).svg();

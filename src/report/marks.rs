@@ -1,6 +1,6 @@
 //! Draws the marks of a chart inside its axes, and finds what the axes have to span.
 
-use super::chart::{Bar, Dash, Direction, Mark, Marker, Point, Style};
+use super::chart::{Bar, Chart, Dash, Direction, Mark, Marker, Point, Style};
 use super::draw::{Frame, NOTE};
 use super::labels::{Area, Crowd, text_width_px};
 use super::plot::{Anchor, Canvas, Lettering, Px, Rgb};
@@ -23,9 +23,9 @@ pub(super) fn label(mark: &Mark) -> &str {
 
 /// What x and y have to span so that all marks are seen. `width_px` of the plot tells how much room
 /// the texts at the ends of bars need.
-pub(super) fn extents(marks: &[Mark], width_px: f64) -> (Extent, Extent) {
+pub(super) fn extents(chart: &Chart, width_px: f64) -> (Extent, Extent) {
     let (mut xs, mut ys) = (Vec::new(), Vec::new());
-    for mark in marks {
+    for mark in &chart.marks {
         match mark {
             Mark::Line { points, .. } => points.iter().filter(|p| is_drawable(p)).for_each(|[x, y]| {
                 xs.push(*x);
@@ -62,7 +62,8 @@ pub(super) fn extents(marks: &[Mark], width_px: f64) -> (Extent, Extent) {
             }
         }
     }
-    (extent(xs), extent(ys))
+    let seen = |log: bool| move |v: &f64| !log || *v > 0.0;
+    (extent(xs.into_iter().filter(seen(chart.x.log))), extent(ys.into_iter().filter(seen(chart.y.log))))
 }
 
 /// Zero and all values, with room for the texts beyond them as a part of the span.
@@ -91,7 +92,7 @@ pub(super) fn draw(canvas: &mut Canvas, frame: &Frame, marks: &[Mark], crowd: &m
                 (1, Mark::Horizontal { at, .. }) => reference(canvas, frame, [f64::NAN, *at], crowd),
                 (1, Mark::Vertical { at, .. }) => reference(canvas, frame, [*at, f64::NAN], crowd),
                 (1, Mark::Line { points, style, .. }) => line(canvas, frame, points, style, crowd),
-                (1, Mark::Arrow { from, to, style, .. }) if is_drawable(from) && is_drawable(to) => {
+                (1, Mark::Arrow { from, to, style, .. }) if frame.places(*from) && frame.places(*to) => {
                     let (from, to) = (frame.px(*from), frame.px(*to));
                     crowd.add_line(from, to);
                     arrow(canvas, from, to, style);
@@ -213,7 +214,7 @@ fn is_drawable<const N: usize>(point: &[f64; N]) -> bool {
 
 fn line(canvas: &mut Canvas, frame: &Frame, points: &[[f64; 2]], style: &Style, crowd: &mut Crowd) {
     // A point that is not finite interrupts the line: nothing is known about the way past it.
-    for run in points.split(|p| !is_drawable(p)) {
+    for run in points.split(|p| !frame.places(*p)) {
         let mut piece: Vec<Px> = Vec::new();
         for pair in run.windows(2) {
             let (from, to) = (frame.px(pair[0]), frame.px(pair[1]));
@@ -235,7 +236,10 @@ fn band(canvas: &mut Canvas, frame: &Frame, points: &[[f64; 3]], style: &Style) 
         let [x, y] = frame.px(point);
         [x.clamp(area.left, area.right), y.clamp(area.top, area.bottom)]
     };
-    for run in points.split(|p| !is_drawable(p)).filter(|run| run.len() > 1) {
+    for run in points
+        .split(|[x, low, high]| !frame.places([*x, *low]) || !frame.places([*x, *high]))
+        .filter(|run| run.len() > 1)
+    {
         let low = run.iter().map(|[x, low, _]| inside([*x, *low]));
         let high = run.iter().rev().map(|[x, _, high]| inside([*x, *high]));
         let corners: Vec<Px> = low.chain(high).collect();
@@ -244,9 +248,9 @@ fn band(canvas: &mut Canvas, frame: &Frame, points: &[[f64; 3]], style: &Style) 
 }
 
 fn reference(canvas: &mut Canvas, frame: &Frame, [x, y]: [f64; 2], crowd: &mut Crowd) {
-    let ends = if drawable(x) {
+    let ends = if frame.x.places(x) {
         [frame.px([x, frame.y.from]), frame.px([x, frame.y.to])]
-    } else if drawable(y) {
+    } else if frame.y.places(y) {
         [frame.px([frame.x.from, y]), frame.px([frame.x.to, y])]
     } else {
         return;
@@ -259,7 +263,7 @@ fn reference(canvas: &mut Canvas, frame: &Frame, [x, y]: [f64; 2], crowd: &mut C
 
 fn point(canvas: &mut Canvas, frame: &Frame, point: &Point, style: &Style, size_px: f64, crowd: &mut Crowd) {
     let [x, y] = frame.px([point.x, point.y]);
-    if !is_drawable(&[point.x, point.y]) || frame.area.clip([x, y], [x, y]).is_none() {
+    if !frame.places([point.x, point.y]) || frame.area.clip([x, y], [x, y]).is_none() {
         return;
     }
     if point.error > 0.0 && drawable(point.error) {
@@ -315,7 +319,7 @@ fn whole_bar(
 
 /// A note beside its point, with a thin leader where it had to move away from it.
 fn note(canvas: &mut Canvas, frame: &Frame, at: [f64; 2], text: &str, crowd: &mut Crowd) {
-    if text.is_empty() || !is_drawable(&at) {
+    if text.is_empty() || !frame.places(at) {
         return;
     }
     let at = frame.px(at);

@@ -165,7 +165,8 @@ impl<'a> Plan<'a> {
                 canvas.line(&[[x, area.top], [x, area.bottom]], strength(*value), 0.8, Dash::Solid);
             }
         }
-        if self.chart.y.names.is_empty() {
+        // Bars lead the eye to their names by themselves, points do not.
+        if self.chart.y.names.is_empty() || !has_bars(self.chart) {
             for (value, _) in &frame.y.ticks {
                 let y = frame.px([0.0, *value])[1];
                 canvas.line(&[[area.left, y], [area.right, y]], strength(*value), 0.8, Dash::Solid);
@@ -229,7 +230,7 @@ fn scales(chart: &Chart, width: f64) -> (Scale, Scale, f64) {
     if chart.equal_aspect {
         return equal_scales(chart, xs, ys, width);
     }
-    let snug = chart.marks.iter().any(|mark| matches!(mark, Mark::Bars { .. }));
+    let snug = has_bars(chart);
     // As many ticks along x as there is room for their labels.
     let room = |x: &Scale| {
         let widest = x.ticks.iter().map(|(_, label)| text_width_px(label, NOTE.size_px)).fold(0.0, f64::max);
@@ -238,6 +239,10 @@ fn scales(chart: &Chart, width: f64) -> (Scale, Scale, f64) {
     let xs_of = |count| scale(&chart.x, xs, count, snug);
     let x = (2..=count(width, 62.0)).rev().map(xs_of).find(room).unwrap_or_else(|| xs_of(1));
     (x, scale(&chart.y, ys, count(height, 36.0), snug), height)
+}
+
+fn has_bars(chart: &Chart) -> bool {
+    chart.marks.iter().any(|mark| matches!(mark, Mark::Bars { .. }))
 }
 
 /// The scale of one axis; `snug` does without rounding to whole ticks, which bars do not need.
@@ -306,6 +311,7 @@ mod tests {
             .with(Mark::Band { label: label(), points: vec![[a, b, c], [b, c, a]], style })
             .with(Mark::Horizontal { at: a, text: label() })
             .with(Mark::Vertical { at: b, text: label() })
+            .with(Mark::Stretch { from: b, to: c, text: label() })
             .with(Mark::Note { at: [a, c], text: label() })
             .with(Mark::Arrow { from: [a, b], to: [b, c], text: label(), style })
     }

@@ -17,7 +17,11 @@ pub(super) fn label(mark: &Mark) -> &str {
         | Mark::Points { label, .. }
         | Mark::Bars { label, .. }
         | Mark::Band { label, .. } => label,
-        Mark::Horizontal { .. } | Mark::Vertical { .. } | Mark::Note { .. } | Mark::Arrow { .. } => "",
+        Mark::Horizontal { .. }
+        | Mark::Vertical { .. }
+        | Mark::Stretch { .. }
+        | Mark::Note { .. }
+        | Mark::Arrow { .. } => "",
     }
 }
 
@@ -52,6 +56,7 @@ pub(super) fn extents(chart: &Chart, width_px: f64) -> (Extent, Extent) {
             }
             Mark::Horizontal { at, .. } => ys.push(*at),
             Mark::Vertical { at, .. } => xs.push(*at),
+            Mark::Stretch { from, to, .. } => xs.extend([*from, *to]),
             Mark::Note { at: [x, y], .. } => {
                 xs.push(*x);
                 ys.push(*y);
@@ -91,6 +96,7 @@ pub(super) fn draw(canvas: &mut Canvas, frame: &Frame, marks: &[Mark], crowd: &m
                 }
                 (1, Mark::Horizontal { at, .. }) => reference(canvas, frame, [f64::NAN, *at], crowd),
                 (1, Mark::Vertical { at, .. }) => reference(canvas, frame, [*at, f64::NAN], crowd),
+                (1, Mark::Stretch { from, to, text }) => stretch(canvas, frame, [*from, *to], text, crowd),
                 (1, Mark::Line { points, style, .. }) => line(canvas, frame, points, style, crowd),
                 (1, Mark::Arrow { from, to, style, .. }) if frame.places(*from) && frame.places(*to) => {
                     let (from, to) = (frame.px(*from), frame.px(*to));
@@ -98,7 +104,7 @@ pub(super) fn draw(canvas: &mut Canvas, frame: &Frame, marks: &[Mark], crowd: &m
                     arrow(canvas, from, to, style);
                 }
                 (2, Mark::Points { points, style, .. }) => {
-                    let size_px = marker_px(points.len());
+                    let size_px = marker_px(style, points.len());
                     points.iter().for_each(|p| point(canvas, frame, p, style, size_px, crowd));
                 }
                 _ => {}
@@ -155,8 +161,13 @@ pub(super) fn error_bar(canvas: &mut Canvas, x: f64, top: f64, bottom: f64, styl
 }
 
 /// Half the size of each of `count` markers: many are drawn smaller.
-pub(super) fn marker_px(count: usize) -> f64 {
-    if count > 40 { 2.8 } else { 4.2 }
+pub(super) fn marker_px(style: &Style, count: usize) -> f64 {
+    let by_count = match count {
+        0..=40 => 4.2,
+        41..=400 => 2.8,
+        _ => 2.0,
+    };
+    style.size_px.filter(|size| drawable(*size)).map_or(by_count, |size| size.clamp(0.5, 50.0))
 }
 
 /// One marker of half size `size_px`, edged in white so that it stands out from a line below it.
@@ -258,6 +269,27 @@ fn reference(canvas: &mut Canvas, frame: &Frame, [x, y]: [f64; 2], crowd: &mut C
     if let Some((a, b)) = frame.area.clip(ends[0], ends[1]) {
         crowd.add_line(a, b);
         canvas.line(&[a, b], Rgb::GREY, 1.2, Dash::Solid);
+    }
+}
+
+/// Lines at both ends, below the strip along the top in which the names stand.
+fn stretch(canvas: &mut Canvas, frame: &Frame, ends: [f64; 2], text: &str, crowd: &mut Crowd) {
+    if !ends.iter().all(|x| frame.x.places(*x)) {
+        return;
+    }
+    let area = frame.area;
+    let xs = ends.map(|x| frame.px([x, f64::NAN])[0]);
+    for x in xs {
+        if let Some((a, b)) = area.clip([x, area.top + NOTE_LINE_PX + 2.0], [x, area.bottom]) {
+            canvas.line(&[a, b], Rgb::GREY, 0.8, Dash::Solid);
+        }
+    }
+    let (middle, half) = (0.5 * xs[0] + 0.5 * xs[1], 0.5 * text_width_px(text, NOTE.size_px) + 3.0);
+    let name =
+        Area { left: middle - half, right: middle + half, top: area.top, bottom: area.top + NOTE_LINE_PX };
+    if !text.is_empty() && crowd.is_free(&name) {
+        canvas.text(name.centre(), text, NOTE, Rgb::INK);
+        crowd.add_text(name);
     }
 }
 

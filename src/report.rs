@@ -9,6 +9,7 @@
 //! - [`compliance`] · [`rig`]: results of the library as reports and as JSON
 //! - [`text`]: a report for the terminal · [`table`]: tables to text, HTML, Markdown, CSV · [`html`]: the page
 
+mod axes;
 pub mod chart;
 pub mod compliance;
 mod draw;

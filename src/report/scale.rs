@@ -41,6 +41,9 @@ impl Scale {
     /// Logarithmic, rounded outwards to 1, 2 or 5 times a power of ten.
     pub(super) fn log_rounded(from: f64, to: f64, count: usize) -> Scale {
         let (from, to) = proper_ratio(from, to);
+        // Air for what would stand on the very edge of the frame.
+        let air = (to / from).powf(0.02);
+        let (from, to) = (from / air, to * air);
         let lower = one_two_five_below(from);
         // 2.5 times a 1-2-5 number reaches the next one and no further.
         let below = one_two_five_below(to);
@@ -203,7 +206,7 @@ fn log_label(digit: f64, exponent: i32) -> String {
 }
 
 /// `value`, a multiple of `step`, with just the digits that tell it from its neighbours.
-fn label(value: f64, step: f64) -> String {
+pub(super) fn label(value: f64, step: f64) -> String {
     if value.abs() < 0.5 * step {
         return "0".into();
     }
@@ -267,11 +270,11 @@ mod tests {
     #[test]
     fn a_logarithmic_axis_is_ticked_at_powers_of_ten() {
         assert_eq!(labels(&Scale::log_rounded(3e-4, 700.0, 8)), "10⁻³ 0.01 0.1 1 10 100 1000");
-        assert_eq!(labels(&Scale::log_rounded(2e-9, 40.0, 5)), "10⁻⁸ 10⁻⁶ 10⁻⁴ 0.01 1");
+        assert_eq!(labels(&Scale::log_rounded(2e-9, 40.0, 6)), "10⁻⁸ 10⁻⁶ 10⁻⁴ 0.01 1 100");
         assert_eq!(labels(&Scale::log_rounded(0.013, 0.4, 8)), "0.01 0.02 0.05 0.1 0.2 0.5");
         assert_eq!(labels(&Scale::log_rounded(10.0, 1000.0, 8)), "10 100 1000");
         assert_eq!(labels(&Scale::log(2.2, 4.1, 8)), "2.5 3.0 3.5 4.0");
-        let scale = Scale::log_rounded(0.1, 1000.0, 8);
+        let scale = Scale::log(0.1, 1000.0, 8);
         assert_eq!((scale.fraction(1.0), scale.fraction(1000.0)), (0.25, 1.0));
         assert!(scale.places(1e-9) && !scale.places(0.0) && scale.fraction(0.0) == f64::NEG_INFINITY);
     }

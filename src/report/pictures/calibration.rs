@@ -16,10 +16,16 @@ pub use intervals::{ModeComparison, ParameterCorrection, mode_comparison, parame
 pub use residuals::{ModeResiduals, PoseResidual, ResidualGroup, residuals_by_group};
 pub use workspace::{PoseError, PoseVector, error_over_workspace, residual_vectors};
 
+use super::super::scale::label;
 use super::{significant, typeset};
 
 /// As many points of one panel can still be told apart.
 const MOST_POINTS: usize = 2000;
+
+/// A round number, or the multiple of one, with its unit.
+fn round_amount(value: f64, step: f64, unit: &str) -> String {
+    format!("{}\u{a0}{unit}", label(value, step))
+}
 
 /// A number with its unit, as it stands in titles, notes and captions.
 fn amount(value: f64, unit: &str) -> String {

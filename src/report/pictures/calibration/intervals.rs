@@ -8,7 +8,7 @@ use super::super::super::scale::{drawable, extent};
 /// More rows than these would not fit onto a page.
 const MOST_ROWS: usize = 60;
 /// An axis goes on for this many times the largest estimate; what reaches further is cut.
-const REACH: f64 = 4.0;
+const REACH: f64 = 2.0;
 
 /// The correction of one parameter.
 #[derive(Debug, Clone, Default, Serialize)]
@@ -31,6 +31,7 @@ pub fn parameter_corrections(
 ) -> Figure {
     let groups = [("lengths", "correction / mm", lengths_mm), ("angles", "correction / mrad", angles_mrad)];
     let mut caption = String::from("Corrections of the nominal parameters with their 95 % intervals.");
+    let row_px = row_px(lengths_mm.len().max(angles_mrad.len()));
     let mut panels = Vec::new();
     for (title, label, parameters) in groups.into_iter().filter(|(_, _, parameters)| !parameters.is_empty()) {
         let row = |p: &ParameterCorrection| Row {
@@ -44,7 +45,7 @@ pub fn parameter_corrections(
             },
         };
         let rows: Vec<Row> = parameters.iter().map(row).collect();
-        panels.push(forest(title, label, "correction, 95 % interval", &rows, &mut caption));
+        panels.push(forest(title, label, "correction, 95 % interval", &rows, row_px, &mut caption));
     }
     let columns = panels.len().clamp(1, 2);
     Figure { name: "parameter-corrections".into(), caption, panels, columns, shared_legend: true }
@@ -84,11 +85,12 @@ pub fn mode_comparison(modes: &[ModeComparison]) -> Figure {
     let mut caption = String::from(
         "Mean validation error of each mode, and its difference to the first mode, pose by pose, with 95 % intervals.",
     );
+    let row_px = row_px(modes.len());
     let legend = "mean, 95 % interval";
-    let mut panels = vec![forest("validation", "mean error / mm", legend, &means, &mut caption)];
+    let mut panels = vec![forest("validation", "mean error / mm", legend, &means, row_px, &mut caption)];
     if modes.len() > 1 {
         let first = format!("difference to {}", modes[0].name);
-        panels.push(forest(&first, "difference / mm", legend, &differences, &mut caption));
+        panels.push(forest(&first, "difference / mm", legend, &differences, row_px, &mut caption));
     }
     let columns = panels.len();
     Figure { name: "mode-comparison".into(), caption, panels, columns, shared_legend: true }
@@ -112,8 +114,20 @@ impl Row {
     }
 }
 
+/// Height of a row: many stand closer.
+fn row_px(rows: usize) -> f64 {
+    if rows > 15 { 17.0 } else { 26.0 }
+}
+
 /// Dots on intervals, row below row, over a line at zero. Adds to the caption what is not seen.
-fn forest(title: &str, x_label: &str, legend: &str, rows: &[Row], caption: &mut String) -> Chart {
+fn forest(
+    title: &str,
+    x_label: &str,
+    legend: &str,
+    rows: &[Row],
+    row_px: f64,
+    caption: &mut String,
+) -> Chart {
     let shown = &rows[..rows.len().min(MOST_ROWS)];
     if rows.len() > shown.len() {
         *caption += &format!(" Only the first {MOST_ROWS} of {} {title} are shown.", rows.len());
@@ -123,7 +137,6 @@ fn forest(title: &str, x_label: &str, legend: &str, rows: &[Row], caption: &mut 
     let y = |i: usize| -1.0 - i as f64;
     let names = shown.iter().enumerate().map(|(i, row)| (y(i), row.name.clone())).collect();
     chart.y = Axis { names, ..Axis::default() };
-    let row_px = if shown.len() > 15 { 17.0 } else { 26.0 };
     chart.height_px = Some(row_px * shown.len() as f64 + 10.0);
 
     let (low, high) = reach(shown);
@@ -150,9 +163,9 @@ fn forest(title: &str, x_label: &str, legend: &str, rows: &[Row], caption: &mut 
         points: shown.iter().enumerate().flat_map(interval).collect(),
         style,
     });
-    let filled = style.marker(Marker::Circle).size(3.8);
+    let filled = style.marker(Marker::Circle).size(3.0);
     chart.marks.push(Mark::Points { label: legend.into(), points: dots(false), style: filled });
-    let open = style.marker(Marker::Ring).size(1.9);
+    let open = style.marker(Marker::Ring).size(1.6);
     chart.marks.push(Mark::Points { label: String::new(), points: dots(true), style: open });
     for (i, row) in shown.iter().enumerate().filter(|(_, row)| !row.note.is_empty()) {
         let x = if drawable(row.value) { row.value.clamp(low, high) } else { 0.0 };

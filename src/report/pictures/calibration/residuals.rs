@@ -96,7 +96,7 @@ impl Shared {
         };
         let rms_um = extent(modes.iter().map(|mode| mode.rms_um)).map_or(0.0, |(_, high)| high);
         let usual_um = largest(false).max(rms_um);
-        let reach_um = if usual_um > 0.0 { 2.0 * usual_um } else { f64::INFINITY };
+        let reach_um = if usual_um > 0.0 { 1.5 * usual_um } else { f64::INFINITY };
         let highest_um = usual_um.max(largest(true).min(reach_um));
         Shared { reach_um, top_um: if highest_um > 0.0 { 1.2 * highest_um } else { 1.0 } }
     }
@@ -178,8 +178,10 @@ fn names(mode: &ModeResiduals, scale: &Shared) -> Vec<Mark> {
     largest.sort_by(|a, b| b.1.length_um.total_cmp(&a.1.length_um));
     let note = |(x, pose): &(f64, &PoseResidual)| {
         let beyond = pose.length_um > scale.reach_um;
-        let value = if beyond { amount(pose.length_um, "µm") } else { String::new() };
-        let text = format!("{} {value}", pose.name).trim().to_owned();
+        let text = match beyond {
+            true => format!("{}: {}", pose.name, amount(pose.length_um, "µm")),
+            false => pose.name.clone(),
+        };
         Mark::Note { at: [*x, pose.length_um.min(scale.reach_um)], text }
     };
     largest.iter().take(MOST_NAMES).map(note).collect()
@@ -218,7 +220,7 @@ mod tests {
 
     #[test]
     fn every_pose_is_a_point_and_an_outlier_is_ringed_and_named() {
-        let figure = residuals_by_group(&[mode(&[10.0, 20.0, 30.0, 55.0, f64::NAN, 25.0])]);
+        let figure = residuals_by_group(&[mode(&[10.0, 20.0, 40.0, 55.0, f64::NAN, 25.0])]);
         assert_eq!(points(&figure.panels[0]), [("pose", 5), ("outlier", 1)]);
         let svg = figure.svg();
         for text in ["clamp A", "clamp B", ">\nP4\n", "rms 20\u{a0}µm", "residual / µm"] {
@@ -229,10 +231,10 @@ mod tests {
     #[test]
     fn an_outlier_far_beyond_does_not_flatten_the_others() {
         let figure = residuals_by_group(&[mode(&[10.0, 20.0, 30.0, 5.2e6])]);
-        assert_eq!(figure.panels[0].y.range, Range::Fixed(0.0, 72.0));
+        assert_eq!(figure.panels[0].y.range, Range::Fixed(0.0, 54.0));
         assert_eq!(points(&figure.panels[0]), [("pose", 3), ("outlier beyond the axis", 1)]);
         assert!(
-            figure.svg().contains("P4 5\u{2009}200\u{2009}000\u{a0}µm")
+            figure.svg().contains("P4: 5\u{2009}200\u{2009}000\u{a0}µm")
                 && figure.caption.contains("triangle")
         );
     }

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::super::super::chart::{Chart, Colour, Dash, Figure, Mark, Marker, Point, Range, Style};
 use super::super::super::scale::{drawable, extent, one_two_five_below, typeset};
-use super::{MOST_POINTS, amount};
+use super::{MOST_POINTS, round_amount};
 use crate::units::{MM, UM, significant};
 
 /// More arrows than these hide each other.
@@ -37,7 +37,7 @@ pub fn error_over_workspace(poses: &[PoseError]) -> Figure {
         caption += &format!(
             " Of {} poses the one with the largest error in each square of {} is drawn.",
             typeset(&poses.len().to_string()),
-            amount(cell_mm, "mm")
+            round_amount(cell_mm, cell_mm, "mm")
         );
     }
     let classes = Classes::of(&poses);
@@ -56,7 +56,7 @@ pub fn error_over_workspace(poses: &[PoseError]) -> Figure {
         }
         chart
     };
-    figure("error-over-workspace", caption, VIEWS.map(panel).into())
+    room.figure("error-over-workspace", caption, VIEWS.map(panel).into())
 }
 
 /// What is left at one pose, as a vector.
@@ -81,7 +81,7 @@ pub fn residual_vectors(poses: &[PoseVector]) -> Figure {
     if many {
         caption += &format!(
             " Each arrow is the mean over the poses in a square of {}; there are {} in all.",
-            amount(cell_mm, "mm"),
+            round_amount(cell_mm, cell_mm, "mm"),
             typeset(&poses.len().to_string())
         );
     }
@@ -101,16 +101,12 @@ pub fn residual_vectors(poses: &[PoseVector]) -> Figure {
         chart.marks.push(Mark::Points {
             label: "measured position".into(),
             points: drawn.iter().map(|p| Point { x: p.at_mm[0], y: p.at_mm[axis], error: 0.0 }).collect(),
-            style: Style::nth(0).size(1.8),
+            style: Style::nth(0).size(1.3),
         });
         chart.marks.extend(room.key(drawn, factor, axis));
         chart
     };
-    figure("residual-vectors", caption, VIEWS.into_iter().zip(&drawn).map(panel).collect())
-}
-
-fn figure(name: &str, caption: String, panels: Vec<Chart>) -> Figure {
-    Figure { name: name.into(), caption, panels, columns: 2, shared_legend: true }
+    room.figure("residual-vectors", caption, VIEWS.into_iter().zip(&drawn).map(panel).collect())
 }
 
 fn arrow(from: [f64; 2], to: [f64; 2], text: String) -> Mark {
@@ -118,7 +114,7 @@ fn arrow(from: [f64; 2], to: [f64; 2], text: String) -> Mark {
     Mark::Arrow { from, to, text, style }
 }
 
-/// The 1-2-5 factor with which nine of ten residuals become at most a tenth of the workspace, and
+/// The 1-2-5 factor with which nine of ten residuals become at most a fifth of the workspace, and
 /// the longest at most half of it.
 fn exaggeration<'a>(poses: impl Iterator<Item = &'a PoseVector>, size_mm: f64) -> f64 {
     let length_um = |p: &PoseVector| p.residual_um.iter().fold(0.0, |sum, r| f64::hypot(sum, *r));
@@ -126,10 +122,10 @@ fn exaggeration<'a>(poses: impl Iterator<Item = &'a PoseVector>, size_mm: f64) -
     lengths.sort_by(f64::total_cmp);
     let Some(longest) = lengths.last() else { return 1.0 };
     let usual = lengths[(9 * lengths.len() / 10).min(lengths.len() - 1)];
-    one_two_five_below((0.1 * size_mm / usual).min(0.5 * size_mm / longest) * MM / UM)
+    one_two_five_below((0.2 * size_mm / usual).min(0.5 * size_mm / longest) * MM / UM)
 }
 
-/// What both views span, to the same scale.
+/// What both views span.
 struct Room {
     low: [f64; 3],
     high: [f64; 3],
@@ -147,14 +143,18 @@ impl Room {
         if size > 0.0 { size } else { 100.0 }
     }
 
+    /// Both views: side by side, or one below the other where the workspace is long.
+    fn figure(&self, name: &str, caption: String, panels: Vec<Chart>) -> Figure {
+        let size = [0, 1, 2].map(|i| self.high[i] - self.low[i]);
+        let columns = if size[0] > 1.5 * size[1].max(size[2]) { 1 } else { 2 };
+        Figure { name: name.into(), caption, panels, columns, shared_legend: true }
+    }
+
     fn chart(&self, title: String, y_label: &str, axis: usize) -> Chart {
         let mut chart = Chart::new(title, "x / mm", y_label);
         chart.equal_aspect = true;
-        // As high as the other view, so that both have the same scale.
-        let half = 0.5 * (self.high[1] - self.low[1]).max(self.high[2] - self.low[2]);
-        let middle = 0.5 * (self.low[axis] + self.high[axis]);
         chart.x.range = Range::Fixed(self.low[0], self.high[0]);
-        chart.y.range = Range::Fixed(middle - half, middle + half);
+        chart.y.range = Range::Fixed(self.low[axis], self.high[axis]);
         chart
     }
 
@@ -163,10 +163,13 @@ impl Room {
         let components = poses.iter().flat_map(|p| p.residual_um).map(f64::abs);
         let (_, largest_um) = extent(components).filter(|(_, high)| *high > 0.0)?;
         let length_um = one_two_five_below(largest_um);
-        let half = 0.5 * (self.high[1] - self.low[1]).max(self.high[2] - self.low[2]);
-        let y = 0.5 * (self.low[axis] + self.high[axis]) - half - 0.06 * self.size_mm();
+        let y = self.low[axis] - 0.04 * self.size_mm();
         let from = [self.low[0], y];
-        Some(arrow(from, [from[0] + factor * length_um * UM / MM, y], amount(length_um, "µm")))
+        Some(arrow(
+            from,
+            [from[0] + factor * length_um * UM / MM, y],
+            round_amount(length_um, length_um, "µm"),
+        ))
     }
 }
 
@@ -205,7 +208,7 @@ impl Classes {
         };
         let style = Style::nth(0).colour(colour).dash(Dash::Solid).marker(Marker::Circle);
         Mark::Points {
-            label: format!("up to {}", amount((class + 1) as f64 * self.step_mm, "mm")),
+            label: format!("up to {}", round_amount((class + 1) as f64 * self.step_mm, self.step_mm, "mm")),
             points,
             style: style.size((self.largest_px * part).max(1.2)),
         }
@@ -281,7 +284,7 @@ mod tests {
         let figure = error_over_workspace(&poses);
         assert_eq!(figure.panels.iter().map(dots).collect::<Vec<_>>(), [150, 150]);
         let svg = figure.svg();
-        for text in ["x / mm", "y / mm", "z / mm", "up to 0.020\u{a0}mm", "up to 0.10\u{a0}mm"] {
+        for text in ["x / mm", "y / mm", "z / mm", "up to 0.02\u{a0}mm", "up to 0.10\u{a0}mm"] {
             assert!(svg.contains(text), "{text}\n{svg}");
         }
     }
@@ -290,9 +293,9 @@ mod tests {
     fn arrows_start_at_the_measured_positions_and_have_a_key() {
         let figure = residual_vectors(&vectors(30));
         assert_eq!(figure.panels.iter().map(arrows).collect::<Vec<_>>(), [31, 31]);
-        assert_eq!(figure.panels[0].title, "from above, residuals ×\u{a0}1000");
+        assert_eq!(figure.panels[0].title, "from above, residuals ×\u{a0}2000");
         let Mark::Arrow { from, to, .. } = &figure.panels[0].marks[0] else { panic!("no arrow") };
-        approx::assert_relative_eq!(to[0] - from[0], 30.0, max_relative = 1e-9);
+        approx::assert_relative_eq!(to[0] - from[0], 60.0, max_relative = 1e-9);
         assert!(figure.svg().contains("20\u{a0}µm"));
     }
 

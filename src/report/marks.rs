@@ -284,7 +284,9 @@ fn stretch(canvas: &mut Canvas, frame: &Frame, ends: [f64; 2], text: &str, crowd
             canvas.line(&[a, b], Rgb::GREY, 0.8, Dash::Solid);
         }
     }
-    let (middle, half) = (0.5 * xs[0] + 0.5 * xs[1], 0.5 * text_width_px(text, NOTE.size_px) + 3.0);
+    let half = 0.5 * text_width_px(text, NOTE.size_px) + 3.0;
+    // Pushed back in where it would stick out.
+    let middle = (0.5 * xs[0] + 0.5 * xs[1]).min(area.right - half).max(area.left + half);
     let name =
         Area { left: middle - half, right: middle + half, top: area.top, bottom: area.top + NOTE_LINE_PX };
     if !text.is_empty() && crowd.is_free(&name) {

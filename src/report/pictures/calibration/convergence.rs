@@ -37,8 +37,13 @@ pub fn convergence(loops: &[Convergence]) -> Figure {
         caption,
         panels: loops.iter().map(panel).collect(),
         columns: loops.len().clamp(1, 2),
-        shared_legend: false,
+        // Curves look by their position: one legend only where all panels have the same ones.
+        shared_legend: loops.windows(2).all(|pair| names(&pair[0]).eq(names(&pair[1]))),
     }
+}
+
+fn names(data: &Convergence) -> impl Iterator<Item = &String> {
+    data.curves.iter().map(|(label, _)| label)
 }
 
 fn panel(data: &Convergence) -> Chart {

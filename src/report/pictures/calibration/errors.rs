@@ -41,6 +41,7 @@ pub fn error_distribution(methods: &[MethodErrors]) -> Figure {
         chart.x.log = bins.log;
         chart.x.range = Range::Fixed(bins.edge(0), bins.edge(bins.number));
         chart.y.range = Range::Fixed(0.0, 1.2 * highest);
+        chart.y.step = (highest <= 3.0).then_some(1.0);
         let (Some(max), mean) = (errors.last(), mean(errors)) else { return chart };
         let bar = |(k, count): (usize, &usize)| Bar {
             from: bins.edge(k),
@@ -49,15 +50,17 @@ pub fn error_distribution(methods: &[MethodErrors]) -> Figure {
             text: String::new(),
         };
         let bars = counts[i].iter().enumerate().filter(|(_, count)| **count > 0).map(bar).collect();
-        chart
-            .with(Mark::Bars {
-                label: String::new(),
-                bars,
-                direction: Direction::Up,
-                style: Style::nth(0).colour(Colour::SkyBlue).dash(Dash::Solid),
-            })
-            .with(Mark::Vertical { at: mean, text: format!("mean {}", amount(mean, "mm")) })
-            .with(Mark::Vertical { at: *max, text: format!("max {}", amount(*max, "mm")) })
+        chart = chart.with(Mark::Bars {
+            label: String::new(),
+            bars,
+            direction: Direction::Up,
+            style: Style::nth(0).colour(Colour::SkyBlue).dash(Dash::Solid),
+        });
+        let line = |at: f64, what: &str| Mark::Vertical { at, text: format!("{what} {}", amount(at, "mm")) };
+        match errors.first() == Some(max) {
+            true => chart.with(line(*max, "mean = max")),
+            false => chart.with(line(mean, "mean")).with(line(*max, "max")),
+        }
     };
     let mut caption = String::from(
         "Number of poses by positioning error, one panel per method on common axes; mean and maximum are marked.",

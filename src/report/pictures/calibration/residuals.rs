@@ -122,24 +122,29 @@ fn panel(mode: &ModeResiduals, scale: &Shared, last: bool) -> Chart {
     let mut chart = Chart::new(&mode.title, x_label, "residual / µm");
     chart.height_px = Some(HEIGHT_PX);
     chart.x.range = Range::Fixed(0.5, count as f64 + 0.5);
+    chart.x.step = (count <= 12).then_some(1.0);
     chart.y.range = Range::Fixed(0.0, scale.top_um);
     if numbered(mode).next().is_none() {
         return chart;
     }
     if mode.groups.len() <= MOST_GROUPS {
         let mut from = 0.5;
-        for group in &mode.groups {
+        for group in mode.groups.iter().filter(|group| !group.poses.is_empty()) {
             let to = from + group.poses.len() as f64;
             chart.marks.push(Mark::Stretch { from, to, text: group.name.clone() });
             from = to;
         }
     }
-    let inside: Vec<_> = numbered(mode).filter(|(_, pose)| pose.length_um <= scale.reach_um).collect();
-    let beyond: Vec<_> = numbered(mode).filter(|(_, pose)| pose.length_um > scale.reach_um).collect();
+    let (inside, beyond): (Vec<_>, Vec<_>) =
+        numbered(mode).partition(|(_, pose)| pose.length_um <= scale.reach_um);
     let ringed: Vec<_> = inside.iter().copied().filter(|(_, pose)| pose.outlier).collect();
+    // In a bundle an outlier would stand for all the others.
+    let bundled = count > MOST_POINTS;
+    let dots = inside.into_iter().filter(|(_, pose)| !(bundled && pose.outlier)).collect();
+    let ring_px = if ringed.len() > 40 { 1.2 } else { 3.0 };
     let series = [
-        ("pose", inside, Style::nth(2).marker(Marker::Circle)),
-        ("outlier", ringed, Style::nth(1).marker(Marker::Ring).size(3.0)),
+        ("pose", dots, Style::nth(2).marker(Marker::Circle)),
+        ("outlier", ringed, Style::nth(1).marker(Marker::Ring).size(ring_px)),
         ("outlier beyond the axis", beyond, Style::nth(1).marker(Marker::Triangle).size(4.2)),
     ];
     for (label, poses, style) in series {

@@ -11,6 +11,8 @@ use crate::units::{MM, UM, significant};
 
 /// More arrows than these hide each other.
 const MOST_ARROWS: usize = 400;
+/// How far below the poses the key to the arrows is, as a part of their extent.
+const KEY: f64 = 0.06;
 /// The two views: name, label of the vertical axis and which coordinate it is.
 const VIEWS: [(&str, &str, usize); 2] = [("from above", "y / mm", 1), ("from the side", "z / mm", 2)];
 
@@ -42,7 +44,7 @@ pub fn error_over_workspace(poses: &[PoseError]) -> Figure {
     }
     let classes = Classes::of(&poses);
     let panel = |(view, label, axis): (&str, &str, usize)| {
-        let mut chart = room.chart(view.into(), label, axis);
+        let mut chart = room.chart(format!("error, {view}"), label, axis, 0.0);
         // First for the legend, from small to large; then to be drawn, the small on top of the large.
         for class in 0..classes.number {
             chart.marks.push(classes.mark(class, Vec::new()));
@@ -88,12 +90,14 @@ pub fn residual_vectors(poses: &[PoseVector]) -> Figure {
     let drawn: Vec<Vec<PoseVector>> = VIEWS
         .map(|(_, _, axis)| if many { means_of_cells(&poses, cell_mm, axis) } else { poses.clone() })
         .into();
-    let factor = exaggeration(drawn.iter().flatten(), positions.size_mm());
+    let usual_mm = if many { cell_mm } else { 0.2 * positions.size_mm() };
+    let factor = exaggeration(drawn.iter().flatten(), usual_mm, 0.5 * positions.size_mm());
     let tip = |p: &PoseVector| [0, 1, 2].map(|i| p.at_mm[i] + factor * p.residual_um[i] * UM / MM);
-    let room = Room::around(drawn.iter().flatten().flat_map(|p| [p.at_mm, tip(p)]));
+    let ends = drawn.iter().flatten().flat_map(|p| [p.at_mm, tip(p)]);
+    let room = Room::around(ends.chain([positions.low, positions.high]));
     let panel = |((view, label, axis), drawn): ((&str, &str, usize), &Vec<PoseVector>)| {
         let title = format!("{view}, residuals ×\u{a0}{}", typeset(&significant(factor, 1)));
-        let mut chart = room.chart(title, label, axis);
+        let mut chart = room.chart(title, label, axis, KEY);
         for p in drawn {
             let (from, to) = (p.at_mm, tip(p));
             chart.marks.push(arrow([from[0], from[axis]], [to[0], to[axis]], String::new()));
@@ -114,15 +118,15 @@ fn arrow(from: [f64; 2], to: [f64; 2], text: String) -> Mark {
     Mark::Arrow { from, to, text, style }
 }
 
-/// The 1-2-5 factor with which nine of ten residuals become at most a fifth of the workspace, and
-/// the longest at most half of it.
-fn exaggeration<'a>(poses: impl Iterator<Item = &'a PoseVector>, size_mm: f64) -> f64 {
+/// The 1-2-5 factor with which nine of ten residuals become at most `usual_mm` long, and the longest
+/// at most `longest_mm`.
+fn exaggeration<'a>(poses: impl Iterator<Item = &'a PoseVector>, usual_mm: f64, longest_mm: f64) -> f64 {
     let length_um = |p: &PoseVector| p.residual_um.iter().fold(0.0, |sum, r| f64::hypot(sum, *r));
     let mut lengths: Vec<f64> = poses.map(length_um).filter(|l| *l > 0.0).collect();
     lengths.sort_by(f64::total_cmp);
     let Some(longest) = lengths.last() else { return 1.0 };
     let usual = lengths[(9 * lengths.len() / 10).min(lengths.len() - 1)];
-    one_two_five_below((0.2 * size_mm / usual).min(0.5 * size_mm / longest) * MM / UM)
+    one_two_five_below((usual_mm / usual).min(longest_mm / longest) * MM / UM)
 }
 
 /// What both views span.
@@ -134,13 +138,17 @@ struct Room {
 impl Room {
     fn around(points: impl Iterator<Item = [f64; 3]> + Clone) -> Self {
         let extents = [0, 1, 2].map(|i| extent(points.clone().map(|p| p[i])).unwrap_or((0.0, 0.0)));
-        Room { low: extents.map(|e| e.0), high: extents.map(|e| e.1) }
+        let room = Room { low: extents.map(|e| e.0), high: extents.map(|e| e.1) };
+        // Around a single pose something to draw in.
+        if room.size_mm() > 0.0 {
+            return room;
+        }
+        Room { low: room.low.map(|v| v - 50.0), high: room.high.map(|v| v + 50.0) }
     }
 
-    /// The largest of the extents, mm; where there is none, something to draw with.
+    /// The largest of the extents, mm.
     fn size_mm(&self) -> f64 {
-        let size = [0, 1, 2].map(|i| self.high[i] - self.low[i]).into_iter().fold(0.0, f64::max);
-        if size > 0.0 { size } else { 100.0 }
+        [0, 1, 2].map(|i| self.high[i] - self.low[i]).into_iter().fold(0.0, f64::max)
     }
 
     /// Both views: side by side, or one below the other where the workspace is long.
@@ -150,11 +158,12 @@ impl Room {
         Figure { name: name.into(), caption, panels, columns, shared_legend: true }
     }
 
-    fn chart(&self, title: String, y_label: &str, axis: usize) -> Chart {
+    /// An empty view; `below` is room for a key, as a part of the size.
+    fn chart(&self, title: String, y_label: &str, axis: usize, below: f64) -> Chart {
         let mut chart = Chart::new(title, "x / mm", y_label);
         chart.equal_aspect = true;
         chart.x.range = Range::Fixed(self.low[0], self.high[0]);
-        chart.y.range = Range::Fixed(self.low[axis], self.high[axis]);
+        chart.y.range = Range::Fixed(self.low[axis] - below * self.size_mm(), self.high[axis]);
         chart
     }
 
@@ -162,8 +171,8 @@ impl Room {
     fn key(&self, poses: &[PoseVector], factor: f64, axis: usize) -> Option<Mark> {
         let components = poses.iter().flat_map(|p| p.residual_um).map(f64::abs);
         let (_, largest_um) = extent(components).filter(|(_, high)| *high > 0.0)?;
-        let length_um = one_two_five_below(largest_um);
-        let y = self.low[axis] - 0.04 * self.size_mm();
+        let length_um = one_two_five_below(largest_um.min(0.3 * self.size_mm() * MM / (factor * UM)));
+        let y = self.low[axis] - KEY * self.size_mm();
         let from = [self.low[0], y];
         Some(arrow(
             from,

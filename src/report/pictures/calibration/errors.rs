@@ -3,12 +3,12 @@
 use serde::Serialize;
 
 use super::super::super::chart::{Bar, Chart, Colour, Dash, Direction, Figure, Mark, Range, Style};
-use super::super::super::scale::{drawable, one_two_five_below};
+use super::super::super::scale::{drawable, one_two_five_below, typeset};
 use super::amount;
 
 /// From this ratio of the largest error to the smallest median on, a linear axis would show the best
 /// method as a single bar.
-const WIDE: f64 = 30.0;
+const WIDE: f64 = 20.0;
 /// Bars in each factor of ten of a logarithmic axis.
 const BARS_PER_DECADE: f64 = 10.0;
 /// Steps of a cumulative curve; with more poses it goes through so many quantiles.
@@ -34,9 +34,7 @@ pub fn error_distribution(methods: &[MethodErrors]) -> Figure {
     let panel = |i: usize| {
         let errors = &sorted[i];
         let x_label = if i + 1 == methods.len() { "positioning error / mm" } else { "" };
-        let poses = if errors.len() == 1 { "pose" } else { "poses" };
-        let title = format!("{}, {} {poses}", methods[i].label, errors.len());
-        let mut chart = Chart::new(title, x_label, "poses");
+        let mut chart = Chart::new(title(&methods[i].label, errors), x_label, "poses");
         chart.height_px = Some(HEIGHT_PX);
         chart.x.log = bins.log;
         chart.x.range = Range::Fixed(bins.edge(0), bins.edge(bins.number));
@@ -56,9 +54,9 @@ pub fn error_distribution(methods: &[MethodErrors]) -> Figure {
             direction: Direction::Up,
             style: Style::nth(0).colour(Colour::SkyBlue).dash(Dash::Solid),
         });
-        let line = |at: f64, what: &str| Mark::Vertical { at, text: format!("{what} {}", amount(at, "mm")) };
+        let line = |at: f64, what: &str| Mark::Vertical { at, text: what.into() };
         match errors.first() == Some(max) {
-            true => chart.with(line(*max, "mean = max")),
+            true => chart.with(line(*max, "mean, max")),
             false => chart.with(line(mean, "mean")).with(line(*max, "max")),
         }
     };
@@ -110,6 +108,19 @@ pub fn cumulative_errors(methods: &[MethodErrors]) -> Figure {
         caption += &format!(" Curves of more poses than that go through {MOST_STEPS} of them.");
     }
     Figure::from(chart).named("cumulative-errors").captioned(caption)
+}
+
+/// "rigid rod, 150 poses: mean 0.086 mm, max 0.21 mm"
+fn title(label: &str, errors: &[f64]) -> String {
+    let poses = if errors.len() == 1 { "pose" } else { "poses" };
+    let count = typeset(&errors.len().to_string());
+    match errors.last() {
+        Some(max) => {
+            let (mean, max) = (amount(mean(errors), "mm"), amount(*max, "mm"));
+            format!("{label}, {count} {poses}: mean {mean}, max {max}")
+        }
+        None => format!("{label}, no poses"),
+    }
 }
 
 /// The errors that can be drawn, ascending.
@@ -191,7 +202,12 @@ mod tests {
         assert_eq!(figure.panels.iter().map(bars).collect::<Vec<_>>(), [vec![2.0, 1.0], vec![1.0]]);
         assert_eq!(figure.panels[0].x.range, figure.panels[1].x.range);
         let svg = figure.svg();
-        for text in ["nominal, 3 poses", "rigid, 1 pose", "mean 0.17\u{a0}mm", "max 0.30\u{a0}mm"] {
+        for text in [
+            "nominal, 3 poses: mean 0.17\u{a0}mm, max 0.30\u{a0}mm",
+            "rigid, 1 pose",
+            ">\nmean\n",
+            ">\nmax\n",
+        ] {
             assert!(svg.contains(text), "{text}\n{svg}");
         }
         assert_eq!(svg.matches("positioning error / mm").count(), 1);

@@ -90,7 +90,7 @@ pub fn residual_vectors(poses: &[PoseVector]) -> Figure {
     let drawn: Vec<Vec<PoseVector>> = VIEWS
         .map(|(_, _, axis)| if many { means_of_cells(&poses, cell_mm, axis) } else { poses.clone() })
         .into();
-    let usual_mm = if many { cell_mm } else { 0.2 * positions.size_mm() };
+    let usual_mm = if many { 1.5 * cell_mm } else { 0.2 * positions.size_mm() };
     let factor = exaggeration(drawn.iter().flatten(), usual_mm, 0.5 * positions.size_mm());
     let tip = |p: &PoseVector| [0, 1, 2].map(|i| p.at_mm[i] + factor * p.residual_um[i] * UM / MM);
     let ends = drawn.iter().flatten().flat_map(|p| [p.at_mm, tip(p)]);

@@ -281,7 +281,7 @@ fn stretch(canvas: &mut Canvas, frame: &Frame, ends: [f64; 2], text: &str, crowd
     let xs = ends.map(|x| frame.px([x, f64::NAN])[0]);
     for x in xs {
         if let Some((a, b)) = area.clip([x, area.top + NOTE_LINE_PX + 2.0], [x, area.bottom]) {
-            canvas.line(&[a, b], Rgb::GREY, 0.8, Dash::Solid);
+            canvas.line(&[a, b], Rgb::GREY.tint(0.6), 0.8, Dash::Solid);
         }
     }
     let half = 0.5 * text_width_px(text, NOTE.size_px) + 3.0;

@@ -272,7 +272,7 @@ pub fn sections(
                 Block::Table(tables::parameters(calibration)),
                 Block::Figure(figures::corrections(calibration)),
                 Block::Table(tables::placement(campaign, calibration)),
-                Block::Table(tables::correlations(calibration, HIGH_CORRELATION)),
+                tables::correlations(calibration, HIGH_CORRELATION),
                 Block::Table(tables::observability(calibration)),
             ],
         ),

@@ -1,7 +1,14 @@
 //! Writes a report with one of every picture into a directory, to look at while working on them:
-//! `cargo run --example report_gallery -- <directory>`. The numbers are invented but of the right size.
+//! `cargo run --example report_gallery -- <directory> <poses>`. The numbers are invented but of the right size.
 
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
 use rodcal::report::chart::{Bar, Chart, Direction, Figure, Mark, Point, Range, Style};
+use rodcal::report::pictures::calibration::{
+    Convergence, MethodErrors, ModeComparison, ModeResiduals, ParameterCorrection, PoseError, PoseResidual,
+    PoseVector, ResidualGroup, convergence, cumulative_errors, error_distribution, error_over_workspace,
+    mode_comparison, parameter_corrections, residual_vectors, residuals_by_group,
+};
 use rodcal::report::pictures::{
     Contributions, LoadDeflection, LoadLine, LoadUnit, MeanReading, Residuals, RodShape, ShapeCase, Station,
     StationKind, contributions, load_deflection, residuals, rod_shape,
@@ -11,11 +18,12 @@ use rodcal::report::{Block, Report, Section};
 
 fn main() -> rodcal::Result<()> {
     let directory = std::env::args().nth(1).unwrap_or_else(|| "reports/gallery".into());
-    let files = report().files(true)?;
+    let poses = std::env::args().nth(2).and_then(|n| n.parse().ok()).unwrap_or(150);
+    let files = report(poses).files(true)?;
     rodcal::files::write_together(std::path::Path::new(&directory), &files)
 }
 
-fn report() -> Report {
+fn report(poses: usize) -> Report {
     Report {
         title: "Stiffness of rods 5# and 2#".into(),
         headline: "Rod 5# bends 33.0 ± 0.2 µm/N along Y at its tip, 1.2 % more than the finite-element model says."
@@ -45,6 +53,10 @@ fn report() -> Report {
                     Block::List(vec!["Joints are worth most.".into(), "Shear can be left out.".into()]),
                     Block::Figure(contribution_picture()),
                 ],
+            ),
+            Section::new(
+                "Calibration",
+                calibration(poses).into_iter().map(|f| Block::Figure(f.clone().captioned(format!("{} Invented.", f.caption)))).collect(),
             ),
             Section::new("Later results", vec![Block::Figure(joint_angles()), Block::Figure(histogram())]),
         ],
@@ -227,4 +239,156 @@ fn histogram() -> Figure {
         })
         .with(Mark::Horizontal { at: 35.0, text: "expected".into() });
     Figure::from(chart).named("histogram").captioned("Invented.")
+}
+
+/// The pictures of a calibration with this many poses.
+fn calibration(poses: usize) -> Vec<Figure> {
+    let mut random = ChaCha8Rng::seed_from_u64(5);
+    let modes = [("rigid rod", 46.0), ("Calc", 31.0), ("FEA", 24.0), ("Meas", 20.0)];
+    let lengths = |sigma_um: f64, random: &mut ChaCha8Rng| -> Vec<f64> {
+        (0..poses).map(|_| sigma_um * (0..3).map(|_| normal(random).powi(2)).sum::<f64>().sqrt()).collect()
+    };
+    let residuals = modes.map(|(title, sigma_um)| {
+        let lengths_um = lengths(sigma_um / 1.7, &mut random);
+        by_group(title, &lengths_um)
+    });
+    let methods =
+        [("nominal", 700.0), ("rigid rod", 95.0), ("FEA", 61.0), ("Meas", 54.0)].map(|(label, sigma_um)| {
+            let errors_mm = lengths(sigma_um / 1.7, &mut random).into_iter().map(|l| l / 1000.0).collect();
+            MethodErrors { label: label.into(), errors_mm }
+        });
+    let at_mm: Vec<[f64; 3]> = (0..poses).map(|_| place(&mut random)).collect();
+    let errors: Vec<PoseError> = at_mm
+        .iter()
+        .map(|at| PoseError { at_mm: *at, error_mm: 8e-5 * at[0] * (0.7 + 0.3 * normal(&mut random).abs()) })
+        .collect();
+    let vectors: Vec<PoseVector> = at_mm
+        .iter()
+        .map(|at| {
+            let bend = [0.0, -0.02 * at[2], -0.03 * at[0]];
+            PoseVector { at_mm: *at, residual_um: bend.map(|b| b + 8.0 * normal(&mut random)) }
+        })
+        .collect();
+    vec![
+        residuals_by_group(&residuals),
+        error_distribution(&methods),
+        error_distribution(&methods[1..]),
+        cumulative_errors(&methods),
+        cumulative_errors(&methods[1..]),
+        error_over_workspace(&errors),
+        residual_vectors(&vectors),
+        loops(),
+        corrections(&mut random),
+        compared(),
+    ]
+}
+
+/// A standard normal number (Box and Muller 1958).
+fn normal(random: &mut ChaCha8Rng) -> f64 {
+    let (u, v): (f64, f64) = (1.0 - random.random::<f64>(), random.random());
+    (-2.0 * u.ln()).sqrt() * (std::f64::consts::TAU * v).cos()
+}
+
+/// Somewhere in front of a robot, mm.
+fn place(random: &mut ChaCha8Rng) -> [f64; 3] {
+    let angle = 1.2 * (2.0 * random.random::<f64>() - 1.0);
+    let reach = 450.0 + 500.0 * random.random::<f64>();
+    [reach * angle.cos(), reach * angle.sin(), 150.0 + 600.0 * random.random::<f64>()]
+}
+
+/// Five clamps; every 37th pose went wrong, one of them badly.
+fn by_group(title: &str, lengths_um: &[f64]) -> ModeResiduals {
+    let rms_um = (lengths_um.iter().map(|l| l * l).sum::<f64>() / lengths_um.len().max(1) as f64).sqrt();
+    let pose = |i: usize| {
+        let outlier = i % 37 == 22;
+        let factor = if i == 22 { 40.0 } else { 1.5 };
+        let length_um = if outlier { factor * rms_um + lengths_um[i] } else { lengths_um[i] };
+        PoseResidual { name: format!("P{:03}", i + 1), length_um, outlier }
+    };
+    let cut = |k: usize| k * lengths_um.len() / 5;
+    let group = |k: usize| ResidualGroup {
+        name: format!("clamp {}", k + 1),
+        poses: (cut(k)..cut(k + 1)).map(pose).collect(),
+    };
+    ModeResiduals { title: title.into(), groups: (0..5).map(group).collect(), rms_um }
+}
+
+fn loops() -> Figure {
+    let falling =
+        |start: f64, factor: f64, floor: f64| (0..9).map(|i| start * f64::powi(factor, i) + floor).collect();
+    let panel = |quantity: &str, tolerance, curves: [(&str, Vec<f64>); 3]| Convergence {
+        title: "compensation of the rod".into(),
+        quantity: quantity.into(),
+        unit: "µm".into(),
+        tolerance,
+        curves: curves.map(|(label, values)| (label.to_owned(), values)).into(),
+    };
+    convergence(&[
+        panel(
+            "largest change of a deflection",
+            Some(0.01),
+            [
+                ("Calc", falling(280.0, 0.05, 0.0)),
+                ("FEA", falling(310.0, 0.07, 0.0)),
+                ("Meas", falling(330.0, 0.09, 0.0)),
+            ],
+        ),
+        panel(
+            "rms residual",
+            None,
+            [
+                ("Calc", falling(80.0, 0.2, 31.0)),
+                ("FEA", falling(90.0, 0.2, 24.0)),
+                ("Meas", falling(95.0, 0.2, 20.0)),
+            ],
+        ),
+    ])
+}
+
+fn corrections(random: &mut ChaCha8Rng) -> Figure {
+    let mut parameter = |name: String, size: f64, half: f64| {
+        let (correction, half) = (size * normal(random), half * (0.6 + random.random::<f64>()));
+        let interval = Some([correction - half, correction + half]);
+        ParameterCorrection { name, correction, interval, note: String::new() }
+    };
+    let mut lengths: Vec<_> = ["a", "d"]
+        .iter()
+        .flat_map(|l| (1..=6).map(move |i| format!("{l}{i}")))
+        .map(|n| parameter(n, 0.3, 0.05))
+        .collect();
+    lengths.extend(
+        ["tool x", "tool y", "tool z", "base x", "base y", "base z"].map(|n| parameter(n.into(), 0.4, 0.08)),
+    );
+    let mut angles: Vec<_> = ["alpha", "theta"]
+        .iter()
+        .flat_map(|l| (1..=6).map(move |i| format!("{l}{i}")))
+        .map(|n| parameter(n, 0.8, 0.1))
+        .collect();
+    angles.extend(["base A", "base B", "base C"].map(|n| parameter(n.into(), 0.5, 0.1)));
+    let unknown = |p: &mut ParameterCorrection, note: &str| {
+        (p.correction, p.interval, p.note) = (0.0, None, note.into())
+    };
+    unknown(&mut lengths[7], "");
+    unknown(&mut lengths[8], "same as d2");
+    unknown(&mut angles[11], "same as the tool");
+    lengths[4].interval = Some([-9.0, 9.5]);
+    parameter_corrections(&lengths, &angles)
+}
+
+fn compared() -> Figure {
+    let mode = |(name, mean_mm, difference_mm): (&str, f64, f64)| ModeComparison {
+        name: name.into(),
+        mean_mm,
+        mean_interval_mm: Some([mean_mm - 0.009, mean_mm + 0.010]),
+        difference_mm,
+        difference_interval_mm: Some([difference_mm - 0.003, difference_mm + 0.004]),
+    };
+    let rows = [
+        ("rigid rod", 0.095, 0.0),
+        ("Calc", 0.068, -0.027),
+        ("FEA", 0.061, -0.034),
+        ("Meas", 0.054, -0.041),
+        ("Meas, joints", 0.0535, -0.0415),
+    ];
+    mode_comparison(&rows.map(mode))
 }

@@ -53,6 +53,10 @@ Examples:
       how much it really bends, from readings under known loads, with a report
   rodcal rig fit linear stiffness_data/nist-load-cell.csv
       any load-deflection recording: is it a straight line?
+  rodcal calibrate campaigns/tx90-5/campaign.toml --out reports/tx90
+      how accurate a robot is once its rod's deflection is compensated
+  rodcal compare campaigns/tx90-5/campaign.toml
+      does it matter how the deflection is known?
 
 Words:
   C^F     deflection of the tip in µm per newton of force on the ball; 3x3,

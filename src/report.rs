@@ -5,10 +5,11 @@
 //! writes a file, and the same report always gives the same bytes.
 //!
 //! - [`chart`]: charts as data, drawn by [`chart::Figure::svg`] · [`png`]: SVG to PNG
-//! - [`pictures`]: the pictures of a rod, from numbers to charts
+//! - [`pictures`]: the pictures of a rod and of a calibration, from numbers to charts
 //! - [`compliance`] · [`rig`]: results of the library as reports and as JSON
 //! - [`text`]: a report for the terminal · [`table`]: tables to text, HTML, Markdown, CSV · [`html`]: the page
 
+mod axes;
 pub mod calibration;
 pub mod chart;
 pub mod comparison;

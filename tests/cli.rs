@@ -2,6 +2,8 @@
 
 #![allow(clippy::unwrap_used)]
 
+#[path = "cli/calibrate.rs"]
+mod calibrate;
 #[path = "cli/files.rs"]
 mod files;
 #[path = "cli/json.rs"]

@@ -210,7 +210,7 @@ pub fn calibrate_from<'c>(
         start: nominal,
         setup,
     };
-    calibration.warnings = super::warning::all(campaign, recording, &calibration, compensation);
+    calibration.warnings = super::warning::all(campaign, recording, &calibration);
     Ok(calibration)
 }
 

@@ -4,8 +4,7 @@ use std::fmt;
 
 use super::calibrate::Calibration;
 use super::campaign::{Campaign, Recording};
-use super::compensation::Compensation;
-use super::identify::plausible_range;
+use super::identify::{Held, plausible_range};
 use crate::robot::Parameter;
 use crate::units::{MM, UM, significant};
 
@@ -22,14 +21,19 @@ pub enum Warning {
     },
     /// The robot's file has no masses, so that no joint yields under a known torque.
     NoMasses,
-    /// Clamps and a rod, but no contact force: only gravity bends the rod.
-    GravityOnly,
     /// A combination of parameters that the data do not identify.
     NotIdentified {
         /// The parameters that take part, the largest share first, with their coefficients.
         combination: Vec<(Parameter, f64)>,
         /// Its standard error by the data alone, relative to the plausible range; ∞ for none.
         relative_error: f64,
+    },
+    /// More combinations than anybody wants to read one by one.
+    ManyNotIdentified {
+        /// How many.
+        combinations: usize,
+        /// The parameters that do not stand on data.
+        parameters: Vec<Parameter>,
     },
     /// Poses that no noise explains.
     Outliers {
@@ -59,12 +63,7 @@ pub enum Warning {
 }
 
 /// All that apply.
-pub(super) fn all(
-    campaign: &Campaign,
-    recording: &Recording,
-    calibration: &Calibration,
-    compensation: &Compensation,
-) -> Vec<Warning> {
+pub(super) fn all(campaign: &Campaign, recording: &Recording, calibration: &Calibration) -> Vec<Warning> {
     let mut warnings = Vec::new();
     if !calibration.is_converged {
         warnings.push(Warning::NotConverged {
@@ -75,21 +74,7 @@ pub(super) fn all(
     if !campaign.robot.has_masses() {
         warnings.push(Warning::NoMasses);
     }
-    let has_clamps = recording.groups.iter().any(|group| group.name.starts_with("clamp"));
-    if compensation.compliance.is_some() && campaign.contact_force.is_none() && has_clamps {
-        warnings.push(Warning::GravityOnly);
-    }
-    warnings.extend(calibration.held.iter().map(|held| {
-        let mut combination: Vec<(Parameter, f64)> = calibration
-            .parameters
-            .iter()
-            .zip(&held.direction)
-            .map(|(estimate, &coefficient)| (estimate.parameter, coefficient))
-            .filter(|(_, coefficient)| coefficient.abs() > 0.1)
-            .collect();
-        combination.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
-        Warning::NotIdentified { combination, relative_error: held.relative_error }
-    }));
+    warnings.extend(not_identified(calibration));
     if !calibration.outliers.is_empty() {
         let mut poses: Vec<(String, f64)> = calibration
             .outliers
@@ -117,6 +102,28 @@ pub(super) fn all(
     warnings
 }
 
+fn not_identified(calibration: &Calibration) -> Vec<Warning> {
+    /// Combinations that are named one by one.
+    const FEW: usize = 3;
+    if calibration.held.len() > FEW {
+        let parameters =
+            calibration.parameters.iter().filter(|p| !p.identifiable).map(|p| p.parameter).collect();
+        return vec![Warning::ManyNotIdentified { combinations: calibration.held.len(), parameters }];
+    }
+    let of_direction = |held: &Held| {
+        let mut combination: Vec<(Parameter, f64)> = calibration
+            .parameters
+            .iter()
+            .zip(&held.direction)
+            .map(|(estimate, &coefficient)| (estimate.parameter, coefficient))
+            .filter(|(_, coefficient)| coefficient.abs() > 0.1)
+            .collect();
+        combination.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
+        Warning::NotIdentified { combination, relative_error: held.relative_error }
+    };
+    calibration.held.iter().map(of_direction).collect()
+}
+
 fn unequal_noise(recording: &Recording, calibration: &Calibration) -> Option<Warning> {
     let noise = &calibration.noise;
     let p_value = noise.p_equal?;
@@ -135,9 +142,6 @@ impl fmt::Display for Warning {
             Warning::NoMasses => f.write_str(
                 "the robot's file has no masses, so the torques on its joints are unknown: joint compliances are off",
             ),
-            Warning::GravityOnly => f.write_str(
-                "the campaign states no contact force: the rod's deflection is that under gravity only",
-            ),
             Warning::NotIdentified { combination, relative_error } => {
                 let names: Vec<String> =
                     combination.iter().map(|(parameter, c)| format!("{c:+.2}·{parameter}")).collect();
@@ -151,6 +155,14 @@ impl fmt::Display for Warning {
                     false => write!(f, "(each in its plausible range; the data say nothing about it)")?,
                 }
                 f.write_str(": it is held at its nominal value; more varied poses would show it")
+            }
+            Warning::ManyNotIdentified { combinations, parameters } => {
+                let names: Vec<String> = parameters.iter().map(ToString::to_string).collect();
+                write!(
+                    f,
+                    "these poses do not identify {combinations} combinations of the parameters {}: they are held at their nominal values; more varied poses would show them",
+                    names.join(", ")
+                )
             }
             Warning::Outliers { poses, count_in_full } => {
                 let (shown, more) = (poses.iter().take(5), poses.len().saturating_sub(5));

@@ -47,6 +47,9 @@ impl Outcome {
 pub fn deliver(arguments: &Arguments, outcome: Outcome) -> Result<ExitCode> {
     let Outcome { mut json, mut report, text, default_directory, files: more, status } = outcome;
     let directory = arguments.out.clone().or(default_directory);
+    if report.is_none() && arguments.out.is_some() {
+        say("warning: this command writes no report: --out has no effect");
+    }
     if let Some(report) = &mut report {
         if arguments.png && directory.is_none() {
             report.warnings.push("--png has no effect without --out".into());

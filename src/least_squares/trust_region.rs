@@ -88,7 +88,7 @@ pub(super) fn minimise(system: &Stacked, start: &DVector<f64>, options: &Options
         if is_enough {
             break search.verdict(&here, &view, TerminationReason::Gradient);
         }
-        if view.cosine <= NEAR || view.full.projection <= view.rounding {
+        if view.cosine <= NEAR || view.is_unresolved(&here) {
             if let Some(better) = search.polish(&here, &view)? {
                 (here, view) = better;
                 continue;
@@ -176,6 +176,13 @@ impl View {
     /// ‖D·v‖ over the free parameters, for scales and a vector of all n.
     fn length(&self, scale: &DVector<f64>, v: &DVector<f64>) -> f64 {
         self.free.iter().map(|&j| (scale[j] * v[j]).powi(2)).sum::<f64>().sqrt()
+    }
+
+    /// True where what is left to gain, the square of the projection, drowns in the rounding of the sum of squares:
+    /// 2·‖r‖ times that of the residual vector. The gradient is then the better judge.
+    fn is_unresolved(&self, here: &Point) -> bool {
+        let projection = self.full.projection;
+        projection <= self.rounding || projection.powi(2) <= 2.0 * self.rounding * here.square.sqrt()
     }
 
     /// A step of the free parameters as one of all n.

@@ -1,6 +1,9 @@
 //! What `rodcal calibrate` says: JSON, tables and pictures of a [`Calibration`].
 
+mod figures;
 mod tables;
+
+pub(super) use figures::{convergence, mode_residuals};
 
 use serde_json::{Map, Value, json};
 
@@ -255,7 +258,11 @@ pub fn sections(
             "How well the robot is known",
             vec![
                 Block::Table(tables::errors(calibration, cross_validation)),
+                Block::Figure(figures::distribution(calibration, cross_validation)),
+                Block::Figure(figures::residuals(recording, calibration)),
                 Block::Table(tables::groups(recording, calibration)),
+                Block::Figure(figures::workspace(recording, calibration)),
+                Block::Figure(figures::vectors(calibration)),
             ],
         ),
         Section::new(
@@ -263,11 +270,18 @@ pub fn sections(
             vec![
                 Block::Paragraph(tables::PARAMETERS_NOTE.into()),
                 Block::Table(tables::parameters(calibration)),
+                Block::Figure(figures::corrections(calibration)),
                 Block::Table(tables::placement(campaign, calibration)),
-                Block::Table(tables::correlations(calibration, HIGH_CORRELATION)),
+                tables::correlations(calibration, HIGH_CORRELATION),
                 Block::Table(tables::observability(calibration)),
             ],
         ),
-        Section::new("How the fit went", vec![Block::Table(tables::passes(calibration))]),
+        Section::new(
+            "How the fit went",
+            vec![
+                Block::Table(tables::passes(calibration)),
+                Block::Figure(figures::convergence(&[calibration])),
+            ],
+        ),
     ]
 }

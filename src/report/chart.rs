@@ -79,6 +79,8 @@ pub struct Axis {
     pub range: Range,
     /// Distance between ticks, for example 90 for angles in degrees; `None` chooses a 1-2-5 number.
     pub step: Option<f64>,
+    /// Logarithmic, with ticks at powers of ten. What is not above zero is left out.
+    pub log: bool,
     /// Names at given values in place of numbers: for bars of categories.
     pub names: Vec<(f64, String)>,
 }
@@ -87,6 +89,11 @@ impl Axis {
     /// An axis with numbers and an automatic range.
     pub fn new(label: impl Into<String>) -> Self {
         Axis { label: label.into(), ..Axis::default() }
+    }
+
+    /// The same axis, logarithmic.
+    pub fn log(self) -> Self {
+        Axis { log: true, ..self }
     }
 }
 
@@ -158,6 +165,16 @@ pub enum Mark {
         /// Written beside the line; may be empty.
         text: String,
     },
+    /// A stretch along x, between thin lines, with its name at the top of the chart. A name that finds
+    /// no room beside the one before it is left out.
+    Stretch {
+        /// Where it begins, in x.
+        from: f64,
+        /// Where it ends, in x.
+        to: f64,
+        /// Its name; may be empty.
+        text: String,
+    },
     /// A note, placed beside its point where it covers least.
     Note {
         /// x, y of what the note is about.
@@ -223,6 +240,8 @@ pub struct Style {
     pub marker: Marker,
     /// Line width in CSS pixels.
     pub width_px: f64,
+    /// Half the size of markers in CSS pixels; `None` draws many points smaller than few.
+    pub size_px: Option<f64>,
 }
 
 impl Style {
@@ -241,12 +260,23 @@ impl Style {
             [Dash::Solid, Dash::Dashed, Dash::DashDot, Dash::Dotted, Dash::LongDash, Dash::DashDotDot];
         const MARKERS: [Marker; 6] =
             [Marker::Circle, Marker::Square, Marker::Triangle, Marker::Diamond, Marker::Cross, Marker::Plus];
-        Style { colour: COLOURS[n % 7], dash: DASHES[n % 6], marker: MARKERS[n % 6], width_px: 1.6 }
+        Style {
+            colour: COLOURS[n % 7],
+            dash: DASHES[n % 6],
+            marker: MARKERS[n % 6],
+            width_px: 1.6,
+            size_px: None,
+        }
     }
 
     /// The same look in another line width, CSS pixels.
     pub fn width(self, width_px: f64) -> Self {
         Style { width_px, ..self }
+    }
+
+    /// The same look with markers of another half size, CSS pixels.
+    pub fn size(self, size_px: f64) -> Self {
+        Style { size_px: Some(size_px), ..self }
     }
 
     /// The same look with another dash.

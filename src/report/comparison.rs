@@ -2,12 +2,16 @@
 
 use serde_json::{Value, json};
 
-use super::calibration::{self, length};
+use super::calibration::{self, convergence, length, mode_residuals};
+use super::pictures::calibration::{
+    MethodErrors, ModeComparison, ModeResiduals, PoseError, cumulative_errors, error_distribution,
+    error_over_workspace, mode_comparison, residuals_by_group,
+};
 use super::table::{Column, Table};
 use super::{Block, Report, Section};
 use crate::calibration::campaign::Targets;
-use crate::calibration::{Campaign, Comparison, Difference, Mode};
-use crate::units::{UM, significant};
+use crate::calibration::{Calibration, Campaign, Comparison, Difference, Mode};
+use crate::units::{MM, UM, significant};
 
 /// The JSON of `rodcal compare --json`.
 pub fn json(campaign: &Campaign, comparison: &Comparison) -> Value {
@@ -127,21 +131,88 @@ fn um(metres: f64) -> String {
 
 /// The body of [`report`].
 pub fn sections(campaign: &Campaign, comparison: &Comparison) -> Vec<Section> {
-    vec![Section::new(
-        "Modes side by side",
-        vec![
-            Block::Paragraph(format!(
-                "Every mode is calibrated on the same {} poses and judged by its errors on {}. Intervals come from a \
-                 paired bootstrap over poses ({} draws): both the calibration and its judgement are repeated on poses \
-                 drawn again.",
-                campaign.measurements.len(),
-                judged_by(campaign, comparison),
-                comparison.draws
-            )),
-            Block::Table(modes_table(comparison)),
-            Block::Table(differences_table(comparison)),
-        ],
-    )]
+    let recording = &campaign.measurements;
+    let of_modes = |index: usize| {
+        let calibrated = &comparison.calibrations[index];
+        let errors_mm = comparison.errors(index).iter().map(|error| error / MM).collect();
+        MethodErrors { label: format!("mode {}", calibrated.mode.name()), errors_mm }
+    };
+    let methods: Vec<MethodErrors> = (0..comparison.calibrations.len()).map(of_modes).collect();
+    let residuals: Vec<ModeResiduals> = comparison
+        .calibrations
+        .iter()
+        .map(|c| mode_residuals(&format!("mode {}", c.mode.name()), recording, c))
+        .collect();
+    let calibrations: Vec<&Calibration> = comparison.calibrations.iter().collect();
+    vec![
+        Section::new(
+            "Modes side by side",
+            vec![
+                Block::Paragraph(format!(
+                    "Every mode is calibrated on the same {} poses and judged by its errors on {}. Intervals come from \
+                     a paired bootstrap over poses ({} draws): poses are drawn again, and {}.",
+                    recording.len(),
+                    judged_by(campaign, comparison),
+                    comparison.draws,
+                    match comparison.cross_validations {
+                        None => "both the calibration and its judgement are repeated on them",
+                        Some(_) => "their held-out errors are compared",
+                    }
+                )),
+                Block::Table(modes_table(comparison)),
+                Block::Table(differences_table(comparison)),
+                Block::Figure(mode_comparison(&compared(comparison))),
+            ],
+        ),
+        Section::new(
+            "Errors of each mode",
+            vec![
+                Block::Figure(error_distribution(&methods)),
+                Block::Figure(cumulative_errors(&methods)),
+                Block::Figure(error_over_workspace(&best_over_workspace(comparison))),
+            ],
+        ),
+        Section::new(
+            "Residuals and convergence",
+            vec![Block::Figure(residuals_by_group(&residuals)), Block::Figure(convergence(&calibrations))],
+        ),
+    ]
+}
+
+/// The default mode's errors over the workspace: that of the last mode, which knows most.
+fn best_over_workspace(comparison: &Comparison) -> Vec<PoseError> {
+    let last = comparison.calibrations.len().saturating_sub(1);
+    let Some(calibrated) = comparison.calibrations.get(last) else { return Vec::new() };
+    let tips = match (&comparison.cross_validations, &calibrated.validation) {
+        (None, Some(validation)) => &validation.tips,
+        _ => &calibrated.tips,
+    };
+    tips.iter()
+        .zip(comparison.errors(last))
+        .map(|(tip, error)| PoseError { at_mm: (tip / MM).into(), error_mm: error / MM })
+        .collect()
+}
+
+/// Every mode with its difference to the first.
+fn compared(comparison: &Comparison) -> Vec<ModeComparison> {
+    let first = comparison.calibrations.first().map(|c| c.mode);
+    comparison
+        .calibrations
+        .iter()
+        .enumerate()
+        .map(|(index, calibrated)| {
+            let (low, high) = comparison.intervals[index];
+            let to_first =
+                comparison.differences.iter().find(|d| d.mode == calibrated.mode && Some(d.against) == first);
+            ModeComparison {
+                name: calibrated.mode.name().into(),
+                mean_mm: comparison.summary(index).mean / MM,
+                mean_interval_mm: Some([low / MM, high / MM]),
+                difference_mm: to_first.map_or(0.0, |d| d.mean / MM),
+                difference_interval_mm: to_first.map(|d| [d.interval.0 / MM, d.interval.1 / MM]),
+            }
+        })
+        .collect()
 }
 
 fn modes_table(comparison: &Comparison) -> Table {

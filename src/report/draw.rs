@@ -1,11 +1,12 @@
 //! Lays out a figure: panels, titles, axes, legends. What is drawn inside the axes is in `marks`.
 
-use super::chart::{Axis, Chart, Dash, Figure, Mark, Range};
+use super::axes::{has_bars, scales};
+use super::chart::{Chart, Dash, Figure};
 use super::labels::{Area, Crowd, text_width_px, wrap};
 use super::legend::Legend;
 use super::marks;
 use super::plot::{Anchor, Canvas, Lettering, Px, Rgb};
-use super::scale::{Extent, Scale, drawable, extent};
+use super::scale::Scale;
 
 /// Width of every figure: the text column of the page.
 const WIDTH_PX: f64 = 760.0;
@@ -59,19 +60,27 @@ fn draw(figure: &Figure) -> String {
     canvas.finish(&titles.join("; "), &figure.caption)
 }
 
-fn plan(figure: &Figure, columns: usize, width: f64) -> Vec<Plan<'_>> {
+fn plan<'a>(figure: &'a Figure, columns: usize, width: f64) -> Vec<Plan<'a>> {
     let lettered = figure.panels.len() > 1;
     // Axes that stand below one another stand exactly below one another.
     let left = |column: usize| {
         figure.panels.iter().skip(column).step_by(columns).map(|c| left_margin(c, width)).fold(0.0, f64::max)
     };
-    let mut plans = Vec::new();
-    for (i, chart) in figure.panels.iter().enumerate() {
-        let letter = char::from(b'a' + (i % 26) as u8);
-        let title = if lettered { format!("({letter}) {}", chart.title) } else { chart.title.clone() };
-        plans.push(Plan::new(chart, &title, left(i % columns), width, !figure.shared_legend));
+    let all = |least_unit: f64| -> Vec<Plan<'a>> {
+        let plan = |(i, chart): (usize, &'a Chart)| {
+            let letter = char::from(b'a' + (i % 26) as u8);
+            let title = if lettered { format!("({letter}) {}", chart.title) } else { chart.title.clone() };
+            Plan::new(chart, &title, left(i % columns), width, least_unit, !figure.shared_legend)
+        };
+        figure.panels.iter().enumerate().map(plan).collect()
+    };
+    // Drawings of things in one figure are drawn to one scale, the smallest of theirs.
+    let drawings = all(0.0);
+    let units = drawings.iter().filter(|p| p.chart.equal_aspect).map(|p| p.frame.unit_per_px());
+    match units.fold(0.0, f64::max) {
+        0.0 => drawings,
+        unit => all(unit),
     }
-    plans
 }
 
 /// Where everything of one chart stands.
@@ -98,12 +107,22 @@ impl Frame {
             self.area.bottom - self.y.fraction(point[1]) * self.area.height(),
         ]
     }
+
+    /// How much of x a pixel is.
+    fn unit_per_px(&self) -> f64 {
+        (self.x.to - self.x.from) / self.area.width()
+    }
+
+    /// Whether a data point has a place on the picture, be it beyond the frame.
+    pub(super) fn places(&self, point: [f64; 2]) -> bool {
+        self.x.places(point[0]) && self.y.places(point[1])
+    }
 }
 
 impl<'a> Plan<'a> {
-    fn new(chart: &'a Chart, title: &str, left: f64, width: f64, with_legend: bool) -> Self {
+    fn new(chart: &'a Chart, title: &str, left: f64, width: f64, least_unit: f64, with_legend: bool) -> Self {
         let plot_width = (width - left - right_margin(chart)).max(60.0);
-        let (x, y, plot_height) = scales(chart, plot_width);
+        let (x, y, plot_height) = scales(chart, plot_width, least_unit);
         let area = Area { left, top: 0.0, right: left + plot_width, bottom: plot_height };
         Plan {
             chart,
@@ -136,7 +155,7 @@ impl<'a> Plan<'a> {
             let y = area.top - TITLE_GAP_PX - (i as f64 + 0.5) * TITLE_LINE_PX;
             canvas.text([self.left, y], line, TITLE, Rgb::INK);
         }
-        if marks::extents(&self.chart.marks, area.width()) == (None, None) {
+        if marks::extents(self.chart, area.width()) == (None, None) {
             canvas.text(area.centre(), "no data", NOTE, Rgb::GREY);
         } else {
             self.grid(canvas);
@@ -160,7 +179,8 @@ impl<'a> Plan<'a> {
                 canvas.line(&[[x, area.top], [x, area.bottom]], strength(*value), 0.8, Dash::Solid);
             }
         }
-        if self.chart.y.names.is_empty() {
+        // Bars lead the eye to their names by themselves, points do not.
+        if self.chart.y.names.is_empty() || !has_bars(self.chart) {
             for (value, _) in &frame.y.ticks {
                 let y = frame.px([0.0, *value])[1];
                 canvas.line(&[[area.left, y], [area.right, y]], strength(*value), 0.8, Dash::Solid);
@@ -200,7 +220,7 @@ impl<'a> Plan<'a> {
 
 /// Room left of the plotting area: axis label and tick labels.
 fn left_margin(chart: &Chart, width: f64) -> f64 {
-    let (_, y, _) = scales(chart, 0.8 * width);
+    let (_, y, _) = scales(chart, 0.8 * width, 0.0);
     let widest = y.ticks.iter().map(|(_, label)| text_width_px(label, NOTE.size_px)).fold(0.0, f64::max);
     let label = if chart.y.label.is_empty() { 0.0 } else { 22.0 };
     label + widest.min(0.5 * width) + TICK_PX + 6.0
@@ -208,77 +228,15 @@ fn left_margin(chart: &Chart, width: f64) -> f64 {
 
 /// Room right of the plotting area: half of the last tick label.
 fn right_margin(chart: &Chart) -> f64 {
-    let (x, _, _) = scales(chart, 300.0);
+    let (x, _, _) = scales(chart, 300.0, 0.0);
     x.ticks.last().map_or(0.0, |(_, label)| 0.5 * text_width_px(label, NOTE.size_px)).clamp(6.0, 40.0)
-}
-
-/// Both scales and the height of the plotting area.
-fn scales(chart: &Chart, width: f64) -> (Scale, Scale, f64) {
-    let count = |length: f64, each: f64| ((length / each) as usize).clamp(3, 10);
-    let (xs, ys) = marks::extents(&chart.marks, width);
-    let default_height = match chart.y.names.len() {
-        0 => (0.6 * width).clamp(180.0, 330.0),
-        bars => 26.0 * bars as f64 + 10.0,
-    };
-    let height = chart.height_px.filter(|h| drawable(*h)).unwrap_or(default_height).clamp(60.0, 2000.0);
-    if chart.equal_aspect {
-        return equal_scales(chart, xs, ys, width);
-    }
-    let snug = chart.marks.iter().any(|mark| matches!(mark, Mark::Bars { .. }));
-    // As many ticks along x as there is room for their labels.
-    let room = |x: &Scale| {
-        let widest = x.ticks.iter().map(|(_, label)| text_width_px(label, NOTE.size_px)).fold(0.0, f64::max);
-        (widest + 10.0) * x.ticks.len().saturating_sub(1) as f64 <= width
-    };
-    let xs_of = |count| scale(&chart.x, xs, count, snug);
-    let x = (2..=count(width, 62.0)).rev().map(xs_of).find(room).unwrap_or_else(|| xs_of(1));
-    (x, scale(&chart.y, ys, count(height, 36.0), snug), height)
-}
-
-/// The scale of one axis; `snug` does without rounding to whole ticks, which bars do not need.
-fn scale(axis: &Axis, data: Extent, count: usize, snug: bool) -> Scale {
-    let (low, high) = data.unwrap_or((0.0, 1.0));
-    if let Some((first, last)) = extent(axis.names.iter().map(|(at, _)| *at)) {
-        let named = axis.names.iter().filter(|(at, _)| drawable(*at)).cloned().collect();
-        return Scale { ticks: named, ..Scale::fixed(first - 0.6, last + 0.6, count) };
-    }
-    let scale = match axis.range {
-        Range::Auto | Range::AutoWithZero if snug => Scale::fixed(low, high, count),
-        Range::Auto => Scale::rounded(low, high, count),
-        Range::AutoWithZero => Scale::rounded(low.min(0.0), high.max(0.0), count),
-        Range::Fixed(from, to) => Scale::fixed(from, to, count),
-    };
-    scale.with_step(axis.step)
-}
-
-/// One unit of x as long as one unit of y: the height follows from the width, within reason.
-fn equal_scales(chart: &Chart, xs: Extent, ys: Extent, width: f64) -> (Scale, Scale, f64) {
-    let range = |axis: &Axis, data: Extent| match axis.range {
-        Range::Fixed(from, to) if drawable(from) && drawable(to) => (from.min(to), from.max(to)),
-        _ => data.unwrap_or((0.0, 1.0)),
-    };
-    let (x, y) = (range(&chart.x, xs), range(&chart.y, ys));
-    // Air around the drawing, where its notes go; a drawing without extent still gets a unit of it.
-    let largest = (x.1 - x.0).max(y.1 - y.0);
-    let air = if largest > 0.0 { 0.1 * largest } else { 1.0 };
-    let (span_x, span_y) = (x.1 - x.0 + 2.0 * air, y.1 - y.0 + 2.0 * air);
-    let height = (span_y / span_x * width).clamp(0.3 * width, 0.9 * width).min(420.0);
-    let unit_per_px = (span_x / width).max(span_y / height);
-    let around = |(low, high): (f64, f64), length: f64| {
-        let (middle, half) = (0.5 * low + 0.5 * high, 0.5 * length * unit_per_px);
-        (middle - half, middle + half)
-    };
-    let ((x0, x1), (y0, y1)) = (around(x, width), around(y, height));
-    let count = ((width / 65.0) as usize).clamp(2, 10);
-    let ticks_y = ((count as f64 * height / width).round() as usize).max(2);
-    (Scale::fixed(x0, x1, count), Scale::fixed(y0, y1, ticks_y), height)
 }
 
 #[cfg(test)]
 mod tests {
     use resvg::usvg::roxmltree::Document;
 
-    use super::super::chart::{Bar, Direction, Point, Style};
+    use super::super::chart::{Bar, Direction, Mark, Point, Range, Style};
     use super::*;
 
     fn every_mark(values: [f64; 3]) -> Chart {
@@ -299,6 +257,7 @@ mod tests {
             .with(Mark::Band { label: label(), points: vec![[a, b, c], [b, c, a]], style })
             .with(Mark::Horizontal { at: a, text: label() })
             .with(Mark::Vertical { at: b, text: label() })
+            .with(Mark::Stretch { from: b, to: c, text: label() })
             .with(Mark::Note { at: [a, c], text: label() })
             .with(Mark::Arrow { from: [a, b], to: [b, c], text: label(), style })
     }
@@ -309,6 +268,8 @@ mod tests {
         for (i, a) in odd.into_iter().enumerate() {
             for b in odd {
                 let mut chart = every_mark([a, b, odd[(i + 1) % odd.len()]]);
+                chart.x.log = i % 2 == 1;
+                chart.y.log = i % 3 == 1;
                 for equal_aspect in [false, true] {
                     chart.equal_aspect = equal_aspect;
                     let svg = Figure::from(chart.clone()).svg();
@@ -337,15 +298,5 @@ mod tests {
         assert_eq!(root.attribute("viewBox"), Some(view_box.as_str()));
         assert!(document.descendants().all(|node| node.attribute("id").is_none()));
         assert!(svg.contains("<desc>Caption</desc>") && svg.contains("(c) "), "{svg}");
-    }
-
-    #[test]
-    fn a_drawing_is_as_long_per_unit_along_x_as_along_y() {
-        let points = vec![[0.0, 0.0], [525.0, 150.0]];
-        let mut chart = Chart::new("", "X / mm", "Z / mm");
-        chart.marks.push(Mark::Line { label: String::new(), points, style: Style::nth(0) });
-        chart.equal_aspect = true;
-        let (x, y, height) = scales(&chart, 600.0);
-        approx::assert_relative_eq!((x.to - x.from) / 600.0, (y.to - y.from) / height, max_relative = 1e-12);
     }
 }

@@ -133,6 +133,11 @@ impl Crowd {
         self.texts.push(area);
     }
 
+    /// Whether a text here would cover no other.
+    pub(super) fn is_free(&self, area: &Area) -> bool {
+        !self.texts.iter().any(|text| text.touches(area))
+    }
+
     /// The place beside `at` for a text of the given size that covers least; it is then taken.
     pub(super) fn place(&mut self, at: Px, width_px: f64, height_px: f64) -> Area {
         const DIRECTIONS: usize = 16;

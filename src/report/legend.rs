@@ -82,13 +82,13 @@ fn sample(canvas: &mut Canvas, mark: &Mark, [x, y]: Px) {
             if points.iter().any(|p| p.error > 0.0) {
                 marks::error_bar(canvas, middle[0], y - 7.0, y + 7.0, style);
             }
-            marks::marker(canvas, middle, style, marks::marker_px(points.len()));
+            marks::marker(canvas, middle, style, marks::marker_px(style, points.len()));
         }
         Mark::Bars { style, .. } => marks::bar(canvas, &patch, style),
         Mark::Band { style, .. } => {
             canvas.fill(&patch.corners(), Rgb::from(style.colour).tint(marks::BAND_TINT))
         }
-        Mark::Horizontal { .. } | Mark::Vertical { .. } | Mark::Note { .. } => {
+        Mark::Horizontal { .. } | Mark::Vertical { .. } | Mark::Stretch { .. } | Mark::Note { .. } => {
             canvas.line(&[[x, y], [right, y]], Rgb::GREY, 1.0, Dash::Solid);
         }
     }

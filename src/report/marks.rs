@@ -1,6 +1,6 @@
 //! Draws the marks of a chart inside its axes, and finds what the axes have to span.
 
-use super::chart::{Bar, Dash, Direction, Mark, Marker, Point, Style};
+use super::chart::{Bar, Chart, Dash, Direction, Mark, Marker, Point, Style};
 use super::draw::{Frame, NOTE};
 use super::labels::{Area, Crowd, text_width_px};
 use super::plot::{Anchor, Canvas, Lettering, Px, Rgb};
@@ -17,15 +17,19 @@ pub(super) fn label(mark: &Mark) -> &str {
         | Mark::Points { label, .. }
         | Mark::Bars { label, .. }
         | Mark::Band { label, .. } => label,
-        Mark::Horizontal { .. } | Mark::Vertical { .. } | Mark::Note { .. } | Mark::Arrow { .. } => "",
+        Mark::Horizontal { .. }
+        | Mark::Vertical { .. }
+        | Mark::Stretch { .. }
+        | Mark::Note { .. }
+        | Mark::Arrow { .. } => "",
     }
 }
 
 /// What x and y have to span so that all marks are seen. `width_px` of the plot tells how much room
 /// the texts at the ends of bars need.
-pub(super) fn extents(marks: &[Mark], width_px: f64) -> (Extent, Extent) {
+pub(super) fn extents(chart: &Chart, width_px: f64) -> (Extent, Extent) {
     let (mut xs, mut ys) = (Vec::new(), Vec::new());
-    for mark in marks {
+    for mark in &chart.marks {
         match mark {
             Mark::Line { points, .. } => points.iter().filter(|p| is_drawable(p)).for_each(|[x, y]| {
                 xs.push(*x);
@@ -52,6 +56,7 @@ pub(super) fn extents(marks: &[Mark], width_px: f64) -> (Extent, Extent) {
             }
             Mark::Horizontal { at, .. } => ys.push(*at),
             Mark::Vertical { at, .. } => xs.push(*at),
+            Mark::Stretch { from, to, .. } => xs.extend([*from, *to]),
             Mark::Note { at: [x, y], .. } => {
                 xs.push(*x);
                 ys.push(*y);
@@ -62,7 +67,8 @@ pub(super) fn extents(marks: &[Mark], width_px: f64) -> (Extent, Extent) {
             }
         }
     }
-    (extent(xs), extent(ys))
+    let seen = |log: bool| move |v: &f64| !log || *v > 0.0;
+    (extent(xs.into_iter().filter(seen(chart.x.log))), extent(ys.into_iter().filter(seen(chart.y.log))))
 }
 
 /// Zero and all values, with room for the texts beyond them as a part of the span.
@@ -90,14 +96,15 @@ pub(super) fn draw(canvas: &mut Canvas, frame: &Frame, marks: &[Mark], crowd: &m
                 }
                 (1, Mark::Horizontal { at, .. }) => reference(canvas, frame, [f64::NAN, *at], crowd),
                 (1, Mark::Vertical { at, .. }) => reference(canvas, frame, [*at, f64::NAN], crowd),
+                (1, Mark::Stretch { from, to, text }) => stretch(canvas, frame, [*from, *to], text, crowd),
                 (1, Mark::Line { points, style, .. }) => line(canvas, frame, points, style, crowd),
-                (1, Mark::Arrow { from, to, style, .. }) if is_drawable(from) && is_drawable(to) => {
+                (1, Mark::Arrow { from, to, style, .. }) if frame.places(*from) && frame.places(*to) => {
                     let (from, to) = (frame.px(*from), frame.px(*to));
                     crowd.add_line(from, to);
                     arrow(canvas, from, to, style);
                 }
                 (2, Mark::Points { points, style, .. }) => {
-                    let size_px = marker_px(points.len());
+                    let size_px = marker_px(style, points.len());
                     points.iter().for_each(|p| point(canvas, frame, p, style, size_px, crowd));
                 }
                 _ => {}
@@ -154,8 +161,13 @@ pub(super) fn error_bar(canvas: &mut Canvas, x: f64, top: f64, bottom: f64, styl
 }
 
 /// Half the size of each of `count` markers: many are drawn smaller.
-pub(super) fn marker_px(count: usize) -> f64 {
-    if count > 40 { 2.8 } else { 4.2 }
+pub(super) fn marker_px(style: &Style, count: usize) -> f64 {
+    let by_count = match count {
+        0..=40 => 4.2,
+        41..=400 => 2.8,
+        _ => 2.0,
+    };
+    style.size_px.filter(|size| drawable(*size)).map_or(by_count, |size| size.clamp(0.5, 50.0))
 }
 
 /// One marker of half size `size_px`, edged in white so that it stands out from a line below it.
@@ -213,7 +225,7 @@ fn is_drawable<const N: usize>(point: &[f64; N]) -> bool {
 
 fn line(canvas: &mut Canvas, frame: &Frame, points: &[[f64; 2]], style: &Style, crowd: &mut Crowd) {
     // A point that is not finite interrupts the line: nothing is known about the way past it.
-    for run in points.split(|p| !is_drawable(p)) {
+    for run in points.split(|p| !frame.places(*p)) {
         let mut piece: Vec<Px> = Vec::new();
         for pair in run.windows(2) {
             let (from, to) = (frame.px(pair[0]), frame.px(pair[1]));
@@ -235,7 +247,10 @@ fn band(canvas: &mut Canvas, frame: &Frame, points: &[[f64; 3]], style: &Style) 
         let [x, y] = frame.px(point);
         [x.clamp(area.left, area.right), y.clamp(area.top, area.bottom)]
     };
-    for run in points.split(|p| !is_drawable(p)).filter(|run| run.len() > 1) {
+    for run in points
+        .split(|[x, low, high]| !frame.places([*x, *low]) || !frame.places([*x, *high]))
+        .filter(|run| run.len() > 1)
+    {
         let low = run.iter().map(|[x, low, _]| inside([*x, *low]));
         let high = run.iter().rev().map(|[x, _, high]| inside([*x, *high]));
         let corners: Vec<Px> = low.chain(high).collect();
@@ -244,9 +259,9 @@ fn band(canvas: &mut Canvas, frame: &Frame, points: &[[f64; 3]], style: &Style) 
 }
 
 fn reference(canvas: &mut Canvas, frame: &Frame, [x, y]: [f64; 2], crowd: &mut Crowd) {
-    let ends = if drawable(x) {
+    let ends = if frame.x.places(x) {
         [frame.px([x, frame.y.from]), frame.px([x, frame.y.to])]
-    } else if drawable(y) {
+    } else if frame.y.places(y) {
         [frame.px([frame.x.from, y]), frame.px([frame.x.to, y])]
     } else {
         return;
@@ -257,9 +272,32 @@ fn reference(canvas: &mut Canvas, frame: &Frame, [x, y]: [f64; 2], crowd: &mut C
     }
 }
 
+/// Lines at both ends, below the strip along the top in which the names stand.
+fn stretch(canvas: &mut Canvas, frame: &Frame, ends: [f64; 2], text: &str, crowd: &mut Crowd) {
+    if !ends.iter().all(|x| frame.x.places(*x)) {
+        return;
+    }
+    let area = frame.area;
+    let xs = ends.map(|x| frame.px([x, f64::NAN])[0]);
+    for x in xs {
+        if let Some((a, b)) = area.clip([x, area.top + NOTE_LINE_PX + 2.0], [x, area.bottom]) {
+            canvas.line(&[a, b], Rgb::GREY.tint(0.6), 0.8, Dash::Solid);
+        }
+    }
+    let half = 0.5 * text_width_px(text, NOTE.size_px) + 3.0;
+    // Pushed back in where it would stick out.
+    let middle = (0.5 * xs[0] + 0.5 * xs[1]).min(area.right - half).max(area.left + half);
+    let name =
+        Area { left: middle - half, right: middle + half, top: area.top, bottom: area.top + NOTE_LINE_PX };
+    if !text.is_empty() && crowd.is_free(&name) {
+        canvas.text(name.centre(), text, NOTE, Rgb::INK);
+        crowd.add_text(name);
+    }
+}
+
 fn point(canvas: &mut Canvas, frame: &Frame, point: &Point, style: &Style, size_px: f64, crowd: &mut Crowd) {
     let [x, y] = frame.px([point.x, point.y]);
-    if !is_drawable(&[point.x, point.y]) || frame.area.clip([x, y], [x, y]).is_none() {
+    if !frame.places([point.x, point.y]) || frame.area.clip([x, y], [x, y]).is_none() {
         return;
     }
     if point.error > 0.0 && drawable(point.error) {
@@ -315,7 +353,7 @@ fn whole_bar(
 
 /// A note beside its point, with a thin leader where it had to move away from it.
 fn note(canvas: &mut Canvas, frame: &Frame, at: [f64; 2], text: &str, crowd: &mut Crowd) {
-    if text.is_empty() || !is_drawable(&at) {
+    if text.is_empty() || !frame.places(at) {
         return;
     }
     let at = frame.px(at);

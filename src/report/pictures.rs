@@ -1,5 +1,7 @@
-//! The pictures of a rod: from plain numbers to a [`Figure`].
+//! The pictures: from plain numbers to a [`Figure`]. Those of a rod and its rig are here, those of a
+//! robot's calibration in [`calibration`].
 
+pub mod calibration;
 mod rod_shape;
 
 pub use rod_shape::{RodShape, ShapeCase, Station, StationKind, rod_shape};

@@ -9,13 +9,15 @@ pub(super) struct Scale {
     pub(super) to: f64,
     /// Value and label of each tick, ascending, all within the range.
     pub(super) ticks: Vec<(f64, String)>,
+    /// Whether equal ratios, not equal differences, are equally long; then `from` is above zero.
+    pub(super) log: bool,
 }
 
 impl Scale {
     /// From `from` to `to` as they are, with about `count` ticks between them.
     pub(super) fn fixed(from: f64, to: f64, count: usize) -> Scale {
         let (from, to) = proper(from, to);
-        Scale { from, to, ticks: ticks(from, to, step(to - from, count)) }
+        Scale { from, to, ticks: linear_ticks(from, to, step(to - from, count)), log: false }
     }
 
     /// Rounded outwards to whole steps. A side whose data ends at zero ends at zero.
@@ -26,20 +28,49 @@ impl Scale {
         let air = 0.02 * (to - from);
         let lower = if from == 0.0 { 0.0 } else { ((from - air) / step).floor() * step };
         let upper = if to == 0.0 { 0.0 } else { ((to + air) / step).ceil() * step };
-        Scale { from: lower, to: upper, ticks: ticks(lower, upper, step) }
+        Scale { from: lower, to: upper, ticks: linear_ticks(lower, upper, step), log: false }
+    }
+
+    /// Logarithmic from `from` to `to` as they are, with at most about `count` ticks: at powers of ten,
+    /// and at two and five times them where there are only few.
+    pub(super) fn log(from: f64, to: f64, count: usize) -> Scale {
+        let (from, to) = proper_ratio(from, to);
+        Scale { from, to, ticks: log_ticks(from, to, count), log: true }
+    }
+
+    /// Logarithmic, rounded outwards to 1, 2 or 5 times a power of ten.
+    pub(super) fn log_rounded(from: f64, to: f64, count: usize) -> Scale {
+        let (from, to) = proper_ratio(from, to);
+        // Air for what would stand on the very edge of the frame.
+        let air = (to / from).powf(0.02);
+        let (from, to) = (from / air, to * air);
+        let lower = one_two_five_below(from);
+        // 2.5 times a 1-2-5 number reaches the next one and no further.
+        let below = one_two_five_below(to);
+        let upper = if below >= to * (1.0 - 1e-9) { below } else { one_two_five_below(2.5 * below) };
+        Scale::log(lower, upper, count)
+    }
+
+    /// Whether a value has a place on this axis, be it beyond its ends.
+    pub(super) fn places(&self, value: f64) -> bool {
+        drawable(value) && (!self.log || value > 0.0)
     }
 
     /// The same range with another distance between ticks, where that makes sense.
     pub(super) fn with_step(self, step: Option<f64>) -> Scale {
-        match step.filter(|step| (1.0..50.0).contains(&((self.to - self.from) / step))) {
-            Some(step) => Scale { ticks: ticks(self.from, self.to, step), ..self },
+        match step.filter(|step| !self.log && (1.0..50.0).contains(&((self.to - self.from) / step))) {
+            Some(step) => Scale { ticks: linear_ticks(self.from, self.to, step), ..self },
             None => self,
         }
     }
 
     /// Where `value` lies between the ends, 0 to 1 (outside of them: beyond).
     pub(super) fn fraction(&self, value: f64) -> f64 {
-        (value - self.from) / (self.to - self.from)
+        match self.log {
+            // Zero and less are infinitely far below.
+            true => (value.max(0.0) / self.from).log10() / (self.to / self.from).log10(),
+            false => (value - self.from) / (self.to - self.from),
+        }
     }
 }
 
@@ -122,6 +153,14 @@ fn proper(from: f64, to: f64) -> (f64, f64) {
     }
 }
 
+/// An ordered range of positive numbers around what was asked for.
+fn proper_ratio(from: f64, to: f64) -> (f64, f64) {
+    // Beyond these, ratios and powers of ten overflow.
+    let (low, high) =
+        extent([from, to].into_iter().filter(|v| *v > 1e-150 && *v < 1e150)).unwrap_or((1.0, 10.0));
+    if high > low * (1.0 + 1e-9) { (low, high) } else { (0.5 * low, 2.0 * high) }
+}
+
 /// The 1-2-5 step that gives about `count` intervals, at most a quarter more.
 fn step(span: f64, count: usize) -> f64 {
     let least = span / (1.25 * count.max(1) as f64) * (1.0 - 1e-9);
@@ -130,7 +169,7 @@ fn step(span: f64, count: usize) -> f64 {
     if below >= least { below } else { one_two_five_below(2.5 * below) }
 }
 
-fn ticks(from: f64, to: f64, step: f64) -> Vec<(f64, String)> {
+fn linear_ticks(from: f64, to: f64, step: f64) -> Vec<(f64, String)> {
     let first = (from / step - 1e-6).ceil();
     let last = (to / step + 1e-6).floor();
     let count = (last - first).clamp(0.0, 100.0) as usize;
@@ -141,8 +180,33 @@ fn ticks(from: f64, to: f64, step: f64) -> Vec<(f64, String)> {
         .collect()
 }
 
+fn log_ticks(from: f64, to: f64, count: usize) -> Vec<(f64, String)> {
+    let first = (from.log10() - 1e-9).ceil() as i32;
+    let last = (to.log10() + 1e-9).floor() as i32;
+    let within = |v: &f64| (from * (1.0 - 1e-9)..=to * (1.0 + 1e-9)).contains(v);
+    let per_decade: &[f64] = if last - first < 2 { &[1.0, 2.0, 5.0] } else { &[1.0] };
+    let every = ((last - first) as f64 / count.max(1) as f64).ceil().max(1.0) as i32;
+    let ticks: Vec<(f64, String)> = (first - 1..=last)
+        .filter(|exponent| exponent % every == 0)
+        .flat_map(|exponent| per_decade.iter().map(move |digit| (*digit, exponent)))
+        .map(|(digit, exponent)| (digit * power_of_ten(exponent), log_label(digit, exponent)))
+        .filter(|(value, _)| within(value))
+        .collect();
+    if ticks.len() > 1 { ticks } else { linear_ticks(from, to, step(to - from, 4)) }
+}
+
+/// "1", "20", "0.05", then "10⁻³" and "5×10⁻³".
+fn log_label(digit: f64, exponent: i32) -> String {
+    match exponent {
+        -2..0 => format!("{:.*}", -exponent as usize, digit * power_of_ten(exponent)),
+        0..4 => format!("{:.0}", digit * power_of_ten(exponent)),
+        _ if digit == 1.0 => format!("10{}", superscript(exponent)),
+        _ => format!("{digit:.0}×10{}", superscript(exponent)),
+    }
+}
+
 /// `value`, a multiple of `step`, with just the digits that tell it from its neighbours.
-fn label(value: f64, step: f64) -> String {
+pub(super) fn label(value: f64, step: f64) -> String {
     if value.abs() < 0.5 * step {
         return "0".into();
     }
@@ -204,6 +268,18 @@ mod tests {
     }
 
     #[test]
+    fn a_logarithmic_axis_is_ticked_at_powers_of_ten() {
+        assert_eq!(labels(&Scale::log_rounded(3e-4, 700.0, 8)), "10⁻³ 0.01 0.1 1 10 100 1000");
+        assert_eq!(labels(&Scale::log_rounded(2e-9, 40.0, 6)), "10⁻⁸ 10⁻⁶ 10⁻⁴ 0.01 1 100");
+        assert_eq!(labels(&Scale::log_rounded(0.013, 0.4, 8)), "0.01 0.02 0.05 0.1 0.2 0.5");
+        assert_eq!(labels(&Scale::log_rounded(10.0, 1000.0, 8)), "10 100 1000");
+        assert_eq!(labels(&Scale::log(2.2, 4.1, 8)), "2.5 3.0 3.5 4.0");
+        let scale = Scale::log(0.1, 1000.0, 8);
+        assert_eq!((scale.fraction(1.0), scale.fraction(1000.0)), (0.25, 1.0));
+        assert!(scale.places(1e-9) && !scale.places(0.0) && scale.fraction(0.0) == f64::NEG_INFINITY);
+    }
+
+    #[test]
     fn a_range_of_nothing_is_still_a_range() {
         for (from, to) in [
             (0.0, 0.0),
@@ -215,7 +291,8 @@ mod tests {
             (1e-250, 2e-250),
             (-1e199, 1e199),
         ] {
-            for scale in [Scale::rounded(from, to, 6), Scale::fixed(from, to, 6)] {
+            let log = [Scale::log(from, to, 6), Scale::log_rounded(from, to, 6)];
+            for scale in [Scale::rounded(from, to, 6), Scale::fixed(from, to, 6)].into_iter().chain(log) {
                 assert!(
                     scale.to > scale.from && (scale.to - scale.from).is_finite(),
                     "{from} {to} {scale:?}"

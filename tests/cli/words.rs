@@ -15,9 +15,14 @@ pub fn assert_reads(name: &str, text: &str) {
 #[test]
 fn help_teaches() {
     let sandbox = Sandbox::empty();
-    for (name, line) in
-        [("help", "--help"), ("help-compliance", "compliance --help"), ("help-rig-fit", "rig fit --help")]
-    {
+    for (name, line) in [
+        ("help", "--help"),
+        ("help-compliance", "compliance --help"),
+        ("help-rig-fit", "rig fit --help"),
+        ("help-calibrate", "calibrate --help"),
+        ("help-compare", "compare --help"),
+        ("help-simulate", "simulate --help"),
+    ] {
         let answer = sandbox.run(line).succeeded();
         assert_eq!(answer.stderr, "");
         assert_reads(name, &answer.stdout);
@@ -51,7 +56,16 @@ fn words_fit_a_terminal() {
             assert_eq!(long, None, "{line}");
         }
     }
-    for line in ["--help", "compliance --help", "rig --help", "rig fit --help", "completions --help"] {
+    for line in [
+        "--help",
+        "compliance --help",
+        "rig --help",
+        "rig fit --help",
+        "calibrate --help",
+        "compare --help",
+        "simulate --help",
+        "completions --help",
+    ] {
         let help = sandbox.run(line).succeeded().stdout;
         assert_eq!(help.lines().find(|line| line.chars().count() > 100), None, "{line}");
     }

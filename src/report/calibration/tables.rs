@@ -3,6 +3,7 @@
 use super::group_summaries;
 use crate::calibration::campaign::{Campaign, Recording, Targets};
 use crate::calibration::{Calibration, CrossValidation, Summary};
+use crate::report::Block;
 use crate::report::table::{Column, Table};
 use crate::units::{DEG, MM, UM, significant};
 
@@ -81,7 +82,7 @@ pub(super) fn parameters(calibration: &Calibration) -> Table {
             Some(e) => (1.0 - e.log10().floor()).clamp(0.0, 9.0) as usize,
             None => 4,
         };
-        let show = |value: f64| format!("{:.decimals$}", value / unit.si);
+        let show = |value: f64| without_minus_zero(format!("{:.decimals$}", value / unit.si));
         table.row([
             estimate.parameter.to_string(),
             unit.symbol.to_owned(),
@@ -93,6 +94,14 @@ pub(super) fn parameters(calibration: &Calibration) -> Table {
         ]);
     }
     table
+}
+
+/// "-0.00" is 0.00.
+fn without_minus_zero(number: String) -> String {
+    match number.chars().any(|c| ('1'..='9').contains(&c)) {
+        true => number,
+        false => number.trim_start_matches('-').to_owned(),
+    }
 }
 
 /// Where the robot stands and where the tip is, all six and three numbers of them.
@@ -116,16 +125,15 @@ pub(super) fn placement(campaign: &Campaign, calibration: &Calibration) -> Table
     table
 }
 
-pub(super) fn correlations(calibration: &Calibration, limit: f64) -> Table {
+pub(super) fn correlations(calibration: &Calibration, limit: f64) -> Block {
     /// More than these nobody reads.
     const MOST: usize = 20;
     let pairs = calibration.correlations_above(limit);
-    let caption = match pairs.len() {
-        0 => format!("No two estimates correlate by more than {limit}."),
-        _ => {
-            format!("Estimates that correlate by more than {limit}: the poses tell them apart only roughly.")
-        }
-    };
+    if pairs.is_empty() {
+        return Block::Paragraph(format!("No two estimates correlate by more than {limit}."));
+    }
+    let caption =
+        format!("Estimates that correlate by more than {limit}: the poses tell them apart only roughly.");
     let mut table = Table::new(
         "correlations",
         caption,
@@ -137,7 +145,7 @@ pub(super) fn correlations(calibration: &Calibration, limit: f64) -> Table {
     if pairs.len() > MOST {
         table.notes.push(format!("and {} more", pairs.len() - MOST));
     }
-    table
+    Block::Table(table)
 }
 
 pub(super) fn observability(calibration: &Calibration) -> Table {

@@ -8,6 +8,9 @@ use nalgebra::Vector3;
 
 /// Below this probability that all groups scatter alike, each gets a noise of its own.
 const UNEQUAL: f64 = 0.01;
+/// Least noise that is believed, m: where deviations are smaller still, they are rounding, and weights made of them would drown
+/// what is known besides, such as the distances of sockets.
+const LEAST: f64 = 1e-9;
 /// Fewest degrees of freedom for a noise of its own.
 const FEWEST: f64 = 10.0;
 
@@ -102,8 +105,8 @@ impl Noise {
         let unequal = p_equal.is_some_and(|p| p < UNEQUAL);
         let sd = |group: usize| match unequal && dof[group] >= FEWEST {
             _ if self.is_stated => self.pooled,
-            true => of_group[group].sqrt(),
-            false => pooled.sqrt(),
+            true => of_group[group].sqrt().max(LEAST),
+            false => pooled.sqrt().max(LEAST),
         };
         let of_group: Vec<f64> = (0..of_group.len()).map(sd).collect();
         let weights = deviations
@@ -111,7 +114,7 @@ impl Noise {
             .zip(&recording.rows)
             .map(|(deviation, row)| robust.weight(deviation.norm() / of_group[row.group]))
             .collect();
-        let pooled = if self.is_stated { self.pooled } else { pooled.sqrt() };
+        let pooled = if self.is_stated { self.pooled } else { pooled.sqrt().max(LEAST) };
         Ok(Noise { pooled, of_group, p_equal, is_stated: self.is_stated, weights })
     }
 
@@ -121,7 +124,7 @@ impl Noise {
             .rows
             .iter()
             .zip(&self.weights)
-            .map(|(row, weight)| weight.sqrt() / self.of_group[row.group].max(f64::MIN_POSITIVE))
+            .map(|(row, weight)| weight.sqrt() / self.of_group[row.group])
             .collect()
     }
 

@@ -88,7 +88,7 @@ pub(super) fn minimise(system: &Stacked, start: &DVector<f64>, options: &Options
         if is_enough {
             break search.verdict(&here, &view, TerminationReason::Gradient);
         }
-        if view.cosine <= NEAR || view.full.projection <= view.rounding {
+        if view.cosine <= NEAR || search.is_unresolved(&here, &view) {
             if let Some(better) = search.polish(&here, &view)? {
                 (here, view) = better;
                 continue;
@@ -343,6 +343,12 @@ impl Search<'_> {
     /// True where what is left of the gradient is below the tolerance, or rounding.
     fn gradient_is_zero(&self, view: &View) -> bool {
         view.cosine <= self.options.gradient_tolerance || view.full.projection <= view.rounding
+    }
+
+    /// True where what is left to gain, the square of the projection, is below what rounding of the residuals makes of
+    /// their sum of squares: it can no longer judge a step.
+    fn is_unresolved(&self, here: &Point, view: &View) -> bool {
+        view.full.projection.powi(2) <= view.rounding * here.square.sqrt().max(view.rounding)
     }
 
     /// The result of a search that could not begin.

@@ -32,6 +32,10 @@ const HUBER: f64 = 2.21;
 /// Tukey's c for 95 % efficiency in three dimensions (R. Maronna et al., *Robust Statistics*, 2nd ed., §6.4).
 const TUKEY: f64 = 5.49;
 
+/// What a deviation is worth for a variance made of the median of lengths, beside one for their mean square:
+/// (2/3)·(f(m)·m)² with the density f of χ₃ at its median m.
+const MEDIAN_EFFICIENCY: f64 = 0.527;
+
 /// Noise of the recording: standard deviation of one coordinate, m.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Noise {
@@ -97,7 +101,8 @@ impl Noise {
         let pooled = variance(&all);
         let of_group: Vec<f64> =
             of_rows.iter().map(|of| if of.is_empty() { pooled } else { variance(of) }).collect();
-        let dof: Vec<f64> = of_rows.iter().map(|of| 3.0 * of.len() as f64 * share).collect();
+        let worth = if robust == Robust::None { 1.0 } else { MEDIAN_EFFICIENCY };
+        let dof: Vec<f64> = of_rows.iter().map(|of| 3.0 * of.len() as f64 * share * worth).collect();
         let p_equal = match self.is_stated {
             true => None,
             false => bartlett(&of_group, &dof)?,

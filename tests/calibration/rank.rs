@@ -9,20 +9,17 @@ use super::lab::{Dice, Lab, TrueRod};
 use super::rods;
 
 /// Singular values of columns of size 1 from differences over ±1e-5 that are wrong by 1e-10: below this there is nothing.
-const NOTHING: f64 = 1e-8;
+pub const NOTHING: f64 = 1e-8;
 /// The program leaves out what is less than 1 % of a direction of its own; what it keeps is known that well, or to
 /// the few tenths of that which remain where two dozen such columns come together.
 const SOMETHING: f64 = 1e-4;
 
-/// Columns of the tip's Jacobian over random poses, lengths per metre, angles per radian, compliances per radian at their
+/// Columns of the tip's Jacobian over poses, lengths per metre, angles per radian, compliances per radian at their
 /// largest torque.
-fn jacobian(lab: &Lab, parameters: &[Parameter]) -> DMatrix<f64> {
+pub fn jacobian(lab: &Lab, parameters: &[Parameter], poses: &[Vec<f64>]) -> DMatrix<f64> {
     const STEP: f64 = 1e-5;
-    const POSES: usize = 120;
-    let mut dice = Dice(3);
-    let poses: Vec<Vec<f64>> = (0..POSES).map(|_| lab.anywhere(&mut dice)).collect();
     let torques: Vec<Vec<f64>> = poses.iter().map(|q| lab.torques(q, &Vector3::zeros())).collect();
-    let mut matrix = DMatrix::zeros(3 * POSES, parameters.len());
+    let mut matrix = DMatrix::zeros(3 * poses.len(), parameters.len());
     for (k, &parameter) in parameters.iter().enumerate() {
         let largest = match parameter {
             Parameter::Compliance(j) => torques.iter().map(|t| t[j].abs()).fold(1e-6, f64::max),
@@ -42,7 +39,7 @@ fn jacobian(lab: &Lab, parameters: &[Parameter]) -> DMatrix<f64> {
                     changed.rigid_tip(q)
                 }
             };
-            let column = (at(STEP) - at(-STEP)) / (2.0 * STEP * (POSES as f64).sqrt());
+            let column = (at(STEP) - at(-STEP)) / (2.0 * STEP * (poses.len() as f64).sqrt());
             matrix.view_mut((3 * row, k), (3, 1)).copy_from(&column);
         }
     }
@@ -70,9 +67,11 @@ fn checked(name: &str, robot: &Robot, tool: Vector3<f64>, rod: Option<TrueRod>) 
         Parameter::Compliance(j) => robot.joints[j].motion == rodcal::robot::Motion::Revolute,
         _ => true,
     });
-    let whole = singular_values(jacobian(&lab, &all));
+    let mut dice = Dice(3);
+    let poses: Vec<Vec<f64>> = (0..120).map(|_| lab.anywhere(&mut dice)).collect();
+    let whole = singular_values(jacobian(&lab, &all, &poses));
     let rank = whole.iter().filter(|&&s| s > NOTHING * whole[0]).count();
-    let kept = singular_values(jacobian(&lab, &minimal));
+    let kept = singular_values(jacobian(&lab, &minimal, &poses));
     let names: Vec<String> = minimal.iter().map(ToString::to_string).collect();
     let names = names.join(" ");
     assert_eq!(rank, minimal.len(), "{name}: the rank of all parameters is {rank}: {names}\n{whole:?}");

@@ -12,7 +12,7 @@ use super::start::{first_guess, rough_start};
 use super::validation::{Validation, validate};
 use super::warning::Warning;
 use crate::error::{Error, Place, Result};
-use crate::least_squares::{self, Fit};
+use crate::least_squares::{self, Fit, Problem as _};
 use crate::robot::{Kinematics, Parameter, Setup, minimal_parameters};
 
 /// Noise of a coordinate that is assumed until the residuals tell, m.
@@ -79,7 +79,7 @@ pub struct Estimated {
     pub nominal: f64,
     /// Its estimate, SI.
     pub value: f64,
-    /// Its standard error, SI; `None` where it is not identified.
+    /// Its standard error, SI, with what directions that are held may hide of it; `None` where it is not identified.
     pub std_error: Option<f64>,
     /// False where the data do not determine it.
     pub identifiable: bool,
@@ -169,7 +169,7 @@ pub fn calibrate_from<'c>(
             parameter,
             nominal: nominal.get(parameter),
             value: setup.get(parameter),
-            std_error: errors[k].filter(|_| identified[k]),
+            std_error: errors[k].filter(|_| identified[k]).map(|e| e.hypot(identify::unseen(&held, k))),
             identifiable: identified[k] && errors[k].is_some(),
         })
         .collect();
@@ -182,13 +182,12 @@ pub fn calibrate_from<'c>(
         })
         .collect();
     let mut kinematics = Kinematics::new(&setup);
-    let tips = (0..recording.len())
+    let (tips, deflections) = (0..recording.len())
         .map(|row| {
-            let torque = &pass.torque[row * recording.joint_count..][..recording.joint_count];
-            kinematics.update(recording.joints(row), torque);
-            kinematics.tip
+            kinematics.update(recording.joints(row), pass.torque(recording, row));
+            (kinematics.tip, kinematics.flange.rotation * pass.bent[row])
         })
-        .collect();
+        .unzip();
     let observability = Observability::new(&problem, &fit.parameters)?;
     let outliers = noise.outliers(recording, &deviations)?;
     let mut calibration = Calibration {
@@ -197,7 +196,7 @@ pub fn calibrate_from<'c>(
         sockets,
         held,
         deviations,
-        deflections: pass.shift,
+        deflections,
         tips,
         noise,
         outliers,
@@ -372,6 +371,11 @@ impl<'a, 'c> Run<'a, 'c> {
         let problem = self.problem();
         let p = problem.start();
         let mut corner = problem.information_root(&p);
+        // before the first fit it is the nominal robot's misfit that parameters have to be told from, not the noise
+        if self.passes.is_empty() {
+            let squares = problem.residuals(&p).norm_squared();
+            corner /= (squares / problem.residual_count() as f64).sqrt().max(1.0);
+        }
         // what the user knows beforehand identifies too
         for &(parameter, _, sd) in &self.campaign.wishes.priors {
             if let Some(k) = self.free.iter().position(|&p| p == parameter) {

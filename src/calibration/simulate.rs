@@ -221,7 +221,6 @@ fn measure(
 
 /// The deflected tip of every row, in {W}, m.
 fn deflected_tips(truth: &Setup, compensation: &Compensation, recording: &Recording) -> Vec<Vector3<f64>> {
-    let n = recording.joint_count;
     let mut pass = Pass::at_rest(recording);
     // the torque that turns a joint on is that of the turned joints
     for _ in 0..5 {
@@ -230,8 +229,8 @@ fn deflected_tips(truth: &Setup, compensation: &Compensation, recording: &Record
     let mut kinematics = Kinematics::new(truth);
     (0..recording.len())
         .map(|row| {
-            kinematics.update(recording.joints(row), &pass.torque[row * n..][..n]);
-            kinematics.tip + pass.shift[row]
+            pass.deflect(&mut kinematics, recording, row);
+            kinematics.tip
         })
         .collect()
 }

@@ -196,6 +196,7 @@ fn measure(
         .collect();
     let joint_values: Vec<f64> = poses.iter().flat_map(|(_, q)| q.iter().copied()).collect();
     let mut recording = Recording {
+        source: Some(format!("SIMULATED, seed {}", plan.seed)),
         file: "measurements.csv".into(),
         joint_count,
         joint_values,
@@ -242,6 +243,7 @@ fn scan(truth: &Setup, plan: &Plan) -> Recording {
     short.tool = Vector3::new(0.0004, -0.0003, 0.1202);
     let joint_count = truth.robot.joints.len();
     let mut recording = Recording {
+        source: Some(format!("SIMULATED, seed {}", plan.seed)),
         file: "validation.csv".into(),
         joint_count,
         joint_values: Vec::new(),

@@ -197,7 +197,7 @@ pub fn calibrate_from<'c>(
 /// The nominal robot where the rough start puts it.
 ///
 /// # Errors
-/// As [`rough_start`].
+/// As [`crate::linalg::thin_svd`]; none in practice.
 pub fn start(campaign: &Campaign) -> Result<Setup<'_>> {
     let (guess, tool) = first_guess(campaign);
     let (base, tool) = rough_start(&campaign.robot, &campaign.measurements, guess, tool)?;

@@ -6,7 +6,7 @@ use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 use rodcal::calibration::{Calibration, Campaign, Mode, Options, calibrate};
 use rodcal::robot::Parameter;
 
-use super::arms::{self, UR5};
+use super::arms::{self, SCARA, UR5};
 use super::lab::{Dice, Lab, PHYSICS, isometry, millimetres, read};
 use super::recovery::{Clamped, spoil};
 
@@ -160,5 +160,27 @@ fn a_tracker_needs_no_word_about_the_base() {
         let found = calibrated(&campaign, Mode::None);
         assert_same_robot(what, &reference, &found);
         assert_same_residuals(what, &reference, &found, &UnitQuaternion::identity());
+    }
+}
+
+/// A quill that stays at its height: balls in a plane look the same in a mirror, and no robot stands in one.
+#[test]
+fn tips_in_a_plane_do_not_turn_the_base_inside_out() {
+    let mut dice = Dice(53);
+    for _ in 0..8 {
+        let lab = Lab::new(arms::robot(SCARA), dice.motion(2.0, 3.0), Vector3::new(0.1, 0.05, 0.2));
+        let mut csv = format!("pose{},x_mm,y_mm,z_mm\n", lab.header());
+        for pose in 0..40 {
+            let mut q = lab.anywhere(&mut dice);
+            q[3] = 0.1;
+            csv += &format!("{pose}{},{}\n", lab.cells(&q), millimetres(&lab.rigid_tip(&q)));
+        }
+        let text = "robot = \"scara.toml\"\nmeasurements = \"m.csv\"\n[tool]\nxyz_mm = [100, 50, 200]\n";
+        let campaign = read(&[("campaign.toml", text), ("scara.toml", SCARA), ("m.csv", &csv)]);
+        let found = calibrated(&campaign, Mode::None);
+        assert!((found.setup.base().rotation.determinant() - 1.0).abs() < 1e-9);
+        assert!(found.residuals().iter().all(|&r| r < 1e-8), "{:?}", found.passes);
+        let apart = isometry(&found.setup.base()).inverse() * lab.base;
+        assert!(apart.rotation.angle() < 1e-6, "{apart}");
     }
 }

@@ -5,6 +5,8 @@
 //! them were real. Which effects there are, how they act together and how they are said to people is the world's business.
 
 pub mod evidence;
+pub mod score;
+pub mod whitening;
 pub mod world;
 
 pub use evidence::Evidence;

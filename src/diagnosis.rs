@@ -6,6 +6,7 @@
 
 pub mod evidence;
 pub mod score;
+pub mod selection;
 pub mod whitening;
 pub mod world;
 

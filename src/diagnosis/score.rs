@@ -101,7 +101,7 @@ mod tests {
         // one column: ln ∫ N(r; c·x, σ²)·N(x; 0, 1) dx, by the trapezoidal rule, against none
         let (r, c) = (noise(30, 2), noise(30, 3));
         let r = r + &c * 0.8;
-        let scored = score(&r, &DMatrix::from_columns(&[c.clone()]), 30, 0.0);
+        let scored = score(&r, &DMatrix::from_columns(std::slice::from_ref(&c)), 30, 0.0);
         let s = scored.sigma.powi(2);
         let density = |x: f64| {
             (-0.5 * ((&r - &c * x).norm_squared() / s + x * x)).exp() / (2.0 * std::f64::consts::PI).sqrt()

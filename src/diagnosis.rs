@@ -4,11 +4,16 @@
 //! effect at a place with a few parameters ([`Candidate`]), and asks a [`World`] what would have been recorded if some of
 //! them were real. Which effects there are, how they act together and how they are said to people is the world's business.
 
-pub mod evidence;
-pub mod score;
-pub mod selection;
-pub mod whitening;
-pub mod world;
+mod diagnose;
+mod evidence;
+mod proof;
+mod score;
+mod selection;
+mod whitening;
+mod world;
 
-pub use evidence::Evidence;
+pub use diagnose::{Diagnosis, Finding, Unexplained, diagnose};
+pub use evidence::{Covariate, Evidence};
+pub use proof::{Proof, prove};
+pub use selection::{Search, Story};
 pub use world::{Candidate, Chosen, EffectParameter, World};

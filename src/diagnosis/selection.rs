@@ -138,6 +138,11 @@ impl<'a> Search<'a> {
         self.fit(&chosen)
     }
 
+    /// Length of a residual once shared errors and nuisance are taken out of it.
+    pub fn length(&self, residual: &DVector<f64>) -> f64 {
+        self.whitening.apply(residual).norm()
+    }
+
     /// Single effects exchanged for others and taken away while the story gets more probable.
     fn exchanged(&self, mut story: Story) -> Story {
         for _ in 0..MOST {

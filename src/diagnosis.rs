@@ -12,6 +12,9 @@ mod selection;
 mod whitening;
 mod world;
 
+#[cfg(test)]
+mod tests;
+
 pub use diagnose::{Diagnosis, Finding, Unexplained, diagnose};
 pub use evidence::{Covariate, Evidence};
 pub use proof::{Proof, prove};

@@ -8,6 +8,7 @@ mod cross_validation;
 mod identify;
 mod noise;
 mod observability;
+mod passes;
 mod problem;
 mod resample;
 pub mod simulate;
@@ -16,9 +17,7 @@ mod validation;
 mod warning;
 mod write_back;
 
-pub use calibrate::{
-    Calibration, Estimated, Options, PassRecord, calibrate, calibrate_from, free_parameters, start,
-};
+pub use calibrate::{Calibration, Estimated, Options, calibrate, calibrate_from, free_parameters, start};
 pub use campaign::Campaign;
 pub use compare::{CompareOptions, Comparison, Difference, compare};
 pub use compensation::{Compensation, Mode, default_mode, modes};
@@ -26,6 +25,7 @@ pub use cross_validation::{CrossValidation, cross_validate};
 pub use identify::{Held, plausible_range};
 pub use noise::{Noise, Robust};
 pub use observability::Observability;
+pub use passes::PassRecord;
 pub use validation::{Summary, Validation, validate};
 pub use warning::Warning;
 pub use write_back::write_back;

@@ -237,6 +237,13 @@ impl<'t> Row<'t> {
     }
 }
 
+/// The text of the comment lines that a file begins with.
+pub fn comments_above(text: &str) -> Option<String> {
+    let comments = text.lines().map_while(|line| line.trim().strip_prefix('#'));
+    let words = comments.map(str::trim).filter(|line| !line.is_empty()).collect::<Vec<_>>().join(" ");
+    (!words.is_empty()).then_some(words)
+}
+
 /// `text` between quotes, shortened and with control characters made visible, for a message.
 pub fn quoted(text: &str) -> String {
     const LONGEST: usize = 40;

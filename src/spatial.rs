@@ -50,14 +50,14 @@ impl Pose {
     }
 }
 
-/// exp([v]×): the rotation about `v` by its length (Rodrigues).
+/// `exp([v]×)`: the rotation about `v` by its length (Rodrigues).
 pub fn exponential(v: &Vector3<f64>) -> Matrix3<f64> {
     Rotation3::new(*v).into_inner()
 }
 
-/// Jₗ with exp([v + δ]×) = exp([Jₗ·δ]×)·exp([v]×) for small δ:
+/// Jₗ with `exp([v + δ]×) = exp([Jₗ·δ]×)·exp([v]×)` for small δ:
 ///
-/// Jₗ = (sin φ/φ)·1 + ((1 − cos φ)/φ²)·[v]× + ((φ − sin φ)/φ³)·v·vᵀ, φ = |v|
+/// `Jₗ = (sin φ/φ)·1 + ((1 − cos φ)/φ²)·[v]× + ((φ − sin φ)/φ³)·v·vᵀ, φ = |v|`
 /// (T. Barfoot, *State Estimation for Robotics*, Eq 7.77).
 pub fn left_jacobian(v: &Vector3<f64>) -> Matrix3<f64> {
     let phi = v.norm();

@@ -7,22 +7,14 @@ use super::compensation::{Compensation, Mode};
 use super::identify::{self, Held};
 use super::noise::{Noise, Robust};
 use super::observability::Observability;
-use super::problem::{Pass, Residuals};
+use super::passes::{PassRecord, Run};
+use super::problem::Residuals;
 use super::start::{first_guess, rough_start};
 use super::validation::{Validation, validate};
 use super::warning::Warning;
 use crate::error::{Error, Place, Result};
-use crate::least_squares::{self, Fit};
+use crate::least_squares::Fit;
 use crate::robot::{Kinematics, Parameter, Setup, minimal_parameters};
-
-/// Noise of a coordinate that is assumed until the residuals tell, m.
-const ASSUMED_NOISE: f64 = 1e-4;
-/// Change of a deflection from one pass to the next below which the compensation stands still, m.
-const STILL: f64 = 1e-9;
-/// Relative change of noise and weights below which they stand still: far below their own uncertainty.
-const STILL_RELATIVE: f64 = 1e-3;
-/// Most passes of the compensation loop.
-const MOST_PASSES: usize = 60;
 
 /// How to calibrate.
 #[derive(Debug, Clone, Copy, Default)]
@@ -79,7 +71,7 @@ pub struct Estimated {
     pub nominal: f64,
     /// Its estimate, SI.
     pub value: f64,
-    /// Its standard error, SI; `None` where it is not identified.
+    /// Its standard error, SI, with what directions that are held may hide of it; `None` where it is not identified.
     pub std_error: Option<f64>,
     /// False where the data do not determine it.
     pub identifiable: bool,
@@ -104,17 +96,6 @@ impl Calibration<'_> {
     pub fn residuals(&self) -> Vec<f64> {
         self.deviations.iter().map(|d| d.norm()).collect()
     }
-}
-
-/// One pass of the compensation loop.
-#[derive(Debug, Clone, Copy)]
-pub struct PassRecord {
-    /// Largest change of a rod deflection against the pass before, m.
-    pub change: f64,
-    /// Root mean square of the deviations' lengths after the fit, m.
-    pub rms: f64,
-    /// Noise of a coordinate, m.
-    pub noise: f64,
 }
 
 /// Calibrates the robot of a campaign.
@@ -169,7 +150,7 @@ pub fn calibrate_from<'c>(
             parameter,
             nominal: nominal.get(parameter),
             value: setup.get(parameter),
-            std_error: errors[k].filter(|_| identified[k]),
+            std_error: errors[k].filter(|_| identified[k]).map(|e| e.hypot(identify::unseen(&held, k))),
             identifiable: identified[k] && errors[k].is_some(),
         })
         .collect();
@@ -182,13 +163,12 @@ pub fn calibrate_from<'c>(
         })
         .collect();
     let mut kinematics = Kinematics::new(&setup);
-    let tips = (0..recording.len())
+    let (tips, deflections) = (0..recording.len())
         .map(|row| {
-            let torque = &pass.torque[row * recording.joint_count..][..recording.joint_count];
-            kinematics.update(recording.joints(row), torque);
-            kinematics.tip
+            kinematics.update(recording.joints(row), pass.torque(recording, row));
+            (kinematics.tip, kinematics.flange.rotation * pass.bent[row])
         })
-        .collect();
+        .unzip();
     let observability = Observability::new(&problem, &fit.parameters)?;
     let outliers = noise.outliers(recording, &deviations)?;
     let mut calibration = Calibration {
@@ -197,7 +177,7 @@ pub fn calibrate_from<'c>(
         sockets,
         held,
         deviations,
-        deflections: pass.shift,
+        deflections,
         tips,
         noise,
         outliers,
@@ -217,7 +197,7 @@ pub fn calibrate_from<'c>(
 /// The nominal robot where the rough start puts it.
 ///
 /// # Errors
-/// As [`rough_start`].
+/// As [`crate::linalg::thin_svd`]; none in practice.
 pub fn start(campaign: &Campaign) -> Result<Setup<'_>> {
     let (guess, tool) = first_guess(campaign);
     let (base, tool) = rough_start(&campaign.robot, &campaign.measurements, guess, tool)?;
@@ -242,182 +222,6 @@ pub fn free_parameters(campaign: &Campaign, start: &Setup, compensation: &Compen
         .filter(|p| (minimal.contains(p) && (has_world || !is_base(p))) || wishes.freed.contains(p))
         .filter(|p| !wishes.fixed.contains(p))
         .collect()
-}
-
-/// A calibration under way.
-struct Run<'a, 'c> {
-    campaign: &'c Campaign,
-    recording: &'a Recording,
-    free: &'a [Parameter],
-    compensation: &'a Compensation,
-    /// Where it began.
-    start: Setup<'c>,
-    setup: Setup<'c>,
-    pass: Pass,
-    noise: Noise,
-    held: Vec<Held>,
-    passes: Vec<PassRecord>,
-    is_converged: bool,
-}
-
-impl<'a, 'c> Run<'a, 'c> {
-    fn new(
-        campaign: &'c Campaign,
-        recording: &'a Recording,
-        setup: Setup<'c>,
-        free: &'a [Parameter],
-        compensation: &'a Compensation,
-    ) -> Self {
-        let noise = match campaign.noise {
-            Some(sd) => Noise::assumed(sd, recording, true),
-            None => Noise::assumed(ASSUMED_NOISE, recording, false),
-        };
-        let pass = Pass { weight: noise.row_weights(recording), ..Pass::at_rest(recording) };
-        Run {
-            campaign,
-            recording,
-            free,
-            compensation,
-            start: setup.clone(),
-            setup,
-            pass,
-            noise,
-            held: Vec::new(),
-            passes: Vec::new(),
-            is_converged: false,
-        }
-    }
-
-    /// The rough calibration: only where the robot stands and where the tip is.
-    fn fit_base_and_tool(&mut self) -> Result<()> {
-        let placed: Vec<Parameter> = self.free.iter().copied().filter(|&p| is_placement(p)).collect();
-        if placed.is_empty() || matches!(self.recording.targets, Targets::Sockets(_)) {
-            return Ok(());
-        }
-        let problem = Residuals {
-            setup: self.setup.clone(),
-            free: &placed,
-            recording: self.recording,
-            pass: &self.pass,
-            held: &[],
-        };
-        let fit = least_squares::fit(&problem, &problem.start(), &known_noise())?;
-        if fit.is_converged() {
-            let found = problem.setup_at(&fit.parameters);
-            for &parameter in &placed {
-                self.setup.set(parameter, found.get(parameter));
-            }
-        }
-        Ok(())
-    }
-
-    /// Fits and recomputes deflections, torques, noise and weights until they stand still.
-    fn compensate(&mut self, options: &Options) -> Result<Fit> {
-        loop {
-            let change = self.compensation.update(&self.setup, self.recording, &mut self.pass);
-            // at the start, where the noise is a guess, and then where it is known
-            if self.passes.len() < 2 {
-                self.hold_unidentified()?;
-            }
-            let fit = self.fit()?;
-            for (k, &parameter) in self.free.iter().enumerate() {
-                self.setup.set(parameter, fit.parameters[k]);
-            }
-            let problem = self.problem();
-            let deviations = problem.deviations(&fit.parameters);
-            let rank = fit.covariance.rank.saturating_sub(self.held.len());
-            // one weighting as least squares first, so that the robust ones start from a fit
-            let robust = if self.passes.is_empty() { Robust::None } else { options.robust };
-            let noise = self.noise.estimate(self.recording, &deviations, rank, robust)?;
-            let squares: f64 = deviations.iter().map(|d| d.norm_squared()).sum();
-            let rms = (squares / self.recording.len() as f64).sqrt();
-            self.passes.push(PassRecord { change, rms, noise: noise.pooled });
-            let weight = noise.row_weights(self.recording);
-            let scale = largest(weight.iter().copied());
-            let moved = largest(weight.iter().zip(&self.pass.weight).map(|(a, b)| a - b));
-            let stands_still = change < STILL && moved <= STILL_RELATIVE * scale && self.passes.len() > 1;
-            self.is_converged = stands_still && fit.is_converged();
-            if stands_still || self.passes.len() >= MOST_PASSES || !fit.is_converged() {
-                return Ok(fit);
-            }
-            self.noise = noise;
-            self.pass.weight = weight;
-        }
-    }
-
-    fn problem(&self) -> Residuals<'_> {
-        Residuals {
-            setup: self.setup.clone(),
-            free: self.free,
-            recording: self.recording,
-            pass: &self.pass,
-            held: &self.held,
-        }
-    }
-
-    fn fit(&self) -> Result<Fit> {
-        let problem = self.problem();
-        let mut options = known_noise();
-        for &(parameter, value, sd) in &self.campaign.wishes.priors {
-            if let Some(index) = self.free.iter().position(|&p| p == parameter) {
-                options.priors.push(least_squares::Prior { parameter: index, value, sd });
-            }
-        }
-        least_squares::fit(&problem, &problem.start(), &options)
-    }
-
-    /// Finds the directions that the data do not identify where the robot stands now.
-    fn hold_unidentified(&mut self) -> Result<()> {
-        self.held.clear();
-        let problem = self.problem();
-        let p = problem.start();
-        let mut corner = problem.information_root(&p);
-        // what the user knows beforehand identifies too
-        for &(parameter, _, sd) in &self.campaign.wishes.priors {
-            if let Some(k) = self.free.iter().position(|&p| p == parameter) {
-                let last = corner.nrows();
-                corner = corner.insert_row(last, 0.0);
-                corner[(last, k)] = 1.0 / sd;
-            }
-        }
-        let torque = self.largest_torques();
-        let ranges: Vec<f64> = self
-            .free
-            .iter()
-            .map(|&p| {
-                identify::plausible_range(p, if let Parameter::Compliance(j) = p { torque[j] } else { 0.0 })
-            })
-            .collect();
-        self.held = identify::unidentified(&corner, &ranges, &self.start, self.free)?;
-        Ok(())
-    }
-
-    /// Largest torque on each joint over the recording, N·m.
-    fn largest_torques(&self) -> Vec<f64> {
-        let n = self.recording.joint_count;
-        let of_joint = |j: usize| largest(self.pass.torque.iter().skip(j).step_by(n).copied());
-        (0..n).map(of_joint).collect()
-    }
-}
-
-pub(super) fn is_placement(parameter: Parameter) -> bool {
-    matches!(parameter, Parameter::BasePosition(_) | Parameter::BaseRotation(_) | Parameter::Tool(_))
-}
-
-/// Residuals come divided by their noise. A cosine of 1e-6 leaves every parameter within 1e-6·√dof of its standard errors,
-/// which is no error at all: the loop around the fit needs no more.
-fn known_noise() -> least_squares::Options {
-    least_squares::Options {
-        noise: least_squares::Noise::Known(1.0),
-        gradient_tolerance: 1e-6,
-        to_the_last_digit: false,
-        ..least_squares::Options::default()
-    }
-}
-
-/// Largest size; zero for no values.
-fn largest(values: impl Iterator<Item = f64>) -> f64 {
-    values.fold(0.0, |a: f64, b| a.max(b.abs()))
 }
 
 fn check_count(recording: &Recording, free: &[Parameter]) -> Result<()> {

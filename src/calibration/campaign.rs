@@ -83,6 +83,8 @@ pub struct Wishes {
 pub struct Recording {
     /// The file as the user named it.
     pub file: String,
+    /// Where it comes from: the comment lines above the header, joined.
+    pub source: Option<String>,
     /// Number of joints n.
     pub joint_count: usize,
     /// Joint values, rad or m, n per row, one row after the other.

@@ -90,7 +90,7 @@ impl Compensation {
         Compensation { mode: Mode::None, compliance: None, payload: None, contact_force: Vector3::zeros() }
     }
 
-    /// Fills in shift and torque of every row for the present `setup`; gives the largest change of a shift, m.
+    /// Fills in deflection and torque of every row for the present `setup`; gives the largest change of a deflection, m.
     pub(super) fn update(&self, setup: &Setup, recording: &Recording, pass: &mut Pass) -> f64 {
         let robot = setup.robot;
         let n = recording.joint_count;
@@ -104,14 +104,14 @@ impl Compensation {
             let tip_force = device.rotation * self.contact_force;
             let loads = Loads { gravity, payload: self.payload, tip_force };
             kinematics.torques(&loads, torque);
-            let shift = self.deflection(&kinematics, &gravity, &tip_force);
-            change = change.max((shift - pass.shift[row]).norm());
-            pass.shift[row] = shift;
+            let bent = self.deflection(&kinematics, &gravity, &tip_force);
+            change = change.max((bent - pass.bent[row]).norm());
+            pass.bent[row] = bent;
         }
         change
     }
 
-    /// R·(C^g·g_T + C^F·F_T), m in {W}, under gravity (m/s²) and a force on the tip (N), both in {W}.
+    /// C^g·g_T + C^F·F_T, m in {T}, under gravity (m/s²) and a force on the tip (N), both in {W}.
     fn deflection(
         &self,
         kinematics: &Kinematics,
@@ -122,7 +122,7 @@ impl Compensation {
         let r = &kinematics.flange.rotation;
         // g_T = Rᵀ·g, F_T = Rᵀ·F (Eqs 12–14); C^g is per g (Eq 19)
         let gravity = r.tr_mul(gravity) / STANDARD_GRAVITY;
-        r * (compliance.gravity * gravity + compliance.force * r.tr_mul(force))
+        compliance.gravity * gravity + compliance.force * r.tr_mul(force)
     }
 }
 

@@ -69,7 +69,6 @@ fn predict(
     recording: &super::campaign::Recording,
     compensation: &Compensation,
 ) -> Vec<Vector3<f64>> {
-    let n = recording.joint_count;
     let mut pass = Pass::at_rest(recording);
     // torques turn the joints that they act on: the second time they are those of the turned joints
     for _ in 0..3 {
@@ -78,8 +77,8 @@ fn predict(
     let mut kinematics = Kinematics::new(setup);
     let tips: Vec<Vector3<f64>> = (0..recording.len())
         .map(|row| {
-            kinematics.update(recording.joints(row), &pass.torque[row * n..][..n]);
-            kinematics.tip + pass.shift[row]
+            pass.deflect(&mut kinematics, recording, row);
+            kinematics.tip
         })
         .collect();
     match &recording.targets {

@@ -46,9 +46,9 @@ impl Held {
 /// joint, N·m, makes compliances comparable: no drive yields by more than 10 mrad.
 pub fn plausible_range(parameter: Parameter, largest_torque: f64) -> f64 {
     match parameter {
-        Parameter::BasePosition(_) | Parameter::Tool(_) => 1.0,
-        Parameter::BaseRotation(_) => 1.0,
-        Parameter::D(_) | Parameter::A(_) => 0.02,
+        // base and tool may be anywhere, but a rough start has been there: what it has not seen, no fit will
+        Parameter::BasePosition(_) | Parameter::BaseRotation(_) => 0.02,
+        Parameter::D(_) | Parameter::A(_) | Parameter::Tool(_) => 0.02,
         Parameter::Theta(_) => 0.1,
         Parameter::Alpha(_) | Parameter::Beta(_) => 0.04,
         Parameter::Compliance(_) => 0.01 / largest_torque.max(f64::MIN_POSITIVE),
@@ -85,4 +85,9 @@ pub(super) fn unidentified(
 pub(super) fn identified(held: &[Held], count: usize) -> Vec<bool> {
     let share = |k: usize| held.iter().map(|held| held.direction[k].powi(2)).sum::<f64>().sqrt();
     (0..count).map(|k| share(k) < SHARE).collect()
+}
+
+/// How far a robot as built may be from its drawing in a parameter along the held directions, SI.
+pub(super) fn unseen(held: &[Held], k: usize) -> f64 {
+    held.iter().map(|held| (held.direction[k] * held.ranges[k]).powi(2)).sum::<f64>().sqrt()
 }

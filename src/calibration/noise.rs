@@ -8,6 +8,9 @@ use nalgebra::Vector3;
 
 /// Below this probability that all groups scatter alike, each gets a noise of its own.
 const UNEQUAL: f64 = 0.01;
+/// Least noise that is believed, m: where deviations are smaller still, they are rounding, and weights made of them would drown
+/// what is known besides, such as the distances of sockets.
+const LEAST: f64 = 1e-9;
 /// Fewest degrees of freedom for a noise of its own.
 const FEWEST: f64 = 10.0;
 
@@ -28,6 +31,10 @@ pub enum Robust {
 const HUBER: f64 = 2.21;
 /// Tukey's c for 95 % efficiency in three dimensions (R. Maronna et al., *Robust Statistics*, 2nd ed., §6.4).
 const TUKEY: f64 = 5.49;
+
+/// What a deviation is worth for a variance made of the median of lengths, beside one for their mean square:
+/// (2/3)·(f(m)·m)² with the density f of χ₃ at its median m.
+const MEDIAN_EFFICIENCY: f64 = 0.527;
 
 /// Noise of the recording: standard deviation of one coordinate, m.
 #[derive(Debug, Clone, PartialEq)]
@@ -94,7 +101,8 @@ impl Noise {
         let pooled = variance(&all);
         let of_group: Vec<f64> =
             of_rows.iter().map(|of| if of.is_empty() { pooled } else { variance(of) }).collect();
-        let dof: Vec<f64> = of_rows.iter().map(|of| 3.0 * of.len() as f64 * share).collect();
+        let worth = if robust == Robust::None { 1.0 } else { MEDIAN_EFFICIENCY };
+        let dof: Vec<f64> = of_rows.iter().map(|of| 3.0 * of.len() as f64 * share * worth).collect();
         let p_equal = match self.is_stated {
             true => None,
             false => bartlett(&of_group, &dof)?,
@@ -102,8 +110,8 @@ impl Noise {
         let unequal = p_equal.is_some_and(|p| p < UNEQUAL);
         let sd = |group: usize| match unequal && dof[group] >= FEWEST {
             _ if self.is_stated => self.pooled,
-            true => of_group[group].sqrt(),
-            false => pooled.sqrt(),
+            true => of_group[group].sqrt().max(LEAST),
+            false => pooled.sqrt().max(LEAST),
         };
         let of_group: Vec<f64> = (0..of_group.len()).map(sd).collect();
         let weights = deviations
@@ -111,7 +119,7 @@ impl Noise {
             .zip(&recording.rows)
             .map(|(deviation, row)| robust.weight(deviation.norm() / of_group[row.group]))
             .collect();
-        let pooled = if self.is_stated { self.pooled } else { pooled.sqrt() };
+        let pooled = if self.is_stated { self.pooled } else { pooled.sqrt().max(LEAST) };
         Ok(Noise { pooled, of_group, p_equal, is_stated: self.is_stated, weights })
     }
 
@@ -121,7 +129,7 @@ impl Noise {
             .rows
             .iter()
             .zip(&self.weights)
-            .map(|(row, weight)| weight.sqrt() / self.of_group[row.group].max(f64::MIN_POSITIVE))
+            .map(|(row, weight)| weight.sqrt() / self.of_group[row.group])
             .collect()
     }
 

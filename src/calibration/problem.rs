@@ -6,7 +6,8 @@
 //! r  = (vᵀ·(ρ − ρ₀)/range) / σ_v                    a direction that the data do not identify, held
 //! ```
 //!
-//! f is the rigid tip in {W}, wᵢ one over the standard deviation of a coordinate. The unknowns are the free parameters,
+//! f is the rigid tip in {W}, R·Δxᵢ the rod's deflection, which is held fixed in {T}: it turns with the robot, and so the
+//! data do not seem to know which way a robot is turned from how its rod bends. wᵢ one over the standard deviation of a coordinate. The unknowns are the free parameters,
 //! then the three coordinates of every socket.
 
 use nalgebra::{DMatrix, DVector, Vector3};
@@ -23,8 +24,8 @@ const BLOCK: usize = 128;
 /// What a pass of the calibration holds fixed.
 #[derive(Debug, Clone)]
 pub(super) struct Pass {
-    /// R·Δx in {W} by row, m: deflected less undeflected tip.
-    pub shift: Vec<Vector3<f64>>,
+    /// Δx in {T} by row, m: deflected less undeflected tip.
+    pub bent: Vec<Vector3<f64>>,
     /// Torque on every joint by row, N·m, one row after the other.
     pub torque: Vec<f64>,
     /// wᵢ by row, 1/m.
@@ -35,10 +36,21 @@ impl Pass {
     /// Nothing bends, no torque, all rows count the same.
     pub fn at_rest(recording: &Recording) -> Self {
         Pass {
-            shift: vec![Vector3::zeros(); recording.len()],
+            bent: vec![Vector3::zeros(); recording.len()],
             torque: vec![0.0; recording.len() * recording.joint_count],
             weight: vec![1.0; recording.len()],
         }
+    }
+
+    /// Torque on every joint at a row, N·m.
+    pub fn torque(&self, recording: &Recording, row: usize) -> &[f64] {
+        &self.torque[row * recording.joint_count..][..recording.joint_count]
+    }
+
+    /// Moves to the joint values of a row, joints yielding and the rod bent: the tip is where the ball is.
+    pub fn deflect(&self, kinematics: &mut Kinematics, recording: &Recording, row: usize) {
+        kinematics.update(recording.joints(row), self.torque(recording, row));
+        kinematics.tip += kinematics.flange.rotation * self.bent[row];
     }
 }
 
@@ -69,7 +81,7 @@ impl Residuals<'_> {
             self.for_each_tip(&self.setup, |row, kinematics| {
                 let weight = self.pass.weight[row].powi(2);
                 let (total, weights) = &mut sum[self.recording.rows[row].group];
-                *total += (kinematics.tip + self.pass.shift[row]) * weight;
+                *total += kinematics.tip * weight;
                 *weights += weight;
             });
             start.extend(sum.iter().flat_map(|(total, weights)| {
@@ -94,7 +106,7 @@ impl Residuals<'_> {
         let setup = self.setup_at(p);
         let mut deviations = Vec::with_capacity(self.recording.len());
         self.for_each_tip(&setup, |row, kinematics| {
-            deviations.push(kinematics.tip + self.pass.shift[row] - self.target(p, row));
+            deviations.push(kinematics.tip - self.target(p, row));
         });
         deviations
     }
@@ -113,14 +125,13 @@ impl Residuals<'_> {
     fn for_each_tip(&self, setup: &Setup, mut visit: impl FnMut(usize, &Kinematics)) {
         let mut kinematics = Kinematics::new(setup);
         for row in 0..self.recording.len() {
-            kinematics.update(self.recording.joints(row), self.torque(row));
+            self.pass.deflect(&mut kinematics, self.recording, row);
             visit(row, &kinematics);
         }
     }
 
     fn torque(&self, row: usize) -> &[f64] {
-        let n = self.recording.joint_count;
-        &self.pass.torque[row * n..][..n]
+        self.pass.torque(self.recording, row)
     }
 
     /// The square root of the information about the free parameters: the triangle that is left of their columns of the
@@ -154,7 +165,7 @@ impl Residuals<'_> {
         let mut kinematics = Kinematics::new(setup);
         for (at, row) in rows.enumerate() {
             let (torque, weight) = (self.torque(row), self.pass.weight[row]);
-            kinematics.update(self.recording.joints(row), torque);
+            self.pass.deflect(&mut kinematics, self.recording, row);
             for (k, &parameter) in self.free.iter().enumerate() {
                 let column = kinematics.column(parameter, torque) * weight;
                 block.view_mut((3 * at, k), (3, 1)).copy_from(&column);

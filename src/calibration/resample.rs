@@ -36,6 +36,7 @@ impl Recording {
         };
         Recording {
             file: self.file.clone(),
+            source: self.source.clone(),
             joint_count: self.joint_count,
             joint_values: rows.iter().flat_map(|&row| self.joints(row).iter().copied()).collect(),
             rows: kept,

@@ -196,6 +196,7 @@ fn measure(
         .collect();
     let joint_values: Vec<f64> = poses.iter().flat_map(|(_, q)| q.iter().copied()).collect();
     let mut recording = Recording {
+        source: Some(format!("SIMULATED, seed {}", plan.seed)),
         file: "measurements.csv".into(),
         joint_count,
         joint_values,
@@ -221,7 +222,6 @@ fn measure(
 
 /// The deflected tip of every row, in {W}, m.
 fn deflected_tips(truth: &Setup, compensation: &Compensation, recording: &Recording) -> Vec<Vector3<f64>> {
-    let n = recording.joint_count;
     let mut pass = Pass::at_rest(recording);
     // the torque that turns a joint on is that of the turned joints
     for _ in 0..5 {
@@ -230,8 +230,8 @@ fn deflected_tips(truth: &Setup, compensation: &Compensation, recording: &Record
     let mut kinematics = Kinematics::new(truth);
     (0..recording.len())
         .map(|row| {
-            kinematics.update(recording.joints(row), &pass.torque[row * n..][..n]);
-            kinematics.tip + pass.shift[row]
+            pass.deflect(&mut kinematics, recording, row);
+            kinematics.tip
         })
         .collect()
 }
@@ -243,6 +243,7 @@ fn scan(truth: &Setup, plan: &Plan) -> Recording {
     short.tool = Vector3::new(0.0004, -0.0003, 0.1202);
     let joint_count = truth.robot.joints.len();
     let mut recording = Recording {
+        source: Some(format!("SIMULATED, seed {}", plan.seed)),
         file: "validation.csv".into(),
         joint_count,
         joint_values: Vec::new(),

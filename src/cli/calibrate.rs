@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
+use rodcal::calibration::campaign::Recording;
 use rodcal::calibration::{self, Calibration, Campaign, Compensation, Mode, Options, Robust};
 use rodcal::{Result, report};
 
@@ -108,10 +109,12 @@ pub fn provenance(campaign: &Campaign) -> Vec<(String, String)> {
         );
     }
     list.extend(campaign.readings.iter().map(|readings| ("rig readings".to_owned(), readings.file.clone())));
-    list.push(("measurements".into(), campaign.measurements.file.clone()));
-    list.extend(
-        campaign.validation.iter().map(|recording| ("validation".to_owned(), recording.file.clone())),
-    );
+    let told = |recording: &Recording| match &recording.source {
+        Some(source) => format!("{} ({source})", recording.file),
+        None => recording.file.clone(),
+    };
+    list.push(("measurements".into(), told(&campaign.measurements)));
+    list.extend(campaign.validation.iter().map(|recording| ("validation".to_owned(), told(recording))));
     list.push(("program".into(), concat!("rodcal ", env!("CARGO_PKG_VERSION")).into()));
     list
 }

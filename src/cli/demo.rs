@@ -3,20 +3,24 @@
 use std::path::PathBuf;
 
 use rodcal::beam::Physics;
+use rodcal::calibration::{self, Campaign, CompareOptions};
 use rodcal::compliance::{DEFAULT_ELEMENTS, Mode, Study, paper_contact_force};
 use rodcal::report::text::wrapped;
 use rodcal::report::{self, Report};
 use rodcal::rig::readings::Readings;
 use rodcal::rod::Rod;
-use rodcal::{Result, rig};
-use serde_json::json;
+use rodcal::{Error, Result, rig};
+use serde_json::{Value, json};
 
-use super::embedded::{LOAD_CELL, LOAD_CELL_FILE, RODS};
+use super::embedded::{CAMPAIGN, CAMPAIGN_FILE, LOAD_CELL, LOAD_CELL_FILE, RODS, named_by_the_campaign};
 use super::output::Outcome;
 
 /// What the numbers of the demo are worth.
 const RECONSTRUCTED: &str = "Rods 2# and 5# and their readings are reconstructed from the figures of the Improved \
-     MultiCal paper (Sensors 2023, 23(12), 5717); the load cell's readings are real.";
+     MultiCal paper (Sensors 2023, 23(12), 5717); the load cell's readings are real; the TX90's campaign is simulated.";
+
+/// Enough to show what a comparison looks like within a blink; `rodcal compare` takes more.
+const DRAWS: usize = 20;
 
 pub fn run() -> Result<Outcome> {
     let mut report = Report { title: "rodcal demo".into(), ..Report::default() };
@@ -49,11 +53,18 @@ pub fn run() -> Result<Outcome> {
     let fit = rig::fit(&readings, None, &rig::Options::default())?;
     let of_cell = report::rig::report(&fit, &readings, None);
     words += &wrapped(&format!("Load cell (NIST): {}", of_cell.headline));
-    words += &format!("\n{}", wrapped(RECONSTRUCTED));
     report.warnings.insert(0, RECONSTRUCTED.into());
     report.warnings.extend(of_cell.warnings.into_iter().map(|warning| format!("load cell: {warning}")));
     report.sections.extend(of_cell.sections);
     report.provenance.push(("readings".into(), format!("{LOAD_CELL_FILE} (NIST StRD, Pontius)")));
+
+    let (of_robot, calibrated, compared) = robot()?;
+    words += &format!("\n{}", wrapped(&of_robot.headline));
+    words += &format!("\n{}", wrapped(RECONSTRUCTED));
+    headlines.push(of_robot.headline);
+    report.warnings.extend(of_robot.warnings.into_iter().map(|warning| format!("TX90: {warning}")));
+    report.sections.extend(of_robot.sections);
+    report.provenance.push(("campaign".into(), format!("{CAMPAIGN_FILE} (simulated)")));
     report.provenance.push(("program".into(), concat!("rodcal ", env!("CARGO_PKG_VERSION")).into()));
 
     report.headline = headlines.join(" ");
@@ -61,6 +72,8 @@ pub fn run() -> Result<Outcome> {
         json: json!({
             "rods": results,
             "load_cell": report::rig::json(&fit, &readings, None),
+            "calibration": calibrated,
+            "comparison": compared,
         }),
         report: Some(report),
         text: Some(words),
@@ -68,4 +81,24 @@ pub fn run() -> Result<Outcome> {
         files: Vec::new(),
         status: 0,
     })
+}
+
+/// The campaign inside the program, calibrated in its default mode, and all modes compared: report and both JSONs.
+fn robot() -> Result<(Report, Value, Value)> {
+    let open = |name: &str| {
+        named_by_the_campaign(name).map(str::to_owned).ok_or_else(|| Error::File {
+            path: name.into(),
+            action: "read",
+            source: std::io::ErrorKind::NotFound.into(),
+        })
+    };
+    let campaign = Campaign::from_texts(CAMPAIGN_FILE, CAMPAIGN, &open)?;
+    let options = CompareOptions { draws: DRAWS, ..CompareOptions::default() };
+    let calibrated =
+        calibration::calibrate(&campaign, calibration::default_mode(&campaign), &options.calibration)?;
+    let compared = calibration::compare(&campaign, &options, &|_| {})?;
+    let mut report = report::calibration::report(&campaign, &calibrated, None);
+    report.sections.extend(report::comparison::sections(&campaign, &compared));
+    let json = report::calibration::json(&campaign, &calibrated, None);
+    Ok((report, json, report::comparison::json(&campaign, &compared)))
 }

@@ -28,3 +28,19 @@ pub const RODS: [Example; 2] = [
 pub const LOAD_CELL_FILE: &str = "stiffness_data/nist-load-cell.csv";
 /// Its text.
 pub const LOAD_CELL: &str = include_str!("../../stiffness_data/nist-load-cell.csv");
+
+/// A small simulated campaign of a TX90 with rod 5#.
+pub const CAMPAIGN_FILE: &str = "campaigns/tx90-5/campaign.toml";
+/// Its text.
+pub const CAMPAIGN: &str = include_str!("../../campaigns/tx90-5/campaign.toml");
+
+/// The files that the campaign names, by these names.
+pub fn named_by_the_campaign(name: &str) -> Option<&'static str> {
+    match name {
+        "../../rods/5.toml" => Some(RODS[1].rod),
+        "readings.csv" => Some(include_str!("../../campaigns/tx90-5/readings.csv")),
+        "measurements.csv" => Some(include_str!("../../campaigns/tx90-5/measurements.csv")),
+        "validation.csv" => Some(include_str!("../../campaigns/tx90-5/validation.csv")),
+        _ => None,
+    }
+}

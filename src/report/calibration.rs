@@ -47,6 +47,7 @@ pub fn json(
         "converged": calibration.is_converged,
         "reason": calibration.fit.reason.to_string(),
         "poses": recording.len(),
+        "measurements_source": recording.source,
         "parameters": parameters,
         "base": match recording.targets {
             Targets::Points(_) => json!({

@@ -8,7 +8,7 @@ mod warning;
 use std::fmt;
 use std::path::Path;
 
-use crate::delimited::{Row, Table, nearest_name};
+use crate::delimited::{Row, Table, comments_above, nearest_name};
 use crate::error::{Error, Place, Result};
 use crate::files;
 use crate::units::{MM, STANDARD_GRAVITY, UM};
@@ -183,13 +183,6 @@ impl fmt::Display for Direction {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}{}", if self.sign < 0 { "-" } else { "" }, self.axis)
     }
-}
-
-/// The text of the comment lines that a file begins with.
-fn comments_above(text: &str) -> Option<String> {
-    let comments = text.lines().map_while(|line| line.trim().strip_prefix('#'));
-    let words = comments.map(str::trim).filter(|line| !line.is_empty()).collect::<Vec<_>>().join(" ");
-    (!words.is_empty()).then_some(words)
 }
 
 fn is_one_of(column: &str, names: &[&str]) -> bool {

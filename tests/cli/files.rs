@@ -135,4 +135,15 @@ fn the_demo_is_made_of_the_other_commands() {
     }
     let cell = sandbox.run("rig fit linear stiffness_data/nist-load-cell.csv --json").json();
     assert_eq!(demo["load_cell"], cell);
+    let campaign = "campaigns/tx90-5/campaign.toml";
+    let calibration = sandbox.run(&format!("calibrate {campaign} --json")).json();
+    for (key, value) in demo["calibration"].as_object().unwrap() {
+        assert_eq!(value, &calibration[key], "{key}");
+    }
+    let comparison = sandbox.run(&format!("compare {campaign} --draws 50 --json")).json();
+    for mode in 0..4 {
+        let [demo, comparison] = [&demo["comparison"], &comparison].map(|json| &json["modes"][mode]);
+        assert!(comparison["validation"]["mean_um"].is_number());
+        assert_eq!(demo["validation"], comparison["validation"]);
+    }
 }

@@ -258,4 +258,6 @@ fn the_demo_as_json() {
         matrix(&rod["rig"]["cg_um_per_g"]);
     }
     assert_keys(&json["load_cell"], &["slopes"]);
+    assert_keys(&json["calibration"], &["mode", "parameters", "residual", "validation"]);
+    assert_eq!(json["comparison"]["modes"].as_array().unwrap().len(), 4);
 }

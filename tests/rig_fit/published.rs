@@ -12,6 +12,8 @@ use rodcal::units::{STANDARD_GRAVITY, UM};
 
 #[path = "../../examples/reconstruct_readings.rs"]
 mod reconstruct;
+#[path = "../../examples/simulate_campaign.rs"]
+mod simulate_campaign;
 
 fn project() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).to_path_buf()
@@ -99,6 +101,16 @@ fn the_reconstructed_files_are_what_their_example_makes() {
     let files = reconstruct::files(&project());
     assert_eq!(files.len(), 2);
     for (name, text) in files {
+        assert!(std::fs::read(project().join(&name)).unwrap() == text.as_bytes(), "{name} differs");
+    }
+}
+
+#[test]
+fn the_simulated_campaign_is_what_its_example_makes() {
+    let files = simulate_campaign::files(&project());
+    assert_eq!(files.len(), 4);
+    for (name, text) in files {
+        assert!(text.starts_with("# SIMULATED"), "{name}");
         assert!(std::fs::read(project().join(&name)).unwrap() == text.as_bytes(), "{name} differs");
     }
 }

@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 
 use super::columns::{Columns, POSITION, listed, required};
 use super::{Distance, Group, Recording, Row, Targets, Warning, warning};
-use crate::delimited::{Row as Cells, Table};
+use crate::delimited::{Row as Cells, Table, comments_above};
 use crate::error::{Error, Place, Result};
 use crate::robot::Robot;
 use crate::spatial::Pose;
@@ -85,6 +85,7 @@ pub(super) fn read(
         _ => Targets::Points(points),
     };
     let recording = Recording {
+        source: comments_above(text),
         file: file.to_owned(),
         joint_count: robot.joints.len(),
         joint_values,

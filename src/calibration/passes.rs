@@ -1,0 +1,212 @@
+//! The compensation loop (Eqs 11–14): fit, recompute what bends and yields and how much it scatters, fit again.
+
+use super::calibrate::Options;
+use super::campaign::{Campaign, Recording, Targets};
+use super::compensation::Compensation;
+use super::identify::{self, Held};
+use super::noise::{Noise, Robust};
+use super::problem::{Pass, Residuals};
+use crate::error::Result;
+use crate::least_squares::{self, Fit, Problem as _};
+use crate::robot::{Parameter, Setup};
+
+/// Noise of a coordinate that is assumed until the residuals tell, m.
+const ASSUMED_NOISE: f64 = 1e-4;
+/// Change of a deflection from one pass to the next below which the compensation stands still, m.
+const STILL: f64 = 1e-9;
+/// Relative change of noise and weights below which they stand still: far below their own uncertainty.
+const STILL_RELATIVE: f64 = 1e-3;
+/// Most passes of the compensation loop.
+const MOST_PASSES: usize = 60;
+
+/// One pass of the compensation loop.
+#[derive(Debug, Clone, Copy)]
+pub struct PassRecord {
+    /// Largest change of a rod deflection against the pass before, m.
+    pub change: f64,
+    /// Root mean square of the deviations' lengths after the fit, m.
+    pub rms: f64,
+    /// Noise of a coordinate, m.
+    pub noise: f64,
+}
+
+/// A calibration under way.
+pub(super) struct Run<'a, 'c> {
+    campaign: &'c Campaign,
+    recording: &'a Recording,
+    free: &'a [Parameter],
+    compensation: &'a Compensation,
+    /// Where it began.
+    start: Setup<'c>,
+    pub setup: Setup<'c>,
+    pub pass: Pass,
+    pub noise: Noise,
+    pub held: Vec<Held>,
+    pub passes: Vec<PassRecord>,
+    pub is_converged: bool,
+}
+
+impl<'a, 'c> Run<'a, 'c> {
+    pub fn new(
+        campaign: &'c Campaign,
+        recording: &'a Recording,
+        setup: Setup<'c>,
+        free: &'a [Parameter],
+        compensation: &'a Compensation,
+    ) -> Self {
+        let noise = match campaign.noise {
+            Some(sd) => Noise::assumed(sd, recording, true),
+            None => Noise::assumed(ASSUMED_NOISE, recording, false),
+        };
+        let pass = Pass { weight: noise.row_weights(recording), ..Pass::at_rest(recording) };
+        Run {
+            campaign,
+            recording,
+            free,
+            compensation,
+            start: setup.clone(),
+            setup,
+            pass,
+            noise,
+            held: Vec::new(),
+            passes: Vec::new(),
+            is_converged: false,
+        }
+    }
+
+    /// The rough calibration: only where the robot stands and where the tip is.
+    pub fn fit_base_and_tool(&mut self) -> Result<()> {
+        let placed: Vec<Parameter> = self.free.iter().copied().filter(|&p| is_placement(p)).collect();
+        if placed.is_empty() || matches!(self.recording.targets, Targets::Sockets(_)) {
+            return Ok(());
+        }
+        let problem = Residuals {
+            setup: self.setup.clone(),
+            free: &placed,
+            recording: self.recording,
+            pass: &self.pass,
+            held: &[],
+        };
+        let fit = least_squares::fit(&problem, &problem.start(), &known_noise())?;
+        if fit.is_converged() {
+            let found = problem.setup_at(&fit.parameters);
+            for &parameter in &placed {
+                self.setup.set(parameter, found.get(parameter));
+            }
+        }
+        Ok(())
+    }
+
+    /// Fits and recomputes deflections, torques, noise and weights until they stand still.
+    pub fn compensate(&mut self, options: &Options) -> Result<Fit> {
+        loop {
+            let change = self.compensation.update(&self.setup, self.recording, &mut self.pass);
+            // at the start, where the noise is a guess, and then where it is known
+            if self.passes.len() < 2 {
+                self.hold_unidentified()?;
+            }
+            let fit = self.fit()?;
+            for (k, &parameter) in self.free.iter().enumerate() {
+                self.setup.set(parameter, fit.parameters[k]);
+            }
+            let problem = self.problem();
+            let deviations = problem.deviations(&fit.parameters);
+            let rank = fit.covariance.rank.saturating_sub(self.held.len());
+            // one weighting as least squares first, so that the robust ones start from a fit
+            let robust = if self.passes.is_empty() { Robust::None } else { options.robust };
+            let noise = self.noise.estimate(self.recording, &deviations, rank, robust)?;
+            let squares: f64 = deviations.iter().map(|d| d.norm_squared()).sum();
+            let rms = (squares / self.recording.len() as f64).sqrt();
+            self.passes.push(PassRecord { change, rms, noise: noise.pooled });
+            let weight = noise.row_weights(self.recording);
+            let scale = largest(weight.iter().copied());
+            let moved = largest(weight.iter().zip(&self.pass.weight).map(|(a, b)| a - b));
+            self.noise = noise;
+            let stands_still = change < STILL && moved <= STILL_RELATIVE * scale && self.passes.len() > 1;
+            self.is_converged = stands_still && fit.is_converged();
+            if stands_still || self.passes.len() >= MOST_PASSES || !fit.is_converged() {
+                return Ok(fit);
+            }
+            self.pass.weight = weight;
+        }
+    }
+
+    fn problem(&self) -> Residuals<'_> {
+        Residuals {
+            setup: self.setup.clone(),
+            free: self.free,
+            recording: self.recording,
+            pass: &self.pass,
+            held: &self.held,
+        }
+    }
+
+    fn fit(&self) -> Result<Fit> {
+        let problem = self.problem();
+        let mut options = known_noise();
+        for &(parameter, value, sd) in &self.campaign.wishes.priors {
+            if let Some(index) = self.free.iter().position(|&p| p == parameter) {
+                options.priors.push(least_squares::Prior { parameter: index, value, sd });
+            }
+        }
+        least_squares::fit(&problem, &problem.start(), &options)
+    }
+
+    /// Finds the directions that the data do not identify where the robot stands now.
+    fn hold_unidentified(&mut self) -> Result<()> {
+        self.held.clear();
+        let problem = self.problem();
+        let p = problem.start();
+        let mut corner = problem.information_root(&p);
+        // before the first fit it is the nominal robot's misfit that parameters have to be told from, not the noise
+        if self.passes.is_empty() {
+            let squares = problem.residuals(&p).norm_squared();
+            corner /= (squares / problem.residual_count() as f64).sqrt().max(1.0);
+        }
+        // what the user knows beforehand identifies too
+        for &(parameter, _, sd) in &self.campaign.wishes.priors {
+            if let Some(k) = self.free.iter().position(|&p| p == parameter) {
+                let last = corner.nrows();
+                corner = corner.insert_row(last, 0.0);
+                corner[(last, k)] = 1.0 / sd;
+            }
+        }
+        let torque = self.largest_torques();
+        let ranges: Vec<f64> = self
+            .free
+            .iter()
+            .map(|&p| {
+                identify::plausible_range(p, if let Parameter::Compliance(j) = p { torque[j] } else { 0.0 })
+            })
+            .collect();
+        self.held = identify::unidentified(&corner, &ranges, &self.start, self.free)?;
+        Ok(())
+    }
+
+    /// Largest torque on each joint over the recording, N·m.
+    fn largest_torques(&self) -> Vec<f64> {
+        let n = self.recording.joint_count;
+        let of_joint = |j: usize| largest(self.pass.torque.iter().skip(j).step_by(n).copied());
+        (0..n).map(of_joint).collect()
+    }
+}
+
+pub(super) fn is_placement(parameter: Parameter) -> bool {
+    matches!(parameter, Parameter::BasePosition(_) | Parameter::BaseRotation(_) | Parameter::Tool(_))
+}
+
+/// Residuals come divided by their noise. A cosine of 1e-6 leaves every parameter within 1e-6·√dof of its standard errors,
+/// which is no error at all: the loop around the fit needs no more.
+fn known_noise() -> least_squares::Options {
+    least_squares::Options {
+        noise: least_squares::Noise::Known(1.0),
+        gradient_tolerance: 1e-6,
+        to_the_last_digit: false,
+        ..least_squares::Options::default()
+    }
+}
+
+/// Largest size; zero for no values.
+fn largest(values: impl Iterator<Item = f64>) -> f64 {
+    values.fold(0.0, |a: f64, b| a.max(b.abs()))
+}

@@ -1,0 +1,44 @@
+//! Campaigns of the program's own simulation, with fewer poses than the paper's, to the last digit.
+
+use rodcal::beam::Physics;
+use rodcal::calibration::Campaign;
+use rodcal::calibration::simulate::{Plan, Simulation, campaign_files, simulate};
+use rodcal::compliance::Compliance;
+use rodcal::robot::Robot;
+use rodcal::rod::Rod;
+
+use super::{arms, lab};
+
+pub struct Simulator {
+    robot: Robot,
+    rod_text: String,
+    rod: Rod,
+    model: Compliance,
+    plan: Plan,
+}
+
+impl Simulator {
+    /// The paper's rod 5# with 5 × 14 poses and 10 of validation.
+    pub fn new() -> Simulator {
+        let plan = Plan { poses_per_clamp: 14, validation_poses: 10, ..Plan::default() };
+        Simulator::of(include_str!("../../rods/5.toml"), plan)
+    }
+
+    pub fn of(rod_text: &str, plan: Plan) -> Simulator {
+        let rod = Rod::from_toml("rod.toml", rod_text).unwrap();
+        let model = Compliance::of_model(&rod, &Physics::default(), 20).unwrap();
+        Simulator { robot: arms::tx90().1, rod_text: rod_text.to_owned(), rod, model, plan }
+    }
+
+    pub fn run(&self, seed: u64) -> (Simulation<'_>, Campaign) {
+        let plan = Plan { seed, ..self.plan.clone() };
+        let simulation = simulate(&self.robot, &self.rod, &self.model, &plan).unwrap();
+        let files = campaign_files(&simulation, "builtin:tx90", "rod.toml");
+        let mut files: Vec<(&str, &str)> = files.iter().map(|(n, t)| (n.as_str(), t.as_str())).collect();
+        files.push(("rod.toml", &self.rod_text));
+        let mut campaign = lab::read(&files);
+        campaign.measurements.targets = simulation.measurements.targets.clone();
+        campaign.measurements.joint_values = simulation.measurements.joint_values.clone();
+        (simulation, campaign)
+    }
+}

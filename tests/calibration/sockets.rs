@@ -1,0 +1,100 @@
+//! Sockets: nothing but joint angles, weights, and a plate with two holes that was put down four times.
+
+use nalgebra::{Isometry3, Vector3};
+use rodcal::calibration::{Calibration, Campaign, Mode, Options, calibrate};
+
+use super::arms::{self, SEVEN};
+use super::lab::{Dice, Lab, read};
+use super::recovery::{EXACT, named, spoil, worst_error};
+
+/// Between the two sockets of the plate, m.
+const DISTANCE: f64 = 0.05;
+/// Gravity has no torque on the first joint, and the masses of the last two lie on their axes.
+const RHO: &str = "a1 alpha1 theta2 d2 a2 alpha2 c2 theta3 d3 a3 alpha3 c3 theta4 d4 a4 alpha4 c4 theta5 d5 a5 alpha5 c5 \
+                   theta6 d6 a6 alpha6 theta7 tool_x tool_z";
+/// Where the plate was put down, m.
+const PLACES: [[f64; 3]; 4] = [[0.45, 0.1, 0.3], [0.3, -0.45, 0.4], [-0.35, 0.4, 0.6], [0.5, 0.3, 0.8]];
+
+/// A robot of seven joints with its ball in each socket 18 times.
+fn recorded() -> (Lab, String) {
+    let mut dice = Dice(29);
+    let mut lab = Lab::new(arms::robot(SEVEN), Isometry3::identity(), Vector3::zeros());
+    spoil(&mut lab, &named(RHO, 7), &mut dice);
+    let mut csv = format!("pose,placement,socket{}\n", lab.header());
+    let mut pose = 0;
+    for (placement, middle) in PLACES.into_iter().enumerate() {
+        let along = dice.vector(1.0).normalize() * (DISTANCE / 2.0);
+        for (socket, side) in [1.0, -1.0].into_iter().enumerate() {
+            let target = Vector3::from(middle) + along * side;
+            let mut found = 0;
+            while found < 18 {
+                let start = lab.anywhere(&mut dice);
+                let Some(q) = lab.reach(&target, &start) else { continue };
+                csv += &format!("{pose},{placement},{socket}{}\n", lab.cells(&q));
+                found += 1;
+                pose += 1;
+            }
+        }
+    }
+    (lab, csv)
+}
+
+fn campaign(csv: &str) -> Campaign {
+    let text = "robot = \"robot.urdf\"\nmeasurements = \"m.csv\"\n[sockets]\ndistance_mm = 50\n";
+    read(&[("campaign.toml", text), ("robot.urdf", SEVEN), ("m.csv", csv)])
+}
+
+fn calibrated(campaign: &Campaign) -> Calibration<'_> {
+    let found =
+        calibrate(campaign, Mode::None, &Options::default()).unwrap_or_else(|error| panic!("{error}"));
+    assert!(found.is_converged, "{} {:?}", found.fit.reason, found.passes);
+    found
+}
+
+#[test]
+fn sockets_give_the_truth_back() {
+    let (lab, csv) = recorded();
+    let campaign = campaign(&csv);
+    let found = calibrated(&campaign);
+    let mut free: Vec<String> = found.parameters.iter().map(|p| p.parameter.to_string()).collect();
+    let mut rho: Vec<String> = named(RHO, 7).iter().map(ToString::to_string).collect();
+    free.sort();
+    rho.sort();
+    assert_eq!(free, rho);
+    assert!(found.held.is_empty());
+    let (error, name) = worst_error(&lab, &found);
+    assert!(error < EXACT, "{name} is off by {error:e}");
+    // the sockets are where they were, too
+    for (socket, at) in found.sockets.chunks(2).zip(PLACES) {
+        let middle = |axis: usize| (socket[0][axis].0 + socket[1][axis].0) / 2.0;
+        for (axis, &truth) in at.iter().enumerate() {
+            assert!((middle(axis) - truth).abs() < EXACT, "{} {truth}", middle(axis));
+        }
+    }
+}
+
+/// One socket of each placement: nothing tells a robot from one twice as large, and the user is told so.
+#[test]
+fn without_a_distance_the_size_of_the_robot_is_unknown() {
+    let (_, csv) = recorded();
+    let one_of_each = |line: &&str| line.split(',').nth(2).is_none_or(|socket| socket != "1");
+    let rows: Vec<String> = csv.lines().filter(one_of_each).map(|line| format!("{line}\n")).collect();
+    let campaign = campaign(&rows.concat());
+    assert!(!campaign.warnings.is_empty());
+    let words = campaign.warnings[0].to_string();
+    assert!(words.contains("distance"), "{words}");
+    let found = calibrated(&campaign);
+    assert_eq!(found.held.len(), 1);
+    // a change of all lengths in proportion
+    let held = &found.held[0];
+    let changes: Vec<f64> = held.direction.iter().zip(&held.ranges).map(|(v, range)| v * range).collect();
+    let index = |name: &str| found.parameters.iter().position(|p| p.parameter.to_string() == name).unwrap();
+    let ratio = changes[index("d3")] / changes[index("d5")];
+    let expected = found.setup.links[2].d / found.setup.links[4].d;
+    assert!((ratio / expected - 1.0).abs() < 0.02, "{ratio} {expected}");
+    for name in ["d3", "d5"] {
+        assert!(!found.parameters[index(name)].identifiable, "{name}");
+    }
+    assert!(found.parameters[index("theta4")].identifiable);
+    assert!(held.relative_error > 100.0, "{}", held.relative_error);
+}

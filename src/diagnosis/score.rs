@@ -10,6 +10,9 @@
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
+/// Least noise variance relative to that of the residual.
+const LEAST: f64 = 1e-12;
+
 /// What a fit of a story comes to.
 #[derive(Debug, Clone)]
 pub struct Score {
@@ -44,9 +47,11 @@ pub fn score(r: &DVector<f64>, columns: &DMatrix<f64>, freedom: usize, floor: f6
         }
         -0.5 * (nu * s.ln() + determinant + quadratic.max(0.0) / s)
     };
-    // between the floor and what the residual has without any story
-    let lowest = floor.powi(2).max(f64::MIN_POSITIVE.sqrt());
-    let highest = (square / nu.max(1.0)).max(lowest) * 2.0;
+    // between the floor and what the residual has without any story; far below it columns that are nearly the same would
+    // explain their own rounding
+    let all = square / nu.max(1.0);
+    let lowest = floor.powi(2).max(LEAST * all).max(f64::MIN_POSITIVE.sqrt());
+    let highest = all.max(lowest) * 2.0;
     let s = largest(&|t: f64| log_evidence(t.exp()), lowest.ln(), highest.ln()).exp();
     let shrunk = DVector::from_fn(p, |k, _| b[k] / (lambda[k] + s));
     let spread = DMatrix::from_diagonal(&lambda.map(|l| s / (l + s)));

@@ -99,29 +99,49 @@ impl<'a> Search<'a> {
 
     /// The most probable story of known effects, and the one that an unknown curve adds to it, if that is named rather
     /// than chance.
+    ///
+    /// Known effects are named only as far as they are likelier, by the odds of a name, than a shorter story with an
+    /// unknown curve: several of them together can draw the shape of something that is none of them.
     pub fn best(&self) -> (Story, Option<Story>) {
-        let mut story = self.fit(&[]);
-        while story.chosen.len() < MOST {
-            let additions = self.additions(&story);
-            let known = |&index: &usize| !self.world.candidates()[index].is_unknown;
-            let Some(best) =
-                (0..additions.len()).filter(known).max_by(|&a, &b| additions[a].total_cmp(&additions[b]))
-            else {
+        let mut path = vec![self.fit(&[])];
+        loop {
+            let story = &path[path.len() - 1];
+            if story.chosen.len() >= MOST {
                 break;
-            };
-            let longer = self.with(&story, best);
+            }
+            let Some(longer) = self.longer(story, false) else { break };
             if longer.log_probability < story.log_probability + NAMED.ln() {
                 break;
             }
-            story = self.exchanged(longer);
+            let longer = self.exchanged(longer);
+            path.push(longer);
         }
-        let additions = self.additions(&story);
-        let unknown = (0..additions.len())
-            .filter(|&index| self.world.candidates()[index].is_unknown)
-            .max_by(|&a, &b| additions[a].total_cmp(&additions[b]))
-            .map(|index| self.with(&story, index))
-            .filter(|longer| longer.log_probability > story.log_probability + NAMED.ln());
+        let rivals: Vec<Option<Story>> = path.iter().map(|story| self.longer(story, true)).collect();
+        let last = path.len() - 1;
+        let shorter = rivals[..last]
+            .iter()
+            .enumerate()
+            .filter_map(|(k, rival)| Some((k, rival.as_ref()?.log_probability)))
+            .max_by(|a, b| a.1.total_cmp(&b.1));
+        let named = match shorter {
+            Some((k, rival)) if rival + NAMED.ln() > path[last].log_probability => k,
+            _ => last,
+        };
+        let story = path.swap_remove(named);
+        let unknown = rivals.into_iter().nth(named).flatten();
+        let is_seen = |longer: &Story| longer.log_probability > story.log_probability + NAMED.ln();
+        let unknown = unknown.filter(is_seen);
         (story, unknown)
+    }
+
+    /// The story with the likeliest candidate more, of those that are unknown or of those that are not.
+    fn longer(&self, story: &Story, unknown: bool) -> Option<Story> {
+        let additions = self.additions(story);
+        (0..additions.len())
+            .filter(|&index| self.world.candidates()[index].is_unknown == unknown)
+            .filter(|&index| additions[index] > f64::NEG_INFINITY)
+            .max_by(|&a, &b| additions[a].total_cmp(&additions[b]))
+            .map(|index| self.with(story, index))
     }
 
     /// One candidate more.

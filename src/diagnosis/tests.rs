@@ -128,8 +128,11 @@ fn twins_are_named_as_such() {
         let found = diagnose(&world, &evidence(seed, |x| 8.0 * x));
         let names = effects(&found, &world);
         assert_eq!(names.len(), 1, "seed {seed}: {names:?}");
-        let rivals: Vec<&str> =
-            found.findings[0].indistinguishable.iter().map(|&i| world.candidates[i].effect.as_str()).collect();
+        let rivals: Vec<&str> = found.findings[0]
+            .indistinguishable
+            .iter()
+            .map(|&i| world.candidates[i].effect.as_str())
+            .collect();
         let (name, rival) = if names[0] == "slope" { ("slope", "twin") } else { ("twin", "slope") };
         assert_eq!(names[0], name);
         assert!(rivals.contains(&rival), "seed {seed}: {rivals:?}");
@@ -141,7 +144,8 @@ fn a_place_is_found_and_two_effects_are_two() {
     let world = world();
     let mut both = 0;
     for seed in 0..30 {
-        let found = diagnose(&world, &evidence(seed, |x| 9.0 * x * x - 7.0 * f64::from(u8::from(x > 4.5 / 15.0))));
+        let found =
+            diagnose(&world, &evidence(seed, |x| 9.0 * x * x - 7.0 * f64::from(u8::from(x > 4.5 / 15.0))));
         let names = effects(&found, &world);
         let place = found.findings.iter().find(|f| world.candidates[f.candidate].effect == "step");
         let is_there = place.is_some_and(|f| world.candidates[f.candidate].location == "4");

@@ -21,6 +21,8 @@ pub struct Diagnosis {
     pub unexplained: Option<Unexplained>,
     /// Noise of a datum under the story.
     pub noise: f64,
+    /// Variance of the errors that data share, over that of their own.
+    pub shared_ratio: f64,
     /// Root mean square of what the base model leaves.
     pub rms_before: f64,
     /// And of what the story leaves.
@@ -84,6 +86,7 @@ pub fn diagnose(world: &dyn World, evidence: &Evidence) -> Diagnosis {
         findings,
         unexplained,
         noise: story.sigma,
+        shared_ratio: search.shared_ratio(),
         rms_before: rms(&evidence.residual),
         rms_after: rms(&left),
         proof: prove(world, evidence),

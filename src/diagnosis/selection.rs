@@ -158,6 +158,11 @@ impl<'a> Search<'a> {
         self.fit(&chosen)
     }
 
+    /// Variance of the errors that data share, over that of their own.
+    pub fn shared_ratio(&self) -> f64 {
+        self.whitening.ratio
+    }
+
     /// Length of a residual once shared errors and nuisance are taken out of it.
     pub fn length(&self, residual: &DVector<f64>) -> f64 {
         self.whitening.apply(residual).norm()

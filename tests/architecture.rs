@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// From the ground up. A room is a top-level module with everything under it.
-const FLOORS: [&[&str]; 10] = [
+const FLOORS: [&[&str]; 11] = [
     // no domain words
     &[
         "error",
@@ -26,6 +26,7 @@ const FLOORS: [&[&str]; 10] = [
     &["rig"],
     &["robot"],
     &["calibration"],
+    &["diagnosis"],
     &["report"],
     // the library as its users see it
     &["lib"],

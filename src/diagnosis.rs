@@ -1,0 +1,22 @@
+//! Which physics a model left out: locate a mismatch, name it, model it, show that the fit improves.
+//!
+//! The engine knows no physics. It sees a recording as numbers ([`Evidence`]) and the physics as candidates, each an
+//! effect at a place with a few parameters ([`Candidate`]), and asks a [`World`] what would have been recorded if some of
+//! them were real. Which effects there are, how they act together and how they are said to people is the world's business.
+
+mod diagnose;
+mod evidence;
+mod proof;
+mod score;
+mod selection;
+mod whitening;
+mod world;
+
+#[cfg(test)]
+mod tests;
+
+pub use diagnose::{Diagnosis, Finding, Unexplained, diagnose};
+pub use evidence::{Covariate, Evidence};
+pub use proof::{Proof, prove};
+pub use selection::{Search, Story};
+pub use world::{Candidate, Chosen, EffectParameter, World};

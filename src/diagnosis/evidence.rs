@@ -1,0 +1,33 @@
+//! A recording as numbers: what is left of the base model, how it scatters, and what hangs together.
+
+use nalgebra::{DMatrix, DVector};
+
+/// A recording as the engine sees it, n data.
+#[derive(Debug, Clone)]
+pub struct Evidence {
+    /// Recorded less predicted by the base model, n, in one unit for all (m).
+    pub residual: DVector<f64>,
+    /// What the base model can absorb by itself: n × k, any columns, none for a model that is not fitted.
+    pub nuisance: DMatrix<f64>,
+    /// Repeats: data of the same number were recorded under the same conditions.
+    pub cell: Vec<usize>,
+    /// Data of the same number share an error, such as the zero that their readings are offsets from.
+    pub shared: Vec<usize>,
+    /// Data of the same number are held out together.
+    pub fold: Vec<usize>,
+    /// Smallest step of the recorded numbers: what is below it is rounding.
+    pub resolution: f64,
+    /// Numbers that a mismatch may follow.
+    pub covariates: Vec<Covariate>,
+}
+
+/// A number that every datum has, along which a mismatch may be structured.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Covariate {
+    /// For people, for example `load`.
+    pub name: String,
+    /// Unit for people, `` for none.
+    pub unit: String,
+    /// One per datum; NaN where it is not known.
+    pub values: Vec<f64>,
+}

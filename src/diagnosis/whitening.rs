@@ -1,0 +1,207 @@
+//! Errors that data share, and what the base model absorbs, taken out of residuals and columns.
+//!
+//! The errors of a group that shares one, of relative variance ρ, have the covariance σ²·(1 + ρ·J), J all ones. With m
+//! data in the group
+//!
+//! (1 + ρ·J)^(−1/2) = 1 − (1 − 1/√(1 + ρ·m))/m · J
+//!
+//! makes them independent. What is left is projected on the complement of the whitened nuisance columns, M = 1 − Q·Qᵀ.
+
+use std::collections::BTreeMap;
+
+use nalgebra::{DMatrix, DVector};
+
+use super::Evidence;
+
+/// ρ that is believed before the data: a zero that was read once is as good as any other reading.
+const RATIO_BEFORE: f64 = 1.0;
+/// What that belief counts, in degrees of freedom.
+const BELIEF: f64 = 10.0;
+/// Length, relative to what it was, below which a nuisance column is a combination of the others.
+const DEPENDENT: f64 = 1e-9;
+
+/// Whitens and projects vectors of n data.
+#[derive(Debug, Clone)]
+pub struct Whitening {
+    /// Rows of every group with more than one datum, and what is taken off times their mean.
+    groups: Vec<(Vec<usize>, f64)>,
+    /// Orthonormal basis of the whitened nuisance columns.
+    basis: Vec<DVector<f64>>,
+    /// ρ.
+    pub ratio: f64,
+    /// Data less what the nuisance columns absorb.
+    pub degrees_of_freedom: usize,
+}
+
+impl Whitening {
+    /// For an evidence whose residuals, without what is explained already, are `left`: ρ is estimated from them.
+    pub fn new(evidence: &Evidence, left: &DVector<f64>) -> Self {
+        let ratio = shared_ratio(evidence, left);
+        let mut members: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+        for (row, &group) in evidence.shared.iter().enumerate() {
+            members.entry(group).or_default().push(row);
+        }
+        let groups = members
+            .into_values()
+            .filter(|rows| rows.len() > 1)
+            .map(|rows| {
+                let m = rows.len() as f64;
+                (rows, 1.0 - 1.0 / (1.0 + ratio * m).sqrt())
+            })
+            .collect();
+        let mut whitening =
+            Whitening { groups, basis: Vec::new(), ratio, degrees_of_freedom: evidence.residual.len() };
+        for column in evidence.nuisance.column_iter() {
+            let mut own = whitening.whitened(&column.into_owned());
+            let before = own.norm();
+            // twice is enough
+            for _ in 0..2 {
+                whitening.project(&mut own);
+            }
+            let length = own.norm();
+            if length > DEPENDENT * before && length > 0.0 {
+                whitening.basis.push(own / length);
+            }
+        }
+        whitening.degrees_of_freedom -= whitening.basis.len().min(evidence.residual.len());
+        whitening
+    }
+
+    /// Whitened and projected.
+    pub fn apply(&self, v: &DVector<f64>) -> DVector<f64> {
+        let mut v = self.whitened(v);
+        self.project(&mut v);
+        v
+    }
+
+    /// Column by column.
+    pub fn apply_columns(&self, columns: &DMatrix<f64>) -> DMatrix<f64> {
+        let mut result = columns.clone();
+        for mut column in result.column_iter_mut() {
+            let v = self.apply(&column.clone_owned());
+            column.copy_from(&v);
+        }
+        result
+    }
+
+    fn whitened(&self, v: &DVector<f64>) -> DVector<f64> {
+        let mut v = v.clone();
+        for (rows, share) in &self.groups {
+            let mean = rows.iter().map(|&row| v[row]).sum::<f64>() / rows.len() as f64;
+            for &row in rows {
+                v[row] -= share * mean;
+            }
+        }
+        v
+    }
+
+    fn project(&self, v: &mut DVector<f64>) {
+        for b in &self.basis {
+            v.axpy(-b.dot(v), b, 1.0);
+        }
+    }
+}
+
+/// ρ from repeats: the mean product of two deviations of one group, over what the mean square has beyond it.
+///
+/// Deviations are from the mean of the cell, so that nothing that repeats itself counts.
+fn shared_ratio(evidence: &Evidence, left: &DVector<f64>) -> f64 {
+    let mut cells: BTreeMap<usize, (f64, f64)> = BTreeMap::new();
+    for (row, &cell) in evidence.cell.iter().enumerate() {
+        let (sum, count) = cells.entry(cell).or_default();
+        *sum += left[row];
+        *count += 1.0;
+    }
+    let (mut square, mut count) = (0.0, 0.0);
+    let mut groups: BTreeMap<usize, (f64, f64, f64)> = BTreeMap::new();
+    for (row, cell) in evidence.cell.iter().enumerate() {
+        let (sum, repeats) = cells[cell];
+        if repeats < 2.0 {
+            continue;
+        }
+        // a deviation from a mean of r repeats has (r − 1)/r of the variance
+        let deviation = (left[row] - sum / repeats) * (repeats / (repeats - 1.0)).sqrt();
+        square += deviation * deviation;
+        count += 1.0;
+        let (total, squares, members) = groups.entry(evidence.shared[row]).or_default();
+        *total += deviation;
+        *squares += deviation * deviation;
+        *members += 1.0;
+    }
+    let (mut product, mut pairs) = (0.0, 0.0);
+    for (total, squares, members) in groups.into_values() {
+        product += total * total - squares;
+        pairs += members * (members - 1.0);
+    }
+    if count == 0.0 || pairs == 0.0 || square == 0.0 {
+        return RATIO_BEFORE;
+    }
+    let mean_square = square / count;
+    let shared = (product / pairs).clamp(0.0, 0.999 * mean_square);
+    let own = mean_square - shared;
+    // the belief counts as BELIEF data of this mean square, split as it says
+    let split = RATIO_BEFORE / (1.0 + RATIO_BEFORE);
+    (shared * count + split * mean_square * BELIEF) / (own * count + (1.0 - split) * mean_square * BELIEF)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::statistics::Random;
+
+    /// 6 trials of 8 cells.
+    fn evidence(shared_sd: f64) -> Evidence {
+        let mut random = Random::seeded(3, 0);
+        let (mut residual, mut cell, mut shared) = (Vec::new(), Vec::new(), Vec::new());
+        for trial in 0..60 {
+            let zero = shared_sd * random.normal();
+            for load in 0..8 {
+                residual.push(3.0 * load as f64 + zero + random.normal());
+                cell.push(load);
+                shared.push(trial);
+            }
+        }
+        let n = residual.len();
+        Evidence {
+            residual: DVector::from_vec(residual),
+            nuisance: DMatrix::zeros(n, 0),
+            cell,
+            fold: shared.clone(),
+            shared,
+            resolution: 0.0,
+            covariates: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn the_shared_error_is_found_in_the_repeats() {
+        for (sd, ratio) in [(0.0, 0.0), (1.0, 1.0), (3.0, 9.0)] {
+            let evidence = evidence(sd);
+            let found = Whitening::new(&evidence, &evidence.residual).ratio;
+            assert!((found - ratio).abs() < 0.15 + 0.35 * ratio, "{found} instead of {ratio}");
+        }
+    }
+
+    #[test]
+    fn whitening_is_the_inverse_root_of_the_covariance() {
+        let evidence = Evidence { shared: vec![7; 480], ..evidence(1.0) };
+        let whitening = Whitening::new(&evidence, &evidence.residual);
+        let (rho, n) = (whitening.ratio, 480.0);
+        // W·(1 + ρJ)·Wᵀ = 1: checked on two vectors
+        let covariance = |v: &DVector<f64>| v + DVector::from_element(480, rho * v.sum());
+        let e = DVector::from_fn(480, |i, _| f64::from(u8::from(i == 5)));
+        let whitened = whitening.whitened(&covariance(&whitening.whitened(&e)));
+        assert!((whitened - &e).norm() < 1e-9 * n);
+    }
+
+    #[test]
+    fn nuisance_columns_vanish() {
+        let mut evidence = evidence(1.0);
+        evidence.nuisance =
+            DMatrix::from_fn(480, 3, |i, k| if k == 2 { 2.0 } else { (i as f64).powi(k as i32) });
+        let whitening = Whitening::new(&evidence, &evidence.residual);
+        assert_eq!(whitening.degrees_of_freedom, 478, "the third column is the first");
+        let gone = whitening.apply(&evidence.nuisance.column(1).into_owned());
+        assert!(gone.norm() < 1e-9 * evidence.nuisance.column(1).norm());
+    }
+}

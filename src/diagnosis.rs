@@ -5,6 +5,7 @@
 //! them were real. Which effects there are, how they act together and how they are said to people is the world's business.
 
 pub mod evidence;
+pub mod rig;
 pub mod world;
 
 pub use evidence::Evidence;

@@ -79,6 +79,9 @@ fn resolution(data: &[Datum]) -> f64 {
     steps.next().map_or(0.0, |step| step * UM)
 }
 
+/// What a datum has of a covariate.
+type Value<'a> = &'a dyn Fn(&Datum) -> Option<f64>;
+
 fn covariates(data: &[Datum]) -> Vec<Covariate> {
     let mut first_of_run: Vec<Option<f64>> = Vec::new();
     for datum in data {
@@ -88,7 +91,7 @@ fn covariates(data: &[Datum]) -> Vec<Covariate> {
     let since = |d: &Datum| Some(d.time? - first_of_run[d.run]?);
     let number = |axis: Axis| axis.index() as f64;
     let phase = |d: &Datum| Some(if d.is_unloading() { 1.0 } else { -1.0 }).filter(|_| d.phase.is_some());
-    let all: [(&str, &str, &dyn Fn(&Datum) -> Option<f64>); 10] = [
+    let all: [(&str, &str, Value<'_>); 10] = [
         ("load", "N", &|d| Some(d.load)),
         ("signed load", "N", &|d| Some(d.signed_load())),
         ("phase", "", &phase),

@@ -7,6 +7,7 @@
 mod diagnose;
 mod evidence;
 mod proof;
+pub mod rig;
 mod score;
 mod selection;
 mod whitening;

@@ -1,0 +1,222 @@
+//! The physics of a stiffness rig: what could have made its readings differ from the rod's model.
+//!
+//! Three stages act one after another, so that effects combine as they would on the bench (friction on a rod whose modulus
+//! is off too): a nominal load becomes a force, a force becomes a displacement, a displacement becomes a reading. Formulae:
+//! `action.rs` (stages), `structure.rs` (compliance), `memory.rs` (creep, hysteresis). Which effects there are and how
+//! large they usually are: `library.rs`. The rivals that stand for physics nobody has named: `unknown.rs`.
+//!
+//! Without a rod (`linear`) each line of readings has a slope c that nobody knows. The evidence leaves it to the engine as
+//! a nuisance, and an effect that scales with the displacement takes the slope that fits best with that effect in place
+//! (G. H. Golub, V. Pereyra, *SIAM J. Numer. Anal.* 10 (1973) 413–432: separable least squares),
+//!
+//! ```text
+//! change = c·(h − F) + shifts,   c = Σ h·(y − shifts)/Σ h²        h the load that is felt, F the nominal one
+//! ```
+//!
+//! which is exact once the engine has fitted its own multiple of F.
+
+mod action;
+mod datum;
+mod evidence;
+mod library;
+mod memory;
+mod structure;
+#[cfg(test)]
+mod tests;
+mod unknown;
+
+use nalgebra::{DMatrix, DVector};
+
+use self::action::{Action, State};
+use self::structure::Structure;
+use super::{Candidate, Chosen, Evidence, World};
+use crate::error::Result;
+use crate::rig::readings::Readings;
+use crate::rod::Rod;
+pub use datum::Datum;
+
+/// Readings of a rig with all the physics that might be in them.
+#[derive(Debug, Clone)]
+pub struct RigWorld {
+    data: Vec<Datum>,
+    body: Body,
+    /// For each datum the pair of stations (with a rod) or the line (without).
+    place: Vec<usize>,
+    candidates: Vec<Candidate>,
+    /// For each candidate what its parameters do.
+    actions: Vec<Vec<Action>>,
+}
+
+/// What turns a force into a displacement.
+#[derive(Debug, Clone)]
+enum Body {
+    Rod(Box<Structure>),
+    /// So many lines of unknown slopes.
+    Lines(usize),
+}
+
+impl RigWorld {
+    /// The world of `readings`: against the FEA model of `rod` as its file gives it, or against straight lines through the
+    /// origin where there is none.
+    ///
+    /// # Errors
+    /// [`crate::Error::Input`] for a station that is not on the rod; what the beam model refuses.
+    pub fn new(readings: &Readings, rod: Option<&Rod>) -> Result<(RigWorld, Evidence)> {
+        let data = datum::all(&readings.rows);
+        let (body, place) = match rod {
+            Some(rod) => {
+                structure::check_stations(readings, rod)?;
+                let tip = rod.length();
+                let at = |station: Option<f64>| station.unwrap_or(tip).min(tip);
+                let pair = |d: &Datum| (at(d.load_station), at(d.read_station));
+                let place = datum::numbered(data.iter().map(pair));
+                let mut pairs = Vec::new();
+                for (datum, &number) in data.iter().zip(&place) {
+                    if number == pairs.len() {
+                        pairs.push(pair(datum));
+                    }
+                }
+                (Body::Rod(Box::new(Structure::new(rod, pairs)?)), place)
+            }
+            None => {
+                let line = datum::numbered(data.iter().map(Datum::line_key));
+                (Body::Lines(line.iter().max().map_or(0, |last| last + 1)), line)
+            }
+        };
+        let mut world = RigWorld { data, body, place, candidates: Vec::new(), actions: Vec::new() };
+        let nuisance = match &world.body {
+            Body::Rod(structure) => {
+                let ideal = world.displaced(structure, &State::default());
+                world.data.iter_mut().zip(&ideal).for_each(|(datum, y)| datum.predicted = *y);
+                DMatrix::zeros(world.data.len(), 0)
+            }
+            Body::Lines(_) => evidence::slopes(&world.data, &world.place),
+        };
+        let evidence = evidence::of(&world.data, nuisance);
+        world.add_candidates(rod);
+        Ok((world, evidence))
+    }
+
+    /// The data, in the order of the evidence.
+    pub fn data(&self) -> &[Datum] {
+        &self.data
+    }
+
+    /// Fills in the library and the unknown rivals, without what can do nothing to these readings.
+    fn add_candidates(&mut self, rod: Option<&Rod>) {
+        let mut entries = library::all(&self.data, &mut self.body, rod);
+        entries.extend(unknown::all(&self.data, &self.deflections(), rod.is_some()));
+        for (candidate, actions) in entries {
+            let (parameters, actions): (Vec<_>, Vec<_>) = candidate
+                .parameters
+                .into_iter()
+                .zip(actions)
+                .filter(|(parameter, action)| {
+                    self.is_felt(action, parameter.neutral, parameter.size, parameter.bounds)
+                })
+                .unzip();
+            if !parameters.is_empty() {
+                self.candidates.push(Candidate { parameters, ..candidate });
+                self.actions.push(actions);
+            }
+        }
+    }
+
+    /// False for what changes nothing to first order: a twist under loads that do not twist.
+    fn is_felt(&self, action: &Action, neutral: f64, size: f64, bounds: (f64, f64)) -> bool {
+        const NOTHING: f64 = 1e-9;
+        let at = |value: f64| {
+            let mut state = State::default();
+            state.act(action, value);
+            self.changed(&state)
+        };
+        // a parameter at its bound can only go one way, and a second-order effect goes the same way twice
+        let step = if neutral + size <= bounds.1 { size } else { bounds.1 - neutral };
+        let scale = self.data.iter().fold(0.0, |s: f64, d| s.max(d.measured.abs()).max(d.predicted.abs()));
+        (at(neutral + step) - at(neutral - step)).amax() > NOTHING * scale
+    }
+
+    /// How far the rod yields at each datum, m: the prediction, or the reading's share in a line through the origin.
+    fn deflections(&self) -> Vec<f64> {
+        match self.body {
+            Body::Rod(_) => self.data.iter().map(|d| d.predicted).collect(),
+            Body::Lines(count) => {
+                let measured: Vec<f64> = self.data.iter().map(|d| d.measured).collect();
+                let loads: Vec<f64> = self.data.iter().map(Datum::signed_load).collect();
+                let slopes = self.slopes(count, &loads, &measured);
+                loads.iter().zip(&self.place).map(|(load, &line)| load * slopes[line]).collect()
+            }
+        }
+    }
+
+    /// Slope of each line through the origin, m/N; 0 where nothing pulls.
+    fn slopes(&self, count: usize, loads: &[f64], readings: &[f64]) -> Vec<f64> {
+        let mut sums = vec![(0.0, 0.0); count];
+        for ((&load, reading), &line) in loads.iter().zip(readings).zip(&self.place) {
+            sums[line].0 += load * reading;
+            sums[line].1 += load * load;
+        }
+        sums.into_iter().map(|(xy, xx)| if xx > 0.0 { xy / xx } else { 0.0 }).collect()
+    }
+
+    /// The readings of a rod, without shifts, m.
+    fn displaced(&self, structure: &Structure, state: &State<'_>) -> Vec<f64> {
+        let compliance = structure.softened(&state.softening);
+        let reading = |(i, datum): (usize, &Datum)| {
+            let pull = state.pull(i, datum);
+            let bent = compliance[self.place[i]] * (pull.direction * pull.load);
+            state.read(datum.channel, &(bent + pull.direction * pull.play))
+        };
+        self.data.iter().enumerate().map(reading).collect()
+    }
+
+    fn changed(&self, state: &State<'_>) -> DVector<f64> {
+        let mut change = DVector::zeros(self.data.len());
+        for (weights, value) in &state.shifts {
+            for &(index, weight) in *weights {
+                change[index] += weight * value;
+            }
+        }
+        match &self.body {
+            _ if !state.is_changed => {}
+            Body::Rod(structure) => {
+                let readings = self.displaced(structure, state);
+                for ((change, reading), datum) in change.iter_mut().zip(readings).zip(&self.data) {
+                    *change += reading - datum.predicted;
+                }
+            }
+            Body::Lines(count) => {
+                let mut felt = Vec::with_capacity(self.data.len());
+                let mut left = Vec::with_capacity(self.data.len());
+                for (i, datum) in self.data.iter().enumerate() {
+                    let pull = state.pull(i, datum);
+                    felt.push(pull.load * f64::from(datum.direction.sign));
+                    change[i] += pull.direction[datum.channel.index()] * pull.play;
+                    left.push(datum.measured - change[i]);
+                }
+                let slopes = self.slopes(*count, &felt, &left);
+                for (i, datum) in self.data.iter().enumerate() {
+                    change[i] += slopes[self.place[i]] * (felt[i] - datum.signed_load());
+                }
+            }
+        }
+        change
+    }
+}
+
+impl World for RigWorld {
+    fn candidates(&self) -> &[Candidate] {
+        &self.candidates
+    }
+
+    fn change(&self, story: &[Chosen]) -> DVector<f64> {
+        let mut state = State::default();
+        for chosen in story {
+            let actions = self.actions.get(chosen.candidate).map_or(&[][..], Vec::as_slice);
+            for (action, value) in actions.iter().zip(&chosen.values) {
+                state.act(action, *value);
+            }
+        }
+        self.changed(&state)
+    }
+}

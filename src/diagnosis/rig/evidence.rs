@@ -1,0 +1,195 @@
+//! What the engine is told about a rig's recording besides the residual: what repeats, what hangs together, what to hold
+//! out, and along which numbers a mismatch may be structured.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::datum::{Datum, numbered};
+use crate::diagnosis::{Covariate, Evidence};
+use crate::rig::readings::Axis;
+use crate::units::UM;
+
+/// Folds of a cross-validation: fewer cost less to run, more keep more to learn from.
+const MOST_FOLDS: usize = 5;
+const FEWEST_FOLDS: usize = 3;
+
+/// The evidence of `data`, whose predictions are made.
+pub(super) fn of(data: &[Datum], nuisance: DMatrix<f64>) -> Evidence {
+    Evidence {
+        residual: DVector::from_iterator(data.len(), data.iter().map(|d| d.measured - d.predicted)),
+        nuisance,
+        cell: numbered(data.iter().map(|d| (d.line_key(), d.direction.sign, d.load.to_bits(), d.phase))),
+        // the zero of a run is that of one sensor at one place
+        shared: numbered(data.iter().map(|d| (d.run, d.channel, d.stations()[1]))),
+        fold: folds(data),
+        resolution: resolution(data),
+        covariates: covariates(data),
+    }
+}
+
+/// One column for each straight line through the origin: the signed load, N. For readings without a rod.
+pub(super) fn slopes(data: &[Datum], line: &[usize]) -> DMatrix<f64> {
+    let count = line.iter().max().map_or(0, |last| last + 1);
+    DMatrix::from_fn(data.len(), count, |i, j| if line[i] == j { data[i].signed_load() } else { 0.0 })
+}
+
+/// Three to five folds of whole trials. Of one or two trials whole loads are held out, so that repeats stay together; of
+/// one or two loads every third datum of a line.
+fn folds(data: &[Datum]) -> Vec<usize> {
+    let trials: Vec<usize> = numbered(data.iter().map(|d| d.trial_number));
+    if count(&trials) >= FEWEST_FOLDS {
+        return trials.iter().map(|trial| trial % MOST_FOLDS).collect();
+    }
+    let levels: Vec<usize> = data.iter().map(|d| level(data, d)).collect();
+    if count(&levels) >= FEWEST_FOLDS {
+        return levels.iter().map(|level| level % MOST_FOLDS).collect();
+    }
+    let lines = numbered(data.iter().map(Datum::line_key));
+    let before = |i: usize| lines[..i].iter().filter(|&&line| line == lines[i]).count();
+    (0..data.len()).map(|i| before(i) % FEWEST_FOLDS).collect()
+}
+
+fn count(numbers: &[usize]) -> usize {
+    numbers.iter().max().map_or(0, |last| last + 1)
+}
+
+/// How many smaller loads there are along the datum's axis.
+fn level(data: &[Datum], datum: &Datum) -> usize {
+    let along = data.iter().filter(|d| d.direction.axis == datum.direction.axis && d.load < datum.load);
+    let mut smaller: Vec<f64> = along.map(|d| d.load).collect();
+    smaller.sort_by(f64::total_cmp);
+    smaller.dedup();
+    smaller.len()
+}
+
+/// The step that all offsets are multiples of, m: 10, 5, 2, 1, 0.5 µm and so on; 0 where they show none.
+fn resolution(data: &[Datum]) -> f64 {
+    const COARSEST: i32 = 1;
+    const FINEST: i32 = -6;
+    /// The file's decimals are not exact in binary, and the more steps the less so.
+    const INEXACT: f64 = 1e-6;
+    let is_multiple = |datum: &Datum, step: f64| {
+        let steps = datum.measured / UM / step;
+        (steps - steps.round()).abs() <= INEXACT
+    };
+    let steps = (FINEST..=COARSEST).rev().flat_map(|decade| {
+        let mantissas: &[f64] = if decade == COARSEST { &[1.0] } else { &[5.0, 2.0, 1.0] };
+        mantissas.iter().map(move |mantissa| mantissa * 10f64.powi(decade))
+    });
+    let mut steps = steps.filter(|&step| data.iter().all(|d| is_multiple(d, step)));
+    steps.next().map_or(0.0, |step| step * UM)
+}
+
+/// What a datum has of a covariate.
+type Value<'a> = &'a dyn Fn(&Datum) -> Option<f64>;
+
+fn covariates(data: &[Datum]) -> Vec<Covariate> {
+    let mut first_of_run: Vec<Option<f64>> = Vec::new();
+    for datum in data {
+        first_of_run.resize(first_of_run.len().max(datum.run + 1), None);
+        first_of_run[datum.run] = first_of_run[datum.run].or(datum.time);
+    }
+    let since = |d: &Datum| Some(d.time? - first_of_run[d.run]?);
+    let number = |axis: Axis| axis.index() as f64;
+    let phase = |d: &Datum| Some(if d.is_unloading() { 1.0 } else { -1.0 }).filter(|_| d.phase.is_some());
+    let all: [(&str, &str, Value<'_>); 10] = [
+        ("load", "N", &|d| Some(d.load)),
+        ("signed load", "N", &|d| Some(d.signed_load())),
+        ("phase", "", &phase),
+        ("order", "", &|d| Some(d.row as f64)),
+        ("time", "s", &|d| d.time),
+        ("time in the run", "s", &since),
+        ("temperature", "°C", &|d| d.temperature),
+        ("trial", "", &|d| Some(d.trial_number as f64)),
+        ("channel", "", &|d| Some(number(d.channel))),
+        ("axis", "", &|d| Some(number(d.direction.axis))),
+    ];
+    let of_all = all.into_iter().map(|(name, unit, value)| Covariate {
+        name: name.into(),
+        unit: unit.into(),
+        values: data.iter().map(|d| value(d).unwrap_or(f64::NAN)).collect(),
+    });
+    // nothing can follow what does not vary
+    of_all.filter(|covariate| varies(&covariate.values)).collect()
+}
+
+fn varies(values: &[f64]) -> bool {
+    let mut known = values.iter().filter(|value| !value.is_nan());
+    let first = known.next();
+    known.any(|value| Some(value) != first)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnosis::rig::datum;
+    use crate::rig::readings::Readings;
+
+    fn evidence(text: &str) -> Evidence {
+        let data = datum::all(&Readings::from_text("f", text).unwrap().rows);
+        of(&data, DMatrix::zeros(data.len(), 0))
+    }
+
+    fn trials(count: usize) -> String {
+        let mut text = "axis,load_n,trial,dy_um,dz_um\n".to_owned();
+        for axis in ["y", "-y", "z"] {
+            for trial in 0..count {
+                for load in [5, 10, 15, 20] {
+                    text += &format!("{axis},{load},{trial},{load},1.5\n");
+                }
+            }
+        }
+        text
+    }
+
+    #[test]
+    fn repeats_are_cells_and_a_run_shares_its_zero() {
+        let evidence = evidence(&trials(3));
+        // 3 directions × 4 loads × 2 channels; y and -y of one trial are one run
+        assert_eq!(count(&evidence.cell), 24);
+        assert_eq!(count(&evidence.shared), 12);
+        assert_eq!(evidence.cell[0], evidence.cell[8]);
+        assert_eq!(evidence.shared[0], evidence.shared[2]);
+        assert_ne!(evidence.shared[0], evidence.shared[1]);
+    }
+
+    #[test]
+    fn there_are_three_to_five_folds_of_trials_loads_or_rows() {
+        for (trials_in_file, folds) in [(1, 4), (2, 4), (3, 3), (5, 5), (12, 5)] {
+            assert_eq!(count(&evidence(&trials(trials_in_file)).fold), folds);
+        }
+        let of_loads = evidence(&trials(2));
+        assert_eq!(of_loads.fold[0], of_loads.fold[8]);
+        let two_loads = evidence("axis,load_n,dy_um\ny,1,1\ny,2,2\ny,1,1\ny,2,2\n");
+        assert_eq!(two_loads.fold, [0, 1, 2, 0]);
+    }
+
+    #[test]
+    fn the_resolution_is_the_step_of_the_display() {
+        let of =
+            |a: &str, b: &str| evidence(&format!("axis,load_n,dy_um\ny,1,{a}\ny,2,{b}\n")).resolution / UM;
+        for (a, b, step) in [
+            ("50", "-110", 10.0),
+            ("50", "105", 5.0),
+            ("50", "-102", 2.0),
+            ("50", "101", 1.0),
+            ("0.5", "101", 0.5),
+            ("38709.346", "0.2", 0.002),
+            ("0", "0", 10.0),
+            ("3.14159265358979", "1", 0.0),
+        ] {
+            assert!((of(a, b) - step).abs() < 1e-12, "{a} {b}");
+        }
+    }
+
+    #[test]
+    fn covariates_are_what_varies() {
+        let text =
+            "axis,load_n,phase,time_s,temperature_c,dy_um\ny,1,load,7,20,1\n-y,2,,9,20,1\ny,1,unload,,20,1\n";
+        let evidence = evidence(text);
+        let names: Vec<&str> = evidence.covariates.iter().map(|c| c.name.as_str()).collect();
+        assert_eq!(names, ["load", "signed load", "phase", "order", "time", "time in the run"]);
+        let phase = &evidence.covariates[2].values;
+        assert_eq!((phase[0], phase[2]), (-1.0, 1.0));
+        assert!(phase[1].is_nan());
+    }
+}

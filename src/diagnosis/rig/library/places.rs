@@ -1,0 +1,97 @@
+//! Where effects may sit: axes, channels, runs, and stations along the rod.
+
+use crate::diagnosis::rig::datum::Datum;
+use crate::diagnosis::rig::memory::runs;
+use crate::rig::readings::Axis;
+use crate::rod::Rod;
+use crate::units::MM;
+
+/// Most stations of a scan for joints.
+const MOST_STATIONS: f64 = 40.0;
+/// Steps of a scan that read well, m.
+const STEPS: [f64; 8] =
+    [1.0 * MM, 2.0 * MM, 5.0 * MM, 10.0 * MM, 20.0 * MM, 25.0 * MM, 50.0 * MM, 100.0 * MM];
+/// Stations closer than this are one place to a reader, m.
+const SAME_PLACE: f64 = 6.0 * MM;
+
+/// The axes along which loads pull.
+pub(super) fn loaded_axes(data: &[Datum]) -> Vec<Axis> {
+    let is_loaded = |axis: &Axis| data.iter().any(|d| d.direction.axis == *axis && d.load > 0.0);
+    Axis::ALL.into_iter().filter(is_loaded).collect()
+}
+
+/// The channels that were read.
+pub(super) fn measured_channels(data: &[Datum]) -> Vec<Axis> {
+    Axis::ALL.into_iter().filter(|channel| data.iter().any(|d| d.channel == *channel)).collect()
+}
+
+/// The data of each run and channel, with the name of the run: `y, trial 3`.
+pub(super) fn runs_by_channel(data: &[Datum]) -> Vec<(String, Vec<usize>)> {
+    let mut groups = Vec::new();
+    for run in runs(data) {
+        let first = &data[run[0]];
+        let axis = first.direction.axis;
+        let has_others = data.iter().any(|d| d.direction.axis == axis && d.run != first.run);
+        let name = match &first.trial {
+            Some(trial) => format!("{axis}, trial {trial}"),
+            None if has_others => format!("{axis}, run {}", first.trial_number + 1),
+            None => axis.to_string(),
+        };
+        for channel in Axis::ALL {
+            let of_channel: Vec<usize> =
+                run.iter().copied().filter(|&i| data[i].channel == channel).collect();
+            groups.push((name.clone(), of_channel));
+        }
+    }
+    groups
+}
+
+/// Where a joint that nobody declared may be, m: wherever a mass sits (sleeves are masses), at the ends of the bend, and at
+/// equal steps along the rod. Not at the root, nor where a joint is declared.
+pub(super) fn stations(rod: &Rod) -> Vec<f64> {
+    let length = rod.length();
+    let step =
+        STEPS.into_iter().find(|step| length / step <= MOST_STATIONS).unwrap_or(length / MOST_STATIONS);
+    // a rod of a few millimetres has no place for as many
+    let same = SAME_PLACE.min(step / 2.0);
+    let masses = rod.masses.iter().map(|mass| mass.station);
+    let steps = (1..=MOST_STATIONS as usize).map(|k| k as f64 * step);
+    let mut taken: Vec<f64> = rod.joints.iter().map(|joint| joint.station).collect();
+    taken.extend([0.0, length]);
+    let declared = taken.len();
+    for station in masses.chain([rod.bend_start(), rod.bend_end()]).chain(steps) {
+        if station < length && taken.iter().all(|other| (other - station).abs() > same) {
+            taken.push(station);
+        }
+    }
+    let mut stations = taken.split_off(declared);
+    stations.sort_by(f64::total_cmp);
+    stations
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn millimetres(text: &str) -> Vec<f64> {
+        let text = include_str!("../../../../rods/5.toml").to_owned() + text;
+        let stations = stations(&Rod::from_toml("rod", &text).unwrap());
+        stations.iter().map(|station| (station / MM * 10.0).round() / 10.0).collect()
+    }
+
+    #[test]
+    fn a_scan_goes_along_the_rod_in_round_steps_and_meets_the_corner() {
+        let stations = millimetres("");
+        assert_eq!(stations[..9], [20.0, 40.0, 60.0, 80.0, 100.0, 120.0, 140.0, 150.0, 160.0]);
+        assert_eq!(stations.last(), Some(&660.0));
+    }
+
+    #[test]
+    fn a_scan_meets_sleeves_and_leaves_declared_joints_out() {
+        let stations = millimetres(
+            "[[mass]]\nname = \"ring\"\nstation_mm = 205\nmass_g = 30\n[[joint]]\nname = \"a\"\nstation_mm = 402\n",
+        );
+        assert!(stations.contains(&205.0));
+        assert!(!stations.contains(&200.0) && !stations.contains(&400.0));
+    }
+}

@@ -1,0 +1,167 @@
+//! What a rod remembers of its loads: creep and hysteresis.
+
+use super::action::Memory;
+use super::datum::Datum;
+
+/// Since when a reading has crept.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Clock {
+    /// t counts from the first reading of the run.
+    FirstReading,
+    /// t counts from one reading before that: the first load too had hung for a while when it was read.
+    FirstLoad,
+    /// Every change of the load creeps by itself and the changes add up (Boltzmann's superposition); a load is taken
+    /// to change right after the reading before.
+    EachLoad,
+    /// t is the file's own time.
+    File,
+}
+
+impl Clock {
+    pub(super) const ALL: [Clock; 4] = [Clock::FirstReading, Clock::FirstLoad, Clock::EachLoad, Clock::File];
+
+    /// For people.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Clock::FirstReading => "since the first reading",
+            Clock::FirstLoad => "since the first load",
+            Clock::EachLoad => "since each load",
+            Clock::File => "since time 0",
+        }
+    }
+}
+
+/// Logarithmic creep: displacement × (1 + k·log₁₀(1 + t/t₀)), t₀ in s. Nothing where a reading has no time.
+pub(super) fn creep(data: &[Datum], clock: Clock, t0: f64) -> Option<Memory> {
+    let times: Vec<f64> = data.iter().map(|d| d.time).collect::<Option<_>>()?;
+    let dwell = dwell(data, &times);
+    let zero = times.iter().fold(0.0, |zero: f64, t| zero.min(*t));
+    let mut memory = none(data);
+    for run in runs(data) {
+        let start = times[run[0]] - if clock == Clock::FirstReading { 0.0 } else { dwell };
+        let grown = |now: f64, since: f64| (1.0 + (now - since).max(0.0) / t0).log10();
+        for (place, &i) in run.iter().enumerate() {
+            let now = times[i];
+            match clock {
+                Clock::FirstReading | Clock::FirstLoad => memory.relative[i] = grown(now, start),
+                Clock::File => memory.relative[i] = grown(now, zero),
+                Clock::EachLoad => {
+                    let (mut load, mut changed, mut crept) = (0.0, start, 0.0);
+                    for &j in &run[..=place] {
+                        crept += (data[j].signed_load() - load) * grown(now, changed);
+                        (load, changed) = (data[j].signed_load(), times[j]);
+                    }
+                    match load == 0.0 {
+                        true => memory.lingering[i] = crept * f64::from(data[i].direction.sign),
+                        false => memory.relative[i] = crept / load,
+                    }
+                }
+            }
+        }
+    }
+    Some(memory)
+}
+
+/// Shape of a hysteresis loop. Both are independent of rate and closed at the largest load of the run, F_max.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Loop {
+    /// Closed at zero too: unloading readings are larger by h·4·C·F·(1 − F/F_max), at half load by h of full scale.
+    Closed,
+    /// Open at zero: unloading readings are larger by h·C·(F_max − F).
+    Remanent,
+}
+
+/// Hysteresis; nothing where nothing was read on the way down.
+pub(super) fn hysteresis(data: &[Datum], shape: Loop) -> Option<Memory> {
+    data.iter().any(Datum::is_unloading).then_some(())?;
+    let mut memory = none(data);
+    for run in runs(data) {
+        let largest = run.iter().fold(0.0, |max: f64, &i| max.max(data[i].load));
+        for i in run.into_iter().filter(|&i| data[i].is_unloading() && largest > 0.0) {
+            match shape {
+                Loop::Closed => memory.relative[i] = 4.0 * (1.0 - data[i].load / largest),
+                Loop::Remanent => memory.lingering[i] = largest - data[i].load,
+            }
+        }
+    }
+    Some(memory)
+}
+
+fn none(data: &[Datum]) -> Memory {
+    Memory { relative: vec![0.0; data.len()], lingering: vec![0.0; data.len()] }
+}
+
+/// Indices of the data of each run, in the order of the file.
+pub(super) fn runs(data: &[Datum]) -> Vec<Vec<usize>> {
+    let count = data.iter().map(|d| d.run + 1).max().unwrap_or_default();
+    let mut runs = vec![Vec::new(); count];
+    for (index, datum) in data.iter().enumerate() {
+        runs[datum.run].push(index);
+    }
+    runs.retain(|run| !run.is_empty());
+    runs
+}
+
+/// Usual time between two readings of a run, s: the median; 0 where no run has two times.
+fn dwell(data: &[Datum], times: &[f64]) -> f64 {
+    let steps = runs(data)
+        .into_iter()
+        .flat_map(|run| run.windows(2).map(|pair| times[pair[1]] - times[pair[0]]).collect::<Vec<_>>());
+    let mut steps: Vec<f64> = steps.filter(|step| *step > 0.0).collect();
+    steps.sort_by(f64::total_cmp);
+    steps.get(steps.len() / 2).copied().unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnosis::rig::datum;
+    use crate::rig::readings::Readings;
+
+    const TEXT: &str = "axis,load_n,phase,time_s,dy_um
+-y,5,load,100,0
+-y,10,load,200,0
+-y,5,unload,300,0
+-y,0,unload,400,0
+";
+
+    fn data(text: &str) -> Vec<Datum> {
+        datum::all(&Readings::from_text("f", text).unwrap().rows)
+    }
+
+    #[test]
+    fn clocks_start_where_they_say() {
+        let data = data(TEXT);
+        let second = |clock| creep(&data, clock, 1.0).unwrap().relative[1];
+        assert_eq!(second(Clock::FirstReading), 101f64.log10());
+        assert_eq!(second(Clock::FirstLoad), 201f64.log10());
+        assert_eq!(second(Clock::File), 201f64.log10());
+        // 5 N for 200 s, 5 N more for 100 s
+        let each = (5.0 * 201f64.log10() + 5.0 * 101f64.log10()) / 10.0;
+        assert!((second(Clock::EachLoad) - each).abs() < 1e-15);
+    }
+
+    #[test]
+    fn an_unloaded_rod_still_recovers() {
+        let memory = creep(&data(TEXT), Clock::EachLoad, 1.0).unwrap();
+        let left = 5.0 * (401f64.log10() + 301f64.log10() - 201f64.log10() - 101f64.log10());
+        assert!((memory.lingering[3] - left).abs() < 1e-12 && left > 0.0);
+        assert_eq!(memory.relative[3], 0.0);
+    }
+
+    #[test]
+    fn loops_close_at_the_largest_load() {
+        let data = data(TEXT);
+        let closed = hysteresis(&data, Loop::Closed).unwrap();
+        assert_eq!(closed.relative, [0.0, 0.0, 2.0, 4.0]);
+        let remanent = hysteresis(&data, Loop::Remanent).unwrap();
+        assert_eq!(remanent.lingering, [0.0, 0.0, 5.0, 10.0]);
+    }
+
+    #[test]
+    fn without_time_or_a_way_down_there_is_no_memory() {
+        let data = data("axis,load_n,time_s,dy_um\ny,5,1,0\ny,6,,0\n");
+        assert!(creep(&data, Clock::File, 1.0).is_none());
+        assert!(hysteresis(&data, Loop::Closed).is_none());
+    }
+}

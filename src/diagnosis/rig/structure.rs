@@ -1,0 +1,236 @@
+//! What a rod gives way by, as a sum of parts that are exactly linear in what may be wrong with them.
+//!
+//! A rod is an open chain: the flexibilities of its parts add up. With C the displacement at the read station per force at
+//! the load station, in {T},
+//!
+//! ```text
+//! C = C₀ + (P + B·(1/g − 1) + D·(k − k₀))/f − P + Σ β_j·J_j
+//! P pipes and bend     f factor on E and G        B torsion and shear of the pipes     g factor on G
+//! D bending of the arc k, k₀ its flexibility factor, the file's factor        J_j a joint per rad/(N·m), β_j its change
+//! ```
+//!
+//! P, B, D and J come from the beam model itself, as differences of models in which one thing was changed.
+
+use nalgebra::Matrix3;
+
+use crate::beam::{Physics, RodModel};
+use crate::error::{Error, Result};
+use crate::rig::readings::Readings;
+use crate::rod::{BendFlexibility, Joint, Pipe, Rod};
+use crate::units::{MM, UM};
+
+/// m/N for each pair of load and read station.
+pub(super) type Parts = Vec<Matrix3<f64>>;
+
+/// The parts of a rod.
+#[derive(Debug, Clone)]
+pub(super) struct Structure {
+    whole: Parts,
+    pipes: Parts,
+    torsion_and_shear: Parts,
+    /// Per unit of the bend's flexibility factor; nothing without an arc.
+    arc: Option<Parts>,
+    /// The rod file's flexibility factor of the bend.
+    pub bend_factor: f64,
+    /// Per rad/(N·m), in the order in which they were added.
+    joints: Vec<Parts>,
+    pairs: Vec<(f64, f64)>,
+    rod: Rod,
+}
+
+/// What is wrong with a structure.
+#[derive(Debug, Clone)]
+pub(super) struct Softening {
+    /// Factor on the moduli E and G.
+    pub stiffness: f64,
+    /// Factor on G alone.
+    pub shear: f64,
+    /// Change of the bend's flexibility factor.
+    pub bend: f64,
+    /// Joints by number, with the change of their compliance, rad/(N·m).
+    pub joints: Vec<(usize, f64)>,
+}
+
+impl Default for Softening {
+    fn default() -> Self {
+        Softening { stiffness: 1.0, shear: 1.0, bend: 0.0, joints: Vec::new() }
+    }
+}
+
+impl Structure {
+    /// The parts of `rod` between pairs of load and read stations, m.
+    pub(super) fn new(rod: &Rod, pairs: Vec<(f64, f64)>) -> Result<Structure> {
+        let without_joints = Rod { joints: Vec::new(), ..rod.clone() };
+        let bend_factor = rod.bend_flexibility.factor(&rod.bend.section, rod.bend_radius);
+        let pipes = responses(&without_joints, &pairs)?;
+        // G twice as high halves what G is responsible for
+        let stiffer = responses(&with_shear_modulus(&without_joints, 2.0), &pairs)?;
+        let arc = match rod.arc_length() > 0.0 {
+            true => {
+                let flexible = BendFlexibility::Factor(bend_factor + 1.0);
+                let softer = Rod { bend_flexibility: flexible, ..without_joints.clone() };
+                Some(difference(&responses(&softer, &pairs)?, &pipes, 1.0))
+            }
+            false => None,
+        };
+        Ok(Structure {
+            whole: responses(rod, &pairs)?,
+            torsion_and_shear: difference(&pipes, &stiffer, 2.0),
+            pipes,
+            // of an arc so short that the beam model makes it a corner nothing is left
+            arc: arc.filter(|parts| parts.iter().any(|part| part.amax() > 0.0)),
+            bend_factor,
+            joints: Vec::new(),
+            pairs,
+            rod: without_joints,
+        })
+    }
+
+    /// Adds a joint of no compliance yet at a station (m); its numbers for bending and for torsion.
+    pub(super) fn add_joint(&mut self, station: f64) -> Result<[usize; 2]> {
+        let first = self.joints.len();
+        for (bending, torsion) in [(1.0, 0.0), (0.0, 1.0)] {
+            let joint = Joint { name: String::new(), station, bending, torsion };
+            let with_joint = Rod { joints: vec![joint], ..self.rod.clone() };
+            self.joints.push(difference(&responses(&with_joint, &self.pairs)?, &self.pipes, 1.0));
+        }
+        Ok([first, first + 1])
+    }
+
+    /// The parts as `softening` leaves them; unchanged ones to the last digit where it changes nothing.
+    pub(super) fn softened(&self, softening: &Softening) -> Parts {
+        let of_pair = |pair: usize| {
+            let mut pipes = self.pipes[pair];
+            pipes += self.torsion_and_shear[pair] * (1.0 / softening.shear - 1.0);
+            if let Some(arc) = &self.arc {
+                pipes += arc[pair] * softening.bend;
+            }
+            let mut whole = self.whole[pair] + (pipes / softening.stiffness - self.pipes[pair]);
+            for &(joint, change) in &softening.joints {
+                whole += self.joints[joint][pair] * change;
+            }
+            whole
+        };
+        (0..self.whole.len()).map(of_pair).collect()
+    }
+
+    /// True where there is an arc that can ovalise.
+    pub(super) fn has_arc(&self) -> bool {
+        self.arc.is_some()
+    }
+
+    /// How far the whole rod bends and twists at the tip per moment there, ∫ds/EI and ∫ds/GJ, rad/(N·m).
+    pub(super) fn rotation(&self) -> [f64; 2] {
+        let rod = &self.rod;
+        let (start, end, length) = (rod.bend_start(), rod.bend_end(), rod.length());
+        let parts = [(&rod.pipe1, start), (&rod.bend, end - start), (&rod.pipe2, length - end)];
+        let bending = |pipe: &Pipe| pipe.material.youngs_modulus * pipe.section.second_moment();
+        let torsion = |pipe: &Pipe| pipe.material.shear_modulus * pipe.section.torsion_constant();
+        [
+            parts.iter().map(|(pipe, length)| length / bending(pipe)).sum(),
+            parts.iter().map(|(pipe, length)| length / torsion(pipe)).sum(),
+        ]
+    }
+
+    /// The rod, without its joints.
+    pub(super) fn rod(&self) -> &Rod {
+        &self.rod
+    }
+}
+
+/// Refuses stations that are not on the rod. The tip may be named with its last digit rounded.
+pub(super) fn check_stations(readings: &Readings, rod: &Rod) -> Result<()> {
+    let tip = rod.length();
+    for row in &readings.rows {
+        let stations = [("load_station_mm", row.load_station), ("read_station_mm", row.read_station)];
+        for (name, station) in stations {
+            let Some(station) = station.filter(|s| *s > tip + UM) else { continue };
+            return Err(Error::Input {
+                at: crate::error::Place { file: readings.file.clone(), line: row.line, column: 0 },
+                found: format!("{name} is {}", station / MM),
+                expected: format!("a station on rod \"{}\", 0 to {:.3} mm (the tip)", rod.name, tip / MM),
+                hint: None,
+            });
+        }
+    }
+    Ok(())
+}
+
+/// Displacement at the read station per force at the load station, m/N.
+fn responses(rod: &Rod, pairs: &[(f64, f64)]) -> Result<Parts> {
+    let stations: Vec<f64> = pairs.iter().flat_map(|&(load, read)| [load, read]).collect();
+    let model = RodModel::new(rod, &Physics::WHOLE, 1, &stations)?;
+    pairs.iter().map(|&(load, read)| Ok(model.force_response(load, read)?.translation)).collect()
+}
+
+fn difference(a: &[Matrix3<f64>], b: &[Matrix3<f64>], factor: f64) -> Parts {
+    a.iter().zip(b).map(|(a, b)| (a - b) * factor).collect()
+}
+
+fn with_shear_modulus(rod: &Rod, factor: f64) -> Rod {
+    let mut rod = rod.clone();
+    for pipe in [&mut rod.pipe1, &mut rod.bend, &mut rod.pipe2] {
+        pipe.material.shear_modulus *= factor;
+    }
+    rod
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    fn rod(bend: &str) -> Rod {
+        let joint = "[[joint]]\nname = \"sleeve\"\nstation_mm = 205.0\nbending_urad_per_nm = 20\n";
+        let text = include_str!("../../../rods/5.toml").replace("bend_radius_mm = 0.0 ", bend) + joint;
+        Rod::from_toml("rod", &text).unwrap()
+    }
+
+    fn pairs(rod: &Rod) -> Vec<(f64, f64)> {
+        vec![(rod.length(), rod.length()), (0.3, rod.length()), (0.4, 0.1)]
+    }
+
+    fn assert_same(a: &Parts, b: &Parts) {
+        for (a, b) in a.iter().zip(b) {
+            assert_relative_eq!(*a, *b, epsilon = 1e-11 * a.amax());
+        }
+    }
+
+    #[test]
+    fn nothing_wrong_is_the_rod_itself_to_the_last_digit() {
+        let rod = rod("bend_radius_mm = 40\nbend_flexibility = 1.3");
+        let structure = Structure::new(&rod, pairs(&rod)).unwrap();
+        assert_eq!(structure.softened(&Softening::default()), responses(&rod, &pairs(&rod)).unwrap());
+    }
+
+    #[test]
+    fn everything_wrong_at_once_is_the_beam_model_of_that_rod() {
+        let rod = rod("bend_radius_mm = 40\nbend_flexibility = 1.3");
+        let mut structure = Structure::new(&rod, pairs(&rod)).unwrap();
+        let mut wrong = with_shear_modulus(&rod, 0.7 * 1.2);
+        for pipe in [&mut wrong.pipe1, &mut wrong.bend, &mut wrong.pipe2] {
+            pipe.material.youngs_modulus *= 0.7;
+        }
+        wrong.bend_flexibility = BendFlexibility::Factor(2.1);
+        let [bending, torsion] = structure.add_joint(0.06).unwrap();
+        wrong.joints.push(Joint { name: "new".into(), station: 0.06, bending: 3e-5, torsion: 5e-5 });
+        wrong.joints[0].bending = 5e-5;
+        let [declared, _] = structure.add_joint(0.205).unwrap();
+        let softening = Softening {
+            stiffness: 0.7,
+            shear: 1.2,
+            bend: 2.1 - 1.3,
+            joints: vec![(bending, 3e-5), (torsion, 5e-5), (declared, 3e-5)],
+        };
+        assert_same(&structure.softened(&softening), &responses(&wrong, &pairs(&rod)).unwrap());
+    }
+
+    #[test]
+    fn a_corner_has_no_arc_and_the_rotation_is_that_of_a_moment() {
+        let rod = rod("bend_radius_mm = 0.0 ");
+        let structure = Structure::new(&rod, pairs(&rod)).unwrap();
+        assert!(!structure.has_arc());
+        let section = rod.pipe1.section.second_moment();
+        assert_relative_eq!(structure.rotation()[0], 0.675 / (193e9 * section), max_relative = 1e-12);
+    }
+}

@@ -1,0 +1,182 @@
+//! Rivals for physics that nobody has named: smooth curves along whatever a reading may depend on.
+//!
+//! Each is a sum of cosines over a coordinate x from 0 to 1, at most [`MOST_COLUMNS`] of them,
+//!
+//! ```text
+//! Σ_j a_j·cos(π j x)       a_j ~ s/(1 + j)
+//! ```
+//!
+//! for every shape is more likely to be smooth than not. Over the levels of the load x counts levels, so that four loads have
+//! four columns and any shape can be met: a step at one load, a contact that stiffens beyond 10 N. A curve adds to the readings
+//! of one line or channel (s a share of what was read there), or it multiplies the deflections of all lines at once (s a share of
+//! them): then physics that acts on all lines alike, such as relaxation with one time constant, is one rival and not many.
+
+use std::f64::consts::PI;
+
+use super::action::Action;
+use super::datum::{Datum, numbered};
+use super::library::Entry;
+use super::memory::runs;
+use crate::diagnosis::{Candidate, EffectParameter};
+use crate::units::UM;
+
+const MOST_COLUMNS: usize = 6;
+/// Size of a curve as a share of the largest reading, or of the deflection.
+const SHARE: f64 = 0.05;
+/// A sensor and its holder are wrong by a few micrometres even where hardly anything is to be read, m.
+const LEAST_SHIFT: f64 = 5.0 * UM;
+/// Share by which the slope of a line may be off, and share of the steepest line's slope that a flat one may have: as large as
+/// the known effects on a rod.
+const SLOPE: (f64, f64) = (0.27, 0.02);
+const PERCENT: f64 = 0.01;
+
+/// A coordinate from 0 to 1 for each datum; `None` where it has no meaning.
+type Coordinate = Vec<Option<f64>>;
+
+/// All curves for these readings. `deflections`: how far the rod yields at each datum by the base model, m.
+pub(super) fn all(data: &[Datum], deflections: &[f64], has_rod: bool) -> Vec<Entry> {
+    let everything: Vec<usize> = (0..data.len()).collect();
+    let lines = groups(data, &numbered(data.iter().map(Datum::line_key)), &|d| {
+        format!("d{} under loads along {}{}", d.channel, d.direction.axis, places(d))
+    });
+    let channels = groups(data, &numbered(data.iter().map(|d| d.channel)), &|d| format!("d{}", d.channel));
+    let mut entries = Vec::new();
+    for (name, coordinate, is_of_line) in coordinates(data) {
+        entries.extend(curve(name, "all deflections", &coordinate, &everything, PERCENT, SHARE, |i| {
+            deflections[i]
+        }));
+        for (place, group) in if is_of_line { &lines } else { &channels } {
+            let largest = group.iter().fold(0.0, |max: f64, &i| max.max(data[i].measured.abs()));
+            let size = (SHARE * largest).max(LEAST_SHIFT);
+            entries.extend(curve(name, place, &coordinate, group, UM, size, |_| 1.0));
+        }
+    }
+    if has_rod {
+        entries.extend(slopes(data, deflections, &lines));
+    }
+    entries
+}
+
+/// What a reading may follow: name, coordinate, and whether it acts by line (loads) or by channel (drifts).
+fn coordinates(data: &[Datum]) -> Vec<(&'static str, Coordinate, bool)> {
+    let levels = by_axis(data, |_| true);
+    let unloading = by_axis(data, Datum::is_unloading);
+    let mut position: Coordinate = vec![None; data.len()];
+    let of_runs = runs(data);
+    for run in &of_runs {
+        let rows = numbered(run.iter().map(|&i| data[i].row));
+        for (&i, row) in run.iter().zip(rows) {
+            position[i] = Some(row as f64);
+        }
+    }
+    let mut found = vec![("load", levels, true), ("unloading", unloading, true)];
+    // loads that always come in the same order are told from it by nothing
+    let conditions = numbered(data.iter().map(|d| (d.direction, d.load.to_bits(), d.phase)));
+    let first_of = |condition: usize| conditions.iter().position(|&c| c == condition);
+    let follows_load =
+        (0..data.len()).all(|i| first_of(conditions[i]).is_none_or(|k| position[k] == position[i]));
+    if !follows_load {
+        found.push(("position in the run", scaled(&position), true));
+    }
+    let of = |value: &dyn Fn(&Datum) -> Option<f64>| scaled(&data.iter().map(value).collect::<Coordinate>());
+    if of_runs.len() > 1 {
+        found.push(("order", of(&|d| Some(d.row as f64)), false));
+    }
+    found.push(("time", of(&|d| d.time), false));
+    found.push(("temperature", of(&|d| d.temperature), false));
+    found
+}
+
+/// Rank of the load among those along its axis, for the data that `is_of` admits.
+fn by_axis(data: &[Datum], is_of: impl Fn(&Datum) -> bool) -> Coordinate {
+    let of = |datum: &Datum| {
+        is_of(datum).then_some(())?;
+        let rivals = data.iter().filter(|d| is_of(d) && d.direction.axis == datum.direction.axis);
+        let mut loads: Vec<f64> = rivals.map(|d| d.load).collect();
+        loads.sort_by(f64::total_cmp);
+        loads.dedup();
+        let rank = loads.iter().position(|&load| load == datum.load)?;
+        Some((rank as f64 + 0.5) / loads.len() as f64)
+    };
+    data.iter().map(of).collect()
+}
+
+/// From 0 to 1; nothing where the values do not differ.
+fn scaled(values: &[Option<f64>]) -> Coordinate {
+    let known = values.iter().flatten();
+    let (least, most) = known.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(*v), b.max(*v)));
+    let scale =
+        |value: &Option<f64>| Some((value.as_ref()? - least) / (most - least)).filter(|x| x.is_finite());
+    values.iter().map(scale).collect()
+}
+
+/// A curve over a coordinate on some of the data; nothing where the coordinate has no meaning for any.
+fn curve(
+    name: &str,
+    place: &str,
+    coordinate: &Coordinate,
+    group: &[usize],
+    unit: f64,
+    size: f64,
+    amplitude: impl Fn(usize) -> f64,
+) -> Option<Entry> {
+    let known: Vec<(usize, f64)> = group.iter().filter_map(|&i| Some((i, coordinate[i]?))).collect();
+    let different = numbered(known.iter().map(|(_, x)| x.to_bits())).into_iter().max()? + 1;
+    let columns = different.min(MOST_COLUMNS);
+    let (parameters, actions) = (0..columns)
+        .map(|j| {
+            let suffix = if unit == PERCENT { "percent" } else { "um" };
+            let parameter = EffectParameter {
+                name: format!("cosine_{j}_{suffix}"),
+                unit,
+                neutral: 0.0,
+                size: size / (1 + j) as f64,
+                bounds: (f64::NEG_INFINITY, f64::INFINITY),
+            };
+            let weights = known.iter().map(|&(i, x)| (i, amplitude(i) * (PI * j as f64 * x).cos())).collect();
+            (parameter, Action::Shift(weights))
+        })
+        .unzip();
+    let (effect, location) = ("unknown".into(), format!("{name}, {place}"));
+    Some((Candidate { effect, location, parameters, is_unknown: true }, actions))
+}
+
+/// A slope of its own for every line: a rod whose compliance differs from the model in a way that no part of it explains.
+fn slopes(data: &[Datum], deflections: &[f64], lines: &[(String, Vec<usize>)]) -> Option<Entry> {
+    let slope = |&i: &usize| if data[i].load > 0.0 { (deflections[i] / data[i].load).abs() } else { 0.0 };
+    let steepest = (0..data.len()).map(|i| slope(&i)).fold(0.0, f64::max);
+    let of_line = |(place, line): &(String, Vec<usize>)| {
+        let size = SLOPE.0 * line.iter().map(slope).fold(0.0, f64::max) + SLOPE.1 * steepest;
+        let parameter = EffectParameter {
+            name: format!("{place}_um_per_n"),
+            unit: UM,
+            neutral: 0.0,
+            size,
+            bounds: (f64::NEG_INFINITY, f64::INFINITY),
+        };
+        (parameter, Action::Shift(line.iter().map(|&i| (i, data[i].signed_load())).collect()))
+    };
+    let (parameters, actions) = lines.iter().map(of_line).unzip();
+    let (effect, location) = ("unknown".into(), "slope of each line".into());
+    (steepest > 0.0).then_some((Candidate { effect, location, parameters, is_unknown: true }, actions))
+}
+
+/// The data of each group with its name.
+fn groups(data: &[Datum], group: &[usize], name: &dyn Fn(&Datum) -> String) -> Vec<(String, Vec<usize>)> {
+    let mut groups: Vec<(String, Vec<usize>)> = Vec::new();
+    for (i, &number) in group.iter().enumerate() {
+        if number == groups.len() {
+            groups.push((name(&data[i]), Vec::new()));
+        }
+        groups[number].1.push(i);
+    }
+    groups
+}
+
+/// Stations, where they are stated.
+fn places(datum: &Datum) -> String {
+    let at = |what: &str, station: Option<f64>| {
+        station.map_or_else(String::new, |s| format!(", {what} at {:.1} mm", s * 1e3))
+    };
+    at("loaded", datum.load_station) + &at("read", datum.read_station)
+}

@@ -6,9 +6,9 @@
 //! r  = (vᵀ·(ρ − ρ₀)/range) / σ_v                    a direction that the data do not identify, held
 //! ```
 //!
-//! f is the rigid tip in {W}, R·Δxᵢ the rod's deflection, which is held fixed in {T}: it turns with the robot, and so the
-//! data do not seem to know which way a robot is turned from how its rod bends. wᵢ one over the standard deviation of a coordinate. The unknowns are the free parameters,
-//! then the three coordinates of every socket.
+//! f is the rigid tip in {W}, R·Δxᵢ the rod's deflection. Δxᵢ is held fixed in {T}: it turns with the robot, so that how
+//! the rod bends does not seem to tell which way the robot stands. wᵢ is one over the standard deviation of a coordinate.
+//! The unknowns are the free parameters, then the three coordinates of every socket.
 
 use nalgebra::{DMatrix, DVector, Vector3};
 

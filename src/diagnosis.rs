@@ -6,6 +6,7 @@
 
 mod diagnose;
 mod evidence;
+mod linear;
 mod proof;
 pub mod rig;
 mod score;
@@ -18,6 +19,6 @@ mod tests;
 
 pub use diagnose::{Diagnosis, Finding, Unexplained, diagnose};
 pub use evidence::{Covariate, Evidence};
-pub use proof::{Proof, prove};
-pub use selection::{Search, Story};
+pub use proof::Proof;
+pub use selection::Story;
 pub use world::{Candidate, Chosen, EffectParameter, World};

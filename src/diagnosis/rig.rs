@@ -16,10 +16,14 @@
 //! which is exact once the engine has fitted its own multiple of F.
 
 mod action;
+mod correction;
 mod datum;
 mod evidence;
 mod library;
+mod limits;
 mod memory;
+mod next;
+mod result;
 mod structure;
 #[cfg(test)]
 mod tests;
@@ -33,7 +37,11 @@ use super::{Candidate, Chosen, Evidence, World};
 use crate::error::Result;
 use crate::rig::readings::Readings;
 use crate::rod::Rod;
+pub use correction::Correction;
 pub use datum::Datum;
+pub use limits::{Limit, NotTestable};
+pub use next::Proposal;
+pub use result::{RigDiagnosis, diagnose};
 
 /// Readings of a rig with all the physics that might be in them.
 #[derive(Debug, Clone)]
@@ -112,10 +120,12 @@ impl RigWorld {
                 .into_iter()
                 .zip(actions)
                 .filter(|(parameter, action)| {
-                    self.is_felt(action, parameter.neutral, parameter.size, parameter.bounds)
+                    // where a joint is matters as soon as it yields
+                    matches!(action, Action::Station(_))
+                        || self.is_felt(action, parameter.neutral, parameter.size, parameter.bounds)
                 })
                 .unzip();
-            if !parameters.is_empty() {
+            if actions.iter().any(|action| !matches!(action, Action::Station(_))) {
                 self.candidates.push(Candidate { parameters, ..candidate });
                 self.actions.push(actions);
             }
@@ -207,6 +217,14 @@ impl RigWorld {
 impl World for RigWorld {
     fn candidates(&self) -> &[Candidate] {
         &self.candidates
+    }
+
+    fn place(&self, chosen: &Chosen) -> String {
+        let at_value = |(action, value): (&Action, &f64)| {
+            matches!(action, Action::Station(_)).then(|| library::place(*value))
+        };
+        let moved = self.actions[chosen.candidate].iter().zip(&chosen.values).find_map(at_value);
+        moved.unwrap_or_else(|| self.candidates[chosen.candidate].location.clone())
     }
 
     fn change(&self, story: &[Chosen]) -> DVector<f64> {

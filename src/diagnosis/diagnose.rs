@@ -71,8 +71,8 @@ pub struct Rival {
     pub chosen: Chosen,
     /// Where it is.
     pub place: String,
-    /// The whole story with it instead.
-    pub story: Vec<Chosen>,
+    /// The whole story with it instead, its effect last.
+    pub story: Story,
     /// How much less probable that story is: odds, 1 for as probable.
     pub odds: f64,
 }
@@ -173,7 +173,7 @@ fn finding(
             let other = search.with(&rest, index);
             let odds = (story.log_probability - other.log_probability).exp();
             let own = other.chosen.last()?.clone();
-            Some(Rival { place: world.place(&own), chosen: own, story: other.chosen, odds })
+            Some(Rival { place: world.place(&own), chosen: own, story: other, odds })
         })
         .filter(|rival| rival.odds < APART)
         .collect();

@@ -19,6 +19,7 @@ mod action;
 mod correction;
 mod datum;
 mod evidence;
+mod feasible;
 mod library;
 mod limits;
 mod memory;
@@ -70,6 +71,15 @@ impl RigWorld {
     /// # Errors
     /// [`crate::Error::Input`] for a station that is not on the rod; what the beam model refuses.
     pub fn new(readings: &Readings, rod: Option<&Rod>) -> Result<(RigWorld, Evidence)> {
+        RigWorld::of_candidates(readings, rod, &|_| true)
+    }
+
+    /// The world with some of its candidates only.
+    fn of_candidates(
+        readings: &Readings,
+        rod: Option<&Rod>,
+        is_wanted: &dyn Fn(&Candidate) -> bool,
+    ) -> Result<(RigWorld, Evidence)> {
         let data = datum::all(&readings.rows);
         let (body, place) = match rod {
             Some(rod) => {
@@ -101,7 +111,7 @@ impl RigWorld {
             Body::Lines(_) => evidence::slopes(&world.data, &world.place),
         };
         let evidence = evidence::of(&world.data, nuisance);
-        world.add_candidates(rod);
+        world.add_candidates(rod, is_wanted);
         Ok((world, evidence))
     }
 
@@ -111,9 +121,10 @@ impl RigWorld {
     }
 
     /// Fills in the library and the unknown rivals, without what can do nothing to these readings.
-    fn add_candidates(&mut self, rod: Option<&Rod>) {
+    fn add_candidates(&mut self, rod: Option<&Rod>, is_wanted: &dyn Fn(&Candidate) -> bool) {
         let mut entries = library::all(&self.data, &mut self.body, rod);
         entries.extend(unknown::all(&self.data, &self.deflections(), rod.is_some()));
+        entries.retain(|(candidate, _)| is_wanted(candidate));
         for (candidate, actions) in entries {
             let (parameters, actions): (Vec<_>, Vec<_>) = candidate
                 .parameters

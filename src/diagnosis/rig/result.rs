@@ -42,7 +42,9 @@ pub fn diagnose(readings: &Readings, rod: Option<&Rod>) -> Result<RigDiagnosis> 
         .map(|finding| next_measurement(readings, rod, &world, &evidence, &diagnosis, finding))
         .collect::<Result<_>>()?;
     let correction = match rod {
-        Some(rod) if !diagnosis.findings.is_empty() => Some(Correction::new(rod, &world, &diagnosis)?),
+        Some(rod) if !diagnosis.findings.is_empty() => {
+            Some(Correction::new(rod, readings, &world, &diagnosis)?)
+        }
         _ => None,
     };
     Ok(RigDiagnosis {

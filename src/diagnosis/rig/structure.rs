@@ -34,6 +34,8 @@ pub(super) struct Structure {
     pub bend_factor: f64,
     /// Per rad/(N·m), in the order in which they were added.
     joints: Vec<Parts>,
+    /// Where each of them is, m.
+    stations: Vec<f64>,
     pairs: Vec<(f64, f64)>,
     rod: Rod,
 }
@@ -117,6 +119,7 @@ impl Structure {
             arc: arc.filter(|parts| parts.iter().any(|part| part.amax() > 0.0)),
             bend_factor,
             joints: Vec::new(),
+            stations: Vec::new(),
             pairs,
             rod: without_joints,
         })
@@ -128,6 +131,7 @@ impl Structure {
         for (bending, torsion) in [(1.0, 0.0), (0.0, 1.0)] {
             let joint = Joint { name: String::new(), station, bending, torsion };
             let with_joint = Rod { joints: vec![joint], ..self.rod.clone() };
+            self.stations.push(station);
             self.joints.push(difference(&responses(&with_joint, &self.pairs)?, &self.pipes, 1.0));
         }
         Ok([first, first + 1])
@@ -163,6 +167,11 @@ impl Structure {
             whole
         };
         (0..self.whole.len()).map(of_pair).collect()
+    }
+
+    /// Where the joint of this number was added, m.
+    pub(super) fn station(&self, joint: usize) -> f64 {
+        self.stations[joint]
     }
 
     /// True where there is an arc that can ovalise.

@@ -13,6 +13,7 @@ mod proof;
 pub mod rig;
 mod score;
 mod selection;
+mod sparse;
 mod whitening;
 mod world;
 

@@ -11,7 +11,8 @@ use nalgebra::{DMatrix, DVector};
 
 use super::lack_of_fit::{LackOfFit, lack_of_fit};
 use super::linear::Linearised;
-use super::score::{Moments, Score};
+use super::score::{Moments, More, Score};
+use super::sparse::Sparse;
 use super::whitening::Whitening;
 use super::{Candidate, Chosen, Evidence, World};
 
@@ -23,6 +24,8 @@ const NAMED: f64 = 20.0;
 const MOST: usize = 8;
 /// Of how many candidates, the likeliest by their columns at neutral values, the values are fitted.
 const REFITTED: usize = 3;
+/// And of how many the evidence is computed exactly.
+const SCORED: usize = 12;
 /// Most Gauss–Newton steps to the values of a story.
 const STEPS: usize = 20;
 /// Step, in sizes, below which they have arrived: the noise of a value is hardly ever a ten-thousandth of its size.
@@ -52,8 +55,9 @@ pub struct Search<'a> {
     whitening: Whitening,
     /// Background, whitened and projected.
     background: DMatrix<f64>,
-    /// Each candidate's columns at neutral values, whitened and projected, with their inner products.
-    columns: Vec<(DMatrix<f64>, DMatrix<f64>)>,
+    /// Each candidate's columns at neutral values, whitened, with their inner products once they are projected too. Inner
+    /// products with what is projected need no projection of theirs.
+    columns: Vec<(Sparse, DMatrix<f64>)>,
     /// Ln of the prior of each candidate over that of none.
     prior: Vec<f64>,
 }
@@ -64,9 +68,9 @@ impl<'a> Search<'a> {
         let left = &evidence.residual - world.change(told);
         let whitening = Whitening::new(evidence, &left);
         let of_candidate = |columns: &DMatrix<f64>| {
-            let columns = whitening.apply_columns(columns);
-            let gram = columns.tr_mul(&columns);
-            (columns, gram)
+            let whitened = whitening.whitened_columns(columns);
+            let gram = whitening.projected_gram(&whitened);
+            (Sparse::new(&whitened), gram)
         };
         Search {
             columns: world.neutral.iter().map(of_candidate).collect(),
@@ -81,8 +85,12 @@ impl<'a> Search<'a> {
     /// The search whose scatter is that of what its own best story leaves, with that story and the one that an unknown
     /// curve adds to it: what is found first changes how the rest scatters.
     pub fn settled(world: &'a Linearised<'a>, evidence: &'a Evidence) -> (Self, Story, Option<Story>) {
-        let first = Search::new(world, evidence, &[]).best().0;
-        let search = Search::new(world, evidence, &first.chosen);
+        let search = Search::new(world, evidence, &[]);
+        let (story, unknown) = search.best();
+        if story.chosen.is_empty() {
+            return (search, story, unknown);
+        }
+        let search = Search::new(world, evidence, &story.chosen);
         let (story, unknown) = search.best();
         (search, story, unknown)
     }
@@ -114,32 +122,43 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Ln of what adding each candidate to `story` does to its probability, by the candidate's columns at its neutral
-    /// values; −∞ for those that are in it already.
+    /// About the ln of what adding each candidate to `story` does to its probability, by the candidate's columns at its
+    /// neutral values, exact for the likeliest known and unknown ones; −∞ for those that are in it already.
     pub fn additions(&self, story: &Story) -> Vec<f64> {
         let (r, told) = self.linear(&story.chosen);
         let present = self.moments_of(&r, &told, &story.chosen);
-        let before = present.score().log_evidence;
-        let count = told.ncols();
-        let gain = |(index, (columns, gram)): (usize, &(DMatrix<f64>, DMatrix<f64>))| {
-            if story.chosen.iter().any(|chosen| chosen.candidate == index) {
-                return f64::NEG_INFINITY;
+        let before = present.score();
+        let more = |index: usize| {
+            let (columns, gram) = &self.columns[index];
+            More {
+                gram,
+                cross: columns.tr_mul_into(&told),
+                product: columns.tr_mul(&r),
+                bounds: self.world.candidates()[index].scaled_bounds().collect(),
             }
-            let all = count + columns.ncols();
-            let mut with = present.clone();
-            with.gram = DMatrix::zeros(all, all);
-            with.gram.view_mut((0, 0), (count, count)).copy_from(&present.gram);
-            let cross = told.tr_mul(columns);
-            with.gram.view_mut((0, count), cross.shape()).copy_from(&cross);
-            with.gram.view_mut((count, 0), (cross.ncols(), count)).copy_from(&cross.transpose());
-            with.gram.view_mut((count, count), gram.shape()).copy_from(gram);
-            with.product = DVector::zeros(all);
-            with.product.rows_mut(0, count).copy_from(&present.product);
-            with.product.rows_mut(count, columns.ncols()).copy_from(&columns.tr_mul(&r));
-            with.bounds.extend(self.world.candidates()[index].scaled_bounds());
-            with.score().log_evidence + self.prior[index] - before
         };
-        self.columns.iter().enumerate().map(gain).collect()
+        let about = |index: usize| match story.chosen.iter().any(|chosen| chosen.candidate == index) {
+            true => f64::NEG_INFINITY,
+            false => present.about(&before, &more(index)) + self.prior[index],
+        };
+        let mut additions: Vec<f64> = (0..self.columns.len()).map(about).collect();
+        for unknown in [false, true] {
+            for index in self.likeliest(&additions, unknown).into_iter().take(SCORED) {
+                let with = present.with(&more(index)).score();
+                additions[index] = with.log_evidence - before.log_evidence + self.prior[index];
+            }
+        }
+        additions
+    }
+
+    /// Candidates that may be added, known or unknown ones, the likeliest first.
+    fn likeliest(&self, additions: &[f64], unknown: bool) -> Vec<usize> {
+        let mut likeliest: Vec<usize> = (0..additions.len())
+            .filter(|&index| self.world.candidates()[index].is_unknown == unknown)
+            .filter(|&index| additions[index] > f64::NEG_INFINITY)
+            .collect();
+        likeliest.sort_by(|&a, &b| additions[b].total_cmp(&additions[a]));
+        likeliest
     }
 
     /// The most probable story of known effects, and the one that an unknown curve adds to it, if that is named rather
@@ -149,19 +168,21 @@ impl<'a> Search<'a> {
     /// unknown curve: several of them together can draw the shape of something that is none of them.
     pub fn best(&self) -> (Story, Option<Story>) {
         let mut path = vec![self.fit(&[])];
+        let mut rivals = Vec::new();
         loop {
             let story = &path[path.len() - 1];
+            let additions = self.additions(story);
+            rivals.push(self.longer(story, &additions, true));
             if story.chosen.len() >= MOST {
                 break;
             }
-            let Some(longer) = self.longer(story, false) else { break };
+            let Some(longer) = self.longer(story, &additions, false) else { break };
             if longer.log_probability < story.log_probability + NAMED.ln() {
                 break;
             }
             let longer = self.exchanged(longer);
             path.push(longer);
         }
-        let rivals: Vec<Option<Story>> = path.iter().map(|story| self.longer(story, true)).collect();
         let last = path.len() - 1;
         let shorter = rivals[..last]
             .iter()
@@ -180,14 +201,9 @@ impl<'a> Search<'a> {
     }
 
     /// The story with one candidate more, the likeliest of those that are unknown or of those that are not.
-    fn longer(&self, story: &Story, unknown: bool) -> Option<Story> {
-        let additions = self.additions(story);
-        let mut likeliest: Vec<usize> = (0..additions.len())
-            .filter(|&index| self.world.candidates()[index].is_unknown == unknown)
-            .filter(|&index| additions[index] > f64::NEG_INFINITY)
-            .collect();
-        likeliest.sort_by(|&a, &b| additions[b].total_cmp(&additions[a]));
-        let refitted = likeliest.into_iter().take(REFITTED).map(|index| self.with(story, index));
+    fn longer(&self, story: &Story, additions: &[f64], unknown: bool) -> Option<Story> {
+        let likeliest = self.likeliest(additions, unknown).into_iter().take(REFITTED);
+        let refitted = likeliest.map(|index| self.with(story, index));
         refitted.reduce(|best, other| if other.log_probability > best.log_probability { other } else { best })
     }
 
@@ -241,11 +257,12 @@ impl<'a> Search<'a> {
 
     /// Single effects exchanged for others and taken away while the story gets more probable.
     fn exchanged(&self, mut story: Story) -> Story {
-        for _ in 0..MOST {
+        // a single effect is the best there is
+        for _ in 0..if story.chosen.len() > 1 { MOST } else { 0 } {
             let mut better: Option<Story> = None;
             for position in 0..story.chosen.len() {
                 let rest = self.without(&story, position);
-                let best = self.longer(&rest, false);
+                let best = self.longer(&rest, &self.additions(&rest), false);
                 for other in [Some(rest), best].into_iter().flatten() {
                     let least = better.as_ref().map_or(story.log_probability + 1e-6, |b| b.log_probability);
                     if other.log_probability > least {

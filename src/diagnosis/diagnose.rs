@@ -6,14 +6,12 @@ use super::lack_of_fit::LackOfFit;
 use super::linear::Linearised;
 use super::locate::{Structure, locate};
 use super::proof::{Proof, prove};
-use super::selection::{Search, Story};
+use super::selection::{Remainder, Search, Story};
 use super::{Chosen, Evidence, World};
 use crate::statistics::{chi_squared_survival, student_t_quantile};
 
 /// Odds within which another explanation counts as indistinguishable: 20 to 1.
 const APART: f64 = 20.0;
-/// Probability of a lack of fit below which something is left although no curve describes it.
-const NOT_CHANCE: f64 = 1e-3;
 
 /// What a recording says about the physics that its model left out.
 #[derive(Debug, Clone)]
@@ -110,14 +108,14 @@ pub fn diagnose(world: &dyn World, evidence: &Evidence) -> Diagnosis {
     let lack_of_fit_after = search.lack_of_fit(&story, &told);
     let (mut left, mut determined) = (after.clone(), story.determined);
     let mut unexplained = None;
-    if let Some(longer) = unknown {
+    if let Some(Remainder::Curve(longer)) = unknown {
         let with_curve = world.change(&longer.chosen);
         left = &evidence.residual - search.told(&longer, evidence, &with_curve);
         determined = longer.determined;
         let shape = with_curve - &change;
         let candidate = longer.chosen.last().map(|curve| curve.candidate);
         unexplained = Some(Unexplained { candidate, rms: rms(&shape), shape });
-    } else if lack_of_fit_after.is_some_and(|test| test.p_value < NOT_CHANCE) {
+    } else if let Some(Remainder::Cells) = unknown {
         unexplained = Some(Unexplained { candidate: None, rms: rms(&after), shape: after.clone() });
     }
     let freedom = (search.degrees_of_freedom() as f64 - determined).max(1.0);

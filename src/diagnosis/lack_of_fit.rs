@@ -8,7 +8,6 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::linalg;
 use crate::statistics::f_survival;
 
 /// The test.
@@ -24,32 +23,62 @@ pub struct LackOfFit {
     pub dof_repeats: usize,
 }
 
-/// Tests residuals, whitened by `whitened`, that a story of `parameters` leaves; `None` without repeats.
-pub(super) fn lack_of_fit(
-    whitened: impl Fn(&DVector<f64>) -> DVector<f64>,
-    residual: &DVector<f64>,
-    cell: &[usize],
-    parameters: usize,
-) -> Option<LackOfFit> {
-    let cells = cell.iter().max()? + 1;
-    let n = residual.len();
-    let (dof_fit, dof_repeats) = (cells.checked_sub(parameters)?, n.checked_sub(cells)?);
-    if dof_fit == 0 || dof_repeats == 0 {
-        return None;
+impl LackOfFit {
+    /// Ln of the odds that every cell is off by a normal number of its own, against nothing being left: the one-way model of
+    /// random effects at its likeliest variances,
+    ///
+    /// ½(a + b)·ln((a·F + b)/(a + b)) − ½a·ln F − 1     a, b the degrees of freedom of cells and repeats
+    ///
+    /// where 1 is the price of its one parameter more.
+    pub fn log_odds(&self) -> f64 {
+        let (a, b) = (self.dof_fit as f64, self.dof_repeats as f64);
+        match self.f > 1.0 {
+            true => 0.5 * (a + b) * ((a * self.f + b) / (a + b)).ln() - 0.5 * a * self.f.ln() - 1.0,
+            false => -1.0,
+        }
     }
-    let of_cell = |k: usize| whitened(&DVector::from_fn(n, |i, _| f64::from(u8::from(cell[i] == k))));
-    let columns = DMatrix::from_columns(&(0..cells).map(of_cell).collect::<Vec<_>>());
-    let w = whitened(residual);
-    let means = linalg::least_squares(&columns, &w).ok()?;
-    let repeats = (&w - &columns * means).norm_squared();
-    let fit = (w.norm_squared() - repeats).max(0.0);
-    // repeats that never differ say nothing about noise
-    if repeats <= f64::EPSILON * w.norm_squared() {
-        return None;
+}
+
+/// The space of what is the same in all repeats.
+#[derive(Debug, Clone)]
+pub(super) struct Cells {
+    /// Orthonormal basis of the whitened indicators of the cells.
+    basis: DMatrix<f64>,
+}
+
+impl Cells {
+    /// `None` without repeats.
+    pub(super) fn new(whitened: impl Fn(&DMatrix<f64>) -> DMatrix<f64>, cell: &[usize]) -> Option<Cells> {
+        // a recording of some conditions may lack others
+        let mut numbers: Vec<usize> = cell.to_vec();
+        numbers.sort_unstable();
+        numbers.dedup();
+        if numbers.len() >= cell.len() {
+            return None;
+        }
+        let indicators =
+            DMatrix::from_fn(cell.len(), numbers.len(), |i, k| f64::from(u8::from(cell[i] == numbers[k])));
+        Some(Cells { basis: whitened(&indicators).qr().q() })
     }
-    let f = (fit / dof_fit as f64) / (repeats / dof_repeats as f64);
-    let p_value = f_survival(f, dof_fit as f64, dof_repeats as f64).ok()?;
-    Some(LackOfFit { f, p_value, dof_fit, dof_repeats })
+
+    /// Tests the whitened residual `w` that a story of `parameters` leaves.
+    pub(super) fn test(&self, w: &DVector<f64>, parameters: usize) -> Option<LackOfFit> {
+        let (n, cells) = self.basis.shape();
+        let (dof_fit, dof_repeats) = (cells.checked_sub(parameters)?, n.checked_sub(cells)?);
+        if dof_fit == 0 || dof_repeats == 0 {
+            return None;
+        }
+        let all = w.norm_squared();
+        let means = self.basis.tr_mul(w).norm_squared();
+        // repeats that never differ say nothing about noise
+        let repeats = all - means;
+        if repeats <= f64::EPSILON * all {
+            return None;
+        }
+        let f = (means / dof_fit as f64) / (repeats / dof_repeats as f64);
+        let p_value = f_survival(f, dof_fit as f64, dof_repeats as f64).ok()?;
+        Some(LackOfFit { f, p_value, dof_fit, dof_repeats })
+    }
 }
 
 #[cfg(test)]
@@ -61,7 +90,7 @@ mod tests {
         let mut random = Random::seeded(seed, 0);
         let cell: Vec<usize> = (0..80).map(|i| i % 16).collect();
         let residual = DVector::from_fn(80, |i, _| random.normal() + if i % 16 == 3 { shift } else { 0.0 });
-        lack_of_fit(Clone::clone, &residual, &cell, 0).unwrap()
+        Cells::new(Clone::clone, &cell).unwrap().test(&residual, 0).unwrap()
     }
 
     #[test]
@@ -70,5 +99,6 @@ mod tests {
         assert_eq!((test(1, 0.0).dof_fit, test(1, 0.0).dof_repeats), (16, 64));
         let by_chance = (0..200).filter(|&seed| test(seed, 0.0).p_value < 0.05).count();
         assert!((3..=20).contains(&by_chance), "{by_chance} of 200");
+        assert!(test(1, 4.0).log_odds() > 5.0 && test(1, 0.0).log_odds() < 1.0);
     }
 }

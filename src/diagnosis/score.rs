@@ -9,6 +9,10 @@
 //! better than its prior costs ln 1000. A parameter with a bound has the part of the normal prior within it; the evidence
 //! then gains ln(posterior mass within the bound / prior mass within it), parameter by parameter: a friction that comes out
 //! negative has no mass where friction is possible.
+//!
+//! Nobody knows beforehand how large an effect is within a factor of ten. The prior of each effect is therefore κ times as wide
+//! as its usual size, where κ is what makes the evidence largest (empirical Bayes, by expectation–maximisation), at the price
+//! of ½·(log₁₀ κ)².
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
@@ -16,6 +20,11 @@ use crate::statistics::ln_normal_mass;
 
 /// Least noise variance relative to that of the residual.
 const LEAST: f64 = 1e-12;
+
+/// Least and largest κ.
+const SCALES: (f64, f64) = (1.0 / 30.0, 30.0);
+/// Steps of expectation–maximisation to κ: one settles what the data determine well.
+const SCALE_STEPS: usize = 6;
 
 /// What a story's evidence is computed from: inner products of whitened and projected vectors.
 #[derive(Debug, Clone)]
@@ -28,6 +37,8 @@ pub struct Moments {
     pub product: DVector<f64>,
     /// Bounds of the scaled parameters.
     pub bounds: Vec<(f64, f64)>,
+    /// How many parameters each effect has; those before the first effect keep their size.
+    pub effects: Vec<usize>,
     /// ν.
     pub freedom: usize,
     /// Least noise: what rounding alone makes.
@@ -47,6 +58,14 @@ pub struct More<'a> {
     pub bounds: Vec<(f64, f64)>,
 }
 
+/// A score in units of κ times the sizes.
+struct Scaled {
+    log_evidence: f64,
+    variance: f64,
+    mean: DVector<f64>,
+    spread: DMatrix<f64>,
+}
+
 /// What a fit of a story comes to.
 #[derive(Debug, Clone)]
 pub struct Score {
@@ -58,42 +77,88 @@ pub struct Score {
     pub estimate: DVector<f64>,
     /// Their posterior covariance.
     pub covariance: DMatrix<f64>,
+    /// How many parameters the data determine, Σλ/(λ + σ²).
+    pub determined: f64,
 }
 
 impl Moments {
-    /// Of the residual `r` and `columns`, with bounds of their factors.
+    /// Of the residual `r` and `columns`, with bounds of their factors and the sizes of the effects, the last of the columns.
     pub fn new(
         r: &DVector<f64>,
         columns: &DMatrix<f64>,
         bounds: Vec<(f64, f64)>,
+        effects: Vec<usize>,
         freedom: usize,
         floor: f64,
     ) -> Self {
         let (gram, product) = (columns.tr_mul(columns), columns.tr_mul(r));
-        Moments { square: r.norm_squared(), gram, product, bounds, freedom, floor }
+        Moments { square: r.norm_squared(), gram, product, bounds, effects, freedom, floor }
     }
 
     /// The score.
     pub fn score(&self) -> Score {
         let p = self.gram.ncols();
+        let mut scales = vec![1.0; self.effects.len()];
+        let mut step = self.scaled(&scales);
+        for _ in 0..SCALE_STEPS {
+            let mut first = p - self.effects.iter().sum::<usize>();
+            let mut moved: f64 = 0.0;
+            for (scale, &count) in scales.iter_mut().zip(&self.effects) {
+                let own = first..first + count;
+                let square: f64 = own.map(|k| step.mean[k].powi(2) + step.spread[(k, k)]).sum();
+                let next = (*scale * (square / count as f64).sqrt()).clamp(SCALES.0, SCALES.1);
+                moved = moved.max((next / *scale).ln().abs());
+                *scale = next;
+                first += count;
+            }
+            if moved < 0.02 {
+                break;
+            }
+            step = self.scaled(&scales);
+        }
+        let price: f64 = scales.iter().map(|scale| 0.5 * scale.log10().powi(2)).sum();
+        let sizes = DVector::from_vec(self.sizes(&scales));
+        let by_sizes = DMatrix::from_diagonal(&sizes);
+        Score {
+            log_evidence: step.log_evidence - price,
+            sigma: step.variance.sqrt(),
+            determined: p as f64 - step.spread.trace(),
+            estimate: step.mean.component_mul(&sizes),
+            covariance: &by_sizes * step.spread * &by_sizes,
+        }
+    }
+
+    /// κ of every parameter.
+    fn sizes(&self, scales: &[f64]) -> Vec<f64> {
+        let fixed = self.gram.ncols() - self.effects.iter().sum::<usize>();
+        let of_effect = |(scale, &count): (&f64, &usize)| std::iter::repeat_n(*scale, count);
+        std::iter::repeat_n(1.0, fixed).chain(scales.iter().zip(&self.effects).flat_map(of_effect)).collect()
+    }
+
+    /// Evidence, noise and posterior in units of κ times the sizes.
+    fn scaled(&self, scales: &[f64]) -> Scaled {
+        let p = self.gram.ncols();
+        let sizes = self.sizes(scales);
+        let gram = DMatrix::from_fn(p, p, |i, j| self.gram[(i, j)] * sizes[i] * sizes[j]);
+        let product = DVector::from_fn(p, |i, _| self.product[i] * sizes[i]);
         let eigen = match p {
             0 => SymmetricEigen { eigenvectors: DMatrix::zeros(0, 0), eigenvalues: DVector::zeros(0) },
-            _ => SymmetricEigen::new(self.gram.clone()),
+            _ => SymmetricEigen::new(gram),
         };
         let lambda = eigen.eigenvalues.map(|l| l.max(0.0));
-        let b = eigen.eigenvectors.tr_mul(&self.product);
+        let b = eigen.eigenvectors.tr_mul(&product);
         let s = self.variance(&lambda, &b);
         let shrunk = DVector::from_fn(p, |k, _| b[k] / (lambda[k] + s));
         let spread = DMatrix::from_diagonal(&lambda.map(|l| s / (l + s)));
-        let estimate = &eigen.eigenvectors * shrunk;
-        let covariance = &eigen.eigenvectors * spread * eigen.eigenvectors.transpose();
-        let room: f64 = (0..p).map(|k| room(self.bounds[k], estimate[k], covariance[(k, k)].sqrt())).sum();
-        Score {
-            log_evidence: self.log_evidence(&lambda, &b, s) + room,
-            sigma: s.sqrt(),
-            estimate,
-            covariance,
-        }
+        let mean = &eigen.eigenvectors * shrunk;
+        let spread = &eigen.eigenvectors * spread * eigen.eigenvectors.transpose();
+        let room: f64 = (0..p)
+            .map(|k| {
+                let (low, high) = self.bounds[k];
+                room((low / sizes[k], high / sizes[k]), mean[k], spread[(k, k)].sqrt())
+            })
+            .sum();
+        Scaled { log_evidence: self.log_evidence(&lambda, &b, s) + room, variance: s, mean, spread }
     }
 
     /// About the log evidence that `more` columns add to a story of this score: the noise follows what they explain without
@@ -110,29 +175,37 @@ impl Moments {
         let gram = more.gram - more.cross.tr_mul(&reduced);
         let product = &more.product - reduced.tr_mul(&self.product);
         let k = gram.ncols();
-        let ridge = &gram + DMatrix::from_diagonal_element(k, k, s);
-        let Some(root) = ridge.cholesky() else { return f64::NEG_INFINITY };
-        let estimate = root.solve(&product);
         let nu = (self.freedom as f64).max(1.0);
-        let explained = (product.dot(&estimate) / (nu * s)).clamp(0.0, 1.0 - 1e-9);
+        // s/κ² on the diagonal
+        let posterior = |ridge: f64| Some((&gram + DMatrix::from_diagonal_element(k, k, ridge)).cholesky()?);
+        let mut scale = 1.0f64;
+        for _ in 0..SCALE_STEPS {
+            let Some(root) = posterior(s / scale.powi(2)) else { return f64::NEG_INFINITY };
+            let square = root.solve(&product).norm_squared() + s * root.inverse().trace();
+            let next = (square / k as f64).sqrt().clamp(SCALES.0, SCALES.1);
+            let moved = (next / scale).ln().abs();
+            scale = next;
+            if moved < 0.1 {
+                break;
+            }
+        }
+        let Some(root) = posterior(s / scale.powi(2)) else { return f64::NEG_INFINITY };
+        let explained = (product.dot(&root.solve(&product)) / (nu * s)).clamp(0.0, 1.0 - 1e-9);
         let left = (s * (1.0 - explained)).max(self.floor.powi(2)).max(f64::MIN_POSITIVE.sqrt());
-        let next = gram + DMatrix::from_diagonal_element(k, k, left);
-        let Some(root) = next.cholesky() else { return f64::NEG_INFINITY };
-        let determinant: f64 = (0..k).map(|i| (root.l_dirty()[(i, i)].powi(2) / left).ln()).sum();
-        let estimate = root.solve(&product);
+        let ridge = left / scale.powi(2);
+        let Some(root) = posterior(ridge) else { return f64::NEG_INFINITY };
+        let determinant: f64 = (0..k).map(|i| (root.l_dirty()[(i, i)].powi(2) / ridge).ln()).sum();
+        let (estimate, inverse) = (root.solve(&product), root.inverse());
         let room: f64 = more
             .bounds
             .iter()
             .enumerate()
-            .filter(|(_, bounds)| bounds.0.is_finite() || bounds.1.is_finite())
-            .map(|(i, &bounds)| {
-                // the inverse's diagonal by its own solve
-                let unit = DVector::from_fn(k, |j, _| f64::from(u8::from(i == j)));
-                let sd = (left * root.solve(&unit)[i]).sqrt();
-                room(bounds, estimate[i], sd)
+            .map(|(i, (low, high))| {
+                let sd = (left * inverse[(i, i)]).sqrt();
+                room((low / scale, high / scale), estimate[i] / scale, sd / scale)
             })
             .sum();
-        -0.5 * (nu * (-explained).ln_1p() + determinant) + room
+        -0.5 * (nu * (-explained).ln_1p() + determinant + scale.log10().powi(2)) + room
     }
 
     /// Of these and `more` columns.
@@ -145,7 +218,8 @@ impl Moments {
         let mut product = self.product.clone().resize_vertically(old + new, 0.0);
         product.rows_mut(old, new).copy_from(&more.product);
         let bounds = self.bounds.iter().chain(&more.bounds).copied().collect();
-        Moments { gram, product, bounds, ..self.clone() }
+        let effects = self.effects.iter().copied().chain([new]).collect();
+        Moments { gram, product, bounds, effects, ..self.clone() }
     }
 
     fn log_evidence(&self, lambda: &DVector<f64>, b: &DVector<f64>, s: f64) -> f64 {
@@ -212,7 +286,7 @@ mod tests {
     }
 
     fn score(r: &DVector<f64>, columns: &DMatrix<f64>) -> Score {
-        Moments::new(r, columns, vec![FREE; columns.ncols()], r.len(), 0.0).score()
+        Moments::new(r, columns, vec![FREE; columns.ncols()], Vec::new(), r.len(), 0.0).score()
     }
 
     #[test]
@@ -220,7 +294,7 @@ mod tests {
         let (r, c) = (noise(30, 2), noise(30, 3));
         let r = r + &c * 0.8;
         let columns = DMatrix::from_columns(&[c.clone(), noise(30, 5) * 40.0]);
-        let moments = Moments::new(&r, &columns, vec![FREE; 2], 30, 0.0);
+        let moments = Moments::new(&r, &columns, vec![FREE; 2], Vec::new(), 30, 0.0);
         let eigen = SymmetricEigen::new(moments.gram.clone());
         let b = eigen.eigenvectors.tr_mul(&moments.product);
         let best = moments.score();
@@ -231,11 +305,33 @@ mod tests {
     }
 
     #[test]
+    fn an_effect_is_as_large_as_it_is_and_screening_says_so_too() {
+        let (r, c) = (noise(80, 2), noise(80, 3));
+        for size in [0.2, 1.0, 5.0, 50.0] {
+            // the true factor, in sizes, is 3/size
+            let recorded = &r + &c * 3.0;
+            let columns = DMatrix::from_columns(&[&c * size]);
+            let wide = Moments::new(&recorded, &columns, vec![FREE], vec![1], 80, 0.0).score();
+            let narrow = score(&recorded, &columns);
+            assert!(wide.log_evidence >= narrow.log_evidence - 1.2, "size {size}");
+            let fitted = c.dot(&recorded) / c.norm_squared();
+            assert!((wide.estimate[0] * size / fitted - 1.0).abs() < 0.05, "size {size}: {}", wide.estimate[0]);
+            let none = Moments::new(&recorded, &DMatrix::zeros(80, 0), vec![], vec![], 80, 0.0);
+            let (gram, product) = (columns.tr_mul(&columns), columns.tr_mul(&recorded));
+            let more = More { gram: &gram, cross: DMatrix::zeros(0, 1), product, bounds: vec![FREE] };
+            let before = none.score();
+            let about = none.about(&before, &more);
+            let exact = none.with(&more).score().log_evidence - before.log_evidence;
+            assert!((about - exact).abs() < 0.1 * exact.abs() + 0.5, "size {size}: {about} for {exact}");
+        }
+    }
+
+    #[test]
     fn what_is_out_of_bounds_is_no_explanation() {
         let (r, c) = (noise(60, 4), noise(60, 5));
         let r = r - &c * 2.0;
         let columns = DMatrix::from_columns(&[c]);
-        let of = |bounds| Moments::new(&r, &columns, vec![bounds], 60, 0.0).score().log_evidence;
+        let of = |bounds| Moments::new(&r, &columns, vec![bounds], Vec::new(), 60, 0.0).score().log_evidence;
         let without = score(&r, &DMatrix::zeros(60, 0)).log_evidence;
         assert!(of(FREE) > without + 20.0);
         assert!(of((0.0, f64::INFINITY)) < without);

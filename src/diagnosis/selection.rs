@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::lack_of_fit::{LackOfFit, lack_of_fit};
+use super::lack_of_fit::{Cells, LackOfFit};
 use super::linear::Linearised;
 use super::score::{Moments, More, Score};
 use super::sparse::Sparse;
@@ -25,7 +25,7 @@ const MOST: usize = 8;
 /// Of how many candidates, the likeliest by their columns at neutral values, the values are fitted.
 const REFITTED: usize = 3;
 /// And of how many the evidence is computed exactly.
-const SCORED: usize = 12;
+const SCORED: usize = 6;
 /// Most Gauss–Newton steps to the values of a story.
 const STEPS: usize = 20;
 /// Step, in sizes, below which they have arrived: the noise of a value is hardly ever a ten-thousandth of its size.
@@ -60,6 +60,17 @@ pub struct Search<'a> {
     columns: Vec<(Sparse, DMatrix<f64>)>,
     /// Ln of the prior of each candidate over that of none.
     prior: Vec<f64>,
+    /// What repeats have in common; `None` without repeats.
+    cells: Option<Cells>,
+}
+
+/// What a story leaves that no effect of the library explains.
+#[derive(Debug, Clone)]
+pub enum Remainder {
+    /// A smooth curve, the last of this story.
+    Curve(Story),
+    /// No curve, but the repeats agree on it.
+    Cells,
 }
 
 impl<'a> Search<'a> {
@@ -76,6 +87,7 @@ impl<'a> Search<'a> {
             columns: world.neutral.iter().map(of_candidate).collect(),
             background: whitening.apply_columns(&evidence.background),
             prior: priors(world.candidates()),
+            cells: Cells::new(|columns| whitening.whitened_columns(columns), &evidence.cell),
             world,
             evidence,
             whitening,
@@ -84,7 +96,7 @@ impl<'a> Search<'a> {
 
     /// The search whose scatter is that of what its own best story leaves, with that story and the one that an unknown
     /// curve adds to it: what is found first changes how the rest scatters.
-    pub fn settled(world: &'a Linearised<'a>, evidence: &'a Evidence) -> (Self, Story, Option<Story>) {
+    pub fn settled(world: &'a Linearised<'a>, evidence: &'a Evidence) -> (Self, Story, Option<Remainder>) {
         let search = Search::new(world, evidence, &[]);
         let (story, unknown) = search.best();
         if story.chosen.is_empty() {
@@ -117,7 +129,7 @@ impl<'a> Search<'a> {
             sigma: scored.sigma,
             covariance: &sizes * own * &sizes,
             background: scored.estimate.rows(0, background).into_owned(),
-            determined: scored.covariance.nrows() as f64 - scored.covariance.trace(),
+            determined: scored.determined,
             chosen,
         }
     }
@@ -137,7 +149,7 @@ impl<'a> Search<'a> {
                 bounds: self.world.candidates()[index].scaled_bounds().collect(),
             }
         };
-        let about = |index: usize| match story.chosen.iter().any(|chosen| chosen.candidate == index) {
+        let about = |index: usize| match story.chosen.iter().any(|chosen| self.excludes(chosen, index)) {
             true => f64::NEG_INFINITY,
             false => present.about(&before, &more(index)) + self.prior[index],
         };
@@ -151,6 +163,12 @@ impl<'a> Search<'a> {
         additions
     }
 
+    /// True where a candidate can not be added to a story that holds `chosen`.
+    fn excludes(&self, chosen: &Chosen, index: usize) -> bool {
+        let (old, new) = (&self.world.candidates()[chosen.candidate], &self.world.candidates()[index]);
+        chosen.candidate == index || (old.is_alternative && new.is_alternative && old.effect == new.effect)
+    }
+
     /// Candidates that may be added, known or unknown ones, the likeliest first.
     fn likeliest(&self, additions: &[f64], unknown: bool) -> Vec<usize> {
         let mut likeliest: Vec<usize> = (0..additions.len())
@@ -161,18 +179,17 @@ impl<'a> Search<'a> {
         likeliest
     }
 
-    /// The most probable story of known effects, and the one that an unknown curve adds to it, if that is named rather
-    /// than chance.
+    /// The most probable story of known effects, and what it leaves, if that is more than chance.
     ///
-    /// Known effects are named only as far as they are likelier, by the odds of a name, than a shorter story with an
-    /// unknown curve: several of them together can draw the shape of something that is none of them.
-    pub fn best(&self) -> (Story, Option<Story>) {
+    /// Known effects are named only as far as they are likelier, by the odds of a name, than a shorter story that leaves
+    /// something unknown: several of them together can draw the shape of something that is none of them.
+    pub fn best(&self) -> (Story, Option<Remainder>) {
         let mut path = vec![self.fit(&[])];
-        let mut rivals = Vec::new();
+        let mut remainders = Vec::new();
         loop {
             let story = &path[path.len() - 1];
             let additions = self.additions(story);
-            rivals.push(self.longer(story, &additions, true));
+            remainders.push(self.remainder(story, &additions));
             if story.chosen.len() >= MOST {
                 break;
             }
@@ -183,21 +200,28 @@ impl<'a> Search<'a> {
             let longer = self.exchanged(longer);
             path.push(longer);
         }
-        let last = path.len() - 1;
-        let shorter = rivals[..last]
-            .iter()
-            .enumerate()
-            .filter_map(|(k, rival)| Some((k, rival.as_ref()?.log_probability)))
-            .max_by(|a, b| a.1.total_cmp(&b.1));
-        let named = match shorter {
-            Some((k, rival)) if rival + NAMED.ln() > path[last].log_probability => k,
-            _ => last,
+        let whole = |(story, remainder): (&Story, &Option<(f64, Remainder)>)| {
+            remainder.as_ref().map_or(story.log_probability, |(log_probability, _)| *log_probability)
         };
-        let story = path.swap_remove(named);
-        let unknown = rivals.into_iter().nth(named).flatten();
-        let is_seen = |longer: &Story| longer.log_probability > story.log_probability + NAMED.ln();
-        let unknown = unknown.filter(is_seen);
-        (story, unknown)
+        let wholes: Vec<f64> = path.iter().zip(&remainders).map(whole).collect();
+        let most = wholes.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let named = wholes.iter().position(|whole| whole + NAMED.ln() > most).unwrap_or_default();
+        let remainder = remainders.swap_remove(named).map(|(_, remainder)| remainder);
+        (path.swap_remove(named), remainder)
+    }
+
+    /// What a story leaves, with the ln of the probability of both, if that is more than chance.
+    fn remainder(&self, story: &Story, additions: &[f64]) -> Option<(f64, Remainder)> {
+        let least = story.log_probability + NAMED.ln();
+        let curve = self.longer(story, additions, true).filter(|longer| longer.log_probability > least);
+        let told = self.told(story, self.evidence, &self.world.change(&story.chosen));
+        let cells = self.lack_of_fit(story, &told).map_or(f64::NEG_INFINITY, |test| {
+            story.log_probability + test.log_odds() + (PRIOR.2 / PRIOR.0).ln()
+        });
+        match curve {
+            Some(longer) => Some((longer.log_probability.max(cells), Remainder::Curve(longer))),
+            None => (cells > least).then_some((cells, Remainder::Cells)),
+        }
     }
 
     /// The story with one candidate more, the likeliest of those that are unknown or of those that are not.
@@ -241,7 +265,7 @@ impl<'a> Search<'a> {
         let parameters: usize = story.chosen.iter().map(|chosen| chosen.values.len()).sum();
         let absorbed = self.evidence.residual.len() - self.whitening.degrees_of_freedom;
         let left = &self.evidence.residual - told;
-        lack_of_fit(|v| self.whitening.whitened(v), &left, &self.evidence.cell, parameters + absorbed)
+        self.cells.as_ref()?.test(&self.whitening.whitened(&left), parameters + absorbed)
     }
 
     /// What a story says of all data of `evidence`, of which this search may have seen only a part: its effects' `change`
@@ -310,7 +334,8 @@ impl<'a> Search<'a> {
             bounds.extend(self.world.candidates()[c.candidate].scaled_bounds());
         }
         let floor = self.evidence.resolution / 12.0f64.sqrt();
-        Moments::new(r, columns, bounds, self.whitening.degrees_of_freedom, floor)
+        let effects = chosen.iter().map(|c| c.values.len()).collect();
+        Moments::new(r, columns, bounds, effects, self.whitening.degrees_of_freedom, floor)
     }
 
     /// Values less neutral values, in sizes.

@@ -38,8 +38,8 @@ const BEND: f64 = 0.3;
 const CURVATURE: f64 = 0.05;
 /// Creep of bondlines and laminates: a few per cent per decade of time.
 const CREEP: f64 = 0.03;
-/// t₀ of creep, s: what a reading after one second, and after one minute, is said to be without.
-const CREEP_STARTS: [f64; 2] = [1.0, 60.0];
+/// t₀ of creep, s: what a reading after so long is said to be without.
+const CREEP_STARTS: [f64; 4] = [1.0, 10.0, 60.0, 600.0];
 /// Width of a hysteresis loop as a share of full scale: 0.1 % of a load cell, some per cent of bonds and clamps.
 const HYSTERESIS: f64 = 0.02;
 /// Scale error of a displacement sensor that was not calibrated in place.
@@ -91,7 +91,15 @@ fn parameter(name: &str, unit: f64, neutral: f64, size: f64, bounds: (f64, f64))
 
 fn entry(effect: &str, location: impl Into<String>, parameter: EffectParameter, action: Action) -> Entry {
     let (effect, location) = (effect.into(), location.into());
-    (Candidate { effect, location, parameters: vec![parameter], is_unknown: false }, vec![action])
+    (
+        Candidate { effect, location, parameters: vec![parameter], is_alternative: false, is_unknown: false },
+        vec![action],
+    )
+}
+
+/// Marks one of several forms of the same thing.
+fn alternative((candidate, actions): Entry) -> Entry {
+    (Candidate { is_alternative: true, ..candidate }, actions)
 }
 
 fn largest_load(data: &[Datum]) -> f64 {
@@ -164,7 +172,16 @@ fn of_joints(structure: &mut Structure, rod: &Rod) -> Vec<Entry> {
             parameters.push(parameter("station_mm", MM, station, size, (before, behind)));
             actions.push(Action::Station(nodes));
         }
-        Some((Candidate { effect: effect.into(), location, parameters, is_unknown: false }, actions))
+        Some((
+            Candidate {
+                effect: effect.into(),
+                location,
+                parameters,
+                is_alternative: false,
+                is_unknown: false,
+            },
+            actions,
+        ))
     };
     named.chain(root).chain(scanned).filter_map(of_joint).collect()
 }
@@ -219,13 +236,14 @@ fn of_shape(data: &[Datum]) -> [Entry; 2] {
     // at most nothing is left of the displacement, or ten times as much is there
     let share =
         |name: &str, scale: f64| parameter(name, 1.0, 0.0, CURVATURE / scale, (-1.0 / scale, 10.0 / scale));
-    [
+    let forms = [
         entry("nonlinear_stiffness", "rod", share("per_n2", largest * largest), Action::PerLoadSquared),
         entry("nonlinear_stiffness", "rod", share("per_n", largest), Action::PerLoad),
-    ]
+    ];
+    forms.map(alternative)
 }
 
-/// Creep by each clock that may be meant, and both loops of hysteresis.
+/// Creep by each clock that may be meant, and all loops of hysteresis.
 fn of_history(data: &[Datum]) -> Vec<Entry> {
     let starts = CREEP_STARTS.into_iter().flat_map(|t0| Clock::ALL.map(|clock| (clock, t0)));
     let creeping = starts.filter_map(|(clock, t0)| {
@@ -241,12 +259,17 @@ fn of_history(data: &[Datum]) -> Vec<Entry> {
             entries.push((memory, entry));
         }
     }
-    let loops = [(Loop::Closed, "rod"), (Loop::Remanent, "rod, open at zero")];
+    let loops = [
+        (Loop::Closed, "rod"),
+        (Loop::Symmetric, "rod, loaded before"),
+        (Loop::Remanent, "rod, open at zero"),
+        (Loop::Virgin, "rod, loaded for the first time"),
+    ];
     let lagging = loops.into_iter().filter_map(|(shape, location)| {
         let fraction = parameter("fraction", 1.0, 0.0, HYSTERESIS, (0.0, 1.0));
         Some(entry("hysteresis", location, fraction, Action::Memory(hysteresis(data, shape)?)))
     });
-    entries.into_iter().map(|(_, entry)| entry).chain(lagging).collect()
+    entries.into_iter().map(|(_, entry)| entry).chain(lagging).map(alternative).collect()
 }
 
 /// Drift of each channel with temperature, or with time where no temperature was read: since the first reading of the file,

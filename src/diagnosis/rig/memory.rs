@@ -62,13 +62,20 @@ pub(super) fn creep(data: &[Datum], clock: Clock, t0: f64) -> Option<Memory> {
     Some(memory)
 }
 
-/// Shape of a hysteresis loop. Both are independent of rate and closed at the largest load of the run, F_max.
+/// Shape of a hysteresis loop. All are independent of rate and closed at the largest load of the run, F_max, and at half of it
+/// h of full scale wide.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Loop {
-    /// Closed at zero too: unloading readings are larger by h·4·C·F·(1 − F/F_max), at half load by h of full scale.
+    /// Closed at zero too: unloading readings are larger by h·4·C·F·(1 − F/F_max).
     Closed,
-    /// Open at zero: unloading readings are larger by h·C·(F_max − F).
+    /// As [`Loop::Closed`], half of it below the straight line on the way up and half above it on the way down: a rod that
+    /// was loaded before (A. Visintin, Differential Models of Hysteresis, 1994, ch. III: plays of Prandtl and Ishlinskii).
+    Symmetric,
+    /// Open at zero: unloading readings are larger by h·C·(F_max − F), twice as wide there as at half load.
     Remanent,
+    /// A rod that is loaded for the first time: b·F² on the way up, b·(F_max² − ½(F_max − F)²) on the way down, b = 8h/5F_max
+    /// (Lord Rayleigh, Phil. Mag. 23 (1887) 225–245: a quadratic law and branches of half its curvature).
+    Virgin,
 }
 
 /// Hysteresis; nothing where nothing was read on the way down.
@@ -77,10 +84,19 @@ pub(super) fn hysteresis(data: &[Datum], shape: Loop) -> Option<Memory> {
     let mut memory = none(data);
     for run in runs(data) {
         let largest = run.iter().fold(0.0, |max: f64, &i| max.max(data[i].load));
-        for i in run.into_iter().filter(|&i| data[i].is_unloading() && largest > 0.0) {
-            match shape {
-                Loop::Closed => memory.relative[i] = 4.0 * (1.0 - data[i].load / largest),
-                Loop::Remanent => memory.lingering[i] = largest - data[i].load,
+        for i in run.into_iter().filter(|_| largest > 0.0) {
+            let (load, is_unloading) = (data[i].load, data[i].is_unloading());
+            let parabola = 4.0 * (1.0 - load / largest);
+            match (shape, is_unloading) {
+                (Loop::Closed, true) => memory.relative[i] = parabola,
+                (Loop::Symmetric, true) => memory.relative[i] = 0.5 * parabola,
+                (Loop::Symmetric, false) => memory.relative[i] = -0.5 * parabola,
+                (Loop::Remanent, true) => memory.lingering[i] = 2.0 * (largest - load),
+                (Loop::Virgin, false) => memory.relative[i] = 1.6 * load / largest,
+                (Loop::Virgin, true) => {
+                    memory.lingering[i] = 1.6 * (largest.powi(2) - 0.5 * (largest - load).powi(2)) / largest;
+                }
+                (Loop::Closed | Loop::Remanent, false) => {}
             }
         }
     }
@@ -155,7 +171,13 @@ mod tests {
         let closed = hysteresis(&data, Loop::Closed).unwrap();
         assert_eq!(closed.relative, [0.0, 0.0, 2.0, 4.0]);
         let remanent = hysteresis(&data, Loop::Remanent).unwrap();
-        assert_eq!(remanent.lingering, [0.0, 0.0, 5.0, 10.0]);
+        assert_eq!(remanent.lingering, [0.0, 0.0, 10.0, 20.0]);
+        let symmetric = hysteresis(&data, Loop::Symmetric).unwrap();
+        assert_eq!(symmetric.relative, [-1.0, 0.0, 1.0, 2.0]);
+        // the branches of a virgin rod meet at the largest load, and are h·F_max apart at half of it
+        let virgin = hysteresis(&data, Loop::Virgin).unwrap();
+        let felt = |i: usize| data[i].load * virgin.relative[i] + virgin.lingering[i];
+        assert!((felt(2) - felt(0) - 10.0).abs() < 1e-12 && felt(3) > 0.0);
     }
 
     #[test]

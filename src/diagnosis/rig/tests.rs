@@ -181,7 +181,7 @@ fn effects_on_the_shape_follow_load_time_and_way() {
     let closed = one(&world, "hysteresis", "rod", 0.02, Axis::Y);
     assert_all(&closed, &[0.0, 0.0, -5.0 * y * 0.02 * 4.0 * 0.75, 0.0]);
     let open = one(&world, "hysteresis", "rod, open at zero", 0.02, Axis::Y);
-    assert_all(&open, &[0.0, 0.0, -15.0 * y * 0.02, -20.0 * y * 0.02]);
+    assert_all(&open, &[0.0, 0.0, -30.0 * y * 0.02, -40.0 * y * 0.02]);
 }
 
 #[test]

@@ -8,7 +8,10 @@ use self::quantity::Quantity;
 use super::datum::Datum;
 use super::{Body, RigWorld};
 use crate::diagnosis::{Finding, World};
-use crate::units::significant;
+use crate::units::{MM, significant};
+
+/// The parameter of a joint that may be anywhere.
+const STATION: &str = "station_mm";
 
 /// A finding in words.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -106,8 +109,40 @@ impl RigWorld {
     fn quantity(&self, finding: &Finding, name: &str) -> Option<Quantity> {
         let parameters = &self.candidates()[finding.chosen.candidate].parameters;
         let k = parameters.iter().position(|parameter| parameter.name == name)?;
-        let (unit, (value, low, high)) = (parameters[k].unit, *finding.parameters.get(k)?);
+        let (unit, (value, low, high)) = (parameters[k].unit, self.interval(finding, k)?);
         Some(Quantity { value: value / unit, low: low / unit, high: high / unit })
+    }
+
+    /// Value and 95 % interval of the `k`-th parameter of a finding, SI. Of a joint that nobody declared the interval also
+    /// holds what the joint would be at the other stations that the readings do not tell from its own.
+    pub fn interval(&self, finding: &Finding, k: usize) -> Option<(f64, f64, f64)> {
+        let own = *finding.parameters.get(k)?;
+        let of_candidate = |candidate: usize| &self.candidates()[candidate];
+        let is_scanned =
+            |candidate: usize| of_candidate(candidate).parameters.iter().any(|p| p.name == STATION);
+        let name = &of_candidate(finding.chosen.candidate).parameters.get(k)?.name;
+        if !is_scanned(finding.chosen.candidate) {
+            return Some(own);
+        }
+        let half = if name == STATION { 0.0 } else { (own.2 - own.1) / 2.0 };
+        let others = finding.rivals.iter().map(|rival| &rival.chosen).filter(|c| is_scanned(c.candidate));
+        let values = others.filter_map(|chosen| {
+            let parameters = &of_candidate(chosen.candidate).parameters;
+            chosen.values.get(parameters.iter().position(|parameter| parameter.name == *name)?).copied()
+        });
+        let least = of_candidate(finding.chosen.candidate).parameters[k].bounds.0;
+        let least = if name == STATION { f64::NEG_INFINITY } else { least };
+        let widened = |(value, low, high): (f64, f64, f64), other: f64| {
+            (value, low.min(other - half).max(least), high.max(other + half))
+        };
+        Some(values.fold(own, widened))
+    }
+
+    /// Where along the rod a joint that nobody declared may be, m; `None` for everything else.
+    pub fn stretch(&self, finding: &Finding) -> Option<(f64, f64)> {
+        let parameters = &self.candidates()[finding.chosen.candidate].parameters;
+        let (_, low, high) = self.interval(finding, parameters.iter().position(|p| p.name == STATION)?)?;
+        Some((low, high))
     }
 
     fn observed(&self, effect: &str, finding: &Finding) -> String {
@@ -218,10 +253,10 @@ impl RigWorld {
         }
         let amount = if sure.is_empty() { all } else { sure }.join(" and ");
         let place = &finding.place;
-        let what = match self.quantity(finding, "station_mm") {
+        let what = match self.stretch(finding) {
             _ if effect == "root_compliance" => "The rod's root".to_owned(),
-            Some(station) => {
-                format!("Something at {place} (between {:.0} and {:.0} mm)", station.low, station.high)
+            Some((low, high)) => {
+                format!("Something at {place} (between {:.0} and {:.0} mm)", low / MM, high / MM)
             }
             None if place.starts_with("station ") => format!("Something at {place}"),
             None => format!("The joint \"{place}\""),
@@ -240,12 +275,18 @@ impl RigWorld {
         };
         let Some(change) = quadratic.or(linear) else { return format!("{body} is not linear") };
         let word = if change.value >= 0.0 { "softer" } else { "stiffer" };
-        format!(
-            "{body} grows {word} with the load, by {} up to {} N",
-            change.size().say("%"),
-            significant(largest, 3)
-        )
+        format!("{body} grows {word} with the load, by {} at {}", change.size().say("%"), newtons(largest))
     }
+}
+
+/// A force with a unit that keeps its number short.
+fn newtons(force: f64) -> String {
+    let (unit, name) = match force {
+        force if force >= 1e6 => (1e6, "MN"),
+        force if force >= 1e4 => (1e3, "kN"),
+        _ => (1.0, "N"),
+    };
+    format!("{} {name}", significant(force / unit, 3))
 }
 
 /// `12 ± 2 % softer`, of a factor on a modulus.
@@ -333,8 +374,7 @@ mod tests {
         assert!(say("joint_compliance", "sleeve").starts_with("The joint \"sleeve\" yields"));
         assert!(say("thermal_drift", "dy").starts_with("Sensor dy drifts by 10 ± 5 µm per kelvin"));
         assert!(
-            say("nonlinear_stiffness", "rod")
-                .contains("grows softer with the load, by 10 ± 5 % up to 20.0 N")
+            say("nonlinear_stiffness", "rod").contains("grows softer with the load, by 10 ± 5 % at 20.0 N")
         );
     }
 

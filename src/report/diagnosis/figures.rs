@@ -7,7 +7,7 @@ use crate::diagnosis::{Covariate, Finding, Proof, World};
 use crate::report::chart::Figure;
 use crate::report::compliance::stations;
 use crate::report::pictures::diagnosis::{
-    BeforeAfter, Candidate, HeldOut, Residual, before_after, held_out, ranking,
+    BeforeAfter, Candidate, HeldOut, Residual, ResidualPoint, before_after, held_out, ranking,
 };
 use crate::report::pictures::{RodShape, Station, StationKind, Stretch, rod_shape};
 use crate::rig::readings::Axis;
@@ -18,45 +18,90 @@ use crate::units::{MM, UM};
 const NAMED: f64 = 20.0;
 /// Points of a centreline.
 const POINTS: usize = 120;
-/// More series than these are drawn by channel.
-const MOST_SERIES: usize = 8;
+/// So many lines of readings are told apart in one picture.
+const MOST_SERIES: usize = 6;
+/// Name of all others.
+const OTHERS: &str = "all other readings";
+
+/// Covariates that are told: one that has the values of another is that other one.
+pub fn covariates(found: &RigDiagnosis) -> Vec<usize> {
+    let all = &found.evidence.covariates;
+    let is_new = |k: &usize| all[..*k].iter().all(|other| other.values != all[*k].values);
+    (0..all.len()).filter(is_new).collect()
+}
 
 /// The covariate along which the residuals are most structured.
 pub fn most_structured(found: &RigDiagnosis) -> Option<usize> {
-    let z = |k: &usize| found.diagnosis.structure_before[*k].z;
-    (0..found.evidence.covariates.len()).rev().max_by(|a, b| z(a).total_cmp(&z(b)))
+    let z = |k: usize| found.diagnosis.structure_before[k].z;
+    covariates(found).into_iter().rev().max_by(|a, b| z(*a).total_cmp(&z(*b)))
 }
 
-/// Residuals before and after along a covariate.
-pub fn residuals(found: &RigDiagnosis, covariate: &Covariate) -> Figure {
+/// Residuals before and after along the covariate where the mismatch is plainest. What follows sensor, axis, or way up or
+/// down is drawn over the load: there these are series.
+pub fn residuals(found: &RigDiagnosis) -> Figure {
     let data = found.world.data();
-    let mut names: Vec<String> = data.iter().map(branch_name).collect();
-    let mut labels = distinct(&names);
-    if labels.len() > MOST_SERIES {
-        names = data.iter().map(|datum| format!("d{}", datum.channel)).collect();
-        labels = distinct(&names);
-    }
-    let point = |i: usize| {
-        let x = covariate.values[i];
-        let [before, after] = [&found.diagnosis.before, &found.diagnosis.after].map(|left| left[i] / UM);
-        (!x.is_nan()).then_some([x, before, after])
+    let plainest = most_structured(found).map(|k| &found.evidence.covariates[k]);
+    let loads = || Covariate {
+        name: "load".into(),
+        unit: "N".into(),
+        values: data.iter().map(|datum| datum.load).collect(),
     };
-    let series = labels.into_iter().map(|label| {
-        let points = (0..data.len()).filter(|&i| names[i] == label).filter_map(point).collect();
-        Residual { label, points }
-    });
+    let covariate = match plainest {
+        Some(covariate) if !["channel", "axis", "phase"].contains(&covariate.name.as_str()) => {
+            covariate.clone()
+        }
+        _ => loads(),
+    };
+    let (diagnosis, unexplained) = (&found.diagnosis, found.diagnosis.unexplained.as_ref());
+    let point = |i: usize| {
+        let of = ResidualPoint {
+            x: covariate.values[i],
+            before_um: diagnosis.before[i] / UM,
+            after_um: diagnosis.after[i] / UM,
+            unexplained_um: unexplained.map_or(0.0, |left| left.shape[i] / UM),
+        };
+        (!of.x.is_nan()).then_some(of)
+    };
+    let names: Vec<String> = data.iter().map(branch_name).collect();
+    let shown = series(&names, |i| diagnosis.before[i]);
+    let mut series = Vec::new();
+    for is_context in [true, false] {
+        let labels = if is_context { vec![OTHERS.to_owned()] } else { shown.clone() };
+        series.extend(labels.into_iter().map(|label| {
+            let is_of = |i: &usize| if is_context { !shown.contains(&names[*i]) } else { names[*i] == label };
+            Residual { points: (0..data.len()).filter(is_of).filter_map(point).collect(), label, is_context }
+        }));
+    }
+    series.retain(|series| !series.points.is_empty());
     let unit = if covariate.unit.is_empty() { String::new() } else { format!(" / {}", covariate.unit) };
+    let plainest = plainest.map_or_else(String::new, |covariate| {
+        format!(" The mismatch is plainest along this number: {}.", along(&covariate.name))
+    });
+    let plainest = if diagnosis.is_mismatch() { plainest } else { String::new() };
     before_after(&BeforeAfter {
         along: format!("{}{unit}", along(&covariate.name)),
-        names: value_names(covariate, data),
-        series: series.collect(),
-        noise_um: found.diagnosis.noise / UM,
+        names: value_names(&covariate, data),
+        series,
+        noise_um: diagnosis.noise / UM,
     })
     .captioned(format!(
-        "What the model leaves of the readings along the {}, where the mismatch is plainest, before and after; lines \
-         show what the findings say. What is noise stays in the band.",
-        along(&covariate.name)
+        "What the model leaves of the readings, before and after; lines show what the findings say, and what remains. What \
+         is noise stays in the band.{plainest}"
     ))
+}
+
+/// The lines of readings that are told apart: all of them, or those of the largest residuals.
+fn series(names: &[String], residual: impl Fn(usize) -> f64) -> Vec<String> {
+    let labels = distinct(names);
+    let square = |label: &String| -> f64 {
+        (0..names.len()).filter(|&i| names[i] == *label).map(|i| residual(i).powi(2)).sum()
+    };
+    let mut largest: Vec<f64> = labels.iter().map(square).collect();
+    largest.sort_by(|a, b| b.total_cmp(a));
+    match largest.get(MOST_SERIES) {
+        Some(&least) => labels.into_iter().filter(|label| square(label) > least).collect(),
+        None => labels,
+    }
 }
 
 /// A covariate as it is said.
@@ -120,7 +165,7 @@ pub fn places(found: &RigDiagnosis, rod: &Rod) -> Option<Figure> {
     };
     let stretch = |place: &Located| {
         let (from, to) = place.between?;
-        Some(Stretch { label: "95 % interval of the place".into(), points_mm: line(from, to) })
+        Some(Stretch { label: "where it may be".into(), points_mm: line(from, to) })
     };
     // a ring around a joint that is drawn already needs its name once
     let drawn =
@@ -156,10 +201,7 @@ fn located(found: &RigDiagnosis, finding: &Finding, rod: &Rod) -> Option<Located
     let label = finding.place.clone();
     match found.effect(finding) {
         "joint_compliance" => match station.and_then(|k| finding.parameters.get(k)) {
-            Some(&(at, low, high)) => {
-                let (low, high) = (low.max(0.0), high.min(rod.length()));
-                Some(Located { label, at, between: Some((low, high)) })
-            }
+            Some(&(at, ..)) => Some(Located { label, at, between: found.world.stretch(finding) }),
             None => {
                 let joint = rod.joints.iter().find(|joint| joint.name == finding.place)?;
                 Some(Located { label, at: joint.station, between: None })

@@ -17,7 +17,8 @@ pub fn headline(found: &RigDiagnosis) -> String {
     let findings = &diagnosis.findings;
     let remains = remainder(found).map(|left| left.sentence);
     if findings.is_empty() {
-        return remains.unwrap_or_else(|| {
+        let with_noise = |words: String| format!("{words} Noise is {noise} µm.");
+        return remains.map(with_noise).unwrap_or_else(|| {
             format!(
                 "The readings agree with the model: what is left, {} µm, is noise ({noise} µm).",
                 um(rms(&diagnosis.before))

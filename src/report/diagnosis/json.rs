@@ -15,7 +15,8 @@ use crate::units::UM;
 /// The JSON of `rodcal diagnose rig --json`. Numbers that do not exist are null.
 ///
 /// `heldout_gain` is the share of the squares of held-out errors that vanishes with the whole story; that of a finding
-/// among several is not known by itself, so that each has the story's.
+/// among several is not known by itself, so that each has the story's. The intervals of a joint that nobody declared
+/// hold all stations that these readings do not tell from its own, and what it would be there.
 pub fn json(found: &RigDiagnosis, readings: &Readings, rod: Option<&Rod>) -> Value {
     let diagnosis = &found.diagnosis;
     let proof = diagnosis.proof.as_ref();
@@ -81,11 +82,11 @@ pub fn json(found: &RigDiagnosis, readings: &Readings, rod: Option<&Rod>) -> Val
 
 fn of_finding(found: &RigDiagnosis, finding: &Finding, next: Option<&Proposal>) -> Value {
     let candidate = &found.world.candidates()[finding.chosen.candidate];
-    let parameters =
-        candidate.parameters.iter().zip(&finding.parameters).map(|(parameter, (value, low, high))| {
-            let unit = parameter.unit;
-            json!({ "name": parameter.name, "value": value / unit, "lo": low / unit, "hi": high / unit })
-        });
+    let parameters = candidate.parameters.iter().enumerate().filter_map(|(k, parameter)| {
+        let (value, low, high) = found.world.interval(finding, k)?;
+        let unit = parameter.unit;
+        Some(json!({ "name": parameter.name, "value": value / unit, "lo": low / unit, "hi": high / unit }))
+    });
     let rivals = finding.rivals.iter().map(|rival| {
         json!({
             "effect": found.effect_of(rival.chosen.candidate),

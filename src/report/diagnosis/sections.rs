@@ -52,10 +52,14 @@ fn findings(found: &RigDiagnosis, readings: &Readings) -> Section {
 fn details(found: &RigDiagnosis, finding: &Finding) -> String {
     let mut words = format!("It explains {} µm rms of the readings", um(finding.rms));
     if let Some((some, all)) = found.found_in_folds(finding) {
-        words += &format!(", and is found again in {some} of {all} parts of them");
+        words += &format!(", and is found again in {some} of {all} searches without a part of them");
     }
     words.push('.');
-    let places = found.other_places(finding);
+    let mut places = found.other_places(finding);
+    if found.world.stretch(finding).is_some() {
+        // said as a stretch already
+        places.retain(|place| !place.starts_with("station "));
+    }
     if !places.is_empty() {
         let more = if places.len() > PLACES { " …" } else { "" };
         words += &format!(" It may be elsewhere: {}{more}.", places[..places.len().min(PLACES)].join("; "));
@@ -81,10 +85,9 @@ fn parameters(found: &RigDiagnosis) -> Table {
         let candidate = &found.world.candidates()[finding.chosen.candidate];
         let others = found.other_effects(finding);
         let others: Vec<String> = others.iter().map(|(effect, place)| cause_at(effect, place)).collect();
-        for (k, (parameter, (value, low, high))) in
-            candidate.parameters.iter().zip(&finding.parameters).enumerate()
-        {
-            let show = |x: &f64| significant(x / parameter.unit, 4);
+        for (k, parameter) in candidate.parameters.iter().enumerate() {
+            let Some((value, low, high)) = found.world.interval(finding, k) else { continue };
+            let show = |x: f64| significant(x / parameter.unit, 4);
             let first = |text: String| if k == 0 { text } else { String::new() };
             table.row([
                 first(spoken(&candidate.effect)),
@@ -93,12 +96,17 @@ fn parameters(found: &RigDiagnosis) -> Table {
                 show(value),
                 show(low),
                 show(high),
-                first(significant(finding.p_value, 1)),
+                first(chance(finding.p_value)),
                 first(others.join("; ")),
             ]);
         }
     }
     table
+}
+
+/// A probability; what is less than one in 10^12 is never.
+fn chance(p: f64) -> String {
+    if p < 1e-12 { "< 1e-12".into() } else { significant(p, 1) }
 }
 
 fn location(found: &RigDiagnosis, rod: Option<&Rod>) -> Section {
@@ -117,8 +125,9 @@ fn location(found: &RigDiagnosis, rod: Option<&Rod>) -> Section {
         ],
     );
     let diagnosis = &found.diagnosis;
-    let structures = diagnosis.structure_before.iter().zip(&diagnosis.structure_after);
-    for (covariate, (before, after)) in found.evidence.covariates.iter().zip(structures) {
+    for k in figures::covariates(found) {
+        let covariate = &found.evidence.covariates[k];
+        let (before, after) = (&diagnosis.structure_before[k], &diagnosis.structure_after[k]);
         let cells =
             |s: &Structure| [word(s.z).to_owned(), format!("{:.2}", s.strength), format!("{:.1}", s.z)];
         let mut row = vec![figures::along(&covariate.name).to_owned()];
@@ -126,9 +135,7 @@ fn location(found: &RigDiagnosis, rod: Option<&Rod>) -> Section {
         table.row(row);
     }
     let mut blocks = vec![Block::Table(table)];
-    if let Some(k) = figures::most_structured(found) {
-        blocks.push(Block::Figure(figures::residuals(found, &found.evidence.covariates[k])));
-    }
+    blocks.push(Block::Figure(figures::residuals(found)));
     blocks.extend(rod.and_then(|rod| figures::places(found, rod)).map(Block::Figure));
     Section::new("Where it lives", blocks)
 }
@@ -179,7 +186,7 @@ fn proof(found: &RigDiagnosis) -> Section {
         um(diagnosis.noise),
         test(&diagnosis.lack_of_fit_after),
     );
-    let mut blocks = vec![Block::Table(table)];
+    let mut blocks = Vec::new();
     if let Some(proof) = &diagnosis.proof {
         let interval = proof.gain_interval.map_or_else(String::new, |(low, high)| {
             format!(" (95 % interval {} to {} %)", percent(low), percent(high))
@@ -190,17 +197,19 @@ fn proof(found: &RigDiagnosis) -> Section {
         )));
         blocks.push(Block::Figure(figures::proof(proof, diagnosis.noise)));
     }
+    blocks.push(Block::Table(table));
     Section::new("Does it help?", blocks)
 }
 
 fn percent(share: f64) -> String {
-    format!("{:.0}", 100.0 * share).replace('-', "−")
+    format!("{:.1}", 100.0 * share).replace('-', "−")
 }
 
 fn evidence(ranked: &[Ranked]) -> Section {
     let mut table = Table::new(
         "ranking",
-        "Every effect by itself against noise alone, at its best place. Odds are powers of ten: 2 is a hundred to one.",
+        "Every effect by itself against noise alone, at its best place. Odds are powers of ten: 2 is a hundred to one. \
+         An effect that says little by itself may be adopted for what another one leaves.",
         vec![
             Column::text("effect"),
             Column::text("where"),

@@ -2,9 +2,7 @@
 
 use serde::Serialize;
 
-use super::super::chart::{
-    Axis, Bar, Chart, Colour, Dash, Direction, Figure, Mark, Marker, Point, Range, Style,
-};
+use super::super::chart::{Axis, Bar, Chart, Colour, Dash, Direction, Figure, Mark, Point, Range, Style};
 use super::super::scale::{drawable, extent, typeset};
 use crate::units::significant;
 
@@ -29,59 +27,87 @@ pub struct BeforeAfter {
 pub struct Residual {
     /// Its name.
     pub label: String,
-    /// For each reading the number, and the residual before and after, µm.
-    pub points: Vec<[f64; 3]>,
+    /// The readings.
+    pub points: Vec<ResidualPoint>,
+    /// Drawn grey, to compare with.
+    pub is_context: bool,
 }
 
-/// Two panels to the same scale. In the first, lines show what the fit says; bands are twice the noise.
+/// What is left of one reading.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct ResidualPoint {
+    /// The number along which it is drawn.
+    pub x: f64,
+    /// Left by the model as it is, µm.
+    pub before_um: f64,
+    /// Left with what was found, µm.
+    pub after_um: f64,
+    /// What of that is structured and unexplained, µm.
+    pub unexplained_um: f64,
+}
+
+/// Two panels to the same scale, or one where nothing was found. Lines show what the findings say, and what no effect
+/// explains; bands are twice the noise. Where a number repeats, series stand beside one another.
 pub fn before_after(data: &BeforeAfter) -> Figure {
     let all = || data.series.iter().flat_map(|series| &series.points);
-    let (low, high) = padded(extent(all().map(|p| p[0])), 0.04);
+    let (low, high) = padded(extent(all().map(|p| p.x)), 0.06);
     let noise = Some(2.0 * data.noise_um).filter(|noise| drawable(*noise)).unwrap_or_default();
-    let ys = all().flat_map(|p| [p[1], p[2]]).chain([-noise, noise]);
-    let (bottom, top) = padded(extent(ys), 0.06);
-    let panel = |title: &str, k: usize| {
-        let mut chart = Chart::new(title, &data.along, "measured − modelled / µm");
-        chart.x.names = data.names.clone();
-        (chart.x.range, chart.y.range) = (Range::Fixed(low, high), Range::Fixed(bottom, top));
-        chart.marks.push(Mark::Band {
-            label: "± 2 × noise".into(),
-            points: [low, high].map(|x| [x, -noise, noise]).to_vec(),
-            style: Style::nth(0).colour(Colour::SkyBlue),
-        });
-        chart.marks.push(Mark::Line {
-            label: String::new(),
-            points: vec![[low, 0.0], [high, 0.0]],
-            style: Style::nth(0).colour(Colour::Grey).width(1.0).dash(Dash::Solid),
-        });
-        for (i, series) in data.series.iter().enumerate() {
-            let points = series.points.iter().map(|p| Point { x: p[0], y: p[k], error: 0.0 }).collect();
-            let style = Style::nth(i);
-            let style = if series.points.len() > MANY { style.size(2.0) } else { style };
-            chart.marks.push(Mark::Points { label: series.label.clone(), points, style });
-            if k == 1 {
-                let label = "what was found says".into();
-                chart.marks.push(Mark::Line {
-                    label,
-                    points: said(&series.points),
-                    style: style.dash(Dash::Solid).width(1.2),
-                });
+    let y_range = padded(extent(all().flat_map(|p| [p.before_um, p.after_um]).chain([-noise, noise])), 0.06);
+    let repeats = data.series.iter().any(|s| 2 * averages(&s.points, |_| 0.0).len() <= s.points.len());
+    let beside = if repeats { 0.014 * (high - low) } else { 0.0 };
+    let middle = (data.series.len() as f64 - 1.0) / 2.0;
+    let panel =
+        |title: &str, residual: fn(&ResidualPoint) -> f64, said: fn(&ResidualPoint) -> f64, words: &str| {
+            let mut chart = Chart::new(title, &data.along, "measured − modelled / µm");
+            chart.x.names = data.names.clone();
+            (chart.x.range, chart.y.range) = (Range::Fixed(low, high), Range::Fixed(y_range.0, y_range.1));
+            chart.marks.push(Mark::Band {
+                label: "± 2 × noise".into(),
+                points: [low, high].map(|x| [x, -noise, noise]).to_vec(),
+                style: Style::nth(0).colour(Colour::SkyBlue),
+            });
+            chart.marks.push(Mark::Line {
+                label: String::new(),
+                points: vec![[low, 0.0], [high, 0.0]],
+                style: Style::nth(0).colour(Colour::Grey).width(1.0).dash(Dash::Solid),
+            });
+            let mut lines = Vec::new();
+            for (i, series) in data.series.iter().enumerate() {
+                let shift = (i as f64 - middle) * beside;
+                let style = Style::nth(i);
+                let look = style.size(if series.points.len() > MANY { 2.0 } else { 3.0 });
+                let point = |p: &ResidualPoint| Point { x: p.x + shift, y: residual(p), error: 0.0 };
+                let points = series.points.iter().map(point).collect();
+                chart.marks.push(Mark::Points { label: series.label.clone(), points, style: look });
+                let mut points = averages(&series.points, said);
+                points.iter_mut().for_each(|point| point[0] += shift);
+                if points.iter().any(|point| point[1] != 0.0) {
+                    lines.push(Mark::Line {
+                        label: words.into(),
+                        points,
+                        style: style.dash(Dash::Solid).width(1.2),
+                    });
+                }
             }
-        }
-        chart
+            chart.marks.extend(lines);
+            chart
+        };
+    let found = |p: &ResidualPoint| p.before_um - p.after_um;
+    let (found_says, unexplained) = ("what was found says", "what no effect explains");
+    let panels = match all().all(|p| found(p) == 0.0) {
+        true => vec![panel("what the model leaves", |p| p.after_um, |p| p.unexplained_um, unexplained)],
+        false => vec![
+            panel("before: the model as it is", |p| p.before_um, found, found_says),
+            panel("after: with what was found", |p| p.after_um, |p| p.unexplained_um, unexplained),
+        ],
     };
-    Figure {
-        name: "before-after".into(),
-        panels: vec![panel("before: the model as it is", 1), panel("after: with what was found", 2)],
-        columns: 2,
-        shared_legend: true,
-        ..Figure::default()
-    }
+    let name = "before-after".into();
+    Figure { name, panels, columns: 2, shared_legend: true, ..Figure::default() }
 }
 
-/// What was taken into account, averaged where the number is the same.
-fn said(points: &[[f64; 3]]) -> Vec<[f64; 2]> {
-    let mut sorted: Vec<[f64; 2]> = points.iter().map(|[x, before, after]| [*x, before - after]).collect();
+/// A number of the points, averaged where they stand at the same place.
+fn averages(points: &[ResidualPoint], of: impl Fn(&ResidualPoint) -> f64) -> Vec<[f64; 2]> {
+    let mut sorted: Vec<[f64; 2]> = points.iter().map(|point| [point.x, of(point)]).collect();
     sorted.sort_by(|a, b| a[0].total_cmp(&b[0]));
     let same = sorted.chunk_by(|a, b| a[0] == b[0]);
     same.map(|group| [group[0][0], group.iter().map(|p| p[1]).sum::<f64>() / group.len() as f64]).collect()
@@ -127,7 +153,7 @@ pub fn ranking(candidates: &[Candidate], named_from: f64) -> Figure {
     let looks = [
         (Class::Adopted, "adopted", Style::nth(0).colour(Colour::Vermilion)),
         (Class::Rival, "cannot be told from it", Style::nth(0).colour(Colour::Orange).dash(Dash::Dashed)),
-        (Class::Rejected, "rejected", Style::nth(0).colour(Colour::Grey)),
+        (Class::Rejected, "rejected", Style::nth(0).colour(Colour::Grey).dash(Dash::Dotted)),
     ];
     for (class, label, style) in looks {
         let of_class =
@@ -178,14 +204,13 @@ pub fn held_out(data: &HeldOut) -> Figure {
     chart.marks.push(bar(-1.0, data.after_um, "", Style::nth(0).colour(Colour::Blue).dash(Dash::Dashed)));
     if let Some((low, high)) = data.after_95_um.filter(|(low, high)| drawable(*low) && drawable(*high)) {
         let style = Style::nth(0).dash(Dash::Solid).width(2.0);
-        let line = |points| Mark::Line { label: "95 % interval".into(), points, style };
-        chart.marks.push(line(vec![[low, -1.38], [high, -1.38]]));
-        let ends = [low, high].map(|x| Point { x, y: -1.38, error: 0.0 }).to_vec();
-        let style = style.marker(Marker::Plus);
-        chart.marks.push(Mark::Points { label: String::new(), points: ends, style });
+        let ends = [low, high].map(|x| vec![[x, -1.46], [x, -1.3]]);
+        for points in [vec![[low, -1.38], [high, -1.38]]].into_iter().chain(ends) {
+            chart.marks.push(Mark::Line { label: "95 % interval".into(), points, style });
+        }
     }
     if drawable(data.noise_um) {
-        let text = format!("noise {}", typeset(&significant(data.noise_um, 2)));
+        let text = format!("noise {}\u{a0}µm", typeset(&significant(data.noise_um, 2)));
         chart.marks.push(Mark::Vertical { at: data.noise_um, text });
     }
     Figure::from(chart).named("held-out")
@@ -195,18 +220,26 @@ pub fn held_out(data: &HeldOut) -> Figure {
 mod tests {
     use super::*;
 
-    #[test]
-    fn what_was_found_is_drawn_once_per_value() {
-        let points = [[2.0, 9.0, 1.0], [1.0, 3.0, -1.0], [2.0, 7.0, 1.0]];
-        assert_eq!(said(&points), [[1.0, 4.0], [2.0, 7.0]]);
+    fn point(x: f64, before_um: f64, after_um: f64) -> ResidualPoint {
+        ResidualPoint { x, before_um, after_um, unexplained_um: 0.0 }
     }
 
     #[test]
-    fn both_panels_have_one_scale() {
-        let series =
-            vec![Residual { label: "dz".into(), points: vec![[5.0, 40.0, 1.0], [10.0, -30.0, -1.0]] }];
-        let figure = before_after(&BeforeAfter { series, noise_um: 1.0, ..BeforeAfter::default() });
-        assert_eq!(figure.panels[0].y.range, figure.panels[1].y.range);
+    fn lines_have_one_point_per_value() {
+        let points = [point(2.0, 9.0, 1.0), point(1.0, 3.0, -1.0), point(2.0, 7.0, 1.0)];
+        assert_eq!(averages(&points, |p| p.before_um - p.after_um), [[1.0, 4.0], [2.0, 7.0]]);
+    }
+
+    #[test]
+    fn both_panels_have_one_scale_and_one_is_enough_where_nothing_was_found() {
+        let figure = |after| {
+            let points = vec![point(5.0, 40.0, after), point(10.0, 40.0, 40.0)];
+            let series = vec![Residual { label: "dz".into(), points, is_context: false }];
+            before_after(&BeforeAfter { series, noise_um: 1.0, ..BeforeAfter::default() })
+        };
+        let both = figure(1.0);
+        assert_eq!(both.panels[0].y.range, both.panels[1].y.range);
+        assert_eq!(figure(40.0).panels.len(), 1);
     }
 
     #[test]

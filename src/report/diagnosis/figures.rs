@@ -1,9 +1,11 @@
 //! A diagnosis as plain numbers for its pictures.
 
+use nalgebra::DVector;
+
 use super::ranking::Ranked;
 use super::{branch_name, headline::um, spoken};
 use crate::diagnosis::rig::{Datum, RigDiagnosis};
-use crate::diagnosis::{Covariate, Finding, Proof, World};
+use crate::diagnosis::{Covariate, Finding, Proof, World, rms};
 use crate::report::chart::Figure;
 use crate::report::compliance::stations;
 use crate::report::pictures::diagnosis::{
@@ -20,6 +22,8 @@ const NAMED: f64 = 20.0;
 const POINTS: usize = 120;
 /// So many lines of readings are told apart in one picture.
 const MOST_SERIES: usize = 6;
+/// Of many lines those are told apart that are off by so many times the noise.
+const OFF: f64 = 1.5;
 /// Name of all others.
 const OTHERS: &str = "all other readings";
 
@@ -63,7 +67,7 @@ pub fn residuals(found: &RigDiagnosis) -> Figure {
         (!of.x.is_nan()).then_some(of)
     };
     let names: Vec<String> = data.iter().map(branch_name).collect();
-    let shown = series(&names, |i| diagnosis.before[i]);
+    let shown = series(&names, &diagnosis.before, diagnosis.noise);
     let mut series = Vec::new();
     for is_context in [true, false] {
         let labels = if is_context { vec![OTHERS.to_owned()] } else { shown.clone() };
@@ -90,18 +94,19 @@ pub fn residuals(found: &RigDiagnosis) -> Figure {
     ))
 }
 
-/// The lines of readings that are told apart: all of them, or those of the largest residuals.
-fn series(names: &[String], residual: impl Fn(usize) -> f64) -> Vec<String> {
+/// The lines of readings that are told apart: those that are off by more than noise, the worst if they are many; all of a
+/// few lines.
+fn series(names: &[String], residual: &DVector<f64>, noise: f64) -> Vec<String> {
     let labels = distinct(names);
-    let square = |label: &String| -> f64 {
-        (0..names.len()).filter(|&i| names[i] == *label).map(|i| residual(i).powi(2)).sum()
+    let rms_of = |label: &String| {
+        let of_label: Vec<usize> = (0..names.len()).filter(|&i| names[i] == *label).collect();
+        rms(&residual.select_rows(&of_label))
     };
-    let mut largest: Vec<f64> = labels.iter().map(square).collect();
-    largest.sort_by(|a, b| b.total_cmp(a));
-    match largest.get(MOST_SERIES) {
-        Some(&least) => labels.into_iter().filter(|label| square(label) > least).collect(),
-        None => labels,
-    }
+    let mut worst: Vec<f64> = labels.iter().map(rms_of).collect();
+    worst.sort_by(|a, b| b.total_cmp(a));
+    let Some(&least) = worst.get(MOST_SERIES) else { return labels };
+    let least = if worst[0] > OFF * noise { least.max(OFF * noise) } else { least };
+    labels.into_iter().filter(|label| rms_of(label) > least).collect()
 }
 
 /// A covariate as it is said.

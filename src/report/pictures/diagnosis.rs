@@ -74,14 +74,17 @@ pub fn before_after(data: &BeforeAfter) -> Figure {
             let mut lines = Vec::new();
             for (i, series) in data.series.iter().enumerate() {
                 let shift = (i as f64 - middle) * beside;
-                let style = Style::nth(i);
+                let style = match series.is_context {
+                    true => Style::nth(0).colour(Colour::Grey),
+                    false => Style::nth(i),
+                };
                 let look = style.size(if series.points.len() > MANY { 2.0 } else { 3.0 });
                 let point = |p: &ResidualPoint| Point { x: p.x + shift, y: residual(p), error: 0.0 };
                 let points = series.points.iter().map(point).collect();
                 chart.marks.push(Mark::Points { label: series.label.clone(), points, style: look });
                 let mut points = averages(&series.points, said);
                 points.iter_mut().for_each(|point| point[0] += shift);
-                if points.iter().any(|point| point[1] != 0.0) {
+                if !series.is_context && points.iter().any(|point| point[1] != 0.0) {
                     lines.push(Mark::Line {
                         label: words.into(),
                         points,

@@ -40,22 +40,35 @@ pub fn most_structured(found: &RigDiagnosis) -> Option<usize> {
     covariates(found).into_iter().rev().max_by(|a, b| z(*a).total_cmp(&z(*b)))
 }
 
-/// Residuals before and after along the covariate where the mismatch is plainest. What follows sensor, axis, or way up or
-/// down is drawn over the load: there these are series.
-pub fn residuals(found: &RigDiagnosis) -> Figure {
-    let data = found.world.data();
-    let plainest = most_structured(found).map(|k| &found.evidence.covariates[k]);
-    let loads = || Covariate {
+/// What the strongest finding is seen along; without one, where the residuals are most structured. What follows sensor,
+/// axis, or way up or down is seen over the load: there these are series.
+fn seen_along(found: &RigDiagnosis) -> Covariate {
+    let of_finding: &[&str] = match found.diagnosis.findings.first().map(|finding| found.effect(finding)) {
+        Some("thermal_drift") => &["temperature", "time"],
+        Some("creep") => &["time in the run"],
+        Some("slip" | "outlier") => &["order"],
+        Some(_) => &["signed load", "load"],
+        None => &[],
+    };
+    let all = &found.evidence.covariates;
+    let told = covariates(found);
+    let named = |name: &&str| told.iter().map(|&k| &all[k]).find(|covariate| covariate.name == **name);
+    let plainest = || {
+        let covariate = &all[most_structured(found)?];
+        let is_group = ["channel", "axis", "phase"].contains(&covariate.name.as_str());
+        (of_finding.is_empty() && !is_group).then_some(covariate)
+    };
+    of_finding.iter().find_map(named).or_else(plainest).cloned().unwrap_or_else(|| Covariate {
         name: "load".into(),
         unit: "N".into(),
-        values: data.iter().map(|datum| datum.load).collect(),
-    };
-    let covariate = match plainest {
-        Some(covariate) if !["channel", "axis", "phase"].contains(&covariate.name.as_str()) => {
-            covariate.clone()
-        }
-        _ => loads(),
-    };
+        values: found.world.data().iter().map(|datum| datum.load).collect(),
+    })
+}
+
+/// Residuals before and after along the number that they are best seen along.
+pub fn residuals(found: &RigDiagnosis) -> Figure {
+    let data = found.world.data();
+    let covariate = seen_along(found);
     let (diagnosis, unexplained) = (&found.diagnosis, found.diagnosis.unexplained.as_ref());
     let point = |i: usize| {
         let of = ResidualPoint {
@@ -78,10 +91,9 @@ pub fn residuals(found: &RigDiagnosis) -> Figure {
     }
     series.retain(|series| !series.points.is_empty());
     let unit = if covariate.unit.is_empty() { String::new() } else { format!(" / {}", covariate.unit) };
-    let plainest = plainest.map_or_else(String::new, |covariate| {
-        format!(" The mismatch is plainest along this number: {}.", along(&covariate.name))
+    let plainest = most_structured(found).filter(|_| diagnosis.is_mismatch()).map_or_else(String::new, |k| {
+        format!(" The mismatch is plainest along this number: {}.", along(&found.evidence.covariates[k].name))
     });
-    let plainest = if diagnosis.is_mismatch() { plainest } else { String::new() };
     before_after(&BeforeAfter {
         along: format!("{}{unit}", along(&covariate.name)),
         names: value_names(&covariate, data),

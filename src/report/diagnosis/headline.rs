@@ -8,7 +8,7 @@ use crate::units::{UM, significant};
 /// So many findings are said at once; more are counted.
 const SAID: usize = 2;
 /// So many rivals are said at once.
-const RIVALS_SAID: usize = 2;
+pub const RIVALS_SAID: usize = 2;
 
 /// One sentence on what was found, and one on what it does to the errors.
 pub fn headline(found: &RigDiagnosis) -> String {
@@ -32,8 +32,15 @@ pub fn headline(found: &RigDiagnosis) -> String {
         words += &format!(" And {more} more {}.", if more == 1 { "effect" } else { "effects" });
     }
     let it = if findings.len() > 1 { "them" } else { "it" };
+    // a single event says nothing about readings that were held out
+    let is_event = |finding: &Finding| ["slip", "outlier"].contains(&found.effect(finding));
     words += &match &diagnosis.proof {
-        Some(proof) if proof.after < proof.before => format!(
+        _ if findings.iter().all(is_event) => format!(
+            " Taking {it} into account lowers the error from {} to {} µm; noise is {noise} µm.",
+            um(rms(&diagnosis.before)),
+            um(rms(&diagnosis.after))
+        ),
+        Some(proof) if um(proof.after) != um(proof.before) && proof.after < proof.before => format!(
             " Taking {it} into account lowers the held-out error from {} to {} µm; noise is {noise} µm.",
             um(proof.before),
             um(proof.after)

@@ -1,6 +1,6 @@
 //! The body of a diagnosis' report.
 
-use super::headline::{sentence, um};
+use super::headline::{RIVALS_SAID, sentence, um};
 use super::ranking::{Ranked, ranking};
 use super::remainder::{Remainder, remainder};
 use super::{correction, figures, spoken};
@@ -55,11 +55,20 @@ fn details(found: &RigDiagnosis, finding: &Finding) -> String {
         words += &format!(", and is found again in {some} of {all} searches without a part of them");
     }
     words.push('.');
-    let mut places = found.other_places(finding);
-    if found.world.stretch(finding).is_some() {
-        // said as a stretch already
-        places.retain(|place| !place.starts_with("station "));
+    let others: Vec<String> = found
+        .other_effects(finding)
+        .iter()
+        .skip(RIVALS_SAID)
+        .map(|(effect, place)| cause_at(effect, place))
+        .collect();
+    if !others.is_empty() {
+        words += &format!(" It may also be {}.", others.join(", or "));
     }
+    // a stretch of the rod is said already
+    let places = match found.world.stretch(finding) {
+        Some(_) => Vec::new(),
+        None => found.other_places(finding),
+    };
     if !places.is_empty() {
         let more = if places.len() > PLACES { " …" } else { "" };
         words += &format!(" It may be elsewhere: {}{more}.", places[..places.len().min(PLACES)].join("; "));
@@ -76,15 +85,12 @@ fn parameters(found: &RigDiagnosis) -> Table {
         Column::number("from", ""),
         Column::number("to", ""),
         Column::number("chance", ""),
-        Column::text("cannot be told from"),
     ];
     let caption = "Parameters, in the units of their names, with 95 % intervals. Chance: the probability that noise alone \
                    looks as much like it.";
     let mut table = Table::new("findings", caption, columns);
     for finding in &found.diagnosis.findings {
         let candidate = &found.world.candidates()[finding.chosen.candidate];
-        let others = found.other_effects(finding);
-        let others: Vec<String> = others.iter().map(|(effect, place)| cause_at(effect, place)).collect();
         for (k, parameter) in candidate.parameters.iter().enumerate() {
             let Some((value, low, high)) = found.world.interval(finding, k) else { continue };
             let show = |x: f64| significant(x / parameter.unit, 4);
@@ -97,7 +103,6 @@ fn parameters(found: &RigDiagnosis) -> Table {
                 show(low),
                 show(high),
                 first(chance(finding.p_value)),
-                first(others.join("; ")),
             ]);
         }
     }

@@ -4,10 +4,13 @@ use serde::Serialize;
 
 use super::super::chart::{Axis, Bar, Chart, Colour, Dash, Direction, Figure, Mark, Point, Range, Style};
 use super::super::scale::{drawable, extent, typeset};
+use crate::statistics::median;
 use crate::units::significant;
 
 /// More points of one series are drawn small.
 const MANY: usize = 60;
+/// So many times the usual distance of points is a gap.
+const GAP: f64 = 3.0;
 
 /// What a model leaves of the readings, before and after something was taken into account, along a number.
 #[derive(Debug, Clone, Default, Serialize)]
@@ -53,7 +56,8 @@ pub fn before_after(data: &BeforeAfter) -> Figure {
     let (low, high) = padded(extent(all().map(|p| p.x)), 0.06);
     let noise = Some(2.0 * data.noise_um).filter(|noise| drawable(*noise)).unwrap_or_default();
     let y_range = padded(extent(all().flat_map(|p| [p.before_um, p.after_um]).chain([-noise, noise])), 0.06);
-    let repeats = data.series.iter().any(|s| 2 * averages(&s.points, |_| 0.0).len() <= s.points.len());
+    let told_apart = data.series.iter().filter(|series| !series.is_context);
+    let repeats = told_apart.clone().any(|s| 2 * averages(&s.points, |_| 0.0).len() <= s.points.len());
     let beside = if repeats { 0.014 * (high - low) } else { 0.0 };
     let middle = (data.series.len() as f64 - 1.0) / 2.0;
     let panel =
@@ -85,11 +89,13 @@ pub fn before_after(data: &BeforeAfter) -> Figure {
                 let mut points = averages(&series.points, said);
                 points.iter_mut().for_each(|point| point[0] += shift);
                 if !series.is_context && points.iter().any(|point| point[1] != 0.0) {
-                    lines.push(Mark::Line {
+                    let style = style.dash(Dash::Solid).width(1.2);
+                    let stretches = if repeats { vec![points] } else { unbroken(points) };
+                    lines.extend(stretches.into_iter().map(|points| Mark::Line {
                         label: words.into(),
                         points,
-                        style: style.dash(Dash::Solid).width(1.2),
-                    });
+                        style,
+                    }));
                 }
             }
             chart.marks.extend(lines);
@@ -106,6 +112,13 @@ pub fn before_after(data: &BeforeAfter) -> Figure {
     };
     let name = "before-after".into();
     Figure { name, panels, columns: 2, shared_legend: true, ..Figure::default() }
+}
+
+/// Points that follow one another, without the gaps between runs.
+fn unbroken(points: Vec<[f64; 2]>) -> Vec<Vec<[f64; 2]>> {
+    let gaps: Vec<f64> = points.windows(2).map(|pair| pair[1][0] - pair[0][0]).collect();
+    let usual = median(&gaps).unwrap_or_default();
+    points.chunk_by(|a, b| b[0] - a[0] <= GAP * usual).map(<[_]>::to_vec).collect()
 }
 
 /// A number of the points, averaged where they stand at the same place.
@@ -231,6 +244,13 @@ mod tests {
     fn lines_have_one_point_per_value() {
         let points = [point(2.0, 9.0, 1.0), point(1.0, 3.0, -1.0), point(2.0, 7.0, 1.0)];
         assert_eq!(averages(&points, |p| p.before_um - p.after_um), [[1.0, 4.0], [2.0, 7.0]]);
+    }
+
+    #[test]
+    fn lines_do_not_bridge_the_gaps_between_runs() {
+        let points = [1.0, 2.0, 3.0, 30.0, 31.0].map(|x| [x, 0.0]).to_vec();
+        let lengths: Vec<usize> = unbroken(points).iter().map(Vec::len).collect();
+        assert_eq!(lengths, [3, 2]);
     }
 
     #[test]

@@ -173,7 +173,7 @@ fn shape() -> Figure {
         station("gauge", [500.0, 0.0, 150.0], StationKind::Reading),
         station("stiffness differs here", [25.0, 0.0, 150.0], StationKind::Located),
     ];
-    rod_shape(&RodShape { title: "5# steel".into(), centreline_mm, cases, stations, exaggeration: None })
+    rod_shape(&RodShape { title: "5# steel".into(), centreline_mm, cases, stations, ..RodShape::default() })
 }
 
 fn contribution_picture() -> Figure {

@@ -5,6 +5,7 @@ mod compare;
 mod completions;
 mod compliance;
 mod demo;
+mod diagnose;
 mod embedded;
 pub mod output;
 mod progress;
@@ -53,6 +54,8 @@ Examples:
       how much it really bends, from readings under known loads, with a report
   rodcal rig fit linear stiffness_data/nist-load-cell.csv
       any load-deflection recording: is it a straight line?
+  rodcal diagnose rig rods/5.toml stiffness_data/5.csv --out reports/why
+      readings and drawing disagree: which physics was left out?
   rodcal calibrate campaigns/tx90-5/campaign.toml --out reports/tx90
       how accurate a robot is once its rod's deflection is compensated
   rodcal compare campaigns/tx90-5/campaign.toml
@@ -88,6 +91,9 @@ enum Command {
     Calibrate(calibrate::Calibrate),
     /// Calibrate in every mode of compensation, and tell differences from chance.
     Compare(compare::Compare),
+    /// Where recording and model disagree: which physics did the model leave out?
+    #[command(subcommand)]
+    Diagnose(diagnose::Diagnose),
     /// Make the files of a campaign of a robot and a rod that are known exactly.
     Simulate(simulate::Simulate),
     /// Print a completion script for your shell.
@@ -125,6 +131,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome> {
         Some(Command::Rig(command)) => command.run(),
         Some(Command::Calibrate(command)) => command.run(),
         Some(Command::Compare(command)) => command.run(),
+        Some(Command::Diagnose(command)) => command.run(),
         Some(Command::Simulate(command)) => command.run(),
         Some(Command::Completions(command)) => Ok(command.run()),
     }

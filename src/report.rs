@@ -6,7 +6,7 @@
 //!
 //! - [`chart`]: charts as data, drawn by [`chart::Figure::svg`] · [`png`]: SVG to PNG
 //! - [`pictures`]: the pictures of a rod and of a calibration, from numbers to charts
-//! - [`compliance`] · [`rig`]: results of the library as reports and as JSON
+//! - [`compliance`] · [`rig`] · [`diagnosis`]: results of the library as reports and as JSON
 //! - [`text`]: a report for the terminal · [`table`]: tables to text, HTML, Markdown, CSV · [`html`]: the page
 
 mod axes;
@@ -14,6 +14,7 @@ pub mod calibration;
 pub mod chart;
 pub mod comparison;
 pub mod compliance;
+pub mod diagnosis;
 mod draw;
 pub mod html;
 mod labels;

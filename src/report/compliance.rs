@@ -267,12 +267,12 @@ fn shape_figure(
         centreline_mm: shape.centreline.iter().map(|p| (p / MM).into()).collect(),
         cases: cases.collect(),
         stations: stations.to_vec(),
-        exaggeration: None,
+        ..RodShape::default()
     })
 }
 
 /// Where masses and joints sit.
-fn stations(rod: &Rod) -> Vec<Station> {
+pub fn stations(rod: &Rod) -> Vec<Station> {
     let at = |station: f64| (rod.point(station) / MM).into();
     let mass = |m: &crate::rod::LumpedMass| Station {
         label: format!("{}, {} g", m.name, significant(m.mass / GRAM, 3)),

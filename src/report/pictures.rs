@@ -1,10 +1,11 @@
 //! The pictures: from plain numbers to a [`Figure`]. Those of a rod and its rig are here, those of a
-//! robot's calibration in [`calibration`].
+//! robot's calibration in [`calibration`], those of a diagnosis in [`diagnosis`].
 
 pub mod calibration;
+pub mod diagnosis;
 mod rod_shape;
 
-pub use rod_shape::{RodShape, ShapeCase, Station, StationKind, rod_shape};
+pub use rod_shape::{RodShape, ShapeCase, Station, StationKind, Stretch, rod_shape};
 
 use serde::Serialize;
 

@@ -3,7 +3,7 @@
 use super::{Answer, Sandbox};
 
 /// What is typed, how the error begins, and a word that tells what would be right.
-const CASES: [(&str, &str, &str); 27] = [
+const CASES: [(&str, &str, &str); 30] = [
     // arguments
     ("frobnicate", "unrecognized subcommand 'frobnicate'", "--help"),
     ("complianze rods/5.toml", "unrecognized subcommand 'complianze'", "'compliance'"),
@@ -32,6 +32,9 @@ const CASES: [(&str, &str, &str); 27] = [
     ("compliance stiffness_data/5.csv", "stiffness_data/5.csv:", "="),
     ("rig fit linear bad.csv", "bad.csv:3:5: dz_um is \"12,5.0\"", "a number"),
     ("rig fit linear rods/5.toml", "rods/5.toml:7:1: the first line is", "TOML"),
+    ("diagnose rig rods/5.toml nowhere.csv", "cannot read nowhere.csv: ", "No such file"),
+    ("diagnose rig bad.toml stiffness_data/5.csv", "bad.toml:3:9: `geometry.l1_mm` is -150", "> 0"),
+    ("diagnose rig linear bad.csv", "bad.csv:3:5: dz_um is \"12,5.0\"", "a number"),
     // models
     ("compliance rods/2.toml --mode calc", "Calc mode for rod \"2#\" is not possible", "--mode fea"),
 ];

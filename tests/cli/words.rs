@@ -19,6 +19,7 @@ fn help_teaches() {
         ("help", "--help"),
         ("help-compliance", "compliance --help"),
         ("help-rig-fit", "rig fit --help"),
+        ("help-diagnose-rig", "diagnose rig --help"),
         ("help-calibrate", "calibrate --help"),
         ("help-compare", "compare --help"),
         ("help-simulate", "simulate --help"),
@@ -36,6 +37,8 @@ fn results_explain_themselves() {
         ("compliance", "compliance rods/5.toml"),
         ("rig-fit", "rig fit rods/5.toml stiffness_data/5.csv"),
         ("rig-fit-linear", "rig fit linear stiffness_data/nist-load-cell.csv"),
+        ("diagnose-rig", "diagnose rig rods/5.toml stiffness_data/5.csv"),
+        ("diagnose-rig-linear", "diagnose rig linear stiffness_data/nist-load-cell.csv"),
         ("demo", "demo"),
     ] {
         let answer = sandbox.run(line).succeeded();
@@ -61,6 +64,8 @@ fn words_fit_a_terminal() {
         "compliance --help",
         "rig --help",
         "rig fit --help",
+        "diagnose --help",
+        "diagnose rig --help",
         "calibrate --help",
         "compare --help",
         "simulate --help",

@@ -17,6 +17,8 @@ pub struct RodShape {
     pub cases: Vec<ShapeCase>,
     /// Places to mark.
     pub stations: Vec<Station>,
+    /// Stretches of the rod to mark, for example where a joint may be.
+    pub stretches: Vec<Stretch>,
     /// How much deflections are exaggerated; `None` chooses a 1-2-5 number.
     pub exaggeration: Option<f64>,
 }
@@ -28,6 +30,15 @@ pub struct ShapeCase {
     pub label: String,
     /// Deflection of each point of the centreline, µm.
     pub deflection_um: Vec<[f64; 3]>,
+}
+
+/// A stretch of the rod that is marked.
+#[derive(Debug, Clone, Default, Serialize)]
+pub struct Stretch {
+    /// Name in the legend.
+    pub label: String,
+    /// Points of the centreline along it, mm.
+    pub points_mm: Vec<[f64; 3]>,
 }
 
 /// A place on the rod that is marked.
@@ -109,6 +120,13 @@ fn chart(rod: &RodShape, factor: f64, view: &str, name: &str, axis: usize) -> Ch
         points: rod.centreline_mm.iter().map(seen).collect(),
         style: Style::nth(0).colour(Colour::Grey).dash(Dash::Solid).width(4.0),
     });
+    for stretch in &rod.stretches {
+        chart.marks.push(Mark::Line {
+            label: stretch.label.clone(),
+            points: stretch.points_mm.iter().map(seen).collect(),
+            style: Style::nth(0).colour(Colour::Vermilion).dash(Dash::Solid).width(9.0),
+        });
+    }
     for (i, case) in rod.cases.iter().enumerate() {
         let bent = |(p, d): (&[f64; 3], &[f64; 3])| {
             let shown = |i: usize| p[i] + factor * d[i] * UM / MM;

@@ -1,0 +1,84 @@
+//! What becomes of the rod: its compliance as its file gives it, by the paper's one ratio, and with the physics found.
+
+use serde_json::{Value, json};
+
+use crate::compliance::{Compliance, paper_contact_force};
+use crate::diagnosis::rig::Correction;
+use crate::report::compliance::{matrices, rows};
+use crate::report::table::{Column, Table};
+use crate::report::{Block, Section};
+use crate::units::{UM, significant};
+
+pub fn json(correction: &Correction) -> Value {
+    let of = |compliance: &Compliance| {
+        json!({
+            "cf_um_per_n": rows(&compliance.force, UM),
+            "cg_um_per_g": rows(&compliance.gravity, UM),
+            "c_rod_um": compliance.index(paper_contact_force()) / UM,
+        })
+    };
+    json!({
+        "fea": of(&correction.before),
+        "corrected": of(&correction.after),
+        "r_rod": correction.by_ratio.as_ref().map(|(ratio, _)| ratio),
+        "r_rod_times_fea": correction.by_ratio.as_ref().map(|(_, compliance)| of(compliance)),
+        "entered": correction.entered,
+        "removed": correction.removed,
+        "left_out": correction.left_out,
+    })
+}
+
+pub fn section(correction: &Correction) -> Section {
+    let mut blocks = vec![Block::Paragraph(
+        "With --apply the physics that was found is written into files: what belongs to the rod into its rod file, what \
+         belongs to the rig is taken out of the readings. The compliance under gravity, C^g, then follows from the \
+         physics and not from one factor r_rod on everything."
+            .into(),
+    )];
+    let said = [
+        ("Entered into the rod", &correction.entered),
+        ("Taken out of the readings", &correction.removed),
+        ("Left out, for neither file can hold it", &correction.left_out),
+    ];
+    let points: Vec<String> = said
+        .into_iter()
+        .flat_map(|(what, list)| list.iter().map(move |words| format!("{what}: {words}")))
+        .collect();
+    if !points.is_empty() {
+        blocks.push(Block::List(points));
+    }
+    blocks.push(Block::Table(table(correction)));
+    blocks.push(matrices("corrected", "The corrected rod (FEA with what was found).", &correction.after));
+    Section::new("What becomes of the rod", blocks)
+}
+
+/// The diagonals and c_rod by each way.
+fn table(correction: &Correction) -> Table {
+    let mut columns = vec![Column::text("compliance")];
+    for (matrix, unit) in [("C^F", "µm/N"), ("C^g", "µm/g")] {
+        columns.extend(["11", "22", "33"].map(|entry| Column::number(format!("{matrix} {entry}"), unit)));
+    }
+    columns.push(Column::number("c_rod", "µm"));
+    let mut table = Table::new(
+        "correction",
+        "The rod by its file, by one ratio, and by the physics that was found.",
+        columns,
+    );
+    let mut row = |name: String, compliance: &Compliance| {
+        let diagonals = [&compliance.force, &compliance.gravity].map(|matrix| matrix.diagonal());
+        let mut cells = vec![name];
+        cells.extend(
+            diagonals
+                .iter()
+                .flat_map(|d| d.iter().map(|value| significant(value / UM, 4)).collect::<Vec<_>>()),
+        );
+        cells.push(significant(compliance.index(paper_contact_force()) / UM, 4));
+        table.row(cells);
+    };
+    row("FEA, rod file".into(), &correction.before);
+    if let Some((ratio, compliance)) = &correction.by_ratio {
+        row(format!("r_rod × FEA, r_rod = {}", significant(*ratio, 4)), compliance);
+    }
+    row("FEA, corrected rod".into(), &correction.after);
+    table
+}

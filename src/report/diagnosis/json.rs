@@ -1,0 +1,120 @@
+//! The JSON of a diagnosis.
+
+use serde_json::{Value, json};
+
+use super::ranking::ranking;
+use super::remainder::remainder;
+use super::{correction, headline, warnings};
+use crate::diagnosis::rig::{Proposal, RigDiagnosis};
+use crate::diagnosis::{Finding, LackOfFit, Structure, World, rms};
+use crate::report::pictures::diagnosis::Class;
+use crate::rig::readings::Readings;
+use crate::rod::Rod;
+use crate::units::UM;
+
+/// The JSON of `rodcal diagnose rig --json`. Numbers that do not exist are null.
+///
+/// `heldout_gain` is the share of the squares of held-out errors that vanishes with the whole story; that of a finding
+/// among several is not known by itself, so that each has the story's. The intervals of a joint that nobody declared
+/// hold all stations that these readings do not tell from its own, and what it would be there.
+pub fn json(found: &RigDiagnosis, readings: &Readings, rod: Option<&Rod>) -> Value {
+    let diagnosis = &found.diagnosis;
+    let proof = diagnosis.proof.as_ref();
+    let um = |length: f64| length / UM;
+    let findings = diagnosis.findings.iter().zip(&found.next);
+    let findings: Vec<Value> =
+        findings.map(|(finding, next)| of_finding(found, finding, next.as_ref())).collect();
+    let covariates = found.evidence.covariates.iter();
+    let structures = diagnosis.structure_before.iter().zip(&diagnosis.structure_after);
+    let locate: Vec<Value> = covariates
+        .zip(structures)
+        .map(|(covariate, (before, after))| {
+            json!({
+                "covariate": covariate.name,
+                "unit": covariate.unit,
+                "before": of_structure(before),
+                "after": of_structure(after),
+            })
+        })
+        .collect();
+    let of_ranked = ranking(found).into_iter().map(|ranked| {
+        json!({
+            "effect": ranked.effect,
+            "location": ranked.place,
+            "log_odds": ranked.log_odds,
+            "class": match ranked.class {
+                Class::Adopted => "adopted",
+                Class::Rival => "indistinguishable",
+                Class::Rejected => "rejected",
+            },
+        })
+    });
+    let not_testable =
+        found.not_testable.iter().map(|not| json!({ "effect": not.effect, "reason": not.reason }));
+    json!({
+        "rod": rod.map(|rod| &rod.name),
+        "readings": readings.file,
+        "headline": headline(found),
+        "verdict": if diagnosis.is_mismatch() { "mismatch" } else { "consistent" },
+        "noise_um": um(diagnosis.noise),
+        "noise_shared_ratio": diagnosis.shared_ratio,
+        "residual_sd_um": um(diagnosis.story.sigma),
+        "rms_before_um": um(rms(&diagnosis.before)),
+        "rms_after_um": um(rms(&diagnosis.after)),
+        "heldout_before_um": proof.map(|proof| um(proof.before)),
+        "heldout_after_um": proof.map(|proof| um(proof.after)),
+        "heldout_gain": proof.map(|proof| proof.gain),
+        "heldout_gain_95": proof.and_then(|proof| proof.gain_interval).map(|(low, high)| [low, high]),
+        "findings": findings,
+        "unexplained": remainder(found).map(|left| {
+            json!({ "location": left.location, "rms_um": um(left.rms), "shape": left.shape() })
+        }),
+        "locate": locate,
+        "lack_of_fit_before": diagnosis.lack_of_fit_before.as_ref().map(of_test),
+        "lack_of_fit_after": diagnosis.lack_of_fit_after.as_ref().map(of_test),
+        "ranking": of_ranked.collect::<Vec<_>>(),
+        "not_testable": not_testable.collect::<Vec<_>>(),
+        "correction": found.correction.as_ref().map(correction::json),
+        "n": found.world.data().len(),
+        "warnings": warnings(found, readings, rod),
+    })
+}
+
+fn of_finding(found: &RigDiagnosis, finding: &Finding, next: Option<&Proposal>) -> Value {
+    let candidate = &found.world.candidates()[finding.chosen.candidate];
+    let parameters = candidate.parameters.iter().enumerate().filter_map(|(k, parameter)| {
+        let (value, low, high) = found.world.interval(finding, k)?;
+        let unit = parameter.unit;
+        Some(json!({ "name": parameter.name, "value": value / unit, "lo": low / unit, "hi": high / unit }))
+    });
+    let rivals = finding.rivals.iter().map(|rival| {
+        json!({
+            "effect": found.effect_of(rival.chosen.candidate),
+            "location": rival.place,
+            "odds": rival.odds,
+        })
+    });
+    let others: Vec<&str> = found.other_effects(finding).into_iter().map(|(effect, _)| effect).collect();
+    json!({
+        "effect": candidate.effect,
+        "location": finding.place,
+        "words": found.world.words(finding).to_string(),
+        "p_value": finding.p_value,
+        "parameters": parameters.collect::<Vec<_>>(),
+        "indistinguishable_from": others,
+        "places": found.other_places(finding),
+        "rivals": rivals.collect::<Vec<_>>(),
+        "next_measurement": next.map(|next| &next.words),
+        "heldout_gain": found.diagnosis.proof.as_ref().map(|proof| proof.gain),
+        "explains_rms_um": finding.rms / UM,
+        "found_in_folds": found.found_in_folds(finding).map(|(some, all)| format!("{some} of {all}")),
+    })
+}
+
+fn of_structure(structure: &Structure) -> Value {
+    json!({ "strength": structure.strength, "z": structure.z })
+}
+
+fn of_test(test: &LackOfFit) -> Value {
+    json!({ "f": test.f, "p_value": test.p_value, "dof_fit": test.dof_fit, "dof_repeats": test.dof_repeats })
+}

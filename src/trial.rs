@@ -6,3 +6,4 @@
 //! best is computed here too, by an oracle that knows every recording without its noise.
 
 pub mod rig;
+pub mod truth;

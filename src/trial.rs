@@ -5,5 +5,8 @@
 //! (`tests/architecture.rs` keeps it so), and its mechanics are richer than theirs. What an answer could have known at
 //! best is computed here too, by an oracle that knows every recording without its noise.
 
+pub mod answers;
+pub mod envelope;
 pub mod rig;
+pub mod score;
 pub mod truth;

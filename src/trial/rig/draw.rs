@@ -196,51 +196,53 @@ pub fn beyond(effect: usize, bench: &Bench, random: &mut Random) -> Effect {
     }
 }
 
-/// Every effect of the library that has a meaning at a bench, wherever it may sit, at the upper end of its range; those with
-/// two numbers in two parts. Joints along the rod, slips and outliers are the oracle's own business.
-pub(super) fn upper(bench: &Bench) -> Vec<Vec<Effect>> {
+/// Every effect of the library that has a meaning at a bench, wherever it may sit, at `share` of the upper end of its range;
+/// those with two numbers in two parts. Joints along the rod, slips and outliers are the oracle's own business.
+pub(super) fn all(bench: &Bench, share: f64) -> Vec<Vec<Effect>> {
     let protocol = &bench.protocol;
     let (axes, channels, largest) = (protocol.axes(), protocol.read_channels(), protocol.largest_load());
-    let [bending, torsion] = bench.drawing.rotation();
+    let [bending, torsion] = bench.drawing.rotation().map(|rotation| share * rotation);
     let mut all = vec![
-        vec![Effect::StiffnessScale(0.6)],
-        vec![Effect::ShearModulus(0.4)],
+        vec![Effect::StiffnessScale(1.0 - 0.4 * share)],
+        vec![Effect::ShearModulus(1.0 - 0.6 * share)],
         vec![Effect::Root { bending, torsion: 0.0 }, Effect::Root { bending: 0.0, torsion }],
-        vec![Effect::Cubic(0.2 / (largest * largest))],
-        vec![Effect::Quadratic(0.2 / largest)],
+        vec![Effect::Cubic(0.2 * share / (largest * largest))],
+        vec![Effect::Quadratic(0.2 * share / largest)],
     ];
     if bench.drawing.arc() > 0.0 {
         let oval = bench.drawing.tubes[0].ovalisation(bench.drawing.bend_radius);
-        all.push(vec![Effect::Bend(bench.drawing.bend_factor + 2.0 * (oval - 1.0))]);
+        all.push(vec![Effect::Bend(bench.drawing.bend_factor + 2.0 * share * (oval - 1.0))]);
     }
     let of_axes = axes.iter().copied().map(Some).filter(|_| axes.len() > 1);
     for axis in [None].into_iter().chain(of_axes) {
-        let force = 2f64.min(0.7 * protocol.smallest_load());
+        let force = share * 2f64.min(0.7 * protocol.smallest_load());
         all.push(vec![Effect::Friction { axis, force, presliding: UM, scatter: 0.0 }]);
-        all.push(vec![Effect::LoadOffset { axis, force: 2.0 }]);
-        all.push(vec![Effect::Backlash { axis, play: 100.0 * UM }]);
+        all.push(vec![Effect::LoadOffset { axis, force: 2.0 * share }]);
+        all.push(vec![Effect::Backlash { axis, play: 100.0 * share * UM }]);
     }
     if protocol.columns.time {
-        all.extend([1.0, 60.0].map(|shortest| vec![Effect::Creep { per_decade: 0.1, shortest }]));
+        all.extend([1.0, 60.0].map(|shortest| vec![Effect::Creep { per_decade: 0.1 * share, shortest }]));
     }
     if protocol.loadings.iter().any(|l| l.is_unloading) {
         all.extend(
-            [true, false].map(|is_exercised| vec![Effect::Hysteresis { fraction: 0.1, is_exercised }]),
+            [true, false]
+                .map(|is_exercised| vec![Effect::Hysteresis { fraction: 0.1 * share, is_exercised }]),
         );
     }
     for &channel in &channels {
-        all.push(vec![Effect::SensorScale { channel, factor: 1.2 }]);
-        let turned = |towards| vec![Effect::SensorMisalignment { channel, towards, angle: 10.0 * DEG }];
+        all.push(vec![Effect::SensorScale { channel, factor: 1.0 + 0.2 * share }]);
+        let turned =
+            |towards| vec![Effect::SensorMisalignment { channel, towards, angle: 10.0 * share * DEG }];
         all.extend((0..3).filter(|towards| *towards != channel).map(turned));
         if protocol.columns.temperature {
-            all.push(vec![Effect::Drift { channel, rate: 50.0 * UM, by_time: false }]);
+            all.push(vec![Effect::Drift { channel, rate: 50.0 * share * UM, by_time: false }]);
         } else if protocol.columns.time {
-            all.push(vec![Effect::Drift { channel, rate: 50.0 * UM / 3600.0, by_time: true }]);
+            all.push(vec![Effect::Drift { channel, rate: 50.0 * share * UM / 3600.0, by_time: true }]);
         }
     }
     for &axis in &axes {
         for towards in (0..3).filter(|towards| *towards != axis) {
-            let angle = 10.0 * DEG;
+            let angle = 10.0 * share * DEG;
             all.push(vec![Effect::LoadMisalignment { axis, towards, angle, frame: false }]);
             if axis < towards && axes.contains(&towards) {
                 all.push(vec![Effect::LoadMisalignment { axis, towards, angle, frame: true }]);

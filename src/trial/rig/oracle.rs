@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 use nalgebra::{DMatrix, DVector};
 
 use super::bench::Bench;
-use super::draw::upper;
+use super::draw;
 use super::effect::Effect;
 use super::noise::Noise;
 use crate::trial::truth::Detectability;
@@ -24,6 +24,8 @@ use crate::units::MM;
 /// Effects of other names closer than this cannot be told apart; places of one effect closer than that.
 const SAME_EFFECT: f64 = 5.0;
 const SAME_PLACE: f64 = 3.0;
+/// Share of the upper end of its range at which a rival is linearised.
+const TYPICAL: f64 = 0.05;
 /// Stations of a scan for joints.
 const STATIONS: usize = 40;
 
@@ -78,6 +80,9 @@ impl<'a> Oracle<'a> {
                 stations.extend(rival.station);
             }
         }
+        places.push(
+            effect.location(|loading| run_name(self.bench, loading), |index| cell_name(self.bench, index)),
+        );
         if let Effect::Joint { station, .. } = effect {
             stations.push(*station);
         }
@@ -127,14 +132,16 @@ impl<'a> Oracle<'a> {
         let protocol = &bench.protocol;
         let clean = bench.readings(&[]);
         let sd = self.noise.variance(protocol.quantum).sqrt();
-        let run_of = |loading: usize| protocol.run_name(protocol.loadings[loading].run);
+        let run_of = |loading: usize| run_name(bench, loading);
         let cells = protocol.cells();
         let cell_of = |index: usize| cell_name(bench, index);
         let rival = |parts: Vec<Effect>| -> Option<Rival> {
             let first = parts.first()?.clone();
             let columns: Vec<DVector<f64>> = parts
                 .into_iter()
-                .map(|part| bench.readings(&[part]).iter().zip(&clean).map(|(a, b)| a - b).collect())
+                .map(|part| {
+                    bench.readings(&[part]).iter().zip(&clean).map(|(a, b)| (a - b) / TYPICAL).collect()
+                })
                 .map(|difference| self.whitened(difference))
                 .filter(|column| column.norm() > 1e-6)
                 .collect();
@@ -146,13 +153,13 @@ impl<'a> Oracle<'a> {
             let (name, is_one_sided) = (first.name(), first.is_one_sided());
             (!columns.is_empty()).then_some(Rival { name, location, station, columns, is_one_sided })
         };
-        let mut rivals: Vec<Rival> = upper(bench).into_iter().filter_map(rival).collect();
+        let mut rivals: Vec<Rival> = draw::all(bench, TYPICAL).into_iter().filter_map(rival).collect();
         let rotation = bench.drawing.rotation();
         let length = bench.drawing.length();
         let declared = bench.drawing.joints.iter().map(|(name, station)| (Some(name.clone()), *station));
         let scanned = (1..STATIONS).map(|k| (None, length * k as f64 / STATIONS as f64));
         rivals.extend(declared.chain(scanned).filter_map(|(name, station)| {
-            let [bending, torsion] = rotation;
+            let [bending, torsion] = rotation.map(|rotation| TYPICAL * rotation);
             rival(vec![
                 Effect::Joint { name: name.clone(), station, bending, torsion: 0.0 },
                 Effect::Joint { name, station, bending: 0.0, torsion },
@@ -188,6 +195,12 @@ impl<'a> Oracle<'a> {
         }
         rivals
     }
+}
+
+/// `y, trial 2`.
+pub fn run_name(bench: &Bench, loading: usize) -> String {
+    let protocol = &bench.protocol;
+    protocol.loadings.get(loading).map_or_else(String::new, |l| protocol.run_name(l.run))
 }
 
 /// `row 17 dy`.

@@ -59,11 +59,12 @@ pub fn case(seed: u64, number: usize) -> Case {
     let needs = numbers.iter().map(needs_of).fold(setup::Needs::default(), setup::Needs::and);
     let (bench, noise) = setup::draw(needs, &mut random);
     let sd = noise.variance(bench.protocol.quantum).sqrt();
+    let faintest = if kind == Kind::Pair { 0.5 } else { 0.0 };
     let effects: Vec<Effect> = numbers
         .iter()
         .map(|&number| match kind {
             Kind::Unknown => draw::beyond(number, &bench, &mut random),
-            _ => draw::library(number, &bench, sd, &mut random),
+            _ => draw::library(number, &bench, sd, faintest, &mut random),
         })
         .collect();
     let readings = bench.readings(&effects);
@@ -133,8 +134,14 @@ fn truth(
         protocol: description(bench),
         joints: bench.drawing.joints.iter().map(|(name, station)| (name.clone(), station / MM)).collect(),
         geometric_um: geometric(bench, &clean) / UM,
-        oracle_gain: added / (added + held_out),
+        oracle_gain: (!effects.is_empty() && !effects.iter().any(is_of_one_run))
+            .then(|| added / (added + held_out)),
     }
+}
+
+/// What no other run tells of: it cannot be predicted.
+fn is_of_one_run(effect: &Effect) -> bool {
+    matches!(effect, Effect::Slip { .. } | Effect::Outlier(_))
 }
 
 /// Root mean square of what the clean rod departs from a linear one, m.

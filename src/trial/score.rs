@@ -106,7 +106,7 @@ pub fn of(truths: &[Truth], given: &[Answer]) -> Score {
         }
     }
     let gains =
-        identifiable.iter().chain(&pairs).filter_map(|case| Some((case.gain?, case.truth.oracle_gain)));
+        identifiable.iter().chain(&pairs).filter_map(|case| Some((case.gain?, case.truth.oracle_gain?)));
     let (gained, possible) = gains.fold((0.0, 0.0), |sum, (gain, oracle)| (sum.0 + gain, sum.1 + oracle));
     let gain_over_oracle = (possible > 0.0).then(|| gained / possible);
     let by_parameter: BTreeMap<String, Value> =

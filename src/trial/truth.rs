@@ -27,8 +27,9 @@ pub struct Truth {
     pub joints: BTreeMap<String, f64>,
     /// Root mean square of what large deflection adds to the linear rod, µm: no effect, but no noise either.
     pub geometric_um: f64,
-    /// Share of the held-out squares that goes once the effects are known, 1 − noise²/(noise² + effects²).
-    pub oracle_gain: f64,
+    /// Share of the held-out squares that goes once the effects are known, 1 − noise²/(noise² + effects²), the noise with
+    /// that of the zero; `None` where there is nothing to gain: no effect, or one that a single run has.
+    pub oracle_gain: Option<f64>,
 }
 
 /// What sort of case.

@@ -1,4 +1,5 @@
-//! Which effect, how large, where. Sizes are log-uniform over the range in which a rig may meet them:
+//! Which effect, how large, where. Sizes are log-uniform over the range in which a rig may meet them; of two effects in one
+//! case over the upper half of it, for two that are too faint to be seen tell nothing about telling two apart:
 //!
 //! | effect | size | from | to |
 //! |---|---|---|---|
@@ -44,6 +45,7 @@ pub fn needs(effect: usize) -> Needs {
         12 => needs.two_channels = true,
         14 => needs.clock = true,
         7 => needs.tip = true,
+        15 => needs.long_runs = true,
         _ => {}
     }
     needs
@@ -67,8 +69,12 @@ pub(super) fn one_of<T: Copy>(random: &mut Random, of: &[T], otherwise: T) -> T 
     of.get(random.index(of.len())).copied().unwrap_or(otherwise)
 }
 
-/// An effect of the library at a bench that can carry it. `sd` is the noise, m.
-pub fn library(effect: usize, bench: &Bench, sd: f64, random: &mut Random) -> Effect {
+/// An effect of the library at a bench that can carry it. `sd` is the noise, m; of its range in the table the part above
+/// the share `faintest` (on the logarithm) is drawn from.
+pub fn library(effect: usize, bench: &Bench, sd: f64, faintest: f64, random: &mut Random) -> Effect {
+    let log_uniform = |random: &mut Random, low: f64, high: f64| {
+        log_uniform(random, low * (high / low).powf(faintest), high)
+    };
     let protocol = &bench.protocol;
     let (axes, channels, largest) = (protocol.axes(), protocol.read_channels(), protocol.largest_load());
     let sign = |random: &mut Random, negative: f64| if happens(random, negative) { -1.0 } else { 1.0 };
@@ -77,11 +83,13 @@ pub fn library(effect: usize, bench: &Bench, sd: f64, random: &mut Random) -> Ef
         1 => Effect::ShearModulus(1.0 + sign(random, 0.75) * log_uniform(random, 0.02, 0.6)),
         2 => {
             let (name, station) = place(bench, random);
-            let [bending, torsion] = compliance(bench, random);
+            let share = log_uniform(random, 0.005, 1.0);
+            let [bending, torsion] = compliance(bench, share, random);
             Effect::Joint { name, station, bending, torsion }
         }
         3 => {
-            let [bending, torsion] = compliance(bench, random);
+            let share = log_uniform(random, 0.005, 1.0);
+            let [bending, torsion] = compliance(bench, share, random);
             Effect::Root { bending, torsion }
         }
         4 => {
@@ -91,7 +99,7 @@ pub fn library(effect: usize, bench: &Bench, sd: f64, random: &mut Random) -> Ef
         5 => {
             let force = log_uniform(random, 0.02, 2.0).min(0.7 * protocol.smallest_load());
             let axis = some_axis(&axes, random);
-            let presliding = log_uniform(random, 0.5, 20.0) * UM;
+            let presliding = self::log_uniform(random, 0.5, 20.0) * UM;
             Effect::Friction { axis, force, presliding, scatter: random.uniform(0.0, 0.15) }
         }
         6 => {
@@ -104,7 +112,7 @@ pub fn library(effect: usize, bench: &Bench, sd: f64, random: &mut Random) -> Ef
             Effect::Backlash { axis: some_axis(&axes, random), play }
         }
         8 => {
-            let shortest = log_uniform(random, 1.0, 60.0);
+            let shortest = self::log_uniform(random, 1.0, 60.0);
             Effect::Creep { per_decade: log_uniform(random, 0.002, 0.1), shortest }
         }
         9 => {
@@ -125,7 +133,7 @@ pub fn library(effect: usize, bench: &Bench, sd: f64, random: &mut Random) -> Ef
         12 => {
             let channel = one_of(random, &channels, 0);
             let towards = another(channel, random);
-            Effect::SensorMisalignment { channel, towards, angle: angle(random) }
+            Effect::SensorMisalignment { channel, towards, angle: angle(random, faintest) }
         }
         13 => {
             let axis = one_of(random, &axes, 0);
@@ -134,7 +142,7 @@ pub fn library(effect: usize, bench: &Bench, sd: f64, random: &mut Random) -> Ef
             let towards = if frame { one_of(random, &others, 0) } else { another(axis, random) };
             let (axis, towards) =
                 if frame { (axis.min(towards), axis.max(towards)) } else { (axis, towards) };
-            Effect::LoadMisalignment { axis, towards, angle: angle(random), frame }
+            Effect::LoadMisalignment { axis, towards, angle: angle(random, faintest), frame }
         }
         14 => {
             let by_time = !protocol.columns.temperature;
@@ -262,9 +270,8 @@ fn place(bench: &Bench, random: &mut Random) -> (Option<String>, f64) {
     }
 }
 
-fn compliance(bench: &Bench, random: &mut Random) -> [f64; 2] {
+fn compliance(bench: &Bench, share: f64, random: &mut Random) -> [f64; 2] {
     let [bending, torsion] = bench.drawing.rotation();
-    let share = log_uniform(random, 0.005, 1.0);
     let twist = if happens(random, 0.25) { 0.0 } else { log_uniform(random, 0.3, 3.0) };
     [share * bending, share * twist * torsion]
 }
@@ -277,7 +284,7 @@ fn another(axis: usize, random: &mut Random) -> usize {
     (axis + 1 + random.index(2)) % 3
 }
 
-fn angle(random: &mut Random) -> f64 {
-    let angle = log_uniform(random, 0.1, 10.0) * DEG;
+fn angle(random: &mut Random, faintest: f64) -> f64 {
+    let angle = log_uniform(random, 0.1 * 100f64.powf(faintest), 10.0) * DEG;
     if happens(random, 0.5) { -angle } else { angle }
 }

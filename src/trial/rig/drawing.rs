@@ -174,16 +174,23 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn a_solid_models_bend_is_met() {
-        // docs/rod-file.md: 16 × 12 mm; a beam gives 206.41 µm/N along z with a bend of 40 mm, legs 150 and 525 mm
-        let rod = l_shape(0.04);
-        assert!((rod.length() - (0.675 - 0.08 + 0.02 * PI)).abs() < 1e-12);
+    fn the_documented_bend_is_met() {
+        // docs/rod-file.md: 16 × 12 mm, legs 300 and 450 mm, bend of 40 mm: 206.41 and 267.73 µm/N along z and y, with von
+        // Kármán's factor 214.08 and 271.58
+        let rod = Drawing { legs: [0.3, 0.45], ..l_shape(0.04) };
         let length = rod.length();
-        let force = nalgebra::Vector3::new(0.0, 0.0, 1e-2);
-        let stiff = rod.body(&Deviation::default()).deflection(&force, length, length).z;
-        let bend = Some(rod.tubes[0].ovalisation(0.04));
-        let oval = rod.body(&Deviation { bend, ..Deviation::default() }).deflection(&force, length, length).z;
-        assert!(oval > stiff && oval / stiff < 1.1, "{stiff} {oval}");
+        assert!((length - (0.75 - 0.08 + 0.02 * PI)).abs() < 1e-12);
+        let micrometres = |bend: Option<f64>, axis: usize| {
+            let body = rod.body(&Deviation { bend, ..Deviation::default() });
+            body.deflection(&nalgebra::Vector3::ith(axis, 1e-3), length, length)[axis] / 1e-9
+        };
+        let oval = Some(rod.tubes[0].ovalisation(0.04));
+        for (bend, axis, expected) in
+            [(None, 2, 206.41), (None, 1, 267.73), (oval, 2, 214.08), (oval, 1, 271.58)]
+        {
+            let found = micrometres(bend, axis);
+            assert!((found / expected - 1.0).abs() < 3e-4, "{axis} {found} {expected}");
+        }
     }
 
     #[test]

@@ -133,6 +133,7 @@ pub fn failures(cases: &[Judged<'_>]) -> Value {
         Some(json!({
             "case": case.truth.case, "what": what(case)?, "truth": truth, "said": said,
             "unexplained": case.is_unexplained, "separation": separations.fold(f64::INFINITY, f64::min).min(1e300),
+            "noise": case.truth.noise_shape, "protocol": case.truth.protocol,
             "best_rival": case.truth.effects.first().map(|e| e.detectability.best_rival.clone()),
         }))
     };

@@ -34,7 +34,7 @@ fn truth(case: usize, kind: Kind, effects: Vec<Concealed>) -> Truth {
         protocol: String::new(),
         joints: BTreeMap::from([("sleeve".to_owned(), 205.0)]),
         geometric_um: 0.0,
-        oracle_gain: 0.8,
+        oracle_gain: Some(0.8),
     }
 }
 

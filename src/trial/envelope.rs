@@ -115,7 +115,7 @@ pub(super) fn line(value: &impl Serialize) -> Result<String> {
 }
 
 fn unwritable(error: serde_json::Error) -> Error {
-    Error::Numerical { what: "writing JSON".into(), why: error.to_string() }
+    Error::Numerical { what: "writing JSON", why: error.to_string() }
 }
 
 /// Text of JSON, with its place in errors.

@@ -41,14 +41,16 @@ struct Rival {
 
 /// Knows a bench and its noise.
 pub struct Oracle<'a> {
-    bench: &'a Bench,
+    /// With a slide that always sticks the same: how it happens to stick nobody can know.
+    bench: Bench,
     noise: &'a Noise,
     rivals: Vec<Rival>,
 }
 
 impl<'a> Oracle<'a> {
     /// With every effect of the library that has a meaning for the bench.
-    pub fn new(bench: &'a Bench, noise: &'a Noise) -> Self {
+    pub fn new(bench: &Bench, noise: &'a Noise) -> Self {
+        let bench = Bench { sticking: vec![0.0; bench.sticking.len()], ..bench.clone() };
         let mut oracle = Oracle { bench, noise, rivals: Vec::new() };
         oracle.rivals = oracle.all_rivals();
         oracle
@@ -81,7 +83,7 @@ impl<'a> Oracle<'a> {
             }
         }
         places.push(
-            effect.location(|loading| run_name(self.bench, loading), |index| cell_name(self.bench, index)),
+            effect.location(|loading| run_name(&self.bench, loading), |index| cell_name(&self.bench, index)),
         );
         if let Effect::Joint { station, .. } = effect {
             stations.push(*station);
@@ -128,7 +130,7 @@ impl<'a> Oracle<'a> {
     }
 
     fn all_rivals(&self) -> Vec<Rival> {
-        let bench = self.bench;
+        let bench = &self.bench;
         let protocol = &bench.protocol;
         let clean = bench.readings(&[]);
         let sd = self.noise.variance(protocol.quantum).sqrt();

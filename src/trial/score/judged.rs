@@ -98,6 +98,17 @@ impl<'a> Judged<'a> {
         self.found(concealed).is_some_and(|f| place::is_same(self.truth, concealed, &f.location))
     }
 
+    /// Something was named that is not concealed, or not there.
+    pub fn has_more(&self) -> bool {
+        let is_right = |finding: &Finding| {
+            self.truth.effects.iter().any(|concealed| {
+                let is_there = || place::is_same(self.truth, concealed, &finding.location);
+                finding.effect == concealed.effect && is_there()
+            })
+        };
+        !self.findings.iter().all(is_right)
+    }
+
     /// What the strongest finding may be.
     pub fn class(&self) -> Vec<&str> {
         let Some(first) = self.findings.first() else { return Vec::new() };

@@ -109,7 +109,7 @@ pub fn failures(cases: &[Judged<'_>]) -> Value {
             Kind::Single if case.findings.is_empty() => "single, missed",
             Kind::Single if !case.name_ok() => "single, wrong name",
             Kind::Single if !case.location_ok() => "single, wrong place",
-            Kind::Single if case.findings.len() > 1 => "single, more named",
+            Kind::Single if case.has_more() => "single, more named",
             Kind::Pair if case.truth.effects.iter().any(|e| case.found(e).is_none()) => "pair, not both",
             Kind::Unknown if !case.findings.is_empty() => "unknown, named",
             Kind::Unknown if !case.is_unexplained => "unknown, missed",

@@ -22,6 +22,7 @@ fn help_teaches() {
         ("help-calibrate", "calibrate --help"),
         ("help-compare", "compare --help"),
         ("help-simulate", "simulate --help"),
+        ("help-trial-make", "trial make --help"),
     ] {
         let answer = sandbox.run(line).succeeded();
         assert_eq!(answer.stderr, "");
@@ -64,6 +65,10 @@ fn words_fit_a_terminal() {
         "calibrate --help",
         "compare --help",
         "simulate --help",
+        "trial --help",
+        "trial make --help",
+        "trial answer --help",
+        "trial score --help",
         "completions --help",
     ] {
         let help = sandbox.run(line).succeeded().stdout;

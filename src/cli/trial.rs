@@ -95,7 +95,7 @@ impl Trial {
 impl Make {
     fn run(&self) -> Result<Outcome> {
         let range = self.case_range.clone().unwrap_or(1..usize::from(self.cases) + 1);
-        let key = self.key.clone().unwrap_or_else(|| envelope::default_key(&self.directory));
+        let key = key_of(self.key.as_deref(), &self.directory)?;
         let progress = Progress::new("cases", range.len());
         let made = envelope::make(&self.directory, &key, self.seed, range, || progress.one_more());
         progress.finish();
@@ -164,7 +164,7 @@ impl AnswerCases {
 
 impl ScoreAnswers {
     fn run(&self) -> Result<Outcome> {
-        let key = self.key.clone().unwrap_or_else(|| envelope::default_key(&self.directory));
+        let key = key_of(self.key.as_deref(), &self.directory)?;
         let answers = self.answers.clone().unwrap_or_else(|| self.directory.join("answers.jsonl"));
         if !answers.exists() {
             return Err(Error::Argument {
@@ -176,6 +176,10 @@ impl ScoreAnswers {
         let score = score::score(&self.directory, &key, &answers)?;
         Ok(plain(score.json, score.text))
     }
+}
+
+fn key_of(key: Option<&Path>, directory: &Path) -> Result<PathBuf> {
+    key.map_or_else(|| envelope::default_key(directory), |key| Ok(key.to_owned()))
 }
 
 fn plain(json: Value, text: String) -> Outcome {

@@ -49,16 +49,26 @@ pub fn sha256(bytes: &[u8]) -> String {
 }
 
 /// Where the key goes unless somebody says otherwise: beside the directory.
-pub fn default_key(directory: &Path) -> PathBuf {
-    let mut name = directory.file_name().unwrap_or_default().to_owned();
+///
+/// # Errors
+/// [`Error::Argument`] for a directory without a name of its own, as `.` is.
+pub fn default_key(directory: &Path) -> Result<PathBuf> {
+    let Some(name) = directory.file_name() else {
+        return Err(Error::Argument {
+            name: "DIR",
+            found: directory.display().to_string(),
+            expected: "a directory by its name, or the key's file too".into(),
+        });
+    };
+    let mut name = name.to_owned();
     name.push(".key.jsonl");
-    directory.with_file_name(name)
+    Ok(directory.with_file_name(name))
 }
 
 /// Draws cases of the rig by number and seals them; `made` is called after each.
 ///
 /// # Errors
-/// [`Error::Argument`] where a trial is there already; [`Error::File`].
+/// [`Error::Argument`] where a trial is there already, or the key would be in it; [`Error::File`].
 pub fn make(
     directory: &Path,
     key: &Path,
@@ -71,6 +81,13 @@ pub fn make(
             name: "DIR",
             found: format!("{}, which holds a trial already", directory.display()),
             expected: "a directory without one: its answers would belong to other cases".into(),
+        });
+    }
+    if key.starts_with(directory) {
+        return Err(Error::Argument {
+            name: "--key",
+            found: format!("{}, which is in the trial's directory", key.display()),
+            expected: "a place that whoever answers does not see".into(),
         });
     }
     let (mut hashes, mut lines) = (BTreeMap::new(), String::new());
@@ -216,6 +233,8 @@ mod tests {
         assert!(!files::read_text(&a.join(MANIFEST)).unwrap().contains("seed"));
         assert_eq!(manifest.read_key(&key_a).unwrap().len(), 3);
         assert!(make(&a, &key_a, 6, 1..2, || {}).is_err());
+        assert!(make(&b.join("new"), &b.join("new/key"), 6, 1..2, || {}).is_err());
+        assert!(default_key(Path::new(".")).is_err());
     }
 
     #[test]

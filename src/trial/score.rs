@@ -89,11 +89,10 @@ pub fn of(truths: &[Truth], given: &[Answer]) -> Score {
     let called = Rate::of(unknown.iter(), |case| case.is_unexplained && case.findings.is_empty());
     let wrongly = Rate::of(unknown.iter(), |case| !case.findings.is_empty());
 
-    let speaking = cases.iter().filter(|case| !case.findings.is_empty());
-    let right = Rate::of(speaking, |case| {
-        case.truth.kind != Kind::Unknown
-            && case.truth.effects.iter().any(|e| e.effect == case.findings[0].effect)
-    });
+    let speaking = || cases.iter().filter(|case| !case.findings.is_empty());
+    let right = Rate::of(speaking(), |case| case.is_concealed(case.said()));
+    let right_class =
+        Rate::of(speaking(), |case| case.class().into_iter().any(|name| case.is_concealed(name)));
 
     let mut coverage = Rate::default();
     let mut by_parameter: BTreeMap<String, Rate> = BTreeMap::new();
@@ -136,6 +135,7 @@ pub fn of(truths: &[Truth], given: &[Answer]) -> Score {
             "called_unknown_rate": called.json(), "wrongly_named_rate": wrongly.json(),
         },
         "right_when_named": right.json(),
+        "class_right_when_named": right_class.json(),
         "coverage": coverage.share(),
         "coverage_rate": coverage.json(),
         "coverage_by_parameter": by_parameter,
@@ -164,6 +164,7 @@ pub fn of(truths: &[Truth], given: &[Answer]) -> Score {
     say("unknown, identifiable: called unexplained", called.words());
     say("unknown, identifiable: wrongly named", wrongly.words());
     say("right when it names", right.words());
+    say("right, or in its class, when it names", right_class.words());
     say("95 % intervals that hold the truth", coverage.words());
     say("held-out gain over the oracle's", gain_over_oracle.map_or("no case".into(), |g| format!("{g:.3}")));
     text += &tables::confusion_text(&cases);

@@ -80,6 +80,11 @@ impl<'a> Judged<'a> {
         named.swap_remove(at.or((!named.is_empty()).then_some(0))?).into()
     }
 
+    /// An effect of this name is concealed.
+    pub fn is_concealed(&self, name: &str) -> bool {
+        self.truth.effects.iter().any(|concealed| concealed.effect == name)
+    }
+
     /// The strongest finding has the name of the (strongest) concealed effect.
     pub fn name_ok(&self) -> bool {
         match (self.truth.effects.first(), self.findings.first()) {

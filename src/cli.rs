@@ -11,6 +11,7 @@ pub mod output;
 mod progress;
 mod rig;
 mod simulate;
+mod trial;
 
 use std::path::PathBuf;
 
@@ -96,6 +97,9 @@ enum Command {
     Diagnose(diagnose::Diagnose),
     /// Make the files of a campaign of a robot and a rod that are known exactly.
     Simulate(simulate::Simulate),
+    /// Conceal effects in recordings, have them diagnosed, and count how often that was right.
+    #[command(subcommand)]
+    Trial(trial::Trial),
     /// Print a completion script for your shell.
     Completions(completions::Completions),
 }
@@ -133,6 +137,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome> {
         Some(Command::Compare(command)) => command.run(),
         Some(Command::Diagnose(command)) => command.run(),
         Some(Command::Simulate(command)) => command.run(),
+        Some(Command::Trial(command)) => command.run(),
         Some(Command::Completions(command)) => Ok(command.run()),
     }
 }

@@ -10,12 +10,27 @@ use crate::error::{Error, Place, Result};
 /// # Errors
 /// [`Error::File`] where it cannot be read, [`Error::Input`] with line and column where it is not UTF-8.
 pub fn read_text(path: &Path) -> Result<String> {
-    let bytes = std::fs::read(path).map_err(|source| Error::File {
-        path: path.to_owned(),
-        action: "read",
-        source,
-    })?;
-    text_of_bytes(&path.display().to_string(), bytes)
+    text_of_bytes(&path.display().to_string(), read_bytes(path)?)
+}
+
+/// The bytes of a file.
+///
+/// # Errors
+/// [`Error::File`] where it cannot be read.
+pub fn read_bytes(path: &Path) -> Result<Vec<u8>> {
+    std::fs::read(path).map_err(|source| Error::File { path: path.to_owned(), action: "read", source })
+}
+
+/// Adds to the end of a file, which is made if missing, and waits until it is on the disk.
+///
+/// # Errors
+/// [`Error::File`]; after a power cut a part of `contents` may be there.
+pub fn append(path: &Path, contents: &[u8]) -> Result<()> {
+    let written = std::fs::OpenOptions::new().create(true).append(true).open(path).and_then(|mut file| {
+        file.write_all(contents)?;
+        file.sync_data()
+    });
+    written.map_err(failed("write", path))
 }
 
 /// The text of a file's bytes; see [`read_text`]. `file` only names it in errors.

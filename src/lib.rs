@@ -20,6 +20,7 @@ pub mod section;
 pub mod spatial;
 pub mod statistics;
 pub mod toml_text;
+pub mod trial;
 pub mod units;
 
 pub use error::{Error, Result};

@@ -18,6 +18,8 @@ mod readme;
 mod refused;
 #[path = "cli/streams.rs"]
 mod streams;
+#[path = "cli/trial.rs"]
+mod trial;
 #[path = "cli/words.rs"]
 mod words;
 

@@ -102,6 +102,10 @@ pub fn diagnose(world: &dyn World, evidence: &Evidence) -> Diagnosis {
     let change = world.change(&story.chosen);
     let told = search.told(&story, evidence, &change);
     let (before, after) = (&evidence.residual - &told_by_none, &evidence.residual - &told);
+    let story = match &unknown {
+        Some(remainder) => convincing(&search, story, remainder),
+        None => story,
+    };
     let mut findings: Vec<Finding> =
         (0..story.chosen.len()).map(|position| finding(world, evidence, &search, &story, position)).collect();
     findings.sort_by(|a, b| b.rms.total_cmp(&a.rms));

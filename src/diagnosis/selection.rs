@@ -2,7 +2,7 @@
 //!
 //! A story is a few candidates that act together. Its probability is that of the recording ([`super::score()`]) times its
 //! prior: before the data half of all recordings hold nothing, the library shares 0.4, physics that nobody has named 0.1.
-//! Within the library every effect has the same share, and within an effect every place, so that a scan over a hundred
+//! Within the library every effect has the same share, and within an effect every place a share of that, so that a scan over a hundred
 //! places finds nothing a hundred times as often as a single place does.
 
 use std::collections::BTreeMap;
@@ -181,8 +181,8 @@ impl<'a> Search<'a> {
 
     /// The most probable story of known effects, and what it leaves, if that is more than chance.
     ///
-    /// Known effects are named only as far as they are likelier, by the odds of a name, than a shorter story that leaves
-    /// something unknown: several of them together can draw the shape of something that is none of them.
+    /// Known effects are named only as far as they are likelier than a shorter story that leaves something unknown: several
+    /// of them together can draw the shape of something that is none of them.
     pub fn best(&self) -> (Story, Option<Remainder>) {
         let mut path = vec![self.fit(&[])];
         let mut remainders = Vec::new();
@@ -194,20 +194,48 @@ impl<'a> Search<'a> {
                 break;
             }
             let Some(longer) = self.longer(story, &additions, false) else { break };
-            if longer.log_probability < story.log_probability + NAMED.ln() {
-                break;
+            match self.accepted(story, longer) {
+                Some(longer) => path.push(longer),
+                None => break,
             }
-            let longer = self.exchanged(longer);
-            path.push(longer);
         }
         let whole = |(story, remainder): (&Story, &Option<(f64, Remainder)>)| {
             remainder.as_ref().map_or(story.log_probability, |(log_probability, _)| *log_probability)
         };
         let wholes: Vec<f64> = path.iter().zip(&remainders).map(whole).collect();
         let most = wholes.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let named = wholes.iter().position(|whole| whole + NAMED.ln() > most).unwrap_or_default();
+        let named = wholes.iter().position(|whole| *whole >= most).unwrap_or_default();
         let remainder = remainders.swap_remove(named).map(|(_, remainder)| remainder);
         (path.swap_remove(named), remainder)
+    }
+
+    /// The longer story with its effects exchanged for better ones, if each of them is likelier, by the odds of a name, than
+    /// chance. Where one alone is not, another one may be needed with it: two outliers hide each other in the noise that they
+    /// make.
+    fn accepted(&self, story: &Story, longer: Story) -> Option<Story> {
+        /// Odds against chance that make a second effect worth a try.
+        const HOPELESS: f64 = 1.0 / 400.0;
+        let mut longer = longer;
+        let mut least = story.log_probability + NAMED.ln();
+        if longer.log_probability < least && longer.log_probability > story.log_probability + HOPELESS.ln() {
+            longer = self.longer(&longer, &self.additions(&longer), false)?;
+            least += NAMED.ln();
+        }
+        if longer.log_probability < least {
+            return None;
+        }
+        let longer = self.exchanged(longer);
+        let is_needed = |position: usize| {
+            self.without(&longer, position).log_probability + NAMED.ln() < longer.log_probability
+        };
+        match (0..longer.chosen.len()).find(|&position| !is_needed(position)) {
+            None => Some(longer),
+            // what another one has made superfluous goes
+            Some(position) => {
+                let rest = self.without(&longer, position);
+                (rest.log_probability > story.log_probability + NAMED.ln()).then_some(rest)
+            }
+        }
     }
 
     /// What a story leaves, with the ln of the probability of both, if that is more than chance.
@@ -400,7 +428,7 @@ fn priors(candidates: &[Candidate]) -> Vec<f64> {
     let (none, library, unknown) = PRIOR;
     let mut places: BTreeMap<(&str, bool), f64> = BTreeMap::new();
     for candidate in candidates {
-        *places.entry((&candidate.effect, candidate.is_unknown)).or_default() += 1.0;
+        *places.entry((&candidate.effect, candidate.is_unknown)).or_default() += candidate.weight;
     }
     let effects =
         |wanted: bool| places.keys().filter(|(_, is_unknown)| *is_unknown == wanted).count().max(1) as f64;
@@ -410,7 +438,7 @@ fn priors(candidates: &[Candidate]) -> Vec<f64> {
         .map(|candidate| {
             let places = places[&(candidate.effect.as_str(), candidate.is_unknown)];
             let share = if candidate.is_unknown { unknown / unnamed } else { library / known };
-            (share / places / none).ln()
+            (share * candidate.weight / places / none).ln()
         })
         .collect()
 }

@@ -53,6 +53,7 @@ fn world() -> Columns {
             effect: effect.into(),
             location: location.into(),
             parameters: vec![parameter; columns.ncols()],
+            weight: 1.0,
             is_alternative: false,
             is_unknown,
         });

@@ -14,6 +14,8 @@ pub struct Candidate {
     pub location: String,
     /// Its parameters; without effect at their neutral values.
     pub parameters: Vec<EffectParameter>,
+    /// How much of its effect's prior probability it has, relative to the effect's other places.
+    pub weight: f64,
     /// True for one of several forms of the same thing, such as laws of creep: a story holds one of them at most.
     pub is_alternative: bool,
     /// True for a smooth curve that stands for physics nobody has named: it competes, but is never a finding.

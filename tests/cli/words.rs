@@ -23,6 +23,7 @@ fn help_teaches() {
         ("help-calibrate", "calibrate --help"),
         ("help-compare", "compare --help"),
         ("help-simulate", "simulate --help"),
+        ("help-trial-make", "trial make --help"),
     ] {
         let answer = sandbox.run(line).succeeded();
         assert_eq!(answer.stderr, "");
@@ -69,6 +70,10 @@ fn words_fit_a_terminal() {
         "calibrate --help",
         "compare --help",
         "simulate --help",
+        "trial --help",
+        "trial make --help",
+        "trial answer --help",
+        "trial score --help",
         "completions --help",
     ] {
         let help = sandbox.run(line).succeeded().stdout;

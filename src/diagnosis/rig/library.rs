@@ -92,9 +92,20 @@ fn parameter(name: &str, unit: f64, neutral: f64, size: f64, bounds: (f64, f64))
 fn entry(effect: &str, location: impl Into<String>, parameter: EffectParameter, action: Action) -> Entry {
     let (effect, location) = (effect.into(), location.into());
     (
-        Candidate { effect, location, parameters: vec![parameter], is_alternative: false, is_unknown: false },
+        Candidate { effect, location, parameters: vec![parameter], weight: 1.0, is_alternative: false, is_unknown: false },
         vec![action],
     )
+}
+
+/// Gives those entries of `effect` that are `main` as much weight together as all others together: the place that a rod's
+/// file names, the rig as a whole.
+fn preferred(entries: &mut [Entry], effect: &str, is_main: impl Fn(&Candidate) -> bool) {
+    let of_effect = |entry: &&mut Entry| entry.0.effect == effect;
+    let main = entries.iter().filter(|(c, _)| c.effect == effect && is_main(c)).count();
+    let others = entries.iter().filter(|(c, _)| c.effect == effect).count() - main;
+    for (candidate, _) in entries.iter_mut().filter(of_effect) {
+        candidate.weight = 1.0 / if is_main(candidate) { main } else { others } as f64;
+    }
 }
 
 /// Marks one of several forms of the same thing.
@@ -129,7 +140,11 @@ fn of_loads(data: &[Datum]) -> Vec<Entry> {
         let um = parameter("play_um", UM, 0.0, PLAY, NOT_NEGATIVE);
         entry("backlash", format!("clamp{place}"), um, Action::Play(axes))
     };
-    [of_places(&friction), of_places(&offset), of_places(&play)].concat()
+    let mut entries = [of_places(&friction), of_places(&offset), of_places(&play)].concat();
+    for effect in ["friction", "load_offset", "backlash"] {
+        preferred(&mut entries, effect, |candidate| !candidate.location.contains(','));
+    }
+    entries
 }
 
 fn of_moduli() -> [Entry; 2] {
@@ -177,13 +192,16 @@ fn of_joints(structure: &mut Structure, rod: &Rod) -> Vec<Entry> {
                 effect: effect.into(),
                 location,
                 parameters,
-                is_alternative: false,
+                weight: 1.0, is_alternative: false,
                 is_unknown: false,
             },
             actions,
         ))
     };
-    named.chain(root).chain(scanned).filter_map(of_joint).collect()
+    let mut entries: Vec<Entry> = named.chain(root).chain(scanned).filter_map(of_joint).collect();
+    let is_declared = |candidate: &Candidate| rod.joints.iter().any(|j| j.name == candidate.location);
+    preferred(&mut entries, "joint_compliance", is_declared);
+    entries
 }
 
 /// How a station that has no name is said.

@@ -138,7 +138,7 @@ fn curve(
         })
         .unzip();
     let (effect, location) = ("unknown".into(), format!("{name}, {place}"));
-    Some((Candidate { effect, location, parameters, is_alternative: false, is_unknown: true }, actions))
+    Some((Candidate { effect, location, parameters, weight: 1.0, is_alternative: false, is_unknown: true }, actions))
 }
 
 /// A slope of its own for every line: a rod whose compliance differs from the model in a way that no part of it explains.
@@ -159,7 +159,7 @@ fn slopes(data: &[Datum], deflections: &[f64], lines: &[(String, Vec<usize>)]) -
     let (parameters, actions) = lines.iter().map(of_line).unzip();
     let (effect, location) = ("unknown".into(), "slope of each line".into());
     (steepest > 0.0).then_some((
-        Candidate { effect, location, parameters, is_alternative: false, is_unknown: true },
+        Candidate { effect, location, parameters, weight: 1.0, is_alternative: false, is_unknown: true },
         actions,
     ))
 }

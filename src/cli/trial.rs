@@ -1,0 +1,195 @@
+//! `rodcal trial make|answer|score`.
+
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+use clap::{Args, Subcommand};
+use rodcal::parallel::in_parallel;
+use rodcal::rig::readings::Readings;
+use rodcal::rod::Rod;
+use rodcal::trial::answers::{self, Answer};
+use rodcal::trial::envelope::{self, Manifest};
+use rodcal::trial::score;
+use rodcal::units::UM;
+use rodcal::{Error, Result};
+use serde_json::{Value, json};
+
+use super::output::Outcome;
+use super::progress::Progress;
+
+/// Cases that are answered between two writes.
+const BLOCK: usize = 8;
+
+#[derive(Debug, Subcommand)]
+pub enum Trial {
+    /// Draw cases with concealed effects: recordings into DIR, what they conceal into a key beside it.
+    Make(Make),
+    /// Diagnose every case of DIR that has no answer yet; the key is not needed and not read.
+    Answer(AnswerCases),
+    /// Compare the answers with the key.
+    Score(ScoreAnswers),
+}
+
+#[derive(Debug, Args)]
+pub struct Make {
+    /// Directory for the cases; made if missing.
+    directory: PathBuf,
+    /// Every random number comes from this seed: draw one that nobody guesses.
+    #[arg(long)]
+    seed: u64,
+    /// Number of cases.
+    #[arg(long, value_name = "N", default_value_t = 400, value_parser = clap::value_parser!(u16).range(1..=9999))]
+    cases: u16,
+    /// Only the cases from A up to B, B included.
+    #[arg(long, value_name = "A..B", value_parser = case_range)]
+    case_range: Option<Range<usize>>,
+    /// File for the key [default: DIR.key.jsonl]
+    #[arg(long, value_name = "FILE")]
+    key: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub struct AnswerCases {
+    /// Directory of the trial.
+    directory: PathBuf,
+    /// File for the answers, one line each; cases that stand in it already are left alone [default: DIR/answers.jsonl]
+    #[arg(long, value_name = "FILE")]
+    answers: Option<PathBuf>,
+    /// Only the cases from A up to B, B included.
+    #[arg(long, value_name = "A..B", value_parser = case_range)]
+    case_range: Option<Range<usize>>,
+}
+
+#[derive(Debug, Args)]
+pub struct ScoreAnswers {
+    /// Directory of the trial.
+    directory: PathBuf,
+    /// The key [default: DIR.key.jsonl]
+    key: Option<PathBuf>,
+    /// File of the answers [default: DIR/answers.jsonl]
+    #[arg(long, value_name = "FILE")]
+    answers: Option<PathBuf>,
+}
+
+/// `3..7` as the numbers 3 to 7.
+fn case_range(text: &str) -> std::result::Result<Range<usize>, String> {
+    let numbers = text.split_once("..").and_then(|(a, b)| Some((a.parse().ok()?, b.parse().ok()?)));
+    match numbers {
+        Some((first, last)) if (1..=last).contains(&first) && last <= 9999 => Ok(first..last + 1),
+        _ => Err("expected two numbers from 1 to 9999, for example 1..100".into()),
+    }
+}
+
+impl Trial {
+    pub fn run(&self) -> Result<Outcome> {
+        match self {
+            Trial::Make(make) => make.run(),
+            Trial::Answer(answer) => answer.run(),
+            Trial::Score(score) => score.run(),
+        }
+    }
+}
+
+impl Make {
+    fn run(&self) -> Result<Outcome> {
+        let range = self.case_range.clone().unwrap_or(1..usize::from(self.cases) + 1);
+        let key = key_of(self.key.as_deref(), &self.directory)?;
+        let progress = Progress::new("cases", range.len());
+        let made = envelope::make(&self.directory, &key, self.seed, range, || progress.one_more());
+        progress.finish();
+        let manifest = made?;
+        let directory = self.directory.display();
+        let text = format!(
+            "{} cases in {directory}, key in {} (keep it from whoever answers).\nrodcal trial answer {directory}\n",
+            manifest.cases,
+            key.display()
+        );
+        let json = json!({
+            "directory": directory.to_string(),
+            "key": key.display().to_string(),
+            "cases": manifest.cases,
+            "key_sha256": manifest.key_sha256,
+        });
+        Ok(plain(json, text))
+    }
+}
+
+impl AnswerCases {
+    fn run(&self) -> Result<Outcome> {
+        let manifest = Manifest::read(&self.directory)?;
+        let path = self.answers.clone().unwrap_or_else(|| self.directory.join("answers.jsonl"));
+        let given = answers::read(&path)?;
+        let number = |case: &str| case.rsplit('-').next().and_then(|number| number.parse::<usize>().ok());
+        let is_asked = |case: &String| match (&self.case_range, number(case)) {
+            (Some(range), Some(number)) => range.contains(&number),
+            _ => true,
+        };
+        let asked: Vec<String> = manifest.case_names().into_iter().filter(is_asked).collect();
+        let open = answers::missing(&asked, &given);
+        let progress = Progress::new("cases", open.len());
+        let answered = open.chunks(BLOCK).try_for_each(|block| {
+            let new = in_parallel(block.len(), |k| {
+                let answer = self.answer(&manifest, &block[k]);
+                progress.one_more();
+                answer
+            });
+            answers::append(&path, &new.into_iter().collect::<Result<Vec<Answer>>>()?)
+        });
+        progress.finish();
+        answered?;
+        let text = format!(
+            "{} cases answered, {} were before: {}\n",
+            open.len(),
+            asked.len() - open.len(),
+            path.display()
+        );
+        let json = json!({
+            "answers": path.display().to_string(),
+            "answered": open.len(),
+            "answered_before": asked.len() - open.len(),
+        });
+        Ok(plain(json, text))
+    }
+
+    fn answer(&self, manifest: &Manifest, case: &str) -> Result<Answer> {
+        manifest.check_case(&self.directory, case)?;
+        // what the diagnosis refuses is an answer too, and the other cases go on
+        let answer = diagnosed(&self.directory.join(case))
+            .unwrap_or_else(|error| json!({ "error": error.to_string() }));
+        Ok(Answer { case: case.to_owned(), answer, sha256: manifest.hashes_of(case) })
+    }
+}
+
+impl ScoreAnswers {
+    fn run(&self) -> Result<Outcome> {
+        let key = key_of(self.key.as_deref(), &self.directory)?;
+        let answers = self.answers.clone().unwrap_or_else(|| self.directory.join("answers.jsonl"));
+        if !answers.exists() {
+            return Err(Error::Argument {
+                name: "--answers",
+                found: format!("{}, which is not there", answers.display()),
+                expected: "the file that `rodcal trial answer` writes".into(),
+            });
+        }
+        let score = score::score(&self.directory, &key, &answers)?;
+        Ok(plain(score.json, score.text))
+    }
+}
+
+fn key_of(key: Option<&Path>, directory: &Path) -> Result<PathBuf> {
+    key.map_or_else(|| envelope::default_key(directory), |key| Ok(key.to_owned()))
+}
+
+fn plain(json: Value, text: String) -> Outcome {
+    Outcome { json, report: None, text: Some(text), default_directory: None, files: Vec::new(), status: 0 }
+}
+
+/// The diagnosis of a case as its JSON.
+fn diagnosed(case: &Path) -> Result<Value> {
+    let rod = Rod::read(&case.join("rod.toml"))?;
+    let readings = Readings::read(&case.join("readings.csv"))?;
+    let found = rodcal::diagnosis::rig::diagnose(&readings, Some(&rod))?;
+    Ok(rodcal::report::diagnosis::json(&found, &readings, Some(&rod)))
+}
+
+

@@ -1,0 +1,193 @@
+//! Trials at a stiffness rig: rods, protocols and what may be wrong with them.
+//!
+//! A quarter of the cases is clean, 45 % hold one effect of the library, 15 % two of them, 15 % one that no library has.
+
+mod bench;
+mod cosserat;
+mod draw;
+mod drawing;
+mod effect;
+mod memory;
+mod noise;
+mod oracle;
+mod protocol;
+mod setup;
+mod tube;
+
+use self::bench::Bench;
+use self::effect::Effect;
+use self::noise::{Noise, Shape};
+use self::oracle::Oracle;
+use crate::statistics::Random;
+use crate::trial::truth::{Concealed, Kind, Parameter, Truth};
+use crate::units::{MM, UM};
+
+/// Shares of clean, single and paired cases; the rest is unknown.
+const SHARES: [f64; 3] = [0.25, 0.45, 0.15];
+/// Load, relative to the nominal one, at which a rod is linear.
+const SMALL: f64 = 1e-3;
+
+/// A case: what is handed out and what is kept.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Case {
+    /// The rod file.
+    pub rod: String,
+    /// The readings.
+    pub readings: String,
+    /// What is concealed.
+    pub truth: Truth,
+}
+
+/// Case number `number` of the trial that belongs to `seed`.
+pub fn case(seed: u64, number: usize) -> Case {
+    let mut random = Random::seeded(seed, number as u64);
+    let name = format!("rig/case-{number:04}");
+    let kind = kind(&mut random);
+    let numbers: Vec<usize> = match kind {
+        Kind::Clean => Vec::new(),
+        Kind::Single => vec![random.index(draw::LIBRARY)],
+        Kind::Pair => {
+            let first = random.index(draw::LIBRARY);
+            vec![first, (first + 1 + random.index(draw::LIBRARY - 1)) % draw::LIBRARY]
+        }
+        Kind::Unknown => vec![random.index(draw::BEYOND)],
+    };
+    let needs_of = |number: &usize| match kind {
+        Kind::Unknown => draw::needs_beyond(*number),
+        _ => draw::needs(*number),
+    };
+    let needs = numbers.iter().map(needs_of).fold(setup::Needs::default(), setup::Needs::and);
+    let (bench, noise) = setup::draw(needs, &mut random);
+    let sd = noise.variance(bench.protocol.quantum).sqrt();
+    let faintest = if kind == Kind::Pair { 0.5 } else { 0.0 };
+    let effects: Vec<Effect> = numbers
+        .iter()
+        .map(|&number| match kind {
+            Kind::Unknown => draw::beyond(number, &bench, &mut random),
+            _ => draw::library(number, &bench, sd, faintest, &mut random),
+        })
+        .collect();
+    let readings = bench.readings(&effects);
+    let shown = noise.shown(&bench, &readings, &mut random);
+    Case {
+        rod: bench.drawing.toml(&format!("case-{number:04}")),
+        readings: bench.protocol.csv(&shown),
+        truth: truth(name, kind, &bench, &noise, &effects, &readings),
+    }
+}
+
+fn kind(random: &mut Random) -> Kind {
+    let drawn = random.uniform(0.0, 1.0);
+    let [clean, single, pair] = SHARES;
+    match drawn {
+        u if u < clean => Kind::Clean,
+        u if u < clean + single => Kind::Single,
+        u if u < clean + single + pair => Kind::Pair,
+        _ => Kind::Unknown,
+    }
+}
+
+fn truth(
+    case: String,
+    kind: Kind,
+    bench: &Bench,
+    noise: &Noise,
+    effects: &[Effect],
+    readings: &[f64],
+) -> Truth {
+    let protocol = &bench.protocol;
+    let variance = noise.variance(protocol.quantum);
+    let clean = bench.readings(&[]);
+    let added = mean_square(readings, &clean);
+    let oracle = (!effects.is_empty()).then(|| Oracle::new(bench, noise));
+    let mut concealed: Vec<Concealed> = effects
+        .iter()
+        .enumerate()
+        .filter_map(|(which, effect)| {
+            let run = |loading: usize| oracle::run_name(bench, loading);
+            let alone = bench.readings(std::slice::from_ref(effect));
+            let parameter = |(name, value): (&str, f64)| Parameter { name: name.into(), value };
+            Some(Concealed {
+                effect: effect.name().into(),
+                location: effect.location(run, |index| oracle::cell_name(bench, index)),
+                parameters: effect.parameters().into_iter().map(parameter).collect(),
+                size_over_noise: (mean_square(&alone, &clean) / variance).sqrt(),
+                detectability: oracle.as_ref()?.detectability(effects, which),
+            })
+        })
+        .collect();
+    concealed.sort_by(|a, b| b.size_over_noise.total_cmp(&a.size_over_noise));
+    // each reading has its own error and that of its zero
+    let held_out = 2.0 * variance;
+    Truth {
+        case,
+        kind,
+        effects: concealed,
+        noise_um: variance.sqrt() / UM,
+        noise_shape: match noise.shape {
+            Shape::Normal => "normal".into(),
+            Shape::StudentT(dof) => format!("student-t ({dof})"),
+            Shape::Contaminated => "contaminated".into(),
+        },
+        quantum_um: protocol.quantum / UM,
+        readings: readings.len(),
+        protocol: description(bench),
+        joints: bench.drawing.joints.iter().map(|(name, station)| (name.clone(), station / MM)).collect(),
+        geometric_um: geometric(bench, &clean) / UM,
+        oracle_gain: (!effects.is_empty() && !effects.iter().any(is_of_one_run))
+            .then(|| added / (added + held_out)),
+    }
+}
+
+/// What no other run tells of: it cannot be predicted.
+fn is_of_one_run(effect: &Effect) -> bool {
+    matches!(effect, Effect::Slip { .. } | Effect::Outlier(_))
+}
+
+/// Root mean square of what the clean rod departs from a linear one, m.
+fn geometric(bench: &Bench, clean: &[f64]) -> f64 {
+    let mut small = bench.clone();
+    small.protocol.loadings.iter_mut().for_each(|loading| loading.load *= SMALL);
+    let linear: Vec<f64> = small.readings(&[]).iter().map(|reading| reading / SMALL).collect();
+    mean_square(clean, &linear).sqrt()
+}
+
+fn mean_square(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>() / a.len().max(1) as f64
+}
+
+fn description(bench: &Bench) -> String {
+    let protocol = &bench.protocol;
+    let trials = protocol.loadings.iter().map(|l| l.trial + 1).max().unwrap_or(0);
+    let axes: Vec<&str> = protocol.axes().into_iter().map(|axis| protocol::AXES[axis]).collect();
+    let ways = if protocol.loadings.iter().any(|l| l.is_unloading) { "up and down" } else { "up" };
+    format!("{trials} trials {ways} to {:.1} N along {}", protocol.largest_load(), axes.join(", "))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_seed_and_a_number_make_the_same_case() {
+        let (a, b) = (case(7, 3), case(7, 3));
+        assert_eq!(a, b);
+        assert!(a.readings != case(7, 4).readings && a.readings != case(8, 3).readings);
+    }
+
+    #[test]
+    fn files_say_that_they_are_simulated_and_nothing_of_the_effect() {
+        for number in 0..40 {
+            let case = case(1, number);
+            assert!(case.rod.starts_with("# SIMULATED") && case.readings.starts_with("# SIMULATED"));
+            for concealed in &case.truth.effects {
+                assert!(!case.readings.contains(&concealed.effect), "{}", case.truth.case);
+            }
+            let is_stiff = |line: &str| !line.contains("urad_per_nm") || line.ends_with(" = 0.0");
+            assert!(case.rod.lines().all(is_stiff));
+            assert!(case.truth.geometric_um < 20.0, "{:?}", case.truth);
+            let is_clean = case.truth.kind == Kind::Clean;
+            assert_eq!(is_clean, case.truth.effects.is_empty());
+        }
+    }
+}

@@ -191,5 +191,3 @@ fn diagnosed(case: &Path) -> Result<Value> {
     let found = rodcal::diagnosis::rig::diagnose(&readings, Some(&rod))?;
     Ok(rodcal::report::diagnosis::json(&found, &readings, Some(&rod)))
 }
-
-

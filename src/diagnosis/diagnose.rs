@@ -97,15 +97,12 @@ impl Diagnosis {
 pub fn diagnose(world: &dyn World, evidence: &Evidence) -> Diagnosis {
     let world = &Linearised::new(world);
     let (search, story, unknown) = Search::settled(world, evidence);
+    let (story, unknown) = convincing(&search, story, unknown);
     let none = search.fit(&[]);
     let told_by_none = search.told(&none, evidence, &DVector::zeros(evidence.residual.len()));
     let change = world.change(&story.chosen);
     let told = search.told(&story, evidence, &change);
     let (before, after) = (&evidence.residual - &told_by_none, &evidence.residual - &told);
-    let story = match &unknown {
-        Some(remainder) => convincing(&search, story, remainder),
-        None => story,
-    };
     let mut findings: Vec<Finding> =
         (0..story.chosen.len()).map(|position| finding(world, evidence, &search, &story, position)).collect();
     findings.sort_by(|a, b| b.rms.total_cmp(&a.rms));
@@ -138,6 +135,31 @@ pub fn diagnose(world: &dyn World, evidence: &Evidence) -> Diagnosis {
         after,
         story,
     }
+}
+
+/// A story without the effects that explain less by themselves than what is left unexplained: they may as well be a part of
+/// that. Events such as an outlier, which no curve can draw, stay.
+fn convincing(search: &Search, story: Story, unknown: Option<Remainder>) -> (Story, Option<Remainder>) {
+    let Some(remainder) = &unknown else { return (story, unknown) };
+    let (whole, left) = match remainder {
+        Remainder::Curve(longer) => (longer, search.curve_rms(longer)),
+        Remainder::Cells => (&story, search.cells_rms(&story)),
+    };
+    let all = search.left_rms(whole);
+    let own = |position: usize| {
+        let without = search.left_rms(&search.without(whole, position));
+        (without.powi(2) - all.powi(2)).max(0.0).sqrt()
+    };
+    let kept: Vec<Chosen> = (0..story.chosen.len())
+        .filter(|&position| own(position) > left)
+        .map(|position| story.chosen[position].clone())
+        .collect();
+    if kept.len() == story.chosen.len() {
+        return (story, unknown);
+    }
+    let story = search.fit(&kept);
+    let remainder = search.remains(&story).or(unknown);
+    (story, remainder)
 }
 
 fn finding(

@@ -315,7 +315,11 @@ mod tests {
             let narrow = score(&recorded, &columns);
             assert!(wide.log_evidence >= narrow.log_evidence - 1.2, "size {size}");
             let fitted = c.dot(&recorded) / c.norm_squared();
-            assert!((wide.estimate[0] * size / fitted - 1.0).abs() < 0.05, "size {size}: {}", wide.estimate[0]);
+            assert!(
+                (wide.estimate[0] * size / fitted - 1.0).abs() < 0.05,
+                "size {size}: {}",
+                wide.estimate[0]
+            );
             let none = Moments::new(&recorded, &DMatrix::zeros(80, 0), vec![], vec![], 80, 0.0);
             let (gram, product) = (columns.tr_mul(&columns), columns.tr_mul(&recorded));
             let more = More { gram: &gram, cross: DMatrix::zeros(0, 1), product, bounds: vec![FREE] };

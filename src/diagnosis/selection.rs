@@ -9,6 +9,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::{DMatrix, DVector};
 
+use super::diagnose::rms;
 use super::lack_of_fit::{Cells, LackOfFit};
 use super::linear::Linearised;
 use super::score::{Moments, More, Score};
@@ -236,6 +237,34 @@ impl<'a> Search<'a> {
                 (rest.log_probability > story.log_probability + NAMED.ln()).then_some(rest)
             }
         }
+    }
+
+    /// What a story leaves, if that is more than chance.
+    pub fn remains(&self, story: &Story) -> Option<Remainder> {
+        self.remainder(story, &self.additions(story)).map(|(_, remainder)| remainder)
+    }
+
+    /// Root mean square of what a story leaves.
+    pub fn left_rms(&self, story: &Story) -> f64 {
+        let told = self.told(story, self.evidence, &self.world.change(&story.chosen));
+        rms(&(&self.evidence.residual - told))
+    }
+
+    /// Root mean square of what the curve, the last of a story, says.
+    pub fn curve_rms(&self, story: &Story) -> f64 {
+        let rest = &story.chosen[..story.chosen.len().saturating_sub(1)];
+        rms(&(self.world.change(&story.chosen) - self.world.change(rest)))
+    }
+
+    /// Root mean square of what repeats agree on that a story leaves; 0 where they do not.
+    pub fn cells_rms(&self, story: &Story) -> f64 {
+        let told = self.told(story, self.evidence, &self.world.change(&story.chosen));
+        let share = self.lack_of_fit(story, &told).map_or(0.0, |test| {
+            // the squares of the cells beyond what their degrees of freedom have of the noise
+            let (a, b) = (test.dof_fit as f64, test.dof_repeats as f64);
+            (a * (test.f - 1.0) / (a * test.f + b)).max(0.0)
+        });
+        self.left_rms(story) * share.sqrt()
     }
 
     /// What a story leaves, with the ln of the probability of both, if that is more than chance.

@@ -92,7 +92,14 @@ fn parameter(name: &str, unit: f64, neutral: f64, size: f64, bounds: (f64, f64))
 fn entry(effect: &str, location: impl Into<String>, parameter: EffectParameter, action: Action) -> Entry {
     let (effect, location) = (effect.into(), location.into());
     (
-        Candidate { effect, location, parameters: vec![parameter], weight: 1.0, is_alternative: false, is_unknown: false },
+        Candidate {
+            effect,
+            location,
+            parameters: vec![parameter],
+            weight: 1.0,
+            is_alternative: false,
+            is_unknown: false,
+        },
         vec![action],
     )
 }
@@ -192,7 +199,8 @@ fn of_joints(structure: &mut Structure, rod: &Rod) -> Vec<Entry> {
                 effect: effect.into(),
                 location,
                 parameters,
-                weight: 1.0, is_alternative: false,
+                weight: 1.0,
+                is_alternative: false,
                 is_unknown: false,
             },
             actions,

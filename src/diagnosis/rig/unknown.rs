@@ -18,6 +18,7 @@ use super::datum::{Datum, numbered};
 use super::library::Entry;
 use super::memory::runs;
 use crate::diagnosis::{Candidate, EffectParameter};
+use crate::rig::readings::Axis;
 use crate::units::UM;
 
 const MOST_COLUMNS: usize = 6;
@@ -59,8 +60,8 @@ pub(super) fn all(data: &[Datum], deflections: &[f64], has_rod: bool) -> Vec<Ent
 
 /// What a reading may follow: name, coordinate, and whether it acts by line (loads) or by channel (drifts).
 fn coordinates(data: &[Datum]) -> Vec<(&'static str, Coordinate, bool)> {
-    let levels = by_axis(data, |_| true);
-    let unloading = by_axis(data, Datum::is_unloading);
+    let levels = by_axis(data, |d| d.load, |_| true);
+    let unloading = by_axis(data, |d| d.load, Datum::is_unloading);
     let mut position: Coordinate = vec![None; data.len()];
     let of_runs = runs(data);
     for run in &of_runs {
@@ -70,6 +71,12 @@ fn coordinates(data: &[Datum]) -> Vec<(&'static str, Coordinate, bool)> {
         }
     }
     let mut found = vec![("load", levels, true), ("unloading", unloading, true)];
+    // a clamp that is loose one way, a contact that opens
+    let pushes = |axis: Axis| data.iter().any(|d| d.direction.axis == axis && d.signed_load() < 0.0);
+    let pulls = |axis: Axis| data.iter().any(|d| d.direction.axis == axis && d.signed_load() > 0.0);
+    if Axis::ALL.into_iter().any(|axis| pushes(axis) && pulls(axis)) {
+        found.push(("signed load", by_axis(data, Datum::signed_load, |_| true), true));
+    }
     // loads that always come in the same order are told from it by nothing
     let conditions = numbered(data.iter().map(|d| (d.direction, d.load.to_bits(), d.phase)));
     let first_of = |condition: usize| conditions.iter().position(|&c| c == condition);
@@ -87,18 +94,18 @@ fn coordinates(data: &[Datum]) -> Vec<(&'static str, Coordinate, bool)> {
     found
 }
 
-/// Rank of the load among those along its axis, for the data that `is_of` admits.
-fn by_axis(data: &[Datum], is_of: impl Fn(&Datum) -> bool) -> Coordinate {
-    let of = |datum: &Datum| {
+/// Rank of the load, as `of` counts it, among those along its axis, for the data that `is_of` admits.
+fn by_axis(data: &[Datum], of: impl Fn(&Datum) -> f64, is_of: impl Fn(&Datum) -> bool) -> Coordinate {
+    let rank = |datum: &Datum| {
         is_of(datum).then_some(())?;
         let rivals = data.iter().filter(|d| is_of(d) && d.direction.axis == datum.direction.axis);
-        let mut loads: Vec<f64> = rivals.map(|d| d.load).collect();
+        let mut loads: Vec<f64> = rivals.map(&of).collect();
         loads.sort_by(f64::total_cmp);
         loads.dedup();
-        let rank = loads.iter().position(|&load| load == datum.load)?;
+        let rank = loads.iter().position(|&load| load == of(datum))?;
         Some((rank as f64 + 0.5) / loads.len() as f64)
     };
-    data.iter().map(of).collect()
+    data.iter().map(rank).collect()
 }
 
 /// From 0 to 1; nothing where the values do not differ.
@@ -138,7 +145,10 @@ fn curve(
         })
         .unzip();
     let (effect, location) = ("unknown".into(), format!("{name}, {place}"));
-    Some((Candidate { effect, location, parameters, weight: 1.0, is_alternative: false, is_unknown: true }, actions))
+    Some((
+        Candidate { effect, location, parameters, weight: 1.0, is_alternative: false, is_unknown: true },
+        actions,
+    ))
 }
 
 /// A slope of its own for every line: a rod whose compliance differs from the model in a way that no part of it explains.

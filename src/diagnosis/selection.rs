@@ -20,7 +20,7 @@ use super::{Candidate, Chosen, Evidence, World};
 /// Prior probability that the next effect is none, one of the library, or one that nobody has named.
 const PRIOR: (f64, f64, f64) = (0.5, 0.4, 0.1);
 /// Odds against chance from which on an effect is named.
-const NAMED: f64 = 20.0;
+const NAMED: f64 = 50.0;
 /// Most effects in one story.
 const MOST: usize = 8;
 /// Of how many candidates, the likeliest by their columns at neutral values, the values are fitted.
@@ -254,6 +254,17 @@ impl<'a> Search<'a> {
     pub fn curve_rms(&self, story: &Story) -> f64 {
         let rest = &story.chosen[..story.chosen.len().saturating_sub(1)];
         rms(&(self.world.change(&story.chosen) - self.world.change(rest)))
+    }
+
+    /// Does an effect concern one datum only?
+    pub fn is_event(&self, chosen: &Chosen) -> bool {
+        self.world.neutral[chosen.candidate].row_iter().filter(|row| row.amax() > 0.0).count() == 1
+    }
+
+    /// Standardised residuals, whitened, that a story leaves.
+    pub fn standardised(&self, story: &Story) -> DVector<f64> {
+        let told = self.told(story, self.evidence, &self.world.change(&story.chosen));
+        self.whitening.whitened(&(&self.evidence.residual - told)) / story.sigma
     }
 
     /// Root mean square of what repeats agree on that a story leaves; 0 where they do not.

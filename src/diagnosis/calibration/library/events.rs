@@ -1,0 +1,180 @@
+//! What happened to the fixture, and what drifts.
+//!
+//! ```text
+//! clamp_pose                   −(t + φ × (ball − clamp))     t, φ: where the clamp is, less where the file says it is
+//! clamp_shift, socket_shift    −t from some row on           t: how far the clamp, or the socket, moved
+//! base_shift                   t + φ × (ball − base)         from some row on: the robot moved
+//! thermal_drift                d·(T − T̄), d·(t − t̄)          of the robot in {W} or of its tool in {T}
+//! outlier                      t at one row
+//! ```
+//!
+//! A shift leaves two rows at least on either side, else it is an outlier.
+
+use std::ops::Range;
+
+use nalgebra::Vector3;
+
+use super::{CLAMP, KNOCK, NotTestable, OUTLIER, PER_HOUR, PER_KELVIN, lack};
+use crate::diagnosis::EffectParameter;
+use crate::diagnosis::calibration::posture::Posture;
+use crate::diagnosis::calibration::scene::{Column, Entry, Scene, entry, linear};
+use crate::units::UM;
+
+const HOUR: f64 = 3600.0;
+const URAD: f64 = 1e-6;
+/// Most rows of a clamp, socket or recording after which a shift is looked for; of longer ones every second, third …
+const MOST_PLACES: usize = 200;
+const SHIFT: [&str; 3] = ["dx_um", "dy_um", "dz_um"];
+const TURN: [&str; 3] = ["rx_urad", "ry_urad", "rz_urad"];
+
+pub(super) fn all(scene: &Scene, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
+    let mut entries = clamps(scene, lacks);
+    entries.extend(shifts(scene));
+    entries.extend(base(scene));
+    entries.extend(drift(scene, lacks));
+    entries.extend((0..scene.postures.len()).map(|row| {
+        let moved = |axis: usize| scene.part(row..row + 1, |_, _| unit(axis));
+        entry("outlier", scene.pose_name(row), parameters(&SHIFT, UM, OUTLIER, moved))
+    }));
+    entries
+}
+
+fn unit(axis: usize) -> Vector3<f64> {
+    Vector3::ith(axis, 1.0)
+}
+
+fn parameters(
+    names: &[&str; 3],
+    unit: f64,
+    size: f64,
+    column: impl Fn(usize) -> Column,
+) -> Vec<(EffectParameter, Column)> {
+    names.iter().enumerate().map(|(axis, name)| (linear(*name, unit, size), column(axis))).collect()
+}
+
+fn rows_of(scene: &Scene, is_of: impl Fn(usize) -> bool) -> Vec<usize> {
+    (0..scene.postures.len()).filter(|&row| is_of(scene.recording.rows[row].group)).collect()
+}
+
+fn clamps(scene: &Scene, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
+    let groups = &scene.recording.groups;
+    if scene.has_sockets() || groups.len() < 2 {
+        lacks.push(lack("clamp_pose", "there are no clamps whose places could disagree"));
+        return Vec::new();
+    }
+    let of_clamp = |k: usize| {
+        let at = |displacement: &dyn Fn(&Posture) -> Vector3<f64>| {
+            scene.column(|row, posture| match scene.recording.rows[row].group == k {
+                true => -displacement(posture),
+                false => Vector3::zeros(),
+            })
+        };
+        let mut six = parameters(&SHIFT, UM, CLAMP.0, |axis| at(&|_| unit(axis)));
+        let centre = groups[k].device.origin;
+        let turned = |axis: usize| at(&|posture: &Posture| unit(axis).cross(&(posture.tip - centre)));
+        six.extend(parameters(&TURN, URAD, CLAMP.1, turned));
+        entry("clamp_pose", groups[k].name.clone(), six)
+    };
+    (0..groups.len()).map(of_clamp).collect()
+}
+
+/// Positions in `count` rows after which a shift is looked for: the number of rows before it.
+fn places(count: usize) -> impl Iterator<Item = usize> {
+    let places: Range<usize> = 2..count.saturating_sub(1);
+    let stride = places.len().div_ceil(MOST_PLACES).max(1);
+    places.step_by(stride)
+}
+
+/// A clamp, a socket or all sockets of a placement that moved.
+fn shifts(scene: &Scene) -> Vec<Entry> {
+    let groups = &scene.recording.groups;
+    let is_fixture = scene.has_sockets() || groups.len() > 1 || !groups[0].name.is_empty();
+    let mut fixtures: Vec<(String, Vec<usize>)> = Vec::new();
+    if is_fixture {
+        fixtures.extend((0..groups.len()).map(|k| (groups[k].name.clone(), vec![k])));
+    }
+    if scene.has_sockets() {
+        for (k, group) in groups.iter().enumerate() {
+            let Some((placement, _)) = group.name.rsplit_once('/') else { continue };
+            match fixtures.iter_mut().find(|(name, _)| name == placement) {
+                Some((_, members)) => members.push(k),
+                None => fixtures.push((placement.to_owned(), vec![k])),
+            }
+        }
+        // a placement of one socket is that socket
+        fixtures.retain(|(name, members)| name.contains('/') || members.len() > 1);
+    }
+    let of_fixture = |(name, members): &(String, Vec<usize>)| -> Vec<Entry> {
+        let rows = rows_of(scene, |group| members.contains(&group));
+        let after = |before: usize| {
+            let moved = |axis: usize| {
+                scene.part(rows[before]..scene.postures.len(), |row, _| {
+                    match members.contains(&scene.recording.rows[row].group) {
+                        true => -unit(axis),
+                        false => Vector3::zeros(),
+                    }
+                })
+            };
+            let last = rows[before - 1];
+            let (effect, location) = match scene.has_sockets() {
+                true => ("socket_shift", format!("{name}, after row {}", last + 1)),
+                false => ("clamp_shift", format!("{name}, after {}", scene.pose_name(last))),
+            };
+            entry(effect, location, parameters(&SHIFT, UM, KNOCK.0, moved))
+        };
+        places(rows.len()).map(after).collect()
+    };
+    fixtures.iter().flat_map(of_fixture).collect()
+}
+
+/// The robot that moved on its base: nothing else, where points are not measured.
+fn base(scene: &Scene) -> Vec<Entry> {
+    let count = scene.postures.len();
+    let after = |before: usize| {
+        let on = |displacement: &dyn Fn(&Posture) -> Vector3<f64>| {
+            scene.part(before..count, |_, posture| displacement(posture))
+        };
+        let mut six = parameters(&SHIFT, UM, KNOCK.0, |axis| on(&|_| unit(axis)));
+        let turned =
+            |axis: usize| on(&|posture: &Posture| unit(axis).cross(&(posture.tip - posture.origin[0])));
+        six.extend(parameters(&TURN, URAD, KNOCK.1, turned));
+        entry("base_shift", format!("after {}", scene.pose_name(before - 1)), six)
+    };
+    places(count).map(after).collect()
+}
+
+fn drift(scene: &Scene, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
+    let rows = &scene.recording.rows;
+    let known = |of: &dyn Fn(usize) -> Option<f64>| (0..rows.len()).map(of).collect::<Option<Vec<f64>>>();
+    let clocks = [
+        (known(&|row| rows[row].temperature), "temperature", "um_per_k", UM, PER_KELVIN),
+        (known(&|row| rows[row].time), "time", "um_per_h", UM / HOUR, PER_HOUR / HOUR),
+        // a recording without a clock drifts from its first to its last row
+        (known(&|row| Some(row as f64 / rows.len() as f64)), "order", "um", UM, PER_HOUR),
+    ];
+    let mut entries = Vec::new();
+    for (values, name, suffix, unit_si, size) in clocks {
+        let Some(values) = values else {
+            lacks.push(lack("thermal_drift", &format!("rows have no {name}")));
+            continue;
+        };
+        let mean = values.iter().sum::<f64>() / values.len() as f64;
+        let names = ["x", "y", "z"].map(|axis| format!("{axis}_{suffix}"));
+        let names = [0, 1, 2].map(|axis| names[axis].as_str());
+        let world = |axis: usize| scene.column(|row, _| unit(axis) * (values[row] - mean));
+        let tool = |axis: usize| {
+            scene.column(|row, posture| posture.flange.rotation.column(axis) * (values[row] - mean))
+        };
+        entries.push(entry(
+            "thermal_drift",
+            format!("base, with {name}"),
+            parameters(&names, unit_si, size, world),
+        ));
+        entries.push(entry(
+            "thermal_drift",
+            format!("tool, with {name}"),
+            parameters(&names, unit_si, size, tool),
+        ));
+    }
+    entries
+}

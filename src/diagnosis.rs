@@ -7,6 +7,7 @@
 pub mod calibration;
 mod diagnose;
 mod evidence;
+mod linear;
 mod proof;
 pub mod rig;
 mod score;
@@ -19,6 +20,6 @@ mod tests;
 
 pub use diagnose::{Diagnosis, Finding, Unexplained, diagnose};
 pub use evidence::{Covariate, Evidence};
-pub use proof::{Proof, prove};
-pub use selection::{Search, Story};
+pub use proof::Proof;
+pub use selection::Story;
 pub use world::{Candidate, Chosen, EffectParameter, World};

@@ -5,11 +5,13 @@
 mod bartlett;
 mod bootstrap;
 mod estimate;
+mod normal;
 mod random;
 
 pub use bartlett::bartlett;
 pub use bootstrap::percentile_interval;
 pub use estimate::Estimate;
+pub use normal::ln_normal_mass;
 pub use random::Random;
 
 use statrs::function::beta::beta_reg;

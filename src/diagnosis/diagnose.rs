@@ -2,6 +2,7 @@
 
 use nalgebra::DVector;
 
+use super::linear::Linearised;
 use super::proof::{Proof, prove};
 use super::selection::{Search, Story};
 use super::{Evidence, World};
@@ -68,18 +69,18 @@ impl Diagnosis {
 
 /// Diagnoses a recording.
 pub fn diagnose(world: &dyn World, evidence: &Evidence) -> Diagnosis {
-    // what is found first changes how the rest scatters
-    let first = Search::new(world, evidence, &[]).best().0;
-    let search = Search::new(world, evidence, &first.chosen);
-    let (story, unknown) = search.best();
-    let told = world.change(&story.chosen);
-    let left = &evidence.residual - &told;
+    let world = &Linearised::new(world);
+    let (search, story, unknown) = Search::settled(world, evidence);
+    let none = search.fit(&[]);
+    let change = world.change(&story.chosen);
+    let before = &evidence.residual - search.told(&none, evidence, &DVector::zeros(change.len()));
+    let after = &evidence.residual - search.told(&story, evidence, &change);
     let mut findings: Vec<Finding> =
         (0..story.chosen.len()).map(|position| finding(world, evidence, &search, &story, position)).collect();
     findings.sort_by(|a, b| b.rms.total_cmp(&a.rms));
     let unexplained = unknown.and_then(|longer| {
         let curve = longer.chosen.last()?.candidate;
-        let rms = rms(&(world.change(&longer.chosen) - &told));
+        let rms = rms(&(world.change(&longer.chosen) - &change));
         Some(Unexplained { candidate: curve, rms })
     });
     Diagnosis {
@@ -87,15 +88,15 @@ pub fn diagnose(world: &dyn World, evidence: &Evidence) -> Diagnosis {
         unexplained,
         noise: story.sigma,
         shared_ratio: search.shared_ratio(),
-        rms_before: rms(&evidence.residual),
-        rms_after: rms(&left),
+        rms_before: rms(&before),
+        rms_after: rms(&after),
         proof: prove(world, evidence),
         story,
     }
 }
 
 fn finding(
-    world: &dyn World,
+    world: &Linearised<'_>,
     evidence: &Evidence,
     search: &Search,
     story: &Story,
@@ -111,7 +112,8 @@ fn finding(
         .enumerate()
         .map(|(k, &value)| {
             let half = INTERVAL * story.covariance[(first + k, first + k)].sqrt();
-            (value, value - half, value + half)
+            let (low, high) = candidates[chosen.candidate].parameters[k].bounds;
+            (value, (value - half).max(low), (value + half).min(high))
         })
         .collect();
     // candidates that would do in its place

@@ -9,6 +9,9 @@ pub struct Evidence {
     pub residual: DVector<f64>,
     /// What the base model can absorb by itself: n × k, any columns, none for a model that is not fitted.
     pub nuisance: DMatrix<f64>,
+    /// What the base model is always a little wrong by: n × b, each column times the size of its unknown factor, whose prior
+    /// is the standard normal. Part of every story.
+    pub background: DMatrix<f64>,
     /// Repeats: data of the same number were recorded under the same conditions.
     pub cell: Vec<usize>,
     /// Data of the same number share an error, such as the zero that their readings are offsets from.

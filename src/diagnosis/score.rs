@@ -6,12 +6,33 @@
 //! ln p(r) = −½·ν·ln σ² − ½·ln|1 + G/σ²| − (rᵀr − bᵀ(G + σ²·1)⁻¹b) / 2σ² + constant
 //!
 //! at the σ that makes it largest. The determinant is the price of parameters: one that the data pin down a thousand times
-//! better than its prior costs ln 1000.
+//! better than its prior costs ln 1000. A parameter with a bound has the part of the normal prior within it; the evidence
+//! then gains ln(posterior mass within the bound / prior mass within it), parameter by parameter: a friction that comes out
+//! negative has no mass where friction is possible.
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
+use crate::statistics::ln_normal_mass;
+
 /// Least noise variance relative to that of the residual.
 const LEAST: f64 = 1e-12;
+
+/// What a story's evidence is computed from: inner products of whitened and projected vectors.
+#[derive(Debug, Clone)]
+pub struct Moments {
+    /// rᵀr.
+    pub square: f64,
+    /// G.
+    pub gram: DMatrix<f64>,
+    /// b.
+    pub product: DVector<f64>,
+    /// Bounds of the scaled parameters.
+    pub bounds: Vec<(f64, f64)>,
+    /// ν.
+    pub freedom: usize,
+    /// Least noise: what rounding alone makes.
+    pub floor: f64,
+}
 
 /// What a fit of a story comes to.
 #[derive(Debug, Clone)]
@@ -20,66 +41,98 @@ pub struct Score {
     pub log_evidence: f64,
     /// Noise of a datum.
     pub sigma: f64,
-    /// Estimates of the scaled parameters: posterior means.
+    /// Estimates of the scaled parameters: posterior means without regard to bounds.
     pub estimate: DVector<f64>,
     /// Their posterior covariance.
     pub covariance: DMatrix<f64>,
 }
 
-/// Scores the residual `r` against `columns` (both whitened and projected, columns scaled by the prior sizes), with
-/// `freedom` degrees of freedom and a noise not below `floor`.
-pub fn score(r: &DVector<f64>, columns: &DMatrix<f64>, freedom: usize, floor: f64) -> Score {
-    let square = r.norm_squared();
-    let p = columns.ncols();
-    let eigen = match p {
-        0 => SymmetricEigen { eigenvectors: DMatrix::zeros(0, 0), eigenvalues: DVector::zeros(0) },
-        _ => SymmetricEigen::new(columns.tr_mul(columns)),
-    };
-    let lambda = eigen.eigenvalues.map(|l| l.max(0.0));
-    let b = eigen.eigenvectors.tr_mul(&columns.tr_mul(r));
-    let nu = freedom as f64;
-    let log_evidence = |s: f64| {
-        let mut quadratic = square;
-        let mut determinant = 0.0;
-        for k in 0..p {
-            quadratic -= b[k] * b[k] / (lambda[k] + s);
-            determinant += (lambda[k] / s).ln_1p();
-        }
-        -0.5 * (nu * s.ln() + determinant + quadratic.max(0.0) / s)
-    };
-    // between the floor and what the residual has without any story; far below it columns that are nearly the same would
-    // explain their own rounding
-    let all = square / nu.max(1.0);
-    let lowest = floor.powi(2).max(LEAST * all).max(f64::MIN_POSITIVE.sqrt());
-    let highest = all.max(lowest) * 2.0;
-    let s = largest(&|t: f64| log_evidence(t.exp()), lowest.ln(), highest.ln()).exp();
-    let shrunk = DVector::from_fn(p, |k, _| b[k] / (lambda[k] + s));
-    let spread = DMatrix::from_diagonal(&lambda.map(|l| s / (l + s)));
-    Score {
-        log_evidence: log_evidence(s),
-        sigma: s.sqrt(),
-        estimate: &eigen.eigenvectors * shrunk,
-        covariance: &eigen.eigenvectors * spread * eigen.eigenvectors.transpose(),
+impl Moments {
+    /// Of the residual `r` and `columns`, with bounds of their factors.
+    pub fn new(
+        r: &DVector<f64>,
+        columns: &DMatrix<f64>,
+        bounds: Vec<(f64, f64)>,
+        freedom: usize,
+        floor: f64,
+    ) -> Self {
+        let (gram, product) = (columns.tr_mul(columns), columns.tr_mul(r));
+        Moments { square: r.norm_squared(), gram, product, bounds, freedom, floor }
     }
-}
 
-/// Where a function of one hump is largest in [low, high]: golden section, to 1e-6.
-fn largest(f: &dyn Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
-    const GOLDEN: f64 = 0.618_033_988_749_894_9;
-    let (mut a, mut b) = (high - GOLDEN * (high - low), low + GOLDEN * (high - low));
-    let (mut fa, mut fb) = (f(a), f(b));
-    while high - low > 1e-6 {
-        if fa < fb {
-            (low, a, fa) = (a, b, fb);
-            b = low + GOLDEN * (high - low);
-            fb = f(b);
-        } else {
-            (high, b, fb) = (b, a, fa);
-            a = high - GOLDEN * (high - low);
-            fa = f(a);
+    /// The score.
+    pub fn score(&self) -> Score {
+        let p = self.gram.ncols();
+        let eigen = match p {
+            0 => SymmetricEigen { eigenvectors: DMatrix::zeros(0, 0), eigenvalues: DVector::zeros(0) },
+            _ => SymmetricEigen::new(self.gram.clone()),
+        };
+        let lambda = eigen.eigenvalues.map(|l| l.max(0.0));
+        let b = eigen.eigenvectors.tr_mul(&self.product);
+        let s = self.variance(&lambda, &b);
+        let shrunk = DVector::from_fn(p, |k, _| b[k] / (lambda[k] + s));
+        let spread = DMatrix::from_diagonal(&lambda.map(|l| s / (l + s)));
+        let estimate = &eigen.eigenvectors * shrunk;
+        let covariance = &eigen.eigenvectors * spread * eigen.eigenvectors.transpose();
+        let room: f64 = (0..p).map(|k| self.room(k, estimate[k], covariance[(k, k)].sqrt())).sum();
+        Score {
+            log_evidence: self.log_evidence(&lambda, &b, s) + room,
+            sigma: s.sqrt(),
+            estimate,
+            covariance,
         }
     }
-    0.5 * (low + high)
+
+    /// Ln of the posterior mass within the bounds over the prior mass there.
+    fn room(&self, k: usize, mean: f64, sd: f64) -> f64 {
+        let (low, high) = self.bounds[k];
+        if low == f64::NEG_INFINITY && high == f64::INFINITY {
+            return 0.0;
+        }
+        let sd = sd.max(f64::MIN_POSITIVE);
+        ln_normal_mass((low - mean) / sd, (high - mean) / sd) - ln_normal_mass(low, high)
+    }
+
+    fn log_evidence(&self, lambda: &DVector<f64>, b: &DVector<f64>, s: f64) -> f64 {
+        let mut quadratic = self.square;
+        let mut determinant = 0.0;
+        for (l, b) in lambda.iter().zip(b) {
+            quadratic -= b * b / (l + s);
+            determinant += (l / s).ln_1p();
+        }
+        -0.5 * (self.freedom as f64 * s.ln() + determinant + quadratic.max(0.0) / s)
+    }
+
+    /// σ² where the evidence is largest: between the floor and what the residual has without any story. Far below the
+    /// latter, columns that are nearly the same would explain their own rounding.
+    ///
+    /// D. J. C. MacKay's fixed point (Neural Computation 4 (1992) 415–447, §4): σ² = |r − C·x|² / (ν − γ), where
+    /// γ = Σλ/(λ + σ²) parameters are determined by the data. It comes from above and settles in a few steps; where it
+    /// does not, the last of them stands.
+    fn variance(&self, lambda: &DVector<f64>, b: &DVector<f64>) -> f64 {
+        const STEPS: usize = 60;
+        const SETTLED: f64 = 1e-9;
+        let nu = (self.freedom as f64).max(1.0);
+        let all = self.square / nu;
+        let lowest = self.floor.powi(2).max(LEAST * all).max(f64::MIN_POSITIVE.sqrt());
+        let mut s = all.max(lowest);
+        for _ in 0..STEPS {
+            let (mut left, mut determined) = (self.square, 0.0);
+            for (l, b) in lambda.iter().zip(b) {
+                // |r − Cx|² = rᵀr − 2bᵀx + xᵀGx at x = b/(λ + σ²)
+                left -= b * b * (l + 2.0 * s) / (l + s).powi(2);
+                determined += l / (l + s);
+            }
+            let next =
+                (left.max(0.0) / (nu - determined).max(1e-3 * nu)).clamp(lowest, all.max(lowest) * 2.0);
+            let moved = (next / s - 1.0).abs();
+            s = next;
+            if moved < SETTLED {
+                break;
+            }
+        }
+        s
+    }
 }
 
 #[cfg(test)]
@@ -87,15 +140,49 @@ mod tests {
     use super::*;
     use crate::statistics::Random;
 
+    const FREE: (f64, f64) = (f64::NEG_INFINITY, f64::INFINITY);
+
     fn noise(n: usize, seed: u64) -> DVector<f64> {
         let mut random = Random::seeded(seed, 0);
         DVector::from_fn(n, |_, _| random.normal())
     }
 
+    fn score(r: &DVector<f64>, columns: &DMatrix<f64>) -> Score {
+        Moments::new(r, columns, vec![FREE; columns.ncols()], r.len(), 0.0).score()
+    }
+
+    #[test]
+    fn the_noise_is_where_the_evidence_is_largest() {
+        let (r, c) = (noise(30, 2), noise(30, 3));
+        let r = r + &c * 0.8;
+        let columns = DMatrix::from_columns(&[c.clone(), noise(30, 5) * 40.0]);
+        let moments = Moments::new(&r, &columns, vec![FREE; 2], 30, 0.0);
+        let eigen = SymmetricEigen::new(moments.gram.clone());
+        let b = eigen.eigenvectors.tr_mul(&moments.product);
+        let best = moments.score();
+        for factor in [0.9, 0.99, 1.01, 1.1] {
+            let there = moments.log_evidence(&eigen.eigenvalues, &b, best.sigma.powi(2) * factor);
+            assert!(there < best.log_evidence, "{factor}");
+        }
+    }
+
+    #[test]
+    fn what_is_out_of_bounds_is_no_explanation() {
+        let (r, c) = (noise(60, 4), noise(60, 5));
+        let r = r - &c * 2.0;
+        let columns = DMatrix::from_columns(&[c]);
+        let of = |bounds| Moments::new(&r, &columns, vec![bounds], 60, 0.0).score().log_evidence;
+        let without = score(&r, &DMatrix::zeros(60, 0)).log_evidence;
+        assert!(of(FREE) > without + 20.0);
+        assert!(of((0.0, f64::INFINITY)) < without);
+        // the other half of the prior is twice as dense
+        assert!((of((f64::NEG_INFINITY, 0.0)) - of(FREE) - std::f64::consts::LN_2).abs() < 1e-6);
+    }
+
     #[test]
     fn without_columns_it_is_the_likelihood_of_the_best_noise() {
         let r = noise(200, 1) * 3.0;
-        let score = score(&r, &DMatrix::zeros(200, 0), 200, 0.0);
+        let score = score(&r, &DMatrix::zeros(200, 0));
         let s = r.norm_squared() / 200.0;
         assert!((score.sigma - s.sqrt()).abs() < 1e-5 * s.sqrt());
         assert!((score.log_evidence + 0.5 * 200.0 * (s.ln() + 1.0)).abs() < 1e-8);
@@ -106,7 +193,7 @@ mod tests {
         // one column: ln ∫ N(r; c·x, σ²)·N(x; 0, 1) dx, by the trapezoidal rule, against none
         let (r, c) = (noise(30, 2), noise(30, 3));
         let r = r + &c * 0.8;
-        let scored = score(&r, &DMatrix::from_columns(std::slice::from_ref(&c)), 30, 0.0);
+        let scored = score(&r, &DMatrix::from_columns(std::slice::from_ref(&c)));
         let s = scored.sigma.powi(2);
         let density = |x: f64| {
             (-0.5 * ((&r - &c * x).norm_squared() / s + x * x)).exp() / (2.0 * std::f64::consts::PI).sqrt()
@@ -122,8 +209,8 @@ mod tests {
         let mut favours = 0;
         for seed in 0..200 {
             let (r, c) = (noise(100, 2 * seed + 10), noise(100, 2 * seed + 11));
-            let without = score(&r, &DMatrix::zeros(100, 0), 100, 0.0);
-            let with = score(&r, &DMatrix::from_columns(&[c * 10.0]), 100, 0.0);
+            let without = score(&r, &DMatrix::zeros(100, 0));
+            let with = score(&r, &DMatrix::from_columns(&[c * 10.0]));
             favours += usize::from(with.log_evidence > without.log_evidence + 3.0);
         }
         assert!(favours <= 1, "{favours} of 200 clean recordings favour it by 20 to 1");

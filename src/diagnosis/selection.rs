@@ -9,7 +9,8 @@ use std::collections::BTreeMap;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::score::{Score, score};
+use super::linear::Linearised;
+use super::score::{Moments, Score};
 use super::whitening::Whitening;
 use super::{Candidate, Chosen, Evidence, World};
 
@@ -18,83 +19,123 @@ const PRIOR: (f64, f64, f64) = (0.5, 0.4, 0.1);
 /// Odds against chance from which on an effect is named.
 const NAMED: f64 = 20.0;
 /// Most effects in one story.
-const MOST: usize = 4;
-/// Step of a derivative, relative to the size of a parameter.
-const STEP: f64 = 1e-4;
-/// Gauss–Newton steps to the values of a story.
-const STEPS: usize = 8;
+const MOST: usize = 8;
+/// Of how many candidates, the likeliest by their columns at neutral values, the values are fitted.
+const REFITTED: usize = 3;
+/// Most Gauss–Newton steps to the values of a story.
+const STEPS: usize = 20;
+/// Step, in sizes, below which they have arrived: the noise of a value is hardly ever a ten-thousandth of its size.
+const ARRIVED: f64 = 1e-5;
 
 /// A story with what the recording says about it.
 #[derive(Debug, Clone)]
 pub struct Story {
-    /// The effects, strongest first.
+    /// The effects, in the order in which they were found.
     pub chosen: Vec<Chosen>,
     /// Ln of its probability, prior included, less a constant.
     pub log_probability: f64,
     /// Noise of a datum under it.
     pub sigma: f64,
-    /// Posterior covariance of all its parameters, SI, in the order of `chosen`.
+    /// Posterior covariance of all its parameters, SI, in the order of `chosen`, without regard to bounds.
     pub covariance: DMatrix<f64>,
+    /// Factors of the evidence's background columns.
+    pub background: DVector<f64>,
 }
 
 /// Looks for the most probable story.
 pub struct Search<'a> {
-    world: &'a dyn World,
+    world: &'a Linearised<'a>,
     evidence: &'a Evidence,
     whitening: Whitening,
+    /// Background, whitened and projected.
+    background: DMatrix<f64>,
+    /// Each candidate's columns at neutral values, whitened and projected, with their inner products.
+    columns: Vec<(DMatrix<f64>, DMatrix<f64>)>,
     /// Ln of the prior of each candidate over that of none.
     prior: Vec<f64>,
 }
 
 impl<'a> Search<'a> {
     /// On an evidence, with the scatter of what `told` leaves.
-    pub fn new(world: &'a dyn World, evidence: &'a Evidence, told: &[Chosen]) -> Self {
+    pub fn new(world: &'a Linearised<'a>, evidence: &'a Evidence, told: &[Chosen]) -> Self {
         let left = &evidence.residual - world.change(told);
+        let whitening = Whitening::new(evidence, &left);
+        let of_candidate = |columns: &DMatrix<f64>| {
+            let columns = whitening.apply_columns(columns);
+            let gram = columns.tr_mul(&columns);
+            (columns, gram)
+        };
         Search {
+            columns: world.neutral.iter().map(of_candidate).collect(),
+            background: whitening.apply_columns(&evidence.background),
+            prior: priors(world.candidates()),
             world,
             evidence,
-            whitening: Whitening::new(evidence, &left),
-            prior: priors(world.candidates()),
+            whitening,
         }
+    }
+
+    /// The search whose scatter is that of what its own best story leaves, with that story and the one that an unknown
+    /// curve adds to it: what is found first changes how the rest scatters.
+    pub fn settled(world: &'a Linearised<'a>, evidence: &'a Evidence) -> (Self, Story, Option<Story>) {
+        let first = Search::new(world, evidence, &[]).best().0;
+        let search = Search::new(world, evidence, &first.chosen);
+        let (story, unknown) = search.best();
+        (search, story, unknown)
     }
 
     /// Fits the values of `chosen` together, by Gauss–Newton steps from where they are, and scores them.
     pub fn fit(&self, chosen: &[Chosen]) -> Story {
+        let background = self.background.ncols();
         let mut chosen = chosen.to_vec();
-        let mut scored = self.scored(&chosen);
+        let mut scored = self.moments(&chosen).score();
         for _ in 0..STEPS {
             let before = flat(&chosen);
-            self.put(&mut chosen, &scored.estimate);
+            self.put(&mut chosen, &scored);
             let moved = flat(&chosen) - before;
-            scored = self.scored(&chosen);
-            if moved.component_div(&self.sizes(&chosen)).amax() < 1e-6 {
+            if moved.component_div(&self.sizes(&chosen)).amax() < ARRIVED {
                 break;
             }
+            scored = self.moments(&chosen).score();
         }
         let prior: f64 = chosen.iter().map(|c| self.prior[c.candidate]).sum();
         let sizes = DMatrix::from_diagonal(&self.sizes(&chosen));
+        let own = scored.covariance.view((background, background), (sizes.nrows(), sizes.ncols()));
         Story {
             log_probability: scored.log_evidence + prior,
             sigma: scored.sigma,
-            covariance: &sizes * &scored.covariance * &sizes,
+            covariance: &sizes * own * &sizes,
+            background: scored.estimate.rows(0, background).into_owned(),
             chosen,
         }
     }
 
-    /// Ln of what adding each candidate to `story` does to its probability, linearised at the candidate's neutral values;
-    /// −∞ for those that are in it already.
+    /// Ln of what adding each candidate to `story` does to its probability, by the candidate's columns at its neutral
+    /// values; −∞ for those that are in it already.
     pub fn additions(&self, story: &Story) -> Vec<f64> {
-        let present = self.scored(&story.chosen).log_evidence;
-        (0..self.world.candidates().len())
-            .map(|index| {
-                if story.chosen.iter().any(|chosen| chosen.candidate == index) {
-                    return f64::NEG_INFINITY;
-                }
-                let mut chosen = story.chosen.clone();
-                chosen.push(self.world.candidates()[index].neutral(index));
-                self.scored(&chosen).log_evidence + self.prior[index] - present
-            })
-            .collect()
+        let (r, told) = self.linear(&story.chosen);
+        let present = self.moments_of(&r, &told, &story.chosen);
+        let before = present.score().log_evidence;
+        let count = told.ncols();
+        let gain = |(index, (columns, gram)): (usize, &(DMatrix<f64>, DMatrix<f64>))| {
+            if story.chosen.iter().any(|chosen| chosen.candidate == index) {
+                return f64::NEG_INFINITY;
+            }
+            let all = count + columns.ncols();
+            let mut with = present.clone();
+            with.gram = DMatrix::zeros(all, all);
+            with.gram.view_mut((0, 0), (count, count)).copy_from(&present.gram);
+            let cross = told.tr_mul(columns);
+            with.gram.view_mut((0, count), cross.shape()).copy_from(&cross);
+            with.gram.view_mut((count, 0), (cross.ncols(), count)).copy_from(&cross.transpose());
+            with.gram.view_mut((count, count), gram.shape()).copy_from(gram);
+            with.product = DVector::zeros(all);
+            with.product.rows_mut(0, count).copy_from(&present.product);
+            with.product.rows_mut(count, columns.ncols()).copy_from(&columns.tr_mul(&r));
+            with.bounds.extend(self.world.candidates()[index].scaled_bounds());
+            with.score().log_evidence + self.prior[index] - before
+        };
+        self.columns.iter().enumerate().map(gain).collect()
     }
 
     /// The most probable story of known effects, and the one that an unknown curve adds to it, if that is named rather
@@ -134,14 +175,16 @@ impl<'a> Search<'a> {
         (story, unknown)
     }
 
-    /// The story with the likeliest candidate more, of those that are unknown or of those that are not.
+    /// The story with one candidate more, the likeliest of those that are unknown or of those that are not.
     fn longer(&self, story: &Story, unknown: bool) -> Option<Story> {
         let additions = self.additions(story);
-        (0..additions.len())
+        let mut likeliest: Vec<usize> = (0..additions.len())
             .filter(|&index| self.world.candidates()[index].is_unknown == unknown)
             .filter(|&index| additions[index] > f64::NEG_INFINITY)
-            .max_by(|&a, &b| additions[a].total_cmp(&additions[b]))
-            .map(|index| self.with(story, index))
+            .collect();
+        likeliest.sort_by(|&a, &b| additions[b].total_cmp(&additions[a]));
+        let refitted = likeliest.into_iter().take(REFITTED).map(|index| self.with(story, index));
+        refitted.reduce(|best, other| if other.log_probability > best.log_probability { other } else { best })
     }
 
     /// One candidate more.
@@ -168,18 +211,24 @@ impl<'a> Search<'a> {
         self.whitening.apply(residual).norm()
     }
 
+    /// What a story says of all data of `evidence`, of which this search may have seen only a part: its effects' `change`
+    /// of them, the background, and the nuisance that fits best to what this search has seen.
+    pub fn told(&self, story: &Story, evidence: &Evidence, change: &DVector<f64>) -> DVector<f64> {
+        let left = &self.evidence.residual
+            - self.world.change(&story.chosen)
+            - &self.evidence.background * &story.background;
+        change
+            + &evidence.background * &story.background
+            + &evidence.nuisance * self.whitening.nuisance(&self.evidence.nuisance, &left)
+    }
+
     /// Single effects exchanged for others and taken away while the story gets more probable.
     fn exchanged(&self, mut story: Story) -> Story {
         for _ in 0..MOST {
             let mut better: Option<Story> = None;
             for position in 0..story.chosen.len() {
                 let rest = self.without(&story, position);
-                let additions = self.additions(&rest);
-                let known = |&index: &usize| !self.world.candidates()[index].is_unknown;
-                let best = (0..additions.len())
-                    .filter(known)
-                    .max_by(|&a, &b| additions[a].total_cmp(&additions[b]))
-                    .map(|index| self.with(&rest, index));
+                let best = self.longer(&rest, false);
                 for other in [Some(rest), best].into_iter().flatten() {
                     let least = better.as_ref().map_or(story.log_probability + 1e-6, |b| b.log_probability);
                     if other.log_probability > least {
@@ -195,42 +244,39 @@ impl<'a> Search<'a> {
         story
     }
 
-    /// The score of a story, linearised where its values are; estimates are in sizes from the neutral values.
-    fn scored(&self, chosen: &[Chosen]) -> Score {
-        let columns = self.columns(chosen);
-        let offsets = self.offsets(chosen);
-        // recorded less told, plus what the columns tell of it: linear about the neutral values
-        let left = &self.evidence.residual - self.world.change(chosen) + &columns * &offsets;
-        let floor = self.evidence.resolution / 12.0f64.sqrt();
-        score(
-            &self.whitening.apply(&left),
-            &self.whitening.apply_columns(&columns),
-            self.whitening.degrees_of_freedom,
-            floor,
-        )
+    /// Residual and columns of a story, linear about the neutral values and whitened: the background, then its effects at
+    /// their values. Estimates are in sizes from the neutral values.
+    fn linear(&self, chosen: &[Chosen]) -> (DVector<f64>, DMatrix<f64>) {
+        let own: Vec<DMatrix<f64>> =
+            (0..chosen.len()).map(|position| self.world.columns(chosen, position)).collect();
+        let count: usize = own.iter().map(DMatrix::ncols).sum();
+        let mut columns = DMatrix::zeros(self.evidence.residual.len(), count);
+        let mut next = 0;
+        for own in own {
+            columns.columns_mut(next, own.ncols()).copy_from(&own);
+            next += own.ncols();
+        }
+        // recorded less told, plus what the columns tell of it
+        let left = &self.evidence.residual - self.world.change(chosen) + &columns * self.offsets(chosen);
+        let background = self.background.ncols();
+        let mut all = DMatrix::zeros(columns.nrows(), background + count);
+        all.columns_mut(0, background).copy_from(&self.background);
+        all.columns_mut(background, count).copy_from(&self.whitening.apply_columns(&columns));
+        (self.whitening.apply(&left), all)
     }
 
-    /// ∂change/∂parameter, by central differences, times the sizes: one column per parameter of the story.
-    fn columns(&self, chosen: &[Chosen]) -> DMatrix<f64> {
-        let n = self.evidence.residual.len();
-        let mut columns = Vec::new();
-        let mut story = chosen.to_vec();
-        for position in 0..chosen.len() {
-            let parameters = &self.world.candidates()[chosen[position].candidate].parameters;
-            for (k, parameter) in parameters.iter().enumerate() {
-                let (value, h) = (chosen[position].values[k], STEP * parameter.size);
-                story[position].values[k] = value + h;
-                let mut column = self.world.change(&story);
-                story[position].values[k] = value - h;
-                column -= self.world.change(&story);
-                story[position].values[k] = value;
-                columns.push(column * (parameter.size / (2.0 * h)));
-            }
+    fn moments(&self, chosen: &[Chosen]) -> Moments {
+        let (r, columns) = self.linear(chosen);
+        self.moments_of(&r, &columns, chosen)
+    }
+
+    fn moments_of(&self, r: &DVector<f64>, columns: &DMatrix<f64>, chosen: &[Chosen]) -> Moments {
+        let mut bounds = vec![(f64::NEG_INFINITY, f64::INFINITY); self.background.ncols()];
+        for c in chosen {
+            bounds.extend(self.world.candidates()[c.candidate].scaled_bounds());
         }
-        match columns.is_empty() {
-            true => DMatrix::zeros(n, 0),
-            false => DMatrix::from_columns(&columns),
-        }
+        let floor = self.evidence.resolution / 12.0f64.sqrt();
+        Moments::new(r, columns, bounds, self.whitening.degrees_of_freedom, floor)
     }
 
     /// Values less neutral values, in sizes.
@@ -249,9 +295,31 @@ impl<'a> Search<'a> {
         DVector::from_vec(chosen.iter().flat_map(of).collect())
     }
 
-    /// Puts estimates, in sizes from the neutral values, into a story, within the physical bounds.
-    fn put(&self, chosen: &mut [Chosen], estimate: &DVector<f64>) {
-        let mut next = estimate.iter();
+    /// Puts the estimates of a score, in sizes from the neutral values, into a story, within the physical bounds: what
+    /// would be beyond its bound is held there, and the others are what they are given that.
+    fn put(&self, chosen: &mut [Chosen], scored: &Score) {
+        let background = self.background.ncols();
+        let bounds: Vec<(f64, f64)> =
+            chosen.iter().flat_map(|c| self.world.candidates()[c.candidate].scaled_bounds()).collect();
+        let (mut mean, mut covariance) = (scored.estimate.clone(), scored.covariance.clone());
+        for _ in 0..bounds.len() {
+            let beyond = |k: usize| {
+                let (low, high) = bounds[k];
+                let value = mean[background + k];
+                value.clamp(low, high) - value
+            };
+            let farthest = (0..bounds.len()).max_by(|&a, &b| beyond(a).abs().total_cmp(&beyond(b).abs()));
+            let Some((k, by)) = farthest.map(|k| (background + k, beyond(k))) else { break };
+            let variance = covariance[(k, k)];
+            // the normal distribution given that x_k is at its bound
+            if by == 0.0 || variance <= 0.0 {
+                break;
+            }
+            let column = covariance.column(k).into_owned();
+            mean += &column * (by / variance);
+            covariance -= &column * column.transpose() / variance;
+        }
+        let mut next = mean.iter().skip(background);
         for c in chosen {
             let parameters = &self.world.candidates()[c.candidate].parameters;
             for (parameter, value) in parameters.iter().zip(&mut c.values) {

@@ -81,6 +81,7 @@ fn evidence(seed: u64, truth: impl Fn(f64) -> f64) -> Evidence {
     Evidence {
         residual: DVector::from_vec(residual),
         nuisance: DMatrix::zeros(COUNT, 0),
+        background: DMatrix::zeros(COUNT, 0),
         cell: (0..COUNT).map(|row| row % POINTS).collect(),
         shared: (0..COUNT).map(|row| row / POINTS).collect(),
         fold: (0..COUNT).map(|row| row / POINTS).collect(),

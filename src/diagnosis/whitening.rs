@@ -84,6 +84,20 @@ impl Whitening {
         result
     }
 
+    /// Factors of the nuisance columns that fit `left` best; zeros where the data cannot tell the columns apart.
+    pub fn nuisance(&self, columns: &DMatrix<f64>, left: &DVector<f64>) -> DVector<f64> {
+        if columns.ncols() == 0 {
+            return DVector::zeros(0);
+        }
+        let mut whitened = columns.clone();
+        for mut column in whitened.column_iter_mut() {
+            let v = self.whitened(&column.clone_owned());
+            column.copy_from(&v);
+        }
+        let fitted = crate::linalg::least_squares(&whitened, &self.whitened(left));
+        fitted.unwrap_or_else(|_| DVector::zeros(columns.ncols()))
+    }
+
     fn whitened(&self, v: &DVector<f64>) -> DVector<f64> {
         let mut v = v.clone();
         for (rows, share) in &self.groups {
@@ -165,6 +179,7 @@ mod tests {
         Evidence {
             residual: DVector::from_vec(residual),
             nuisance: DMatrix::zeros(n, 0),
+            background: DMatrix::zeros(n, 0),
             cell,
             fold: shared.clone(),
             shared,

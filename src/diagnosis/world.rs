@@ -1,6 +1,9 @@
 //! The physics as the engine sees it: candidates with parameters, and what they would do to a recording.
 
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
+
+/// Step of a derivative, relative to the size of a parameter.
+const STEP: f64 = 1e-4;
 
 /// One effect at one place.
 #[derive(Debug, Clone, PartialEq)]
@@ -47,11 +50,39 @@ pub trait World: Sync {
     /// The recording with the chosen effects, all acting together, less the recording without any: one number per datum
     /// of the evidence, in its unit. Zeros for no effect, or for effects at their neutral values.
     fn change(&self, story: &[Chosen]) -> DVector<f64>;
+
+    /// ∂change/∂parameter times the size of the parameter, at the values of a story: one column for each parameter of the
+    /// effect at `position`.
+    fn columns(&self, story: &[Chosen], position: usize) -> DMatrix<f64> {
+        let chosen = &story[position];
+        let mut moved = story.to_vec();
+        let parameters = &self.candidates()[chosen.candidate].parameters;
+        let mut column = |(k, parameter): (usize, &EffectParameter)| {
+            let h = STEP * parameter.size;
+            moved[position].values[k] = chosen.values[k] + h;
+            let more = self.change(&moved);
+            moved[position].values[k] = chosen.values[k] - h;
+            let less = self.change(&moved);
+            moved[position].values[k] = chosen.values[k];
+            (more - less) / (2.0 * STEP)
+        };
+        let columns: Vec<DVector<f64>> = parameters.iter().enumerate().map(&mut column).collect();
+        DMatrix::from_columns(&columns)
+    }
 }
 
 impl Candidate {
     /// The candidate at its neutral values.
     pub fn neutral(&self, index: usize) -> Chosen {
         Chosen { candidate: index, values: self.parameters.iter().map(|p| p.neutral).collect() }
+    }
+
+    /// Bounds of its parameters in sizes from the neutral values.
+    pub(super) fn scaled_bounds(&self) -> impl Iterator<Item = (f64, f64)> {
+        let scaled = |p: &EffectParameter| {
+            let of = |bound: f64| (bound - p.neutral) / p.size;
+            (of(p.bounds.0), of(p.bounds.1))
+        };
+        self.parameters.iter().map(scaled)
     }
 }

@@ -96,16 +96,6 @@ impl CalibrationWorld {
         Ok((world, evidence))
     }
 
-    /// ∂change/∂parameter of a candidate: one column per parameter, the same wherever it stands.
-    pub fn columns(&self, candidate: usize) -> DMatrix<f64> {
-        let columns = &self.columns[candidate];
-        let mut matrix = DMatrix::zeros(self.data, columns.len());
-        for (k, column) in columns.iter().enumerate() {
-            matrix.view_mut((column.first, k), (column.values.len(), 1)).copy_from_slice(&column.values);
-        }
-        matrix
-    }
-
     /// Frequency of a transmission error that is one harmonic, cycles per revolution of its joint.
     pub fn cycles_per_rev(&self, candidate: usize) -> Option<f64> {
         self.cycles_per_rev.get(candidate).copied().flatten()
@@ -134,6 +124,18 @@ impl World for CalibrationWorld {
             }
         }
         change
+    }
+
+    fn columns(&self, story: &[Chosen], position: usize) -> DMatrix<f64> {
+        let candidate = story[position].candidate;
+        let columns = &self.columns[candidate];
+        let mut matrix = DMatrix::zeros(self.data, columns.len());
+        for ((k, column), parameter) in columns.iter().enumerate().zip(&self.candidates[candidate].parameters) {
+            let mut slots = matrix.view_mut((column.first, k), (column.values.len(), 1));
+            slots.copy_from_slice(&column.values);
+            slots *= parameter.size;
+        }
+        matrix
     }
 }
 

@@ -61,6 +61,7 @@ pub(super) fn of(campaign: &Campaign, calibration: &Calibration, scene: &Scene) 
     let cells = cells(recording);
     Evidence {
         nuisance: without_held(jacobian, calibration),
+        background: DMatrix::zeros(data, 0),
         cell: cells
             .iter()
             .flat_map(|cell| [3 * cell, 3 * cell + 1, 3 * cell + 2])

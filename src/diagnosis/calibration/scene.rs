@@ -15,6 +15,8 @@ pub(super) struct Scene<'a> {
     pub postures: Vec<Posture>,
     /// What each row counts, relative to the others: pooled noise over the noise of its group.
     pub scale: Vec<f64>,
+    /// How far each row is off, in noises of its group.
+    off: Vec<f64>,
     /// Motion of every joint.
     pub motions: Vec<Motion>,
     /// C^F of the rod in {T}, m/N; zero for a rigid one.
@@ -62,6 +64,12 @@ impl<'a> Scene<'a> {
         Ok(Scene {
             recording,
             scale: recording.rows.iter().map(|row| noise.pooled / noise.of_group[row.group]).collect(),
+            off: recording
+                .rows
+                .iter()
+                .zip(&calibration.deviations)
+                .map(|(row, deviation)| deviation.norm() / noise.of_group[row.group])
+                .collect(),
             motions: campaign.robot.joints.iter().map(|joint| joint.motion).collect(),
             force_compliance: rod.as_ref().map_or_else(Matrix3::zeros, |rod| rod.force),
             bent: postures.iter().enumerate().filter_map(bend).collect(),
@@ -92,6 +100,11 @@ impl<'a> Scene<'a> {
     /// A turn of a joint by so much at each row, rad per unit of the parameter.
     pub fn turn(&self, joint: usize, angle: impl Fn(usize, &Posture) -> f64) -> Column {
         self.column(|row, posture| posture.lever[joint] * angle(row, posture))
+    }
+
+    /// How far a row is off, in noises of its group.
+    pub fn deviation(&self, row: usize) -> f64 {
+        self.off[row]
     }
 
     pub fn joint_count(&self) -> usize {

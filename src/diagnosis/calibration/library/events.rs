@@ -22,8 +22,11 @@ use crate::units::UM;
 
 const HOUR: f64 = 3600.0;
 const URAD: f64 = 1e-6;
-/// Most rows of a clamp, socket or recording after which a shift is looked for; of longer ones every second, third …
+/// Most rows of a clamp or socket after which a shift is looked for (of longer ones every second, third …), and most rows that
+/// may be outliers.
 const MOST_PLACES: usize = 200;
+/// Most rows after which the base may have moved: with its six parameters each of them is dear.
+const MOST_OF_BASE: usize = 100;
 const SHIFT: [&str; 3] = ["dx_um", "dy_um", "dz_um"];
 const TURN: [&str; 3] = ["rx_urad", "ry_urad", "rz_urad"];
 
@@ -32,11 +35,20 @@ pub(super) fn all(scene: &Scene, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
     entries.extend(shifts(scene));
     entries.extend(base(scene));
     entries.extend(drift(scene, lacks));
-    entries.extend((0..scene.postures.len()).map(|row| {
+    entries.extend(far_out(scene).into_iter().map(|row| {
         let moved = |axis: usize| scene.part(row..row + 1, |_, _| unit(axis));
         entry("outlier", scene.pose_name(row), parameters(&SHIFT, UM, OUTLIER, moved))
     }));
     entries
+}
+
+/// The rows that are farthest out, in their order: no other is an outlier.
+fn far_out(scene: &Scene) -> Vec<usize> {
+    let mut rows: Vec<usize> = (0..scene.postures.len()).collect();
+    rows.sort_by(|&a, &b| scene.deviation(b).total_cmp(&scene.deviation(a)));
+    rows.truncate(MOST_PLACES);
+    rows.sort_unstable();
+    rows
 }
 
 fn unit(axis: usize) -> Vector3<f64> {
@@ -78,10 +90,10 @@ fn clamps(scene: &Scene, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
     (0..groups.len()).map(of_clamp).collect()
 }
 
-/// Positions in `count` rows after which a shift is looked for: the number of rows before it.
-fn places(count: usize) -> impl Iterator<Item = usize> {
+/// At most `most` positions in `count` rows after which a shift is looked for: the number of rows before it.
+fn places(count: usize, most: usize) -> impl Iterator<Item = usize> {
     let places: Range<usize> = 2..count.saturating_sub(1);
-    let stride = places.len().div_ceil(MOST_PLACES).max(1);
+    let stride = places.len().div_ceil(most).max(1);
     places.step_by(stride)
 }
 
@@ -122,7 +134,7 @@ fn shifts(scene: &Scene) -> Vec<Entry> {
             };
             entry(effect, location, parameters(&SHIFT, UM, KNOCK.0, moved))
         };
-        places(rows.len()).map(after).collect()
+        places(rows.len(), MOST_PLACES).map(after).collect()
     };
     fixtures.iter().flat_map(of_fixture).collect()
 }
@@ -140,12 +152,15 @@ fn base(scene: &Scene) -> Vec<Entry> {
         six.extend(parameters(&TURN, URAD, KNOCK.1, turned));
         entry("base_shift", format!("after {}", scene.pose_name(before - 1)), six)
     };
-    places(count).map(after).collect()
+    places(count, MOST_OF_BASE).map(after).collect()
 }
 
 fn drift(scene: &Scene, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
     let rows = &scene.recording.rows;
     let known = |of: &dyn Fn(usize) -> Option<f64>| (0..rows.len()).map(of).collect::<Option<Vec<f64>>>();
+    if rows.iter().any(|row| row.temperature.is_none() && row.time.is_none()) {
+        lacks.push(lack("thermal_drift", "rows have neither temperature nor time: only their order can tell"));
+    }
     let clocks = [
         (known(&|row| rows[row].temperature), "temperature", "um_per_k", UM, PER_KELVIN),
         (known(&|row| rows[row].time), "time", "um_per_h", UM / HOUR, PER_HOUR / HOUR),
@@ -154,10 +169,7 @@ fn drift(scene: &Scene, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
     ];
     let mut entries = Vec::new();
     for (values, name, suffix, unit_si, size) in clocks {
-        let Some(values) = values else {
-            lacks.push(lack("thermal_drift", &format!("rows have no {name}")));
-            continue;
-        };
+        let Some(values) = values else { continue };
         let mean = values.iter().sum::<f64>() / values.len() as f64;
         let names = ["x", "y", "z"].map(|axis| format!("{axis}_{suffix}"));
         let names = [0, 1, 2].map(|axis| names[axis].as_str());

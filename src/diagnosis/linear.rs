@@ -40,6 +40,10 @@ impl World for Linearised<'_> {
         }
     }
 
+    fn is_linear(&self) -> bool {
+        self.world.is_linear()
+    }
+
     fn columns(&self, story: &[Chosen], position: usize) -> DMatrix<f64> {
         let whole = self.world.columns(story, position);
         match self.rows {

@@ -47,7 +47,44 @@ pub struct Score {
     pub covariance: DMatrix<f64>,
 }
 
+/// What a story leaves to others, with its own uncertainty at its own noise.
+pub struct Rest {
+    /// Of the residual, without columns.
+    pub moments: Moments,
+    /// R: takes the inner products of the story's columns with others to those whose products are to be taken off,
+    /// CᵀC − (R·UᵀC)ᵀ(R·UᵀC).
+    pub root: DMatrix<f64>,
+    /// R·b.
+    pub product: DVector<f64>,
+}
+
 impl Moments {
+    /// The story's columns U taken out of everything else: with G = V·Λ·Vᵀ and R = (Λ + σ²)^(−½)·Vᵀ,
+    /// (1 + U·Uᵀ/σ²)⁻¹ = 1 − U·Rᵀ·R·Uᵀ. Of the degrees of freedom those are left that the story does not determine.
+    pub fn rest(&self) -> Rest {
+        let eigen = match self.gram.ncols() {
+            0 => SymmetricEigen { eigenvectors: DMatrix::zeros(0, 0), eigenvalues: DVector::zeros(0) },
+            _ => SymmetricEigen::new(self.gram.clone()),
+        };
+        let lambda = eigen.eigenvalues.map(|l| l.max(0.0));
+        let s = self.variance(&lambda, &eigen.eigenvectors.tr_mul(&self.product));
+        let mut root = eigen.eigenvectors.transpose();
+        for (mut row, l) in root.row_iter_mut().zip(&lambda) {
+            row /= (l + s).sqrt();
+        }
+        let product = &root * &self.product;
+        let determined: f64 = lambda.iter().map(|l| l / (l + s)).sum();
+        let moments = Moments {
+            square: (self.square - product.norm_squared()).max(0.0),
+            gram: DMatrix::zeros(0, 0),
+            product: DVector::zeros(0),
+            bounds: Vec::new(),
+            freedom: self.freedom - (determined.round() as usize).min(self.freedom),
+            floor: self.floor,
+        };
+        Rest { moments, root, product }
+    }
+
     /// Of the residual `r` and `columns`, with bounds of their factors.
     pub fn new(
         r: &DVector<f64>,

@@ -9,6 +9,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::{DMatrix, DVector};
 
+use super::crossing::Crossing;
 use super::linear::Linearised;
 use super::score::{Moments, Score};
 use super::whitening::Whitening;
@@ -22,6 +23,8 @@ const NAMED: f64 = 20.0;
 const MOST: usize = 8;
 /// Of how many candidates, the likeliest by their columns at neutral values, the values are fitted.
 const REFITTED: usize = 3;
+/// How much larger what an addition gains may be than its estimate: factor and log odds.
+const REACH: (f64, f64) = (1.3, 10.0);
 /// Most Gauss–Newton steps to the values of a story.
 const STEPS: usize = 20;
 /// Step, in sizes, below which they have arrived: the noise of a value is hardly ever a ten-thousandth of its size.
@@ -49,8 +52,12 @@ pub struct Search<'a> {
     whitening: Whitening,
     /// Background, whitened and projected.
     background: DMatrix<f64>,
-    /// Each candidate's columns at neutral values, whitened and projected, with their inner products.
-    columns: Vec<(DMatrix<f64>, DMatrix<f64>)>,
+    /// All candidates' columns at neutral values, whitened and projected.
+    columns: Crossing,
+    /// The residual, whitened and projected.
+    residual: DVector<f64>,
+    /// Its inner products with all candidates' columns.
+    products: DVector<f64>,
     /// Ln of the prior of each candidate over that of none.
     prior: Vec<f64>,
 }
@@ -60,13 +67,12 @@ impl<'a> Search<'a> {
     pub fn new(world: &'a Linearised<'a>, evidence: &'a Evidence, told: &[Chosen]) -> Self {
         let left = &evidence.residual - world.change(told);
         let whitening = Whitening::new(evidence, &left);
-        let of_candidate = |columns: &DMatrix<f64>| {
-            let columns = whitening.apply_columns(columns);
-            let gram = columns.tr_mul(&columns);
-            (columns, gram)
-        };
+        let columns = Crossing::new(&world.neutral, |columns| whitening.apply_columns(columns));
+        let residual = whitening.apply(&evidence.residual);
         Search {
-            columns: world.neutral.iter().map(of_candidate).collect(),
+            products: columns.product(&residual),
+            columns,
+            residual,
             background: whitening.apply_columns(&evidence.background),
             prior: priors(world.candidates()),
             world,
@@ -78,8 +84,12 @@ impl<'a> Search<'a> {
     /// The search whose scatter is that of what its own best story leaves, with that story and the one that an unknown
     /// curve adds to it: what is found first changes how the rest scatters.
     pub fn settled(world: &'a Linearised<'a>, evidence: &'a Evidence) -> (Self, Story, Option<Story>) {
-        let first = Search::new(world, evidence, &[]).best().0;
-        let search = Search::new(world, evidence, &first.chosen);
+        let first = Search::new(world, evidence, &[]);
+        let (story, unknown) = first.best();
+        if !first.whitening.is_of_shared_errors() {
+            return (first, story, unknown);
+        }
+        let search = Search::new(world, evidence, &story.chosen);
         let (story, unknown) = search.best();
         (search, story, unknown)
     }
@@ -93,7 +103,7 @@ impl<'a> Search<'a> {
             let before = flat(&chosen);
             self.put(&mut chosen, &scored);
             let moved = flat(&chosen) - before;
-            if moved.component_div(&self.sizes(&chosen)).amax() < ARRIVED {
+            if self.world.is_linear() || moved.component_div(&self.sizes(&chosen)).amax() < ARRIVED {
                 break;
             }
             scored = self.moments(&chosen).score();
@@ -111,31 +121,65 @@ impl<'a> Search<'a> {
     }
 
     /// Ln of what adding each candidate to `story` does to its probability, by the candidate's columns at its neutral
-    /// values; −∞ for those that are in it already.
+    /// values and with the story's own uncertainty as it is now; −∞ for those that are in it already.
     pub fn additions(&self, story: &Story) -> Vec<f64> {
-        let (r, told) = self.linear(&story.chosen);
-        let present = self.moments_of(&r, &told, &story.chosen);
-        let before = present.score().log_evidence;
-        let count = told.ncols();
-        let gain = |(index, (columns, gram)): (usize, &(DMatrix<f64>, DMatrix<f64>))| {
-            if story.chosen.iter().any(|chosen| chosen.candidate == index) {
+        self.additions_of(story, |_| true)
+    }
+
+    /// Those of some candidates; −∞ for the others.
+    fn additions_of(&self, story: &Story, is_of: impl Fn(usize) -> bool) -> Vec<f64> {
+        let (present, cross, products) = self.crossed(&story.chosen);
+        let rest = present.rest();
+        let cross = &rest.root * cross;
+        let before = rest.moments.score().log_evidence;
+        let gain = |index: usize| {
+            if !is_of(index) || story.chosen.iter().any(|chosen| chosen.candidate == index) {
                 return f64::NEG_INFINITY;
             }
-            let all = count + columns.ncols();
-            let mut with = present.clone();
-            with.gram = DMatrix::zeros(all, all);
-            with.gram.view_mut((0, 0), (count, count)).copy_from(&present.gram);
-            let cross = told.tr_mul(columns);
-            with.gram.view_mut((0, count), cross.shape()).copy_from(&cross);
-            with.gram.view_mut((count, 0), (cross.ncols(), count)).copy_from(&cross.transpose());
-            with.gram.view_mut((count, count), gram.shape()).copy_from(gram);
-            with.product = DVector::zeros(all);
-            with.product.rows_mut(0, count).copy_from(&present.product);
-            with.product.rows_mut(count, columns.ncols()).copy_from(&columns.tr_mul(&r));
-            with.bounds.extend(self.world.candidates()[index].scaled_bounds());
+            let range = self.columns.range(index);
+            let cross = cross.columns(range.start, range.len());
+            let with = Moments {
+                gram: self.columns.gram(index) - cross.tr_mul(&cross),
+                product: products.rows(range.start, range.len()) - cross.tr_mul(&rest.product),
+                bounds: self.world.candidates()[index].scaled_bounds().collect(),
+                ..rest.moments
+            };
             with.score().log_evidence + self.prior[index] - before
         };
-        self.columns.iter().enumerate().map(gain).collect()
+        (0..self.prior.len()).map(gain).collect()
+    }
+
+    /// The moments of a story, the inner products of its columns with all candidates' and those of the residual that the story
+    /// is fitted to.
+    fn crossed(&self, chosen: &[Chosen]) -> (Moments, DMatrix<f64>, DVector<f64>) {
+        if !self.world.is_linear() {
+            let (r, told) = self.linear(chosen);
+            return (self.moments_of(&r, &told, chosen), self.columns.with(&told), self.columns.product(&r));
+        }
+        let effects: Vec<usize> = chosen.iter().map(|c| c.candidate).collect();
+        let own: Vec<usize> = effects.iter().flat_map(|&index| self.columns.range(index)).collect();
+        let (background, of_effects) = (self.columns.with(&self.background), self.columns.of(&effects));
+        let first = background.nrows();
+        let mut cross = DMatrix::zeros(first + own.len(), background.ncols());
+        cross.rows_mut(0, first).copy_from(&background);
+        cross.rows_mut(first, own.len()).copy_from(&of_effects);
+        let mut gram = DMatrix::zeros(cross.nrows(), cross.nrows());
+        let beside = cross.select_columns(&own);
+        gram.columns_mut(first, own.len()).copy_from(&beside);
+        gram.rows_mut(first, own.len()).tr_copy_from(&beside);
+        gram.view_mut((0, 0), (first, first)).copy_from(&self.background.tr_mul(&self.background));
+        let mut product = DVector::zeros(cross.nrows());
+        product.rows_mut(0, first).copy_from(&self.background.tr_mul(&self.residual));
+        product.rows_mut(first, own.len()).copy_from(&self.products.select_rows(&own));
+        let moments = Moments {
+            square: self.residual.norm_squared(),
+            gram,
+            product,
+            bounds: self.bounds(chosen),
+            freedom: self.whitening.degrees_of_freedom,
+            floor: self.floor(),
+        };
+        (moments, cross, self.products.clone())
     }
 
     /// The most probable story of known effects, and the one that an unknown curve adds to it, if that is named rather
@@ -150,14 +194,15 @@ impl<'a> Search<'a> {
             if story.chosen.len() >= MOST {
                 break;
             }
-            let Some(longer) = self.longer(story, false) else { break };
+            let Some(longer) = self.longer(story, false, f64::NEG_INFINITY) else { break };
             if longer.log_probability < story.log_probability + NAMED.ln() {
                 break;
             }
             let longer = self.exchanged(longer);
             path.push(longer);
         }
-        let rivals: Vec<Option<Story>> = path.iter().map(|story| self.longer(story, true)).collect();
+        let rivals: Vec<Option<Story>> =
+            path.iter().map(|story| self.longer(story, true, f64::NEG_INFINITY)).collect();
         let last = path.len() - 1;
         let shorter = rivals[..last]
             .iter()
@@ -175,12 +220,14 @@ impl<'a> Search<'a> {
         (story, unknown)
     }
 
-    /// The story with one candidate more, the likeliest of those that are unknown or of those that are not.
-    fn longer(&self, story: &Story, unknown: bool) -> Option<Story> {
-        let additions = self.additions(story);
+    /// The story with one candidate more, the likeliest of those that are unknown or of those that are not; none of those
+    /// that are far from a log probability of `least`.
+    fn longer(&self, story: &Story, unknown: bool, least: f64) -> Option<Story> {
+        let additions =
+            self.additions_of(story, |index| self.world.candidates()[index].is_unknown == unknown);
         let mut likeliest: Vec<usize> = (0..additions.len())
-            .filter(|&index| self.world.candidates()[index].is_unknown == unknown)
             .filter(|&index| additions[index] > f64::NEG_INFINITY)
+            .filter(|&index| story.log_probability + REACH.0 * additions[index] + REACH.1 > least)
             .collect();
         likeliest.sort_by(|&a, &b| additions[b].total_cmp(&additions[a]));
         let refitted = likeliest.into_iter().take(REFITTED).map(|index| self.with(story, index));
@@ -228,7 +275,8 @@ impl<'a> Search<'a> {
             let mut better: Option<Story> = None;
             for position in 0..story.chosen.len() {
                 let rest = self.without(&story, position);
-                let best = self.longer(&rest, false);
+                let least = better.as_ref().map_or(story.log_probability, |b| b.log_probability);
+                let best = self.longer(&rest, false, least);
                 for other in [Some(rest), best].into_iter().flatten() {
                     let least = better.as_ref().map_or(story.log_probability + 1e-6, |b| b.log_probability);
                     if other.log_probability > least {
@@ -266,17 +314,30 @@ impl<'a> Search<'a> {
     }
 
     fn moments(&self, chosen: &[Chosen]) -> Moments {
+        if self.world.is_linear() {
+            return self.crossed(chosen).0;
+        }
         let (r, columns) = self.linear(chosen);
         self.moments_of(&r, &columns, chosen)
     }
 
     fn moments_of(&self, r: &DVector<f64>, columns: &DMatrix<f64>, chosen: &[Chosen]) -> Moments {
+        let bounds = self.bounds(chosen);
+        Moments::new(r, columns, bounds, self.whitening.degrees_of_freedom, self.floor())
+    }
+
+    /// Bounds of a story's parameters, background first.
+    fn bounds(&self, chosen: &[Chosen]) -> Vec<(f64, f64)> {
         let mut bounds = vec![(f64::NEG_INFINITY, f64::INFINITY); self.background.ncols()];
         for c in chosen {
             bounds.extend(self.world.candidates()[c.candidate].scaled_bounds());
         }
-        let floor = self.evidence.resolution / 12.0f64.sqrt();
-        Moments::new(r, columns, bounds, self.whitening.degrees_of_freedom, floor)
+        bounds
+    }
+
+    /// Noise that rounding alone makes.
+    fn floor(&self) -> f64 {
+        self.evidence.resolution / 12.0f64.sqrt()
     }
 
     /// Values less neutral values, in sizes.

@@ -51,6 +51,11 @@ pub trait World: Sync {
     /// of the evidence, in its unit. Zeros for no effect, or for effects at their neutral values.
     fn change(&self, story: &[Chosen]) -> DVector<f64>;
 
+    /// True where the change is a sum of the effects' columns, the same at all values: much is then computed once.
+    fn is_linear(&self) -> bool {
+        false
+    }
+
     /// ∂change/∂parameter times the size of the parameter, at the values of a story: one column for each parameter of the
     /// effect at `position`.
     fn columns(&self, story: &[Chosen], position: usize) -> DMatrix<f64> {

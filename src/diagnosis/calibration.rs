@@ -126,11 +126,16 @@ impl World for CalibrationWorld {
         change
     }
 
+    fn is_linear(&self) -> bool {
+        true
+    }
+
     fn columns(&self, story: &[Chosen], position: usize) -> DMatrix<f64> {
         let candidate = story[position].candidate;
         let columns = &self.columns[candidate];
         let mut matrix = DMatrix::zeros(self.data, columns.len());
-        for ((k, column), parameter) in columns.iter().enumerate().zip(&self.candidates[candidate].parameters) {
+        for ((k, column), parameter) in columns.iter().enumerate().zip(&self.candidates[candidate].parameters)
+        {
             let mut slots = matrix.view_mut((column.first, k), (column.values.len(), 1));
             slots.copy_from_slice(&column.values);
             slots *= parameter.size;

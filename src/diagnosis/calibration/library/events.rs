@@ -159,7 +159,8 @@ fn drift(scene: &Scene, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
     let rows = &scene.recording.rows;
     let known = |of: &dyn Fn(usize) -> Option<f64>| (0..rows.len()).map(of).collect::<Option<Vec<f64>>>();
     if rows.iter().any(|row| row.temperature.is_none() && row.time.is_none()) {
-        lacks.push(lack("thermal_drift", "rows have neither temperature nor time: only their order can tell"));
+        lacks
+            .push(lack("thermal_drift", "rows have neither temperature nor time: only their order can tell"));
     }
     let clocks = [
         (known(&|row| rows[row].temperature), "temperature", "um_per_k", UM, PER_KELVIN),

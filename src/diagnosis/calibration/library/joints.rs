@@ -23,6 +23,8 @@ use crate::units::URAD_PER_NM;
 const URAD: f64 = 1e-6;
 /// Torque relative to the robot's largest below which a joint counts as unloaded.
 const NO_TORQUE: f64 = 1e-3;
+/// Distance below which frames are at one point and weights have no lever, m.
+const ONE_POINT: f64 = 0.01;
 /// Joints of a wrist.
 const WRIST: usize = 3;
 
@@ -91,18 +93,37 @@ fn link(scene: &Scene, j: usize) -> Option<Entry> {
 
 fn compliance_without_masses(scene: &Scene, j: usize) -> Option<Entry> {
     let down = scene.postures.first()?.gravity.try_normalize(0.0)?;
-    let beyond = (j + 1..scene.joint_count()).map(Some).chain([None]);
-    let parameters: Vec<(EffectParameter, Column)> = beyond
+    let beyond: Vec<Option<usize>> = (j + 1..scene.joint_count()).map(Some).chain([None]).collect();
+    let point =
+        |posture: &Posture, frame: Option<usize>| frame.map_or(posture.flange.origin, |k| posture.origin[k]);
+    // frames that are always at one point are one; the outermost stands for all
+    let differs = |(at, frame): (usize, &Option<usize>)| {
+        let apart = |posture: &Posture| {
+            beyond[at + 1..]
+                .iter()
+                .map(|other| (point(posture, *other) - point(posture, *frame)).norm())
+                .fold(f64::INFINITY, f64::min)
+        };
+        scene.postures.iter().any(|posture| apart(posture) > ONE_POINT)
+    };
+    let frames: Vec<Option<usize>> = beyond
+        .iter()
+        .enumerate()
+        .filter(|&(at, frame)| differs((at, frame)))
+        .map(|(_, frame)| *frame)
+        .collect();
+    let parameters: Vec<(EffectParameter, Column)> = frames
+        .into_iter()
         .filter_map(|frame| {
             // horizontal lever of a force down at the frame, m
-            let arm = |posture: &Posture| {
-                let point = frame.map_or(posture.flange.origin, |k| posture.origin[k]);
-                posture.torque_of(j, &point, &down)
-            };
+            let arm = |posture: &Posture| posture.torque_of(j, &point(posture, frame), &down);
             let largest = scene.largest(arm);
             let name = frame.map_or("flange_urad_per_m".into(), |k| format!("joint_{}_urad_per_m", k + 1));
             let column = scene.turn(j, |_, posture| arm(posture));
-            (largest > 1e-6).then(|| (linear(name, URAD, YIELDING / largest), column))
+            let mut yielding = linear(name, URAD, YIELDING / largest.max(ONE_POINT));
+            // drives yield with their torque, never against it
+            yielding.bounds.0 = 0.0;
+            (largest > ONE_POINT).then_some((yielding, column))
         })
         .collect();
     let location = format!("joint {}, masses unknown", j + 1);

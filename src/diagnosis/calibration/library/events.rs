@@ -27,6 +27,8 @@ const URAD: f64 = 1e-6;
 const MOST_PLACES: usize = 200;
 /// Most rows after which the base may have moved: with its six parameters each of them is dear.
 const MOST_OF_BASE: usize = 100;
+/// Angle by which a knock turns a plate of sockets, rad: 0.5 mm over its width.
+const PLATE: f64 = 3e-3;
 const SHIFT: [&str; 3] = ["dx_um", "dy_um", "dz_um"];
 const TURN: [&str; 3] = ["rx_urad", "ry_urad", "rz_urad"];
 
@@ -97,7 +99,7 @@ fn places(count: usize, most: usize) -> impl Iterator<Item = usize> {
     places.step_by(stride)
 }
 
-/// A clamp, a socket or all sockets of a placement that moved.
+/// A clamp or a socket that moved, or the whole plate of a placement, which may have turned as well.
 fn shifts(scene: &Scene) -> Vec<Entry> {
     let groups = &scene.recording.groups;
     let is_fixture = scene.has_sockets() || groups.len() > 1 || !groups[0].name.is_empty();
@@ -105,43 +107,54 @@ fn shifts(scene: &Scene) -> Vec<Entry> {
     if is_fixture {
         fixtures.extend((0..groups.len()).map(|k| (groups[k].name.clone(), vec![k])));
     }
+    let mut plates: Vec<(String, Vec<usize>)> = Vec::new();
     if scene.has_sockets() {
         for (k, group) in groups.iter().enumerate() {
             let Some((placement, _)) = group.name.rsplit_once('/') else { continue };
-            match fixtures.iter_mut().find(|(name, _)| name == placement) {
+            match plates.iter_mut().find(|(name, _)| name == placement) {
                 Some((_, members)) => members.push(k),
-                None => fixtures.push((placement.to_owned(), vec![k])),
+                None => plates.push((placement.to_owned(), vec![k])),
             }
         }
-        // a placement of one socket is that socket
-        fixtures.retain(|(name, members)| name.contains('/') || members.len() > 1);
+        // a plate of one socket is that socket
+        plates.retain(|(_, members)| members.len() > 1);
     }
-    let of_fixture = |(name, members): &(String, Vec<usize>)| -> Vec<Entry> {
-        let rows = rows_of(scene, |group| members.contains(&group));
-        let after = |before: usize| {
-            let moved = |axis: usize| {
-                scene.part(rows[before]..scene.postures.len(), |row, _| {
-                    match members.contains(&scene.recording.rows[row].group) {
-                        true => -unit(axis),
-                        false => Vector3::zeros(),
-                    }
-                })
-            };
-            let last = rows[before - 1];
-            let (effect, location) = match scene.has_sockets() {
-                true => ("socket_shift", format!("{name}, after row {}", last + 1)),
-                false => ("clamp_shift", format!("{name}, after {}", scene.pose_name(last))),
-            };
-            entry(effect, location, parameters(&SHIFT, UM, KNOCK.0, moved))
-        };
-        places(rows.len(), MOST_PLACES).map(after).collect()
-    };
-    fixtures.iter().flat_map(of_fixture).collect()
+    let single = fixtures.iter().flat_map(|(name, members)| moved(scene, name, members, false));
+    single.chain(plates.iter().flat_map(|(name, members)| moved(scene, name, members, true))).collect()
 }
 
-/// The robot that moved on its base: nothing else, where points are not measured.
+/// What moved, after each of its rows; what turns does so about the middle of its points.
+fn moved(scene: &Scene, name: &str, members: &[usize], turns: bool) -> Vec<Entry> {
+    let rows = rows_of(scene, |group| members.contains(&group));
+    let middle =
+        rows.iter().map(|&row| scene.postures[row].tip).sum::<Vector3<f64>>() / rows.len().max(1) as f64;
+    let after = |before: usize| {
+        let on = |displacement: &dyn Fn(&Posture) -> Vector3<f64>| {
+            scene.part(rows[before]..scene.postures.len(), |row, posture| {
+                match members.contains(&scene.recording.rows[row].group) {
+                    true => -displacement(posture),
+                    false => Vector3::zeros(),
+                }
+            })
+        };
+        let mut columns = parameters(&SHIFT, UM, KNOCK.0, |axis| on(&|_| unit(axis)));
+        if turns {
+            let turned = |axis: usize| on(&|posture: &Posture| unit(axis).cross(&(posture.tip - middle)));
+            columns.extend(parameters(&TURN, URAD, PLATE, turned));
+        }
+        let last = rows[before - 1];
+        let (effect, location) = match scene.has_sockets() {
+            true => ("socket_shift", format!("{name}, after row {}", last + 1)),
+            false => ("clamp_shift", format!("{name}, after {}", scene.pose_name(last))),
+        };
+        entry(effect, location, columns)
+    };
+    places(rows.len(), MOST_PLACES).map(after).collect()
+}
+
+/// The robot that moved on its base; with sockets, whose places are unknown, that is a plate that moved.
 fn base(scene: &Scene) -> Vec<Entry> {
-    let count = scene.postures.len();
+    let count = if scene.has_sockets() { 0 } else { scene.postures.len() };
     let after = |before: usize| {
         let on = |displacement: &dyn Fn(&Posture) -> Vector3<f64>| {
             scene.part(before..count, |_, posture| displacement(posture))

@@ -8,7 +8,9 @@ pub mod calibration;
 mod crossing;
 mod diagnose;
 mod evidence;
+mod lack_of_fit;
 mod linear;
+mod locate;
 mod proof;
 pub mod rig;
 mod score;
@@ -19,8 +21,10 @@ mod world;
 #[cfg(test)]
 mod tests;
 
-pub use diagnose::{Diagnosis, Finding, Unexplained, diagnose};
+pub use diagnose::{Diagnosis, Finding, Rival, Unexplained, diagnose, rms};
 pub use evidence::{Covariate, Evidence};
+pub use lack_of_fit::LackOfFit;
+pub use locate::Structure;
 pub use proof::Proof;
 pub use selection::Story;
 pub use world::{Candidate, Chosen, EffectParameter, World};

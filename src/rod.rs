@@ -5,6 +5,7 @@
 
 mod file;
 mod warnings;
+mod write;
 
 pub use warnings::Warning;
 

@@ -1,6 +1,9 @@
 //! TOML files whose every error names file, line and column, what stood there and what would be right.
 
 mod wording;
+mod write;
+
+pub use write::{comments, in_unit, quoted};
 
 use serde::de::DeserializeOwned;
 use toml::Spanned;

@@ -2,16 +2,18 @@
 
 use nalgebra::DVector;
 
+use super::lack_of_fit::LackOfFit;
 use super::linear::Linearised;
+use super::locate::{Structure, locate};
 use super::proof::{Proof, prove};
 use super::selection::{Search, Story};
-use super::{Evidence, World};
-use crate::statistics::chi_squared_survival;
+use super::{Chosen, Evidence, World};
+use crate::statistics::{chi_squared_survival, student_t_quantile};
 
 /// Odds within which another explanation counts as indistinguishable: 20 to 1.
 const APART: f64 = 20.0;
-/// Half width of a 95 % interval in standard deviations.
-const INTERVAL: f64 = 1.96;
+/// Probability of a lack of fit below which something is left although no curve describes it.
+const NOT_CHANCE: f64 = 1e-3;
 
 /// What a recording says about the physics that its model left out.
 #[derive(Debug, Clone)]
@@ -20,44 +22,70 @@ pub struct Diagnosis {
     pub findings: Vec<Finding>,
     /// What is structured and unexplained.
     pub unexplained: Option<Unexplained>,
-    /// Noise of a datum under the story.
+    /// Noise of a datum, with what it shares with others: the standard deviation of what is left of the data once the story,
+    /// and what is unexplained, are taken out.
     pub noise: f64,
     /// Variance of the errors that data share, over that of their own.
     pub shared_ratio: f64,
-    /// Root mean square of what the base model leaves.
-    pub rms_before: f64,
-    /// And of what the story leaves.
-    pub rms_after: f64,
+    /// What the base model leaves, once it has absorbed what it can.
+    pub before: DVector<f64>,
+    /// And what the story leaves.
+    pub after: DVector<f64>,
+    /// Does the base model leave the averages of the repeats? `None` without repeats.
+    pub lack_of_fit_before: Option<LackOfFit>,
+    /// Does the story?
+    pub lack_of_fit_after: Option<LackOfFit>,
+    /// Structure of `before` along each covariate of the evidence.
+    pub structure_before: Vec<Structure>,
+    /// And of `after`.
+    pub structure_after: Vec<Structure>,
+    /// Every candidate alone against none: ln of the odds, prior included.
+    pub odds: Vec<f64>,
     /// Held-out errors, where the recording has folds.
     pub proof: Option<Proof>,
-    /// The story, for whoever draws it.
+    /// The story.
     pub story: Story,
 }
 
 /// An effect that was adopted.
 #[derive(Debug, Clone)]
 pub struct Finding {
-    /// Index among the world's candidates.
-    pub candidate: usize,
+    /// The effect with its values.
+    pub chosen: Chosen,
+    /// Where it is.
+    pub place: String,
     /// Value and 95 % interval of each parameter, SI.
     pub parameters: Vec<(f64, f64, f64)>,
     /// Probability that noise alone fits as much better.
     pub p_value: f64,
     /// Root mean square of what it explains.
     pub rms: f64,
-    /// Candidates of other effects that explain it as well, the likeliest first.
-    pub indistinguishable: Vec<usize>,
-    /// Candidates of the same effect at other places that do.
-    pub places: Vec<usize>,
+    /// What explains it as well, likeliest first.
+    pub rivals: Vec<Rival>,
+}
+
+/// An effect that may stand in the place of a finding.
+#[derive(Debug, Clone)]
+pub struct Rival {
+    /// The effect with its values.
+    pub chosen: Chosen,
+    /// Where it is.
+    pub place: String,
+    /// The whole story with it instead, its effect last.
+    pub story: Story,
+    /// How much less probable that story is: odds, 1 for as probable.
+    pub odds: f64,
 }
 
 /// A structured remainder that no effect of the library explains.
 #[derive(Debug, Clone)]
 pub struct Unexplained {
-    /// Index of the curve among the world's candidates.
-    pub candidate: usize,
-    /// Root mean square of what it describes.
+    /// Index of the curve among the world's candidates; `None` where only the averages of repeats show that something is left.
+    pub candidate: Option<usize>,
+    /// Root mean square of what the curve describes, or of what is left.
     pub rms: f64,
+    /// What the curve says; what is left where there is none.
+    pub shape: DVector<f64>,
 }
 
 impl Diagnosis {
@@ -72,25 +100,40 @@ pub fn diagnose(world: &dyn World, evidence: &Evidence) -> Diagnosis {
     let world = &Linearised::new(world);
     let (search, story, unknown) = Search::settled(world, evidence);
     let none = search.fit(&[]);
+    let told_by_none = search.told(&none, evidence, &DVector::zeros(evidence.residual.len()));
     let change = world.change(&story.chosen);
-    let before = &evidence.residual - search.told(&none, evidence, &DVector::zeros(change.len()));
-    let after = &evidence.residual - search.told(&story, evidence, &change);
+    let told = search.told(&story, evidence, &change);
+    let (before, after) = (&evidence.residual - &told_by_none, &evidence.residual - &told);
     let mut findings: Vec<Finding> =
         (0..story.chosen.len()).map(|position| finding(world, evidence, &search, &story, position)).collect();
     findings.sort_by(|a, b| b.rms.total_cmp(&a.rms));
-    let unexplained = unknown.and_then(|longer| {
-        let curve = longer.chosen.last()?.candidate;
-        let rms = rms(&(world.change(&longer.chosen) - &change));
-        Some(Unexplained { candidate: curve, rms })
-    });
+    let lack_of_fit_after = search.lack_of_fit(&story, &told);
+    let (mut left, mut determined) = (after.clone(), story.determined);
+    let mut unexplained = None;
+    if let Some(longer) = unknown {
+        let with_curve = world.change(&longer.chosen);
+        left = &evidence.residual - search.told(&longer, evidence, &with_curve);
+        determined = longer.determined;
+        let shape = with_curve - &change;
+        let candidate = longer.chosen.last().map(|curve| curve.candidate);
+        unexplained = Some(Unexplained { candidate, rms: rms(&shape), shape });
+    } else if lack_of_fit_after.is_some_and(|test| test.p_value < NOT_CHANCE) {
+        unexplained = Some(Unexplained { candidate: None, rms: rms(&after), shape: after.clone() });
+    }
+    let freedom = (search.degrees_of_freedom() as f64 - determined).max(1.0);
     Diagnosis {
         findings,
         unexplained,
-        noise: story.sigma,
+        noise: left.norm() / freedom.sqrt(),
         shared_ratio: search.shared_ratio(),
-        rms_before: rms(&before),
-        rms_after: rms(&after),
+        lack_of_fit_before: search.lack_of_fit(&none, &told_by_none),
+        lack_of_fit_after,
+        structure_before: locate(evidence, &before),
+        structure_after: locate(evidence, &after),
+        odds: search.additions(&none),
         proof: prove(world, evidence),
+        before,
+        after,
         story,
     }
 }
@@ -106,43 +149,49 @@ fn finding(
     let candidates = world.candidates();
     let rest = search.without(story, position);
     let first: usize = story.chosen[..position].iter().map(|c| c.values.len()).sum();
+    let freedom = (search.degrees_of_freedom() as f64 - story.determined).max(1.0);
+    let reach = student_t_quantile(0.975, freedom).unwrap_or(1.96);
     let parameters = chosen
         .values
         .iter()
+        .zip(&candidates[chosen.candidate].parameters)
         .enumerate()
-        .map(|(k, &value)| {
-            let half = INTERVAL * story.covariance[(first + k, first + k)].sqrt();
-            let (low, high) = candidates[chosen.candidate].parameters[k].bounds;
+        .map(|(k, (&value, parameter))| {
+            let half = reach * story.covariance[(first + k, first + k)].max(0.0).sqrt();
+            let (low, high) = parameter.bounds;
             (value, (value - half).max(low), (value + half).min(high))
         })
         .collect();
     // candidates that would do in its place
     let additions = search.additions(&rest);
     let least = story.log_probability - rest.log_probability - 2.0 * APART.ln();
-    let mut others: Vec<(usize, f64)> = (0..additions.len())
+    let mut rivals: Vec<Rival> = (0..additions.len())
         .filter(|&index| {
             index != chosen.candidate && !candidates[index].is_unknown && additions[index] > least
         })
-        .map(|index| (index, search.with(&rest, index).log_probability))
-        .filter(|(_, log_probability)| *log_probability > story.log_probability - APART.ln())
+        .filter_map(|index| {
+            let other = search.with(&rest, index);
+            let odds = (story.log_probability - other.log_probability).exp();
+            let own = other.chosen.last()?.clone();
+            Some(Rival { place: world.place(&own), chosen: own, story: other, odds })
+        })
+        .filter(|rival| rival.odds < APART)
         .collect();
-    others.sort_by(|a, b| b.1.total_cmp(&a.1));
-    let same = |index: &usize| candidates[*index].effect == candidates[chosen.candidate].effect;
-    let (places, indistinguishable): (Vec<usize>, Vec<usize>) =
-        others.into_iter().map(|(index, _)| index).partition(same);
+    rivals.sort_by(|a, b| a.odds.total_cmp(&b.odds));
     let without = &evidence.residual - world.change(&rest.chosen);
     let with = &evidence.residual - world.change(&story.chosen);
     let gained = (search.length(&without).powi(2) - search.length(&with).powi(2)) / story.sigma.powi(2);
     Finding {
-        candidate: chosen.candidate,
+        chosen: chosen.clone(),
+        place: world.place(chosen),
         parameters,
         p_value: chi_squared_survival(gained.max(0.0), chosen.values.len() as f64).unwrap_or(1.0),
         rms: rms(&world.change(std::slice::from_ref(chosen))),
-        indistinguishable,
-        places,
+        rivals,
     }
 }
 
-fn rms(v: &DVector<f64>) -> f64 {
+/// Root mean square.
+pub fn rms(v: &DVector<f64>) -> f64 {
     v.norm() / (v.len().max(1) as f64).sqrt()
 }

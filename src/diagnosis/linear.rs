@@ -44,6 +44,10 @@ impl World for Linearised<'_> {
         self.world.is_linear()
     }
 
+    fn place(&self, chosen: &Chosen) -> String {
+        self.world.place(chosen)
+    }
+
     fn columns(&self, story: &[Chosen], position: usize) -> DMatrix<f64> {
         let whole = self.world.columns(story, position);
         match self.rows {

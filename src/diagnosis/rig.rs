@@ -16,10 +16,15 @@
 //! which is exact once the engine has fitted its own multiple of F.
 
 mod action;
+mod correction;
 mod datum;
 mod evidence;
+mod feasible;
 mod library;
+mod limits;
 mod memory;
+mod next;
+mod result;
 mod structure;
 #[cfg(test)]
 mod tests;
@@ -33,7 +38,11 @@ use super::{Candidate, Chosen, Evidence, World};
 use crate::error::Result;
 use crate::rig::readings::Readings;
 use crate::rod::Rod;
+pub use correction::Correction;
 pub use datum::Datum;
+pub use limits::{Limit, NotTestable};
+pub use next::Proposal;
+pub use result::{RigDiagnosis, diagnose};
 
 /// Readings of a rig with all the physics that might be in them.
 #[derive(Debug, Clone)]
@@ -62,6 +71,15 @@ impl RigWorld {
     /// # Errors
     /// [`crate::Error::Input`] for a station that is not on the rod; what the beam model refuses.
     pub fn new(readings: &Readings, rod: Option<&Rod>) -> Result<(RigWorld, Evidence)> {
+        RigWorld::of_candidates(readings, rod, &|_| true)
+    }
+
+    /// The world with some of its candidates only.
+    fn of_candidates(
+        readings: &Readings,
+        rod: Option<&Rod>,
+        is_wanted: &dyn Fn(&Candidate) -> bool,
+    ) -> Result<(RigWorld, Evidence)> {
         let data = datum::all(&readings.rows);
         let (body, place) = match rod {
             Some(rod) => {
@@ -93,7 +111,7 @@ impl RigWorld {
             Body::Lines(_) => evidence::slopes(&world.data, &world.place),
         };
         let evidence = evidence::of(&world.data, nuisance);
-        world.add_candidates(rod);
+        world.add_candidates(rod, is_wanted);
         Ok((world, evidence))
     }
 
@@ -103,19 +121,22 @@ impl RigWorld {
     }
 
     /// Fills in the library and the unknown rivals, without what can do nothing to these readings.
-    fn add_candidates(&mut self, rod: Option<&Rod>) {
+    fn add_candidates(&mut self, rod: Option<&Rod>, is_wanted: &dyn Fn(&Candidate) -> bool) {
         let mut entries = library::all(&self.data, &mut self.body, rod);
         entries.extend(unknown::all(&self.data, &self.deflections(), rod.is_some()));
+        entries.retain(|(candidate, _)| is_wanted(candidate));
         for (candidate, actions) in entries {
             let (parameters, actions): (Vec<_>, Vec<_>) = candidate
                 .parameters
                 .into_iter()
                 .zip(actions)
                 .filter(|(parameter, action)| {
-                    self.is_felt(action, parameter.neutral, parameter.size, parameter.bounds)
+                    // where a joint is matters as soon as it yields
+                    matches!(action, Action::Station(_))
+                        || self.is_felt(action, parameter.neutral, parameter.size, parameter.bounds)
                 })
                 .unzip();
-            if !parameters.is_empty() {
+            if actions.iter().any(|action| !matches!(action, Action::Station(_))) {
                 self.candidates.push(Candidate { parameters, ..candidate });
                 self.actions.push(actions);
             }
@@ -207,6 +228,14 @@ impl RigWorld {
 impl World for RigWorld {
     fn candidates(&self) -> &[Candidate] {
         &self.candidates
+    }
+
+    fn place(&self, chosen: &Chosen) -> String {
+        let at_value = |(action, value): (&Action, &f64)| {
+            matches!(action, Action::Station(_)).then(|| library::place(*value))
+        };
+        let moved = self.actions[chosen.candidate].iter().zip(&chosen.values).find_map(at_value);
+        moved.unwrap_or_else(|| self.candidates[chosen.candidate].location.clone())
     }
 
     fn change(&self, story: &[Chosen]) -> DVector<f64> {

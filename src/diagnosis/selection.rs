@@ -10,6 +10,7 @@ use std::collections::BTreeMap;
 use nalgebra::{DMatrix, DVector};
 
 use super::crossing::Crossing;
+use super::lack_of_fit::{LackOfFit, lack_of_fit};
 use super::linear::Linearised;
 use super::score::{Moments, Score};
 use super::whitening::Whitening;
@@ -43,6 +44,8 @@ pub struct Story {
     pub covariance: DMatrix<f64>,
     /// Factors of the evidence's background columns.
     pub background: DVector<f64>,
+    /// How many parameters, background included, the data determine.
+    pub determined: f64,
 }
 
 /// Looks for the most probable story.
@@ -116,6 +119,7 @@ impl<'a> Search<'a> {
             sigma: scored.sigma,
             covariance: &sizes * own * &sizes,
             background: scored.estimate.rows(0, background).into_owned(),
+            determined: scored.covariance.nrows() as f64 - scored.covariance.trace(),
             chosen,
         }
     }
@@ -248,6 +252,11 @@ impl<'a> Search<'a> {
         self.fit(&chosen)
     }
 
+    /// Data less what the nuisance absorbs.
+    pub fn degrees_of_freedom(&self) -> usize {
+        self.whitening.degrees_of_freedom
+    }
+
     /// Variance of the errors that data share, over that of their own.
     pub fn shared_ratio(&self) -> f64 {
         self.whitening.ratio
@@ -256,6 +265,14 @@ impl<'a> Search<'a> {
     /// Length of a residual once shared errors and nuisance are taken out of it.
     pub fn length(&self, residual: &DVector<f64>) -> f64 {
         self.whitening.apply(residual).norm()
+    }
+
+    /// Do the averages of repeats leave a story that says `told`?
+    pub fn lack_of_fit(&self, story: &Story, told: &DVector<f64>) -> Option<LackOfFit> {
+        let parameters: usize = story.chosen.iter().map(|chosen| chosen.values.len()).sum();
+        let absorbed = self.evidence.residual.len() - self.whitening.degrees_of_freedom;
+        let left = &self.evidence.residual - told;
+        lack_of_fit(|v| self.whitening.whitened(v), &left, &self.evidence.cell, parameters + absorbed)
     }
 
     /// What a story says of all data of `evidence`, of which this search may have seen only a part: its effects' `change`

@@ -91,7 +91,7 @@ fn evidence(seed: u64, truth: impl Fn(f64) -> f64) -> Evidence {
 }
 
 fn effects(diagnosis: &Diagnosis, world: &Columns) -> Vec<String> {
-    diagnosis.findings.iter().map(|f| world.candidates[f.candidate].effect.clone()).collect()
+    diagnosis.findings.iter().map(|f| world.candidates[f.chosen.candidate].effect.clone()).collect()
 }
 
 #[test]
@@ -130,9 +130,9 @@ fn twins_are_named_as_such() {
         let names = effects(&found, &world);
         assert_eq!(names.len(), 1, "seed {seed}: {names:?}");
         let rivals: Vec<&str> = found.findings[0]
-            .indistinguishable
+            .rivals
             .iter()
-            .map(|&i| world.candidates[i].effect.as_str())
+            .map(|rival| world.candidates[rival.chosen.candidate].effect.as_str())
             .collect();
         let (name, rival) = if names[0] == "slope" { ("slope", "twin") } else { ("twin", "slope") };
         assert_eq!(names[0], name);
@@ -148,8 +148,8 @@ fn a_place_is_found_and_two_effects_are_two() {
         let found =
             diagnose(&world, &evidence(seed, |x| 9.0 * x * x - 7.0 * f64::from(u8::from(x > 4.5 / 15.0))));
         let names = effects(&found, &world);
-        let place = found.findings.iter().find(|f| world.candidates[f.candidate].effect == "step");
-        let is_there = place.is_some_and(|f| world.candidates[f.candidate].location == "4");
+        let place = found.findings.iter().find(|f| world.candidates[f.chosen.candidate].effect == "step");
+        let is_there = place.is_some_and(|f| world.candidates[f.chosen.candidate].location == "4");
         both += usize::from(names.len() == 2 && names.contains(&"curvature".into()) && is_there);
     }
     assert!(both >= 24, "{both} of 30");

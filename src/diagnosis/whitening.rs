@@ -103,7 +103,8 @@ impl Whitening {
         fitted.unwrap_or_else(|_| DVector::zeros(columns.ncols()))
     }
 
-    fn whitened(&self, v: &DVector<f64>) -> DVector<f64> {
+    /// Whitened, not projected.
+    pub fn whitened(&self, v: &DVector<f64>) -> DVector<f64> {
         let mut v = v.clone();
         for (rows, share) in &self.groups {
             let mean = rows.iter().map(|&row| v[row]).sum::<f64>() / rows.len() as f64;

@@ -56,6 +56,11 @@ pub trait World: Sync {
         false
     }
 
+    /// Where an effect is once its values are known; the candidate's location unless the values say more.
+    fn place(&self, chosen: &Chosen) -> String {
+        self.candidates()[chosen.candidate].location.clone()
+    }
+
     /// ∂change/∂parameter times the size of the parameter, at the values of a story: one column for each parameter of the
     /// effect at `position`.
     fn columns(&self, story: &[Chosen], position: usize) -> DMatrix<f64> {

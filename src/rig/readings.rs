@@ -4,6 +4,7 @@
 //! Offsets are differences from the unloaded, zeroed rod.
 
 mod warning;
+mod write;
 
 use std::fmt;
 use std::path::Path;

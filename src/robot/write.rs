@@ -6,6 +6,7 @@ use super::file::default_name;
 use super::{Joint, Motion, Robot};
 use crate::error::{Error, Result};
 use crate::spatial::Pose;
+use crate::toml_text::{self, in_unit, quoted};
 use crate::units::{DEG, MM, URAD_PER_NM};
 
 impl Robot {
@@ -25,12 +26,7 @@ impl Robot {
                 hint: "write it into its URDF".to_owned(),
             });
         }
-        let mut text = String::new();
-        for line in comments.iter().flat_map(|comment| comment.lines()) {
-            let plain: String = line.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
-            text += format!("# {plain}").trim_end();
-            text.push('\n');
-        }
+        let mut text = toml_text::comments(comments);
         text += &format!("name = {}\n", quoted(&self.name));
         if let Some(source) = &self.source {
             text += &format!("source = {}\n", quoted(source));
@@ -77,16 +73,4 @@ fn write_joint(text: &mut String, index: usize, joint: &Joint) -> std::fmt::Resu
         writeln!(text, "{key} = {:?}", limits.map(|limit| in_unit(limit, si)))?;
     }
     Ok(())
-}
-
-/// The number of fewest digits that times `si` is `value`, or the nearest there is.
-pub(super) fn in_unit(value: f64, si: f64) -> f64 {
-    let quotient = value / si;
-    let rounded = (14..17).filter_map(|digits| format!("{quotient:.digits$e}").parse::<f64>().ok());
-    let candidates = rounded.chain([quotient, quotient.next_up(), quotient.next_down()]);
-    candidates.into_iter().find(|candidate| candidate * si == value).unwrap_or(quotient)
-}
-
-fn quoted(text: &str) -> String {
-    toml::Value::from(text).to_string()
 }

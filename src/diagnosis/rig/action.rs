@@ -12,7 +12,7 @@
 use nalgebra::{Rotation3, Unit, Vector3};
 
 use super::datum::Datum;
-use super::structure::Softening;
+use super::structure::{Nodes, Softening};
 use crate::rig::readings::Axis;
 
 /// What one parameter does. The number in brackets is its value where nothing happens.
@@ -32,6 +32,8 @@ pub(super) enum Action {
     Bend(f64),
     /// Compliance of the joint of this number, rad/(N·m) \[that of the rod file\].
     Joint(usize, f64),
+    /// Where the joint of these numbers is, m \[its station\]; see [`Nodes`].
+    Station(Nodes),
     /// k₂, 1/N² \[0\].
     PerLoadSquared,
     /// k₁, 1/N \[0\].
@@ -123,6 +125,7 @@ impl<'a> State<'a> {
             Action::ShearModulus => self.softening.shear *= value,
             Action::Bend(of_file) => self.softening.bend += value - of_file,
             Action::Joint(joint, of_file) => self.softening.joints.push((*joint, value - of_file)),
+            Action::Station(nodes) => nodes.move_joint(&mut self.softening, value),
             Action::PerLoadSquared => self.per_load_squared += value,
             Action::PerLoad => self.per_load += value,
             Action::Memory(memory) => self.memories.push((memory, value)),

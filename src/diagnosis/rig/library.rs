@@ -15,7 +15,7 @@ use super::structure::Structure;
 use crate::diagnosis::{Candidate, EffectParameter};
 use crate::rig::readings::Axis;
 use crate::rod::{BendFlexibility, Rod};
-use crate::units::{DEG, UM, URAD_PER_NM};
+use crate::units::{DEG, MM, UM, URAD_PER_NM};
 
 /// A candidate with what its parameters do.
 pub(super) type Entry = (Candidate, Vec<Action>);
@@ -133,25 +133,45 @@ fn of_moduli() -> [Entry; 2] {
 }
 
 /// Declared joints, the root, then joints that nobody declared along the rod. A value is a joint's whole compliance, to be
-/// written into the rod file.
+/// written into the rod file. A joint that nobody declared may be anywhere up to half way to the next station of the scan.
 fn of_joints(structure: &mut Structure, rod: &Rod) -> Vec<Entry> {
-    let named =
-        rod.joints.iter().map(|j| ("joint_compliance", j.name.clone(), j.station, [j.bending, j.torsion]));
-    let root = [("root_compliance", "root".to_owned(), 0.0, [0.0; 2])];
-    let scanned = stations(rod)
-        .into_iter()
-        .map(|station| ("joint_compliance", format!("station {:.1} mm", station * 1e3), station, [0.0; 2]));
+    let scan = stations(rod);
+    let named = rod
+        .joints
+        .iter()
+        .map(|j| ("joint_compliance", j.name.clone(), j.station, [j.bending, j.torsion], false));
+    let root = [("root_compliance", "root".to_owned(), 0.0, [0.0; 2], false)];
+    let reach = |station: f64| {
+        let others = scan.iter().map(|other| (other - station).abs()).filter(|distance| *distance > 0.0);
+        0.5 * others.fold(f64::INFINITY, f64::min)
+    };
+    let scanned =
+        scan.iter().copied().map(|station| ("joint_compliance", place(station), station, [0.0; 2], true));
     let rotation = structure.rotation();
-    let of_joint = |(effect, location, station, of_file): (&str, String, f64, [f64; 2])| {
+    let of_joint = |(effect, location, station, of_file, is_scanned): (&str, String, f64, [f64; 2], bool)| {
         // a joint that the beam model cannot compute is no candidate
         let [bending, torsion] = structure.add_joint(station).ok()?;
         let compliance =
             |name, k: usize| parameter(name, URAD_PER_NM, of_file[k], JOINT * rotation[k], NOT_NEGATIVE);
-        let parameters = vec![compliance("bending_urad_per_nm", 0), compliance("torsion_urad_per_nm", 1)];
-        let candidate = Candidate { effect: effect.into(), location, parameters, is_unknown: false };
-        Some((candidate, vec![Action::Joint(bending, of_file[0]), Action::Joint(torsion, of_file[1])]))
+        let mut parameters = vec![compliance("bending_urad_per_nm", 0), compliance("torsion_urad_per_nm", 1)];
+        let mut actions = vec![Action::Joint(bending, of_file[0]), Action::Joint(torsion, of_file[1])];
+        if is_scanned
+            && let Some(nodes) = structure.add_nodes(station, [bending, torsion], reach(station)).ok()?
+        {
+            let [before, _, behind] = nodes.stations;
+            // as likely anywhere
+            let size = (behind - station) / 3.0f64.sqrt();
+            parameters.push(parameter("station_mm", MM, station, size, (before, behind)));
+            actions.push(Action::Station(nodes));
+        }
+        Some((Candidate { effect: effect.into(), location, parameters, is_unknown: false }, actions))
     };
     named.chain(root).chain(scanned).filter_map(of_joint).collect()
+}
+
+/// How a station that has no name is said.
+pub(super) fn place(station: f64) -> String {
+    format!("station {:.1} mm", station / MM)
 }
 
 /// The flexibility factor of the bend, to be written into the rod file.

@@ -34,6 +34,8 @@ pub(super) struct Structure {
     pub bend_factor: f64,
     /// Per rad/(N·m), in the order in which they were added.
     joints: Vec<Parts>,
+    /// Where each of them is, m.
+    stations: Vec<f64>,
     pairs: Vec<(f64, f64)>,
     rod: Rod,
 }
@@ -54,6 +56,42 @@ pub(super) struct Softening {
 impl Default for Softening {
     fn default() -> Self {
         Softening { stiffness: 1.0, shear: 1.0, bend: 0.0, joints: Vec::new() }
+    }
+}
+
+/// A joint that may sit anywhere about its station.
+///
+/// On a straight piece of the rod the displacement per compliance of a joint is a polynomial of second degree in its
+/// station, for the lever arms of the load and of the reading are of first degree: the polynomial through three stations is
+/// exact. On an arc of a few degrees it is so to 1e-4.
+#[derive(Debug, Clone)]
+pub(super) struct Nodes {
+    /// Stations before, at and behind, m, at equal distances.
+    pub stations: [f64; 3],
+    /// The joints there: bending, torsion.
+    pub joints: [[usize; 2]; 3],
+}
+
+impl Nodes {
+    /// Of the polynomial through the nodes, at `station`.
+    fn weights(&self, station: f64) -> [f64; 3] {
+        let [before, at, _] = self.stations;
+        let x = (station - at) / (at - before);
+        [0.5 * x * (x - 1.0), 1.0 - x * x, 0.5 * x * (x + 1.0)]
+    }
+
+    /// Moves what `softening` has of the joint in the middle to `station`.
+    pub(super) fn move_joint(&self, softening: &mut Softening, station: f64) {
+        let weights = self.weights(station);
+        let moved: Vec<(usize, f64)> = softening
+            .joints
+            .iter()
+            .flat_map(|&(joint, change)| match self.joints[1].iter().position(|&own| own == joint) {
+                Some(kind) => (0..3).map(|node| (self.joints[node][kind], change * weights[node])).collect(),
+                None => vec![(joint, change)],
+            })
+            .collect();
+        softening.joints = moved;
     }
 }
 
@@ -81,6 +119,7 @@ impl Structure {
             arc: arc.filter(|parts| parts.iter().any(|part| part.amax() > 0.0)),
             bend_factor,
             joints: Vec::new(),
+            stations: Vec::new(),
             pairs,
             rod: without_joints,
         })
@@ -92,9 +131,25 @@ impl Structure {
         for (bending, torsion) in [(1.0, 0.0), (0.0, 1.0)] {
             let joint = Joint { name: String::new(), station, bending, torsion };
             let with_joint = Rod { joints: vec![joint], ..self.rod.clone() };
+            self.stations.push(station);
             self.joints.push(difference(&responses(&with_joint, &self.pairs)?, &self.pipes, 1.0));
         }
         Ok([first, first + 1])
+    }
+
+    /// Adds joints by which the one at `station`, added as `joint`, may be moved by `reach` (m) either way, less where the
+    /// rod bends or a load or a sensor stands; `None` where it stands at such a place.
+    pub(super) fn add_nodes(&mut self, station: f64, joint: [usize; 2], reach: f64) -> Result<Option<Nodes>> {
+        const LEAST: f64 = 0.01 * MM;
+        let ends = [0.0, self.rod.bend_start(), self.rod.bend_end(), self.rod.length()];
+        let kinks = self.pairs.iter().flat_map(|&(load, read)| [load, read]).chain(ends);
+        let reach = kinks.fold(reach, |reach, kink| reach.min((kink - station).abs()));
+        if reach < LEAST {
+            return Ok(None);
+        }
+        let (before, behind) = (station - reach, station + reach);
+        let joints = [self.add_joint(before)?, joint, self.add_joint(behind)?];
+        Ok(Some(Nodes { stations: [before, station, behind], joints }))
     }
 
     /// The parts as `softening` leaves them; unchanged ones to the last digit where it changes nothing.
@@ -112,6 +167,11 @@ impl Structure {
             whole
         };
         (0..self.whole.len()).map(of_pair).collect()
+    }
+
+    /// Where the joint of this number was added, m.
+    pub(super) fn station(&self, joint: usize) -> f64 {
+        self.stations[joint]
     }
 
     /// True where there is an arc that can ovalise.

@@ -19,8 +19,8 @@ use super::xml::{Source, child};
 use super::{BASE_LINK, TIP_LINK, Zero};
 use crate::error::{Error, Result};
 use crate::robot::Robot;
-use crate::robot::write::in_unit;
 use crate::spatial::{Pose, turned_about_z};
+use crate::toml_text::in_unit;
 use crate::units::URAD_PER_NM;
 
 /// A robot in its URDF.

@@ -1,0 +1,243 @@
+//! Measurements that a rig can make: other axes, loads, stations, unloading, waiting.
+
+use crate::rig::readings::{Axis, Direction, Phase, Reading, Readings};
+use crate::rod::Rod;
+use crate::units::MM;
+
+/// Repeats of a proposed measurement, each from a new zero.
+const REPEATS: usize = 3;
+/// Time between two readings, s.
+const STEP: f64 = 30.0;
+
+/// Something that could be measured next.
+#[derive(Debug, Clone)]
+pub(super) struct Measurement {
+    /// What to do; a full sentence.
+    pub words: String,
+    /// A few of the present readings, so that nothing that they show is forgotten, then those to come; these have offsets of
+    /// a straight line.
+    pub readings: Readings,
+    /// How many rows are present ones.
+    pub known_rows: usize,
+}
+
+/// What is hung and read, one after the other.
+#[derive(Debug, Clone, Copy)]
+struct Step {
+    direction: Direction,
+    load: f64,
+    phase: Phase,
+    /// Since the load was hung, s.
+    waited: f64,
+    load_station: Option<f64>,
+    read_station: Option<f64>,
+}
+
+/// All that could be measured, the simplest first.
+pub(super) fn feasible(readings: &Readings, rod: Option<&Rod>) -> Vec<Measurement> {
+    let plan = Plan::new(readings, rod);
+    let mut all = Vec::new();
+    for axis in plan.axes() {
+        let direction = Direction { axis, sign: 1 };
+        let levels = plan.levels(axis);
+        let (list, largest) = (newtons(&levels), levels.last().copied().unwrap_or_default());
+        let up = |loads: &[f64], sign: i8| -> Vec<Step> {
+            loads.iter().map(|&load| at_tip(Direction { axis, sign }, load)).collect()
+        };
+        let up_and_down: Vec<Step> = up(&levels, 1)
+            .into_iter()
+            .chain(
+                levels
+                    .iter()
+                    .rev()
+                    .skip(1)
+                    .map(|&load| Step { phase: Phase::Unload, ..at_tip(direction, load) }),
+            )
+            .collect();
+        all.push((format!("Load the tip along {axis} with {list} N"), up(&levels, 1)));
+        all.push((
+            format!(
+                "Load the tip along {axis} with {list} N, and read again at the same loads while unloading"
+            ),
+            up_and_down,
+        ));
+        all.push((format!("Load the tip against {axis}, along -{axis}, with {list} N"), up(&levels, -1)));
+        let small = [0.05, 0.1, 0.2].map(|share| share * largest);
+        all.push((
+            format!("Load the tip along {axis} with small loads, {} N", newtons(&small)),
+            up(&small, 1),
+        ));
+        let double = [largest, 1.5 * largest, 2.0 * largest];
+        all.push((
+            format!("Load the tip along {axis} with {} N, if the rod and the rig bear it", newtons(&double)),
+            up(&double, 1),
+        ));
+        let wait = |load: f64| {
+            [0.0, 60.0, 600.0, 3600.0].map(|waited| Step { waited, ..at_tip(direction, load) }).to_vec()
+        };
+        all.push((
+            format!("Hang {} N along {axis} and read at once and after 1, 10 and 60 minutes, without touching anything", newton(largest)),
+            wait(largest),
+        ));
+        for &station in &plan.stations {
+            let mm = format!("{:.0}", station / MM);
+            let there = |load: f64| Step { load_station: Some(station), ..at_tip(direction, load) };
+            all.push((
+                format!("Hang {list} N along {axis} at station {mm} mm instead of the tip"),
+                levels.iter().map(|&load| there(load)).collect(),
+            ));
+            let read = |load: f64| Step { read_station: Some(station), ..at_tip(direction, load) };
+            all.push((
+                format!("Load the tip along {axis} with {list} N, with the sensors at station {mm} mm"),
+                levels.iter().map(|&load| read(load)).collect(),
+            ));
+        }
+    }
+    all.into_iter().map(|(words, steps)| plan.measurement(words, &steps)).collect()
+}
+
+fn at_tip(direction: Direction, load: f64) -> Step {
+    Step { direction, load, phase: Phase::Load, waited: 0.0, load_station: None, read_station: None }
+}
+
+/// What the present readings allow.
+struct Plan<'a> {
+    readings: &'a Readings,
+    has_rod: bool,
+    stations: Vec<f64>,
+    /// Some of the present rows, each a trial of its own.
+    known: Vec<Reading>,
+}
+
+impl<'a> Plan<'a> {
+    fn new(readings: &'a Readings, rod: Option<&Rod>) -> Self {
+        let mut known: Vec<Reading> = Vec::new();
+        for row in readings.rows.iter().filter(|row| row.load > 0.0) {
+            let kind = |r: &Reading| {
+                (r.direction, r.phase, r.load_station.map(f64::to_bits), r.read_station.map(f64::to_bits))
+            };
+            // two loads of each kind
+            if known.iter().filter(|k| kind(k) == kind(row)).all(|k| k.load == row.load)
+                && known.iter().filter(|k| kind(k) == kind(row)).count() < 2
+                || known.iter().all(|k| kind(k) != kind(row))
+            {
+                known.push(Reading { trial: Some(format!("known {}", known.len())), ..row.clone() });
+            }
+        }
+        Plan { readings, has_rod: rod.is_some(), stations: rod.map(stations).unwrap_or_default(), known }
+    }
+
+    /// Axes that could be loaded: all of a rod, the present ones of a line.
+    fn axes(&self) -> Vec<Axis> {
+        let is_loaded = |axis: &Axis| self.readings.rows.iter().any(|row| row.direction.axis == *axis);
+        Axis::ALL.into_iter().filter(|axis| self.has_rod || is_loaded(axis)).collect()
+    }
+
+    /// Loads that have been used along the axis, four of them at most; those of the other axes where there are none.
+    fn levels(&self, axis: Axis) -> Vec<f64> {
+        let of = |is_of: &dyn Fn(&Reading) -> bool| {
+            let mut loads: Vec<f64> = self
+                .readings
+                .rows
+                .iter()
+                .filter(|row| row.load > 0.0 && is_of(row))
+                .map(|row| row.load)
+                .collect();
+            loads.sort_by(f64::total_cmp);
+            loads.dedup();
+            loads
+        };
+        let mut loads = of(&|row| row.direction.axis == axis);
+        if loads.is_empty() {
+            loads = of(&|_| true);
+        }
+        let last = loads.len().saturating_sub(1);
+        let mut picked: Vec<f64> = (0..4).filter_map(|k| loads.get(k * last / 3).copied()).collect();
+        picked.dedup();
+        picked
+    }
+
+    fn measurement(&self, words: String, steps: &[Step]) -> Measurement {
+        let has_time = self.readings.rows.iter().all(|row| row.time.is_some());
+        let has_phase = steps.iter().any(|step| step.phase == Phase::Unload)
+            || self.readings.rows.iter().any(|row| row.phase.is_some());
+        let temperature = self.readings.rows.iter().map(|row| row.temperature).collect::<Option<Vec<f64>>>();
+        let temperature = temperature.and_then(|t| t.first().copied());
+        let is_waiting = steps.iter().any(|step| step.waited > 0.0);
+        let mut rows = self.known.clone();
+        let mut clock = rows.iter().filter_map(|row| row.time).fold(0.0, f64::max);
+        // waiting takes long enough once
+        for repeat in 0..if is_waiting { 1 } else { REPEATS } {
+            for step in steps {
+                clock += STEP;
+                let slopes = self.slopes(step.direction);
+                let signed = f64::from(step.direction.sign) * step.load;
+                rows.push(Reading {
+                    direction: step.direction,
+                    load: step.load,
+                    offset: slopes.map(|slope| slope.map(|slope| slope * signed)),
+                    trial: Some(format!("next {repeat}")),
+                    phase: has_phase.then_some(step.phase),
+                    time: (has_time || is_waiting).then_some(clock + step.waited),
+                    temperature,
+                    load_station: step.load_station,
+                    read_station: step.read_station,
+                    line: 0,
+                });
+            }
+        }
+        let many = if is_waiting { "" } else { ", three times, each from a new zero" };
+        let channels = if self.has_rod { "dx, dy and dz" } else { "the offset" };
+        Measurement {
+            words: format!("{words}{many}; read {channels}."),
+            known_rows: self.known.len(),
+            readings: Readings { rows, ..self.readings.clone() },
+        }
+    }
+
+    /// Slope through the origin of each channel under loads along a direction, m/N: 0 for a rod's channel that was not read,
+    /// and nothing for that of a line.
+    fn slopes(&self, direction: Direction) -> [Option<f64>; 3] {
+        Axis::ALL.map(|channel| {
+            let rows = self.readings.rows.iter().filter(|row| row.direction.axis == direction.axis);
+            let (mut xy, mut xx) = (0.0, 0.0);
+            for row in rows {
+                if let Some(offset) = row.offset[channel.index()] {
+                    xy += row.signed_load() * offset;
+                    xx += row.load * row.load;
+                }
+            }
+            match xx > 0.0 {
+                true => Some(xy / xx),
+                false => self.has_rod.then_some(0.0),
+            }
+        })
+    }
+}
+
+/// Where a load could hang or a sensor stand: at the declared joints, at the end of the bend, in the middle of the pipes.
+fn stations(rod: &Rod) -> Vec<f64> {
+    const APART: f64 = 15.0 * MM;
+    let (start, end, tip) = (rod.bend_start(), rod.bend_end(), rod.length());
+    let joints = rod.joints.iter().map(|joint| joint.station);
+    let mut stations: Vec<f64> = Vec::new();
+    for station in joints.chain([end, 0.5 * (end + tip), 0.5 * start]) {
+        if station > APART && station < tip - APART && stations.iter().all(|s| (s - station).abs() > APART) {
+            stations.push(station);
+        }
+    }
+    stations
+}
+
+fn newton(load: f64) -> String {
+    crate::units::significant(load, 3)
+}
+
+/// `5, 10 and 20`.
+fn newtons(loads: &[f64]) -> String {
+    let loads: Vec<String> = loads.iter().map(|&load| newton(load)).collect();
+    match loads.split_last() {
+        Some((last, rest)) if !rest.is_empty() => format!("{} and {last}", rest.join(", ")),
+        _ => loads.join(""),
+    }
+}

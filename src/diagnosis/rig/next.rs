@@ -1,0 +1,201 @@
+//! The measurement that would tell a finding from its rivals.
+//!
+//! Two stories predict new readings η₁ and η₂, each with the uncertainty that its parameters have by now. New readings of noise
+//! σ tell them apart by the expected ln of the odds
+//!
+//! ½·dᵀ·(σ²(1 + ρJ) + S₁Σ₁S₁ᵀ + S₂Σ₂S₂ᵀ)⁻¹·d,   d = η₁ − η₂
+//!
+//! with S the sensitivities and Σ the covariances of the parameters. Of all feasible measurements the one is proposed that
+//! separates the finding best from its closest rival (T-optimal: A. C. Atkinson, V. V. Fedorov, Biometrika 62 (1975) 57–70).
+
+use nalgebra::{DMatrix, DVector};
+
+use super::feasible::{Measurement, feasible};
+use super::{Body, RigWorld};
+use crate::diagnosis::{Candidate, Chosen, Diagnosis, Evidence, Finding, Rival, Story, World};
+use crate::error::Result;
+use crate::rig::readings::Readings;
+use crate::rod::Rod;
+
+/// Rivals that a measurement has to separate the finding from: the likeliest ones.
+const MOST_RIVALS: usize = 6;
+/// A more laborious measurement has to be so much better,
+const BETTER: f64 = 1.3;
+/// unless these ln odds, which leave no doubt, are expected of the simpler one.
+const DECISIVE: f64 = 30.0;
+
+/// A measurement to make next.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Proposal {
+    /// In the user's words; a full sentence.
+    pub words: String,
+    /// By how much it would tell the finding from its closest rival: ln of the odds that are expected.
+    pub log_odds: f64,
+    /// What it tells the finding from: effect and place.
+    pub rivals: Vec<(String, String)>,
+}
+
+/// The feasible measurement that best tells `finding` from all its rivals; `None` where it has none, or where none of the
+/// measurements can.
+pub(super) fn next_measurement(
+    readings: &Readings,
+    rod: Option<&Rod>,
+    world: &RigWorld,
+    evidence: &Evidence,
+    diagnosis: &Diagnosis,
+    finding: &Finding,
+) -> Result<Option<Proposal>> {
+    let rivals = apart(world, finding);
+    if rivals.is_empty() {
+        return Ok(None);
+    }
+    let noise = diagnosis.story.sigma.max(evidence.resolution / 12.0f64.sqrt());
+    let mut best: Option<(f64, String)> = None;
+    let stories = rivals.iter().map(|rival| &rival.story).chain([&diagnosis.story]);
+    let involved: Vec<&Candidate> =
+        stories.flat_map(|story| &story.chosen).map(|chosen| &world.candidates[chosen.candidate]).collect();
+    for measurement in feasible(readings, rod) {
+        let Some(future) = Future::new(&measurement, world, rod, &involved)? else { continue };
+        let of_rival = |rival: &&Rival| {
+            future.log_odds(world, &diagnosis.story, &rival.story, noise, diagnosis.shared_ratio)
+        };
+        let closest = rivals.iter().map(of_rival).fold(DECISIVE, f64::min);
+        if best.as_ref().is_none_or(|(log_odds, _)| closest > BETTER * log_odds) {
+            best = Some((closest, measurement.words));
+        }
+    }
+    // odds of less than 3 : 1 are none
+    let best = best.filter(|(log_odds, _)| *log_odds > 1.0);
+    Ok(best.map(|(log_odds, words)| Proposal {
+        words,
+        log_odds,
+        rivals: rivals
+            .iter()
+            .map(|rival| (world.candidates()[rival.chosen.candidate].effect.clone(), rival.place.clone()))
+            .collect(),
+    }))
+}
+
+/// The rivals to be told apart: the likeliest of every other effect, then those of the same effect at the farthest places.
+fn apart<'a>(world: &RigWorld, finding: &'a Finding) -> Vec<&'a Rival> {
+    let effect = |chosen: &Chosen| world.candidates()[chosen.candidate].effect.as_str();
+    let own = effect(&finding.chosen);
+    let mut apart: Vec<&Rival> = Vec::new();
+    for rival in &finding.rivals {
+        let is_new = apart.iter().all(|known| effect(&known.chosen) != effect(&rival.chosen));
+        if effect(&rival.chosen) != own && is_new && apart.len() < MOST_RIVALS {
+            apart.push(rival);
+        }
+    }
+    if apart.is_empty() {
+        let mut places: Vec<&Rival> = finding.rivals.iter().collect();
+        places.sort_by_key(|rival| rival.chosen.candidate);
+        apart.extend(places.first().copied());
+        apart.extend(places.last().copied().filter(|_| places.len() > 1));
+    }
+    apart
+}
+
+/// Readings that might be made, as a world of their own.
+struct Future {
+    world: RigWorld,
+    /// The data that are new.
+    rows: Vec<usize>,
+    shared: Vec<usize>,
+    nuisance: DMatrix<f64>,
+}
+
+impl Future {
+    /// `None` where the measurement is none for this world.
+    fn new(
+        measurement: &Measurement,
+        present: &RigWorld,
+        rod: Option<&Rod>,
+        involved: &[&Candidate],
+    ) -> Result<Option<Future>> {
+        let is_involved = |candidate: &Candidate| involved.iter().any(|known| is_same(candidate, known));
+        let (world, evidence) = RigWorld::of_candidates(&measurement.readings, rod, &is_involved)?;
+        let rows: Vec<usize> =
+            (0..world.data.len()).filter(|&i| world.data[i].row > measurement.known_rows).collect();
+        let is_none = rows.is_empty()
+            || matches!((&present.body, &world.body), (Body::Lines(a), Body::Lines(b)) if a != b);
+        Ok((!is_none).then(|| Future {
+            shared: rows.iter().map(|&row| evidence.shared[row]).collect(),
+            nuisance: evidence.nuisance.select_rows(&rows),
+            world,
+            rows,
+        }))
+    }
+
+    fn log_odds(&self, present: &RigWorld, a: &Story, b: &Story, noise: f64, shared_ratio: f64) -> f64 {
+        let n = self.rows.len();
+        let mut covariance = DMatrix::from_fn(n, n, |i, j| {
+            let shared = if self.shared[i] == self.shared[j] { shared_ratio } else { 0.0 };
+            noise * noise * (shared + f64::from(u8::from(i == j)))
+        });
+        let mut difference = DVector::zeros(n);
+        for (story, sign) in [(a, 1.0), (b, -1.0)] {
+            let (chosen, kept) = self.translated(present, &story.chosen);
+            difference += self.world.change(&chosen).select_rows(&self.rows) * sign;
+            let columns = self.sensitivities(&chosen);
+            let known = story.covariance.select_rows(&kept).select_columns(&kept);
+            covariance += &columns * known * columns.transpose();
+        }
+        // what the base model absorbs by itself tells nothing
+        let scale = difference.amax().max(noise);
+        for column in self.nuisance.column_iter() {
+            let unit = column.amax();
+            if unit > 0.0 {
+                let column = column * (100.0 * scale / unit);
+                covariance += &column * column.transpose();
+            }
+        }
+        match covariance.cholesky() {
+            Some(root) => 0.5 * difference.dot(&root.solve(&difference)),
+            None => 0.0,
+        }
+    }
+
+    /// A story of the present world in this one, and which of its parameters have a meaning here. What belongs to single rows
+    /// (slips, outliers) will not happen again.
+    fn translated(&self, present: &RigWorld, story: &[Chosen]) -> (Vec<Chosen>, Vec<usize>) {
+        let (mut chosen, mut kept, mut first) = (Vec::new(), Vec::new(), 0);
+        for effect in story {
+            let old = &present.candidates[effect.candidate];
+            let same = self.world.candidates.iter().enumerate().find(|(_, new)| is_same(new, old));
+            if let Some((index, new)) = same {
+                let mut values = Vec::new();
+                for parameter in &new.parameters {
+                    let k = old.parameters.iter().position(|q| q.name == parameter.name).unwrap_or_default();
+                    values.push(effect.values[k]);
+                    kept.push(first + k);
+                }
+                chosen.push(Chosen { candidate: index, values });
+            }
+            first += effect.values.len();
+        }
+        (chosen, kept)
+    }
+
+    /// ∂change/∂parameter of the new data, SI.
+    fn sensitivities(&self, story: &[Chosen]) -> DMatrix<f64> {
+        let mut all = DMatrix::zeros(self.rows.len(), 0);
+        for (position, chosen) in story.iter().enumerate() {
+            let columns = self.world.columns(story, position).select_rows(&self.rows);
+            let parameters = &self.world.candidates[chosen.candidate].parameters;
+            for (column, parameter) in columns.column_iter().zip(parameters) {
+                let at = all.ncols();
+                all = all.insert_column(at, 0.0);
+                all.set_column(at, &(column / parameter.size));
+            }
+        }
+        all
+    }
+}
+
+/// The candidate of another recording that stands for the same.
+fn is_same(new: &Candidate, old: &Candidate) -> bool {
+    (&new.effect, &new.location) == (&old.effect, &old.location)
+        && !new.is_unknown
+        && new.parameters.iter().all(|p| old.parameters.iter().any(|q| q.name == p.name))
+}

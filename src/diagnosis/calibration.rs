@@ -64,12 +64,17 @@ impl CalibrationWorld {
     /// # Errors
     /// As [`crate::calibration::Compensation::new`].
     pub fn new(campaign: &Campaign, calibration: &Calibration) -> Result<(CalibrationWorld, Evidence)> {
-        let data = 3 * campaign.measurements.len() + evidence::known_count(campaign, calibration);
         let scene = Scene::new(campaign, calibration)?;
         let evidence = evidence::of(campaign, calibration, &scene);
-        let whitening = Whitening::new(&evidence, &evidence.residual);
         let (mut entries, not_testable) = library::all(&scene);
         entries.extend(unknown::all(&scene));
+        let world = CalibrationWorld { not_testable, ..CalibrationWorld::of(entries, &evidence) };
+        Ok((world, evidence))
+    }
+
+    /// Of entries, without what does nothing or is absorbed.
+    fn of(entries: Vec<Entry>, evidence: &Evidence) -> Self {
+        let data = evidence.residual.len();
         let mut world = CalibrationWorld {
             candidates: Vec::new(),
             columns: Vec::new(),
@@ -77,8 +82,9 @@ impl CalibrationWorld {
             survival: Vec::new(),
             data,
             absorbed: Vec::new(),
-            not_testable,
+            not_testable: Vec::new(),
         };
+        let whitening = Whitening::new(evidence, &evidence.residual);
         let entries: Vec<Entry> = entries.into_iter().filter_map(Entry::felt).collect();
         let survival =
             crate::parallel::in_parallel(entries.len(), |k| survival(&entries[k], &whitening, data));
@@ -93,7 +99,7 @@ impl CalibrationWorld {
             world.cycles_per_rev.push(entry.cycles_per_rev);
             world.survival.push(survival);
         }
-        Ok((world, evidence))
+        world
     }
 
     /// Frequency of a transmission error that is one harmonic, cycles per revolution of its joint.

@@ -75,11 +75,6 @@ pub(super) fn of(campaign: &Campaign, calibration: &Calibration, scene: &Scene) 
     }
 }
 
-/// Number of data that belong to no row.
-pub(super) fn known_count(campaign: &Campaign, calibration: &Calibration) -> usize {
-    known(campaign, calibration).len()
-}
-
 fn known(campaign: &Campaign, calibration: &Calibration) -> Vec<Known> {
     let free: Vec<Parameter> = calibration.parameters.iter().map(|p| p.parameter).collect();
     let place = |group: usize| Vector3::from(calibration.sockets[group].map(|(value, _)| value));

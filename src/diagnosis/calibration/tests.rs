@@ -2,6 +2,7 @@
 
 mod columns;
 mod finding;
+mod recorded;
 
 use nalgebra::Vector3;
 

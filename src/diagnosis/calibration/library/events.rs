@@ -4,7 +4,7 @@
 //! clamp_pose                   −(t + φ × (ball − clamp))     t, φ: where the clamp is, less where the file says it is
 //! clamp_shift, socket_shift    −t from some row on           t: how far the clamp, or the socket, moved
 //! base_shift                   t + φ × (ball − base)         from some row on: the robot moved
-//! thermal_drift                d·(T − T̄), d·(t − t̄)          of the robot in {W} or of its tool in {T}
+//! thermal_drift                d·(T − T̄), d·(t − t̄), d·e^(−t/t₁)    of the robot in {W} or of its tool in {T}
 //! outlier                      t at one row
 //! ```
 //!
@@ -14,12 +14,14 @@ use std::ops::Range;
 
 use nalgebra::Vector3;
 
-use super::{CLAMP, KNOCK, NotTestable, OUTLIER, PER_HOUR, PER_KELVIN, lack};
+use super::{CLAMP, KNOCK, NotTestable, OUTLIER, PER_HOUR, PER_KELVIN, WARM_UP, lack};
 use crate::diagnosis::EffectParameter;
 use crate::diagnosis::calibration::posture::Posture;
 use crate::diagnosis::calibration::scene::{Column, Entry, Scene, entry, linear};
 use crate::units::UM;
 
+/// Time constants of a robot that warms up, as parts of the recording.
+const WARMING: [f64; 4] = [0.03, 0.1, 0.2, 0.4];
 const HOUR: f64 = 3600.0;
 const URAD: f64 = 1e-6;
 /// Most rows of a clamp or socket after which a shift is looked for (of longer ones every second, third …), and most rows that
@@ -168,39 +170,44 @@ fn base(scene: &Scene) -> Vec<Entry> {
     places(count, MOST_OF_BASE).map(after).collect()
 }
 
+/// How a drift goes: name of its course, value by row, unit of its parameters (as a suffix and in SI), size.
+type Course<'a> = (String, Vec<f64>, &'a str, f64, f64);
+
+/// With temperature or time where they are known, and in any case with the order; steadily, or as a robot warms up.
 fn drift(scene: &Scene, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
     let rows = &scene.recording.rows;
     let known = |of: &dyn Fn(usize) -> Option<f64>| (0..rows.len()).map(of).collect::<Option<Vec<f64>>>();
-    if rows.iter().any(|row| row.temperature.is_none() && row.time.is_none()) {
-        lacks
-            .push(lack("thermal_drift", "rows have neither temperature nor time: only their order can tell"));
+    let (temperature, time) = (known(&|row| rows[row].temperature), known(&|row| rows[row].time));
+    if temperature.is_none() && time.is_none() {
+        let reason = "rows have neither temperature nor time: only their order can tell";
+        lacks.push(lack("thermal_drift", reason));
     }
-    let clocks = [
-        (known(&|row| rows[row].temperature), "temperature", "um_per_k", UM, PER_KELVIN),
-        (known(&|row| rows[row].time), "time", "um_per_h", UM / HOUR, PER_HOUR / HOUR),
-        // a recording without a clock drifts from its first to its last row
-        (known(&|row| Some(row as f64 / rows.len() as f64)), "order", "um", UM, PER_HOUR),
-    ];
-    let mut entries = Vec::new();
-    for (values, name, suffix, unit_si, size) in clocks {
-        let Some(values) = values else { continue };
-        let mean = values.iter().sum::<f64>() / values.len() as f64;
+    // a recording without a clock drifts from its first to its last row
+    let clock = time.clone().unwrap_or_else(|| (0..rows.len()).map(|row| row as f64).collect());
+    let first = clock.iter().copied().fold(f64::INFINITY, f64::min);
+    let last = clock.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let share = |t: f64| (t - first) / (last - first).max(f64::MIN_POSITIVE);
+    let mut courses: Vec<Course> =
+        vec![("order".into(), clock.iter().map(|&t| share(t)).collect(), "um", UM, PER_HOUR)];
+    courses.extend(WARMING.map(|part| {
+        let cold = clock.iter().map(|&t| (-share(t) / part).exp()).collect();
+        (format!("warm-up over {} % of the recording", 100.0 * part), cold, "um", UM, WARM_UP)
+    }));
+    courses.extend(temperature.map(|values| ("temperature".into(), values, "um_per_k", UM, PER_KELVIN)));
+    courses.extend(time.map(|values| ("time".into(), values, "um_per_h", UM / HOUR, PER_HOUR / HOUR)));
+    let of_course = |(name, values, suffix, unit_si, size): Course| {
+        let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
         let names = ["x", "y", "z"].map(|axis| format!("{axis}_{suffix}"));
-        let names = [0, 1, 2].map(|axis| names[axis].as_str());
-        let world = |axis: usize| scene.column(|row, _| unit(axis) * (values[row] - mean));
-        let tool = |axis: usize| {
-            scene.column(|row, posture| posture.flange.rotation.column(axis) * (values[row] - mean))
+        let drifting = |place: &str, along: &dyn Fn(&Posture, usize) -> Vector3<f64>| {
+            let column =
+                |axis: usize| scene.column(|row, posture| along(posture, axis) * (values[row] - mean));
+            let names = [0, 1, 2].map(|axis| names[axis].as_str());
+            entry("thermal_drift", format!("{place}, with {name}"), parameters(&names, unit_si, size, column))
         };
-        entries.push(entry(
-            "thermal_drift",
-            format!("base, with {name}"),
-            parameters(&names, unit_si, size, world),
-        ));
-        entries.push(entry(
-            "thermal_drift",
-            format!("tool, with {name}"),
-            parameters(&names, unit_si, size, tool),
-        ));
-    }
-    entries
+        [
+            drifting("base", &|_, axis| unit(axis)),
+            drifting("tool", &|posture, axis| posture.flange.rotation.column(axis).into()),
+        ]
+    };
+    courses.into_iter().flat_map(of_course).collect()
 }

@@ -26,7 +26,7 @@ const CURVES: [f64; 5] = [2.0, 4.0, 8.0, 16.0, 32.0];
 /// Beyond so many cosines there is no curve: over a wide range a scan sees what is fine.
 const MOST_COSINES: usize = 160;
 
-pub(super) fn all(scene: &Scene) -> Vec<Entry> {
+pub(in crate::diagnosis::calibration) fn all(scene: &Scene) -> Vec<Entry> {
     let of_joint = |j: usize| {
         let harmonics = frequencies(scene, j).into_iter().map(move |n| harmonic(scene, j, n));
         harmonics.chain(CURVES.into_iter().filter_map(move |cycles| curve(scene, j, cycles)))

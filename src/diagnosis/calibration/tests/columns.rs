@@ -146,8 +146,7 @@ fn columns_are_what_a_changed_robot_does() {
             "thermal_drift",
             "tool, with order",
             Box::new(|r, row, v| {
-                let count = 60.0;
-                r.setup.tool.x += v * (row as f64 / count - 59.0 / 2.0 / count);
+                r.setup.tool.x += v * (row as f64 / 59.0 - 0.5);
             }),
         ),
     ];

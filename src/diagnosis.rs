@@ -5,7 +5,6 @@
 //! them were real. Which effects there are, how they act together and how they are said to people is the world's business.
 
 pub mod calibration;
-mod crossing;
 mod diagnose;
 mod evidence;
 mod lack_of_fit;
@@ -15,6 +14,7 @@ mod proof;
 pub mod rig;
 mod score;
 mod selection;
+mod sparse;
 mod whitening;
 mod world;
 

@@ -66,7 +66,7 @@ mod tests {
 
     #[test]
     fn one_cell_that_is_off_is_seen_and_chance_is_not() {
-        assert!(test(1, 3.0).p_value < 1e-4);
+        assert!(test(1, 4.0).p_value < 1e-4);
         assert_eq!((test(1, 0.0).dof_fit, test(1, 0.0).dof_repeats), (16, 64));
         let by_chance = (0..200).filter(|&seed| test(seed, 0.0).p_value < 0.05).count();
         assert!((3..=20).contains(&by_chance), "{by_chance} of 200");

@@ -37,10 +37,10 @@ fn along(covariate: &Covariate, residual: &DVector<f64>, stream: u64) -> Structu
     let centre = mean(&values).unwrap_or_default();
     values.iter_mut().for_each(|value| *value -= centre);
     let square: f64 = values.iter().map(|v| v * v).sum();
-    if square <= 0.0 {
+    let groups = groups(&known.iter().map(|&i| covariate.values[i]).collect::<Vec<_>>());
+    if square <= 0.0 || groups.len() < 2 {
         return Structure { strength: 0.0, z: 0.0 };
     }
-    let groups = groups(&known.iter().map(|&i| covariate.values[i]).collect::<Vec<_>>());
     let strength = |values: &[f64]| match PER_VALUE * groups.len() <= values.len() {
         true => {
             let of = |group: &std::ops::Range<usize>| {

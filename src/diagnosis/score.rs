@@ -34,6 +34,19 @@ pub struct Moments {
     pub floor: f64,
 }
 
+/// Columns that may be added to those of a story.
+#[derive(Debug, Clone)]
+pub struct More<'a> {
+    /// Their inner products with each other.
+    pub gram: &'a DMatrix<f64>,
+    /// Those of the story's columns (rows) with them (columns).
+    pub cross: DMatrix<f64>,
+    /// Those with r.
+    pub product: DVector<f64>,
+    /// Bounds of the scaled parameters.
+    pub bounds: Vec<(f64, f64)>,
+}
+
 /// What a fit of a story comes to.
 #[derive(Debug, Clone)]
 pub struct Score {
@@ -47,44 +60,7 @@ pub struct Score {
     pub covariance: DMatrix<f64>,
 }
 
-/// What a story leaves to others, with its own uncertainty at its own noise.
-pub struct Rest {
-    /// Of the residual, without columns.
-    pub moments: Moments,
-    /// R: takes the inner products of the story's columns with others to those whose products are to be taken off,
-    /// CᵀC − (R·UᵀC)ᵀ(R·UᵀC).
-    pub root: DMatrix<f64>,
-    /// R·b.
-    pub product: DVector<f64>,
-}
-
 impl Moments {
-    /// The story's columns U taken out of everything else: with G = V·Λ·Vᵀ and R = (Λ + σ²)^(−½)·Vᵀ,
-    /// (1 + U·Uᵀ/σ²)⁻¹ = 1 − U·Rᵀ·R·Uᵀ. Of the degrees of freedom those are left that the story does not determine.
-    pub fn rest(&self) -> Rest {
-        let eigen = match self.gram.ncols() {
-            0 => SymmetricEigen { eigenvectors: DMatrix::zeros(0, 0), eigenvalues: DVector::zeros(0) },
-            _ => SymmetricEigen::new(self.gram.clone()),
-        };
-        let lambda = eigen.eigenvalues.map(|l| l.max(0.0));
-        let s = self.variance(&lambda, &eigen.eigenvectors.tr_mul(&self.product));
-        let mut root = eigen.eigenvectors.transpose();
-        for (mut row, l) in root.row_iter_mut().zip(&lambda) {
-            row /= (l + s).sqrt();
-        }
-        let product = &root * &self.product;
-        let determined: f64 = lambda.iter().map(|l| l / (l + s)).sum();
-        let moments = Moments {
-            square: (self.square - product.norm_squared()).max(0.0),
-            gram: DMatrix::zeros(0, 0),
-            product: DVector::zeros(0),
-            bounds: Vec::new(),
-            freedom: self.freedom - (determined.round() as usize).min(self.freedom),
-            floor: self.floor,
-        };
-        Rest { moments, root, product }
-    }
-
     /// Of the residual `r` and `columns`, with bounds of their factors.
     pub fn new(
         r: &DVector<f64>,
@@ -111,7 +87,7 @@ impl Moments {
         let spread = DMatrix::from_diagonal(&lambda.map(|l| s / (l + s)));
         let estimate = &eigen.eigenvectors * shrunk;
         let covariance = &eigen.eigenvectors * spread * eigen.eigenvectors.transpose();
-        let room: f64 = (0..p).map(|k| self.room(k, estimate[k], covariance[(k, k)].sqrt())).sum();
+        let room: f64 = (0..p).map(|k| room(self.bounds[k], estimate[k], covariance[(k, k)].sqrt())).sum();
         Score {
             log_evidence: self.log_evidence(&lambda, &b, s) + room,
             sigma: s.sqrt(),
@@ -120,14 +96,56 @@ impl Moments {
         }
     }
 
-    /// Ln of the posterior mass within the bounds over the prior mass there.
-    fn room(&self, k: usize, mean: f64, sd: f64) -> f64 {
-        let (low, high) = self.bounds[k];
-        if low == f64::NEG_INFINITY && high == f64::INFINITY {
-            return 0.0;
-        }
-        let sd = sd.max(f64::MIN_POSITIVE);
-        ln_normal_mass((low - mean) / sd, (high - mean) / sd) - ln_normal_mass(low, high)
+    /// About the log evidence that `more` columns add to a story of this score: the noise follows what they explain without
+    /// being fitted again.
+    ///
+    /// With the story's columns out of them (G' = Gₘ − X(G + σ²)⁻¹Xᵀ, b' = bₘ − X(G + σ²)⁻¹b, X the cross products) they explain
+    /// Δ = b'ᵀ(G' + σ²)⁻¹b', which leaves s' = σ²·(1 − Δ/νσ²), and
+    ///
+    /// gain ≈ −½·ν·ln(1 − Δ/νσ²) − ½·ln|1 + G'/s'| + ln(room)
+    pub fn about(&self, score: &Score, more: &More) -> f64 {
+        let s = score.sigma.powi(2);
+        // (G + σ²)⁻¹ is the posterior covariance over σ²
+        let reduced = &score.covariance * &more.cross / s;
+        let gram = more.gram - more.cross.tr_mul(&reduced);
+        let product = &more.product - reduced.tr_mul(&self.product);
+        let k = gram.ncols();
+        let ridge = &gram + DMatrix::from_diagonal_element(k, k, s);
+        let Some(root) = ridge.cholesky() else { return f64::NEG_INFINITY };
+        let estimate = root.solve(&product);
+        let nu = (self.freedom as f64).max(1.0);
+        let explained = (product.dot(&estimate) / (nu * s)).clamp(0.0, 1.0 - 1e-9);
+        let left = (s * (1.0 - explained)).max(self.floor.powi(2)).max(f64::MIN_POSITIVE.sqrt());
+        let next = gram + DMatrix::from_diagonal_element(k, k, left);
+        let Some(root) = next.cholesky() else { return f64::NEG_INFINITY };
+        let determinant: f64 = (0..k).map(|i| (root.l_dirty()[(i, i)].powi(2) / left).ln()).sum();
+        let estimate = root.solve(&product);
+        let room: f64 = more
+            .bounds
+            .iter()
+            .enumerate()
+            .filter(|(_, bounds)| bounds.0.is_finite() || bounds.1.is_finite())
+            .map(|(i, &bounds)| {
+                // the inverse's diagonal by its own solve
+                let unit = DVector::from_fn(k, |j, _| f64::from(u8::from(i == j)));
+                let sd = (left * root.solve(&unit)[i]).sqrt();
+                room(bounds, estimate[i], sd)
+            })
+            .sum();
+        -0.5 * (nu * (-explained).ln_1p() + determinant) + room
+    }
+
+    /// Of these and `more` columns.
+    pub fn with(&self, more: &More) -> Moments {
+        let (old, new) = (self.gram.ncols(), more.gram.ncols());
+        let mut gram = self.gram.clone().resize(old + new, old + new, 0.0);
+        gram.view_mut((0, old), (old, new)).copy_from(&more.cross);
+        gram.view_mut((old, 0), (new, old)).copy_from(&more.cross.transpose());
+        gram.view_mut((old, old), (new, new)).copy_from(more.gram);
+        let mut product = self.product.clone().resize_vertically(old + new, 0.0);
+        product.rows_mut(old, new).copy_from(&more.product);
+        let bounds = self.bounds.iter().chain(&more.bounds).copied().collect();
+        Moments { gram, product, bounds, ..self.clone() }
     }
 
     fn log_evidence(&self, lambda: &DVector<f64>, b: &DVector<f64>, s: f64) -> f64 {
@@ -170,6 +188,15 @@ impl Moments {
         }
         s
     }
+}
+
+/// Ln of the posterior mass within the bounds over the prior mass there.
+fn room((low, high): (f64, f64), mean: f64, sd: f64) -> f64 {
+    if low == f64::NEG_INFINITY && high == f64::INFINITY {
+        return 0.0;
+    }
+    let sd = sd.max(f64::MIN_POSITIVE);
+    ln_normal_mass((low - mean) / sd, (high - mean) / sd) - ln_normal_mass(low, high)
 }
 
 #[cfg(test)]

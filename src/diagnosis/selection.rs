@@ -9,10 +9,10 @@ use std::collections::BTreeMap;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::crossing::Crossing;
 use super::lack_of_fit::{LackOfFit, lack_of_fit};
 use super::linear::Linearised;
-use super::score::{Moments, Score};
+use super::score::{Moments, More, Score};
+use super::sparse::Sparse;
 use super::whitening::Whitening;
 use super::{Candidate, Chosen, Evidence, World};
 
@@ -24,8 +24,8 @@ const NAMED: f64 = 20.0;
 const MOST: usize = 8;
 /// Of how many candidates, the likeliest by their columns at neutral values, the values are fitted.
 const REFITTED: usize = 3;
-/// How much larger what an addition gains may be than its estimate: factor and log odds.
-const REACH: (f64, f64) = (1.3, 10.0);
+/// And of how many the evidence is computed exactly.
+const SCORED: usize = 12;
 /// Most Gauss–Newton steps to the values of a story.
 const STEPS: usize = 20;
 /// Step, in sizes, below which they have arrived: the noise of a value is hardly ever a ten-thousandth of its size.
@@ -55,12 +55,9 @@ pub struct Search<'a> {
     whitening: Whitening,
     /// Background, whitened and projected.
     background: DMatrix<f64>,
-    /// All candidates' columns at neutral values, whitened and projected.
-    columns: Crossing,
-    /// The residual, whitened and projected.
-    residual: DVector<f64>,
-    /// Its inner products with all candidates' columns.
-    products: DVector<f64>,
+    /// Each candidate's columns at neutral values, whitened, with their inner products once they are projected too. Inner
+    /// products with what is projected need no projection of theirs.
+    columns: Vec<(Sparse, DMatrix<f64>)>,
     /// Ln of the prior of each candidate over that of none.
     prior: Vec<f64>,
 }
@@ -70,12 +67,13 @@ impl<'a> Search<'a> {
     pub fn new(world: &'a Linearised<'a>, evidence: &'a Evidence, told: &[Chosen]) -> Self {
         let left = &evidence.residual - world.change(told);
         let whitening = Whitening::new(evidence, &left);
-        let columns = Crossing::new(&world.neutral, |columns| whitening.apply_columns(columns));
-        let residual = whitening.apply(&evidence.residual);
+        let of_candidate = |columns: &DMatrix<f64>| {
+            let whitened = whitening.whitened_columns(columns);
+            let gram = whitening.projected_gram(&whitened);
+            (Sparse::new(&whitened), gram)
+        };
         Search {
-            products: columns.product(&residual),
-            columns,
-            residual,
+            columns: world.neutral.iter().map(of_candidate).collect(),
             background: whitening.apply_columns(&evidence.background),
             prior: priors(world.candidates()),
             world,
@@ -87,10 +85,11 @@ impl<'a> Search<'a> {
     /// The search whose scatter is that of what its own best story leaves, with that story and the one that an unknown
     /// curve adds to it: what is found first changes how the rest scatters.
     pub fn settled(world: &'a Linearised<'a>, evidence: &'a Evidence) -> (Self, Story, Option<Story>) {
-        let first = Search::new(world, evidence, &[]);
-        let (story, unknown) = first.best();
-        if !first.whitening.is_of_shared_errors() {
-            return (first, story, unknown);
+        let search = Search::new(world, evidence, &[]);
+        let (story, unknown) = search.best();
+        // without shared errors there is no scatter to settle
+        if story.chosen.is_empty() || !search.whitening.is_of_shared_errors() {
+            return (search, story, unknown);
         }
         let search = Search::new(world, evidence, &story.chosen);
         let (story, unknown) = search.best();
@@ -106,6 +105,7 @@ impl<'a> Search<'a> {
             let before = flat(&chosen);
             self.put(&mut chosen, &scored);
             let moved = flat(&chosen) - before;
+            // where effects are linear the first step arrives
             if self.world.is_linear() || moved.component_div(&self.sizes(&chosen)).amax() < ARRIVED {
                 break;
             }
@@ -124,66 +124,43 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Ln of what adding each candidate to `story` does to its probability, by the candidate's columns at its neutral
-    /// values and with the story's own uncertainty as it is now; −∞ for those that are in it already.
+    /// About the ln of what adding each candidate to `story` does to its probability, by the candidate's columns at its
+    /// neutral values, exact for the likeliest known and unknown ones; −∞ for those that are in it already.
     pub fn additions(&self, story: &Story) -> Vec<f64> {
-        self.additions_of(story, |_| true)
-    }
-
-    /// Those of some candidates; −∞ for the others.
-    fn additions_of(&self, story: &Story, is_of: impl Fn(usize) -> bool) -> Vec<f64> {
-        let (present, cross, products) = self.crossed(&story.chosen);
-        let rest = present.rest();
-        let cross = &rest.root * cross;
-        let before = rest.moments.score().log_evidence;
-        let gain = |index: usize| {
-            if !is_of(index) || story.chosen.iter().any(|chosen| chosen.candidate == index) {
-                return f64::NEG_INFINITY;
-            }
-            let range = self.columns.range(index);
-            let cross = cross.columns(range.start, range.len());
-            let with = Moments {
-                gram: self.columns.gram(index) - cross.tr_mul(&cross),
-                product: products.rows(range.start, range.len()) - cross.tr_mul(&rest.product),
+        let (r, told) = self.linear(&story.chosen);
+        let present = self.moments_of(&r, &told, &story.chosen);
+        let before = present.score();
+        let more = |index: usize| {
+            let (columns, gram) = &self.columns[index];
+            More {
+                gram,
+                cross: columns.tr_mul_into(&told),
+                product: columns.tr_mul(&r),
                 bounds: self.world.candidates()[index].scaled_bounds().collect(),
-                ..rest.moments
-            };
-            with.score().log_evidence + self.prior[index] - before
+            }
         };
-        (0..self.prior.len()).map(gain).collect()
+        let about = |index: usize| match story.chosen.iter().any(|chosen| chosen.candidate == index) {
+            true => f64::NEG_INFINITY,
+            false => present.about(&before, &more(index)) + self.prior[index],
+        };
+        let mut additions: Vec<f64> = (0..self.columns.len()).map(about).collect();
+        for unknown in [false, true] {
+            for index in self.likeliest(&additions, unknown).into_iter().take(SCORED) {
+                let with = present.with(&more(index)).score();
+                additions[index] = with.log_evidence - before.log_evidence + self.prior[index];
+            }
+        }
+        additions
     }
 
-    /// The moments of a story, the inner products of its columns with all candidates' and those of the residual that the story
-    /// is fitted to.
-    fn crossed(&self, chosen: &[Chosen]) -> (Moments, DMatrix<f64>, DVector<f64>) {
-        if !self.world.is_linear() {
-            let (r, told) = self.linear(chosen);
-            return (self.moments_of(&r, &told, chosen), self.columns.with(&told), self.columns.product(&r));
-        }
-        let effects: Vec<usize> = chosen.iter().map(|c| c.candidate).collect();
-        let own: Vec<usize> = effects.iter().flat_map(|&index| self.columns.range(index)).collect();
-        let (background, of_effects) = (self.columns.with(&self.background), self.columns.of(&effects));
-        let first = background.nrows();
-        let mut cross = DMatrix::zeros(first + own.len(), background.ncols());
-        cross.rows_mut(0, first).copy_from(&background);
-        cross.rows_mut(first, own.len()).copy_from(&of_effects);
-        let mut gram = DMatrix::zeros(cross.nrows(), cross.nrows());
-        let beside = cross.select_columns(&own);
-        gram.columns_mut(first, own.len()).copy_from(&beside);
-        gram.rows_mut(first, own.len()).tr_copy_from(&beside);
-        gram.view_mut((0, 0), (first, first)).copy_from(&self.background.tr_mul(&self.background));
-        let mut product = DVector::zeros(cross.nrows());
-        product.rows_mut(0, first).copy_from(&self.background.tr_mul(&self.residual));
-        product.rows_mut(first, own.len()).copy_from(&self.products.select_rows(&own));
-        let moments = Moments {
-            square: self.residual.norm_squared(),
-            gram,
-            product,
-            bounds: self.bounds(chosen),
-            freedom: self.whitening.degrees_of_freedom,
-            floor: self.floor(),
-        };
-        (moments, cross, self.products.clone())
+    /// Candidates that may be added, known or unknown ones, the likeliest first.
+    fn likeliest(&self, additions: &[f64], unknown: bool) -> Vec<usize> {
+        let mut likeliest: Vec<usize> = (0..additions.len())
+            .filter(|&index| self.world.candidates()[index].is_unknown == unknown)
+            .filter(|&index| additions[index] > f64::NEG_INFINITY)
+            .collect();
+        likeliest.sort_by(|&a, &b| additions[b].total_cmp(&additions[a]));
+        likeliest
     }
 
     /// The most probable story of known effects, and the one that an unknown curve adds to it, if that is named rather
@@ -193,20 +170,21 @@ impl<'a> Search<'a> {
     /// unknown curve: several of them together can draw the shape of something that is none of them.
     pub fn best(&self) -> (Story, Option<Story>) {
         let mut path = vec![self.fit(&[])];
+        let mut rivals = Vec::new();
         loop {
             let story = &path[path.len() - 1];
+            let additions = self.additions(story);
+            rivals.push(self.longer(story, &additions, true));
             if story.chosen.len() >= MOST {
                 break;
             }
-            let Some(longer) = self.longer(story, false, f64::NEG_INFINITY) else { break };
+            let Some(longer) = self.longer(story, &additions, false) else { break };
             if longer.log_probability < story.log_probability + NAMED.ln() {
                 break;
             }
             let longer = self.exchanged(longer);
             path.push(longer);
         }
-        let rivals: Vec<Option<Story>> =
-            path.iter().map(|story| self.longer(story, true, f64::NEG_INFINITY)).collect();
         let last = path.len() - 1;
         let shorter = rivals[..last]
             .iter()
@@ -224,17 +202,10 @@ impl<'a> Search<'a> {
         (story, unknown)
     }
 
-    /// The story with one candidate more, the likeliest of those that are unknown or of those that are not; none of those
-    /// that are far from a log probability of `least`.
-    fn longer(&self, story: &Story, unknown: bool, least: f64) -> Option<Story> {
-        let additions =
-            self.additions_of(story, |index| self.world.candidates()[index].is_unknown == unknown);
-        let mut likeliest: Vec<usize> = (0..additions.len())
-            .filter(|&index| additions[index] > f64::NEG_INFINITY)
-            .filter(|&index| story.log_probability + REACH.0 * additions[index] + REACH.1 > least)
-            .collect();
-        likeliest.sort_by(|&a, &b| additions[b].total_cmp(&additions[a]));
-        let refitted = likeliest.into_iter().take(REFITTED).map(|index| self.with(story, index));
+    /// The story with one candidate more, the likeliest of those that are unknown or of those that are not.
+    fn longer(&self, story: &Story, additions: &[f64], unknown: bool) -> Option<Story> {
+        let likeliest = self.likeliest(additions, unknown).into_iter().take(REFITTED);
+        let refitted = likeliest.map(|index| self.with(story, index));
         refitted.reduce(|best, other| if other.log_probability > best.log_probability { other } else { best })
     }
 
@@ -288,12 +259,12 @@ impl<'a> Search<'a> {
 
     /// Single effects exchanged for others and taken away while the story gets more probable.
     fn exchanged(&self, mut story: Story) -> Story {
-        for _ in 0..MOST {
+        // a single effect is the best there is
+        for _ in 0..if story.chosen.len() > 1 { MOST } else { 0 } {
             let mut better: Option<Story> = None;
             for position in 0..story.chosen.len() {
                 let rest = self.without(&story, position);
-                let least = better.as_ref().map_or(story.log_probability, |b| b.log_probability);
-                let best = self.longer(&rest, false, least);
+                let best = self.longer(&rest, &self.additions(&rest), false);
                 for other in [Some(rest), best].into_iter().flatten() {
                     let least = better.as_ref().map_or(story.log_probability + 1e-6, |b| b.log_probability);
                     if other.log_probability > least {
@@ -331,30 +302,17 @@ impl<'a> Search<'a> {
     }
 
     fn moments(&self, chosen: &[Chosen]) -> Moments {
-        if self.world.is_linear() {
-            return self.crossed(chosen).0;
-        }
         let (r, columns) = self.linear(chosen);
         self.moments_of(&r, &columns, chosen)
     }
 
     fn moments_of(&self, r: &DVector<f64>, columns: &DMatrix<f64>, chosen: &[Chosen]) -> Moments {
-        let bounds = self.bounds(chosen);
-        Moments::new(r, columns, bounds, self.whitening.degrees_of_freedom, self.floor())
-    }
-
-    /// Bounds of a story's parameters, background first.
-    fn bounds(&self, chosen: &[Chosen]) -> Vec<(f64, f64)> {
         let mut bounds = vec![(f64::NEG_INFINITY, f64::INFINITY); self.background.ncols()];
         for c in chosen {
             bounds.extend(self.world.candidates()[c.candidate].scaled_bounds());
         }
-        bounds
-    }
-
-    /// Noise that rounding alone makes.
-    fn floor(&self) -> f64 {
-        self.evidence.resolution / 12.0f64.sqrt()
+        let floor = self.evidence.resolution / 12.0f64.sqrt();
+        Moments::new(r, columns, bounds, self.whitening.degrees_of_freedom, floor)
     }
 
     /// Values less neutral values, in sizes.

@@ -89,16 +89,31 @@ impl Whitening {
         result
     }
 
+    /// Column by column, not projected.
+    pub fn whitened_columns(&self, columns: &DMatrix<f64>) -> DMatrix<f64> {
+        let mut result = columns.clone();
+        for mut column in result.column_iter_mut() {
+            self.whiten(column.as_mut_slice());
+        }
+        result
+    }
+
+    /// Inner products CᵀMC of whitened columns once they are projected.
+    pub fn projected_gram(&self, whitened: &DMatrix<f64>) -> DMatrix<f64> {
+        let mut gram = whitened.tr_mul(whitened);
+        for b in &self.basis {
+            let along = whitened.tr_mul(b);
+            gram -= &along * along.transpose();
+        }
+        gram
+    }
+
     /// Factors of the nuisance columns that fit `left` best; zeros where the data cannot tell the columns apart.
     pub fn nuisance(&self, columns: &DMatrix<f64>, left: &DVector<f64>) -> DVector<f64> {
         if columns.ncols() == 0 {
             return DVector::zeros(0);
         }
-        let mut whitened = columns.clone();
-        for mut column in whitened.column_iter_mut() {
-            let v = self.whitened(&column.clone_owned());
-            column.copy_from(&v);
-        }
+        let whitened = self.whitened_columns(columns);
         let fitted = crate::linalg::least_squares(&whitened, &self.whitened(left));
         fitted.unwrap_or_else(|_| DVector::zeros(columns.ncols()))
     }
@@ -106,13 +121,17 @@ impl Whitening {
     /// Whitened, not projected.
     pub fn whitened(&self, v: &DVector<f64>) -> DVector<f64> {
         let mut v = v.clone();
+        self.whiten(v.as_mut_slice());
+        v
+    }
+
+    fn whiten(&self, v: &mut [f64]) {
         for (rows, share) in &self.groups {
             let mean = rows.iter().map(|&row| v[row]).sum::<f64>() / rows.len() as f64;
             for &row in rows {
                 v[row] -= share * mean;
             }
         }
-        v
     }
 
     fn project(&self, v: &mut DVector<f64>) {

@@ -7,6 +7,7 @@
 pub mod calibration;
 mod diagnose;
 mod evidence;
+mod kept;
 mod lack_of_fit;
 mod linear;
 mod locate;

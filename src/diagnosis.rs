@@ -4,8 +4,10 @@
 //! effect at a place with a few parameters ([`Candidate`]), and asks a [`World`] what would have been recorded if some of
 //! them were real. Which effects there are, how they act together and how they are said to people is the world's business.
 
+pub mod calibration;
 mod diagnose;
 mod evidence;
+mod kept;
 mod lack_of_fit;
 mod linear;
 mod locate;

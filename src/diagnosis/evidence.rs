@@ -16,12 +16,17 @@ pub struct Evidence {
     pub cell: Vec<usize>,
     /// Data of the same number share an error, such as the zero that their readings are offsets from.
     pub shared: Vec<usize>,
-    /// Data of the same number are held out together.
+    /// Data of the same number are held out together; those of [`Evidence::KEPT`] never are.
     pub fold: Vec<usize>,
     /// Smallest step of the recorded numbers: what is below it is rounding.
     pub resolution: f64,
     /// Numbers that a mismatch may follow.
     pub covariates: Vec<Covariate>,
+}
+
+impl Evidence {
+    /// Fold of data that no fold holds out: what is known besides the recording.
+    pub const KEPT: usize = usize::MAX;
 }
 
 /// A number that every datum has, along which a mismatch may be structured.

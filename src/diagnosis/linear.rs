@@ -40,6 +40,10 @@ impl World for Linearised<'_> {
         }
     }
 
+    fn is_linear(&self) -> bool {
+        self.world.is_linear()
+    }
+
     fn place(&self, chosen: &Chosen) -> String {
         self.world.place(chosen)
     }

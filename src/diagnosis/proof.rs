@@ -48,6 +48,7 @@ pub fn prove(world: &Linearised<'_>, evidence: &Evidence) -> Option<Proof> {
     let mut folds: Vec<usize> = evidence.fold.clone();
     folds.sort_unstable();
     folds.dedup();
+    folds.retain(|&fold| fold != Evidence::KEPT);
     if folds.len() < 2 {
         return None;
     }

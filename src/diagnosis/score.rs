@@ -208,18 +208,30 @@ impl Moments {
         -0.5 * (nu * (-explained).ln_1p() + determinant + scale.log10().powi(2)) + room
     }
 
-    /// Of these and `more` columns.
-    pub fn with(&self, more: &More) -> Moments {
-        let (old, new) = (self.gram.ncols(), more.gram.ncols());
-        let mut gram = self.gram.clone().resize(old + new, old + new, 0.0);
-        gram.view_mut((0, old), (old, new)).copy_from(&more.cross);
-        gram.view_mut((old, 0), (new, old)).copy_from(&more.cross.transpose());
-        gram.view_mut((old, old), (new, new)).copy_from(more.gram);
-        let mut product = self.product.clone().resize_vertically(old + new, 0.0);
-        product.rows_mut(old, new).copy_from(&more.product);
-        let bounds = self.bounds.iter().chain(&more.bounds).copied().collect();
-        let effects = self.effects.iter().copied().chain([new]).collect();
-        Moments { gram, product, bounds, effects, ..self.clone() }
+    /// What a story of this score leaves, as a problem of its own: its columns are taken out with the uncertainty that they have
+    /// now, and so are the degrees of freedom that they determine.
+    pub fn rest(&self, score: &Score) -> Moments {
+        Moments {
+            square: (self.square - self.product.dot(&score.estimate)).max(0.0),
+            gram: DMatrix::zeros(0, 0),
+            product: DVector::zeros(0),
+            bounds: Vec::new(),
+            effects: Vec::new(),
+            freedom: self.freedom.saturating_sub(score.determined.round() as usize),
+            floor: self.floor,
+        }
+    }
+
+    /// `more` columns in what a story leaves: an eigenvalue problem of theirs only, not of the story's besides.
+    pub fn beyond(&self, score: &Score, more: &More) -> Moments {
+        let reduced = &score.covariance * &more.cross / score.sigma.powi(2);
+        Moments {
+            gram: more.gram - more.cross.tr_mul(&reduced),
+            product: &more.product - reduced.tr_mul(&self.product),
+            bounds: more.bounds.clone(),
+            effects: vec![more.gram.ncols()],
+            ..self.rest(score)
+        }
     }
 
     fn log_evidence(&self, lambda: &DVector<f64>, b: &DVector<f64>, s: f64) -> f64 {
@@ -325,7 +337,7 @@ mod tests {
             let more = More { gram: &gram, cross: DMatrix::zeros(0, 1), product, bounds: vec![FREE] };
             let before = none.score();
             let about = none.about(&before, &more);
-            let exact = none.with(&more).score().log_evidence - before.log_evidence;
+            let exact = none.beyond(&before, &more).score().log_evidence - before.log_evidence;
             assert!((about - exact).abs() < 0.1 * exact.abs() + 0.5, "size {size}: {about} for {exact}");
         }
     }

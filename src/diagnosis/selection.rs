@@ -10,6 +10,7 @@ use std::collections::BTreeMap;
 use nalgebra::{DMatrix, DVector};
 
 use super::diagnose::rms;
+use super::kept::Kept;
 use super::lack_of_fit::{Cells, LackOfFit};
 use super::linear::Linearised;
 use super::score::{Moments, More, Score};
@@ -59,6 +60,10 @@ pub struct Search<'a> {
     /// Each candidate's columns at neutral values, whitened, with their inner products once they are projected too. Inner
     /// products with what is projected need no projection of theirs.
     columns: Vec<(Sparse, DMatrix<f64>)>,
+    /// The residual, whitened and projected.
+    residual: DVector<f64>,
+    /// Of a linear world.
+    kept: Option<Kept>,
     /// Ln of the prior of each candidate over that of none.
     prior: Vec<f64>,
     /// What repeats have in common; `None` without repeats.
@@ -74,6 +79,9 @@ pub enum Remainder {
     Cells,
 }
 
+/// For a candidate, the inner products of its columns with those of a story (rows), and with a residual.
+type CrossProducts<'a> = dyn Fn(usize) -> (DMatrix<f64>, DVector<f64>) + 'a;
+
 impl<'a> Search<'a> {
     /// On an evidence, with the scatter of what `told` leaves.
     pub fn new(world: &'a Linearised<'a>, evidence: &'a Evidence, told: &[Chosen]) -> Self {
@@ -84,9 +92,14 @@ impl<'a> Search<'a> {
             let gram = whitening.projected_gram(&whitened);
             (Sparse::new(&whitened), gram)
         };
+        let columns: Vec<(Sparse, DMatrix<f64>)> = world.neutral.iter().map(of_candidate).collect();
+        let residual = whitening.apply(&evidence.residual);
+        let background = whitening.apply_columns(&evidence.background);
         Search {
-            columns: world.neutral.iter().map(of_candidate).collect(),
-            background: whitening.apply_columns(&evidence.background),
+            kept: world.is_linear().then(|| Kept::new(&columns, &residual, &background)),
+            columns,
+            residual,
+            background,
             prior: priors(world.candidates()),
             cells: Cells::new(|columns| whitening.whitened_columns(columns), &evidence.cell),
             world,
@@ -100,7 +113,8 @@ impl<'a> Search<'a> {
     pub fn settled(world: &'a Linearised<'a>, evidence: &'a Evidence) -> (Self, Story, Option<Remainder>) {
         let search = Search::new(world, evidence, &[]);
         let (story, unknown) = search.best();
-        if story.chosen.is_empty() {
+        // without shared errors there is no scatter to settle
+        if story.chosen.is_empty() || !search.whitening.is_of_shared_errors() {
             return (search, story, unknown);
         }
         let search = Search::new(world, evidence, &story.chosen);
@@ -117,7 +131,8 @@ impl<'a> Search<'a> {
             let before = flat(&chosen);
             self.put(&mut chosen, &scored);
             let moved = flat(&chosen) - before;
-            if moved.component_div(&self.sizes(&chosen)).amax() < ARRIVED {
+            // where effects are linear the first step arrives
+            if self.world.is_linear() || moved.component_div(&self.sizes(&chosen)).amax() < ARRIVED {
                 break;
             }
             scored = self.moments(&chosen).score();
@@ -138,18 +153,14 @@ impl<'a> Search<'a> {
     /// About the ln of what adding each candidate to `story` does to its probability, by the candidate's columns at its
     /// neutral values, exact for the likeliest known and unknown ones; −∞ for those that are in it already.
     pub fn additions(&self, story: &Story) -> Vec<f64> {
-        let (r, told) = self.linear(&story.chosen);
-        let present = self.moments_of(&r, &told, &story.chosen);
+        let (present, products) = self.crossed(&story.chosen);
         let before = present.score();
         let more = |index: usize| {
-            let (columns, gram) = &self.columns[index];
-            More {
-                gram,
-                cross: columns.tr_mul_into(&told),
-                product: columns.tr_mul(&r),
-                bounds: self.world.candidates()[index].scaled_bounds().collect(),
-            }
+            let (cross, product) = products(index);
+            let bounds = self.world.candidates()[index].scaled_bounds().collect();
+            More { gram: &self.columns[index].1, cross, product, bounds }
         };
+        let alone = present.rest(&before).score().log_evidence;
         let about = |index: usize| match story.chosen.iter().any(|chosen| self.excludes(chosen, index)) {
             true => f64::NEG_INFINITY,
             false => present.about(&before, &more(index)) + self.prior[index],
@@ -157,8 +168,8 @@ impl<'a> Search<'a> {
         let mut additions: Vec<f64> = (0..self.columns.len()).map(about).collect();
         for unknown in [false, true] {
             for index in self.likeliest(&additions, unknown).into_iter().take(SCORED) {
-                let with = present.with(&more(index)).score();
-                additions[index] = with.log_evidence - before.log_evidence + self.prior[index];
+                let with = present.beyond(&before, &more(index)).score();
+                additions[index] = with.log_evidence - alone + self.prior[index];
             }
         }
         additions
@@ -391,19 +402,71 @@ impl<'a> Search<'a> {
         (self.whitening.apply(&left), all)
     }
 
+    /// The moments of a story, and the inner products of each candidate's columns with the story's and with the residual that it
+    /// is fitted to.
+    fn crossed(&self, chosen: &[Chosen]) -> (Moments, Box<CrossProducts<'_>>) {
+        let Some(kept) = &self.kept else {
+            let (r, told) = self.linear(chosen);
+            let moments = self.moments_of(&r, &told, chosen);
+            let products = move |index: usize| {
+                let columns = &self.columns[index].0;
+                (columns.tr_mul_into(&told), columns.tr_mul(&r))
+            };
+            return (moments, Box::new(products));
+        };
+        let effects: Vec<usize> = chosen.iter().map(|c| c.candidate).collect();
+        let cross = kept.story(&effects, &|effect| {
+            let own = self.whitening.apply_columns(&self.world.neutral[effect]);
+            self.columns.iter().map(|(columns, _)| columns.tr_mul_into(&own)).collect()
+        });
+        let first = self.background.ncols();
+        let blocks: Vec<DMatrix<f64>> = effects.iter().map(|&effect| cross(effect)).collect();
+        let count = first + blocks.iter().map(DMatrix::ncols).sum::<usize>();
+        let (mut gram, mut product) = (DMatrix::zeros(count, count), DVector::zeros(count));
+        gram.view_mut((0, 0), (first, first)).copy_from(&self.background.tr_mul(&self.background));
+        product.rows_mut(0, first).copy_from(&self.background.tr_mul(&self.residual));
+        let mut next = first;
+        for (block, &effect) in blocks.iter().zip(&effects) {
+            gram.columns_mut(next, block.ncols()).copy_from(block);
+            product.rows_mut(next, block.ncols()).copy_from(kept.residual(effect));
+            next += block.ncols();
+        }
+        let beside = gram.view((0, first), (first, count - first)).transpose();
+        gram.view_mut((first, 0), (count - first, first)).copy_from(&beside);
+        let (bounds, floor) = (self.bounds(chosen), self.floor());
+        let square = self.residual.norm_squared();
+        let freedom = self.whitening.degrees_of_freedom;
+        let effects = chosen.iter().map(|c| c.values.len()).collect();
+        let moments = Moments { square, gram, product, bounds, effects, freedom, floor };
+        (moments, Box::new(move |index| (cross(index), kept.residual(index).clone())))
+    }
+
     fn moments(&self, chosen: &[Chosen]) -> Moments {
+        if self.kept.is_some() {
+            return self.crossed(chosen).0;
+        }
         let (r, columns) = self.linear(chosen);
         self.moments_of(&r, &columns, chosen)
     }
 
     fn moments_of(&self, r: &DVector<f64>, columns: &DMatrix<f64>, chosen: &[Chosen]) -> Moments {
+        let bounds = self.bounds(chosen);
+        let effects = chosen.iter().map(|c| c.values.len()).collect();
+        Moments::new(r, columns, bounds, effects, self.whitening.degrees_of_freedom, self.floor())
+    }
+
+    /// Bounds of a story's parameters, background first.
+    fn bounds(&self, chosen: &[Chosen]) -> Vec<(f64, f64)> {
         let mut bounds = vec![(f64::NEG_INFINITY, f64::INFINITY); self.background.ncols()];
         for c in chosen {
             bounds.extend(self.world.candidates()[c.candidate].scaled_bounds());
         }
-        let floor = self.evidence.resolution / 12.0f64.sqrt();
-        let effects = chosen.iter().map(|c| c.values.len()).collect();
-        Moments::new(r, columns, bounds, effects, self.whitening.degrees_of_freedom, floor)
+        bounds
+    }
+
+    /// Noise that rounding alone makes.
+    fn floor(&self) -> f64 {
+        self.evidence.resolution / 12.0f64.sqrt()
     }
 
     /// Values less neutral values, in sizes.

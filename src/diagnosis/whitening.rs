@@ -67,6 +67,11 @@ impl Whitening {
         whitening
     }
 
+    /// False where no two data share an error, so that there is no ρ to be found.
+    pub fn is_of_shared_errors(&self) -> bool {
+        !self.groups.is_empty()
+    }
+
     /// Whitened and projected.
     pub fn apply(&self, v: &DVector<f64>) -> DVector<f64> {
         let mut v = self.whitened(v);

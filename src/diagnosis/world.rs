@@ -55,6 +55,11 @@ pub trait World: Sync {
     /// of the evidence, in its unit. Zeros for no effect, or for effects at their neutral values.
     fn change(&self, story: &[Chosen]) -> DVector<f64>;
 
+    /// True where the change is a sum of the effects' columns, the same at all values: much is then computed once.
+    fn is_linear(&self) -> bool {
+        false
+    }
+
     /// Where an effect is once its values are known; the candidate's location unless the values say more.
     fn place(&self, chosen: &Chosen) -> String {
         self.candidates()[chosen.candidate].location.clone()

@@ -1,0 +1,241 @@
+//! What the engine is told about a calibrated campaign: what is left, what the calibration can absorb, what to hold out.
+//!
+//! ```text
+//! datum      (recorded − predicted)·w     three per row, in {W}, m; w = pooled noise / noise of the group
+//! nuisance   ∂predicted/∂ρ·w              over all that the calibration is free to change, −w for a socket's own place
+//! ```
+//!
+//! so that one noise σ holds for all data. Directions of ρ that the calibration holds are no columns. What is known besides
+//! (socket distances, the user's priors) are further data with no row, in units of σ; no fold holds them out.
+
+use std::collections::BTreeMap;
+
+use nalgebra::{DMatrix, DVector, SymmetricEigen, Vector3};
+
+use super::posture::Posture;
+use super::scene::Scene;
+use crate::calibration::Calibration;
+use crate::calibration::campaign::{Campaign, Recording, Targets};
+use crate::diagnosis::{Covariate, Evidence};
+use crate::robot::{Kinematics, Parameter};
+use crate::units::MM;
+
+/// Most folds, and the rows that each should have at least.
+const MOST_FOLDS: usize = 5;
+const ROWS_PER_FOLD: usize = 10;
+/// Blocks of a fold in the rows of a clamp or socket, where these are at least [`LEAST_BLOCK`] long; else there is one.
+const ROUNDS: usize = 4;
+const LEAST_BLOCK: usize = 5;
+/// Coarsest and finest last digit of a displacement that is looked for: mm to the power of ten.
+const DIGITS: std::ops::RangeInclusive<i32> = -6..=-1;
+
+/// A number that is known besides what was recorded: residual and ∂/∂ρ (free parameters, then sockets), both over σ.
+struct Known {
+    residual: f64,
+    slopes: Vec<(usize, f64)>,
+}
+
+/// The evidence of a calibration.
+pub(super) fn of(campaign: &Campaign, calibration: &Calibration, scene: &Scene) -> Evidence {
+    let recording = &campaign.measurements;
+    let known = known(campaign, calibration);
+    let (rows, data) = (recording.len(), 3 * recording.len() + known.len());
+    let sigma = calibration.noise.pooled;
+    let mut residual = DVector::zeros(data);
+    for row in 0..rows {
+        residual.fixed_rows_mut::<3>(3 * row).copy_from(&(-calibration.deviations[row] * scene.scale[row]));
+    }
+    let columns = calibration.parameters.len() + 3 * calibration.sockets.len();
+    let mut jacobian = DMatrix::zeros(data, columns);
+    fill(&mut jacobian, calibration, scene);
+    for (at, known) in known.iter().enumerate() {
+        residual[3 * rows + at] = known.residual * sigma;
+        for &(column, slope) in &known.slopes {
+            jacobian[(3 * rows + at, column)] = slope * sigma;
+        }
+    }
+    let per_row = |of_row: Vec<usize>, further: &dyn Fn(usize) -> usize| -> Vec<usize> {
+        let of_rows = of_row.into_iter().flat_map(|number| [number; 3]);
+        of_rows.chain((3 * rows..data).map(further)).collect()
+    };
+    let cells = cells(recording);
+    Evidence {
+        nuisance: without_held(jacobian, calibration),
+        background: DMatrix::zeros(data, 0),
+        cell: cells
+            .iter()
+            .flat_map(|cell| [3 * cell, 3 * cell + 1, 3 * cell + 2])
+            .chain(3 * rows..data)
+            .collect(),
+        shared: (0..data).collect(),
+        fold: per_row(folds(recording, &cells), &|_| Evidence::KEPT),
+        resolution: resolution(recording),
+        covariates: covariates(scene, data),
+        residual,
+    }
+}
+
+fn known(campaign: &Campaign, calibration: &Calibration) -> Vec<Known> {
+    let free: Vec<Parameter> = calibration.parameters.iter().map(|p| p.parameter).collect();
+    let place = |group: usize| Vector3::from(calibration.sockets[group].map(|(value, _)| value));
+    let distances = match &campaign.measurements.targets {
+        Targets::Points(_) => &[][..],
+        Targets::Sockets(distances) => distances,
+    };
+    let of_distances = distances.iter().map(|distance| {
+        let apart = place(distance.between[0]) - place(distance.between[1]);
+        let towards = apart / apart.norm().max(f64::MIN_POSITIVE) / distance.sd;
+        let slopes = |group: usize, sign: f64| {
+            (0..3).map(move |axis| (free_count(calibration) + 3 * group + axis, sign * towards[axis]))
+        };
+        Known {
+            residual: (distance.value - apart.norm()) / distance.sd,
+            slopes: slopes(distance.between[0], 1.0).chain(slopes(distance.between[1], -1.0)).collect(),
+        }
+    });
+    let of_priors = campaign.wishes.priors.iter().filter_map(|&(parameter, mean, sd)| {
+        let k = free.iter().position(|&p| p == parameter)?;
+        Some(Known { residual: (mean - calibration.parameters[k].value) / sd, slopes: vec![(k, 1.0 / sd)] })
+    });
+    of_distances.chain(of_priors).collect()
+}
+
+fn free_count(calibration: &Calibration) -> usize {
+    calibration.parameters.len()
+}
+
+/// The rows of the Jacobian that belong to rows of the recording.
+fn fill(jacobian: &mut DMatrix<f64>, calibration: &Calibration, scene: &Scene) {
+    let mut kinematics = Kinematics::new(&calibration.setup);
+    for (row, posture) in scene.postures.iter().enumerate() {
+        kinematics.update(&posture.joints, &posture.torque);
+        kinematics.tip = posture.tip;
+        let scale = scene.scale[row];
+        for (k, estimated) in calibration.parameters.iter().enumerate() {
+            let column = kinematics.column(estimated.parameter, &posture.torque) * scale;
+            jacobian.fixed_view_mut::<3, 1>(3 * row, k).copy_from(&column);
+        }
+        if scene.has_sockets() {
+            let first = free_count(calibration) + 3 * scene.recording.rows[row].group;
+            (0..3).for_each(|axis| jacobian[(3 * row + axis, first + axis)] = -scale);
+        }
+    }
+}
+
+/// Columns of the free parameters, combined to an orthonormal basis (in plausible ranges) of all that is not held.
+fn without_held(jacobian: DMatrix<f64>, calibration: &Calibration) -> DMatrix<f64> {
+    let Some(first) = calibration.held.first() else { return jacobian };
+    let free = free_count(calibration);
+    let mut moves = DMatrix::identity(free, free);
+    for held in &calibration.held {
+        let direction = DVector::from_column_slice(&held.direction);
+        moves -= &direction * direction.transpose();
+    }
+    // a projection: eigenvalues are 0 or 1
+    let eigen = SymmetricEigen::new(moves);
+    let kept: Vec<usize> = (0..free).filter(|&k| eigen.eigenvalues[k] > 0.5).collect();
+    let ranges = DMatrix::from_diagonal(&DVector::from_column_slice(&first.ranges));
+    let basis = ranges * eigen.eigenvectors.select_columns(&kept);
+    let sockets = jacobian.ncols() - free;
+    let mut columns = DMatrix::zeros(jacobian.nrows(), kept.len() + sockets);
+    columns.columns_mut(0, kept.len()).copy_from(&(jacobian.columns(0, free) * basis));
+    columns.columns_mut(kept.len(), sockets).copy_from(&jacobian.columns(free, sockets));
+    columns
+}
+
+/// Rows of the same joint values in the same clamp or socket have one number.
+fn cells(recording: &Recording) -> Vec<usize> {
+    let mut known: BTreeMap<(usize, Vec<u64>), usize> = BTreeMap::new();
+    (0..recording.len())
+        .map(|row| {
+            let bits = recording.joints(row).iter().map(|q| q.to_bits()).collect();
+            let count = known.len();
+            *known.entry((recording.rows[row].group, bits)).or_insert(count)
+        })
+        .collect()
+}
+
+/// Blocks of consecutive rows of each clamp or socket, dealt to the folds in turn: neighbours, which often share an error,
+/// are held out together, and no fold is a corner of the workspace. Rows of one cell stay together.
+fn folds(recording: &Recording, cells: &[usize]) -> Vec<usize> {
+    let folds = (recording.len() / ROWS_PER_FOLD).clamp(2, MOST_FOLDS);
+    let mut size = vec![0usize; recording.groups.len()];
+    recording.rows.iter().for_each(|row| size[row.group] += 1);
+    let mut seen = vec![0usize; recording.groups.len()];
+    let mut of_cell = BTreeMap::new();
+    recording
+        .rows
+        .iter()
+        .zip(cells)
+        .map(|(row, &cell)| {
+            let (at, size) = (seen[row.group], size[row.group]);
+            seen[row.group] += 1;
+            let rounds = if size >= ROUNDS * folds * LEAST_BLOCK { ROUNDS } else { 1 };
+            *of_cell.entry(cell).or_insert((at * folds * rounds / size + row.group) % folds)
+        })
+        .collect()
+}
+
+/// The step that all displacements are multiples of, m; 0 where they show none and where nothing is measured.
+fn resolution(recording: &Recording) -> f64 {
+    /// The file's decimals are not exact in binary, and clamps are turned.
+    const INEXACT: f64 = 1e-4;
+    let Targets::Points(points) = &recording.targets else { return 0.0 };
+    let read: Vec<f64> = points
+        .iter()
+        .zip(&recording.rows)
+        .flat_map(|(point, row)| {
+            let read: [f64; 3] = (recording.groups[row.group].device.inverse().point(point) / MM).into();
+            read
+        })
+        .collect();
+    let is_step = |step: &f64| {
+        read.iter().all(|value| {
+            let steps = value / step;
+            (steps - steps.round()).abs() <= INEXACT
+        })
+    };
+    let steps = DIGITS.rev().flat_map(|digit| [5.0, 2.0, 1.0].map(|m| m * 10f64.powi(digit)));
+    steps.into_iter().find(is_step).map_or(0.0, |step| step * MM)
+}
+
+/// What a row has of a covariate.
+type Value<'a> = Box<dyn Fn(usize, &Posture) -> Option<f64> + 'a>;
+
+fn covariates(scene: &Scene, data: usize) -> Vec<Covariate> {
+    let rows = &scene.recording.rows;
+    let mut all: Vec<(String, &str, Value)> = vec![
+        ("order".into(), "", Box::new(|row, _| Some(row as f64))),
+        ("time".into(), "s", Box::new(|row, _| rows[row].time)),
+        ("temperature".into(), "°C", Box::new(|row, _| rows[row].temperature)),
+        ("group".into(), "", Box::new(|row, _| Some(rows[row].group as f64))),
+    ];
+    for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
+        all.push((name.into(), "m", Box::new(move |_, posture| Some(posture.tip[axis]))));
+    }
+    for j in 0..scene.joint_count() {
+        let of = |what: &str| format!("joint {} {what}", j + 1);
+        all.push((of("angle"), "rad", Box::new(move |_, posture| Some(posture.joints[j]))));
+        all.push((of("torque"), "N·m", Box::new(move |_, posture| Some(posture.torque[j]))));
+        all.push((of("approach"), "", Box::new(move |_, posture| Some(posture.approach[j]))));
+        all.push((of("move"), "rad", Box::new(move |_, posture| Some(posture.step[j]))));
+    }
+    let of_all = all.into_iter().map(|(name, unit, value)| {
+        let of_rows = scene
+            .postures
+            .iter()
+            .enumerate()
+            .flat_map(|(row, posture)| [value(row, posture).unwrap_or(f64::NAN); 3]);
+        let further = data - 3 * scene.postures.len();
+        let values: Vec<f64> = of_rows.chain(std::iter::repeat_n(f64::NAN, further)).collect();
+        Covariate { name, unit: unit.into(), values }
+    });
+    // nothing can follow what does not vary
+    of_all.filter(|covariate| varies(&covariate.values)).collect()
+}
+
+fn varies(values: &[f64]) -> bool {
+    let mut known = values.iter().filter(|value| !value.is_nan());
+    let first = known.next();
+    known.any(|value| Some(value) != first)
+}

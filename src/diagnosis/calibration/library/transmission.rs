@@ -1,0 +1,72 @@
+//! Errors of gears and encoders as functions of the joint's own angle.
+//!
+//! ```text
+//! harmonic   leverⱼ·(a·sin(n·qⱼ) + b·cos(n·qⱼ))     n cycles per revolution, scanned
+//! curve      leverⱼ·f(qⱼ)                            f a smooth curve: cosines.rs
+//! ```
+//!
+//! Two cycles per revolution can be told apart over a range of ρ revolutions if they differ by 1/ρ or so; the scan has steps
+//! of half of that, of one half at most, up to 40. Beyond, only what gears in use have: a strain-wave gear of ratio i errs with i
+//! and 2·i cycles per revolution of its output, and the joint's motor with i.
+
+use std::f64::consts::TAU;
+
+use super::JOINT_ANGLE;
+use crate::diagnosis::calibration::cosines::Cosines;
+use crate::diagnosis::calibration::scene::{Entry, Scene, entry, linear};
+
+const EFFECT: &str = "transmission_error";
+const URAD: f64 = 1e-6;
+/// Last frequency of the scan, cycles per revolution, and its widest step.
+const SCAN: (f64, f64) = (40.0, 0.5);
+/// Ratios of strain-wave gears that arms are built with.
+const RATIOS: [f64; 8] = [50.0, 51.0, 80.0, 100.0, 101.0, 120.0, 121.0, 160.0];
+/// Length scales ℓ of curves, rad, as 1/ℓ: their spectrum falls to 1/√e of its amplitude at √2/ℓ cycles per revolution.
+const CURVES: [f64; 5] = [2.0, 4.0, 8.0, 16.0, 32.0];
+/// Beyond so many cosines there is no curve: over a wide range a scan sees what is fine.
+const MOST_COSINES: usize = 160;
+
+pub(in crate::diagnosis::calibration) fn all(scene: &Scene) -> Vec<Entry> {
+    let of_joint = |j: usize| {
+        let harmonics = frequencies(scene, j).into_iter().map(move |n| harmonic(scene, j, n));
+        harmonics.chain(CURVES.into_iter().filter_map(move |cycles| curve(scene, j, cycles)))
+    };
+    scene.revolute().into_iter().flat_map(of_joint).collect()
+}
+
+fn frequencies(scene: &Scene, j: usize) -> Vec<f64> {
+    let (low, high) = scene.range(j);
+    let turns = (high - low) / TAU;
+    // an integer number of steps per cycle, so that whole numbers are in the scan
+    let per_cycle = (2.0 * turns).ceil().max(1.0 / SCAN.1);
+    let steps = (1..=(SCAN.0 * per_cycle) as usize).map(|k| k as f64 / per_cycle);
+    let mut ratios: Vec<f64> = RATIOS.iter().flat_map(|ratio| [*ratio, 2.0 * ratio]).collect();
+    ratios.sort_by(f64::total_cmp);
+    ratios.dedup();
+    steps.chain(ratios).collect()
+}
+
+fn harmonic(scene: &Scene, j: usize, cycles: f64) -> Entry {
+    let sine = scene.turn(j, |_, posture| (cycles * posture.joints[j]).sin());
+    let cosine = scene.turn(j, |_, posture| (cycles * posture.joints[j]).cos());
+    let parameters =
+        vec![(linear("sin_urad", URAD, JOINT_ANGLE), sine), (linear("cos_urad", URAD, JOINT_ANGLE), cosine)];
+    let location = format!("joint {}, {cycles} cycles/rev", j + 1);
+    Entry { cycles_per_rev: Some(cycles), ..entry(EFFECT, location, parameters) }
+}
+
+fn curve(scene: &Scene, j: usize, cycles: f64) -> Option<Entry> {
+    let (low, high) = scene.range(j);
+    let scale = 1.0 / cycles;
+    let cosines = Cosines::new((low, high), scale);
+    // the constant is the joint's offset
+    if !(3..=MOST_COSINES).contains(&cosines.sizes.len()) {
+        return None;
+    }
+    let parameters = (1..cosines.sizes.len()).map(|k| {
+        let column = scene.turn(j, |_, posture| cosines.value(k, posture.joints[j]));
+        (linear(format!("cosine_{k}_urad"), URAD, JOINT_ANGLE * cosines.sizes[k]), column)
+    });
+    let location = format!("joint {}, a smooth curve, scale {:.2}°", j + 1, scale.to_degrees());
+    Some(entry(EFFECT, location, parameters.collect()))
+}

@@ -1,0 +1,139 @@
+//! What the robot does at every row: levers, loads and the move that led there, in {W}, once and for all effects.
+
+use nalgebra::{Matrix3, Vector3};
+
+use crate::calibration::campaign::{Campaign, Recording};
+use crate::calibration::{Calibration, Compensation};
+use crate::robot::{Body, Kinematics, Loads, Motion};
+use crate::spatial::Pose;
+
+/// A move of a joint below which it did not move, rad or m: a readout's last digit.
+const STANDSTILL: f64 = 1e-7;
+/// Times that torques and the joints that they turn are computed from each other; each time their error falls by the share
+/// by which a joint yields, below 10⁻³.
+const ROUNDS: usize = 3;
+
+/// The calibrated robot at one row.
+#[derive(Debug, Clone)]
+pub(super) struct Posture {
+    /// Joint values as recorded, rad or m.
+    pub joints: Vec<f64>,
+    /// ∂tip/∂q of every joint, m/rad or m/m.
+    pub lever: Vec<Vector3<f64>>,
+    /// Direction of every joint's axis.
+    pub axis: Vec<Vector3<f64>>,
+    /// A point on it, m.
+    pub origin: Vec<Vector3<f64>>,
+    /// Torque of all loads beyond a joint about its axis, N·m (N).
+    pub torque: Vec<f64>,
+    /// Their moment about the point on the axis, N·m.
+    pub moment: Vec<Vector3<f64>>,
+    /// Angle or way by which each joint yields per torque, rad/(N·m).
+    pub compliance: Vec<f64>,
+    /// {T}.
+    pub flange: Pose,
+    /// The ball: the deflected tip, m.
+    pub tip: Vector3<f64>,
+    /// Acceleration of gravity, m/s².
+    pub gravity: Vector3<f64>,
+    /// Joint values less those of the row before, zeros for the first.
+    pub step: Vec<f64>,
+    /// Direction from which each joint came: 1, −1, or 0 where it never moved.
+    pub approach: Vec<f64>,
+}
+
+impl Posture {
+    /// Displacement of the tip by joints that yield to one more force (N) at a point (m) beyond all of them:
+    /// Σ lever·c·(∂point/∂q · force).
+    pub fn yielding(&self, point: &Vector3<f64>, force: &Vector3<f64>) -> Vector3<f64> {
+        let of_joint = |j: usize| self.lever[j] * (self.compliance[j] * self.torque_of(j, point, force));
+        (0..self.lever.len()).map(of_joint).sum()
+    }
+
+    /// Torque about a joint's axis of one more force (N) at a point (m), N·m.
+    pub fn torque_of(&self, joint: usize, point: &Vector3<f64>, force: &Vector3<f64>) -> f64 {
+        self.axis[joint].dot(&(point - self.origin[joint]).cross(force))
+    }
+
+    /// A tensor given in {T}, in {W}.
+    pub fn in_world(&self, tensor: &Matrix3<f64>) -> Matrix3<f64> {
+        self.flange.rotation * tensor * self.flange.rotation.transpose()
+    }
+}
+
+/// One for every row of the campaign's measurements.
+pub(super) fn all(
+    campaign: &Campaign,
+    calibration: &Calibration,
+    compensation: &Compensation,
+) -> Vec<Posture> {
+    let recording = &campaign.measurements;
+    let setup = &calibration.setup;
+    let count = recording.joint_count;
+    let mut kinematics = Kinematics::new(setup);
+    let gravity = setup.base().rotation * setup.robot.gravity;
+    let bodies: Vec<Option<Body>> = setup.robot.joints.iter().map(|joint| joint.body).collect();
+    let mut approach = vec![0.0; count];
+    (0..recording.len())
+        .map(|row| {
+            let device = &recording.groups[recording.rows[row].group].device;
+            let tip_force = device.rotation * compensation.contact_force;
+            let loads = Loads { gravity, payload: compensation.payload, tip_force };
+            let mut torque = vec![0.0; count];
+            for _ in 0..ROUNDS {
+                kinematics.update(recording.joints(row), &torque);
+                kinematics.torques(&loads, &mut torque);
+            }
+            kinematics.update(recording.joints(row), &torque);
+            let moment = moments(&kinematics, &loads, &bodies);
+            kinematics.tip += calibration.deflections[row];
+            let step = step(recording, row);
+            for (approach, step) in approach.iter_mut().zip(&step).filter(|(_, s)| s.abs() > STANDSTILL) {
+                *approach = step.signum();
+            }
+            Posture {
+                joints: recording.joints(row).to_vec(),
+                lever: (0..count).map(|j| kinematics.moved(j)).collect(),
+                axis: kinematics.joints.iter().map(|joint| joint.axis).collect(),
+                origin: kinematics.joints.iter().map(|joint| joint.origin).collect(),
+                torque,
+                moment,
+                compliance: setup.compliance.clone(),
+                flange: kinematics.flange,
+                tip: kinematics.tip,
+                gravity,
+                step,
+                approach: approach.clone(),
+            }
+        })
+        .collect()
+}
+
+fn step(recording: &Recording, row: usize) -> Vec<f64> {
+    let before = recording.joints(row.saturating_sub(1));
+    recording.joints(row).iter().zip(before).map(|(now, before)| now - before).collect()
+}
+
+/// Moment of all that hangs beyond each joint about the point on its axis, N·m; zero for a prismatic joint.
+fn moments(kinematics: &Kinematics, loads: &Loads, bodies: &[Option<Body>]) -> Vec<Vector3<f64>> {
+    let mut force = loads.tip_force;
+    let mut moment = kinematics.tip.cross(&force);
+    let mut add = |point: Vector3<f64>, mass: f64| {
+        let weight = loads.gravity * mass;
+        force += weight;
+        moment += point.cross(&weight);
+        (force, moment)
+    };
+    if let Some(payload) = &loads.payload {
+        add(kinematics.flange.point(&payload.centre), payload.mass);
+    }
+    let mut moments = vec![Vector3::zeros(); bodies.len()];
+    for (j, frames) in kinematics.joints.iter().enumerate().rev() {
+        let body = bodies[j].unwrap_or(Body { mass: 0.0, centre: Vector3::zeros() });
+        let (force, moment) = add(frames.distal.point(&body.centre), body.mass);
+        if frames.motion == Motion::Revolute {
+            moments[j] = moment - frames.origin.cross(&force);
+        }
+    }
+    moments
+}

@@ -1,0 +1,183 @@
+//! A calibrated campaign as the effects see it, and the columns that they make of it.
+
+use nalgebra::{DVector, Matrix3, Vector3};
+
+use super::posture::{self, Posture};
+use crate::calibration::campaign::{Campaign, Recording, Targets};
+use crate::calibration::{Calibration, Compensation, Mode};
+use crate::diagnosis::{Candidate, EffectParameter};
+use crate::error::Result;
+use crate::robot::Motion;
+
+/// All that effects need to know of a campaign and its calibration.
+pub(super) struct Scene<'a> {
+    pub recording: &'a Recording,
+    pub postures: Vec<Posture>,
+    /// What each row counts, relative to the others: pooled noise over the noise of its group.
+    pub scale: Vec<f64>,
+    /// How far each row is off, in noises of its group.
+    off: Vec<f64>,
+    /// Motion of every joint.
+    pub motions: Vec<Motion>,
+    /// C^F of the rod in {T}, m/N; zero for a rigid one.
+    pub force_compliance: Matrix3<f64>,
+    /// Deflections in {W} by the rod's model, m, by contact force and by gravity; empty without a rod.
+    pub bent: Vec<[Vector3<f64>; 2]>,
+    /// Share of `bent` that the calibration took into account: 1, or 0 where it took the rod for rigid.
+    pub accounted: f64,
+}
+
+/// ∂change/∂parameter: data from `first` on, m per unit of the parameter; zero elsewhere.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Column {
+    pub first: usize,
+    pub values: Vec<f64>,
+}
+
+/// A candidate with what each of its parameters does.
+pub(super) struct Entry {
+    pub candidate: Candidate,
+    pub columns: Vec<Column>,
+    /// For a harmonic of a joint.
+    pub cycles_per_rev: Option<f64>,
+}
+
+impl<'a> Scene<'a> {
+    pub fn new(campaign: &'a Campaign, calibration: &Calibration) -> Result<Self> {
+        let used = Compensation::new(campaign, calibration.mode)?;
+        let recording = &campaign.measurements;
+        let noise = &calibration.noise;
+        // a rod that was taken for rigid bends as its beam model says
+        let (rod, accounted) = match (calibration.mode, &campaign.rod) {
+            (Mode::None, Some(_)) => (Compensation::new(campaign, Mode::Fea)?.compliance, 0.0),
+            _ => (used.compliance, 1.0),
+        };
+        let postures = posture::all(campaign, calibration, &used);
+        let bend = |(row, posture): (usize, &Posture)| {
+            let device = &recording.groups[recording.rows[row].group].device;
+            let force = device.rotation * used.contact_force;
+            rod.as_ref().map(|rod| {
+                let per_g = posture.gravity / crate::units::STANDARD_GRAVITY;
+                [posture.in_world(&rod.force) * force, posture.in_world(&rod.gravity) * per_g]
+            })
+        };
+        Ok(Scene {
+            recording,
+            scale: recording.rows.iter().map(|row| noise.pooled / noise.of_group[row.group]).collect(),
+            off: recording
+                .rows
+                .iter()
+                .zip(&calibration.deviations)
+                .map(|(row, deviation)| deviation.norm() / noise.of_group[row.group])
+                .collect(),
+            motions: campaign.robot.joints.iter().map(|joint| joint.motion).collect(),
+            force_compliance: rod.as_ref().map_or_else(Matrix3::zeros, |rod| rod.force),
+            bent: postures.iter().enumerate().filter_map(bend).collect(),
+            accounted,
+            postures,
+        })
+    }
+
+    /// A column of a displacement of the tip, m per unit of the parameter, by row.
+    pub fn column(&self, displacement: impl Fn(usize, &Posture) -> Vector3<f64>) -> Column {
+        self.part(0..self.postures.len(), displacement)
+    }
+
+    /// One that is zero but for a range of rows.
+    pub fn part(
+        &self,
+        rows: std::ops::Range<usize>,
+        displacement: impl Fn(usize, &Posture) -> Vector3<f64>,
+    ) -> Column {
+        let first = 3 * rows.start;
+        let at = |row: usize| {
+            let scaled: [f64; 3] = (displacement(row, &self.postures[row]) * self.scale[row]).into();
+            scaled
+        };
+        Column { first, values: rows.flat_map(at).collect() }
+    }
+
+    /// A turn of a joint by so much at each row, rad per unit of the parameter.
+    pub fn turn(&self, joint: usize, angle: impl Fn(usize, &Posture) -> f64) -> Column {
+        self.column(|row, posture| posture.lever[joint] * angle(row, posture))
+    }
+
+    /// How far a row is off, in noises of its group.
+    pub fn deviation(&self, row: usize) -> f64 {
+        self.off[row]
+    }
+
+    pub fn joint_count(&self) -> usize {
+        self.motions.len()
+    }
+
+    /// Joints that turn.
+    pub fn revolute(&self) -> Vec<usize> {
+        (0..self.joint_count()).filter(|&j| self.motions[j] == Motion::Revolute).collect()
+    }
+
+    /// Least and greatest value of a joint, rad or m.
+    pub fn range(&self, joint: usize) -> (f64, f64) {
+        let values = self.postures.iter().map(|posture| posture.joints[joint]);
+        values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)))
+    }
+
+    /// Largest size of a number over all rows.
+    pub fn largest(&self, of: impl Fn(&Posture) -> f64) -> f64 {
+        self.postures.iter().fold(0.0, |most: f64, posture| most.max(of(posture).abs()))
+    }
+
+    pub fn has_sockets(&self) -> bool {
+        matches!(self.recording.targets, Targets::Sockets(_))
+    }
+
+    /// `pose 7`, with its clamp or socket where several poses have that name.
+    pub fn pose_name(&self, row: usize) -> String {
+        let own = &self.recording.rows[row].pose;
+        let is_unique = self.recording.rows.iter().filter(|other| &other.pose == own).count() == 1;
+        match is_unique {
+            true => format!("pose {own}"),
+            false => format!("pose {}", self.recording.pose_name(row)),
+        }
+    }
+}
+
+impl Column {
+    /// Adds `value` times the column to a recording.
+    pub fn add_to(&self, change: &mut DVector<f64>, value: f64) {
+        let slots = change.as_mut_slice().iter_mut().skip(self.first);
+        slots.zip(&self.values).for_each(|(slot, v)| *slot += value * v);
+    }
+
+    pub fn is_zero(&self) -> bool {
+        self.values.iter().all(|&v| v == 0.0)
+    }
+}
+
+/// A parameter without effect at zero and without bounds.
+pub(super) fn linear(name: impl Into<String>, unit: f64, size: f64) -> EffectParameter {
+    let bounds = (f64::NEG_INFINITY, f64::INFINITY);
+    EffectParameter { name: name.into(), unit, neutral: 0.0, size, bounds }
+}
+
+/// An effect of the library.
+pub(super) fn entry(
+    effect: &str,
+    location: impl Into<String>,
+    parameters: Vec<(EffectParameter, Column)>,
+) -> Entry {
+    let (parameters, columns) = parameters.into_iter().unzip();
+    let (effect, location) = (effect.into(), location.into());
+    Entry {
+        candidate: Candidate {
+            effect,
+            location,
+            parameters,
+            weight: 1.0,
+            is_alternative: false,
+            is_unknown: false,
+        },
+        columns,
+        cycles_per_rev: None,
+    }
+}

@@ -1,0 +1,55 @@
+//! Columns against a robot that is moved for it, and effects that are put into simulated campaigns by such robots.
+
+mod columns;
+mod finding;
+mod recorded;
+
+use nalgebra::Vector3;
+
+use super::*;
+use crate::calibration::campaign::Targets;
+use crate::calibration::simulate::{Plan, campaign_files, simulate};
+use crate::calibration::{Mode, Options, calibrate};
+use crate::compliance::{Compliance, DEFAULT_ELEMENTS};
+use crate::robot::Robot;
+use crate::rod::Rod;
+use crate::statistics::Random;
+use crate::units::UM;
+
+const ROBOT: &str = include_str!("../../../robots/tx90.toml");
+const ROD: &str = include_str!("../../../rods/5.toml");
+
+/// A TX90 with rod 5# on five clamps, without any noise.
+fn clamps(poses_per_clamp: usize) -> Campaign {
+    let robot = Robot::from_text("tx90.toml", ROBOT, None, None).unwrap();
+    let rod = Rod::from_toml("rod", ROD).unwrap();
+    let model = Compliance::of_model(&rod, &crate::beam::Physics::default(), DEFAULT_ELEMENTS).unwrap();
+    let plan = Plan { poses_per_clamp, sensor_noise: 0.0, repeatability: 0.0, ..Plan::default() };
+    let simulation = simulate(&robot, &rod, &model, &plan).unwrap();
+    let files = campaign_files(&simulation, "builtin:tx90", "rod.toml");
+    let find = |wanted: &str| match wanted {
+        "rod.toml" => ROD.to_owned(),
+        _ => files.iter().find(|(name, _)| name == wanted).unwrap().1.clone(),
+    };
+    Campaign::from_texts("campaign.toml", &find("campaign.toml"), &|name| Ok(find(name))).unwrap()
+}
+
+/// The campaign with a displacement of every row and with noise, m.
+fn recorded(campaign: &Campaign, by: &dyn Fn(usize) -> Vector3<f64>, noise: f64, seed: u64) -> Campaign {
+    let mut random = Random::seeded(seed, 0);
+    let mut recorded = campaign.clone();
+    let Targets::Points(points) = &mut recorded.measurements.targets else { panic!("no points") };
+    for (row, point) in points.iter_mut().enumerate() {
+        *point += by(row) + Vector3::from_fn(|_, _| noise * random.normal());
+    }
+    recorded
+}
+
+fn find(world: &CalibrationWorld, effect: &str, location: &str) -> usize {
+    let is_it = |c: &Candidate| c.effect == effect && c.location == location;
+    world.candidates().iter().position(is_it).unwrap_or_else(|| {
+        let of: Vec<_> =
+            world.candidates().iter().filter(|c| c.effect == effect).map(|c| &c.location).collect();
+        panic!("no {effect} at {location}: {of:?}")
+    })
+}

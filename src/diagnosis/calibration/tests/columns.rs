@@ -1,0 +1,233 @@
+//! Every column against a robot whose joints, masses and loads are changed, and which is then asked where its tip is.
+
+use nalgebra::Rotation3;
+
+use super::*;
+use crate::calibration::{Calibration, Compensation};
+use crate::robot::{Body, Kinematics, Loads, Parameter, Setup};
+
+/// A robot at a row with all that may be changed.
+struct Row<'a> {
+    setup: Setup<'a>,
+    q: Vec<f64>,
+    loads: Loads,
+    /// Deflection in {T}, m.
+    bent: Vector3<f64>,
+}
+
+impl Row<'_> {
+    fn torque(&self) -> Vec<f64> {
+        let mut kinematics = Kinematics::new(&self.setup);
+        let mut torque = vec![0.0; self.q.len()];
+        for _ in 0..8 {
+            kinematics.update(&self.q, &torque);
+            kinematics.torques(&self.loads, &mut torque);
+        }
+        torque
+    }
+
+    fn tip(&self) -> Vector3<f64> {
+        let mut kinematics = Kinematics::new(&self.setup);
+        kinematics.update(&self.q, &self.torque());
+        kinematics.tip + kinematics.flange.rotation * self.bent
+    }
+}
+
+fn row<'a>(
+    campaign: &Campaign,
+    calibration: &Calibration<'a>,
+    compensation: &Compensation,
+    row: usize,
+) -> Row<'a> {
+    let setup = calibration.setup.clone();
+    let gravity = setup.base().rotation * setup.robot.gravity;
+    let device = &campaign.measurements.groups[campaign.measurements.rows[row].group].device;
+    let loads = Loads {
+        gravity,
+        payload: compensation.payload,
+        tip_force: device.rotation * compensation.contact_force,
+    };
+    let mut there =
+        Row { setup, q: campaign.measurements.joints(row).to_vec(), loads, bent: Vector3::zeros() };
+    let mut kinematics = Kinematics::new(&there.setup);
+    kinematics.update(&there.q, &there.torque());
+    let bent = kinematics.flange.rotation.tr_mul(&calibration.deflections[row]);
+    there.bent = bent;
+    there
+}
+
+/// What a parameter does to a row.
+type Change<'a> = dyn Fn(&mut Row, usize, f64) + 'a;
+
+#[test]
+fn columns_are_what_a_changed_robot_does() {
+    let mut campaign = clamps(12);
+    campaign.wishes.fixed.push(Parameter::Compliance(3));
+    let calibration = calibrate(&campaign, Mode::Fea, &Options::default()).unwrap();
+    let compensation = Compensation::new(&campaign, Mode::Fea).unwrap();
+    let (world, _) = CalibrationWorld::new(&campaign, &calibration).unwrap();
+    let force = compensation.compliance.as_ref().unwrap().force;
+    let recording = &campaign.measurements;
+    let step = |row: usize, j: usize| recording.joints(row)[j] - recording.joints(row.saturating_sub(1))[j];
+    let bend = move |row: &mut Row, pull: Vector3<f64>| {
+        let mut kinematics = Kinematics::new(&row.setup);
+        kinematics.update(&row.q, &row.torque());
+        row.bent += force * kinematics.flange.rotation.tr_mul(&pull);
+    };
+    let cases: Vec<(&str, &str, Box<Change>)> = vec![
+        (
+            "transmission_error",
+            "joint 3, 7.5 cycles/rev",
+            Box::new(|r, _, v| r.q[2] += v * (7.5 * r.q[2]).sin()),
+        ),
+        ("encoder_scale", "joint 4", Box::new(|r, _, v| r.q[3] *= 1.0 + v)),
+        ("wrist_coupling", "joint 5 to 6", Box::new(|r, _, v| r.q[5] += v * r.q[4])),
+        ("readback_lag", "joint 2", Box::new(move |r, row, v| r.q[1] += v * step(row, 1))),
+        (
+            "readback_lag",
+            "all joints",
+            Box::new(move |r, row, v| (0..6).for_each(|j| r.q[j] += v * step(row, j))),
+        ),
+        ("joint_compliance", "joint 4", Box::new(|r, _, v| r.setup.compliance[3] += v)),
+        (
+            "joint_nonlinear_stiffness",
+            "joint 2",
+            Box::new(|r, _, v| {
+                let torque = r.torque()[1];
+                r.q[1] += v * torque * torque.abs();
+            }),
+        ),
+        (
+            "backlash",
+            "joint 3",
+            Box::new(|r, _, v| {
+                let torque = r.torque()[2];
+                r.q[2] += 0.5 * v * torque.signum();
+            }),
+        ),
+        (
+            "tip_mass",
+            "tip",
+            Box::new(move |r, _, v| {
+                let weight = r.loads.gravity * v;
+                bend(r, weight);
+                r.loads.tip_force += weight;
+            }),
+        ),
+        (
+            "payload_mass",
+            "flange",
+            Box::new(|r, _, v| {
+                // a heavier rod whose centre is where both are balanced
+                let rod = r.loads.payload.unwrap();
+                let mass = rod.mass + v;
+                r.loads.payload = Some(Body { mass, centre: rod.centre * (rod.mass / mass) });
+            }),
+        ),
+        ("rod_stiffness", "rod", Box::new(|r, _, v| r.bent *= 1.0 + v)),
+        (
+            "contact_force_variation",
+            "all clamps",
+            Box::new(move |r, row, v| {
+                let device = &recording.groups[recording.rows[row].group].device;
+                let pull = device.rotation.column(0) * v;
+                bend(r, pull);
+                r.loads.tip_force += pull;
+            }),
+        ),
+        (
+            "base_shift",
+            "after pose 3",
+            Box::new(|r, row, v| {
+                r.setup.base_position.x += if row >= 3 { v } else { 0.0 };
+            }),
+        ),
+        (
+            "thermal_drift",
+            "tool, with order",
+            Box::new(|r, row, v| {
+                r.setup.tool.x += v * (row as f64 / 59.0 - 0.5);
+            }),
+        ),
+    ];
+    for (effect, location, change) in cases {
+        let index = find(&world, effect, location);
+        let parameter = &world.candidates()[index].parameters[0];
+        let mut chosen = world.candidates()[index].neutral(index);
+        chosen.values[0] += 0.01 * parameter.size;
+        let told = world.change(&[chosen]);
+        let mut difference = 0.0f64;
+        for at in 0..recording.len() {
+            let mut there = row(&campaign, &calibration, &compensation, at);
+            let before = there.tip();
+            change(&mut there, at, 0.01 * parameter.size);
+            difference = difference.max((there.tip() - before - told.fixed_rows::<3>(3 * at)).norm());
+        }
+        // yields are to first order: a hundredth of them is lost
+        assert!(difference < 0.01 * told.amax(), "{effect} {location}: {difference} of {}", told.amax());
+        assert!(told.amax() > 0.0, "{effect} {location}");
+    }
+}
+
+#[test]
+fn a_link_bends_about_its_joint_and_clamps_move_the_other_way() {
+    let campaign = clamps(12);
+    let calibration = calibrate(&campaign, Mode::Fea, &Options::default()).unwrap();
+    let compensation = Compensation::new(&campaign, Mode::Fea).unwrap();
+    let (world, _) = CalibrationWorld::new(&campaign, &calibration).unwrap();
+    let index = find(&world, "link_flexibility", "joint 3");
+    let mut chosen = world.candidates()[index].neutral(index);
+    chosen.values[0] = 1e-7;
+    let told = world.change(&[chosen]);
+    for at in [0, 17, 40] {
+        let there = row(&campaign, &calibration, &compensation, at);
+        let mut kinematics = Kinematics::new(&there.setup);
+        kinematics.update(&there.q, &there.torque());
+        // the moment, force by force
+        let origin = kinematics.joints[2].origin;
+        let mut moment = (kinematics.tip - origin).cross(&there.loads.tip_force);
+        let rod = there.loads.payload.unwrap();
+        moment += (kinematics.flange.point(&rod.centre) - origin).cross(&(there.loads.gravity * rod.mass));
+        for j in 2..6 {
+            let Some(body) = campaign.robot.joints[j].body else { continue };
+            let centre = kinematics.joints[j].distal.point(&body.centre);
+            moment += (centre - origin).cross(&(there.loads.gravity * body.mass));
+        }
+        let axis = kinematics.joints[2].axis;
+        let turn = Rotation3::new((moment - axis * axis.dot(&moment)) * 1e-7);
+        let tip = there.tip();
+        let expected = turn * (tip - origin) + origin - tip;
+        let found: Vector3<f64> = told.fixed_rows::<3>(3 * at).into();
+        assert!((found - expected).norm() < 1e-3 * expected.norm() + 1e-12, "{found} {expected}");
+    }
+    for (effect, location) in [("clamp_pose", "clamp 2"), ("clamp_shift", "clamp 2, after pose 16")] {
+        let index = find(&world, effect, location);
+        let mut chosen = world.candidates()[index].neutral(index);
+        chosen.values[0] = 5.0 * UM;
+        let told = world.change(&[chosen]);
+        for (at, entry) in campaign.measurements.rows.iter().enumerate() {
+            let is_moved = campaign.measurements.groups[entry.group].name == "clamp 2"
+                && (effect == "clamp_pose" || at > 15);
+            assert_eq!(told[3 * at], if is_moved { -5.0 * UM } else { 0.0 }, "{effect} {at}");
+        }
+    }
+}
+
+#[test]
+fn columns_are_the_derivatives_of_the_change() {
+    let campaign = clamps(8);
+    let calibration = calibrate(&campaign, Mode::Fea, &Options::default()).unwrap();
+    let (world, evidence) = CalibrationWorld::new(&campaign, &calibration).unwrap();
+    assert_eq!(evidence.residual.len(), 3 * campaign.measurements.len());
+    for (index, candidate) in world.candidates().iter().enumerate().step_by(7) {
+        let neutral = candidate.neutral(index);
+        assert_eq!(world.change(std::slice::from_ref(&neutral)).norm(), 0.0);
+        let columns = world.columns(std::slice::from_ref(&neutral), 0);
+        for (k, parameter) in candidate.parameters.iter().enumerate() {
+            let mut moved = neutral.clone();
+            moved.values[k] += parameter.size;
+            let difference = (world.change(&[moved]) - columns.column(k)).amax();
+            assert!(difference <= 1e-9 * columns.amax(), "{} {}", candidate.effect, candidate.location);
+        }
+    }
+}

@@ -1,0 +1,115 @@
+//! What the engine finds in campaigns into which something was put, and in those into which nothing was.
+
+use super::*;
+use crate::diagnosis::linear::Linearised;
+use crate::diagnosis::selection::Search;
+use crate::robot::{Kinematics, Setup};
+
+/// A coordinate's noise in the simulated campaigns, m: 30 µm of repeatability and 3 µm of sensors.
+const NOISE: f64 = 17.5 * UM;
+
+/// What is found: effects with their locations, and whether something structured is left.
+fn found(campaign: &Campaign) -> (Vec<String>, Option<String>) {
+    let mode = crate::calibration::default_mode(campaign);
+    let calibration = calibrate(campaign, mode, &Options::default()).unwrap();
+    let (world, evidence) = CalibrationWorld::new(campaign, &calibration).unwrap();
+    let linear = Linearised::new(&world);
+    let (_, story, unknown) = Search::settled(&linear, &evidence);
+    let name = |c: &Chosen| {
+        let candidate = &world.candidates()[c.candidate];
+        format!("{}: {}", candidate.effect, candidate.location)
+    };
+    (story.chosen.iter().map(name).collect(), unknown.and_then(|story| story.chosen.last().map(name)))
+}
+
+/// Displacement of the nominal robot's tip where the joints are turned, m.
+fn turned(campaign: &Campaign, by: impl Fn(usize, &mut [f64])) -> Vec<Vector3<f64>> {
+    let calibration = calibrate(campaign, Mode::None, &Options::default()).unwrap();
+    let setup: &Setup = &calibration.setup;
+    let mut kinematics = Kinematics::new(setup);
+    let mut tip = |q: &[f64]| {
+        kinematics.update(q, &vec![0.0; q.len()]);
+        kinematics.tip
+    };
+    (0..campaign.measurements.len())
+        .map(|row| {
+            let before = campaign.measurements.joints(row).to_vec();
+            let mut after = before.clone();
+            by(row, &mut after);
+            tip(&after) - tip(&before)
+        })
+        .collect()
+}
+
+#[test]
+fn noise_is_not_named() {
+    let campaign = clamps(30);
+    let mut named = Vec::new();
+    for seed in 0..20 {
+        let (effects, unknown) = found(&recorded(&campaign, &|_| Vector3::zeros(), NOISE, seed));
+        named.extend(effects.into_iter().chain(unknown).map(|name| format!("seed {seed} {name}")));
+    }
+    assert!(named.is_empty(), "{named:?}");
+}
+
+#[test]
+fn a_ripple_of_a_gear_is_found_with_its_joint_and_frequency() {
+    let campaign = clamps(30);
+    for joint in [1, 2] {
+        let off = turned(&campaign, |_, q| q[joint] += 100e-6 * (20.0 * q[joint] + 0.4).sin());
+        for seed in 0..3 {
+            let (effects, _) = found(&recorded(&campaign, &|row| off[row], NOISE, seed));
+            let expected = format!("transmission_error: joint {}, ", joint + 1);
+            assert!(effects.len() == 1 && effects[0].starts_with(&expected), "{effects:?}");
+            let cycles: f64 = effects[0][expected.len()..].split(' ').next().unwrap().parse().unwrap();
+            assert!((cycles - 20.0).abs() < 0.5, "{effects:?}");
+        }
+    }
+}
+
+#[test]
+fn a_clamp_that_moved_is_found_with_its_row() {
+    let campaign = clamps(30);
+    let group = |row: usize| campaign.measurements.rows[row].group;
+    for seed in 0..3 {
+        let moved = Vector3::new(-200.0, 150.0, 80.0) * UM;
+        let shift = |row: usize| if group(row) == 2 && row >= 73 { moved } else { Vector3::zeros() };
+        let (effects, _) = found(&recorded(&campaign, &shift, NOISE, seed));
+        // the last row of that clamp before the shift, and its neighbours
+        let of_clamp: Vec<usize> = (0..campaign.measurements.len()).filter(|&row| group(row) == 2).collect();
+        let last = of_clamp.iter().rposition(|&row| row < 73).unwrap();
+        let near =
+            (last - 1..=last + 1).map(|k| format!("clamp_shift: clamp 3, after pose {}", of_clamp[k] + 1));
+        assert!(effects.len() == 1 && near.into_iter().any(|name| name == effects[0]), "{effects:?}");
+    }
+}
+
+#[test]
+fn a_readback_lag_is_no_backlash() {
+    let campaign = clamps(30);
+    let recording = &campaign.measurements;
+    let off = turned(&campaign, |row, q| {
+        for (j, q) in q.iter_mut().enumerate() {
+            *q += 2e-4 * (recording.joints(row)[j] - recording.joints(row.saturating_sub(1))[j]);
+        }
+    });
+    for seed in 0..3 {
+        let (effects, _) = found(&recorded(&campaign, &|row| off[row], NOISE, seed));
+        assert_eq!(effects, ["readback_lag: all joints"]);
+    }
+}
+
+#[test]
+fn what_the_calibration_absorbs_is_said() {
+    let campaign = clamps(12);
+    let calibration = calibrate(&campaign, Mode::Fea, &Options::default()).unwrap();
+    let (world, _) = CalibrationWorld::new(&campaign, &calibration).unwrap();
+    // joint compliances are fitted
+    let is_absorbed = |effect: &str, location: &str| {
+        world.absorbed.iter().any(|a| a.effect == effect && a.location == location && a.survival < 0.02)
+    };
+    assert!(is_absorbed("joint_compliance", "joint 2"), "{:?}", world.absorbed);
+    assert!(world.candidates().iter().all(|c| c.effect != "joint_compliance" || c.location != "joint 2"));
+    let untested: Vec<&str> = world.not_testable.iter().map(|n| n.effect.as_str()).collect();
+    assert_eq!(untested, ["thermal_drift"]);
+}

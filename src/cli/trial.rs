@@ -10,7 +10,6 @@ use rodcal::rod::Rod;
 use rodcal::trial::answers::{self, Answer};
 use rodcal::trial::envelope::{self, Manifest};
 use rodcal::trial::score;
-use rodcal::units::UM;
 use rodcal::{Error, Result};
 use serde_json::{Value, json};
 

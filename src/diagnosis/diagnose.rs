@@ -2,18 +2,18 @@
 
 use nalgebra::DVector;
 
+use super::judgement::judged;
 use super::lack_of_fit::LackOfFit;
 use super::linear::Linearised;
 use super::locate::{Structure, locate};
 use super::proof::{Proof, prove};
-use super::selection::{Remainder, Search, Story};
+use super::search::{Search, Story};
+use super::selection::Remainder;
 use super::{Chosen, Evidence, World};
 use crate::statistics::{chi_squared_survival, student_t_quantile};
 
 /// Odds within which another explanation counts as indistinguishable: 20 to 1.
 const APART: f64 = 20.0;
-/// What is left is little: as a share of what an effect explains, and of the noise.
-const LITTLE: (f64, f64) = (0.1, 0.5);
 
 /// What a recording says about the physics that its model left out.
 #[derive(Debug, Clone)]
@@ -98,8 +98,7 @@ impl Diagnosis {
 /// Diagnoses a recording.
 pub fn diagnose(world: &dyn World, evidence: &Evidence) -> Diagnosis {
     let world = &Linearised::new(world);
-    let (search, story, unknown) = Search::settled(world, evidence);
-    let (story, unknown) = convincing(&search, beyond_the_tails(&search, story), unknown);
+    let (search, story, unknown) = judged(world, evidence);
     let none = search.fit(&[]);
     let told_by_none = search.told(&none, evidence, &DVector::zeros(evidence.residual.len()));
     let change = world.change(&story.chosen);
@@ -137,65 +136,6 @@ pub fn diagnose(world: &dyn World, evidence: &Evidence) -> Diagnosis {
         after,
         story,
     }
-}
-
-/// A story without the effects that may as well be a part of what is left unexplained, and what is left then.
-///
-/// An effect stays if it explains more than is left even where the unexplained curve is there to take its place (an outlier,
-/// which no smooth curve draws), or if what is left is little beside it or beside the noise (a law of creep that is not quite
-/// the right one).
-fn convincing(search: &Search, story: Story, unknown: Option<Remainder>) -> (Story, Option<Remainder>) {
-    let Some(remainder) = &unknown else { return (story, unknown) };
-    let own = |whole: &Story, position: usize| {
-        let without = search.left_rms(&search.without(whole, position));
-        (without.powi(2) - search.left_rms(whole).powi(2)).max(0.0).sqrt()
-    };
-    let left = match remainder {
-        Remainder::Curve(longer) => own(longer, longer.chosen.len() - 1),
-        Remainder::Cells => search.cells_rms(&story),
-    };
-    let is_kept = |position: usize| {
-        let beside_curve = match remainder {
-            Remainder::Curve(longer) => own(longer, position),
-            Remainder::Cells => own(&story, position),
-        };
-        beside_curve > left || left < (LITTLE.0 * own(&story, position)).max(LITTLE.1 * story.sigma)
-    };
-    let kept: Vec<Chosen> =
-        (0..story.chosen.len()).filter(|&k| is_kept(k)).map(|k| story.chosen[k].clone()).collect();
-    if kept.len() == story.chosen.len() {
-        return (story, unknown);
-    }
-    let story = search.fit(&kept);
-    let remainder = search.remains(&story).or(unknown);
-    (story, remainder)
-}
-
-/// A story without single data that are no farther out than the tails of this recording's noise reach.
-///
-/// Where the other residuals have more kurtosis than a normal distribution, by three standard errors √(24/n), a datum has to
-/// be twice as far out as any of them.
-fn beyond_the_tails(search: &Search, story: Story) -> Story {
-    let events: Vec<bool> = story.chosen.iter().map(|chosen| search.is_event(chosen)).collect();
-    if !events.contains(&true) {
-        return story;
-    }
-    let rest = search.standardised(&story);
-    let n = rest.len() as f64;
-    let (second, fourth) = (rest.norm_squared() / n, rest.map(|t| t.powi(4)).sum() / n);
-    if fourth / second.powi(2) - 3.0 < 3.0 * (24.0 / n).sqrt() {
-        return story;
-    }
-    let farthest = rest.amax();
-    let is_kept = |position: &usize| {
-        !events[*position] || {
-            let without = search.without(&story, *position);
-            search.standardised(&without).amax() * without.sigma > 2.0 * farthest * story.sigma
-        }
-    };
-    let kept: Vec<Chosen> =
-        (0..story.chosen.len()).filter(is_kept).map(|k| story.chosen[k].clone()).collect();
-    if kept.len() == story.chosen.len() { story } else { search.fit(&kept) }
 }
 
 fn finding(

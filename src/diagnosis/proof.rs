@@ -2,11 +2,14 @@
 
 use nalgebra::DVector;
 
+use super::judgement::judged;
 use super::linear::Linearised;
-use super::selection::Search;
 use super::{Chosen, Evidence, World};
 use crate::parallel::in_parallel;
 use crate::statistics::{Random, percentile_interval};
+
+/// Squares of a fold before and after, and how many data they are of.
+type Squares = (f64, f64, f64);
 
 /// Draws of the bootstrap over folds.
 const DRAWS: usize = 1000;
@@ -59,7 +62,7 @@ pub fn prove(world: &Linearised<'_>, evidence: &Evidence) -> Option<Proof> {
         };
         let (kept, held_out) = (of(false), of(true));
         let (part, training) = (world.part(&kept), evidence.part(&kept));
-        let (search, story, _) = Search::settled(&part, &training);
+        let (search, story, _) = judged(&part, &training);
         let none = search.told(&search.fit(&[]), evidence, &DVector::zeros(n));
         let all = search.told(&story, evidence, &world.change(&story.chosen));
         let square = |told: &DVector<f64>| {
@@ -67,8 +70,8 @@ pub fn prove(world: &Linearised<'_>, evidence: &Evidence) -> Option<Proof> {
         };
         ((square(&none), square(&all), held_out.len() as f64), story.chosen)
     });
-    let (squares, stories): (Vec<(f64, f64, f64)>, Vec<Vec<Chosen>>) = by_fold.into_iter().unzip();
-    let total = |of: &dyn Fn(&(f64, f64, f64)) -> f64| squares.iter().map(of).sum::<f64>();
+    let (squares, stories): (Vec<Squares>, Vec<Vec<Chosen>>) = by_fold.into_iter().unzip();
+    let total = |of: &dyn Fn(&Squares) -> f64| squares.iter().map(of).sum::<f64>();
     let count = total(&|s| s.2);
     let gain = 1.0 - total(&|s| s.1) / total(&|s| s.0).max(f64::MIN_POSITIVE);
     Some(Proof {
@@ -80,7 +83,7 @@ pub fn prove(world: &Linearised<'_>, evidence: &Evidence) -> Option<Proof> {
     })
 }
 
-fn interval(squares: &[(f64, f64, f64)]) -> Option<(f64, f64)> {
+fn interval(squares: &[Squares]) -> Option<(f64, f64)> {
     let mut random = Random::seeded(0, 0);
     let mut gains: Vec<f64> = (0..DRAWS)
         .map(|_| {

@@ -177,7 +177,7 @@ impl Moments {
         let k = gram.ncols();
         let nu = (self.freedom as f64).max(1.0);
         // s/κ² on the diagonal
-        let posterior = |ridge: f64| Some((&gram + DMatrix::from_diagonal_element(k, k, ridge)).cholesky()?);
+        let posterior = |ridge: f64| (&gram + DMatrix::from_diagonal_element(k, k, ridge)).cholesky();
         let mut scale = 1.0f64;
         for _ in 0..SCALE_STEPS {
             let Some(root) = posterior(s / scale.powi(2)) else { return f64::NEG_INFINITY };

@@ -161,8 +161,7 @@ impl Moments {
         Scaled { log_evidence: self.log_evidence(&lambda, &b, s) + room, variance: s, mean, spread }
     }
 
-    /// About the log evidence that `more` columns add to a story of this score: the noise follows what they explain without
-    /// being fitted again.
+    /// About the log evidence that `more` columns add to a story of this score: the noise follows what they explain.
     ///
     /// With the story's columns out of them (G' = Gₘ − X(G + σ²)⁻¹Xᵀ, b' = bₘ − X(G + σ²)⁻¹b, X the cross products) they explain
     /// Δ = b'ᵀ(G' + σ²)⁻¹b', which leaves s' = σ²·(1 − Δ/νσ²), and
@@ -176,22 +175,22 @@ impl Moments {
         let product = &more.product - reduced.tr_mul(&self.product);
         let k = gram.ncols();
         let nu = (self.freedom as f64).max(1.0);
-        // s/κ² on the diagonal
+        // σ²/κ² on the diagonal
         let posterior = |ridge: f64| (&gram + DMatrix::from_diagonal_element(k, k, ridge)).cholesky();
-        let mut scale = 1.0f64;
+        let (mut scale, mut left, mut explained) = (1.0f64, s, 0.0);
         for _ in 0..SCALE_STEPS {
-            let Some(root) = posterior(s / scale.powi(2)) else { return f64::NEG_INFINITY };
-            let square = root.solve(&product).norm_squared() + s * root.inverse().trace();
+            let Some(root) = posterior(left / scale.powi(2)) else { return f64::NEG_INFINITY };
+            let estimate = root.solve(&product);
+            let square = estimate.norm_squared() + left * root.inverse().trace();
             let next = (square / k as f64).sqrt().clamp(SCALES.0, SCALES.1);
-            let moved = (next / scale).ln().abs();
-            scale = next;
-            if moved < 0.1 {
+            explained = (product.dot(&estimate) / (nu * s)).clamp(0.0, 1.0 - 1e-12);
+            let less = (s * (1.0 - explained)).max(self.floor.powi(2)).max(f64::MIN_POSITIVE.sqrt());
+            let moved = (next / scale).ln().abs().max((less / left).ln().abs());
+            (scale, left) = (next, less);
+            if moved < 0.05 {
                 break;
             }
         }
-        let Some(root) = posterior(s / scale.powi(2)) else { return f64::NEG_INFINITY };
-        let explained = (product.dot(&root.solve(&product)) / (nu * s)).clamp(0.0, 1.0 - 1e-9);
-        let left = (s * (1.0 - explained)).max(self.floor.powi(2)).max(f64::MIN_POSITIVE.sqrt());
         let ridge = left / scale.powi(2);
         let Some(root) = posterior(ridge) else { return f64::NEG_INFINITY };
         let determinant: f64 = (0..k).map(|i| (root.l_dirty()[(i, i)].powi(2) / ridge).ln()).sum();

@@ -127,7 +127,7 @@ impl<'a> Search<'a> {
         let before = present.score();
         let more = |index: usize| {
             let (cross, product) = products(index);
-            let bounds = self.world.candidates()[index].scaled_bounds().collect();
+            let bounds = self.world.candidates()[index].scaled_bounds().map(one_sided).collect();
             More { gram: &self.columns[index].1, cross, product, bounds }
         };
         let alone = present.rest(&before).score().log_evidence;
@@ -348,6 +348,12 @@ impl<'a> Search<'a> {
             }
         }
     }
+}
+
+/// A bound that is where nothing happens; a far one says little about columns at neutral values, where the effect may be far
+/// from linear.
+fn one_sided((low, high): (f64, f64)) -> (f64, f64) {
+    (if low == 0.0 { 0.0 } else { f64::NEG_INFINITY }, if high == 0.0 { 0.0 } else { f64::INFINITY })
 }
 
 fn flat(chosen: &[Chosen]) -> DVector<f64> {

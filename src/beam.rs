@@ -15,6 +15,7 @@
 mod chain;
 mod check;
 mod element;
+mod large;
 mod model;
 mod solve;
 

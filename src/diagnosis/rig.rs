@@ -112,7 +112,17 @@ impl RigWorld {
             }
             Body::Lines(_) => evidence::slopes(&world.data, &world.place),
         };
-        let evidence = evidence::of(&world.data, nuisance);
+        let large = match &world.body {
+            Body::Rod(structure) => {
+                let second = structure.second_order()?;
+                let of = |(d, &place): (&Datum, &usize)| {
+                    second[place][(d.channel.index(), d.direction.axis.index())] * d.load.powi(2)
+                };
+                Some(DVector::from_iterator(world.data.len(), world.data.iter().zip(&world.place).map(of)))
+            }
+            Body::Lines(_) => None,
+        };
+        let evidence = evidence::of(&world.data, nuisance, large);
         world.add_candidates(rod, is_wanted);
         Ok((world, evidence))
     }

@@ -16,17 +16,29 @@ const FEWEST_FOLDS: usize = 3;
 const ZERO: f64 = 5e-4;
 
 /// The evidence of `data`, whose predictions are made.
-pub(super) fn of(data: &[Datum], nuisance: DMatrix<f64>) -> Evidence {
+pub(super) fn of(data: &[Datum], nuisance: DMatrix<f64>, large: Option<DVector<f64>>) -> Evidence {
     Evidence {
         residual: DVector::from_iterator(data.len(), data.iter().map(|d| d.measured - d.predicted)),
         nuisance,
-        background: zeros(data),
+        background: background(data, large),
         cell: numbered(data.iter().map(|d| (d.line_key(), d.direction.sign, d.load.to_bits(), d.phase))),
         // the zero of a run is that of one sensor at one place
         shared: numbered(data.iter().map(|d| (d.run, d.channel, d.stations()[1]))),
         fold: folds(data),
         resolution: resolution(data),
         covariates: covariates(data),
+    }
+}
+
+/// What every story holds: the zeros of the channels, and what large deflections add (`large`), which the linear model leaves
+/// out; whether the readings show it is not the diagnosis' question.
+fn background(data: &[Datum], large: Option<DVector<f64>>) -> DMatrix<f64> {
+    let zeros = zeros(data);
+    match large {
+        Some(large) => {
+            zeros.insert_columns(0, 1, 0.0).map_with_location(|i, k, x| if k == 0 { large[i] } else { x })
+        }
+        None => zeros,
     }
 }
 
@@ -140,7 +152,7 @@ mod tests {
 
     fn evidence(text: &str) -> Evidence {
         let data = datum::all(&Readings::from_text("f", text).unwrap().rows);
-        of(&data, DMatrix::zeros(data.len(), 0))
+        of(&data, DMatrix::zeros(data.len(), 0), None)
     }
 
     fn trials(count: usize) -> String {

@@ -174,6 +174,29 @@ impl Structure {
         self.stations[joint]
     }
 
+    /// What large deflections add to the displacement per square of the load along each axis, m/N² (columns: axes), for each
+    /// pair of stations: to the second order, which is even in the load.
+    pub(super) fn second_order(&self) -> Result<Parts> {
+        /// Enough for three digits.
+        const ELEMENTS: usize = 48;
+        let stations: Vec<f64> = self.pairs.iter().flat_map(|&(load, read)| [load, read]).collect();
+        let model = RodModel::new(&self.rod, &Physics::WHOLE, ELEMENTS, &stations)?;
+        let mut known: Vec<(f64, [Vec<nalgebra::Vector3<f64>>; 3])> = Vec::new();
+        let mut parts = Vec::new();
+        for &(load, read) in &self.pairs {
+            if !known.iter().any(|(station, _)| *station == load) {
+                let along = |axis: usize| model.second_order(model.node_at(load), axis, 1.0);
+                known.push((load, [along(0)?, along(1)?, along(2)?]));
+            }
+            let node = model.node_at(read);
+            let columns = known.iter().find(|(station, _)| *station == load).map(|(_, of)| of);
+            parts.push(columns.map_or_else(Matrix3::zeros, |of| {
+                Matrix3::from_columns(&[of[0][node], of[1][node], of[2][node]])
+            }));
+        }
+        Ok(parts)
+    }
+
     /// True where there is an arc that can ovalise.
     pub(super) fn has_arc(&self) -> bool {
         self.arc.is_some()

@@ -56,6 +56,10 @@ pub struct Finding {
     pub place: String,
     /// Value and 95 % interval of each parameter, SI.
     pub parameters: Vec<(f64, f64, f64)>,
+    /// Its first parameter among those of the story: where it stands in the story's covariance.
+    pub first: usize,
+    /// Half of a 95 % interval in standard deviations.
+    pub reach: f64,
     /// Probability that noise alone fits as much better.
     pub p_value: f64,
     /// Root mean square of what it explains.
@@ -181,11 +185,15 @@ fn finding(
     let without = &evidence.residual - world.change(&rest.chosen);
     let with = &evidence.residual - world.change(&story.chosen);
     let gained = (search.length(&without).powi(2) - search.length(&with).powi(2)) / story.sigma.powi(2);
+    // a curve has more parameters than the data determine of it
+    let own_freedom = (story.determined - rest.determined).clamp(1.0, chosen.values.len().max(1) as f64);
     Finding {
         chosen: chosen.clone(),
         place: world.place(chosen),
         parameters,
-        p_value: chi_squared_survival(gained.max(0.0), chosen.values.len() as f64).unwrap_or(1.0),
+        first,
+        reach,
+        p_value: chi_squared_survival(gained.max(0.0), own_freedom).unwrap_or(1.0),
         rms: rms(&world.change(std::slice::from_ref(chosen))),
         rivals,
     }

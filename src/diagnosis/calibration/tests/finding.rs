@@ -20,13 +20,11 @@ fn found(campaign: &Campaign) -> (Vec<String>, Option<String>) {
         let candidate = &world.candidates()[c.candidate];
         format!("{}: {}", candidate.effect, candidate.location)
     };
-    (
-        story.chosen.iter().map(name).collect(),
-        unknown.and_then(|left| match left {
-            Remainder::Curve(story) => story.chosen.last().map(name),
-            Remainder::Cells => None,
-        }),
-    )
+    let left = unknown.map(|remainder| match remainder {
+        Remainder::Curve(longer) => longer.chosen.last().map(name).unwrap_or_default(),
+        Remainder::Cells => "repeats".to_owned(),
+    });
+    (story.chosen.iter().map(name).collect(), left)
 }
 
 /// Displacement of the nominal robot's tip where the joints are turned, m.

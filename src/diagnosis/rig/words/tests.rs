@@ -36,6 +36,8 @@ fn finding(world: &RigWorld, candidate: usize) -> Finding {
         parameters: parameters
             .map(|p| (p.neutral + 2.0 * p.size, p.neutral + p.size, p.neutral + 3.0 * p.size))
             .collect(),
+        first: 0,
+        reach: 2.0,
         p_value: 0.0,
         rms: 0.0,
         rivals: Vec::new(),

@@ -30,4 +30,5 @@ pub use lack_of_fit::LackOfFit;
 pub use locate::Structure;
 pub use proof::Proof;
 pub use search::Story;
+pub use selection::NAMED;
 pub use world::{Candidate, Chosen, EffectParameter, World};

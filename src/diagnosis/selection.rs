@@ -4,7 +4,7 @@ use super::World;
 use super::search::{PRIOR, Search, Story};
 
 /// Odds against chance from which on an effect is named.
-const NAMED: f64 = 50.0;
+pub const NAMED: f64 = 50.0;
 /// Most effects in one story.
 const MOST: usize = 8;
 /// Of how many candidates, the likeliest by their columns at neutral values, the values are fitted.

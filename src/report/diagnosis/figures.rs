@@ -16,8 +16,6 @@ use crate::rig::readings::Axis;
 use crate::rod::Rod;
 use crate::units::{MM, UM};
 
-/// Odds from which on an effect is named.
-const NAMED: f64 = 20.0;
 /// Points of a centreline.
 const POINTS: usize = 120;
 /// So many lines of readings are told apart in one picture.
@@ -243,7 +241,7 @@ pub fn candidates(ranked: &[Ranked]) -> Figure {
             class: ranked.class,
         })
         .collect();
-    ranking(&bars, NAMED).captioned(
+    ranking(&bars, crate::diagnosis::NAMED).captioned(
         "How likely each effect is by itself, at its best place, against noise alone: 2 is a hundred to one. An effect may \
          reach far and yet be rejected, where what was adopted explains the same readings better.",
     )

@@ -9,11 +9,14 @@ use super::locate::{Structure, locate};
 use super::proof::{Proof, prove};
 use super::search::{Search, Story};
 use super::selection::Remainder;
-use super::{Chosen, Evidence, World};
+use super::{Chosen, EffectParameter, Evidence, World};
 use crate::statistics::{chi_squared_survival, student_t_quantile};
 
 /// Odds within which another explanation counts as indistinguishable: 20 to 1.
 const APART: f64 = 20.0;
+
+/// A form of a law that leaves at most so much more, as a factor, may be the right one.
+const HARDLY_MORE: f64 = 1.1;
 
 /// What a recording says about the physics that its model left out.
 #[derive(Debug, Clone)]
@@ -155,17 +158,19 @@ fn finding(
     let first: usize = story.chosen[..position].iter().map(|c| c.values.len()).sum();
     let freedom = (search.degrees_of_freedom() as f64 - story.determined).max(1.0);
     let reach = student_t_quantile(0.975, freedom).unwrap_or(1.96);
-    let parameters = chosen
-        .values
-        .iter()
-        .zip(&candidates[chosen.candidate].parameters)
-        .enumerate()
-        .map(|(k, (&value, parameter))| {
-            let half = reach * story.covariance[(first + k, first + k)].max(0.0).sqrt();
-            let (low, high) = parameter.bounds;
-            (value, (value - half).max(low), (value + half).min(high))
-        })
-        .collect();
+    let mut parameters = intervals(world, story, chosen, first, reach);
+    // which form of a law is the right one is not known where another one leaves hardly more
+    for form in search.other_forms(chosen.candidate) {
+        let other = search.with(&rest, form);
+        if search.left_rms(&other) > HARDLY_MORE * search.left_rms(story) {
+            continue;
+        }
+        let Some(own) = other.chosen.last() else { continue };
+        let at = other.covariance.nrows() - own.values.len();
+        for (known, other) in parameters.iter_mut().zip(intervals(world, &other, own, at, reach)) {
+            (known.1, known.2) = (known.1.min(other.1), known.2.max(other.2));
+        }
+    }
     // candidates that would do in its place
     let additions = search.additions(&rest);
     let least = story.log_probability - rest.log_probability - 2.0 * APART.ln();
@@ -197,6 +202,23 @@ fn finding(
         rms: rms(&world.change(std::slice::from_ref(chosen))),
         rivals,
     }
+}
+
+/// Value and 95 % interval of the parameters of an effect, which begin at `first` in the covariance of its story.
+fn intervals(
+    world: &Linearised<'_>,
+    story: &Story,
+    chosen: &Chosen,
+    first: usize,
+    reach: f64,
+) -> Vec<(f64, f64, f64)> {
+    let parameters = &world.candidates()[chosen.candidate].parameters;
+    let of = |(k, (&value, parameter)): (usize, (&f64, &EffectParameter))| {
+        let half = reach * story.covariance[(first + k, first + k)].max(0.0).sqrt();
+        let (low, high) = parameter.bounds;
+        (value, (value - half).max(low), (value + half).min(high))
+    };
+    chosen.values.iter().zip(parameters).enumerate().map(of).collect()
 }
 
 /// Root mean square.

@@ -151,6 +151,18 @@ impl<'a> Search<'a> {
         chosen.candidate == index || (old.is_alternative && new.is_alternative && old.effect == new.effect)
     }
 
+    /// Other forms of the law that a candidate is one of, with the same parameters.
+    pub fn other_forms(&self, index: usize) -> Vec<usize> {
+        let candidates = self.world.candidates();
+        let own = &candidates[index];
+        let names = |c: &Candidate| c.parameters.iter().map(|p| p.name.clone()).collect::<Vec<_>>();
+        let is_form = |&other: &usize| {
+            let c = &candidates[other];
+            own.is_alternative && c.is_alternative && c.effect == own.effect && names(c) == names(own)
+        };
+        (0..candidates.len()).filter(|&other| other != index).filter(is_form).collect()
+    }
+
     /// Candidates that may be added, known or unknown ones, the likeliest first.
     pub(super) fn likeliest(&self, additions: &[f64], unknown: bool) -> Vec<usize> {
         let mut likeliest: Vec<usize> = (0..additions.len())

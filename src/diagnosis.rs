@@ -13,12 +13,14 @@ mod lack_of_fit;
 mod linear;
 mod locate;
 mod proof;
+mod quantity;
 pub mod rig;
 mod score;
 mod search;
 mod selection;
 mod sparse;
 mod whitening;
+mod words;
 mod world;
 
 #[cfg(test)]
@@ -29,6 +31,8 @@ pub use evidence::{Covariate, Evidence};
 pub use lack_of_fit::LackOfFit;
 pub use locate::Structure;
 pub use proof::Proof;
+pub use quantity::Quantity;
 pub use search::Story;
 pub use selection::NAMED;
+pub use words::Words;
 pub use world::{Candidate, Chosen, EffectParameter, World};

@@ -47,7 +47,7 @@ pub enum Weights {
 }
 
 impl ModeName {
-    fn mode(self) -> Mode {
+    pub fn mode(self) -> Mode {
         match self {
             ModeName::None => Mode::None,
             ModeName::Calc => Mode::Calc,

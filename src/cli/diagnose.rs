@@ -1,4 +1,6 @@
-//! `rodcal diagnose rig ROD READINGS`.
+//! `rodcal diagnose rig ROD READINGS`, `rodcal diagnose calibration CAMPAIGN`.
+
+mod calibration;
 
 use std::path::{Path, PathBuf};
 
@@ -14,6 +16,8 @@ use super::output::Outcome;
 pub enum Diagnose {
     /// Which physics of rod or rig the model of a rod left out: located, named, fitted, proved on held-out readings.
     Rig(Rig),
+    /// Which physics of robot, rod, fixture or procedure a calibration left out: which joint, clamp, time or pose.
+    Calibration(calibration::Calibration),
 }
 
 #[derive(Debug, Args)]
@@ -59,8 +63,10 @@ line says why; 2 could not run.";
 
 impl Diagnose {
     pub fn run(&self) -> Result<Outcome> {
-        let Diagnose::Rig(rig) = self;
-        rig.run()
+        match self {
+            Diagnose::Rig(rig) => rig.run(),
+            Diagnose::Calibration(calibration) => calibration.run(),
+        }
     }
 }
 

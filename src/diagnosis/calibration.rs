@@ -10,12 +10,17 @@
 
 mod cosines;
 mod evidence;
+mod findings;
+mod gear;
 mod library;
+mod limits;
 mod posture;
+mod result;
 mod scene;
 #[cfg(test)]
 mod tests;
 mod unknown;
+mod words;
 
 use nalgebra::{DMatrix, DVector};
 
@@ -25,7 +30,12 @@ use super::{Candidate, Chosen, Evidence, World};
 use crate::calibration::Calibration;
 use crate::calibration::campaign::Campaign;
 use crate::error::Result;
+pub use findings::{Mismatch, Number};
+pub use gear::{Curve, Gear};
 pub use library::NotTestable;
+pub use limits::Limit;
+pub use result::{CalibrationDiagnosis, diagnose};
+pub use words::{cause, cause_at, unexplained_at};
 
 /// Share of an effect that must be left once the calibration has absorbed what it can.
 const LEAST_SURVIVAL: f64 = 0.02;
@@ -36,10 +46,12 @@ pub struct CalibrationWorld {
     candidates: Vec<Candidate>,
     /// For each candidate ∂change/∂parameter.
     columns: Vec<Vec<Column>>,
-    cycles_per_rev: Vec<Option<f64>>,
+    gears: Vec<Option<Gear>>,
     /// What survives of each candidate.
     survival: Vec<f64>,
     data: usize,
+    /// What each row counts.
+    scale: Vec<f64>,
     /// Effects that the calibration hides.
     pub absorbed: Vec<Absorbed>,
     /// Effects that the campaign's files have no data for.
@@ -68,7 +80,11 @@ impl CalibrationWorld {
         let evidence = evidence::of(campaign, calibration, &scene);
         let (mut entries, not_testable) = library::all(&scene);
         entries.extend(unknown::all(&scene));
-        let world = CalibrationWorld { not_testable, ..CalibrationWorld::of(entries, &evidence) };
+        let world = CalibrationWorld {
+            not_testable,
+            scale: scene.scale.clone(),
+            ..CalibrationWorld::of(entries, &evidence)
+        };
         Ok((world, evidence))
     }
 
@@ -78,9 +94,10 @@ impl CalibrationWorld {
         let mut world = CalibrationWorld {
             candidates: Vec::new(),
             columns: Vec::new(),
-            cycles_per_rev: Vec::new(),
+            gears: Vec::new(),
             survival: Vec::new(),
             data,
+            scale: Vec::new(),
             absorbed: Vec::new(),
             not_testable: Vec::new(),
         };
@@ -96,15 +113,20 @@ impl CalibrationWorld {
             }
             world.candidates.push(entry.candidate);
             world.columns.push(entry.columns);
-            world.cycles_per_rev.push(entry.cycles_per_rev);
+            world.gears.push(entry.gear);
             world.survival.push(survival);
         }
         world
     }
 
-    /// Frequency of a transmission error that is one harmonic, cycles per revolution of its joint.
-    pub fn cycles_per_rev(&self, candidate: usize) -> Option<f64> {
-        self.cycles_per_rev.get(candidate).copied().flatten()
+    /// What a transmission error is a function of; `None` for any other candidate.
+    pub fn gear(&self, candidate: usize) -> Option<&Gear> {
+        self.gears.get(candidate)?.as_ref()
+    }
+
+    /// Residuals and changes are rows of the recording times this: pooled noise over the noise of the row's group.
+    pub fn scale(&self, row: usize) -> f64 {
+        self.scale.get(row).copied().unwrap_or(1.0)
     }
 
     /// Share of a candidate that the calibration cannot take up.
@@ -153,9 +175,11 @@ impl World for CalibrationWorld {
 impl Entry {
     /// Without parameters that do nothing; `None` where none is left.
     fn felt(self) -> Option<Entry> {
+        // the terms of a gear's error are told by their number
+        let keeps_all = self.gear.is_some() && self.columns.iter().any(|column| !column.is_zero());
         let parameters = self.candidate.parameters.into_iter().zip(self.columns);
         let (parameters, columns): (Vec<_>, Vec<_>) =
-            parameters.filter(|(_, column)| !column.is_zero()).unzip();
+            parameters.filter(|(_, column)| keeps_all || !column.is_zero()).unzip();
         let candidate = Candidate { parameters, ..self.candidate };
         (!columns.is_empty()).then_some(Entry { candidate, columns, ..self })
     }

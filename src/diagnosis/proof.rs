@@ -27,6 +27,10 @@ pub struct Proof {
     pub gain_interval: Option<(f64, f64)>,
     /// Stories of the folds.
     pub stories: Vec<Vec<Chosen>>,
+    /// What the base model leaves of each datum while it is held out; NaN for data that never are.
+    pub errors_before: DVector<f64>,
+    /// And what the story of its fold leaves.
+    pub errors_after: DVector<f64>,
 }
 
 impl Evidence {
@@ -65,12 +69,18 @@ pub fn prove(world: &Linearised<'_>, evidence: &Evidence) -> Option<Proof> {
         let (search, story, _) = judged(&part, &training);
         let none = search.told(&search.fit(&[]), evidence, &DVector::zeros(n));
         let all = search.told(&story, evidence, &world.change(&story.chosen));
-        let square = |told: &DVector<f64>| {
-            held_out.iter().map(|&row| (evidence.residual[row] - told[row]).powi(2)).sum::<f64>()
-        };
-        ((square(&none), square(&all), held_out.len() as f64), story.chosen)
+        let miss = |told: &DVector<f64>| (&evidence.residual - told).select_rows(&held_out);
+        (held_out.clone(), miss(&none), miss(&all), story.chosen)
     });
-    let (squares, stories): (Vec<Squares>, Vec<Vec<Chosen>>) = by_fold.into_iter().unzip();
+    let (mut errors_before, mut errors_after) = (DVector::repeat(n, f64::NAN), DVector::repeat(n, f64::NAN));
+    let (mut squares, mut stories): (Vec<Squares>, Vec<Vec<Chosen>>) = (Vec::new(), Vec::new());
+    for (held_out, before, after, story) in by_fold {
+        squares.push((before.norm_squared(), after.norm_squared(), held_out.len() as f64));
+        stories.push(story);
+        for (k, &row) in held_out.iter().enumerate() {
+            (errors_before[row], errors_after[row]) = (before[k], after[k]);
+        }
+    }
     let total = |of: &dyn Fn(&Squares) -> f64| squares.iter().map(of).sum::<f64>();
     let count = total(&|s| s.2);
     let gain = 1.0 - total(&|s| s.1) / total(&|s| s.0).max(f64::MIN_POSITIVE);
@@ -80,6 +90,8 @@ pub fn prove(world: &Linearised<'_>, evidence: &Evidence) -> Option<Proof> {
         gain,
         gain_interval: (squares.len() > 2).then(|| interval(&squares)).flatten(),
         stories,
+        errors_before,
+        errors_after,
     })
 }
 

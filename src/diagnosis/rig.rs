@@ -44,7 +44,7 @@ pub use datum::Datum;
 pub use limits::{Limit, NotTestable};
 pub use next::Proposal;
 pub use result::{RigDiagnosis, diagnose};
-pub use words::{Words, cause, cause_at, unexplained_at};
+pub use words::{cause, cause_at, unexplained_at};
 
 /// Readings of a rig with all the physics that might be in them.
 #[derive(Debug, Clone)]

@@ -1,5 +1,6 @@
-//! What `diagnose rig` says: JSON, words, tables and pictures of a [`RigDiagnosis`].
+//! What `diagnose rig` says: JSON, words, tables and pictures of a [`RigDiagnosis`]; `diagnose calibration`: [`calibration`].
 
+pub mod calibration;
 mod correction;
 mod figures;
 mod headline;
@@ -7,6 +8,7 @@ mod json;
 mod ranking;
 mod remainder;
 mod sections;
+mod shared;
 
 use super::Report;
 use crate::diagnosis::Finding;

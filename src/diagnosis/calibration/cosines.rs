@@ -15,7 +15,7 @@ const CUT: f64 = 2.5;
 
 /// The cosines of an interval.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Cosines {
+pub struct Cosines {
     low: f64,
     length: f64,
     /// s_k, from k = 0.
@@ -39,9 +39,14 @@ impl Cosines {
         Cosines { low: low - scale, length, sizes }
     }
 
+    /// Angular frequency of the `k`th, π k/L.
+    pub fn frequency(&self, k: usize) -> f64 {
+        PI * k as f64 / self.length
+    }
+
     /// The `k`th at x.
     pub fn value(&self, k: usize, x: f64) -> f64 {
-        (PI * k as f64 * (x - self.low) / self.length).cos()
+        (self.frequency(k) * (x - self.low)).cos()
     }
 }
 

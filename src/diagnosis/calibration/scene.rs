@@ -2,6 +2,7 @@
 
 use nalgebra::{DVector, Matrix3, Vector3};
 
+use super::gear::Gear;
 use super::posture::{self, Posture};
 use crate::calibration::campaign::{Campaign, Recording, Targets};
 use crate::calibration::{Calibration, Compensation, Mode};
@@ -38,8 +39,8 @@ pub(super) struct Column {
 pub(super) struct Entry {
     pub candidate: Candidate,
     pub columns: Vec<Column>,
-    /// For a harmonic of a joint.
-    pub cycles_per_rev: Option<f64>,
+    /// For a transmission error, what it is a function of.
+    pub gear: Option<Gear>,
 }
 
 impl<'a> Scene<'a> {
@@ -178,6 +179,6 @@ pub(super) fn entry(
             is_unknown: false,
         },
         columns,
-        cycles_per_rev: None,
+        gear: None,
     }
 }

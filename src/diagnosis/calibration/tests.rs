@@ -3,6 +3,7 @@
 mod columns;
 mod finding;
 mod recorded;
+mod words;
 
 use nalgebra::Vector3;
 

@@ -1,35 +1,15 @@
 //! How effects are said to people who know mechanics: what was observed, with numbers, and what that is called.
 
-mod quantity;
 #[cfg(test)]
 mod tests;
 
-use std::fmt;
-
-use self::quantity::Quantity;
 use super::datum::Datum;
 use super::{Body, RigWorld};
-use crate::diagnosis::{Finding, World};
+use crate::diagnosis::{Finding, Quantity, Words, World};
 use crate::units::{MM, significant};
 
 /// The parameter of a joint that may be anywhere.
 const STATION: &str = "station_mm";
-
-/// A finding in words.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Words {
-    /// What the readings show, with values and their 95 % intervals, for example
-    /// `Loads are felt 1.02 ± 0.04 N too small`.
-    pub observed: String,
-    /// What that is called, for example `friction in the slide`.
-    pub cause: String,
-}
-
-impl fmt::Display for Words {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: {}", self.observed, self.cause)
-    }
-}
 
 /// What an effect of the library is called; `None` for a name that is not in it.
 pub fn cause(effect: &str) -> Option<&'static str> {

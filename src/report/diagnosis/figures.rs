@@ -2,15 +2,13 @@
 
 use nalgebra::DVector;
 
-use super::ranking::Ranked;
-use super::{branch_name, headline::um, spoken};
+use super::branch_name;
+use super::shared::covariates;
 use crate::diagnosis::rig::{Datum, RigDiagnosis};
-use crate::diagnosis::{Covariate, Finding, Proof, World, rms};
+use crate::diagnosis::{Covariate, Finding, World, rms};
 use crate::report::chart::Figure;
 use crate::report::compliance::stations;
-use crate::report::pictures::diagnosis::{
-    BeforeAfter, Candidate, HeldOut, Residual, ResidualPoint, before_after, held_out, ranking,
-};
+use crate::report::pictures::diagnosis::{BeforeAfter, Residual, ResidualPoint, before_after};
 use crate::report::pictures::{RodShape, Station, StationKind, Stretch, rod_shape};
 use crate::rig::readings::Axis;
 use crate::rod::Rod;
@@ -25,17 +23,10 @@ const OFF: f64 = 1.5;
 /// Name of all others.
 const OTHERS: &str = "all other readings";
 
-/// Covariates that are told: one that has the values of another is that other one.
-pub fn covariates(found: &RigDiagnosis) -> Vec<usize> {
-    let all = &found.evidence.covariates;
-    let is_new = |k: &usize| all[..*k].iter().all(|other| other.values != all[*k].values);
-    (0..all.len()).filter(is_new).collect()
-}
-
 /// The covariate along which the residuals are most structured.
 pub fn most_structured(found: &RigDiagnosis) -> Option<usize> {
     let z = |k: usize| found.diagnosis.structure_before[k].z;
-    covariates(found).into_iter().rev().max_by(|a, b| z(*a).total_cmp(&z(*b)))
+    covariates(&found.evidence).into_iter().rev().max_by(|a, b| z(*a).total_cmp(&z(*b)))
 }
 
 /// What the strongest finding is seen along; without one, where the residuals are most structured. What follows sensor,
@@ -49,7 +40,7 @@ fn seen_along(found: &RigDiagnosis) -> Covariate {
         None => &[],
     };
     let all = &found.evidence.covariates;
-    let told = covariates(found);
+    let told = covariates(&found.evidence);
     let named = |name: &&str| told.iter().map(|&k| &all[k]).find(|covariate| covariate.name == **name);
     let plainest = || {
         let covariate = &all[most_structured(found)?];
@@ -229,37 +220,4 @@ fn located(found: &RigDiagnosis, finding: &Finding, rod: &Rod) -> Option<Located
         }
         _ => None,
     }
-}
-
-/// How likely each effect is by itself.
-pub fn candidates(ranked: &[Ranked]) -> Figure {
-    let bars: Vec<Candidate> = ranked
-        .iter()
-        .map(|ranked| Candidate {
-            name: spoken(&ranked.effect),
-            log10_odds: ranked.log_odds / std::f64::consts::LN_10,
-            class: ranked.class,
-        })
-        .collect();
-    ranking(&bars, crate::diagnosis::NAMED).captioned(
-        "How likely each effect is by itself, at its best place, against noise alone: 2 is a hundred to one. An effect may \
-         reach far and yet be rejected, where what was adopted explains the same readings better.",
-    )
-}
-
-/// What held-out readings say.
-pub fn proof(proof: &Proof, noise: f64) -> Figure {
-    // after² = before²·(1 − gain)
-    let after = |gain: f64| proof.before * (1.0 - gain).max(0.0).sqrt() / UM;
-    held_out(&HeldOut {
-        before_um: proof.before / UM,
-        after_um: proof.after / UM,
-        after_95_um: proof.gain_interval.map(|(low, high)| (after(high), after(low))),
-        noise_um: noise / UM,
-    })
-    .captioned(format!(
-        "Error of readings that the fit had not seen: {} µm before, {} µm after. No model comes below the noise.",
-        um(proof.before),
-        um(proof.after)
-    ))
 }

@@ -1,8 +1,8 @@
 //! The first lines of a diagnosis: what was found, and what it is worth.
 
 use super::remainder::remainder;
-use crate::diagnosis::rig::{RigDiagnosis, Words, cause_at};
-use crate::diagnosis::{Finding, rms};
+use crate::diagnosis::rig::{RigDiagnosis, cause_at};
+use crate::diagnosis::{Finding, Words, rms};
 use crate::units::{UM, significant};
 
 /// So many findings are said at once; more are counted.

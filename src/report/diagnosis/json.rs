@@ -2,12 +2,11 @@
 
 use serde_json::{Value, json};
 
-use super::ranking::ranking;
 use super::remainder::remainder;
+use super::shared::{locate_json, ranking_json, test_json};
 use super::{correction, headline, warnings};
 use crate::diagnosis::rig::{Proposal, RigDiagnosis};
-use crate::diagnosis::{Finding, LackOfFit, Structure, World, rms};
-use crate::report::pictures::diagnosis::Class;
+use crate::diagnosis::{Finding, World, rms};
 use crate::rig::readings::Readings;
 use crate::rod::Rod;
 use crate::units::UM;
@@ -24,31 +23,6 @@ pub fn json(found: &RigDiagnosis, readings: &Readings, rod: Option<&Rod>) -> Val
     let findings = diagnosis.findings.iter().zip(&found.next);
     let findings: Vec<Value> =
         findings.map(|(finding, next)| of_finding(found, finding, next.as_ref())).collect();
-    let covariates = found.evidence.covariates.iter();
-    let structures = diagnosis.structure_before.iter().zip(&diagnosis.structure_after);
-    let locate: Vec<Value> = covariates
-        .zip(structures)
-        .map(|(covariate, (before, after))| {
-            json!({
-                "covariate": covariate.name,
-                "unit": covariate.unit,
-                "before": of_structure(before),
-                "after": of_structure(after),
-            })
-        })
-        .collect();
-    let of_ranked = ranking(found).into_iter().map(|ranked| {
-        json!({
-            "effect": ranked.effect,
-            "location": ranked.place,
-            "log_odds": ranked.log_odds,
-            "class": match ranked.class {
-                Class::Adopted => "adopted",
-                Class::Rival => "indistinguishable",
-                Class::Rejected => "rejected",
-            },
-        })
-    });
     let not_testable =
         found.not_testable.iter().map(|not| json!({ "effect": not.effect, "reason": not.reason }));
     json!({
@@ -69,10 +43,10 @@ pub fn json(found: &RigDiagnosis, readings: &Readings, rod: Option<&Rod>) -> Val
         "unexplained": remainder(found).map(|left| {
             json!({ "location": left.location, "rms_um": um(left.rms), "shape": left.shape() })
         }),
-        "locate": locate,
-        "lack_of_fit_before": diagnosis.lack_of_fit_before.as_ref().map(of_test),
-        "lack_of_fit_after": diagnosis.lack_of_fit_after.as_ref().map(of_test),
-        "ranking": of_ranked.collect::<Vec<_>>(),
+        "locate": locate_json(&found.evidence, diagnosis),
+        "lack_of_fit_before": diagnosis.lack_of_fit_before.as_ref().map(test_json),
+        "lack_of_fit_after": diagnosis.lack_of_fit_after.as_ref().map(test_json),
+        "ranking": ranking_json(&found.world, diagnosis),
         "not_testable": not_testable.collect::<Vec<_>>(),
         "correction": found.correction.as_ref().map(correction::json),
         "n": found.world.data().len(),
@@ -109,12 +83,4 @@ fn of_finding(found: &RigDiagnosis, finding: &Finding, next: Option<&Proposal>) 
         "explains_rms_um": finding.rms / UM,
         "found_in_folds": found.found_in_folds(finding).map(|(some, all)| format!("{some} of {all}")),
     })
-}
-
-fn of_structure(structure: &Structure) -> Value {
-    json!({ "strength": structure.strength, "z": structure.z })
-}
-
-fn of_test(test: &LackOfFit) -> Value {
-    json!({ "f": test.f, "p_value": test.p_value, "dof_fit": test.dof_fit, "dof_repeats": test.dof_repeats })
 }

@@ -1,7 +1,6 @@
 //! How likely each effect is by itself, at its best place.
 
-use crate::diagnosis::World;
-use crate::diagnosis::rig::RigDiagnosis;
+use crate::diagnosis::{Diagnosis, World};
 use crate::report::pictures::diagnosis::Class;
 
 /// An effect at its place.
@@ -17,10 +16,10 @@ pub struct Ranked {
 }
 
 /// All effects, the likeliest first; curves that nobody has named are one of them.
-pub fn ranking(found: &RigDiagnosis) -> Vec<Ranked> {
-    let diagnosis = &found.diagnosis;
+pub fn ranking(world: &dyn World, diagnosis: &Diagnosis) -> Vec<Ranked> {
+    let candidates = world.candidates();
     let mut ranked: Vec<Ranked> = Vec::new();
-    for (index, candidate) in found.world.candidates().iter().enumerate() {
+    for (index, candidate) in candidates.iter().enumerate() {
         let log_odds = diagnosis.odds[index];
         let place = candidate.location.clone();
         match ranked.iter_mut().find(|known| known.effect == candidate.effect) {
@@ -34,7 +33,7 @@ pub fn ranking(found: &RigDiagnosis) -> Vec<Ranked> {
     }
     let unexplained = diagnosis.unexplained.as_ref().and_then(|left| left.candidate);
     for known in &mut ranked {
-        let of_effect = |candidate: usize| found.effect_of(candidate) == known.effect;
+        let of_effect = |candidate: usize| candidates[candidate].effect == known.effect;
         let adopted = diagnosis.findings.iter().find(|finding| of_effect(finding.chosen.candidate));
         let is_rival =
             || diagnosis.findings.iter().flat_map(|f| &f.rivals).any(|r| of_effect(r.chosen.candidate));
@@ -44,7 +43,7 @@ pub fn ranking(found: &RigDiagnosis) -> Vec<Ranked> {
             known.log_odds = diagnosis.odds[finding.chosen.candidate];
         } else if let Some(curve) = unexplained.filter(|curve| of_effect(*curve)) {
             known.class = Class::Adopted;
-            known.place.clone_from(&found.world.candidates()[curve].location);
+            known.place.clone_from(&candidates[curve].location);
             known.log_odds = diagnosis.odds[curve];
         } else if is_rival() {
             known.class = Class::Rival;

@@ -14,7 +14,7 @@ pub use convergence::{Convergence, convergence};
 pub use errors::{MethodErrors, cumulative_errors, error_distribution};
 pub use intervals::{ModeComparison, ParameterCorrection, mode_comparison, parameter_corrections};
 pub use residuals::{ModeResiduals, PoseResidual, ResidualGroup, residuals_by_group};
-pub use workspace::{PoseError, PoseVector, error_over_workspace, residual_vectors};
+pub use workspace::{PoseError, PoseVector, error_over_workspace, residual_vectors, residual_vectors_of};
 
 use super::super::scale::label;
 use super::{significant, typeset};

@@ -1,5 +1,9 @@
 //! The pictures of a diagnosis: residuals before and after, how likely each effect is, errors of held-out readings.
 
+mod angle;
+
+pub use angle::{AngleError, angle_errors};
+
 use serde::Serialize;
 
 use super::super::chart::{Axis, Bar, Chart, Colour, Dash, Direction, Figure, Mark, Point, Range, Style};
@@ -204,9 +208,9 @@ pub struct HeldOut {
     pub noise_um: f64,
 }
 
-/// Two bars, the interval on the second, and the noise below which no model comes.
-pub fn held_out(data: &HeldOut) -> Figure {
-    let mut chart = Chart::new("error of held-out readings", "root mean square / µm", "");
+/// Two bars, the interval on the second, and the noise below which no model comes. `noun` says what was held out.
+pub fn held_out(noun: &str, data: &HeldOut) -> Figure {
+    let mut chart = Chart::new(format!("error of held-out {noun}"), "root mean square / µm", "");
     chart.y.names = vec![(0.0, "model as it is".into()), (-1.0, "with what was found".into())];
     chart.y.range = Range::Fixed(-1.6, 0.6);
     chart.height_px = Some(110.0);
@@ -276,6 +280,6 @@ mod tests {
     fn nothing_to_show_is_shown_as_nothing() {
         before_after(&BeforeAfter::default()).svg();
         ranking(&[], 20.0).svg();
-        held_out(&HeldOut { before_um: f64::NAN, ..HeldOut::default() }).svg();
+        held_out("readings", &HeldOut { before_um: f64::NAN, ..HeldOut::default() }).svg();
     }
 }

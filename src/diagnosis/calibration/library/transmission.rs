@@ -13,6 +13,7 @@ use std::f64::consts::TAU;
 
 use super::JOINT_ANGLE;
 use crate::diagnosis::calibration::cosines::Cosines;
+use crate::diagnosis::calibration::gear::Gear;
 use crate::diagnosis::calibration::scene::{Entry, Scene, entry, linear};
 
 const EFFECT: &str = "transmission_error";
@@ -52,7 +53,8 @@ fn harmonic(scene: &Scene, j: usize, cycles: f64) -> Entry {
     let parameters =
         vec![(linear("sin_urad", URAD, JOINT_ANGLE), sine), (linear("cos_urad", URAD, JOINT_ANGLE), cosine)];
     let location = format!("joint {}, {cycles} cycles/rev", j + 1);
-    Entry { cycles_per_rev: Some(cycles), ..entry(EFFECT, location, parameters) }
+    let gear = Gear::Harmonic { joint: j, cycles_per_rev: cycles };
+    Entry { gear: Some(gear), ..entry(EFFECT, location, parameters) }
 }
 
 fn curve(scene: &Scene, j: usize, cycles: f64) -> Option<Entry> {
@@ -68,5 +70,6 @@ fn curve(scene: &Scene, j: usize, cycles: f64) -> Option<Entry> {
         (linear(format!("cosine_{k}_urad"), URAD, JOINT_ANGLE * cosines.sizes[k]), column)
     });
     let location = format!("joint {}, a smooth curve, scale {:.2}°", j + 1, scale.to_degrees());
-    Some(entry(EFFECT, location, parameters.collect()))
+    let entry = entry(EFFECT, location, parameters.collect());
+    Some(Entry { gear: Some(Gear::Curve { joint: j, cosines }), ..entry })
 }

@@ -7,9 +7,12 @@ const MOST_DECIMALS: i32 = 6;
 
 /// A value with its interval, in one unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Quantity {
+pub struct Quantity {
+    /// Value.
     pub value: f64,
+    /// Lower end of the interval.
     pub low: f64,
+    /// Upper end.
     pub high: f64,
 }
 

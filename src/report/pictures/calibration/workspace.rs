@@ -13,8 +13,10 @@ use crate::units::{MM, UM, significant};
 const MOST_ARROWS: usize = 400;
 /// How far below the poses the key to the arrows is, as a part of their extent.
 const KEY: f64 = 0.06;
-/// The two views: name, label of the vertical axis and which coordinate it is.
-const VIEWS: [(&str, &str, usize); 2] = [("from above", "y / mm", 1), ("from the side", "z / mm", 2)];
+/// A view: name, label of the vertical axis and which coordinate it is.
+type View = (&'static str, &'static str, usize);
+/// From above and from the side.
+const VIEWS: [View; 2] = [("from above", "y / mm", 1), ("from the side", "z / mm", 2)];
 
 /// The positioning error at one pose.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
@@ -73,30 +75,42 @@ pub struct PoseVector {
 /// The residuals in x–y and in x–z as arrows from the measured positions, exaggerated by the factor
 /// in the titles.
 pub fn residual_vectors(poses: &[PoseVector]) -> Figure {
+    residual_vectors_of(&[("", poses.to_vec())])
+}
+
+/// The same for several sets of residuals, each with its name, to one scale.
+pub fn residual_vectors_of(sets: &[(&str, Vec<PoseVector>)]) -> Figure {
     let known = |p: &&PoseVector| p.at_mm.iter().chain(&p.residual_um).all(|v| drawable(*v));
-    let poses: Vec<PoseVector> = poses.iter().filter(known).copied().collect();
-    let positions = Room::around(poses.iter().map(|p| p.at_mm));
+    let sets: Vec<(&str, Vec<PoseVector>)> =
+        sets.iter().map(|(name, poses)| (*name, poses.iter().filter(known).copied().collect())).collect();
+    let count = sets.iter().map(|(_, poses)| poses.len()).max().unwrap_or(0);
+    let positions = Room::around(sets.iter().flat_map(|(_, poses)| poses).map(|p| p.at_mm));
     let mut caption =
         String::from("Residuals as arrows from the measured positions, exaggerated as the titles say.");
     let cell_mm = one_two_five_below(positions.size_mm() / 10.0);
-    let many = poses.len() > MOST_ARROWS;
+    let many = count > MOST_ARROWS;
     if many {
         caption += &format!(
             " Each arrow is the mean over the poses in a square of {}; there are {} in all.",
             round_amount(cell_mm, cell_mm, "mm"),
-            typeset(&poses.len().to_string())
+            typeset(&count.to_string())
         );
     }
-    let drawn: Vec<Vec<PoseVector>> = VIEWS
-        .map(|(_, _, axis)| if many { means_of_cells(&poses, cell_mm, axis) } else { poses.clone() })
-        .into();
+    let drawn: Vec<Vec<PoseVector>> = sets
+        .iter()
+        .flat_map(|(_, poses)| {
+            VIEWS.map(|(_, _, axis)| if many { means_of_cells(poses, cell_mm, axis) } else { poses.clone() })
+        })
+        .collect();
     let usual_mm = if many { 1.5 * cell_mm } else { 0.2 * positions.size_mm() };
     let factor = exaggeration(drawn.iter().flatten(), usual_mm, 0.5 * positions.size_mm());
     let tip = |p: &PoseVector| [0, 1, 2].map(|i| p.at_mm[i] + factor * p.residual_um[i] * UM / MM);
     let ends = drawn.iter().flatten().flat_map(|p| [p.at_mm, tip(p)]);
     let room = Room::around(ends.chain([positions.low, positions.high]));
-    let panel = |((view, label, axis), drawn): ((&str, &str, usize), &Vec<PoseVector>)| {
-        let title = format!("{view}, residuals ×\u{a0}{}", typeset(&significant(factor, 1)));
+    let views = sets.iter().flat_map(|(name, _)| VIEWS.map(|view| (*name, view)));
+    let panel = |((name, (view, label, axis)), drawn): ((&str, View), &Vec<PoseVector>)| {
+        let name = if name.is_empty() { String::new() } else { format!("{name}, ") };
+        let title = format!("{name}{view}, residuals ×\u{a0}{}", typeset(&significant(factor, 1)));
         let mut chart = room.chart(title, label, axis, KEY);
         for p in drawn {
             let (from, to) = (p.at_mm, tip(p));
@@ -110,7 +124,7 @@ pub fn residual_vectors(poses: &[PoseVector]) -> Figure {
         chart.marks.extend(room.key(drawn, factor, axis));
         chart
     };
-    room.figure("residual-vectors", caption, VIEWS.into_iter().zip(&drawn).map(panel).collect())
+    room.figure("residual-vectors", caption, views.zip(&drawn).map(panel).collect())
 }
 
 fn arrow(from: [f64; 2], to: [f64; 2], text: String) -> Mark {

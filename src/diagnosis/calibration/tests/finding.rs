@@ -1,8 +1,9 @@
 //! What the engine finds in campaigns into which something was put, and in those into which nothing was.
 
 use super::*;
+use crate::diagnosis::judgement::judged;
 use crate::diagnosis::linear::Linearised;
-use crate::diagnosis::selection::Search;
+use crate::diagnosis::selection::Remainder;
 use crate::robot::{Kinematics, Setup};
 
 /// A coordinate's noise in the simulated campaigns, m: 30 µm of repeatability and 3 µm of sensors.
@@ -14,12 +15,16 @@ fn found(campaign: &Campaign) -> (Vec<String>, Option<String>) {
     let calibration = calibrate(campaign, mode, &Options::default()).unwrap();
     let (world, evidence) = CalibrationWorld::new(campaign, &calibration).unwrap();
     let linear = Linearised::new(&world);
-    let (_, story, unknown) = Search::settled(&linear, &evidence);
+    let (_, story, unknown) = judged(&linear, &evidence);
     let name = |c: &Chosen| {
         let candidate = &world.candidates()[c.candidate];
         format!("{}: {}", candidate.effect, candidate.location)
     };
-    (story.chosen.iter().map(name).collect(), unknown.and_then(|story| story.chosen.last().map(name)))
+    let unknown = match unknown {
+        Some(Remainder::Curve(longer)) => longer.chosen.last().map(name),
+        _ => None,
+    };
+    (story.chosen.iter().map(name).collect(), unknown)
 }
 
 /// Displacement of the nominal robot's tip where the joints are turned, m.

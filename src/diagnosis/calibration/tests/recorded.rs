@@ -4,8 +4,8 @@ use std::io::Write;
 use std::path::Path;
 
 use super::*;
+use crate::diagnosis::judgement::judged;
 use crate::diagnosis::linear::Linearised;
-use crate::diagnosis::selection::Search;
 use crate::parallel::in_parallel;
 use crate::units::MM;
 
@@ -30,7 +30,7 @@ fn the_gears_of_a_ur5_predict_poses_that_they_were_not_fitted_to() {
     let of_folds = in_parallel(2, |fold| {
         let kept: Vec<usize> = (0..data).filter(|&row| evidence.fold[row] != fold).collect();
         let (part, training) = (linear.part(&kept), evidence.part(&kept));
-        let (search, story, _) = Search::settled(&part, &training);
+        let (search, story, _) = judged(&part, &training);
         let none = search.told(&search.fit(&[]), &evidence, &DVector::zeros(data));
         let all = search.told(&story, &evidence, &world.change(&story.chosen));
         let miss = |told: &DVector<f64>| -> f64 {
@@ -72,7 +72,7 @@ fn a_placebo_is_refused() {
     entries.extend(placebos);
     let world = CalibrationWorld::of(entries, &evidence);
     let linear = Linearised::new(&world);
-    let (search, story, _) = Search::settled(&linear, &evidence);
+    let (search, story, _) = judged(&linear, &evidence);
     let effects: Vec<&str> =
         story.chosen.iter().map(|c| world.candidates()[c.candidate].effect.as_str()).collect();
     assert!(effects.contains(&"transmission_error") && !effects.contains(&"placebo"), "{effects:?}");

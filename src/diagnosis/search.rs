@@ -19,7 +19,7 @@ use super::{Candidate, Chosen, Evidence, World};
 
 /// Prior probability that the next effect is none, one of the library, or one that nobody has named.
 pub(super) const PRIOR: (f64, f64, f64) = (0.5, 0.4, 0.1);
-/// And of how many the evidence is computed exactly.
+/// Of how many candidates, the likeliest, and the likeliest of each effect besides, the evidence is computed exactly.
 const SCORED: usize = 6;
 /// Most Gauss–Newton steps to the values of a story.
 const STEPS: usize = 20;
@@ -121,7 +121,8 @@ impl<'a> Search<'a> {
     }
 
     /// About the ln of what adding each candidate to `story` does to its probability, by the candidate's columns at its
-    /// neutral values, exact for the likeliest known and unknown ones; −∞ for those that are in it already.
+    /// neutral values, exact for the likeliest known and unknown ones and for the likeliest place of every effect, lest
+    /// one effect with many places leaves the others out; −∞ for those that are in it already.
     pub fn additions(&self, story: &Story) -> Vec<f64> {
         let (present, products) = self.crossed(&story.chosen);
         let before = present.score();
@@ -137,7 +138,16 @@ impl<'a> Search<'a> {
         };
         let mut additions: Vec<f64> = (0..self.columns.len()).map(about).collect();
         for unknown in [false, true] {
-            for index in self.likeliest(&additions, unknown).into_iter().take(SCORED) {
+            let mut effects: Vec<&str> = Vec::new();
+            for (rank, index) in self.likeliest(&additions, unknown).into_iter().enumerate() {
+                let effect = self.world.candidates()[index].effect.as_str();
+                let is_first = !effects.contains(&effect);
+                if is_first {
+                    effects.push(effect);
+                }
+                if rank >= SCORED && !is_first {
+                    continue;
+                }
                 let with = present.beyond(&before, &more(index)).score();
                 additions[index] = with.log_evidence - alone + self.prior[index];
             }

@@ -130,3 +130,65 @@ fn apply_writes_the_rod_and_the_readings() {
     let none = sandbox.run(&format!("{LOAD_CELL} --apply"));
     assert!(none.warnings().iter().any(|warning| warning.contains("without a rod file")));
 }
+
+/// What `--apply` writes is read by all commands that take a rod or readings, and is what the readings say.
+#[test]
+fn what_apply_writes_is_a_rod_and_readings_like_others() {
+    let sandbox = Sandbox::new();
+    // 30 % softer than its file says, and 1 N of friction
+    let compliance = sandbox.run("compliance rods/5.toml --json").json();
+    let mut text = "axis,load_n,trial,phase,dy_um,dz_um\n".to_owned();
+    for trial in 1..=3 {
+        for (axis, k) in [("y", 1), ("z", 2)] {
+            let up = [5.0, 10.0, 15.0].map(|load| (load, "load", -1.0));
+            let down = [10.0, 5.0].map(|load| (load, "unload", 1.0));
+            for (row, (load, phase, sign)) in up.into_iter().chain(down).enumerate() {
+                let cell = |m: usize| {
+                    let scatter =
+                        [0.9, -1.3, 0.2, 1.4, -0.6, -0.4, 1.1][(5 * trial + 3 * row + 2 * k + m) % 7];
+                    1.3 * compliance["cf_um_per_n"][m][k].as_f64().unwrap() * (load + sign) + scatter
+                };
+                text += &format!("{axis},{load},{trial},{phase},{:.1},{:.1}\n", cell(1), cell(2));
+            }
+        }
+    }
+    sandbox.write("soft.csv", &text);
+    let json = sandbox.run("diagnose rig rods/5.toml soft.csv --apply --out out --json").json();
+    let mut found = effects(&json);
+    found.sort_unstable();
+    assert_eq!(found, ["friction", "stiffness_scale"], "{}", json["headline"]);
+    let before = compliance["cf_um_per_n"][1][1].as_f64().unwrap();
+    let corrected = sandbox.run("compliance out/5-diagnosed.toml --json").json();
+    assert_relative_eq!(corrected["cf_um_per_n"][1][1].as_f64().unwrap(), 1.3 * before, max_relative = 0.01);
+    // friction is gone, and the model is right
+    let fit = sandbox.run("rig fit out/5-diagnosed.toml out/soft-diagnosed.csv --json").json();
+    assert_relative_eq!(fit["r_rod"].as_f64().unwrap(), 1.0, epsilon = 0.01);
+    let again = sandbox.run("diagnose rig out/5-diagnosed.toml out/soft-diagnosed.csv");
+    assert_eq!(again.status, Some(0), "{}", again.stdout);
+    // a campaign with the files that were written
+    let campaign = sandbox.read("campaigns/tx90-5/campaign.toml");
+    let whole = campaign
+        .replace("../../rods/5.toml", "../../out/5-diagnosed.toml")
+        .replace("\"readings.csv\"", "\"../../out/soft-diagnosed.csv\"");
+    assert!(whole.contains("5-diagnosed.toml") && whole.contains("soft-diagnosed.csv"), "{whole}");
+    sandbox.write("campaigns/tx90-5/applied.toml", &whole);
+    for mode in ["fea", "meas"] {
+        let json =
+            sandbox.run(&format!("calibrate campaigns/tx90-5/applied.toml --mode {mode} --json")).json();
+        assert_eq!((&json["mode"], &json["converged"]), (&mode.into(), &true.into()));
+    }
+    let json = sandbox.run("compare campaigns/tx90-5/applied.toml --draws 50 --json").json();
+    assert_eq!(json["modes"].as_array().unwrap().len(), 4);
+}
+
+#[test]
+fn the_bytes_do_not_depend_on_the_number_of_threads() {
+    let sandbox = Sandbox::new();
+    let with_threads = |threads: &str| {
+        let words = ["diagnose", "rig", "rods/5.toml", "stiffness_data/5.csv", "--json"];
+        sandbox.command(&words).env("RAYON_NUM_THREADS", threads).output().unwrap().stdout
+    };
+    let one = with_threads("1");
+    assert!(!one.is_empty());
+    assert!(one == with_threads("2"), "one and two threads differ");
+}

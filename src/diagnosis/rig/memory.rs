@@ -31,9 +31,11 @@ impl Clock {
     }
 }
 
-/// Logarithmic creep: displacement × (1 + k·log₁₀(1 + t/t₀)), t₀ in s. Nothing where a reading has no time.
+/// Logarithmic creep: displacement × (1 + k·log₁₀(1 + t/t₀)), t₀ in s. Nothing where a reading has no time, or where all have the
+/// same.
 pub(super) fn creep(data: &[Datum], clock: Clock, t0: f64) -> Option<Memory> {
     let times: Vec<f64> = data.iter().map(|d| d.time).collect::<Option<_>>()?;
+    times.iter().any(|time| *time != times[0]).then_some(())?;
     let dwell = dwell(data, &times);
     let zero = times.iter().fold(0.0, |zero: f64, t| zero.min(*t));
     let mut memory = none(data);

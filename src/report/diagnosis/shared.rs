@@ -15,8 +15,6 @@ use crate::units::{UM, significant};
 /// Distances from chance, in standard deviations, from which on structure is called weak and strong.
 const WEAK: f64 = 3.0;
 const STRONG: f64 = 6.0;
-/// Odds from which on an effect is named.
-const NAMED: f64 = 20.0;
 
 /// A probability; what is less than one in 10^12 is never.
 pub fn chance(p: f64) -> String {
@@ -165,7 +163,7 @@ fn candidates(ranked: &[Ranked]) -> Figure {
             class: ranked.class,
         })
         .collect();
-    ranking_picture(&bars, NAMED).captioned(
+    ranking_picture(&bars, crate::diagnosis::NAMED).captioned(
         "How likely each effect is by itself, at its best place, against noise alone: 2 is a hundred to one. An effect may \
          reach far and yet be rejected, where what was adopted explains the same readings better.",
     )

@@ -5,6 +5,7 @@ use crate::units::{DEG, MM, UM, URAD_PER_NM};
 
 /// Something that is wrong, SI.
 #[derive(Debug, Clone, PartialEq)]
+#[allow(missing_docs)] // fields are in the words of their effects
 pub enum Effect {
     /// Factor on E and G.
     StiffnessScale(f64),

@@ -1,0 +1,82 @@
+//! `diagnosis::rig::diagnose` against recordings made by the trials' generator, which shares no physics with it, and against
+//! readings written by hand.
+
+#![allow(clippy::unwrap_used)]
+
+#[path = "diagnosis/beyond.rs"]
+mod beyond;
+#[path = "diagnosis/clean.rs"]
+mod clean;
+#[path = "diagnosis/confused.rs"]
+mod confused;
+#[path = "diagnosis/effects.rs"]
+mod effects;
+#[path = "diagnosis/poor.rs"]
+mod poor;
+#[path = "diagnosis/same.rs"]
+mod same;
+
+use rodcal::diagnosis::rig::{RigDiagnosis, diagnose};
+use rodcal::report;
+use rodcal::rig::readings::Readings;
+use rodcal::rod::Rod;
+use rodcal::trial::rig::{Effect, Made, Order};
+use serde_json::Value;
+
+/// A diagnosis with its JSON.
+struct Answer {
+    found: RigDiagnosis,
+    json: Value,
+}
+
+impl Answer {
+    fn of(rod: Option<&str>, readings: &str) -> Answer {
+        let rod = rod.map(|text| Rod::from_toml("rod.toml", text).unwrap());
+        let readings = Readings::from_text("readings.csv", readings).unwrap();
+        let found = diagnose(&readings, rod.as_ref()).unwrap();
+        let json = report::diagnosis::json(&found, &readings, rod.as_ref());
+        Answer { found, json }
+    }
+
+    fn of_made(made: &Made) -> Answer {
+        Answer::of(Some(&made.rod), &made.readings)
+    }
+
+    /// Of `order` with `effects`.
+    fn made(order: &Order, effects: &[Effect], seed: u64) -> Answer {
+        Answer::of_made(&order.made(effects, seed))
+    }
+
+    fn findings(&self) -> &[Value] {
+        self.json["findings"].as_array().unwrap()
+    }
+
+    /// Names of the findings, strongest first.
+    fn effects(&self) -> Vec<&str> {
+        self.findings().iter().map(|finding| finding["effect"].as_str().unwrap()).collect()
+    }
+
+    fn finding(&self, effect: &str) -> &Value {
+        let found = self.findings().iter().find(|finding| finding["effect"] == effect);
+        found.unwrap_or_else(|| panic!("no {effect}: {}", self.json["headline"]))
+    }
+
+    /// The names that a finding goes by: its own, and those that cannot be told from it.
+    fn class(&self, position: usize) -> Vec<&str> {
+        let finding = &self.findings()[position];
+        let others = finding["indistinguishable_from"].as_array().unwrap();
+        [&finding["effect"]].into_iter().chain(others).map(|name| name.as_str().unwrap()).collect()
+    }
+
+    fn is_consistent(&self) -> bool {
+        self.json["verdict"] == "consistent"
+    }
+}
+
+/// Value and interval of a parameter.
+fn interval(finding: &Value, name: &str) -> [f64; 3] {
+    let parameters = finding["parameters"].as_array().unwrap();
+    let parameter = parameters.iter().find(|parameter| parameter["name"] == name);
+    let parameter = parameter.unwrap_or_else(|| panic!("no {name} in {finding}"));
+    ["lo", "value", "hi"].map(|key| parameter[key].as_f64().unwrap())
+}

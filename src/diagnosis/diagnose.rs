@@ -7,6 +7,7 @@ use super::lack_of_fit::LackOfFit;
 use super::linear::Linearised;
 use super::locate::{Structure, locate};
 use super::proof::{Proof, prove};
+use super::replication::{Replica, replicate};
 use super::search::{Search, Story};
 use super::selection::Remainder;
 use super::{Chosen, EffectParameter, Evidence, World};
@@ -46,6 +47,8 @@ pub struct Diagnosis {
     pub odds: Vec<f64>,
     /// Held-out errors, where the recording has folds.
     pub proof: Option<Proof>,
+    /// What is found in the other sessions, on each session; nothing where nothing was found or there is one session only.
+    pub replicas: Vec<Replica>,
     /// The story.
     pub story: Story,
 }
@@ -139,6 +142,7 @@ pub fn diagnose(world: &dyn World, evidence: &Evidence) -> Diagnosis {
         structure_after: locate(evidence, &after),
         odds: search.additions(&none),
         proof: prove(world, evidence),
+        replicas: if story.chosen.is_empty() { Vec::new() } else { replicate(world, evidence) },
         before,
         after,
         story,

@@ -18,6 +18,11 @@ pub struct Evidence {
     pub shared: Vec<usize>,
     /// Data of the same number are held out together; those of [`Evidence::KEPT`] never are.
     pub fold: Vec<usize>,
+    /// Data of the same number belong to one session, such as a clamp or a placement: what is found in the others must
+    /// predict it. [`Evidence::KEPT`] for what belongs to none.
+    pub session: Vec<usize>,
+    /// Data of the same number have a level that nobody knows, such as the place of a socket; [`Evidence::KEPT`] for none.
+    pub level: Vec<usize>,
     /// Smallest step of the recorded numbers: what is below it is rounding.
     pub resolution: f64,
     /// Numbers that a mismatch may follow.
@@ -25,7 +30,7 @@ pub struct Evidence {
 }
 
 impl Evidence {
-    /// Fold of data that no fold holds out: what is known besides the recording.
+    /// Number of no fold, session or level: of what is known besides the recording, or has none.
     pub const KEPT: usize = usize::MAX;
 }
 

@@ -44,6 +44,8 @@ impl Evidence {
             cell: pick(&self.cell),
             shared: pick(&self.shared),
             fold: pick(&self.fold),
+            session: pick(&self.session),
+            level: pick(&self.level),
             resolution: self.resolution,
             covariates: Vec::new(),
         }

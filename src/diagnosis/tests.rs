@@ -87,6 +87,8 @@ fn evidence(seed: u64, truth: impl Fn(f64) -> f64) -> Evidence {
         cell: (0..COUNT).map(|row| row % POINTS).collect(),
         shared: (0..COUNT).map(|row| row / POINTS).collect(),
         fold: (0..COUNT).map(|row| row / POINTS).collect(),
+        session: vec![Evidence::KEPT; COUNT],
+        level: vec![Evidence::KEPT; COUNT],
         resolution: 0.0,
         covariates: Vec::new(),
     }

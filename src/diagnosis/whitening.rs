@@ -12,6 +12,7 @@ use std::collections::BTreeMap;
 use nalgebra::{DMatrix, DVector};
 
 use super::Evidence;
+use crate::linalg::{least_squares, thin_svd};
 
 /// ρ that is believed before the data: a zero that was read once is as good as any other reading.
 const RATIO_BEFORE: f64 = 1.0;
@@ -108,13 +109,22 @@ impl Whitening {
         gram
     }
 
-    /// Factors of the nuisance columns that fit `left` best; zeros where the data cannot tell the columns apart.
+    /// Factors of the nuisance columns that fit `left` best.
     pub fn nuisance(&self, columns: &DMatrix<f64>, left: &DVector<f64>) -> DVector<f64> {
         if columns.ncols() == 0 {
             return DVector::zeros(0);
         }
         let whitened = self.whitened_columns(columns);
-        let fitted = crate::linalg::least_squares(&whitened, &self.whitened(left));
+        let left = self.whitened(left);
+        // where a part of the data cannot tell the columns apart, the smallest factors that fit
+        let smallest = |_| {
+            let svd = thin_svd(&whitened)?;
+            let rank = svd.rank(DEPENDENT);
+            let along = svd.u.columns(0, rank).tr_mul(&left);
+            let factors = along.component_div(&svd.singular_values.rows(0, rank));
+            Ok::<_, crate::Error>(svd.v.columns(0, rank) * factors)
+        };
+        let fitted = least_squares(&whitened, &left).or_else(smallest);
         fitted.unwrap_or_else(|_| DVector::zeros(columns.ncols()))
     }
 
@@ -208,6 +218,8 @@ mod tests {
             cell,
             fold: shared.clone(),
             shared,
+            session: vec![Evidence::KEPT; n],
+            level: vec![Evidence::KEPT; n],
             resolution: 0.0,
             covariates: Vec::new(),
         }

@@ -69,6 +69,8 @@ pub(super) fn of(campaign: &Campaign, calibration: &Calibration, scene: &Scene) 
             .collect(),
         shared: (0..data).collect(),
         fold: per_row(folds(recording, &cells), &|_| Evidence::KEPT),
+        session: per_row(sessions(recording), &|_| Evidence::KEPT),
+        level: levels(recording, data),
         resolution: resolution(recording),
         covariates: covariates(scene, data),
         residual,
@@ -174,6 +176,39 @@ fn folds(recording: &Recording, cells: &[usize]) -> Vec<usize> {
             *of_cell.entry(cell).or_insert((at * folds * rounds / size + row.group) % folds)
         })
         .collect()
+}
+
+/// For each row the number of its clamp, or of its sockets' placement.
+fn sessions(recording: &Recording) -> Vec<usize> {
+    let mut known: Vec<&str> = Vec::new();
+    let names = recording.groups.iter().map(|group| session_name(&group.name));
+    let of_group: Vec<usize> = names
+        .map(|name| {
+            known.iter().position(|k| *k == name).unwrap_or_else(|| {
+                known.push(name);
+                known.len() - 1
+            })
+        })
+        .collect();
+    recording.rows.iter().map(|row| of_group[row.group]).collect()
+}
+
+/// `front` of the socket `front/0`; a clamp's own name.
+pub(super) fn session_name(group: &str) -> &str {
+    group.rsplit_once('/').map_or(group, |(placement, _)| placement)
+}
+
+/// Coordinates of a socket have a level of their own: nobody knows where it is.
+fn levels(recording: &Recording, data: usize) -> Vec<usize> {
+    let of_row = |row: usize, axis: usize| match recording.targets {
+        Targets::Points(_) => Evidence::KEPT,
+        Targets::Sockets(_) => 3 * recording.rows[row].group + axis,
+    };
+    let of_datum = |datum: usize| match datum / 3 < recording.len() {
+        true => of_row(datum / 3, datum % 3),
+        false => Evidence::KEPT,
+    };
+    (0..data).map(of_datum).collect()
 }
 
 /// The step that all displacements are multiples of, m; 0 where they show none and where nothing is measured.

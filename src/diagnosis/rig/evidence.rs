@@ -25,6 +25,8 @@ pub(super) fn of(data: &[Datum], nuisance: DMatrix<f64>, large: Option<DVector<f
         // the zero of a run is that of one sensor at one place
         shared: numbered(data.iter().map(|d| (d.run, d.channel, d.stations()[1]))),
         fold: folds(data),
+        session: vec![Evidence::KEPT; data.len()],
+        level: vec![Evidence::KEPT; data.len()],
         resolution: resolution(data),
         covariates: covariates(data),
     }

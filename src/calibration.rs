@@ -28,4 +28,4 @@ pub use observability::Observability;
 pub use passes::PassRecord;
 pub use validation::{Summary, Validation, validate};
 pub use warning::Warning;
-pub use write_back::write_back;
+pub use write_back::{write_back, write_back_with};

@@ -8,6 +8,7 @@ mod demo;
 mod diagnose;
 mod embedded;
 pub mod output;
+mod predict;
 mod progress;
 mod rig;
 mod simulate;
@@ -61,6 +62,8 @@ Examples:
       how accurate a robot is once its rod's deflection is compensated
   rodcal compare campaigns/tx90-5/campaign.toml
       does it matter how the deflection is known?
+  rodcal diagnose calibration campaigns/tx90-5/campaign.toml
+      what the calibration leaves: noise, or which joint, clamp, time or pose?
 
 Words:
   C^F     deflection of the tip in µm per newton of force on the ball; 3x3,
@@ -95,6 +98,8 @@ enum Command {
     /// Where recording and model disagree: which physics did the model leave out?
     #[command(subcommand)]
     Diagnose(diagnose::Diagnose),
+    /// Where a calibrated robot's tip is at any joint values, and how sure that is.
+    Predict(predict::Predict),
     /// Make the files of a campaign of a robot and a rod that are known exactly.
     Simulate(simulate::Simulate),
     /// Conceal effects in recordings, have them diagnosed, and count how often that was right.
@@ -136,6 +141,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome> {
         Some(Command::Calibrate(command)) => command.run(),
         Some(Command::Compare(command)) => command.run(),
         Some(Command::Diagnose(command)) => command.run(),
+        Some(Command::Predict(command)) => command.run(),
         Some(Command::Simulate(command)) => command.run(),
         Some(Command::Trial(command)) => command.run(),
         Some(Command::Completions(command)) => Ok(command.run()),

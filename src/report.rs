@@ -23,6 +23,7 @@ mod marks;
 pub mod pictures;
 mod plot;
 pub mod png;
+pub mod prediction;
 pub mod rig;
 mod scale;
 pub mod table;

@@ -7,24 +7,30 @@
 //! Hⱼ = Rz(θⱼ)·Tz(dⱼ)·Tx(aⱼ)·Rx(αⱼ)·Ry(βⱼ)        (the paper's Table 1)
 //! ```
 //!
-//! with θⱼ = offset + qⱼ + cⱼ·τⱼ for a revolute joint and dⱼ = d + qⱼ for a prismatic one. {0} is the robot's base
+//! with θⱼ = offset + qⱼ + cⱼ·τⱼ for a revolute joint (and what [`Effect`]s add) and dⱼ = d + qⱼ for a prismatic one. {0} is the robot's base
 //! frame, {T} the flange's. β is zero but where consecutive axes are nearly parallel: there Denavit and Hartenberg's
 //! common normal jumps with the smallest tilt, and Hayati's β does not (S. Hayati, *IEEE CDC* 22 (1983) 1477–1483).
 
+mod effect;
+mod effects_file;
 mod file;
 mod hayati;
 mod kinematics;
 mod minimal;
 mod parameter;
+mod predict;
 mod setup;
 mod statics;
 mod urdf;
 mod write;
 
+pub use effect::Effect;
+pub use effects_file::{corrections_csv, corrections_from_csv};
 pub use file::is_urdf;
 pub use kinematics::{JointFrames, Kinematics};
 pub use minimal::minimal_parameters;
 pub use parameter::{Parameter, Unit};
+pub use predict::Asked;
 pub use setup::Setup;
 pub use statics::Loads;
 pub use urdf::Written;
@@ -48,6 +54,19 @@ pub struct Robot {
     pub joints: Vec<Joint>,
     /// {T} in the last joint's distal frame. The identity for a robot given as a table.
     pub flange: Pose,
+    /// What joints do besides their geometry.
+    pub effects: Vec<Effect>,
+    /// The tip that it was calibrated with, where its file states it.
+    pub tip: Option<Tip>,
+}
+
+/// Where the tip is, and how well the robot is known there.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tip {
+    /// In {T}, m.
+    pub at: Vector3<f64>,
+    /// Standard deviation of a coordinate of predicted tips, m.
+    pub sd: Option<f64>,
 }
 
 /// A joint with the link that it moves.

@@ -135,6 +135,8 @@ fn robot() -> Robot {
             joint(3, Motion::Revolute),
         ],
         flange: Pose::from_xyz_rpy([0.05, -0.02, 0.1], [0.3, 0.2, -0.5]),
+        effects: Vec::new(),
+        tip: None,
     }
 }
 

@@ -3,7 +3,7 @@
 use super::calibrate::Calibration;
 use super::campaign::{Campaign, Targets};
 use crate::error::Result;
-use crate::robot::is_urdf;
+use crate::robot::{Tip, is_urdf};
 use crate::units::{DEG, MM};
 
 /// Name and text of the calibrated robot: a table with compliances, or the URDF with new origins, its `tip_link` at the
@@ -12,8 +12,22 @@ use crate::units::{DEG, MM};
 /// # Errors
 /// As [`crate::robot::Robot::to_toml`] and [`crate::robot::Robot::to_urdf`]; none in practice.
 pub fn write_back(campaign: &Campaign, calibration: &Calibration) -> Result<(String, String)> {
+    write_back_with(campaign, calibration, None, &[])
+}
+
+/// The same with more comments and, in a table, the tip; `sd` is how well the robot is known there, m.
+///
+/// # Errors
+/// As [`write_back`].
+pub fn write_back_with(
+    campaign: &Campaign,
+    calibration: &Calibration,
+    sd: Option<f64>,
+    more: &[String],
+) -> Result<(String, String)> {
     let setup = &calibration.setup;
-    let robot = setup.calibrated();
+    let mut robot = setup.calibrated();
+    robot.tip = sd.map(|sd| Tip { at: setup.tool, sd: Some(sd) });
     let tool = setup.tool / MM;
     let mut comments = vec![
         format!(
@@ -32,6 +46,7 @@ pub fn write_back(campaign: &Campaign, calibration: &Calibration) -> Result<(Str
             place.x, place.y, place.z, turn[0], turn[1], turn[2]
         ));
     }
+    comments.extend_from_slice(more);
     if !calibration.is_converged {
         comments.push("THE CALIBRATION DID NOT COME TO REST: do not use these numbers.".into());
     }

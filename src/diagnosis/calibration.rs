@@ -8,6 +8,7 @@
 //! What a calibration absorbs cannot be seen: an eccentricity of the last joint is nothing where the target lies on that
 //! joint's axis. Such effects are no candidates, but [`CalibrationWorld::absorbed`] says which they are.
 
+mod apply;
 mod cosines;
 mod evidence;
 mod findings;
@@ -30,6 +31,7 @@ use super::{Candidate, Chosen, Evidence, World};
 use crate::calibration::Calibration;
 use crate::calibration::campaign::Campaign;
 use crate::error::Result;
+pub use apply::{Applied, apply};
 pub use findings::{Mismatch, Number};
 pub use gear::{Curve, Gear};
 pub use library::NotTestable;

@@ -4,7 +4,8 @@ use nalgebra::Vector3;
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::{Body, Hayati, Joint, Motion, Robot, urdf};
+use super::effects_file::{self, RawEffect};
+use super::{Body, Effect, Hayati, Joint, Motion, Robot, Tip, urdf};
 use crate::error::Result;
 use crate::spatial::Pose;
 use crate::toml_text::{Number, Required, TomlText};
@@ -67,6 +68,16 @@ struct RawRobot {
     convention: Option<Spanned<String>>,
     gravity_m_s2: Option<Spanned<Vec<Number>>>,
     joint: Spanned<Vec<Spanned<RawJoint>>>,
+    tip: Option<RawTip>,
+    #[serde(default)]
+    effect: Vec<Spanned<RawEffect>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a section [tip]")]
+struct RawTip {
+    xyz_mm: Spanned<Vec<Number>>,
+    sd_mm: Option<Number>,
 }
 
 #[derive(Deserialize)]
@@ -112,6 +123,21 @@ fn read_table(file: &str, text: &str) -> Result<Robot> {
     if raw.joint.get_ref().is_empty() {
         return Err(toml.wrong(&raw.joint, "the robot has no joint".to_owned(), REQUIRED[0].1));
     }
+    let tip = match &raw.tip {
+        Some(raw) => Some(Tip {
+            at: table.vector("tip.xyz_mm", &raw.xyz_mm, "in mm in {T}")? * MM,
+            sd: match &raw.sd_mm {
+                Some(sd) => Some(table.0.not_negative("tip.sd_mm", sd)? * MM),
+                None => None,
+            },
+        }),
+        None => None,
+    };
+    let effects: Vec<Effect> = raw
+        .effect
+        .iter()
+        .map(|effect| effects_file::read(&table.0, effect, raw.joint.get_ref().len()))
+        .collect::<Result<_>>()?;
     let joints = raw.joint.get_ref().iter().enumerate();
     Ok(Robot {
         name: raw.name.unwrap_or_else(|| file_stem(file)),
@@ -120,6 +146,8 @@ fn read_table(file: &str, text: &str) -> Result<Robot> {
         root: Pose::IDENTITY,
         joints: joints.map(|(index, joint)| table.joint(index, joint)).collect::<Result<_>>()?,
         flange: Pose::IDENTITY,
+        effects,
+        tip,
     })
 }
 

@@ -75,9 +75,10 @@ impl<'s> Kinematics<'s> {
         let setup = self.setup;
         let mut frame = self.root;
         for (j, frames) in self.joints.iter_mut().enumerate() {
-            // θ = offset + q + c·τ
+            // θ = offset + q + c·τ + effects
             let yielding = torque.get(j).map_or(0.0, |torque| setup.compliance[j] * torque);
-            let link = setup.links[j].moved(frames.motion, q[j] + yielding);
+            let more = setup.robot.correction(j, q, torque);
+            let link = setup.links[j].moved(frames.motion, q[j] + yielding + more);
             let turned = turned_about_z(&frame.rotation, link.theta.sin_cos());
             let tilted = turned_about_x(&turned, frames.alpha);
             frames.axis = frame.rotation.column(2).into();
@@ -156,7 +157,9 @@ impl Hayati {
 impl Robot {
     /// {T} in {0} at the joint values `q` (rad or m, one per joint), with no torque on the joints.
     pub fn flange_at(&self, q: &[f64]) -> Pose {
-        let moved = self.joints.iter().zip(q).map(|(joint, &q)| joint.link.moved(joint.motion, q));
+        let value = |j: usize| q[j] + self.correction(j, q, &[]);
+        let joints = self.joints.iter().enumerate().take(q.len());
+        let moved = joints.map(|(j, joint)| joint.link.moved(joint.motion, value(j)));
         moved.fold(self.root, |frame, link| link.beyond(&frame)).then(&self.flange)
     }
 }

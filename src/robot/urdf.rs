@@ -57,6 +57,8 @@ pub(super) fn read(file: &str, text: &str, base_link: Option<&str>, tip_link: Op
         root,
         joints,
         flange: distal.inverse().then(&zero.tip),
+        effects: Vec::new(),
+        tip: None,
     })
 }
 

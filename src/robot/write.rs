@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::file::default_name;
-use super::{Joint, Motion, Robot};
+use super::{Joint, Motion, Robot, effects_file};
 use crate::error::{Error, Result};
 use crate::spatial::Pose;
 use crate::toml_text::{self, in_unit, quoted};
@@ -32,11 +32,17 @@ impl Robot {
             text += &format!("source = {}\n", quoted(source));
         }
         text += &format!("convention = \"hayati\"\ngravity_m_s2 = {:?}\n", self.gravity.as_slice());
+        if let Some(tip) = &self.tip {
+            let at: Vec<f64> = tip.at.iter().map(|&x| in_unit(x, MM)).collect();
+            text += &format!("\n[tip]\nxyz_mm = {at:?}\n");
+            text += &tip.sd.map_or_else(String::new, |sd| format!("sd_mm = {:?}\n", in_unit(sd, MM)));
+        }
         for (index, joint) in self.joints.iter().enumerate() {
             text += "\n[[joint]]\n";
             // writing to a String cannot fail
             let _ = write_joint(&mut text, index, joint);
         }
+        text += &self.effects.iter().map(effects_file::written).collect::<String>();
         Ok(text)
     }
 }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use rodcal::calibration::{self, Campaign, Options};
-use rodcal::diagnosis::calibration::diagnose;
+use rodcal::diagnosis::calibration::{apply, diagnose};
 use rodcal::{Result, report};
 
 use crate::cli::calibrate::{ModeName, provenance};
@@ -18,6 +18,10 @@ pub struct Calibration {
     /// How the rod's deflection is known [default: meas with rig readings, else fea with a rod, else none].
     #[arg(long, value_enum)]
     mode: Option<ModeName>,
+    /// Also write the calibrated robot with what was found, for `calibrate`, `compare` and `predict`; for a URDF with a table of
+    /// corrections beside it [without --out: in reports/diagnosed].
+    #[arg(long)]
+    apply: bool,
 }
 
 const NOTES: &str = "\
@@ -55,7 +59,20 @@ impl Calibration {
         let found = diagnose(&campaign, mode, &Options::default())?;
         let mut report = report::diagnosis::calibration::report(&campaign, &found);
         report.provenance = provenance(&campaign);
-        let mut outcome = Outcome::new(report::diagnosis::calibration::json(&campaign, &found), report);
+        let mut json = report::diagnosis::calibration::json(&campaign, &found);
+        let applied = if self.apply { apply(&campaign, &found)? } else { None };
+        match &applied {
+            Some(applied) => report::diagnosis::calibration::applied(&mut report, &mut json, applied),
+            None if self.apply => report
+                .warnings
+                .push("--apply has no effect: nothing was found that belongs to the robot".into()),
+            None => {}
+        }
+        let mut outcome = Outcome::new(json, report);
+        if let Some(applied) = applied {
+            outcome.files = applied.files.into_iter().map(|(name, text)| (name, text.into_bytes())).collect();
+            outcome.default_directory = Some(PathBuf::from("reports/diagnosed"));
+        }
         outcome.status = u8::from(found.diagnosis.is_mismatch());
         Ok(outcome)
     }

@@ -7,11 +7,14 @@ mod remainder;
 mod sections;
 
 use crate::calibration::{Campaign, Summary};
-use crate::diagnosis::calibration::CalibrationDiagnosis;
-use crate::report::Report;
+use crate::diagnosis::calibration::{Applied, CalibrationDiagnosis};
 use crate::report::calibration::warnings as of_calibration;
+use crate::report::diagnosis::headline::um;
+use crate::report::{Block, Report, Section};
+use crate::units::UM;
 pub use headline::headline;
 pub use json::json;
+use serde_json::{Value, json};
 
 /// The report of `rodcal diagnose calibration`.
 pub fn report(campaign: &Campaign, found: &CalibrationDiagnosis) -> Report {
@@ -22,6 +25,31 @@ pub fn report(campaign: &Campaign, found: &CalibrationDiagnosis) -> Report {
         sections: sections::all(campaign, found),
         provenance: Vec::new(),
     }
+}
+
+/// What was written into the robot, on the page and in the JSON.
+pub fn applied(report: &mut Report, json: &mut Value, applied: &Applied) {
+    let said = [
+        ("Entered into the robot", &applied.entered),
+        ("Taken out of the measured points", &applied.removed),
+        ("Left out, for the model cannot hold it", &applied.left_out),
+    ];
+    let of_list = |(what, list): (&str, &Vec<String>)| {
+        list.iter().map(|words| format!("{what}: {words}")).collect::<Vec<_>>()
+    };
+    let mut points: Vec<String> = said.into_iter().flat_map(of_list).collect();
+    points.push(format!(
+        "Calibrated again with that, the tip is {} µm on average from where it was measured.",
+        um(applied.mean)
+    ));
+    report.sections.push(Section::new("What becomes of the robot", vec![Block::List(points)]));
+    json["applied"] = json!({
+        "files": applied.files.iter().map(|(name, _)| name).collect::<Vec<_>>(),
+        "entered": applied.entered,
+        "removed": applied.removed,
+        "left_out": applied.left_out,
+        "mean_um": applied.mean / UM,
+    });
 }
 
 fn warnings(campaign: &Campaign, found: &CalibrationDiagnosis) -> Vec<String> {

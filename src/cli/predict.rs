@@ -1,0 +1,58 @@
+//! `rodcal predict MODEL POSES`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use rodcal::report::prediction::{Prediction, json, report};
+use rodcal::robot::{Robot, corrections_from_csv};
+use rodcal::units::MM;
+use rodcal::{Result, files};
+
+use super::output::Outcome;
+
+#[derive(Debug, Args)]
+pub struct Predict {
+    /// Calibrated robot (TOML or URDF), as `calibrate --out` and `diagnose calibration --apply` write it.
+    model: PathBuf,
+    /// Joint values (CSV): pose, q1_deg, q2_deg …
+    poses: PathBuf,
+    /// The tip in {T} in mm, as X,Y,Z [default: the tip that the model was calibrated with, else the flange].
+    #[arg(long, value_name = "X,Y,Z", value_delimiter = ',', allow_hyphen_values = true, num_args = 3)]
+    tool: Option<Vec<f64>>,
+    /// Table of corrections beside a URDF (CSV).
+    #[arg(long, value_name = "FILE")]
+    corrections: Option<PathBuf>,
+    /// Base link of a URDF.
+    #[arg(long, value_name = "LINK")]
+    base_link: Option<String>,
+    /// Tip link of a URDF.
+    #[arg(long, value_name = "LINK")]
+    tip_link: Option<String>,
+}
+
+impl Predict {
+    pub fn run(&self) -> Result<Outcome> {
+        let name = self.model.display().to_string();
+        let text = files::read_text(&self.model)?;
+        let mut robot = Robot::from_text(&name, &text, self.base_link.as_deref(), self.tip_link.as_deref())?;
+        if let Some(path) = &self.corrections {
+            let text = files::read_text(path)?;
+            let more = corrections_from_csv(&path.display().to_string(), &text, robot.joints.len())?;
+            robot.effects.extend(more);
+        }
+        let poses =
+            robot.poses_from_csv(&self.poses.display().to_string(), &files::read_text(&self.poses)?)?;
+        let tool = match self.tool.as_deref() {
+            Some(&[x, y, z]) => [x * MM, y * MM, z * MM].into(),
+            _ => robot.tip.map(|tip| tip.at).unwrap_or_default(),
+        };
+        let prediction = Prediction::new(&robot, tool, poses);
+        let mut report = report(&robot, &prediction);
+        report.provenance = vec![
+            ("model".into(), name),
+            ("poses".into(), self.poses.display().to_string()),
+            ("program".into(), concat!("rodcal ", env!("CARGO_PKG_VERSION")).into()),
+        ];
+        Ok(Outcome::new(json(&robot, &prediction), report))
+    }
+}

@@ -1,0 +1,74 @@
+//! What `rodcal predict` says: tips in the base frame, with their uncertainty.
+
+use nalgebra::Vector3;
+use serde_json::{Value, json};
+
+use super::table::{Column, Table};
+use super::{Block, Report, Section};
+use crate::robot::{Asked, Robot};
+use crate::units::MM;
+
+/// Tips of poses.
+#[derive(Debug, Clone)]
+pub struct Prediction {
+    /// The tool, m in {T}.
+    pub tool: Vector3<f64>,
+    /// Poses with their tips in {0}, m.
+    pub tips: Vec<(Asked, Vector3<f64>)>,
+    /// Standard deviation of a coordinate, m, where the model states it.
+    pub sd: Option<f64>,
+}
+
+impl Prediction {
+    /// Of poses.
+    pub fn new(robot: &Robot, tool: Vector3<f64>, poses: Vec<Asked>) -> Self {
+        let sd = robot.tip.and_then(|tip| tip.sd);
+        let tip = |asked: Asked| (asked.clone(), robot.tip_at(tool, &asked.joints));
+        Prediction { tool, tips: poses.into_iter().map(tip).collect(), sd }
+    }
+}
+
+/// The JSON of `rodcal predict --json`.
+pub fn json(robot: &Robot, prediction: &Prediction) -> Value {
+    let sd = prediction.sd.map(|sd| [sd / MM; 3]);
+    let poses = prediction.tips.iter().map(|(asked, tip)| {
+        json!({
+            "pose": asked.pose,
+            "x_mm": tip.x / MM,
+            "y_mm": tip.y / MM,
+            "z_mm": tip.z / MM,
+            "sd_mm": sd,
+        })
+    });
+    json!({
+        "robot": robot.name,
+        "tool_mm": (prediction.tool / MM).as_slice(),
+        "poses": poses.collect::<Vec<_>>(),
+    })
+}
+
+/// The report of `rodcal predict`.
+pub fn report(robot: &Robot, prediction: &Prediction) -> Report {
+    let mut columns = vec![Column::text("pose")];
+    columns.extend(["x", "y", "z", "sd"].map(|name| Column::number(name, "mm")));
+    let caption = "The tip in the base frame {0}. sd: standard deviation of a coordinate, the error of poses that the \
+                   diagnosis had held out.";
+    let mut table = Table::new("prediction", caption, columns);
+    for (asked, tip) in &prediction.tips {
+        let mut cells = vec![asked.pose.clone()];
+        cells.extend(tip.iter().map(|x| format!("{:.4}", x / MM)));
+        cells.push(prediction.sd.map_or("–".into(), |sd| format!("{:.4}", sd / MM)));
+        table.row(cells);
+    }
+    let known = match prediction.sd {
+        Some(sd) => format!(", each coordinate to {:.3} mm (1 σ)", sd / MM),
+        None => "; the model does not say how accurate it is".into(),
+    };
+    Report {
+        title: format!("Predicted tips of {}", robot.name),
+        headline: format!("{}: {} tips predicted{known}.", robot.name, prediction.tips.len()),
+        warnings: Vec::new(),
+        sections: vec![Section::new("Where the tip is", vec![Block::Table(table)])],
+        provenance: Vec::new(),
+    }
+}

@@ -1,0 +1,123 @@
+//! What joints do besides their geometry: by how much they turn farther than they say.
+//!
+//! ```text
+//! transmission_error   a·sin(n·q) + b·cos(n·q), or a table over q, straight between its rows and constant beyond them
+//! encoder_scale        (s − 1)·q
+//! backlash             ½·b·sign(τ)
+//! wrist_coupling       k·q of another joint
+//! ```
+
+use super::Robot;
+
+/// One of them. Joints count from 0.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Effect {
+    /// A wave of so many cycles per revolution.
+    Harmonic {
+        /// The joint.
+        joint: usize,
+        /// n.
+        cycles_per_rev: f64,
+        /// a, rad.
+        sine: f64,
+        /// b, rad.
+        cosine: f64,
+    },
+    /// A table: angles (rad, ascending) with what is added to them (rad).
+    Table {
+        /// The joint.
+        joint: usize,
+        /// Angle and correction.
+        rows: Vec<(f64, f64)>,
+    },
+    /// A joint that turns s times as far as it says.
+    EncoderScale {
+        /// The joint.
+        joint: usize,
+        /// s.
+        factor: f64,
+    },
+    /// Play that gravity's torque takes up.
+    Backlash {
+        /// The joint.
+        joint: usize,
+        /// b, rad.
+        play: f64,
+    },
+    /// A joint that another one takes along.
+    Coupling {
+        /// The one that drives.
+        from: usize,
+        /// The one that is driven.
+        joint: usize,
+        /// k.
+        fraction: f64,
+    },
+}
+
+impl Effect {
+    /// The joint that it turns.
+    pub fn joint(&self) -> usize {
+        match self {
+            Effect::Harmonic { joint, .. }
+            | Effect::Table { joint, .. }
+            | Effect::EncoderScale { joint, .. }
+            | Effect::Backlash { joint, .. }
+            | Effect::Coupling { joint, .. } => *joint,
+        }
+    }
+
+    /// Turn of its joint, rad, at the joint values `q` (rad or m) under the torques `torque` (N·m; may be empty).
+    pub fn turn(&self, q: &[f64], torque: &[f64]) -> f64 {
+        match self {
+            Effect::Harmonic { joint, cycles_per_rev, sine, cosine } => {
+                let (s, c) = (cycles_per_rev * q[*joint]).sin_cos();
+                sine * s + cosine * c
+            }
+            Effect::Table { joint, rows } => interpolated(rows, q[*joint]),
+            Effect::EncoderScale { joint, factor } => (factor - 1.0) * q[*joint],
+            Effect::Backlash { joint, play } => match torque.get(*joint) {
+                Some(torque) if *torque != 0.0 => 0.5 * play * torque.signum(),
+                _ => 0.0,
+            },
+            Effect::Coupling { from, fraction, .. } => fraction * q[*from],
+        }
+    }
+}
+
+/// Between the rows of a table; the first and the last hold beyond it.
+fn interpolated(rows: &[(f64, f64)], x: f64) -> f64 {
+    let after = rows.partition_point(|row| row.0 <= x);
+    match (after.checked_sub(1).map(|k| rows[k]), rows.get(after)) {
+        (Some((x0, y0)), Some((x1, y1))) => y0 + (y1 - y0) * (x - x0) / (x1 - x0),
+        (Some((_, y)), None) | (None, Some(&(_, y))) => y,
+        (None, None) => 0.0,
+    }
+}
+
+impl Robot {
+    /// By how much a joint turns farther than it says, rad; see [`Effect::turn`].
+    pub fn correction(&self, joint: usize, q: &[f64], torque: &[f64]) -> f64 {
+        let own = self.effects.iter().filter(|effect| effect.joint() == joint);
+        own.map(|effect| effect.turn(q, torque)).sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_table_is_straight_between_its_rows_and_constant_beyond() {
+        let rows = vec![(0.0, 1.0), (1.0, 3.0), (2.0, 0.0)];
+        let at = |x| Effect::Table { joint: 0, rows: rows.clone() }.turn(&[x], &[]);
+        assert_eq!([-1.0, 0.0, 0.5, 1.0, 1.5, 2.0, 9.0].map(at), [1.0, 1.0, 2.0, 3.0, 1.5, 0.0, 0.0]);
+    }
+
+    #[test]
+    fn play_follows_the_torque_and_a_coupling_the_other_joint() {
+        let play = Effect::Backlash { joint: 1, play: 2e-4 };
+        assert_eq!([-3.0, 0.0, 5.0].map(|t| play.turn(&[0.0; 2], &[0.0, t])), [-1e-4, 0.0, 1e-4]);
+        assert_eq!(Effect::Coupling { from: 0, joint: 1, fraction: 0.5 }.turn(&[4.0, 0.0], &[]), 2.0);
+    }
+}

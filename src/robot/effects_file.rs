@@ -1,0 +1,176 @@
+//! The sections `[[effect]]` of a robot file, and the table of corrections that other programs can use.
+
+use serde::Deserialize;
+use toml::Spanned;
+
+use super::{Effect, Robot};
+use crate::delimited::Table;
+use crate::error::Result;
+use crate::toml_text::{Number, TomlText, in_unit};
+use crate::units::{DEG, URAD};
+
+/// Columns of the table of corrections.
+const COLUMNS: [&str; 3] = ["joint", "angle_deg", "correction_urad"];
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a section [[effect]]")]
+pub(super) struct RawEffect {
+    name: Spanned<String>,
+    joint: Spanned<usize>,
+    cycles_per_rev: Option<Number>,
+    sin_urad: Option<Number>,
+    cos_urad: Option<Number>,
+    angle_deg: Option<Spanned<Vec<Number>>>,
+    correction_urad: Option<Spanned<Vec<Number>>>,
+    factor: Option<Number>,
+    play_urad: Option<Number>,
+    from_joint: Option<Spanned<usize>>,
+    fraction: Option<Number>,
+}
+
+/// An effect of a robot with so many joints.
+pub(super) fn read(toml: &TomlText, spanned: &Spanned<RawEffect>, joints: usize) -> Result<Effect> {
+    let raw = spanned.get_ref();
+    let number_of = |key: &str, number: &Spanned<usize>| match number.get_ref().checked_sub(1) {
+        Some(index) if index < joints => Ok(index),
+        _ => Err(toml.is(key, number, &format!("a joint from 1 to {joints}"))),
+    };
+    let lacks = |what: &str| Err(toml.wrong(spanned, format!("an effect without {what}"), EXPECTED));
+    let joint = number_of("effect.joint", &raw.joint)?;
+    let finite = |key: &str, number: &Number, si: f64| Ok(toml.finite(key, number)? * si);
+    match raw.name.get_ref().as_str() {
+        "transmission_error" => match (&raw.cycles_per_rev, &raw.angle_deg, &raw.correction_urad) {
+            (Some(cycles), None, None) => {
+                let part = |key: &str, number: &Option<Number>| match number {
+                    Some(number) => finite(key, number, URAD),
+                    None => Ok(0.0),
+                };
+                Ok(Effect::Harmonic {
+                    joint,
+                    cycles_per_rev: finite("effect.cycles_per_rev", cycles, 1.0)?,
+                    sine: part("effect.sin_urad", &raw.sin_urad)?,
+                    cosine: part("effect.cos_urad", &raw.cos_urad)?,
+                })
+            }
+            (None, Some(angles), Some(corrections)) => {
+                let numbers = |key: &str, list: &Spanned<Vec<Number>>, si: f64| -> Result<Vec<f64>> {
+                    list.get_ref().iter().map(|number| finite(key, number, si)).collect()
+                };
+                let rows: Vec<(f64, f64)> = numbers("effect.angle_deg", angles, DEG)?
+                    .into_iter()
+                    .zip(numbers("effect.correction_urad", corrections, URAD)?)
+                    .collect();
+                let is_whole = angles.get_ref().len() == corrections.get_ref().len() && !rows.is_empty();
+                match is_whole && rows.is_sorted_by(|a, b| a.0 < b.0) {
+                    true => Ok(Effect::Table { joint, rows }),
+                    false => {
+                        let expected = "ascending angles, with one correction_urad for each";
+                        Err(toml.wrong(angles, "effect.angle_deg is another list".into(), expected))
+                    }
+                }
+            }
+            _ => lacks("cycles_per_rev, or angle_deg and correction_urad"),
+        },
+        "encoder_scale" => match &raw.factor {
+            Some(factor) => Ok(Effect::EncoderScale { joint, factor: finite("effect.factor", factor, 1.0)? }),
+            None => lacks("factor"),
+        },
+        "backlash" => match &raw.play_urad {
+            Some(play) => Ok(Effect::Backlash { joint, play: finite("effect.play_urad", play, URAD)? }),
+            None => lacks("play_urad"),
+        },
+        "wrist_coupling" => match (&raw.from_joint, &raw.fraction) {
+            (Some(from), Some(fraction)) => Ok(Effect::Coupling {
+                from: number_of("effect.from_joint", from)?,
+                joint,
+                fraction: finite("effect.fraction", fraction, 1.0)?,
+            }),
+            _ => lacks("from_joint and fraction"),
+        },
+        _ => Err(toml.is("effect.name", &raw.name, EXPECTED)),
+    }
+}
+
+const EXPECTED: &str = "transmission_error (cycles_per_rev, sin_urad, cos_urad; or angle_deg and correction_urad), \
+                        encoder_scale (factor), backlash (play_urad) or wrist_coupling (from_joint, fraction)";
+
+/// The section of an effect.
+pub(super) fn written(effect: &Effect) -> String {
+    let head = |name: &str, joint: usize| format!("\n[[effect]]\nname = \"{name}\"\njoint = {}\n", joint + 1);
+    let urad = |value: f64| in_unit(value, URAD);
+    match effect {
+        Effect::Harmonic { joint, cycles_per_rev, sine, cosine } => format!(
+            "{}cycles_per_rev = {cycles_per_rev:?}\nsin_urad = {:?}\ncos_urad = {:?}\n",
+            head("transmission_error", *joint),
+            urad(*sine),
+            urad(*cosine)
+        ),
+        Effect::Table { joint, rows } => {
+            let angles: Vec<f64> = rows.iter().map(|row| in_unit(row.0, DEG)).collect();
+            let corrections: Vec<f64> = rows.iter().map(|row| urad(row.1)).collect();
+            format!(
+                "{}angle_deg = {angles:?}\ncorrection_urad = {corrections:?}\n",
+                head("transmission_error", *joint)
+            )
+        }
+        Effect::EncoderScale { joint, factor } => {
+            format!("{}factor = {factor:?}\n", head("encoder_scale", *joint))
+        }
+        Effect::Backlash { joint, play } => {
+            format!("{}play_urad = {:?}\n", head("backlash", *joint), urad(*play))
+        }
+        Effect::Coupling { from, joint, fraction } => {
+            format!("{}from_joint = {}\nfraction = {fraction:?}\n", head("wrist_coupling", *joint), from + 1)
+        }
+    }
+}
+
+/// Corrections of joints over their own angles as a table (CSV): joint, angle_deg, correction_urad. `angles` (rad) by joint.
+pub fn corrections_csv(robot: &Robot, angles: &[Vec<f64>]) -> String {
+    let mut text =
+        "# add correction_urad to the angle that the joint tells; straight between the rows\n".to_owned();
+    text += &format!("{}\n", COLUMNS.join(","));
+    for (joint, angles) in angles.iter().enumerate() {
+        let own = |effect: &&Effect| {
+            effect.joint() == joint && !matches!(effect, Effect::Coupling { .. } | Effect::Backlash { .. })
+        };
+        let effects: Vec<&Effect> = robot.effects.iter().filter(own).collect();
+        if effects.is_empty() {
+            continue;
+        }
+        for &angle in angles {
+            let mut q = vec![0.0; robot.joints.len()];
+            q[joint] = angle;
+            let turn: f64 = effects.iter().map(|effect| effect.turn(&q, &[])).sum();
+            text += &format!("{},{:.4},{:.4}\n", joint + 1, angle / DEG, turn / URAD);
+        }
+    }
+    text
+}
+
+/// The effects of a table of corrections for a robot with so many joints.
+///
+/// # Errors
+/// [`crate::Error::Input`] with line and column.
+pub fn corrections_from_csv(file: &str, text: &str, joints: usize) -> Result<Vec<Effect>> {
+    let table = Table::parse(file, text, |column| COLUMNS.contains(&column))?;
+    if let Some(column) = COLUMNS.into_iter().find(|column| !table.has(column)) {
+        let found = format!("there is no column {column}");
+        return Err(table.header_error(column, found, COLUMNS.join(", "), None));
+    }
+    let mut rows: Vec<Vec<(f64, f64)>> = vec![Vec::new(); joints];
+    for row in table.rows() {
+        let number = row.required_number(COLUMNS[0])?;
+        let joint = number as usize;
+        if joint < 1 || joint > joints || number.fract() != 0.0 {
+            return Err(row.error(COLUMNS[0], format!("a joint from 1 to {joints}"), None));
+        }
+        let (angle, turn) = (row.required_number(COLUMNS[1])? * DEG, row.required_number(COLUMNS[2])? * URAD);
+        if rows[joint - 1].last().is_some_and(|last| last.0 >= angle) {
+            return Err(row.error(COLUMNS[1], "angles of a joint that ascend".into(), None));
+        }
+        rows[joint - 1].push((angle, turn));
+    }
+    let of_joint = |(joint, rows): (usize, Vec<(f64, f64)>)| Effect::Table { joint, rows };
+    Ok(rows.into_iter().enumerate().filter(|(_, rows)| !rows.is_empty()).map(of_joint).collect())
+}

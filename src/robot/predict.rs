@@ -1,0 +1,70 @@
+//! Where a calibrated robot's tip is, at any joint values, and the file that they come from.
+
+use nalgebra::Vector3;
+
+use super::{Kinematics, Loads, Motion, Robot, Setup};
+use crate::delimited::Table;
+use crate::error::{Error, Place, Result};
+use crate::spatial::Pose;
+use crate::units::{DEG, MM};
+
+/// Times that torques and the joints that they turn are computed from each other.
+const ROUNDS: usize = 3;
+
+/// A pose to predict.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Asked {
+    /// Its name.
+    pub pose: String,
+    /// Joint values, rad or m.
+    pub joints: Vec<f64>,
+}
+
+impl Robot {
+    /// The tip at `tool` (m, in {T}), in {0}, m: joints yield to the robot's own weight, the tool is rigid.
+    pub fn tip_at(&self, tool: Vector3<f64>, q: &[f64]) -> Vector3<f64> {
+        let setup = Setup::new(self, Pose::IDENTITY, tool);
+        let mut kinematics = Kinematics::new(&setup);
+        let mut torque = vec![0.0; self.joints.len()];
+        let loads = Loads { gravity: self.gravity, payload: None, tip_force: Vector3::zeros() };
+        for _ in 0..ROUNDS {
+            kinematics.update(q, &torque);
+            kinematics.torques(&loads, &mut torque);
+        }
+        kinematics.update(q, &torque);
+        kinematics.tip
+    }
+
+    /// Poses of a table (CSV) with the columns `pose`, `q1_deg` … (`q1_mm` of a prismatic joint).
+    ///
+    /// # Errors
+    /// [`crate::Error::Input`] with line and column.
+    pub fn poses_from_csv(&self, file: &str, text: &str) -> Result<Vec<Asked>> {
+        let column = |(joint, number): (&super::Joint, usize)| match joint.motion {
+            Motion::Revolute => (format!("q{number}_deg"), DEG),
+            Motion::Prismatic => (format!("q{number}_mm"), MM),
+        };
+        let columns: Vec<(String, f64)> = self.joints.iter().zip(1..).map(column).collect();
+        let table = Table::parse(file, text, |name| columns.iter().any(|(column, _)| column == name))?;
+        let names: Vec<&str> = columns.iter().map(|(name, _)| name.as_str()).collect();
+        if let Some(name) = names.iter().copied().find(|name| !table.has(name)) {
+            let expected = format!("pose, {}: one column for each joint of {}", names.join(", "), self.name);
+            return Err(table.header_error(name, format!("there is no column {name}"), expected, None));
+        }
+        let pose = |(at, row): (usize, crate::delimited::Row<'_>)| {
+            let joints = columns.iter().map(|(name, unit)| Ok(row.required_number(name)? * unit));
+            let name = row.text("pose").map_or_else(|| (at + 1).to_string(), str::to_owned);
+            Ok(Asked { pose: name, joints: joints.collect::<Result<_>>()? })
+        };
+        let poses: Vec<Asked> = table.rows().enumerate().map(pose).collect::<Result<_>>()?;
+        match poses.is_empty() {
+            false => Ok(poses),
+            true => Err(Error::Input {
+                at: Place::whole_file(file),
+                found: "there are no rows under the header".into(),
+                expected: "at least one pose".into(),
+                hint: None,
+            }),
+        }
+    }
+}

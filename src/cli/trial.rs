@@ -188,7 +188,8 @@ impl ScoreAnswers {
             });
         }
         let score = score::score(&self.directory, &key, &answers)?;
-        Ok(plain(score.json, score.text))
+        let report = rodcal::report::trial::report(&score.json);
+        Ok(Outcome { text: Some(score.text), ..Outcome::new(score.json, report) })
     }
 }
 

@@ -7,6 +7,7 @@
 //! - [`chart`]: charts as data, drawn by [`chart::Figure::svg`] · [`png`]: SVG to PNG
 //! - [`pictures`]: the pictures of a rod and of a calibration, from numbers to charts
 //! - [`compliance`] · [`rig`] · [`diagnosis`]: results of the library as reports and as JSON
+//! - [`trial`]: the score of a concealed-effect trial
 //! - [`text`]: a report for the terminal · [`table`]: tables to text, HTML, Markdown, CSV · [`html`]: the page
 
 mod axes;
@@ -28,6 +29,7 @@ pub mod rig;
 mod scale;
 pub mod table;
 pub mod text;
+pub mod trial;
 
 use serde::Serialize;
 

@@ -4,6 +4,7 @@
 //! DIR/manifest.json              how many cases, SHA-256 of every file of them and of the key; nothing of the seed
 //! DIR/rig/case-0001/rod.toml     the rod as its file has it
 //! DIR/rig/case-0001/readings.csv what was read
+//! DIR/calibration/case-0003/  a campaign: campaign.toml, robot.toml, measurements.csv, and rod.toml where there is a rod
 //! DIR.key.jsonl                  the key: one line for each case
 //! ```
 //!
@@ -17,7 +18,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-use super::rig;
+use super::Half;
 use super::truth::Truth;
 use crate::error::{Error, Place, Result};
 use crate::files;
@@ -25,8 +26,6 @@ use crate::parallel::in_parallel;
 
 /// Name of the manifest in a trial's directory.
 pub const MANIFEST: &str = "manifest.json";
-/// Files of a case of the rig.
-const RIG_FILES: [&str; 2] = ["rod.toml", "readings.csv"];
 /// Cases made before any of them is written.
 const BLOCK: usize = 32;
 
@@ -65,7 +64,7 @@ pub fn default_key(directory: &Path) -> Result<PathBuf> {
     Ok(directory.with_file_name(name))
 }
 
-/// Draws cases of the rig by number and seals them; `made` is called after each.
+/// Draws cases by number and seals them; `made` is called after each.
 ///
 /// # Errors
 /// [`Error::Argument`] where a trial is there already, or the key would be in it; [`Error::File`].
@@ -73,6 +72,7 @@ pub fn make(
     directory: &Path,
     key: &Path,
     seed: u64,
+    half: Half,
     range: Range<usize>,
     made: impl Fn() + Sync + Send,
 ) -> Result<Manifest> {
@@ -95,14 +95,13 @@ pub fn make(
     while next < range.end {
         let block = BLOCK.min(range.end - next);
         let cases = in_parallel(block, |k| {
-            let case = rig::case(seed, next + k);
+            let case = super::case(seed, next + k, half);
             made();
             case
         });
         for case in cases {
-            let contents = [case.rod, case.readings].map(String::into_bytes);
             let named: Vec<(String, Vec<u8>)> =
-                RIG_FILES.iter().map(|name| (*name).to_owned()).zip(contents).collect();
+                case.files.into_iter().map(|(name, text)| (name, text.into_bytes())).collect();
             for (name, bytes) in &named {
                 hashes.insert(format!("{}/{name}", case.truth.case), sha256(bytes));
             }
@@ -210,7 +209,7 @@ mod tests {
 
     fn trial(directory: &Path) -> (PathBuf, PathBuf) {
         let (trial, key) = (directory.join("t"), directory.join("t.key.jsonl"));
-        make(&trial, &key, 5, 1..4, || {}).unwrap();
+        make(&trial, &key, 5, Half::Rig, 1..4, || {}).unwrap();
         (trial, key)
     }
 
@@ -232,8 +231,8 @@ mod tests {
         assert_eq!(manifest.case_names(), ["rig/case-0001", "rig/case-0002", "rig/case-0003"]);
         assert!(!files::read_text(&a.join(MANIFEST)).unwrap().contains("seed"));
         assert_eq!(manifest.read_key(&key_a).unwrap().len(), 3);
-        assert!(make(&a, &key_a, 6, 1..2, || {}).is_err());
-        assert!(make(&b.join("new"), &b.join("new/key"), 6, 1..2, || {}).is_err());
+        assert!(make(&a, &key_a, 6, Half::Rig, 1..2, || {}).is_err());
+        assert!(make(&b.join("new"), &b.join("new/key"), 6, Half::Rig, 1..2, || {}).is_err());
         assert!(default_key(Path::new(".")).is_err());
     }
 

@@ -3,9 +3,9 @@
 //! A quarter of the cases is clean, 45 % hold one effect of the library, 15 % two of them, 15 % one that no library has.
 
 mod bench;
-mod cosserat;
-mod draw;
-mod drawing;
+pub(in crate::trial) mod cosserat;
+pub(in crate::trial) mod draw;
+pub(in crate::trial) mod drawing;
 mod effect;
 mod made;
 mod memory;
@@ -13,7 +13,7 @@ mod noise;
 mod oracle;
 mod protocol;
 mod setup;
-mod tube;
+pub(in crate::trial) mod tube;
 
 use self::bench::Bench;
 pub use self::effect::Effect;
@@ -21,31 +21,19 @@ pub use self::made::{Made, Order};
 use self::noise::{Noise, Shape};
 use self::oracle::Oracle;
 pub use self::protocol::Columns;
+use super::Case;
 use crate::statistics::Random;
 use crate::trial::truth::{Concealed, Kind, Parameter, Truth};
 use crate::units::{MM, UM};
 
-/// Shares of clean, single and paired cases; the rest is unknown.
-const SHARES: [f64; 3] = [0.25, 0.45, 0.15];
 /// Load, relative to the nominal one, at which a rod is linear.
 const SMALL: f64 = 1e-3;
-
-/// A case: what is handed out and what is kept.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Case {
-    /// The rod file.
-    pub rod: String,
-    /// The readings.
-    pub readings: String,
-    /// What is concealed.
-    pub truth: Truth,
-}
 
 /// Case number `number` of the trial that belongs to `seed`.
 pub fn case(seed: u64, number: usize) -> Case {
     let mut random = Random::seeded(seed, number as u64);
     let name = format!("rig/case-{number:04}");
-    let kind = kind(&mut random);
+    let kind = Kind::drawn(&mut random);
     let numbers: Vec<usize> = match kind {
         Kind::Clean => Vec::new(),
         Kind::Single => vec![random.index(draw::LIBRARY)],
@@ -73,20 +61,11 @@ pub fn case(seed: u64, number: usize) -> Case {
     let readings = bench.readings(&effects);
     let shown = noise.shown(&bench, &readings, &mut random);
     Case {
-        rod: bench.drawing.toml(&format!("case-{number:04}")),
-        readings: bench.protocol.csv(&shown),
+        files: vec![
+            ("rod.toml".into(), bench.drawing.toml(&format!("case-{number:04}"))),
+            ("readings.csv".into(), bench.protocol.csv(&shown)),
+        ],
         truth: truth(name, kind, &bench, &noise, &effects, &readings),
-    }
-}
-
-fn kind(random: &mut Random) -> Kind {
-    let drawn = random.uniform(0.0, 1.0);
-    let [clean, single, pair] = SHARES;
-    match drawn {
-        u if u < clean => Kind::Clean,
-        u if u < clean + single => Kind::Single,
-        u if u < clean + single + pair => Kind::Pair,
-        _ => Kind::Unknown,
     }
 }
 
@@ -175,19 +154,20 @@ mod tests {
     fn a_seed_and_a_number_make_the_same_case() {
         let (a, b) = (case(7, 3), case(7, 3));
         assert_eq!(a, b);
-        assert!(a.readings != case(7, 4).readings && a.readings != case(8, 3).readings);
+        assert!(a.files != case(7, 4).files && a.files != case(8, 3).files);
     }
 
     #[test]
     fn files_say_that_they_are_simulated_and_nothing_of_the_effect() {
         for number in 0..40 {
             let case = case(1, number);
-            assert!(case.rod.starts_with("# SIMULATED") && case.readings.starts_with("# SIMULATED"));
+            let [rod, readings] = [&case.files[0].1, &case.files[1].1];
+            assert!(rod.starts_with("# SIMULATED") && readings.starts_with("# SIMULATED"));
             for concealed in &case.truth.effects {
-                assert!(!case.readings.contains(&concealed.effect), "{}", case.truth.case);
+                assert!(!readings.contains(&concealed.effect), "{}", case.truth.case);
             }
             let is_stiff = |line: &str| !line.contains("urad_per_nm") || line.ends_with(" = 0.0");
-            assert!(case.rod.lines().all(is_stiff));
+            assert!(rod.lines().all(is_stiff));
             assert!(case.truth.geometric_um < 20.0, "{:?}", case.truth);
             let is_clean = case.truth.kind == Kind::Clean;
             assert_eq!(is_clean, case.truth.effects.is_empty());

@@ -7,6 +7,7 @@ mod judged;
 mod place;
 mod rate;
 mod tables;
+mod targets;
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -60,6 +61,32 @@ pub fn of(truths: &[Truth], given: &[Answer]) -> Score {
         .filter_map(|truth| Some(Judged::new(truth, answers.get(truth.case.as_str())?)))
         .collect();
     cases.sort_by(|a, b| a.truth.case.cmp(&b.truth.case));
+    let unanswered = truths.len() - cases.len();
+    let halves: Vec<(&str, Vec<Judged<'_>>)> = ["rig", "calibration"]
+        .into_iter()
+        .map(|half| (half, cases.iter().filter(|case| case.truth.case.starts_with(half)).cloned().collect()))
+        .filter(|(_, of_half): &(&str, Vec<Judged<'_>>)| !of_half.is_empty())
+        .collect();
+    let mut whole = of_cases(&cases);
+    whole.json["unanswered"] = unanswered.into();
+    for (half, of_half) in &halves {
+        let part = if halves.len() > 1 { of_cases(of_half) } else { of_cases(&cases) };
+        if halves.len() > 1 {
+            whole.text += &format!("\n{half}\n{}", part.text);
+        }
+        whole.json[*half] = part.json;
+    }
+    let mut first = String::new();
+    for (half, _) in &halves {
+        let missed = whole.json[*half]["missed_targets"].as_array().into_iter().flatten();
+        missed.filter_map(Value::as_str).for_each(|words| first += &format!("MISSED {half}: {words}\n"));
+    }
+    whole.text = if first.is_empty() { whole.text } else { first + "\n" + &whole.text };
+    whole
+}
+
+/// The score of cases in their order.
+fn of_cases(cases: &[Judged<'_>]) -> Score {
     let of_kind = |kind: Kind| cases.iter().filter(move |case| case.truth.kind == kind);
     let first = |case: &&Judged<'_>| case.truth.effects.first().map(|e| e.detectability.clone());
     let is_identifiable =
@@ -111,9 +138,8 @@ pub fn of(truths: &[Truth], given: &[Answer]) -> Score {
     let by_parameter: BTreeMap<String, Value> =
         by_parameter.iter().map(|(k, rate)| (k.clone(), rate.json())).collect();
 
-    let json = json!({
+    let mut json = json!({
         "cases": cases.len(),
-        "unanswered": truths.len() - cases.len(),
         "failed": cases.iter().filter(|case| case.failed).count(),
         "clean": {
             "n": false_names.of, "false_names": false_names.count, "false_unexplained": false_unexplained.count,
@@ -143,11 +169,12 @@ pub fn of(truths: &[Truth], given: &[Answer]) -> Score {
         // not asked yet
         "counterfactual_over_oracle": null,
         "next_measurement_ok": null,
-        "bins": tables::bins(&cases),
-        "confusion": tables::confusion(&cases),
-        "power": tables::power(&cases),
-        "failures": tables::failures(&cases),
+        "bins": tables::bins(cases),
+        "confusion": tables::confusion(cases),
+        "power": tables::power(cases),
+        "failures": tables::failures(cases),
     });
+    json["missed_targets"] = targets::missed(&json).into();
     let mut text = String::new();
     let mut say = |what: &str, words: String| text += &format!("{what:44} {words}\n");
     say("clean: false names", false_names.words());
@@ -167,7 +194,7 @@ pub fn of(truths: &[Truth], given: &[Answer]) -> Score {
     say("right, or in its class, when it names", right_class.words());
     say("95 % intervals that hold the truth", coverage.words());
     say("held-out gain over the oracle's", gain_over_oracle.map_or("no case".into(), |g| format!("{g:.3}")));
-    text += &tables::confusion_text(&cases);
+    text += &tables::confusion_text(cases);
     Score { json, text }
 }
 

@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use crate::statistics::Random;
+
 /// One case of the key. Units are those of the names.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Truth {
@@ -41,6 +43,23 @@ pub enum Kind {
     Single,
     Pair,
     Unknown,
+}
+
+/// Shares of clean, single and paired cases; the rest is unknown.
+const SHARES: [f64; 3] = [0.25, 0.45, 0.15];
+
+impl Kind {
+    /// One by chance.
+    pub fn drawn(random: &mut Random) -> Kind {
+        let drawn = random.uniform(0.0, 1.0);
+        let [clean, single, pair] = SHARES;
+        match drawn {
+            u if u < clean => Kind::Clean,
+            u if u < clean + single => Kind::Single,
+            u if u < clean + single + pair => Kind::Pair,
+            _ => Kind::Unknown,
+        }
+    }
 }
 
 /// One concealed effect.

@@ -5,7 +5,7 @@ use super::Sandbox;
 #[test]
 fn a_trial_is_made_answered_in_pieces_and_scored() {
     let sandbox = Sandbox::empty();
-    sandbox.run("trial make t --seed 3 --cases 5").succeeded();
+    sandbox.run("trial make t --seed 3 --cases 5 --rig").succeeded();
     let readings = sandbox.read("t/rig/case-0001/readings.csv");
     assert!(readings.starts_with("# SIMULATED"));
     assert!(!sandbox.read("t/manifest.json").contains("seed"));
@@ -25,7 +25,7 @@ fn a_trial_is_made_answered_in_pieces_and_scored() {
 #[test]
 fn another_key_and_changed_recordings_are_refused() {
     let sandbox = Sandbox::empty();
-    sandbox.run("trial make t --seed 3 --cases 2").succeeded();
+    sandbox.run("trial make t --seed 3 --cases 2 --rig").succeeded();
     sandbox.run("trial answer t").succeeded();
     let (key, rod) = (sandbox.read("t.key.jsonl"), sandbox.read("t/rig/case-0002/rod.toml"));
     let refuses = |line: &str, file: &str| {

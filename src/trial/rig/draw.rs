@@ -61,7 +61,7 @@ pub fn log_uniform(random: &mut Random, low: f64, high: f64) -> f64 {
     random.uniform(low.ln(), high.ln()).exp()
 }
 
-pub(super) fn happens(random: &mut Random, probability: f64) -> bool {
+pub(in crate::trial) fn happens(random: &mut Random, probability: f64) -> bool {
     random.uniform(0.0, 1.0) < probability
 }
 

@@ -16,7 +16,22 @@ pub fn is_same(truth: &Truth, concealed: &Concealed, location: &str) -> bool {
         return true;
     }
     let first = |place: &str| place.split(',').next().unwrap_or_default().trim().to_owned();
+    // of what concerns one joint the joint counts, of several outliers any
+    let is_calibration = truth.case.starts_with("calibration/");
     match concealed.effect.as_str() {
+        "transmission_error"
+        | "backlash"
+        | "joint_compliance"
+        | "joint_nonlinear_stiffness"
+        | "rod_stiffness"
+        | "readback_lag"
+            if is_calibration =>
+        {
+            first(location) == first(&concealed.location)
+        }
+        "outlier" if is_calibration => {
+            location.split("; ").any(|pose| concealed.location.split("; ").any(|other| other == pose))
+        }
         "joint_compliance" => match (station(truth, location), of.stations_mm) {
             (Some(station), Some([low, high])) => (low - SCAN_MM..=high + SCAN_MM).contains(&station),
             _ => false,

@@ -36,6 +36,7 @@ pub fn bins(cases: &[Judged<'_>]) -> Value {
     let of_bin = |(k, [name, place, class, missed]): (usize, &[Rate; 4])| {
         let [from, to] = limits(&DETECTABILITY, k);
         json!({"from": from, "to": to, "n": name.of, "name_ok": name.count, "location_ok": place.count,
+               "location_ok_rate": place.json(),
                "in_class": class.count, "missed": missed.count})
     };
     rates.iter().enumerate().map(of_bin).collect()
@@ -52,7 +53,7 @@ pub fn power(cases: &[Judged<'_>]) -> Value {
     let of_effect = |(effect, rates): (&str, Vec<Rate>)| {
         let of_bin = |(k, rate): (usize, &Rate)| {
             let [from, to] = limits(&SIZE, k);
-            json!({"from": from, "to": to, "n": rate.of, "name_ok": rate.count})
+            json!({"from": from, "to": to, "n": rate.of, "name_ok": rate.count, "name_ok_rate": rate.json()})
         };
         let curve: Vec<Value> =
             rates.iter().enumerate().filter(|(_, rate)| rate.of > 0).map(of_bin).collect();

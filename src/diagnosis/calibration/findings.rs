@@ -119,7 +119,16 @@ fn of_finding(world: &CalibrationWorld, finding: &Finding) -> Vec<Number> {
             let (name, unit) = (parameter.name.clone(), parameter.unit);
             Number { name, unit, value, low, high }
         };
-    parameters.iter().zip(&finding.parameters).map(number).collect()
+    let numbers: Vec<Number> = parameters.iter().zip(&finding.parameters).map(number).collect();
+    match world.candidates()[finding.chosen.candidate].effect.as_str() {
+        "rod_stiffness" => numbers.into_iter().map(inverse).collect(),
+        _ => numbers,
+    }
+}
+
+/// The world counts by how much more a rod bends, which its columns are linear in; people count its stiffness, as on a rig.
+fn inverse(number: Number) -> Number {
+    Number { value: 1.0 / number.value, low: 1.0 / number.high, high: 1.0 / number.low, ..number }
 }
 
 /// Frequency and amplitude of the strongest part of a gear's error.

@@ -2,6 +2,7 @@
 
 use nalgebra::{DVector, Vector3};
 
+use super::evidence::session_name;
 use super::findings::{Mismatch, location, mismatches};
 use super::gear::Curve;
 use super::limits::{Limit, limits};
@@ -29,6 +30,8 @@ pub struct CalibrationDiagnosis<'c> {
     pub levers: Vec<Vec<Vector3<f64>>>,
     /// What makes every claim weaker.
     pub limits: Vec<Limit>,
+    /// Name of the clamp or socket of each row.
+    pub groups: Vec<String>,
 }
 
 /// Calibrates `campaign` and diagnoses what is left.
@@ -46,11 +49,20 @@ pub fn diagnose<'c>(
     let scene = Scene::new(campaign, &calibration)?;
     let limits = limits(&scene, &calibration, &evidence);
     let levers = scene.postures.into_iter().map(|posture| posture.lever).collect();
+    let recording = &campaign.measurements;
+    let groups = recording.rows.iter().map(|row| recording.groups[row.group].name.clone()).collect();
     let mismatches = mismatches(&world, campaign, &diagnosis);
-    Ok(CalibrationDiagnosis { calibration, world, evidence, diagnosis, mismatches, levers, limits })
+    Ok(CalibrationDiagnosis { calibration, world, evidence, diagnosis, mismatches, levers, limits, groups })
 }
 
 impl CalibrationDiagnosis<'_> {
+    /// Name of a session: a clamp, or a placement of sockets.
+    pub fn session(&self, number: usize) -> &str {
+        let datum = self.evidence.session.iter().position(|&session| session == number);
+        let group = datum.and_then(|datum| self.groups.get(datum / 3));
+        group.map_or("", |group| session_name(group))
+    }
+
     /// Of numbers by datum the displacement of each row in {W}, m: for residuals and changes.
     pub fn by_row(&self, data: &DVector<f64>) -> Vec<Vector3<f64>> {
         let row = |row: usize| data.fixed_rows::<3>(3 * row).into_owned() / self.world.scale(row);

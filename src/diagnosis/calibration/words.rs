@@ -224,7 +224,7 @@ fn of_joint_or_load(effect: &str, place: &Place, numbers: &[Number]) -> String {
         "rod_stiffness" => {
             let under =
                 place.name.split_once(", ").map_or_else(String::new, |(_, under)| format!(" {under}"));
-            format!("The rod bends {} times as much as its model{under}", first.say(""))
+            format!("The rod's stiffness is {} times that of its model{under}", first.say(""))
         }
         "tip_mass" => format!("{} more hang on the tip than stated", first.say("g")),
         "payload_mass" => format!("{} more hang on the flange than stated", first.say("kg")),

@@ -98,7 +98,9 @@ impl Effect {
             }
             Effect::Nonlinear { cubic: true, per, .. } => vec![("urad_per_nm3", per / URAD)],
             Effect::Nonlinear { per, .. } => vec![("urad_per_nm2", per / URAD)],
-            Effect::EncoderScale { factor, .. } | Effect::Rod(factor) => vec![("factor", *factor)],
+            Effect::EncoderScale { factor, .. } => vec![("factor", *factor)],
+            // told as a stiffness, as on a rig
+            Effect::Rod(factor) => vec![("factor", 1.0 / factor)],
             Effect::Coupling { share, .. } | Effect::Lag { share, .. } => vec![("fraction", *share)],
             Effect::ClampPose { by, turn, .. } => {
                 let mut six = three(SHIFT, by, UM);

@@ -56,6 +56,11 @@ pub fn json(campaign: &Campaign, found: &CalibrationDiagnosis) -> Value {
             "heldout_before": distances.held_out.as_ref().map(|(before, _)| summary(before)),
             "heldout_after": distances.held_out.as_ref().map(|(_, after)| summary(after)),
         },
+        "replication": diagnosis.replicas.iter().map(|replica| json!({
+            "session": found.session(replica.session),
+            "before_um": um(replica.before),
+            "after_um": um(replica.after),
+        })).collect::<Vec<_>>(),
         "locate": locate_json(&found.evidence, diagnosis),
         "lack_of_fit_before": diagnosis.lack_of_fit_before.as_ref().map(test_json),
         "lack_of_fit_after": diagnosis.lack_of_fit_after.as_ref().map(test_json),

@@ -23,6 +23,9 @@ pub fn all(campaign: &Campaign, found: &CalibrationDiagnosis) -> Vec<Section> {
     let mut sections = vec![findings(found), location(campaign, found)];
     let mut helps = proof(NOUN, &found.diagnosis);
     helps.blocks.push(Block::Table(distances(found)));
+    if !found.diagnosis.replicas.is_empty() {
+        helps.blocks.push(Block::Table(replication(found)));
+    }
     helps.blocks.push(Block::Figure(figures::distribution(found)));
     sections.push(helps);
     sections.push(evidence(&ranking(&found.world, &found.diagnosis)));
@@ -131,6 +134,23 @@ fn distances(found: &CalibrationDiagnosis) -> Table {
     if let Some((before, after)) = &distances.held_out {
         row("held out, calibration as it is", before);
         row("held out, with what was found", after);
+    }
+    table
+}
+
+/// How well each clamp or placement is predicted from the others.
+fn replication(found: &CalibrationDiagnosis) -> Table {
+    let columns = vec![
+        Column::text("left out"),
+        Column::number("calibration as it is", "µm"),
+        Column::number("with what the others show", "µm"),
+    ];
+    let caption = "Each clamp or placement predicted from the others, the search for effects included; rms of a coordinate, \
+                   about the socket's own place where nobody knows it.";
+    let mut table = Table::new("replication", caption, columns);
+    for replica in &found.diagnosis.replicas {
+        let name = found.session(replica.session).to_owned();
+        table.row(vec![name, um(replica.before), um(replica.after)]);
     }
     table
 }

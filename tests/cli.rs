@@ -6,6 +6,8 @@
 mod calibrate;
 #[path = "cli/diagnose.rs"]
 mod diagnose;
+#[path = "cli/diagnose_calibration.rs"]
+mod diagnose_calibration;
 #[path = "cli/files.rs"]
 mod files;
 #[path = "cli/json.rs"]

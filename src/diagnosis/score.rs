@@ -175,15 +175,20 @@ impl Moments {
         let product = &more.product - reduced.tr_mul(&self.product);
         let k = gram.ncols();
         let nu = (self.freedom as f64).max(1.0);
+        let eigen = SymmetricEigen::new(gram);
+        let lambda = eigen.eigenvalues.map(|l| l.max(0.0));
+        let b = eigen.eigenvectors.tr_mul(&product);
         // σ²/κ² on the diagonal
-        let posterior = |ridge: f64| (&gram + DMatrix::from_diagonal_element(k, k, ridge)).cholesky();
         let (mut scale, mut left, mut explained) = (1.0f64, s, 0.0);
         for _ in 0..SCALE_STEPS {
-            let Some(root) = posterior(left / scale.powi(2)) else { return f64::NEG_INFINITY };
-            let estimate = root.solve(&product);
-            let square = estimate.norm_squared() + left * root.inverse().trace();
+            let ridge = left / scale.powi(2);
+            let (mut square, mut along) = (0.0, 0.0);
+            for (l, b) in lambda.iter().zip(&b) {
+                square += (b / (l + ridge)).powi(2) + left / (l + ridge);
+                along += b * b / (l + ridge);
+            }
             let next = (square / k as f64).sqrt().clamp(SCALES.0, SCALES.1);
-            explained = (product.dot(&estimate) / (nu * s)).clamp(0.0, 1.0 - 1e-12);
+            explained = (along / (nu * s)).clamp(0.0, 1.0 - 1e-12);
             let less = (s * (1.0 - explained)).max(self.floor.powi(2)).max(f64::MIN_POSITIVE.sqrt());
             let moved = (next / scale).ln().abs().max((less / left).ln().abs());
             (scale, left) = (next, less);
@@ -192,16 +197,19 @@ impl Moments {
             }
         }
         let ridge = left / scale.powi(2);
-        let Some(root) = posterior(ridge) else { return f64::NEG_INFINITY };
-        let determinant: f64 = (0..k).map(|i| (root.l_dirty()[(i, i)].powi(2) / ridge).ln()).sum();
-        let (estimate, inverse) = (root.solve(&product), root.inverse());
-        let room: f64 = more
-            .bounds
-            .iter()
-            .enumerate()
-            .map(|(i, (low, high))| {
-                let sd = (left * inverse[(i, i)]).sqrt();
-                room((low / scale, high / scale), estimate[i] / scale, sd / scale)
+        let determinant: f64 = lambda.iter().map(|l| (l / ridge).ln_1p()).sum();
+        let is_bounded = |(low, high): &(f64, f64)| low.is_finite() || high.is_finite();
+        let room: f64 = (0..k)
+            .filter(|&i| is_bounded(&more.bounds[i]))
+            .map(|i| {
+                let (mut mean, mut variance) = (0.0, 0.0);
+                for m in 0..k {
+                    let v = eigen.eigenvectors[(i, m)];
+                    mean += v * b[m] / (lambda[m] + ridge);
+                    variance += v * v * left / (lambda[m] + ridge);
+                }
+                let (low, high) = more.bounds[i];
+                room((low / scale, high / scale), mean / scale, variance.sqrt() / scale)
             })
             .sum();
         -0.5 * (nu * (-explained).ln_1p() + determinant + scale.log10().powi(2)) + room

@@ -96,3 +96,35 @@ fn the_example_of_the_documentation_is_read() {
     let robot = Robot::from_text("example.toml", example, None, None).expect(example);
     assert_eq!((robot.joints[0].name.as_str(), robot.has_masses()), ("shoulder", true));
 }
+
+/// What `--apply` writes is what is read again: bit by bit, or but for the last bit where units change.
+#[test]
+fn effects_of_joints_are_read_and_written() {
+    let text = EXAMPLE.to_owned()
+        + "\n[tip]\nxyz_mm = [1.5, -2, 300]\nsd_mm = 0.04\n"
+        + "\n[[effect]]\nname = \"transmission_error\"\njoint = 2\ncycles_per_rev = 18.5\nsin_urad = 80\ncos_urad = -20.5\n"
+        + "\n[[effect]]\nname = \"transmission_error\"\njoint = 2\nangle_deg = [-10, 0, 25.5]\ncorrection_urad = [1, -2, 3.5]\n"
+        + "\n[[effect]]\nname = \"encoder_scale\"\njoint = 2\nfactor = 1.0002\n"
+        + "\n[[effect]]\nname = \"backlash\"\njoint = 2\nplay_urad = 42\n";
+    let read =
+        |text: &str| Robot::from_text("g.toml", text, None, None).unwrap_or_else(|e| panic!("{e}\n{text}"));
+    let robot = read(&text);
+    assert_eq!(robot.effects.len(), 4);
+    let again = read(&robot.to_toml(&[]).unwrap());
+    assert_eq!(again, robot);
+    let q = [0.1, 0.2];
+    let wave = 80e-6 * (18.5f64 * 0.2).sin() - 20.5e-6 * (18.5f64 * 0.2).cos();
+    let table = (-2.0 + 5.5 * 0.2f64.to_degrees() / 25.5) * 1e-6;
+    let expected = wave + table + 0.0002 * 0.2 - 21e-6;
+    assert_relative_eq!(robot.correction(1, &q, &[0.0, -3.0]), expected, max_relative = 1e-9);
+    for wrong in [
+        "name = \"wobble\"\njoint = 1",
+        "name = \"encoder_scale\"\njoint = 3\nfactor = 1",
+        "name = \"encoder_scale\"\njoint = 1",
+        "name = \"transmission_error\"\njoint = 2\nangle_deg = [1, 0]\ncorrection_urad = [1, 2]",
+        "name = \"transmission_error\"\njoint = 2\nangle_deg = [1, 2]\ncorrection_urad = [1]",
+    ] {
+        let text = format!("{EXAMPLE}\n[[effect]]\n{wrong}\n");
+        assert!(Robot::from_text("g.toml", &text, None, None).is_err(), "{wrong}");
+    }
+}

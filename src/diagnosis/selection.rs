@@ -5,6 +5,9 @@ use super::search::{PRIOR, Search, Story};
 
 /// Odds against chance from which on an effect is named.
 pub const NAMED: f64 = 50.0;
+/// A story of known effects explains as well as one that leaves something unknown within these odds, if it leaves at most so
+/// much more, as a factor.
+const AS_WELL: (f64, f64) = (20.0, 1.01);
 /// Most effects in one story.
 const MOST: usize = 8;
 /// Of how many candidates, the likeliest by their columns at neutral values, the values are fitted.
@@ -46,6 +49,14 @@ impl Search<'_> {
         let wholes: Vec<f64> = path.iter().zip(&remainders).map(whole).collect();
         let most = wholes.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let named = wholes.iter().position(|whole| *whole >= most).unwrap_or_default();
+        // what the library explains as well needs nothing unknown
+        let last = path.len() - 1;
+        if let Some((_, Remainder::Curve(longer))) = &remainders[named]
+            && path[last].log_probability + AS_WELL.0.ln() > most
+            && self.left_rms(&path[last]) < AS_WELL.1 * self.left_rms(longer)
+        {
+            return (path.swap_remove(last), None);
+        }
         let remainder = remainders.swap_remove(named).map(|(_, remainder)| remainder);
         (path.swap_remove(named), remainder)
     }

@@ -175,9 +175,7 @@ impl Moments {
         let product = &more.product - reduced.tr_mul(&self.product);
         let k = gram.ncols();
         let nu = (self.freedom as f64).max(1.0);
-        let eigen = SymmetricEigen::new(gram);
-        let lambda = eigen.eigenvalues.map(|l| l.max(0.0));
-        let b = eigen.eigenvectors.tr_mul(&product);
+        let (eigen, lambda, b) = beyond_rounding(gram, &product, more);
         // σ²/κ² on the diagonal
         let (mut scale, mut left, mut explained) = (1.0f64, s, 0.0);
         for _ in 0..SCALE_STEPS {
@@ -232,9 +230,13 @@ impl Moments {
     /// `more` columns in what a story leaves: an eigenvalue problem of theirs only, not of the story's besides.
     pub fn beyond(&self, score: &Score, more: &More) -> Moments {
         let reduced = &score.covariance * &more.cross / score.sigma.powi(2);
+        let gram = more.gram - more.cross.tr_mul(&reduced);
+        let product = &more.product - reduced.tr_mul(&self.product);
+        let (eigen, lambda, b) = beyond_rounding(gram, &product, more);
+        let vectors = &eigen.eigenvectors;
         Moments {
-            gram: more.gram - more.cross.tr_mul(&reduced),
-            product: &more.product - reduced.tr_mul(&self.product),
+            gram: vectors * DMatrix::from_diagonal(&lambda) * vectors.transpose(),
+            product: vectors * b,
             bounds: more.bounds.clone(),
             effects: vec![more.gram.ncols()],
             ..self.rest(score)
@@ -281,6 +283,22 @@ impl Moments {
         }
         s
     }
+}
+
+/// What is left of columns once a story's are taken out of them: eigenvectors and eigenvalues of `gram` and `product` along
+/// them, both 0 where nothing but rounding is left, as of a curve whose joint has a curve already.
+fn beyond_rounding(
+    gram: DMatrix<f64>,
+    product: &DVector<f64>,
+    more: &More,
+) -> (SymmetricEigen<f64, nalgebra::Dyn>, DVector<f64>, DVector<f64>) {
+    const ROUNDING: f64 = 1e-9;
+    let least = ROUNDING * more.gram.diagonal().amax();
+    let eigen = SymmetricEigen::new(gram);
+    let lambda = eigen.eigenvalues.map(|l| if l > least { l } else { 0.0 });
+    let along = eigen.eigenvectors.tr_mul(product);
+    let b = along.zip_map(&lambda, |b, l| if l > 0.0 { b } else { 0.0 });
+    (eigen, lambda, b)
 }
 
 /// Ln of the posterior mass within the bounds over the prior mass there.

@@ -11,7 +11,9 @@ const AS_WELL: (f64, f64) = (20.0, 1.01);
 /// Most effects in one story.
 const MOST: usize = 8;
 /// Of how many candidates, the likeliest by their columns at neutral values, the values are fitted.
-const REFITTED: usize = 3;
+const REFITTED: usize = 5;
+/// And how many of them may be of one effect.
+const OF_ONE_EFFECT: usize = 2;
 
 /// What a story leaves that no effect of the library explains.
 #[derive(Debug, Clone)]
@@ -111,8 +113,19 @@ impl Search<'_> {
 
     /// The story with one candidate more, the likeliest of those that are unknown or of those that are not.
     fn longer(&self, story: &Story, additions: &[f64], unknown: bool) -> Option<Story> {
-        let likeliest = self.likeliest(additions, unknown).into_iter().take(REFITTED);
-        let refitted = likeliest.map(|index| self.with(story, index));
+        // a scan over places must not crowd out what is at one place only
+        let mut tried: Vec<usize> = Vec::new();
+        for index in self.likeliest(additions, unknown) {
+            let effect = |candidate: usize| &self.world.candidates()[candidate].effect;
+            let same = tried.iter().filter(|&&other| effect(other) == effect(index)).count();
+            if unknown || same < OF_ONE_EFFECT {
+                tried.push(index);
+            }
+            if tried.len() >= REFITTED {
+                break;
+            }
+        }
+        let refitted = tried.into_iter().map(|index| self.with(story, index));
         refitted.reduce(|best, other| if other.log_probability > best.log_probability { other } else { best })
     }
 

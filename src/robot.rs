@@ -7,8 +7,8 @@
 //! Hⱼ = Rz(θⱼ)·Tz(dⱼ)·Tx(aⱼ)·Rx(αⱼ)·Ry(βⱼ)        (the paper's Table 1)
 //! ```
 //!
-//! with θⱼ = offset + qⱼ + cⱼ·τⱼ for a revolute joint (and what [`Effect`]s add) and dⱼ = d + qⱼ for a prismatic one. {0} is the robot's base
-//! frame, {T} the flange's. β is zero but where consecutive axes are nearly parallel: there Denavit and Hartenberg's
+//! with θⱼ = offset + qⱼ + cⱼ·τⱼ (and what [`Effect`]s add) for a revolute joint and dⱼ = d + qⱼ for a prismatic one. {0} is
+//! the robot's base frame, {T} the flange's. β is zero but where consecutive axes are nearly parallel: there Denavit and Hartenberg's
 //! common normal jumps with the smallest tilt, and Hayati's β does not (S. Hayati, *IEEE CDC* 22 (1983) 1477–1483).
 
 mod effect;

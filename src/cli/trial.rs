@@ -1,22 +1,19 @@
 //! `rodcal trial make|answer|score`.
 
-use std::collections::BTreeSet;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
 use rodcal::calibration::campaign::Campaign;
-use rodcal::calibration::{Options, calibrate, default_mode};
-use rodcal::diagnosis::calibration::CalibrationWorld;
-use rodcal::diagnosis::{Finding, World};
+use rodcal::calibration::{Options, default_mode};
+use rodcal::diagnosis::{calibration, rig};
 use rodcal::parallel::in_parallel;
 use rodcal::rig::readings::Readings;
 use rodcal::rod::Rod;
 use rodcal::trial::answers::{self, Answer};
 use rodcal::trial::envelope::{self, Manifest};
 use rodcal::trial::{Half, score};
-use rodcal::units::UM;
-use rodcal::{Error, Result};
+use rodcal::{Error, Result, report};
 use serde_json::{Value, json};
 
 use super::output::Outcome;
@@ -188,7 +185,7 @@ impl ScoreAnswers {
             });
         }
         let score = score::score(&self.directory, &key, &answers)?;
-        let report = rodcal::report::trial::report(&score.json);
+        let report = report::trial::report(&score.json);
         Ok(Outcome { text: Some(score.text), ..Outcome::new(score.json, report) })
     }
 }
@@ -205,49 +202,12 @@ fn plain(json: Value, text: String) -> Outcome {
 fn diagnosed(case: &Path) -> Result<Value> {
     let campaign = case.join("campaign.toml");
     if campaign.exists() {
-        return calibration(&Campaign::read(&campaign)?);
+        let campaign = Campaign::read(&campaign)?;
+        let found = calibration::diagnose(&campaign, default_mode(&campaign), &Options::default())?;
+        return Ok(report::diagnosis::calibration::json(&campaign, &found));
     }
     let rod = Rod::read(&case.join("rod.toml"))?;
     let readings = Readings::read(&case.join("readings.csv"))?;
-    let found = rodcal::diagnosis::rig::diagnose(&readings, Some(&rod))?;
-    Ok(rodcal::report::diagnosis::json(&found, &readings, Some(&rod)))
-}
-
-/// What of the diagnosis of a calibration is scored.
-fn calibration(campaign: &Campaign) -> Result<Value> {
-    let calibrated = calibrate(campaign, default_mode(campaign), &Options::default())?;
-    let (world, evidence) = CalibrationWorld::new(campaign, &calibrated)?;
-    let found = rodcal::diagnosis::diagnose(&world, &evidence);
-    let um = |length: f64| length / UM;
-    // which wave of a gear it is, is one of its numbers and no place
-    let place = |effect: &str, place: &str| match effect {
-        "transmission_error" => place.split(',').next().unwrap_or(place).to_owned(),
-        _ => place.to_owned(),
-    };
-    let finding = |finding: &Finding| {
-        let candidate = &world.candidates()[finding.chosen.candidate];
-        let numbers =
-            candidate.parameters.iter().zip(&finding.parameters).map(|(parameter, (value, lo, hi))| {
-                let unit = parameter.unit;
-                json!({"name": parameter.name, "value": value / unit, "lo": lo / unit, "hi": hi / unit})
-            });
-        let others: BTreeSet<&str> =
-            finding.rivals.iter().map(|r| world.candidates()[r.chosen.candidate].effect.as_str()).collect();
-        json!({
-            "effect": candidate.effect, "location": place(&candidate.effect, &finding.place),
-            "p_value": finding.p_value, "parameters": numbers.collect::<Vec<_>>(),
-            "indistinguishable_from": others.into_iter().filter(|o| *o != candidate.effect).collect::<Vec<_>>(),
-        })
-    };
-    let proof = found.proof.as_ref();
-    Ok(json!({
-        "verdict": if found.is_mismatch() { "mismatch" } else { "consistent" },
-        "noise_um": um(found.noise),
-        "heldout_before_um": proof.map(|p| um(p.before)), "heldout_after_um": proof.map(|p| um(p.after)),
-        "findings": found.findings.iter().map(finding).collect::<Vec<_>>(),
-        "unexplained": found.unexplained.as_ref().map(|u| {
-            let location = u.candidate.map(|c| world.candidates()[c].location.clone());
-            json!({"location": location, "rms_um": um(u.rms)})
-        }),
-    }))
+    let found = rig::diagnose(&readings, Some(&rod))?;
+    Ok(report::diagnosis::json(&found, &readings, Some(&rod)))
 }

@@ -4,7 +4,8 @@
 //!
 //! F = ((|w|² − S)/(c − p)) / (S/(n − c))        S what the c cell means leave
 //!
-//! (N. R. Draper, H. Smith, *Applied Regression Analysis*, 3rd ed., §2.2). A shape that no smooth curve describes is seen here.
+//! (N. R. Draper, H. Smith, *Applied Regression Analysis*, 3rd ed., ch. 2: lack of fit and pure error). A shape that no
+//! smooth curve describes is seen here.
 
 use nalgebra::{DMatrix, DVector};
 

@@ -52,6 +52,19 @@ impl Evidence {
     }
 }
 
+/// The story that the data `kept` tell by themselves, and what the base model and that story, fitted to them, leave of all data.
+pub(super) fn learned(
+    world: &Linearised<'_>,
+    evidence: &Evidence,
+    kept: &[usize],
+) -> (DVector<f64>, DVector<f64>, Vec<Chosen>) {
+    let (part, training) = (world.part(kept), evidence.part(kept));
+    let (search, story, _) = judged(&part, &training);
+    let none = search.told(&search.fit(&[]), evidence, &DVector::zeros(evidence.residual.len()));
+    let all = search.told(&story, evidence, &world.change(&story.chosen));
+    (&evidence.residual - none, &evidence.residual - all, story.chosen)
+}
+
 /// Selects without each fold in turn, and predicts it. `None` with fewer than two folds.
 pub fn prove(world: &Linearised<'_>, evidence: &Evidence) -> Option<Proof> {
     let mut folds: Vec<usize> = evidence.fold.clone();
@@ -67,12 +80,8 @@ pub fn prove(world: &Linearised<'_>, evidence: &Evidence) -> Option<Proof> {
             (0..n).filter(|&row| (evidence.fold[row] == folds[k]) == held_out).collect()
         };
         let (kept, held_out) = (of(false), of(true));
-        let (part, training) = (world.part(&kept), evidence.part(&kept));
-        let (search, story, _) = judged(&part, &training);
-        let none = search.told(&search.fit(&[]), evidence, &DVector::zeros(n));
-        let all = search.told(&story, evidence, &world.change(&story.chosen));
-        let miss = |told: &DVector<f64>| (&evidence.residual - told).select_rows(&held_out);
-        (held_out.clone(), miss(&none), miss(&all), story.chosen)
+        let (before, after, story) = learned(world, evidence, &kept);
+        (held_out.clone(), before.select_rows(&held_out), after.select_rows(&held_out), story)
     });
     let (mut errors_before, mut errors_after) = (DVector::repeat(n, f64::NAN), DVector::repeat(n, f64::NAN));
     let (mut squares, mut stories): (Vec<Squares>, Vec<Vec<Chosen>>) = (Vec::new(), Vec::new());

@@ -7,9 +7,9 @@ use std::collections::BTreeMap;
 
 use nalgebra::DVector;
 
-use super::judgement::judged;
+use super::Evidence;
 use super::linear::Linearised;
-use super::{Evidence, World};
+use super::proof::learned;
 use crate::parallel::in_parallel;
 
 /// A session that was predicted from the others.
@@ -36,21 +36,17 @@ pub(super) fn replicate(world: &Linearised<'_>, evidence: &Evidence) -> Vec<Repl
     in_parallel(sessions.len(), |k| {
         let session = sessions[k];
         let (out, kept): (Vec<usize>, Vec<usize>) = (0..n).partition(|&row| evidence.session[row] == session);
-        let (part, training) = (world.part(&kept), evidence.part(&kept));
-        let (search, story, _) = judged(&part, &training);
-        let none = search.told(&search.fit(&[]), evidence, &DVector::zeros(n));
-        let all = search.told(&story, evidence, &world.change(&story.chosen));
-        Replica { session, before: left(evidence, &none, &out), after: left(evidence, &all, &out) }
+        let (before, after, _) = learned(world, evidence, &kept);
+        Replica { session, before: left(evidence, &before, &out), after: left(evidence, &after, &out) }
     })
 }
 
-/// Root mean square of what `told` leaves of `rows`, about the level of each group whose level nobody knows.
-fn left(evidence: &Evidence, told: &DVector<f64>, rows: &[usize]) -> f64 {
+/// Root mean square of `errors` in `rows`, about the level of each group whose level nobody knows.
+fn left(evidence: &Evidence, errors: &DVector<f64>, rows: &[usize]) -> f64 {
     let mut levels: BTreeMap<usize, (f64, f64)> = BTreeMap::new();
-    let error = |row: usize| evidence.residual[row] - told[row];
     for &row in rows {
         let (sum, count) = levels.entry(evidence.level[row]).or_default();
-        *sum += error(row);
+        *sum += errors[row];
         *count += 1.0;
     }
     let square = |&row: &usize| {
@@ -58,7 +54,7 @@ fn left(evidence: &Evidence, told: &DVector<f64>, rows: &[usize]) -> f64 {
             Evidence::KEPT => 0.0,
             level => levels[&level].0 / levels[&level].1,
         };
-        (error(row) - level).powi(2)
+        (errors[row] - level).powi(2)
     };
     (rows.iter().map(square).sum::<f64>() / rows.len().max(1) as f64).sqrt()
 }

@@ -79,16 +79,13 @@ impl Search<'_> {
             return None;
         }
         let longer = self.exchanged(longer);
-        let is_needed = |position: usize| {
-            self.without(&longer, position).log_probability + NAMED.ln() < longer.log_probability
-        };
-        match (0..longer.chosen.len()).find(|&position| !is_needed(position)) {
-            None => Some(longer),
-            // what another one has made superfluous goes
-            Some(position) => {
-                let rest = self.without(&longer, position);
-                (rest.log_probability > story.log_probability + NAMED.ln()).then_some(rest)
-            }
+        // what another one has made superfluous goes
+        let rests = (0..longer.chosen.len()).map(|position| self.without(&longer, position));
+        let likelier = |a: &Story, b: &Story| a.log_probability.total_cmp(&b.log_probability);
+        let rest = rests.max_by(likelier)?;
+        match rest.log_probability + NAMED.ln() < longer.log_probability {
+            true => Some(longer),
+            false => (rest.log_probability > story.log_probability + NAMED.ln()).then_some(rest),
         }
     }
 

@@ -3,7 +3,7 @@
 use super::headline::{RIVALS_SAID, sentence, um};
 use super::ranking::ranking;
 use super::remainder::{Remainder, remainder};
-use super::shared::{chance, evidence, locate, proof};
+use super::shared::{self, add_parameters, alternatives, evidence, locate, proof};
 use super::{correction, figures, spoken};
 use crate::diagnosis::rig::{RigDiagnosis, cause_at};
 use crate::diagnosis::{Finding, World, rms};
@@ -15,8 +15,6 @@ use crate::units::{UM, significant};
 
 /// What was recorded.
 const NOUN: &str = "readings";
-/// Most other places that are listed.
-const PLACES: usize = 4;
 
 pub fn all(found: &RigDiagnosis, readings: &Readings, rod: Option<&Rod>) -> Vec<Section> {
     let mut sections = vec![findings(found, readings), location(found, rod), proof(NOUN, &found.diagnosis)];
@@ -60,50 +58,23 @@ fn details(found: &RigDiagnosis, finding: &Finding) -> String {
         .skip(RIVALS_SAID)
         .map(|(effect, place)| cause_at(effect, place))
         .collect();
-    if !others.is_empty() {
-        words += &format!(" It may also be {}.", others.join(", or "));
-    }
     // a stretch of the rod is said already
     let places = match found.world.stretch(finding) {
         Some(_) => Vec::new(),
         None => found.other_places(finding),
     };
-    if !places.is_empty() {
-        let more = if places.len() > PLACES { " …" } else { "" };
-        words += &format!(" It may be elsewhere: {}{more}.", places[..places.len().min(PLACES)].join("; "));
-    }
-    words
+    words + &alternatives(&others, &places)
 }
 
 fn parameters(found: &RigDiagnosis) -> Table {
-    let columns = vec![
-        Column::text("effect"),
-        Column::text("where"),
-        Column::text("parameter"),
-        Column::number("value", ""),
-        Column::number("from", ""),
-        Column::number("to", ""),
-        Column::number("chance", ""),
-    ];
-    let caption = "Parameters, in the units of their names, with 95 % intervals. Chance: the probability that noise alone \
-                   looks as much like it.";
-    let mut table = Table::new("findings", caption, columns);
+    let mut table = shared::parameters();
     for finding in &found.diagnosis.findings {
         let candidate = &found.world.candidates()[finding.chosen.candidate];
-        for (k, parameter) in candidate.parameters.iter().enumerate() {
-            let Some((value, low, high)) = found.world.interval(finding, k) else { continue };
-            let show = |x: f64| significant(x / parameter.unit, 4);
-            let first = |text: String| if k == 0 { text } else { String::new() };
-            table.row([
-                first(spoken(&candidate.effect)),
-                first(finding.place.clone()),
-                parameter.name.clone(),
-                show(value),
-                show(low),
-                show(high),
-                first(chance(finding.p_value)),
-            ]);
-        }
+        let parameters = candidate.parameters.iter().enumerate().filter_map(|(k, parameter)| {
+            let (value, low, high) = found.world.interval(finding, k)?;
+            Some((parameter.name.as_str(), parameter.unit, [value, low, high]))
+        });
+        add_parameters(&mut table, &candidate.effect, &finding.place, finding.p_value, parameters);
     }
     table
 }

@@ -17,8 +17,66 @@ const WEAK: f64 = 3.0;
 const STRONG: f64 = 6.0;
 
 /// A probability; what is less than one in 10^12 is never.
-pub fn chance(p: f64) -> String {
+fn chance(p: f64) -> String {
     if p < 1e-12 { "< 1e-12".into() } else { significant(p, 1) }
+}
+
+/// A parameter as it is told: name, its unit in SI, value and 95 % interval, SI.
+pub type Told<'a> = (&'a str, f64, [f64; 3]);
+
+/// Adds the parameters of one finding; effect, place and chance stand in the first row only.
+pub fn add_parameters<'a>(
+    table: &mut Table,
+    effect: &str,
+    place: &str,
+    p_value: f64,
+    parameters: impl Iterator<Item = Told<'a>>,
+) {
+    for (k, (name, unit, numbers)) in parameters.enumerate() {
+        let first = |text: String| if k == 0 { text } else { String::new() };
+        let [value, low, high] = numbers.map(|x| significant(x / unit, 4));
+        table.row([
+            first(spoken(effect)),
+            first(place.to_owned()),
+            name.to_owned(),
+            value,
+            low,
+            high,
+            first(chance(p_value)),
+        ]);
+    }
+}
+
+/// The table of all parameters that were found, without rows; see [`add_parameters`].
+pub fn parameters() -> Table {
+    let columns = vec![
+        Column::text("effect"),
+        Column::text("where"),
+        Column::text("parameter"),
+        Column::number("value", ""),
+        Column::number("from", ""),
+        Column::number("to", ""),
+        Column::number("chance", ""),
+    ];
+    let caption = "Parameters, in the units of their names, with 95 % intervals. Chance: the probability that noise alone \
+                   looks as much like it.";
+    Table::new("findings", caption, columns)
+}
+
+/// What else a finding may be (causes beyond those of its sentence), and where else.
+pub fn alternatives(causes: &[String], places: &[impl AsRef<str>]) -> String {
+    /// Most other places that are listed.
+    const PLACES: usize = 4;
+    let mut words = String::new();
+    if !causes.is_empty() {
+        words += &format!(" It may also be {}.", causes.join(", or "));
+    }
+    if !places.is_empty() {
+        let more = if places.len() > PLACES { " …" } else { "" };
+        let places: Vec<&str> = places.iter().take(PLACES).map(AsRef::as_ref).collect();
+        words += &format!(" It may be elsewhere: {}{more}.", places.join("; "));
+    }
+    words
 }
 
 /// Covariates that are told: one that has the values of another is that other one.

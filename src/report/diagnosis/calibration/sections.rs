@@ -8,7 +8,7 @@ use crate::diagnosis::calibration::{CalibrationDiagnosis, Mismatch, cause_at};
 use crate::diagnosis::rms;
 use crate::report::diagnosis::headline::{RIVALS_SAID, um};
 use crate::report::diagnosis::ranking::ranking;
-use crate::report::diagnosis::shared::{chance, evidence, locate, proof};
+use crate::report::diagnosis::shared::{self, add_parameters, alternatives, evidence, locate, proof};
 use crate::report::diagnosis::spoken;
 use crate::report::table::{Column, Table};
 use crate::report::{Block, Section};
@@ -16,8 +16,6 @@ use crate::units::{UM, significant};
 
 /// What was recorded.
 const NOUN: &str = "poses";
-/// Most other places that are listed.
-const PLACES: usize = 4;
 
 pub fn all(campaign: &Campaign, found: &CalibrationDiagnosis) -> Vec<Section> {
     let mut sections = vec![findings(found), location(campaign, found)];
@@ -58,44 +56,16 @@ fn details(found: &CalibrationDiagnosis, mismatch: &Mismatch) -> String {
         .skip(RIVALS_SAID)
         .map(|(effect, place)| cause_at(effect, place))
         .collect();
-    if !others.is_empty() {
-        words += &format!(" It may also be {}.", others.join(", or "));
-    }
     let places = other_places(found, mismatch);
-    if !places.is_empty() {
-        let more = if places.len() > PLACES { " …" } else { "" };
-        words += &format!(" It may be elsewhere: {}{more}.", places[..places.len().min(PLACES)].join("; "));
-    }
-    words
+    words + &alternatives(&others, &places)
 }
 
 fn parameters(found: &CalibrationDiagnosis) -> Table {
-    let columns = vec![
-        Column::text("effect"),
-        Column::text("where"),
-        Column::text("parameter"),
-        Column::number("value", ""),
-        Column::number("from", ""),
-        Column::number("to", ""),
-        Column::number("chance", ""),
-    ];
-    let caption = "Parameters, in the units of their names, with 95 % intervals. Chance: the probability that noise alone \
-                   looks as much like it.";
-    let mut table = Table::new("findings", caption, columns);
+    let mut table = shared::parameters();
     for mismatch in &found.mismatches {
-        for (k, number) in mismatch.parameters.iter().enumerate() {
-            let show = |x: f64| significant(x / number.unit, 4);
-            let first = |text: String| if k == 0 { text } else { String::new() };
-            table.row([
-                first(spoken(&mismatch.effect)),
-                first(mismatch.location.clone()),
-                number.name.clone(),
-                show(number.value),
-                show(number.low),
-                show(number.high),
-                first(chance(mismatch.p_value)),
-            ]);
-        }
+        let numbers = mismatch.parameters.iter();
+        let numbers = numbers.map(|n| (n.name.as_str(), n.unit, [n.value, n.low, n.high]));
+        add_parameters(&mut table, &mismatch.effect, &mismatch.location, mismatch.p_value, numbers);
     }
     table
 }

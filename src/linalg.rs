@@ -7,9 +7,10 @@
 use std::ops::Range;
 
 use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::matmul::matmul;
 use faer::linalg::qr::no_pivoting::factor;
-use faer::linalg::solvers::SolveLstsqCore;
-use faer::{Mat, MatMut, MatRef, Par};
+use faer::linalg::solvers::{DenseSolveCore, SolveLstsqCore};
+use faer::{Accum, Mat, MatMut, MatRef, Par, Side};
 use nalgebra::{DMatrix, DVector};
 
 use crate::error::{Error, Result};
@@ -104,6 +105,29 @@ pub fn least_squares(a: &DMatrix<f64>, b: &DVector<f64>) -> Result<DVector<f64>>
     let right = faer::MatMut::from_column_major_slice_mut(x.as_mut_slice(), m, 1);
     qr.solve_lstsq_in_place_with_conj(faer::Conj::No, right);
     Ok(DVector::from_fn(n, |j, _| x[j] / norms[j]))
+}
+
+/// AᵀB.
+pub fn transposed_product(a: &DMatrix<f64>, b: &DMatrix<f64>) -> DMatrix<f64> {
+    let mut product = DMatrix::zeros(a.ncols(), b.ncols());
+    let target = MatMut::from_column_major_slice_mut(product.as_mut_slice(), a.ncols(), b.ncols());
+    matmul(target, Accum::Replace, view(a).transpose(), view(b), 1.0, Par::Seq);
+    product
+}
+
+/// A⁻¹ and ln|A| of a symmetric matrix, of which the lower triangle counts, by Cholesky's decomposition; `None` where it is
+/// not positive definite.
+pub fn positive_definite_inverse(a: &DMatrix<f64>) -> Option<(DMatrix<f64>, f64)> {
+    /// From here on faer's blocks are faster.
+    const LARGE: usize = 12;
+    if a.ncols() < LARGE {
+        let cholesky = nalgebra::Cholesky::new(a.clone())?;
+        return Some((cholesky.inverse(), cholesky.ln_determinant()));
+    }
+    let cholesky = view(a).llt(Side::Lower).ok()?;
+    let diagonal = cholesky.L().diagonal().column_vector();
+    let ln_determinant = (0..a.ncols()).map(|k| 2.0 * diagonal[k].ln()).sum();
+    Some((owned(cholesky.inverse().as_ref()), ln_determinant))
 }
 
 /// Condition number σ₁/σₖ of a matrix as it stands, without scaling its columns.
@@ -318,6 +342,17 @@ mod tests {
         let (r, c) = triangular(&a, &b).unwrap();
         assert!((r.transpose() * &r - a.transpose() * &a).norm() < 1e-13);
         assert!((r.transpose() * c - a.transpose() * b).norm() < 1e-13);
+    }
+
+    #[test]
+    fn an_inverse_small_or_large_is_one_and_a_matrix_without_is_refused() {
+        for n in [1, 5, 40] {
+            let a = hilbert(n) + DMatrix::identity(n, n);
+            let (inverse, ln_determinant) = positive_definite_inverse(&a).unwrap();
+            assert!((transposed_product(&a, &inverse) - DMatrix::identity(n, n)).amax() < 1e-13, "{n}");
+            assert!((ln_determinant - a.clone().lu().determinant().ln()).abs() < 1e-12, "{n}");
+            assert!(positive_definite_inverse(&-a).is_none(), "{n}");
+        }
     }
 
     #[test]

@@ -5,14 +5,14 @@ use rayon::prelude::*;
 /// `job(0)`, `job(1)`, … `job(count − 1)`, in this order, worked on by all processors.
 ///
 /// The results are the same for every number of threads if each job depends on its index alone; one that needs random
-/// numbers takes the stream of its index ([`Random::seeded`](crate::statistics::Random::seeded)). A job that itself
-/// calls this runs its own jobs one after the other: only the outermost level is parallel.
+/// numbers takes the stream of its index ([`Random::seeded`](crate::statistics::Random::seeded)). A job may itself call this.
 pub fn in_parallel<T: Send>(count: usize, job: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
-    // a thread of the pool is at work on a job already
-    match rayon::current_thread_index() {
-        Some(_) => (0..count).map(job).collect(),
-        None => (0..count).into_par_iter().map(job).collect(),
-    }
+    (0..count).into_par_iter().map(job).collect()
+}
+
+/// Both jobs at once. Either may call [`in_parallel`].
+pub fn both<A: Send, B: Send>(first: impl FnOnce() -> A + Send, second: impl FnOnce() -> B + Send) -> (A, B) {
+    rayon::join(first, second)
 }
 
 #[cfg(test)]
@@ -38,11 +38,9 @@ mod tests {
     }
 
     #[test]
-    fn a_job_within_a_job_stays_on_its_thread() {
-        let threads = in_parallel(20, |_| {
-            let here = std::thread::current().id();
-            in_parallel(20, |_| std::thread::current().id()).into_iter().all(|there| there == here)
-        });
-        assert!(threads.into_iter().all(|same| same));
+    fn jobs_within_jobs_are_no_different() {
+        let (nested, beside) = both(|| in_parallel(20, |count| sums(10 * count)), || sums(30));
+        assert_eq!(beside, sums(30));
+        assert!((0..20).all(|count| nested[count] == sums(10 * count)));
     }
 }

@@ -11,6 +11,7 @@ use super::replication::{Replica, replicate};
 use super::search::{Search, Story};
 use super::selection::Remainder;
 use super::{Chosen, EffectParameter, Evidence, World};
+use crate::parallel::both;
 use crate::statistics::{chi_squared_survival, student_t_quantile};
 
 /// Odds within which another explanation counts as indistinguishable: 20 to 1.
@@ -108,7 +109,7 @@ impl Diagnosis {
 /// Diagnoses a recording.
 pub fn diagnose(world: &dyn World, evidence: &Evidence) -> Diagnosis {
     let world = &Linearised::new(world);
-    let (search, story, unknown) = judged(world, evidence);
+    let ((search, story, unknown), proof) = both(|| judged(world, evidence), || prove(world, evidence));
     let none = search.fit(&[]);
     let told_by_none = search.told(&none, evidence, &DVector::zeros(evidence.residual.len()));
     let change = world.change(&story.chosen);
@@ -141,7 +142,7 @@ pub fn diagnose(world: &dyn World, evidence: &Evidence) -> Diagnosis {
         structure_before: locate(evidence, &before),
         structure_after: locate(evidence, &after),
         odds: search.additions(&none),
-        proof: prove(world, evidence),
+        proof,
         replicas: if story.chosen.is_empty() { Vec::new() } else { replicate(world, evidence) },
         before,
         after,

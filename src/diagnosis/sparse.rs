@@ -2,33 +2,43 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use crate::linalg::transposed_product;
+
 /// Share of a column that is not zero from which on it is stored whole.
 const DENSE: f64 = 0.3;
 
 /// Columns, those that are mostly zero as lists of what is not.
 #[derive(Debug, Clone)]
 pub(super) struct Sparse {
+    /// One beside the other.
+    whole: DMatrix<f64>,
     columns: Vec<Column>,
 }
 
 #[derive(Debug, Clone)]
 enum Column {
-    Whole(Vec<f64>),
+    /// Which one of the whole columns.
+    Whole(usize),
     Listed(Vec<(usize, f64)>),
 }
 
 impl Sparse {
     pub(super) fn new(dense: &DMatrix<f64>) -> Self {
-        let of = |column: nalgebra::DVectorView<'_, f64>| {
+        let mut whole = Vec::new();
+        let mut of = |(index, column): (usize, nalgebra::DVectorView<'_, f64>)| {
             let count = column.iter().filter(|x| **x != 0.0).count();
             match count as f64 > DENSE * column.len() as f64 {
-                true => Column::Whole(column.iter().copied().collect()),
+                true => {
+                    whole.push(index);
+                    Column::Whole(whole.len() - 1)
+                }
                 false => {
                     Column::Listed(column.iter().copied().enumerate().filter(|(_, x)| *x != 0.0).collect())
                 }
             }
         };
-        Sparse { columns: dense.column_iter().map(of).collect() }
+        let columns = dense.column_iter().enumerate().map(&mut of).collect();
+        Sparse { whole: dense.select_columns(&whole), columns }
     }
 
     pub(super) fn ncols(&self) -> usize {
@@ -37,38 +47,25 @@ impl Sparse {
 
     /// Cᵀv.
     pub(super) fn tr_mul(&self, v: &DVector<f64>) -> DVector<f64> {
-        DVector::from_iterator(self.ncols(), self.columns.iter().map(|column| column.dot(v.as_slice())))
+        self.tr_mul_into(&DMatrix::from_column_slice(v.len(), 1, v.as_slice())).row(0).transpose()
     }
 
     /// SᵀC.
     pub(super) fn tr_mul_into(&self, dense: &DMatrix<f64>) -> DMatrix<f64> {
-        let (rows, all) = (dense.nrows(), dense.as_slice());
-        DMatrix::from_fn(dense.ncols(), self.ncols(), |i, j| {
-            self.columns[j].dot(&all[i * rows..(i + 1) * rows])
-        })
-    }
-}
-
-impl Column {
-    fn dot(&self, v: &[f64]) -> f64 {
-        match self {
-            Column::Whole(own) => dot(own, v),
-            Column::Listed(own) => own.iter().map(|&(i, x)| x * v[i]).sum(),
+        let whole = transposed_product(dense, &self.whole);
+        let mut products = DMatrix::zeros(dense.ncols(), self.ncols());
+        for (column, mut product) in self.columns.iter().zip(products.column_iter_mut()) {
+            match column {
+                Column::Whole(index) => product.copy_from(&whole.column(*index)),
+                Column::Listed(own) => {
+                    for (p, other) in product.iter_mut().zip(dense.column_iter()) {
+                        *p = own.iter().map(|&(row, x)| x * other[row]).sum();
+                    }
+                }
+            }
         }
+        products
     }
-}
-
-/// Four sums at a time, which a processor adds up at once.
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let mut sums = [0.0; 4];
-    let (a_whole, b_whole) = (a.chunks_exact(4), b.chunks_exact(4));
-    let rest: f64 = a_whole.remainder().iter().zip(b_whole.remainder()).map(|(x, y)| x * y).sum();
-    for (x, y) in a_whole.zip(b_whole) {
-        for k in 0..4 {
-            sums[k] += x[k] * y[k];
-        }
-    }
-    rest + sums.iter().sum::<f64>()
 }
 
 #[cfg(test)]

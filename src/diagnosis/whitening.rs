@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 use nalgebra::{DMatrix, DVector};
 
 use super::Evidence;
-use crate::linalg::{least_squares, thin_svd};
+use crate::linalg::{least_squares, thin_svd, transposed_product};
 
 /// ρ that is believed before the data: a zero that was read once is as good as any other reading.
 const RATIO_BEFORE: f64 = 1.0;
@@ -101,12 +101,12 @@ impl Whitening {
 
     /// Inner products CᵀMC of whitened columns once they are projected.
     pub fn projected_gram(&self, whitened: &DMatrix<f64>) -> DMatrix<f64> {
-        let mut gram = whitened.tr_mul(whitened);
-        for b in &self.basis {
-            let along = whitened.tr_mul(b);
-            gram -= &along * along.transpose();
+        let gram = transposed_product(whitened, whitened);
+        if self.basis.is_empty() {
+            return gram;
         }
-        gram
+        let along = transposed_product(&DMatrix::from_columns(&self.basis), whitened);
+        gram - transposed_product(&along, &along)
     }
 
     /// Factors of the nuisance columns that fit `left` best.

@@ -24,8 +24,9 @@ const SCAN: (f64, f64) = (40.0, 0.5);
 const RATIOS: [f64; 8] = [50.0, 51.0, 80.0, 100.0, 101.0, 120.0, 121.0, 160.0];
 /// Length scales ℓ of curves, rad, as 1/ℓ: their spectrum falls to 1/√e of its amplitude at √2/ℓ cycles per revolution.
 const CURVES: [f64; 5] = [2.0, 4.0, 8.0, 16.0, 32.0];
-/// Beyond so many cosines there is no curve: over a wide range a scan sees what is fine.
-const MOST_COSINES: usize = 160;
+/// Beyond so many cosines there is no curve: over a wide range a scan sees what is fine. Nor is there one of more than this
+/// many for every pose: it would go through them all.
+const MOST_COSINES: (usize, f64) = (160, 0.5);
 
 pub(in crate::diagnosis::calibration) fn all(scene: &Scene) -> Vec<Entry> {
     let of_joint = |j: usize| {
@@ -62,7 +63,8 @@ fn curve(scene: &Scene, j: usize, cycles: f64) -> Option<Entry> {
     let scale = 1.0 / cycles;
     let cosines = Cosines::new((low, high), scale);
     // the constant is the joint's offset
-    if !(3..=MOST_COSINES).contains(&cosines.sizes.len()) {
+    let per_pose = (MOST_COSINES.1 * scene.postures.len() as f64) as usize;
+    if !(3..=MOST_COSINES.0.min(per_pose)).contains(&cosines.sizes.len()) {
         return None;
     }
     let parameters = (1..cosines.sizes.len()).map(|k| {

@@ -96,9 +96,10 @@ impl Search<'_> {
         rms(&(&self.evidence.residual - told))
     }
 
-    /// Does an effect concern one datum only?
+    /// Can an effect say anything of the few data that it concerns?
     pub fn is_event(&self, chosen: &Chosen) -> bool {
-        self.world.neutral[chosen.candidate].row_iter().filter(|row| row.amax() > 0.0).count() == 1
+        let columns = &self.world.neutral[chosen.candidate];
+        columns.row_iter().filter(|row| row.amax() > 0.0).count() <= columns.ncols()
     }
 
     /// Standardised residuals, whitened, that a story leaves.

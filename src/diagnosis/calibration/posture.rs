@@ -30,6 +30,8 @@ pub(super) struct Posture {
     pub moment: Vec<Vector3<f64>>,
     /// Angle or way by which each joint yields per torque, rad/(N·m).
     pub compliance: Vec<f64>,
+    /// The frame of the link that each joint moves.
+    pub link: Vec<Pose>,
     /// {T}.
     pub flange: Pose,
     /// The ball: the deflected tip, m.
@@ -99,6 +101,7 @@ pub(super) fn all(
                 torque,
                 moment,
                 compliance: setup.compliance.clone(),
+                link: kinematics.joints.iter().map(|joint| joint.distal).collect(),
                 flange: kinematics.flange,
                 tip: kinematics.tip,
                 gravity,

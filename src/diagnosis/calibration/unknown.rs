@@ -1,10 +1,14 @@
 //! Rivals for physics that nobody has named: smooth displacements of the tip along whatever a row may depend on.
 //!
 //! ```text
-//! along one number     Σ_k a_k·cos(π k x)        a_k a vector in {W} or in {T}, x from 0 to 1, a_k ~ s/(1 + k)
-//! over the workspace   products of such cosines along x, y, z of {W}
-//! of two joints        both turn by Σ a_kl·cos(π k x)·cos(π l y): what neither does as a function of its own angle
-//! of each clamp        a vector in {W}
+//! along one number      Σ_k a_k·cos(π k x)        a_k a vector in {W} or in {T}, x from 0 to 1, a_k ~ s/(1 + k)
+//! again and again       a·sin(2π n t) + b·cos(2π n t), n cycles over the recording, scanned
+//! over the workspace    products of such cosines along x, y, z of {W}
+//! by its orientation    first and second order in the direction that an axis of {W} has in {T}, a vector in {T}
+//! of a joint's reversal it turns by Σ a_k·cos(π k x) one way, by as much the other way when it came from there
+//! of two joints         both turn by Σ a_kl·cos(π k x)·cos(π l y): what neither does as a function of its own angle
+//! of a link             all beyond a joint turns about any axis of its link by products of two joints' angles
+//! of each clamp         a vector in {W}
 //! ```
 //!
 //! for every shape is more likely to be smooth than not.
@@ -24,8 +28,10 @@ const TURN: f64 = 100e-6;
 const URAD: f64 = 1e-6;
 /// Cosines along one number, beside the constant.
 const MOST: usize = 6;
-/// Highest order of a product of cosines over the workspace, and along each of two joints.
-const ORDER: (usize, usize) = (3, 3);
+/// Highest order of a product of cosines over the workspace, along each of two joints, and in a link.
+const ORDER: (usize, usize, usize) = (3, 3, 1);
+/// Most frequencies at which something may come back over a recording.
+const RETURNS: usize = 200;
 const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// All of them for this recording.
@@ -47,8 +53,12 @@ pub(super) fn all(scene: &Scene) -> Vec<Entry> {
         entries.extend(along(scene, &name, &values, false));
         entries.extend(along(scene, &name, &values, true));
     }
+    entries.extend(again_and_again(scene));
     entries.extend(workspace(scene));
+    entries.extend((0..3).map(|axis| by_orientation(scene, axis)));
+    entries.extend(scene.revolute().into_iter().filter_map(|j| reversal(scene, j)));
     entries.extend(pairs(scene));
+    entries.extend(links(scene));
     entries.extend(clamps(scene));
     for entry in &mut entries {
         entry.candidate.is_unknown = true;
@@ -111,6 +121,76 @@ fn workspace(scene: &Scene) -> Option<Entry> {
         })
     });
     Some(entry("unknown", "over the workspace", parameters.collect()))
+}
+
+/// What comes back after so many rows: from twice over the recording to every third row, or as far as the scan goes.
+fn again_and_again(scene: &Scene) -> Vec<Entry> {
+    let rows = scene.postures.len();
+    // steps of half a cycle tell all frequencies apart
+    let counts = (4..=2 * rows / 3).take(RETURNS).map(|halves| 0.5 * halves as f64);
+    let of_count = |count: f64| {
+        let phase = |row: usize| 2.0 * PI * count * row as f64 / rows as f64;
+        let mut parameters = vectors(scene, "sin", SIZE, false, &|row| phase(row).sin());
+        parameters.extend(vectors(scene, "cos", SIZE, false, &|row| phase(row).cos()));
+        let every = rows as f64 / count;
+        entry("unknown", format!("order, again every {every:.1} poses"), parameters)
+    };
+    counts.map(of_count).collect()
+}
+
+/// A ball that is not round, a prism that is read from the side: what depends on how the tool is held.
+fn by_orientation(scene: &Scene, axis: usize) -> Entry {
+    let direction = |row: usize, k: usize| scene.postures[row].flange.rotation[(axis, k)];
+    let first = (0..3).map(|k| (vec![k], SIZE / 2.0));
+    // the squares add up to one
+    let second = [[0, 0], [1, 1], [0, 1], [0, 2], [1, 2]].map(|pair| (pair.to_vec(), SIZE / 3.0));
+    let parameters = first.chain(second).flat_map(|(factors, size)| {
+        let name: String = factors.iter().map(|&k| AXES[k]).collect();
+        let weight = |row: usize| factors.iter().map(|&k| direction(row, k)).product::<f64>();
+        vectors(scene, &name, size, true, &weight)
+    });
+    entry("unknown", format!("orientation, the world's {} in the tool", AXES[axis]), parameters.collect())
+}
+
+fn reversal(scene: &Scene, j: usize) -> Option<Entry> {
+    let x = scaled(&scene.postures.iter().map(|posture| posture.joints[j]).collect::<Vec<_>>())?;
+    let parameters = (0..=MOST).map(|k| {
+        let column = scene.turn(j, |row, posture| posture.approach[j] * cosine(k, x[row]));
+        (linear(format!("reversed_cosine_{k}_urad"), URAD, TURN / (1 + k) as f64), column)
+    });
+    Some(entry("unknown", format!("joint {}, a curve for either way", j + 1), parameters.collect()))
+}
+
+/// All beyond joint i turns about the axes that it moves along, by what depends on the angles of two joints.
+fn links(scene: &Scene) -> Vec<Entry> {
+    let joints = scene.revolute();
+    let x: Vec<Option<Vec<f64>>> = (0..scene.joint_count())
+        .map(|j| scaled(&scene.postures.iter().map(|posture| posture.joints[j]).collect::<Vec<_>>()))
+        .collect();
+    let mut entries = Vec::new();
+    for &link in &joints {
+        for (at, &i) in joints.iter().enumerate() {
+            for &j in &joints[at + 1..] {
+                let (Some(x), Some(y)) = (&x[i], &x[j]) else { continue };
+                let orders = (0..=ORDER.2).flat_map(|k| (0..=ORDER.2).map(move |l| (k, l))).skip(1);
+                let parameters = orders.flat_map(|(k, l)| {
+                    (0..3).map(move |axis| {
+                        let column = scene.column(|row, posture| {
+                            let about = posture.link[link].rotation.column(axis).into_owned();
+                            about.cross(&(posture.tip - posture.link[link].origin))
+                                * (cosine(k, x[row]) * cosine(l, y[row]))
+                        });
+                        let name = format!("about_{}_cosines_{k}{l}_urad", AXES[axis]);
+                        (linear(name, URAD, TURN / (1 + k + l) as f64), column)
+                    })
+                });
+                let parameters = parameters.collect();
+                let location = format!("link {}, turned by joint {} and joint {}", link + 1, i + 1, j + 1);
+                entries.push(entry("unknown", location, parameters));
+            }
+        }
+    }
+    entries
 }
 
 /// Both joints of a pair, turned by what depends on both angles.

@@ -72,6 +72,15 @@ pub fn unexplained_at(place: &str) -> String {
             format!("follows {}, along directions that turn with the tool", along(name))
         }
         Some((joints, "a surface")) => format!("depends on {joints} together"),
+        Some((joint, "a curve for either way")) => {
+            format!("follows the angle of {joint}, another curve for either way of coming there")
+        }
+        Some(("order", again)) => format!("comes back {again}"),
+        Some(("orientation", _)) => "follows how the tool is held".into(),
+        Some((link, turned)) if link.starts_with("link ") => {
+            let joints = turned.trim_start_matches("turned by ");
+            format!("turns or bends {link} with {joints}")
+        }
         _ if place == "over the workspace" => "follows the place in the workspace".into(),
         _ if place == "each clamp by itself" => "shifts whole clamps against one another".into(),
         _ => format!("is seen at {place}"),

@@ -187,7 +187,9 @@ impl Moments {
         let k = gram.ncols();
         // what a story holds already leaves rounding: it is no smaller a prior
         let rounding = ROUNDING * more.gram.diagonal().amax();
-        let (mut scale, mut left) = (1.0f64, s);
+        // |b|² is about κ²·tr(G²) + σ²·tr(G)
+        let moment = (product.norm_squared() - s * gram.trace()) / gram.norm_squared().max(f64::MIN_POSITIVE);
+        let (mut scale, mut left) = (moment.max(0.0).sqrt().clamp(SCALES.0, SCALES.1), s);
         for step in 0.. {
             let ridge = left / scale.powi(2) + rounding;
             let solved = Ridge::new(&gram, &product, |_| ridge);

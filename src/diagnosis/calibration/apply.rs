@@ -126,7 +126,7 @@ fn gears(campaign: &Campaign, found: &CalibrationDiagnosis, mismatch: &Mismatch)
                 Some(Effect::Harmonic { joint, cycles_per_rev, sine, cosine })
             }
             (Gear::Harmonic { .. }, _) => None,
-            (Gear::Curve { joint, .. }, values) => {
+            (Gear::Wave { joint, .. } | Gear::Curve { joint, .. }, values) => {
                 let range = range(campaign, *joint);
                 let turns = (range.1 - range.0) / std::f64::consts::TAU;
                 let count = (PER_CYCLE * turns * gear.highest(values.len())) as usize;

@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! amplitude of a harmonic    √(a² + b²)
+//! amplitude of a wave        √(a² + b² + (c² + d²)·mean(u²)), its frequency n + h·(a·d − b·c)/(a² + b²)
 //! amplitude of a curve       √2 times its rms over the recorded angles: that of a wave of the same rms
 //! frequency of a curve       that of the one wave that explains most of it
 //! ```
@@ -134,28 +135,36 @@ fn inverse(number: Number) -> Number {
 /// Frequency and amplitude of the strongest part of a gear's error.
 fn of_gear(gear: &Gear, campaign: &Campaign, diagnosis: &Diagnosis, finding: &Finding) -> Vec<Number> {
     let values = &finding.chosen.values;
-    let (cycles, value, gradient) = match gear {
-        Gear::Harmonic { cycles_per_rev, .. } => {
-            let (length, gradient) = length(values);
-            (*cycles_per_rev, length, gradient)
+    let recording = &campaign.measurements;
+    let angles: Vec<f64> = (0..recording.len()).map(|row| recording.joints(row)[gear.joint()]).collect();
+    let resolved = |cycles: f64| (cycles, 0.5 / turns(&angles));
+    let ((cycles, half_cycles), (value, gradient)) = match gear {
+        Gear::Harmonic { cycles_per_rev, .. } => (resolved(*cycles_per_rev), length(values)),
+        Gear::Wave { middle, half_step, .. } => {
+            let (cycles, gradient) = gear.frequency(values);
+            let square = |q: &f64| ((q - middle) * half_step).powi(2);
+            let mean = angles.iter().map(square).sum::<f64>() / angles.len().max(1) as f64;
+            let half = finding.reach * spread(diagnosis, finding, &gradient);
+            ((cycles, half), weighted_length(values, &[1.0, 1.0, mean, mean]))
         }
-        Gear::Curve { joint, .. } => {
-            let recording = &campaign.measurements;
-            let angles: Vec<f64> = (0..recording.len()).map(|row| recording.joints(row)[*joint]).collect();
-            of_curve(gear, values, &angles)
+        Gear::Curve { .. } => {
+            let (cycles, value, gradient) = of_curve(gear, values, &angles);
+            (resolved(cycles), (value, gradient))
         }
+    };
+    let number = |name: &str, unit: f64, value: f64, half: f64| {
+        let (low, high) = ((value - half).max(0.0), value + half);
+        Number { name: name.into(), unit, value, low, high }
     };
     let half = finding.reach * spread(diagnosis, finding, &gradient);
-    let exact =
-        |name: &str, value: f64| Number { name: name.into(), unit: 1.0, value, low: value, high: value };
-    let amplitude = Number {
-        name: "amplitude_urad".into(),
-        unit: URAD,
-        value,
-        low: (value - half).max(0.0),
-        high: value + half,
-    };
-    vec![exact("cycles_per_rev", cycles), amplitude]
+    vec![number("cycles_per_rev", 1.0, cycles, half_cycles), number("amplitude_urad", URAD, value, half)]
+}
+
+/// Range of angles in revolutions: frequencies closer than its inverse are hard to tell apart.
+fn turns(angles: &[f64]) -> f64 {
+    let (low, high) =
+        angles.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), &q| (a.min(q), b.max(q)));
+    ((high - low) / std::f64::consts::TAU).max(f64::MIN_POSITIVE)
 }
 
 /// Frequency, amplitude and its gradient of a curve over the recorded angles.
@@ -190,9 +199,14 @@ fn strongest_wave(curve: &DVector<f64>, angles: &[f64], highest: f64) -> f64 {
 
 /// A vector's length and its gradient.
 fn length(values: &[f64]) -> (f64, DVector<f64>) {
-    let vector = DVector::from_column_slice(values);
-    let length = vector.norm();
-    (length, vector / length.max(f64::MIN_POSITIVE))
+    weighted_length(values, &vec![1.0; values.len()])
+}
+
+/// √(Σ wₖ·xₖ²) and its gradient.
+fn weighted_length(values: &[f64], weights: &[f64]) -> (f64, DVector<f64>) {
+    let weighted = DVector::from_iterator(values.len(), values.iter().zip(weights).map(|(x, w)| x * w));
+    let length = weighted.dot(&DVector::from_column_slice(values)).sqrt();
+    (length, weighted / length.max(f64::MIN_POSITIVE))
 }
 
 /// √(gᵀ·Σ·g) over the first parameters of a finding.

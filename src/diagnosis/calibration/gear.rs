@@ -14,6 +14,18 @@ pub enum Gear {
         /// n.
         cycles_per_rev: f64,
     },
+    /// (a + c·u)·sin(n·q) + (b + d·u)·cos(n·q), u = (q − q̄)·h: to first order a wave of n + h·(a·d − b·c)/(a² + b²) cycles per
+    /// revolution, whose amplitude may grow along the range.
+    Wave {
+        /// The joint, from 0.
+        joint: usize,
+        /// n, a step of the scan.
+        cycles_per_rev: f64,
+        /// q̄, rad.
+        middle: f64,
+        /// h, half a step of the scan, cycles per revolution.
+        half_step: f64,
+    },
     /// A smooth curve.
     Curve {
         /// The joint, from 0.
@@ -27,7 +39,7 @@ impl Gear {
     /// The joint, from 0.
     pub fn joint(&self) -> usize {
         match self {
-            Gear::Harmonic { joint, .. } | Gear::Curve { joint, .. } => *joint,
+            Gear::Harmonic { joint, .. } | Gear::Wave { joint, .. } | Gear::Curve { joint, .. } => *joint,
         }
     }
 
@@ -36,15 +48,32 @@ impl Gear {
         match self {
             Gear::Harmonic { cycles_per_rev, .. } if k == 0 => (cycles_per_rev * q).sin(),
             Gear::Harmonic { cycles_per_rev, .. } => (cycles_per_rev * q).cos(),
+            Gear::Wave { cycles_per_rev, middle, half_step, .. } => {
+                let (sine, cosine) = (cycles_per_rev * q).sin_cos();
+                [sine, cosine][k % 2] * if k < 2 { 1.0 } else { (q - middle) * half_step }
+            }
             // the constant is the joint's offset
             Gear::Curve { cosines, .. } => cosines.value(k + 1, q),
         }
+    }
+
+    /// Cycles per revolution of a wave of these values, with the gradient; of any other its highest, as if that were exact.
+    pub fn frequency(&self, values: &[f64]) -> (f64, DVector<f64>) {
+        let (Gear::Wave { cycles_per_rev, half_step, .. }, &[a, b, c, d]) = (self, values) else {
+            return (self.highest(values.len()), DVector::zeros(values.len()));
+        };
+        let square = (a * a + b * b).max(f64::MIN_POSITIVE);
+        let shift = (a * d - b * c) / square;
+        let gradient = [d - 2.0 * a * shift, -c - 2.0 * b * shift, -b, a].map(|x| x * half_step / square);
+        // beyond the next step the wave would be another one
+        (cycles_per_rev + half_step * shift.clamp(-2.0, 2.0), DVector::from_column_slice(&gradient))
     }
 
     /// Highest frequency of so many terms, cycles per revolution.
     pub fn highest(&self, terms: usize) -> f64 {
         match self {
             Gear::Harmonic { cycles_per_rev, .. } => *cycles_per_rev,
+            Gear::Wave { cycles_per_rev, half_step, .. } => cycles_per_rev + half_step,
             Gear::Curve { cosines, .. } => cosines.frequency(terms),
         }
     }

@@ -50,7 +50,7 @@ fn find(world: &CalibrationWorld, effect: &str, location: &str) -> usize {
     let is_it = |c: &Candidate| c.effect == effect && c.location == location;
     world.candidates().iter().position(is_it).unwrap_or_else(|| {
         let of: Vec<_> =
-            world.candidates().iter().filter(|c| c.effect == effect).map(|c| &c.location).collect();
+            world.candidates().iter().filter(|c| c.effect == effect).map(|c| &c.location).take(9).collect();
         panic!("no {effect} at {location}: {of:?}")
     })
 }

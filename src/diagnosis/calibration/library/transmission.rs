@@ -1,13 +1,14 @@
 //! Errors of gears and encoders as functions of the joint's own angle.
 //!
 //! ```text
-//! harmonic   leverⱼ·(a·sin(n·qⱼ) + b·cos(n·qⱼ))     n cycles per revolution, scanned
+//! harmonic   leverⱼ·(a·sin(n·qⱼ) + b·cos(n·qⱼ))     n cycles per revolution, whole numbers
+//! wave       leverⱼ·((a + c·u)·sin(n·qⱼ) + (b + d·u)·cos(n·qⱼ))     u ∝ qⱼ − q̄ⱼ, n scanned: gear.rs
 //! curve      leverⱼ·f(qⱼ)                            f a smooth curve: cosines.rs
 //! ```
 //!
 //! Two cycles per revolution can be told apart over a range of ρ revolutions if they differ by 1/ρ or so; the scan has steps
-//! of half of that, of one half at most, up to 40. Beyond, only what gears in use have: a strain-wave gear of ratio i errs with i
-//! and 2·i cycles per revolution of its output, and the joint's motor with i.
+//! of half of that, of one half at most, up to 40; c and d reach what lies between. Beyond, only what gears in use have: a
+//! strain-wave gear of ratio i errs with i and 2·i cycles per revolution of its output, and the joint's motor with i.
 
 use std::f64::consts::TAU;
 
@@ -30,31 +31,56 @@ const MOST_COSINES: (usize, f64) = (160, 0.5);
 
 pub(in crate::diagnosis::calibration) fn all(scene: &Scene) -> Vec<Entry> {
     let of_joint = |j: usize| {
-        let harmonics = frequencies(scene, j).into_iter().map(move |n| harmonic(scene, j, n));
-        harmonics.chain(CURVES.into_iter().filter_map(move |cycles| curve(scene, j, cycles)))
+        let (steps, half_step) = scan(scene, j);
+        let whole = (1..=SCAN.0 as usize).map(|n| n as f64).chain(ratios());
+        let harmonics = whole.map(move |n| harmonic(scene, j, n));
+        let waves = steps.into_iter().map(move |n| wave(scene, j, n, half_step));
+        harmonics.chain(waves).chain(CURVES.into_iter().filter_map(move |cycles| curve(scene, j, cycles)))
     };
     scene.revolute().into_iter().flat_map(of_joint).collect()
 }
 
-fn frequencies(scene: &Scene, j: usize) -> Vec<f64> {
+/// Cycles per revolution of a joint's waves, and half their step.
+fn scan(scene: &Scene, j: usize) -> (Vec<f64>, f64) {
     let (low, high) = scene.range(j);
     let turns = (high - low) / TAU;
     // an integer number of steps per cycle, so that whole numbers are in the scan
     let per_cycle = (2.0 * turns).ceil().max(1.0 / SCAN.1);
     let steps = (1..=(SCAN.0 * per_cycle) as usize).map(|k| k as f64 / per_cycle);
+    (steps.collect(), 0.5 / per_cycle)
+}
+
+/// Frequencies of gears in use beyond the scan, cycles per revolution.
+fn ratios() -> Vec<f64> {
     let mut ratios: Vec<f64> = RATIOS.iter().flat_map(|ratio| [*ratio, 2.0 * ratio]).collect();
     ratios.sort_by(f64::total_cmp);
     ratios.dedup();
-    steps.chain(ratios).collect()
+    ratios
 }
 
 fn harmonic(scene: &Scene, j: usize, cycles: f64) -> Entry {
-    let sine = scene.turn(j, |_, posture| (cycles * posture.joints[j]).sin());
-    let cosine = scene.turn(j, |_, posture| (cycles * posture.joints[j]).cos());
-    let parameters =
-        vec![(linear("sin_urad", URAD, JOINT_ANGLE), sine), (linear("cos_urad", URAD, JOINT_ANGLE), cosine)];
-    let location = format!("joint {}, {cycles} cycles/rev", j + 1);
     let gear = Gear::Harmonic { joint: j, cycles_per_rev: cycles };
+    terms(scene, gear, format!("joint {}, {cycles} cycles/rev", j + 1), &["sin_urad", "cos_urad"])
+}
+
+fn wave(scene: &Scene, j: usize, cycles: f64, half_step: f64) -> Entry {
+    let (low, high) = scene.range(j);
+    let gear = Gear::Wave { joint: j, cycles_per_rev: cycles, middle: 0.5 * (low + high), half_step };
+    let names = ["sin_urad", "cos_urad", "sin_urad_per_rad", "cos_urad_per_rad"];
+    terms(
+        scene,
+        gear,
+        format!("joint {}, near {} cycles/rev", j + 1, (cycles * 100.0).round() / 100.0),
+        &names,
+    )
+}
+
+fn terms(scene: &Scene, gear: Gear, location: String, names: &[&str]) -> Entry {
+    let of_term = |(k, name): (usize, &&str)| {
+        let column = scene.turn(gear.joint(), |_, posture| gear.term(k, posture.joints[gear.joint()]));
+        (linear(*name, URAD, JOINT_ANGLE), column)
+    };
+    let parameters = names.iter().enumerate().map(of_term).collect();
     Entry { gear: Some(gear), ..entry(EFFECT, location, parameters) }
 }
 

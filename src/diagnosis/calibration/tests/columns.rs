@@ -77,7 +77,7 @@ fn columns_are_what_a_changed_robot_does() {
     let cases: Vec<(&str, &str, Box<Change>)> = vec![
         (
             "transmission_error",
-            "joint 3, 7.5 cycles/rev",
+            "joint 3, near 7.5 cycles/rev",
             Box::new(|r, _, v| r.q[2] += v * (7.5 * r.q[2]).sin()),
         ),
         ("encoder_scale", "joint 4", Box::new(|r, _, v| r.q[3] *= 1.0 + v)),

@@ -124,7 +124,9 @@ fn of_part(found: &CalibrationDiagnosis, part: usize) -> Value {
         json!({ "name": parameter.name, "value": value / unit, "lo": low / unit, "hi": high / unit })
     });
     let cycles = match found.world.gear(finding.chosen.candidate) {
-        Some(Gear::Harmonic { cycles_per_rev, .. }) => Some(cycles_per_rev),
+        Some(gear @ (Gear::Harmonic { .. } | Gear::Wave { .. })) => {
+            Some(gear.frequency(&finding.chosen.values).0)
+        }
         _ => None,
     };
     json!({

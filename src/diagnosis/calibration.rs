@@ -11,10 +11,12 @@
 mod apply;
 mod cosines;
 mod evidence;
+mod feasible;
 mod findings;
 mod gear;
 mod library;
 mod limits;
+mod next;
 mod posture;
 mod result;
 mod scene;
@@ -36,6 +38,7 @@ pub use findings::{Mismatch, Number};
 pub use gear::{Curve, Gear};
 pub use library::NotTestable;
 pub use limits::Limit;
+pub use next::NextPoses;
 pub use result::{CalibrationDiagnosis, diagnose};
 pub use words::{cause, cause_at, unexplained_at};
 

@@ -6,12 +6,14 @@ use super::evidence::session_name;
 use super::findings::{Mismatch, location, mismatches};
 use super::gear::Curve;
 use super::limits::{Limit, limits};
+use super::next::{NextPoses, next_poses};
 use super::scene::Scene;
 use super::{CalibrationWorld, Gear};
 use crate::calibration::campaign::Campaign;
 use crate::calibration::{Calibration, Mode, Options, calibrate};
 use crate::diagnosis::{Candidate, Diagnosis, Evidence, World, diagnose as of_world};
 use crate::error::Result;
+use crate::parallel::in_parallel;
 
 /// A campaign's diagnosis.
 #[derive(Debug, Clone)]
@@ -26,6 +28,8 @@ pub struct CalibrationDiagnosis<'c> {
     pub diagnosis: Diagnosis,
     /// The same as it is told, strongest first: what concerns one joint's gear is one thing, and so are all outliers.
     pub mismatches: Vec<Mismatch>,
+    /// For each of them the poses that would tell it from its rivals.
+    pub next: Vec<Option<NextPoses>>,
     /// ∂tip/∂q of every joint at each row, m/rad (or m/m).
     pub levers: Vec<Vec<Vector3<f64>>>,
     /// What makes every claim weaker.
@@ -48,11 +52,25 @@ pub fn diagnose<'c>(
     let diagnosis = of_world(&world, &evidence);
     let scene = Scene::new(campaign, &calibration)?;
     let limits = limits(&scene, &calibration, &evidence);
+    let mismatches = mismatches(&world, campaign, &diagnosis);
+    let next = in_parallel(mismatches.len(), |k| {
+        next_poses(campaign, &calibration, &scene, &world, &evidence, &diagnosis, &mismatches[k])
+    });
+    let next = next.into_iter().collect::<Result<Vec<_>>>()?;
     let levers = scene.postures.into_iter().map(|posture| posture.lever).collect();
     let recording = &campaign.measurements;
     let groups = recording.rows.iter().map(|row| recording.groups[row.group].name.clone()).collect();
-    let mismatches = mismatches(&world, campaign, &diagnosis);
-    Ok(CalibrationDiagnosis { calibration, world, evidence, diagnosis, mismatches, levers, limits, groups })
+    Ok(CalibrationDiagnosis {
+        calibration,
+        world,
+        evidence,
+        diagnosis,
+        mismatches,
+        next,
+        levers,
+        limits,
+        groups,
+    })
 }
 
 impl CalibrationDiagnosis<'_> {

@@ -2,6 +2,7 @@
 
 mod columns;
 mod finding;
+mod next;
 mod recorded;
 mod words;
 

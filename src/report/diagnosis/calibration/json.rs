@@ -6,7 +6,7 @@ use super::headline::{headline, other_effects, other_places, sentence};
 use super::remainder::remainder;
 use super::{Distances, warnings};
 use crate::calibration::{Campaign, Summary};
-use crate::diagnosis::calibration::{CalibrationDiagnosis, Gear, Mismatch, Number};
+use crate::diagnosis::calibration::{CalibrationDiagnosis, Gear, Mismatch, NextPoses, Number};
 use crate::diagnosis::{World, rms};
 use crate::report::diagnosis::shared::{locate_json, ranking_json, test_json};
 use crate::units::{UM, URAD};
@@ -46,7 +46,12 @@ pub fn json(campaign: &Campaign, found: &CalibrationDiagnosis) -> Value {
         "heldout_after_um": proof.map(|proof| um(proof.after)),
         "heldout_gain": proof.map(|proof| proof.gain),
         "heldout_gain_95": proof.and_then(|proof| proof.gain_interval).map(|(low, high)| [low, high]),
-        "findings": found.mismatches.iter().map(|m| finding(campaign, found, m)).collect::<Vec<_>>(),
+        "findings": found
+            .mismatches
+            .iter()
+            .zip(&found.next)
+            .map(|(mismatch, next)| finding(campaign, found, mismatch, next.as_ref()))
+            .collect::<Vec<_>>(),
         "unexplained": remainder(found).map(|left| {
             json!({ "location": left.location, "rms_um": um(left.rms), "shape": left.shape() })
         }),
@@ -73,7 +78,12 @@ pub fn json(campaign: &Campaign, found: &CalibrationDiagnosis) -> Value {
     })
 }
 
-fn finding(campaign: &Campaign, found: &CalibrationDiagnosis, mismatch: &Mismatch) -> Value {
+fn finding(
+    campaign: &Campaign,
+    found: &CalibrationDiagnosis,
+    mismatch: &Mismatch,
+    next: Option<&NextPoses>,
+) -> Value {
     let number = |number: &Number| {
         let unit = number.unit;
         json!({ "name": number.name, "value": number.value / unit, "lo": number.low / unit, "hi": number.high / unit })
@@ -94,7 +104,7 @@ fn finding(campaign: &Campaign, found: &CalibrationDiagnosis, mismatch: &Mismatc
         "indistinguishable_from": others,
         "places": other_places(found, mismatch),
         "rivals": rivals.collect::<Vec<_>>(),
-        "next_measurement": Value::Null,
+        "next_measurement": next.map(|next| &next.words),
         "heldout_gain": found.diagnosis.proof.as_ref().map(|proof| proof.gain),
         "explains_rms_um": mismatch.rms / UM,
         "found_in_folds": found.found_in_folds(mismatch).map(|(some, all)| format!("{some} of {all}")),

@@ -37,7 +37,11 @@ fn findings(found: &CalibrationDiagnosis) -> Section {
         let words = "No effect of the library is needed to explain what the calibration leaves.";
         return Section::new("What was found", vec![Block::Paragraph(words.into())]);
     }
-    let points = found.mismatches.iter().map(|m| format!("{} {}", sentence(found, m), details(found, m)));
+    let points = found.mismatches.iter().zip(&found.next).map(|(mismatch, next)| {
+        let next =
+            next.as_ref().map_or_else(String::new, |next| format!(" To tell them apart: {}", next.words));
+        format!("{} {}{next}", sentence(found, mismatch), details(found, mismatch))
+    });
     Section::new("What was found", vec![Block::List(points.collect()), Block::Table(parameters(found))])
 }
 

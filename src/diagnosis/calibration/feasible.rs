@@ -1,0 +1,167 @@
+//! Poses that could be measured next with what stands there already.
+
+use nalgebra::{Rotation3, Unit, Vector3};
+
+use super::posture::Posture;
+use crate::calibration::Calibration;
+use crate::calibration::campaign::{Campaign, Group, Row, Targets};
+use crate::spatial::Pose;
+
+/// Most poses of one proposal: an hour's work.
+const MOST: usize = 40;
+/// Steps of a joint that is moved alone, there and as many back.
+const STEPS: usize = 20;
+/// Turn of joint 1 for a clamp that is set up once more.
+const TURN: f64 = 40.0;
+
+/// Poses to measure beside those that were.
+pub(super) struct Plan {
+    /// In the user's words; a full sentence.
+    pub words: String,
+    /// Joint values, the row that is like it, and its group.
+    poses: Vec<(Vec<f64>, usize, usize)>,
+    /// A clamp that is not there yet.
+    group: Option<Group>,
+}
+
+impl Plan {
+    /// The campaign and its calibration with these poses measured, without any error.
+    pub fn made<'c>(
+        &self,
+        campaign: &Campaign,
+        calibration: &Calibration<'c>,
+    ) -> (Campaign, Calibration<'c>) {
+        let (mut campaign, mut calibration) = (campaign.clone(), calibration.clone());
+        let recording = &mut campaign.measurements;
+        let last = recording.rows.last().and_then(|row| row.time);
+        let first = recording.rows.first().and_then(|row| row.time);
+        let pace = first.zip(last).map(|(a, b)| (b - a) / (recording.rows.len().max(2) - 1) as f64);
+        let temperature = recording.rows.last().and_then(|row| row.temperature);
+        for (number, (joints, like, group)) in self.poses.iter().enumerate() {
+            let time = last.zip(pace).map(|(last, pace)| last + pace * (number + 1) as f64);
+            let pose = format!("new {}", number + 1);
+            recording.rows.push(Row {
+                pose,
+                group: *group,
+                time,
+                temperature,
+                ..recording.rows[*like].clone()
+            });
+            recording.joint_values.extend(joints);
+            if let Targets::Points(points) = &mut recording.targets {
+                points.push(points[*like]);
+            }
+            calibration.deviations.push(Vector3::zeros());
+            calibration.deflections.push(calibration.deflections[*like]);
+            calibration.tips.push(calibration.tips[*like]);
+        }
+        if let Some(group) = &self.group {
+            recording.groups.push(group.clone());
+            calibration.noise.of_group.push(calibration.noise.pooled);
+        }
+        (campaign, calibration)
+    }
+}
+
+/// All plans, the least laborious first.
+pub(super) fn feasible(campaign: &Campaign, postures: &[Posture]) -> Vec<Plan> {
+    let recording = &campaign.measurements;
+    let count = postures.len();
+    if count == 0 {
+        return Vec::new();
+    }
+    let again = |row: usize| (postures[row].joints.clone(), row, recording.rows[row].group);
+    let stride = count.div_ceil(MOST);
+    let some = || (0..count).step_by(stride);
+    let which = match stride {
+        1 => "all poses".to_owned(),
+        2 => "every second pose".to_owned(),
+        3 => "every third pose".to_owned(),
+        n => format!("every {n}th pose"),
+    };
+    let plan = |words: String, poses| Plan { words, poses, group: None };
+    let mut plans = vec![
+        plan(format!("Measure {which} once more, in the same order."), some().map(again).collect()),
+        plan(
+            format!(
+                "Measure {which} once more in reverse order, so that every joint comes from the other side."
+            ),
+            some().rev().map(again).collect(),
+        ),
+    ];
+    let is_tracked = matches!(recording.targets, Targets::Points(_))
+        && recording.groups.len() == 1
+        && recording.groups[0].name.is_empty();
+    match (&recording.targets, is_tracked) {
+        (_, true) => {
+            plans.extend((0..recording.joint_count).filter_map(|joint| alone(campaign, postures, joint)))
+        }
+        (Targets::Points(_), false) => {
+            let again: Vec<_> = some().map(again).collect();
+            plans.extend(turned_clamp(campaign, postures, Vec::new(), ""));
+            let first = format!("Measure {which} once more. ");
+            plans.extend(turned_clamp(campaign, postures, again, &first));
+        }
+        (Targets::Sockets(_), false) => {}
+    }
+    plans
+}
+
+/// One joint moved alone over its range and back, from the pose in which it moves the tip most.
+fn alone(campaign: &Campaign, postures: &[Posture], joint: usize) -> Option<Plan> {
+    let lever = |row: &usize| postures[*row].lever[joint].norm();
+    let at = (0..postures.len()).max_by(|a, b| lever(a).total_cmp(&lever(b)))?;
+    let values = postures.iter().map(|posture| posture.joints[joint]);
+    let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), q| (a.min(q), b.max(q)));
+    let there = (0..STEPS).map(|step| low + (high - low) * step as f64 / (STEPS - 1) as f64);
+    let poses = there.clone().chain(there.rev()).map(|q| {
+        let mut joints = postures[at].joints.clone();
+        joints[joint] = q;
+        (joints, at, campaign.measurements.rows[at].group)
+    });
+    let words = format!(
+        "Move joint {} alone through its range and back in {STEPS} steps each, the other joints as in pose {}, and \
+         measure at every step.",
+        joint + 1,
+        campaign.measurements.rows[at].pose
+    );
+    (high > low).then(|| Plan { words, poses: poses.collect(), group: None })
+}
+
+/// After some other poses the clamp with most poses once more, turned about joint 1 with all of them: what it needs is a place
+/// to stand.
+fn turned_clamp(
+    campaign: &Campaign,
+    postures: &[Posture],
+    before: Vec<(Vec<f64>, usize, usize)>,
+    said: &str,
+) -> Option<Plan> {
+    let recording = &campaign.measurements;
+    let rows_of = |group: usize| (0..postures.len()).filter(move |&row| recording.rows[row].group == group);
+    let group = (0..recording.groups.len()).max_by_key(|&group| rows_of(group).count())?;
+    let first = postures.first()?;
+    // towards the middle of the joint's range
+    let mean = rows_of(group).map(|row| postures[row].joints[0]).sum::<f64>();
+    let degrees = if mean > 0.0 { -TURN } else { TURN };
+    let turn = Rotation3::from_axis_angle(&Unit::new_normalize(first.axis[0]), degrees.to_radians());
+    let old = &recording.groups[group].device;
+    let device = Pose {
+        rotation: turn.matrix() * old.rotation,
+        origin: first.origin[0] + turn * (old.origin - first.origin[0]),
+    };
+    let poses = rows_of(group).take(MOST).map(|row| {
+        let mut joints = postures[row].joints.clone();
+        joints[0] += degrees.to_radians();
+        (joints, row, recording.groups.len())
+    });
+    let name = &recording.groups[group].name;
+    let words = format!(
+        "{said}Set up one more clamp where {name} would be if joint 1 were turned by {degrees}°, and measure the poses of \
+         {name} there."
+    );
+    Some(Plan {
+        words,
+        poses: before.into_iter().chain(poses).collect(),
+        group: Some(Group { name: "new clamp".into(), device }),
+    })
+}

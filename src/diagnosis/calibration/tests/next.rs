@@ -1,0 +1,25 @@
+//! Poses that are proposed where a mismatch may be something else.
+
+use super::*;
+use crate::diagnosis::calibration::diagnose;
+
+#[test]
+fn one_clamp_more_tells_which_of_a_few_is_misplaced() {
+    let mut campaign = clamps(25);
+    // three clamps are hardly more than the base can follow
+    let kept: Vec<usize> = (0..75).collect();
+    campaign.measurements.rows.truncate(kept.len());
+    campaign.measurements.joint_values.truncate(6 * kept.len());
+    campaign.measurements.groups.truncate(3);
+    let Targets::Points(points) = &mut campaign.measurements.targets else { panic!("measured points") };
+    points.truncate(kept.len());
+    let off = Vector3::new(200.0, 300.0, 100.0) * UM;
+    let by = |row: usize| if campaign.measurements.rows[row].group == 2 { off } else { Vector3::zeros() };
+    let campaign = recorded(&campaign, &by, 15.0 * UM, 3);
+    let found = diagnose(&campaign, Mode::Fea, &Options::default()).unwrap();
+    assert_eq!(found.mismatches[0].effect, "clamp_pose");
+    assert!(found.others(&found.mismatches[0]).iter().any(|(effect, _)| effect == "clamp_pose"));
+    let next = found.next[0].as_ref().unwrap();
+    assert!(next.words.contains("et up one more clamp where clamp "), "{}", next.words);
+    assert!(next.log_odds > 3.0);
+}

@@ -21,6 +21,7 @@ mod parameter;
 mod predict;
 mod setup;
 mod statics;
+mod uncertainty;
 mod urdf;
 mod write;
 
@@ -33,6 +34,7 @@ pub use parameter::{Parameter, Unit};
 pub use predict::Asked;
 pub use setup::Setup;
 pub use statics::Loads;
+pub use uncertainty::Uncertainty;
 pub use urdf::Written;
 
 use nalgebra::Vector3;
@@ -58,6 +60,8 @@ pub struct Robot {
     pub effects: Vec<Effect>,
     /// The tip that it was calibrated with, where its file states it.
     pub tip: Option<Tip>,
+    /// How sure its numbers are, where its file states it.
+    pub uncertainty: Option<Uncertainty>,
 }
 
 /// Where the tip is, and how well the robot is known there.

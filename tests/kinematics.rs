@@ -137,6 +137,7 @@ fn robot() -> Robot {
         flange: Pose::from_xyz_rpy([0.05, -0.02, 0.1], [0.3, 0.2, -0.5]),
         effects: Vec::new(),
         tip: None,
+        uncertainty: None,
     }
 }
 

@@ -3,7 +3,7 @@
 use super::calibrate::Calibration;
 use super::campaign::{Campaign, Targets};
 use crate::error::Result;
-use crate::robot::{Tip, is_urdf};
+use crate::robot::{Parameter, Tip, Uncertainty, is_urdf};
 use crate::units::{DEG, MM};
 
 /// Name and text of the calibrated robot: a table with compliances, or the URDF with new origins, its `tip_link` at the
@@ -28,6 +28,7 @@ pub fn write_back_with(
     let setup = &calibration.setup;
     let mut robot = setup.calibrated();
     robot.tip = sd.map(|sd| Tip { at: setup.tool, sd: Some(sd) });
+    robot.uncertainty = sd.and_then(|_| uncertainty(calibration));
     let tool = setup.tool / MM;
     let mut comments = vec![
         format!(
@@ -57,4 +58,16 @@ pub fn write_back_with(
     let written =
         robot.to_urdf(&campaign.robot_file, &campaign.robot_text, base, tip, Some(setup.tool), &comments)?;
     Ok(("calibrated.urdf".into(), written.text))
+}
+/// Covariance of what the data determine of the robot and its tool; `None` where the noise is unknown.
+fn uncertainty(calibration: &Calibration) -> Option<Uncertainty> {
+    let is_own = |p: Parameter| !matches!(p, Parameter::BasePosition(_) | Parameter::BaseRotation(_));
+    let all = &calibration.fit.covariance.matrix;
+    let kept: Vec<usize> = (0..calibration.parameters.len())
+        .filter(|&k| is_own(calibration.parameters[k].parameter) && all[(k, k)].is_finite())
+        .collect();
+    let covariance = all.select_rows(&kept).select_columns(&kept);
+    let parameters = kept.iter().map(|&k| calibration.parameters[k].parameter).collect();
+    let is_known = !kept.is_empty() && covariance.iter().all(|x| x.is_finite());
+    is_known.then_some(Uncertainty { parameters, covariance })
 }

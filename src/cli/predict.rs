@@ -17,8 +17,8 @@ pub struct Predict {
     /// Joint values (CSV): pose, q1_deg, q2_deg …
     poses: PathBuf,
     /// The tip in {T} in mm, as X,Y,Z [default: the tip that the model was calibrated with, else the flange].
-    #[arg(long, value_name = "X,Y,Z", value_delimiter = ',', allow_hyphen_values = true, num_args = 3)]
-    tool: Option<Vec<f64>>,
+    #[arg(long, value_name = "X,Y,Z", value_parser = three_numbers, allow_hyphen_values = true)]
+    tool: Option<[f64; 3]>,
     /// Table of corrections beside a URDF (CSV).
     #[arg(long, value_name = "FILE")]
     corrections: Option<PathBuf>,
@@ -42,9 +42,9 @@ impl Predict {
         }
         let poses =
             robot.poses_from_csv(&self.poses.display().to_string(), &files::read_text(&self.poses)?)?;
-        let tool = match self.tool.as_deref() {
-            Some(&[x, y, z]) => [x * MM, y * MM, z * MM].into(),
-            _ => robot.tip.map(|tip| tip.at).unwrap_or_default(),
+        let tool = match self.tool {
+            Some(xyz) => xyz.map(|x| x * MM).into(),
+            None => robot.tip.map(|tip| tip.at).unwrap_or_default(),
         };
         let prediction = Prediction::new(&robot, tool, poses);
         let mut report = report(&robot, &prediction);
@@ -55,4 +55,12 @@ impl Predict {
         ];
         Ok(Outcome::new(json(&robot, &prediction), report))
     }
+}
+
+/// `X,Y,Z`.
+fn three_numbers(text: &str) -> std::result::Result<[f64; 3], String> {
+    let numbers: Vec<f64> =
+        text.split(',').filter_map(|part| part.trim().parse().ok()).filter(|x: &f64| x.is_finite()).collect();
+    let three = <[f64; 3]>::try_from(numbers).ok().filter(|_| text.split(',').count() == 3);
+    three.ok_or_else(|| "three numbers are needed, in mm, as 0,0,250".into())
 }

@@ -13,31 +13,30 @@ use crate::units::MM;
 pub struct Prediction {
     /// The tool, m in {T}.
     pub tool: Vector3<f64>,
-    /// Poses with their tips in {0}, m.
-    pub tips: Vec<(Asked, Vector3<f64>)>,
-    /// Standard deviation of a coordinate, m, where the model states it.
-    pub sd: Option<f64>,
+    /// Poses with their tips in {0}, m, and the standard deviations of their coordinates where the model knows them.
+    pub tips: Vec<(Asked, Vector3<f64>, Option<Vector3<f64>>)>,
 }
 
 impl Prediction {
     /// Of poses.
     pub fn new(robot: &Robot, tool: Vector3<f64>, poses: Vec<Asked>) -> Self {
-        let sd = robot.tip.and_then(|tip| tip.sd);
-        let tip = |asked: Asked| (asked.clone(), robot.tip_at(tool, &asked.joints));
-        Prediction { tool, tips: poses.into_iter().map(tip).collect(), sd }
+        let of_pose = |asked: Asked| {
+            let (tip, sd) = robot.tip_at(tool, &asked.joints);
+            (asked, tip, sd)
+        };
+        Prediction { tool, tips: poses.into_iter().map(of_pose).collect() }
     }
 }
 
 /// The JSON of `rodcal predict --json`.
 pub fn json(robot: &Robot, prediction: &Prediction) -> Value {
-    let sd = prediction.sd.map(|sd| [sd / MM; 3]);
-    let poses = prediction.tips.iter().map(|(asked, tip)| {
+    let poses = prediction.tips.iter().map(|(asked, tip, sd)| {
         json!({
             "pose": asked.pose,
             "x_mm": tip.x / MM,
             "y_mm": tip.y / MM,
             "z_mm": tip.z / MM,
-            "sd_mm": sd,
+            "sd_mm": sd.map(|sd| <[f64; 3]>::from(sd / MM)),
         })
     });
     json!({
@@ -50,18 +49,19 @@ pub fn json(robot: &Robot, prediction: &Prediction) -> Value {
 /// The report of `rodcal predict`.
 pub fn report(robot: &Robot, prediction: &Prediction) -> Report {
     let mut columns = vec![Column::text("pose")];
-    columns.extend(["x", "y", "z", "sd"].map(|name| Column::number(name, "mm")));
-    let caption = "The tip in the base frame {0}. sd: standard deviation of a coordinate, the error of poses that the \
-                   diagnosis had held out.";
+    columns.extend(["x", "y", "z", "sd x", "sd y", "sd z"].map(|name| Column::number(name, "mm")));
+    let caption = "The tip in the base frame {0}. sd: standard deviation, of the error of poses that the diagnosis had held \
+                   out and of what the calibration does not know better.";
     let mut table = Table::new("prediction", caption, columns);
-    for (asked, tip) in &prediction.tips {
+    for (asked, tip, sd) in &prediction.tips {
         let mut cells = vec![asked.pose.clone()];
         cells.extend(tip.iter().map(|x| format!("{:.4}", x / MM)));
-        cells.push(prediction.sd.map_or("–".into(), |sd| format!("{:.4}", sd / MM)));
+        cells.extend((0..3).map(|axis| sd.map_or("–".into(), |sd| format!("{:.4}", sd[axis] / MM))));
         table.row(cells);
     }
-    let known = match prediction.sd {
-        Some(sd) => format!(", each coordinate to {:.3} mm (1 σ)", sd / MM),
+    let most = prediction.tips.iter().filter_map(|(_, _, sd)| Some(sd.as_ref()?.amax())).reduce(f64::max);
+    let known = match most {
+        Some(sd) => format!(", each coordinate to {:.3} mm or better (1 σ)", sd / MM),
         None => "; the model does not say how accurate it is".into(),
     };
     Report {

@@ -5,6 +5,7 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use super::effects_file::{self, RawEffect};
+use super::uncertainty::{self, RawUncertainty};
 use super::{Body, Effect, Hayati, Joint, Motion, Robot, Tip, urdf};
 use crate::error::Result;
 use crate::spatial::Pose;
@@ -69,6 +70,7 @@ struct RawRobot {
     gravity_m_s2: Option<Spanned<Vec<Number>>>,
     joint: Spanned<Vec<Spanned<RawJoint>>>,
     tip: Option<RawTip>,
+    uncertainty: Option<RawUncertainty>,
     #[serde(default)]
     effect: Vec<Spanned<RawEffect>>,
 }
@@ -133,10 +135,13 @@ fn read_table(file: &str, text: &str) -> Result<Robot> {
         }),
         None => None,
     };
+    let joint_count = raw.joint.get_ref().len();
+    let known = raw.uncertainty.as_ref().map(|known| uncertainty::read(&table.0, known, joint_count));
+    let uncertainty = known.transpose()?;
     let effects: Vec<Effect> = raw
         .effect
         .iter()
-        .map(|effect| effects_file::read(&table.0, effect, raw.joint.get_ref().len()))
+        .map(|effect| effects_file::read(&table.0, effect, joint_count))
         .collect::<Result<_>>()?;
     let joints = raw.joint.get_ref().iter().enumerate();
     Ok(Robot {
@@ -148,6 +153,7 @@ fn read_table(file: &str, text: &str) -> Result<Robot> {
         flange: Pose::IDENTITY,
         effects,
         tip,
+        uncertainty,
     })
 }
 

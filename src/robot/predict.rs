@@ -21,8 +21,10 @@ pub struct Asked {
 }
 
 impl Robot {
-    /// The tip at `tool` (m, in {T}), in {0}, m: joints yield to the robot's own weight, the tool is rigid.
-    pub fn tip_at(&self, tool: Vector3<f64>, q: &[f64]) -> Vector3<f64> {
+    /// The tip at `tool` (m, in {T}), in {0}, m: joints yield to the robot's own weight, the tool is rigid. With it the standard
+    /// deviation of each coordinate, m, where the robot's file says what it takes: √(sd² + diag J·Σ·Jᵀ), sd the error of poses
+    /// that were held out and Σ the covariance of the parameters.
+    pub fn tip_at(&self, tool: Vector3<f64>, q: &[f64]) -> (Vector3<f64>, Option<Vector3<f64>>) {
         let setup = Setup::new(self, Pose::IDENTITY, tool);
         let mut kinematics = Kinematics::new(&setup);
         let mut torque = vec![0.0; self.joints.len()];
@@ -32,7 +34,12 @@ impl Robot {
             kinematics.torques(&loads, &mut torque);
         }
         kinematics.update(q, &torque);
-        kinematics.tip
+        let sd = self.tip.and_then(|tip| tip.sd).map(|sd| {
+            let of_parameters = self.uncertainty.as_ref().map(|known| known.of_tip(&kinematics, &torque));
+            let variance = of_parameters.map_or_else(Vector3::zeros, |covariance| covariance.diagonal());
+            variance.map(|own| (sd * sd + own).sqrt())
+        });
+        (kinematics.tip, sd)
     }
 
     /// Poses of a table (CSV) with the columns `pose`, `q1_deg` … (`q1_mm` of a prismatic joint).

@@ -59,6 +59,7 @@ pub(super) fn read(file: &str, text: &str, base_link: Option<&str>, tip_link: Op
         flange: distal.inverse().then(&zero.tip),
         effects: Vec::new(),
         tip: None,
+        uncertainty: None,
     })
 }
 

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::file::default_name;
-use super::{Joint, Motion, Robot, effects_file};
+use super::{Joint, Motion, Robot, Uncertainty, effects_file};
 use crate::error::{Error, Result};
 use crate::spatial::Pose;
 use crate::toml_text::{self, in_unit, quoted};
@@ -42,6 +42,7 @@ impl Robot {
             // writing to a String cannot fail
             let _ = write_joint(&mut text, index, joint);
         }
+        text += &self.uncertainty.as_ref().map_or_else(String::new, Uncertainty::written);
         text += &self.effects.iter().map(effects_file::written).collect::<String>();
         Ok(text)
     }

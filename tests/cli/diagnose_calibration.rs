@@ -118,3 +118,61 @@ fn tips_are_predicted_with_what_the_model_says_of_its_joints() {
     let wrong = sandbox.run("predict robots/tx90.toml robots/tx90.toml");
     assert_eq!(wrong.status, Some(2));
 }
+
+/// What a user does in the end: diagnose, apply, calibrate and compare with the model that was written, and predict with it.
+#[test]
+fn what_is_applied_makes_the_robot_as_accurate_as_promised() {
+    const ERROR: &str = "\n[[effect]]\nname = \"transmission_error\"\njoint = 3\ncycles_per_rev = 11.4\nsin_urad = 250.0\ncos_urad = -120.0\n";
+    let sandbox = Sandbox::new();
+    let nominal = sandbox.read("robots/tx90.toml");
+    sandbox.write("true.toml", &(nominal.clone() + ERROR));
+    let made = sandbox.run("simulate made --rod rods/5.toml --robot true.toml --seed 3 --poses 24");
+    assert_eq!(made.status, Some(0), "{}", made.stderr);
+    sandbox.write("made/robot.toml", &nominal);
+    let found = sandbox.run("diagnose calibration made/campaign.toml --apply --out out --json");
+    assert_eq!(found.status, Some(1), "{}", found.stderr);
+    let found = found.json();
+    let finding = &found["findings"][0];
+    assert_eq!((&finding["effect"], &finding["location"]), (&"transmission_error".into(), &"joint 3".into()));
+    for (k, truth) in [(0, 11.4), (1, 250.0f64.hypot(120.0))] {
+        let [low, high] = ["lo", "hi"].map(|key| finding["parameters"][k][key].as_f64().unwrap());
+        assert!(low <= truth && truth <= high, "{truth} is not in {low} to {high}");
+    }
+    let errors = || {
+        let json = sandbox.run("calibrate made/campaign.toml --json").json();
+        ["residual", "validation"].map(|of| json[of]["mean_um"].as_f64().unwrap())
+    };
+    let before = errors();
+    sandbox.write("made/robot.toml", &sandbox.read("out/calibrated.toml"));
+    let after = errors();
+    assert!(after[0] < 0.5 * before[0] && after[1] < 0.6 * before[1], "{before:?} {after:?}");
+    let again = sandbox.run("diagnose calibration made/campaign.toml");
+    assert_eq!(again.status, Some(0), "{}", again.stdout);
+    assert_eq!(sandbox.run("compare made/campaign.toml").status, Some(0));
+
+    // near the poses that were measured the tip is as sure as they are, far away less
+    let sds = |poses: &str| -> Vec<f64> {
+        sandbox.write("poses.csv", &format!("pose,q1_deg,q2_deg,q3_deg,q4_deg,q5_deg,q6_deg\n{poses}"));
+        let json = sandbox.run("predict out/calibrated.toml poses.csv --tool 0,0,250 --json").json();
+        let of_pose =
+            |pose: &Value| pose["sd_mm"].as_array().unwrap().iter().map(|sd| sd.as_f64().unwrap()).sum();
+        json["poses"].as_array().unwrap().iter().map(of_pose).collect()
+    };
+    let text = sandbox.read("made/measurements.csv");
+    let measured = text.lines().filter(|line| line.starts_with(char::is_numeric)).take(1);
+    let near: String = measured
+        .map(|l| {
+            l.split(',')
+                .enumerate()
+                .filter(|(k, _)| *k != 1)
+                .map(|(_, c)| c)
+                .take(7)
+                .collect::<Vec<_>>()
+                .join(",")
+        })
+        .collect();
+    let sds = sds(&format!("{near}\nfar,170,80,0,0,90,0\n"));
+    let held_out = found["heldout_after_um"].as_f64().unwrap() / 1000.0;
+    assert!(sds[0] >= 3.0 * held_out && sds[1] > 1.05 * sds[0], "{sds:?} {held_out}");
+    assert_eq!(sandbox.run("predict out/calibrated.toml poses.csv --tool 0,250").status, Some(2));
+}

@@ -1,8 +1,12 @@
 //! Columns against a robot that is moved for it, and effects that are put into simulated campaigns by such robots.
 
+mod changed;
 mod columns;
 mod finding;
+mod happened;
 mod recorded;
+mod turned;
+mod unnamed;
 mod words;
 
 use nalgebra::Vector3;

@@ -5,6 +5,7 @@ mod columns;
 mod finding;
 mod happened;
 mod recorded;
+mod told;
 mod turned;
 mod unnamed;
 mod words;

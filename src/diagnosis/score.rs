@@ -425,13 +425,14 @@ mod tests {
         // a factor of 20 in favour would be a name
         const HARDLY: f64 = 1.0;
         // far below the columns, rounding of their products is more than the noise
-        for (size, sd) in [(1.0, 1.0), (1e3, 1.0), (1e6, 1.0), (1e6, 1e-3), (1.0, 1e-5), (1e6, 1e-5)] {
+        for (size, sd) in [(1.0, 1.0), (1e3, 1.0), (1e6, 1.0), (1e6, 1e-3), (1.0, 1e-6), (1e3, 1e-9)] {
             for seed in 0..20 {
                 let (c, d) = (noise(80, 3 * seed + 11), noise(80, 3 * seed + 12));
                 let r = noise(80, 3 * seed + 10) * sd + &c * 3.0 - &d;
                 let columns = DMatrix::from_columns(&[&c * size, &d * size]);
                 let mixed = DMatrix::from_columns(&[(&c + &d) * size, (&c - &d * 0.3) * size]);
-                for own in [columns.columns(0, 1).into_owned(), columns.clone(), mixed] {
+                let near = DMatrix::from_columns(&[(&c + noise(80, 3 * seed + 500) * 1e-9) * size]);
+                for own in [columns.columns(0, 1).into_owned(), columns.clone(), mixed, near] {
                     let (about, exact) = worth(&r, &columns, &own);
                     assert!(about < HARDLY && exact < HARDLY, "{size} {sd}, seed {seed}: {about} {exact}");
                 }

@@ -58,3 +58,111 @@ fn left(evidence: &Evidence, errors: &DVector<f64>, rows: &[usize]) -> f64 {
     };
     (rows.iter().map(square).sum::<f64>() / rows.len().max(1) as f64).sqrt()
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::DMatrix;
+
+    use super::*;
+    use crate::diagnosis::tests::{Columns, independent};
+    use crate::statistics::Random;
+
+    /// 4 sessions of 30 data over x = 0 … 1.
+    const SESSIONS: usize = 4;
+    const POINTS: usize = 30;
+    const COUNT: usize = SESSIONS * POINTS;
+
+    fn x(row: usize) -> f64 {
+        (row % POINTS) as f64 / (POINTS - 1) as f64
+    }
+
+    /// A slope that is everywhere, and what happens to one fixture.
+    fn world() -> Columns {
+        let mut world = Columns::new(COUNT);
+        world.add("slope", "robot", DMatrix::from_fn(COUNT, 1, |row, _| x(row)), false);
+        for session in 0..SESSIONS {
+            let of_session = |row: usize, _| if row / POINTS == session { (9.0 * x(row)).sin() } else { 0.0 };
+            world.add("fixture", &format!("{session}"), DMatrix::from_fn(COUNT, 1, of_session), false);
+        }
+        world
+    }
+
+    fn evidence(truth: impl Fn(usize) -> f64) -> Evidence {
+        let mut random = Random::seeded(1, 0);
+        let residual = (0..COUNT).map(|row| truth(row) + random.normal()).collect();
+        Evidence { session: (0..COUNT).map(|row| row / POINTS).collect(), ..independent(residual) }
+    }
+
+    fn replicas(evidence: &Evidence) -> Vec<Replica> {
+        let world = world();
+        replicate(&Linearised::new(&world), evidence)
+    }
+
+    #[test]
+    fn what_the_robot_does_is_there_in_a_session_that_was_left_out() {
+        let found = replicas(&evidence(|row| 8.0 * x(row)));
+        assert_eq!(found.iter().map(|replica| replica.session).collect::<Vec<_>>(), [0, 1, 2, 3]);
+        for replica in found {
+            // 8·x is 4.6 rms, the noise 1
+            assert!((4.0..5.5).contains(&replica.before), "{replica:?}");
+            assert!((0.7..1.4).contains(&replica.after), "{replica:?}");
+        }
+    }
+
+    #[test]
+    fn what_one_fixture_did_says_nothing_of_the_others() {
+        let of_one = |row: usize| if row / POINTS == 2 { 8.0 * (9.0 * x(row)).sin() } else { 0.0 };
+        for replica in replicas(&evidence(of_one)) {
+            assert_eq!(replica.before, replica.after, "{replica:?}");
+            assert_eq!(replica.before > 4.0, replica.session == 2, "{replica:?}");
+        }
+        // a slope of one session only is not found without it, and makes the others worse
+        for replica in replicas(&evidence(|row| if row / POINTS == 2 { 20.0 * x(row) } else { 0.0 })) {
+            match replica.session {
+                2 => assert!(replica.before > 10.0 && replica.after == replica.before, "{replica:?}"),
+                _ => assert!(replica.after > 1.5 * replica.before, "{replica:?}"),
+            }
+        }
+    }
+
+    #[test]
+    fn a_level_that_nobody_knows_is_no_error() {
+        let level = |row: usize| row / (POINTS / 2);
+        let told = evidence(|row| 8.0 * x(row) + 50.0 * (level(row) as f64 + 1.0));
+        let levels = 2 * SESSIONS;
+        let nuisance = DMatrix::from_fn(COUNT, levels, |row, k| f64::from(u8::from(level(row) == k)));
+        let unknown = Evidence { level: (0..COUNT).map(level).collect(), nuisance, ..told };
+        for replica in replicas(&unknown) {
+            // 8·x in two halves, each about its mean, is 1.2 rms
+            assert!((1.2..2.0).contains(&replica.before), "{replica:?}");
+            assert!(replica.after < 1.3 && replica.after < 0.85 * replica.before, "{replica:?}");
+        }
+        let known = Evidence { level: vec![Evidence::KEPT; COUNT], ..unknown };
+        assert!(replicas(&known).iter().all(|replica| replica.after > 40.0));
+    }
+
+    #[test]
+    fn what_belongs_to_no_session_is_learned_from_and_never_held_out() {
+        // two sessions of four data each are not enough to find a slope by
+        let of_row = |row: usize| match row {
+            26..30 => 0,
+            56..60 => 1,
+            _ => Evidence::KEPT,
+        };
+        let session: Vec<usize> = (0..COUNT).map(of_row).collect();
+        let found = |truth: &dyn Fn(usize) -> f64| {
+            replicas(&Evidence { session: session.clone(), ..evidence(truth) })
+        };
+        let with_others = found(&|row| 4.0 * x(row));
+        assert_eq!(with_others.iter().map(|replica| replica.session).collect::<Vec<_>>(), [0, 1]);
+        assert!(with_others.iter().all(|replica| replica.after < 0.6 * replica.before), "{with_others:?}");
+        let alone = found(&|row| if session[row] == Evidence::KEPT { 0.0 } else { 4.0 * x(row) });
+        for (alone, with) in alone.iter().zip(&with_others) {
+            assert_eq!((alone.session, alone.before), (with.session, with.before));
+            assert_eq!(alone.after, alone.before);
+        }
+        // one session has no others
+        let session = (0..COUNT).map(|row| if row < 30 { 7 } else { Evidence::KEPT }).collect();
+        assert_eq!(replicas(&Evidence { session, ..evidence(|row| 4.0 * x(row)) }), []);
+    }
+}

@@ -402,4 +402,87 @@ mod tests {
         }
         assert!(favours <= 1, "{favours} of 200 clean recordings favour it by 20 to 1");
     }
+
+    /// What adding `own` to a story of `columns` is worth, about and exactly.
+    fn worth(r: &DVector<f64>, columns: &DMatrix<f64>, own: &DMatrix<f64>) -> (f64, f64) {
+        let (bounds, effects) = (vec![FREE; columns.ncols()], vec![columns.ncols()]);
+        let story = Moments::new(r, columns, bounds, effects, r.len(), 0.0);
+        let score = story.score();
+        let gram = own.tr_mul(own);
+        let more = More {
+            gram: &gram,
+            cross: columns.tr_mul(own),
+            product: own.tr_mul(r),
+            bounds: vec![FREE; own.ncols()],
+        };
+        let exact =
+            story.beyond(&score, &more).score().log_evidence - story.rest(&score).score().log_evidence;
+        (story.about(&score, &more), exact)
+    }
+
+    #[test]
+    fn what_a_story_holds_already_adds_nothing() {
+        // a factor of 20 in favour would be a name
+        const HARDLY: f64 = 1.0;
+        // far below the columns, rounding of their products is more than the noise
+        for (size, sd) in [(1.0, 1.0), (1e3, 1.0), (1e6, 1.0), (1e6, 1e-3), (1.0, 1e-6), (1e3, 1e-9)] {
+            for seed in 0..20 {
+                let (c, d) = (noise(80, 3 * seed + 11), noise(80, 3 * seed + 12));
+                let r = noise(80, 3 * seed + 10) * sd + &c * 3.0 - &d;
+                let columns = DMatrix::from_columns(&[&c * size, &d * size]);
+                let mixed = DMatrix::from_columns(&[(&c + &d) * size, (&c - &d * 0.3) * size]);
+                let near = DMatrix::from_columns(&[(&c + noise(80, 3 * seed + 500) * 1e-9) * size]);
+                for own in [columns.columns(0, 1).into_owned(), columns.clone(), mixed, near] {
+                    let (about, exact) = worth(&r, &columns, &own);
+                    assert!(about < HARDLY && exact < HARDLY, "{size} {sd}, seed {seed}: {about} {exact}");
+                }
+                // and a column that it lacks adds as much at any size
+                let other = noise(80, 3 * seed + 1000);
+                let own = DMatrix::from_columns(&[&other * size]);
+                let (about, exact) = worth(&(&r + &other * 2.0), &columns, &own);
+                assert!(about > 20.0 && exact > 20.0, "{size} {sd}, seed {seed}: {about} {exact}");
+            }
+        }
+    }
+
+    #[test]
+    fn more_parameters_than_data_are_no_trouble() {
+        // of the largest columns, to which σ² is next to nothing
+        const ROUNDED: f64 = 0.05;
+        for (n, p, size) in [(20, 50, 1.0), (20, 50, 1e6), (3, 40, 10.0), (1, 2, 1.0)] {
+            let columns = DMatrix::from_fn(n, p, |i, k| size * noise(n, 100 + k as u64)[i]);
+            for effects in [vec![], vec![p]] {
+                let bounds = vec![(0.0, f64::INFINITY); p];
+                let score = Moments::new(&noise(n, 7), &columns, bounds, effects, n, 0.0).score();
+                assert!(score.log_evidence.is_finite() && score.sigma > 0.0, "{n} {p} {score:?}");
+                assert!(score.estimate.iter().chain(&score.covariance).all(|x| x.is_finite()));
+                assert!(
+                    (-ROUNDED..n as f64 + ROUNDED).contains(&score.determined),
+                    "{n} {p} {}",
+                    score.determined
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_not_a_number_explains_nothing() {
+        let (r, c) = (noise(40, 1), noise(40, 2));
+        let columns = DMatrix::from_columns(std::slice::from_ref(&c));
+        let mut holed = c.clone();
+        holed[7] = f64::NAN;
+        let own = DMatrix::from_columns(&[holed.clone()]);
+        // not a number is no favour either
+        let is_favoured = |gain: f64| gain > 0.0;
+        let with = score(&r, &DMatrix::from_columns(&[c, holed.clone()])).log_evidence;
+        assert!(!is_favoured(with - score(&r, &columns).log_evidence));
+        let (about, exact) = worth(&r, &columns, &own);
+        assert!(!is_favoured(about) && !is_favoured(exact), "{about} {exact}");
+        // a residual that is none is no reason to stop
+        let (about, exact) = worth(&holed, &columns, &columns);
+        assert!(!is_favoured(about) && !is_favoured(exact), "{about} {exact}");
+        let infinite = r.map(|x| x * f64::INFINITY);
+        let (about, exact) = worth(&infinite, &columns, &columns);
+        assert!(!is_favoured(about) && !is_favoured(exact), "{about} {exact}");
+    }
 }

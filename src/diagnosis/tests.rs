@@ -10,10 +10,44 @@ const TRIALS: usize = 5;
 const POINTS: usize = 16;
 const COUNT: usize = TRIALS * POINTS;
 
-/// Every candidate is one column or, for the unknown, some.
-struct Columns {
-    candidates: Vec<Candidate>,
+/// Every candidate is one column or some.
+pub(super) struct Columns {
+    pub candidates: Vec<Candidate>,
     columns: Vec<DMatrix<f64>>,
+    data: usize,
+}
+
+impl Columns {
+    /// Of so many data, without candidates.
+    pub fn new(data: usize) -> Self {
+        Columns { candidates: Vec::new(), columns: Vec::new(), data }
+    }
+
+    /// One candidate more, with parameters of size 10.
+    pub fn add(&mut self, effect: &str, location: &str, columns: DMatrix<f64>, is_unknown: bool) {
+        let parameter = EffectParameter {
+            name: "size".into(),
+            unit: 1.0,
+            neutral: 0.0,
+            size: 10.0,
+            bounds: (f64::NEG_INFINITY, f64::INFINITY),
+        };
+        self.candidates.push(Candidate {
+            effect: effect.into(),
+            location: location.into(),
+            parameters: vec![parameter; columns.ncols()],
+            weight: 1.0,
+            is_alternative: false,
+            is_unknown,
+        });
+        self.columns.push(columns);
+    }
+
+    /// A candidate with these values.
+    pub fn chosen(&self, effect: &str, values: &[f64]) -> Chosen {
+        let candidate = self.candidates.iter().position(|c| c.effect == effect).unwrap();
+        Chosen { candidate, values: values.to_vec() }
+    }
 }
 
 impl World for Columns {
@@ -22,7 +56,7 @@ impl World for Columns {
     }
 
     fn change(&self, story: &[Chosen]) -> DVector<f64> {
-        let mut change = DVector::zeros(COUNT);
+        let mut change = DVector::zeros(self.data);
         for chosen in story {
             change += &self.columns[chosen.candidate] * DVector::from_column_slice(&chosen.values);
         }
@@ -40,35 +74,34 @@ fn column(f: impl Fn(f64) -> f64) -> DMatrix<f64> {
 
 /// A slope, its twin under another name, a curvature, steps at twelve places, and smooth unknown curves.
 fn world() -> Columns {
-    let mut world = Columns { candidates: Vec::new(), columns: Vec::new() };
-    let mut add = |effect: &str, location: &str, columns: DMatrix<f64>, is_unknown: bool| {
-        let parameter = EffectParameter {
-            name: "size".into(),
-            unit: 1.0,
-            neutral: 0.0,
-            size: 10.0,
-            bounds: (f64::NEG_INFINITY, f64::INFINITY),
-        };
-        world.candidates.push(Candidate {
-            effect: effect.into(),
-            location: location.into(),
-            parameters: vec![parameter; columns.ncols()],
-            weight: 1.0,
-            is_alternative: false,
-            is_unknown,
-        });
-        world.columns.push(columns);
-    };
-    add("slope", "here", column(|x| x), false);
-    add("twin", "there", column(|x| 1.001 * x), false);
-    add("curvature", "here", column(|x| x * x), false);
+    let mut world = Columns::new(COUNT);
+    world.add("slope", "here", column(|x| x), false);
+    world.add("twin", "there", column(|x| 1.001 * x), false);
+    world.add("curvature", "here", column(|x| x * x), false);
     for place in 1..13 {
         let at = (f64::from(place) + 0.5) / 15.0;
-        add("step", &format!("{place}"), column(move |x| f64::from(u8::from(x > at))), false);
+        world.add("step", &format!("{place}"), column(move |x| f64::from(u8::from(x > at))), false);
     }
     let waves = DMatrix::from_fn(COUNT, 6, |row, k| (std::f64::consts::PI * (k + 1) as f64 * x(row)).cos());
-    add("curve", "x", waves, true);
+    world.add("curve", "x", waves, true);
     world
+}
+
+/// Data that have nothing to do with each other.
+pub(super) fn independent(residual: Vec<f64>) -> Evidence {
+    let count = residual.len();
+    Evidence {
+        residual: DVector::from_vec(residual),
+        nuisance: DMatrix::zeros(count, 0),
+        background: DMatrix::zeros(count, 0),
+        cell: (0..count).collect(),
+        shared: (0..count).collect(),
+        fold: vec![Evidence::KEPT; count],
+        session: vec![Evidence::KEPT; count],
+        level: vec![Evidence::KEPT; count],
+        resolution: 0.0,
+        covariates: Vec::new(),
+    }
 }
 
 fn evidence(seed: u64, truth: impl Fn(f64) -> f64) -> Evidence {
@@ -81,16 +114,10 @@ fn evidence(seed: u64, truth: impl Fn(f64) -> f64) -> Evidence {
         }
     }
     Evidence {
-        residual: DVector::from_vec(residual),
-        nuisance: DMatrix::zeros(COUNT, 0),
-        background: DMatrix::zeros(COUNT, 0),
         cell: (0..COUNT).map(|row| row % POINTS).collect(),
         shared: (0..COUNT).map(|row| row / POINTS).collect(),
         fold: (0..COUNT).map(|row| row / POINTS).collect(),
-        session: vec![Evidence::KEPT; COUNT],
-        level: vec![Evidence::KEPT; COUNT],
-        resolution: 0.0,
-        covariates: Vec::new(),
+        ..independent(residual)
     }
 }
 
@@ -179,4 +206,37 @@ fn the_same_recording_gives_the_same_diagnosis() {
     let world = world();
     let told = || format!("{:?}", diagnose(&world, &evidence(7, |x| 5.0 * x * x)));
     assert_eq!(told(), told());
+}
+
+/// A line that another law, whose factor has the same name, draws as well.
+fn widened(form: &str, law: impl Fn(f64) -> f64) -> ((f64, f64, f64), (f64, f64, f64)) {
+    let mut world = Columns::new(COUNT);
+    world.add("law", "linear", column(|x| x), false);
+    world.add("law", form, column(law), false);
+    let alone = diagnose(&world, &evidence(3, |x| 6.0 * x));
+    world.candidates.iter_mut().for_each(|candidate| candidate.is_alternative = true);
+    if form == "other names" {
+        world.candidates[1].parameters[0].name = "other".into();
+    }
+    let of_forms = diagnose(&world, &evidence(3, |x| 6.0 * x));
+    (of(&alone), of(&of_forms))
+}
+
+/// The interval of the one finding, which is the line's.
+fn of(found: &Diagnosis) -> (f64, f64, f64) {
+    let [finding] = &found.findings[..] else { panic!("{:?}", found.findings) };
+    assert_eq!(finding.chosen.candidate, 0);
+    finding.parameters[0]
+}
+
+#[test]
+fn an_interval_holds_what_another_form_of_the_law_says() {
+    let half = |interval: (f64, f64, f64)| 0.5 * (interval.2 - interval.1);
+    // the same line with half the factor, hardly bent
+    let (alone, forms) = widened("bent", |x| 2.0 * x + 0.02 * x * x);
+    assert_eq!((forms.0, forms.2), (alone.0, alone.2), "the higher end is the line's own");
+    assert!(forms.1 < 0.5 * alone.0 - 0.4 * half(alone), "{forms:?} {alone:?}");
+    // neither one with another parameter nor one that leaves much more says anything of this factor
+    assert_eq!(widened("other names", |x| 2.0 * x + 0.02 * x * x).1, alone);
+    assert_eq!(widened("square", |x| 2.0 * x * x * x).1, alone);
 }

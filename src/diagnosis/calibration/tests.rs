@@ -1,9 +1,14 @@
 //! Columns against a robot that is moved for it, and effects that are put into simulated campaigns by such robots.
 
+mod changed;
 mod columns;
 mod finding;
+mod happened;
 mod next;
 mod recorded;
+mod told;
+mod turned;
+mod unnamed;
 mod words;
 
 use nalgebra::Vector3;

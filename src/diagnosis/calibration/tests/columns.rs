@@ -2,62 +2,10 @@
 
 use nalgebra::Rotation3;
 
+use super::changed::{Change, Row, row};
 use super::*;
-use crate::calibration::{Calibration, Compensation};
-use crate::robot::{Body, Kinematics, Loads, Parameter, Setup};
-
-/// A robot at a row with all that may be changed.
-struct Row<'a> {
-    setup: Setup<'a>,
-    q: Vec<f64>,
-    loads: Loads,
-    /// Deflection in {T}, m.
-    bent: Vector3<f64>,
-}
-
-impl Row<'_> {
-    fn torque(&self) -> Vec<f64> {
-        let mut kinematics = Kinematics::new(&self.setup);
-        let mut torque = vec![0.0; self.q.len()];
-        for _ in 0..8 {
-            kinematics.update(&self.q, &torque);
-            kinematics.torques(&self.loads, &mut torque);
-        }
-        torque
-    }
-
-    fn tip(&self) -> Vector3<f64> {
-        let mut kinematics = Kinematics::new(&self.setup);
-        kinematics.update(&self.q, &self.torque());
-        kinematics.tip + kinematics.flange.rotation * self.bent
-    }
-}
-
-fn row<'a>(
-    campaign: &Campaign,
-    calibration: &Calibration<'a>,
-    compensation: &Compensation,
-    row: usize,
-) -> Row<'a> {
-    let setup = calibration.setup.clone();
-    let gravity = setup.base().rotation * setup.robot.gravity;
-    let device = &campaign.measurements.groups[campaign.measurements.rows[row].group].device;
-    let loads = Loads {
-        gravity,
-        payload: compensation.payload,
-        tip_force: device.rotation * compensation.contact_force,
-    };
-    let mut there =
-        Row { setup, q: campaign.measurements.joints(row).to_vec(), loads, bent: Vector3::zeros() };
-    let mut kinematics = Kinematics::new(&there.setup);
-    kinematics.update(&there.q, &there.torque());
-    let bent = kinematics.flange.rotation.tr_mul(&calibration.deflections[row]);
-    there.bent = bent;
-    there
-}
-
-/// What a parameter does to a row.
-type Change<'a> = dyn Fn(&mut Row, usize, f64) + 'a;
+use crate::calibration::Compensation;
+use crate::robot::{Body, Kinematics, Parameter};
 
 #[test]
 fn columns_are_what_a_changed_robot_does() {

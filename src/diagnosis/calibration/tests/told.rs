@@ -1,0 +1,223 @@
+//! What the engine is told: weights, further knowledge, and which data belong together.
+
+use super::happened::sockets;
+use super::*;
+use crate::calibration::campaign::Distance;
+use crate::robot::Parameter;
+
+/// Cosine of the angle between a direction in which the calibration is free and what it left, at its optimum.
+const RIGHT_ANGLE: f64 = 1e-3;
+
+/// Noise of a coordinate of every row, m, in 1 … 5 by its group.
+fn noisy(campaign: &Campaign, of_group: impl Fn(usize) -> f64, seed: u64) -> Campaign {
+    let mut random = Random::seeded(seed, 0);
+    let rows = &campaign.measurements.rows;
+    let off: Vec<Vector3<f64>> =
+        rows.iter().map(|row| Vector3::from_fn(|_, _| of_group(row.group) * random.normal())).collect();
+    recorded(campaign, &|row| off[row], 0.0, seed)
+}
+
+/// At the optimum nothing that the calibration can do takes more out of what is left: Jᵀr = 0, if rows and what is known besides
+/// count in the evidence as they do in the calibration.
+fn assert_nothing_more_is_absorbed(evidence: &Evidence) {
+    for (k, column) in evidence.nuisance.column_iter().enumerate() {
+        let cosine = column.dot(&evidence.residual) / (column.norm() * evidence.residual.norm());
+        assert!(cosine.abs() < RIGHT_ANGLE, "column {k}: {cosine}");
+    }
+}
+
+#[test]
+fn a_clamp_of_five_times_the_noise_counts_a_twenty_fifth() {
+    let campaign = noisy(&clamps(30), |group| if group == 1 { 50.0 * UM } else { 10.0 * UM }, 3);
+    let calibration = calibrate(&campaign, Mode::Fea, &Options::default()).unwrap();
+    let (world, evidence) = CalibrationWorld::new(&campaign, &calibration).unwrap();
+    let rows = &campaign.measurements.rows;
+    let of = |is_noisy: bool| (0..rows.len()).filter(move |&row| (rows[row].group == 1) == is_noisy);
+    let (loud, quiet) = (of(true).next().unwrap(), of(false).next().unwrap());
+    // 90 and 360 coordinates tell the ratio of the two variances within a sixth or so
+    let mean = |is_noisy: bool| {
+        of(is_noisy).map(|row| world.scale(row).powi(-2)).sum::<f64>() / of(is_noisy).count() as f64
+    };
+    let ratio = mean(true) / mean(false);
+    assert!((15.0..40.0).contains(&ratio), "{ratio}");
+    // one noise holds for all data
+    let rms = |is_noisy: bool| {
+        let (mut square, mut count) = (0.0, 0.0);
+        for row in of(is_noisy) {
+            square += evidence.residual.fixed_rows::<3>(3 * row).norm_squared();
+            count += 3.0;
+        }
+        (square / count).sqrt()
+    };
+    assert!((rms(true) / rms(false) - 1.0).abs() < 0.2, "{} {}", rms(true), rms(false));
+    for row in [loud, quiet] {
+        let told: Vector3<f64> = evidence.residual.fixed_rows::<3>(3 * row).into();
+        assert!((told + calibration.deviations[row] * world.scale(row)).norm() < 1e-12);
+    }
+    // effects are felt with the same weight
+    let index = find(&world, "thermal_drift", "base, with order");
+    let mut drift = world.candidates()[index].neutral(index);
+    drift.values[0] = 1.0;
+    let change = world.change(&[drift]);
+    for row in [loud, quiet] {
+        let share = row as f64 / (rows.len() - 1) as f64 - 0.5;
+        assert!((change[3 * row] - share * world.scale(row)).abs() < 1e-12);
+    }
+    assert_nothing_more_is_absorbed(&evidence);
+}
+
+#[test]
+fn what_a_user_knows_is_a_datum_without_a_row() {
+    let mut campaign = noisy(&clamps(12), |_| 20.0 * UM, 5);
+    let free = calibrate(&campaign, Mode::Fea, &Options::default()).unwrap();
+    let parameter = Parameter::A(1);
+    let found = free.parameters.iter().find(|p| p.parameter == parameter).unwrap();
+    // five standard errors off, and as firm as the data
+    let sd = found.std_error.unwrap();
+    let mean = found.value + 5.0 * sd;
+    campaign.wishes.priors.push((parameter, mean, sd));
+    let calibration = calibrate(&campaign, Mode::Fea, &Options::default()).unwrap();
+    let (world, evidence) = CalibrationWorld::new(&campaign, &calibration).unwrap();
+    let (last, rows) = (evidence.residual.len() - 1, campaign.measurements.len());
+    assert_eq!(last, 3 * rows);
+    let sigma = calibration.noise.pooled;
+    let value = calibration.setup.links[1].a;
+    assert!((evidence.residual[last] - (mean - value) / sd * sigma).abs() < 1e-6 * sigma);
+    assert!(evidence.residual[last] > sigma, "the data pull");
+    assert_nothing_more_is_absorbed(&evidence);
+    assert_eq!(evidence.cell.iter().filter(|&&cell| cell == evidence.cell[last]).count(), 1);
+    for of in [&evidence.fold, &evidence.session, &evidence.level] {
+        assert_eq!(of[last], Evidence::KEPT);
+    }
+    assert!(evidence.fold[..last].iter().all(|&fold| fold != Evidence::KEPT));
+    // no effect changes what is known
+    for (index, candidate) in world.candidates().iter().enumerate().step_by(11) {
+        let columns = world.columns(&[candidate.neutral(index)], 0);
+        assert_eq!(columns.row(last).amax(), 0.0);
+    }
+}
+
+#[test]
+fn distances_between_sockets_are_known_and_their_places_are_not() {
+    let mut campaign = sockets();
+    let distances = [([0, 1], 0.2), ([1, 2], 0.25), ([3, 4], 0.3)];
+    let known = |(between, value): ([usize; 2], f64)| Distance { between, value, sd: 100.0 * UM };
+    campaign.measurements.targets = Targets::Sockets(distances.map(known).to_vec());
+    let calibration = calibrate(&campaign, Mode::Fea, &Options::default()).unwrap();
+    let (_, evidence) = CalibrationWorld::new(&campaign, &calibration).unwrap();
+    let rows = campaign.measurements.len();
+    let sigma = calibration.noise.pooled;
+    assert_eq!(evidence.residual.len(), 3 * rows + distances.len());
+    let place = |socket: usize| Vector3::from(calibration.sockets[socket].map(|(value, _)| value));
+    for (k, ([a, b], value)) in distances.into_iter().enumerate() {
+        let expected = (value - (place(a) - place(b)).norm()) / (100.0 * UM) * sigma;
+        assert!((evidence.residual[3 * rows + k] - expected).abs() < 1e-9 * sigma, "{k}");
+        assert_eq!(evidence.level[3 * rows + k], Evidence::KEPT);
+        // by how much the distance changes where a socket moves
+        let first = evidence.nuisance.ncols() - 3 * calibration.sockets.len();
+        for (socket, axis) in
+            (0..calibration.sockets.len()).flat_map(|socket| [0, 1, 2].map(|axis| (socket, axis)))
+        {
+            let moved = |own: usize| place(own) + Vector3::ith(axis, if own == socket { 1e-6 } else { 0.0 });
+            let change = (moved(a) - moved(b)).norm() - (place(a) - place(b)).norm();
+            let slope = evidence.nuisance[(3 * rows + k, first + 3 * socket + axis)];
+            assert!((slope - change / 1e-6 / (100.0 * UM) * sigma).abs() < 1e-4 * sigma / (100.0 * UM));
+        }
+    }
+    assert_nothing_more_is_absorbed(&evidence);
+    // every coordinate of a socket has its own level, every plate its session
+    for (row, entry) in campaign.measurements.rows.iter().enumerate() {
+        for axis in 0..3 {
+            assert_eq!(evidence.level[3 * row + axis], 3 * entry.group + axis);
+        }
+        assert_eq!(evidence.session[3 * row], usize::from(entry.group >= 3));
+    }
+}
+
+#[test]
+fn what_the_calibration_holds_it_does_not_absorb() {
+    // no distance: nothing tells a robot from one twice as large
+    let campaign = sockets();
+    let calibration = calibrate(&campaign, Mode::Fea, &Options::default()).unwrap();
+    let scene = Scene::new(&campaign, &calibration).unwrap();
+    let evidence = evidence::of(&campaign, &calibration, &scene);
+    let (free, held) = (calibration.parameters.len(), calibration.held.len());
+    assert!(held > 0);
+    assert_eq!(evidence.nuisance.ncols(), free - held + 3 * calibration.sockets.len());
+    let whitening = Whitening::new(&evidence, &evidence.residual);
+    let left = |direction: &[f64]| {
+        let mut kinematics = crate::robot::Kinematics::new(&calibration.setup);
+        let mut moved = DVector::zeros(evidence.residual.len());
+        for (row, posture) in scene.postures.iter().enumerate() {
+            kinematics.update(&posture.joints, &posture.torque);
+            kinematics.tip = posture.tip;
+            for ((estimated, factor), range) in
+                calibration.parameters.iter().zip(direction).zip(&calibration.held[0].ranges)
+            {
+                let column = kinematics.column(estimated.parameter, &posture.torque) * (factor * range);
+                let mut tip = moved.fixed_rows_mut::<3>(3 * row);
+                tip += column;
+            }
+        }
+        whitening.apply(&moved).norm() / moved.norm()
+    };
+    // a direction at right angles to all that are held is free
+    let mut across = DVector::from_fn(free, |k, _| 1.0 + k as f64 / free as f64);
+    for held in &calibration.held {
+        let held = DVector::from_column_slice(&held.direction);
+        across -= &held * held.dot(&across);
+    }
+    assert!(left(across.as_slice()) < 1e-6, "{}", left(across.as_slice()));
+    let of_held: Vec<f64> = calibration.held.iter().map(|held| left(&held.direction)).collect();
+    assert!(of_held.iter().all(|&left| left > 1e-6), "{of_held:?}");
+}
+
+#[test]
+fn repeats_are_one_cell_and_are_held_out_together() {
+    let mut campaign = clamps(30);
+    let recording = &mut campaign.measurements;
+    // row 40 is taken again later in the same clamp, and its joint values once more in another one
+    let same = (41..).find(|&row| recording.rows[row].group == recording.rows[40].group).unwrap();
+    let other = (41..).find(|&row| recording.rows[row].group != recording.rows[40].group).unwrap();
+    let count = recording.joint_count;
+    let again = recording.joints(40).to_vec();
+    for row in [same, other] {
+        recording.joint_values[row * count..][..count].copy_from_slice(&again);
+    }
+    let calibration = calibrate(&campaign, Mode::Fea, &Options::default()).unwrap();
+    let (_, evidence) = CalibrationWorld::new(&campaign, &calibration).unwrap();
+    for axis in 0..3 {
+        assert_eq!(evidence.cell[3 * same + axis], evidence.cell[120 + axis]);
+        assert_ne!(evidence.cell[3 * other + axis], evidence.cell[120 + axis]);
+        assert_ne!(evidence.cell[120 + axis], evidence.cell[120 + (axis + 1) % 3]);
+    }
+    assert_eq!(evidence.fold[3 * same], evidence.fold[120]);
+    // every fold has rows of every clamp, and no two are of unlike size
+    let rows = &campaign.measurements.rows;
+    for fold in 0..5 {
+        let of_fold: Vec<usize> = (0..rows.len()).filter(|&row| evidence.fold[3 * row] == fold).collect();
+        assert!((25..=35).contains(&of_fold.len()), "{fold}: {}", of_fold.len());
+        assert!((0..5).all(|group| of_fold.iter().any(|&row| rows[row].group == group)), "{fold}");
+    }
+}
+
+#[test]
+fn the_last_digit_of_a_displacement_is_seen() {
+    let resolution = |step: Option<f64>| {
+        let mut campaign = noisy(&clamps(8), |_| 30.0 * UM, 2);
+        let recording = &mut campaign.measurements;
+        let Targets::Points(points) = &mut recording.targets else { panic!("no points") };
+        for (point, row) in points.iter_mut().zip(&recording.rows) {
+            let device = &recording.groups[row.group].device;
+            let read = device.inverse().point(point);
+            *point = step.map_or(*point, |step| device.point(&read.map(|x| (x / step).round() * step)));
+        }
+        let calibration = calibrate(&campaign, Mode::Fea, &Options::default()).unwrap();
+        CalibrationWorld::new(&campaign, &calibration).unwrap().1.resolution
+    };
+    for step in [1.0 * UM, 2.0 * UM, 5.0 * UM, 20.0 * UM] {
+        let found = resolution(Some(step));
+        assert!((found / step - 1.0).abs() < 1e-9, "{found} instead of {step}");
+    }
+    assert_eq!(resolution(None), 0.0);
+}

@@ -10,7 +10,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::feasible::{Measurement, feasible};
+use super::carried::{Carried, is_same};
+use super::feasible::{Measurement, Plan, feasible};
 use super::{Body, RigWorld};
 use crate::diagnosis::{Candidate, Chosen, Diagnosis, Evidence, Finding, Rival, Story, World};
 use crate::error::Result;
@@ -29,6 +30,8 @@ const DECISIVE: f64 = 30.0;
 pub struct Proposal {
     /// In the user's words; a full sentence.
     pub words: String,
+    /// The same as numbers.
+    pub plan: Plan,
     /// By how much it would tell the finding from its closest rival: ln of the odds that are expected.
     pub log_odds: f64,
     /// What it tells the finding from: effect and place.
@@ -50,7 +53,7 @@ pub(super) fn next_measurement(
         return Ok(None);
     }
     let noise = diagnosis.story.sigma.max(evidence.resolution / 12.0f64.sqrt());
-    let mut best: Option<(f64, String)> = None;
+    let mut best: Option<(f64, Measurement)> = None;
     let stories = rivals.iter().map(|rival| &rival.story).chain([&diagnosis.story]);
     let involved: Vec<&Candidate> =
         stories.flat_map(|story| &story.chosen).map(|chosen| &world.candidates[chosen.candidate]).collect();
@@ -61,13 +64,14 @@ pub(super) fn next_measurement(
         };
         let closest = rivals.iter().map(of_rival).fold(DECISIVE, f64::min);
         if best.as_ref().is_none_or(|(log_odds, _)| closest > BETTER * log_odds) {
-            best = Some((closest, measurement.words));
+            best = Some((closest, measurement));
         }
     }
     // odds of less than 3 : 1 are none
     let best = best.filter(|(log_odds, _)| *log_odds > 1.0);
-    Ok(best.map(|(log_odds, words)| Proposal {
-        words,
+    Ok(best.map(|(log_odds, measurement)| Proposal {
+        words: measurement.words,
+        plan: measurement.plan,
         log_odds,
         rivals: rivals
             .iter()
@@ -135,11 +139,10 @@ impl Future {
         });
         let mut difference = DVector::zeros(n);
         for (story, sign) in [(a, 1.0), (b, -1.0)] {
-            let (chosen, kept) = self.translated(present, &story.chosen);
-            difference += self.world.change(&chosen).select_rows(&self.rows) * sign;
-            let columns = self.sensitivities(&chosen);
-            let known = story.covariance.select_rows(&kept).select_columns(&kept);
-            covariance += &columns * known * columns.transpose();
+            let carried = self.world.carried(present, &story.chosen);
+            difference += self.world.change(&carried.story).select_rows(&self.rows) * sign;
+            let columns = self.sensitivities(&carried.story);
+            covariance += &columns * self.covariance(story, &carried) * columns.transpose();
         }
         // what the base model absorbs by itself tells nothing
         let scale = difference.amax().max(noise);
@@ -156,25 +159,21 @@ impl Future {
         }
     }
 
-    /// A story of the present world in this one, and which of its parameters have a meaning here. What belongs to single rows
-    /// (slips, outliers) will not happen again.
-    fn translated(&self, present: &RigWorld, story: &[Chosen]) -> (Vec<Chosen>, Vec<usize>) {
-        let (mut chosen, mut kept, mut first) = (Vec::new(), Vec::new(), 0);
-        for effect in story {
-            let old = &present.candidates[effect.candidate];
-            let same = self.world.candidates.iter().enumerate().find(|(_, new)| is_same(new, old));
-            if let Some((index, new)) = same {
-                let mut values = Vec::new();
-                for parameter in &new.parameters {
-                    let k = old.parameters.iter().position(|q| q.name == parameter.name).unwrap_or_default();
-                    values.push(effect.values[k]);
-                    kept.push(first + k);
-                }
-                chosen.push(Chosen { candidate: index, values });
+    /// Covariance of the parameters of a carried story, SI: what is known by now, and of what is not the prior.
+    fn covariance(&self, story: &Story, carried: &Carried) -> DMatrix<f64> {
+        let parameters: Vec<f64> = carried
+            .story
+            .iter()
+            .flat_map(|chosen| &self.world.candidates[chosen.candidate].parameters)
+            .map(|parameter| parameter.size)
+            .collect();
+        DMatrix::from_fn(parameters.len(), parameters.len(), |i, j| {
+            match (carried.known[i], carried.known[j]) {
+                (Some(a), Some(b)) => story.covariance[(a, b)],
+                (None, None) if i == j => parameters[i] * parameters[i],
+                _ => 0.0,
             }
-            first += effect.values.len();
-        }
-        (chosen, kept)
+        })
     }
 
     /// ∂change/∂parameter of the new data, SI.
@@ -191,11 +190,4 @@ impl Future {
         }
         all
     }
-}
-
-/// The candidate of another recording that stands for the same.
-fn is_same(new: &Candidate, old: &Candidate) -> bool {
-    (&new.effect, &new.location) == (&old.effect, &old.location)
-        && !new.is_unknown
-        && new.parameters.iter().all(|p| old.parameters.iter().any(|q| q.name == p.name))
 }

@@ -37,10 +37,14 @@ impl RigWorld {
     }
 }
 
-/// The candidate of another recording that stands for the same.
+/// The candidate of another recording that stands for the same. Laws of one effect at one place differ in their parameters;
+/// of one law either recording may show some only.
 pub(super) fn is_same(new: &Candidate, old: &Candidate) -> bool {
     let is_of_row = ["slip", "outlier"].contains(&old.effect.as_str());
-    (&new.effect, &new.location) == (&old.effect, &old.location) && !new.is_unknown && !is_of_row
+    (&new.effect, &new.location) == (&old.effect, &old.location)
+        && !new.is_unknown
+        && !is_of_row
+        && new.parameters.iter().any(|p| old.parameters.iter().any(|q| q.name == p.name))
 }
 
 impl RigDiagnosis {
@@ -116,6 +120,20 @@ mod tests {
         // what stands in the file that asks does not matter
         let other = Readings::from_text("asked", &ASKED.replace("x,3,0", "x,3,99")).unwrap();
         assert_eq!(found.predicted(&other, Some(&rod)).unwrap(), said);
+    }
+
+    #[test]
+    fn every_effect_is_carried_to_itself_and_what_happened_to_a_row_is_not() {
+        let rod = Rod::from_toml("rod", include_str!("../../../rods/5.toml")).unwrap();
+        let (world, _) = RigWorld::new(&recorded(&rod), Some(&rod)).unwrap();
+        for (index, candidate) in world.candidates().iter().enumerate() {
+            let own = candidate.neutral(index);
+            let carried = world.carried(&world, std::slice::from_ref(&own));
+            let is_of_row = ["slip", "outlier"].contains(&candidate.effect.as_str());
+            let expected = if is_of_row || candidate.is_unknown { vec![] } else { vec![own] };
+            assert_eq!(carried.story, expected, "{candidate:?}");
+            assert!(carried.known.iter().all(Option::is_some));
+        }
     }
 
     #[test]

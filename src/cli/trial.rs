@@ -13,6 +13,7 @@ use rodcal::rod::Rod;
 use rodcal::trial::answers::{self, Answer};
 use rodcal::trial::envelope::{self, Manifest};
 use rodcal::trial::{Half, score};
+use rodcal::units::UM;
 use rodcal::{Error, Result, report};
 use serde_json::{Value, json};
 
@@ -167,9 +168,9 @@ impl AnswerCases {
     fn answer(&self, manifest: &Manifest, case: &str) -> Result<Answer> {
         manifest.check_case(&self.directory, case)?;
         // what the diagnosis refuses is an answer too, and the other cases go on
-        let answer = diagnosed(&self.directory.join(case))
-            .unwrap_or_else(|error| json!({ "error": error.to_string() }));
-        Ok(Answer { case: case.to_owned(), answer, sha256: manifest.hashes_of(case) })
+        let (answer, asked_um) = diagnosed(&self.directory.join(case))
+            .unwrap_or_else(|error| (json!({ "error": error.to_string() }), None));
+        Ok(Answer { case: case.to_owned(), answer, sha256: manifest.hashes_of(case), asked_um })
     }
 }
 
@@ -184,9 +185,34 @@ impl ScoreAnswers {
                 expected: "the file that `rodcal trial answer` writes".into(),
             });
         }
-        let score = score::score(&self.directory, &key, &answers)?;
+        let sealed = score::open(&self.directory, &key, &answers)?;
+        let due = sealed.due();
+        let progress = Progress::new("measured once more", due.len());
+        let outcomes = in_parallel(due.len(), |k| {
+            let outcome = self.once_more(&due[k]);
+            progress.one_more();
+            Ok((due[k].case.clone(), outcome?))
+        });
+        progress.finish();
+        let score = sealed.score(&outcomes.into_iter().collect::<Result<Vec<_>>>()?);
         let report = report::trial::report(&score.json);
         Ok(Outcome { text: Some(score.text), ..Outcome::new(score.json, report) })
+    }
+
+    /// Makes the measurement that an answer proposes and diagnoses the recording with it.
+    fn once_more(&self, due: &score::Due) -> Result<score::Outcome> {
+        let recording = match due.recording(&self.directory)? {
+            Ok(recording) => recording,
+            Err(outcome) => return Ok(outcome),
+        };
+        let rod = Rod::read(&self.directory.join(&due.case).join("rod.toml"))?;
+        let diagnosed = Readings::from_text("readings.csv", &recording).and_then(|readings| {
+            Ok(report::diagnosis::json(&rig::diagnose(&readings, Some(&rod))?, &readings, Some(&rod)))
+        });
+        Ok(match diagnosed {
+            Ok(diagnosis) => score::Outcome::Diagnosed(diagnosis),
+            Err(error) => score::Outcome::NotDone(error.to_string()),
+        })
     }
 }
 
@@ -198,16 +224,31 @@ fn plain(json: Value, text: String) -> Outcome {
     Outcome { json, report: None, text: Some(text), default_directory: None, files: Vec::new(), status: 0 }
 }
 
-/// The diagnosis of a case as its JSON.
-fn diagnosed(case: &Path) -> Result<Value> {
+/// The diagnosis of a case as its JSON, and what it says of the readings that are asked for, µm.
+fn diagnosed(case: &Path) -> Result<(Value, Option<Vec<f64>>)> {
     let campaign = case.join("campaign.toml");
     if campaign.exists() {
         let campaign = Campaign::read(&campaign)?;
         let found = calibration::diagnose(&campaign, default_mode(&campaign), &Options::default())?;
-        return Ok(report::diagnosis::calibration::json(&campaign, &found));
+        return Ok((report::diagnosis::calibration::json(&campaign, &found), None));
     }
     let rod = Rod::read(&case.join("rod.toml"))?;
     let readings = Readings::read(&case.join("readings.csv"))?;
     let found = rig::diagnose(&readings, Some(&rod))?;
-    Ok(report::diagnosis::json(&found, &readings, Some(&rod)))
+    let asked = case.join("asked.csv");
+    let asked_um = match asked.exists() {
+        true => {
+            let asked = Readings::read(&asked)?;
+            // what cannot be foretold is no reason to keep back what was found: the score counts it
+            let foretold = found.predicted(&asked, Some(&rod)).ok();
+            foretold.map(|readings| readings.into_iter().map(micrometres).collect())
+        }
+        false => None,
+    };
+    Ok((report::diagnosis::json(&found, &readings, Some(&rod)), asked_um))
+}
+
+/// To a hundredth of a nanometre: more digits say nothing.
+fn micrometres(reading: f64) -> f64 {
+    (reading / UM * 1e5).round() / 1e5
 }

@@ -16,6 +16,7 @@
 //! which is exact once the engine has fitted its own multiple of F.
 
 mod action;
+mod carried;
 mod correction;
 mod datum;
 mod evidence;
@@ -41,6 +42,7 @@ use crate::rig::readings::Readings;
 use crate::rod::Rod;
 pub use correction::Correction;
 pub use datum::Datum;
+pub use feasible::Plan;
 pub use limits::{Limit, NotTestable};
 pub use next::Proposal;
 pub use result::{RigDiagnosis, diagnose};

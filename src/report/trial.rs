@@ -70,6 +70,11 @@ fn rates(half: &str, score: &Value) -> Table {
         ("right when it names", "/right_when_named", "≥ 95 %"),
         ("right, or in its class, when it names", "/class_right_when_named", ""),
         ("95 % intervals that hold the truth", "/coverage_rate", "90 to 98 %"),
+        (
+            "ambiguous, truth in its class: settled by the proposed measurement",
+            "/next_measurement_ok/rate",
+            "",
+        ),
     ];
     let percent =
         |value: &Value| value.as_f64().map_or("–".into(), |share| format!("{:.1}", 100.0 * share));
@@ -93,6 +98,18 @@ fn rates(half: &str, score: &Value) -> Table {
         String::new(),
         "≥ 90 %".into(),
     ]);
+    let of = &score["counterfactual"];
+    let number = |value: &Value| value.as_f64().map_or("–".into(), |ratio| format!("{:.0}", 100.0 * ratio));
+    if of["n"].as_u64().is_some_and(|n| n > 0) {
+        rows.push(vec![
+            "error of readings under other loads, over the oracle's; median, and between which half of them are".into(),
+            format!("{} of {}", of["answered"], of["n"]),
+            number(&of["median"]),
+            number(&of["quartiles"][0]),
+            number(&of["quartiles"][1]),
+            String::new(),
+        ]);
+    }
     Table {
         name: format!("{half}-rates"),
         caption: "What was asked and how often it was so, with Wilson's 95 % intervals.".into(),

@@ -20,6 +20,9 @@ pub struct Answer {
     pub answer: Value,
     /// SHA-256 of the files that it saw, by name.
     pub sha256: BTreeMap<String, String>,
+    /// What would be read where `asked.csv` asks, in its order, µm; nothing where it does not, or where there is no answer.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub asked_um: Option<Vec<f64>>,
 }
 
 /// The answers that are there, none where there is no file; half a line at the end, of a run that was cut off, is dropped.
@@ -89,7 +92,12 @@ mod tests {
     use serde_json::json;
 
     fn answer(case: &str) -> Answer {
-        Answer { case: case.into(), answer: json!({"verdict": "consistent"}), sha256: BTreeMap::new() }
+        Answer {
+            case: case.into(),
+            answer: json!({"verdict": "consistent"}),
+            sha256: BTreeMap::new(),
+            asked_um: None,
+        }
     }
 
     #[test]

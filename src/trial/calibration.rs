@@ -95,6 +95,8 @@ fn truth(case: String, kind: Kind, site: &Site, effects: &[Effect]) -> Truth {
         oracle_gain: left
             .filter(|_| !effects.iter().any(Effect::is_of_one_run))
             .map(|left| left / (left + 1.0)),
+        seed: None,
+        asked: None,
     }
 }
 

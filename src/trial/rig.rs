@@ -2,6 +2,8 @@
 //!
 //! A quarter of the cases is clean, 45 % hold one effect of the library, 15 % two of them, 15 % one that no library has.
 
+mod again;
+mod asked;
 mod bench;
 pub(in crate::trial) mod cosserat;
 pub(in crate::trial) mod draw;
@@ -13,8 +15,10 @@ mod noise;
 mod oracle;
 mod protocol;
 mod setup;
+mod sizes;
 pub(in crate::trial) mod tube;
 
+pub use self::again::{Again, Proposed, again};
 use self::bench::Bench;
 pub use self::effect::Effect;
 pub use self::made::{Made, Order};
@@ -29,10 +33,40 @@ use crate::units::{MM, UM};
 /// Load, relative to the nominal one, at which a rod is linear.
 const SMALL: f64 = 1e-3;
 
+/// Streams of random numbers for what came later than the cases: what is asked for, and what is measured once more. Those
+/// of the cases are their numbers, of a rig's and of a calibration's.
+const ASKED: u64 = 2 << 32;
+const AGAIN: u64 = 3 << 32;
+
+/// A case as it was drawn.
+struct Drawn {
+    kind: Kind,
+    bench: Bench,
+    noise: Noise,
+    effects: Vec<Effect>,
+    /// Without noise, m.
+    readings: Vec<f64>,
+    /// What the display showed, m.
+    shown: Vec<f64>,
+}
+
 /// Case number `number` of the trial that belongs to `seed`.
 pub fn case(seed: u64, number: usize) -> Case {
+    let drawn = drawn(seed, number);
+    let asked = asked::draw(&drawn.bench, &mut Random::seeded(seed, ASKED + number as u64));
+    let name = format!("case-{number:04}");
+    Case {
+        files: vec![
+            ("rod.toml".into(), drawn.bench.drawing.toml(&name)),
+            ("readings.csv".into(), drawn.bench.protocol.csv(&drawn.shown)),
+            ("asked.csv".into(), asked::csv(&asked)),
+        ],
+        truth: Truth { seed: Some(seed), ..truth(format!("rig/{name}"), &drawn, &asked) },
+    }
+}
+
+fn drawn(seed: u64, number: usize) -> Drawn {
     let mut random = Random::seeded(seed, number as u64);
-    let name = format!("rig/case-{number:04}");
     let kind = Kind::drawn(&mut random);
     let numbers: Vec<usize> = match kind {
         Kind::Clean => Vec::new(),
@@ -60,23 +94,11 @@ pub fn case(seed: u64, number: usize) -> Case {
         .collect();
     let readings = bench.readings(&effects);
     let shown = noise.shown(&bench, &readings, &mut random);
-    Case {
-        files: vec![
-            ("rod.toml".into(), bench.drawing.toml(&format!("case-{number:04}"))),
-            ("readings.csv".into(), bench.protocol.csv(&shown)),
-        ],
-        truth: truth(name, kind, &bench, &noise, &effects, &readings),
-    }
+    Drawn { kind, bench, noise, effects, readings, shown }
 }
 
-fn truth(
-    case: String,
-    kind: Kind,
-    bench: &Bench,
-    noise: &Noise,
-    effects: &[Effect],
-    readings: &[f64],
-) -> Truth {
+fn truth(case: String, drawn: &Drawn, asked: &Bench) -> Truth {
+    let Drawn { kind, bench, noise, effects, readings, shown } = drawn;
     let protocol = &bench.protocol;
     let variance = noise.variance(protocol.quantum);
     let clean = bench.readings(&[]);
@@ -103,7 +125,7 @@ fn truth(
     let held_out = 2.0 * variance;
     Truth {
         case,
-        kind,
+        kind: *kind,
         effects: concealed,
         noise_um: variance.sqrt() / UM,
         noise_shape: match noise.shape {
@@ -118,6 +140,8 @@ fn truth(
         geometric_um: geometric(bench, &clean) / UM,
         oracle_gain: (!effects.is_empty() && !effects.iter().any(is_of_one_run))
             .then(|| added / (added + held_out)),
+        seed: None,
+        asked: Some(asked::truth(asked, effects, oracle.as_ref(), shown)),
     }
 }
 
@@ -161,8 +185,8 @@ mod tests {
     fn files_say_that_they_are_simulated_and_nothing_of_the_effect() {
         for number in 0..40 {
             let case = case(1, number);
-            let [rod, readings] = [&case.files[0].1, &case.files[1].1];
-            assert!(rod.starts_with("# SIMULATED") && readings.starts_with("# SIMULATED"));
+            let [rod, readings, asked] = [0, 1, 2].map(|k| &case.files[k].1);
+            assert!([rod, readings, asked].iter().all(|text| text.starts_with("# SIMULATED")));
             for concealed in &case.truth.effects {
                 assert!(!readings.contains(&concealed.effect), "{}", case.truth.case);
             }

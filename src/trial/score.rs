@@ -3,7 +3,9 @@
 //! An effect counts as identifiable where the oracle's expected log Bayes factor is 5 or more against nothing and against
 //! the best other effect. Rates have Wilson's 95 % intervals; nothing depends on the order of the answers.
 
+mod counterfactual;
 mod judged;
+mod next;
 mod place;
 mod rate;
 mod tables;
@@ -15,6 +17,7 @@ use std::path::Path;
 use serde_json::{Value, json};
 
 use self::judged::Judged;
+pub use self::next::{Due, Outcome};
 use self::rate::Rate;
 use super::answers::{self, Answer};
 use super::envelope::Manifest;
@@ -30,12 +33,31 @@ pub struct Score {
     pub text: String,
 }
 
-/// Scores the answers to the trial in `directory`.
+/// A key and answers that belong to one trial.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sealed {
+    truths: Vec<Truth>,
+    given: Vec<Answer>,
+}
+
+impl Sealed {
+    /// What was proposed for the cases whose answer is ambiguous and holds the truth, by case.
+    pub fn due(&self) -> Vec<Due> {
+        judged(&self.truths, &self.given).iter().filter_map(Due::of).collect()
+    }
+
+    /// The score; `outcomes` says what became of the proposals, by case.
+    pub fn score(&self, outcomes: &[(String, Outcome)]) -> Score {
+        of(&self.truths, &self.given, outcomes)
+    }
+}
+
+/// Reads the key and the answers to the trial in `directory`.
 ///
 /// # Errors
 /// [`Error::Input`] for a key, a recording or an answer that does not belong to this trial; [`Error::File`],
 /// [`Error::Syntax`].
-pub fn score(directory: &Path, key: &Path, answers: &Path) -> Result<Score> {
+pub fn open(directory: &Path, key: &Path, answers: &Path) -> Result<Sealed> {
     let manifest = Manifest::read(directory)?;
     let truths = manifest.read_key(key)?;
     let given = answers::read(answers)?;
@@ -50,17 +72,25 @@ pub fn score(directory: &Path, key: &Path, answers: &Path) -> Result<Score> {
             });
         }
     }
-    Ok(of(&truths, &given))
+    Ok(Sealed { truths, given })
 }
 
-/// Scores answers; truths without one are left out and counted.
-pub fn of(truths: &[Truth], given: &[Answer]) -> Score {
-    let answers: BTreeMap<&str, &Value> = given.iter().map(|a| (a.case.as_str(), &a.answer)).collect();
+/// Answers beside their truths, by case.
+fn judged<'a>(truths: &'a [Truth], given: &[Answer]) -> Vec<Judged<'a>> {
+    let answers: BTreeMap<&str, &Answer> = given.iter().map(|a| (a.case.as_str(), a)).collect();
     let mut cases: Vec<Judged<'_>> = truths
         .iter()
         .filter_map(|truth| Some(Judged::new(truth, answers.get(truth.case.as_str())?)))
         .collect();
     cases.sort_by(|a, b| a.truth.case.cmp(&b.truth.case));
+    cases
+}
+
+/// Scores answers; truths without one are left out and counted.
+fn of(truths: &[Truth], given: &[Answer], outcomes: &[(String, Outcome)]) -> Score {
+    let cases = judged(truths, given);
+    let outcomes: BTreeMap<&str, &Outcome> = outcomes.iter().map(|(case, of)| (case.as_str(), of)).collect();
+    let of_cases = |cases: &[Judged<'_>]| of_cases(cases, &outcomes);
     let unanswered = truths.len() - cases.len();
     let halves: Vec<(&str, Vec<Judged<'_>>)> = ["rig", "calibration"]
         .into_iter()
@@ -86,7 +116,7 @@ pub fn of(truths: &[Truth], given: &[Answer]) -> Score {
 }
 
 /// The score of cases in their order.
-fn of_cases(cases: &[Judged<'_>]) -> Score {
+fn of_cases(cases: &[Judged<'_>], outcomes: &BTreeMap<&str, &Outcome>) -> Score {
     let of_kind = |kind: Kind| cases.iter().filter(move |case| case.truth.kind == kind);
     let first = |case: &&Judged<'_>| case.truth.effects.first().map(|e| e.detectability.clone());
     let is_identifiable =
@@ -138,6 +168,9 @@ fn of_cases(cases: &[Judged<'_>]) -> Score {
     let by_parameter: BTreeMap<String, Value> =
         by_parameter.iter().map(|(k, rate)| (k.clone(), rate.json())).collect();
 
+    let (counterfactual_over_oracle, counterfactual) = counterfactual::of(cases);
+    let next = next::of(cases, outcomes);
+
     let mut json = json!({
         "cases": cases.len(),
         "failed": cases.iter().filter(|case| case.failed).count(),
@@ -166,9 +199,9 @@ fn of_cases(cases: &[Judged<'_>]) -> Score {
         "coverage_rate": coverage.json(),
         "coverage_by_parameter": by_parameter,
         "gain_over_oracle": gain_over_oracle,
-        // not asked yet
-        "counterfactual_over_oracle": null,
-        "next_measurement_ok": null,
+        "counterfactual_over_oracle": counterfactual_over_oracle,
+        "counterfactual": counterfactual,
+        "next_measurement_ok": next,
         "bins": tables::bins(cases),
         "confusion": tables::confusion(cases),
         "power": tables::power(cases),
@@ -194,6 +227,8 @@ fn of_cases(cases: &[Judged<'_>]) -> Score {
     say("right, or in its class, when it names", right_class.words());
     say("95 % intervals that hold the truth", coverage.words());
     say("held-out gain over the oracle's", gain_over_oracle.map_or("no case".into(), |g| format!("{g:.3}")));
+    say("error of other readings over the oracle's", counterfactual::words(&json["counterfactual"]));
+    say("ambiguous: settled by what is proposed", next::words(&json["next_measurement_ok"]));
     text += &tables::confusion_text(cases);
     Score { json, text }
 }

@@ -32,6 +32,22 @@ pub struct Truth {
     /// Share of the held-out squares that goes once the effects are known, 1 − noise²/(noise² + effects²), the noise with
     /// that of the zero; `None` where there is nothing to gain: no effect, or one that a single run has.
     pub oracle_gain: Option<f64>,
+    /// Seed of the trial, from which whoever scores makes the case once more. A key of before has none.
+    #[serde(default)]
+    pub seed: Option<u64>,
+    /// What belongs into the readings that are asked for; a calibration is asked for none.
+    #[serde(default)]
+    pub asked: Option<Asked>,
+}
+
+/// Readings that are asked for and not given, in the order of the file that asks, µm.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Asked {
+    /// What would be read without noise.
+    pub true_um: Vec<f64>,
+    /// What an oracle says that knows the law and the place of every effect and finds its size out from the recording; `None`
+    /// where there is no such size: no effect, one of a single run, or physics that no library has.
+    pub oracle_um: Option<Vec<f64>>,
 }
 
 /// What sort of case.

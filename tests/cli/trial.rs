@@ -23,6 +23,41 @@ fn a_trial_is_made_answered_in_pieces_and_scored() {
 }
 
 #[test]
+fn other_readings_are_foretold_and_what_is_proposed_is_measured() {
+    let sandbox = Sandbox::empty();
+    let score = |directory: &str| {
+        sandbox.run(&format!("trial make {directory} --seed 7 --cases 24 --rig")).succeeded();
+        sandbox.run(&format!("trial answer {directory}")).succeeded();
+        sandbox.run(&format!("trial score {directory} --json")).stdout
+    };
+    let first = score("a");
+    assert_eq!(first, score("b"));
+    let answers = |directory: &str| {
+        sandbox.read(&format!("{directory}/answers.jsonl")).replace(&format!("{directory}/rig/"), "rig/")
+    };
+    assert_eq!(answers("a"), answers("b"));
+    let asked = sandbox.read("b/rig/case-0003/asked.csv");
+    assert!(asked.starts_with("# SIMULATED"), "{asked}");
+    assert!(asked.lines().skip(2).all(|row| row.ends_with(",0")), "{asked}");
+    let json: serde_json::Value = serde_json::from_str(&first).unwrap();
+    let ratio = json["counterfactual_over_oracle"].as_f64().unwrap();
+    assert!(ratio > 0.3 && ratio < 30.0, "{ratio}");
+    let next = &json["next_measurement_ok"];
+    assert!(next["n"].as_u64().unwrap() >= 3 && next["ok"].as_u64().unwrap() >= 1, "{next}");
+    assert_eq!(next["not_done"], serde_json::json!({}));
+    // whoever answers sees the question and nothing of what belongs there
+    let key = sandbox.read("a.key.jsonl");
+    assert!(key.contains("true_um") && !sandbox.read("a/manifest.json").contains("true_um"));
+    sandbox.write("a/rig/case-0003/asked.csv", &asked.replacen("x,", "y,", 1));
+    for line in ["trial score a", "trial answer a --answers again.jsonl --case-range 3..3"] {
+        let refused = sandbox.run(line);
+        assert_eq!(refused.status, Some(2), "{line}");
+        let says = "error: a/rig/case-0003/asked.csv: its SHA-256 is";
+        assert!(refused.stderr.starts_with(says), "{}", refused.stderr);
+    }
+}
+
+#[test]
 fn another_key_and_changed_recordings_are_refused() {
     let sandbox = Sandbox::empty();
     sandbox.run("trial make t --seed 3 --cases 2 --rig").succeeded();

@@ -8,12 +8,37 @@ use crate::units::MM;
 const REPEATS: usize = 3;
 /// Time between two readings, s.
 const STEP: f64 = 30.0;
+/// Times after which a load that is left hanging is read, s.
+const WAITS: [f64; 4] = [0.0, 60.0, 600.0, 3600.0];
+
+/// A measurement as numbers, SI.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Plan {
+    /// Where the loads pull to.
+    pub direction: Direction,
+    /// Loads in their order on the way up, N.
+    pub loads: Vec<f64>,
+    /// True where the same loads, but the largest, are read again on the way down.
+    pub unloading: bool,
+    /// Where the load hangs, m from the flange; `None` is the tip.
+    pub load_station: Option<f64>,
+    /// Where the sensors stand, m from the flange; `None` is the tip.
+    pub read_station: Option<f64>,
+    /// Times since a load was hung at which it is read, s.
+    pub waits: Vec<f64>,
+    /// How often all of it is done, each time from a new zero.
+    pub repeats: usize,
+    /// What is read; with a rod all three.
+    pub channels: Vec<Axis>,
+}
 
 /// Something that could be measured next.
 #[derive(Debug, Clone)]
 pub(super) struct Measurement {
     /// What to do; a full sentence.
     pub words: String,
+    /// The same as numbers.
+    pub plan: Plan,
     /// A few of the present readings, so that nothing that they show is forgotten, then those to come; these have offsets of
     /// a straight line.
     pub readings: Readings,
@@ -24,84 +49,74 @@ pub(super) struct Measurement {
 /// What is hung and read, one after the other.
 #[derive(Debug, Clone, Copy)]
 struct Step {
-    direction: Direction,
     load: f64,
     phase: Phase,
     /// Since the load was hung, s.
     waited: f64,
-    load_station: Option<f64>,
-    read_station: Option<f64>,
 }
 
 /// All that could be measured, the simplest first.
 pub(super) fn feasible(readings: &Readings, rod: Option<&Rod>) -> Vec<Measurement> {
-    let plan = Plan::new(readings, rod);
+    let rig = Rig::new(readings, rod);
     let mut all = Vec::new();
-    for axis in plan.axes() {
-        let direction = Direction { axis, sign: 1 };
-        let levels = plan.levels(axis);
+    for axis in rig.axes() {
+        let levels = rig.levels(axis);
         let (list, largest) = (newtons(&levels), levels.last().copied().unwrap_or_default());
-        let up = |loads: &[f64], sign: i8| -> Vec<Step> {
-            loads.iter().map(|&load| at_tip(Direction { axis, sign }, load)).collect()
-        };
-        let up_and_down: Vec<Step> = up(&levels, 1)
-            .into_iter()
-            .chain(
-                levels
-                    .iter()
-                    .rev()
-                    .skip(1)
-                    .map(|&load| Step { phase: Phase::Unload, ..at_tip(direction, load) }),
-            )
-            .collect();
-        all.push((format!("Load the tip along {axis} with {list} N"), up(&levels, 1)));
+        let up = |loads: &[f64]| rig.at_tip(axis, loads);
+        all.push((format!("Load the tip along {axis} with {list} N"), up(&levels)));
         all.push((
             format!(
                 "Load the tip along {axis} with {list} N, and read again at the same loads while unloading"
             ),
-            up_and_down,
+            Plan { unloading: true, ..up(&levels) },
         ));
-        all.push((format!("Load the tip against {axis}, along -{axis}, with {list} N"), up(&levels, -1)));
-        let small = [0.05, 0.1, 0.2].map(|share| share * largest);
         all.push((
-            format!("Load the tip along {axis} with small loads, {} N", newtons(&small)),
-            up(&small, 1),
+            format!("Load the tip against {axis}, along -{axis}, with {list} N"),
+            Plan { direction: Direction { axis, sign: -1 }, ..up(&levels) },
         ));
+        let small = [0.05, 0.1, 0.2].map(|share| share * largest);
+        all.push((format!("Load the tip along {axis} with small loads, {} N", newtons(&small)), up(&small)));
         let double = [largest, 1.5 * largest, 2.0 * largest];
         all.push((
             format!("Load the tip along {axis} with {} N, if the rod and the rig bear it", newtons(&double)),
-            up(&double, 1),
+            up(&double),
         ));
-        let wait = |load: f64| {
-            [0.0, 60.0, 600.0, 3600.0].map(|waited| Step { waited, ..at_tip(direction, load) }).to_vec()
-        };
         all.push((
             format!("Hang {} N along {axis} and read at once and after 1, 10 and 60 minutes, without touching anything", newton(largest)),
-            wait(largest),
+            // waiting takes long enough once
+            Plan { waits: WAITS.to_vec(), repeats: 1, ..up(&[largest]) },
         ));
-        for &station in &plan.stations {
+        for &station in &rig.stations {
             let mm = format!("{:.0}", station / MM);
-            let there = |load: f64| Step { load_station: Some(station), ..at_tip(direction, load) };
             all.push((
                 format!("Hang {list} N along {axis} at station {mm} mm instead of the tip"),
-                levels.iter().map(|&load| there(load)).collect(),
+                Plan { load_station: Some(station), ..up(&levels) },
             ));
-            let read = |load: f64| Step { read_station: Some(station), ..at_tip(direction, load) };
             all.push((
                 format!("Load the tip along {axis} with {list} N, with the sensors at station {mm} mm"),
-                levels.iter().map(|&load| read(load)).collect(),
+                Plan { read_station: Some(station), ..up(&levels) },
             ));
         }
     }
-    all.into_iter().map(|(words, steps)| plan.measurement(words, &steps)).collect()
+    all.into_iter().map(|(words, plan)| rig.measurement(words, plan)).collect()
 }
 
-fn at_tip(direction: Direction, load: f64) -> Step {
-    Step { direction, load, phase: Phase::Load, waited: 0.0, load_station: None, read_station: None }
+impl Plan {
+    /// One pass of it.
+    fn steps(&self) -> Vec<Step> {
+        let of = |phase: Phase| {
+            move |&load: &f64| self.waits.iter().map(move |&waited| Step { load, phase, waited })
+        };
+        let mut steps: Vec<Step> = self.loads.iter().flat_map(of(Phase::Load)).collect();
+        if self.unloading {
+            steps.extend(self.loads.iter().rev().skip(1).flat_map(of(Phase::Unload)));
+        }
+        steps
+    }
 }
 
 /// What the present readings allow.
-struct Plan<'a> {
+struct Rig<'a> {
     readings: &'a Readings,
     has_rod: bool,
     stations: Vec<f64>,
@@ -109,7 +124,7 @@ struct Plan<'a> {
     known: Vec<Reading>,
 }
 
-impl<'a> Plan<'a> {
+impl<'a> Rig<'a> {
     fn new(readings: &'a Readings, rod: Option<&Rod>) -> Self {
         let mut known: Vec<Reading> = Vec::new();
         for row in readings.rows.iter().filter(|row| row.load > 0.0) {
@@ -124,7 +139,7 @@ impl<'a> Plan<'a> {
                 known.push(Reading { trial: Some(format!("known {}", known.len())), ..row.clone() });
             }
         }
-        Plan { readings, has_rod: rod.is_some(), stations: rod.map(stations).unwrap_or_default(), known }
+        Rig { readings, has_rod: rod.is_some(), stations: rod.map(stations).unwrap_or_default(), known }
     }
 
     /// Axes that could be loaded: all of a rod, the present ones of a line.
@@ -157,7 +172,23 @@ impl<'a> Plan<'a> {
         picked
     }
 
-    fn measurement(&self, words: String, steps: &[Step]) -> Measurement {
+    /// Loads at the tip that are read there at once on the way up.
+    fn at_tip(&self, axis: Axis, loads: &[f64]) -> Plan {
+        let is_read = |channel: &Axis| self.readings.rows.iter().any(|r| r.offset[channel.index()].is_some());
+        Plan {
+            direction: Direction { axis, sign: 1 },
+            loads: loads.to_vec(),
+            unloading: false,
+            load_station: None,
+            read_station: None,
+            waits: vec![0.0],
+            repeats: REPEATS,
+            channels: Axis::ALL.into_iter().filter(|channel| self.has_rod || is_read(channel)).collect(),
+        }
+    }
+
+    fn measurement(&self, words: String, plan: Plan) -> Measurement {
+        let steps = plan.steps();
         let has_time = self.readings.rows.iter().all(|row| row.time.is_some());
         let has_phase = steps.iter().any(|step| step.phase == Phase::Unload)
             || self.readings.rows.iter().any(|row| row.phase.is_some());
@@ -166,22 +197,21 @@ impl<'a> Plan<'a> {
         let is_waiting = steps.iter().any(|step| step.waited > 0.0);
         let mut rows = self.known.clone();
         let mut clock = rows.iter().filter_map(|row| row.time).fold(0.0, f64::max);
-        // waiting takes long enough once
-        for repeat in 0..if is_waiting { 1 } else { REPEATS } {
-            for step in steps {
+        let slopes = self.slopes(plan.direction);
+        for repeat in 0..plan.repeats {
+            for step in &steps {
                 clock += STEP;
-                let slopes = self.slopes(step.direction);
-                let signed = f64::from(step.direction.sign) * step.load;
+                let signed = f64::from(plan.direction.sign) * step.load;
                 rows.push(Reading {
-                    direction: step.direction,
+                    direction: plan.direction,
                     load: step.load,
                     offset: slopes.map(|slope| slope.map(|slope| slope * signed)),
                     trial: Some(format!("next {repeat}")),
                     phase: has_phase.then_some(step.phase),
                     time: (has_time || is_waiting).then_some(clock + step.waited),
                     temperature,
-                    load_station: step.load_station,
-                    read_station: step.read_station,
+                    load_station: plan.load_station,
+                    read_station: plan.read_station,
                     line: 0,
                 });
             }
@@ -190,6 +220,7 @@ impl<'a> Plan<'a> {
         let channels = if self.has_rod { "dx, dy and dz" } else { "the offset" };
         Measurement {
             words: format!("{words}{many}; read {channels}."),
+            plan,
             known_rows: self.known.len(),
             readings: Readings { rows, ..self.readings.clone() },
         }

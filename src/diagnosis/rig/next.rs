@@ -5,38 +5,49 @@
 //!
 //! ½·dᵀ·(σ²(1 + ρJ) + S₁Σ₁S₁ᵀ + S₂Σ₂S₂ᵀ)⁻¹·d,   d = η₁ − η₂
 //!
-//! with S the sensitivities and Σ the covariances of the parameters. Of all feasible measurements the one is proposed that
-//! separates the finding best from its closest rival (T-optimal: A. C. Atkinson, V. V. Fedorov, Biometrika 62 (1975) 57–70).
+//! with S the sensitivities and Σ the covariances of the parameters (separations as of T-optimal designs: A. C. Atkinson,
+//! V. V. Fedorov, Biometrika 62 (1975) 57–70). With so much left of rivals that are now 1 to o,
+//!
+//! Σ exp(−separation)/o,
+//!
+//! the feasible measurement is proposed that leaves least. The closest rival counts most; but where nothing tells one of them,
+//! the others are told nevertheless.
 
 use nalgebra::{DMatrix, DVector};
 
-use super::feasible::{Measurement, feasible};
+use super::carried::{Carried, is_same};
+use super::feasible::{Measurement, Plan, feasible};
 use super::{Body, RigWorld};
 use crate::diagnosis::{Candidate, Chosen, Diagnosis, Evidence, Finding, Rival, Story, World};
 use crate::error::Result;
 use crate::rig::readings::Readings;
 use crate::rod::Rod;
 
-/// Rivals that a measurement has to separate the finding from: the likeliest ones.
+/// Effects that a measurement has to separate the finding from, and their places: the likeliest ones.
 const MOST_RIVALS: usize = 6;
-/// A more laborious measurement has to be so much better,
+const MOST_PLACES: usize = 10;
+/// A more laborious measurement has to leave so much less of the rivals,
 const BETTER: f64 = 1.3;
-/// unless these ln odds, which leave no doubt, are expected of the simpler one.
-const DECISIVE: f64 = 30.0;
+/// unless the simpler one leaves no more than this.
+const DECISIVE: f64 = 1e-3;
+/// ln odds of 3 : 1: less tells nothing.
+const TOLD: f64 = 1.0;
 
 /// A measurement to make next.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Proposal {
     /// In the user's words; a full sentence.
     pub words: String,
-    /// By how much it would tell the finding from its closest rival: ln of the odds that are expected.
+    /// The same as numbers.
+    pub plan: Plan,
+    /// By how much it would tell the finding from the closest of `rivals`: ln of the odds that are expected.
     pub log_odds: f64,
     /// What it tells the finding from: effect and place.
     pub rivals: Vec<(String, String)>,
 }
 
-/// The feasible measurement that best tells `finding` from all its rivals; `None` where it has none, or where none of the
-/// measurements can.
+/// The feasible measurement that best tells `finding` from its rivals; `None` where it has none, or where no measurement tells
+/// it from any of them.
 pub(super) fn next_measurement(
     readings: &Readings,
     rod: Option<&Rod>,
@@ -50,7 +61,7 @@ pub(super) fn next_measurement(
         return Ok(None);
     }
     let noise = diagnosis.story.sigma.max(evidence.resolution / 12.0f64.sqrt());
-    let mut best: Option<(f64, String)> = None;
+    let mut best: Option<(f64, Measurement, Vec<f64>)> = None;
     let stories = rivals.iter().map(|rival| &rival.story).chain([&diagnosis.story]);
     let involved: Vec<&Candidate> =
         stories.flat_map(|story| &story.chosen).map(|chosen| &world.candidates[chosen.candidate]).collect();
@@ -59,24 +70,28 @@ pub(super) fn next_measurement(
         let of_rival = |rival: &&Rival| {
             future.log_odds(world, &diagnosis.story, &rival.story, noise, diagnosis.shared_ratio)
         };
-        let closest = rivals.iter().map(of_rival).fold(DECISIVE, f64::min);
-        if best.as_ref().is_none_or(|(log_odds, _)| closest > BETTER * log_odds) {
-            best = Some((closest, measurement.words));
+        let separations: Vec<f64> = rivals.iter().map(of_rival).collect();
+        let of_rivals = rivals.iter().zip(&separations);
+        let left = of_rivals.map(|(rival, apart)| (-apart).exp() / rival.odds.max(1.0)).sum::<f64>();
+        let is_new = separations.iter().any(|apart| *apart > TOLD);
+        if is_new && best.as_ref().is_none_or(|(known, ..)| BETTER * left.max(DECISIVE) < *known) {
+            best = Some((left, measurement, separations));
         }
     }
-    // odds of less than 3 : 1 are none
-    let best = best.filter(|(log_odds, _)| *log_odds > 1.0);
-    Ok(best.map(|(log_odds, words)| Proposal {
-        words,
-        log_odds,
-        rivals: rivals
-            .iter()
-            .map(|rival| (world.candidates()[rival.chosen.candidate].effect.clone(), rival.place.clone()))
-            .collect(),
+    Ok(best.map(|(_, measurement, separations)| {
+        let told = || rivals.iter().zip(&separations).filter(|(_, apart)| **apart > TOLD);
+        let name = |rival: &Rival| world.candidates()[rival.chosen.candidate].effect.clone();
+        Proposal {
+            words: measurement.words,
+            plan: measurement.plan,
+            log_odds: told().map(|(_, apart)| *apart).fold(f64::INFINITY, f64::min),
+            rivals: told().map(|(rival, _)| (name(rival), rival.place.clone())).collect(),
+        }
     }))
 }
 
-/// The rivals to be told apart: the likeliest of every other effect, then those of the same effect at the farthest places.
+/// The rivals to be told apart: the likeliest of every other effect, with the other places where it may sit; without any, those
+/// of the same effect at the farthest places.
 fn apart<'a>(world: &RigWorld, finding: &'a Finding) -> Vec<&'a Rival> {
     let effect = |chosen: &Chosen| world.candidates()[chosen.candidate].effect.as_str();
     let own = effect(&finding.chosen);
@@ -87,6 +102,11 @@ fn apart<'a>(world: &RigWorld, finding: &'a Finding) -> Vec<&'a Rival> {
             apart.push(rival);
         }
     }
+    let is_rival = |rival: &&Rival| apart.iter().any(|known| effect(&known.chosen) == effect(&rival.chosen));
+    let is_other = |rival: &&Rival| apart.iter().all(|known| known.chosen != rival.chosen);
+    let places: Vec<&Rival> =
+        finding.rivals.iter().filter(is_rival).filter(is_other).take(MOST_PLACES - MOST_RIVALS).collect();
+    apart.extend(places);
     if apart.is_empty() {
         let mut places: Vec<&Rival> = finding.rivals.iter().collect();
         places.sort_by_key(|rival| rival.chosen.candidate);
@@ -135,11 +155,10 @@ impl Future {
         });
         let mut difference = DVector::zeros(n);
         for (story, sign) in [(a, 1.0), (b, -1.0)] {
-            let (chosen, kept) = self.translated(present, &story.chosen);
-            difference += self.world.change(&chosen).select_rows(&self.rows) * sign;
-            let columns = self.sensitivities(&chosen);
-            let known = story.covariance.select_rows(&kept).select_columns(&kept);
-            covariance += &columns * known * columns.transpose();
+            let carried = self.world.carried(present, &story.chosen);
+            difference += self.world.change(&carried.story).select_rows(&self.rows) * sign;
+            let columns = self.sensitivities(&carried.story);
+            covariance += &columns * self.covariance(story, &carried) * columns.transpose();
         }
         // what the base model absorbs by itself tells nothing
         let scale = difference.amax().max(noise);
@@ -156,25 +175,21 @@ impl Future {
         }
     }
 
-    /// A story of the present world in this one, and which of its parameters have a meaning here. What belongs to single rows
-    /// (slips, outliers) will not happen again.
-    fn translated(&self, present: &RigWorld, story: &[Chosen]) -> (Vec<Chosen>, Vec<usize>) {
-        let (mut chosen, mut kept, mut first) = (Vec::new(), Vec::new(), 0);
-        for effect in story {
-            let old = &present.candidates[effect.candidate];
-            let same = self.world.candidates.iter().enumerate().find(|(_, new)| is_same(new, old));
-            if let Some((index, new)) = same {
-                let mut values = Vec::new();
-                for parameter in &new.parameters {
-                    let k = old.parameters.iter().position(|q| q.name == parameter.name).unwrap_or_default();
-                    values.push(effect.values[k]);
-                    kept.push(first + k);
-                }
-                chosen.push(Chosen { candidate: index, values });
+    /// Covariance of the parameters of a carried story, SI: what is known by now, and of what is not the prior.
+    fn covariance(&self, story: &Story, carried: &Carried) -> DMatrix<f64> {
+        let parameters: Vec<f64> = carried
+            .story
+            .iter()
+            .flat_map(|chosen| &self.world.candidates[chosen.candidate].parameters)
+            .map(|parameter| parameter.size)
+            .collect();
+        DMatrix::from_fn(parameters.len(), parameters.len(), |i, j| {
+            match (carried.known[i], carried.known[j]) {
+                (Some(a), Some(b)) => story.covariance[(a, b)],
+                (None, None) if i == j => parameters[i] * parameters[i],
+                _ => 0.0,
             }
-            first += effect.values.len();
-        }
-        (chosen, kept)
+        })
     }
 
     /// ∂change/∂parameter of the new data, SI.
@@ -191,11 +206,4 @@ impl Future {
         }
         all
     }
-}
-
-/// The candidate of another recording that stands for the same.
-fn is_same(new: &Candidate, old: &Candidate) -> bool {
-    (&new.effect, &new.location) == (&old.effect, &old.location)
-        && !new.is_unknown
-        && new.parameters.iter().all(|p| old.parameters.iter().any(|q| q.name == p.name))
 }

@@ -5,11 +5,11 @@ use serde_json::{Value, json};
 use super::remainder::remainder;
 use super::shared::{locate_json, ranking_json, test_json};
 use super::{correction, headline, warnings};
-use crate::diagnosis::rig::{Proposal, RigDiagnosis};
+use crate::diagnosis::rig::{Plan, Proposal, RigDiagnosis};
 use crate::diagnosis::{Finding, World, rms};
 use crate::rig::readings::Readings;
 use crate::rod::Rod;
-use crate::units::UM;
+use crate::units::{MM, UM};
 
 /// The JSON of `rodcal diagnose rig --json`. Numbers that do not exist are null.
 ///
@@ -79,8 +79,24 @@ fn of_finding(found: &RigDiagnosis, finding: &Finding, next: Option<&Proposal>) 
         "places": found.other_places(finding),
         "rivals": rivals.collect::<Vec<_>>(),
         "next_measurement": next.map(|next| &next.words),
+        "next_measurement_plan": next.map(|next| of_plan(&next.plan)),
         "heldout_gain": found.diagnosis.proof.as_ref().map(|proof| proof.gain),
         "explains_rms_um": finding.rms / UM,
         "found_in_folds": found.found_in_folds(finding).map(|(some, all)| format!("{some} of {all}")),
+    })
+}
+
+/// What to measure next, as numbers. A station that is null is the tip.
+fn of_plan(plan: &Plan) -> Value {
+    let mm = |station: Option<f64>| station.map(|station| station / MM);
+    json!({
+        "direction": plan.direction.to_string(),
+        "loads_n": plan.loads,
+        "unloading": plan.unloading,
+        "load_station_mm": mm(plan.load_station),
+        "read_station_mm": mm(plan.read_station),
+        "waits_s": plan.waits,
+        "repeats": plan.repeats,
+        "channels": plan.channels.iter().map(|channel| format!("d{channel}")).collect::<Vec<_>>(),
     })
 }

@@ -26,6 +26,8 @@ pub struct Bench {
     pub protocol: Protocol,
     /// By loading, −1 to 1: how the slide happens to stick.
     pub sticking: Vec<f64>,
+    /// The largest load of the recording, N: what effects that are shares of full scale refer to, whatever else is done.
+    pub full_scale: f64,
 }
 
 /// Deflections of a body, each computed once.
@@ -158,7 +160,7 @@ impl Bench {
     }
 
     fn lag(&self, felt: &mut [f64], fraction: f64, is_exercised: bool) {
-        let new = || Plays::new(fraction, self.protocol.largest_load(), is_exercised);
+        let new = || Plays::new(fraction, self.full_scale, is_exercised);
         let mut plays = [[new(), new()], [new(), new()], [new(), new()]];
         let mut zero = (usize::MAX, 0.0);
         for (loading, load) in self.protocol.loadings.iter().zip(felt) {
@@ -235,7 +237,7 @@ impl Bench {
                     u += along * play
                 }
                 Effect::Seat(depth) => {
-                    let relative = force.norm() / self.protocol.largest_load();
+                    let relative = force.norm() / self.full_scale;
                     u += along * (depth * relative.powf(2.0 / 3.0));
                 }
                 _ => {}

@@ -75,7 +75,8 @@ impl Order {
         let drawing = self.drawing();
         let protocol = self.protocol(drawing.length());
         let sticking = protocol.loadings.iter().map(|_| random.uniform(-1.0, 1.0)).collect();
-        let bench = Bench { drawing, protocol, sticking };
+        let full_scale = protocol.largest_load();
+        let bench = Bench { drawing, protocol, sticking, full_scale };
         let noise = Noise { sd: self.noise, shape: Shape::Normal };
         let shown = noise.shown(&bench, &bench.readings(effects), &mut random);
         let place = |effect: &Effect| {

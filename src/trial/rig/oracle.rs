@@ -26,6 +26,8 @@ const SAME_EFFECT: f64 = 5.0;
 const SAME_PLACE: f64 = 3.0;
 /// Share of the upper end of its range at which a rival is linearised.
 const TYPICAL: f64 = 0.05;
+/// Half the step of a derivative, of the upper end of the range.
+const STEP: f64 = 1e-3;
 /// Stations of a scan for joints.
 const STATIONS: usize = 40;
 
@@ -104,6 +106,38 @@ impl<'a> Oracle<'a> {
                 [low / MM, stations.iter().copied().fold(0.0, f64::max) / MM]
             }),
         }
+    }
+
+    /// What it says of other readings, m, after it has found the sizes of the effects out from what was `shown`: least squares
+    /// about the truth, as Gauss and Newton's last step would be, with the upper end of its range as the standard deviation of
+    /// every size. `None` where there is no size to be found.
+    pub fn predicted(&self, effects: &[Effect], shown: &[f64], asked: &Bench) -> Option<Vec<f64>> {
+        let here = self.bench.readings(effects);
+        let error = self.whitened(shown.iter().zip(&here).map(|(a, b)| a - b).collect());
+        let (mut columns, mut there, mut sizes) = (Vec::new(), Vec::new(), Vec::new());
+        for (which, effect) in effects.iter().enumerate() {
+            for (k, (size, most)) in effect.sizes(&self.bench).into_iter().enumerate() {
+                let slope = |bench: &Bench| -> Vec<f64> {
+                    let moved = |by: f64| {
+                        let mut moved = effects.to_vec();
+                        moved[which] = effect.resized(k, by * most);
+                        bench.readings(&moved)
+                    };
+                    let (more, less) = (moved(STEP), moved(-STEP));
+                    more.iter().zip(less).map(|(a, b)| (a - b) / (2.0 * STEP)).collect()
+                };
+                columns.push(self.whitened(slope(&self.bench)));
+                there.push(DVector::from_vec(slope(asked)));
+                sizes.push(size / most);
+            }
+        }
+        let n = columns.len();
+        let normal = DMatrix::from_fn(n, n, |i, j| columns[i].dot(&columns[j]) + f64::from(u8::from(i == j)));
+        let right = DVector::from_fn(n, |i, _| columns[i].dot(&error) - sizes[i]);
+        let off = normal.cholesky().filter(|_| n > 0)?.solve(&right);
+        let exact = DVector::from_vec(asked.readings(effects));
+        let said = there.iter().zip(off.iter()).fold(exact, |said, (column, off)| said + column * *off);
+        Some(said.iter().copied().collect())
     }
 
     /// Whitened difference of the readings with some effects and with others.

@@ -127,9 +127,14 @@ impl Protocol {
 
     /// The file, with what the display showed in each cell, m.
     pub fn csv(&self, shown: &[f64]) -> String {
+        self.table("# SIMULATED readings of a concealed-effect trial, not a recording.", shown)
+    }
+
+    /// The same below a line of its own.
+    pub fn table(&self, above: &str, shown: &[f64]) -> String {
         let channels = self.read_channels();
         let has_station = [0, 1].map(|k| self.loadings.iter().any(|l| l.stations[k] != self.tip));
-        let mut text = String::from("# SIMULATED readings of a concealed-effect trial, not a recording.\n");
+        let mut text = format!("{above}\n");
         let mut names = vec!["axis", if self.columns.kilograms { "load_kg" } else { "load_n" }];
         let optional = [
             (self.columns.trial, "trial"),

@@ -88,7 +88,8 @@ fn bench(needs: Needs, largest: f64, random: &mut Random) -> Bench {
     let drawing = drawing(needs, random);
     let protocol = protocol(&drawing, needs, largest, random);
     let sticking = protocol.loadings.iter().map(|_| random.uniform(-1.0, 1.0)).collect();
-    Bench { drawing, protocol, sticking }
+    let full_scale = protocol.largest_load();
+    Bench { drawing, protocol, sticking, full_scale }
 }
 
 fn tube(random: &mut Random) -> Tube {

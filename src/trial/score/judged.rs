@@ -3,7 +3,9 @@
 use serde::Deserialize;
 use serde_json::Value;
 
+use super::counterfactual::Counterfactual;
 use super::place;
+use crate::trial::answers::Answer;
 use crate::trial::truth::{Concealed, Truth};
 
 /// What an answer found.
@@ -20,6 +22,15 @@ pub struct Finding {
     /// Effects that it might be as well.
     #[serde(default)]
     pub indistinguishable_from: Vec<String>,
+    /// Where it might be as well.
+    #[serde(default)]
+    pub places: Vec<String>,
+    /// What would tell, in words and as numbers.
+    #[serde(default)]
+    pub next_measurement: Option<String>,
+    #[serde(default)]
+    #[allow(missing_docs)]
+    pub next_measurement_plan: Option<Value>,
 }
 
 /// A number with its 95 % interval.
@@ -55,13 +66,21 @@ pub struct Judged<'a> {
     pub is_unexplained: bool,
     /// 1 − after²/before² of the held-out errors.
     pub gain: Option<f64>,
+    /// Errors of the readings that were asked for.
+    pub counterfactual: Option<Counterfactual>,
     /// True where the answer is no diagnosis.
     pub failed: bool,
 }
 
 impl<'a> Judged<'a> {
-    /// Reads an answer. What is no diagnosis has found nothing.
-    pub fn new(truth: &'a Truth, answer: &Value) -> Self {
+    /// Reads an answer.
+    pub fn new(truth: &'a Truth, answer: &Answer) -> Self {
+        let counterfactual = Counterfactual::new(truth, answer);
+        Judged { counterfactual, ..Judged::of_diagnosis(truth, &answer.answer) }
+    }
+
+    /// Reads a diagnosis. What is none has found nothing.
+    pub fn of_diagnosis(truth: &'a Truth, answer: &Value) -> Self {
         let said = Said::deserialize(answer);
         let failed = said.is_err() || answer.get("verdict").is_none();
         let said = said.unwrap_or_default();
@@ -69,7 +88,14 @@ impl<'a> Judged<'a> {
             (Some(before), Some(after)) if before > 0.0 => Some(1.0 - (after / before).powi(2)),
             _ => None,
         };
-        Judged { truth, findings: said.findings, is_unexplained: said.unexplained.is_some(), gain, failed }
+        Judged {
+            truth,
+            findings: said.findings,
+            is_unexplained: said.unexplained.is_some(),
+            gain,
+            counterfactual: None,
+            failed,
+        }
     }
 
     /// The finding of the right name for a concealed effect, at the right place if there is one.
@@ -159,6 +185,6 @@ impl<'a> Judged<'a> {
 }
 
 /// `friction (slide)` is friction.
-fn first_word(name: &str) -> &str {
+pub(super) fn first_word(name: &str) -> &str {
     name.split(|c: char| !(c.is_alphanumeric() || c == '_')).next().unwrap_or(name)
 }

@@ -3,7 +3,7 @@ use std::collections::BTreeMap;
 use serde_json::json;
 
 use super::*;
-use crate::trial::truth::{Concealed, Parameter};
+use crate::trial::truth::{Asked, Concealed, Parameter};
 
 fn concealed(effect: &str, location: &str, parameter: (&str, f64), separation: f64) -> Concealed {
     Concealed {
@@ -35,6 +35,8 @@ fn truth(case: usize, kind: Kind, effects: Vec<Concealed>) -> Truth {
         joints: BTreeMap::from([("sleeve".to_owned(), 205.0)]),
         geometric_um: 0.0,
         oracle_gain: Some(0.8),
+        seed: None,
+        asked: None,
     }
 }
 
@@ -52,6 +54,7 @@ fn answer(case: usize, findings: &[(&str, &str, Value)], unexplained: bool) -> A
         answer: json!({"verdict": "mismatch", "findings": findings, "unexplained": unexplained,
                        "heldout_before_um": 2.0, "heldout_after_um": 1.0}),
         sha256: BTreeMap::new(),
+        asked_um: None,
     }
 }
 
@@ -93,7 +96,7 @@ fn example() -> (Vec<Truth>, Vec<Answer>) {
 #[test]
 fn a_small_trial_is_counted_by_hand() {
     let (truths, answers) = example();
-    let json = of(&truths, &answers).json;
+    let json = of(&truths, &answers, &[]).json;
     assert_eq!((json["cases"].as_u64(), json["unanswered"].as_u64()), (Some(9), Some(1)));
     assert_eq!((json["clean"]["n"].as_u64(), json["clean"]["false_names"].as_u64()), (Some(2), Some(1)));
     let single = &json["single"];
@@ -110,15 +113,61 @@ fn a_small_trial_is_counted_by_hand() {
     assert_eq!(json["coverage"], 0.5);
     assert_eq!(json["right_when_named"]["count"], 3);
     assert!((json["gain_over_oracle"].as_f64().unwrap() - 0.75 / 0.8).abs() < 1e-12);
-    for key in ["counterfactual_over_oracle", "next_measurement_ok"] {
-        assert!(json[key].is_null() && json.as_object().unwrap().contains_key(key));
+    // nobody was asked for other readings, and nothing was measured once more
+    assert!(json["counterfactual_over_oracle"].is_null());
+    assert_eq!(
+        (&json["next_measurement_ok"]["n"], &json["next_measurement_ok"]["ok"]),
+        (&json!(0), &json!(0))
+    );
+    assert_eq!(json["next_measurement_ok"]["not_done"], json!({"not asked": 4}));
+}
+
+#[test]
+fn other_readings_are_scored_against_the_oracle() {
+    let (mut truths, mut answers) = example();
+    // of an identifiable case, of one that is not, and of one whose answer leaves a reading out
+    for (k, said) in [(2, vec![1.2, 2.2]), (5, vec![9.0, 9.0]), (3, vec![1.0])] {
+        let oracle_um = Some(vec![1.1, 2.1]);
+        truths[k].asked = Some(Asked { true_um: vec![1.0, 2.0], oracle_um });
+        answers[k].asked_um = Some(said);
     }
+    let json = of(&truths, &answers, &[]).json;
+    assert!((json["counterfactual_over_oracle"].as_f64().unwrap() - 2.0).abs() < 1e-9);
+    let counts = &json["counterfactual"];
+    assert_eq!((&counts["n"], &counts["answered"]), (&json!(2), &json!(1)));
+    assert_eq!(counts["worst"][0]["case"], "rig/case-0003");
+}
+
+#[test]
+fn what_was_measured_once_more_settles_or_does_not() {
+    let (truths, answers) = example();
+    let sealed = Sealed { truths, given: answers };
+    let due: Vec<String> = sealed.due().into_iter().map(|due| due.case).collect();
+    assert_eq!(due, [3, 4, 5, 7].map(|case| format!("rig/case-{case:04}")));
+    let diagnosed = |effect: &str, place: &str, others: &[&str]| {
+        let finding = json!({"effect": effect, "location": place, "indistinguishable_from": others});
+        Outcome::Diagnosed(json!({"verdict": "mismatch", "findings": [finding]}))
+    };
+    let outcomes = [
+        Outcome::NotProposed,
+        diagnosed("friction", "slide", &["backlash"]),
+        diagnosed("joint_compliance", "sleeve", &["friction"]),
+        Outcome::NotDone("the rod broke".into()),
+    ];
+    let outcomes: Vec<(String, Outcome)> = due.into_iter().zip(outcomes).collect();
+    let score = sealed.score(&outcomes);
+    let next = &score.json["next_measurement_ok"];
+    // a rival that is new is another question
+    assert_eq!((&next["n"], &next["ok"], &next["not_proposed"]), (&json!(2), &json!(1), &json!(1)));
+    assert_eq!(next["not_done"], json!({"the rod broke": 1}));
+    assert_eq!(next["open"][0]["case"], "rig/case-0005");
+    assert!(score.text.contains("1 more without a proposal; 1 not done (the rod broke)"), "{}", score.text);
 }
 
 #[test]
 fn the_order_of_answers_does_not_matter() {
     let (truths, mut answers) = example();
-    let before = of(&truths, &answers);
+    let before = of(&truths, &answers, &[]);
     answers.reverse();
-    assert_eq!(of(&truths, &answers), before);
+    assert_eq!(of(&truths, &answers, &[]), before);
 }

@@ -40,7 +40,7 @@ pub(super) fn of(campaign: &Campaign, calibration: &Calibration, scene: &Scene) 
     let recording = &campaign.measurements;
     let known = known(campaign, calibration);
     let (rows, data) = (recording.len(), 3 * recording.len() + known.len());
-    let sigma = calibration.noise.pooled;
+    let sigma = scene.noise;
     let mut residual = DVector::zeros(data);
     for row in 0..rows {
         residual.fixed_rows_mut::<3>(3 * row).copy_from(&(-calibration.deviations[row] * scene.scale[row]));

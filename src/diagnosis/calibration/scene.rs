@@ -5,7 +5,7 @@ use nalgebra::{DVector, Matrix3, Vector3};
 use super::gear::Gear;
 use super::posture::{self, Posture};
 use crate::calibration::campaign::{Campaign, Recording, Targets};
-use crate::calibration::{Calibration, Compensation, Mode};
+use crate::calibration::{Calibration, Compensation, Mode, Robust};
 use crate::diagnosis::{Candidate, EffectParameter};
 use crate::error::Result;
 use crate::robot::Motion;
@@ -16,10 +16,14 @@ pub(super) struct Scene<'a> {
     pub postures: Vec<Posture>,
     /// What each row counts, relative to the others: pooled noise over the noise of its group.
     pub scale: Vec<f64>,
+    /// Pooled noise of a coordinate, m.
+    pub noise: f64,
     /// How far each row is off, in noises of its group.
     off: Vec<f64>,
     /// Motion of every joint.
     pub motions: Vec<Motion>,
+    /// Does the robot's file have masses? Without them the torques are those of rod and contact alone.
+    pub has_masses: bool,
     /// C^F of the rod in {T}, m/N; zero for a rigid one.
     pub force_compliance: Matrix3<f64>,
     /// Deflections in {W} by the rod's model, m, by contact force and by gravity; empty without a rod.
@@ -47,7 +51,10 @@ impl<'a> Scene<'a> {
     pub fn new(campaign: &'a Campaign, calibration: &Calibration) -> Result<Self> {
         let used = Compensation::new(campaign, calibration.mode)?;
         let recording = &campaign.measurements;
-        let noise = &calibration.noise;
+        // by medians: one misread pose would make its whole clamp count less
+        let determined = calibration.fit.covariance.rank;
+        let noise =
+            calibration.noise.estimate(recording, &calibration.deviations, determined, Robust::Huber)?;
         // a rod that was taken for rigid bends as its beam model says
         let (rod, accounted) = match (calibration.mode, &campaign.rod) {
             (Mode::None, Some(_)) => (Compensation::new(campaign, Mode::Fea)?.compliance, 0.0),
@@ -64,6 +71,7 @@ impl<'a> Scene<'a> {
         };
         Ok(Scene {
             recording,
+            noise: noise.pooled,
             scale: recording.rows.iter().map(|row| noise.pooled / noise.of_group[row.group]).collect(),
             off: recording
                 .rows
@@ -71,6 +79,7 @@ impl<'a> Scene<'a> {
                 .zip(&calibration.deviations)
                 .map(|(row, deviation)| deviation.norm() / noise.of_group[row.group])
                 .collect(),
+            has_masses: campaign.robot.has_masses(),
             motions: campaign.robot.joints.iter().map(|joint| joint.motion).collect(),
             force_compliance: rod.as_ref().map_or_else(Matrix3::zeros, |rod| rod.force),
             bent: postures.iter().enumerate().filter_map(bend).collect(),

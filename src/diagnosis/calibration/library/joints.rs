@@ -33,8 +33,8 @@ pub(super) fn all(scene: &Scene, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
     let largest: Vec<f64> =
         (0..scene.joint_count()).map(|j| scene.largest(|posture| posture.torque[j])).collect();
     let most = largest.iter().fold(0.0, |a: f64, &b| a.max(b));
-    let loaded: Vec<usize> =
-        scene.revolute().into_iter().filter(|&j| most > 0.0 && largest[j] > NO_TORQUE * most).collect();
+    let is_loaded = |&j: &usize| scene.has_masses && most > 0.0 && largest[j] > NO_TORQUE * most;
+    let loaded: Vec<usize> = scene.revolute().into_iter().filter(is_loaded).collect();
     if loaded.is_empty() {
         for effect in ["joint_nonlinear_stiffness", "link_flexibility", "gravity_tilt", "backlash"] {
             lacks.push(lack(effect, "the robot file has no masses, so that no torque is known"));

@@ -51,10 +51,9 @@ impl<'a> Scene<'a> {
     pub fn new(campaign: &'a Campaign, calibration: &Calibration) -> Result<Self> {
         let used = Compensation::new(campaign, calibration.mode)?;
         let recording = &campaign.measurements;
-        // by medians: one misread pose would make its whole clamp count less
+        let steps = steps(recording, &calibration.deviations);
         let determined = calibration.fit.covariance.rank;
-        let noise =
-            calibration.noise.estimate(recording, &calibration.deviations, determined, Robust::Huber)?;
+        let noise = calibration.noise.estimate(recording, &steps, determined, Robust::Huber)?;
         // a rod that was taken for rigid bends as its beam model says
         let (rod, accounted) = match (calibration.mode, &campaign.rod) {
             (Mode::None, Some(_)) => (Compensation::new(campaign, Mode::Fea)?.compliance, 0.0),
@@ -150,6 +149,23 @@ impl<'a> Scene<'a> {
             false => format!("pose {}", self.recording.pose_name(row)),
         }
     }
+}
+
+/// Differences of neighbours in each clamp or socket, over √2: as large as noise alone, whatever else a clamp is off by. With
+/// the median of their lengths neither a pose that was misread nor a clamp that moved makes all its poses count less.
+fn steps(recording: &Recording, deviations: &[Vector3<f64>]) -> Vec<Vector3<f64>> {
+    let mut steps = deviations.to_vec();
+    for group in 0..recording.groups.len() {
+        let rows: Vec<usize> =
+            (0..recording.len()).filter(|&row| recording.rows[row].group == group).collect();
+        for pair in rows.windows(2) {
+            steps[pair[1]] = (deviations[pair[1]] - deviations[pair[0]]) / 2.0f64.sqrt();
+        }
+        if let [first, second, ..] = rows[..] {
+            steps[first] = steps[second];
+        }
+    }
+    steps
 }
 
 impl Column {

@@ -140,6 +140,8 @@ fn confusion(half: &str, score: &Value) -> Option<Figure> {
     let mut names: Vec<&str> = all.iter().copied().filter(|name| is_answer(name)).collect();
     let answers = names.len();
     names.extend(all.iter().copied().filter(|name| !is_answer(name)));
+    let is_outside =
+        |truth: &str| score["outside"].as_array().is_some_and(|all| all.iter().any(|name| name == truth));
     let place = |name: &str| names.iter().position(|known| *known == name).map(|k| k as f64 + 1.0);
     let mut chart = Chart::new("", "answer, by its number", "truth");
     for (truth, row) in rows {
@@ -148,11 +150,12 @@ fn confusion(half: &str, score: &Value) -> Option<Figure> {
         for (answer, count) in row {
             let count = count.as_f64()?;
             let (x, y) = (place(answer)?, -place(truth)?);
-            let colour = if answer == truth { Colour::Blue } else { Colour::Vermilion };
-            let marker = if answer == truth { Marker::Circle } else { Marker::Square };
+            let is_right = answer == truth || (answer == "unexplained" && is_outside(truth));
+            let colour = if is_right { Colour::Blue } else { Colour::Vermilion };
+            let marker = if is_right { Marker::Circle } else { Marker::Square };
             let size = FULL_PX * (count / total.max(1.0)).sqrt().max(0.2);
             let style = Style::nth(0).colour(colour).marker(marker).size(size);
-            let label = if answer == truth { "right" } else { "another name" };
+            let label = if is_right { "right" } else { "another name" };
             chart = chart.with(Mark::Points {
                 label: label.into(),
                 points: vec![Point { x, y, error: 0.0 }],
@@ -172,7 +175,7 @@ fn confusion(half: &str, score: &Value) -> Option<Figure> {
     let of = truths.count();
     Some(Figure::from(chart).named(format!("{half}-confusion")).captioned(format!(
         "What was taken for what: {of} truths that could have been identified, and the strongest finding. The numbers are cases; \
-         a circle or a square is as large as its share of the row. Names that are only a truth are physics outside the library."
+         a circle or a square is as large as its share of the row. To physics outside the library `unexplained` is the right answer."
     )))
 }
 

@@ -204,6 +204,7 @@ fn of_cases(cases: &[Judged<'_>], outcomes: &BTreeMap<&str, &Outcome>) -> Score 
         "next_measurement_ok": next,
         "bins": tables::bins(cases),
         "confusion": tables::confusion(cases),
+        "outside": tables::outside(cases),
         "power": tables::power(cases),
         "failures": tables::failures(cases),
     });

@@ -57,6 +57,26 @@ fn other_readings_are_foretold_and_what_is_proposed_is_measured() {
     }
 }
 
+/// A fixed trial with room for one or two cases of bad luck, which a regression would use up.
+#[test]
+fn a_small_trial_is_answered_as_well_as_ever() {
+    let sandbox = Sandbox::empty();
+    sandbox.run("trial make t --seed 20261121 --cases 48").succeeded();
+    sandbox.run("trial answer t").succeeded();
+    let score = sandbox.run("trial score t --json").json();
+    let count = |of: &str, key: &str| score[of][key].as_u64().unwrap();
+    assert_eq!((count("clean", "n"), score["failed"].as_u64()), (20, Some(0)));
+    assert!(count("clean", "false_names") + count("clean", "false_unexplained") <= 1, "{}", score["clean"]);
+    let single = &score["single"];
+    assert!(count("single", "identifiable") == 8 && count("single", "name_ok") >= 7, "{single}");
+    assert!(count("single", "location_ok") >= 7 && count("single", "in_class") >= 12, "{single}");
+    assert!(count("pairs", "identifiable") == 4 && count("pairs", "both_found") >= 3, "{}", score["pairs"]);
+    assert!(count("unknown", "wrongly_named") == 0, "{}", score["unknown"]);
+    for (key, least) in [("coverage", 0.75), ("gain_over_oracle", 0.9)] {
+        assert!(score[key].as_f64().unwrap() > least, "{key}: {}", score[key]);
+    }
+}
+
 #[test]
 fn another_key_and_changed_recordings_are_refused() {
     let sandbox = Sandbox::empty();

@@ -81,6 +81,14 @@ pub fn confusion(cases: &[Judged<'_>]) -> Value {
     json!(counts(cases))
 }
 
+/// Names of the effects that the library does not have: "unexplained" is the right answer to them.
+pub fn outside(cases: &[Judged<'_>]) -> Value {
+    let unknown = cases.iter().filter(|case| case.truth.kind == Kind::Unknown);
+    let names: BTreeSet<&str> =
+        unknown.flat_map(|case| case.truth.effects.iter().map(|e| e.effect.as_str())).collect();
+    json!(names)
+}
+
 /// As a table with a line for each truth.
 pub fn confusion_text(cases: &[Judged<'_>]) -> String {
     let counts = counts(cases);

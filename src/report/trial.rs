@@ -15,7 +15,7 @@ const OPEN: f64 = 3.0;
 /// Failures that are listed.
 const MOST_FAILURES: usize = 200;
 
-/// The report of a score, as [`crate::trial::score::score`] makes it.
+/// The report of a score, as [`crate::trial::score`] makes it.
 pub fn report(score: &Value) -> Report {
     let halves: Vec<(&str, &Value)> =
         ["rig", "calibration"].into_iter().filter_map(|half| Some((half, score.get(half)?))).collect();

@@ -62,7 +62,8 @@ fn convincing(search: &Search, story: Story, unknown: Option<Remainder>) -> (Sto
     (story, remainder)
 }
 
-/// A story without single data that are no farther out than the tails of this recording's noise reach.
+/// A story without events (a reading, or the three coordinates of a pose) that are no farther out than the tails of this
+/// recording's noise reach.
 ///
 /// Where the other residuals have more kurtosis than a normal distribution, by three standard errors √(24/n), a datum has to
 /// be twice as far out as any of them.

@@ -18,10 +18,19 @@ const TURN: f64 = 40.0;
 pub(super) struct Plan {
     /// In the user's words; a full sentence.
     pub words: String,
-    /// Joint values, the row that is like it, and its group.
-    poses: Vec<(Vec<f64>, usize, usize)>,
+    poses: Vec<NewPose>,
     /// A clamp that is not there yet.
     group: Option<Group>,
+}
+
+/// A pose to measure.
+struct NewPose {
+    /// Joint values, rad or m.
+    joints: Vec<f64>,
+    /// The recorded row that is most like it: it has its point and its deflection.
+    like: usize,
+    /// Index of its clamp or socket.
+    group: usize,
 }
 
 impl Plan {
@@ -37,7 +46,7 @@ impl Plan {
         let first = recording.rows.first().and_then(|row| row.time);
         let pace = first.zip(last).map(|(a, b)| (b - a) / (recording.rows.len().max(2) - 1) as f64);
         let temperature = recording.rows.last().and_then(|row| row.temperature);
-        for (number, (joints, like, group)) in self.poses.iter().enumerate() {
+        for (number, NewPose { joints, like, group }) in self.poses.iter().enumerate() {
             let time = last.zip(pace).map(|(last, pace)| last + pace * (number + 1) as f64);
             let pose = format!("new {}", number + 1);
             recording.rows.push(Row {
@@ -70,7 +79,11 @@ pub(super) fn feasible(campaign: &Campaign, postures: &[Posture]) -> Vec<Plan> {
     if count == 0 {
         return Vec::new();
     }
-    let again = |row: usize| (postures[row].joints.clone(), row, recording.rows[row].group);
+    let again = |row: usize| NewPose {
+        joints: postures[row].joints.clone(),
+        like: row,
+        group: recording.rows[row].group,
+    };
     let stride = count.div_ceil(MOST);
     let some = || (0..count).step_by(stride);
     let which = match stride {
@@ -117,7 +130,7 @@ fn alone(campaign: &Campaign, postures: &[Posture], joint: usize) -> Option<Plan
     let poses = there.clone().chain(there.rev()).map(|q| {
         let mut joints = postures[at].joints.clone();
         joints[joint] = q;
-        (joints, at, campaign.measurements.rows[at].group)
+        NewPose { joints, like: at, group: campaign.measurements.rows[at].group }
     });
     let words = format!(
         "Move joint {} alone through its range and back in {STEPS} steps each, the other joints as in pose {}, and \
@@ -130,12 +143,7 @@ fn alone(campaign: &Campaign, postures: &[Posture], joint: usize) -> Option<Plan
 
 /// After some other poses the clamp with most poses once more, turned about joint 1 with all of them: what it needs is a place
 /// to stand.
-fn turned_clamp(
-    campaign: &Campaign,
-    postures: &[Posture],
-    before: Vec<(Vec<f64>, usize, usize)>,
-    said: &str,
-) -> Option<Plan> {
+fn turned_clamp(campaign: &Campaign, postures: &[Posture], before: Vec<NewPose>, said: &str) -> Option<Plan> {
     let recording = &campaign.measurements;
     let rows_of = |group: usize| (0..postures.len()).filter(move |&row| recording.rows[row].group == group);
     let group = (0..recording.groups.len()).max_by_key(|&group| rows_of(group).count())?;
@@ -152,7 +160,7 @@ fn turned_clamp(
     let poses = rows_of(group).take(MOST).map(|row| {
         let mut joints = postures[row].joints.clone();
         joints[0] += degrees.to_radians();
-        (joints, row, recording.groups.len())
+        NewPose { joints, like: row, group: recording.groups.len() }
     });
     let name = &recording.groups[group].name;
     let words = format!(

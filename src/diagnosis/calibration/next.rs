@@ -35,7 +35,8 @@ const NONE: f64 = 1.0;
 pub struct NextPoses {
     /// In the user's words; a full sentence.
     pub words: String,
-    /// By how much they would tell the mismatch from its closest rival: ln of the odds that are expected.
+    /// By how much they would tell the mismatch from its closest rival: ln of the odds that are expected, 30 at most, as of what
+    /// is weighed or gauged without any poses.
     pub log_odds: f64,
 }
 

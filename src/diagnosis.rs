@@ -5,6 +5,7 @@
 //! them were real. Which effects there are, how they act together and how they are said to people is the world's business.
 
 pub mod calibration;
+mod choice;
 mod diagnose;
 mod evidence;
 mod judgement;

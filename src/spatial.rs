@@ -1,6 +1,9 @@
 //! Vectors, rotations and frames in space: the few operations that nalgebra has no short name for.
 
-use nalgebra::{Matrix3, Rotation3, Vector3};
+use nalgebra::{DMatrix, Matrix3, Rotation3, Vector3};
+
+use crate::error::Result;
+use crate::linalg::thin_svd;
 
 /// A frame: rotation matrix and origin. Columns of the rotation are its axes in the frame it is given in.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -48,6 +51,23 @@ impl Pose {
         let rotation = self.rotation.transpose();
         Pose { rotation, origin: -(rotation * self.origin) }
     }
+}
+
+/// The motion that brings points `from` closest to as many points `to`, in the sense of least squares: with the singular value
+/// decomposition U·S·Vᵀ of Σ (y − ȳ)(x − x̄)ᵀ its rotation is U·diag(1, 1, ±1)·Vᵀ (W. Kabsch, *Acta Cryst.* A32 (1976)
+/// 922–923).
+///
+/// # Errors
+/// As [`thin_svd`]: for points that are not finite.
+pub fn best_motion(from: &[Vector3<f64>], to: &[Vector3<f64>]) -> Result<Pose> {
+    let mean = |of: &[Vector3<f64>]| of.iter().sum::<Vector3<f64>>() / of.len().max(1) as f64;
+    let (centre, goal) = (mean(from), mean(to));
+    let spread: Matrix3<f64> = from.iter().zip(to).map(|(x, y)| (y - goal) * (x - centre).transpose()).sum();
+    let svd = thin_svd(&DMatrix::from_column_slice(3, 3, spread.as_slice()))?;
+    let (u, v) = (svd.u.fixed_view::<3, 3>(0, 0), svd.v.fixed_view::<3, 3>(0, 0));
+    let handed = (u.determinant() * v.determinant()).signum();
+    let rotation = u * Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, handed)) * v.transpose();
+    Ok(Pose { rotation, origin: goal - rotation * centre })
 }
 
 /// `exp([v]×)`: the rotation about `v` by its length (Rodrigues).
@@ -113,6 +133,19 @@ mod tests {
         assert_eq!(skew(&v) * w, v.cross(&w));
         let m = Matrix3::new(0.5, 4.0, -1.0, 2.0, 0.25, 8.0, -3.0, 1.0, 5.0);
         assert_eq!(skew(&v) * m, cross(&v, &m));
+    }
+
+    #[test]
+    fn points_are_brought_back_to_where_they_were() {
+        let turn = Pose::from_xyz_rpy([0.3, -0.2, 1.0], [2.5, -0.4, 1.2]);
+        // in one plane, where a reflection would do as well
+        let points = [[0.0, 0.0], [1.0, 0.2], [-0.4, 0.7], [0.3, -1.0]].map(|[x, y]| Vector3::new(x, y, 0.5));
+        let moved = points.map(|p| turn.point(&p));
+        let motion = best_motion(&points, &moved).unwrap();
+        assert!(
+            (motion.rotation - turn.rotation).norm() < 1e-14 && (motion.origin - turn.origin).norm() < 1e-14
+        );
+        assert!(best_motion(&[Vector3::repeat(f64::NAN); 3], &points[..3]).is_err());
     }
 
     #[test]

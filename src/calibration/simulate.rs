@@ -124,6 +124,7 @@ pub fn simulate<'r>(robot: &'r Robot, rod: &Rod, model: &Compliance, plan: &Plan
         compliance: Some(compliance),
         payload: Some(payload),
         contact_force: Vector3::from(PAPER_CONTACT_FORCE),
+        displaced: Vec::new(),
     };
     let free = minimal_parameters(robot, truth.tool, rod.tip(), Some(payload));
     let poses = poses::choose(&truth, &free, &groups, plan)?;

@@ -4,13 +4,12 @@
 //! Kabsch's rotation between two clouds of points; for a given base the tool is a linear least-squares problem. Both
 //! in turn, from the user's guess and from a few others, find the base from anywhere.
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Vector3;
 
 use super::campaign::{Campaign, Recording, Targets};
 use crate::error::Result;
-use crate::linalg::thin_svd;
 use crate::robot::Robot;
-use crate::spatial::Pose;
+use crate::spatial::{Pose, best_motion};
 
 /// Most turns of alternation.
 const TURNS: usize = 50;
@@ -50,7 +49,8 @@ pub(super) fn rough_start(
         let mut tool = guess;
         let mut before = f64::INFINITY;
         for _ in 0..TURNS {
-            let base = best_base(&flanges, &points, &tool)?;
+            let tips: Vec<Vector3<f64>> = flanges.iter().map(|flange| flange.point(&tool)).collect();
+            let base = best_motion(&tips, &points)?;
             tool = best_tool(&flanges, &points, &base, &tool);
             let misfit = misfit(&flanges, &points, &base, &tool);
             if misfit < least {
@@ -74,20 +74,6 @@ pub(super) fn first_guess(campaign: &Campaign) -> (Pose, Vector3<f64>) {
 fn misfit(flanges: &[Pose], points: &[Vector3<f64>], base: &Pose, tool: &Vector3<f64>) -> f64 {
     let pairs = flanges.iter().zip(points);
     pairs.map(|(flange, x)| (base.point(&flange.point(tool)) - x).norm_squared()).sum()
-}
-
-/// Kabsch: with the singular value decomposition U·S·Vᵀ of Σ (x − x̄)(y − ȳ)ᵀ the rotation is U·diag(1, 1, ±1)·Vᵀ
-/// (W. Kabsch, *Acta Cryst.* A32 (1976) 922–923).
-fn best_base(flanges: &[Pose], points: &[Vector3<f64>], tool: &Vector3<f64>) -> Result<Pose> {
-    let tips: Vec<Vector3<f64>> = flanges.iter().map(|flange| flange.point(tool)).collect();
-    let mean = |of: &[Vector3<f64>]| of.iter().sum::<Vector3<f64>>() / of.len().max(1) as f64;
-    let (from, to) = (mean(&tips), mean(points));
-    let spread: Matrix3<f64> = tips.iter().zip(points).map(|(y, x)| (x - to) * (y - from).transpose()).sum();
-    let svd = thin_svd(&nalgebra::DMatrix::from_column_slice(3, 3, spread.as_slice()))?;
-    let (u, v) = (svd.u.fixed_view::<3, 3>(0, 0), svd.v.fixed_view::<3, 3>(0, 0));
-    let handed = (u.determinant() * v.determinant()).signum();
-    let rotation = u * Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, handed)) * v.transpose();
-    Ok(Pose { rotation, origin: to - rotation * from })
 }
 
 /// Σ (R_b·Rᵢ)ᵀ(xᵢ − p_b − R_b·oᵢ)/n: the normal equations of the tool have the identity as their matrix.

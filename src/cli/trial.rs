@@ -1,22 +1,19 @@
 //! `rodcal trial make|answer|score`.
 
+mod case;
+
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
-use rodcal::calibration::campaign::Campaign;
-use rodcal::calibration::{Options, default_mode};
-use rodcal::diagnosis::{calibration, rig};
 use rodcal::parallel::in_parallel;
-use rodcal::rig::readings::Readings;
-use rodcal::rod::Rod;
 use rodcal::trial::answers::{self, Answer};
 use rodcal::trial::envelope::{self, Manifest};
 use rodcal::trial::{Half, score};
-use rodcal::units::UM;
 use rodcal::{Error, Result, report};
 use serde_json::{Value, json};
 
+use self::case::CaseFiles;
 use super::output::Outcome;
 use super::progress::Progress;
 
@@ -168,8 +165,9 @@ impl AnswerCases {
     fn answer(&self, manifest: &Manifest, case: &str) -> Result<Answer> {
         manifest.check_case(&self.directory, case)?;
         // what the diagnosis refuses is an answer too, and the other cases go on
-        let (answer, asked_um) = diagnosed(&self.directory.join(case))
-            .unwrap_or_else(|error| (json!({ "error": error.to_string() }), None));
+        let files = CaseFiles { directory: self.directory.join(case), changed: Vec::new() };
+        let (answer, asked_um) =
+            files.diagnosed().unwrap_or_else(|error| (json!({ "error": error.to_string() }), None));
         Ok(Answer { case: case.to_owned(), answer, sha256: manifest.hashes_of(case), asked_um })
     }
 }
@@ -201,16 +199,13 @@ impl ScoreAnswers {
 
     /// Makes the measurement that an answer proposes and diagnoses the recording with it.
     fn once_more(&self, due: &score::Due) -> Result<score::Outcome> {
-        let recording = match due.recording(&self.directory)? {
-            Ok(recording) => recording,
+        let changed = match due.files(&self.directory)? {
+            Ok(files) => files,
             Err(outcome) => return Ok(outcome),
         };
-        let rod = Rod::read(&self.directory.join(&due.case).join("rod.toml"))?;
-        let diagnosed = Readings::from_text("readings.csv", &recording).and_then(|readings| {
-            Ok(report::diagnosis::json(&rig::diagnose(&readings, Some(&rod))?, &readings, Some(&rod)))
-        });
-        Ok(match diagnosed {
-            Ok(diagnosis) => score::Outcome::Diagnosed(diagnosis),
+        let files = CaseFiles { directory: self.directory.join(&due.case), changed };
+        Ok(match files.diagnosed() {
+            Ok((diagnosis, _)) => score::Outcome::Diagnosed(diagnosis),
             Err(error) => score::Outcome::NotDone(error.to_string()),
         })
     }
@@ -222,33 +217,4 @@ fn key_of(key: Option<&Path>, directory: &Path) -> Result<PathBuf> {
 
 fn plain(json: Value, text: String) -> Outcome {
     Outcome { json, report: None, text: Some(text), default_directory: None, files: Vec::new(), status: 0 }
-}
-
-/// The diagnosis of a case as its JSON, and what it says of the readings that are asked for, µm.
-fn diagnosed(case: &Path) -> Result<(Value, Option<Vec<f64>>)> {
-    let campaign = case.join("campaign.toml");
-    if campaign.exists() {
-        let campaign = Campaign::read(&campaign)?;
-        let found = calibration::diagnose(&campaign, default_mode(&campaign), &Options::default())?;
-        return Ok((report::diagnosis::calibration::json(&campaign, &found), None));
-    }
-    let rod = Rod::read(&case.join("rod.toml"))?;
-    let readings = Readings::read(&case.join("readings.csv"))?;
-    let found = rig::diagnose(&readings, Some(&rod))?;
-    let asked = case.join("asked.csv");
-    let asked_um = match asked.exists() {
-        true => {
-            let asked = Readings::read(&asked)?;
-            // what cannot be foretold is no reason to keep back what was found: the score counts it
-            let foretold = found.predicted(&asked, Some(&rod)).ok();
-            foretold.map(|readings| readings.into_iter().map(micrometres).collect())
-        }
-        false => None,
-    };
-    Ok((report::diagnosis::json(&found, &readings, Some(&rod)), asked_um))
-}
-
-/// To a hundredth of a nanometre: more digits say nothing.
-fn micrometres(reading: f64) -> f64 {
-    (reading / UM * 1e5).round() / 1e5
 }

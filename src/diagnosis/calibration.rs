@@ -9,6 +9,7 @@
 //! joint's axis. Such effects are no candidates, but [`CalibrationWorld::absorbed`] says which they are.
 
 mod apply;
+mod carried;
 mod cosines;
 mod evidence;
 mod feasible;
@@ -34,6 +35,7 @@ use crate::calibration::Calibration;
 use crate::calibration::campaign::Campaign;
 use crate::error::Result;
 pub use apply::{Applied, apply};
+pub use feasible::{NewPose, Plan};
 pub use findings::{Mismatch, Number};
 pub use gear::{Curve, Gear};
 pub use library::NotTestable;

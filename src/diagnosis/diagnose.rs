@@ -178,7 +178,9 @@ fn finding(
     }
     // candidates that would do in its place
     let additions = search.additions(&rest);
-    let least = story.log_probability - rest.log_probability - 2.0 * APART.ln();
+    // by the same measure as what was found: without it, what else the story holds is less certain than with it
+    let gained = (story.log_probability - rest.log_probability).min(additions[chosen.candidate]);
+    let least = gained - 2.0 * APART.ln();
     let mut rivals: Vec<Rival> = (0..additions.len())
         .filter(|&index| {
             index != chosen.candidate && !candidates[index].is_unknown && additions[index] > least

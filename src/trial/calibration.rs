@@ -2,16 +2,24 @@
 //!
 //! Kinematics, statics and the rod are this room's own; the fitter shares none of them.
 
+mod again;
 mod arm;
+mod asked;
 mod draw;
 mod effect;
 mod oracle;
+mod rod;
 mod setup;
 mod site;
+mod taken_up;
 mod text;
 
 use std::collections::BTreeMap;
 
+use nalgebra::Vector3;
+
+pub use self::again::{Proposed, again};
+use self::asked::Question;
 use self::effect::Effect;
 use self::oracle::Oracle;
 use self::setup::Needs;
@@ -21,11 +29,35 @@ use crate::statistics::Random;
 use crate::trial::truth::{Concealed, Kind, Parameter, Truth};
 use crate::units::UM;
 
-/// Streams of random numbers that the rig does not use.
+/// Streams of random numbers that the rig does not use: of the cases, and of what came later than these.
 const STREAM: u64 = 1 << 32;
+const ASKED: u64 = 4 << 32;
+const AGAIN: u64 = 5 << 32;
+
+/// A case as it was drawn.
+struct Drawn {
+    kind: Kind,
+    site: Site,
+    effects: Vec<Effect>,
+    /// Errors of the rows, m.
+    noise: Vec<Vector3<f64>>,
+    /// What was read, m.
+    read: Vec<Vector3<f64>>,
+    /// Where the file has the base.
+    guess: [Vector3<f64>; 2],
+}
 
 /// Case number `number` of the trial that belongs to `seed`.
 pub fn case(seed: u64, number: usize) -> Case {
+    let drawn = drawn(seed, number);
+    let asked = asked::draw(&drawn.site, &mut Random::seeded(seed, ASKED + number as u64));
+    let mut files = text::files(&drawn.site, &drawn.guess, &drawn.read);
+    files.extend(asked.files());
+    let truth = truth(format!("calibration/case-{number:04}"), &drawn, &asked);
+    Case { files, truth: Truth { seed: Some(seed), ..truth } }
+}
+
+fn drawn(seed: u64, number: usize) -> Drawn {
     let mut random = Random::seeded(seed, STREAM + number as u64);
     let kind = Kind::drawn(&mut random);
     let (numbers, needs) = numbers(kind, &mut random);
@@ -38,9 +70,10 @@ pub fn case(seed: u64, number: usize) -> Case {
             _ => draw::library(number, &site, faintest, &mut random),
         })
         .collect();
-    let read = setup::measured(&mut site, &effects, &mut random);
-    let truth = truth(format!("calibration/case-{number:04}"), kind, &site, &effects);
-    Case { files: text::files(&site, &read, &mut random), truth }
+    let noise = setup::noise(&site, 0, &mut random);
+    let read = setup::measured(&mut site, &effects, 0, &noise);
+    let guess = text::guess(&site, &mut random);
+    Drawn { kind, site, effects, noise, read, guess }
 }
 
 /// Effects by number, and what they need of a recording together.
@@ -65,7 +98,8 @@ fn numbers(kind: Kind, random: &mut Random) -> (Vec<usize>, Needs) {
     }
 }
 
-fn truth(case: String, kind: Kind, site: &Site, effects: &[Effect]) -> Truth {
+fn truth(case: String, drawn: &Drawn, asked: &Question) -> Truth {
+    let Drawn { kind, site, effects, noise, .. } = drawn;
     let oracle = (!effects.is_empty()).then(|| Oracle::new(site));
     let of = |(which, effect): (usize, &Effect)| {
         let alone = site.added(std::slice::from_ref(effect), &[]);
@@ -83,7 +117,7 @@ fn truth(case: String, kind: Kind, site: &Site, effects: &[Effect]) -> Truth {
     let left = oracle.as_ref().map(|oracle| oracle.share_left(effects));
     Truth {
         case,
-        kind,
+        kind: *kind,
         effects: concealed,
         noise_um: site.noise / UM,
         noise_shape: site.shape.map_or("normal".into(), |dof| format!("student-t ({dof})")),
@@ -96,7 +130,7 @@ fn truth(case: String, kind: Kind, site: &Site, effects: &[Effect]) -> Truth {
             .filter(|_| !effects.iter().any(Effect::is_of_one_run))
             .map(|left| left / (left + 1.0)),
         seed: None,
-        asked: None,
+        asked: Some(asked.truth(site, effects, noise)),
     }
 }
 

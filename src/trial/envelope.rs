@@ -4,7 +4,9 @@
 //! DIR/manifest.json              how many cases, SHA-256 of every file of them and of the key; nothing of the seed
 //! DIR/rig/case-0001/rod.toml     the rod as its file has it
 //! DIR/rig/case-0001/readings.csv what was read
-//! DIR/calibration/case-0003/  a campaign: campaign.toml, robot.toml, measurements.csv, and rod.toml where there is a rod
+//! DIR/rig/case-0001/asked.csv    what would have been read here?
+//! DIR/calibration/case-0003/     a campaign: campaign.toml, robot.toml, measurements.csv, and rod.toml where there is a rod;
+//!                                asked.toml, asked.csv, asked_rod.toml: where would the ball be there?
 //! DIR.key.jsonl                  the key: one line for each case
 //! ```
 //!

@@ -17,7 +17,7 @@ use std::path::Path;
 use serde_json::{Value, json};
 
 use self::judged::Judged;
-pub use self::next::{Due, Outcome};
+pub use self::next::{Due, Files, Outcome};
 use self::rate::Rate;
 use super::answers::{self, Answer};
 use super::envelope::Manifest;

@@ -35,12 +35,12 @@ pub struct Truth {
     /// Seed of the trial, from which whoever scores makes the case once more. A key of before has none.
     #[serde(default)]
     pub seed: Option<u64>,
-    /// What belongs into the readings that are asked for; a calibration is asked for none.
+    /// What belongs into the readings that are asked for.
     #[serde(default)]
     pub asked: Option<Asked>,
 }
 
-/// Readings that are asked for and not given, in the order of the file that asks, µm.
+/// Readings, or coordinates x, y, z of balls, that are asked for and not given, in the order of the file that asks, µm.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Asked {
     /// What would be read without noise.
@@ -48,6 +48,9 @@ pub struct Asked {
     /// What an oracle says that knows the law and the place of every effect and finds its size out from the recording; `None`
     /// where there is no such size: no effect, one of a single run, or physics that no library has.
     pub oracle_um: Option<Vec<f64>>,
+    /// True for points in a frame that nobody knows: they are compared after the best motion of all of them.
+    #[serde(default)]
+    pub is_any_frame: bool,
 }
 
 /// What sort of case.

@@ -75,6 +75,27 @@ fn a_small_trial_is_answered_as_well_as_ever() {
     for (key, least) in [("coverage", 0.75), ("gain_over_oracle", 0.9)] {
         assert!(score[key].as_f64().unwrap() > least, "{key}: {}", score[key]);
     }
+    // what is asked for is foretold about as well as by an oracle, for rods and for robots
+    for half in ["rig", "calibration"] {
+        let told = &score[half]["counterfactual"];
+        assert!(told["n"] == told["answered"] && told["n"].as_u64().unwrap() >= 3, "{half}: {told}");
+        assert!(told["median"].as_f64().unwrap() < 2.0, "{half}: {told}");
+    }
+}
+
+#[test]
+fn poses_that_are_proposed_are_measured_by_the_same_robot() {
+    let sandbox = Sandbox::empty();
+    // cases of clamps whose places are ambiguous, of tracked robots and of sockets
+    sandbox.run("trial make t --seed 1480989568 --case-range 103..120 --calibration").succeeded();
+    sandbox.run("trial answer t").succeeded();
+    let score = sandbox.run("trial score t --json").json();
+    let next = &score["next_measurement_ok"];
+    assert!(next["n"].as_u64().unwrap() >= 3 && next["ok"].as_u64().unwrap() >= 3, "{next}");
+    assert_eq!(next["not_done"], serde_json::json!({}));
+    let asked = sandbox.read("t/calibration/case-0103/asked.csv");
+    assert!(asked.starts_with("# SIMULATED") && asked.contains(",0.0000,0.0000,0.0000"), "{asked}");
+    assert!(sandbox.read("t/calibration/case-0103/asked.toml").contains("contact_force_n"));
 }
 
 #[test]

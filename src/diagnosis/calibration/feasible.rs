@@ -11,26 +11,33 @@ use crate::spatial::Pose;
 const MOST: usize = 40;
 /// Steps of a joint that is moved alone, there and as many back.
 const STEPS: usize = 20;
-/// Turn of joint 1 for a clamp that is set up once more.
+/// Turn of joint 1 for a clamp that is set up once more, degrees, and how far that joint turns where the robot's file does not
+/// say it.
 const TURN: f64 = 40.0;
+const WIDEST: f64 = 170.0;
+/// Fewest poses that are worth a clamp.
+const FEWEST: usize = 6;
 
 /// Poses to measure beside those that were.
-pub(super) struct Plan {
+#[derive(Debug, Clone, PartialEq)]
+pub struct Plan {
     /// In the user's words; a full sentence.
     pub words: String,
-    poses: Vec<NewPose>,
-    /// A clamp that is not there yet.
-    group: Option<Group>,
+    /// In their order.
+    pub poses: Vec<NewPose>,
+    /// A clamp that is not there yet; its index is the next one.
+    pub group: Option<Group>,
 }
 
 /// A pose to measure.
-struct NewPose {
+#[derive(Debug, Clone, PartialEq)]
+pub struct NewPose {
     /// Joint values, rad or m.
-    joints: Vec<f64>,
+    pub joints: Vec<f64>,
+    /// Index of its clamp or socket.
+    pub group: usize,
     /// The recorded row that is most like it: it has its point and its deflection.
     like: usize,
-    /// Index of its clamp or socket.
-    group: usize,
 }
 
 impl Plan {
@@ -148,24 +155,40 @@ fn turned_clamp(campaign: &Campaign, postures: &[Posture], before: Vec<NewPose>,
     let rows_of = |group: usize| (0..postures.len()).filter(move |&row| recording.rows[row].group == group);
     let group = (0..recording.groups.len()).max_by_key(|&group| rows_of(group).count())?;
     let first = postures.first()?;
-    // towards the middle of the joint's range
+    let [low, high] = campaign.robot.joints.first()?.limits.unwrap_or_else(|| {
+        let recorded = postures.iter().map(|posture| posture.joints[0].abs()).fold(0.0, f64::max);
+        let widest = recorded.max(WIDEST.to_radians());
+        [-widest, widest]
+    });
+    let within = |degrees: f64| {
+        let turned = |row: usize| (row, postures[row].joints[0] + degrees.to_radians());
+        rows_of(group).map(turned).filter(|(_, q)| (low..=high).contains(q)).take(MOST).collect::<Vec<_>>()
+    };
+    // towards the middle of the joint's range, unless that is the way out of it
     let mean = rows_of(group).map(|row| postures[row].joints[0]).sum::<f64>();
     let degrees = if mean > 0.0 { -TURN } else { TURN };
+    let degrees = if within(-degrees).len() > within(degrees).len() { -degrees } else { degrees };
+    let reached = within(degrees);
+    if reached.len() < FEWEST {
+        return None;
+    }
     let turn = Rotation3::from_axis_angle(&Unit::new_normalize(first.axis[0]), degrees.to_radians());
     let old = &recording.groups[group].device;
     let device = Pose {
         rotation: turn.matrix() * old.rotation,
         origin: first.origin[0] + turn * (old.origin - first.origin[0]),
     };
-    let poses = rows_of(group).take(MOST).map(|row| {
+    let some =
+        if reached.len() < rows_of(group).count().min(MOST) { " as far as joint 1 reaches" } else { "" };
+    let poses = reached.into_iter().map(|(row, q)| {
         let mut joints = postures[row].joints.clone();
-        joints[0] += degrees.to_radians();
+        joints[0] = q;
         NewPose { joints, like: row, group: recording.groups.len() }
     });
     let name = &recording.groups[group].name;
     let words = format!(
         "{said}Set up one more clamp where {name} would be if joint 1 were turned by {degrees}°, and measure the poses of \
-         {name} there."
+         {name} there{some}."
     );
     Some(Plan {
         words,

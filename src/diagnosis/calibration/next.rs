@@ -5,9 +5,8 @@
 //!
 //! ½·‖M_B·ηA‖²/σ²
 //!
-//! of which what the recorded poses make already is not counted. Of all plans the one is proposed that separates the finding
-//! best from its closest rival, whichever of the two is true (T-optimal: A. C. Atkinson, V. V. Fedorov, Biometrika 62 (1975)
-//! 57–70). What can be weighed or gauged needs no poses.
+//! of which what the recorded poses make already is not counted, and of which the less counts of both ways round. Of all
+//! plans the one is proposed that leaves least of the rivals (`choice.rs`). What can be weighed or gauged needs no poses.
 
 use nalgebra::DMatrix;
 
@@ -17,26 +16,25 @@ use super::scene::Scene;
 use super::{CalibrationWorld, evidence, library};
 use crate::calibration::Calibration;
 use crate::calibration::campaign::Campaign;
+use crate::diagnosis::choice::{Choice, is_told};
 use crate::diagnosis::whitening::Whitening;
 use crate::diagnosis::{Chosen, Diagnosis, Evidence, Rival, World};
 use crate::error::Result;
 
 /// Rivals that poses have to separate the finding from: the likeliest ones.
 const MOST_RIVALS: usize = 3;
-/// A more laborious plan has to be so much better,
-const BETTER: f64 = 1.3;
-/// unless these ln odds, which leave no doubt, are expected of the simpler one.
+/// Ln odds that leave no doubt: as of what is weighed or gauged.
 const DECISIVE: f64 = 30.0;
-/// Ln odds that are none: less than 3 : 1.
-const NONE: f64 = 1.0;
 
 /// Poses to measure next.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NextPoses {
     /// In the user's words; a full sentence.
     pub words: String,
-    /// By how much they would tell the mismatch from its closest rival: ln of the odds that are expected, 30 at most, as of what
-    /// is weighed or gauged without any poses.
+    /// The same as numbers; `None` for what is weighed or gauged without any poses.
+    pub plan: Option<Plan>,
+    /// By how much they would tell the mismatch from the closest of the rivals that they can tell: ln of the odds that are
+    /// expected, 30 at most.
     pub log_odds: f64,
 }
 
@@ -57,12 +55,11 @@ pub(super) fn next_poses(
     // what can be weighed or gauged needs no poses
     let effects = rivals.iter().map(|rival| world.candidates()[rival.chosen.candidate].effect.as_str());
     if let Some(words) = std::iter::once(mismatch.effect.as_str()).chain(effects).find_map(directly) {
-        return Ok(Some(NextPoses { words: words.into(), log_odds: DECISIVE }));
+        return Ok(Some(NextPoses { words: words.into(), plan: None, log_odds: DECISIVE }));
     }
     let own = Named::of(world, &diagnosis.story.chosen);
     let others: Vec<Named> = rivals.iter().map(|rival| Named::of(world, &rival.story.chosen)).collect();
     let variance = diagnosis.story.sigma.powi(2);
-    // a rival that the scan of another number of rows has no place for is not counted
     let distances = |world: &CalibrationWorld, evidence: &Evidence| -> Option<Vec<Option<f64>>> {
         let own = own.found_in(world)?;
         let apart = |other: &Named| {
@@ -73,20 +70,25 @@ pub(super) fn next_poses(
         Some(others.iter().map(apart).collect())
     };
     let Some(now) = distances(world, present) else { return Ok(None) };
-    let mut best: Option<NextPoses> = None;
+    let odds: Vec<f64> = rivals.iter().map(|rival| rival.odds).collect();
+    let mut choice = Choice::new();
     for plan in feasible(campaign, &scene.postures) {
         let stories: Vec<&Named> = std::iter::once(&own).chain(&others).collect();
         let (world, evidence) = future(campaign, calibration, &plan, &stories)?;
-        let Some(then) = distances(&world, &evidence).filter(|then| then.iter().any(Option::is_some)) else {
-            continue;
+        let Some(then) = distances(&world, &evidence) else { continue };
+        let gained = |(then, now): (&Option<f64>, &Option<f64>)| match (then, now) {
+            (Some(then), Some(now)) => then - now,
+            // the scan of another number of rows has no place for this rival: nothing is known
+            _ => 0.0,
         };
-        let gained = then.iter().zip(&now).filter_map(|(then, now)| Some((*then)? - (*now)?));
-        let log_odds = gained.fold(DECISIVE, f64::min);
-        if best.as_ref().is_none_or(|best| log_odds > BETTER * best.log_odds) {
-            best = Some(NextPoses { words: plan.words, log_odds });
-        }
+        let gained = then.iter().zip(&now).map(gained).collect();
+        choice.offer(plan, gained, &odds);
     }
-    Ok(best.filter(|best| best.log_odds > NONE))
+    Ok(choice.best().map(|(plan, gained)| {
+        let told = gained.into_iter().filter(|apart| is_told(*apart));
+        let log_odds = told.fold(DECISIVE, f64::min);
+        NextPoses { words: plan.words.clone(), plan: Some(plan), log_odds }
+    }))
 }
 
 /// The likeliest rivals that are told as something else than the mismatch.

@@ -2,9 +2,9 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::calibration::campaign::{Campaign, Recording};
-use crate::calibration::{Calibration, Compensation};
-use crate::robot::{Body, Kinematics, Loads, Motion};
+use crate::calibration::Compensation;
+use crate::calibration::campaign::Recording;
+use crate::robot::{Body, Kinematics, Loads, Motion, Setup};
 use crate::spatial::Pose;
 
 /// A move of a joint below which it did not move, rad or m: a readout's last digit.
@@ -63,14 +63,13 @@ impl Posture {
     }
 }
 
-/// One for every row of the campaign's measurements.
+/// One for every row of a recording; `deflections` are what deflects the tip there, in {W}, m.
 pub(super) fn all(
-    campaign: &Campaign,
-    calibration: &Calibration,
+    recording: &Recording,
+    setup: &Setup,
+    deflections: &[Vector3<f64>],
     compensation: &Compensation,
 ) -> Vec<Posture> {
-    let recording = &campaign.measurements;
-    let setup = &calibration.setup;
     let count = recording.joint_count;
     let mut kinematics = Kinematics::new(setup);
     let gravity = setup.base().rotation * setup.robot.gravity;
@@ -88,7 +87,7 @@ pub(super) fn all(
             }
             kinematics.update(recording.joints(row), &torque);
             let moment = moments(&kinematics, &loads, &bodies);
-            kinematics.tip += calibration.deflections[row];
+            kinematics.tip += deflections[row];
             let step = step(recording, row);
             for (approach, step) in approach.iter_mut().zip(&step).filter(|(_, s)| s.abs() > STANDSTILL) {
                 *approach = step.signum();

@@ -8,11 +8,13 @@ use crate::calibration::campaign::{Campaign, Recording, Targets};
 use crate::calibration::{Calibration, Compensation, Mode, Robust};
 use crate::diagnosis::{Candidate, EffectParameter};
 use crate::error::Result;
-use crate::robot::Motion;
+use crate::robot::{Motion, Setup};
 
 /// All that effects need to know of a campaign and its calibration.
 pub(super) struct Scene<'a> {
     pub recording: &'a Recording,
+    /// The recording whose clock and whose mean temperature count: this one, or the one that came before.
+    pub since: &'a Recording,
     pub postures: Vec<Posture>,
     /// What each row counts, relative to the others: pooled noise over the noise of its group.
     pub scale: Vec<f64>,
@@ -49,17 +51,40 @@ pub(super) struct Entry {
 
 impl<'a> Scene<'a> {
     pub fn new(campaign: &'a Campaign, calibration: &Calibration) -> Result<Self> {
-        let used = Compensation::new(campaign, calibration.mode)?;
         let recording = &campaign.measurements;
         let steps = steps(recording, &calibration.deviations);
         let determined = calibration.fit.covariance.rank;
         let noise = calibration.noise.estimate(recording, &steps, determined, Robust::Huber)?;
+        let off = recording.rows.iter().zip(&calibration.deviations);
+        Ok(Scene {
+            noise: noise.pooled,
+            scale: recording.rows.iter().map(|row| noise.pooled / noise.of_group[row.group]).collect(),
+            off: off.map(|(row, deviation)| deviation.norm() / noise.of_group[row.group]).collect(),
+            ..Scene::still(campaign, calibration.mode, &calibration.setup, &calibration.deflections)?
+        })
+    }
+
+    /// Of poses that nobody measured, in a recording that came after that of `campaign`.
+    pub fn later(asked: &'a Campaign, mode: Mode, setup: &Setup, campaign: &'a Campaign) -> Result<Self> {
+        let deflections = Compensation::new(asked, mode)?.deflections(setup, &asked.measurements);
+        Ok(Scene { since: &campaign.measurements, ..Scene::still(asked, mode, setup, &deflections)? })
+    }
+
+    /// Without what only measured points tell.
+    fn still(
+        campaign: &'a Campaign,
+        mode: Mode,
+        setup: &Setup,
+        deflections: &[Vector3<f64>],
+    ) -> Result<Self> {
+        let used = Compensation::new(campaign, mode)?;
+        let recording = &campaign.measurements;
+        let postures = posture::all(recording, setup, deflections, &used);
         // a rod that was taken for rigid bends as its beam model says
-        let (rod, accounted) = match (calibration.mode, &campaign.rod) {
+        let (rod, accounted) = match (mode, &campaign.rod) {
             (Mode::None, Some(_)) => (Compensation::new(campaign, Mode::Fea)?.compliance, 0.0),
             _ => (used.compliance, 1.0),
         };
-        let postures = posture::all(campaign, calibration, &used);
         let bend = |(row, posture): (usize, &Posture)| {
             let device = &recording.groups[recording.rows[row].group].device;
             let force = device.rotation * used.contact_force;
@@ -70,14 +95,10 @@ impl<'a> Scene<'a> {
         };
         Ok(Scene {
             recording,
-            noise: noise.pooled,
-            scale: recording.rows.iter().map(|row| noise.pooled / noise.of_group[row.group]).collect(),
-            off: recording
-                .rows
-                .iter()
-                .zip(&calibration.deviations)
-                .map(|(row, deviation)| deviation.norm() / noise.of_group[row.group])
-                .collect(),
+            since: recording,
+            scale: vec![1.0; recording.len()],
+            noise: 0.0,
+            off: vec![0.0; recording.len()],
             has_masses: campaign.robot.has_masses(),
             motions: campaign.robot.joints.iter().map(|joint| joint.motion).collect(),
             force_compliance: rod.as_ref().map_or_else(Matrix3::zeros, |rod| rod.force),

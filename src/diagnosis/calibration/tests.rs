@@ -1,5 +1,6 @@
 //! Columns against a robot that is moved for it, and effects that are put into simulated campaigns by such robots.
 
+mod carried;
 mod changed;
 mod columns;
 mod finding;

@@ -5,19 +5,15 @@
 //!
 //! ½·dᵀ·(σ²(1 + ρJ) + S₁Σ₁S₁ᵀ + S₂Σ₂S₂ᵀ)⁻¹·d,   d = η₁ − η₂
 //!
-//! with S the sensitivities and Σ the covariances of the parameters (separations as of T-optimal designs: A. C. Atkinson,
-//! V. V. Fedorov, Biometrika 62 (1975) 57–70). With so much left of rivals that are now 1 to o,
-//!
-//! Σ exp(−separation)/o,
-//!
-//! the feasible measurement is proposed that leaves least. The closest rival counts most; but where nothing tells one of them,
-//! the others are told nevertheless.
+//! with S the sensitivities and Σ the covariances of the parameters. Of the feasible measurements the one is proposed that
+//! leaves least of the rivals (`choice.rs`).
 
 use nalgebra::{DMatrix, DVector};
 
 use super::carried::{Carried, is_same};
 use super::feasible::{Measurement, Plan, feasible};
 use super::{Body, RigWorld};
+use crate::diagnosis::choice::{Choice, is_told};
 use crate::diagnosis::{Candidate, Chosen, Diagnosis, Evidence, Finding, Rival, Story, World};
 use crate::error::Result;
 use crate::rig::readings::Readings;
@@ -26,12 +22,6 @@ use crate::rod::Rod;
 /// Effects that a measurement has to separate the finding from, and their places: the likeliest ones.
 const MOST_RIVALS: usize = 6;
 const MOST_PLACES: usize = 10;
-/// A more laborious measurement has to leave so much less of the rivals,
-const BETTER: f64 = 1.3;
-/// unless the simpler one leaves no more than this.
-const DECISIVE: f64 = 1e-3;
-/// ln odds of 3 : 1: less tells nothing.
-const TOLD: f64 = 1.0;
 
 /// A measurement to make next.
 #[derive(Debug, Clone, PartialEq)]
@@ -61,7 +51,8 @@ pub(super) fn next_measurement(
         return Ok(None);
     }
     let noise = diagnosis.story.sigma.max(evidence.resolution / 12.0f64.sqrt());
-    let mut best: Option<(f64, Measurement, Vec<f64>)> = None;
+    let odds: Vec<f64> = rivals.iter().map(|rival| rival.odds).collect();
+    let mut choice = Choice::new();
     let stories = rivals.iter().map(|rival| &rival.story).chain([&diagnosis.story]);
     let involved: Vec<&Candidate> =
         stories.flat_map(|story| &story.chosen).map(|chosen| &world.candidates[chosen.candidate]).collect();
@@ -71,15 +62,10 @@ pub(super) fn next_measurement(
             future.log_odds(world, &diagnosis.story, &rival.story, noise, diagnosis.shared_ratio)
         };
         let separations: Vec<f64> = rivals.iter().map(of_rival).collect();
-        let of_rivals = rivals.iter().zip(&separations);
-        let left = of_rivals.map(|(rival, apart)| (-apart).exp() / rival.odds.max(1.0)).sum::<f64>();
-        let is_new = separations.iter().any(|apart| *apart > TOLD);
-        if is_new && best.as_ref().is_none_or(|(known, ..)| BETTER * left.max(DECISIVE) < *known) {
-            best = Some((left, measurement, separations));
-        }
+        choice.offer(measurement, separations, &odds);
     }
-    Ok(best.map(|(_, measurement, separations)| {
-        let told = || rivals.iter().zip(&separations).filter(|(_, apart)| **apart > TOLD);
+    Ok(choice.best().map(|(measurement, separations)| {
+        let told = || rivals.iter().zip(&separations).filter(|(_, apart)| is_told(**apart));
         let name = |rival: &Rival| world.candidates()[rival.chosen.candidate].effect.clone();
         Proposal {
             words: measurement.words,

@@ -60,7 +60,8 @@ pub fn needs_beyond(effect: usize) -> Needs {
     }
 }
 
-fn direction(random: &mut Random) -> Vector3<f64> {
+/// Any direction, a unit vector.
+pub fn direction(random: &mut Random) -> Vector3<f64> {
     let v = Vector3::from_fn(|_, _| random.normal());
     v / v.norm().max(1e-9)
 }

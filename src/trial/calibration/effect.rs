@@ -4,6 +4,10 @@ use nalgebra::Vector3;
 
 use crate::units::{GRAM, UM, URAD, URAD_PER_NM};
 
+/// Step of a numerical derivative: m, rad or, of a drift, m/K or m/s; of other numbers relative to them.
+const STEP: f64 = 1e-6;
+const RELATIVE_STEP: f64 = 1e-4;
+
 /// Something that is wrong, SI; joints and rows from 0.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Effect {
@@ -140,5 +144,92 @@ impl Effect {
     /// What no other recording tells of: it cannot be predicted.
     pub fn is_of_one_run(&self) -> bool {
         matches!(self, Effect::Shift { .. } | Effect::Outlier(_))
+    }
+
+    /// What a robot does whatever is measured with it; the rest happened to a fixture or to single rows.
+    pub fn is_of_robot(&self) -> bool {
+        !matches!(self, Effect::ClampPose { .. } | Effect::Shift { .. } | Effect::Outlier(_))
+    }
+
+    /// The effect with each of its numbers a little larger, and by how much; none for what no library has. How often a gear's
+    /// wave repeats is known.
+    pub fn larger(&self) -> Vec<(Effect, f64)> {
+        let one = |change: &dyn Fn(&mut Effect)| {
+            let mut larger = self.clone();
+            change(&mut larger);
+            (larger, STEP)
+        };
+        let axes = |of: fn(&mut Effect) -> Option<&mut Vector3<f64>>| -> Vec<(Effect, f64)> {
+            let along = |axis: usize| {
+                one(&|effect| {
+                    if let Some(vector) = of(effect) {
+                        vector[axis] += STEP;
+                    }
+                })
+            };
+            (0..3).map(along).collect()
+        };
+        let number = |of: fn(&mut Effect) -> Option<&mut f64>| -> Vec<(Effect, f64)> {
+            let mut larger = self.clone();
+            let step = of(&mut larger).map(|number| {
+                let step = RELATIVE_STEP * *number;
+                *number += step;
+                step
+            });
+            step.map(|step| (larger, step)).into_iter().collect()
+        };
+        match self {
+            Effect::Transmission { waves, .. } => (0..2 * waves.len())
+                .map(|k| {
+                    one(&|effect| {
+                        if let Effect::Transmission { waves, .. } = effect {
+                            // an amplitude, or a phase
+                            waves[k / 2][1 + k % 2] += STEP;
+                        }
+                    })
+                })
+                .collect(),
+            Effect::Outlier(rows) => (0..3 * rows.len())
+                .map(|k| {
+                    one(&|effect| {
+                        if let Effect::Outlier(rows) = effect {
+                            rows[k / 3].1[k % 3] += STEP;
+                        }
+                    })
+                })
+                .collect(),
+            Effect::ClampPose { .. } => {
+                let mut six = axes(|effect| match effect {
+                    Effect::ClampPose { by, .. } => Some(by),
+                    _ => None,
+                });
+                six.extend(axes(|effect| match effect {
+                    Effect::ClampPose { turn, .. } => Some(turn),
+                    _ => None,
+                }));
+                six
+            }
+            Effect::Shift { .. } | Effect::Drift { .. } => axes(|effect| match effect {
+                Effect::Shift { by, .. } | Effect::Drift { by, .. } => Some(by),
+                _ => None,
+            }),
+            Effect::LinkTorsion { .. }
+            | Effect::Ball(_)
+            | Effect::Wear { .. }
+            | Effect::Disturbance { .. }
+            | Effect::Refraction(_) => Vec::new(),
+            _ => number(|effect| match effect {
+                Effect::Backlash { play: size, .. }
+                | Effect::Compliance { compliance: size, .. }
+                | Effect::Nonlinear { per: size, .. }
+                | Effect::EncoderScale { factor: size, .. }
+                | Effect::Coupling { share: size, .. }
+                | Effect::Lag { share: size, .. }
+                | Effect::Payload(size)
+                | Effect::TipMass(size)
+                | Effect::Rod(size) => Some(size),
+                _ => None,
+            }),
+        }
     }
 }

@@ -12,8 +12,8 @@ use nalgebra::{DMatrix, DVector, Vector3};
 
 use super::draw::{location, shift_location};
 use super::effect::Effect;
-use super::setup::absorbed;
 use super::site::{Devices, Site, gravity};
+use super::taken_up;
 use crate::linalg::thin_svd;
 use crate::trial::truth::Detectability;
 use crate::units::UM;
@@ -46,7 +46,7 @@ pub struct Oracle<'a> {
 
 impl<'a> Oracle<'a> {
     pub fn new(site: &'a Site) -> Self {
-        let mut columns = absorbed(site);
+        let mut columns = taken_up::columns(site);
         let more = columns.nrows() - 3 * site.rows.len();
         for mut column in columns.column_iter_mut() {
             let norm = column.norm();

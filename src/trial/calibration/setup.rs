@@ -1,14 +1,13 @@
 //! A laboratory that calibrates an arm: which arm, how the ball is measured, where and when.
 
-use nalgebra::{DMatrix, Matrix3, Matrix4, Vector3};
+use nalgebra::{Matrix4, Vector3};
 
 use super::arm;
 use super::effect::Effect;
-use super::site::{Devices, Rod, Row, Site};
+use super::rod::Rod;
+use super::site::{Devices, Row, Site};
 use crate::statistics::Random;
 use crate::trial::rig::draw::{happens, log_uniform};
-use crate::trial::rig::drawing::{Deviation, Drawing};
-use crate::trial::rig::tube::Tube;
 use crate::units::{DEG, MM, UM};
 
 /// What a recording must have to carry an effect.
@@ -44,12 +43,10 @@ impl Needs {
     }
 }
 
-/// Parts of a rod's weight.
-const SLICES: usize = 12;
 /// Tries for a pose before the fixture is given up.
 const TRIES: usize = 400;
 /// Largest angle of a joint, rad.
-const LARGEST: f64 = 175.0 * DEG;
+pub const LARGEST: f64 = 175.0 * DEG;
 
 /// A recording without its noise. With sockets the angles are those of a robot without effects: [`settle`] turns them.
 pub fn draw(needs: Needs, random: &mut Random) -> Site {
@@ -62,7 +59,8 @@ pub fn draw(needs: Needs, random: &mut Random) -> Site {
     });
     let has_masses = needs.masses.unwrap_or_else(|| happens(random, 0.7));
     let has_rod = needs.rod || happens(random, 0.5);
-    let (rod, drawn_tool) = if has_rod { rod(random) } else { tool(random) };
+    let rod = has_rod.then(|| Rod::drawn(random));
+    let drawn_tool = rod.as_ref().map_or_else(|| tool(random), Rod::tip);
     let tool = drawn_tool + normal(random, 0.5 * MM);
     let base = arm::frame(&normal(random, 0.3), &normal(random, 0.01));
     let contact = match device {
@@ -133,57 +131,9 @@ fn place(site: &Site, random: &mut Random) -> Vector3<f64> {
     arm::point(&site.base, &inside).map(|v| (v / MM * 10.0).round() / 10.0 * MM)
 }
 
-fn tool(random: &mut Random) -> (Option<Rod>, Vector3<f64>) {
+fn tool(random: &mut Random) -> Vector3<f64> {
     let one = |low: f64, high: f64, random: &mut Random| random.uniform(low, high).round() * MM;
-    (None, Vector3::new(one(20.0, 80.0, random), one(-30.0, 30.0, random), one(60.0, 180.0, random)))
-}
-
-fn rod(random: &mut Random) -> (Option<Rod>, Vector3<f64>) {
-    let outer = random.uniform(12.0, 20.0).round();
-    let tube = Tube {
-        material: "steel",
-        youngs_modulus: 200e9,
-        shear_modulus: 77e9,
-        density: 7900.0,
-        outer: outer / 2.0 * MM,
-        inner: (outer - 4.0) / 2.0 * MM,
-    };
-    let drawing = Drawing {
-        legs: [random.uniform(100.0, 200.0).round() * MM, random.uniform(200.0, 500.0).round() * MM],
-        gamma: (random.uniform(80.0, 130.0)).round() * DEG,
-        bend_radius: 0.0,
-        bend_factor: 1.0,
-        tubes: [tube.clone(), tube.clone()],
-        joints: Vec::new(),
-        tip_mass: (random.uniform(20.0, 80.0)).round() * 1e-3,
-    };
-    let [l1, l2] = drawing.legs;
-    let at = |station: f64| match station < l1 {
-        true => Vector3::new(0.0, 0.0, station),
-        false => {
-            let along = Vector3::new(drawing.gamma.sin(), 0.0, -drawing.gamma.cos());
-            Vector3::new(0.0, 0.0, l1) + along * (station - l1)
-        }
-    };
-    let body = drawing.body(&Deviation::default());
-    let length = drawing.length();
-    // a small force, so that the rod is linear
-    let per = |station: f64| {
-        let column = |axis: usize| body.deflection(&Vector3::ith(axis, 1e-2), station, length) / 1e-2;
-        Matrix3::from_columns(&[0, 1, 2].map(column))
-    };
-    let mut weights: Vec<(f64, f64)> = vec![(drawing.tip_mass, length)];
-    for (from, leg) in [(0.0, l1), (l1, l2)] {
-        let mass = tube.density * tube.area() * leg / SLICES as f64;
-        weights.extend((0..SLICES).map(|k| (mass, from + leg * (k as f64 + 0.5) / SLICES as f64)));
-    }
-    let rod = Rod {
-        text: drawing.toml("case"),
-        per_force: per(length),
-        per_gravity: weights.iter().map(|(mass, station)| per(*station) * *mass).sum(),
-        slices: weights.iter().map(|(mass, station)| (*mass, at(*station))).collect(),
-    };
-    (Some(rod), at(length))
+    Vector3::new(one(20.0, 80.0, random), one(-30.0, 30.0, random), one(60.0, 180.0, random))
 }
 
 /// Poses in the order in which they were recorded.
@@ -216,7 +166,8 @@ fn any(n: usize, random: &mut Random) -> Vec<f64> {
         .collect()
 }
 
-fn pose(site: &Site, row: usize, random: &mut Random) -> Vec<f64> {
+/// Joint angles with which the ball is where a row has it, rad; any above the floor where that is free.
+pub fn pose(site: &Site, row: usize, random: &mut Random) -> Vec<f64> {
     let n = site.nominal.len();
     let mut last = any(n, random);
     for _ in 0..TRIES {
@@ -246,27 +197,35 @@ fn pose(site: &Site, row: usize, random: &mut Random) -> Vec<f64> {
     last.iter().map(|q| (q.to_degrees() * 1e7).round() / 1e7 * DEG).collect()
 }
 
-/// What was read: positions in the devices' frames, m. With sockets the joints are turned until the ball is in its socket,
-/// off by the noise, and nothing is read.
-pub fn measured(site: &mut Site, effects: &[Effect], random: &mut Random) -> Vec<Vector3<f64>> {
-    let noise: Vec<Vector3<f64>> =
-        (0..site.rows.len()).map(|_| Vector3::from_fn(|_, _| one(site, random))).collect();
+/// Errors of the rows from `first` on, in the world, m.
+pub fn noise(site: &Site, first: usize, random: &mut Random) -> Vec<Vector3<f64>> {
+    (first..site.rows.len()).map(|_| Vector3::from_fn(|_, _| one(site, random))).collect()
+}
+
+/// What was read from row `first` on with these errors: positions in the devices' frames, m. With sockets the joints are turned
+/// until the ball is in its socket, off by the noise, and nothing is read.
+pub fn measured(
+    site: &mut Site,
+    effects: &[Effect],
+    first: usize,
+    noise: &[Vector3<f64>],
+) -> Vec<Vector3<f64>> {
     if let Devices::Sockets(sockets, _) = site.devices.clone() {
-        for (row, noise) in noise.iter().enumerate() {
+        for (row, noise) in (first..).zip(noise) {
             let target = sockets[site.rows[row].group].2 + noise;
             let start = site.rows[row].q.clone();
             if let Some(q) = site.reach(row, &start, &target, effects) {
                 site.rows[row].q = q;
             }
         }
-        return noise;
+        return noise.to_vec();
     }
     let read = |(row, noise): (usize, &Vector3<f64>)| {
         let at = site.ball(row, &site.rows[row].q, effects) + noise;
         let device: Matrix4<f64> = site.device(site.rows[row].group);
         device.fixed_view::<3, 3>(0, 0).transpose() * (at - device.column(3).xyz())
     };
-    noise.iter().enumerate().map(read).collect()
+    (first..).zip(noise).map(read).collect()
 }
 
 fn one(site: &Site, random: &mut Random) -> f64 {
@@ -277,68 +236,3 @@ fn one(site: &Site, random: &mut Random) -> f64 {
     });
     site.noise * factor * normal
 }
-
-/// All that the calibration can take up, as columns of every coordinate (and of the distances between sockets, behind them),
-/// in noises: geometry, base, tool, drives where masses are known, places of sockets.
-pub fn absorbed(site: &Site) -> DMatrix<f64> {
-    const STEP: f64 = 1e-6;
-    let rest = |site: &Site| site.each(|row, q| site.ball(row, q, &[]));
-    let at_rest = rest(site);
-    let mut moved: Vec<Site> = Vec::new();
-    for joint in 0..site.real.len() {
-        for number in 0..5 {
-            let mut other = site.clone();
-            other.real[joint].numbers[number] += STEP;
-            moved.push(other);
-        }
-        if site.has_masses {
-            let mut other = site.clone();
-            other.real[joint].compliance += STEP;
-            moved.push(other);
-        }
-    }
-    for axis in 0..3 {
-        let mut other = site.clone();
-        other.base[(axis, 3)] += STEP;
-        moved.push(other);
-        let mut other = site.clone();
-        other.base *= arm::frame(&Vector3::zeros(), &Vector3::ith(axis, STEP));
-        moved.push(other);
-        let mut other = site.clone();
-        other.tool[axis] += STEP;
-        moved.push(other);
-    }
-    let mut columns: Vec<Vec<f64>> =
-        moved.iter().map(|other| ((rest(other) - &at_rest) / STEP).as_slice().to_vec()).collect();
-    if let Devices::Sockets(sockets, _) = &site.devices {
-        let pairs: Vec<[usize; 2]> = (0..sockets.len())
-            .filter(|&k| sockets[k].1 == 0 && k + 1 < sockets.len())
-            .map(|k| [k, k + 1])
-            .collect();
-        columns.iter_mut().for_each(|column| column.extend(vec![0.0; pairs.len()]));
-        for k in 0..sockets.len() {
-            for axis in 0..3 {
-                let of_row =
-                    |row: &Row| [0, 1, 2].map(|a| if row.group == k && a == axis { 1.0 } else { 0.0 });
-                let mut column: Vec<f64> = site.rows.iter().flat_map(of_row).collect();
-                column.extend(pairs.iter().map(|&[a, b]| {
-                    let along = (sockets[b].2 - sockets[a].2).normalize();
-                    let side = if k == b {
-                        1.0
-                    } else if k == a {
-                        -1.0
-                    } else {
-                        0.0
-                    };
-                    side * along[axis] * site.noise / DISTANCE_SD
-                }));
-                columns.push(column);
-            }
-        }
-    }
-    let rows = columns.first().map_or(0, Vec::len);
-    DMatrix::from_fn(rows, columns.len(), |i, j| columns[j][i]) / site.noise
-}
-
-/// Standard deviation of the stated distance between two sockets, m.
-pub const DISTANCE_SD: f64 = 10.0 * UM;

@@ -4,6 +4,7 @@ use nalgebra::{DMatrix, DVector, Matrix3, Matrix4, Vector3};
 
 use super::arm::{self, Arm, Pull, turned};
 use super::effect::Effect;
+use super::rod::Rod;
 use crate::units::STANDARD_GRAVITY;
 
 /// Times that torques and the joints that they turn are computed from each other.
@@ -20,18 +21,6 @@ pub enum Devices {
     Tracker(Vector3<f64>),
     /// Placement, socket, where it is; the distance of sockets 0 and 1, m.
     Sockets(Vec<(usize, usize, Vector3<f64>)>, f64),
-}
-
-/// A rod on the flange.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Rod {
-    /// Its file.
-    pub text: String,
-    /// Deflection of its tip per force on it, and per acceleration of gravity, in {T}.
-    pub per_force: Matrix3<f64>,
-    pub per_gravity: Matrix3<f64>,
-    /// Its weight: mass kg and place in {T}, m.
-    pub slices: Vec<(f64, Vector3<f64>)>,
 }
 
 /// One pose.

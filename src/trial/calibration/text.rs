@@ -4,21 +4,45 @@ use std::fmt::Write;
 
 use nalgebra::{Matrix4, Vector3};
 
-use super::setup::DISTANCE_SD;
 use super::site::{Devices, Site};
+use super::taken_up::DISTANCE_SD;
 use crate::statistics::Random;
 use crate::units::{DEG, MM, UM};
 
 const FIRST: &str = "# SIMULATED for a concealed-effect trial, not a recording.\n";
 
+/// A guess of where the base is: xyz, and roll, pitch, yaw.
+pub fn guess(site: &Site, random: &mut Random) -> [Vector3<f64>; 2] {
+    let [xyz, rpy] = place(&site.base);
+    let mut about = |size: f64| Vector3::from_fn(|_, _| size * random.normal());
+    [xyz + about(2.0 * MM), rpy + about(0.1 * DEG)]
+}
+
 /// Name and text of each.
-pub fn files(site: &Site, read: &[Vector3<f64>], random: &mut Random) -> Vec<(String, String)> {
+pub fn files(site: &Site, guess: &[Vector3<f64>; 2], read: &[Vector3<f64>]) -> Vec<(String, String)> {
     let mut files = vec![
-        ("campaign.toml".to_owned(), campaign(site, random)),
+        ("campaign.toml".to_owned(), campaign(site, guess)),
         ("robot.toml".to_owned(), robot(site)),
         ("measurements.csv".to_owned(), measurements(site, read)),
     ];
-    files.extend(site.rod.as_ref().map(|rod| ("rod.toml".to_owned(), rod.text.clone())));
+    files.extend(site.rod.as_ref().map(|rod| ("rod.toml".to_owned(), rod.drawing.toml("case"))));
+    files
+}
+
+/// The files of poses that are asked for, the first row left out; `force` is on the ball, N.
+pub fn question(site: &Site, force: &Vector3<f64>) -> Vec<(String, String)> {
+    let mut text = FIRST.to_owned()
+        + "# It asks: where would the ball be in these poses, with this force on it and with this rod? A 0 stands for each \
+           coordinate.\nrobot = \"robot.toml\"\nmeasurements = \"asked.csv\"\n";
+    let rod = site.rod.as_ref().map(|rod| ("asked_rod.toml".to_owned(), rod.drawing.toml("case")));
+    if let Some((name, _)) = &rod {
+        let _ = writeln!(text, "rod = \"{name}\"");
+    }
+    let _ = writeln!(text, "contact_force_n = {}", three(force, 1.0));
+    let asked = Site { rows: site.rows[1..].to_vec(), ..site.clone() };
+    let table = measurements(&asked, &vec![Vector3::zeros(); asked.rows.len()]);
+    let mut files = vec![("asked.toml".to_owned(), text), ("asked.csv".to_owned(), table)];
+    files.extend(rod);
     files
 }
 
@@ -34,7 +58,7 @@ fn place(frame: &Matrix4<f64>) -> [Vector3<f64>; 2] {
     [frame.column(3).xyz(), rpy]
 }
 
-fn campaign(site: &Site, random: &mut Random) -> String {
+fn campaign(site: &Site, [xyz, rpy]: &[Vector3<f64>; 2]) -> String {
     let mut text = FIRST.to_owned() + "robot = \"robot.toml\"\nmeasurements = \"measurements.csv\"\n";
     if site.rod.is_some() {
         text += "rod = \"rod.toml\"\n";
@@ -45,10 +69,7 @@ fn campaign(site: &Site, random: &mut Random) -> String {
     if site.rod.is_none() {
         let _ = writeln!(text, "[tool]\nxyz_mm = {}", three(&site.drawn_tool, MM));
     }
-    let [xyz, rpy] = place(&site.base);
-    let mut about = |size: f64| Vector3::from_fn(|_, _| size * random.normal());
-    let (xyz, rpy) = (xyz + about(2.0 * MM), rpy + about(0.1 * DEG));
-    let _ = write!(text, "[base]\nxyz_mm = {}\nrpy_deg = {}\n", three(&xyz, MM), three(&rpy, DEG));
+    let _ = write!(text, "[base]\nxyz_mm = {}\nrpy_deg = {}\n", three(xyz, MM), three(rpy, DEG));
     match &site.devices {
         Devices::Clamps(clamps) => {
             for (k, clamp) in clamps.iter().enumerate() {

@@ -102,6 +102,7 @@ pub fn truth(asked: &Bench, effects: &[Effect], oracle: Option<&Oracle<'_>>, sho
             .filter(|_| is_known)
             .and_then(|oracle| oracle.predicted(effects, shown, asked))
             .map(um),
+        is_any_frame: false,
     }
 }
 

@@ -144,7 +144,7 @@ impl Drawing {
 }
 
 /// To so many decimals, without the rounding of a change of units.
-pub(super) fn rounded(value: f64, decimals: i32) -> f64 {
+pub fn rounded(value: f64, decimals: i32) -> f64 {
     let scale = 10f64.powi(decimals);
     (value * scale).round() / scale
 }

@@ -1,8 +1,10 @@
 //! How well readings are foretold that were asked for and not given.
 
+use nalgebra::Vector3;
 use serde_json::{Value, json};
 
 use super::judged::Judged;
+use crate::spatial::best_motion;
 use crate::trial::answers::Answer;
 use crate::trial::truth::{Kind, Truth};
 
@@ -25,8 +27,9 @@ impl Counterfactual {
     pub fn new(truth: &Truth, answer: &Answer) -> Option<Self> {
         let asked = truth.asked.as_ref()?;
         let error = |said: &[f64]| -> Option<f64> {
-            let squares = said.iter().zip(&asked.true_um).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
             let is_whole = !said.is_empty() && said.len() == asked.true_um.len();
+            let said = if asked.is_any_frame { moved_onto(said, &asked.true_um)? } else { said.to_vec() };
+            let squares = said.iter().zip(&asked.true_um).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
             is_whole.then(|| (squares / said.len() as f64).sqrt()).filter(|error| error.is_finite())
         };
         Some(Counterfactual {
@@ -40,6 +43,14 @@ impl Counterfactual {
     fn ratio(&self) -> Option<f64> {
         (self.oracle_um > 0.0).then(|| self.answer_um / self.oracle_um)
     }
+}
+
+/// Coordinates of points after the motion that brings them closest to others.
+fn moved_onto(said: &[f64], goal: &[f64]) -> Option<Vec<f64>> {
+    let [points, goal] = [said, goal]
+        .map(|all| -> Vec<Vector3<f64>> { all.chunks_exact(3).map(Vector3::from_column_slice).collect() });
+    let motion = best_motion(&points, &goal).ok()?;
+    Some(points.iter().flat_map(|point| <[f64; 3]>::from(motion.point(point))).collect())
 }
 
 /// Of the identifiable cases with an oracle: the median of the ratio, and its details.

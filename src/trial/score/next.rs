@@ -12,8 +12,8 @@ use super::place;
 use super::rate::Rate;
 use crate::error::Result;
 use crate::files;
-use crate::trial::rig::{self, Proposed};
 use crate::trial::truth::{Concealed, Kind, Truth};
+use crate::trial::{calibration, rig};
 
 /// A case whose answer is ambiguous and holds the truth.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,7 +21,8 @@ pub struct Due {
     /// `rig/case-0001`.
     pub case: String,
     seed: Option<u64>,
-    /// What the answer proposes; `None` where it proposes nothing.
+    /// What the answer proposes, in words and as numbers; `None` where it proposes nothing.
+    words: Option<String>,
     proposed: Option<Value>,
 }
 
@@ -43,38 +44,64 @@ impl Due {
         Some(Due {
             case: case.truth.case.clone(),
             seed: case.truth.seed,
+            words: finding.next_measurement.clone(),
             proposed: finding.next_measurement_plan.clone().filter(|plan| !plan.is_null()),
         })
     }
 
-    /// The recording with what is proposed below it, the text of a file of readings; `Err` is what became of the proposal
-    /// where there is none.
+    /// The case's files that change when what is proposed is measured and put below the recording, name and text; `Err` is what
+    /// became of the proposal where there are none.
     ///
     /// # Errors
-    /// [`crate::Error::File`] where the sealed recording cannot be read.
-    pub fn recording(&self, directory: &Path) -> Result<std::result::Result<String, Outcome>> {
+    /// [`crate::Error::File`] where a sealed file cannot be read.
+    pub fn files(&self, directory: &Path) -> Result<std::result::Result<Files, Outcome>> {
         let not = |why: &str| Ok(Err(Outcome::NotDone(why.to_owned())));
-        let Some(proposed) = &self.proposed else { return Ok(Err(Outcome::NotProposed)) };
-        let Ok(proposed) = Proposed::deserialize(proposed) else { return not("not a measurement") };
-        let number = self.case.strip_prefix("rig/case-").and_then(|number| number.parse().ok());
-        let (Some(seed), Some(number)) = (self.seed, number) else { return not("the key has no seed") };
-        let again = match rig::again(seed, number, &proposed) {
-            Ok(again) => again,
+        let proposed = match (&self.proposed, &self.words) {
+            (Some(proposed), _) => proposed,
+            (None, Some(_)) => return not("it needs no recording"),
+            (None, None) => return Ok(Err(Outcome::NotProposed)),
+        };
+        let (half, number) = self.case.split_once("/case-").unwrap_or_default();
+        let (Some(seed), Ok(number)) = (self.seed, number.parse()) else { return not("the key has no seed") };
+        let [before, after] = match once_more(half, seed, number, proposed) {
+            Ok(files) => files,
             Err(why) => return not(why),
         };
         // only what the sealed recording was made of may be done once more
-        let sealed = files::read_text(&directory.join(&self.case).join("readings.csv"))?;
-        if again.before != sealed {
-            return not("this version of the program draws another case");
+        for (name, text) in &before {
+            if files::read_text(&directory.join(&self.case).join(name))? != *text {
+                return not("this version of the program draws another case");
+            }
         }
-        Ok(Ok(again.after))
+        Ok(Ok(after))
     }
+}
+
+/// Name and text of each.
+pub type Files = Vec<(String, String)>;
+
+/// The files of a case as they were and with what is proposed.
+fn once_more(
+    half: &str,
+    seed: u64,
+    number: usize,
+    proposed: &Value,
+) -> std::result::Result<[Files; 2], &'static str> {
+    const NONE: &str = "not a measurement";
+    if half == "calibration" {
+        let proposed = calibration::Proposed::deserialize(proposed).map_err(|_| NONE)?;
+        let again = calibration::again(seed, number, &proposed)?;
+        return Ok([again.before, again.after]);
+    }
+    let proposed = rig::Proposed::deserialize(proposed).map_err(|_| NONE)?;
+    let again = rig::again(seed, number, &proposed)?;
+    Ok([again.before, again.after].map(|text| vec![("readings.csv".to_owned(), text)]))
 }
 
 /// The strongest finding, where it is ambiguous and its class holds the truth, with that truth.
 fn ambiguous<'a>(case: &'a Judged<'_>) -> Option<(&'a Finding, &'a Concealed)> {
     let is_of_library = matches!(case.truth.kind, Kind::Single | Kind::Pair);
-    let finding = case.findings.first().filter(|_| is_of_library && case.truth.case.starts_with("rig/"))?;
+    let finding = case.findings.first().filter(|_| is_of_library)?;
     let is_ambiguous = !finding.indistinguishable_from.is_empty() || !finding.places.is_empty();
     let class = case.class();
     let concealed = case.truth.effects.iter().find(|e| class.contains(&e.effect.as_str()))?;

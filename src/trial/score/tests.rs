@@ -128,7 +128,7 @@ fn other_readings_are_scored_against_the_oracle() {
     // of an identifiable case, of one that is not, and of one whose answer leaves a reading out
     for (k, said) in [(2, vec![1.2, 2.2]), (5, vec![9.0, 9.0]), (3, vec![1.0])] {
         let oracle_um = Some(vec![1.1, 2.1]);
-        truths[k].asked = Some(Asked { true_um: vec![1.0, 2.0], oracle_um });
+        truths[k].asked = Some(Asked { true_um: vec![1.0, 2.0], oracle_um, is_any_frame: false });
         answers[k].asked_um = Some(said);
     }
     let json = of(&truths, &answers, &[]).json;

@@ -15,6 +15,7 @@ use std::ops::Range;
 use nalgebra::Vector3;
 
 use super::{CLAMP, KNOCK, NotTestable, OUTLIER, PER_HOUR, PER_KELVIN, WARM_UP, lack};
+use crate::calibration::campaign::Row;
 use crate::diagnosis::EffectParameter;
 use crate::diagnosis::calibration::posture::Posture;
 use crate::diagnosis::calibration::scene::{Column, Entry, Scene, entry, linear};
@@ -170,37 +171,28 @@ fn base(scene: &Scene) -> Vec<Entry> {
     places(count, MOST_OF_BASE).map(after).collect()
 }
 
-/// How a drift goes: name of its course, value by row, unit of its parameters (as a suffix and in SI), size.
+/// Displacement of the tip by a base that moved by three lengths (m) and turned by three angles (rad).
+pub(in crate::diagnosis::calibration) fn moved_base(values: &[f64], posture: &Posture) -> Vector3<f64> {
+    let &[x, y, z, rx, ry, rz] = values else { return Vector3::zeros() };
+    Vector3::new(x, y, z) + Vector3::new(rx, ry, rz).cross(&(posture.tip - posture.origin[0]))
+}
+
+/// How a drift goes: name of its course, value by row less the mean of the recording that it was found in, unit of its
+/// parameters (as a suffix and in SI), size.
 type Course<'a> = (String, Vec<f64>, &'a str, f64, f64);
 
 /// With temperature or time where they are known, and in any case with the order; steadily, or as a robot warms up.
 fn drift(scene: &Scene, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
-    let rows = &scene.recording.rows;
-    let known = |of: &dyn Fn(usize) -> Option<f64>| (0..rows.len()).map(of).collect::<Option<Vec<f64>>>();
-    let (temperature, time) = (known(&|row| rows[row].temperature), known(&|row| rows[row].time));
-    if temperature.is_none() && time.is_none() {
+    let courses = courses(scene);
+    let is_clocked = |(_, _, suffix, ..): &Course| *suffix != "um";
+    if !courses.iter().any(is_clocked) {
         let reason = "rows have neither temperature nor time: only their order can tell";
         lacks.push(lack("thermal_drift", reason));
     }
-    // a recording without a clock drifts from its first to its last row
-    let clock = time.clone().unwrap_or_else(|| (0..rows.len()).map(|row| row as f64).collect());
-    let first = clock.iter().copied().fold(f64::INFINITY, f64::min);
-    let last = clock.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let share = |t: f64| (t - first) / (last - first).max(f64::MIN_POSITIVE);
-    let mut courses: Vec<Course> =
-        vec![("order".into(), clock.iter().map(|&t| share(t)).collect(), "um", UM, PER_HOUR)];
-    courses.extend(WARMING.map(|part| {
-        let cold = clock.iter().map(|&t| (-share(t) / part).exp()).collect();
-        (format!("warm-up over {} % of the recording", 100.0 * part), cold, "um", UM, WARM_UP)
-    }));
-    courses.extend(temperature.map(|values| ("temperature".into(), values, "um_per_k", UM, PER_KELVIN)));
-    courses.extend(time.map(|values| ("time".into(), values, "um_per_h", UM / HOUR, PER_HOUR / HOUR)));
     let of_course = |(name, values, suffix, unit_si, size): Course| {
-        let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
         let names = ["x", "y", "z"].map(|axis| format!("{axis}_{suffix}"));
         let drifting = |place: &str, along: &dyn Fn(&Posture, usize) -> Vector3<f64>| {
-            let column =
-                |axis: usize| scene.column(|row, posture| along(posture, axis) * (values[row] - mean));
+            let column = |axis: usize| scene.column(|row, posture| along(posture, axis) * values[row]);
             let names = [0, 1, 2].map(|axis| names[axis].as_str());
             entry("thermal_drift", format!("{place}, with {name}"), parameters(&names, unit_si, size, column))
         };
@@ -210,4 +202,40 @@ fn drift(scene: &Scene, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
         ]
     };
     courses.into_iter().flat_map(of_course).collect()
+}
+
+fn courses(scene: &Scene) -> Vec<Course<'static>> {
+    let (rows, since) = (&scene.recording.rows, &scene.since.rows);
+    let is_later = !std::ptr::eq(scene.recording, scene.since);
+    let known = |of: fn(&Row) -> Option<f64>| -> Option<[Vec<f64>; 2]> {
+        let of_rows = |rows: &[Row]| rows.iter().map(of).collect::<Option<Vec<f64>>>();
+        Some([of_rows(since)?, of_rows(rows)?])
+    };
+    let (temperature, time) = (known(|row| row.temperature), known(|row| row.time));
+    // a recording without a clock drifts from its first to its last row, and what comes later goes on
+    let count = |from: usize, rows: usize| (from..from + rows).map(|row| row as f64).collect();
+    let order = || [count(0, since.len()), count(if is_later { since.len() } else { 0 }, rows.len())];
+    let clock = time.clone().unwrap_or_else(order);
+    let first = clock[0].iter().copied().fold(f64::INFINITY, f64::min);
+    let last = clock[0].iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let share = |t: f64| (t - first) / (last - first).max(f64::MIN_POSITIVE);
+    let less_mean = |[since, own]: [Vec<f64>; 2]| -> Vec<f64> {
+        let mean = since.iter().sum::<f64>() / since.len().max(1) as f64;
+        own.into_iter().map(|value| value - mean).collect()
+    };
+    let of_clock = |of: &dyn Fn(f64) -> f64| {
+        less_mean(clock.clone().map(|times| times.into_iter().map(|t| of(share(t))).collect()))
+    };
+    let mut courses: Vec<Course> = vec![("order".into(), of_clock(&|share| share), "um", UM, PER_HOUR)];
+    courses.extend(WARMING.map(|part| {
+        let name = format!("warm-up over {} % of the recording", 100.0 * part);
+        (name, of_clock(&|share| (-share / part).exp()), "um", UM, WARM_UP)
+    }));
+    courses.extend(
+        temperature.map(|values| ("temperature".into(), less_mean(values), "um_per_k", UM, PER_KELVIN)),
+    );
+    courses.extend(
+        time.map(|values| ("time".into(), less_mean(values), "um_per_h", UM / HOUR, PER_HOUR / HOUR)),
+    );
+    courses
 }

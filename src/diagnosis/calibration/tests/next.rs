@@ -22,4 +22,9 @@ fn one_clamp_more_tells_which_of_a_few_is_misplaced() {
     let next = found.next[0].as_ref().unwrap();
     assert!(next.words.contains("et up one more clamp where clamp "), "{}", next.words);
     assert!(next.log_odds > 3.0);
+    let plan = next.plan.as_ref().unwrap();
+    assert!(plan.group.is_some() && plan.poses.iter().any(|pose| pose.group == 3));
+    // no farther than the robot turns
+    let [low, high] = campaign.robot.joints[0].limits.unwrap();
+    assert!(plan.poses.iter().all(|pose| (low..=high).contains(&pose.joints[0])));
 }

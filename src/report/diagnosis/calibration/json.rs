@@ -6,10 +6,11 @@ use super::headline::{headline, other_effects, other_places, sentence};
 use super::remainder::remainder;
 use super::{Distances, warnings};
 use crate::calibration::{Campaign, Summary};
-use crate::diagnosis::calibration::{CalibrationDiagnosis, Gear, Mismatch, NextPoses, Number};
+use crate::diagnosis::calibration::{CalibrationDiagnosis, Gear, Mismatch, NextPoses, Number, Plan};
 use crate::diagnosis::{World, rms};
 use crate::report::diagnosis::shared::{locate_json, ranking_json, test_json};
-use crate::units::{UM, URAD};
+use crate::robot::Motion;
+use crate::units::{DEG, MM, UM, URAD};
 
 /// The JSON of `rodcal diagnose calibration --json`. Numbers that do not exist are null.
 ///
@@ -105,6 +106,7 @@ fn finding(
         "places": other_places(found, mismatch),
         "rivals": rivals.collect::<Vec<_>>(),
         "next_measurement": next.map(|next| &next.words),
+        "next_measurement_plan": next.and_then(|next| next.plan.as_ref()).map(|plan| of_plan(campaign, plan)),
         "heldout_gain": found.diagnosis.proof.as_ref().map(|proof| proof.gain),
         "explains_rms_um": mismatch.rms / UM,
         "found_in_folds": found.found_in_folds(mismatch).map(|(some, all)| format!("{some} of {all}")),
@@ -122,6 +124,29 @@ fn finding(
         json["half_peak_to_peak_urad"] = (0.5 * (high - low)).into();
     }
     json
+}
+
+/// The poses to measure next, as numbers; a tracker's have no group.
+fn of_plan(campaign: &Campaign, plan: &Plan) -> Value {
+    let groups = campaign.measurements.groups.iter().chain(&plan.group);
+    let names: Vec<&str> = groups.map(|group| group.name.as_str()).collect();
+    let poses = plan.poses.iter().map(|pose| {
+        let joints = pose.joints.iter().zip(&campaign.robot.joints);
+        let joints = joints.map(|(value, joint)| match joint.motion {
+            Motion::Revolute => value / DEG,
+            Motion::Prismatic => value / MM,
+        });
+        let group = names.get(pose.group).filter(|name| !name.is_empty());
+        json!({ "joints": joints.collect::<Vec<_>>(), "group": group })
+    });
+    json!({
+        "poses": poses.collect::<Vec<_>>(),
+        "new_clamp": plan.group.as_ref().map(|clamp| json!({
+            "name": clamp.name,
+            "xyz_mm": <[f64; 3]>::from(clamp.device.origin / MM),
+            "rpy_deg": clamp.device.roll_pitch_yaw().map(|angle| angle / DEG),
+        })),
+    })
 }
 
 /// One of the findings that are told together.

@@ -1,0 +1,69 @@
+//! A case of a trial as whoever answers sees it.
+
+use std::path::PathBuf;
+
+use rodcal::calibration::campaign::Campaign;
+use rodcal::calibration::{Options, default_mode};
+use rodcal::diagnosis::{calibration, rig};
+use rodcal::rig::readings::Readings;
+use rodcal::rod::Rod;
+use rodcal::trial::score;
+use rodcal::units::UM;
+use rodcal::{Result, files, report};
+use serde_json::Value;
+
+/// The files of a case, some of them in another form than in its directory.
+pub struct CaseFiles {
+    /// Where they are.
+    pub directory: PathBuf,
+    /// Name and text of those that are not as they stand there.
+    pub changed: score::Files,
+}
+
+impl CaseFiles {
+    fn text(&self, name: &str) -> Result<String> {
+        match self.changed.iter().find(|(changed, _)| changed == name) {
+            Some((_, text)) => Ok(text.clone()),
+            None => files::read_text(&self.directory.join(name)),
+        }
+    }
+
+    fn has(&self, name: &str) -> bool {
+        self.directory.join(name).exists()
+    }
+
+    fn campaign(&self, name: &str) -> Result<Campaign> {
+        let file = self.directory.join(name).display().to_string();
+        Campaign::from_texts(&file, &self.text(name)?, &|name| self.text(name))
+    }
+
+    fn readings(&self, name: &str) -> Result<Readings> {
+        Readings::from_text(&self.directory.join(name).display().to_string(), &self.text(name)?)
+    }
+
+    /// The diagnosis of a case as its JSON, and what it says of the readings or of the poses that are asked for, µm. What cannot be
+    /// foretold is no reason to keep back what was found: the score counts it.
+    pub fn diagnosed(&self) -> Result<(Value, Option<Vec<f64>>)> {
+        if self.has("campaign.toml") {
+            let campaign = self.campaign("campaign.toml")?;
+            let found = calibration::diagnose(&campaign, default_mode(&campaign), &Options::default())?;
+            let asked = self.has("asked.toml").then(|| self.campaign("asked.toml")).transpose()?;
+            let foretold = asked.and_then(|asked| found.predicted(&campaign, &asked).ok());
+            let coordinates =
+                foretold.map(|tips| tips.iter().flat_map(|tip| micrometres(tip.as_slice())).collect());
+            return Ok((report::diagnosis::calibration::json(&campaign, &found), coordinates));
+        }
+        let rod = Rod::read(&self.directory.join("rod.toml"))?;
+        let readings = self.readings("readings.csv")?;
+        let found = rig::diagnose(&readings, Some(&rod))?;
+        let asked = self.has("asked.csv").then(|| self.readings("asked.csv")).transpose()?;
+        let foretold = asked.and_then(|asked| found.predicted(&asked, Some(&rod)).ok());
+        let readings_um = foretold.map(|readings| micrometres(&readings));
+        Ok((report::diagnosis::json(&found, &readings, Some(&rod)), readings_um))
+    }
+}
+
+/// To a hundredth of a nanometre: more digits say nothing.
+fn micrometres(lengths: &[f64]) -> Vec<f64> {
+    lengths.iter().map(|length| (length / UM * 1e5).round() / 1e5).collect()
+}

@@ -334,4 +334,6 @@ pub enum Marker {
     Plus,
     /// A wide open ring, to mark a place without hiding what is there.
     Ring,
+    /// A disc without an edge, below all lines: one of a cloud through which a curve is seen.
+    Dot,
 }

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::super::super::chart::{Chart, Colour, Dash, Figure, Mark, Point, Range, Style};
+use super::super::super::chart::{Chart, Colour, Dash, Figure, Mark, Marker, Point, Range, Style};
 use super::super::super::scale::{drawable, extent};
 use super::{MANY, padded};
 
@@ -37,17 +37,17 @@ pub fn angle_errors(joints: &[AngleError]) -> Figure {
             }
             chart.marks.push(Mark::Horizontal { at: 0.0, text: String::new() });
             let points = joint.poses.iter().filter(|pose| drawable(pose[which]));
-            let size = if joint.poses.len() > MANY { 0.9 } else { 2.4 };
+            let size = if joint.poses.len() > MANY { 1.1 } else { 2.4 };
             chart.marks.push(Mark::Points {
                 label: "a pose".into(),
                 points: points.map(|pose| Point { x: pose[0], y: pose[which], error: 0.0 }).collect(),
-                style: Style::nth(0).colour(Colour::Grey).size(size),
+                style: Style::nth(0).colour(Colour::Grey).marker(Marker::Dot).size(size),
             });
             if which == 1 {
                 chart.marks.push(Mark::Line {
                     label: "what was found".into(),
                     points: joint.curve.iter().map(|c| [c[0], c[1]]).collect(),
-                    style: Style::nth(1).dash(Dash::Solid).width(1.4),
+                    style: Style::nth(0).dash(Dash::Solid).width(1.8),
                 });
             }
             chart

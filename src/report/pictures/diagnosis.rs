@@ -13,6 +13,8 @@ use crate::units::significant;
 
 /// More points of one series are drawn small.
 const MANY: usize = 60;
+/// Half the size of a point in a cloud, px.
+const CLOUD_PX: f64 = 1.1;
 /// So many times the usual distance of points is a gap.
 const GAP: f64 = 3.0;
 

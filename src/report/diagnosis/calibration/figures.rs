@@ -1,26 +1,21 @@
 //! A calibration's diagnosis as plain numbers for its pictures.
 
+mod angle;
+
 use nalgebra::Vector3;
 
 use super::Distances;
 use crate::calibration::Campaign;
-use crate::diagnosis::calibration::{CalibrationDiagnosis, Curve, Gear, Mismatch};
+use crate::diagnosis::calibration::{CalibrationDiagnosis, Mismatch};
 use crate::diagnosis::{Covariate, World};
 use crate::report::chart::Figure;
 use crate::report::diagnosis::shared::covariates;
 use crate::report::pictures::calibration::{
     MethodErrors, PoseVector, error_distribution, residual_vectors_of,
 };
-use crate::report::pictures::diagnosis::{
-    AngleError, BeforeAfter, Residual, ResidualPoint, angle_errors, before_after,
-};
-use crate::units::{MM, UM, URAD};
+use crate::report::pictures::diagnosis::{BeforeAfter, Residual, ResidualPoint, before_after};
+use crate::units::{MM, UM};
 
-/// Points of a curve for each of its cycles, and at least and at most.
-const PER_CYCLE: f64 = 12.0;
-const POINTS: (f64, f64) = (120.0, 1500.0);
-/// Part of a joint's longest lever below which a pose shows too little of its angle.
-const LEVER: f64 = 0.25;
 const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// A covariate as it is said.
@@ -35,68 +30,15 @@ pub fn along(name: &str) -> &str {
     }
 }
 
-/// What was found, each along the number that it is best seen along: gears over their angles, the strongest of the others over
-/// what it depends on. What is unexplained is in the latter.
+/// What the calibration leaves, before and after: of each joint over its angle, and the strongest of what is not a gear's, or
+/// what is unexplained, over the number that it is best seen along.
 pub fn seen(campaign: &Campaign, found: &CalibrationDiagnosis) -> Vec<Figure> {
-    let mut figures = Vec::new();
-    let joints: Vec<AngleError> = found
-        .mismatches
-        .iter()
-        .filter_map(|mismatch| gear_of(found, mismatch).map(|joint| (mismatch, joint)))
-        .filter_map(|(mismatch, joint)| angle_error(campaign, found, mismatch, joint))
-        .collect();
-    if !joints.is_empty() {
-        figures.push(angle_errors(&joints).captioned(
-            "How far joints are from where they say they are, over their own angles: as the poses show it with all else that \
-             was found taken out, and what is left. A pose's error is told along the way that the joint moves the tip.",
-        ));
-    }
-    let other = found.mismatches.iter().find(|mismatch| gear_of(found, mismatch).is_none());
-    if other.is_some() || found.diagnosis.unexplained.is_some() || joints.is_empty() {
+    let mut figures = angle::errors(campaign, found);
+    let other = found.mismatches.iter().find(|mismatch| angle::gear_of(found, mismatch).is_none());
+    if other.is_some() || found.diagnosis.unexplained.is_some() || figures.is_empty() {
         figures.extend(residuals(found, other));
     }
     figures
-}
-
-fn gear_of(found: &CalibrationDiagnosis, mismatch: &Mismatch) -> Option<usize> {
-    let candidate = found.diagnosis.findings[mismatch.parts[0]].chosen.candidate;
-    found.world.gear(candidate).map(Gear::joint)
-}
-
-fn angle_error(
-    campaign: &Campaign,
-    found: &CalibrationDiagnosis,
-    mismatch: &Mismatch,
-    joint: usize,
-) -> Option<AngleError> {
-    let curve = found.gear(campaign, joint)?;
-    let reach = found.diagnosis.findings[mismatch.parts[0]].reach;
-    let after = found.by_row(&found.diagnosis.after);
-    let longest = found.levers.iter().map(|levers| levers[joint].norm()).fold(0.0, f64::max);
-    let recording = &campaign.measurements;
-    let angles: Vec<f64> = (0..recording.len()).map(|row| recording.joints(row)[joint]).collect();
-    let poses = (0..recording.len()).filter_map(|row| {
-        let lever = found.levers[row][joint];
-        let left = lever.dot(&after[row]) / lever.norm_squared();
-        let shown = left + curve.at(angles[row]);
-        (lever.norm() > LEVER * longest).then_some([angles[row].to_degrees(), shown / URAD, left / URAD])
-    });
-    Some(AngleError {
-        joint: mismatch.location.clone(),
-        poses: poses.collect(),
-        curve: sampled(&curve, &angles)
-            .map(|q| [q.to_degrees(), curve.at(q) / URAD, reach * curve.sd(q) / URAD])
-            .collect(),
-    })
-}
-
-/// Angles over the recorded range, as finely as the curve needs, rad.
-fn sampled(curve: &Curve, angles: &[f64]) -> impl Iterator<Item = f64> + use<> {
-    let low = angles.iter().copied().fold(f64::INFINITY, f64::min);
-    let high = angles.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let cycles = curve.highest() * (high - low) / std::f64::consts::TAU;
-    let count = (PER_CYCLE * cycles).clamp(POINTS.0, POINTS.1).round();
-    (0..=count as usize).map(move |k| low + (high - low) * k as f64 / count)
 }
 
 /// Residuals before and after along the number that a mismatch, or what is unexplained, is best seen along.
@@ -213,4 +155,34 @@ pub fn distribution(found: &CalibrationDiagnosis) -> Figure {
         methods.push(method("held out, with what was found", after));
     }
     error_distribution(&methods)
+}
+
+#[cfg(test)]
+pub mod tests {
+    use super::*;
+    use crate::calibration::campaign::Targets;
+    use crate::calibration::{Mode, Options};
+    use crate::diagnosis::calibration::diagnose;
+
+    /// The demonstration with a displacement of every row, diagnosed.
+    pub fn with_diagnosed(
+        by: &dyn Fn(usize) -> Vector3<f64>,
+        judge: impl FnOnce(&Campaign, &CalibrationDiagnosis),
+    ) {
+        let find = |name: &str| {
+            Ok(match name {
+                "measurements.csv" => include_str!("../../../../campaigns/tx90-5/measurements.csv"),
+                "validation.csv" => include_str!("../../../../campaigns/tx90-5/validation.csv"),
+                "readings.csv" => include_str!("../../../../campaigns/tx90-5/readings.csv"),
+                _ => include_str!("../../../../rods/5.toml"),
+            }
+            .to_owned())
+        };
+        let text = include_str!("../../../../campaigns/tx90-5/campaign.toml");
+        let mut campaign = Campaign::from_texts("campaign.toml", text, &find).unwrap();
+        let Targets::Points(points) = &mut campaign.measurements.targets else { panic!("no points") };
+        points.iter_mut().enumerate().for_each(|(row, point)| *point += by(row));
+        let found = diagnose(&campaign, Mode::Fea, &Options::default()).unwrap();
+        judge(&campaign, &found);
+    }
 }

@@ -258,6 +258,7 @@ mod tests {
             .with(Mark::Horizontal { at: a, text: label() })
             .with(Mark::Vertical { at: b, text: label() })
             .with(Mark::Stretch { from: b, to: c, text: label() })
+            .with(Mark::Event { at: c, text: label() })
             .with(Mark::Note { at: [a, c], text: label() })
             .with(Mark::Arrow { from: [a, b], to: [b, c], text: label(), style })
     }

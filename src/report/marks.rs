@@ -2,6 +2,7 @@
 
 use super::chart::{Bar, Chart, Dash, Direction, Mark, Marker, Point, Style};
 use super::draw::{Frame, NOTE};
+use super::flags;
 use super::labels::{Area, Crowd, text_width_px};
 use super::plot::{Anchor, Canvas, Lettering, Px, Rgb};
 use super::scale::{Extent, drawable, extent};
@@ -20,6 +21,7 @@ pub(super) fn label(mark: &Mark) -> &str {
         Mark::Horizontal { .. }
         | Mark::Vertical { .. }
         | Mark::Stretch { .. }
+        | Mark::Event { .. }
         | Mark::Note { .. }
         | Mark::Arrow { .. } => "",
     }
@@ -55,7 +57,7 @@ pub(super) fn extents(chart: &Chart, width_px: f64) -> (Extent, Extent) {
                 ys.extend(foot_extent(bars));
             }
             Mark::Horizontal { at, .. } => ys.push(*at),
-            Mark::Vertical { at, .. } => xs.push(*at),
+            Mark::Vertical { at, .. } | Mark::Event { at, .. } => xs.push(*at),
             Mark::Stretch { from, to, .. } => xs.extend([*from, *to]),
             Mark::Note { at: [x, y], .. } => {
                 xs.push(*x);
@@ -113,6 +115,7 @@ pub(super) fn draw(canvas: &mut Canvas, frame: &Frame, marks: &[Mark], crowd: &m
             }
         }
     }
+    flags::draw(canvas, frame, marks, crowd);
     for mark in marks {
         match mark {
             Mark::Note { at, text } => note(canvas, frame, *at, text, crowd),

@@ -1,6 +1,7 @@
 //! A calibration's diagnosis as plain numbers for its pictures.
 
 mod angle;
+mod events;
 
 use nalgebra::Vector3;
 
@@ -17,6 +18,9 @@ use crate::report::pictures::diagnosis::{BeforeAfter, Residual, ResidualPoint, b
 use crate::units::{MM, UM};
 
 const AXES: [&str; 3] = ["x", "y", "z"];
+const ORDER: &str = "order";
+/// More poses are clouds, each axis by itself.
+const DENSE: usize = 60;
 
 /// A covariate as it is said.
 pub fn along(name: &str) -> &str {
@@ -30,28 +34,31 @@ pub fn along(name: &str) -> &str {
     }
 }
 
-/// What the calibration leaves, before and after: of each joint over its angle, and the strongest of what is not a gear's, or
-/// what is unexplained, over the number that it is best seen along.
+/// What the calibration leaves, before and after: of each joint over its angle, the strongest of what is not a gear's, or what
+/// is unexplained, over the number that it is best seen along, and all of it in its order, with what happened.
 pub fn seen(campaign: &Campaign, found: &CalibrationDiagnosis) -> Vec<Figure> {
     let mut figures = angle::errors(campaign, found);
     let other = found.mismatches.iter().find(|mismatch| angle::gear_of(found, mismatch).is_none());
-    if other.is_some() || found.diagnosis.unexplained.is_some() || figures.is_empty() {
-        figures.extend(residuals(found, other));
-    }
+    let is_told = other.is_some() || found.diagnosis.unexplained.is_some() || figures.is_empty();
+    let best = is_told.then(|| seen_along(found, other)).flatten();
+    figures.extend(
+        best.filter(|(covariate, _)| covariate.name != ORDER)
+            .map(|(covariate, joint)| residuals(found, covariate, joint)),
+    );
+    figures.extend(named(found, ORDER).map(|order| residuals(found, order, None)));
     figures
 }
 
-/// Residuals before and after along the number that a mismatch, or what is unexplained, is best seen along.
-fn residuals(found: &CalibrationDiagnosis, mismatch: Option<&Mismatch>) -> Option<Figure> {
-    let (covariate, joint) = seen_along(found, mismatch)?;
+/// Residuals before and after along a number, of a joint's motion or along the axes of the world.
+fn residuals(found: &CalibrationDiagnosis, covariate: &Covariate, joint: Option<usize>) -> Figure {
     let diagnosis = &found.diagnosis;
     let [before, after] = [&diagnosis.before, &diagnosis.after].map(|data| found.by_row(data));
     let unexplained = diagnosis.unexplained.as_ref().map(|left| found.by_row(&left.shape));
-    // along the way that a joint moves the tip, or along the axes of the world
     let directions: Vec<(String, Option<usize>)> = match joint {
         Some(joint) => vec![(format!("along the motion of joint {}", joint + 1), None)],
         None => AXES.iter().enumerate().map(|(axis, name)| ((*name).to_owned(), Some(axis))).collect(),
     };
+    let is_order = covariate.name == ORDER;
     let series = directions.into_iter().map(|(label, axis)| {
         let part = |row: usize, of: &Vector3<f64>| match (axis, joint) {
             (Some(axis), _) => of[axis] / UM,
@@ -63,7 +70,7 @@ fn residuals(found: &CalibrationDiagnosis, mismatch: Option<&Mismatch>) -> Optio
         let point = |row: usize| {
             let x = covariate.values[3 * row];
             (!x.is_nan()).then(|| ResidualPoint {
-                x,
+                x: if is_order { events::place(row) } else { x },
                 before_um: part(row, &before[row]),
                 after_um: part(row, &after[row]),
                 unexplained_um: unexplained.as_ref().map_or(0.0, |rows| part(row, &rows[row])),
@@ -72,17 +79,25 @@ fn residuals(found: &CalibrationDiagnosis, mismatch: Option<&Mismatch>) -> Optio
         Residual { label, points: (0..before.len()).filter_map(point).collect(), is_context: false }
     });
     let unit = if covariate.unit.is_empty() { String::new() } else { format!(" / {}", covariate.unit) };
+    let events = if is_order { events::all(found) } else { Vec::new() };
+    let marked = if events.is_empty() { "" } else { " What happened is marked where it did." };
     let figure = before_after(&BeforeAfter {
         along: format!("{}{unit}", along(&covariate.name)),
         names: Vec::new(),
         series: series.collect(),
         noise_um: diagnosis.noise / UM,
+        is_apart: before.len() > DENSE,
+        events,
     });
-    Some(figure.captioned(format!(
-        "What the calibration leaves of the poses along the {}, before and after; lines show what the findings say, and what \
-         remains. What is noise stays in the band.",
+    figure.captioned(format!(
+        "What the calibration leaves of the poses along the {}, before and after, with what the findings say, and what \
+         remains. What is noise stays in the band.{marked}",
         along(&covariate.name)
-    )))
+    ))
+}
+
+fn named<'a>(found: &'a CalibrationDiagnosis, name: &str) -> Option<&'a Covariate> {
+    found.evidence.covariates.iter().find(|covariate| covariate.name == name)
 }
 
 /// The covariate, and the joint whose motion shows it, where it is one joint's.
@@ -91,7 +106,7 @@ fn seen_along<'a>(
     mismatch: Option<&Mismatch>,
 ) -> Option<(&'a Covariate, Option<usize>)> {
     let all = &found.evidence.covariates;
-    let named = |name: &str| all.iter().find(|covariate| covariate.name == name);
+    let named = |name: &str| named(found, name);
     let unexplained = found.diagnosis.unexplained.as_ref().and_then(|left| left.candidate);
     let (effect, place) = match (mismatch, unexplained) {
         (Some(mismatch), _) => (mismatch.effect.as_str(), mismatch.location.clone()),
@@ -118,7 +133,7 @@ fn seen_along<'a>(
         }
         _ => None,
     };
-    own.or_else(|| named("order").map(|covariate| (covariate, None)))
+    own.or_else(|| named(ORDER).map(|covariate| (covariate, None)))
 }
 
 /// Residuals before and after over the workspace.

@@ -9,7 +9,7 @@ use super::{CLOUD_PX, MANY, padded};
 /// Rows of panels in one figure: it fits on a printed page.
 const ROWS: usize = 4;
 /// Height of a panel, px.
-const HEIGHT: f64 = 140.0;
+const HEIGHT: f64 = 150.0;
 
 /// Error of one joint over its angle.
 #[derive(Debug, Clone, Default, Serialize)]

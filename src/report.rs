@@ -17,6 +17,7 @@ pub mod comparison;
 pub mod compliance;
 pub mod diagnosis;
 mod draw;
+mod flags;
 pub mod html;
 mod labels;
 mod legend;

@@ -175,6 +175,14 @@ pub enum Mark {
         /// Its name; may be empty.
         text: String,
     },
+    /// Something that happened at one x: a dashed line with its name at the top, below those names that it would cover. A
+    /// name that finds no room is left out.
+    Event {
+        /// Where, in x.
+        at: f64,
+        /// Its name; may be empty.
+        text: String,
+    },
     /// A note, placed beside its point where it covers least.
     Note {
         /// x, y of what the note is about.
@@ -334,4 +342,6 @@ pub enum Marker {
     Plus,
     /// A wide open ring, to mark a place without hiding what is there.
     Ring,
+    /// A disc without an edge, below all lines: one of a cloud through which a curve is seen.
+    Dot,
 }

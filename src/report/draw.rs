@@ -236,7 +236,7 @@ fn right_margin(chart: &Chart) -> f64 {
 mod tests {
     use resvg::usvg::roxmltree::Document;
 
-    use super::super::chart::{Bar, Direction, Mark, Point, Range, Style};
+    use super::super::chart::{Bar, Direction, Mark, Marker, Point, Range, Style};
     use super::*;
 
     fn every_mark(values: [f64; 3]) -> Chart {
@@ -258,6 +258,7 @@ mod tests {
             .with(Mark::Horizontal { at: a, text: label() })
             .with(Mark::Vertical { at: b, text: label() })
             .with(Mark::Stretch { from: b, to: c, text: label() })
+            .with(Mark::Event { at: c, text: label() })
             .with(Mark::Note { at: [a, c], text: label() })
             .with(Mark::Arrow { from: [a, b], to: [b, c], text: label(), style })
     }
@@ -285,6 +286,25 @@ mod tests {
         }
         Figure::default().svg();
         Figure { columns: 3, shared_legend: true, ..Figure::default() }.svg();
+    }
+
+    #[test]
+    fn a_curve_is_seen_through_its_cloud_and_single_points_lie_on_theirs() {
+        let is_above = |marker| {
+            let points = vec![Point { x: 1.0, y: 1.0, error: 0.0 }; 3];
+            let svg = Figure::from(
+                Chart::new("", "", "")
+                    .with(Mark::Line {
+                        label: String::new(),
+                        points: vec![[0.0, 0.0], [2.0, 2.0]],
+                        style: Style::nth(1),
+                    })
+                    .with(Mark::Points { label: String::new(), points, style: Style::nth(0).marker(marker) }),
+            )
+            .svg();
+            svg.rfind("<circle").expect("points") > svg.find("#D55E00").expect("the curve")
+        };
+        assert!(!is_above(Marker::Dot) && is_above(Marker::Circle));
     }
 
     #[test]

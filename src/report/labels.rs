@@ -65,7 +65,7 @@ impl Area {
         (self.left..=self.right).contains(&point[0]) && (self.top..=self.bottom).contains(&point[1])
     }
 
-    fn touches(&self, other: &Area) -> bool {
+    pub(super) fn touches(&self, other: &Area) -> bool {
         self.left < other.right
             && other.left < self.right
             && self.top < other.bottom

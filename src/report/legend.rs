@@ -88,7 +88,11 @@ fn sample(canvas: &mut Canvas, mark: &Mark, [x, y]: Px) {
         Mark::Band { style, .. } => {
             canvas.fill(&patch.corners(), Rgb::from(style.colour).tint(marks::BAND_TINT))
         }
-        Mark::Horizontal { .. } | Mark::Vertical { .. } | Mark::Stretch { .. } | Mark::Note { .. } => {
+        Mark::Horizontal { .. }
+        | Mark::Vertical { .. }
+        | Mark::Stretch { .. }
+        | Mark::Event { .. }
+        | Mark::Note { .. } => {
             canvas.line(&[[x, y], [right, y]], Rgb::GREY, 1.0, Dash::Solid);
         }
     }

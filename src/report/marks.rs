@@ -2,6 +2,7 @@
 
 use super::chart::{Bar, Chart, Dash, Direction, Mark, Marker, Point, Style};
 use super::draw::{Frame, NOTE};
+use super::flags;
 use super::labels::{Area, Crowd, text_width_px};
 use super::plot::{Anchor, Canvas, Lettering, Px, Rgb};
 use super::scale::{Extent, drawable, extent};
@@ -20,6 +21,7 @@ pub(super) fn label(mark: &Mark) -> &str {
         Mark::Horizontal { .. }
         | Mark::Vertical { .. }
         | Mark::Stretch { .. }
+        | Mark::Event { .. }
         | Mark::Note { .. }
         | Mark::Arrow { .. } => "",
     }
@@ -55,7 +57,7 @@ pub(super) fn extents(chart: &Chart, width_px: f64) -> (Extent, Extent) {
                 ys.extend(foot_extent(bars));
             }
             Mark::Horizontal { at, .. } => ys.push(*at),
-            Mark::Vertical { at, .. } => xs.push(*at),
+            Mark::Vertical { at, .. } | Mark::Event { at, .. } => xs.push(*at),
             Mark::Stretch { from, to, .. } => xs.extend([*from, *to]),
             Mark::Note { at: [x, y], .. } => {
                 xs.push(*x);
@@ -85,25 +87,27 @@ fn foot_extent(bars: &[Bar]) -> Vec<f64> {
     range.map_or(Vec::new(), |(low, high)| vec![low - 0.03 * (high - low), high + 0.03 * (high - low)])
 }
 
-/// Draws all marks: areas, then lines, then points, then words, so that nothing hides what is finer.
+/// Draws all marks: areas, then clouds, then lines, then points, then words, so that nothing hides what is finer.
 pub(super) fn draw(canvas: &mut Canvas, frame: &Frame, marks: &[Mark], crowd: &mut Crowd) {
-    for layer in 0..3 {
+    for layer in 0..4 {
         for mark in marks {
             match (layer, mark) {
                 (0, Mark::Band { points, style, .. }) => band(canvas, frame, points, style),
                 (0, Mark::Bars { bars, direction, style, .. }) => {
                     bars.iter().for_each(|b| whole_bar(canvas, frame, b, *direction, style, crowd));
                 }
-                (1, Mark::Horizontal { at, .. }) => reference(canvas, frame, [f64::NAN, *at], crowd),
-                (1, Mark::Vertical { at, .. }) => reference(canvas, frame, [*at, f64::NAN], crowd),
-                (1, Mark::Stretch { from, to, text }) => stretch(canvas, frame, [*from, *to], text, crowd),
-                (1, Mark::Line { points, style, .. }) => line(canvas, frame, points, style, crowd),
-                (1, Mark::Arrow { from, to, style, .. }) if frame.places(*from) && frame.places(*to) => {
+                (2, Mark::Horizontal { at, .. }) => reference(canvas, frame, [f64::NAN, *at], crowd),
+                (2, Mark::Vertical { at, .. }) => reference(canvas, frame, [*at, f64::NAN], crowd),
+                (2, Mark::Stretch { from, to, text }) => stretch(canvas, frame, [*from, *to], text, crowd),
+                (2, Mark::Line { points, style, .. }) => line(canvas, frame, points, style, crowd),
+                (2, Mark::Arrow { from, to, style, .. }) if frame.places(*from) && frame.places(*to) => {
                     let (from, to) = (frame.px(*from), frame.px(*to));
                     crowd.add_line(from, to);
                     arrow(canvas, from, to, style);
                 }
-                (2, Mark::Points { points, style, .. }) => {
+                (1 | 3, Mark::Points { points, style, .. })
+                    if (layer == 1) == (style.marker == Marker::Dot) =>
+                {
                     let size_px = marker_px(style, points.len());
                     points.iter().for_each(|p| point(canvas, frame, p, style, size_px, crowd));
                 }
@@ -111,6 +115,7 @@ pub(super) fn draw(canvas: &mut Canvas, frame: &Frame, marks: &[Mark], crowd: &m
             }
         }
     }
+    flags::draw(canvas, frame, marks, crowd);
     for mark in marks {
         match mark {
             Mark::Note { at, text } => note(canvas, frame, *at, text, crowd),
@@ -185,6 +190,7 @@ pub(super) fn marker(canvas: &mut Canvas, [x, y]: Px, style: &Style, size_px: f6
             canvas.disc([x, y], size_px + 1.0, Rgb::WHITE);
             canvas.disc([x, y], size_px, colour);
         }
+        Marker::Dot => canvas.disc([x, y], size_px, colour),
         Marker::Square => filled(&[[-0.9, -0.9], [0.9, -0.9], [0.9, 0.9], [-0.9, 0.9]]),
         Marker::Triangle => filled(&[[0.0, -1.2], [1.1, 0.8], [-1.1, 0.8]]),
         Marker::Diamond => filled(&[[0.0, -1.3], [1.0, 0.0], [0.0, 1.3], [-1.0, 0.0]]),

@@ -88,6 +88,7 @@ pub fn residuals(found: &RigDiagnosis) -> Figure {
         names: value_names(&covariate, data),
         series,
         noise_um: diagnosis.noise / UM,
+        ..BeforeAfter::default()
     })
     .captioned(format!(
         "What the model leaves of the readings, before and after; lines show what the findings say, and what remains. What \

@@ -7,7 +7,7 @@ use serde::Deserialize;
 
 use super::bench::Bench;
 use super::drawing::rounded;
-use super::protocol::{AXES, Columns, Loading, Protocol};
+use super::protocol::{AXES, Columns, Loading, Protocol, Run, steps};
 use super::{AGAIN, drawn};
 use crate::statistics::Random;
 use crate::units::MM;
@@ -104,10 +104,7 @@ fn planned(bench: &Bench, proposed: &Proposed) -> Result<Protocol, &'static str>
     if largest * bench.compliance()[axis] > FURTHEST * recorded.tip {
         return Err("the rod yields further than a sensor follows");
     }
-    let mut steps: Vec<(f64, bool)> = proposed.loads_n.iter().map(|load| (*load, false)).collect();
-    if proposed.unloading {
-        steps.extend(proposed.loads_n.iter().rev().skip(1).map(|load| (*load, true)));
-    }
+    let steps = steps(&proposed.loads_n, proposed.unloading);
     let last = recorded.loadings.last();
     let next = |of: fn(&Loading) -> usize| recorded.loadings.iter().map(|l| of(l) + 1).max().unwrap_or(0);
     let (trial, run) = (next(|l| l.trial), next(|l| l.run));
@@ -115,24 +112,12 @@ fn planned(bench: &Bench, proposed: &Proposed) -> Result<Protocol, &'static str>
     let mut loadings = Vec::new();
     for repeat in 0..proposed.repeats {
         time += REST;
-        let zeroed = time;
-        for &(load, is_unloading) in &steps {
+        let run = Run { axis, sign, trial: trial + repeat, run: run + repeat, zeroed: time, stations };
+        for &step in &steps {
             let changed = time;
             for wait in &proposed.waits_s {
                 time = rounded(changed + DWELL + wait, 1);
-                let (trial, run) = (trial + repeat, run + repeat);
-                loadings.push(Loading {
-                    axis,
-                    sign,
-                    load,
-                    trial,
-                    run,
-                    is_unloading,
-                    changed,
-                    time,
-                    zeroed,
-                    stations,
-                });
+                loadings.push(run.loading(step, changed, time));
             }
         }
     }

@@ -10,7 +10,7 @@ use super::drawing::rounded;
 use super::effect::Effect;
 use super::is_of_one_run;
 use super::oracle::Oracle;
-use super::protocol::{Columns, Loading, Protocol};
+use super::protocol::{Columns, Protocol, Run, steps};
 use crate::statistics::Random;
 use crate::trial::truth::Asked;
 use crate::units::{MM, STANDARD_GRAVITY, UM};
@@ -53,27 +53,11 @@ pub fn draw(bench: &Bench, random: &mut Random) -> Bench {
     for (run, (axis, sign, stations)) in first.chain([(last.0, last.1, [tip; 2])]).enumerate() {
         let most = bench.full_scale.min(DEFLECTION * tip / compliance[axis]);
         let loads = SHARES.map(|share| load(share * most, recorded.columns.kilograms));
-        let mut steps: Vec<(f64, bool)> = loads.iter().map(|load| (*load, false)).collect();
-        if has_unloading {
-            steps.extend(loads.iter().rev().skip(1).map(|load| (*load, true)));
-        }
-        let zeroed = time;
-        for (load, is_unloading) in steps {
+        let run = Run { axis, sign, trial: run, run, zeroed: time, stations };
+        for step in steps(&loads, has_unloading) {
             let changed = time;
             time += TIMES.0;
-            let trial = run;
-            protocol.loadings.push(Loading {
-                axis,
-                sign,
-                load,
-                trial,
-                run,
-                is_unloading,
-                changed,
-                time,
-                zeroed,
-                stations,
-            });
+            protocol.loadings.push(run.loading(step, changed, time));
             protocol.channels.push([0, 1, 2].map(|k| k == axis || recorded.read_channels().contains(&k)));
         }
         time += TIMES.1;
@@ -122,6 +106,7 @@ mod tests {
     use super::*;
     use crate::trial::rig::bench::tests::bench;
     use crate::trial::rig::noise::{Noise, Shape};
+    use crate::trial::rig::protocol::Loading;
 
     #[test]
     fn what_is_asked_was_not_recorded() {

@@ -7,7 +7,7 @@ use super::drawing::Drawing;
 use super::effect::Effect;
 use super::noise::{Noise, Shape};
 use super::oracle;
-use super::protocol::{Columns, Loading, Protocol};
+use super::protocol::{Columns, Protocol, Run, steps};
 use super::tube::Tube;
 use crate::statistics::Random;
 use crate::units::{MM, UM};
@@ -116,32 +116,19 @@ impl Order {
 
     fn protocol(&self, tip: f64) -> Protocol {
         let (dwell, rest) = TIMES;
-        let mut steps: Vec<(f64, bool)> = self.loads.iter().map(|load| (*load, false)).collect();
-        if self.unloading {
-            steps.extend(self.loads.iter().rev().skip(1).map(|load| (*load, true)));
-        }
+        let steps = steps(&self.loads, self.unloading);
         let signs: &[f64] = if self.both_ways { &[1.0, -1.0] } else { &[1.0] };
         let (mut loadings, mut time, mut run) = (Vec::new(), 0.0, 0);
         for trial in 0..self.trials {
             for &axis in &self.axes {
                 let zeroed = time;
-                for (&sign, &(load, is_unloading)) in
-                    signs.iter().flat_map(|sign| steps.iter().map(move |step| (sign, step)))
-                {
-                    let changed = time;
-                    time += dwell;
-                    loadings.push(Loading {
-                        axis,
-                        sign,
-                        load,
-                        trial,
-                        run,
-                        is_unloading,
-                        changed,
-                        time,
-                        zeroed,
-                        stations: [tip; 2],
-                    });
+                for &sign in signs {
+                    let run = Run { axis, sign, trial, run, zeroed, stations: [tip; 2] };
+                    for &step in &steps {
+                        let changed = time;
+                        time += dwell;
+                        loadings.push(run.loading(step, changed, time));
+                    }
                 }
                 run += 1;
                 time += rest;

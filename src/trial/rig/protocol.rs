@@ -33,6 +33,36 @@ pub struct Loading {
     pub stations: [f64; 2],
 }
 
+/// One load of a run, N, and whether it hangs on the way down.
+pub type Step = (f64, bool);
+
+/// Up, and down again where that is read too, but for the largest load: it hangs already.
+pub fn steps(loads: &[f64], has_unloading: bool) -> Vec<Step> {
+    let up = loads.iter().map(|load| (*load, false));
+    let down = loads.iter().rev().skip(1).filter(|_| has_unloading).map(|load| (*load, true));
+    up.chain(down).collect()
+}
+
+/// What the loadings of one run along one way of an axis have in common; as in [`Loading`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[allow(missing_docs)]
+pub struct Run {
+    pub axis: usize,
+    pub sign: f64,
+    pub trial: usize,
+    pub run: usize,
+    pub zeroed: f64,
+    pub stations: [f64; 2],
+}
+
+impl Run {
+    /// A step that was hung at `changed` and read at `time`, s.
+    pub fn loading(&self, (load, is_unloading): Step, changed: f64, time: f64) -> Loading {
+        let Run { axis, sign, trial, run, zeroed, stations } = *self;
+        Loading { axis, sign, load, trial, run, is_unloading, changed, time, zeroed, stations }
+    }
+}
+
 /// A recording before anything is read.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Protocol {

@@ -6,7 +6,7 @@ use super::bench::Bench;
 use super::draw::{happens, log_uniform, one_of};
 use super::drawing::{Drawing, rounded};
 use super::noise::{Noise, Shape};
-use super::protocol::{Columns, Loading, Protocol};
+use super::protocol::{Columns, Protocol, Run, steps};
 use super::tube::Tube;
 use crate::statistics::Random;
 use crate::units::{DEG, MM, STANDARD_GRAVITY, UM};
@@ -192,28 +192,12 @@ fn protocol(drawing: &Drawing, needs: Needs, largest: f64, random: &mut Random) 
             };
             let ways = if both_ways { vec![first_sign, -first_sign] } else { vec![first_sign] };
             for sign in ways {
-                let mut sequence: Vec<(f64, bool)> = loads.iter().map(|load| (*load, false)).collect();
-                if has_unloading {
-                    sequence.extend(loads.iter().rev().skip(1).map(|load| (*load, true)));
-                }
-                if ends_at_zero {
-                    sequence.push((0.0, true));
-                }
-                for (load, is_unloading) in sequence {
+                let run = Run { axis, sign, trial, run, zeroed, stations };
+                let to_zero = ends_at_zero.then_some((0.0, true));
+                for step in steps(&loads, has_unloading).into_iter().chain(to_zero) {
                     let changed = time;
                     time = rounded(changed + dwell * random.uniform(0.8, 1.2), 1);
-                    loadings.push(Loading {
-                        axis,
-                        sign,
-                        load,
-                        trial,
-                        run,
-                        is_unloading,
-                        changed,
-                        time,
-                        zeroed,
-                        stations,
-                    });
+                    loadings.push(run.loading(step, changed, time));
                 }
             }
             run += 1;

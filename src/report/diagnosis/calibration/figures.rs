@@ -1,27 +1,26 @@
 //! A calibration's diagnosis as plain numbers for its pictures.
 
+mod angle;
+mod events;
+
 use nalgebra::Vector3;
 
 use super::Distances;
 use crate::calibration::Campaign;
-use crate::diagnosis::calibration::{CalibrationDiagnosis, Curve, Gear, Mismatch};
+use crate::diagnosis::calibration::{CalibrationDiagnosis, Mismatch};
 use crate::diagnosis::{Covariate, World};
 use crate::report::chart::Figure;
 use crate::report::diagnosis::shared::covariates;
 use crate::report::pictures::calibration::{
     MethodErrors, PoseVector, error_distribution, residual_vectors_of,
 };
-use crate::report::pictures::diagnosis::{
-    AngleError, BeforeAfter, Residual, ResidualPoint, angle_errors, before_after,
-};
-use crate::units::{MM, UM, URAD};
+use crate::report::pictures::diagnosis::{BeforeAfter, Residual, ResidualPoint, before_after};
+use crate::units::{MM, UM};
 
-/// Points of a curve for each of its cycles, and at least and at most.
-const PER_CYCLE: f64 = 12.0;
-const POINTS: (f64, f64) = (120.0, 1500.0);
-/// Part of a joint's longest lever below which a pose shows too little of its angle.
-const LEVER: f64 = 0.25;
 const AXES: [&str; 3] = ["x", "y", "z"];
+const ORDER: &str = "order";
+/// More poses are clouds, each axis by itself.
+const DENSE: usize = 60;
 
 /// A covariate as it is said.
 pub fn along(name: &str) -> &str {
@@ -35,81 +34,31 @@ pub fn along(name: &str) -> &str {
     }
 }
 
-/// What was found, each along the number that it is best seen along: gears over their angles, the strongest of the others over
-/// what it depends on. What is unexplained is in the latter.
+/// What the calibration leaves, before and after: of each joint over its angle, the strongest of what is not a gear's, or what
+/// is unexplained, over the number that it is best seen along, and all of it in its order, with what happened.
 pub fn seen(campaign: &Campaign, found: &CalibrationDiagnosis) -> Vec<Figure> {
-    let mut figures = Vec::new();
-    let joints: Vec<AngleError> = found
-        .mismatches
-        .iter()
-        .filter_map(|mismatch| gear_of(found, mismatch).map(|joint| (mismatch, joint)))
-        .filter_map(|(mismatch, joint)| angle_error(campaign, found, mismatch, joint))
-        .collect();
-    if !joints.is_empty() {
-        figures.push(angle_errors(&joints).captioned(
-            "How far joints are from where they say they are, over their own angles: as the poses show it with all else that \
-             was found taken out, and what is left. A pose's error is told along the way that the joint moves the tip.",
-        ));
-    }
-    let other = found.mismatches.iter().find(|mismatch| gear_of(found, mismatch).is_none());
-    if other.is_some() || found.diagnosis.unexplained.is_some() || joints.is_empty() {
-        figures.extend(residuals(found, other));
-    }
+    let mut figures = angle::errors(campaign, found);
+    let other = found.mismatches.iter().find(|mismatch| angle::gear_of(found, mismatch).is_none());
+    let is_told = other.is_some() || found.diagnosis.unexplained.is_some() || figures.is_empty();
+    let best = is_told.then(|| seen_along(found, other)).flatten();
+    figures.extend(
+        best.filter(|(covariate, _)| covariate.name != ORDER)
+            .map(|(covariate, joint)| residuals(found, covariate, joint)),
+    );
+    figures.extend(named(found, ORDER).map(|order| residuals(found, order, None)));
     figures
 }
 
-fn gear_of(found: &CalibrationDiagnosis, mismatch: &Mismatch) -> Option<usize> {
-    let candidate = found.diagnosis.findings[mismatch.parts[0]].chosen.candidate;
-    found.world.gear(candidate).map(Gear::joint)
-}
-
-fn angle_error(
-    campaign: &Campaign,
-    found: &CalibrationDiagnosis,
-    mismatch: &Mismatch,
-    joint: usize,
-) -> Option<AngleError> {
-    let curve = found.gear(campaign, joint)?;
-    let reach = found.diagnosis.findings[mismatch.parts[0]].reach;
-    let after = found.by_row(&found.diagnosis.after);
-    let longest = found.levers.iter().map(|levers| levers[joint].norm()).fold(0.0, f64::max);
-    let recording = &campaign.measurements;
-    let angles: Vec<f64> = (0..recording.len()).map(|row| recording.joints(row)[joint]).collect();
-    let poses = (0..recording.len()).filter_map(|row| {
-        let lever = found.levers[row][joint];
-        let left = lever.dot(&after[row]) / lever.norm_squared();
-        let shown = left + curve.at(angles[row]);
-        (lever.norm() > LEVER * longest).then_some([angles[row].to_degrees(), shown / URAD, left / URAD])
-    });
-    Some(AngleError {
-        joint: mismatch.location.clone(),
-        poses: poses.collect(),
-        curve: sampled(&curve, &angles)
-            .map(|q| [q.to_degrees(), curve.at(q) / URAD, reach * curve.sd(q) / URAD])
-            .collect(),
-    })
-}
-
-/// Angles over the recorded range, as finely as the curve needs, rad.
-fn sampled(curve: &Curve, angles: &[f64]) -> impl Iterator<Item = f64> + use<> {
-    let low = angles.iter().copied().fold(f64::INFINITY, f64::min);
-    let high = angles.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let cycles = curve.highest() * (high - low) / std::f64::consts::TAU;
-    let count = (PER_CYCLE * cycles).clamp(POINTS.0, POINTS.1).round();
-    (0..=count as usize).map(move |k| low + (high - low) * k as f64 / count)
-}
-
-/// Residuals before and after along the number that a mismatch, or what is unexplained, is best seen along.
-fn residuals(found: &CalibrationDiagnosis, mismatch: Option<&Mismatch>) -> Option<Figure> {
-    let (covariate, joint) = seen_along(found, mismatch)?;
+/// Residuals before and after along a number, of a joint's motion or along the axes of the world.
+fn residuals(found: &CalibrationDiagnosis, covariate: &Covariate, joint: Option<usize>) -> Figure {
     let diagnosis = &found.diagnosis;
     let [before, after] = [&diagnosis.before, &diagnosis.after].map(|data| found.by_row(data));
     let unexplained = diagnosis.unexplained.as_ref().map(|left| found.by_row(&left.shape));
-    // along the way that a joint moves the tip, or along the axes of the world
     let directions: Vec<(String, Option<usize>)> = match joint {
         Some(joint) => vec![(format!("along the motion of joint {}", joint + 1), None)],
         None => AXES.iter().enumerate().map(|(axis, name)| ((*name).to_owned(), Some(axis))).collect(),
     };
+    let is_order = covariate.name == ORDER;
     let series = directions.into_iter().map(|(label, axis)| {
         let part = |row: usize, of: &Vector3<f64>| match (axis, joint) {
             (Some(axis), _) => of[axis] / UM,
@@ -121,7 +70,7 @@ fn residuals(found: &CalibrationDiagnosis, mismatch: Option<&Mismatch>) -> Optio
         let point = |row: usize| {
             let x = covariate.values[3 * row];
             (!x.is_nan()).then(|| ResidualPoint {
-                x,
+                x: if is_order { events::place(row) } else { x },
                 before_um: part(row, &before[row]),
                 after_um: part(row, &after[row]),
                 unexplained_um: unexplained.as_ref().map_or(0.0, |rows| part(row, &rows[row])),
@@ -130,17 +79,25 @@ fn residuals(found: &CalibrationDiagnosis, mismatch: Option<&Mismatch>) -> Optio
         Residual { label, points: (0..before.len()).filter_map(point).collect(), is_context: false }
     });
     let unit = if covariate.unit.is_empty() { String::new() } else { format!(" / {}", covariate.unit) };
+    let events = if is_order { events::all(found) } else { Vec::new() };
+    let marked = if events.is_empty() { "" } else { " What happened is marked where it did." };
     let figure = before_after(&BeforeAfter {
         along: format!("{}{unit}", along(&covariate.name)),
         names: Vec::new(),
         series: series.collect(),
         noise_um: diagnosis.noise / UM,
+        is_apart: before.len() > DENSE,
+        events,
     });
-    Some(figure.captioned(format!(
-        "What the calibration leaves of the poses along the {}, before and after; lines show what the findings say, and what \
-         remains. What is noise stays in the band.",
+    figure.captioned(format!(
+        "What the calibration leaves of the poses along the {}, before and after, with what the findings say, and what \
+         remains. What is noise stays in the band.{marked}",
         along(&covariate.name)
-    )))
+    ))
+}
+
+fn named<'a>(found: &'a CalibrationDiagnosis, name: &str) -> Option<&'a Covariate> {
+    found.evidence.covariates.iter().find(|covariate| covariate.name == name)
 }
 
 /// The covariate, and the joint whose motion shows it, where it is one joint's.
@@ -149,7 +106,7 @@ fn seen_along<'a>(
     mismatch: Option<&Mismatch>,
 ) -> Option<(&'a Covariate, Option<usize>)> {
     let all = &found.evidence.covariates;
-    let named = |name: &str| all.iter().find(|covariate| covariate.name == name);
+    let named = |name: &str| named(found, name);
     let unexplained = found.diagnosis.unexplained.as_ref().and_then(|left| left.candidate);
     let (effect, place) = match (mismatch, unexplained) {
         (Some(mismatch), _) => (mismatch.effect.as_str(), mismatch.location.clone()),
@@ -176,7 +133,7 @@ fn seen_along<'a>(
         }
         _ => None,
     };
-    own.or_else(|| named("order").map(|covariate| (covariate, None)))
+    own.or_else(|| named(ORDER).map(|covariate| (covariate, None)))
 }
 
 /// Residuals before and after over the workspace.
@@ -213,4 +170,34 @@ pub fn distribution(found: &CalibrationDiagnosis) -> Figure {
         methods.push(method("held out, with what was found", after));
     }
     error_distribution(&methods)
+}
+
+#[cfg(test)]
+pub mod tests {
+    use super::*;
+    use crate::calibration::campaign::Targets;
+    use crate::calibration::{Mode, Options};
+    use crate::diagnosis::calibration::diagnose;
+
+    /// The demonstration with a displacement of every row, diagnosed.
+    pub fn with_diagnosed(
+        by: &dyn Fn(usize) -> Vector3<f64>,
+        judge: impl FnOnce(&Campaign, &CalibrationDiagnosis),
+    ) {
+        let find = |name: &str| {
+            Ok(match name {
+                "measurements.csv" => include_str!("../../../../campaigns/tx90-5/measurements.csv"),
+                "validation.csv" => include_str!("../../../../campaigns/tx90-5/validation.csv"),
+                "readings.csv" => include_str!("../../../../campaigns/tx90-5/readings.csv"),
+                _ => include_str!("../../../../rods/5.toml"),
+            }
+            .to_owned())
+        };
+        let text = include_str!("../../../../campaigns/tx90-5/campaign.toml");
+        let mut campaign = Campaign::from_texts("campaign.toml", text, &find).unwrap();
+        let Targets::Points(points) = &mut campaign.measurements.targets else { panic!("no points") };
+        points.iter_mut().enumerate().for_each(|(row, point)| *point += by(row));
+        let found = diagnose(&campaign, Mode::Fea, &Options::default()).unwrap();
+        judge(&campaign, &found);
+    }
 }

@@ -122,10 +122,10 @@ pub fn diagnose(world: &dyn World, evidence: &Evidence) -> Diagnosis {
     let (mut left, mut determined) = (after.clone(), story.determined);
     let mut unexplained = None;
     if let Some(Remainder::Curve(longer)) = unknown {
-        let with_curve = world.change(&longer.chosen);
-        left = &evidence.residual - search.told(&longer, evidence, &with_curve);
+        left = &evidence.residual - search.told(&longer, evidence, &world.change(&longer.chosen));
         determined = longer.determined;
-        let shape = with_curve - &change;
+        // what the calibration would take up of the curve is not left
+        let shape = &after - &left;
         let candidate = longer.chosen.last().map(|curve| curve.candidate);
         unexplained = Some(Unexplained { candidate, rms: rms(&shape), shape });
     } else if let Some(Remainder::Cells) = unknown {

@@ -4,8 +4,10 @@
 //! along one number      Σ_k a_k·cos(π k x)        a_k a vector in {W} or in {T}, x from 0 to 1, a_k ~ s/(1 + k)
 //! again and again       a·sin(2π n t) + b·cos(2π n t), n cycles over the recording, scanned
 //! over the workspace    products of such cosines along x, y, z of {W}
-//! by its orientation    first and second order in the direction that an axis of {W} has in {T}, a vector in {T}
-//! of a joint's reversal it turns by Σ a_k·cos(π k x) one way, by as much the other way when it came from there
+//! by its orientation    first and second order in the direction that an axis of {W} has in {T}, a vector in {T};
+//!                       first and second order in the whole orientation of {T} to the clamp, a vector in the clamp's frame
+//! of a joint's reversal it turns by Σ a_k·cos(π k x) one way, by as much the other way when it came from there, or is loaded
+//!                       the other way
 //! of two joints         both turn by Σ a_kl·cos(π k x)·cos(π l y): what neither does as a function of its own angle
 //! of a link             all beyond a joint turns about any axis of its link by products of two joints' angles
 //! of each clamp         a vector in {W}
@@ -15,7 +17,7 @@
 
 use std::f64::consts::PI;
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 use super::scene::{Column, Entry, Scene, entry, linear};
 use crate::diagnosis::EffectParameter;
@@ -28,6 +30,10 @@ const TURN: f64 = 100e-6;
 const URAD: f64 = 1e-6;
 /// Cosines along one number, beside the constant.
 const MOST: usize = 6;
+/// The same where a joint turns back: a tooth is worn over a part of a turn.
+const MOST_OF_REVERSAL: usize = 12;
+/// Largest torque below which a joint is not loaded, N·m.
+const LEAST_TORQUE: f64 = 0.1;
 /// Highest order of a product of cosines over the workspace, along each of two joints, and in a link.
 const ORDER: (usize, usize, usize) = (3, 3, 1);
 /// Most frequencies at which something may come back over a recording.
@@ -56,7 +62,13 @@ pub(super) fn all(scene: &Scene) -> Vec<Entry> {
     entries.extend(again_and_again(scene));
     entries.extend(workspace(scene));
     entries.extend((0..3).map(|axis| by_orientation(scene, axis)));
-    entries.extend(scene.revolute().into_iter().filter_map(|j| reversal(scene, j)));
+    entries.push(by_whole_orientation(scene));
+    for j in scene.revolute() {
+        entries.extend(reversal(scene, j, "for either way", &|row| scene.postures[row].approach[j]));
+        let loaded = |row: usize| scene.postures[row].torque[j].signum();
+        let is_known = scene.has_masses && scene.largest(|posture| posture.torque[j]) > LEAST_TORQUE;
+        entries.extend(is_known.then(|| reversal(scene, j, "for either load", &loaded)).flatten());
+    }
     entries.extend(pairs(scene));
     entries.extend(links(scene));
     entries.extend(clamps(scene));
@@ -152,13 +164,47 @@ fn by_orientation(scene: &Scene, axis: usize) -> Entry {
     entry("unknown", format!("orientation, the world's {} in the tool", AXES[axis]), parameters.collect())
 }
 
-fn reversal(scene: &Scene, j: usize) -> Option<Entry> {
+/// The same where the fixture sees it: with Q = R_Tᵀ·R_clamp its nine numbers, and tr(E_m·Q·E_n·Qᵀ) with the five symmetric
+/// matrices E without a trace, which are all functions of first and second order of a rotation.
+fn by_whole_orientation(scene: &Scene) -> Entry {
+    let half = 0.5f64.sqrt();
+    let traceless = [
+        Matrix3::new(0.0, half, 0.0, half, 0.0, 0.0, 0.0, 0.0, 0.0),
+        Matrix3::new(0.0, 0.0, half, 0.0, 0.0, 0.0, half, 0.0, 0.0),
+        Matrix3::new(0.0, 0.0, 0.0, 0.0, 0.0, half, 0.0, half, 0.0),
+        Matrix3::from_diagonal(&Vector3::new(half, -half, 0.0)),
+        Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, -2.0)) / 6.0f64.sqrt(),
+    ];
+    let groups = &scene.recording.groups;
+    let device = |row: usize| &groups[scene.recording.rows[row].group].device.rotation;
+    let held: Vec<Matrix3<f64>> =
+        scene.postures.iter().enumerate().map(|(row, p)| p.flange.rotation.tr_mul(device(row))).collect();
+    let mut parameters = Vec::new();
+    let mut add = |name: String, size: f64, weight: &dyn Fn(&Matrix3<f64>) -> f64| {
+        for (axis, letter) in AXES.iter().enumerate() {
+            let column = scene.column(|row, _| device(row).column(axis) * weight(&held[row]));
+            parameters.push((linear(format!("{letter}_{name}_um"), UM, size), column));
+        }
+    };
+    for (i, j) in (0..9).map(|k| (k / 3, k % 3)) {
+        add(format!("{}{}", AXES[i], AXES[j]), SIZE / 2.0, &|q| q[(i, j)]);
+    }
+    for (m, n) in (0..25).map(|k| (k / 5, k % 5)) {
+        add(format!("second_{m}{n}"), SIZE / 3.0, &|q| {
+            (traceless[m] * q * traceless[n] * q.transpose()).trace()
+        });
+    }
+    entry("unknown", "orientation, as the fixture sees it", parameters)
+}
+
+/// What a joint does one way and not the other, by its angle: `way` is 1 or −1, 0 where nobody knows.
+fn reversal(scene: &Scene, j: usize, words: &str, way: &dyn Fn(usize) -> f64) -> Option<Entry> {
     let x = scaled(&scene.postures.iter().map(|posture| posture.joints[j]).collect::<Vec<_>>())?;
-    let parameters = (0..=MOST).map(|k| {
-        let column = scene.turn(j, |row, posture| posture.approach[j] * cosine(k, x[row]));
+    let parameters = (0..=MOST_OF_REVERSAL).map(|k| {
+        let column = scene.turn(j, |row, _| way(row) * cosine(k, x[row]));
         (linear(format!("reversed_cosine_{k}_urad"), URAD, TURN / (1 + k) as f64), column)
     });
-    Some(entry("unknown", format!("joint {}, a curve for either way", j + 1), parameters.collect()))
+    Some(entry("unknown", format!("joint {}, a curve {words}", j + 1), parameters.collect()))
 }
 
 /// All beyond joint i turns about the axes that it moves along, by what depends on the angles of two joints.

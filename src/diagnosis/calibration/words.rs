@@ -75,6 +75,9 @@ pub fn unexplained_at(place: &str) -> String {
         Some((joint, "a curve for either way")) => {
             format!("follows the angle of {joint}, another curve for either way of coming there")
         }
+        Some((joint, "a curve for either load")) => {
+            format!("follows the angle of {joint}, another curve for either way in which it is loaded")
+        }
         Some(("order", again)) => format!("comes back {again}"),
         Some(("orientation", _)) => "follows how the tool is held".into(),
         Some((link, turned)) if link.starts_with("link ") => {

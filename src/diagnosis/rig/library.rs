@@ -290,6 +290,8 @@ fn of_history(data: &[Datum]) -> Vec<Entry> {
         (Loop::Symmetric, "rod, loaded before"),
         (Loop::Remanent, "rod, open at zero"),
         (Loop::Virgin, "rod, loaded for the first time"),
+        (Loop::NewByRayleigh, "rod, new before these readings"),
+        (Loop::NewByPlays, "rod, new before these readings, by plays"),
     ];
     let lagging = loops.into_iter().filter_map(|(shape, location)| {
         let fraction = parameter("fraction", 1.0, 0.0, HYSTERESIS, (0.0, 1.0));

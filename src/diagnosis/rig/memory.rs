@@ -2,6 +2,7 @@
 
 use super::action::Memory;
 use super::datum::Datum;
+use crate::rig::readings::Direction;
 
 /// Since when a reading has crept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -78,14 +79,26 @@ pub(super) enum Loop {
     /// A rod that is loaded for the first time: b·F² on the way up, b·(F_max² − ½(F_max − F)²) on the way down, b = 8h/5F_max
     /// (Lord Rayleigh, Phil. Mag. 23 (1887) 225–245: a quadratic law and branches of half its curvature).
     Virgin,
+    /// A new rod that remembers from run to run: as [`Loop::Symmetric`] but in a run that goes further than any before in its
+    /// direction, which is a first one by Lord Rayleigh's law with the same branches, F·(1 − 2h) + 4h·F²/F_max on the way up.
+    NewByRayleigh,
+    /// The same by plays that are spread evenly up to half of the largest load (Visintin, ch. III): beyond half of it the first
+    /// way up is straight, F·(1 + 2h) − h·F_max.
+    NewByPlays,
 }
 
 /// Hysteresis; nothing where nothing was read on the way down.
 pub(super) fn hysteresis(data: &[Datum], shape: Loop) -> Option<Memory> {
     data.iter().any(Datum::is_unloading).then_some(())?;
     let mut memory = none(data);
+    let mut known: Vec<(Direction, f64)> = Vec::new();
+    let remembers = matches!(shape, Loop::NewByRayleigh | Loop::NewByPlays);
     for run in runs(data) {
         let largest = run.iter().fold(0.0, |max: f64, &i| max.max(data[i].load));
+        let direction = data[run[0]].direction;
+        let is_new = known.iter().all(|(other, load)| *other != direction || largest > *load);
+        known.push((direction, largest));
+        let shape = if remembers && !is_new { Loop::Symmetric } else { shape };
         for i in run.into_iter().filter(|_| largest > 0.0) {
             let (load, is_unloading) = (data[i].load, data[i].is_unloading());
             let parabola = 4.0 * (1.0 - load / largest);
@@ -98,6 +111,17 @@ pub(super) fn hysteresis(data: &[Datum], shape: Loop) -> Option<Memory> {
                 (Loop::Virgin, true) => {
                     memory.lingering[i] = 1.6 * (largest.powi(2) - 0.5 * (largest - load).powi(2)) / largest;
                 }
+                (Loop::NewByPlays, false) if load > 0.5 * largest => {
+                    memory.relative[i] = 2.0 - largest / load
+                }
+                (Loop::NewByRayleigh | Loop::NewByPlays, false) => {
+                    memory.relative[i] = 4.0 * load / largest - 2.0;
+                }
+                // the branch of a rod that was loaded before, from where the first way up has led
+                (Loop::NewByRayleigh, true) => {
+                    memory.lingering[i] = 0.5 * parabola * load + 2.0 * largest;
+                }
+                (Loop::NewByPlays, true) => memory.lingering[i] = 0.5 * parabola * load + largest,
                 (Loop::Closed | Loop::Remanent, false) => {}
             }
         }
@@ -180,6 +204,30 @@ mod tests {
         let virgin = hysteresis(&data, Loop::Virgin).unwrap();
         let felt = |i: usize| data[i].load * virgin.relative[i] + virgin.lingering[i];
         assert!((felt(2) - felt(0) - 10.0).abs() < 1e-12 && felt(3) > 0.0);
+    }
+
+    #[test]
+    fn a_new_rod_is_new_once_in_each_direction() {
+        let run = |direction: &str, trial: usize| {
+            format!(
+                "{direction},5,load,{trial},0\n{direction},10,load,{trial},0\n{direction},5,unload,{trial},0\n"
+            )
+        };
+        let text = |runs: &[String]| "axis,load_n,phase,trial,dy_um\n".to_owned() + &runs.concat();
+        let mixed = data(&text(&[run("y", 1), run("-y", 2), run("y", 3)]));
+        let before = hysteresis(&mixed, Loop::Symmetric).unwrap();
+        for (shape, set) in [(Loop::NewByRayleigh, 2.0), (Loop::NewByPlays, 1.0)] {
+            let new = hysteresis(&mixed, shape).unwrap();
+            let felt = |i: usize| mixed[i].load * new.relative[i] + new.lingering[i];
+            // half the largest load, all of it, and half of it again
+            for (at, first) in [(0, 0.0), (3, 0.0)] {
+                assert_eq!([0, 1, 2].map(|k| felt(at + k)), [first, 10.0 * set, 10.0 * set + 5.0]);
+            }
+            assert_eq!(
+                (&new.relative[6..], &new.lingering[6..]),
+                (&before.relative[6..], &before.lingering[6..])
+            );
+        }
     }
 
     #[test]

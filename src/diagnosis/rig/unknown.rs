@@ -9,7 +9,8 @@
 //! for every shape is more likely to be smooth than not. Over the levels of the load x counts levels, so that four loads have
 //! four columns and any shape can be met: a step at one load, a contact that stiffens beyond 10 N. A curve adds to the readings
 //! of one line or channel (s a share of what was read there), or it multiplies the deflections of all lines at once (s a share of
-//! them): then physics that acts on all lines alike, such as relaxation with one time constant, is one rival and not many.
+//! them), or, over the load, it adds to what is read along the load on all lines: then physics that acts on all lines alike, such
+//! as relaxation with one time constant or a seat that gives way, is one rival and not many.
 
 use std::f64::consts::PI;
 
@@ -52,6 +53,7 @@ pub(super) fn all(data: &[Datum], deflections: &[f64], has_rod: bool) -> Vec<Ent
             entries.extend(curve(name, place, &coordinate, group, UM, size, |_| 1.0));
         }
     }
+    entries.extend(along_the_load(data));
     if has_rod {
         entries.extend(slopes(data, deflections, &lines));
     }
@@ -149,6 +151,22 @@ fn curve(
         Candidate { effect, location, parameters, weight: 1.0, is_alternative: false, is_unknown: true },
         actions,
     ))
+}
+
+/// What moves the tip towards the load, by a curve of its size wherever it pulls to; nothing along a single axis, where the curve
+/// of its line is the same.
+fn along_the_load(data: &[Datum]) -> Option<Entry> {
+    let along: Vec<usize> = (0..data.len())
+        .filter(|&i| data[i].channel == data[i].direction.axis && data[i].load > 0.0)
+        .collect();
+    let axes = numbered(along.iter().map(|&i| data[i].channel)).into_iter().max()? + 1;
+    let coordinate: Coordinate = scaled(&data.iter().map(|d| Some(d.load)).collect::<Vec<_>>());
+    let largest = along.iter().fold(0.0, |max: f64, &i| max.max(data[i].measured.abs()));
+    let size = (SHARE * largest).max(LEAST_SHIFT);
+    let sign = |i: usize| f64::from(data[i].direction.sign);
+    (axes > 1)
+        .then(|| curve("load", "readings along the load", &coordinate, &along, UM, size, sign))
+        .flatten()
 }
 
 /// A slope of its own for every line: a rod whose compliance differs from the model in a way that no part of it explains.

@@ -102,7 +102,7 @@ fn rates(half: &str, score: &Value) -> Table {
     let number = |value: &Value| value.as_f64().map_or("–".into(), |ratio| format!("{:.0}", 100.0 * ratio));
     if of["n"].as_u64().is_some_and(|n| n > 0) {
         rows.push(vec![
-            "error of readings under other loads, over the oracle's; median, and between which half of them are".into(),
+            "error of what was asked, over the oracle's: median, quartiles".into(),
             format!("{} of {}", of["answered"], of["n"]),
             number(&of["median"]),
             number(&of["quartiles"][0]),

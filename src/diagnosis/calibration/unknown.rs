@@ -5,6 +5,7 @@
 //! again and again       a·sin(2π n t) + b·cos(2π n t), n cycles over the recording, scanned
 //! over the workspace    products of such cosines along x, y, z of {W}
 //! by its orientation    first and second order in the direction that an axis of {W} has in {T}, a vector in {T};
+//!                       the same in the direction in {T} of a line that is fixed in the clamp, along that line, scanned;
 //!                       first and second order in the whole orientation of {T} to the clamp, a vector in the clamp's frame
 //! of a joint's reversal it turns by Σ a_k·cos(π k x) one way, by as much the other way when it came from there, or is loaded
 //!                       the other way
@@ -34,6 +35,22 @@ const MOST: usize = 6;
 const MOST_OF_REVERSAL: usize = 12;
 /// Largest torque below which a joint is not loaded, N·m.
 const LEAST_TORQUE: f64 = 0.1;
+/// Lines through the middle of a cube: of its faces, edges and corners. None is farther than 27° from any other line.
+const SIDES: [[f64; 3]; 13] = [
+    [1.0, 0.0, 0.0],
+    [0.0, 1.0, 0.0],
+    [0.0, 0.0, 1.0],
+    [1.0, 1.0, 0.0],
+    [1.0, -1.0, 0.0],
+    [1.0, 0.0, 1.0],
+    [1.0, 0.0, -1.0],
+    [0.0, 1.0, 1.0],
+    [0.0, 1.0, -1.0],
+    [1.0, 1.0, 1.0],
+    [1.0, 1.0, -1.0],
+    [1.0, -1.0, 1.0],
+    [-1.0, 1.0, 1.0],
+];
 /// Highest order of a product of cosines over the workspace, along each of two joints, and in a link.
 const ORDER: (usize, usize, usize) = (3, 3, 1);
 /// Most frequencies at which something may come back over a recording.
@@ -62,6 +79,7 @@ pub(super) fn all(scene: &Scene) -> Vec<Entry> {
     entries.extend(again_and_again(scene));
     entries.extend(workspace(scene));
     entries.extend((0..3).map(|axis| by_orientation(scene, axis)));
+    entries.extend(SIDES.iter().map(|side| from_a_side(scene, side)));
     entries.push(by_whole_orientation(scene));
     for j in scene.revolute() {
         entries.extend(reversal(scene, j, "for either way", &|row| scene.postures[row].approach[j]));
@@ -150,18 +168,40 @@ fn again_and_again(scene: &Scene) -> Vec<Entry> {
     counts.map(of_count).collect()
 }
 
-/// A ball that is not round, a prism that is read from the side: what depends on how the tool is held.
+/// Products of first and second order of a direction's three numbers, with their sizes; of the squares, which add up to one, two.
+fn orders() -> impl Iterator<Item = (Vec<usize>, f64)> {
+    let second = [[0, 0], [1, 1], [0, 1], [0, 2], [1, 2]].map(|pair| (pair.to_vec(), SIZE / 3.0));
+    (0..3).map(|k| (vec![k], SIZE / 2.0)).chain(second)
+}
+
+fn name_of(factors: &[usize]) -> String {
+    factors.iter().map(|&k| AXES[k]).collect()
+}
+
+/// What depends on how the tool is held.
 fn by_orientation(scene: &Scene, axis: usize) -> Entry {
     let direction = |row: usize, k: usize| scene.postures[row].flange.rotation[(axis, k)];
-    let first = (0..3).map(|k| (vec![k], SIZE / 2.0));
-    // the squares add up to one
-    let second = [[0, 0], [1, 1], [0, 1], [0, 2], [1, 2]].map(|pair| (pair.to_vec(), SIZE / 3.0));
-    let parameters = first.chain(second).flat_map(|(factors, size)| {
-        let name: String = factors.iter().map(|&k| AXES[k]).collect();
+    let parameters = orders().flat_map(|(factors, size)| {
         let weight = |row: usize| factors.iter().map(|&k| direction(row, k)).product::<f64>();
-        vectors(scene, &name, size, true, &weight)
+        vectors(scene, &name_of(&factors), size, true, &weight)
     });
     entry("unknown", format!("orientation, the world's {} in the tool", AXES[axis]), parameters.collect())
+}
+
+/// A ball that is not round and is touched from one side, a prism that is read from there.
+fn from_a_side(scene: &Scene, side: &[f64; 3]) -> Entry {
+    let side = Vector3::from(*side).normalize();
+    let groups = &scene.recording.groups;
+    let line = |row: usize| groups[scene.recording.rows[row].group].device.rotation * side;
+    let parameters = orders().map(|(factors, size)| {
+        let column = scene.column(|row, posture| {
+            let held = posture.flange.rotation.tr_mul(&line(row));
+            line(row) * factors.iter().map(|&k| held[k]).product::<f64>()
+        });
+        (linear(format!("{}_um", name_of(&factors)), UM, size), column)
+    });
+    let [x, y, z] = side.into();
+    entry("unknown", format!("orientation, from the side ({x:.1} {y:.1} {z:.1})"), parameters.collect())
 }
 
 /// The same where the fixture sees it: with Q = R_Tᵀ·R_clamp its nine numbers, and tr(E_m·Q·E_n·Qᵀ) with the five symmetric

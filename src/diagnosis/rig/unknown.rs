@@ -211,3 +211,34 @@ fn places(datum: &Datum) -> String {
     };
     at("loaded", datum.load_station) + &at("read", datum.read_station)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnosis::rig::datum;
+    use crate::rig::readings::Readings;
+
+    fn along(text: &str) -> Option<Entry> {
+        along_the_load(&datum::all(&Readings::from_text("f", text).unwrap().rows))
+    }
+
+    #[test]
+    fn what_yields_along_the_load_does_so_wherever_that_pulls() {
+        let (candidate, actions) =
+            along("axis,load_n,dy_um,dz_um\n-y,0,0,0\n-y,5,-9,1\n-y,10,-18,2\nz,10,3,30\n").unwrap();
+        assert_eq!(candidate.location, "load, readings along the load");
+        let weights = |action: &Action| match action {
+            Action::Shift(weights) => weights.clone(),
+            _ => panic!("a shift"),
+        };
+        // by datum: dy and dz of every row; a constant, and one half of a cosine from no load to the largest
+        assert_eq!(weights(&actions[0]), [(2, -1.0), (4, -1.0), (7, 1.0)]);
+        let half: Vec<f64> = weights(&actions[1]).iter().map(|(_, weight)| *weight).collect();
+        assert!(half[0].abs() < 1e-15 && half[1..] == [1.0, -1.0], "{half:?}");
+    }
+
+    #[test]
+    fn along_one_axis_the_curve_of_its_line_is_enough() {
+        assert!(along("axis,load_n,dy_um,dz_um\n-y,5,-9,1\ny,10,18,2\n").is_none());
+    }
+}

@@ -65,6 +65,12 @@ fn links_turn_and_joints_err_together() {
         ),
         (
             "unknown",
+            "joint 3, a curve for either load",
+            "reversed_cosine_2_urad",
+            Box::new(|r, row, v| r.q[2] += v * r.torque()[2].signum() * (TAU * y[row]).cos()),
+        ),
+        (
+            "unknown",
             "joint 3, a curve in the tool",
             "y_cosine_2_um",
             Box::new(|r, row, v| r.setup.tool.y += v * (TAU * y[row]).cos()),
@@ -89,6 +95,10 @@ fn places_and_ways_to_hold_the_tool_move_it() {
     let seen = |r: &Row, axis: usize| {
         r.at_rest(|kinematics| kinematics.flange.rotation.tr_mul(&Vector3::ith(axis, 1.0)))
     };
+    // what the fixture sees of the tool, and where its axes are
+    let device = |row: usize| recording.groups[recording.rows[row].group].device.rotation;
+    let held =
+        move |r: &Row, row: usize| r.at_rest(|kinematics| kinematics.flange.rotation.tr_mul(&device(row)));
     let is_there = |row: usize| recording.groups[recording.rows[row].group].name == "clamp 4";
     let cases: Vec<Case> = vec![
         (
@@ -102,6 +112,33 @@ fn places_and_ways_to_hold_the_tool_move_it() {
             "orientation, the world's x in the tool",
             "z_xy_um",
             Box::new(move |r, _, v| r.setup.tool.z += v * seen(r, 0).x * seen(r, 0).y),
+        ),
+        (
+            "unknown",
+            "orientation, from the side (0.7 0.0 -0.7)",
+            "yz_um",
+            Box::new(move |r, row, v| {
+                let side = Vector3::new(0.5f64.sqrt(), 0.0, -0.5f64.sqrt());
+                let seen = held(r, row) * side;
+                r.off += device(row) * side * (v * seen.y * seen.z);
+            }),
+        ),
+        (
+            "unknown",
+            "orientation, as the fixture sees it",
+            "y_zx_um",
+            Box::new(move |r, row, v| r.off += device(row).column(1) * (v * held(r, row)[(2, 0)])),
+        ),
+        (
+            // xy + yx over √2 of the tool, xz + zx over √2 of the fixture
+            "unknown",
+            "orientation, as the fixture sees it",
+            "x_second_01_um",
+            Box::new(move |r, row, v| {
+                let q = held(r, row);
+                let both = q[(0, 0)] * q[(1, 2)] + q[(0, 2)] * q[(1, 0)];
+                r.off += device(row).column(0) * (v * both);
+            }),
         ),
         (
             "unknown",

@@ -118,6 +118,20 @@ mod tests {
     use super::*;
 
     #[test]
+    fn where_nobody_knows_the_frame_points_are_compared_after_a_motion() {
+        let goal: Vec<f64> = [[0.0, 0.0, 0.0], [9e5, 1e5, 0.0], [-2e5, 6e5, 3e5], [1e5, 2e5, -8e5]].concat();
+        // a quarter of a turn about z, and on
+        let moved: Vec<f64> = goal.chunks(3).flat_map(|p| [3e4 - p[1], p[0] - 1e4, p[2] + 5e3]).collect();
+        let back = moved_onto(&moved, &goal).unwrap();
+        assert!(back.iter().zip(&goal).all(|(a, b)| (a - b).abs() < 1e-6), "{back:?}");
+        // what is no motion stays an error
+        let larger: Vec<f64> = moved.iter().map(|x| 1.001 * x).collect();
+        let left = moved_onto(&larger, &goal).unwrap();
+        assert!(left.iter().zip(&goal).any(|(a, b)| (a - b).abs() > 300.0), "{left:?}");
+        assert_eq!(moved_onto(&[f64::NAN; 12], &goal), None);
+    }
+
+    #[test]
     fn quantiles_lie_between_their_neighbours() {
         assert_eq!(quantile(&[], 0.5), None);
         assert_eq!(quantile(&[3.0], 0.25), Some(3.0));

@@ -20,7 +20,7 @@ mod write_back;
 pub use calibrate::{Calibration, Estimated, Options, calibrate, calibrate_from, free_parameters, start};
 pub use campaign::Campaign;
 pub use compare::{CompareOptions, Comparison, Difference, compare};
-pub use compensation::{Compensation, Mode, default_mode, modes};
+pub use compensation::{Compensation, Mode, TORQUE_ROUNDS, default_mode, modes};
 pub use cross_validation::{CrossValidation, cross_validate};
 pub use identify::{Held, plausible_range};
 pub use noise::{Noise, Robust};

@@ -14,7 +14,7 @@ use crate::units::STANDARD_GRAVITY;
 
 /// Times that torques and the joints that they turn are computed from each other; each time their error falls by the share by
 /// which a joint yields, below 10⁻³.
-const ROUNDS: usize = 4;
+pub const TORQUE_ROUNDS: usize = 3;
 
 /// How the rod's deflection is known.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -106,7 +106,7 @@ impl Compensation {
     /// What deflects the tip at each row of a recording, in {W}, m.
     pub fn deflections(&self, setup: &Setup, recording: &Recording) -> Vec<Vector3<f64>> {
         let mut pass = Pass::at_rest(recording);
-        for _ in 0..ROUNDS {
+        for _ in 0..TORQUE_ROUNDS {
             self.update(setup, recording, &mut pass);
         }
         let mut kinematics = Kinematics::new(setup);

@@ -7,9 +7,9 @@
 //! with the loads, the rod and the clock of the other campaign. What happened to a fixture or to single poses concerns none of
 //! them: a clamp that is not where its file has it leaves the ball where it is.
 
-use nalgebra::Vector3;
+use nalgebra::{DVector, Vector3};
 
-use super::library::{self, moved_base};
+use super::library;
 use super::scene::{Entry, Scene};
 use super::{CalibrationDiagnosis, CalibrationWorld};
 use crate::calibration::campaign::Campaign;
@@ -93,14 +93,12 @@ fn carried(
         };
         return Some(by_row(&of_row));
     }
-    // the robot stands where it was moved to
-    if candidate.effect == "base_shift" {
-        return Some(by_row(&|row| moved_base(&chosen.values, &scene.postures[row])));
-    }
     let is_it =
         |e: &&Entry| (&e.candidate.effect, &e.candidate.location) == (&candidate.effect, &candidate.location);
-    let entry = entries.iter().find(is_it)?;
-    let mut change = nalgebra::DVector::zeros(3 * scene.postures.len());
+    // the robot stands where it was moved to, whatever row that was after: also if a later pose has that one's name
+    let moved = library::base_moved(scene, 0..scene.postures.len(), candidate.location.clone());
+    let entry = std::iter::once(&moved).chain(entries).find(is_it)?;
+    let mut change = DVector::zeros(3 * scene.postures.len());
     for (parameter, value) in candidate.parameters.iter().zip(&chosen.values) {
         let own = entry.candidate.parameters.iter().position(|p| p.name == parameter.name)?;
         entry.columns[own].add_to(&mut change, value - parameter.neutral);

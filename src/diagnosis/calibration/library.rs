@@ -9,7 +9,7 @@ mod loads;
 mod procedure;
 pub(super) mod transmission;
 
-pub(super) use self::events::moved_base;
+pub(super) use self::events::base_moved;
 use super::scene::{Entry, Scene};
 use crate::units::{MM, UM};
 

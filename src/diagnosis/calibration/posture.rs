@@ -2,17 +2,13 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::calibration::Compensation;
 use crate::calibration::campaign::Recording;
+use crate::calibration::{Compensation, TORQUE_ROUNDS};
 use crate::robot::{Body, Kinematics, Loads, Motion, Setup};
 use crate::spatial::Pose;
 
 /// A move of a joint below which it did not move, rad or m: a readout's last digit.
 const STANDSTILL: f64 = 1e-7;
-/// Times that torques and the joints that they turn are computed from each other; each time their error falls by the share
-/// by which a joint yields, below 10⁻³.
-const ROUNDS: usize = 3;
-
 /// The calibrated robot at one row.
 #[derive(Debug, Clone)]
 pub(super) struct Posture {
@@ -81,7 +77,7 @@ pub(super) fn all(
             let tip_force = device.rotation * compensation.contact_force;
             let loads = Loads { gravity, payload: compensation.payload, tip_force };
             let mut torque = vec![0.0; count];
-            for _ in 0..ROUNDS {
+            for _ in 0..TORQUE_ROUNDS {
                 kinematics.update(recording.joints(row), &torque);
                 kinematics.torques(&loads, &mut torque);
             }

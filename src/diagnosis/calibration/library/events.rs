@@ -158,23 +158,24 @@ fn moved(scene: &Scene, name: &str, members: &[usize], turns: bool) -> Vec<Entry
 /// The robot that moved on its base; with sockets, whose places are unknown, that is a plate that moved.
 fn base(scene: &Scene) -> Vec<Entry> {
     let count = if scene.has_sockets() { 0 } else { scene.postures.len() };
-    let after = |before: usize| {
-        let on = |displacement: &dyn Fn(&Posture) -> Vector3<f64>| {
-            scene.part(before..count, |_, posture| displacement(posture))
-        };
-        let mut six = parameters(&SHIFT, UM, KNOCK.0, |axis| on(&|_| unit(axis)));
-        let turned =
-            |axis: usize| on(&|posture: &Posture| unit(axis).cross(&(posture.tip - posture.origin[0])));
-        six.extend(parameters(&TURN, URAD, KNOCK.1, turned));
-        entry("base_shift", format!("after {}", scene.pose_name(before - 1)), six)
-    };
+    let after =
+        |before: usize| base_moved(scene, before..count, format!("after {}", scene.pose_name(before - 1)));
     places(count, MOST_OF_BASE).map(after).collect()
 }
 
-/// Displacement of the tip by a base that moved by three lengths (m) and turned by three angles (rad).
-pub(in crate::diagnosis::calibration) fn moved_base(values: &[f64], posture: &Posture) -> Vector3<f64> {
-    let &[x, y, z, rx, ry, rz] = values else { return Vector3::zeros() };
-    Vector3::new(x, y, z) + Vector3::new(rx, ry, rz).cross(&(posture.tip - posture.origin[0]))
+/// The robot on a base that is displaced at some rows.
+pub(in crate::diagnosis::calibration) fn base_moved(
+    scene: &Scene,
+    rows: Range<usize>,
+    location: String,
+) -> Entry {
+    let on = |displacement: &dyn Fn(&Posture) -> Vector3<f64>| {
+        scene.part(rows.clone(), |_, posture| displacement(posture))
+    };
+    let mut six = parameters(&SHIFT, UM, KNOCK.0, |axis| on(&|_| unit(axis)));
+    let turned = |axis: usize| on(&|posture: &Posture| unit(axis).cross(&(posture.tip - posture.origin[0])));
+    six.extend(parameters(&TURN, URAD, KNOCK.1, turned));
+    entry("base_shift", location, six)
 }
 
 /// How a drift goes: name of its course, value by row less the mean of the recording that it was found in, unit of its

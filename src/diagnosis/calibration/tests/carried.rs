@@ -111,3 +111,22 @@ fn a_drift_goes_on_with_its_clock_and_asks_for_it() {
     other.robot.joints.pop();
     assert!(found.predicted(&recorded, &other).is_err());
 }
+
+#[test]
+fn a_base_that_moved_stays_there() {
+    let campaign = clamps(40);
+    let by = Vector3::new(300.0, -500.0, 400.0) * UM;
+    // the clamps in turn, so that no one of them is what moved
+    let count = campaign.measurements.len();
+    let turn: Vec<usize> = (0..count).map(|k| k % 5 * 40 + k / 5).collect();
+    let campaign = Campaign { measurements: campaign.measurements.subset(&turn), ..campaign };
+    let shifted = |row: usize| if row >= count / 2 { by } else { Vector3::zeros() };
+    let [recorded, _] = halves(&recorded(&campaign, &shifted, 10.0 * UM, 4));
+    let [_, asked] = halves(&campaign);
+    let found = diagnose(&recorded, Mode::Fea, &Options::default()).unwrap();
+    assert_eq!(found.mismatches[0].effect, "base_shift", "{:?}", found.mismatches);
+    let foretold = found.predicted(&recorded, &asked).unwrap();
+    let moved: Vec<Vector3<f64>> = points(&asked).iter().map(|point| point + by).collect();
+    let off = error(&foretold, &moved);
+    assert!(off < 20.0, "{off} µm");
+}

@@ -1,9 +1,29 @@
 //! Vectors, rotations and frames in space: the few operations that nalgebra has no short name for.
 
+use std::fmt;
+
 use nalgebra::{DMatrix, Matrix3, Rotation3, Vector3};
 
 use crate::error::Result;
 use crate::linalg::thin_svd;
+
+/// An axis of a frame.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[allow(missing_docs)]
+pub enum Axis {
+    X,
+    Y,
+    Z,
+}
+
+/// Along or against an axis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Direction {
+    /// The axis.
+    pub axis: Axis,
+    /// +1 along, −1 against it.
+    pub sign: i8,
+}
 
 /// A frame: rotation matrix and origin. Columns of the rotation are its axes in the frame it is given in.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -12,6 +32,40 @@ pub struct Pose {
     pub rotation: Matrix3<f64>,
     /// Origin, m.
     pub origin: Vector3<f64>,
+}
+
+impl Axis {
+    /// X, Y, Z: by [`Axis::index`].
+    pub const ALL: [Axis; 3] = [Axis::X, Axis::Y, Axis::Z];
+
+    /// 0 for X, 1 for Y, 2 for Z.
+    pub fn index(self) -> usize {
+        self as usize
+    }
+}
+
+impl Direction {
+    /// `x`, `+y`, `-Z`; a Unicode minus is one too.
+    pub fn from_name(name: &str) -> Option<Direction> {
+        let (sign, axis) = match name.strip_prefix(['-', '\u{2212}']) {
+            Some(axis) => (-1, axis),
+            None => (1, name.strip_prefix('+').unwrap_or(name)),
+        };
+        let axis = Axis::ALL.into_iter().find(|known| known.to_string().eq_ignore_ascii_case(axis.trim()))?;
+        Some(Direction { axis, sign })
+    }
+}
+
+impl fmt::Display for Axis {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(["x", "y", "z"][self.index()])
+    }
+}
+
+impl fmt::Display for Direction {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}{}", if self.sign < 0 { "-" } else { "" }, self.axis)
+    }
 }
 
 impl Pose {

@@ -6,12 +6,12 @@
 mod warning;
 mod write;
 
-use std::fmt;
 use std::path::Path;
 
 use crate::delimited::{Row, Table, comments_above, nearest_name};
 use crate::error::{Error, Place, Result};
 use crate::files;
+pub use crate::spatial::{Axis, Direction};
 use crate::units::{MM, STANDARD_GRAVITY, UM};
 pub use warning::Warning;
 
@@ -75,24 +75,6 @@ pub struct Reading {
     pub line: usize,
 }
 
-/// An axis of the tool frame {T}.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-#[allow(missing_docs)]
-pub enum Axis {
-    X,
-    Y,
-    Z,
-}
-
-/// Along or against an axis of {T}.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub struct Direction {
-    /// The axis.
-    pub axis: Axis,
-    /// +1 along, −1 against it.
-    pub sign: i8,
-}
-
 /// On the way up or down.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Phase {
@@ -145,44 +127,10 @@ impl Readings {
     }
 }
 
-impl Axis {
-    /// X, Y, Z: by [`Axis::index`].
-    pub const ALL: [Axis; 3] = [Axis::X, Axis::Y, Axis::Z];
-
-    /// 0 for X, 1 for Y, 2 for Z.
-    pub fn index(self) -> usize {
-        self as usize
-    }
-}
-
-impl Direction {
-    /// `x`, `+y`, `-Z`; a Unicode minus is one too.
-    pub fn from_name(name: &str) -> Option<Direction> {
-        let (sign, axis) = match name.strip_prefix(['-', '\u{2212}']) {
-            Some(axis) => (-1, axis),
-            None => (1, name.strip_prefix('+').unwrap_or(name)),
-        };
-        let axis = Axis::ALL.into_iter().find(|known| known.to_string().eq_ignore_ascii_case(axis.trim()))?;
-        Some(Direction { axis, sign })
-    }
-}
-
 impl Reading {
     /// The load along the positive axis, N: its magnitude with the sign of its direction.
     pub fn signed_load(&self) -> f64 {
         f64::from(self.direction.sign) * self.load
-    }
-}
-
-impl fmt::Display for Axis {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(["x", "y", "z"][self.index()])
-    }
-}
-
-impl fmt::Display for Direction {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}{}", if self.sign < 0 { "-" } else { "" }, self.axis)
     }
 }
 

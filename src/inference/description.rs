@@ -4,7 +4,7 @@ use std::fmt;
 
 /// A finding in words.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Words {
+pub struct Description {
     /// What the recording shows, with values and their 95 % intervals, for example
     /// `Loads are felt 1.02 ± 0.04 N too small`.
     pub observed: String,
@@ -12,7 +12,7 @@ pub struct Words {
     pub cause: String,
 }
 
-impl fmt::Display for Words {
+impl fmt::Display for Description {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}: {}", self.observed, self.cause)
     }

@@ -1,8 +1,8 @@
-//! Do the averages of repeats leave what a story says by more than the repeats scatter?
+//! Do the averages of repeats leave what a hypothesis says by more than the repeats scatter?
 //!
-//! With whitened residuals w of a story of p parameters and a mean for every cell fitted to them,
+//! With whitened residuals w of a hypothesis of p parameters and a mean for every replicate group fitted to them,
 //!
-//! F = ((|w|² − S)/(c − p)) / (S/(n − c))        S what the c cell means leave
+//! F = ((|w|² − S)/(c − p)) / (S/(n − c))        S what the c replicate group means leave
 //!
 //! (N. R. Draper, H. Smith, *Applied Regression Analysis*, 3rd ed., ch. 2: lack of fit and pure error). A shape that no
 //! smooth curve describes is seen here.
@@ -18,17 +18,17 @@ pub struct LackOfFit {
     pub f: f64,
     /// Probability of such an F if nothing were left out.
     pub p_value: f64,
-    /// Degrees of freedom of the cells.
+    /// Degrees of degrees of freedom of the replicates.
     pub dof_fit: usize,
-    /// Degrees of freedom of the repeats.
+    /// Degrees of degrees of freedom of the repeats.
     pub dof_repeats: usize,
 }
 
 impl LackOfFit {
-    /// Ln of the odds that every cell is off by a normal number of its own, against nothing being left: the one-way model of
+    /// Ln of the odds that every replicate group is off by a normal number of its own, against nothing being left: the one-way model of
     /// random effects at its likeliest variances,
     ///
-    /// ½(a + b)·ln((a·F + b)/(a + b)) − ½a·ln F − 1     a, b the degrees of freedom of cells and repeats
+    /// ½(a + b)·ln((a·F + b)/(a + b)) − ½a·ln F − 1     a, b the degrees of freedom of replicates and repeats
     ///
     /// where 1 is the price of its one parameter more.
     pub fn log_odds(&self) -> f64 {
@@ -42,30 +42,34 @@ impl LackOfFit {
 
 /// The space of what is the same in all repeats.
 #[derive(Debug, Clone)]
-pub(super) struct Cells {
-    /// Orthonormal basis of the whitened indicators of the cells.
+pub(super) struct Replicates {
+    /// Orthonormal basis of the whitened indicators of the replicates.
     basis: DMatrix<f64>,
 }
 
-impl Cells {
+impl Replicates {
     /// `None` without repeats.
-    pub(super) fn new(whitened: impl Fn(&DMatrix<f64>) -> DMatrix<f64>, cell: &[usize]) -> Option<Cells> {
+    pub(super) fn new(
+        whitened: impl Fn(&DMatrix<f64>) -> DMatrix<f64>,
+        replicate_group: &[usize],
+    ) -> Option<Replicates> {
         // a recording of some conditions may lack others
-        let mut numbers: Vec<usize> = cell.to_vec();
+        let mut numbers: Vec<usize> = replicate_group.to_vec();
         numbers.sort_unstable();
         numbers.dedup();
-        if numbers.len() >= cell.len() {
+        if numbers.len() >= replicate_group.len() {
             return None;
         }
-        let indicators =
-            DMatrix::from_fn(cell.len(), numbers.len(), |i, k| f64::from(u8::from(cell[i] == numbers[k])));
-        Some(Cells { basis: whitened(&indicators).qr().q() })
+        let indicators = DMatrix::from_fn(replicate_group.len(), numbers.len(), |i, k| {
+            f64::from(u8::from(replicate_group[i] == numbers[k]))
+        });
+        Some(Replicates { basis: whitened(&indicators).qr().q() })
     }
 
-    /// Tests the whitened residual `w` that a story of `parameters` leaves.
+    /// Tests the whitened residual `w` that a hypothesis of `parameters` leaves.
     pub(super) fn test(&self, w: &DVector<f64>, parameters: usize) -> Option<LackOfFit> {
-        let (n, cells) = self.basis.shape();
-        let (dof_fit, dof_repeats) = (cells.checked_sub(parameters)?, n.checked_sub(cells)?);
+        let (n, replicates) = self.basis.shape();
+        let (dof_fit, dof_repeats) = (replicates.checked_sub(parameters)?, n.checked_sub(replicates)?);
         if dof_fit == 0 || dof_repeats == 0 {
             return None;
         }
@@ -89,9 +93,9 @@ mod tests {
 
     fn test(seed: u64, shift: f64) -> LackOfFit {
         let mut random = Random::seeded(seed, 0);
-        let cell: Vec<usize> = (0..80).map(|i| i % 16).collect();
+        let replicate_group: Vec<usize> = (0..80).map(|i| i % 16).collect();
         let residual = DVector::from_fn(80, |i, _| random.normal() + if i % 16 == 3 { shift } else { 0.0 });
-        Cells::new(Clone::clone, &cell).unwrap().test(&residual, 0).unwrap()
+        Replicates::new(Clone::clone, &replicate_group).unwrap().test(&residual, 0).unwrap()
     }
 
     #[test]

@@ -8,27 +8,27 @@ use std::collections::BTreeMap;
 use nalgebra::DVector;
 
 use super::Evidence;
-use super::linear::Linearised;
-use super::proof::learned;
+use super::held_out::trained_on;
+use super::linearised::Linearised;
 use crate::parallel::in_parallel;
 
 /// A session that was predicted from the others.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Replica {
+pub struct LeftOutSession {
     /// Its number in [`Evidence::session`].
     pub session: usize,
     /// Root mean square of what the base model leaves of it.
     pub before: f64,
-    /// And of what the story found without it leaves.
+    /// And of what the hypothesis found without it leaves.
     pub after: f64,
 }
 
 /// Predicts each session from the others; nothing where there is one only.
-pub(super) fn replicate(world: &Linearised<'_>, evidence: &Evidence) -> Vec<Replica> {
+pub(super) fn leave_one_session_out(model: &Linearised<'_>, evidence: &Evidence) -> Vec<LeftOutSession> {
     let mut sessions: Vec<usize> = evidence.session.clone();
     sessions.sort_unstable();
     sessions.dedup();
-    sessions.retain(|&session| session != Evidence::KEPT);
+    sessions.retain(|&session| session != Evidence::NONE);
     if sessions.len() < 2 {
         return Vec::new();
     }
@@ -36,8 +36,9 @@ pub(super) fn replicate(world: &Linearised<'_>, evidence: &Evidence) -> Vec<Repl
     in_parallel(sessions.len(), |k| {
         let session = sessions[k];
         let (out, kept): (Vec<usize>, Vec<usize>) = (0..n).partition(|&row| evidence.session[row] == session);
-        let (before, after, _) = learned(world, evidence, &kept);
-        Replica { session, before: left(evidence, &before, &out), after: left(evidence, &after, &out) }
+        let trained = trained_on(model, evidence, &kept);
+        let left_of = |errors: &DVector<f64>| left(evidence, errors, &out);
+        LeftOutSession { session, before: left_of(&trained.before), after: left_of(&trained.after) }
     })
 }
 
@@ -45,13 +46,13 @@ pub(super) fn replicate(world: &Linearised<'_>, evidence: &Evidence) -> Vec<Repl
 fn left(evidence: &Evidence, errors: &DVector<f64>, rows: &[usize]) -> f64 {
     let mut levels: BTreeMap<usize, (f64, f64)> = BTreeMap::new();
     for &row in rows {
-        let (sum, count) = levels.entry(evidence.level[row]).or_default();
+        let (sum, count) = levels.entry(evidence.intercept[row]).or_default();
         *sum += errors[row];
         *count += 1.0;
     }
     let square = |&row: &usize| {
-        let level = match evidence.level[row] {
-            Evidence::KEPT => 0.0,
+        let level = match evidence.intercept[row] {
+            Evidence::NONE => 0.0,
             level => levels[&level].0 / levels[&level].1,
         };
         (errors[row] - level).powi(2)
@@ -64,7 +65,7 @@ mod tests {
     use nalgebra::DMatrix;
 
     use super::*;
-    use crate::diagnosis::tests::{Columns, independent};
+    use crate::inference::tests::{Columns, independent};
     use crate::statistics::Random;
 
     /// 4 sessions of 30 data over x = 0 … 1.
@@ -77,14 +78,14 @@ mod tests {
     }
 
     /// A slope that is everywhere, and what happens to one fixture.
-    fn world() -> Columns {
-        let mut world = Columns::new(COUNT);
-        world.add("slope", "robot", DMatrix::from_fn(COUNT, 1, |row, _| x(row)), false);
+    fn model() -> Columns {
+        let mut model = Columns::new(COUNT);
+        model.add("slope", "robot", DMatrix::from_fn(COUNT, 1, |row, _| x(row)), false);
         for session in 0..SESSIONS {
             let of_session = |row: usize, _| if row / POINTS == session { (9.0 * x(row)).sin() } else { 0.0 };
-            world.add("fixture", &format!("{session}"), DMatrix::from_fn(COUNT, 1, of_session), false);
+            model.add("fixture", &format!("{session}"), DMatrix::from_fn(COUNT, 1, of_session), false);
         }
-        world
+        model
     }
 
     fn evidence(truth: impl Fn(usize) -> f64) -> Evidence {
@@ -93,9 +94,9 @@ mod tests {
         Evidence { session: (0..COUNT).map(|row| row / POINTS).collect(), ..independent(residual) }
     }
 
-    fn replicas(evidence: &Evidence) -> Vec<Replica> {
-        let world = world();
-        replicate(&Linearised::new(&world), evidence)
+    fn replicas(evidence: &Evidence) -> Vec<LeftOutSession> {
+        let model = model();
+        leave_one_session_out(&Linearised::new(&model), evidence)
     }
 
     #[test]
@@ -131,13 +132,13 @@ mod tests {
         let told = evidence(|row| 8.0 * x(row) + 50.0 * (level(row) as f64 + 1.0));
         let levels = 2 * SESSIONS;
         let nuisance = DMatrix::from_fn(COUNT, levels, |row, k| f64::from(u8::from(level(row) == k)));
-        let unknown = Evidence { level: (0..COUNT).map(level).collect(), nuisance, ..told };
+        let unknown = Evidence { intercept: (0..COUNT).map(level).collect(), nuisance, ..predicted };
         for replica in replicas(&unknown) {
             // 8·x in two halves, each about its mean, is 1.2 rms
             assert!((1.2..2.0).contains(&replica.before), "{replica:?}");
             assert!(replica.after < 1.3 && replica.after < 0.85 * replica.before, "{replica:?}");
         }
-        let known = Evidence { level: vec![Evidence::KEPT; COUNT], ..unknown };
+        let known = Evidence { intercept: vec![Evidence::NONE; COUNT], ..unknown };
         assert!(replicas(&known).iter().all(|replica| replica.after > 40.0));
     }
 
@@ -147,7 +148,7 @@ mod tests {
         let of_row = |row: usize| match row {
             26..30 => 0,
             56..60 => 1,
-            _ => Evidence::KEPT,
+            _ => Evidence::NONE,
         };
         let session: Vec<usize> = (0..COUNT).map(of_row).collect();
         let found = |truth: &dyn Fn(usize) -> f64| {
@@ -156,13 +157,13 @@ mod tests {
         let with_others = found(&|row| 4.0 * x(row));
         assert_eq!(with_others.iter().map(|replica| replica.session).collect::<Vec<_>>(), [0, 1]);
         assert!(with_others.iter().all(|replica| replica.after < 0.6 * replica.before), "{with_others:?}");
-        let alone = found(&|row| if session[row] == Evidence::KEPT { 0.0 } else { 4.0 * x(row) });
+        let alone = found(&|row| if session[row] == Evidence::NONE { 0.0 } else { 4.0 * x(row) });
         for (alone, with) in alone.iter().zip(&with_others) {
             assert_eq!((alone.session, alone.before), (with.session, with.before));
             assert_eq!(alone.after, alone.before);
         }
         // one session has no others
-        let session = (0..COUNT).map(|row| if row < 30 { 7 } else { Evidence::KEPT }).collect();
+        let session = (0..COUNT).map(|row| if row < 30 { 7 } else { Evidence::NONE }).collect();
         assert_eq!(replicas(&Evidence { session, ..evidence(|row| 4.0 * x(row)) }), []);
     }
 }

@@ -1,6 +1,6 @@
-//! Stories: fitted, scored, and asked what would make them more probable.
+//! Hypotheses: fitted, scored, and asked what would make them more probable.
 //!
-//! A story is a few candidates that act together. Its probability is that of the recording ([`super::score`]) times its prior:
+//! A hypothesis is a few candidates that act together. Its probability is that of the recording ([`super::score`]) times its prior:
 //! before the data half of all recordings hold nothing, the library shares 0.4, physics that nobody has named 0.1. Within the
 //! library every effect has the same share, and within an effect every place a share of that, so that a scan over a hundred
 //! places finds nothing a hundred times as often as a single place does.
@@ -9,43 +9,26 @@ use std::collections::BTreeMap;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::kept::Kept;
-use super::lack_of_fit::{Cells, LackOfFit};
-use super::linear::Linearised;
-use super::score::{Moments, More, Score};
+use super::gram_cache::GramCache;
+use super::lack_of_fit::{LackOfFit, Replicates};
+use super::linearised::Linearised;
+use super::score::{ColumnBlock, Moments, Score};
 use super::sparse::Sparse;
 use super::whitening::Whitening;
-use super::{Candidate, Chosen, Evidence, World};
+use super::{Candidate, Effect, Evidence, ForwardModel, Hypothesis, Term};
 
 /// Prior probability that the next effect is none, one of the library, or one that nobody has named.
 pub(super) const PRIOR: (f64, f64, f64) = (0.5, 0.4, 0.1);
 /// Of how many candidates, the likeliest, and the likeliest of each effect besides, the evidence is computed exactly.
 const SCORED: usize = 6;
-/// Most Gauss–Newton steps to the values of a story.
+/// Most Gauss–Newton steps to the values of a hypothesis.
 const STEPS: usize = 20;
 /// Step, in sizes, below which they have arrived: the noise of a value is hardly ever a ten-thousandth of its size.
 const ARRIVED: f64 = 1e-5;
 
-/// A story with what the recording says about it.
-#[derive(Debug, Clone)]
-pub struct Story {
-    /// The effects, in the order in which they were found.
-    pub chosen: Vec<Chosen>,
-    /// Ln of its probability, prior included, less a constant.
-    pub log_probability: f64,
-    /// Noise of a datum under it.
-    pub sigma: f64,
-    /// Posterior covariance of all its parameters, SI, in the order of `chosen`, without regard to bounds.
-    pub covariance: DMatrix<f64>,
-    /// Factors of the evidence's background columns.
-    pub background: DVector<f64>,
-    /// How many parameters, background included, the data determine.
-    pub determined: f64,
-}
-
-/// Looks for the most probable story.
+/// Looks for the most probable hypothesis.
 pub struct Search<'a> {
-    pub(super) world: &'a Linearised<'a>,
+    pub(super) model: &'a Linearised<'a>,
     pub(super) evidence: &'a Evidence,
     pub(super) whitening: Whitening,
     /// Background, whitened and projected.
@@ -55,92 +38,95 @@ pub struct Search<'a> {
     columns: Vec<(Sparse, DMatrix<f64>)>,
     /// The residual, whitened and projected.
     residual: DVector<f64>,
-    /// Of a linear world.
-    kept: Option<Kept>,
+    /// Of a linear model.
+    kept: Option<GramCache>,
     /// Ln of the prior of each candidate over that of none.
     prior: Vec<f64>,
     /// What repeats have in common; `None` without repeats.
-    cells: Option<Cells>,
+    replicates: Option<Replicates>,
 }
 
-/// For a candidate, the inner products of its columns with those of a story (rows), and with a residual.
+/// For a candidate, the inner products of its columns with those of a hypothesis (rows), and with a residual.
 type CrossProducts<'a> = dyn Fn(usize) -> (DMatrix<f64>, DVector<f64>) + 'a;
 
 impl<'a> Search<'a> {
     /// On an evidence, with the scatter of what `told` leaves.
-    pub fn new(world: &'a Linearised<'a>, evidence: &'a Evidence, told: &[Chosen]) -> Self {
-        let left = &evidence.residual - world.change(told);
+    pub fn new(model: &'a Linearised<'a>, evidence: &'a Evidence, told: &[Term]) -> Self {
+        let left = &evidence.residual - model.response(told);
         let whitening = Whitening::new(evidence, &left);
         let of_candidate = |columns: &DMatrix<f64>| {
             let whitened = whitening.whitened_columns(columns);
             let gram = whitening.projected_gram(&whitened);
             (Sparse::new(&whitened), gram)
         };
-        let columns: Vec<(Sparse, DMatrix<f64>)> = world.neutral.iter().map(of_candidate).collect();
+        let columns: Vec<(Sparse, DMatrix<f64>)> = model.neutral.iter().map(of_candidate).collect();
         let residual = whitening.apply(&evidence.residual);
         let background = whitening.apply_columns(&evidence.background);
         Search {
-            kept: world.is_linear().then(|| Kept::new(&columns, &residual, &background)),
+            kept: model.is_linear().then(|| GramCache::new(&columns, &residual, &background)),
             columns,
             residual,
             background,
-            prior: priors(world.candidates()),
-            cells: Cells::new(|columns| whitening.whitened_columns(columns), &evidence.cell),
-            world,
+            prior: priors(model.candidates()),
+            replicates: Replicates::new(
+                |columns| whitening.whitened_columns(columns),
+                &evidence.replicate_group,
+            ),
+            model,
             evidence,
             whitening,
         }
     }
 
-    /// Fits the values of `chosen` together, by Gauss–Newton steps from where they are, and scores them.
-    pub fn fit(&self, chosen: &[Chosen]) -> Story {
+    /// Fits the values of `terms` together, by Gauss–Newton steps from where they are, and scores them.
+    pub fn fit(&self, terms: &[Term]) -> Hypothesis {
         let background = self.background.ncols();
-        let mut chosen = chosen.to_vec();
-        let mut scored = self.moments(&chosen).score();
+        let mut terms = terms.to_vec();
+        let mut scored = self.moments(&terms).score();
         for _ in 0..STEPS {
-            let before = flat(&chosen);
-            self.put(&mut chosen, &scored);
-            let moved = flat(&chosen) - before;
+            let before = flat(&terms);
+            self.put(&mut terms, &scored);
+            let moved = flat(&terms) - before;
             // where effects are linear the first step arrives
-            if self.world.is_linear() || moved.component_div(&self.sizes(&chosen)).amax() < ARRIVED {
+            if self.model.is_linear() || moved.component_div(&self.sizes(&terms)).amax() < ARRIVED {
                 break;
             }
-            scored = self.moments(&chosen).score();
+            scored = self.moments(&terms).score();
         }
-        let prior: f64 = chosen.iter().map(|c| self.prior[c.candidate]).sum();
-        let sizes = DMatrix::from_diagonal(&self.sizes(&chosen));
+        let prior: f64 = terms.iter().map(|c| self.prior[c.candidate]).sum();
+        let sizes = DMatrix::from_diagonal(&self.sizes(&terms));
         let own = scored.covariance.view((background, background), (sizes.nrows(), sizes.ncols()));
-        Story {
+        Hypothesis {
             log_probability: scored.log_evidence + prior,
             sigma: scored.sigma,
             covariance: &sizes * own * &sizes,
             background: scored.estimate.rows(0, background).into_owned(),
             determined: scored.determined,
-            chosen,
+            terms,
         }
     }
 
-    /// About the ln of what adding each candidate to `story` does to its probability, by the candidate's columns at its
+    /// About the ln of what adding each candidate to `hypothesis` does to its probability, by the candidate's columns at its
     /// neutral values, exact for the likeliest known and unknown ones and for the likeliest place of every effect, lest
     /// one effect with many places leaves the others out; −∞ for those that are in it already.
-    pub fn additions(&self, story: &Story) -> Vec<f64> {
-        let (present, products) = self.crossed(&story.chosen);
+    pub fn additions(&self, hypothesis: &Hypothesis) -> Vec<f64> {
+        let (present, products) = self.crossed(&hypothesis.terms);
         let before = present.score();
         let more = |index: usize| {
             let (cross, product) = products(index);
-            let bounds = self.world.candidates()[index].scaled_bounds().map(one_sided).collect();
-            More { gram: &self.columns[index].1, cross, product, bounds }
+            let bounds = self.model.candidates()[index].scaled_bounds().map(one_sided).collect();
+            ColumnBlock { gram: &self.columns[index].1, cross, product, bounds }
         };
         let alone = present.rest(&before).score().log_evidence;
-        let about = |index: usize| match story.chosen.iter().any(|chosen| self.excludes(chosen, index)) {
+        let about = |index: usize| match hypothesis.terms.iter().any(|term| self.excludes(term, index)) {
             true => f64::NEG_INFINITY,
             false => present.about(&before, &more(index)) + self.prior[index],
         };
         let mut additions: Vec<f64> = (0..self.columns.len()).map(about).collect();
         for unknown in [false, true] {
-            let mut effects: Vec<&str> = Vec::new();
+            let mut effects: Vec<&Effect> = Vec::new();
             for (rank, index) in self.likeliest(&additions, unknown).into_iter().enumerate() {
-                let effect = self.world.candidates()[index].effect.as_str();
+                let effect = self.model.candidates()[index].effect;
                 let is_first = !effects.contains(&effect);
                 if is_first {
                     effects.push(effect);
@@ -155,15 +141,15 @@ impl<'a> Search<'a> {
         additions
     }
 
-    /// True where a candidate can not be added to a story that holds `chosen`.
-    fn excludes(&self, chosen: &Chosen, index: usize) -> bool {
-        let (old, new) = (&self.world.candidates()[chosen.candidate], &self.world.candidates()[index]);
-        chosen.candidate == index || (old.is_alternative && new.is_alternative && old.effect == new.effect)
+    /// True where a candidate can not be added to a hypothesis that holds `term`.
+    fn excludes(&self, term: &Term, index: usize) -> bool {
+        let (old, new) = (&self.model.candidates()[term.candidate], &self.model.candidates()[index]);
+        term.candidate == index || (old.is_alternative && new.is_alternative && old.effect == new.effect)
     }
 
     /// Other forms of the law that a candidate is one of, with the same parameters.
     pub fn other_forms(&self, index: usize) -> Vec<usize> {
-        let candidates = self.world.candidates();
+        let candidates = self.model.candidates();
         let own = &candidates[index];
         let names = |c: &Candidate| c.parameters.iter().map(|p| p.name.clone()).collect::<Vec<_>>();
         let is_form = |&other: &usize| {
@@ -176,7 +162,7 @@ impl<'a> Search<'a> {
     /// Candidates that may be added, known or unknown ones, the likeliest first.
     pub(super) fn likeliest(&self, additions: &[f64], unknown: bool) -> Vec<usize> {
         let mut likeliest: Vec<usize> = (0..additions.len())
-            .filter(|&index| self.world.candidates()[index].is_unknown == unknown)
+            .filter(|&index| self.model.candidates()[index].is_nonparametric == unknown)
             .filter(|&index| additions[index] > f64::NEG_INFINITY)
             .collect();
         likeliest.sort_by(|&a, &b| additions[b].total_cmp(&additions[a]));
@@ -184,17 +170,17 @@ impl<'a> Search<'a> {
     }
 
     /// One candidate more.
-    pub fn with(&self, story: &Story, index: usize) -> Story {
-        let mut chosen = story.chosen.clone();
-        chosen.push(self.world.candidates()[index].neutral(index));
-        self.fit(&chosen)
+    pub fn with(&self, hypothesis: &Hypothesis, index: usize) -> Hypothesis {
+        let mut terms = hypothesis.terms.clone();
+        terms.push(self.model.candidates()[index].neutral(index));
+        self.fit(&terms)
     }
 
     /// One effect less.
-    pub fn without(&self, story: &Story, position: usize) -> Story {
-        let mut chosen = story.chosen.clone();
-        chosen.remove(position);
-        self.fit(&chosen)
+    pub fn without(&self, hypothesis: &Hypothesis, position: usize) -> Hypothesis {
+        let mut terms = hypothesis.terms.clone();
+        terms.remove(position);
+        self.fit(&terms)
     }
 
     /// Data less what the nuisance absorbs.
@@ -212,30 +198,35 @@ impl<'a> Search<'a> {
         self.whitening.apply(residual).norm()
     }
 
-    /// Do the averages of repeats leave a story that says `told`?
-    pub fn lack_of_fit(&self, story: &Story, told: &DVector<f64>) -> Option<LackOfFit> {
-        let parameters: usize = story.chosen.iter().map(|chosen| chosen.values.len()).sum();
+    /// Do the averages of repeats leave a hypothesis that says `told`?
+    pub fn lack_of_fit(&self, hypothesis: &Hypothesis, told: &DVector<f64>) -> Option<LackOfFit> {
+        let parameters: usize = hypothesis.terms.iter().map(|term| term.values.len()).sum();
         let absorbed = self.evidence.residual.len() - self.whitening.degrees_of_freedom;
         let left = &self.evidence.residual - told;
-        self.cells.as_ref()?.test(&self.whitening.whitened(&left), parameters + absorbed)
+        self.replicates.as_ref()?.test(&self.whitening.whitened(&left), parameters + absorbed)
     }
 
-    /// What a story says of all data of `evidence`, of which this search may have seen only a part: its effects' `change`
+    /// What a hypothesis says of all data of `evidence`, of which this search may have seen only a part: its effects' `change`
     /// of them, the background, and the nuisance that fits best to what this search has seen.
-    pub fn told(&self, story: &Story, evidence: &Evidence, change: &DVector<f64>) -> DVector<f64> {
+    pub fn predicted(
+        &self,
+        hypothesis: &Hypothesis,
+        evidence: &Evidence,
+        change: &DVector<f64>,
+    ) -> DVector<f64> {
         let left = &self.evidence.residual
-            - self.world.change(&story.chosen)
-            - &self.evidence.background * &story.background;
+            - self.model.response(&hypothesis.terms)
+            - &self.evidence.background * &hypothesis.background;
         change
-            + &evidence.background * &story.background
+            + &evidence.background * &hypothesis.background
             + &evidence.nuisance * self.whitening.nuisance(&self.evidence.nuisance, &left)
     }
 
-    /// Residual and columns of a story, linear about the neutral values and whitened: the background, then its effects at
+    /// Residual and columns of a hypothesis, linear about the neutral values and whitened: the background, then its effects at
     /// their values. Estimates are in sizes from the neutral values.
-    fn linear(&self, chosen: &[Chosen]) -> (DVector<f64>, DMatrix<f64>) {
+    fn linear(&self, terms: &[Term]) -> (DVector<f64>, DMatrix<f64>) {
         let own: Vec<DMatrix<f64>> =
-            (0..chosen.len()).map(|position| self.world.columns(chosen, position)).collect();
+            (0..terms.len()).map(|position| self.model.columns(terms, position)).collect();
         let count: usize = own.iter().map(DMatrix::ncols).sum();
         let mut columns = DMatrix::zeros(self.evidence.residual.len(), count);
         let mut next = 0;
@@ -244,7 +235,7 @@ impl<'a> Search<'a> {
             next += own.ncols();
         }
         // recorded less told, plus what the columns tell of it
-        let left = &self.evidence.residual - self.world.change(chosen) + &columns * self.offsets(chosen);
+        let left = &self.evidence.residual - self.model.response(terms) + &columns * self.offsets(terms);
         let background = self.background.ncols();
         let mut all = DMatrix::zeros(columns.nrows(), background + count);
         all.columns_mut(0, background).copy_from(&self.background);
@@ -252,21 +243,21 @@ impl<'a> Search<'a> {
         (self.whitening.apply(&left), all)
     }
 
-    /// The moments of a story, and the inner products of each candidate's columns with the story's and with the residual that it
+    /// The moments of a hypothesis, and the inner products of each candidate's columns with the hypothesis's and with the residual that it
     /// is fitted to.
-    fn crossed(&self, chosen: &[Chosen]) -> (Moments, Box<CrossProducts<'_>>) {
+    fn crossed(&self, terms: &[Term]) -> (Moments, Box<CrossProducts<'_>>) {
         let Some(kept) = &self.kept else {
-            let (r, told) = self.linear(chosen);
-            let moments = self.moments_of(&r, &told, chosen);
+            let (r, told) = self.linear(terms);
+            let moments = self.moments_of(&r, &told, terms);
             let products = move |index: usize| {
                 let columns = &self.columns[index].0;
                 (columns.tr_mul_into(&told), columns.tr_mul(&r))
             };
             return (moments, Box::new(products));
         };
-        let effects: Vec<usize> = chosen.iter().map(|c| c.candidate).collect();
-        let cross = kept.story(&effects, &|effect| {
-            let own = self.whitening.apply_columns(&self.world.neutral[effect]);
+        let effects: Vec<usize> = terms.iter().map(|c| c.candidate).collect();
+        let cross = kept.hypothesis(&effects, &|effect| {
+            let own = self.whitening.apply_columns(&self.model.neutral[effect]);
             self.columns.iter().map(|(columns, _)| columns.tr_mul_into(&own)).collect()
         });
         let first = self.background.ncols();
@@ -283,33 +274,33 @@ impl<'a> Search<'a> {
         }
         let beside = gram.view((0, first), (first, count - first)).transpose();
         gram.view_mut((first, 0), (count - first, first)).copy_from(&beside);
-        let (bounds, floor) = (self.bounds(chosen), self.floor());
+        let (bounds, floor) = (self.bounds(terms), self.floor());
         let square = self.residual.norm_squared();
-        let freedom = self.whitening.degrees_of_freedom;
-        let effects = chosen.iter().map(|c| c.values.len()).collect();
-        let moments = Moments { square, gram, product, bounds, effects, freedom, floor };
+        let degrees_of_freedom = self.whitening.degrees_of_freedom;
+        let effects = terms.iter().map(|c| c.values.len()).collect();
+        let moments = Moments { square, gram, product, bounds, effects, degrees_of_freedom, floor };
         (moments, Box::new(move |index| (cross(index), kept.residual(index).clone())))
     }
 
-    fn moments(&self, chosen: &[Chosen]) -> Moments {
+    fn moments(&self, terms: &[Term]) -> Moments {
         if self.kept.is_some() {
-            return self.crossed(chosen).0;
+            return self.crossed(terms).0;
         }
-        let (r, columns) = self.linear(chosen);
-        self.moments_of(&r, &columns, chosen)
+        let (r, columns) = self.linear(terms);
+        self.moments_of(&r, &columns, terms)
     }
 
-    fn moments_of(&self, r: &DVector<f64>, columns: &DMatrix<f64>, chosen: &[Chosen]) -> Moments {
-        let bounds = self.bounds(chosen);
-        let effects = chosen.iter().map(|c| c.values.len()).collect();
+    fn moments_of(&self, r: &DVector<f64>, columns: &DMatrix<f64>, terms: &[Term]) -> Moments {
+        let bounds = self.bounds(terms);
+        let effects = terms.iter().map(|c| c.values.len()).collect();
         Moments::new(r, columns, bounds, effects, self.whitening.degrees_of_freedom, self.floor())
     }
 
-    /// Bounds of a story's parameters, background first.
-    fn bounds(&self, chosen: &[Chosen]) -> Vec<(f64, f64)> {
+    /// Bounds of a hypothesis's parameters, background first.
+    fn bounds(&self, terms: &[Term]) -> Vec<(f64, f64)> {
         let mut bounds = vec![(f64::NEG_INFINITY, f64::INFINITY); self.background.ncols()];
-        for c in chosen {
-            bounds.extend(self.world.candidates()[c.candidate].scaled_bounds());
+        for c in terms {
+            bounds.extend(self.model.candidates()[c.candidate].scaled_bounds());
         }
         bounds
     }
@@ -320,27 +311,27 @@ impl<'a> Search<'a> {
     }
 
     /// Values less neutral values, in sizes.
-    fn offsets(&self, chosen: &[Chosen]) -> DVector<f64> {
-        let of = |c: &Chosen| -> Vec<f64> {
-            let parameters = &self.world.candidates()[c.candidate].parameters;
+    fn offsets(&self, terms: &[Term]) -> DVector<f64> {
+        let of = |c: &Term| -> Vec<f64> {
+            let parameters = &self.model.candidates()[c.candidate].parameters;
             parameters.iter().zip(&c.values).map(|(p, value)| (value - p.neutral) / p.size).collect()
         };
-        DVector::from_vec(chosen.iter().flat_map(of).collect())
+        DVector::from_vec(terms.iter().flat_map(of).collect())
     }
 
-    fn sizes(&self, chosen: &[Chosen]) -> DVector<f64> {
-        let of = |c: &Chosen| -> Vec<f64> {
-            self.world.candidates()[c.candidate].parameters.iter().map(|p| p.size).collect()
+    fn sizes(&self, terms: &[Term]) -> DVector<f64> {
+        let of = |c: &Term| -> Vec<f64> {
+            self.model.candidates()[c.candidate].parameters.iter().map(|p| p.size).collect()
         };
-        DVector::from_vec(chosen.iter().flat_map(of).collect())
+        DVector::from_vec(terms.iter().flat_map(of).collect())
     }
 
-    /// Puts the estimates of a score, in sizes from the neutral values, into a story, within the physical bounds: what
+    /// Puts the estimates of a score, in sizes from the neutral values, into a hypothesis, within the physical bounds: what
     /// would be beyond its bound is held there, and the others are what they are given that.
-    fn put(&self, chosen: &mut [Chosen], scored: &Score) {
+    fn put(&self, terms: &mut [Term], scored: &Score) {
         let background = self.background.ncols();
         let bounds: Vec<(f64, f64)> =
-            chosen.iter().flat_map(|c| self.world.candidates()[c.candidate].scaled_bounds()).collect();
+            terms.iter().flat_map(|c| self.model.candidates()[c.candidate].scaled_bounds()).collect();
         let (mut mean, mut covariance) = (scored.estimate.clone(), scored.covariance.clone());
         for _ in 0..bounds.len() {
             let beyond = |k: usize| {
@@ -360,8 +351,8 @@ impl<'a> Search<'a> {
             covariance -= &column * column.transpose() / variance;
         }
         let mut next = mean.iter().skip(background);
-        for c in chosen {
-            let parameters = &self.world.candidates()[c.candidate].parameters;
+        for c in terms {
+            let parameters = &self.model.candidates()[c.candidate].parameters;
             for (parameter, value) in parameters.iter().zip(&mut c.values) {
                 if let Some(offset) = next.next() {
                     let (low, high) = parameter.bounds;
@@ -378,8 +369,8 @@ fn one_sided((low, high): (f64, f64)) -> (f64, f64) {
     (if low == 0.0 { 0.0 } else { f64::NEG_INFINITY }, if high == 0.0 { 0.0 } else { f64::INFINITY })
 }
 
-fn flat(chosen: &[Chosen]) -> DVector<f64> {
-    DVector::from_vec(chosen.iter().flat_map(|c| c.values.iter().copied()).collect())
+fn flat(terms: &[Term]) -> DVector<f64> {
+    DVector::from_vec(terms.iter().flat_map(|c| c.values.iter().copied()).collect())
 }
 
 /// Ln of each candidate's prior over that of none; see the top of the file.
@@ -387,16 +378,17 @@ fn priors(candidates: &[Candidate]) -> Vec<f64> {
     let (none, library, unknown) = PRIOR;
     let mut places: BTreeMap<(&str, bool), f64> = BTreeMap::new();
     for candidate in candidates {
-        *places.entry((&candidate.effect, candidate.is_unknown)).or_default() += candidate.weight;
+        *places.entry((candidate.effect.name, candidate.is_nonparametric)).or_default() += candidate.weight;
     }
-    let effects =
-        |wanted: bool| places.keys().filter(|(_, is_unknown)| *is_unknown == wanted).count().max(1) as f64;
+    let effects = |wanted: bool| {
+        places.keys().filter(|(_, is_nonparametric)| *is_nonparametric == wanted).count().max(1) as f64
+    };
     let (known, unnamed) = (effects(false), effects(true));
     candidates
         .iter()
         .map(|candidate| {
-            let places = places[&(candidate.effect.as_str(), candidate.is_unknown)];
-            let share = if candidate.is_unknown { unknown / unnamed } else { library / known };
+            let places = places[&(candidate.effect.name, candidate.is_nonparametric)];
+            let share = if candidate.is_nonparametric { unknown / unnamed } else { library / known };
             (share * candidate.weight / places / none).ln()
         })
         .collect()

@@ -1,4 +1,4 @@
-//! Inner products between the columns of all candidates of a linear world, computed when they are first asked for.
+//! Inner products between the columns of all candidates of a linear model, computed when they are first asked for.
 //!
 //! A search adds, takes away and exchanges effects, and each time asks how every candidate goes with those that are there.
 //! Where effects are linear the products of a candidate's columns with all others are the same each time, and are kept.
@@ -14,20 +14,20 @@ use super::sparse::Sparse;
 type Products = Arc<Vec<DMatrix<f64>>>;
 
 /// Products of the candidates' columns with the residual, with the background and with each other.
-pub struct Kept {
+pub struct GramCache {
     residual: Vec<DVector<f64>>,
     background: Vec<DMatrix<f64>>,
     effects: Mutex<BTreeMap<usize, Products>>,
 }
 
-impl Kept {
+impl GramCache {
     /// Of whitened `columns`; residual and background are whitened and projected.
     pub fn new(
         columns: &[(Sparse, DMatrix<f64>)],
         residual: &DVector<f64>,
         background: &DMatrix<f64>,
     ) -> Self {
-        Kept {
+        GramCache {
             residual: columns.iter().map(|(own, _)| own.tr_mul(residual)).collect(),
             background: columns.iter().map(|(own, _)| own.tr_mul_into(background)).collect(),
             effects: Mutex::default(),
@@ -39,9 +39,9 @@ impl Kept {
         &self.residual[candidate]
     }
 
-    /// Products of the columns of a story (rows: background, then each effect) with those of a candidate. `compute` gives those
+    /// Products of the columns of a hypothesis (rows: background, then each effect) with those of a candidate. `compute` gives those
     /// of an effect that is met for the first time.
-    pub fn story<'a>(
+    pub fn hypothesis<'a>(
         &'a self,
         effects: &[usize],
         compute: &dyn Fn(usize) -> Vec<DMatrix<f64>>,

@@ -1,6 +1,6 @@
-//! How probable a recording is under a story: the evidence of a Gaussian linear model, in closed form.
+//! How probable a recording is under a hypothesis: the evidence of a Gaussian linear model, in closed form.
 //!
-//! With r the whitened and projected residual (ν degrees of freedom), the columns C of the story's parameters, scaled so
+//! With r the whitened and projected residual (ν degrees of freedom), the columns C of the hypothesis's parameters, scaled so
 //! that their prior is the standard normal, G = CᵀC and b = Cᵀr:
 //!
 //! ln p(r) = −½·ν·ln σ² − ½·ln|1 + G/σ²| − (rᵀr − bᵀ(G + σ²·1)⁻¹b) / 2σ² + constant
@@ -35,12 +35,12 @@ const STEPS: usize = 60;
 /// what is missing changes it by the square.
 const SETTLED: (f64, f64) = (1e-6, 0.02);
 const ROUGHLY: f64 = 0.05;
-/// Size, relative to what a column was, of what rounding leaves of one that a story holds already.
+/// Size, relative to what a column was, of what rounding leaves of one that a hypothesis holds already.
 const ROUNDING: f64 = 1e-9;
 /// Times that a diagonal is made ten times larger.
 const TRIES: usize = 12;
 
-/// What a story's evidence is computed from: inner products of whitened and projected vectors.
+/// What a hypothesis's evidence is computed from: inner products of whitened and projected vectors.
 #[derive(Debug, Clone)]
 pub struct Moments {
     /// rᵀr.
@@ -54,17 +54,17 @@ pub struct Moments {
     /// How many parameters each effect has; those before the first effect keep their size.
     pub effects: Vec<usize>,
     /// ν.
-    pub freedom: usize,
+    pub degrees_of_freedom: usize,
     /// Least noise: what rounding alone makes.
     pub floor: f64,
 }
 
-/// Columns that may be added to those of a story.
+/// Columns that may be added to those of a hypothesis.
 #[derive(Debug, Clone)]
-pub struct More<'a> {
+pub struct ColumnBlock<'a> {
     /// Their inner products with each other.
     pub gram: &'a DMatrix<f64>,
-    /// Those of the story's columns (rows) with them (columns).
+    /// Those of the hypothesis's columns (rows) with them (columns).
     pub cross: DMatrix<f64>,
     /// Those with r.
     pub product: DVector<f64>,
@@ -72,10 +72,10 @@ pub struct More<'a> {
     pub bounds: Vec<(f64, f64)>,
 }
 
-/// What a fit of a story comes to.
+/// What a fit of a hypothesis comes to.
 #[derive(Debug, Clone)]
 pub struct Score {
-    /// ln p(r), less a constant that is the same for all stories of one evidence and whitening.
+    /// ln p(r), less a constant that is the same for all hypotheses of one evidence and whitening.
     pub log_evidence: f64,
     /// Noise of a datum.
     pub sigma: f64,
@@ -94,22 +94,22 @@ impl Moments {
         columns: &DMatrix<f64>,
         bounds: Vec<(f64, f64)>,
         effects: Vec<usize>,
-        freedom: usize,
+        degrees_of_freedom: usize,
         floor: f64,
     ) -> Self {
         let (gram, product) = (transposed_product(columns, columns), columns.tr_mul(r));
-        Moments { square: r.norm_squared(), gram, product, bounds, effects, freedom, floor }
+        Moments { square: r.norm_squared(), gram, product, bounds, effects, degrees_of_freedom, floor }
     }
 
     /// The score: σ² and κ are found together, by MacKay's fixed point and expectation–maximisation.
     ///
-    /// σ² comes from above, from what the residual has without any story, and goes no further down than the floor. Far below
+    /// σ² comes from above, from what the residual has without any hypothesis, and goes no further down than the floor. Far below
     /// what is left, columns that are nearly the same would explain their own rounding.
     ///
     /// σ² = |r − C·x|² / (ν − γ), where γ parameters are determined by the data (D. J. C. MacKay, Neural Computation 4 (1992)
     /// 415–447, §4)
     pub fn score(&self) -> Score {
-        let (p, nu) = (self.gram.ncols(), (self.freedom as f64).max(1.0));
+        let (p, nu) = (self.gram.ncols(), (self.degrees_of_freedom as f64).max(1.0));
         let all = self.square / nu;
         let lowest = self.floor.powi(2).max(LEAST * all).max(f64::MIN_POSITIVE.sqrt());
         let highest = all.max(lowest);
@@ -145,7 +145,9 @@ impl Moments {
         let determinant =
             solved.ln_determinant + sizes.iter().map(|size| (size.powi(2) / s).ln()).sum::<f64>();
         Score {
-            log_evidence: -0.5 * (self.freedom as f64 * s.ln() + determinant + quadratic / s) + room - price,
+            log_evidence: -0.5 * (self.degrees_of_freedom as f64 * s.ln() + determinant + quadratic / s)
+                + room
+                - price,
             sigma: s.sqrt(),
             determined: solved.determined(&sizes, s),
             covariance: solved.inverse * s,
@@ -178,17 +180,17 @@ impl Moments {
         std::iter::repeat_n(1.0, fixed).chain(scales.iter().zip(&self.effects).flat_map(of_effect)).collect()
     }
 
-    /// About the log evidence that `more` columns add to a story of this score: the noise follows what they explain.
+    /// About the log evidence that `more` columns add to a hypothesis of this score: the noise follows what they explain.
     ///
-    /// With the story's columns out of them (G' = Gₘ − X(G + σ²)⁻¹Xᵀ, b' = bₘ − X(G + σ²)⁻¹b, X the cross products) they explain
+    /// With the hypothesis's columns out of them (G' = Gₘ − X(G + σ²)⁻¹Xᵀ, b' = bₘ − X(G + σ²)⁻¹b, X the cross products) they explain
     /// Δ = b'ᵀ(G' + σ²/κ²)⁻¹b', which leaves s' = σ²·(1 − Δ/νσ²), and
     ///
     /// gain ≈ −½·ν·ln(1 − Δ/νσ²) − ½·ln|1 + κ²G'/s'| + ln(room)
-    pub fn about(&self, score: &Score, more: &More) -> f64 {
-        let (nu, s) = ((self.freedom as f64).max(1.0), score.sigma.powi(2));
+    pub fn about(&self, score: &Score, more: &ColumnBlock) -> f64 {
+        let (nu, s) = ((self.degrees_of_freedom as f64).max(1.0), score.sigma.powi(2));
         let (gram, product) = self.reduced(score, more);
         let k = gram.ncols();
-        // what a story holds already leaves rounding: it is no smaller a prior
+        // what a hypothesis holds already leaves rounding: it is no smaller a prior
         let rounding = ROUNDING * more.gram.diagonal().amax();
         // |b|² is about κ²·tr(G²) + σ²·tr(G)
         let moment = (product.norm_squared() - s * gram.trace()) / gram.norm_squared().max(f64::MIN_POSITIVE);
@@ -218,15 +220,15 @@ impl Moments {
         }
     }
 
-    /// Inner products of `more` columns with each other and with r, the story's columns out of them.
-    fn reduced(&self, score: &Score, more: &More) -> (DMatrix<f64>, DVector<f64>) {
+    /// Inner products of `more` columns with each other and with r, the hypothesis's columns out of them.
+    fn reduced(&self, score: &Score, more: &ColumnBlock) -> (DMatrix<f64>, DVector<f64>) {
         // (G + σ²)⁻¹ is the posterior covariance over σ²
         let reduced = transposed_product(&score.covariance, &more.cross) / score.sigma.powi(2);
         let gram = more.gram - transposed_product(&more.cross, &reduced);
         (gram, &more.product - reduced.tr_mul(&self.product))
     }
 
-    /// What a story of this score leaves, as a problem of its own: its columns are taken out with the uncertainty that they have
+    /// What a hypothesis of this score leaves, as a problem of its own: its columns are taken out with the uncertainty that they have
     /// now, and so are the degrees of freedom that they determine.
     pub fn rest(&self, score: &Score) -> Moments {
         Moments {
@@ -235,13 +237,13 @@ impl Moments {
             product: DVector::zeros(0),
             bounds: Vec::new(),
             effects: Vec::new(),
-            freedom: self.freedom.saturating_sub(score.determined.round() as usize),
+            degrees_of_freedom: self.degrees_of_freedom.saturating_sub(score.determined.round() as usize),
             floor: self.floor,
         }
     }
 
-    /// `more` columns in what a story leaves: a problem of theirs only, not of the story's besides.
-    pub fn beyond(&self, score: &Score, more: &More) -> Moments {
+    /// `more` columns in what a hypothesis leaves: a problem of theirs only, not of the hypothesis's besides.
+    pub fn beyond(&self, score: &Score, more: &ColumnBlock) -> Moments {
         let (mut gram, product) = self.reduced(score, more);
         let rounding = ROUNDING * more.gram.diagonal().amax();
         for k in 0..gram.ncols() {

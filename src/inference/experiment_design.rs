@@ -16,22 +16,22 @@ const DECISIVE: f64 = 1e-3;
 const TOLD: f64 = 1.0;
 
 /// The best so far of measurements that are offered in the order of the labour they take.
-pub(super) struct Choice<M> {
+pub struct ExperimentDesign<M> {
     left: f64,
     best: Option<(M, Vec<f64>)>,
 }
 
-impl<M> Choice<M> {
+impl<M> ExperimentDesign<M> {
     /// None yet.
     pub fn new() -> Self {
-        Choice { left: f64::INFINITY, best: None }
+        ExperimentDesign { left: f64::INFINITY, best: None }
     }
 
     /// A measurement with its separation from each rival; `odds` are those against the rivals by now.
     pub fn offer(&mut self, measurement: M, separations: Vec<f64>, odds: &[f64]) {
         let of_rivals = separations.iter().zip(odds);
         let left: f64 = of_rivals.map(|(apart, odds)| (-apart).exp() / odds.max(1.0)).sum();
-        let is_new = separations.iter().any(|apart| is_told(*apart));
+        let is_new = separations.iter().any(|apart| separates(*apart));
         if is_new && (self.best.is_none() || BETTER * left.max(DECISIVE) < self.left) {
             (self.left, self.best) = (left, Some((measurement, separations)));
         }
@@ -44,7 +44,7 @@ impl<M> Choice<M> {
 }
 
 /// True for a separation that tells something.
-pub(super) fn is_told(separation: f64) -> bool {
+pub fn separates(separation: f64) -> bool {
     separation > TOLD
 }
 
@@ -53,7 +53,7 @@ mod tests {
     use super::*;
 
     fn chosen(offers: &[(&'static str, &[f64])], odds: &[f64]) -> Option<&'static str> {
-        let mut choice = Choice::new();
+        let mut choice = ExperimentDesign::new();
         offers.iter().for_each(|(name, apart)| choice.offer(*name, apart.to_vec(), odds));
         choice.best().map(|(name, _)| name)
     }

@@ -153,18 +153,18 @@ impl Whitening {
 
 /// ρ from repeats: the mean product of two deviations of one group, over what the mean square has beyond it.
 ///
-/// Deviations are from the mean of the cell, so that nothing that repeats itself counts.
+/// Deviations are from the mean of the replicate group, so that nothing that repeats itself counts.
 fn shared_ratio(evidence: &Evidence, left: &DVector<f64>) -> f64 {
-    let mut cells: BTreeMap<usize, (f64, f64)> = BTreeMap::new();
-    for (row, &cell) in evidence.cell.iter().enumerate() {
-        let (sum, count) = cells.entry(cell).or_default();
+    let mut replicates: BTreeMap<usize, (f64, f64)> = BTreeMap::new();
+    for (row, &replicate_group) in evidence.replicate_group.iter().enumerate() {
+        let (sum, count) = replicates.entry(replicate_group).or_default();
         *sum += left[row];
         *count += 1.0;
     }
     let (mut square, mut count) = (0.0, 0.0);
     let mut groups: BTreeMap<usize, (f64, f64, f64)> = BTreeMap::new();
-    for (row, cell) in evidence.cell.iter().enumerate() {
-        let (sum, repeats) = cells[cell];
+    for (row, replicate_group) in evidence.replicate_group.iter().enumerate() {
+        let (sum, repeats) = replicates[replicate_group];
         if repeats < 2.0 {
             continue;
         }
@@ -198,15 +198,15 @@ mod tests {
     use super::*;
     use crate::statistics::Random;
 
-    /// 6 trials of 8 cells.
+    /// 6 trials of 8 replicates.
     fn evidence(shared_sd: f64) -> Evidence {
         let mut random = Random::seeded(3, 0);
-        let (mut residual, mut cell, mut shared) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut residual, mut replicate_group, mut shared) = (Vec::new(), Vec::new(), Vec::new());
         for trial in 0..60 {
             let zero = shared_sd * random.normal();
             for load in 0..8 {
                 residual.push(3.0 * load as f64 + zero + random.normal());
-                cell.push(load);
+                replicate_group.push(load);
                 shared.push(trial);
             }
         }
@@ -215,11 +215,11 @@ mod tests {
             residual: DVector::from_vec(residual),
             nuisance: DMatrix::zeros(n, 0),
             background: DMatrix::zeros(n, 0),
-            cell,
+            replicate_group,
             fold: shared.clone(),
             shared,
-            session: vec![Evidence::KEPT; n],
-            level: vec![Evidence::KEPT; n],
+            session: vec![Evidence::NONE; n],
+            intercept: vec![Evidence::NONE; n],
             resolution: 0.0,
             covariates: Vec::new(),
         }

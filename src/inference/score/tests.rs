@@ -44,7 +44,7 @@ fn an_effect_is_as_large_as_it_is_and_screening_says_so_too() {
         assert!((wide.estimate[0] * size / fitted - 1.0).abs() < 0.05, "size {size}: {}", wide.estimate[0]);
         let none = Moments::new(&recorded, &DMatrix::zeros(80, 0), vec![], vec![], 80, 0.0);
         let (gram, product) = (columns.tr_mul(&columns), columns.tr_mul(&recorded));
-        let more = More { gram: &gram, cross: DMatrix::zeros(0, 1), product, bounds: vec![FREE] };
+        let more = ColumnBlock { gram: &gram, cross: DMatrix::zeros(0, 1), product, bounds: vec![FREE] };
         let before = none.score();
         let about = none.about(&before, &more);
         let exact = none.beyond(&before, &more).score().log_evidence - before.log_evidence;
@@ -102,20 +102,21 @@ fn a_column_that_explains_nothing_costs() {
     assert!(favours <= 1, "{favours} of 200 clean recordings favour it by 20 to 1");
 }
 
-/// What adding `own` to a story of `columns` is worth, about and exactly.
+/// What adding `own` to a hypothesis of `columns` is worth, about and exactly.
 fn worth(r: &DVector<f64>, columns: &DMatrix<f64>, own: &DMatrix<f64>) -> (f64, f64) {
     let (bounds, effects) = (vec![FREE; columns.ncols()], vec![columns.ncols()]);
-    let story = Moments::new(r, columns, bounds, effects, r.len(), 0.0);
-    let score = story.score();
+    let hypothesis = Moments::new(r, columns, bounds, effects, r.len(), 0.0);
+    let score = hypothesis.score();
     let gram = own.tr_mul(own);
-    let more = More {
+    let more = ColumnBlock {
         gram: &gram,
         cross: columns.tr_mul(own),
         product: own.tr_mul(r),
         bounds: vec![FREE; own.ncols()],
     };
-    let exact = story.beyond(&score, &more).score().log_evidence - story.rest(&score).score().log_evidence;
-    (story.about(&score, &more), exact)
+    let exact =
+        hypothesis.beyond(&score, &more).score().log_evidence - hypothesis.rest(&score).score().log_evidence;
+    (hypothesis.about(&score, &more), exact)
 }
 
 #[test]

@@ -1,0 +1,65 @@
+//! Inference: which terms a recording needs beyond its base model, and how sure that is.
+//!
+//! The engine knows no physics. It sees a recording as numbers ([`Evidence`]) and the physics as
+//! candidates, each an effect at a place with a few parameters ([`Candidate`]), and asks a
+//! [`ForwardModel`] what would have been recorded if some of them were real. It copies the records
+//! of effects and places into its findings, and never looks into them.
+//!
+//! ```text
+//! evidence + forward model → search (score) → selection → pruning → held out, sessions → findings
+//! ```
+
+mod description;
+mod diagnose;
+mod diagnosis;
+mod effect;
+mod evidence;
+mod experiment_design;
+mod finding;
+mod forward_model;
+mod gram_cache;
+mod held_out;
+mod hypothesis;
+mod lack_of_fit;
+mod limit;
+mod linearised;
+mod locate;
+mod location;
+mod proposal;
+mod pruning;
+mod quantity;
+mod ranking;
+mod score;
+mod search;
+mod selection;
+mod sessions;
+mod sparse;
+mod untested;
+mod variable;
+mod whitening;
+
+#[cfg(test)]
+mod tests;
+
+pub use description::Description;
+pub use diagnose::diagnose;
+pub use diagnosis::{Diagnosed, Diagnosis, Discrepancy};
+pub use effect::{Effect, Kind, Reported, UNKNOWN, WrittenTo};
+pub use evidence::{Covariate, Evidence, rms};
+pub use experiment_design::{ExperimentDesign, separates};
+pub use finding::{Estimate, Finding, FindingPart, Rival};
+pub use forward_model::{Candidate, ForwardModel, Parameter};
+pub use held_out::HeldOut;
+pub use hypothesis::{Hypothesis, Term};
+pub use lack_of_fit::LackOfFit;
+pub use limit::Limit;
+pub use locate::Structure;
+pub use location::{Location, Part, Run, RunName};
+pub use proposal::{LoadPlan, Plan, PlannedPose, PosePlan, Proposal};
+pub use quantity::Quantity;
+pub use ranking::{Rank, Ranked, ranking};
+pub use selection::NAMED;
+pub use sessions::LeftOutSession;
+pub use untested::{Absorbed, NotTestable};
+pub use variable::{JointVariable, Variable};
+pub use whitening::Whitening;

@@ -1,0 +1,229 @@
+//! The diagnosis: is there a mismatch, what is it, what could it be as well, and what remains.
+
+use nalgebra::DVector;
+
+use super::effect::Reported;
+use super::evidence::rms;
+use super::held_out::{Theme, hold_out};
+use super::linearised::Linearised;
+use super::locate::locate;
+use super::pruning::infer;
+use super::search::Search;
+use super::selection::DiscrepancyModel;
+use super::sessions::leave_one_session_out;
+use super::{
+    Description, Diagnosis, Discrepancy, Estimate, Evidence, Finding, FindingPart, ForwardModel, HeldOut,
+    Hypothesis, Parameter, Rival, Term,
+};
+use crate::parallel::both;
+use crate::statistics::{chi_squared_survival, student_t_quantile};
+
+/// Odds within which another explanation counts as indistinguishable: 20 to 1.
+const APART: f64 = 20.0;
+
+/// A form of a law that leaves at most so much more, as a factor, may be the right one.
+const HARDLY_MORE: f64 = 1.1;
+
+/// Diagnoses a recording.
+pub fn diagnose(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
+    let model = &Linearised::new(model);
+    let ((search, hypothesis, left_over), held_out) =
+        both(|| infer(model, evidence), || hold_out(model, evidence));
+    let none = search.fit(&[]);
+    let by_base = search.predicted(&none, evidence, &DVector::zeros(evidence.residual.len()));
+    let predicted = search.predicted(&hypothesis, evidence, &model.response(&hypothesis.terms));
+    let (before, after) = (&evidence.residual - &by_base, &evidence.residual - &predicted);
+    let mut parts: Vec<(Theme, FindingPart)> = (0..hypothesis.terms.len())
+        .map(|position| {
+            let candidate = &model.candidates()[hypothesis.terms[position].candidate];
+            (Theme::new(candidate), part(model, evidence, &search, &hypothesis, position))
+        })
+        .collect();
+    parts.sort_by(|(_, a), (_, b)| b.explains.total_cmp(&a.explains));
+    let findings = findings(model, &hypothesis, held_out.as_ref(), parts);
+    let lack_of_fit_after = search.lack_of_fit(&hypothesis, &predicted);
+    let (mut left, mut determined) = (after.clone(), hypothesis.determined);
+    let mut discrepancy = None;
+    if let Some(DiscrepancyModel::Curve(longer)) = left_over {
+        left = &evidence.residual - search.predicted(&longer, evidence, &model.response(&longer.terms));
+        determined = longer.determined;
+        // what the calibration would take up of the curve is not left
+        let shape = &after - &left;
+        let curve = longer.terms.last();
+        discrepancy = Some(Discrepancy {
+            candidate: curve.map(|curve| curve.candidate),
+            location: curve.map(|curve| model.location(curve)),
+            rms: rms(&shape),
+            shape,
+        });
+    } else if let Some(DiscrepancyModel::Replicates) = left_over {
+        let (rms, shape) = (rms(&after), after.clone());
+        discrepancy = Some(Discrepancy { candidate: None, location: None, rms, shape });
+    }
+    let degrees_of_freedom = (search.degrees_of_freedom() as f64 - determined).max(1.0);
+    Diagnosis {
+        findings,
+        discrepancy,
+        noise: left.norm() / degrees_of_freedom.sqrt(),
+        shared_ratio: search.shared_ratio(),
+        lack_of_fit_before: search.lack_of_fit(&none, &by_base),
+        lack_of_fit_after,
+        structure_before: locate(evidence, &before),
+        structure_after: locate(evidence, &after),
+        odds: search.additions(&none),
+        held_out,
+        sessions: match hypothesis.terms.is_empty() {
+            true => Vec::new(),
+            false => leave_one_session_out(model, evidence),
+        },
+        before,
+        after,
+        hypothesis,
+    }
+}
+
+/// Parts as they are reported: the waves of one gear, all misread poses, are one finding.
+fn findings(
+    model: &Linearised<'_>,
+    hypothesis: &Hypothesis,
+    held_out: Option<&HeldOut>,
+    parts: Vec<(Theme, FindingPart)>,
+) -> Vec<Finding> {
+    let mut findings: Vec<(Theme, Finding)> = Vec::new();
+    for (theme, part) in parts {
+        let effect = model.candidates()[part.term.candidate].effect;
+        let location = part.location.place();
+        let is_same = |(_, known): &&mut (Theme, Finding)| {
+            known.effect == effect
+                && match effect.reported {
+                    Reported::Alone => false,
+                    Reported::ByPlace => known.location == location,
+                    Reported::Together => true,
+                }
+        };
+        match findings.iter_mut().find(is_same) {
+            Some((_, known)) => {
+                if effect.reported == Reported::Together {
+                    known.location = known.location.clone().and(location);
+                }
+                known.p_value = known.p_value.min(part.p_value);
+                known.parts.push(part);
+            }
+            None => findings.push((
+                theme,
+                Finding {
+                    effect,
+                    location,
+                    estimates: Vec::new(),
+                    description: Description { observed: String::new(), cause: String::new() },
+                    rivals: Vec::new(),
+                    p_value: part.p_value,
+                    explains: 0.0,
+                    found_in_folds: None,
+                    held_out_loss: None,
+                    next: None,
+                    parts: vec![part],
+                },
+            )),
+        }
+    }
+    for (theme, finding) in &mut findings {
+        let terms: Vec<Term> = finding.parts.iter().map(|part| part.term.clone()).collect();
+        finding.explains = rms(&model.response(&terms));
+        finding.estimates = model.estimates(&finding.parts, hypothesis);
+        finding.rivals = finding.parts.iter().flat_map(|part| part.rivals.clone()).collect();
+        finding.rivals.sort_by(|a, b| a.odds.total_cmp(&b.odds));
+        finding.found_in_folds = held_out.map(|held_out| held_out.found(model.candidates(), *theme));
+        finding.held_out_loss = held_out.map(|held_out| held_out.loss(*theme));
+        finding.description = model.describe(finding);
+    }
+    let mut findings: Vec<Finding> = findings.into_iter().map(|(_, finding)| finding).collect();
+    findings.sort_by(|a, b| b.explains.total_cmp(&a.explains));
+    findings
+}
+
+/// One term with its interval and its rivals.
+fn part(
+    model: &Linearised<'_>,
+    evidence: &Evidence,
+    search: &Search,
+    hypothesis: &Hypothesis,
+    position: usize,
+) -> FindingPart {
+    let term = &hypothesis.terms[position];
+    let candidates = model.candidates();
+    let rest = search.without(hypothesis, position);
+    let first: usize = hypothesis.terms[..position].iter().map(|term| term.values.len()).sum();
+    let degrees_of_freedom = (search.degrees_of_freedom() as f64 - hypothesis.determined).max(1.0);
+    let coverage_factor = student_t_quantile(0.975, degrees_of_freedom).unwrap_or(1.96);
+    let mut estimates = intervals(model, hypothesis, term, first, coverage_factor);
+    // which form of a law is the right one is not known where another one leaves hardly more
+    for form in search.other_forms(term.candidate) {
+        let other = search.with(&rest, form);
+        if search.left_rms(&other) > HARDLY_MORE * search.left_rms(hypothesis) {
+            continue;
+        }
+        let Some(own) = other.terms.last() else { continue };
+        let at = other.covariance.nrows() - own.values.len();
+        let of_other = intervals(model, &other, own, at, coverage_factor);
+        for (known, other) in estimates.iter_mut().zip(of_other) {
+            (known.low, known.high) = (known.low.min(other.low), known.high.max(other.high));
+        }
+    }
+    // candidates that would do in its place
+    let additions = search.additions(&rest);
+    // by the same measure as what was found: without it, what else the hypothesis holds is less
+    // certain than with it
+    let gained = (hypothesis.log_probability - rest.log_probability).min(additions[term.candidate]);
+    let least = gained - 2.0 * APART.ln();
+    let mut rivals: Vec<Rival> = (0..additions.len())
+        .filter(|&index| {
+            index != term.candidate && !candidates[index].is_nonparametric && additions[index] > least
+        })
+        .filter_map(|index| {
+            let other = search.with(&rest, index);
+            let odds = (hypothesis.log_probability - other.log_probability).exp();
+            let own = other.terms.last()?.clone();
+            let (effect, location) = (candidates[index].effect, model.location(&own));
+            Some(Rival { effect, location, term: own, hypothesis: other, odds })
+        })
+        .filter(|rival| rival.odds < APART)
+        .collect();
+    rivals.sort_by(|a, b| a.odds.total_cmp(&b.odds));
+    let without = &evidence.residual - model.response(&rest.terms);
+    let with = &evidence.residual - model.response(&hypothesis.terms);
+    let gained = (search.length(&without).powi(2) - search.length(&with).powi(2)) / hypothesis.sigma.powi(2);
+    // a curve has more parameters than the data determine of it
+    let determined = (hypothesis.determined - rest.determined).clamp(1.0, term.values.len().max(1) as f64);
+    FindingPart {
+        term: term.clone(),
+        location: model.location(term),
+        estimates,
+        first,
+        coverage_factor,
+        p_value: chi_squared_survival(gained.max(0.0), determined).unwrap_or(1.0),
+        explains: rms(&model.response(std::slice::from_ref(term))),
+        rivals,
+    }
+}
+
+/// Value and 95 % interval of the parameters of a term, which begin at `first` in the covariance of
+/// its hypothesis.
+fn intervals(
+    model: &Linearised<'_>,
+    hypothesis: &Hypothesis,
+    term: &Term,
+    first: usize,
+    coverage_factor: f64,
+) -> Vec<Estimate> {
+    let parameters = &model.candidates()[term.candidate].parameters;
+    let interval = |(k, (&value, parameter)): (usize, (&f64, &Parameter))| {
+        let variance = hypothesis.covariance[(first + k, first + k)];
+        let half = coverage_factor * variance.max(0.0).sqrt();
+        let (low, high) = parameter.bounds;
+        let (name, unit) = (parameter.name.clone(), parameter.unit);
+        let (low, high) = ((value - half).max(low), (value + half).min(high));
+        Estimate { name, unit, value, low, high }
+    };
+    term.values.iter().zip(parameters).enumerate().map(interval).collect()
+}

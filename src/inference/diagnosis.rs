@@ -1,0 +1,81 @@
+//! What a recording says about the physics that its model left out.
+
+use nalgebra::DVector;
+
+use super::{
+    Absorbed, Finding, HeldOut, Hypothesis, LackOfFit, LeftOutSession, Location, NotTestable, Structure,
+};
+
+/// The answer of the engine.
+#[derive(Debug, Clone)]
+pub struct Diagnosis {
+    /// The effects that were adopted, strongest first.
+    pub findings: Vec<Finding>,
+    /// What is structured and no effect explains.
+    pub discrepancy: Option<Discrepancy>,
+    /// Noise of a datum, with what it shares with others: the standard deviation of what is left of
+    /// the data once the hypothesis, and the discrepancy, are taken out.
+    pub noise: f64,
+    /// Variance of the errors that data share, over that of their own.
+    pub shared_ratio: f64,
+    /// What the base model leaves, once it has absorbed what it can.
+    pub before: DVector<f64>,
+    /// And what the hypothesis leaves.
+    pub after: DVector<f64>,
+    /// Does the base model leave the averages of the repeats? `None` without repeats.
+    pub lack_of_fit_before: Option<LackOfFit>,
+    /// Does the hypothesis?
+    pub lack_of_fit_after: Option<LackOfFit>,
+    /// Structure of `before` along each covariate of the evidence.
+    pub structure_before: Vec<Structure>,
+    /// And of `after`.
+    pub structure_after: Vec<Structure>,
+    /// Every candidate alone against none: ln of the odds, prior included.
+    pub odds: Vec<f64>,
+    /// Held-out errors, where the recording has folds.
+    pub held_out: Option<HeldOut>,
+    /// What is found in the other sessions, on each session; nothing where nothing was found or
+    /// there is one session only.
+    pub sessions: Vec<LeftOutSession>,
+    /// All findings together, fitted.
+    pub hypothesis: Hypothesis,
+}
+
+/// A structured remainder that no effect of the library explains.
+#[derive(Debug, Clone)]
+pub struct Discrepancy {
+    /// Index of the curve among the candidates; `None` where only the averages of repeats show
+    /// that something is left.
+    pub candidate: Option<usize>,
+    /// The curve's place.
+    pub location: Option<Location>,
+    /// Root mean square of what the curve describes, or of what is left.
+    pub rms: f64,
+    /// What the curve says; what is left where there is none.
+    pub shape: DVector<f64>,
+}
+
+/// A recording with its forward model and everything that was found: all that a report needs.
+#[derive(Debug, Clone)]
+#[non_exhaustive]
+pub struct Diagnosed<M> {
+    /// The physics that was asked about, and the recording.
+    pub model: M,
+    /// The recording as numbers.
+    pub evidence: super::Evidence,
+    /// What was found.
+    pub diagnosis: Diagnosis,
+    /// Effects that this recording has no data for.
+    pub not_testable: Vec<NotTestable>,
+    /// Effects that the base model takes up.
+    pub absorbed: Vec<Absorbed>,
+    /// What makes every claim weaker, for people.
+    pub limits: Vec<super::Limit>,
+}
+
+impl Diagnosis {
+    /// True where something is left out of the model.
+    pub fn is_mismatch(&self) -> bool {
+        !self.findings.is_empty() || self.discrepancy.is_some()
+    }
+}

@@ -1,0 +1,82 @@
+//! A recording as numbers: what is left of the base model, how it scatters, and what hangs together.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::Variable;
+
+/// A recording as the engine sees it, n data.
+#[derive(Debug, Clone)]
+pub struct Evidence {
+    /// Recorded less predicted by the base model, n, in one unit for all (m).
+    pub residual: DVector<f64>,
+    /// What the base model can absorb by itself: n × k, any columns, none for a model that is not fitted.
+    pub nuisance: DMatrix<f64>,
+    /// What the base model is always a little wrong by: n × b, each column times the size of its unknown factor, whose prior
+    /// is the standard normal. Part of every hypothesis.
+    pub background: DMatrix<f64>,
+    /// Repeats: data of the same number were recorded under the same conditions.
+    pub replicate_group: Vec<usize>,
+    /// Data of the same number share an error, such as the zero that their readings are offsets from.
+    pub shared: Vec<usize>,
+    /// Data of the same number are held out together; those of [`Evidence::NONE`] never are.
+    pub fold: Vec<usize>,
+    /// Data of the same number belong to one session, such as a clamp or a placement: what is found in the others must
+    /// predict it. [`Evidence::NONE`] for what belongs to none.
+    pub session: Vec<usize>,
+    /// Data of the same number have a level that nobody knows, such as the place of a socket; [`Evidence::NONE`] for none.
+    pub intercept: Vec<usize>,
+    /// Smallest step of the recorded numbers: what is below it is rounding.
+    pub resolution: f64,
+    /// Numbers that a mismatch may follow.
+    pub covariates: Vec<Covariate>,
+}
+
+impl Evidence {
+    /// Number of no fold, session or intercept: of what is known besides the recording, or has none.
+    pub const NONE: usize = usize::MAX;
+
+    /// The data of these rows.
+    pub fn part(&self, rows: &[usize]) -> Evidence {
+        let pick = |of: &[usize]| rows.iter().map(|&row| of[row]).collect();
+        Evidence {
+            residual: self.residual.select_rows(rows),
+            nuisance: self.nuisance.select_rows(rows),
+            background: self.background.select_rows(rows),
+            replicate_group: pick(&self.replicate_group),
+            shared: pick(&self.shared),
+            fold: pick(&self.fold),
+            session: pick(&self.session),
+            intercept: pick(&self.intercept),
+            resolution: self.resolution,
+            covariates: Vec::new(),
+        }
+    }
+
+    /// The covariate of a variable, where the recording has it.
+    pub fn covariate(&self, variable: Variable) -> Option<&Covariate> {
+        self.covariates.iter().find(|covariate| covariate.variable == variable)
+    }
+}
+
+/// A number that every datum has, along which a mismatch may be structured.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Covariate {
+    /// Which.
+    pub variable: Variable,
+    /// One per datum; NaN where it is not known.
+    pub values: Vec<f64>,
+}
+
+impl Covariate {
+    /// False where all known values are the same: nothing can follow what does not vary.
+    pub fn varies(&self) -> bool {
+        let mut known = self.values.iter().filter(|value| !value.is_nan());
+        let first = known.next();
+        known.any(|value| Some(value) != first)
+    }
+}
+
+/// Root mean square.
+pub fn rms(v: &DVector<f64>) -> f64 {
+    v.norm() / (v.len().max(1) as f64).sqrt()
+}

@@ -1,0 +1,169 @@
+//! Held-out proof: the whole selection is repeated without a fold, and its hypothesis predicts that
+//! fold.
+//!
+//! What a theme (an effect; in a joint, at that joint) is worth is found in the same folds: the
+//! hypothesis of a fold is fitted once more without it, and predicts the fold again.
+
+use nalgebra::DVector;
+
+use super::linearised::Linearised;
+use super::pruning::infer;
+use super::{Candidate, Effect, Evidence, ForwardModel, Term};
+use crate::parallel::in_parallel;
+use crate::statistics::{Random, percentile_interval};
+
+/// Squares of a fold before and after, and how many data they are of.
+type Squares = (f64, f64, f64);
+
+/// Draws of the bootstrap over folds.
+const DRAWS: usize = 1000;
+
+/// Errors of data that the model had not seen.
+#[derive(Debug, Clone)]
+pub struct HeldOut {
+    /// Root mean square of what the base model leaves of held-out data.
+    pub before: f64,
+    /// And of what the hypothesis found without them leaves.
+    pub after: f64,
+    /// 1 − after²/before², with its 95 % interval by drawing folds again; `None` with fewer than three folds.
+    pub gain: f64,
+    /// See `gain`.
+    pub gain_interval: Option<(f64, f64)>,
+    /// Hypotheses of the folds.
+    pub hypotheses: Vec<Vec<Term>>,
+    /// What each theme of a fold's hypothesis is worth there; see [`HeldOut::loss`].
+    losses: Vec<(Theme, f64)>,
+    /// What the base model leaves of each datum while it is held out; NaN for data that never are.
+    pub errors_before: DVector<f64>,
+    /// And what the hypothesis of its fold leaves.
+    pub errors_after: DVector<f64>,
+}
+
+/// What counts as the same finding in another search: an effect, and in a joint its joint.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Theme {
+    effect: &'static Effect,
+    joint: Option<usize>,
+}
+
+impl Theme {
+    /// Of a candidate.
+    pub fn new(candidate: &Candidate) -> Theme {
+        Theme { effect: candidate.effect, joint: candidate.location.joint() }
+    }
+}
+
+impl HeldOut {
+    /// In how many folds a theme is found again, of how many.
+    pub fn found(&self, candidates: &[Candidate], theme: Theme) -> (usize, usize) {
+        let is_it = |term: &Term| Theme::new(&candidates[term.candidate]) == theme;
+        let count = self.hypotheses.iter().filter(|terms| terms.iter().any(is_it)).count();
+        (count, self.hypotheses.len())
+    }
+
+    /// Share of the squares of the errors before that comes back without a theme.
+    pub fn loss(&self, theme: Theme) -> f64 {
+        self.losses.iter().filter(|(of, _)| *of == theme).map(|(_, loss)| loss).sum()
+    }
+}
+
+/// What some of the data, `kept`, say of all data.
+pub(super) struct Trained {
+    /// What the base model, fitted to them, leaves of all data.
+    pub before: DVector<f64>,
+    /// And what the hypothesis that they tell by themselves leaves.
+    pub after: DVector<f64>,
+    /// Its terms.
+    pub terms: Vec<Term>,
+    /// What is left without each of its themes.
+    pub without: Vec<(Theme, DVector<f64>)>,
+}
+
+/// Selects with the data `kept` only.
+pub(super) fn trained_on(model: &Linearised<'_>, evidence: &Evidence, kept: &[usize]) -> Trained {
+    let (part, training) = (model.part(kept), evidence.part(kept));
+    let (search, hypothesis, _) = infer(&part, &training);
+    let base = search.predicted(&search.fit(&[]), evidence, &DVector::zeros(evidence.residual.len()));
+    let all = search.predicted(&hypothesis, evidence, &model.response(&hypothesis.terms));
+    let theme = |term: &Term| Theme::new(&model.candidates()[term.candidate]);
+    let mut without: Vec<(Theme, DVector<f64>)> = Vec::new();
+    for term in &hypothesis.terms {
+        let own = theme(term);
+        if without.iter().any(|(known, _)| *known == own) {
+            continue;
+        }
+        let others: Vec<Term> = hypothesis.terms.iter().filter(|term| theme(term) != own).cloned().collect();
+        let rest = search.fit(&others);
+        let left = &evidence.residual - search.predicted(&rest, evidence, &model.response(&rest.terms));
+        without.push((own, left));
+    }
+    Trained {
+        before: &evidence.residual - base,
+        after: &evidence.residual - all,
+        terms: hypothesis.terms,
+        without,
+    }
+}
+
+/// Selects without each fold in turn, and predicts it. `None` with fewer than two folds.
+pub fn hold_out(model: &Linearised<'_>, evidence: &Evidence) -> Option<HeldOut> {
+    let mut folds: Vec<usize> = evidence.fold.clone();
+    folds.sort_unstable();
+    folds.dedup();
+    folds.retain(|&fold| fold != Evidence::NONE);
+    if folds.len() < 2 {
+        return None;
+    }
+    let n = evidence.residual.len();
+    let by_fold = in_parallel(folds.len(), |k| {
+        let (held_out, kept): (Vec<usize>, Vec<usize>) =
+            (0..n).partition(|&row| evidence.fold[row] == folds[k]);
+        let trained = trained_on(model, evidence, &kept);
+        (held_out, trained)
+    });
+    let (mut errors_before, mut errors_after) = (DVector::repeat(n, f64::NAN), DVector::repeat(n, f64::NAN));
+    let (mut squares, mut hypotheses) = (Vec::<Squares>::new(), Vec::new());
+    let mut losses: Vec<(Theme, f64)> = Vec::new();
+    for (held_out, trained) in by_fold {
+        let (before, after) = (trained.before.select_rows(&held_out), trained.after.select_rows(&held_out));
+        squares.push((before.norm_squared(), after.norm_squared(), held_out.len() as f64));
+        for (theme, left) in trained.without {
+            let left = left.select_rows(&held_out).norm_squared();
+            losses.push((theme, left - after.norm_squared()));
+        }
+        hypotheses.push(trained.terms);
+        for (k, &row) in held_out.iter().enumerate() {
+            (errors_before[row], errors_after[row]) = (before[k], after[k]);
+        }
+    }
+    let total = |of_fold: &dyn Fn(&Squares) -> f64| squares.iter().map(of_fold).sum::<f64>();
+    let (all_before, all_after, count) = (total(&|s| s.0), total(&|s| s.1), total(&|s| s.2));
+    let per_square = 1.0 / all_before.max(f64::MIN_POSITIVE);
+    losses.iter_mut().for_each(|(_, loss)| *loss *= per_square);
+    Some(HeldOut {
+        before: (all_before / count).sqrt(),
+        after: (all_after / count).sqrt(),
+        gain: 1.0 - all_after / all_before.max(f64::MIN_POSITIVE),
+        gain_interval: (squares.len() > 2).then(|| interval(&squares)).flatten(),
+        hypotheses,
+        losses,
+        errors_before,
+        errors_after,
+    })
+}
+
+fn interval(squares: &[Squares]) -> Option<(f64, f64)> {
+    let mut random = Random::seeded(0, 0);
+    let mut gains: Vec<f64> = (0..DRAWS)
+        .map(|_| {
+            let (mut before, mut after) = (0.0, 0.0);
+            for _ in squares {
+                let (b, a, _) = squares[random.index(squares.len())];
+                before += b;
+                after += a;
+            }
+            1.0 - after / before.max(f64::MIN_POSITIVE)
+        })
+        .collect();
+    percentile_interval(&mut gains, 0.95)
+}

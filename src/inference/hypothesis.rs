@@ -1,0 +1,29 @@
+//! What may be wrong, several effects together: a hypothesis and its terms.
+
+use nalgebra::{DMatrix, DVector};
+
+/// One term of a hypothesis: a candidate with values.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Term {
+    /// Index among the candidates of the forward model.
+    pub candidate: usize,
+    /// Values of its parameters, SI.
+    pub values: Vec<f64>,
+}
+
+/// A hypothesis with what the recording says about it.
+#[derive(Debug, Clone)]
+pub struct Hypothesis {
+    /// The effects, in the order in which they were found.
+    pub terms: Vec<Term>,
+    /// Ln of its probability, prior included, less a constant.
+    pub log_probability: f64,
+    /// Noise of a datum under it.
+    pub sigma: f64,
+    /// Posterior covariance of all its parameters, SI, in the order of `terms`, without regard to bounds.
+    pub covariance: DMatrix<f64>,
+    /// Factors of the evidence's background columns.
+    pub background: DVector<f64>,
+    /// How many parameters, background included, the data determine.
+    pub determined: f64,
+}

@@ -1,0 +1,155 @@
+//! Which hypothesis a recording tells: effects are added, exchanged and taken away while that makes it more probable.
+
+use super::ForwardModel;
+use super::Hypothesis;
+use super::search::{PRIOR, Search};
+
+/// Odds against chance from which on an effect is named.
+pub const NAMED: f64 = 50.0;
+/// A hypothesis of known effects explains as well as one that leaves something unknown within these odds, if it leaves at most so
+/// much more, as a factor.
+const AS_WELL: (f64, f64) = (20.0, 1.01);
+/// Most effects in one hypothesis.
+const MOST: usize = 8;
+/// Of how many candidates, the likeliest by their columns at neutral values, the values are fitted.
+const REFITTED: usize = 5;
+/// And how many of them may be of one effect.
+const OF_ONE_EFFECT: usize = 2;
+
+/// What a hypothesis leaves that no effect of the library explains.
+#[derive(Debug, Clone)]
+pub enum DiscrepancyModel {
+    /// A smooth curve, the last of this hypothesis.
+    Curve(Hypothesis),
+    /// No curve, but the repeats agree on it.
+    Replicates,
+}
+
+impl Search<'_> {
+    /// The most probable hypothesis of known effects, and what it leaves, if that is more than chance.
+    ///
+    /// Known effects are named only as far as they are likelier than a shorter hypothesis that leaves something unknown: several
+    /// of them together can draw the shape of something that is none of them.
+    pub fn best(&self) -> (Hypothesis, Option<DiscrepancyModel>) {
+        let mut path = vec![self.fit(&[])];
+        let mut remainders = Vec::new();
+        loop {
+            let hypothesis = &path[path.len() - 1];
+            let additions = self.additions(hypothesis);
+            remainders.push(self.remainder(hypothesis, &additions));
+            if hypothesis.terms.len() >= MOST {
+                break;
+            }
+            let Some(longer) = self.longer(hypothesis, &additions, false) else { break };
+            match self.accepted(hypothesis, longer) {
+                Some(longer) => path.push(longer),
+                None => break,
+            }
+        }
+        let whole = |(hypothesis, remainder): (&Hypothesis, &Option<(f64, DiscrepancyModel)>)| {
+            remainder.as_ref().map_or(hypothesis.log_probability, |(log_probability, _)| *log_probability)
+        };
+        let wholes: Vec<f64> = path.iter().zip(&remainders).map(whole).collect();
+        let most = wholes.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let named = wholes.iter().position(|whole| *whole >= most).unwrap_or_default();
+        // what the library explains as well needs nothing unknown
+        let last = path.len() - 1;
+        if let Some((_, DiscrepancyModel::Curve(longer))) = &remainders[named]
+            && path[last].log_probability + AS_WELL.0.ln() > most
+            && self.left_rms(&path[last]) < AS_WELL.1 * self.left_rms(longer)
+        {
+            return (path.swap_remove(last), None);
+        }
+        let remainder = remainders.swap_remove(named).map(|(_, remainder)| remainder);
+        (path.swap_remove(named), remainder)
+    }
+
+    /// The longer hypothesis with its effects exchanged for better ones, if each of them is likelier, by the odds of a name, than
+    /// chance. Where one alone is not, another one may be needed with it: two outliers hide each other in the noise that they
+    /// make.
+    fn accepted(&self, hypothesis: &Hypothesis, longer: Hypothesis) -> Option<Hypothesis> {
+        /// Odds against chance that make a second effect worth a try.
+        const HOPELESS: f64 = 1.0 / 400.0;
+        let mut longer = longer;
+        let mut least = hypothesis.log_probability + NAMED.ln();
+        if longer.log_probability < least
+            && longer.log_probability > hypothesis.log_probability + HOPELESS.ln()
+        {
+            longer = self.longer(&longer, &self.additions(&longer), false)?;
+            least += NAMED.ln();
+        }
+        if longer.log_probability < least {
+            return None;
+        }
+        let longer = self.exchanged(longer);
+        // what another one has made superfluous goes
+        let rests = (0..longer.terms.len()).map(|position| self.without(&longer, position));
+        let likelier = |a: &Hypothesis, b: &Hypothesis| a.log_probability.total_cmp(&b.log_probability);
+        let rest = rests.max_by(likelier)?;
+        match rest.log_probability + NAMED.ln() < longer.log_probability {
+            true => Some(longer),
+            false => (rest.log_probability > hypothesis.log_probability + NAMED.ln()).then_some(rest),
+        }
+    }
+
+    /// What a hypothesis leaves, if that is more than chance.
+    pub fn remains(&self, hypothesis: &Hypothesis) -> Option<DiscrepancyModel> {
+        self.remainder(hypothesis, &self.additions(hypothesis)).map(|(_, remainder)| remainder)
+    }
+
+    /// What a hypothesis leaves, with the ln of the probability of both, if that is more than chance.
+    fn remainder(&self, hypothesis: &Hypothesis, additions: &[f64]) -> Option<(f64, DiscrepancyModel)> {
+        let least = hypothesis.log_probability + NAMED.ln();
+        let curve = self.longer(hypothesis, additions, true).filter(|longer| longer.log_probability > least);
+        let told = self.predicted(hypothesis, self.evidence, &self.model.response(&hypothesis.terms));
+        let replicates = self.lack_of_fit(hypothesis, &told).map_or(f64::NEG_INFINITY, |test| {
+            hypothesis.log_probability + test.log_odds() + (PRIOR.2 / PRIOR.0).ln()
+        });
+        match curve {
+            Some(longer) => Some((longer.log_probability.max(replicates), DiscrepancyModel::Curve(longer))),
+            None => (replicates > least).then_some((replicates, DiscrepancyModel::Replicates)),
+        }
+    }
+
+    /// The hypothesis with one candidate more, the likeliest of those that are unknown or of those that are not.
+    fn longer(&self, hypothesis: &Hypothesis, additions: &[f64], unknown: bool) -> Option<Hypothesis> {
+        // a scan over places must not crowd out what is at one place only
+        let mut tried: Vec<usize> = Vec::new();
+        for index in self.likeliest(additions, unknown) {
+            let effect = |candidate: usize| &self.model.candidates()[candidate].effect;
+            let same = tried.iter().filter(|&&other| effect(other) == effect(index)).count();
+            if unknown || same < OF_ONE_EFFECT {
+                tried.push(index);
+            }
+            if tried.len() >= REFITTED {
+                break;
+            }
+        }
+        let refitted = tried.into_iter().map(|index| self.with(hypothesis, index));
+        refitted.reduce(|best, other| if other.log_probability > best.log_probability { other } else { best })
+    }
+
+    /// Single effects exchanged for others and taken away while the hypothesis gets more probable.
+    fn exchanged(&self, mut hypothesis: Hypothesis) -> Hypothesis {
+        // a single effect is the best there is
+        for _ in 0..if hypothesis.terms.len() > 1 { MOST } else { 0 } {
+            let mut better: Option<Hypothesis> = None;
+            for position in 0..hypothesis.terms.len() {
+                let rest = self.without(&hypothesis, position);
+                let best = self.longer(&rest, &self.additions(&rest), false);
+                for other in [Some(rest), best].into_iter().flatten() {
+                    let least =
+                        better.as_ref().map_or(hypothesis.log_probability + 1e-6, |b| b.log_probability);
+                    if other.log_probability > least {
+                        better = Some(other);
+                    }
+                }
+            }
+            match better {
+                Some(other) => hypothesis = other,
+                None => break,
+            }
+        }
+        hypothesis
+    }
+}

@@ -85,7 +85,7 @@ mod tests {
     use super::*;
 
     fn covariate(values: Vec<f64>) -> Covariate {
-        Covariate { name: "x".into(), unit: String::new(), values }
+        Covariate { variable: crate::inference::Variable::Order, values }
     }
 
     #[test]

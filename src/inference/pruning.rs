@@ -230,7 +230,7 @@ mod tests {
         model.add("curve", "", DMatrix::from_fn(COUNT, 2, of_curve), true);
         let mut random = Random::seeded(9, 0);
         let told = |row: usize| law_size * law(row) + ripple_size * ripple(row);
-        let residual = (0..COUNT).map(|row| predicted(row) + noise * random.normal()).collect();
+        let residual = (0..COUNT).map(|row| told(row) + noise * random.normal()).collect();
         let replicate_group = (0..COUNT).map(|row| row % CONDITIONS).collect();
         let evidence = Evidence { replicate_group, ..independent(residual) };
         let linear = Linearised::new(&model);

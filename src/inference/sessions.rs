@@ -132,7 +132,7 @@ mod tests {
         let told = evidence(|row| 8.0 * x(row) + 50.0 * (level(row) as f64 + 1.0));
         let levels = 2 * SESSIONS;
         let nuisance = DMatrix::from_fn(COUNT, levels, |row, k| f64::from(u8::from(level(row) == k)));
-        let unknown = Evidence { intercept: (0..COUNT).map(level).collect(), nuisance, ..predicted };
+        let unknown = Evidence { intercept: (0..COUNT).map(level).collect(), nuisance, ..told };
         for replica in replicas(&unknown) {
             // 8·x in two halves, each about its mean, is 1.2 rms
             assert!((1.2..2.0).contains(&replica.before), "{replica:?}");

@@ -5,7 +5,9 @@ mod calibration;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
-use rodcal::diagnosis::rig::{RigDiagnosis, diagnose};
+use rodcal::diagnosis::rig::effects::registry;
+use rodcal::diagnosis::rig::{Correction, diagnose};
+use rodcal::inference::Effect;
 use rodcal::rig::readings::Readings;
 use rodcal::rod::Rod;
 use rodcal::{Result, report};
@@ -21,7 +23,7 @@ pub enum Diagnose {
 }
 
 #[derive(Debug, Args)]
-#[command(after_long_help = NOTES)]
+#[command(after_long_help = notes())]
 pub struct Rig {
     /// Rod file (TOML), or the word `linear`: straight lines through the origin, of any slope.
     rod: PathBuf,
@@ -33,33 +35,27 @@ pub struct Rig {
     apply: bool,
 }
 
-const NOTES: &str = "\
+fn notes() -> String {
+    let effects = listed(registry::ALL.iter().map(|known| &known.effect));
+    format!(
+        "\
 The model is the rod as its file gives it, nothing fitted. Readings that differ
 from it are explained by as few of these effects as they need:
 
-  stiffness_scale      all of the rod is softer or stiffer than its file says
-  shear_modulus        it twists and shears more easily
-  joint_compliance     a joint yields: one of the file, or one found on the rod
-  root_compliance      flange or adapter yield
-  bend_flexibility     the pipe of the bend becomes oval
-  friction             the slide takes off load, and holds it on the way down
-  load_offset          a hanger or a tare adds to every load
-  backlash             play before the rod bends
-  creep                the deflection grows with the logarithm of time
-  hysteresis           the way down is not the way up, and it is not friction
-  nonlinear_stiffness  the stiffness depends on the load
-  sensor_scale         a sensor shows too much or too little
-  sensor_misalignment  a sensor, or a load (load_misalignment), is not square
-  thermal_drift        readings follow temperature or time
-  slip                 everything after one reading is shifted
-  outlier              one reading is wrong
-
+{effects}
 What these readings cannot tell apart is said, with the measurement that would.
 What no effect explains is described, and not named. More columns tell more:
 trial, phase (load, unload), time_s, temperature_c.
 
 Exit status: 0 the readings agree with the model; 1 they do not, and the first
-line says why; 2 could not run.";
+line says why; 2 could not run."
+    )
+}
+
+/// A line for each effect: its name, and what happens.
+pub fn listed<'a>(effects: impl Iterator<Item = &'a Effect>) -> String {
+    effects.map(|effect| format!("  {:<25}  {}\n", effect.name, effect.summary)).collect()
+}
 
 impl Diagnose {
     pub fn run(&self) -> Result<Outcome> {
@@ -75,18 +71,20 @@ impl Rig {
         let rod = if self.rod == Path::new("linear") { None } else { Some(Rod::read(&self.rod)?) };
         let readings = Readings::read(&self.readings)?;
         let found = diagnose(&readings, rod.as_ref())?;
-        let mut report = report::diagnosis::report(&found, &readings, rod.as_ref());
+        let correction = found.correction()?;
+        let mut report = report::diagnosis::rig::report(&found, correction.as_ref());
         let model = rod.as_ref().map_or("none, straight lines".into(), |_| self.rod.display().to_string());
         report.provenance = vec![
             ("rod file".into(), model),
             ("readings".into(), self.readings.display().to_string()),
             ("program".into(), concat!("rodcal ", env!("CARGO_PKG_VERSION")).into()),
         ];
-        let mut json = report::diagnosis::json(&found, &readings, rod.as_ref());
+        let mut json = report::diagnosis::rig::json(&found, correction.as_ref());
         let mut outcome_files = Vec::new();
         let mut default_directory = None;
         if self.apply {
-            outcome_files = self.applied(&found);
+            outcome_files =
+                correction.as_ref().map(|correction| self.applied(correction)).unwrap_or_default();
             if outcome_files.is_empty() {
                 report.warnings.push(match rod {
                     Some(_) => "--apply has no effect: nothing was found that could be applied".into(),
@@ -105,8 +103,7 @@ impl Rig {
     }
 
     /// Names and contents of the rod file and the readings with what was found.
-    fn applied(&self, found: &RigDiagnosis) -> Vec<(String, Vec<u8>)> {
-        let Some(correction) = &found.correction else { return Vec::new() };
+    fn applied(&self, correction: &Correction) -> Vec<(String, Vec<u8>)> {
         let stem = |path: &Path| path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         vec![
             (format!("{}-diagnosed.toml", stem(&self.rod)), correction.rod_toml.clone().into_bytes()),

@@ -2,8 +2,8 @@
 //!
 //! Three stages act one after another, so that effects combine as they would on the bench (friction on a rod whose modulus
 //! is off too): a nominal load becomes a force, a force becomes a displacement, a displacement becomes a reading. Formulae:
-//! `action.rs` (stages), `structure.rs` (compliance), `memory.rs` (creep, hysteresis). Which effects there are and how
-//! large they usually are: `library.rs`. The rivals that stand for physics nobody has named: `unknown.rs`.
+//! `action.rs` (stages), `structure.rs` (compliance), `load_history.rs` (creep, hysteresis). Which effects there are and how
+//! large they usually are: `effects/`. The rivals that stand for physics nobody has named: `nonparametric.rs`.
 //!
 //! Without a rod (`linear`) each line of readings has a slope c that nobody knows. The evidence leaves it to the engine as
 //! a nuisance, and an effect that scales with the displacement takes the slope that fits best with that effect in place
@@ -16,41 +16,62 @@
 //! which is exact once the engine has fitted its own multiple of F.
 
 mod action;
-mod carried;
 mod correction;
 mod datum;
+pub mod effects;
 mod evidence;
 mod feasible;
-mod library;
 mod limits;
-mod memory;
+mod load_history;
 mod next;
-mod result;
+mod nonparametric;
 mod structure;
 #[cfg(test)]
 mod tests;
-mod unknown;
-mod words;
+mod transfer;
 
 use nalgebra::{DMatrix, DVector};
 
 use self::action::{Action, State};
+use self::effects::{Context, registry};
 use self::structure::Structure;
-use super::{Candidate, Chosen, Evidence, World};
 use crate::error::Result;
+use crate::inference::{
+    Candidate, Description, Diagnosed, Effect, Estimate, Evidence, Finding, FindingPart, ForwardModel,
+    Hypothesis, Location, NotTestable, Term, diagnose as infer,
+};
 use crate::rig::readings::Readings;
 use crate::rod::Rod;
 pub use correction::Correction;
 pub use datum::Datum;
-pub use feasible::Plan;
-pub use limits::{Limit, NotTestable};
-pub use next::Proposal;
-pub use result::{RigDiagnosis, diagnose};
-pub use words::{cause, cause_at, unexplained_at};
+
+/// The parameter of a joint that may be anywhere.
+const STATION: &str = "station_mm";
+
+/// A rig's diagnosis.
+pub type RigDiagnosis = Diagnosed<RigModel>;
+
+/// Diagnoses `readings` against the FEA model of `rod` as its file gives it, or, without a rod,
+/// against straight lines through the origin.
+///
+/// # Errors
+/// See [`RigModel::new`].
+pub fn diagnose(readings: &Readings, rod: Option<&Rod>) -> Result<RigDiagnosis> {
+    let (model, evidence, not_testable) = RigModel::with_effects(readings, rod, &|_| true)?;
+    let mut diagnosis = infer(&model, &evidence);
+    for k in 0..diagnosis.findings.len() {
+        let next = next::next_measurement(&model, &evidence, &diagnosis, &diagnosis.findings[k])?;
+        diagnosis.findings[k].next = next;
+    }
+    let limits = limits::limits(&model, &evidence);
+    Ok(Diagnosed { absorbed: Vec::new(), not_testable, limits, diagnosis, evidence, model })
+}
 
 /// Readings of a rig with all the physics that might be in them.
 #[derive(Debug, Clone)]
-pub struct RigWorld {
+pub struct RigModel {
+    readings: Readings,
+    rod: Option<Rod>,
     data: Vec<Datum>,
     body: Body,
     /// For each datum the pair of stations (with a rod) or the line (without).
@@ -68,22 +89,23 @@ enum Body {
     Lines(usize),
 }
 
-impl RigWorld {
-    /// The world of `readings`: against the FEA model of `rod` as its file gives it, or against straight lines through the
+impl RigModel {
+    /// The model of `readings`: against the FEA model of `rod` as its file gives it, or against straight lines through the
     /// origin where there is none.
     ///
     /// # Errors
     /// [`crate::Error::Input`] for a station that is not on the rod; what the beam model refuses.
-    pub fn new(readings: &Readings, rod: Option<&Rod>) -> Result<(RigWorld, Evidence)> {
-        RigWorld::of_candidates(readings, rod, &|_| true)
+    pub fn new(readings: &Readings, rod: Option<&Rod>) -> Result<(RigModel, Evidence)> {
+        let (model, evidence, _) = RigModel::with_effects(readings, rod, &|_| true)?;
+        Ok((model, evidence))
     }
 
-    /// The world with some of its candidates only.
-    fn of_candidates(
+    /// The model with some of its candidates only; and the effects that have none.
+    fn with_effects(
         readings: &Readings,
         rod: Option<&Rod>,
         is_wanted: &dyn Fn(&Candidate) -> bool,
-    ) -> Result<(RigWorld, Evidence)> {
+    ) -> Result<(RigModel, Evidence, Vec<NotTestable>)> {
         let data = datum::all(&readings.rows);
         let (body, place) = match rod {
             Some(rod) => {
@@ -105,28 +127,36 @@ impl RigWorld {
                 (Body::Lines(line.iter().max().map_or(0, |last| last + 1)), line)
             }
         };
-        let mut world = RigWorld { data, body, place, candidates: Vec::new(), actions: Vec::new() };
-        let nuisance = match &world.body {
-            Body::Rod(structure) => {
-                let ideal = world.displaced(structure, &State::default());
-                world.data.iter_mut().zip(&ideal).for_each(|(datum, y)| datum.predicted = *y);
-                DMatrix::zeros(world.data.len(), 0)
-            }
-            Body::Lines(_) => evidence::slopes(&world.data, &world.place),
+        let mut model = RigModel {
+            readings: readings.clone(),
+            rod: rod.cloned(),
+            data,
+            body,
+            place,
+            candidates: Vec::new(),
+            actions: Vec::new(),
         };
-        let large = match &world.body {
+        let nuisance = match &model.body {
+            Body::Rod(structure) => {
+                let ideal = model.displaced(structure, &State::default());
+                model.data.iter_mut().zip(&ideal).for_each(|(datum, y)| datum.predicted = *y);
+                DMatrix::zeros(model.data.len(), 0)
+            }
+            Body::Lines(_) => evidence::slopes(&model.data, &model.place),
+        };
+        let large = match &model.body {
             Body::Rod(structure) => {
                 let second = structure.second_order()?;
                 let of = |(d, &place): (&Datum, &usize)| {
                     second[place][(d.channel.index(), d.direction.axis.index())] * d.load.powi(2)
                 };
-                Some(DVector::from_iterator(world.data.len(), world.data.iter().zip(&world.place).map(of)))
+                Some(DVector::from_iterator(model.data.len(), model.data.iter().zip(&model.place).map(of)))
             }
             Body::Lines(_) => None,
         };
-        let evidence = evidence::of(&world.data, nuisance, large);
-        world.add_candidates(rod, is_wanted);
-        Ok((world, evidence))
+        let evidence = evidence::of(&model.data, nuisance, large);
+        let not_testable = model.add_candidates(is_wanted);
+        Ok((model, evidence, not_testable))
     }
 
     /// The data, in the order of the evidence.
@@ -134,10 +164,31 @@ impl RigWorld {
         &self.data
     }
 
-    /// Fills in the library and the unknown rivals, without what can do nothing to these readings.
-    fn add_candidates(&mut self, rod: Option<&Rod>, is_wanted: &dyn Fn(&Candidate) -> bool) {
-        let mut entries = library::all(&self.data, &mut self.body, rod);
-        entries.extend(unknown::all(&self.data, &self.deflections(), rod.is_some()));
+    /// The readings.
+    pub fn readings(&self) -> &Readings {
+        &self.readings
+    }
+
+    /// The rod, where there is one.
+    pub fn rod(&self) -> Option<&Rod> {
+        self.rod.as_ref()
+    }
+
+    /// Fills in the effects and their nonparametric rivals, without what can do nothing to these
+    /// readings; the effects that then have no candidate.
+    fn add_candidates(&mut self, is_wanted: &dyn Fn(&Candidate) -> bool) -> Vec<NotTestable> {
+        let deflections = self.deflections();
+        let mut context = Context { data: &self.data, body: &mut self.body, rod: self.rod.as_ref() };
+        let has_rod = context.rod.is_some();
+        let mut entries = Vec::new();
+        for effect in registry::ALL.into_iter().filter(|effect| has_rod || !effect.needs_rod) {
+            entries.extend((effect.candidates)(&mut context));
+        }
+        let missing = registry::ALL.map(|effect| match has_rod || !effect.needs_rod {
+            true => (effect.missing)(&context),
+            false => "there is no rod: straight lines have no parts",
+        });
+        entries.extend(nonparametric::all(&self.data, &deflections, has_rod));
         entries.retain(|(candidate, _)| is_wanted(candidate));
         for (candidate, actions) in entries {
             let (parameters, actions): (Vec<_>, Vec<_>) = candidate
@@ -155,6 +206,14 @@ impl RigWorld {
                 self.actions.push(actions);
             }
         }
+        let is_candidate = |effect: &Effect| self.candidates.iter().any(|known| known.effect == effect);
+        registry::ALL
+            .into_iter()
+            .zip(missing)
+            .map(|(effect, reason)| (&effect.effect, reason))
+            .filter(|(effect, _)| !is_candidate(effect))
+            .map(|(effect, reason)| NotTestable { effect, reason: reason.into() })
+            .collect()
     }
 
     /// False for what changes nothing to first order: a twist under loads that do not twist.
@@ -239,27 +298,67 @@ impl RigWorld {
     }
 }
 
-impl World for RigWorld {
+impl ForwardModel for RigModel {
     fn candidates(&self) -> &[Candidate] {
         &self.candidates
     }
 
-    fn place(&self, chosen: &Chosen) -> String {
-        let at_value = |(action, value): (&Action, &f64)| {
-            matches!(action, Action::Station(_)).then(|| library::place(*value))
-        };
-        let moved = self.actions[chosen.candidate].iter().zip(&chosen.values).find_map(at_value);
-        moved.unwrap_or_else(|| self.candidates[chosen.candidate].location.clone())
-    }
-
-    fn change(&self, story: &[Chosen]) -> DVector<f64> {
+    fn response(&self, terms: &[Term]) -> DVector<f64> {
         let mut state = State::default();
-        for chosen in story {
-            let actions = self.actions.get(chosen.candidate).map_or(&[][..], Vec::as_slice);
-            for (action, value) in actions.iter().zip(&chosen.values) {
+        for term in terms {
+            let actions = self.actions.get(term.candidate).map_or(&[][..], Vec::as_slice);
+            for (action, value) in actions.iter().zip(&term.values) {
                 state.act(action, *value);
             }
         }
         self.changed(&state)
+    }
+
+    fn location(&self, term: &Term) -> Location {
+        let at_value = |(action, value): (&Action, &f64)| {
+            matches!(action, Action::Station(_)).then_some(Location::Station(*value))
+        };
+        let moved = self.actions[term.candidate].iter().zip(&term.values).find_map(at_value);
+        moved.unwrap_or_else(|| self.candidates[term.candidate].location.clone())
+    }
+
+    /// Of a joint that nobody declared the interval also holds what the joint would be at the other
+    /// stations that the readings do not tell from its own.
+    fn estimates(&self, parts: &[FindingPart], _: &Hypothesis) -> Vec<Estimate> {
+        parts.iter().flat_map(|part| self.widened(part)).collect()
+    }
+
+    fn describe(&self, finding: &Finding) -> Description {
+        let own = registry::ALL.into_iter().find(|known| &known.effect == finding.effect);
+        let observed = own.map_or_else(
+            || format!("{} at {}", finding.effect.spoken(), finding.location),
+            |effect| (effect.observed)(finding, self),
+        );
+        Description { observed, cause: finding.effect.cause.to_owned() }
+    }
+}
+
+impl RigModel {
+    fn widened(&self, part: &FindingPart) -> Vec<Estimate> {
+        let parameters = |candidate: usize| &self.candidates[candidate].parameters;
+        let is_scanned = |candidate: usize| parameters(candidate).iter().any(|p| p.name == STATION);
+        let mut estimates = part.estimates.clone();
+        if !is_scanned(part.term.candidate) {
+            return estimates;
+        }
+        for (k, own) in estimates.iter_mut().enumerate() {
+            let is_station = own.name == STATION;
+            let half = if is_station { 0.0 } else { (own.high - own.low) / 2.0 };
+            let least = parameters(part.term.candidate)[k].bounds.0;
+            let least = if is_station { f64::NEG_INFINITY } else { least };
+            let others = part.rivals.iter().filter(|rival| is_scanned(rival.term.candidate));
+            for rival in others {
+                let own_name = parameters(rival.term.candidate).iter().position(|p| p.name == own.name);
+                let Some(other) = own_name.and_then(|k| rival.term.values.get(k)) else { continue };
+                own.low = own.low.min(other - half).max(least);
+                own.high = own.high.max(other + half);
+            }
+        }
+        estimates
     }
 }

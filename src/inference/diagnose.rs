@@ -12,8 +12,8 @@ use super::search::Search;
 use super::selection::DiscrepancyModel;
 use super::sessions::leave_one_session_out;
 use super::{
-    Description, Diagnosis, Discrepancy, Estimate, Evidence, Finding, FindingPart, ForwardModel, HeldOut,
-    Hypothesis, Parameter, Rival, Term,
+    Diagnosis, Discrepancy, Estimate, Evidence, Finding, FindingPart, ForwardModel, HeldOut, Hypothesis,
+    Parameter, Rival, Term,
 };
 use crate::parallel::both;
 use crate::statistics::{chi_squared_survival, student_t_quantile};
@@ -109,22 +109,9 @@ fn findings(
                 known.p_value = known.p_value.min(part.p_value);
                 known.parts.push(part);
             }
-            None => findings.push((
-                theme,
-                Finding {
-                    effect,
-                    location,
-                    estimates: Vec::new(),
-                    description: Description { observed: String::new(), cause: String::new() },
-                    rivals: Vec::new(),
-                    p_value: part.p_value,
-                    explains: 0.0,
-                    found_in_folds: None,
-                    held_out_loss: None,
-                    next: None,
-                    parts: vec![part],
-                },
-            )),
+            None => {
+                findings.push((theme, Finding::from_part(effect, location, Vec::new(), part)));
+            }
         }
     }
     for (theme, finding) in &mut findings {

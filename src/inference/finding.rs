@@ -90,6 +90,28 @@ impl Estimate {
 }
 
 impl Finding {
+    /// A finding of one part, of which nothing more is known yet.
+    pub(crate) fn from_part(
+        effect: &'static Effect,
+        location: Location,
+        estimates: Vec<Estimate>,
+        part: FindingPart,
+    ) -> Finding {
+        Finding {
+            effect,
+            location,
+            estimates,
+            description: Description::default(),
+            rivals: Vec::new(),
+            p_value: part.p_value,
+            explains: 0.0,
+            found_in_folds: None,
+            held_out_loss: None,
+            next: None,
+            parts: vec![part],
+        }
+    }
+
     /// What sort of thing it is.
     pub fn kind(&self) -> Kind {
         self.effect.kind

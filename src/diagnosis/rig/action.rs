@@ -12,8 +12,9 @@
 use nalgebra::{Rotation3, Unit, Vector3};
 
 use super::datum::Datum;
+use super::load_history::{History, Memory};
 use super::structure::{Nodes, Softening};
-use crate::rig::readings::Axis;
+use crate::spatial::Axis;
 
 /// What one parameter does. The number in brackets is its value where nothing happens.
 #[derive(Debug, Clone)]
@@ -39,7 +40,7 @@ pub(super) enum Action {
     /// k₁, 1/N \[0\].
     PerLoad,
     /// Displacement grows with the history of loads \[0\].
-    Memory(Memory),
+    Memory(Memory, History),
     /// Factor on a channel \[1\].
     SensorScale(Axis),
     /// The channel turns from its own axis towards another one, rad \[0\].
@@ -48,15 +49,6 @@ pub(super) enum Action {
     Play([bool; 3]),
     /// Adds to readings: index of the datum, weight \[0\].
     Shift(Vec<(usize, f64)>),
-}
-
-/// How the history of loads acts on each datum.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Memory {
-    /// w: the displacement is multiplied by 1 + v·w.
-    pub relative: Vec<f64>,
-    /// W, N: the load v·W is felt besides the one that acts.
-    pub lingering: Vec<f64>,
 }
 
 /// A rig with all that is wrong with it.
@@ -128,7 +120,7 @@ impl<'a> State<'a> {
             Action::Station(nodes) => nodes.move_joint(&mut self.softening, value),
             Action::PerLoadSquared => self.per_load_squared += value,
             Action::PerLoad => self.per_load += value,
-            Action::Memory(memory) => self.memories.push((memory, value)),
+            Action::Memory(memory, _) => self.memories.push((memory, value)),
             Action::SensorScale(channel) => self.scale[channel.index()] *= value,
             Action::TurnSensor(channel, towards) => {
                 let sensor = &mut self.sensor[channel.index()];

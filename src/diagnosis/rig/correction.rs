@@ -3,12 +3,11 @@
 use nalgebra::DVector;
 
 use super::action::Action;
-use super::library::place;
-use super::{Body, RigWorld};
+use super::{Body, RigDiagnosis, RigModel};
 use crate::beam::Physics;
 use crate::compliance::{Compliance, DEFAULT_ELEMENTS};
-use crate::diagnosis::{Chosen, Diagnosis, World};
 use crate::error::Result;
+use crate::inference::{Finding, ForwardModel, Location, Term, WrittenTo};
 use crate::rig::{self, readings::Readings};
 use crate::rod::{BendFlexibility, Joint, Rod};
 use crate::units::UM;
@@ -40,89 +39,82 @@ pub struct Correction {
     pub left_out: Vec<String>,
 }
 
-impl Correction {
-    /// Of what `diagnosis` found in `readings` of `rod`.
+impl RigDiagnosis {
+    /// What becomes of the rod and of the readings; `None` without a rod, or where nothing was
+    /// found.
     ///
     /// # Errors
     /// What the beam model refuses of the corrected rod.
-    pub(super) fn new(
-        rod: &Rod,
-        readings: &Readings,
-        world: &RigWorld,
-        diagnosis: &Diagnosis,
-    ) -> Result<Correction> {
-        let mut corrected = rod.clone();
-        let (mut entered, mut removed, mut left_out) = (Vec::new(), Vec::new(), Vec::new());
-        let mut of_rod = Vec::new();
-        for finding in &diagnosis.findings {
-            let chosen = &finding.chosen;
-            let said = format!("{}, {}", world.candidates()[chosen.candidate].effect, finding.place);
-            let actions = &world.actions[chosen.candidate];
-            if actions.iter().any(is_of_structure) {
-                enter(&mut corrected, world, chosen);
-                of_rod.push(chosen.clone());
-                entered.push(said);
-            } else if actions.iter().any(is_of_material) {
-                left_out.push(said);
-            } else {
-                removed.push(said);
+    pub fn correction(&self) -> Result<Option<Correction>> {
+        match self.model.rod() {
+            Some(rod) if !self.diagnosis.findings.is_empty() => {
+                corrected(&self.model, rod, &self.diagnosis.findings).map(Some)
             }
+            _ => Ok(None),
         }
-        let provenance = format!("Rod {} with what its rig readings ({}) show", rod.name, readings.file);
-        let rod_toml = corrected.to_toml(&[
-            provenance + ":",
-            if entered.is_empty() { "nothing that is the rod's".into() } else { entered.join("; ") },
-            "Materials are effective ones: moduli that make the beam model yield as the rod did.".into(),
-        ]);
-        // what a user will get from the file
-        let corrected = Rod::from_toml(&rod.name, &rod_toml)?;
-        let physics = Physics::default();
-        let fit = rig::fit(readings, Some(rod), &rig::Options::default()).ok();
-        let by_ratio = fit.and_then(|fit| fit.measured).map(|m| (m.rod_ratio.value, m.compliance));
-        let all: Vec<Chosen> = diagnosis.findings.iter().map(|finding| finding.chosen.clone()).collect();
-        let of_rig = world.change(&all) - world.change(&of_rod);
-        Ok(Correction {
-            readings_csv: without(readings, world, &of_rig, &removed, &left_out),
-            before: Compliance::of_model(rod, &physics, DEFAULT_ELEMENTS)?,
-            after: Compliance::of_model(&corrected, &physics, DEFAULT_ELEMENTS)?,
-            rod: corrected,
-            rod_toml,
-            by_ratio,
-            entered,
-            removed,
-            left_out,
-        })
     }
 }
 
-/// True for what a rod file has a place for.
-fn is_of_structure(action: &Action) -> bool {
-    matches!(
-        action,
-        Action::Stiffness | Action::ShearModulus | Action::Bend(_) | Action::Joint(..) | Action::Station(_)
-    )
-}
-
-/// True for what is the rod's, but has no place in its file.
-fn is_of_material(action: &Action) -> bool {
-    matches!(action, Action::PerLoad | Action::PerLoadSquared | Action::Memory(_))
+fn corrected(model: &RigModel, rod: &Rod, findings: &[Finding]) -> Result<Correction> {
+    let readings = model.readings();
+    let mut corrected = rod.clone();
+    let (mut entered, mut removed, mut left_out) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut all, mut of_rod) = (Vec::new(), Vec::new());
+    for part in findings.iter().flat_map(|finding| &finding.parts) {
+        let effect = model.candidates()[part.term.candidate].effect;
+        let words = format!("{effect}, {}", part.location);
+        all.push(part.term.clone());
+        match effect.written_to {
+            WrittenTo::Model => {
+                enter(&mut corrected, model, &part.term);
+                of_rod.push(part.term.clone());
+                entered.push(words);
+            }
+            WrittenTo::Recording => removed.push(words),
+            WrittenTo::Nowhere => left_out.push(words),
+        }
+    }
+    let provenance = format!("Rod {} with what its rig readings ({}) show", rod.name, readings.file);
+    let rod_toml = corrected.to_toml(&[
+        provenance + ":",
+        if entered.is_empty() { "nothing that is the rod's".into() } else { entered.join("; ") },
+        "Materials are effective ones: moduli that make the beam model yield as the rod did.".into(),
+    ]);
+    // what a user will get from the file
+    let corrected = Rod::from_toml(&rod.name, &rod_toml)?;
+    let physics = Physics::default();
+    let fit = rig::fit(readings, Some(rod), &rig::Options::default()).ok();
+    let by_ratio = fit.and_then(|fit| fit.measured).map(|m| (m.rod_ratio.value, m.compliance));
+    let of_rig = model.response(&all) - model.response(&of_rod);
+    Ok(Correction {
+        readings_csv: without(readings, model, &of_rig, &removed, &left_out),
+        before: Compliance::of_model(rod, &physics, DEFAULT_ELEMENTS)?,
+        after: Compliance::of_model(&corrected, &physics, DEFAULT_ELEMENTS)?,
+        rod: corrected,
+        rod_toml,
+        by_ratio,
+        entered,
+        removed,
+        left_out,
+    })
 }
 
 /// Puts an effect of the structure into the rod.
-fn enter(rod: &mut Rod, world: &RigWorld, chosen: &Chosen) {
-    let Body::Rod(structure) = &world.body else { return };
-    let candidate = &world.candidates()[chosen.candidate];
-    let declared = rod.joints.iter().position(|joint| joint.name == candidate.location);
+fn enter(rod: &mut Rod, model: &RigModel, term: &Term) {
+    let Body::Rod(structure) = &model.body else { return };
+    let candidate = &model.candidates()[term.candidate];
+    let is_it = |joint: &Joint| candidate.location == Location::Named(joint.name.clone());
+    let declared = rod.joints.iter().position(is_it);
     // what these loads cannot show of a declared joint stays as it is
     let mut joint = declared.map(|index| rod.joints[index].clone());
-    for (action, &value) in world.actions[chosen.candidate].iter().zip(&chosen.values) {
+    for (action, &value) in model.actions[term.candidate].iter().zip(&term.values) {
         match action {
             Action::Stiffness => scale(rod, value, value),
             Action::ShearModulus => scale(rod, 1.0, value),
             Action::Bend(_) => rod.bend_flexibility = BendFlexibility::Factor(value),
             Action::Joint(number, _) => {
                 let joint = joint.get_or_insert_with(|| Joint {
-                    name: candidate.location.clone(),
+                    name: candidate.location.to_string(),
                     station: structure.station(*number),
                     bending: 0.0,
                     torsion: 0.0,
@@ -132,7 +124,7 @@ fn enter(rod: &mut Rod, world: &RigWorld, chosen: &Chosen) {
             }
             Action::Station(_) => {
                 if let Some(joint) = &mut joint {
-                    (joint.station, joint.name) = (value, place(value));
+                    (joint.station, joint.name) = (value, Location::Station(value).to_string());
                 }
             }
             _ => {}
@@ -156,13 +148,13 @@ fn scale(rod: &mut Rod, e: f64, g: f64) {
 /// The readings less `of_rig`, as a file.
 fn without(
     readings: &Readings,
-    world: &RigWorld,
+    model: &RigModel,
     of_rig: &DVector<f64>,
     removed: &[String],
     left_out: &[String],
 ) -> String {
     let mut readings = readings.clone();
-    for (datum, change) in world.data().iter().zip(of_rig.iter()) {
+    for (datum, change) in model.data().iter().zip(of_rig.iter()) {
         if let Some(offset) = &mut readings.rows[datum.row - 1].offset[datum.channel.index()] {
             // a nanometre is less than any sensor reads
             *offset = ((*offset - change) / NM).round() * NM;

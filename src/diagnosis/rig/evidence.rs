@@ -4,8 +4,8 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::datum::{Datum, numbered};
-use crate::diagnosis::{Covariate, Evidence};
-use crate::rig::readings::Axis;
+use crate::inference::{Covariate, Evidence, Variable};
+use crate::spatial::Axis;
 use crate::units::UM;
 
 /// Folds of a cross-validation: fewer cost less to run, more keep more to learn from.
@@ -21,18 +21,20 @@ pub(super) fn of(data: &[Datum], nuisance: DMatrix<f64>, large: Option<DVector<f
         residual: DVector::from_iterator(data.len(), data.iter().map(|d| d.measured - d.predicted)),
         nuisance,
         background: background(data, large),
-        cell: numbered(data.iter().map(|d| (d.line_key(), d.direction.sign, d.load.to_bits(), d.phase))),
+        replicate_group: numbered(
+            data.iter().map(|d| (d.line_key(), d.direction.sign, d.load.to_bits(), d.phase)),
+        ),
         // the zero of a run is that of one sensor at one place
         shared: numbered(data.iter().map(|d| (d.run, d.channel, d.stations()[1]))),
         fold: folds(data),
-        session: vec![Evidence::KEPT; data.len()],
-        level: vec![Evidence::KEPT; data.len()],
+        session: vec![Evidence::NONE; data.len()],
+        intercept: vec![Evidence::NONE; data.len()],
         resolution: resolution(data),
         covariates: covariates(data),
     }
 }
 
-/// What every story holds: the zeros of the channels, and what large deflections add (`large`), which the linear model leaves
+/// What every hypothesis holds: the zeros of the channels, and what large deflections add (`large`), which the linear model leaves
 /// out; whether the readings show it is not the diagnosis' question.
 fn background(data: &[Datum], large: Option<DVector<f64>>) -> DMatrix<f64> {
     let zeros = zeros(data);
@@ -119,31 +121,23 @@ fn covariates(data: &[Datum]) -> Vec<Covariate> {
     let since = |d: &Datum| Some(d.time? - first_of_run[d.run]?);
     let number = |axis: Axis| axis.index() as f64;
     let phase = |d: &Datum| Some(if d.is_unloading() { 1.0 } else { -1.0 }).filter(|_| d.phase.is_some());
-    let all: [(&str, &str, Value<'_>); 10] = [
-        ("load", "N", &|d| Some(d.load)),
-        ("signed load", "N", &|d| Some(d.signed_load())),
-        ("phase", "", &phase),
-        ("order", "", &|d| Some(d.row as f64)),
-        ("time", "s", &|d| d.time),
-        ("time in the run", "s", &since),
-        ("temperature", "°C", &|d| d.temperature),
-        ("trial", "", &|d| Some(d.trial_number as f64)),
-        ("channel", "", &|d| Some(number(d.channel))),
-        ("axis", "", &|d| Some(number(d.direction.axis))),
+    let all: [(Variable, Value<'_>); 10] = [
+        (Variable::Load, &|d| Some(d.load)),
+        (Variable::SignedLoad, &|d| Some(d.signed_load())),
+        (Variable::Phase, &phase),
+        (Variable::Order, &|d| Some(d.row as f64)),
+        (Variable::Time, &|d| d.time),
+        (Variable::TimeInRun, &since),
+        (Variable::Temperature, &|d| d.temperature),
+        (Variable::Trial, &|d| Some(d.trial_number as f64)),
+        (Variable::Channel, &|d| Some(number(d.channel))),
+        (Variable::LoadAxis, &|d| Some(number(d.direction.axis))),
     ];
-    let of_all = all.into_iter().map(|(name, unit, value)| Covariate {
-        name: name.into(),
-        unit: unit.into(),
+    let covariates = all.into_iter().map(|(variable, value)| Covariate {
+        variable,
         values: data.iter().map(|d| value(d).unwrap_or(f64::NAN)).collect(),
     });
-    // nothing can follow what does not vary
-    of_all.filter(|covariate| varies(&covariate.values)).collect()
-}
-
-fn varies(values: &[f64]) -> bool {
-    let mut known = values.iter().filter(|value| !value.is_nan());
-    let first = known.next();
-    known.any(|value| Some(value) != first)
+    covariates.filter(Covariate::varies).collect()
 }
 
 #[cfg(test)]
@@ -173,9 +167,9 @@ mod tests {
     fn repeats_are_cells_and_a_run_shares_its_zero() {
         let evidence = evidence(&trials(3));
         // 3 directions × 4 loads × 2 channels; y and -y of one trial are one run
-        assert_eq!(count(&evidence.cell), 24);
+        assert_eq!(count(&evidence.replicate_group), 24);
         assert_eq!(count(&evidence.shared), 12);
-        assert_eq!(evidence.cell[0], evidence.cell[8]);
+        assert_eq!(evidence.replicate_group[0], evidence.replicate_group[8]);
         assert_eq!(evidence.shared[0], evidence.shared[2]);
         assert_ne!(evidence.shared[0], evidence.shared[1]);
     }
@@ -214,7 +208,7 @@ mod tests {
         let text =
             "axis,load_n,phase,time_s,temperature_c,dy_um\ny,1,load,7,20,1\n-y,2,,9,20,1\ny,1,unload,,20,1\n";
         let evidence = evidence(text);
-        let names: Vec<&str> = evidence.covariates.iter().map(|c| c.name.as_str()).collect();
+        let names: Vec<String> = evidence.covariates.iter().map(|c| c.variable.to_string()).collect();
         assert_eq!(names, ["load", "signed load", "phase", "order", "time", "time in the run"]);
         let phase = &evidence.covariates[2].values;
         assert_eq!((phase[0], phase[2]), (-1.0, 1.0));

@@ -1,5 +1,6 @@
 //! Measurements that a rig can make: other axes, loads, stations, unloading, waiting.
 
+use crate::inference::LoadPlan;
 use crate::rig::readings::{Axis, Direction, Phase, Reading, Readings};
 use crate::rod::Rod;
 use crate::units::MM;
@@ -11,34 +12,13 @@ const STEP: f64 = 30.0;
 /// Times after which a load that is left hanging is read, s.
 const WAITS: [f64; 4] = [0.0, 60.0, 600.0, 3600.0];
 
-/// A measurement as numbers, SI.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Plan {
-    /// Where the loads pull to.
-    pub direction: Direction,
-    /// Loads in their order on the way up, N.
-    pub loads: Vec<f64>,
-    /// True where the same loads, but the largest, are read again on the way down.
-    pub unloading: bool,
-    /// Where the load hangs, m from the flange; `None` is the tip.
-    pub load_station: Option<f64>,
-    /// Where the sensors stand, m from the flange; `None` is the tip.
-    pub read_station: Option<f64>,
-    /// Times since a load was hung at which it is read, s.
-    pub waits: Vec<f64>,
-    /// How often all of it is done, each time from a new zero.
-    pub repeats: usize,
-    /// What is read; with a rod all three.
-    pub channels: Vec<Axis>,
-}
-
 /// Something that could be measured next.
 #[derive(Debug, Clone)]
 pub(super) struct Measurement {
     /// What to do; a full sentence.
     pub words: String,
     /// The same as numbers.
-    pub plan: Plan,
+    pub plan: LoadPlan,
     /// A few of the present readings, so that nothing that they show is forgotten, then those to come; these have offsets of
     /// a straight line.
     pub readings: Readings,
@@ -68,11 +48,11 @@ pub(super) fn feasible(readings: &Readings, rod: Option<&Rod>) -> Vec<Measuremen
             format!(
                 "Load the tip along {axis} with {list} N, and read again at the same loads while unloading"
             ),
-            Plan { unloading: true, ..up(&levels) },
+            LoadPlan { unloading: true, ..up(&levels) },
         ));
         all.push((
             format!("Load the tip against {axis}, along -{axis}, with {list} N"),
-            Plan { direction: Direction { axis, sign: -1 }, ..up(&levels) },
+            LoadPlan { direction: Direction { axis, sign: -1 }, ..up(&levels) },
         ));
         let small = [0.05, 0.1, 0.2].map(|share| share * largest);
         all.push((format!("Load the tip along {axis} with small loads, {} N", newtons(&small)), up(&small)));
@@ -84,35 +64,32 @@ pub(super) fn feasible(readings: &Readings, rod: Option<&Rod>) -> Vec<Measuremen
         all.push((
             format!("Hang {} N along {axis} and read at once and after 1, 10 and 60 minutes, without touching anything", newton(largest)),
             // waiting takes long enough once
-            Plan { waits: WAITS.to_vec(), repeats: 1, ..up(&[largest]) },
+            LoadPlan { waits: WAITS.to_vec(), repeats: 1, ..up(&[largest]) },
         ));
         for &station in &rig.stations {
             let mm = format!("{:.0}", station / MM);
             all.push((
                 format!("Hang {list} N along {axis} at station {mm} mm instead of the tip"),
-                Plan { load_station: Some(station), ..up(&levels) },
+                LoadPlan { load_station: Some(station), ..up(&levels) },
             ));
             all.push((
                 format!("Load the tip along {axis} with {list} N, with the sensors at station {mm} mm"),
-                Plan { read_station: Some(station), ..up(&levels) },
+                LoadPlan { read_station: Some(station), ..up(&levels) },
             ));
         }
     }
     all.into_iter().map(|(words, plan)| rig.measurement(words, plan)).collect()
 }
 
-impl Plan {
-    /// One pass of it.
-    fn steps(&self) -> Vec<Step> {
-        let of = |phase: Phase| {
-            move |&load: &f64| self.waits.iter().map(move |&waited| Step { load, phase, waited })
-        };
-        let mut steps: Vec<Step> = self.loads.iter().flat_map(of(Phase::Load)).collect();
-        if self.unloading {
-            steps.extend(self.loads.iter().rev().skip(1).flat_map(of(Phase::Unload)));
-        }
-        steps
+/// One pass of a plan.
+fn steps(plan: &LoadPlan) -> Vec<Step> {
+    let at_each =
+        |phase: Phase| move |&load: &f64| plan.waits.iter().map(move |&waited| Step { load, phase, waited });
+    let mut steps: Vec<Step> = plan.loads.iter().flat_map(at_each(Phase::Load)).collect();
+    if plan.unloading {
+        steps.extend(plan.loads.iter().rev().skip(1).flat_map(at_each(Phase::Unload)));
     }
+    steps
 }
 
 /// What the present readings allow.
@@ -173,9 +150,9 @@ impl<'a> Rig<'a> {
     }
 
     /// Loads at the tip that are read there at once on the way up.
-    fn at_tip(&self, axis: Axis, loads: &[f64]) -> Plan {
+    fn at_tip(&self, axis: Axis, loads: &[f64]) -> LoadPlan {
         let is_read = |channel: &Axis| self.readings.rows.iter().any(|r| r.offset[channel.index()].is_some());
-        Plan {
+        LoadPlan {
             direction: Direction { axis, sign: 1 },
             loads: loads.to_vec(),
             unloading: false,
@@ -187,8 +164,8 @@ impl<'a> Rig<'a> {
         }
     }
 
-    fn measurement(&self, words: String, plan: Plan) -> Measurement {
-        let steps = plan.steps();
+    fn measurement(&self, words: String, plan: LoadPlan) -> Measurement {
+        let steps = steps(&plan);
         let has_time = self.readings.rows.iter().all(|row| row.time.is_some());
         let has_phase = steps.iter().any(|step| step.phase == Phase::Unload)
             || self.readings.rows.iter().any(|row| row.phase.is_some());

@@ -1,94 +1,147 @@
-//! The JSON of a diagnosis.
+//! The JSON of a diagnosis, of a rig or of a calibration.
 
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
-use super::remainder::remainder;
-use super::shared::{locate_json, ranking_json, test_json};
-use super::{correction, headline, warnings};
-use crate::diagnosis::rig::{Plan, Proposal, RigDiagnosis};
-use crate::diagnosis::{Finding, World, rms};
-use crate::rig::readings::Readings;
-use crate::rod::Rod;
+use super::headline::{headline, sentence};
+use super::place::place;
+use super::subject::Subject;
+use super::{hidden, warnings};
+use crate::inference::{
+    Covariate, Estimate, Finding, FindingPart, LackOfFit, LoadPlan, Rank, Rival, Structure, ranking, rms,
+};
 use crate::units::{MM, UM};
 
-/// The JSON of `rodcal diagnose rig --json`. Numbers that do not exist are null.
+/// The JSON of `rodcal diagnose … --json`. Numbers that do not exist are null.
 ///
-/// `heldout_gain` is the share of the squares of held-out errors that vanishes with the whole story; that of a finding
-/// among several is not known by itself, so that each has the story's. The intervals of a joint that nobody declared
-/// hold all stations that these readings do not tell from its own, and what it would be there.
-pub fn json(found: &RigDiagnosis, readings: &Readings, rod: Option<&Rod>) -> Value {
-    let diagnosis = &found.diagnosis;
-    let proof = diagnosis.proof.as_ref();
+/// Numbers in µm are root mean squares of a datum. `heldout_gain` is the share of the squares of
+/// held-out errors that vanishes with all findings together; `heldout_loss` of a finding is the
+/// share that comes back without it. The intervals of a joint that nobody declared hold all
+/// stations that these readings do not tell from its own, and what it would be there.
+pub fn json(subject: &Subject) -> Value {
+    let diagnosis = subject.diagnosis;
+    let held_out = diagnosis.held_out.as_ref();
     let um = |length: f64| length / UM;
-    let findings = diagnosis.findings.iter().zip(&found.next);
-    let findings: Vec<Value> =
-        findings.map(|(finding, next)| of_finding(found, finding, next.as_ref())).collect();
+    let findings = diagnosis.findings.iter().enumerate();
+    let findings: Vec<Value> = findings.map(|(k, finding)| of_finding(subject, k, finding)).collect();
     let not_testable =
-        found.not_testable.iter().map(|not| json!({ "effect": not.effect, "reason": not.reason }));
-    json!({
-        "rod": rod.map(|rod| &rod.name),
-        "readings": readings.file,
-        "headline": headline(found),
+        subject.not_testable.iter().map(|not| json!({ "effect": not.effect.name, "reason": not.reason }));
+    let absorbed = subject.absorbed.iter().map(|absorbed| {
+        json!({
+            "effect": absorbed.effect.name,
+            "location": absorbed.location.to_string(),
+            "survival": absorbed.unabsorbed,
+        })
+    });
+    let hidden = hidden(subject)
+        .into_iter()
+        .map(|(effect, places)| json!({ "effect": effect.name, "locations": places }));
+    let replication = diagnosis.sessions.iter().map(|session| {
+        json!({
+            "session": (subject.session_name)(session.session),
+            "before_um": um(session.before),
+            "after_um": um(session.after),
+        })
+    });
+    let head = subject.head.iter().map(|(key, value)| ((*key).to_owned(), value.clone()));
+    let mut all: Map<String, Value> = head.collect();
+    let main = json!({
+        "headline": headline(subject),
         "verdict": if diagnosis.is_mismatch() { "mismatch" } else { "consistent" },
         "noise_um": um(diagnosis.noise),
         "noise_shared_ratio": diagnosis.shared_ratio,
-        "residual_sd_um": um(diagnosis.story.sigma),
+        "residual_sd_um": um(diagnosis.hypothesis.sigma),
         "rms_before_um": um(rms(&diagnosis.before)),
         "rms_after_um": um(rms(&diagnosis.after)),
-        "heldout_before_um": proof.map(|proof| um(proof.before)),
-        "heldout_after_um": proof.map(|proof| um(proof.after)),
-        "heldout_gain": proof.map(|proof| proof.gain),
-        "heldout_gain_95": proof.and_then(|proof| proof.gain_interval).map(|(low, high)| [low, high]),
+        "heldout_before_um": held_out.map(|held_out| um(held_out.before)),
+        "heldout_after_um": held_out.map(|held_out| um(held_out.after)),
+        "heldout_gain": held_out.map(|held_out| held_out.gain),
+        "heldout_gain_95":
+            held_out.and_then(|held_out| held_out.gain_interval).map(|(low, high)| [low, high]),
         "findings": findings,
-        "unexplained": remainder(found).map(|left| {
-            json!({ "location": left.location, "rms_um": um(left.rms), "shape": left.shape() })
-        }),
-        "locate": locate_json(&found.evidence, diagnosis),
-        "lack_of_fit_before": diagnosis.lack_of_fit_before.as_ref().map(test_json),
-        "lack_of_fit_after": diagnosis.lack_of_fit_after.as_ref().map(test_json),
-        "ranking": ranking_json(&found.world, diagnosis),
+        "unexplained": subject.remainder.as_ref().map(|left| left.json()),
+        "replication": replication.collect::<Vec<_>>(),
+        "locate": locate(subject),
+        "lack_of_fit_before": diagnosis.lack_of_fit_before.as_ref().map(test),
+        "lack_of_fit_after": diagnosis.lack_of_fit_after.as_ref().map(test),
+        "ranking": ranked(subject),
+        "hidden": hidden.collect::<Vec<_>>(),
+        "absorbed": absorbed.collect::<Vec<_>>(),
         "not_testable": not_testable.collect::<Vec<_>>(),
-        "correction": found.correction.as_ref().map(correction::json),
-        "n": found.world.data().len(),
-        "warnings": warnings(found, readings, rod),
-    })
+        "n": subject.count,
+        "warnings": warnings(subject),
+    });
+    if let Value::Object(main) = main {
+        all.extend(main);
+    }
+    all.extend(subject.more.iter().map(|(key, value)| ((*key).to_owned(), value.clone())));
+    Value::Object(all)
 }
 
-fn of_finding(found: &RigDiagnosis, finding: &Finding, next: Option<&Proposal>) -> Value {
-    let candidate = &found.world.candidates()[finding.chosen.candidate];
-    let parameters = candidate.parameters.iter().enumerate().filter_map(|(k, parameter)| {
-        let (value, low, high) = found.world.interval(finding, k)?;
-        let unit = parameter.unit;
-        Some(json!({ "name": parameter.name, "value": value / unit, "lo": low / unit, "hi": high / unit }))
-    });
-    let rivals = finding.rivals.iter().map(|rival| {
-        json!({
-            "effect": found.effect_of(rival.chosen.candidate),
-            "location": rival.place,
-            "odds": rival.odds,
-        })
-    });
-    let others: Vec<&str> = found.other_effects(finding).into_iter().map(|(effect, _)| effect).collect();
-    json!({
-        "effect": candidate.effect,
-        "location": finding.place,
-        "words": found.world.words(finding).to_string(),
+fn of_finding(subject: &Subject, index: usize, finding: &Finding) -> Value {
+    let others = finding.other_effects();
+    let others: Vec<&str> = others.iter().map(|(effect, _)| effect.name).collect();
+    let places: Vec<String> = finding.other_places().iter().map(ToString::to_string).collect();
+    let next = finding.next.as_ref();
+    let plan = next.and_then(|next| next.plan.as_ref()).map(|plan| (subject.plan)(plan));
+    let found = finding.found_in_folds.map(|(some, all)| format!("{some} of {all}"));
+    let mut json = json!({
+        "effect": finding.effect.name,
+        "location": finding.location.to_string(),
+        "place": place(&finding.location),
+        "kind": finding.kind().name(),
+        "words": sentence(subject, finding),
         "p_value": finding.p_value,
-        "parameters": parameters.collect::<Vec<_>>(),
+        "parameters": finding.estimates.iter().map(estimate).collect::<Vec<_>>(),
         "indistinguishable_from": others,
-        "places": found.other_places(finding),
-        "rivals": rivals.collect::<Vec<_>>(),
+        "places": places,
+        "rivals": finding.rivals.iter().map(rival).collect::<Vec<_>>(),
         "next_measurement": next.map(|next| &next.words),
-        "next_measurement_plan": next.map(|next| of_plan(&next.plan)),
-        "heldout_gain": found.diagnosis.proof.as_ref().map(|proof| proof.gain),
-        "explains_rms_um": finding.rms / UM,
-        "found_in_folds": found.found_in_folds(finding).map(|(some, all)| format!("{some} of {all}")),
+        "next_measurement_plan": plan,
+        "heldout_gain": subject.diagnosis.held_out.as_ref().map(|held_out| held_out.gain),
+        "heldout_loss": finding.held_out_loss,
+        "explains_rms_um": finding.explains / UM,
+        "found_in_folds": found,
+        "parts": finding.parts.iter().map(part).collect::<Vec<_>>(),
+    });
+    for (key, value) in subject.of_findings.get(index).into_iter().flatten() {
+        json[*key] = value.clone();
+    }
+    json
+}
+
+fn estimate(estimate: &Estimate) -> Value {
+    let unit = estimate.unit;
+    json!({
+        "name": estimate.name,
+        "value": estimate.value / unit,
+        "lo": estimate.low / unit,
+        "hi": estimate.high / unit,
     })
 }
 
-/// What to measure next, as numbers. A station that is null is the tip.
-fn of_plan(plan: &Plan) -> Value {
+fn rival(rival: &Rival) -> Value {
+    json!({
+        "effect": rival.effect.name,
+        "location": rival.location.to_string(),
+        "place": place(&rival.location),
+        "odds": rival.odds,
+    })
+}
+
+/// One of the terms that are reported together.
+fn part(part: &FindingPart) -> Value {
+    json!({
+        "place": part.location.to_string(),
+        "p_value": part.p_value,
+        "explains_rms_um": part.explains / UM,
+        "parameters": part.estimates.iter().map(estimate).collect::<Vec<_>>(),
+    })
+}
+
+/// What to measure next on a rig, as numbers. A station that is null is the tip.
+pub fn load_plan(plan: &LoadPlan) -> Value {
     let mm = |station: Option<f64>| station.map(|station| station / MM);
+    let channels: Vec<String> = plan.channels.iter().map(|channel| format!("d{channel}")).collect();
     json!({
         "direction": plan.direction.to_string(),
         "loads_n": plan.loads,
@@ -97,6 +150,50 @@ fn of_plan(plan: &Plan) -> Value {
         "read_station_mm": mm(plan.read_station),
         "waits_s": plan.waits,
         "repeats": plan.repeats,
-        "channels": plan.channels.iter().map(|channel| format!("d{channel}")).collect::<Vec<_>>(),
+        "channels": channels,
+    })
+}
+
+/// What is left along each covariate.
+fn locate(subject: &Subject) -> Vec<Value> {
+    let structure = |structure: &Structure| json!({ "strength": structure.strength, "z": structure.z });
+    let diagnosis = subject.diagnosis;
+    let structures = diagnosis.structure_before.iter().zip(&diagnosis.structure_after);
+    let of_covariate = |(covariate, (before, after)): (&Covariate, (&Structure, &Structure))| {
+        json!({
+            "covariate": covariate.variable.to_string(),
+            "unit": covariate.variable.unit(),
+            "before": structure(before),
+            "after": structure(after),
+        })
+    };
+    subject.evidence.covariates.iter().zip(structures).map(of_covariate).collect()
+}
+
+/// Every effect by itself, the likeliest first.
+fn ranked(subject: &Subject) -> Vec<Value> {
+    let ranked = ranking(subject.candidates, subject.diagnosis).into_iter();
+    let of_effect = |ranked: crate::inference::Ranked| {
+        json!({
+            "effect": ranked.effect.name,
+            "location": ranked.location.to_string(),
+            "log_odds": ranked.log_odds,
+            "class": match ranked.rank {
+                Rank::Adopted => "adopted",
+                Rank::Rival => "indistinguishable",
+                Rank::Rejected => "rejected",
+            },
+        })
+    };
+    ranked.map(of_effect).collect()
+}
+
+/// A test of the averages of repeats.
+fn test(test: &LackOfFit) -> Value {
+    json!({
+        "f": test.f,
+        "p_value": test.p_value,
+        "dof_fit": test.dof_fit,
+        "dof_repeats": test.dof_repeats,
     })
 }

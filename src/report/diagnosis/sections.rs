@@ -1,121 +1,101 @@
-//! The body of a diagnosis' report.
+//! The body of a diagnosis' report, of a rig or of a calibration.
 
-use super::headline::{RIVALS_SAID, sentence, um};
-use super::ranking::ranking;
-use super::remainder::{Remainder, remainder};
-use super::shared::{self, add_parameters, alternatives, evidence, locate, proof};
-use super::{correction, figures, spoken};
-use crate::diagnosis::rig::{RigDiagnosis, cause_at};
-use crate::diagnosis::{Finding, World, rms};
-use crate::report::table::{Column, Table};
+use super::headline::{RIVALS_SAID, cause_at, sentence, um};
+use super::hidden;
+use super::subject::Subject;
+use super::tables::{alternatives, evidence, locate, parameters, proof, replication};
+use crate::inference::{Finding, rms};
 use crate::report::{Block, Section};
-use crate::rig::readings::Readings;
-use crate::rod::Rod;
-use crate::units::{UM, significant};
 
-/// What was recorded.
-const NOUN: &str = "readings";
-
-pub fn all(found: &RigDiagnosis, readings: &Readings, rod: Option<&Rod>) -> Vec<Section> {
-    let mut sections = vec![findings(found, readings), location(found, rod), proof(NOUN, &found.diagnosis)];
-    sections.push(evidence(&ranking(&found.world, &found.diagnosis)));
-    sections.extend(found.correction.as_ref().map(correction::section));
-    sections.push(remains(found));
-    sections.extend(not_tested(found));
+pub fn all(subject: &mut Subject) -> Vec<Section> {
+    let mut sections = vec![findings(subject), location(subject)];
+    let mut helps = proof(subject);
+    helps.blocks.extend(std::mem::take(&mut subject.proof));
+    if !subject.diagnosis.sessions.is_empty() {
+        helps.blocks.push(Block::Table(replication(subject)));
+    }
+    sections.push(helps);
+    sections.push(evidence(subject));
+    sections.extend(subject.consequences.take());
+    sections.push(remains(subject));
+    sections.extend(not_seen(subject));
     sections
 }
 
-fn findings(found: &RigDiagnosis, readings: &Readings) -> Section {
+fn findings(subject: &Subject) -> Section {
     let mut blocks = Vec::new();
-    blocks.extend(
-        readings.source.iter().map(|source| Block::Paragraph(format!("Source of the readings: {source}"))),
-    );
-    let findings = &found.diagnosis.findings;
+    let source = subject.source.iter();
+    blocks.extend(source.map(|source| Block::Paragraph(format!("Source of the {}: {source}", subject.noun))));
+    let findings = &subject.diagnosis.findings;
     if findings.is_empty() {
-        blocks.push(Block::Paragraph("No effect of the library is needed to explain these readings.".into()));
+        blocks.push(Block::Paragraph(format!(
+            "No effect of the library is needed to explain these {}.",
+            subject.noun
+        )));
         return Section::new("What was found", blocks);
     }
-    let points = findings.iter().zip(&found.next).map(|(finding, next)| {
-        let next =
-            next.as_ref().map_or_else(String::new, |next| format!(" To tell them apart: {}", next.words));
-        format!("{} {}{next}", sentence(found, finding), details(found, finding))
+    let points = findings.iter().enumerate().map(|(k, finding)| {
+        let next = finding.next.as_ref();
+        let next = next.map_or_else(String::new, |next| format!(" To tell them apart: {}", next.words));
+        format!("{} {}{next}", sentence(subject, finding), details(subject, k, finding))
     });
     blocks.push(Block::List(points.collect()));
-    blocks.push(Block::Table(parameters(found)));
+    blocks.push(Block::Table(parameters(findings)));
     Section::new("What was found", blocks)
 }
 
 /// How sure a finding is, and what it may be as well.
-fn details(found: &RigDiagnosis, finding: &Finding) -> String {
-    let mut words = format!("It explains {} µm rms of the readings", um(finding.rms));
-    if let Some((some, all)) = found.found_in_folds(finding) {
+fn details(subject: &Subject, index: usize, finding: &Finding) -> String {
+    let of = if subject.per.is_empty() { format!(" of the {}", subject.noun) } else { String::new() };
+    let mut words = format!("It explains {} µm rms{of}{}", um(finding.explains), subject.per);
+    if let Some((some, all)) = finding.found_in_folds {
         words += &format!(", and is found again in {some} of {all} searches without a part of them");
     }
     words.push('.');
-    let others: Vec<String> = found
-        .other_effects(finding)
-        .iter()
-        .skip(RIVALS_SAID)
-        .map(|(effect, place)| cause_at(effect, place))
-        .collect();
+    words += subject.details.get(index).map_or("", String::as_str);
+    let others = finding.other_effects();
+    let others: Vec<String> =
+        others.iter().skip(RIVALS_SAID).map(|(effect, place)| (effect.cause_at)(place)).collect();
     // a stretch of the rod is said already
-    let places = match found.world.stretch(finding) {
-        Some(_) => Vec::new(),
-        None => found.other_places(finding),
+    let places = match finding.estimates.iter().any(|estimate| estimate.name == "station_mm") {
+        true => Vec::new(),
+        false => finding.other_places(),
     };
     words + &alternatives(&others, &places)
 }
 
-fn parameters(found: &RigDiagnosis) -> Table {
-    let mut table = shared::parameters();
-    for finding in &found.diagnosis.findings {
-        let candidate = &found.world.candidates()[finding.chosen.candidate];
-        let parameters = candidate.parameters.iter().enumerate().filter_map(|(k, parameter)| {
-            let (value, low, high) = found.world.interval(finding, k)?;
-            Some((parameter.name.as_str(), parameter.unit, [value, low, high]))
-        });
-        add_parameters(&mut table, &candidate.effect, &finding.place, finding.p_value, parameters);
-    }
-    table
-}
-
-fn location(found: &RigDiagnosis, rod: Option<&Rod>) -> Section {
-    let mut blocks = vec![Block::Table(locate(NOUN, &found.evidence, &found.diagnosis, figures::along))];
-    blocks.push(Block::Figure(figures::residuals(found)));
-    blocks.extend(rod.and_then(|rod| figures::places(found, rod)).map(Block::Figure));
+fn location(subject: &mut Subject) -> Section {
+    let mut blocks = vec![locate(subject)];
+    blocks.append(&mut subject.places);
     Section::new("Where it lives", blocks)
 }
 
-fn remains(found: &RigDiagnosis) -> Section {
-    let diagnosis = &found.diagnosis;
-    let Some(left) = remainder(found) else {
+fn remains(subject: &Subject) -> Section {
+    let diagnosis = subject.diagnosis;
+    let Some(left) = &subject.remainder else {
+        let of = if subject.per.is_empty() { format!(" of the {}", subject.noun) } else { String::new() };
         let words = format!(
-            "{} µm rms are left of the readings; that is their noise ({} µm).",
+            "{} µm rms are left{of}{}; that is their noise ({} µm).",
             um(rms(&diagnosis.after)),
+            subject.per,
             um(diagnosis.noise)
         );
         return Section::new("What remains", vec![Block::Paragraph(words)]);
     };
-    let table = shape(&left);
-    Section::new("What remains", vec![Block::Paragraph(left.sentence), Block::Table(table)])
+    let table = left.table(subject.noun);
+    Section::new("What remains", vec![Block::Paragraph(left.sentence.clone()), Block::Table(table)])
 }
 
-fn shape(left: &Remainder) -> Table {
-    let (name, unit) = &left.along;
-    let columns = vec![
-        Column::text("readings"),
-        Column::number(figures::along(name), unit.as_str()),
-        Column::number("left", "µm"),
-    ];
-    let mut table = Table::new("remainder", "The shape of what remains.", columns);
-    for (line, value, y) in &left.samples {
-        table.row([line.clone(), significant(*value, 4), format!("{:.1}", y / UM)]);
-    }
-    table
-}
-
-fn not_tested(found: &RigDiagnosis) -> Option<Section> {
-    let point = |not: &crate::diagnosis::rig::NotTestable| format!("{}: {}", spoken(not.effect), not.reason);
-    let points: Vec<String> = found.not_testable.iter().map(point).collect();
+/// What the base model hides, and what the files have no data for.
+fn not_seen(subject: &Subject) -> Option<Section> {
+    let hidden = hidden(subject).into_iter().map(|(effect, places)| {
+        format!(
+            "{} ({}): the calibration takes it up; its parameters would hide it.",
+            effect.spoken(),
+            places.join(", ")
+        )
+    });
+    let lacking = subject.not_testable.iter().map(|not| format!("{}: {}", not.effect.spoken(), not.reason));
+    let points: Vec<String> = hidden.chain(lacking).collect();
     (!points.is_empty()).then(|| Section::new("What could not be tested", vec![Block::List(points)]))
 }

@@ -16,10 +16,10 @@ use std::f64::consts::PI;
 
 use super::action::Action;
 use super::datum::{Datum, numbered};
-use super::library::Entry;
-use super::memory::runs;
-use crate::diagnosis::{Candidate, EffectParameter};
-use crate::rig::readings::Axis;
+use super::effects::Entry;
+use super::load_history::runs;
+use crate::inference::{Candidate, Location, Parameter, UNKNOWN, Variable};
+use crate::spatial::Axis;
 use crate::units::UM;
 
 const MOST_COLUMNS: usize = 6;
@@ -32,6 +32,53 @@ const LEAST_SHIFT: f64 = 5.0 * UM;
 const SLOPE: (f64, f64) = (0.27, 0.02);
 const PERCENT: f64 = 0.01;
 
+/// What a curve is a function of: its name in labels, how it is said, the number it is seen along.
+#[derive(Clone, Copy)]
+struct Along {
+    name: &'static str,
+    follows: &'static str,
+    variable: Variable,
+}
+
+const LOAD: Along = Along { name: "load", follows: "follows the load", variable: Variable::Load };
+const UNLOADING: Along =
+    Along { name: "unloading", follows: "follows the load while unloading", variable: Variable::Load };
+const SIGNED_LOAD: Along =
+    Along { name: "signed load", follows: "follows the signed load", variable: Variable::Load };
+const POSITION: Along = Along {
+    name: "position in the run",
+    follows: "follows the position in the run",
+    variable: Variable::Order,
+};
+const ORDER: Along =
+    Along { name: "order", follows: "follows the order of the readings", variable: Variable::Order };
+const TIME: Along = Along { name: "time", follows: "follows the time", variable: Variable::Time };
+const TEMPERATURE: Along =
+    Along { name: "temperature", follows: "follows the temperature", variable: Variable::Temperature };
+
+/// The place of a curve that multiplies all deflections.
+const ALL_DEFLECTIONS: &str = "all deflections";
+
+impl Along {
+    /// `follows the load (all readings alike)`.
+    fn follows(self, place: &str) -> String {
+        let readings = if place == ALL_DEFLECTIONS { "all readings alike" } else { place };
+        format!("{} ({readings})", self.follows)
+    }
+}
+
+/// A rival for physics that nobody has named.
+fn rival(location: Location, parameters: Vec<Parameter>) -> Candidate {
+    Candidate {
+        effect: &UNKNOWN,
+        location,
+        parameters,
+        weight: 1.0,
+        is_alternative: false,
+        is_nonparametric: true,
+    }
+}
+
 /// A coordinate from 0 to 1 for each datum; `None` where it has no meaning.
 type Coordinate = Vec<Option<f64>>;
 
@@ -43,14 +90,14 @@ pub(super) fn all(data: &[Datum], deflections: &[f64], has_rod: bool) -> Vec<Ent
     });
     let channels = groups(data, &numbered(data.iter().map(|d| d.channel)), &|d| format!("d{}", d.channel));
     let mut entries = Vec::new();
-    for (name, coordinate, is_of_line) in coordinates(data) {
-        entries.extend(curve(name, "all deflections", &coordinate, &everything, PERCENT, SHARE, |i| {
+    for (along, coordinate, is_of_line) in coordinates(data) {
+        entries.extend(curve(along, ALL_DEFLECTIONS, &coordinate, &everything, PERCENT, SHARE, |i| {
             deflections[i]
         }));
         for (place, group) in if is_of_line { &lines } else { &channels } {
             let largest = group.iter().fold(0.0, |max: f64, &i| max.max(data[i].measured.abs()));
             let size = (SHARE * largest).max(LEAST_SHIFT);
-            entries.extend(curve(name, place, &coordinate, group, UM, size, |_| 1.0));
+            entries.extend(curve(along, place, &coordinate, group, UM, size, |_| 1.0));
         }
     }
     entries.extend(along_the_load(data));
@@ -61,7 +108,7 @@ pub(super) fn all(data: &[Datum], deflections: &[f64], has_rod: bool) -> Vec<Ent
 }
 
 /// What a reading may follow: name, coordinate, and whether it acts by line (loads) or by channel (drifts).
-fn coordinates(data: &[Datum]) -> Vec<(&'static str, Coordinate, bool)> {
+fn coordinates(data: &[Datum]) -> Vec<(Along, Coordinate, bool)> {
     let levels = by_axis(data, |d| d.load, |_| true);
     let unloading = by_axis(data, |d| d.load, Datum::is_unloading);
     let mut position: Coordinate = vec![None; data.len()];
@@ -72,12 +119,12 @@ fn coordinates(data: &[Datum]) -> Vec<(&'static str, Coordinate, bool)> {
             position[i] = Some(row as f64);
         }
     }
-    let mut found = vec![("load", levels, true), ("unloading", unloading, true)];
+    let mut found = vec![(LOAD, levels, true), (UNLOADING, unloading, true)];
     // a clamp that is loose one way, a contact that opens
     let pushes = |axis: Axis| data.iter().any(|d| d.direction.axis == axis && d.signed_load() < 0.0);
     let pulls = |axis: Axis| data.iter().any(|d| d.direction.axis == axis && d.signed_load() > 0.0);
     if Axis::ALL.into_iter().any(|axis| pushes(axis) && pulls(axis)) {
-        found.push(("signed load", by_axis(data, Datum::signed_load, |_| true), true));
+        found.push((SIGNED_LOAD, by_axis(data, Datum::signed_load, |_| true), true));
     }
     // loads that always come in the same order are told from it by nothing
     let conditions = numbered(data.iter().map(|d| (d.direction, d.load.to_bits(), d.phase)));
@@ -85,14 +132,14 @@ fn coordinates(data: &[Datum]) -> Vec<(&'static str, Coordinate, bool)> {
     let follows_load =
         (0..data.len()).all(|i| first_of(conditions[i]).is_none_or(|k| position[k] == position[i]));
     if !follows_load {
-        found.push(("position in the run", scaled(&position), true));
+        found.push((POSITION, scaled(&position), true));
     }
     let of = |value: &dyn Fn(&Datum) -> Option<f64>| scaled(&data.iter().map(value).collect::<Coordinate>());
     if of_runs.len() > 1 {
-        found.push(("order", of(&|d| Some(d.row as f64)), false));
+        found.push((ORDER, of(&|d| Some(d.row as f64)), false));
     }
-    found.push(("time", of(&|d| d.time), false));
-    found.push(("temperature", of(&|d| d.temperature), false));
+    found.push((TIME, of(&|d| d.time), false));
+    found.push((TEMPERATURE, of(&|d| d.temperature), false));
     found
 }
 
@@ -121,7 +168,7 @@ fn scaled(values: &[Option<f64>]) -> Coordinate {
 
 /// A curve over a coordinate on some of the data; nothing where the coordinate has no meaning for any.
 fn curve(
-    name: &str,
+    along: Along,
     place: &str,
     coordinate: &Coordinate,
     group: &[usize],
@@ -135,7 +182,7 @@ fn curve(
     let (parameters, actions) = (0..columns)
         .map(|j| {
             let suffix = if unit == PERCENT { "percent" } else { "um" };
-            let parameter = EffectParameter {
+            let parameter = Parameter {
                 name: format!("cosine_{j}_{suffix}"),
                 unit,
                 neutral: 0.0,
@@ -146,11 +193,9 @@ fn curve(
             (parameter, Action::Shift(weights))
         })
         .unzip();
-    let (effect, location) = ("unknown".into(), format!("{name}, {place}"));
-    Some((
-        Candidate { effect, location, parameters, weight: 1.0, is_alternative: false, is_unknown: true },
-        actions,
-    ))
+    let label = format!("{}, {place}", along.name);
+    let location = Location::Curve { label, follows: along.follows(place), along: Some(along.variable) };
+    Some((rival(location, parameters), actions))
 }
 
 /// What moves the tip towards the load, by a curve of its size wherever it pulls to; nothing along a single axis, where the curve
@@ -164,9 +209,7 @@ fn along_the_load(data: &[Datum]) -> Option<Entry> {
     let largest = along.iter().fold(0.0, |max: f64, &i| max.max(data[i].measured.abs()));
     let size = (SHARE * largest).max(LEAST_SHIFT);
     let sign = |i: usize| f64::from(data[i].direction.sign);
-    (axes > 1)
-        .then(|| curve("load", "readings along the load", &coordinate, &along, UM, size, sign))
-        .flatten()
+    (axes > 1).then(|| curve(LOAD, "readings along the load", &coordinate, &along, UM, size, sign)).flatten()
 }
 
 /// A slope of its own for every line: a rod whose compliance differs from the model in a way that no part of it explains.
@@ -175,7 +218,7 @@ fn slopes(data: &[Datum], deflections: &[f64], lines: &[(String, Vec<usize>)]) -
     let steepest = (0..data.len()).map(|i| slope(&i)).fold(0.0, f64::max);
     let of_line = |(place, line): &(String, Vec<usize>)| {
         let size = SLOPE.0 * line.iter().map(slope).fold(0.0, f64::max) + SLOPE.1 * steepest;
-        let parameter = EffectParameter {
+        let parameter = Parameter {
             name: format!("{place}_um_per_n"),
             unit: UM,
             neutral: 0.0,
@@ -185,11 +228,12 @@ fn slopes(data: &[Datum], deflections: &[f64], lines: &[(String, Vec<usize>)]) -
         (parameter, Action::Shift(line.iter().map(|&i| (i, data[i].signed_load())).collect()))
     };
     let (parameters, actions) = lines.iter().map(of_line).unzip();
-    let (effect, location) = ("unknown".into(), "slope of each line".into());
-    (steepest > 0.0).then_some((
-        Candidate { effect, location, parameters, weight: 1.0, is_alternative: false, is_unknown: true },
-        actions,
-    ))
+    let location = Location::Curve {
+        label: "slope of each line".into(),
+        follows: "makes some lines steeper or flatter than others".into(),
+        along: Some(Variable::Load),
+    };
+    (steepest > 0.0).then_some((rival(location, parameters), actions))
 }
 
 /// The data of each group with its name.
@@ -226,7 +270,7 @@ mod tests {
     fn what_yields_along_the_load_does_so_wherever_that_pulls() {
         let (candidate, actions) =
             along("axis,load_n,dy_um,dz_um\n-y,0,0,0\n-y,5,-9,1\n-y,10,-18,2\nz,10,3,30\n").unwrap();
-        assert_eq!(candidate.location, "load, readings along the load");
+        assert_eq!(candidate.location.to_string(), "load, readings along the load");
         let weights = |action: &Action| match action {
             Action::Shift(weights) => weights.clone(),
             _ => panic!("a shift"),

@@ -3,17 +3,19 @@
 use nalgebra::DVector;
 
 use super::branch_name;
-use super::shared::covariates;
 use crate::diagnosis::rig::{Datum, RigDiagnosis};
-use crate::diagnosis::{Covariate, Finding, World, rms};
+use crate::inference::{Covariate, Finding, Location, Part, Variable, rms};
 use crate::report::chart::Figure;
 use crate::report::compliance::stations;
+use crate::report::diagnosis::tables::covariates;
 use crate::report::pictures::diagnosis::{BeforeAfter, Residual, ResidualPoint, before_after};
 use crate::report::pictures::{RodShape, Station, StationKind, Stretch, rod_shape};
-use crate::rig::readings::Axis;
 use crate::rod::Rod;
+use crate::spatial::Axis;
 use crate::units::{MM, UM};
 
+/// What was recorded.
+const NOUN: &str = "readings";
 /// Points of a centreline.
 const POINTS: usize = 120;
 /// So many lines of readings are told apart in one picture.
@@ -29,36 +31,27 @@ pub fn most_structured(found: &RigDiagnosis) -> Option<usize> {
     covariates(&found.evidence).into_iter().rev().max_by(|a, b| z(*a).total_cmp(&z(*b)))
 }
 
-/// What the strongest finding is seen along; without one, where the residuals are most structured. What follows sensor,
-/// axis, or way up or down is seen over the load: there these are series.
+/// What the strongest finding is seen along; without one, where the residuals are most structured.
+/// What follows sensor, axis, or way up or down is seen over the load: there these are series.
 fn seen_along(found: &RigDiagnosis) -> Covariate {
-    let of_finding: &[&str] = match found.diagnosis.findings.first().map(|finding| found.effect(finding)) {
-        Some("thermal_drift") => &["temperature", "time"],
-        Some("creep") => &["time in the run"],
-        Some("slip" | "outlier") => &["order"],
-        Some(_) => &["signed load", "load"],
-        None => &[],
-    };
     let all = &found.evidence.covariates;
     let told = covariates(&found.evidence);
-    let named = |name: &&str| told.iter().map(|&k| &all[k]).find(|covariate| covariate.name == **name);
-    let plainest = || {
-        let covariate = &all[most_structured(found)?];
-        let is_group = ["channel", "axis", "phase"].contains(&covariate.name.as_str());
-        (of_finding.is_empty() && !is_group).then_some(covariate)
+    let of_variable = |variable: Variable| told.iter().map(|&k| &all[k]).find(|c| c.variable == variable);
+    let best = match found.diagnosis.findings.first() {
+        Some(finding) => (finding.effect.seen_along)(&finding.location).into_iter().find_map(of_variable),
+        None => most_structured(found).map(|k| &all[k]).filter(|c| !c.variable.is_group()),
     };
-    of_finding.iter().find_map(named).or_else(plainest).cloned().unwrap_or_else(|| Covariate {
-        name: "load".into(),
-        unit: "N".into(),
-        values: found.world.data().iter().map(|datum| datum.load).collect(),
+    best.cloned().unwrap_or_else(|| Covariate {
+        variable: Variable::Load,
+        values: found.model.data().iter().map(|datum| datum.load).collect(),
     })
 }
 
 /// Residuals before and after along the number that they are best seen along.
 pub fn residuals(found: &RigDiagnosis) -> Figure {
-    let data = found.world.data();
+    let data = found.model.data();
     let covariate = seen_along(found);
-    let (diagnosis, unexplained) = (&found.diagnosis, found.diagnosis.unexplained.as_ref());
+    let (diagnosis, unexplained) = (&found.diagnosis, found.diagnosis.discrepancy.as_ref());
     let point = |i: usize| {
         let of = ResidualPoint {
             x: covariate.values[i],
@@ -79,12 +72,16 @@ pub fn residuals(found: &RigDiagnosis) -> Figure {
         }));
     }
     series.retain(|series| !series.points.is_empty());
-    let unit = if covariate.unit.is_empty() { String::new() } else { format!(" / {}", covariate.unit) };
+    let variable = covariate.variable;
+    let unit = if variable.unit().is_empty() { String::new() } else { format!(" / {}", variable.unit()) };
     let plainest = most_structured(found).filter(|_| diagnosis.is_mismatch()).map_or_else(String::new, |k| {
-        format!(" The mismatch is plainest along this number: {}.", along(&found.evidence.covariates[k].name))
+        format!(
+            " The mismatch is plainest along this number: {}.",
+            found.evidence.covariates[k].variable.title(NOUN)
+        )
     });
     before_after(&BeforeAfter {
-        along: format!("{}{unit}", along(&covariate.name)),
+        along: format!("{}{unit}", variable.title(NOUN)),
         names: value_names(&covariate, data),
         series,
         noise_um: diagnosis.noise / UM,
@@ -111,26 +108,13 @@ fn series(names: &[String], residual: &DVector<f64>, noise: f64) -> Vec<String> 
     labels.into_iter().filter(|label| rms_of(label) > least).collect()
 }
 
-/// A covariate as it is said.
-pub fn along(name: &str) -> &str {
-    match name {
-        "signed load" => "load with its sign",
-        "phase" => "way up or down",
-        "order" => "order of the readings",
-        "time in the run" => "time since the run began",
-        "channel" => "sensor",
-        "axis" => "axis of the load",
-        other => other,
-    }
-}
-
 /// Names of values that are no amounts.
 fn value_names(covariate: &Covariate, data: &[Datum]) -> Vec<(f64, String)> {
-    let named: Vec<(f64, String)> = match covariate.name.as_str() {
-        "phase" => vec![(-1.0, "up".into()), (1.0, "down".into())],
-        "channel" => Axis::ALL.map(|axis| (axis.index() as f64, format!("d{axis}"))).into(),
-        "axis" => Axis::ALL.map(|axis| (axis.index() as f64, axis.to_string())).into(),
-        "trial" => {
+    let named: Vec<(f64, String)> = match covariate.variable {
+        Variable::Phase => vec![(-1.0, "up".into()), (1.0, "down".into())],
+        Variable::Channel => Axis::ALL.map(|axis| (axis.index() as f64, format!("d{axis}"))).into(),
+        Variable::LoadAxis => Axis::ALL.map(|axis| (axis.index() as f64, axis.to_string())).into(),
+        Variable::Trial => {
             let name = |d: &Datum| d.trial.clone().unwrap_or_else(|| (d.trial_number + 1).to_string());
             let mut names: Vec<(f64, String)> =
                 data.iter().map(|d| (d.trial_number as f64, name(d))).collect();
@@ -156,7 +140,7 @@ fn distinct(names: &[String]) -> Vec<String> {
 /// The rod with the places of the findings; `None` where no finding has one.
 pub fn places(found: &RigDiagnosis, rod: &Rod) -> Option<Figure> {
     let located: Vec<Located> =
-        found.diagnosis.findings.iter().filter_map(|finding| located(found, finding, rod)).collect();
+        found.diagnosis.findings.iter().filter_map(|finding| located(finding, rod)).collect();
     if located.is_empty() {
         return None;
     }
@@ -202,23 +186,18 @@ struct Located {
     between: Option<(f64, f64)>,
 }
 
-fn located(found: &RigDiagnosis, finding: &Finding, rod: &Rod) -> Option<Located> {
-    let parameters = &found.world.candidates()[finding.chosen.candidate].parameters;
-    let station = parameters.iter().position(|parameter| parameter.name == "station_mm");
-    let label = finding.place.clone();
-    match found.effect(finding) {
-        "joint_compliance" => match station.and_then(|k| finding.parameters.get(k)) {
-            Some(&(at, ..)) => Some(Located { label, at, between: found.world.stretch(finding) }),
-            None => {
-                let joint = rod.joints.iter().find(|joint| joint.name == finding.place)?;
-                Some(Located { label, at: joint.station, between: None })
-            }
-        },
-        "root_compliance" => Some(Located { label, at: 0.0, between: None }),
-        "bend_flexibility" => {
-            let (from, to) = (rod.bend_start(), rod.bend_end());
-            Some(Located { label, at: 0.5 * (from + to), between: None })
+/// A ring around the place, where it is one of the rod.
+fn located(finding: &Finding, rod: &Rod) -> Option<Located> {
+    let label = finding.location.to_string();
+    let (at, between) = match &finding.location {
+        Location::Part(Part::Root) => (0.0, None),
+        Location::Part(Part::Bend) => (0.5 * (rod.bend_start() + rod.bend_end()), None),
+        Location::Station(at) => {
+            let station = finding.estimates.iter().find(|estimate| estimate.name == "station_mm");
+            (*at, station.map(|station| (station.low, station.high)))
         }
-        _ => None,
-    }
+        Location::Named(name) => (rod.joints.iter().find(|joint| &joint.name == name)?.station, None),
+        _ => return None,
+    };
+    Some(Located { label, at, between })
 }

@@ -1,9 +1,10 @@
 //! Where effects may sit: axes, channels, runs, and stations along the rod.
 
 use crate::diagnosis::rig::datum::Datum;
-use crate::diagnosis::rig::memory::runs;
-use crate::rig::readings::Axis;
+use crate::diagnosis::rig::load_history::runs;
+use crate::inference::{Run, RunName};
 use crate::rod::Rod;
+use crate::spatial::Axis;
 use crate::units::MM;
 
 /// Most stations of a scan for joints.
@@ -25,22 +26,21 @@ pub(super) fn measured_channels(data: &[Datum]) -> Vec<Axis> {
     Axis::ALL.into_iter().filter(|channel| data.iter().any(|d| d.channel == *channel)).collect()
 }
 
-/// The data of each run and channel, with the name of the run: `y, trial 3`.
-pub(super) fn runs_by_channel(data: &[Datum]) -> Vec<(String, Vec<usize>)> {
+/// The data of each run and channel.
+pub(super) fn runs_by_channel(data: &[Datum]) -> Vec<(Run, Vec<usize>)> {
     let mut groups = Vec::new();
     for run in runs(data) {
         let first = &data[run[0]];
         let axis = first.direction.axis;
         let has_others = data.iter().any(|d| d.direction.axis == axis && d.run != first.run);
         let name = match &first.trial {
-            Some(trial) => format!("{axis}, trial {trial}"),
-            None if has_others => format!("{axis}, run {}", first.trial_number + 1),
-            None => axis.to_string(),
+            Some(trial) => Some(RunName::Trial(trial.clone())),
+            None => has_others.then_some(RunName::Number(first.trial_number + 1)),
         };
         for channel in Axis::ALL {
             let of_channel: Vec<usize> =
                 run.iter().copied().filter(|&i| data[i].channel == channel).collect();
-            groups.push((name.clone(), of_channel));
+            groups.push((Run { axis, name: name.clone() }, of_channel));
         }
     }
     groups

@@ -1,13 +1,14 @@
-//! What every diagnosis says alike: where a mismatch lives, whether the story helps, how likely each effect is.
-
-use serde_json::{Value, json};
+//! What every diagnosis shows alike: what was found, where a mismatch lives, whether it helps, how
+//! likely each effect is.
 
 use super::headline::um;
-use super::ranking::{Ranked, ranking};
-use super::spoken;
-use crate::diagnosis::{Covariate, Diagnosis, Evidence, LackOfFit, Proof, Structure, World, rms};
+use super::subject::Subject;
+use crate::inference::{
+    Evidence, Finding, HeldOut as HeldOutErrors, LackOfFit, Location, NAMED, Rank, Ranked, Structure,
+    UNKNOWN, ranking, rms,
+};
 use crate::report::chart::Figure;
-use crate::report::pictures::diagnosis::{Candidate, Class, HeldOut, held_out, ranking as ranking_picture};
+use crate::report::pictures::diagnosis::{Candidate, Class, HeldOut, held_out, ranking as bars};
 use crate::report::table::{Column, Table};
 use crate::report::{Block, Section};
 use crate::units::{UM, significant};
@@ -21,34 +22,8 @@ fn chance(p: f64) -> String {
     if p < 1e-12 { "< 1e-12".into() } else { significant(p, 1) }
 }
 
-/// A parameter as it is told: name, its unit in SI, value and 95 % interval, SI.
-pub type Told<'a> = (&'a str, f64, [f64; 3]);
-
-/// Adds the parameters of one finding; effect, place and chance stand in the first row only.
-pub fn add_parameters<'a>(
-    table: &mut Table,
-    effect: &str,
-    place: &str,
-    p_value: f64,
-    parameters: impl Iterator<Item = Told<'a>>,
-) {
-    for (k, (name, unit, numbers)) in parameters.enumerate() {
-        let first = |text: String| if k == 0 { text } else { String::new() };
-        let [value, low, high] = numbers.map(|x| significant(x / unit, 4));
-        table.row([
-            first(spoken(effect)),
-            first(place.to_owned()),
-            name.to_owned(),
-            value,
-            low,
-            high,
-            first(chance(p_value)),
-        ]);
-    }
-}
-
-/// The table of all parameters that were found, without rows; see [`add_parameters`].
-pub fn parameters() -> Table {
+/// All numbers that were found; effect, place and chance stand in the first row of each finding.
+pub fn parameters(findings: &[Finding]) -> Table {
     let columns = vec![
         Column::text("effect"),
         Column::text("where"),
@@ -60,11 +35,28 @@ pub fn parameters() -> Table {
     ];
     let caption = "Parameters, in the units of their names, with 95 % intervals. Chance: the probability that noise alone \
                    looks as much like it.";
-    Table::new("findings", caption, columns)
+    let mut table = Table::new("findings", caption, columns);
+    for finding in findings {
+        for (k, estimate) in finding.estimates.iter().enumerate() {
+            let first = |text: String| if k == 0 { text } else { String::new() };
+            let numbers = [estimate.value, estimate.low, estimate.high];
+            let [value, low, high] = numbers.map(|x| significant(x / estimate.unit, 4));
+            table.row([
+                first(finding.effect.spoken()),
+                first(finding.location.to_string()),
+                estimate.name.clone(),
+                value,
+                low,
+                high,
+                first(chance(finding.p_value)),
+            ]);
+        }
+    }
+    table
 }
 
 /// What else a finding may be (causes beyond those of its sentence), and where else.
-pub fn alternatives(causes: &[String], places: &[impl AsRef<str>]) -> String {
+pub fn alternatives(causes: &[String], places: &[Location]) -> String {
     /// Most other places that are listed.
     const PLACES: usize = 4;
     let mut words = String::new();
@@ -73,7 +65,7 @@ pub fn alternatives(causes: &[String], places: &[impl AsRef<str>]) -> String {
     }
     if !places.is_empty() {
         let more = if places.len() > PLACES { " …" } else { "" };
-        let places: Vec<&str> = places.iter().take(PLACES).map(AsRef::as_ref).collect();
+        let places: Vec<String> = places.iter().take(PLACES).map(ToString::to_string).collect();
         words += &format!(" It may be elsewhere: {}{more}.", places.join("; "));
     }
     words
@@ -86,8 +78,12 @@ pub fn covariates(evidence: &Evidence) -> Vec<usize> {
     (0..all.len()).filter(is_new).collect()
 }
 
-/// How much what is left follows each number of the recording; `along` says a covariate's name.
-pub fn locate(noun: &str, evidence: &Evidence, diagnosis: &Diagnosis, along: impl Fn(&str) -> &str) -> Table {
+/// Of more numbers only those are shown that something follows.
+const MANY: usize = 12;
+
+/// How much what is left follows each number of the recording.
+pub fn locate(subject: &Subject) -> Block {
+    let (noun, diagnosis) = (subject.noun, subject.diagnosis);
     let mut table = Table::new(
         "locate",
         format!(
@@ -104,16 +100,30 @@ pub fn locate(noun: &str, evidence: &Evidence, diagnosis: &Diagnosis, along: imp
             Column::number("z", ""),
         ],
     );
-    for k in covariates(evidence) {
-        let covariate = &evidence.covariates[k];
+    for k in covariates(subject.evidence) {
+        let variable = subject.evidence.covariates[k].variable;
         let (before, after) = (&diagnosis.structure_before[k], &diagnosis.structure_after[k]);
         let cells =
             |s: &Structure| [word(s.z).to_owned(), format!("{:.2}", s.strength), format!("{:.1}", s.z)];
-        let mut row = vec![along(&covariate.name).to_owned()];
+        let mut row = vec![variable.title(noun)];
         row.extend(cells(before).into_iter().chain(cells(after)));
         table.row(row);
     }
-    table
+    let all = table.rows.len();
+    if all <= MANY {
+        return Block::Table(table);
+    }
+    // an arm has dozens of numbers that nothing follows
+    table.rows.retain(|row| row[1] != "none" || row[4] != "none");
+    match table.rows.len() {
+        0 => Block::Paragraph(format!(
+            "What is left follows none of {all} numbers: order, place in the workspace, angles, torques and moves of joints."
+        )),
+        some => {
+            table.notes.push(format!("Nothing follows any of {} other numbers.", all - some));
+            Block::Table(table)
+        }
+    }
 }
 
 fn word(z: f64) -> &'static str {
@@ -125,7 +135,8 @@ fn word(z: f64) -> &'static str {
 }
 
 /// Errors before and after, held-out ones included.
-pub fn proof(noun: &str, diagnosis: &Diagnosis) -> Section {
+pub fn proof(subject: &Subject) -> Section {
+    let (noun, diagnosis) = (subject.noun, subject.diagnosis);
     let mut table = Table::new(
         "errors",
         format!(
@@ -142,8 +153,9 @@ pub fn proof(noun: &str, diagnosis: &Diagnosis) -> Section {
             Column::number("p", ""),
         ],
     );
-    let held_out =
-        |of: fn(&Proof) -> f64| diagnosis.proof.as_ref().map_or("–".to_owned(), |proof| um(of(proof)));
+    let held_out = |of: fn(&HeldOutErrors) -> f64| {
+        diagnosis.held_out.as_ref().map_or("–".to_owned(), |errors| um(of(errors)))
+    };
     let test = |test: &Option<LackOfFit>| match test {
         Some(test) => [significant(test.f, 3), significant(test.p_value, 2)],
         None => ["–".to_owned(), "–".to_owned()],
@@ -166,7 +178,7 @@ pub fn proof(noun: &str, diagnosis: &Diagnosis) -> Section {
         test(&diagnosis.lack_of_fit_after),
     );
     let mut blocks = Vec::new();
-    if let Some(proof) = &diagnosis.proof {
+    if let Some(proof) = &diagnosis.held_out {
         let interval = proof.gain_interval.map_or_else(String::new, |(low, high)| {
             format!(" (95 % interval {} to {} %)", percent(low), percent(high))
         });
@@ -185,7 +197,8 @@ fn percent(share: f64) -> String {
 }
 
 /// Every effect by itself.
-pub fn evidence(ranked: &[Ranked]) -> Section {
+pub fn evidence(subject: &Subject) -> Section {
+    let ranked = ranking(subject.candidates, subject.diagnosis);
     let mut table = Table::new(
         "ranking",
         "Every effect by itself against noise alone, at its best place. Odds are powers of ten: 2 is a hundred to one. \
@@ -197,38 +210,58 @@ pub fn evidence(ranked: &[Ranked]) -> Section {
             Column::text("verdict"),
         ],
     );
-    for ranked in ranked {
+    for ranked in &ranked {
         let odds = ranked.log_odds / std::f64::consts::LN_10;
-        let verdict = match ranked.class {
-            Class::Adopted if ranked.effect == "unknown" => "remains",
-            Class::Adopted => "adopted",
-            Class::Rival => "cannot be told from it",
-            Class::Rejected => "rejected",
+        let verdict = match ranked.rank {
+            Rank::Adopted if ranked.effect == &UNKNOWN => "remains",
+            Rank::Adopted => "adopted",
+            Rank::Rival => "cannot be told from it",
+            Rank::Rejected => "rejected",
         };
         let odds = if odds.is_finite() { format!("{odds:.1}") } else { "–".into() };
-        table.row([spoken(&ranked.effect), ranked.place.clone(), odds, verdict.into()]);
+        table.row([ranked.effect.spoken(), ranked.location.to_string(), odds, verdict.into()]);
     }
-    Section::new("What else it might be", vec![Block::Figure(candidates(ranked)), Block::Table(table)])
+    let blocks = vec![Block::Figure(candidates(&ranked)), Block::Table(table)];
+    Section::new("What else it might be", blocks)
 }
 
 /// How likely each effect is by itself.
 fn candidates(ranked: &[Ranked]) -> Figure {
-    let bars: Vec<Candidate> = ranked
-        .iter()
-        .map(|ranked| Candidate {
-            name: spoken(&ranked.effect),
-            log10_odds: ranked.log_odds / std::f64::consts::LN_10,
-            class: ranked.class,
-        })
-        .collect();
-    ranking_picture(&bars, crate::diagnosis::NAMED).captioned(
+    let candidate = |ranked: &Ranked| Candidate {
+        name: ranked.effect.spoken(),
+        log10_odds: ranked.log_odds / std::f64::consts::LN_10,
+        class: match ranked.rank {
+            Rank::Adopted => Class::Adopted,
+            Rank::Rival => Class::Rival,
+            Rank::Rejected => Class::Rejected,
+        },
+    };
+    let candidates: Vec<Candidate> = ranked.iter().map(candidate).collect();
+    bars(&candidates, NAMED).captioned(
         "How likely each effect is by itself, at its best place, against noise alone: 2 is a hundred to one. An effect may \
          reach far and yet be rejected, where what was adopted explains the same readings better.",
     )
 }
 
+/// How well each session is predicted from the others.
+pub fn replication(subject: &Subject) -> Table {
+    let columns = vec![
+        Column::text("left out"),
+        Column::number("calibration as it is", "µm"),
+        Column::number("with what the others show", "µm"),
+    ];
+    let caption = "Each clamp or placement predicted from the others, the search for effects included; rms of a coordinate, \
+                   about the socket's own place where nobody knows it.";
+    let mut table = Table::new("replication", caption, columns);
+    for session in &subject.diagnosis.sessions {
+        let name = (subject.session_name)(session.session);
+        table.row(vec![name, um(session.before), um(session.after)]);
+    }
+    table
+}
+
 /// What held-out data say.
-fn proof_picture(noun: &str, proof: &Proof, noise: f64) -> Figure {
+fn proof_picture(noun: &str, proof: &HeldOutErrors, noise: f64) -> Figure {
     // after² = before²·(1 − gain)
     let after = |gain: f64| proof.before * (1.0 - gain).max(0.0).sqrt() / UM;
     held_out(noun, &HeldOut {
@@ -242,41 +275,4 @@ fn proof_picture(noun: &str, proof: &Proof, noise: f64) -> Figure {
         um(proof.before),
         um(proof.after)
     ))
-}
-
-/// What is left along each covariate.
-pub fn locate_json(evidence: &Evidence, diagnosis: &Diagnosis) -> Vec<Value> {
-    let structure = |structure: &Structure| json!({ "strength": structure.strength, "z": structure.z });
-    let structures = diagnosis.structure_before.iter().zip(&diagnosis.structure_after);
-    let of = |(covariate, (before, after)): (&Covariate, (&Structure, &Structure))| {
-        json!({
-            "covariate": covariate.name,
-            "unit": covariate.unit,
-            "before": structure(before),
-            "after": structure(after),
-        })
-    };
-    evidence.covariates.iter().zip(structures).map(of).collect()
-}
-
-/// Every effect by itself, the likeliest first.
-pub fn ranking_json(world: &dyn World, diagnosis: &Diagnosis) -> Vec<Value> {
-    let of_ranked = |ranked: Ranked| {
-        json!({
-            "effect": ranked.effect,
-            "location": ranked.place,
-            "log_odds": ranked.log_odds,
-            "class": match ranked.class {
-                Class::Adopted => "adopted",
-                Class::Rival => "indistinguishable",
-                Class::Rejected => "rejected",
-            },
-        })
-    };
-    ranking(world, diagnosis).into_iter().map(of_ranked).collect()
-}
-
-/// A test of the averages of repeats.
-pub fn test_json(test: &LackOfFit) -> Value {
-    json!({ "f": test.f, "p_value": test.p_value, "dof_fit": test.dof_fit, "dof_repeats": test.dof_repeats })
 }

@@ -1,25 +1,24 @@
-//! What was found in one recording, in the world of other readings: what the rod and the rig would show there.
+//! What was found in one recording, in the model of other readings: what the rod and the rig would show there.
 
-use super::{Datum, RigDiagnosis, RigWorld};
-use crate::diagnosis::{Candidate, Chosen, World};
+use super::{Datum, RigDiagnosis, RigModel};
 use crate::error::Result;
+use crate::inference::{Candidate, ForwardModel, Kind, Term};
 use crate::rig::readings::Readings;
-use crate::rod::Rod;
 
-/// A story in a world that is not its own.
-pub(super) struct Carried {
+/// Terms in a model that is not their own.
+pub(super) struct Transferred {
     /// The effects that have a meaning there.
-    pub story: Vec<Chosen>,
-    /// For each of their parameters its place among those of the whole story; `None` for one that the readings of the story
-    /// could not show, and that stays neutral.
+    pub terms: Vec<Term>,
+    /// For each of their parameters its place among those of the whole
+    /// hypothesis; `None` for one that its own readings could not show, and that stays neutral.
     pub known: Vec<Option<usize>>,
 }
 
-impl RigWorld {
-    /// A story of `from` in this world. What belongs to single rows (slips, outliers) does not happen again.
-    pub(super) fn carried(&self, from: &RigWorld, story: &[Chosen]) -> Carried {
-        let (mut carried, mut known, mut first) = (Vec::new(), Vec::new(), 0);
-        for effect in story {
+impl RigModel {
+    /// Terms of `from` in this model. What belongs to single rows (slips, outliers) does not happen again.
+    pub(super) fn transferred(&self, from: &RigModel, terms: &[Term]) -> Transferred {
+        let (mut transferred, mut known, mut first) = (Vec::new(), Vec::new(), 0);
+        for effect in terms {
             let old = &from.candidates[effect.candidate];
             let same = self.candidates.iter().enumerate().find(|(_, new)| is_same(new, old));
             if let Some((index, new)) = same {
@@ -29,21 +28,20 @@ impl RigWorld {
                     values.push(place.map_or(parameter.neutral, |k| effect.values[k]));
                     known.push(place.map(|k| first + k));
                 }
-                carried.push(Chosen { candidate: index, values });
+                transferred.push(Term { candidate: index, values });
             }
             first += effect.values.len();
         }
-        Carried { story: carried, known }
+        Transferred { terms: transferred, known }
     }
 }
 
 /// The candidate of another recording that stands for the same. Laws of one effect at one place differ in their parameters;
 /// of one law either recording may show some only.
 pub(super) fn is_same(new: &Candidate, old: &Candidate) -> bool {
-    let is_of_row = ["slip", "outlier"].contains(&old.effect.as_str());
     (&new.effect, &new.location) == (&old.effect, &old.location)
-        && !new.is_unknown
-        && !is_of_row
+        && !new.is_nonparametric
+        && old.effect.kind != Kind::Event
         && new.parameters.iter().any(|p| old.parameters.iter().any(|q| q.name == p.name))
 }
 
@@ -53,33 +51,35 @@ impl RigDiagnosis {
     /// One number for each offset of `asked`, row by row, dx before dy before dz; the offsets that stand there do not matter.
     ///
     /// # Errors
-    /// As [`RigWorld::new`]. Without a rod nothing is known of the slope of another line: [`crate::Error::NotApplicable`].
-    pub fn predicted(&self, asked: &Readings, rod: Option<&Rod>) -> Result<Vec<f64>> {
-        if rod.is_none() {
+    /// As [`RigModel::new`]. Without a rod nothing is known of the slope of another line: [`crate::Error::NotApplicable`].
+    pub fn predicted(&self, asked: &Readings) -> Result<Vec<f64>> {
+        let Some(rod) = self.model.rod() else {
             return Err(crate::Error::NotApplicable {
                 what: "a prediction of other readings".into(),
                 why: "a straight line says nothing of another one".into(),
                 hint: "give the rod's file".into(),
             });
-        }
-        let findings: Vec<Chosen> = self.diagnosis.findings.iter().map(|f| f.chosen.clone()).collect();
-        let is_found = |new: &Candidate| {
-            findings.iter().any(|chosen| is_same(new, &self.world.candidates[chosen.candidate]))
         };
-        let (world, evidence) = RigWorld::of_candidates(asked, rod, &is_found)?;
-        let change = world.change(&world.carried(&self.world, &findings).story);
-        // what large deflections add, the first column of what every story holds, is known of the rod: nobody fits it
+        let parts = self.diagnosis.findings.iter().flat_map(|finding| &finding.parts);
+        let found: Vec<Term> = parts.map(|part| part.term.clone()).collect();
+        let is_found =
+            |new: &Candidate| found.iter().any(|term| is_same(new, &self.model.candidates[term.candidate]));
+        let (model, evidence, _) = RigModel::with_effects(asked, Some(rod), &is_found)?;
+        let change = model.response(&model.transferred(&self.model, &found).terms);
+        // what large deflections add, the first column of what every hypothesis holds, is known of
+        // the rod: nobody fits it
         let large = evidence.background.column(0);
-        let of_row = |(i, datum): (usize, &Datum)| datum.predicted + large[i] + change[i];
-        Ok(world.data.iter().enumerate().map(of_row).collect())
+        let of_datum = |(i, datum): (usize, &Datum)| datum.predicted + large[i] + change[i];
+        Ok(model.data.iter().enumerate().map(of_datum).collect())
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use crate::diagnosis::rig::{RigWorld, diagnose};
-    use crate::diagnosis::{Finding, World};
+    use crate::diagnosis::rig::{RigModel, diagnose};
     use crate::error::Error;
+    use crate::inference::Finding;
+    use crate::inference::{ForwardModel, Kind};
     use crate::rig::readings::Readings;
     use crate::rod::Rod;
     use crate::units::UM;
@@ -95,8 +95,8 @@ mod tests {
             }
         }
         let mut readings = Readings::from_text("f", &text).unwrap();
-        let (world, _) = RigWorld::of_candidates(&readings, Some(rod), &|_| false).unwrap();
-        for (k, (row, datum)) in readings.rows.iter_mut().zip(world.data()).enumerate() {
+        let (model, _, _) = RigModel::with_effects(&readings, Some(rod), &|_| false).unwrap();
+        for (k, (row, datum)) in readings.rows.iter_mut().zip(model.data()).enumerate() {
             let taken = if datum.is_unloading() { 0.5 } else { -0.5 };
             let noise = [0.3, -0.4, 0.1, 0.2, -0.3, 0.15, -0.05][k % 7] * UM;
             row.offset[1] = Some(datum.predicted * (1.0 + taken / datum.load) + noise);
@@ -109,30 +109,31 @@ mod tests {
         let rod = Rod::from_toml("rod", include_str!("../../../rods/5.toml")).unwrap();
         let asked = Readings::from_text("asked", ASKED).unwrap();
         let found = diagnose(&recorded(&rod), Some(&rod)).unwrap();
-        let of = |finding: &Finding| found.world.candidates()[finding.chosen.candidate].effect.clone();
-        assert_eq!(found.diagnosis.findings.iter().map(of).collect::<Vec<_>>(), ["friction"]);
-        let said = found.predicted(&asked, Some(&rod)).unwrap();
+        let name = |finding: &Finding| finding.effect.name;
+        assert_eq!(found.diagnosis.findings.iter().map(name).collect::<Vec<_>>(), ["friction"]);
+        let said = found.predicted(&asked).unwrap();
         assert_eq!(said.len(), 5);
-        let (world, _) = RigWorld::of_candidates(&asked, Some(&rod), &|_| false).unwrap();
-        let share = |k: usize| said[k] / world.data()[k].predicted;
+        let (model, _, _) = RigModel::with_effects(&asked, Some(&rod), &|_| false).unwrap();
+        let share = |k: usize| said[k] / model.data()[k].predicted;
         // of 8 N half a newton does not arrive; friction of all loads takes its share along x too
         assert!((share(4) - 7.5 / 8.0).abs() < 2e-3 && (share(0) - 2.5 / 3.0).abs() < 5e-3, "{said:?}");
         // what stands in the file that asks does not matter
         let other = Readings::from_text("asked", &ASKED.replace("x,3,0", "x,3,99")).unwrap();
-        assert_eq!(found.predicted(&other, Some(&rod)).unwrap(), said);
+        assert_eq!(found.predicted(&other).unwrap(), said);
     }
 
     #[test]
-    fn every_effect_is_carried_to_itself_and_what_happened_to_a_row_is_not() {
+    fn every_effect_is_transferred_to_itself_and_what_happened_to_a_row_is_not() {
         let rod = Rod::from_toml("rod", include_str!("../../../rods/5.toml")).unwrap();
-        let (world, _) = RigWorld::new(&recorded(&rod), Some(&rod)).unwrap();
-        for (index, candidate) in world.candidates().iter().enumerate() {
+        let (model, _) = RigModel::new(&recorded(&rod), Some(&rod)).unwrap();
+        for (index, candidate) in model.candidates().iter().enumerate() {
             let own = candidate.neutral(index);
-            let carried = world.carried(&world, std::slice::from_ref(&own));
-            let is_of_row = ["slip", "outlier"].contains(&candidate.effect.as_str());
-            let expected = if is_of_row || candidate.is_unknown { vec![] } else { vec![own] };
-            assert_eq!(carried.story, expected, "{candidate:?}");
-            assert!(carried.known.iter().all(Option::is_some));
+            let transferred = model.transferred(&model, std::slice::from_ref(&own));
+            let is_event = candidate.effect.kind == Kind::Event;
+            let is_left = is_event || candidate.is_nonparametric;
+            let expected = if is_left { vec![] } else { vec![own] };
+            assert_eq!(transferred.terms, expected, "{candidate:?}");
+            assert!(transferred.known.iter().all(Option::is_some));
         }
     }
 
@@ -141,6 +142,6 @@ mod tests {
         let rod = Rod::from_toml("rod", include_str!("../../../rods/5.toml")).unwrap();
         let found = diagnose(&recorded(&rod), None).unwrap();
         let asked = Readings::from_text("asked", ASKED).unwrap();
-        assert!(matches!(found.predicted(&asked, None), Err(Error::NotApplicable { .. })));
+        assert!(matches!(found.predicted(&asked), Err(Error::NotApplicable { .. })));
     }
 }

@@ -1,8 +1,25 @@
 //! What a rod remembers of its loads: creep and hysteresis.
 
-use super::action::Memory;
 use super::datum::Datum;
-use crate::rig::readings::Direction;
+use crate::spatial::Direction;
+
+/// How the history of loads acts on each datum.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Memory {
+    /// w: the displacement is multiplied by 1 + v·w.
+    pub relative: Vec<f64>,
+    /// W, N: the load v·W is felt besides the one that acts.
+    pub lingering: Vec<f64>,
+}
+
+/// Which law a memory follows.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum History {
+    /// Creep by a clock, with t₀ in s.
+    Creep(Clock, f64),
+    /// Hysteresis of a shape.
+    Loop(Loop),
+}
 
 /// Since when a reading has crept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -85,6 +102,23 @@ pub(super) enum Loop {
     /// The same by plays that are spread evenly up to half of the largest load (Visintin, ch. III): beyond half of it the first
     /// way up is straight, F·(1 + 2h) − h·F_max.
     NewByPlays,
+}
+
+impl Loop {
+    pub(super) const ALL: [Loop; 6] =
+        [Loop::Closed, Loop::Symmetric, Loop::Remanent, Loop::Virgin, Loop::NewByRayleigh, Loop::NewByPlays];
+
+    /// For people; nothing for the plainest.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Loop::Closed => "",
+            Loop::Symmetric => "loaded before",
+            Loop::Remanent => "open at zero",
+            Loop::Virgin => "loaded for the first time",
+            Loop::NewByRayleigh => "new before these readings",
+            Loop::NewByPlays => "new before these readings, by plays",
+        }
+    }
 }
 
 /// Hysteresis; nothing where nothing was read on the way down.

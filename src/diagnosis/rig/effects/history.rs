@@ -1,0 +1,186 @@
+//! What the rod makes of its loads and of their history: curvature, creep, hysteresis.
+
+use super::{Context, Entry, RigEffect, along_the_load, alternative, entry, of, parameter};
+use crate::diagnosis::rig::action::Action;
+use crate::diagnosis::rig::load_history::{Clock, History, Loop, Memory, creep, hysteresis};
+use crate::diagnosis::rig::{Body, RigModel};
+use crate::inference::{Effect, Finding, Kind, Location, Part, Reported, Variable, WrittenTo};
+use crate::units::significant;
+
+/// Share of the displacement at the largest load that is not linear.
+const CURVATURE: f64 = 0.05;
+/// Creep of bondlines and laminates per decade of time.
+const PER_DECADE: f64 = 0.03;
+/// t₀ of creep, s: what a reading after so long is said to be without.
+const CREEP_STARTS: [f64; 4] = [1.0, 10.0, 60.0, 600.0];
+/// Width of a hysteresis loop as a share of full scale.
+const LOOP: f64 = 0.02;
+
+/// Stiffness that follows the load.
+pub static NONLINEAR_STIFFNESS: RigEffect = RigEffect {
+    effect: Effect {
+        name: "nonlinear_stiffness",
+        kind: Kind::Physics,
+        summary: "the stiffness depends on the load",
+        formula: "u = C·F·(1 + k₂·F²), or u = C·F·(1 + k₁·|F|)",
+        prior: "5 % of the displacement at the largest load",
+        parameters: &[("per_n2", "k₂"), ("per_n", "k₁")],
+        needs: "two sizes of load",
+        cause: "a stiffness that depends on the load",
+        cause_at: |_| "a stiffness that depends on the load".into(),
+        written_to: WrittenTo::Nowhere,
+        reported: Reported::Alone,
+        seen_along: along_the_load,
+        direct_check: None,
+    },
+    needs_rod: false,
+    candidates: curvature,
+    missing: |_| "there is one size of load only",
+    observed: observed_curvature,
+};
+
+/// The deflection grows under a constant load.
+pub static CREEP: RigEffect = RigEffect {
+    effect: Effect {
+        name: "creep",
+        kind: Kind::Physics,
+        summary: "the deflection grows with the logarithm of time",
+        formula: "u = C·F·(1 + k·log₁₀(1 + t/t₀)), t₀ 1, 10, 60 or 600 s, by four clocks",
+        prior: "3 % per decade of time: bondlines and laminates",
+        parameters: &[("per_decade", "k")],
+        needs: "times that differ (column `time_s`)",
+        cause: "creep",
+        cause_at: |_| "creep".into(),
+        written_to: WrittenTo::Nowhere,
+        reported: Reported::Alone,
+        seen_along: |_| vec![Variable::TimeInRun],
+        direct_check: None,
+    },
+    needs_rod: false,
+    candidates: creeping,
+    missing: |_| "there are no times, or they do not differ (column `time_s`)",
+    observed: |finding, model| {
+        let since = match history(finding, model) {
+            Some(History::Creep(clock, _)) => clock.name(),
+            _ => "under load",
+        };
+        let growth = of(finding, "per_decade").map(|share| 100.0 * share).say("%");
+        format!("Deflections grow by {growth} with every tenfold time {since}")
+    },
+};
+
+/// The way down is not the way up.
+pub static HYSTERESIS: RigEffect = RigEffect {
+    effect: Effect {
+        name: "hysteresis",
+        kind: Kind::Physics,
+        summary: "the way down is not the way up, and it is not friction",
+        formula: "a loop h of full scale wide at half load, in six forms",
+        prior: "2 % of full scale: 0.1 % of a load cell, some per cent of bonds and clamps",
+        parameters: &[("fraction", "h")],
+        needs: "unloading (column `phase`)",
+        cause: "hysteresis",
+        cause_at: |_| "hysteresis".into(),
+        written_to: WrittenTo::Nowhere,
+        reported: Reported::Alone,
+        seen_along: along_the_load,
+        direct_check: None,
+    },
+    needs_rod: false,
+    candidates: lagging,
+    missing: |_| "nothing was read while unloading (column `phase`)",
+    observed: |finding, model| {
+        let is_open = matches!(history(finding, model), Some(History::Loop(Loop::Remanent)));
+        let at = if is_open { "zero load" } else { "half load" };
+        let share = of(finding, "fraction").map(|share| 100.0 * share).say("%");
+        format!(
+            "On the way down more deflection is left than on the way up, at {at} by {share} of full scale"
+        )
+    },
+};
+
+/// Quadratic as a symmetric body's is, and linear as a load cell's (its curvature has a direction).
+fn curvature(context: &mut Context) -> Vec<Entry> {
+    let largest = context.largest_load();
+    // at most nothing is left of the displacement, or ten times as much is there
+    let share =
+        |name: &str, scale: f64| parameter(name, 1.0, 0.0, CURVATURE / scale, (-1.0 / scale, 10.0 / scale));
+    let forms = [
+        (share("per_n2", largest * largest), Action::PerLoadSquared),
+        (share("per_n", largest), Action::PerLoad),
+    ];
+    let of_form = |(parameter, action)| {
+        alternative(entry(&NONLINEAR_STIFFNESS, Location::Part(Part::Rod), parameter, action))
+    };
+    forms.map(of_form).into()
+}
+
+/// By how much the stiffness has changed at the largest load.
+fn observed_curvature(finding: &Finding, model: &RigModel) -> String {
+    let largest = super::largest_load(model.data());
+    let quadratic = finding.quantity("per_n2").map(|k| k.map(|k| 100.0 * k * largest * largest));
+    let linear = finding.quantity("per_n").map(|k| k.map(|k| 100.0 * k * largest));
+    let body = match model.body {
+        Body::Rod(_) => "The rod",
+        Body::Lines(_) => "What is loaded",
+    };
+    let Some(change) = quadratic.or(linear) else { return format!("{body} is not linear") };
+    let word = if change.value >= 0.0 { "softer" } else { "stiffer" };
+    let (change, load) = (change.size().say("%"), newtons(largest));
+    format!("{body} grows {word} with the load, by {change} at {load}")
+}
+
+/// Creep by each clock that may be meant.
+fn creeping(context: &mut Context) -> Vec<Entry> {
+    let mut known: Vec<Memory> = Vec::new();
+    let mut entries = Vec::new();
+    for t0 in CREEP_STARTS {
+        for clock in Clock::ALL {
+            let Some(memory) = creep(context.data, clock, t0) else { continue };
+            // two clocks that show the same time are one
+            if known.contains(&memory) {
+                continue;
+            }
+            known.push(memory.clone());
+            let form = format!("{}, t0 {t0} s", clock.name());
+            let location = Location::Form { part: Part::Rod, form };
+            let per_decade = parameter("per_decade", 1.0, 0.0, PER_DECADE, (0.0, 1.0));
+            let action = Action::Memory(memory, History::Creep(clock, t0));
+            entries.push(alternative(entry(&CREEP, location, per_decade, action)));
+        }
+    }
+    entries
+}
+
+/// All loops of hysteresis.
+fn lagging(context: &mut Context) -> Vec<Entry> {
+    let of_shape = |shape: Loop| {
+        let location = match shape.name() {
+            "" => Location::Part(Part::Rod),
+            form => Location::Form { part: Part::Rod, form: form.into() },
+        };
+        let fraction = parameter("fraction", 1.0, 0.0, LOOP, (0.0, 1.0));
+        let action = Action::Memory(hysteresis(context.data, shape)?, History::Loop(shape));
+        Some(alternative(entry(&HYSTERESIS, location, fraction, action)))
+    };
+    Loop::ALL.into_iter().filter_map(of_shape).collect()
+}
+
+/// The law of a finding that remembers.
+fn history(finding: &Finding, model: &RigModel) -> Option<History> {
+    let candidate = finding.parts.first()?.term.candidate;
+    model.actions[candidate].iter().find_map(|action| match action {
+        Action::Memory(_, history) => Some(*history),
+        _ => None,
+    })
+}
+
+/// A force with a unit that keeps its number short.
+fn newtons(force: f64) -> String {
+    let (unit, name) = match force {
+        force if force >= 1e6 => (1e6, "MN"),
+        force if force >= 1e4 => (1e3, "kN"),
+        _ => (1.0, "N"),
+    };
+    format!("{} {name}", significant(force / unit, 3))
+}

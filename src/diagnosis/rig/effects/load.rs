@@ -1,0 +1,220 @@
+//! What happens to a load before the rod feels it: friction, offset, play, direction.
+
+use super::places::loaded_axes;
+use super::{
+    Context, Entry, NOT_NEGATIVE, RigEffect, along_the_load, entry, of, parameter, preferring, said,
+};
+use crate::diagnosis::rig::action::Action;
+use crate::diagnosis::rig::datum::Datum;
+use crate::inference::{Effect, Finding, Kind, Location, Parameter, Part, Reported, WrittenTo};
+use crate::spatial::Axis;
+use crate::units::{DEG, UM};
+
+/// Friction of a slide, N.
+const SLIDE: f64 = 1.0;
+/// Weight of a hanger that was forgotten, or error of a tare, N.
+const TARE: f64 = 1.0;
+/// Play of a clamp or of a threaded holder, m.
+const PLAY: f64 = 20.0 * UM;
+/// What the eye allows when a load or a sensor is set up, rad.
+pub(super) const ALIGNMENT: f64 = 1.0 * DEG;
+/// Beyond this nobody would call it the same axis, rad.
+const MOST_MISALIGNED: f64 = 30.0 * DEG;
+
+/// Friction of the slide that guides the load.
+pub static FRICTION: RigEffect = RigEffect {
+    effect: Effect {
+        name: "friction",
+        kind: Kind::Physics,
+        summary: "the slide takes off load, and holds it on the way down",
+        formula: "F = load − f while loading (not below zero), load + f while unloading",
+        prior: "1 N: the paper's lines cross the load axis at 0.09 to 0.11 kg",
+        parameters: &[("force_n", "friction force")],
+        needs: "loads; unloading (column `phase`) tells it from an offset",
+        cause: "friction in the slide",
+        cause_at: |location| "friction in the slide".to_owned() + &under(location),
+        written_to: WrittenTo::Recording,
+        reported: Reported::Alone,
+        seen_along: along_the_load,
+        direct_check: None,
+    },
+    needs_rod: false,
+    candidates: |context| {
+        let largest = context.largest_load();
+        of_axes(context.data, Part::Slide, &|location, axes| {
+            let force = parameter("force_n", 1.0, 0.0, SLIDE, (0.0, largest));
+            entry(&FRICTION, location, force, Action::Friction(axes))
+        })
+    },
+    missing: |_| "nothing was loaded",
+    observed: |finding, model| {
+        let (loads, force) = (loads(finding), said(finding, "force_n", "N"));
+        match model.data().iter().any(Datum::is_unloading) {
+            true => format!(
+                "{loads} are felt {force} too small while loading and as much too large while unloading"
+            ),
+            false => {
+                format!("{loads} are felt {force} too small (nothing was read while unloading)")
+            }
+        }
+    },
+};
+
+/// A hanger that was not counted, or a tare that is off.
+pub static LOAD_OFFSET: RigEffect = RigEffect {
+    effect: Effect {
+        name: "load_offset",
+        kind: Kind::Physics,
+        summary: "a hanger or a tare adds to every load",
+        formula: "F = load + f, for every load but zero",
+        prior: "1 N: that of the paper's friction, from which its lines do not tell it",
+        parameters: &[("force_n", "added force")],
+        needs: "loads",
+        cause: "an offset of the load (hanger or tare)",
+        cause_at: |location| "an offset of the load".to_owned() + &under(location),
+        written_to: WrittenTo::Recording,
+        reported: Reported::Alone,
+        seen_along: along_the_load,
+        direct_check: None,
+    },
+    needs_rod: false,
+    candidates: |context| {
+        let largest = context.largest_load();
+        of_axes(context.data, Part::Hanger, &|location, axes| {
+            let force = parameter("force_n", 1.0, 0.0, TARE, (-largest, largest));
+            entry(&LOAD_OFFSET, location, force, Action::LoadOffset(axes))
+        })
+    },
+    missing: |_| "nothing was loaded",
+    observed: |finding, _| {
+        let word = if of(finding, "force_n").value >= 0.0 { "larger" } else { "smaller" };
+        format!("{} are {} {word} than stated", loads(finding), said(finding, "force_n", "N"))
+    },
+};
+
+/// Play of the clamp.
+pub static BACKLASH: RigEffect = RigEffect {
+    effect: Effect {
+        name: "backlash",
+        kind: Kind::Physics,
+        summary: "play before the rod bends",
+        formula: "y = bending + p towards the load, for every load but zero",
+        prior: "20 µm: play of a clamp or of a threaded holder",
+        parameters: &[("play_um", "the way that it moves freely")],
+        needs: "a channel along a load",
+        cause: "play in the clamp",
+        cause_at: |location| "play in the clamp".to_owned() + &under(location),
+        written_to: WrittenTo::Recording,
+        reported: Reported::Alone,
+        seen_along: along_the_load,
+        direct_check: None,
+    },
+    needs_rod: false,
+    candidates: |context| {
+        of_axes(context.data, Part::Clamp, &|location, axes| {
+            let play = parameter("play_um", UM, 0.0, PLAY, NOT_NEGATIVE);
+            entry(&BACKLASH, location, play, Action::Play(axes))
+        })
+    },
+    missing: |_| "no channel was read along a load",
+    observed: |finding, _| {
+        let (loads, play) = (loads(finding), said(finding, "play_um", "µm"));
+        format!("{loads} move the rod {play} before it bends")
+    },
+};
+
+/// A load that is not square to {T}.
+pub static LOAD_MISALIGNMENT: RigEffect = RigEffect {
+    effect: Effect {
+        name: "load_misalignment",
+        kind: Kind::Physics,
+        summary: "a load is not square",
+        formula: "d = nominal direction, turned by φ",
+        prior: "1°: what the eye allows when a load is set up",
+        parameters: &[("angle_deg", "angle")],
+        needs: "a rod file; channels across the loads",
+        cause: "a load that is not square to the rod",
+        cause_at: |location| format!("loads turned, {location}"),
+        written_to: WrittenTo::Recording,
+        reported: Reported::Alone,
+        seen_along: along_the_load,
+        direct_check: None,
+    },
+    needs_rod: true,
+    candidates: load_turns,
+    missing: |_| "the channels would show nothing of it",
+    observed: |finding, _| {
+        let angle = of(finding, "angle_deg");
+        match &finding.location {
+            Location::LoadTurn { from, towards } => {
+                let word = if angle.value >= 0.0 { "towards" } else { "away from" };
+                format!("Loads along {from} pull {} {word} {towards}", angle.size().say("°"))
+            }
+            Location::LoadFrame { axes: [a, b], about } => {
+                format!("Loads along {a} and {b}, about {about} are turned by {}", angle.say("°"))
+            }
+            other => format!("Loads along {other} are turned by {}", angle.say("°")),
+        }
+    },
+};
+
+/// A part as a whole, and under the loads of each axis: a rig is set up anew for each direction.
+fn of_axes(data: &[Datum], part: Part, make: &dyn Fn(Location, [bool; 3]) -> Entry) -> Vec<Entry> {
+    let axes = loaded_axes(data);
+    let mut entries = vec![make(Location::Part(part), [true; 3])];
+    if axes.len() > 1 {
+        entries.extend(
+            axes.into_iter()
+                .map(|axis| make(Location::UnderLoads { part, axis }, Axis::ALL.map(|other| other == axis))),
+        );
+    }
+    preferring(entries, |candidate| matches!(candidate.location, Location::Part(_)))
+}
+
+/// Pairs of an axis of `from` with each other axis.
+pub(super) fn pairs(from: &[Axis]) -> Vec<(Axis, Axis)> {
+    let others = |&a: &Axis| Axis::ALL.into_iter().filter(move |b| *b != a).map(move |b| (a, b));
+    from.iter().flat_map(others).collect()
+}
+
+/// An angle by which something was set up wrongly.
+pub(super) fn misalignment() -> Parameter {
+    parameter("angle_deg", DEG, 0.0, ALIGNMENT, (-MOST_MISALIGNED, MOST_MISALIGNED))
+}
+
+/// Each load is set up by itself; where two axes were loaded their frame may be turned as a whole
+/// besides.
+fn load_turns(context: &mut Context) -> Vec<Entry> {
+    let axes = loaded_axes(context.data);
+    let single = pairs(&axes).into_iter().map(|(from, towards)| {
+        let action = Action::TurnLoad(Axis::ALL.map(|a| a == from), from, towards);
+        entry(&LOAD_MISALIGNMENT, Location::LoadTurn { from, towards }, misalignment(), action)
+    });
+    let both = pairs(&axes)
+        .into_iter()
+        .filter(|(from, towards)| from < towards && axes.contains(towards))
+        .map(|(from, towards)| {
+            let is_third = |axis: &Axis| *axis != from && *axis != towards;
+            let about = Axis::ALL.into_iter().find(is_third).unwrap_or(from);
+            let location = Location::LoadFrame { axes: [from, towards], about };
+            let action = Action::TurnLoad([true; 3], from, towards);
+            entry(&LOAD_MISALIGNMENT, location, misalignment(), action)
+        });
+    single.chain(both).collect()
+}
+
+/// `Loads`, or `Loads along y` where it is those of one axis only.
+fn loads(finding: &Finding) -> String {
+    match finding.location {
+        Location::UnderLoads { axis, .. } => format!("Loads along {axis}"),
+        _ => "Loads".to_owned(),
+    }
+}
+
+/// ` under loads along y`.
+fn under(location: &Location) -> String {
+    match location {
+        Location::UnderLoads { axis, .. } => format!(" under loads along {axis}"),
+        _ => String::new(),
+    }
+}

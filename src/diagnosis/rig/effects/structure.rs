@@ -1,0 +1,289 @@
+//! What the rod is: moduli, joints, root, bend.
+
+use super::places::stations;
+use super::{
+    Context, Entry, NOT_NEGATIVE, RigEffect, along_the_load, candidate, entry, of, parameter, preferring,
+    said,
+};
+use crate::diagnosis::rig::action::Action;
+use crate::diagnosis::rig::structure::Structure;
+use crate::diagnosis::rig::{Body, RigModel, STATION};
+use crate::inference::{Effect, Finding, ForwardModel, Kind, Location, Part, Quantity, Reported, WrittenTo};
+use crate::rod::BendFlexibility;
+use crate::units::{MM, URAD_PER_NM, significant};
+
+/// Share by which a rod is softer than its model: 1 − 1/r is 0.27 rms over the r_rod of the paper's
+/// six rods (1.013 to 2.302).
+const SOFTNESS: f64 = 0.27;
+/// Compliance of a joint or a flange as a share of the rod's own, ∫ds/EI: 0.2 as at the corner of
+/// the paper's rod 2#, with the reconstructed sections (6.5 of 30 µrad/(N·m)).
+const JOINT: f64 = 0.2;
+/// Least departure of a bend's flexibility factor; else von Kármán's for the section counts.
+const BEND: f64 = 0.3;
+
+const NOT_YIELDING: &str = "the loads do not make it yield";
+
+/// Moduli, or walls, of the whole rod.
+pub static STIFFNESS_SCALE: RigEffect = RigEffect {
+    effect: Effect {
+        name: "stiffness_scale",
+        kind: Kind::Physics,
+        summary: "all of the rod is softer or stiffer than its file says",
+        formula: "E → f·E, G → f·G in all pipes",
+        prior: "27 %: 1 − 1/r, rms over the r_rod of the paper's six rods",
+        parameters: &[("factor", "actual over nominal stiffness")],
+        needs: "a rod file",
+        cause: "its moduli or walls are not those of its file",
+        cause_at: |_| "moduli or walls that are not those of the rod file".into(),
+        written_to: WrittenTo::Model,
+        reported: Reported::Alone,
+        seen_along: along_the_load,
+        direct_check: None,
+    },
+    needs_rod: true,
+    candidates: |_| {
+        let factor = parameter("factor", 1.0, 1.0, SOFTNESS, (0.1, 10.0));
+        vec![entry(&STIFFNESS_SCALE, Location::Part(Part::Rod), factor, Action::Stiffness)]
+    },
+    missing: |_| NOT_YIELDING,
+    observed: |finding, _| format!("The rod is {} than its model everywhere", softer(of(finding, "factor"))),
+};
+
+/// The shear modulus of the whole rod.
+pub static SHEAR_MODULUS: RigEffect = RigEffect {
+    effect: Effect {
+        name: "shear_modulus",
+        kind: Kind::Physics,
+        summary: "it twists and shears more easily",
+        formula: "G → f·G in all pipes",
+        prior: "27 %, as for the whole stiffness",
+        parameters: &[("factor", "actual over nominal stiffness")],
+        needs: "a rod file; loads that twist or shear the rod",
+        cause: "its shear modulus",
+        cause_at: |_| "another shear modulus".into(),
+        written_to: WrittenTo::Model,
+        reported: Reported::Alone,
+        seen_along: along_the_load,
+        direct_check: None,
+    },
+    needs_rod: true,
+    candidates: |_| {
+        let factor = parameter("factor", 1.0, 1.0, SOFTNESS, (0.1, 10.0));
+        vec![entry(&SHEAR_MODULUS, Location::Part(Part::Rod), factor, Action::ShearModulus)]
+    },
+    missing: |_| "the loads neither twist nor shear the rod",
+    observed: |finding, _| {
+        format!("The rod is {} in torsion and shear than its model", softer(of(finding, "factor")))
+    },
+};
+
+/// A connection: one of the file, or one that nobody declared, anywhere along the rod.
+pub static JOINT_COMPLIANCE: RigEffect = RigEffect {
+    effect: Effect {
+        name: "joint_compliance",
+        kind: Kind::Physics,
+        summary: "a joint yields: one of the file, or one found on the rod",
+        formula: "θ = β·M at a station, in bending and in torsion",
+        prior: "20 % of the rod's own ∫ds/EI and ∫ds/GJ, as at the corner of the paper's rod 2#",
+        parameters: &[
+            ("bending_urad_per_nm", "the joint's whole compliance in bending"),
+            ("torsion_urad_per_nm", "and in torsion"),
+            ("station_mm", "where it is, if the file does not say"),
+        ],
+        needs: "a rod file",
+        cause: "a connection that yields",
+        cause_at: |location| match location {
+            Location::Station(_) => format!("a connection that yields at {location}"),
+            named => format!("the joint \"{named}\" yielding"),
+        },
+        written_to: WrittenTo::Model,
+        reported: Reported::Alone,
+        seen_along: along_the_load,
+        direct_check: None,
+    },
+    needs_rod: true,
+    candidates: joints,
+    missing: |_| NOT_YIELDING,
+    observed: |finding, model| {
+        let place = &finding.location;
+        let what = match (stretch(finding), place) {
+            (Some((low, high)), _) => {
+                let declared: String = finding
+                    .rivals
+                    .iter()
+                    .filter(|rival| {
+                        rival.effect == finding.effect && matches!(rival.location, Location::Named(_))
+                    })
+                    .map(|rival| format!(", or the joint \"{}\"", rival.location))
+                    .collect();
+                let (low, high) = (low / MM, high / MM);
+                format!("Something at {place} (between {low:.0} and {high:.0} mm{declared})")
+            }
+            (None, Location::Station(_)) => format!("Something at {place}"),
+            (None, named) => format!("The joint \"{named}\""),
+        };
+        format!("{what} yields {}", amount(finding, model))
+    },
+};
+
+/// Flange or adapter.
+pub static ROOT_COMPLIANCE: RigEffect = RigEffect {
+    effect: Effect {
+        name: "root_compliance",
+        kind: Kind::Physics,
+        summary: "flange or adapter yield",
+        formula: "θ = β·M at the root",
+        prior: "20 % of the rod's own ∫ds/EI and ∫ds/GJ",
+        parameters: &[
+            ("bending_urad_per_nm", "compliance in bending"),
+            ("torsion_urad_per_nm", "and in torsion"),
+        ],
+        needs: "a rod file",
+        cause: "a flange or adapter that yields",
+        cause_at: |_| "a flange or adapter that yields".into(),
+        written_to: WrittenTo::Model,
+        reported: Reported::Alone,
+        seen_along: along_the_load,
+        direct_check: None,
+    },
+    needs_rod: true,
+    candidates: |context| {
+        let Body::Rod(structure) = &mut *context.body else { return Vec::new() };
+        joint(structure, &ROOT_COMPLIANCE, Location::Part(Part::Root), 0.0, [0.0; 2], None)
+            .into_iter()
+            .collect()
+    },
+    missing: |_| NOT_YIELDING,
+    observed: |finding, model| format!("The rod's root yields {}", amount(finding, model)),
+};
+
+/// The pipe of the bend becomes oval.
+pub static BEND_FLEXIBILITY: RigEffect = RigEffect {
+    effect: Effect {
+        name: "bend_flexibility",
+        kind: Kind::Physics,
+        summary: "the pipe of the bend becomes oval",
+        formula: "bending of the arc × k",
+        prior: "von Kármán's factor for the section, less the file's; 0.3 at least",
+        parameters: &[("factor", "k: the arc's flexibility over that of a beam")],
+        needs: "a rod file with a bend radius",
+        cause: "its pipe becomes oval there",
+        cause_at: |_| "a bend whose pipe becomes oval".into(),
+        written_to: WrittenTo::Model,
+        reported: Reported::Alone,
+        seen_along: along_the_load,
+        direct_check: None,
+    },
+    needs_rod: true,
+    candidates: |context| {
+        let Body::Rod(structure) = &*context.body else { return Vec::new() };
+        if !structure.has_arc() {
+            return Vec::new();
+        }
+        let (rod, of_file) = (structure.rod(), structure.bend_factor);
+        let karman = BendFlexibility::VonKarman.factor(&rod.bend.section, rod.bend_radius);
+        let size = (karman - of_file).abs().max(BEND);
+        // a bend may ovalise, but not grow stiffer than a beam
+        let bounds = (of_file.min(1.0), 100.0);
+        let factor = parameter("factor", 1.0, of_file, size, bounds);
+        let action = Action::Bend(of_file);
+        vec![entry(&BEND_FLEXIBILITY, Location::Part(Part::Bend), factor, action)]
+    },
+    missing: |context| match context.rod.is_some_and(|rod| rod.arc_length() > 0.0) {
+        true => NOT_YIELDING,
+        false => "the rod's corner is sharp: it has no arc that could ovalise",
+    },
+    observed: |finding, _| format!("The bend is {} times as flexible as a beam", said(finding, "factor", "")),
+};
+
+/// Declared joints, then joints that nobody declared along the rod. A value is a joint's whole
+/// compliance, to be written into the rod file. A joint that nobody declared may be anywhere up to
+/// half way to the next station of the scan.
+fn joints(context: &mut Context) -> Vec<Entry> {
+    let (Body::Rod(structure), Some(rod)) = (&mut *context.body, context.rod) else {
+        return Vec::new();
+    };
+    let scan = stations(rod);
+    let reach = |station: f64| {
+        let distances = scan.iter().map(|other| (other - station).abs());
+        0.5 * distances.filter(|distance| *distance > 0.0).fold(f64::INFINITY, f64::min)
+    };
+    let mut entries = Vec::new();
+    for declared in &rod.joints {
+        let location = Location::Named(declared.name.clone());
+        let of_file = [declared.bending, declared.torsion];
+        entries.extend(joint(structure, &JOINT_COMPLIANCE, location, declared.station, of_file, None));
+    }
+    for &station in &scan {
+        let location = Location::Station(station);
+        let reach = Some(reach(station));
+        entries.extend(joint(structure, &JOINT_COMPLIANCE, location, station, [0.0; 2], reach));
+    }
+    preferring(entries, |candidate| matches!(candidate.location, Location::Named(_)))
+}
+
+/// A joint; with a reach its station is a parameter. One that the beam model cannot compute is no
+/// candidate.
+fn joint(
+    structure: &mut Structure,
+    effect: &'static RigEffect,
+    location: Location,
+    station: f64,
+    of_file: [f64; 2],
+    reach: Option<f64>,
+) -> Option<Entry> {
+    let rotation = structure.rotation();
+    let [bending, torsion] = structure.add_joint(station).ok()?;
+    let compliance =
+        |name, k: usize| parameter(name, URAD_PER_NM, of_file[k], JOINT * rotation[k], NOT_NEGATIVE);
+    let mut parameters = vec![compliance("bending_urad_per_nm", 0), compliance("torsion_urad_per_nm", 1)];
+    let mut actions = vec![Action::Joint(bending, of_file[0]), Action::Joint(torsion, of_file[1])];
+    if let Some(reach) = reach
+        && let Some(nodes) = structure.add_nodes(station, [bending, torsion], reach).ok()?
+    {
+        let [before, _, behind] = nodes.stations;
+        // as likely anywhere
+        let size = (behind - station) / 3.0f64.sqrt();
+        parameters.push(parameter(STATION, MM, station, size, (before, behind)));
+        actions.push(Action::Station(nodes));
+    }
+    Some((candidate(&effect.effect, location, parameters), actions))
+}
+
+/// Where along the rod a joint that nobody declared may be, m; `None` for everything else.
+pub(in crate::diagnosis::rig) fn stretch(finding: &Finding) -> Option<(f64, f64)> {
+    let station = finding.estimates.iter().find(|estimate| estimate.name == STATION)?;
+    Some((station.low, station.high))
+}
+
+/// How much a joint yields; only what differs from the rod file, unless nothing does for sure.
+fn amount(finding: &Finding, model: &RigModel) -> String {
+    let Some(part) = finding.parts.first() else { return String::new() };
+    let parameters = &model.candidates()[part.term.candidate].parameters;
+    let mut sure = Vec::new();
+    let mut all = Vec::new();
+    for (name, word) in [("bending_urad_per_nm", "in bending"), ("torsion_urad_per_nm", "in torsion")] {
+        let Some(parameter) = parameters.iter().find(|parameter| parameter.name == name) else {
+            continue;
+        };
+        let Some(yields) = finding.quantity(name) else { continue };
+        let of_file = parameter.neutral / parameter.unit;
+        let instead = match of_file > 0.0 {
+            true => format!(" instead of {}", significant(of_file, 3)),
+            false => String::new(),
+        };
+        let words = format!("{} {word}{instead}", yields.say("µrad/(N·m)"));
+        if yields.low > of_file || yields.high < of_file {
+            sure.push(words.clone());
+        }
+        all.push(words);
+    }
+    if sure.is_empty() { all } else { sure }.join(" and ")
+}
+
+/// `12 ± 2 % softer`, of a factor on a modulus.
+fn softer(factor: Quantity) -> String {
+    let excess = factor.map(|factor| 100.0 * (1.0 / factor - 1.0));
+    let word = if excess.value >= 0.0 { "softer" } else { "stiffer" };
+    format!("{} {word}", excess.size().say("%"))
+}

@@ -1,0 +1,130 @@
+//! Every effect has its words, and the registry is all there is.
+
+use crate::diagnosis::rig::RigModel;
+use crate::diagnosis::rig::effects::registry;
+use crate::inference::{Estimate, Finding, FindingPart, ForwardModel, Location, Reported};
+use crate::rig::readings::Readings;
+use crate::rod::Rod;
+
+/// Readings that every effect of the registry has a meaning for.
+fn everything() -> RigModel {
+    let rod =
+        include_str!("../../../../rods/5.toml").replace("bend_radius_mm = 0.0", "bend_radius_mm = 60.0");
+    let rod = rod + "\n[[joint]]\nname = \"sleeve\"\nstation_mm = 300\nbending_urad_per_nm = 4.0\n";
+    let rod = Rod::from_toml("rod", &rod).unwrap();
+    let mut text = "axis,load_n,trial,phase,time_s,temperature_c,dx_um,dy_um,dz_um\n".to_owned();
+    let mut time = 0.0;
+    for axis in ["x", "y", "z"] {
+        for trial in 1..4 {
+            for (load, phase) in
+                [(5.0, "load"), (10.0, "load"), (20.0, "load"), (10.0, "unload"), (5.0, "unload")]
+            {
+                time += 30.0;
+                let temperature = 20.0 + time / 1000.0;
+                text += &format!("{axis},{load},{trial},{phase},{time},{temperature},{load},{load},{load}\n");
+            }
+        }
+    }
+    RigModel::new(&Readings::from_text("f", &text).unwrap(), Some(&rod)).unwrap().0
+}
+
+/// A finding of one candidate, as large as is usual.
+fn finding(model: &RigModel, index: usize) -> Finding {
+    let candidate = &model.candidates()[index];
+    let term = candidate.neutral(index);
+    let location = model.location(&term);
+    let estimates: Vec<Estimate> = candidate
+        .parameters
+        .iter()
+        .map(|p| Estimate {
+            name: p.name.clone(),
+            unit: p.unit,
+            value: p.neutral + 2.0 * p.size,
+            low: p.neutral + p.size,
+            high: p.neutral + 3.0 * p.size,
+        })
+        .collect();
+    let part = FindingPart {
+        term,
+        location: location.clone(),
+        estimates: estimates.clone(),
+        first: 0,
+        coverage_factor: 2.0,
+        p_value: 0.0,
+        explains: 0.0,
+        rivals: Vec::new(),
+    };
+    Finding::from_part(candidate.effect, location, estimates, part)
+}
+
+#[test]
+fn every_effect_of_the_registry_is_met_and_has_words_with_its_number() {
+    let model = everything();
+    let mut met = Vec::new();
+    for (index, candidate) in model.candidates().iter().enumerate().filter(|(_, c)| !c.is_nonparametric) {
+        let effect = candidate.effect;
+        let words = model.describe(&finding(&model, index)).to_string();
+        assert!(words.contains('±') || words.contains(" to "), "{effect}: {words}");
+        assert!(!words.contains("NaN") && !words.contains('_'), "{effect}: {words}");
+        assert!(!(effect.cause_at)(&candidate.location).contains('_'));
+        for parameter in &candidate.parameters {
+            let is_listed = effect.parameters.iter().any(|(name, _)| *name == parameter.name);
+            assert!(is_listed, "{effect} has {} beyond its record", parameter.name);
+        }
+        if !met.contains(&effect) {
+            met.push(effect);
+        }
+    }
+    let listed: Vec<_> = registry::ALL.iter().map(|known| &known.effect).collect();
+    assert!(listed.iter().all(|effect| met.contains(effect)), "{met:?}");
+    assert_eq!(met.len(), listed.len());
+}
+
+#[test]
+fn every_record_is_complete() {
+    for known in registry::ALL {
+        let effect = &known.effect;
+        for text in [effect.summary, effect.formula, effect.prior, effect.needs, effect.cause] {
+            assert!(!text.is_empty(), "{effect}");
+        }
+        assert!(!effect.parameters.is_empty(), "{effect}");
+        assert_eq!(effect.reported, Reported::Alone, "{effect}");
+        assert_eq!(registry::ALL.iter().filter(|other| &other.effect == effect).count(), 1);
+    }
+}
+
+#[test]
+fn the_words_say_what_a_mechanic_would() {
+    let model = everything();
+    let say = |effect: &str, location: &str| {
+        let is_it =
+            |c: &crate::inference::Candidate| c.effect.name == effect && c.location.to_string() == location;
+        let index = model.candidates().iter().position(is_it);
+        let index = index.unwrap_or_else(|| panic!("{effect} {location}"));
+        model.describe(&finding(&model, index)).to_string()
+    };
+    assert_eq!(
+        say("friction", "slide, loads along y"),
+        "Loads along y are felt 2.0 ± 1.0 N too small while loading and as much too large while unloading: \
+         friction in the slide"
+    );
+    assert!(say("joint_compliance", "sleeve").starts_with("The joint \"sleeve\" yields"));
+    assert!(say("thermal_drift", "dy").starts_with("Sensor dy drifts by 10 ± 5 µm per kelvin"));
+    assert!(say("nonlinear_stiffness", "rod").contains("grows softer with the load, by 10 ± 5 % at 20.0 N"));
+}
+
+#[test]
+fn what_remains_is_said_by_what_it_follows() {
+    let model = everything();
+    let said = |wanted: &str| {
+        model.candidates().iter().find_map(|candidate| match &candidate.location {
+            Location::Curve { label, follows, .. } if label == wanted => Some(follows.clone()),
+            _ => None,
+        })
+    };
+    let of_line = said("load, dy under loads along y");
+    assert_eq!(of_line.as_deref(), Some("follows the load (dy under loads along y)"));
+    assert_eq!(said("time, all deflections").as_deref(), Some("follows the time (all readings alike)"));
+    let slopes = said("slope of each line");
+    assert_eq!(slopes.as_deref(), Some("makes some lines steeper or flatter than others"));
+}

@@ -1,0 +1,202 @@
+//! What is a rig's own in the report of its diagnosis.
+
+mod correction;
+mod figures;
+
+use serde_json::{Value, json};
+
+use super::headline::um;
+use super::remainder::{Remainder, Sample};
+use super::subject::{Errors, Subject};
+use super::{json as whole_json, report as whole_report};
+use crate::diagnosis::rig::{Correction, Datum, RigDiagnosis};
+use crate::inference::{Discrepancy, ForwardModel, Location, Plan, Variable, rms};
+use crate::report::{Block, Report};
+use crate::rig::readings::Phase;
+use crate::units::MM;
+
+/// Most samples of the shape along one line.
+const SAMPLES: usize = 12;
+
+/// The report of `rodcal diagnose rig`; with what becomes of the rod, where something does.
+pub fn report(found: &RigDiagnosis, correction: Option<&Correction>) -> Report {
+    whole_report(subject(found, correction))
+}
+
+/// The JSON of `rodcal diagnose rig --json`.
+pub fn json(found: &RigDiagnosis, correction: Option<&Correction>) -> Value {
+    whole_json(&subject(found, correction))
+}
+
+/// One sentence on what was found, and one on what it does to the errors.
+pub fn headline(found: &RigDiagnosis) -> String {
+    super::headline::headline(&subject(found, None))
+}
+
+fn subject<'a>(found: &'a RigDiagnosis, correction: Option<&Correction>) -> Subject<'a> {
+    let (model, diagnosis) = (&found.model, &found.diagnosis);
+    let (rod, readings) = (model.rod(), model.readings());
+    let name = rod.map_or("a straight line".to_owned(), |rod| format!("rod {}", rod.name));
+    let of_rod = rod.map_or(&[][..], |rod| &rod.warnings).iter().map(ToString::to_string);
+    let of_readings = readings.warnings.iter().map(|warning| format!("{}: {warning}", readings.file));
+    let places = rod.and_then(|rod| figures::places(found, rod)).map(Block::Figure);
+    Subject {
+        evidence: &found.evidence,
+        diagnosis,
+        candidates: model.candidates(),
+        not_testable: &found.not_testable,
+        absorbed: &found.absorbed,
+        limits: &found.limits,
+        title: format!("Diagnosis of the readings of {name}"),
+        noun: "readings",
+        per: "",
+        agrees: "The readings agree with the model",
+        errors: Errors {
+            averaged: "",
+            before: rms(&diagnosis.before),
+            after: rms(&diagnosis.after),
+            held_out: diagnosis.held_out.as_ref().map(|errors| (errors.before, errors.after)),
+        },
+        remainder: remainder(found),
+        warnings: of_rod.chain(of_readings).collect(),
+        head: vec![("rod", json!(rod.map(|rod| &rod.name))), ("readings", json!(readings.file))],
+        more: vec![("correction", json!(correction.map(correction::json)))],
+        of_findings: Vec::new(),
+        details: Vec::new(),
+        session_name: Box::new(|session| session.to_string()),
+        plan: Box::new(|plan| match plan {
+            Plan::Loads(plan) => super::json::load_plan(plan),
+            Plan::Poses(_) => Value::Null,
+        }),
+        source: readings.source.clone(),
+        places: std::iter::once(Block::Figure(figures::residuals(found))).chain(places).collect(),
+        proof: Vec::new(),
+        consequences: correction.map(correction::section),
+        count: model.data().len(),
+    }
+}
+
+/// What is one line of readings, for example `dy under loads along y`.
+fn line_name(datum: &Datum) -> String {
+    let at = |what: &str, station: Option<f64>| {
+        station.map_or_else(String::new, |s| format!(", {what} at {:.1} mm", s / MM))
+    };
+    format!(
+        "d{} under loads along {}{}{}",
+        datum.channel,
+        datum.direction.axis,
+        at("loaded", datum.load_station),
+        at("read", datum.read_station)
+    )
+}
+
+/// A line, and its way down by itself.
+fn branch_name(datum: &Datum) -> String {
+    let down = if datum.phase == Some(Phase::Unload) { ", unloading" } else { "" };
+    line_name(datum) + down
+}
+
+/// What remains, if anything does.
+fn remainder(found: &RigDiagnosis) -> Option<Remainder> {
+    let left = found.diagnosis.discrepancy.as_ref()?;
+    Some(match &left.location {
+        Some(Location::Curve { label, follows, along }) => {
+            of_curve(found, left, label, follows, along.unwrap_or(Variable::Load))
+        }
+        _ => of_conditions(found, left),
+    })
+}
+
+fn of_curve(
+    found: &RigDiagnosis,
+    left: &Discrepancy,
+    label: &str,
+    follows: &str,
+    along: Variable,
+) -> Remainder {
+    let data = found.model.data();
+    let values: Vec<f64> = match found.evidence.covariate(along) {
+        Some(covariate) => covariate.values.clone(),
+        None => data.iter().map(|datum| datum.load).collect(),
+    };
+    Remainder {
+        location: label.to_owned(),
+        sentence: format!(
+            "Something that no effect of the library explains {follows}: {} µm rms, up to {} µm.",
+            um(left.rms),
+            um(left.shape.amax())
+        ),
+        rms: left.rms,
+        along,
+        of: "readings",
+        coordinates: &["left"],
+        samples: thinned(means(data, &values, left)),
+    }
+}
+
+/// Where no curve describes it, the averages of the repeats tell.
+fn of_conditions(found: &RigDiagnosis, left: &Discrepancy) -> Remainder {
+    let data = found.model.data();
+    let loads: Vec<f64> = data.iter().map(|datum| datum.load).collect();
+    let samples = means(data, &loads, left);
+    let worst = samples.iter().max_by(|a, b| a.left[0].abs().total_cmp(&b.left[0].abs()));
+    let (location, average) = worst.map_or((String::new(), 0.0), |worst| {
+        let place = format!("{:.4} N, {}", worst.value, worst.name).replace(".0000 N", " N");
+        (place, worst.left[0])
+    });
+    Remainder {
+        sentence: format!(
+            "Averages of repeated readings leave the model by more than noise, in no shape that a smooth curve or an \
+             effect of the library describes: {} µm rms, most at {location} ({} µm).",
+            um(left.rms),
+            um(average)
+        ),
+        location,
+        rms: left.rms,
+        along: Variable::Load,
+        of: "readings",
+        coordinates: &["left"],
+        samples,
+    }
+}
+
+/// The shape by line, thinned to what can be read.
+fn thinned(all: Vec<Sample>) -> Vec<Sample> {
+    let mut samples = Vec::new();
+    for of_line in all.chunk_by(|a, b| a.name == b.name) {
+        if of_line.iter().all(|sample| sample.left[0] == 0.0) {
+            continue;
+        }
+        let step = (of_line.len() as f64 - 1.0) / (SAMPLES as f64 - 1.0);
+        let is_short = of_line.len() <= SAMPLES;
+        let at = |k: usize| if is_short { k } else { (k as f64 * step).round() as usize };
+        let picked = (0..of_line.len().min(SAMPLES)).filter_map(|k| of_line.get(at(k)).cloned());
+        samples.extend(picked);
+    }
+    samples
+}
+
+/// Mean of the shape for each line and value, lines in order of appearance, values ascending.
+fn means(data: &[Datum], values: &[f64], left: &Discrepancy) -> Vec<Sample> {
+    let has_down = data.iter().any(|datum| branch_name(datum) != line_name(datum));
+    let name = |datum: &Datum| if has_down { branch_name(datum) } else { line_name(datum) };
+    let mut lines: Vec<String> = Vec::new();
+    data.iter().map(name).for_each(|line| {
+        if !lines.contains(&line) {
+            lines.push(line);
+        }
+    });
+    let mut samples = Vec::new();
+    for line in lines {
+        let is_known = |i: &usize| name(&data[*i]) == line && !values[*i].is_nan();
+        let rows = (0..data.len()).filter(is_known);
+        let mut points: Vec<(f64, f64)> = rows.map(|i| (values[i], left.shape[i])).collect();
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        samples.extend(points.chunk_by(|a, b| a.0 == b.0).map(|same| {
+            let mean = same.iter().map(|(_, y)| y).sum::<f64>() / same.len() as f64;
+            let json = json!(line);
+            Sample { name: line.clone(), json, value: same[0].0, left: vec![mean] }
+        }));
+    }
+    samples
+}

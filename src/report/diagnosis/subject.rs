@@ -1,0 +1,73 @@
+//! What differs between the diagnosis of a rig and that of a calibration, as data.
+
+use serde_json::Value;
+
+use super::remainder::Remainder;
+use crate::inference::{Absorbed, Candidate, Diagnosis, Evidence, Limit, NotTestable, Plan};
+use crate::report::Block;
+use crate::report::Section;
+
+/// A diagnosed recording as its report sees it.
+pub struct Subject<'a> {
+    /// The recording as numbers.
+    pub evidence: &'a Evidence,
+    /// What was found.
+    pub diagnosis: &'a Diagnosis,
+    /// All that was asked about.
+    pub candidates: &'a [Candidate],
+    /// Effects without data.
+    pub not_testable: &'a [NotTestable],
+    /// Effects that the base model takes up.
+    pub absorbed: &'a [Absorbed],
+    /// What makes every claim weaker.
+    pub limits: &'a [Limit],
+    /// Title of the report.
+    pub title: String,
+    /// What was recorded: `readings`, `poses`.
+    pub noun: &'static str,
+    /// Of what a root mean square is: nothing, or ` per coordinate`.
+    pub per: &'static str,
+    /// Said where nothing was found: `The readings agree with the model`.
+    pub agrees: &'static str,
+    /// Whose errors are compared before and after.
+    pub errors: Errors,
+    /// What no effect explains.
+    pub remainder: Option<Remainder>,
+    /// Warnings of the input files and of the base model.
+    pub warnings: Vec<String>,
+    /// Head of the JSON: what was diagnosed.
+    pub head: Vec<(&'static str, Value)>,
+    /// More of the JSON.
+    pub more: Vec<(&'static str, Value)>,
+    /// For each finding more of its JSON.
+    pub of_findings: Vec<Vec<(&'static str, Value)>>,
+    /// For each finding more words.
+    pub details: Vec<String>,
+    /// For each session its name.
+    pub session_name: Box<dyn Fn(usize) -> String + 'a>,
+    /// A proposed measurement as JSON.
+    pub plan: Box<dyn Fn(&Plan) -> Value + 'a>,
+    /// Above the findings: where the recording is from.
+    pub source: Option<String>,
+    /// Where the mismatch lives: pictures.
+    pub places: Vec<Block>,
+    /// Does it help: more tables and pictures.
+    pub proof: Vec<Block>,
+    /// What becomes of the model.
+    pub consequences: Option<Section>,
+    /// Number of rows or readings.
+    pub count: usize,
+}
+
+/// Errors that a headline compares, m.
+#[derive(Debug, Clone, Copy)]
+pub struct Errors {
+    /// How they are averaged, for people: nothing for a root mean square, ` on average`.
+    pub averaged: &'static str,
+    /// Of the data that were fitted.
+    pub before: f64,
+    /// The same with what was found.
+    pub after: f64,
+    /// Of held-out data, before and after.
+    pub held_out: Option<(f64, f64)>,
+}

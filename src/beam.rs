@@ -17,9 +17,10 @@ mod check;
 mod element;
 mod large;
 mod model;
+mod response;
 mod solve;
 
 pub use chain::Chain;
 pub use element::Profile;
 pub use model::{Physics, RodModel};
-pub use solve::{Load, Motion, Response, Resultant};
+pub use response::{Load, Motion, Response, Resultant};

@@ -9,7 +9,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::chain::Chain;
-use super::solve::{Carried, Load, Motion, Response};
+use super::response::{Carried, Load, Motion, Response};
 use crate::error::{Error, Result};
 use crate::spatial::cross;
 use crate::units::MM;

@@ -16,7 +16,7 @@ use nalgebra::{Rotation3, Vector3};
 
 use super::RodModel;
 use super::chain::Chain;
-use super::solve::Load;
+use super::response::Load;
 use crate::error::Result;
 
 impl RodModel {

@@ -4,7 +4,7 @@ use nalgebra::{Rotation3, Vector3};
 
 use super::chain::Chain;
 use super::element::Profile;
-use super::solve::{Load, Motion};
+use super::response::{Load, Motion};
 use crate::error::{Error, Result};
 use crate::rod::{BendFlexibility, Pipe, Rod};
 use crate::units::MM;

@@ -11,6 +11,7 @@
 //! the robot's base frame, {T} the flange's. β is zero but where consecutive axes are nearly parallel: there Denavit and Hartenberg's
 //! common normal jumps with the smallest tilt, and Hayati's β does not (S. Hayati, *IEEE CDC* 22 (1983) 1477–1483).
 
+mod defaults;
 mod effect;
 mod effects_file;
 mod file;

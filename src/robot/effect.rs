@@ -7,8 +7,6 @@
 //! wrist_coupling       k·q of another joint
 //! ```
 
-use super::Robot;
-
 /// One of them. Joints count from 0.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Effect {
@@ -92,14 +90,6 @@ fn interpolated(rows: &[(f64, f64)], x: f64) -> f64 {
         (Some((x0, y0)), Some((x1, y1))) => y0 + (y1 - y0) * (x - x0) / (x1 - x0),
         (Some((_, y)), None) | (None, Some(&(_, y))) => y,
         (None, None) => 0.0,
-    }
-}
-
-impl Robot {
-    /// By how much a joint turns farther than it says, rad; see [`Effect::turn`].
-    pub fn correction(&self, joint: usize, q: &[f64], torque: &[f64]) -> f64 {
-        let own = self.effects.iter().filter(|effect| effect.joint() == joint);
-        own.map(|effect| effect.turn(q, torque)).sum()
     }
 }
 

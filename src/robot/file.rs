@@ -4,16 +4,14 @@ use nalgebra::Vector3;
 use serde::Deserialize;
 use toml::Spanned;
 
+use super::defaults::{DOWN, default_name, file_stem};
 use super::effects_file::{self, RawEffect};
 use super::uncertainty::{self, RawUncertainty};
 use super::{Body, Effect, Hayati, Joint, Motion, Robot, Tip, urdf};
 use crate::error::Result;
 use crate::spatial::Pose;
 use crate::toml_text::{Number, Required, TomlText};
-use crate::units::{DEG, MM, STANDARD_GRAVITY, URAD_PER_NM};
-
-/// Gravity where a file does not state it, m/s²: straight down in a base frame whose z points up.
-pub(super) const DOWN: Vector3<f64> = Vector3::new(0.0, 0.0, -STANDARD_GRAVITY);
+use crate::units::{DEG, MM, URAD_PER_NM};
 
 impl Robot {
     /// Reads and checks the text of a robot file; `file` names it in errors (and the robot, where it has no name).
@@ -48,17 +46,6 @@ impl Robot {
 /// True of XML, which no TOML begins like.
 pub fn is_urdf(text: &str) -> bool {
     text.trim_start_matches(|c: char| c.is_whitespace() || c == '\u{feff}').starts_with('<')
-}
-
-/// `robots/tx90.toml` → `tx90`.
-pub(super) fn file_stem(file: &str) -> String {
-    let path = std::path::Path::new(file);
-    path.file_stem().map_or_else(|| file.to_owned(), |stem| stem.to_string_lossy().into_owned())
-}
-
-/// What a joint is called that has no name.
-pub(super) fn default_name(index: usize) -> String {
-    format!("joint {}", index + 1)
 }
 
 #[derive(Deserialize)]

@@ -155,6 +155,12 @@ impl Hayati {
 }
 
 impl Robot {
+    /// By how much a joint turns farther than it says, rad; see [`super::Effect::turn`].
+    pub fn correction(&self, joint: usize, q: &[f64], torque: &[f64]) -> f64 {
+        let own = self.effects.iter().filter(|effect| effect.joint() == joint);
+        own.map(|effect| effect.turn(q, torque)).sum()
+    }
+
     /// {T} in {0} at the joint values `q` (rad or m, one per joint), with no torque on the joints.
     pub fn flange_at(&self, q: &[f64]) -> Pose {
         let value = |j: usize| q[j] + self.correction(j, q, &[]);

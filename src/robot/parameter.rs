@@ -44,6 +44,11 @@ const DEGREE: Unit = Unit { symbol: "°", suffix: "deg", si: DEG };
 const COMPLIANCE: Unit = Unit { symbol: "µrad/(N·m)", suffix: "urad_per_nm", si: URAD_PER_NM };
 
 impl Parameter {
+    /// True where it says where the robot stands or where its tip is, not how the robot is built.
+    pub fn is_placement(&self) -> bool {
+        matches!(self, Parameter::BasePosition(_) | Parameter::BaseRotation(_) | Parameter::Tool(_))
+    }
+
     /// All parameters of a robot with `joints` joints, base to tip.
     pub fn all(joints: usize) -> Vec<Parameter> {
         let mut all: Vec<Parameter> = (0..3).map(Parameter::BasePosition).collect();

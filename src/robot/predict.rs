@@ -1,8 +1,8 @@
 //! Where a calibrated robot's tip is, at any joint values, and the file that they come from.
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Matrix3xX, Vector3};
 
-use super::{Kinematics, Loads, Motion, Robot, Setup};
+use super::{Kinematics, Loads, Motion, Robot, Setup, Uncertainty};
 use crate::delimited::Table;
 use crate::error::{Error, Place, Result};
 use crate::spatial::Pose;
@@ -18,6 +18,18 @@ pub struct Asked {
     pub pose: String,
     /// Joint values, rad or m.
     pub joints: Vec<f64>,
+}
+
+impl Uncertainty {
+    /// Covariance of the tip in {0}, m², where `kinematics` stands with `torque` (N·m) on its joints.
+    pub fn of_tip(&self, kinematics: &Kinematics, torque: &[f64]) -> Matrix3<f64> {
+        let columns: Vec<_> = self.parameters.iter().map(|&p| kinematics.column(p, torque)).collect();
+        if columns.is_empty() {
+            return Matrix3::zeros();
+        }
+        let jacobian = Matrix3xX::from_columns(&columns);
+        &jacobian * &self.covariance * jacobian.transpose()
+    }
 }
 
 impl Robot {

@@ -4,11 +4,11 @@
 //!
 //! In a robot file it is the section `[uncertainty]`: names, standard errors and, below the diagonal, correlations.
 
-use nalgebra::{DMatrix, DVector, Matrix3, Matrix3xX};
+use nalgebra::{DMatrix, DVector};
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::{Kinematics, Parameter};
+use super::Parameter;
 use crate::error::Result;
 use crate::toml_text::{Number, TomlText};
 
@@ -22,16 +22,6 @@ pub struct Uncertainty {
 }
 
 impl Uncertainty {
-    /// Covariance of the tip in {0}, m², where `kinematics` stands with `torque` (N·m) on its joints.
-    pub fn of_tip(&self, kinematics: &Kinematics, torque: &[f64]) -> Matrix3<f64> {
-        let columns: Vec<_> = self.parameters.iter().map(|&p| kinematics.column(p, torque)).collect();
-        if columns.is_empty() {
-            return Matrix3::zeros();
-        }
-        let jacobian = Matrix3xX::from_columns(&columns);
-        &jacobian * &self.covariance * jacobian.transpose()
-    }
-
     /// The section of a robot file.
     pub(super) fn written(&self) -> String {
         let errors: DVector<f64> = self.covariance.diagonal().map(f64::sqrt);

@@ -18,7 +18,7 @@ use nalgebra::Vector3;
 
 use self::tree::{Kind, Tree};
 use self::xml::Source;
-use super::file::{DOWN, file_stem};
+use super::defaults::{DOWN, file_stem};
 use super::{Body, Hayati, Joint, Motion, Robot, hayati};
 use crate::error::Result;
 use crate::spatial::Pose;

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::file::default_name;
+use super::defaults::default_name;
 use super::{Joint, Motion, Robot, Uncertainty, effects_file};
 use crate::error::{Error, Result};
 use crate::spatial::Pose;

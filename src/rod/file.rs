@@ -1,5 +1,6 @@
 //! The reader of rod files (`rods/*.toml`): every error names the line and what would be right there.
 
+mod check;
 mod geometry;
 mod materials;
 mod parts;
@@ -10,6 +11,7 @@ use std::path::Path;
 use serde::Deserialize;
 use toml::Spanned;
 
+use self::check::Check;
 use self::geometry::RawGeometry;
 use self::materials::RawMaterial;
 use self::parts::{RawJoint, RawMass, RawPipe, RawTip};
@@ -79,12 +81,6 @@ const REQUIRED: &Required = &[
     ("station_mm", "the distance from the flange along the centreline in mm"),
 ];
 
-/// What is checked, and what there is to say about it so far.
-struct Check<'a> {
-    toml: TomlText<'a>,
-    warnings: Vec<Warning>,
-}
-
 impl Check<'_> {
     /// The rod without its name and warnings.
     fn rod(&mut self, raw: &RawRod) -> Result<Rod> {
@@ -135,13 +131,6 @@ impl Check<'_> {
             rod.joints.push(joint);
         }
         Ok(rod)
-    }
-
-    /// Warns about a number that is most likely in another unit. Nothing (0) is usual.
-    fn usual(&mut self, key: &str, value: f64, unit: &'static str, least: f64, most: f64) {
-        if value != 0.0 && !(least..=most).contains(&value) {
-            self.warnings.push(Warning::Unusual { key: key.to_owned(), value, unit, least, most });
-        }
     }
 }
 

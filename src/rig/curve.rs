@@ -33,9 +33,9 @@ use std::collections::BTreeMap;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::line::{LackOfFit, Point, Sample};
 use super::readings::Phase;
 use super::repeats::{Repeats, average, mean_square};
+use super::sample::{LackOfFit, Point, Sample};
 use crate::error::Result;
 use crate::least_squares::{self, Noise, Options};
 use crate::statistics::{self, Estimate};

@@ -5,14 +5,12 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::curve::{Columns, Curve};
-use super::readings::{Axis, Direction, Phase};
+use super::readings::{Axis, Direction, Phase, Reading};
 use super::repeats::resolution;
+pub use super::sample::{LackOfFit, Point, Sample};
 use crate::error::{Error, Result};
 use crate::least_squares::{self, Options, Robust};
 use crate::statistics::Estimate;
-
-/// Below this probability a line is called crooked.
-const CROOKED: f64 = 0.01;
 
 /// What a line is fitted to: one channel under loads along one direction at one place.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,42 +23,6 @@ pub struct LineKey {
     pub load_station: Option<f64>,
     /// Station of the sensor, m; `None`: the tip.
     pub read_station: Option<f64>,
-}
-
-/// One reading of a line.
-#[derive(Debug, Clone, Copy)]
-pub struct Sample {
-    /// Magnitude of the load, N.
-    pub load: f64,
-    /// Offset of the channel, m.
-    pub offset: f64,
-    /// Loading or unloading.
-    pub phase: Phase,
-    /// Which trial it belongs to; all alike where the file names none.
-    pub trial: usize,
-    /// Line in the file.
-    pub line: usize,
-}
-
-/// The average of the repeats at one load.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Point {
-    /// Magnitude of the load, N.
-    pub load: f64,
-    /// Loading or unloading.
-    pub phase: Phase,
-    /// Mean offset, m.
-    pub mean: f64,
-    /// Number of readings.
-    pub count: f64,
-    /// Offset less that of the fitted line, m.
-    pub residual: f64,
-}
-
-impl Point {
-    pub(super) fn has(&self, sample: &Sample) -> bool {
-        self.load == sample.load && self.phase == sample.phase
-    }
 }
 
 /// A fitted line.
@@ -96,19 +58,6 @@ pub struct Line {
     pub distrusted: Vec<usize>,
 }
 
-/// F test of a curve against the scatter of repeats.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct LackOfFit {
-    /// s_f² / s_e².
-    pub f: f64,
-    /// K − p.
-    pub dof_fit: usize,
-    /// N − K, less what trials take up where they differ.
-    pub dof_repeats: usize,
-    /// Probability of so large an F, were the curve right and all repeats independent.
-    pub p_value: f64,
-}
-
 /// ȳ = b0 + b1·F + b2·F².
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Quadratic {
@@ -120,14 +69,17 @@ pub struct Quadratic {
     pub lack_of_fit: Option<LackOfFit>,
 }
 
-impl LackOfFit {
-    /// The averages leave the curve by more than the repeats allow (p < 0.01).
-    pub fn is_crooked(&self) -> bool {
-        self.p_value < CROOKED
-    }
-}
-
 impl LineKey {
+    /// The line that one channel of a reading belongs to.
+    pub(super) fn of_reading(row: &Reading, channel: Axis) -> LineKey {
+        LineKey {
+            direction: row.direction,
+            channel,
+            load_station: row.load_station,
+            read_station: row.read_station,
+        }
+    }
+
     /// "dz under load z": channel and load direction, with the stations where they are not the tip.
     pub fn label(&self) -> String {
         let at = |station: Option<f64>, what| match station {

@@ -3,37 +3,23 @@
 //! A CSV file with one reading per row; its columns and their units are those of [`KNOWN_COLUMNS`].
 //! Offsets are differences from the unloaded, zeroed rod.
 
+mod columns;
+mod reading;
 mod warning;
 mod write;
 
-use std::fmt;
 use std::path::Path;
 
 use crate::delimited::{Row, Table, comments_above, nearest_name};
 use crate::error::{Error, Place, Result};
 use crate::files;
 use crate::units::{MM, STANDARD_GRAVITY, UM};
-pub use warning::Warning;
+use columns::{LOAD_COLUMNS, OFFSET_COLUMNS, TEXT_COLUMNS, is_one_of};
+use reading::{loads_of, newtons, only_load};
 
-/// The columns that are read. `axis`, one of the loads and one of the offsets must be there.
-pub const KNOWN_COLUMNS: [&str; 12] = [
-    "axis",
-    "load_n",
-    "load_kg",
-    "dx_um",
-    "dy_um",
-    "dz_um",
-    "trial",
-    "phase",
-    "time_s",
-    "temperature_c",
-    "load_station_mm",
-    "read_station_mm",
-];
-const TEXT_COLUMNS: [&str; 3] = ["axis", "trial", "phase"];
-const LOAD_COLUMNS: [&str; 2] = ["load_n", "load_kg"];
-/// By channel: the offset along X, Y and Z.
-const OFFSET_COLUMNS: [&str; 3] = ["dx_um", "dy_um", "dz_um"];
+pub use columns::KNOWN_COLUMNS;
+pub use reading::{Axis, Direction, Phase, Reading};
+pub use warning::Warning;
 
 const ABSOLUTE_ZERO_C: f64 = -273.15;
 
@@ -48,58 +34,6 @@ pub struct Readings {
     pub rows: Vec<Reading>,
     /// What a user should know about the file although it can be read.
     pub warnings: Vec<Warning>,
-}
-
-/// One row: a load and the offsets that it caused.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Reading {
-    /// Direction of the load in {T}.
-    pub direction: Direction,
-    /// Magnitude of the load, N, ≥ 0.
-    pub load: f64,
-    /// Offset of the tip (or of the read station) along X, Y, Z of {T}, m; `None`: not measured. One is there.
-    pub offset: [Option<f64>; 3],
-    /// Name or number of the repeat.
-    pub trial: Option<String>,
-    /// Whether the load was reached by loading or by unloading.
-    pub phase: Option<Phase>,
-    /// Time of the reading, s, from any zero.
-    pub time: Option<f64>,
-    /// Temperature, °C.
-    pub temperature: Option<f64>,
-    /// Arc length from the flange to the load, m; `None`: the tip.
-    pub load_station: Option<f64>,
-    /// Arc length from the flange to the sensor, m; `None`: the tip.
-    pub read_station: Option<f64>,
-    /// Line in the file, from 1.
-    pub line: usize,
-}
-
-/// An axis of the tool frame {T}.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-#[allow(missing_docs)]
-pub enum Axis {
-    X,
-    Y,
-    Z,
-}
-
-/// Along or against an axis of {T}.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub struct Direction {
-    /// The axis.
-    pub axis: Axis,
-    /// +1 along, −1 against it.
-    pub sign: i8,
-}
-
-/// On the way up or down.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Phase {
-    /// The load was raised to this one.
-    Load,
-    /// The load was lowered to this one.
-    Unload,
 }
 
 impl Readings {
@@ -143,51 +77,6 @@ impl Readings {
             rows,
         })
     }
-}
-
-impl Axis {
-    /// X, Y, Z: by [`Axis::index`].
-    pub const ALL: [Axis; 3] = [Axis::X, Axis::Y, Axis::Z];
-
-    /// 0 for X, 1 for Y, 2 for Z.
-    pub fn index(self) -> usize {
-        self as usize
-    }
-}
-
-impl Direction {
-    /// `x`, `+y`, `-Z`; a Unicode minus is one too.
-    pub fn from_name(name: &str) -> Option<Direction> {
-        let (sign, axis) = match name.strip_prefix(['-', '\u{2212}']) {
-            Some(axis) => (-1, axis),
-            None => (1, name.strip_prefix('+').unwrap_or(name)),
-        };
-        let axis = Axis::ALL.into_iter().find(|known| known.to_string().eq_ignore_ascii_case(axis.trim()))?;
-        Some(Direction { axis, sign })
-    }
-}
-
-impl Reading {
-    /// The load along the positive axis, N: its magnitude with the sign of its direction.
-    pub fn signed_load(&self) -> f64 {
-        f64::from(self.direction.sign) * self.load
-    }
-}
-
-impl fmt::Display for Axis {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(["x", "y", "z"][self.index()])
-    }
-}
-
-impl fmt::Display for Direction {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}{}", if self.sign < 0 { "-" } else { "" }, self.axis)
-    }
-}
-
-fn is_one_of(column: &str, names: &[&str]) -> bool {
-    names.iter().any(|name| name.eq_ignore_ascii_case(column))
 }
 
 fn check_columns(table: &Table) -> Result<()> {
@@ -289,25 +178,6 @@ fn at_least(row: Row<'_>, column: &str, least: f64) -> Result<Option<f64>> {
         Some(value) if value < least => Err(row.error(column, format!("a number ≥ {least}"), None)),
         value => Ok(value),
     }
-}
-
-/// A load for a message, to a millinewton: `5 N`, not `5.00000 N`.
-fn newtons(load: f64) -> String {
-    format!("{} N", (load * 1e3).round() / 1e3)
-}
-
-/// The signed loads of the readings in which `channel` was read under a load along `axis`, N.
-fn loads_of(rows: &[Reading], axis: Axis, channel: Axis) -> impl Iterator<Item = f64> {
-    rows.iter()
-        .filter(move |r| r.direction.axis == axis && r.offset[channel.index()].is_some())
-        .map(Reading::signed_load)
-}
-
-/// The one load of an (axis, channel), N; `None` where there are more, or none at all.
-fn only_load(rows: &[Reading], axis: Axis, channel: Axis) -> Option<f64> {
-    let mut loads = loads_of(rows, axis, channel);
-    let first = loads.next()?;
-    loads.all(|load| load == first).then_some(first)
 }
 
 fn check_loads(file: &str, rows: &[Reading]) -> Result<()> {

@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::line::{Point, Sample};
+use super::sample::{Point, Sample};
 use crate::error::Result;
 use crate::least_squares::{self, Options};
 use crate::statistics;

@@ -2,7 +2,8 @@
 
 use std::fmt;
 
-use super::{Axis, KNOWN_COLUMNS, OFFSET_COLUMNS, Reading, is_one_of, newtons, only_load};
+use super::columns::{KNOWN_COLUMNS, OFFSET_COLUMNS, is_one_of};
+use super::reading::{Axis, Reading, newtons, only_load};
 use crate::delimited::{Dialect, Table, nearest_name, quoted};
 use crate::units::{UM, significant};
 

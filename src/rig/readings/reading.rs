@@ -1,0 +1,115 @@
+//! One reading: a load along an axis of {T}, and the offsets that it caused.
+
+use std::fmt;
+
+/// One row: a load and the offsets that it caused.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reading {
+    /// Direction of the load in {T}.
+    pub direction: Direction,
+    /// Magnitude of the load, N, ≥ 0.
+    pub load: f64,
+    /// Offset of the tip (or of the read station) along X, Y, Z of {T}, m; `None`: not measured. One is there.
+    pub offset: [Option<f64>; 3],
+    /// Name or number of the repeat.
+    pub trial: Option<String>,
+    /// Whether the load was reached by loading or by unloading.
+    pub phase: Option<Phase>,
+    /// Time of the reading, s, from any zero.
+    pub time: Option<f64>,
+    /// Temperature, °C.
+    pub temperature: Option<f64>,
+    /// Arc length from the flange to the load, m; `None`: the tip.
+    pub load_station: Option<f64>,
+    /// Arc length from the flange to the sensor, m; `None`: the tip.
+    pub read_station: Option<f64>,
+    /// Line in the file, from 1.
+    pub line: usize,
+}
+
+/// An axis of the tool frame {T}.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[allow(missing_docs)]
+pub enum Axis {
+    X,
+    Y,
+    Z,
+}
+
+/// Along or against an axis of {T}.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Direction {
+    /// The axis.
+    pub axis: Axis,
+    /// +1 along, −1 against it.
+    pub sign: i8,
+}
+
+/// On the way up or down.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Phase {
+    /// The load was raised to this one.
+    Load,
+    /// The load was lowered to this one.
+    Unload,
+}
+
+impl Axis {
+    /// X, Y, Z: by [`Axis::index`].
+    pub const ALL: [Axis; 3] = [Axis::X, Axis::Y, Axis::Z];
+
+    /// 0 for X, 1 for Y, 2 for Z.
+    pub fn index(self) -> usize {
+        self as usize
+    }
+}
+
+impl Direction {
+    /// `x`, `+y`, `-Z`; a Unicode minus is one too.
+    pub fn from_name(name: &str) -> Option<Direction> {
+        let (sign, axis) = match name.strip_prefix(['-', '\u{2212}']) {
+            Some(axis) => (-1, axis),
+            None => (1, name.strip_prefix('+').unwrap_or(name)),
+        };
+        let axis = Axis::ALL.into_iter().find(|known| known.to_string().eq_ignore_ascii_case(axis.trim()))?;
+        Some(Direction { axis, sign })
+    }
+}
+
+impl Reading {
+    /// The load along the positive axis, N: its magnitude with the sign of its direction.
+    pub fn signed_load(&self) -> f64 {
+        f64::from(self.direction.sign) * self.load
+    }
+}
+
+impl fmt::Display for Axis {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(["x", "y", "z"][self.index()])
+    }
+}
+
+impl fmt::Display for Direction {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}{}", if self.sign < 0 { "-" } else { "" }, self.axis)
+    }
+}
+
+/// A load for a message, to a millinewton: `5 N`, not `5.00000 N`.
+pub(super) fn newtons(load: f64) -> String {
+    format!("{} N", (load * 1e3).round() / 1e3)
+}
+
+/// The signed loads of the readings in which `channel` was read under a load along `axis`, N.
+pub(super) fn loads_of(rows: &[Reading], axis: Axis, channel: Axis) -> impl Iterator<Item = f64> {
+    rows.iter()
+        .filter(move |r| r.direction.axis == axis && r.offset[channel.index()].is_some())
+        .map(Reading::signed_load)
+}
+
+/// The one load of an (axis, channel), N; `None` where there are more, or none at all.
+pub(super) fn only_load(rows: &[Reading], axis: Axis, channel: Axis) -> Option<f64> {
+    let mut loads = loads_of(rows, axis, channel);
+    let first = loads.next()?;
+    loads.all(|load| load == first).then_some(first)
+}

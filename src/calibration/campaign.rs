@@ -2,8 +2,10 @@
 //!
 //! Every key and column is in `docs/campaign-file.md`.
 
+mod checks;
 mod columns;
 mod file;
+mod layout;
 mod recording;
 mod warning;
 mod wishes;

@@ -5,10 +5,12 @@
 //! is its uncertainty, measuring noise and choice of poses included (B. Efron, R. Tibshirani, *An Introduction to the
 //! Bootstrap*, 1993, ch. 13). Without a validation file the held-out errors of a cross-validation are compared.
 
-use super::calibrate::{Calibration, Options, calibrate, calibrate_from};
+use super::calibrate::{calibrate, calibrate_from};
 use super::campaign::Campaign;
 use super::compensation::{Compensation, Mode, modes};
 use super::cross_validation::{CrossValidation, cross_validate};
+use super::options::Options;
+use super::result::Calibration;
 use super::validation::{Summary, validate_from};
 use crate::error::Result;
 use crate::parallel::in_parallel;

@@ -2,10 +2,12 @@
 
 use nalgebra::Vector3;
 
-use super::calibrate::{Calibration, Options, calibrate_from};
+use super::calibrate::calibrate_from;
 use super::campaign::{Campaign, Targets};
 use super::compensation::Compensation;
+use super::options::Options;
 use super::problem::Pass;
+use super::result::Calibration;
 use super::validation::Summary;
 use crate::error::Result;
 use crate::parallel::in_parallel;

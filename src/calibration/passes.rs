@@ -1,10 +1,10 @@
 //! The compensation loop (Eqs 11–14): fit, recompute what bends and yields and how much it scatters, fit again.
 
-use super::calibrate::Options;
 use super::campaign::{Campaign, Recording, Targets};
 use super::compensation::Compensation;
 use super::identify::{self, Held};
 use super::noise::{Noise, Robust};
+use super::options::Options;
 use super::problem::{Pass, Residuals};
 use crate::error::Result;
 use crate::least_squares::{self, Fit, Problem as _};
@@ -76,7 +76,7 @@ impl<'a, 'c> Run<'a, 'c> {
 
     /// The rough calibration: only where the robot stands and where the tip is.
     pub fn fit_base_and_tool(&mut self) -> Result<()> {
-        let placed: Vec<Parameter> = self.free.iter().copied().filter(|&p| is_placement(p)).collect();
+        let placed: Vec<Parameter> = self.free.iter().copied().filter(|p| p.is_placement()).collect();
         if placed.is_empty() || matches!(self.recording.targets, Targets::Sockets(_)) {
             return Ok(());
         }
@@ -189,10 +189,6 @@ impl<'a, 'c> Run<'a, 'c> {
         let of_joint = |j: usize| largest(self.pass.torque.iter().skip(j).step_by(n).copied());
         (0..n).map(of_joint).collect()
     }
-}
-
-pub(super) fn is_placement(parameter: Parameter) -> bool {
-    matches!(parameter, Parameter::BasePosition(_) | Parameter::BaseRotation(_) | Parameter::Tool(_))
 }
 
 /// Residuals come divided by their noise. A cosine of 1e-6 leaves every parameter within 1e-6·√dof of its standard errors,

@@ -1,7 +1,7 @@
 //! The calibrated robot as a file of the format that it came in.
 
-use super::calibrate::Calibration;
 use super::campaign::{Campaign, Targets};
+use super::result::Calibration;
 use crate::error::Result;
 use crate::robot::{Parameter, Tip, Uncertainty, is_urdf};
 use crate::units::{DEG, MM};

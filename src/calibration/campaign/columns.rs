@@ -1,7 +1,7 @@
 //! Which columns the CSV files of a campaign have, and what to say where they have others.
 
 use super::Warning;
-use super::recording::{Role, Seen};
+use super::layout::{Role, Seen};
 use crate::delimited::{Row, Table, nearest_name};
 use crate::error::Result;
 use crate::robot::{Motion, Robot};

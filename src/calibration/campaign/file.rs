@@ -6,9 +6,9 @@ use nalgebra::Vector3;
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::recording::{self, Clamp, Role, Seen, Sockets};
+use super::layout::{Clamp, Role, Seen, Sockets};
 use super::wishes::{RawParameters, RawPrior, wishes};
-use super::{Campaign, Refit, Warning, warning};
+use super::{Campaign, Refit, Warning, checks, recording};
 use crate::error::{Error, Result};
 use crate::files;
 use crate::rig::readings::Readings;
@@ -222,7 +222,7 @@ impl Reader<'_> {
             wishes,
             warnings: Vec::new(),
         };
-        self.warnings.extend(warning::about(&campaign, &clamps));
+        self.warnings.extend(checks::about(&campaign, &clamps));
         campaign.warnings = self.warnings;
         Ok(campaign)
     }

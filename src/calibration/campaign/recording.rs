@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use nalgebra::Vector3;
 
 use super::columns::{Columns, POSITION, listed, required};
-use super::{Distance, Group, Recording, Row, Targets, Warning, warning};
+use super::layout::{Clamp, Role, Seen, Sockets};
+use super::{Distance, Group, Recording, Row, Targets, Warning, checks};
 use crate::delimited::{Row as Cells, Table, comments_above};
 use crate::error::{Error, Place, Result};
 use crate::robot::Robot;
@@ -13,39 +14,6 @@ use crate::spatial::Pose;
 use crate::units::MM;
 
 const ABSOLUTE_ZERO_C: f64 = -273.15;
-
-/// Where the ball was, as the campaign file has it.
-#[derive(Clone, Copy)]
-pub(super) enum Seen<'a> {
-    /// Measured in {W}.
-    World,
-    /// Measured in the device frame of one of these clamps.
-    Clamps(&'a [Clamp]),
-    /// Not measured: in a socket.
-    Sockets(Sockets),
-}
-
-/// A clamp and its device frame in {W}.
-pub(super) struct Clamp {
-    pub id: String,
-    pub device: Pose,
-}
-
-/// What is known about the sockets of every placement.
-#[derive(Clone, Copy)]
-pub(super) struct Sockets {
-    /// Between socket 0 and socket 1, m.
-    pub distance: f64,
-    /// Its standard deviation, m.
-    pub sd: f64,
-}
-
-/// What a recording is for.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Role {
-    Measurements,
-    Validation,
-}
 
 /// Reads `text`, the contents of `file`.
 ///
@@ -93,9 +61,9 @@ pub(super) fn read(
         groups: reader.groups.into_iter().map(|held| held.group).collect(),
         targets,
     };
-    let mut warnings = warning::about_dialect(file, &table);
+    let mut warnings = checks::about_dialect(file, &table);
     warnings.extend(columns.unused(file, &table));
-    warnings.extend(warning::about_joints(&recording, robot, role));
+    warnings.extend(checks::about_joints(&recording, robot, role));
     Ok((recording, warnings))
 }
 

@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, Matrix3, Vector3};
 
-use super::{AIM, Plan};
+use super::plan::{AIM, Plan};
 use crate::calibration::campaign::Group;
 use crate::error::{Error, Result};
 use crate::robot::{Kinematics, Motion, Parameter, Robot, Setup};

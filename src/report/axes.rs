@@ -1,7 +1,7 @@
 //! What the axes of a chart span, and how high it is.
 
 use super::chart::{Axis, Chart, Mark, Range};
-use super::draw::NOTE;
+use super::frame::NOTE;
 use super::labels::text_width_px;
 use super::marks;
 use super::scale::{Extent, Scale, drawable, extent};

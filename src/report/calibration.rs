@@ -1,6 +1,7 @@
 //! What `rodcal calibrate` says: JSON, tables and pictures of a [`Calibration`].
 
 mod figures;
+mod groups;
 mod tables;
 
 pub(super) use figures::{convergence, mode_residuals};
@@ -11,6 +12,7 @@ use super::{Block, Report, Section};
 use crate::calibration::campaign::{Recording, Refit, Targets};
 use crate::calibration::{Calibration, Campaign, CrossValidation, Mode, Summary, Validation};
 use crate::units::{DEG, MM, UM, significant};
+use groups::group_summaries;
 
 /// Correlation of two estimates from which on they are reported together.
 const HIGH_CORRELATION: f64 = 0.9;
@@ -135,27 +137,6 @@ fn groups_json(recording: &Recording, calibration: &Calibration) -> Vec<Value> {
             object["poses"] = count.into();
             object["noise_um"] = (noise / UM).into();
             object
-        })
-        .collect()
-}
-
-/// Name, number of poses and residuals of every clamp or socket.
-fn group_summaries(recording: &Recording, calibration: &Calibration) -> Vec<(String, usize, Summary)> {
-    let residuals = calibration.residuals();
-    recording
-        .groups
-        .iter()
-        .enumerate()
-        .map(|(index, group)| {
-            let of: Vec<f64> = recording
-                .rows
-                .iter()
-                .zip(&residuals)
-                .filter(|(row, _)| row.group == index)
-                .map(|(_, &residual)| residual)
-                .collect();
-            let name = if group.name.is_empty() { "all poses".to_owned() } else { group.name.clone() };
-            (name, of.len(), Summary::of(&of))
         })
         .collect()
 }

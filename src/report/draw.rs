@@ -2,11 +2,11 @@
 
 use super::axes::{has_bars, scales};
 use super::chart::{Chart, Dash, Figure};
+use super::frame::{Frame, NOTE};
 use super::labels::{Area, Crowd, text_width_px, wrap};
 use super::legend::Legend;
 use super::marks;
-use super::plot::{Anchor, Canvas, Lettering, Px, Rgb};
-use super::scale::Scale;
+use super::plot::{Anchor, Canvas, Lettering, Rgb};
 
 /// Width of every figure: the text column of the page.
 const WIDTH_PX: f64 = 760.0;
@@ -14,8 +14,6 @@ const GAP_PX: f64 = 28.0;
 const EDGE_PX: f64 = 8.0;
 const TICK_PX: f64 = 4.0;
 
-pub(super) const NOTE: Lettering =
-    Lettering { size_px: 11.5, bold: false, anchor: Anchor::Middle, upwards: false };
 const LABEL: Lettering = Lettering { size_px: 12.5, ..NOTE };
 const TITLE: Lettering = Lettering { size_px: 13.5, bold: true, anchor: Anchor::Left, upwards: false };
 const TITLE_LINE_PX: f64 = 18.0;
@@ -90,33 +88,6 @@ struct Plan<'a> {
     frame: Frame,
     left: f64,
     legend: Option<Legend<'a>>,
-}
-
-/// The axes: from data to pixels.
-pub(super) struct Frame {
-    pub(super) area: Area,
-    pub(super) x: Scale,
-    pub(super) y: Scale,
-}
-
-impl Frame {
-    /// Where a data point lies on the picture.
-    pub(super) fn px(&self, point: [f64; 2]) -> Px {
-        [
-            self.area.left + self.x.fraction(point[0]) * self.area.width(),
-            self.area.bottom - self.y.fraction(point[1]) * self.area.height(),
-        ]
-    }
-
-    /// How much of x a pixel is.
-    fn unit_per_px(&self) -> f64 {
-        (self.x.to - self.x.from) / self.area.width()
-    }
-
-    /// Whether a data point has a place on the picture, be it beyond the frame.
-    pub(super) fn places(&self, point: [f64; 2]) -> bool {
-        self.x.places(point[0]) && self.y.places(point[1])
-    }
 }
 
 impl<'a> Plan<'a> {

@@ -2,7 +2,7 @@
 //! elsewhere.
 
 use super::chart::{Dash, Mark};
-use super::draw::{Frame, NOTE};
+use super::frame::{Frame, NOTE};
 use super::labels::{Area, Crowd, text_width_px};
 use super::plot::{Canvas, Rgb};
 

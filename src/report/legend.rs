@@ -1,7 +1,7 @@
 //! The legend below a chart: a sample of each mark and its label, in rows.
 
 use super::chart::{Dash, Mark};
-use super::draw::NOTE;
+use super::frame::NOTE;
 use super::labels::{Area, text_width_px, wrap};
 use super::marks;
 use super::plot::{Anchor, Canvas, Lettering, Px, Rgb};

@@ -1,8 +1,8 @@
 //! Draws the marks of a chart inside its axes, and finds what the axes have to span.
 
 use super::chart::{Bar, Chart, Dash, Direction, Mark, Marker, Point, Style};
-use super::draw::{Frame, NOTE};
 use super::flags;
+use super::frame::{Frame, NOTE};
 use super::labels::{Area, Crowd, text_width_px};
 use super::plot::{Anchor, Canvas, Lettering, Px, Rgb};
 use super::scale::{Extent, drawable, extent};

@@ -9,8 +9,8 @@ use rodcal::rig::readings::Readings;
 use rodcal::rod::Rod;
 use rodcal::{Result, report, rig};
 
-use super::Theory;
 use super::output::Outcome;
+use super::values::{Theory, elements};
 
 #[derive(Debug, Subcommand)]
 pub enum Rig {
@@ -30,7 +30,7 @@ pub struct Fit {
     #[arg(long, value_enum, default_value_t = Theory::Timoshenko)]
     theory: Theory,
     /// Number of beam elements of that model.
-    #[arg(long, default_value_t = DEFAULT_ELEMENTS, value_parser = super::elements)]
+    #[arg(long, default_value_t = DEFAULT_ELEMENTS, value_parser = elements)]
     elements: usize,
     /// What an outlier counts.
     #[arg(long, value_enum, default_value_t = Weights::None)]

@@ -1,4 +1,5 @@
-//! Kinematic calibration: joint values and ball positions in, a calibrated robot with honest uncertainties out.
+//! Kinematic calibration: joint values and ball positions in, a calibrated robot with honest
+//! uncertainties out.
 
 mod calibrate;
 pub mod campaign;
@@ -6,7 +7,7 @@ mod checks;
 mod compare;
 mod compensation;
 mod cross_validation;
-mod identify;
+mod identifiability;
 mod noise;
 mod observability;
 mod options;
@@ -25,7 +26,7 @@ pub use campaign::Campaign;
 pub use compare::{CompareOptions, Comparison, Difference, compare};
 pub use compensation::{Compensation, Mode, TORQUE_ROUNDS, default_mode, modes};
 pub use cross_validation::{CrossValidation, cross_validate};
-pub use identify::{Held, plausible_range};
+pub use identifiability::{UnidentifiedDirection, plausible_range};
 pub use noise::{Noise, Robust};
 pub use observability::Observability;
 pub use options::Options;

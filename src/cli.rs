@@ -20,7 +20,8 @@ use rodcal::Result;
 
 use output::Outcome;
 
-/// How much a measuring rod bends, how accurate a robot is once that is compensated, and which physics a model left out.
+/// How much a measuring rod bends, how accurate a robot is once that is compensated, and which
+/// physics a model left out.
 #[derive(Debug, Parser)]
 #[command(version, after_help = EXAMPLES, propagate_version = true)]
 pub struct Arguments {

@@ -1,7 +1,8 @@
 //! Compliance of a rod's tip: C^F (per newton of contact force) and C^g (per g of gravity).
 //!
-//! `Δx_TCP = C^g g_T + C^F F_T` (the paper's Eq 19): the tip's deflection in {T} under the gravity vector (in g)
-//! and the contact force (in N), both expressed in {T}. `C[(m, n)]`: offset along axis m, load along axis n.
+//! `Δx_TCP = C^g g_T + C^F F_T` (the paper's Eq 19): the tip's deflection in {T} under the gravity
+//! vector (in g) and the contact force (in N), both expressed in {T}. `C[(m, n)]`: offset along
+//! axis m, load along axis n.
 
 pub mod closed_form;
 mod steps;
@@ -42,7 +43,8 @@ impl Compliance {
     /// From the beam model with `physics` (FEA mode).
     ///
     /// # Errors
-    /// As [`RodModel::new`] and [`crate::beam::Chain::solve`]; [`Error::Numerical`] where the result overflows.
+    /// As [`RodModel::new`] and [`crate::beam::Chain::solve`]; [`Error::Numerical`] where the
+    /// result overflows.
     pub fn of_model(rod: &Rod, physics: &Physics, elements: usize) -> Result<Self> {
         let model = RodModel::new(rod, physics, elements, &[])?;
         let tip = model.tip();

@@ -1,5 +1,5 @@
-//! **rodcal**: how much a bent measuring rod bends, how accurate a robot is once that is compensated,
-//! and which physics a model left out.
+//! **rodcal**: how much a bent measuring rod bends, how accurate a robot is once that is
+//! compensated, and which physics a model left out.
 
 pub mod beam;
 pub mod calibration;

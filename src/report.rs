@@ -1,14 +1,15 @@
 //! Reports: results as words, tables and pictures, in files that open anywhere.
 //!
-//! Data flows one way. A caller fills a [`Report`] with plain data; [`Report::files`] turns it into the
-//! bytes of a self-contained page and of every table and figure on its own. Nothing here reads or
-//! writes a file, and the same report always gives the same bytes.
+//! Data flows one way. A caller fills a [`Report`] with plain data; [`Report::files`] turns it into
+//! the bytes of a self-contained page and of every table and figure on its own. Nothing here reads
+//! or writes a file, and the same report always gives the same bytes.
 //!
 //! - [`chart`]: charts as data, drawn by [`chart::Figure::svg`] · [`png`]: SVG to PNG
 //! - [`pictures`]: the pictures of a rod and of a calibration, from numbers to charts
 //! - [`compliance`] · [`rig`] · [`diagnosis`]: results of the library as reports and as JSON
 //! - [`trial`]: the score of a concealed-effect trial
-//! - [`text`]: a report for the terminal · [`table`]: tables to text, HTML, Markdown, CSV · [`html`]: the page
+//! - [`text`]: a report for the terminal · [`table`]: tables to text, HTML, Markdown, CSV ·
+//!   [`html`]: the page
 
 mod axes;
 pub mod calibration;
@@ -18,8 +19,8 @@ pub mod compliance;
 pub mod diagnosis;
 mod document;
 mod draw;
+mod event_labels;
 mod files;
-mod flags;
 mod frame;
 pub mod html;
 mod labels;

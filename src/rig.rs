@@ -3,9 +3,9 @@
 //! With c_mn the measured slope (offset along m per load along n) and c'_mn the model's (FEA):
 //!
 //! ```text
-//! r_mn  = c_mn / c'_mn                          (Eq 20)
-//! r_rod = (c_22 + c_33) / (c'_22 + c'_33)       (Eq 21)
-//! C^g   = r_rod C'^g                            (Eq 22), and so are the entries of C^F that were not measured
+//! r_mn  = c_mn / c'_mn                       (Eq 20)
+//! r_rod = (c_22 + c_33) / (c'_22 + c'_33)    (Eq 21)
+//! C^g   = r_rod C'^g                         (Eq 22); likewise entries of C^F that were not measured
 //! ```
 //!
 //! Source: Improved MultiCal, *Sensors* 23 (2023) 5717, § 4.2.

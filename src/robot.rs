@@ -7,9 +7,10 @@
 //! Hⱼ = Rz(θⱼ)·Tz(dⱼ)·Tx(aⱼ)·Rx(αⱼ)·Ry(βⱼ)        (the paper's Table 1)
 //! ```
 //!
-//! with θⱼ = offset + qⱼ + cⱼ·τⱼ (and what [`Effect`]s add) for a revolute joint and dⱼ = d + qⱼ for a prismatic one. {0} is
-//! the robot's base frame, {T} the flange's. β is zero but where consecutive axes are nearly parallel: there Denavit and Hartenberg's
-//! common normal jumps with the smallest tilt, and Hayati's β does not (S. Hayati, *IEEE CDC* 22 (1983) 1477–1483).
+//! with θⱼ = offset + qⱼ + cⱼ·τⱼ (and what [`Effect`]s add) for a revolute joint and dⱼ = d + qⱼ
+//! for a prismatic one. {0} is the robot's base frame, {T} the flange's. β is zero but where
+//! consecutive axes are nearly parallel: there Denavit and Hartenberg's common normal jumps with
+//! the smallest tilt, and Hayati's β does not (S. Hayati, *IEEE CDC* 22 (1983) 1477–1483).
 
 mod defaults;
 mod effect;
@@ -32,7 +33,7 @@ pub use file::is_urdf;
 pub use kinematics::{JointFrames, Kinematics};
 pub use minimal::minimal_parameters;
 pub use parameter::{Parameter, Unit};
-pub use predict::Asked;
+pub use predict::PredictionQuery;
 pub use setup::Setup;
 pub use statics::Loads;
 pub use uncertainty::Uncertainty;
@@ -51,7 +52,8 @@ pub struct Robot {
     pub source: Option<String>,
     /// Acceleration of gravity in {0}, m/s².
     pub gravity: Vector3<f64>,
-    /// Frame of the first joint in {0}: its z axis is the joint's axis. The identity for a robot given as a table.
+    /// Frame of the first joint in {0}: its z axis is the joint's axis. The identity for a robot
+    /// given as a table.
     pub root: Pose,
     /// Joints that move, base to flange; at least one.
     pub joints: Vec<Joint>,

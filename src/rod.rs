@@ -16,7 +16,8 @@ use nalgebra::Vector3;
 use crate::material::Material;
 use crate::section::Round;
 
-/// A rod as its file describes it, in SI units. Made by [`Rod::read`] or [`Rod::from_toml`], which check it.
+/// A rod as its file describes it, in SI units. Made by [`Rod::read`] or [`Rod::from_toml`], which
+/// check it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rod {
     /// Name, for people.
@@ -94,7 +95,8 @@ pub enum BendFlexibility {
     /// k = 1: beam theory.
     #[default]
     Beam,
-    /// k = (10 + 12h²)/(1 + 12h²). T. von Kármán, "Über die Formänderung dünnwandiger Rohre", Z. VDI 55 (1911) 1889–1895.
+    /// k = (10 + 12h²)/(1 + 12h²). T. von Kármán, "Über die Formänderung dünnwandiger Rohre", Z.
+    /// VDI 55 (1911) 1889–1895.
     VonKarman,
     /// k = 1.65/h, not below 1. ASME B31.3 (2018), Table D300, welding elbow or pipe bend.
     AsmeB313,
@@ -103,7 +105,8 @@ pub enum BendFlexibility {
 }
 
 impl BendFlexibility {
-    /// The factor k on the bending flexibility of the bend (in and out of its plane), dimensionless.
+    /// The factor k on the bending flexibility of the bend (in and out of its plane),
+    /// dimensionless.
     pub fn factor(&self, section: &Round, bend_radius: f64) -> f64 {
         // h = tR/r²
         let h = section.wall() * bend_radius / section.mean_radius().powi(2);
@@ -215,12 +218,14 @@ impl Rod {
     }
 }
 
-/// What an arc of radius R takes off each pipe at the inside angle γ, m. A straight rod (γ = π) has no bend.
+/// What an arc of radius R takes off each pipe at the inside angle γ, m. A straight rod (γ = π) has
+/// no bend.
 fn tangent_length(bend_radius: f64, gamma: f64) -> f64 {
     bend_radius * ((PI - gamma) / 2.0).tan()
 }
 
-/// Sine and cosine that are exact at the right and the straight angle, where `sin π` would leave 1e-16.
+/// Sine and cosine that are exact at the right and the straight angle, where `sin π` would leave
+/// 1e-16.
 pub(crate) fn sin_cos_exact(angle: f64) -> (f64, f64) {
     let (sin, cos) = angle.sin_cos();
     let clean = |x: f64| if x.abs() < 1e-15 { 0.0 } else { x };

@@ -30,7 +30,8 @@ impl Round {
         2.0 * self.second_moment()
     }
 
-    /// Cowper's shear coefficient κ of a hollow circle (solid: m = 0), dimensionless, for Poisson's ratio ν:
+    /// Cowper's shear coefficient κ of a hollow circle (solid: m = 0), dimensionless, for Poisson's
+    /// ratio ν:
     ///
     /// κ = 6(1+ν)(1+m²)² / ((7+6ν)(1+m²)² + (20+12ν)m²), m = d/D.
     ///

@@ -4,9 +4,11 @@ use nalgebra::{Rotation3, Vector3};
 
 use super::element::{Profile, Shape};
 
-/// A cantilever in space: node 0 is clamped, each further node hangs on the one before by one element.
+/// A cantilever in space: node 0 is clamped, each further node hangs on the one before by one
+/// element.
 ///
-/// The chain is drawn like a turtle drawing: a current point and a current frame whose z axis points ahead.
+/// The chain is drawn like a turtle drawing: a current point and a current frame whose z axis
+/// points ahead.
 #[derive(Debug, Clone)]
 pub struct Chain {
     pub(super) nodes: Vec<Node>,
@@ -61,8 +63,8 @@ impl Chain {
         }
     }
 
-    /// Goes along an arc of `radius` (m) through `angle` (rad, > 0) in `count` equal elements (at least one),
-    /// bending from the current z axis towards the current x axis.
+    /// Goes along an arc of `radius` (m) through `angle` (rad, > 0) in `count` equal elements (at
+    /// least one), bending from the current z axis towards the current x axis.
     pub fn arc(&mut self, profile: &Profile, radius: f64, angle: f64, count: usize) {
         let (Node { position, station, .. }, count) = (self.last(), count.max(1));
         let step = angle / count as f64;
@@ -80,7 +82,8 @@ impl Chain {
         self.turn(&Rotation3::from_axis_angle(&Vector3::y_axis(), angle));
     }
 
-    /// Turns the current frame about itself: a sharp corner, or a new direction of the section's axes.
+    /// Turns the current frame about itself: a sharp corner, or a new direction of the section's
+    /// axes.
     pub fn turn(&mut self, rotation: &Rotation3<f64>) {
         self.frame *= rotation;
     }

@@ -67,14 +67,16 @@ pub struct RodModel {
 }
 
 impl RodModel {
-    /// Meshes `rod` with `elements` elements (at least one for each part between two stations of interest).
-    /// `stations` (m) get a node besides the tip, the masses and the joints.
+    /// Meshes `rod` with `elements` elements (at least one for each part between two stations of
+    /// interest). `stations` (m) get a node besides the tip, the masses and the joints.
     ///
-    /// The elements are shared out by length. Their number does not change the result: each element is exact.
+    /// The elements are shared out by length. Their number does not change the result: each element
+    /// is exact.
     ///
     /// # Errors
-    /// [`Error::Argument`] for no elements, or a station that is not on the rod; [`Error::Numerical`] for a rod whose
-    /// pipes are too unequal in length, or too short, for double precision.
+    /// [`Error::Argument`] for no elements, or a station that is not on the rod;
+    /// [`Error::Numerical`] for a rod whose pipes are too unequal in length, or too short, for
+    /// double precision.
     pub fn new(rod: &Rod, physics: &Physics, elements: usize, stations: &[f64]) -> Result<Self> {
         if elements == 0 {
             return Err(Error::Argument {
@@ -101,7 +103,8 @@ impl RodModel {
             if middle < rod.bend_start() {
                 chain.straight(&pipe1, length, count);
             } else if middle < rod.bend_end() {
-                // its share of the turn: the rounding of two stations over a tiny radius would turn all beyond it
+                // its share of the turn: the rounding of two stations over a tiny radius would turn
+                // all beyond it
                 chain.arc(&bend, rod.bend_radius, rod.turn() * (length / bend_length), count);
             } else {
                 if std::mem::take(&mut corner_ahead) {
@@ -125,7 +128,8 @@ impl RodModel {
         self.chain.end()
     }
 
-    /// The node at a `station` (m) that was given to [`RodModel::new`]: the outermost one there, beyond any joint.
+    /// The node at a `station` (m) that was given to [`RodModel::new`]: the outermost one there,
+    /// beyond any joint.
     pub fn node_at(&self, station: f64) -> usize {
         let distance = |node: usize| (self.chain.station(node) - station).abs();
         (0..=self.chain.end()).fold(0, |best, node| match distance(node) <= distance(best) + SAME_STATION {
@@ -134,7 +138,8 @@ impl RodModel {
         })
     }
 
-    /// Displacement (m) and rotation (rad) at one station per unit force (N) at another, both in {T}.
+    /// Displacement (m) and rotation (rad) at one station per unit force (N) at another, both in
+    /// {T}.
     ///
     /// # Errors
     /// As [`Chain::solve`].
@@ -145,7 +150,8 @@ impl RodModel {
     }
 }
 
-/// An arc shorter than this is a sharp corner, m: its angle would be lost in the rounding of stations.
+/// An arc shorter than this is a sharp corner, m: its angle would be lost in the rounding of
+/// stations.
 const SHARPEST_BEND: f64 = 1e-6;
 
 /// Stations closer than this are one node, m.
@@ -201,7 +207,8 @@ impl Physics {
     }
 }
 
-/// Refuses a rod of which rounding would lose a pipe: stations of 1e27 m cannot tell the ends of one of 0.5 m apart.
+/// Refuses a rod of which rounding would lose a pipe: stations of 1e27 m cannot tell the ends of
+/// one of 0.5 m apart.
 fn check_resolution(rod: &Rod) -> Result<()> {
     let (length, tangent) = (rod.length(), rod.tangent_length());
     let pipes = [(rod.l1 - tangent, rod.bend_start()), (rod.l2 - tangent, length - rod.bend_end())];
@@ -220,7 +227,8 @@ fn check_resolution(rod: &Rod) -> Result<()> {
     Ok(())
 }
 
-/// Where the centreline is cut into parts: its ends, the bend's, and wherever something sits or is read.
+/// Where the centreline is cut into parts: its ends, the bend's, and wherever something sits or is
+/// read.
 fn cuts(rod: &Rod, stations: &[f64]) -> Result<Vec<f64>> {
     let length = rod.length();
     let mut cuts = vec![0.0, rod.bend_start(), rod.bend_end(), length];
@@ -252,8 +260,8 @@ fn place_features(chain: &mut Chain, rod: &Rod, station: f64) {
     }
 }
 
-/// Shares `total` elements out among the parts between `cuts` by length: at least one each, and exactly `total`
-/// in all where there are that many parts or fewer (largest remainders).
+/// Shares `total` elements out among the parts between `cuts` by length: at least one each, and
+/// exactly `total` in all where there are that many parts or fewer (largest remainders).
 fn share_out(total: usize, cuts: &[f64]) -> Vec<usize> {
     let parts = cuts.len() - 1;
     let spare = total.saturating_sub(parts) as f64;

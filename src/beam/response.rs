@@ -56,7 +56,8 @@ pub(super) struct Carried {
 }
 
 impl Response {
-    /// Displacement and rotation of `node` under the load block `load` (index into the slice given to [`super::Chain::solve`]).
+    /// Displacement and rotation of `node` under the load block `load` (index into the slice given
+    /// to [`super::Chain::solve`]).
     pub fn motion(&self, node: usize, load: usize) -> &Motion {
         &self.motions[node * self.loads + load]
     }

@@ -1,9 +1,9 @@
 //! Equilibrium from the tip to the root, deformation from the root to the tip.
 //!
-//! Loads come in blocks of three: the same load along x, along y and along z. A point force of 1 N is then the
-//! weight of a point mass of 1 kg under unit acceleration, so that forces and self-weight are one kind of load:
-//! a distribution of mass. What an element carries of it is its mass φ and first moment s about the element,
-//! `F = φ·1`, `M = [s]ₓ`.
+//! Loads come in blocks of three: the same load along x, along y and along z. A point force of 1 N
+//! is then the weight of a point mass of 1 kg under unit acceleration, so that forces and
+//! self-weight are one kind of load: a distribution of mass. What an element carries of it is its
+//! mass φ and first moment s about the element, `F = φ·1`, `M = [s]ₓ`.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -18,8 +18,8 @@ impl Chain {
     /// Solves for all `loads` at once and checks the solution (see `check.rs`).
     ///
     /// # Errors
-    /// [`Error::Argument`] for a load at a node the chain does not have; [`Error::SelfCheck`] with node and freedom
-    /// where equilibrium, reciprocity or finiteness fails.
+    /// [`Error::Argument`] for a load at a node the chain does not have; [`Error::SelfCheck`] with
+    /// node and freedom where equilibrium, reciprocity or finiteness fails.
     pub fn solve(&self, loads: &[Load]) -> Result<Response> {
         for load in loads {
             match *load {
@@ -51,7 +51,8 @@ impl Chain {
         Resultant { force: Matrix3::from_diagonal_element(carried.mass), moment: carried.moment() }
     }
 
-    /// From the tip to the root: mass of everything at and beyond each node and its first moment about that node.
+    /// From the tip to the root: mass of everything at and beyond each node and its first moment
+    /// about that node.
     pub(super) fn weight_beyond(&self) -> Vec<Carried> {
         let mut carried = Carried::NOTHING;
         let mut all = vec![carried; self.nodes.len()];
@@ -60,7 +61,8 @@ impl Chain {
         for k in (0..self.elements.len()).rev() {
             let (near, far, element) = (&self.nodes[k], &self.nodes[k + 1], &self.elements[k]);
             let shape = self.shape(element);
-            // φ_k = φ_{k+1} + m_element + m_node,  s_k = s_{k+1} + φ_{k+1}(p_{k+1} − p_k) + m_element(c + c_m − p_k)
+            // φ_k = φ_{k+1} + m_element + m_node,  s_k = s_{k+1} + φ_{k+1}(p_{k+1} − p_k) +
+            // m_element(c + c_m − p_k)
             carried.first_moment += (far.position - near.position) * carried.mass
                 + (element.reference + shape.mass_centre - near.position) * shape.mass;
             carried.mass += shape.mass + near.mass;
@@ -69,7 +71,8 @@ impl Chain {
         all
     }
 
-    /// From the root to the tip: each node moves with the one before it and by its element's deformation.
+    /// From the root to the tip: each node moves with the one before it and by its element's
+    /// deformation.
     pub(super) fn deform(&self, loads: &[Load], weight: &[Carried]) -> Response {
         let still = Motion { translation: Matrix3::zeros(), rotation: Matrix3::zeros() };
         let mut motions = Vec::with_capacity(self.nodes.len() * loads.len());
@@ -104,7 +107,8 @@ impl Chain {
         }
     }
 
-    /// What a point load at or beyond `node` carries into a cut before it, about `point`; nothing if it acts before.
+    /// What a point load at or beyond `node` carries into a cut before it, about `point`; nothing
+    /// if it acts before.
     fn point_load_beyond(&self, load: Load, node: usize, point: &Vector3<f64>) -> Carried {
         match load {
             Load::Force { node: at } if at >= node => {

@@ -1,8 +1,9 @@
-//! The calibration itself: rough start, fit, compensation recomputed until it stands still (Eqs 7–14).
+//! The calibration itself: rough start, fit, compensation recomputed until it stands still (Eqs
+//! 7–14).
 
 use super::campaign::{Campaign, Recording, Targets};
 use super::compensation::{Compensation, Mode};
-use super::identify;
+use super::identifiability;
 use super::observability::Observability;
 use super::options::Options;
 use super::passes::Run;
@@ -16,8 +17,9 @@ use crate::robot::{Kinematics, Parameter, Setup, minimal_parameters};
 /// Calibrates the robot of a campaign.
 ///
 /// # Errors
-/// What [`Compensation::new`] refuses; [`Error::Input`] for fewer measurements than parameters; what the fits refuse.
-/// A fit that does not converge is no error: see [`Calibration::is_converged`].
+/// What [`Compensation::new`] refuses; [`Error::Input`] for fewer measurements than parameters;
+/// what the fits refuse. A fit that does not converge is no error: see
+/// [`Calibration::is_converged`].
 pub fn calibrate<'c>(campaign: &'c Campaign, mode: Mode, options: &Options) -> Result<Calibration<'c>> {
     let compensation = Compensation::new(campaign, mode)?;
     let mut start = start(campaign)?;
@@ -34,8 +36,8 @@ pub fn calibrate<'c>(campaign: &'c Campaign, mode: Mode, options: &Options) -> R
     Ok(calibration)
 }
 
-/// Calibrates `free` parameters on a recording, from a given start, without validation: for folds and recordings that
-/// were drawn again.
+/// Calibrates `free` parameters on a recording, from a given start, without validation: for folds
+/// and recordings that were drawn again.
 ///
 /// # Errors
 /// As [`calibrate`].
@@ -57,7 +59,7 @@ pub fn calibrate_from<'c>(
     let problem = Residuals { setup: setup.clone(), free, recording, pass: &pass, held: &held };
     let deviations = problem.deviations(&fit.parameters);
     let errors = fit.standard_errors();
-    let identified = identify::identified(&held, free.len());
+    let identified = identifiability::identified(&held, free.len());
     let parameters = free
         .iter()
         .enumerate()
@@ -65,7 +67,9 @@ pub fn calibrate_from<'c>(
             parameter,
             nominal: nominal.get(parameter),
             value: setup.get(parameter),
-            std_error: errors[k].filter(|_| identified[k]).map(|e| e.hypot(identify::unseen(&held, k))),
+            std_error: errors[k]
+                .filter(|_| identified[k])
+                .map(|e| e.hypot(identifiability::unidentified_range(&held, k))),
             identifiable: identified[k] && errors[k].is_some(),
         })
         .collect();
@@ -81,7 +85,7 @@ pub fn calibrate_from<'c>(
     let (tips, deflections) = (0..recording.len())
         .map(|row| {
             kinematics.update(recording.joints(row), pass.torque(recording, row));
-            (kinematics.tip, kinematics.flange.rotation * pass.bent[row])
+            (kinematics.tip, kinematics.flange.rotation * pass.deflection[row])
         })
         .unzip();
     let observability = Observability::new(&problem, &fit.parameters)?;
@@ -126,16 +130,16 @@ pub fn start(campaign: &Campaign) -> Result<Setup<'_>> {
     Ok(setup)
 }
 
-/// The complete and minimal set of the robot, with the user's wishes.
+/// The complete and minimal set of the robot, with the user's constraints.
 pub fn free_parameters(campaign: &Campaign, start: &Setup, compensation: &Compensation) -> Vec<Parameter> {
     let has_world = matches!(campaign.measurements.targets, Targets::Points(_));
     let is_base = |p: &Parameter| matches!(p, Parameter::BasePosition(_) | Parameter::BaseRotation(_));
-    let wishes = &campaign.wishes;
+    let constraints = &campaign.wishes;
     let minimal = minimal_parameters(&campaign.robot, start.tool, campaign.tool, compensation.payload);
     Parameter::all(campaign.robot.joints.len())
         .into_iter()
-        .filter(|p| (minimal.contains(p) && (has_world || !is_base(p))) || wishes.freed.contains(p))
-        .filter(|p| !wishes.fixed.contains(p))
+        .filter(|p| (minimal.contains(p) && (has_world || !is_base(p))) || constraints.freed.contains(p))
+        .filter(|p| !constraints.fixed.contains(p))
         .collect()
 }
 

@@ -1,14 +1,15 @@
-//! A calibration campaign: the robot, its rod, and what was recorded. One TOML file that names the others.
+//! A calibration campaign: the robot, its rod, and what was recorded. One TOML file that names the
+//! others.
 //!
 //! Every key and column is in `docs/campaign-file.md`.
 
 mod checks;
 mod columns;
+mod constraints;
 mod file;
 mod layout;
 mod recording;
 mod warning;
-mod wishes;
 
 pub use warning::Warning;
 
@@ -26,7 +27,8 @@ pub struct Campaign {
     pub file: String,
     /// Nominal robot.
     pub robot: Robot,
-    /// The robot's file as the campaign names it (`builtin:tx90` is one) and its text, for writing it back.
+    /// The robot's file as the campaign names it (`builtin:tx90` is one) and its text, for writing
+    /// it back.
     pub robot_file: String,
     /// Its text.
     pub robot_text: String,
@@ -54,8 +56,8 @@ pub struct Campaign {
     pub refit: Refit,
     /// Standard deviation of one measured coordinate, m, where the file states it.
     pub noise: Option<f64>,
-    /// The user's wishes about single parameters.
-    pub wishes: Wishes,
+    /// What the user states about single parameters.
+    pub wishes: ParameterConstraints,
     /// What a user should know about the files although they can be read.
     pub warnings: Vec<Warning>,
 }
@@ -69,9 +71,9 @@ pub enum Refit {
     Nothing,
 }
 
-/// What the user says about single parameters.
+/// What the user states about single parameters: fixed, free, or known beforehand.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Wishes {
+pub struct ParameterConstraints {
     /// Held at their nominal values.
     pub fixed: Vec<Parameter>,
     /// Estimated although the default set leaves them out.

@@ -1,7 +1,7 @@
 //! What the user of a calibration should know: which warnings apply.
 
 use super::campaign::{Campaign, Recording};
-use super::identify::{Held, plausible_range};
+use super::identifiability::{UnidentifiedDirection, plausible_range};
 use super::result::Calibration;
 use super::warning::Warning;
 use crate::robot::Parameter;
@@ -54,7 +54,7 @@ fn not_identified(calibration: &Calibration) -> Vec<Warning> {
             calibration.parameters.iter().filter(|p| !p.identifiable).map(|p| p.parameter).collect();
         return vec![Warning::ManyNotIdentified { combinations: calibration.held.len(), parameters }];
     }
-    let of_direction = |held: &Held| {
+    let describe = |held: &UnidentifiedDirection| {
         let mut combination: Vec<(Parameter, f64)> = calibration
             .parameters
             .iter()
@@ -65,7 +65,7 @@ fn not_identified(calibration: &Calibration) -> Vec<Warning> {
         combination.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
         Warning::NotIdentified { combination, relative_error: held.relative_error }
     };
-    calibration.held.iter().map(of_direction).collect()
+    calibration.held.iter().map(describe).collect()
 }
 
 fn unequal_noise(recording: &Recording, calibration: &Calibration) -> Option<Warning> {

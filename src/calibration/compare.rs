@@ -1,9 +1,10 @@
 //! All modes of a campaign side by side, and whether they differ by more than chance.
 //!
-//! A paired bootstrap over poses: measurement poses are drawn again within every clamp, validation poses likewise, every
-//! mode is calibrated on the same draw and judged by the same draw. What is left of a difference between two modes
-//! is its uncertainty, measuring noise and choice of poses included (B. Efron, R. Tibshirani, *An Introduction to the
-//! Bootstrap*, 1993, ch. 13). Without a validation file the held-out errors of a cross-validation are compared.
+//! A paired bootstrap over poses: measurement poses are drawn again within every clamp, validation
+//! poses likewise, every mode is calibrated on the same draw and judged by the same draw. What is
+//! left of a difference between two modes is its uncertainty, measuring noise and choice of poses
+//! included (B. Efron, R. Tibshirani, *An Introduction to the Bootstrap*, 1993, ch. 13). Without a
+//! validation file the held-out errors of a cross-validation are compared.
 
 use super::calibrate::{calibrate, calibrate_from};
 use super::campaign::Campaign;
@@ -61,7 +62,8 @@ pub struct Difference {
     pub mean: f64,
     /// Its 95 % interval, m.
     pub interval: (f64, f64),
-    /// True where the difference is larger than chance would make the largest of so many differences, 19 times in 20.
+    /// True where the difference is larger than chance would make the largest of so many
+    /// differences, 19 times in 20.
     pub is_significant: bool,
 }
 
@@ -139,7 +141,8 @@ pub fn compare<'c>(
                 against,
                 mean: difference,
                 interval,
-                // two-sided 5 % over all pairs (Bonferroni), by the normal distribution of a mean of many errors
+                // two-sided 5 % over all pairs (Bonferroni), by the normal distribution of a mean
+                // of many errors
                 is_significant: sd > 0.0 && two_sided_normal(difference / sd) * pairs as f64 <= 0.05,
             });
         }
@@ -157,15 +160,15 @@ fn mean_errors(
 ) -> Result<Vec<f64>> {
     let Some(validation) = &campaign.validation else {
         // the folds are what they are: only the poses that are judged are drawn
-        let rows = campaign.measurements.drawn_again(random);
-        let of_mode = |m: usize| {
+        let rows = campaign.measurements.bootstrap_rows(random);
+        let mean_error = |m: usize| {
             let errors = comparison.errors(m);
             mean(&rows.iter().map(|&row| errors[row]).collect::<Vec<_>>()).unwrap_or(0.0)
         };
-        return Ok((0..compensations.len()).map(of_mode).collect());
+        return Ok((0..compensations.len()).map(mean_error).collect());
     };
-    let measured = campaign.measurements.subset(&campaign.measurements.drawn_again(random));
-    let judged = validation.subset(&validation.drawn_again(random));
+    let measured = campaign.measurements.subset(&campaign.measurements.bootstrap_rows(random));
+    let judged = validation.subset(&validation.bootstrap_rows(random));
     comparison
         .calibrations
         .iter()
@@ -188,7 +191,8 @@ fn mean_errors(
 
 /// The bootstrap's interval around an estimate, and the standard deviation of the draws.
 ///
-/// The draws are centred on the estimate: their own mean carries the bias of drawing the same pose twice.
+/// The draws are centred on the estimate: their own mean carries the bias of drawing the same pose
+/// twice.
 fn interval(estimate: f64, mut samples: Vec<f64>) -> ((f64, f64), f64) {
     let shift = estimate - mean(&samples).unwrap_or(estimate);
     samples.iter_mut().for_each(|sample| *sample += shift);

@@ -20,7 +20,8 @@ pub struct CrossValidation {
     pub fold: Vec<usize>,
     /// Number of folds.
     pub folds: usize,
-    /// Predicted less measured, in {W}, m; with sockets less the mean of the socket's predicted tips.
+    /// Predicted less measured, in {W}, m; with sockets less the mean of the socket's predicted
+    /// tips.
     pub deviations: Vec<Vector3<f64>>,
     /// Their lengths, m.
     pub errors: Vec<f64>,
@@ -28,8 +29,8 @@ pub struct CrossValidation {
     pub summary: Summary,
 }
 
-/// Holds out one fold after the other ([`super::campaign::Recording::folds`]), calibrates on the rest as `calibration`
-/// was, and predicts what was held out.
+/// Holds out one fold after the other ([`super::campaign::Recording::folds`]), calibrates on the
+/// rest as `calibration` was, and predicts what was held out.
 ///
 /// # Errors
 /// As [`super::calibrate()`], where a fold leaves too few poses.
@@ -45,13 +46,13 @@ pub fn cross_validate(
     let folds = fold.iter().max().map_or(0, |last| last + 1);
     let free: Vec<_> = calibration.parameters.iter().map(|p| p.parameter).collect();
     let predictions = in_parallel(folds, |held_out| -> Result<Vec<(usize, Vector3<f64>)>> {
-        let of = |wanted: bool| -> Vec<usize> {
+        let rows_where = |wanted: bool| -> Vec<usize> {
             (0..recording.len()).filter(|&row| (fold[row] == held_out) == wanted).collect()
         };
-        let training = recording.subset(&of(false));
+        let training = recording.subset(&rows_where(false));
         let trained =
             calibrate_from(campaign, &training, calibration.start.clone(), &free, compensation, options)?;
-        let rows = of(true);
+        let rows = rows_where(true);
         let deviations = predict(&trained.setup, &recording.subset(&rows), compensation);
         Ok(rows.into_iter().zip(deviations).collect())
     });
@@ -65,7 +66,8 @@ pub fn cross_validate(
     Ok(CrossValidation { fold, folds, summary: Summary::of(&errors), errors, deviations })
 }
 
-/// Deflected tips of a recording as `setup` predicts them, less what was measured or less their sockets' means.
+/// Deflected tips of a recording as `setup` predicts them, less what was measured or less their
+/// sockets' means.
 fn predict(
     setup: &Setup,
     recording: &super::campaign::Recording,
@@ -85,6 +87,6 @@ fn predict(
         .collect();
     match &recording.targets {
         Targets::Points(points) => tips.iter().zip(points).map(|(tip, x)| tip - x).collect(),
-        Targets::Sockets(_) => recording.less_group_means(&tips),
+        Targets::Sockets(_) => recording.minus_group_means(&tips),
     }
 }

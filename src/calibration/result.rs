@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use super::compensation::Mode;
-use super::identify::Held;
+use super::identifiability::UnidentifiedDirection;
 use super::noise::Noise;
 use super::observability::Observability;
 use super::passes::PassRecord;
@@ -17,16 +17,19 @@ use crate::robot::{Parameter, Setup};
 pub struct Calibration<'c> {
     /// How the rod's deflection was compensated.
     pub mode: Mode,
-    /// Base, links, compliances and tool before the first fit: the nominal robot where the rough start puts it.
+    /// Base, links, compliances and tool before the first fit: the nominal robot where the rough
+    /// start puts it.
     pub start: Setup<'c>,
     /// Base, links, compliances and tool as found.
     pub setup: Setup<'c>,
     /// The free parameters.
     pub parameters: Vec<Estimated>,
-    /// Where the sockets were found, m, with their standard errors; in {0}. Empty for measured points.
+    /// Where the sockets were found, m, with their standard errors; in {0}. Empty for measured
+    /// points.
     pub sockets: Vec<[(f64, Option<f64>); 3]>,
-    /// Combinations of the free parameters that the data do not identify: held where the nominal robot has them.
-    pub held: Vec<Held>,
+    /// Combinations of the free parameters that the data do not identify: held where the
+    /// nominal robot has them.
+    pub held: Vec<UnidentifiedDirection>,
     /// Deflected tip less measured point or socket, in {W}, m: one per row.
     pub deviations: Vec<Vector3<f64>>,
     /// What the rod's deflection added to each row, in {W}, m.
@@ -60,14 +63,16 @@ pub struct Estimated {
     pub nominal: f64,
     /// Its estimate, SI.
     pub value: f64,
-    /// Its standard error, SI, with what directions that are held may hide of it; `None` where it is not identified.
+    /// Its standard error, SI, with what directions that are held may hide of it; `None` where it
+    /// is not identified.
     pub std_error: Option<f64>,
     /// False where the data do not determine it.
     pub identifiable: bool,
 }
 
 impl Calibration<'_> {
-    /// Pairs of free parameters whose estimates correlate by more than `limit` in size, strongest first.
+    /// Pairs of free parameters whose estimates correlate by more than `limit` in size, strongest
+    /// first.
     pub fn correlations_above(&self, limit: f64) -> Vec<(Parameter, Parameter, f64)> {
         let matrix = self.fit.covariance.correlation();
         let count = self.parameters.len();

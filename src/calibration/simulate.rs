@@ -1,8 +1,10 @@
-//! Simulated campaigns: what the paper's procedure would record with a robot and a rod that are known exactly.
+//! Simulated campaigns: what the paper's procedure would record with a robot and a rod that are
+//! known exactly.
 //!
-//! A robot with small errors of all its parameters brings the ball to five clamps under many orientations; the poses
-//! are picked for their observability. The rod sags and the sensors push, both with physical signs: gravity pulls down,
-//! the contact force pushes the ball up. Everything is drawn from one seed.
+//! A robot with small errors of all its parameters brings the ball to five clamps under many
+//! orientations; the poses are picked for their observability. The rod sags and the sensors push,
+//! both with physical signs: gravity pulls down, the contact force pushes the ball up. Everything
+//! is drawn from one seed.
 
 mod files;
 mod plan;
@@ -24,8 +26,9 @@ use crate::spatial::Pose;
 use crate::statistics::Random;
 use crate::units::{DEG, MM};
 
-/// Where the clamps of the paper's fixture could be (500 × 300 × 151 mm, § 5.2; their places are not published),
-/// position in {W} (m) and turn about the vertical (rad). {W} stands upright in the third clamp.
+/// Where the clamps of the paper's fixture could be (500 × 300 × 151 mm, § 5.2; their places are
+/// not published), position in {W} (m) and turn about the vertical (rad). {W} stands upright in the
+/// third clamp.
 const CLAMPS: [([f64; 3], f64); 5] = [
     ([0.10, 0.20, 0.10], 20.0 * DEG),
     ([-0.12, 0.12, 0.0], 95.0 * DEG),
@@ -81,7 +84,8 @@ pub fn simulate<'r>(robot: &'r Robot, rod: &Rod, model: &Compliance, plan: &Plan
     Ok(Simulation { plan: plan.clone(), truth, compliance, measurements, validation, base_guess })
 }
 
-/// The frame of a device: its three sensors look up at the same angle, so that (1, 1, 1) in it is vertical.
+/// The frame of a device: its three sensors look up at the same angle, so that (1, 1, 1) in it is
+/// vertical.
 fn device_frame(place: [f64; 3], turn: f64) -> Pose {
     let (z, x) = (Vector3::repeat(1.0).normalize(), Vector3::new(1.0, -1.0, 0.0).normalize());
     // rows: where x, y and z of {W} are in the device
@@ -108,7 +112,7 @@ fn true_setup<'r>(robot: &'r Robot, base: Pose, tool: Vector3<f64>, payload: Bod
             Parameter::Alpha(_) | Parameter::Beta(_) => errors.tilt,
             Parameter::Compliance(j) => {
                 // drives yield with their torque, never against it
-                let mean = errors.yielding / torques[j];
+                let mean = errors.joint_turn / torques[j];
                 truth.set(parameter, mean * random.uniform(0.5, 1.5));
                 continue;
             }

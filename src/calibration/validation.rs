@@ -60,8 +60,9 @@ impl Summary {
     }
 }
 
-/// Predicts `recording` with the calibrated `setup`, with base and tool fitted again where `refit` says so. It was
-/// measured with a short rigid rod and without contact: links weigh on the joints, nothing bends.
+/// Predicts `recording` with the calibrated `setup`, with base and tool fitted again where `refit`
+/// says so. It was measured with a short rigid rod and without contact: links weigh on the joints,
+/// nothing bends.
 ///
 /// # Errors
 /// What the fit refuses.
@@ -118,7 +119,7 @@ pub(super) fn validate_from(
         .collect();
     let deviations: Vec<Vector3<f64>> = match &recording.targets {
         Targets::Points(points) => tips.iter().zip(points).map(|(tip, x)| tip - x).collect(),
-        Targets::Sockets(_) => recording.less_group_means(&tips),
+        Targets::Sockets(_) => recording.minus_group_means(&tips),
     };
     let errors: Vec<f64> = deviations.iter().map(|d| d.norm()).collect();
     Ok(Validation { summary: Summary::of(&errors), errors, tips, deviations, refit, placement, is_converged })

@@ -9,7 +9,8 @@ use crate::units::{MM, UM, significant};
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Warning {
-    /// The fit or the compensation loop did not come to rest: why the last fit stopped, and after how many passes.
+    /// The fit or the compensation loop did not come to rest: why the last fit stopped, and after
+    /// how many passes.
     NotConverged {
         /// In the words of the fit.
         reason: String,

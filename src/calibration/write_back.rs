@@ -6,8 +6,8 @@ use crate::error::Result;
 use crate::robot::{Parameter, Tip, Uncertainty, is_urdf};
 use crate::units::{DEG, MM};
 
-/// Name and text of the calibrated robot: a table with compliances, or the URDF with new origins, its `tip_link` at the
-/// tip. Comments on top say where base and tip were found.
+/// Name and text of the calibrated robot: a table with compliances, or the URDF with new origins,
+/// its `tip_link` at the tip. Comments on top say where base and tip were found.
 ///
 /// # Errors
 /// As [`crate::robot::Robot::to_toml`] and [`crate::robot::Robot::to_urdf`]; none in practice.
@@ -15,7 +15,8 @@ pub fn write_back(campaign: &Campaign, calibration: &Calibration) -> Result<(Str
     write_back_with(campaign, calibration, None, &[])
 }
 
-/// The same with more comments and, in a table, the tip; `sd` is how well the robot is known there, m.
+/// The same with more comments and, in a table, the tip; `sd` is how well the robot is known there,
+/// m.
 ///
 /// # Errors
 /// As [`write_back`].
@@ -59,7 +60,8 @@ pub fn write_back_with(
         robot.to_urdf(&campaign.robot_file, &campaign.robot_text, base, tip, Some(setup.tool), &comments)?;
     Ok(("calibrated.urdf".into(), written.text))
 }
-/// Covariance of what the data determine of the robot and its tool; `None` where the noise is unknown.
+/// Covariance of what the data determine of the robot and its tool; `None` where the noise is
+/// unknown.
 fn uncertainty(calibration: &Calibration) -> Option<Uncertainty> {
     let is_own = |p: Parameter| !matches!(p, Parameter::BasePosition(_) | Parameter::BaseRotation(_));
     let all = &calibration.fit.covariance.matrix;

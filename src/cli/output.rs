@@ -1,4 +1,5 @@
-//! What a command hands back, and where it goes: the result to stdout, warnings to stderr, the report to files.
+//! What a command hands back, and where it goes: the result to stdout, warnings to stderr, the
+//! report to files.
 
 use std::io::Write;
 use std::path::PathBuf;

@@ -14,15 +14,16 @@ use super::values::{Theory, elements};
 
 #[derive(Debug, Subcommand)]
 pub enum Rig {
-    /// Fit a line to each load direction: slopes, friction, straightness, correction factors r and r_rod,
-    /// measured C^F and C^g, each with its uncertainty.
+    /// Fit a line to each load direction: slopes, friction, straightness, correction factors r and
+    /// r_rod, measured C^F and C^g, each with its uncertainty.
     Fit(Fit),
 }
 
 #[derive(Debug, Args)]
 #[command(after_long_help = NOTES)]
 pub struct Fit {
-    /// Rod file (TOML), or the word `linear`: no model, only slopes and whether the lines are straight.
+    /// Rod file (TOML), or the word `linear`: no model, only slopes and whether the lines are
+    /// straight.
     rod: PathBuf,
     /// Readings (CSV): how far the tip moved under each load.
     readings: PathBuf,

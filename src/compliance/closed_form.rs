@@ -1,5 +1,5 @@
-//! Calc mode: the paper's closed form for an L-shaped rod of one uniform pipe, Euler–Bernoulli bending and
-//! torsion only: no extension, no shear, no bend, no joints, no sleeves, no tip mass.
+//! Calc mode: the paper's closed form for an L-shaped rod of one uniform pipe, Euler–Bernoulli
+//! bending and torsion only: no extension, no shear, no bend, no joints, no sleeves, no tip mass.
 //!
 //! Source: Improved MultiCal, *Sensors* 23 (2023) 5717, Eqs 15 and 17.
 
@@ -13,7 +13,8 @@ use crate::units::STANDARD_GRAVITY;
 /// Compliance of `rod` by Eqs 15 and 17, in {T}.
 ///
 /// # Errors
-/// [`Error::NotApplicable`] where the equations do not hold: an angle other than 90°, or two different pipes.
+/// [`Error::NotApplicable`] where the equations do not hold: an angle other than 90°, or two
+/// different pipes.
 pub fn compliance(rod: &Rod) -> Result<Compliance> {
     let refuse = |why: String| {
         Err(Error::NotApplicable {

@@ -16,8 +16,9 @@ pub struct Step {
     pub added: Compliance,
 }
 
-/// From bending and torsion alone (Calc, where the closed form applies) to the whole model, one term after
-/// another: what each term adds to the ones before it. The terms add up to the whole exactly.
+/// From bending and torsion alone (Calc, where the closed form applies) to the whole model, one
+/// term after another: what each term adds to the ones before it. The terms add up to the whole
+/// exactly.
 ///
 /// Terms the rod does not have are not listed; `shear` only where `physics` has it.
 ///

@@ -169,8 +169,8 @@ pub fn report(
 
 /// Of the files and of the calibration.
 pub fn warnings(campaign: &Campaign, calibration: &Calibration) -> Vec<String> {
-    let of_files = campaign.warnings.iter().map(ToString::to_string);
-    of_files.chain(calibration.warnings.iter().map(ToString::to_string)).collect()
+    let about_files = campaign.warnings.iter().map(ToString::to_string);
+    about_files.chain(calibration.warnings.iter().map(ToString::to_string)).collect()
 }
 
 /// One sentence: how well the robot is known now.
@@ -194,7 +194,7 @@ pub fn headline(
         campaign.robot.name,
         length(residual.rms)
     );
-    let told =
+    let described =
         |summary: &Summary| format!("{} on average, {} at most", length(summary.mean), length(summary.max));
     if let Some(validation) = &calibration.validation {
         let count = validation.errors.len();
@@ -202,20 +202,21 @@ pub fn headline(
             (Targets::Sockets(_), _) => {
                 format!(
                     "; {count} validation poses scatter in their sockets by {}",
-                    told(&validation.summary)
+                    described(&validation.summary)
                 )
             }
             (_, Refit::BaseTool) => format!(
                 "; it predicts {count} validation poses to {} (base and tool fitted again)",
-                told(&validation.summary)
+                described(&validation.summary)
             ),
             (_, Refit::Nothing) => {
-                format!("; it predicts {count} validation poses to {}", told(&validation.summary))
+                format!("; it predicts {count} validation poses to {}", described(&validation.summary))
             }
         };
     }
     if let Some(cv) = cross_validation {
-        words += &format!("; held-out poses ({} folds) are predicted to {}", cv.folds, told(&cv.summary));
+        words +=
+            &format!("; held-out poses ({} folds) are predicted to {}", cv.folds, described(&cv.summary));
     }
     words + "."
 }

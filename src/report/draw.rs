@@ -3,7 +3,7 @@
 use super::axes::{has_bars, scales};
 use super::chart::{Chart, Dash, Figure};
 use super::frame::{Frame, NOTE};
-use super::labels::{Area, Crowd, text_width_px, wrap};
+use super::labels::{Area, LabelPlacer, text_width_px, wrap};
 use super::legend::Legend;
 use super::marks;
 use super::plot::{Anchor, Canvas, Lettering, Rgb};
@@ -21,8 +21,8 @@ const TITLE_LINE_PX: f64 = 18.0;
 const TITLE_GAP_PX: f64 = 9.0;
 
 impl Figure {
-    /// The figure as an SVG document, 760 CSS pixels wide. It holds no ids, so many fit into one page;
-    /// the caption becomes its description, for screen readers, and is not drawn.
+    /// The figure as an SVG document, 760 CSS pixels wide. It holds no ids, so many fit into one
+    /// page; the caption becomes its description, for screen readers, and is not drawn.
     pub fn svg(&self) -> String {
         draw(self)
     }
@@ -34,7 +34,7 @@ fn draw(figure: &Figure) -> String {
     let mut plans = plan(figure, columns, width);
     let shared = figure
         .shared_legend
-        .then(|| Legend::of(figure.panels.iter().flat_map(|c| &c.marks), WIDTH_PX - 2.0 * EDGE_PX));
+        .then(|| Legend::new(figure.panels.iter().flat_map(|c| &c.marks), WIDTH_PX - 2.0 * EDGE_PX));
 
     let mut top = EDGE_PX;
     for row in plans.chunks_mut(columns) {
@@ -100,7 +100,7 @@ impl<'a> Plan<'a> {
             title: wrap(title, TITLE.size_px * 1.1, width),
             frame: Frame { area, x, y },
             left: 0.0,
-            legend: with_legend.then(|| Legend::of(&chart.marks, plot_width)),
+            legend: with_legend.then(|| Legend::new(&chart.marks, plot_width)),
         }
     }
 
@@ -131,8 +131,8 @@ impl<'a> Plan<'a> {
         } else {
             self.grid(canvas);
         }
-        let mut crowd = Crowd::new(area);
-        marks::draw(canvas, &self.frame, &self.chart.marks, &mut crowd);
+        let mut labels = LabelPlacer::new(area);
+        marks::draw(canvas, &self.frame, &self.chart.marks, &mut labels);
         self.axes(canvas);
         if let Some(legend) = &self.legend {
             legend.draw(canvas, [area.left, self.legend_top()]);

@@ -6,7 +6,8 @@ use crate::error::Result;
 
 impl Report {
     /// Names and bytes of all files of the report: `index.html`, each figure as SVG and, if
-    /// `with_png`, as PNG, each table as CSV and as Markdown. Write them with [`crate::files::write_together`].
+    /// `with_png`, as PNG, each table as CSV and as Markdown. Write them with
+    /// [`crate::files::write_together`].
     ///
     /// # Errors
     /// [`crate::Error::Numerical`] where a picture cannot be rendered as PNG.

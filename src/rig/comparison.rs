@@ -63,14 +63,14 @@ pub(super) fn compare(
     for load in Axis::ALL {
         for channel in Axis::ALL {
             // entries that the rod's symmetry makes zero carry no ratio
-            let of_entry: Vec<Estimate> = lines
+            let estimates: Vec<Estimate> = lines
                 .iter()
                 .zip(&predicted)
                 .filter(|(line, _)| line.key.direction.axis == load && line.key.channel == channel)
                 .filter(|(_, prediction)| !vanishes(**prediction, &model))
                 .map(|(line, prediction)| line.slope.times(1.0 / prediction))
                 .collect();
-            ratios.extend(Estimate::pooled(&of_entry).map(|value| Ratio { channel, load, value }));
+            ratios.extend(Estimate::pooled(&estimates).map(|value| Ratio { channel, load, value }));
         }
     }
     check_signs(readings, lines, &ratios)?;
@@ -176,12 +176,12 @@ fn measured(model: Compliance, ratios: Vec<Ratio>, rod_ratio: Estimate) -> Measu
     let mut is_measured = Matrix3::repeat(false);
     for (m, n) in (0..3).flat_map(|m| (0..3).map(move |n| (m, n))) {
         // C^F is symmetric (reciprocity): c_mn and c_nm are two measurements of one number
-        let of_pair: Vec<Estimate> = ratios
+        let estimates: Vec<Estimate> = ratios
             .iter()
             .filter(|r| [(m, n), (n, m)].contains(&(r.channel.index(), r.load.index())))
             .map(|r| r.value)
             .collect();
-        if let Some(value) = Estimate::pooled(&of_pair) {
+        if let Some(value) = Estimate::pooled(&estimates) {
             factor[(m, n)] = value.value;
             factor_error[(m, n)] = error(&value);
             is_measured[(m, n)] = true;

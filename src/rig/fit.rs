@@ -41,8 +41,8 @@ pub struct Fit {
 /// Fits lines to `readings` and, where there is a `rod`, compares them with its model.
 ///
 /// # Errors
-/// [`Error::Input`] for stations off the rod, offsets against the load, or readings that measure nothing the
-/// rod's model has; what the beam model and the fits refuse.
+/// [`Error::Input`] for stations off the rod, offsets against the load, or readings that measure
+/// nothing the rod's model has; what the beam model and the fits refuse.
 pub fn fit(readings: &Readings, rod: Option<&Rod>, options: &Options) -> Result<Fit> {
     let mut lines = Vec::new();
     for key in keys(&readings.rows) {

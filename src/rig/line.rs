@@ -1,6 +1,8 @@
-//! One load–deflection line: which readings it rests on, its slope, where it crosses the load axis, its friction.
+//! One load–deflection line: which readings it rests on, its slope, where it crosses the load axis,
+//! its friction.
 //!
-//! How repeats become averages and averages a line with standard errors stands in `curve.rs` and `repeats.rs`.
+//! How repeats become averages and averages a line with standard errors stands in `curve.rs` and
+//! `repeats.rs`.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -38,7 +40,8 @@ pub struct Line {
     pub unload_intercept: Option<Estimate>,
     /// Load at which the loading line crosses the load axis, N: what friction takes off every load.
     pub load_offset: Option<Estimate>,
-    /// Half the distance between the loading and the unloading line, N: Coulomb friction, free of any offset.
+    /// Half the distance between the loading and the unloading line, N: Coulomb friction, free of
+    /// any offset.
     pub friction: Option<Estimate>,
     /// Averages with their residuals.
     pub points: Vec<Point>,
@@ -46,9 +49,11 @@ pub struct Line {
     pub count: usize,
     /// Standard deviation of one reading about the line, m.
     pub residual_sd: Option<f64>,
-    /// Standard deviation of one reading about the average of its repeats, m; where trials differ, about its trial.
+    /// Standard deviation of one reading about the average of its repeats, m; where trials differ,
+    /// about its trial.
     pub noise_sd: Option<f64>,
-    /// The readings of a trial share an error, and the standard errors come from the scatter of trials.
+    /// The readings of a trial share an error, and the standard errors come from the scatter of
+    /// trials.
     pub trials_differ: bool,
     /// Whether the line is straight.
     pub lack_of_fit: Option<LackOfFit>,
@@ -138,12 +143,12 @@ impl Line {
     }
 }
 
-/// Readings that least squares treats as the robust fit treated the real ones, and the lines of those it trusts
-/// less than half.
+/// Readings that least squares treats as the robust fit treated the real ones, and the lines of
+/// those it trusts less than half.
 ///
-/// Huber's pseudo-observations y* = ŷ + K·ψ(y − ŷ)/ψ̄': their least-squares line is the robust one, and their
-/// residual variance is the robust one too, so that all that follows needs to know nothing of weights
-/// (P. J. Huber, *Robust Statistics*, 1981, § 7.10).
+/// Huber's pseudo-observations y* = ŷ + K·ψ(y − ŷ)/ψ̄': their least-squares line is the robust one,
+/// and their residual variance is the robust one too, so that all that follows needs to know
+/// nothing of weights (P. J. Huber, *Robust Statistics*, 1981, § 7.10).
 fn resistant(samples: Vec<Sample>, columns: Columns, robust: Robust) -> Result<(Vec<Sample>, Vec<usize>)> {
     if robust == Robust::None {
         return Ok((samples, Vec::new()));

@@ -44,7 +44,8 @@ pub enum Warning {
         /// Which line.
         line: String,
     },
-    /// The line does not pass near the origin: friction, or a load that is not what it is said to be.
+    /// The line does not pass near the origin: friction, or a load that is not what it is said to
+    /// be.
     LoadOffset {
         /// Which line.
         line: String,

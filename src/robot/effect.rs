@@ -1,7 +1,8 @@
 //! What joints do besides their geometry: by how much they turn farther than they say.
 //!
 //! ```text
-//! transmission_error   a·sin(n·q) + b·cos(n·q), or a table over q, straight between its rows and constant beyond them
+//! transmission_error   a·sin(n·q) + b·cos(n·q), or a table over q: linear between its rows,
+//!                      constant beyond them
 //! encoder_scale        (s − 1)·q
 //! backlash             ½·b·sign(τ)
 //! wrist_coupling       k·q of another joint
@@ -65,7 +66,8 @@ impl Effect {
         }
     }
 
-    /// Turn of its joint, rad, at the joint values `q` (rad or m) under the torques `torque` (N·m; may be empty).
+    /// Turn of its joint, rad, at the joint values `q` (rad or m) under the torques `torque` (N·m;
+    /// may be empty).
     pub fn turn(&self, q: &[f64], torque: &[f64]) -> f64 {
         match self {
             Effect::Harmonic { joint, cycles_per_rev, sine, cosine } => {

@@ -1,4 +1,5 @@
-//! The reader of robot files: a table of joints in TOML, or a URDF. Every error names the place and what is right.
+//! The reader of robot files: a table of joints in TOML, or a URDF. Every error names the place and
+//! what is right.
 
 use nalgebra::Vector3;
 use serde::Deserialize;
@@ -14,11 +15,12 @@ use crate::toml_text::{Number, Required, TomlText};
 use crate::units::{DEG, MM, URAD_PER_NM};
 
 impl Robot {
-    /// Reads and checks the text of a robot file; `file` names it in errors (and the robot, where it has no name).
+    /// Reads and checks the text of a robot file; `file` names it in errors (and the robot, where
+    /// it has no name).
     ///
-    /// A text that begins with `<` is a URDF, of which the chain from `base_link` to `tip_link` is read; where none are
-    /// given, from the link named `base_link` to the one named `tip_link`. Any other text is a table in TOML, which
-    /// needs no links.
+    /// A text that begins with `<` is a URDF, of which the chain from `base_link` to `tip_link` is
+    /// read; where none are given, from the link named `base_link` to the one named `tip_link`. Any
+    /// other text is a table in TOML, which needs no links.
     ///
     /// # Errors
     /// [`crate::Error::Syntax`] or [`crate::Error::Input`] with line and column.

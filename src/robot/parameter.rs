@@ -4,13 +4,14 @@ use std::fmt;
 
 use crate::units::{DEG, MM, URAD_PER_NM};
 
-/// One number of the chain {W} → {0} → joints → {T} → tip. Joints count from 0 here, from 1 in names.
+/// One number of the chain {W} → {0} → joints → {T} → tip. Joints count from 0 here, from 1 in
+/// names.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Parameter {
     /// Position of {0} in {W} along x, y, z (0, 1, 2), m.
     BasePosition(usize),
-    /// Turn of {0} away from its first guess: rotation vector along x, y, z (0, 1, 2) of {W}, rad. Unlike roll, pitch
-    /// and yaw it is regular for a robot on a wall too.
+    /// Turn of {0} away from its first guess: rotation vector along x, y, z (0, 1, 2) of {W}, rad.
+    /// Unlike roll, pitch and yaw it is regular for a robot on a wall too.
     BaseRotation(usize),
     /// θ of a joint's link, rad.
     Theta(usize),
@@ -53,7 +54,7 @@ impl Parameter {
     pub fn all(joints: usize) -> Vec<Parameter> {
         let mut all: Vec<Parameter> = (0..3).map(Parameter::BasePosition).collect();
         all.extend((0..3).map(Parameter::BaseRotation));
-        let of_link = [
+        let link_parameters = [
             Parameter::A,
             Parameter::Alpha,
             Parameter::Theta,
@@ -61,7 +62,7 @@ impl Parameter {
             Parameter::Beta,
             Parameter::Compliance,
         ];
-        all.extend((0..joints).flat_map(|j| of_link.map(|kind| kind(j))));
+        all.extend((0..joints).flat_map(|j| link_parameters.map(|kind| kind(j))));
         all.extend((0..3).map(Parameter::Tool));
         all
     }

@@ -13,7 +13,7 @@ const ROUNDS: usize = 3;
 
 /// A pose to predict.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Asked {
+pub struct PredictionQuery {
     /// Its name.
     pub pose: String,
     /// Joint values, rad or m.
@@ -21,7 +21,8 @@ pub struct Asked {
 }
 
 impl Uncertainty {
-    /// Covariance of the tip in {0}, m², where `kinematics` stands with `torque` (N·m) on its joints.
+    /// Covariance of the tip in {0}, m², where `kinematics` stands with `torque` (N·m) on its
+    /// joints.
     pub fn of_tip(&self, kinematics: &Kinematics, torque: &[f64]) -> Matrix3<f64> {
         let columns: Vec<_> = self.parameters.iter().map(|&p| kinematics.column(p, torque)).collect();
         if columns.is_empty() {
@@ -33,9 +34,10 @@ impl Uncertainty {
 }
 
 impl Robot {
-    /// The tip at `tool` (m, in {T}), in {0}, m: joints yield to the robot's own weight, the tool is rigid. With it the standard
-    /// deviation of each coordinate, m, where the robot's file says what it takes: √(sd² + diag J·Σ·Jᵀ), sd the error of poses
-    /// that were held out and Σ the covariance of the parameters.
+    /// The tip at `tool` (m, in {T}), in {0}, m: joints yield to the robot's own weight, the tool
+    /// is rigid. With it the standard deviation of each coordinate, m, where the robot's file says
+    /// what it takes: √(sd² + diag J·Σ·Jᵀ), sd the error of poses that were held out and Σ the
+    /// covariance of the parameters.
     pub fn tip_at(&self, tool: Vector3<f64>, q: &[f64]) -> (Vector3<f64>, Option<Vector3<f64>>) {
         let setup = Setup::new(self, Pose::IDENTITY, tool);
         let mut kinematics = Kinematics::new(&setup);
@@ -47,8 +49,8 @@ impl Robot {
         }
         kinematics.update(q, &torque);
         let sd = self.tip.and_then(|tip| tip.sd).map(|sd| {
-            let of_parameters = self.uncertainty.as_ref().map(|known| known.of_tip(&kinematics, &torque));
-            let variance = of_parameters.map_or_else(Vector3::zeros, |covariance| covariance.diagonal());
+            let covariance = self.uncertainty.as_ref().map(|known| known.of_tip(&kinematics, &torque));
+            let variance = covariance.map_or_else(Vector3::zeros, |covariance| covariance.diagonal());
             variance.map(|own| (sd * sd + own).sqrt())
         });
         (kinematics.tip, sd)
@@ -58,7 +60,7 @@ impl Robot {
     ///
     /// # Errors
     /// [`crate::Error::Input`] with line and column.
-    pub fn poses_from_csv(&self, file: &str, text: &str) -> Result<Vec<Asked>> {
+    pub fn poses_from_csv(&self, file: &str, text: &str) -> Result<Vec<PredictionQuery>> {
         let column = |(joint, number): (&super::Joint, usize)| match joint.motion {
             Motion::Revolute => (format!("q{number}_deg"), DEG),
             Motion::Prismatic => (format!("q{number}_mm"), MM),
@@ -73,9 +75,9 @@ impl Robot {
         let pose = |(at, row): (usize, crate::delimited::Row<'_>)| {
             let joints = columns.iter().map(|(name, unit)| Ok(row.required_number(name)? * unit));
             let name = row.text("pose").map_or_else(|| (at + 1).to_string(), str::to_owned);
-            Ok(Asked { pose: name, joints: joints.collect::<Result<_>>()? })
+            Ok(PredictionQuery { pose: name, joints: joints.collect::<Result<_>>()? })
         };
-        let poses: Vec<Asked> = table.rows().enumerate().map(pose).collect::<Result<_>>()?;
+        let poses: Vec<PredictionQuery> = table.rows().enumerate().map(pose).collect::<Result<_>>()?;
         match poses.is_empty() {
             false => Ok(poses),
             true => Err(Error::Input {

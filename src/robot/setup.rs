@@ -1,4 +1,5 @@
-//! A robot that stands somewhere and holds a tip: all numbers that a calibration changes, by [`Parameter`].
+//! A robot that stands somewhere and holds a tip: all numbers that a calibration changes, by
+//! [`Parameter`].
 
 use nalgebra::Vector3;
 

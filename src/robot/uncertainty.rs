@@ -2,7 +2,8 @@
 //!
 //! Cov(tip) = J·Σ·Jᵀ, J = ∂tip/∂parameter, Σ the covariance of the parameters
 //!
-//! In a robot file it is the section `[uncertainty]`: names, standard errors and, below the diagonal, correlations.
+//! In a robot file it is the section `[uncertainty]`: names, standard errors and, below the
+//! diagonal, correlations.
 
 use nalgebra::{DMatrix, DVector};
 use serde::Deserialize;
@@ -58,7 +59,7 @@ pub(super) struct RawUncertainty {
 /// The section of a robot with so many joints.
 pub(super) fn read(toml: &TomlText, raw: &RawUncertainty, joints: usize) -> Result<Uncertainty> {
     let count = raw.parameters.get_ref().len();
-    let of_name = |name: &Spanned<String>| match Parameter::from_key(name.get_ref(), joints) {
+    let parameter = |name: &Spanned<String>| match Parameter::from_key(name.get_ref(), joints) {
         Some(Parameter::BasePosition(_) | Parameter::BaseRotation(_)) | None => Err(toml.is(
             "uncertainty.parameters",
             name,
@@ -66,7 +67,7 @@ pub(super) fn read(toml: &TomlText, raw: &RawUncertainty, joints: usize) -> Resu
         )),
         Some(parameter) => Ok(parameter),
     };
-    let parameters: Vec<Parameter> = raw.parameters.get_ref().iter().map(of_name).collect::<Result<_>>()?;
+    let parameters: Vec<Parameter> = raw.parameters.get_ref().iter().map(parameter).collect::<Result<_>>()?;
     if raw.std_error.get_ref().len() != count {
         let expected = format!("{count} numbers, one for each parameter");
         return Err(toml.is("uncertainty.std_error", &raw.std_error, &expected));

@@ -12,12 +12,12 @@ use crate::units::{DEG, MM, URAD_PER_NM};
 impl Robot {
     /// This robot as a table, the format of [`Robot::from_text`], below `comments`.
     ///
-    /// Every number has as many digits as it takes to read the very same one again; where the change of units makes that
-    /// impossible, the last bit may differ.
+    /// Every number has as many digits as it takes to read the very same one again; where the
+    /// change of units makes that impossible, the last bit may differ.
     ///
     /// # Errors
-    /// [`Error::NotApplicable`] where the robot has a root or a flange of its own, as one read from a URDF: a table has
-    /// no place for them.
+    /// [`Error::NotApplicable`] where the robot has a root or a flange of its own, as one read from
+    /// a URDF: a table has no place for them.
     pub fn to_toml(&self, comments: &[String]) -> Result<String> {
         if self.root != Pose::IDENTITY || self.flange != Pose::IDENTITY {
             return Err(Error::NotApplicable {

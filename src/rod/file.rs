@@ -1,4 +1,5 @@
-//! The reader of rod files (`rods/*.toml`): every error names the line and what would be right there.
+//! The reader of rod files (`rods/*.toml`): every error names the line and what would be right
+//! there.
 
 mod check;
 mod geometry;
@@ -24,13 +25,14 @@ impl Rod {
     /// Reads and checks a rod file.
     ///
     /// # Errors
-    /// [`crate::Error::File`] where it cannot be read; [`crate::Error::Syntax`] or [`crate::Error::Input`] with
-    /// line and column otherwise.
+    /// [`crate::Error::File`] where it cannot be read; [`crate::Error::Syntax`] or
+    /// [`crate::Error::Input`] with line and column otherwise.
     pub fn read(path: &Path) -> Result<Rod> {
         Rod::from_toml(&path.display().to_string(), &files::read_text(path)?)
     }
 
-    /// Reads and checks the text of a rod file; `file` names it in errors (and the rod, where it has no `name`).
+    /// Reads and checks the text of a rod file; `file` names it in errors (and the rod, where it
+    /// has no `name`).
     ///
     /// # Errors
     /// As [`Rod::read`].

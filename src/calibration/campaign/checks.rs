@@ -17,8 +17,8 @@ const ROWS_TO_JUDGE: usize = 10;
 /// A joint that moves less than this hardly moves.
 const LEAST_TURN: f64 = 1.0 * DEG;
 const LEAST_TRAVEL: f64 = 1.0 * MM;
-/// No robot is so wrong that its positions spread this many times less or more than they should; metres taken for
-/// millimetres do.
+/// No robot is so wrong that its positions spread this many times less or more than they should;
+/// metres taken for millimetres do.
 const IMPOSSIBLE_RATIO: f64 = 50.0;
 /// But the positions of a robot that hardly moves may be nothing but errors, m.
 const LEAST_SPREAD: f64 = 50.0 * MM;

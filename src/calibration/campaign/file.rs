@@ -6,8 +6,8 @@ use nalgebra::Vector3;
 use serde::Deserialize;
 use toml::Spanned;
 
+use super::constraints::{RawParameters, RawPrior, parameter_constraints};
 use super::layout::{Clamp, Role, Seen, Sockets};
-use super::wishes::{RawParameters, RawPrior, wishes};
 use super::{Campaign, Refit, Warning, checks, recording};
 use crate::error::{Error, Result};
 use crate::files;
@@ -18,26 +18,28 @@ use crate::spatial::Pose;
 use crate::toml_text::{Number, Required, TomlText};
 use crate::units::{DEG, MM, UM};
 
-/// Of the known distance between two sockets, unless the file states it, m: what a milled plate keeps easily.
+/// Of the known distance between two sockets, unless the file states it, m: what a milled plate
+/// keeps easily.
 const DISTANCE_SD: f64 = 0.1 * MM;
 
 /// What `robot` begins with where it names a robot that the program carries.
 const BUILTIN: &str = "builtin:";
 
 impl Campaign {
-    /// Reads and checks a campaign file and all files that it names; their paths are relative to its directory.
+    /// Reads and checks a campaign file and all files that it names; their paths are relative to
+    /// its directory.
     ///
     /// # Errors
-    /// [`Error::File`] where it cannot be read; [`Error::Syntax`] or [`Error::Input`] with line and column of
-    /// whichever file is wrong otherwise.
+    /// [`Error::File`] where it cannot be read; [`Error::Syntax`] or [`Error::Input`] with line and
+    /// column of whichever file is wrong otherwise.
     pub fn read(path: &Path) -> Result<Campaign> {
         let directory = path.parent().unwrap_or(Path::new(""));
         let open = |name: &str| files::read_text(&directory.join(name));
         Campaign::from_texts(&path.display().to_string(), &files::read_text(path)?, &open)
     }
 
-    /// Reads and checks the text of a campaign file; `file` names it in errors, and `open` gives the text of a
-    /// file by the name that the campaign has for it.
+    /// Reads and checks the text of a campaign file; `file` names it in errors, and `open` gives
+    /// the text of a file by the name that the campaign has for it.
     ///
     /// # Errors
     /// As [`Campaign::read`].
@@ -119,7 +121,8 @@ const REQUIRED: &Required = &[
     ("sd", "the standard deviation of that knowledge, in the unit that the parameter's name ends with"),
 ];
 
-/// A key of the file itself that stands below a `[section]` belongs to that section, in TOML, not to the file.
+/// A key of the file itself that stands below a `[section]` belongs to that section, in TOML, not
+/// to the file.
 fn above_the_sections(error: Error) -> Error {
     const KEYS: [&str; 9] = [
         "robot",
@@ -177,7 +180,7 @@ impl Reader<'_> {
         }
 
         let (robot, robot_file) = self.robot(raw)?;
-        let wishes = wishes(self.toml, &raw.parameters, &raw.prior, robot.joints.len())?;
+        let wishes = parameter_constraints(self.toml, &raw.parameters, &raw.prior, robot.joints.len())?;
         let rod = match &raw.rod {
             Some(name) => Some(self.named("rod", name).and_then(|n| Rod::from_toml(&n.file, &n.text))?),
             None => None,

@@ -1,4 +1,5 @@
-//! Where the ball was held, as the campaign file has it: it decides which columns its recordings have.
+//! Where the ball was held, as the campaign file has it: it decides which columns its recordings
+//! have.
 
 use crate::spatial::Pose;
 

@@ -21,7 +21,8 @@ pub struct Plan {
     pub repeatability: f64,
     /// Root mean square of the distance by which the scanner misses the ball in the validation, m.
     pub scanner_noise: f64,
-    /// Root mean square of the error of each clamp's position in the campaign file, m; 0 in the paper's list of noises.
+    /// Root mean square of the error of each clamp's position in the campaign file, m; 0 in the
+    /// paper's list of noises.
     pub clamp_error: f64,
 }
 
@@ -35,7 +36,7 @@ pub struct RobotErrors {
     /// Of α and β, rad.
     pub tilt: f64,
     /// Angle by which each joint yields, on average, under its largest torque, rad.
-    pub yielding: f64,
+    pub joint_turn: f64,
 }
 
 impl Default for Plan {
@@ -45,7 +46,7 @@ impl Default for Plan {
             poses_per_clamp: 30,
             validation_poses: 100,
             rod_factor: 1.0,
-            errors: RobotErrors { length: 0.3 * MM, offset: 1e-3, tilt: 0.3e-3, yielding: 0.5e-3 },
+            errors: RobotErrors { length: 0.3 * MM, offset: 1e-3, tilt: 0.3e-3, joint_turn: 0.5e-3 },
             sensor_noise: 3.0 * UM,
             repeatability: 30.0 * UM,
             scanner_noise: 43.0 * UM,

@@ -14,7 +14,7 @@ pub(super) fn group_summaries(
         .iter()
         .enumerate()
         .map(|(index, group)| {
-            let of: Vec<f64> = recording
+            let lengths: Vec<f64> = recording
                 .rows
                 .iter()
                 .zip(&residuals)
@@ -22,7 +22,7 @@ pub(super) fn group_summaries(
                 .map(|(_, &residual)| residual)
                 .collect();
             let name = if group.name.is_empty() { "all poses".to_owned() } else { group.name.clone() };
-            (name, of.len(), Summary::of(&of))
+            (name, lengths.len(), Summary::of(&lengths))
         })
         .collect()
 }

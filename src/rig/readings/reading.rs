@@ -9,7 +9,8 @@ pub struct Reading {
     pub direction: Direction,
     /// Magnitude of the load, N, ≥ 0.
     pub load: f64,
-    /// Offset of the tip (or of the read station) along X, Y, Z of {T}, m; `None`: not measured. One is there.
+    /// Offset of the tip (or of the read station) along X, Y, Z of {T}, m; `None`: not measured.
+    /// One is there.
     pub offset: [Option<f64>; 3],
     /// Name or number of the repeat.
     pub trial: Option<String>,

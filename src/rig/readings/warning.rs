@@ -7,7 +7,8 @@ use super::reading::{Axis, Reading, newtons, only_load};
 use crate::delimited::{Dialect, Table, nearest_name, quoted};
 use crate::units::{UM, significant};
 
-/// Offsets that are all smaller than this are hardly micrometres: no sensor of a rig resolves a nanometre, m.
+/// Offsets that are all smaller than this are hardly micrometres: no sensor of a rig resolves a
+/// nanometre, m.
 const SMALLEST_LIKELY: f64 = 1e-3 * UM;
 
 /// Advice about a file that was read; its `Display` is one sentence or two for the user.

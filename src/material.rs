@@ -4,6 +4,7 @@ pub mod laminate;
 
 /// The linear elastic constants a straight or curved pipe needs.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Material {
     /// Name in the rod file.
     pub name: String,
@@ -20,6 +21,13 @@ pub struct Material {
 impl Material {
     /// The isotropic material with Young's modulus (Pa), Poisson's ratio and density (kg/m³): G = E
     /// / 2(1+ν).
+    ///
+    /// ```
+    /// use rodcal::material::Material;
+    ///
+    /// let steel = Material::isotropic("steel", 193e9, 0.29, 7930.0);
+    /// assert!((steel.shear_modulus - 74.806e9).abs() < 1e6); // 193 GPa / 2.58
+    /// ```
     pub fn isotropic(name: &str, youngs_modulus: f64, poisson_ratio: f64, density: f64) -> Self {
         Material {
             name: name.to_owned(),

@@ -9,6 +9,23 @@ use super::element::{Profile, Shape};
 ///
 /// The chain is drawn like a turtle drawing: a current point and a current frame whose z axis
 /// points ahead.
+///
+/// ```
+/// use nalgebra::{Rotation3, Vector3};
+/// use rodcal::beam::{Chain, Load, Profile};
+///
+/// // a cantilever of 1 m: EI = 1000 N·m², no shear; its tip under 1 N goes L³/3EI, turned by L²/2EI
+/// let bending = [1e-3; 2];
+/// let profile = Profile { axial: 0.0, shear: [0.0; 2], bending, torsion: 1e-3, mass_per_length: 0.0 };
+/// let mut chain = Chain::clamped_at(Vector3::zeros(), Rotation3::identity());
+/// chain.straight(&profile, 1.0, 3);
+/// let tip = chain.end();
+/// let response = chain.solve(&[Load::Force { node: tip }])?;
+/// let motion = response.motion(tip, 0);
+/// assert!((motion.translation[(0, 0)] - 1.0 / 3000.0).abs() < 1e-15);
+/// assert!((motion.rotation[(1, 0)] - 1.0 / 2000.0).abs() < 1e-15);
+/// # Ok::<(), rodcal::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Chain {
     pub(super) nodes: Vec<Node>,

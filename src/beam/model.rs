@@ -59,6 +59,20 @@ impl Default for Physics {
 }
 
 /// A rod's chain in {T}, clamped at the flange.
+///
+/// ```
+/// use rodcal::beam::{Physics, RodModel};
+/// use rodcal::prelude::*;
+///
+/// let steel = Material::isotropic("steel", 193e9, 0.29, 7930.0);
+/// let rod = Rod::new("5#", 0.150, 0.525, Pipe::new(Round::tube(0.032, 0.030), steel));
+/// let ei = 193e9 * rod.pipe1.section.second_moment();
+/// // on pipe I, 100 mm from the flange, the rod is a cantilever: a³/3EI, the corner beyond it no matter
+/// let model = RodModel::new(&rod, &Physics::BENDING_AND_TORSION, 7, &[0.1])?;
+/// let motion = model.force_response(0.1, 0.1)?;
+/// assert!((motion.translation[(1, 1)] / (0.001 / (3.0 * ei)) - 1.0).abs() < 1e-12);
+/// # Ok::<(), rodcal::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct RodModel {
     /// Nodes and elements.

@@ -16,6 +16,21 @@ use crate::robot::{Kinematics, Parameter, Setup, minimal_parameters};
 
 /// Calibrates the robot of a campaign.
 ///
+/// ```
+/// use rodcal::prelude::*;
+///
+/// // simulated: the robot repeats to 30 µm, and the scanner of the validation is good to 43 µm
+/// let campaign = Campaign::read("campaigns/tx90-5/campaign.toml".as_ref())?;
+/// let calibration = calibrate(&campaign, Mode::Fea, &Options::default())?;
+/// assert!(calibration.is_converged);
+/// let validation = calibration.validation.as_ref().expect("the campaign has validation poses");
+/// let rms = validation.summary.rms / 1e-6;
+/// assert!((rms - 30f64.hypot(43.0)).abs() < 5.0, "{rms}"); // nothing else is left
+/// let a2 = calibration.parameters.iter().find(|p| p.parameter == Parameter::A(1));
+/// assert!(a2.is_some_and(|a2| a2.identifiable && (a2.value - 0.425).abs() < 1e-3));
+/// # Ok::<(), rodcal::Error>(())
+/// ```
+///
 /// # Errors
 /// What [`Compensation::new`] refuses; [`Error::Input`] for fewer measurements than parameters;
 /// what the fits refuse. A fit that does not converge is no error: see

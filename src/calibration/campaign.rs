@@ -3,6 +3,7 @@
 //!
 //! Every key and column is in `docs/campaign-file.md`.
 
+mod build;
 mod checks;
 mod columns;
 mod constraints;
@@ -22,6 +23,7 @@ use crate::spatial::Pose;
 
 /// All that a calibration starts from, read and checked, in SI units.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Campaign {
     /// The campaign's file as the user named it.
     pub file: String,
@@ -64,6 +66,7 @@ pub struct Campaign {
 
 /// What is fitted again before the validation errors are computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Refit {
     /// Base and tool, as in the paper.
     BaseTool,
@@ -84,6 +87,7 @@ pub struct ParameterConstraints {
 
 /// Joint values with what was seen at them, in recording order.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Recording {
     /// The file as the user named it.
     pub file: String,
@@ -103,6 +107,7 @@ pub struct Recording {
 
 /// One row without its numbers.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Row {
     /// The pose's name as written.
     pub pose: String,
@@ -118,6 +123,7 @@ pub struct Row {
 
 /// Where the ball was held.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Group {
     /// `clamp 3`, `front/0`.
     pub name: String,

@@ -38,6 +38,7 @@ impl Default for CompareOptions {
 
 /// All modes of a campaign.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Comparison<'c> {
     /// One calibration per mode that the files allow, in the paper's order.
     pub calibrations: Vec<Calibration<'c>>,
@@ -53,6 +54,7 @@ pub struct Comparison<'c> {
 
 /// Mean error of one mode less that of another.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Difference {
     /// The mode whose error is taken.
     pub mode: Mode,
@@ -86,6 +88,19 @@ impl Comparison<'_> {
 /// Calibrates in every mode that the campaign's files allow, and compares.
 ///
 /// `progress` is told after each draw how many are done.
+///
+/// ```
+/// use rodcal::prelude::*;
+///
+/// let campaign = Campaign::read("campaigns/tx90-5/campaign.toml".as_ref())?;
+/// let options = CompareOptions { draws: 4, ..CompareOptions::default() };
+/// let comparison = compare(&campaign, &options, &|_| {})?;
+/// let modes: Vec<Mode> = comparison.calibrations.iter().map(|c| c.mode).collect();
+/// assert_eq!(modes, Mode::ALL); // none, calc, fea, meas
+/// assert_eq!(comparison.differences.len(), 6); // every pair of them
+/// assert!(comparison.summary(3).mean < comparison.summary(0).mean);
+/// # Ok::<(), rodcal::Error>(())
+/// ```
 ///
 /// # Errors
 /// As [`calibrate`] and [`cross_validate`].

@@ -47,6 +47,7 @@ impl Mode {
 
 /// The loads that a campaign knows, and the rod's compliance in one mode.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Compensation {
     /// The mode.
     pub mode: Mode,
@@ -63,6 +64,17 @@ pub struct Compensation {
 
 impl Compensation {
     /// Of a campaign in a mode.
+    ///
+    /// ```
+    /// use rodcal::prelude::*;
+    ///
+    /// let campaign = Campaign::read("campaigns/tx90-5/campaign.toml".as_ref())?;
+    /// let fea = Compensation::new(&campaign, Mode::Fea)?.compliance.expect("there is a rod");
+    /// let meas = Compensation::new(&campaign, Mode::Meas)?.compliance.expect("there are readings");
+    /// // its true rod is 1.013 times as compliant as its model
+    /// assert!((meas.gravity[(2, 2)] / fea.gravity[(2, 2)] - 1.013).abs() < 0.01);
+    /// # Ok::<(), rodcal::Error>(())
+    /// ```
     ///
     /// # Errors
     /// [`Error::NotApplicable`] where the campaign lacks the files that the mode needs; what the

@@ -15,6 +15,7 @@ use crate::robot::{Kinematics, Setup};
 
 /// Held-out errors of all poses.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct CrossValidation {
     /// Fold of each row.
     pub fold: Vec<usize>,
@@ -31,6 +32,21 @@ pub struct CrossValidation {
 
 /// Holds out one fold after the other ([`super::campaign::Recording::folds`]), calibrates on the
 /// rest as `calibration` was, and predicts what was held out.
+///
+/// ```
+/// use rodcal::prelude::*;
+///
+/// let campaign = Campaign::read("campaigns/tx90-5/campaign.toml".as_ref())?;
+/// let options = Options::default();
+/// let calibration = calibrate(&campaign, Mode::Fea, &options)?;
+/// let compensation = Compensation::new(&campaign, Mode::Fea)?;
+/// let held_out = cross_validate(&campaign, &calibration, &compensation, 5, &options)?;
+/// assert_eq!((held_out.folds, held_out.errors.len()), (5, 60));
+/// // poses that a fit has not seen are predicted worse than those that it has
+/// let residual = calibration.residuals().iter().sum::<f64>() / 60.0;
+/// assert!(held_out.summary.mean > residual, "{} {residual}", held_out.summary.mean);
+/// # Ok::<(), rodcal::Error>(())
+/// ```
 ///
 /// # Errors
 /// As [`super::calibrate()`], where a fold leaves too few poses.

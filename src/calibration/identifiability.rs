@@ -20,6 +20,7 @@ const FIRMNESS: f64 = 1e-4;
 
 /// A combination of parameters that the data do not identify.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct UnidentifiedDirection {
     /// Coefficients of (ρ − ρ₀)/range, of norm 1, one per free parameter.
     pub direction: Vec<f64>,

@@ -39,6 +39,7 @@ const MEDIAN_EFFICIENCY: f64 = 0.527;
 
 /// Noise of the recording: standard deviation of one coordinate, m.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Noise {
     /// Over all poses.
     pub pooled: f64,
@@ -151,6 +152,13 @@ impl Noise {
 
 impl Robust {
     /// What a pose counts that is `u` standard deviations out.
+    ///
+    /// ```
+    /// use rodcal::calibration::Robust;
+    ///
+    /// assert_eq!([1.0, 4.42].map(|u| Robust::Huber.weight(u)), [1.0, 0.5]); // 2.21/u beyond 2.21
+    /// assert_eq!(Robust::Tukey.weight(6.0), 0.0);
+    /// ```
     pub fn weight(self, u: f64) -> f64 {
         match self {
             Robust::None => 1.0,

@@ -22,6 +22,7 @@ use crate::units::{MM, URAD_PER_NM};
 
 /// See the top of the file.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Observability {
     /// O1 … O5.
     pub indices: [f64; 5],

@@ -23,6 +23,7 @@ const MOST_PASSES: usize = 60;
 
 /// One pass of the compensation loop.
 #[derive(Debug, Clone, Copy)]
+#[non_exhaustive]
 pub struct PassRecord {
     /// Largest change of a rod deflection against the pass before, m.
     pub change: f64,

@@ -59,6 +59,17 @@ impl Recording {
     /// the folds in turn. Neighbours, which often share an error, are thereby held out together,
     /// and yet no fold is a corner of the workspace. With sockets whole placements are held out, as
     /// many folds as there are placements, where there are two or more.
+    ///
+    /// ```
+    /// use rodcal::prelude::*;
+    ///
+    /// let mut recording = Recording::new(1);
+    /// for k in 0..10 {
+    ///     recording.add(&[f64::from(k)], [0.0; 3].into())?;
+    /// }
+    /// assert_eq!(recording.folds(2), [0, 0, 0, 0, 0, 1, 1, 1, 1, 1]); // too few for shorter blocks
+    /// # Ok::<(), rodcal::Error>(())
+    /// ```
     pub fn folds(&self, folds: usize) -> Vec<usize> {
         let placements = self.placements();
         let count = placements.iter().max().map_or(0, |last| last + 1);

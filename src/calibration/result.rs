@@ -14,6 +14,7 @@ use crate::robot::{Parameter, Setup};
 
 /// A calibrated robot and how well it is known.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Calibration<'c> {
     /// How the rod's deflection was compensated.
     pub mode: Mode,
@@ -56,6 +57,7 @@ pub struct Calibration<'c> {
 
 /// A free parameter.
 #[derive(Debug, Clone, Copy)]
+#[non_exhaustive]
 pub struct Estimated {
     /// Which.
     pub parameter: Parameter,

@@ -41,6 +41,7 @@ const BASE: [f64; 3] = [-0.62, 0.03, -0.16];
 
 /// A campaign and the truth behind it.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Simulation<'r> {
     /// What is simulated.
     pub plan: Plan,
@@ -57,6 +58,23 @@ pub struct Simulation<'r> {
 }
 
 /// Simulates the campaign of `plan` with a nominal robot and the model compliance of its rod.
+///
+/// ```
+/// use rodcal::calibration::simulate::{Plan, campaign_files, simulate};
+/// use rodcal::prelude::*;
+///
+/// let (file, text) = Robot::builtin("tx90").expect("the program carries it");
+/// let robot = Robot::from_text(file, text, None, None)?;
+/// let rod = Rod::read("rods/5.toml".as_ref())?;
+/// let model = Compliance::of_model(&rod, &Physics::default(), 20)?;
+/// let plan = Plan { poses_per_clamp: 8, validation_poses: 5, ..Plan::default() };
+/// let simulation = simulate(&robot, &rod, &model, &plan)?;
+/// assert_eq!((simulation.measurements.len(), simulation.validation.len()), (40, 5));
+/// // the ball rests within 0.2 mm of the clamps: what is seen is errors of the robot's calibration
+/// let files = campaign_files(&simulation, "builtin:tx90", "rods/5.toml");
+/// assert!(files.iter().all(|(_, text)| text.starts_with("# SIMULATED")));
+/// # Ok::<(), rodcal::Error>(())
+/// ```
 ///
 /// # Errors
 /// [`crate::Error::NotApplicable`] where the robot does not reach the clamps with this rod.

@@ -14,6 +14,7 @@ use crate::statistics;
 
 /// Errors of the poses of a validation recording.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Validation {
     /// Distance of each pose from where it was measured, or from its socket's mean, m.
     pub errors: Vec<f64>,
@@ -33,6 +34,7 @@ pub struct Validation {
 
 /// What the errors of many poses are summed up to, m.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Summary {
     /// Mean.
     pub mean: f64,
@@ -48,6 +50,14 @@ pub struct Summary {
 
 impl Summary {
     /// Of lengths, m; zeros for none.
+    ///
+    /// ```
+    /// use rodcal::calibration::Summary;
+    ///
+    /// let summary = Summary::of(&[3.0, 4.0, 5.0]);
+    /// assert_eq!((summary.mean, summary.max, summary.median, summary.sd), (4.0, 5.0, 4.0, 1.0));
+    /// assert!((summary.rms - (50.0f64 / 3.0).sqrt()).abs() < 1e-12);
+    /// ```
     pub fn of(lengths: &[f64]) -> Summary {
         let squares: f64 = lengths.iter().map(|x| x * x).sum();
         Summary {
@@ -63,6 +73,23 @@ impl Summary {
 /// Predicts `recording` with the calibrated `setup`, with base and tool fitted again where `refit`
 /// says so. It was measured with a short rigid rod and without contact: links weigh on the joints,
 /// nothing bends.
+///
+/// ```
+/// use rodcal::calibration::validate;
+/// use rodcal::prelude::*;
+///
+/// let joint = |a| Joint::new("one", Motion::Revolute, Hayati { a, ..Hayati::default() });
+/// let (drawn, built) = (Robot::new("arm", vec![joint(0.5)]), Robot::new("arm", vec![joint(0.501)]));
+/// let mut recording = Recording::new(1);
+/// for q in [0.0, 1.0, 2.0] {
+///     recording.add(&[q], built.flange_at(&[q]).origin)?;
+/// }
+/// let setup = Setup::new(&drawn, Pose::IDENTITY, [0.0; 3].into());
+/// // with nothing fitted again, a link that is 1 mm longer shows as 1 mm at every pose
+/// let validation = validate(&setup, &recording, Refit::Nothing)?;
+/// assert!(validation.errors.iter().all(|error| (error - 1e-3).abs() < 1e-12));
+/// # Ok::<(), rodcal::Error>(())
+/// ```
 ///
 /// # Errors
 /// What the fit refuses.

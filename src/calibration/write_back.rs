@@ -9,6 +9,18 @@ use crate::units::{DEG, MM};
 /// Name and text of the calibrated robot: a table with compliances, or the URDF with new origins,
 /// its `tip_link` at the tip. Comments on top say where base and tip were found.
 ///
+/// ```
+/// use rodcal::prelude::*;
+///
+/// let campaign = Campaign::read("campaigns/tx90-5/campaign.toml".as_ref())?;
+/// let calibration = calibrate(&campaign, Mode::Fea, &Options::default())?;
+/// let (name, text) = write_back(&campaign, &calibration)?;
+/// let robot = Robot::from_text(&name, &text, None, None)?;
+/// let (written, found) = (robot.joints[1].link.a, calibration.setup.get(Parameter::A(1)));
+/// assert!((written - found).abs() < 1e-12 && (written - 0.425).abs() < 2e-3);
+/// # Ok::<(), rodcal::Error>(())
+/// ```
+///
 /// # Errors
 /// As [`crate::robot::Robot::to_toml`] and [`crate::robot::Robot::to_urdf`]; none in practice.
 pub fn write_back(campaign: &Campaign, calibration: &Calibration) -> Result<(String, String)> {

@@ -12,6 +12,21 @@ use crate::units::STANDARD_GRAVITY;
 
 /// Compliance of `rod` by Eqs 15 and 17, in {T}.
 ///
+/// ```
+/// use rodcal::beam::Physics;
+/// use rodcal::compliance::closed_form;
+/// use rodcal::prelude::*;
+///
+/// let rod = Rod::read("rods/5.toml".as_ref())?;
+/// let calc = closed_form::compliance(&rod)?;
+/// let ei = 193e9 * rod.pipe1.section.second_moment();
+/// assert!((calc.force[(0, 0)] / (0.150f64.powi(3) / (3.0 * ei)) - 1.0).abs() < 1e-12); // Eq 15
+/// // the beam model without what the closed form leaves out is the same
+/// let beam = Compliance::of_model(&rod, &Physics::BENDING_AND_TORSION, 10)?;
+/// assert!((beam.force - calc.force).amax() < 1e-12 * calc.force.amax());
+/// # Ok::<(), rodcal::Error>(())
+/// ```
+///
 /// # Errors
 /// [`Error::NotApplicable`] where the equations do not hold: an angle other than 90°, or two
 /// different pipes.

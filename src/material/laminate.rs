@@ -74,6 +74,20 @@ impl Ply {
 
 /// The wall made of `plies`, or `None` where the plies have no invertible stiffness (no plies, or
 /// moduli that are not positive).
+///
+/// ```
+/// use rodcal::material::laminate::{Ply, wall};
+///
+/// // T300/5208 (Tsai and Hahn 1980, Table 1.7), quasi-isotropic: E = 69.7 GPa, ν = 0.30 (Table 4.4)
+/// let ply = |degrees: f64| Ply {
+///     e1: 181e9, e2: 10.3e9, g12: 7.17e9, nu12: 0.28, thickness: 0.125e-3, angle: degrees.to_radians(),
+/// };
+/// let wall = wall(&[0.0, 45.0, -45.0, 90.0].map(ply)).expect("plies of positive stiffness");
+/// assert!((wall.youngs_modulus - 69.7e9).abs() < 0.1e9 && (wall.poisson_ratio - 0.30).abs() < 0.005);
+/// // isotropic in its plane: G = E / 2(1+ν), and nothing couples extension with shear
+/// let isotropic = wall.youngs_modulus / (2.0 * (1.0 + wall.poisson_ratio));
+/// assert!((wall.shear_modulus / isotropic - 1.0).abs() < 1e-9 && wall.coupling < 1e-9);
+/// ```
 pub fn wall(plies: &[Ply]) -> Option<Wall> {
     let thickness: f64 = plies.iter().map(|ply| ply.thickness).sum();
     // A = Σ t Q̄

@@ -13,6 +13,7 @@ use crate::units::UM;
 
 /// Measured compared with modelled, and the Meas compliance.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Measured {
     /// r_mn of every measured entry that the model says is not zero.
     pub ratios: Vec<Ratio>,
@@ -34,6 +35,7 @@ pub struct Measured {
 
 /// r_mn = c_mn / c'_mn.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Ratio {
     /// Axis of the offset m.
     pub channel: Axis,

@@ -29,6 +29,7 @@ impl Default for Options {
 
 /// What the readings say.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Fit {
     /// One line for each direction, channel and place that has two different loads.
     pub lines: Vec<Line>,
@@ -39,6 +40,25 @@ pub struct Fit {
 }
 
 /// Fits lines to `readings` and, where there is a `rod`, compares them with its model.
+///
+/// ```
+/// use rodcal::prelude::*;
+///
+/// // NIST StRD "Pontius" (certified in lbf and inches): a load cell, no rod to compare with
+/// const CSV: &str =
+///     include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/stiffness_data/nist-load-cell.csv"));
+/// let readings = Readings::from_text("nist-load-cell.csv", CSV)?;
+/// let fit = rig::fit(&readings, None, &rig::Options::default())?;
+/// let curve = fit.lines[0].quadratic.expect("20 different loads");
+/// let b1 = curve.coefficients[1].value * 4.4482216152605 / 0.0254;
+/// assert!((b1 / 7.32059160401003e-7 - 1.0).abs() < 1e-9);
+/// // its straight line is none: F = 214.747
+/// assert!((fit.lines[0].lack_of_fit.map_or(0.0, |test| test.f) - 214.747).abs() < 5e-4);
+/// # Ok::<(), rodcal::Error>(())
+/// ```
+///
+/// Shapes: one [`Line`](crate::rig::line::Line) for each direction, channel and pair of stations;
+/// C^F and C^g are 3 × 3 in {T}, m/N and m per g.
 ///
 /// # Errors
 /// [`Error::Input`] for stations off the rod, offsets against the load, or readings that measure

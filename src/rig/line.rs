@@ -29,6 +29,7 @@ pub struct LineKey {
 
 /// A fitted line.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Line {
     /// What was fitted.
     pub key: LineKey,
@@ -65,6 +66,7 @@ pub struct Line {
 
 /// ȳ = b0 + b1·F + b2·F².
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Quadratic {
     /// b0 (m), b1 (m/N), b2 (m/N²), F the magnitude of the load.
     pub coefficients: [Estimate; 3],
@@ -98,6 +100,22 @@ impl LineKey {
 
 impl Line {
     /// Fits a line to `samples`; `None` where they have fewer than two different loads.
+    ///
+    /// ```
+    /// use rodcal::least_squares::Robust;
+    /// use rodcal::rig::line::{Line, LineKey, Sample};
+    /// use rodcal::rig::readings::{Axis, Direction, Phase};
+    ///
+    /// let key = LineKey {
+    ///     direction: Direction::along(Axis::Z), channel: Axis::Z, load_station: None, read_station: None,
+    /// };
+    /// let sample = |line, load: f64, offset: f64| Sample { load, offset, phase: Phase::Load, trial: 0, line };
+    /// let samples = [sample(2, 5.0, 50e-6), sample(3, 10.0, 101e-6), sample(4, 15.0, 149e-6)];
+    /// let line = Line::fit(key, &samples, Robust::None)?.expect("two different loads or more");
+    /// // Σ(F − F̄)(d − d̄)/Σ(F − F̄)² = 495/50 µm/N
+    /// assert!((line.slope.value - 9.9e-6).abs() < 1e-15);
+    /// # Ok::<(), rodcal::Error>(())
+    /// ```
     ///
     /// # Errors
     /// As [`least_squares::linear`].

@@ -25,6 +25,7 @@ const ABSOLUTE_ZERO_C: f64 = -273.15;
 
 /// The readings of one file.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Readings {
     /// The file as the user named it.
     pub file: String,
@@ -57,7 +58,50 @@ impl Readings {
         }
     }
 
+    /// Readings that were taken, or computed, by the caller.
+    ///
+    /// A rod that gives way by 45 µm/N, with 1 N of friction:
+    ///
+    /// ```
+    /// use rodcal::prelude::*;
+    ///
+    /// let row = |load: f64| {
+    ///     Reading::new(Direction::along(Axis::Y), load).with_offset(Axis::Y, 45e-6 * (load - 1.0))
+    /// };
+    /// let readings = Readings::from_rows([5.0, 10.0, 15.0].map(row).to_vec())?;
+    /// let fit = rig::fit(&readings, None, &rig::Options::default())?;
+    /// assert!((fit.lines[0].slope.value - 45e-6).abs() < 1e-15);
+    /// assert!((fit.lines[0].load_offset.map_or(0.0, |load| load.value) - 1.0).abs() < 1e-9);
+    /// # Ok::<(), rodcal::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::Argument`] for a row without an offset, for a load or a station that is negative and
+    /// for numbers that are not finite; [`Error::Input`] where no axis has two different loads,
+    /// since a slope cannot be found from one.
+    pub fn from_rows(mut rows: Vec<Reading>) -> Result<Readings> {
+        const FILE: &str = "readings";
+        for (row, number) in rows.iter_mut().zip(1..) {
+            row.line = number;
+            check_numbers(row)?;
+        }
+        check_loads(FILE, &rows)?;
+        Ok(Readings { file: FILE.into(), source: None, warnings: warning::about_rows(&rows), rows })
+    }
+
     /// Reads `text`, the contents of `file`.
+    ///
+    /// ```
+    /// use rodcal::rig::readings::Readings;
+    ///
+    /// let readings = Readings::from_text("rig.csv", "axis,load_kg,dz_um\n-z,1,-40\n-z,2,-80\n")?;
+    /// assert_eq!(readings.rows[0].signed_load(), -9.80665); // a kilogram under standard gravity
+    /// assert!(readings.rows[1].offset[2].is_some_and(|dz| (dz + 80e-6).abs() < 1e-18));
+    ///
+    /// let error = Readings::from_text("rig.csv", "axis,load_kg,dz_um\nz,1,4O\n").unwrap_err();
+    /// assert!(error.to_string().starts_with("rig.csv:2:5"), "{error}");
+    /// # Ok::<(), rodcal::Error>(())
+    /// ```
     ///
     /// # Errors
     /// [`Error::Input`] with line and column: what [`Table::parse`] refuses; `load_n` and `load_kg`
@@ -77,6 +121,29 @@ impl Readings {
             warnings: warning::all(&table, &rows),
             rows,
         })
+    }
+}
+
+/// What a cell of a file cannot be, a row of a program cannot either.
+fn check_numbers(row: &Reading) -> Result<()> {
+    let wrong = |name, found: String, expected: &str| {
+        let found = format!("{found} in row {}", row.line);
+        Err(Error::Argument { name, found, expected: expected.to_owned() })
+    };
+    for (name, value) in
+        [("load", Some(row.load)), ("load_station", row.load_station), ("read_station", row.read_station)]
+    {
+        if let Some(value) = value.filter(|value| !(value.is_finite() && *value >= 0.0)) {
+            return wrong(name, value.to_string(), "a number >= 0, in SI units");
+        }
+    }
+    let others = [row.time, row.temperature].into_iter().chain(row.offset).flatten();
+    if let Some(value) = others.into_iter().find(|value| !value.is_finite()) {
+        return wrong("row", value.to_string(), "finite numbers");
+    }
+    match row.offset.iter().all(Option::is_none) {
+        true => wrong("offset", "missing".into(), "an offset along x, y or z"),
+        false => Ok(()),
     }
 }
 
@@ -212,6 +279,24 @@ fn check_loads(file: &str, rows: &[Reading]) -> Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn rows_that_cannot_be_are_refused() {
+        let row = |load: f64| Reading::new(Direction::along(Axis::X), load).with_offset(Axis::X, load);
+        assert!(Readings::from_rows(vec![row(1.0), row(2.0)]).is_ok());
+        assert!(Readings::from_rows(vec![row(1.0), row(1.0)]).is_err());
+        assert!(Readings::from_rows(vec![]).is_err());
+        for wrong in [
+            row(-1.0),
+            row(f64::NAN),
+            Reading::new(Direction::against(Axis::X), 1.0),
+            Reading { time: Some(f64::INFINITY), ..row(1.0) },
+            Reading { load_station: Some(-0.1), ..row(1.0) },
+        ] {
+            let error = Readings::from_rows(vec![row(3.0), wrong]).unwrap_err();
+            assert!(error.to_string().contains("row 2"), "{error}");
+        }
+    }
 
     #[test]
     fn every_column_is_read_in_si() {

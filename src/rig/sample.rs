@@ -22,6 +22,7 @@ pub struct Sample {
 
 /// The average of the repeats at one load.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Point {
     /// Magnitude of the load, N.
     pub load: f64,
@@ -37,6 +38,7 @@ pub struct Point {
 
 /// F test of a curve against the scatter of repeats.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct LackOfFit {
     /// s_f² / s_e².
     pub f: f64,

@@ -10,6 +10,7 @@
 
 /// One of them. Joints count from 0.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub enum Effect {
     /// A wave of so many cycles per revolution.
     Harmonic {
@@ -68,6 +69,15 @@ impl Effect {
 
     /// Turn of its joint, rad, at the joint values `q` (rad or m) under the torques `torque` (N·m;
     /// may be empty).
+    ///
+    /// ```
+    /// use rodcal::robot::Effect;
+    ///
+    /// let eccentric = Effect::Harmonic { joint: 0, cycles_per_rev: 1.0, sine: 2e-4, cosine: 0.0 };
+    /// assert!((eccentric.turn(&[30f64.to_radians()], &[]) - 1e-4).abs() < 1e-18);
+    /// let play = Effect::Backlash { joint: 0, play: 2e-4 };
+    /// assert_eq!(play.turn(&[0.0], &[-5.0]), -1e-4); // half the gap, towards the torque
+    /// ```
     pub fn turn(&self, q: &[f64], torque: &[f64]) -> f64 {
         match self {
             Effect::Harmonic { joint, cycles_per_rev, sine, cosine } => {

@@ -22,6 +22,40 @@ impl Robot {
     /// read; where none are given, from the link named `base_link` to the one named `tip_link`. Any
     /// other text is a table in TOML, which needs no links.
     ///
+    /// A table, the paper's TX90 (Table 1):
+    ///
+    /// ```
+    /// use rodcal::prelude::*;
+    ///
+    /// let (file, text) = Robot::builtin("tx90").expect("the program carries it");
+    /// let tx90 = Robot::from_text(file, text, None, None)?;
+    /// assert_eq!((tx90.joints.len(), tx90.joints[1].link.a), (6, 0.425));
+    /// # Ok::<(), rodcal::Error>(())
+    /// ```
+    ///
+    /// A URDF, two links of 0.4 m and 0.3 m about z:
+    ///
+    /// ```
+    /// use rodcal::prelude::*;
+    ///
+    /// let text = r#"<robot name="arm">
+    ///   <link name="base_link"/> <link name="upper"/> <link name="lower"/> <link name="tip_link"/>
+    ///   <joint name="shoulder" type="continuous">
+    ///     <parent link="base_link"/> <child link="upper"/> <axis xyz="0 0 1"/>
+    ///   </joint>
+    ///   <joint name="elbow" type="continuous">
+    ///     <parent link="upper"/> <child link="lower"/> <origin xyz="0.4 0 0"/> <axis xyz="0 0 1"/>
+    ///   </joint>
+    ///   <joint name="hand" type="fixed">
+    ///     <parent link="lower"/> <child link="tip_link"/> <origin xyz="0.3 0 0"/>
+    ///   </joint>
+    /// </robot>"#;
+    /// let arm = Robot::from_text("arm.urdf", text, None, None)?;
+    /// let hand = arm.flange_at(&[0.0, std::f64::consts::FRAC_PI_2]).origin;
+    /// assert!((hand.x - 0.4).abs() < 1e-12 && (hand.y - 0.3).abs() < 1e-12);
+    /// # Ok::<(), rodcal::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// [`crate::Error::Syntax`] or [`crate::Error::Input`] with line and column.
     pub fn from_text(

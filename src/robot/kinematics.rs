@@ -8,6 +8,27 @@ use crate::spatial::{Pose, left_jacobian, turned_about_x, turned_about_y, turned
 
 /// One configuration of a [`Setup`] in {W}. Made once and moved from pose to pose without
 /// allocation.
+///
+/// ```
+/// use rodcal::prelude::*;
+/// use rodcal::robot::Loads;
+///
+/// // an arm of 0.5 m that turns about a horizontal axis, 2 kg at its end
+/// let mut joint = Joint::new("shoulder", Motion::Revolute, Hayati { a: 0.5, ..Hayati::default() });
+/// joint.body = Some(rodcal::robot::Body { mass: 2.0, centre: [0.0; 3].into() });
+/// let arm = Robot::new("arm", vec![joint]);
+/// // the base stands on a wall: its z is horizontal
+/// let base = Pose::from_xyz_rpy([0.0; 3], [std::f64::consts::FRAC_PI_2, 0.0, 0.0]);
+/// let setup = Setup::new(&arm, base, [0.0; 3].into());
+/// let mut kinematics = Kinematics::new(&setup);
+/// kinematics.update(&[0.0], &[]);
+/// // the tip moves upwards by its lever arm per radian
+/// assert!((kinematics.joint_jacobian(0).z - 0.5).abs() < 1e-15);
+/// let mut torque = [0.0];
+/// let gravity = [0.0, 0.0, -9.80665].into();
+/// kinematics.torques(&Loads { gravity, payload: None, tip_force: [0.0; 3].into() }, &mut torque);
+/// assert!((torque[0] + 2.0 * 9.80665 * 0.5).abs() < 1e-12); // −m·g·a
+/// ```
 #[derive(Debug, Clone)]
 pub struct Kinematics<'s> {
     /// Base to flange, one per joint.

@@ -30,6 +30,20 @@ const NO_TORQUE: f64 = 1e-6;
 /// A turn about the last axis is the same as a shift of the tool around it. θₙ takes it, as in the
 /// paper, where the tool as `drawn` (m, in {T}) lies beside that axis, so that there is a direction
 /// to correct; else the tool does.
+///
+/// ```
+/// use rodcal::prelude::*;
+/// use rodcal::robot::{Body, minimal_parameters};
+///
+/// let (file, text) = Robot::builtin("tx90").expect("the program carries it");
+/// let tx90 = Robot::from_text(file, text, None, None)?;
+/// let rod = Rod::read("rods/5.toml".as_ref())?;
+/// let payload = Body { mass: rod.mass(), centre: rod.centre_of_mass() };
+/// let parameters = minimal_parameters(&tx90, rod.tip(), rod.tip(), Some(payload));
+/// assert_eq!(parameters.len(), 32); // the paper's Table 1
+/// assert!(parameters.contains(&Parameter::Beta(1)) && !parameters.contains(&Parameter::Theta(0)));
+/// # Ok::<(), rodcal::Error>(())
+/// ```
 pub fn minimal_parameters(
     robot: &Robot,
     tool: Vector3<f64>,

@@ -6,6 +6,14 @@ use crate::units::{DEG, MM, URAD_PER_NM};
 
 /// One number of the chain {W} → {0} → joints → {T} → tip. Joints count from 0 here, from 1 in
 /// names.
+///
+/// ```
+/// use rodcal::robot::Parameter;
+///
+/// let parameter = Parameter::from_key("c2_urad_per_nm", 6).expect("a joint of a robot with six");
+/// assert_eq!((parameter, parameter.to_string().as_str()), (Parameter::Compliance(1), "c2"));
+/// assert_eq!(parameter.unit().si, 1e-6);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Parameter {
     /// Position of {0} in {W} along x, y, z (0, 1, 2), m.

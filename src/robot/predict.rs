@@ -38,6 +38,20 @@ impl Robot {
     /// is rigid. With it the standard deviation of each coordinate, m, where the robot's file says
     /// what it takes: √(sd² + diag J·Σ·Jᵀ), sd the error of poses that were held out and Σ the
     /// covariance of the parameters.
+    ///
+    /// ```
+    /// use rodcal::prelude::*;
+    ///
+    /// // 2 kg at 0.5 m on a joint of 10 µrad/(N·m) whose axis is horizontal: it sags by 98 µrad
+    /// let link = Hayati { a: 0.5, ..Hayati::default() };
+    /// let mut joint = Joint::new("shoulder", Motion::Revolute, link);
+    /// joint.body = Some(rodcal::robot::Body { mass: 2.0, centre: [0.0; 3].into() });
+    /// joint.compliance = 10e-6;
+    /// let mut arm = Robot::new("arm", vec![joint]);
+    /// arm.gravity = [0.0, -9.80665, 0.0].into();
+    /// let (tip, sd) = arm.tip_at([0.0; 3].into(), &[0.0]);
+    /// assert!((tip.y + 0.5 * 98.0665e-6).abs() < 1e-11 && sd.is_none());
+    /// ```
     pub fn tip_at(&self, tool: Vector3<f64>, q: &[f64]) -> (Vector3<f64>, Option<Vector3<f64>>) {
         let setup = Setup::new(self, Pose::IDENTITY, tool);
         let mut kinematics = Kinematics::new(&setup);
@@ -57,6 +71,16 @@ impl Robot {
     }
 
     /// Poses of a table (CSV) with the columns `pose`, `q1_deg` … (`q1_mm` of a prismatic joint).
+    ///
+    /// ```
+    /// use rodcal::prelude::*;
+    ///
+    /// let slide = Joint::new("slide", Motion::Prismatic, Hayati::default());
+    /// let robot = Robot::new("gantry", vec![slide]);
+    /// let poses = robot.poses_from_csv("poses.csv", "pose,q1_mm\nhome,250\n")?;
+    /// assert_eq!((poses[0].pose.as_str(), poses[0].joints[0]), ("home", 0.25));
+    /// # Ok::<(), rodcal::Error>(())
+    /// ```
     ///
     /// # Errors
     /// [`crate::Error::Input`] with line and column.

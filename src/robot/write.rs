@@ -15,6 +15,17 @@ impl Robot {
     /// Every number has as many digits as it takes to read the very same one again; where the
     /// change of units makes that impossible, the last bit may differ.
     ///
+    /// ```
+    /// use rodcal::prelude::*;
+    ///
+    /// let link = Hayati { a: 0.425, alpha: std::f64::consts::FRAC_PI_2, ..Hayati::default() };
+    /// let robot = Robot::new("arm", vec![Joint::new("joint 1", Motion::Revolute, link)]);
+    /// let text = robot.to_toml(&["made by hand".to_owned()])?;
+    /// assert!(text.contains("a_mm = 425.0\nalpha_deg = 90.0"), "{text}");
+    /// assert_eq!(Robot::from_text("arm.toml", &text, None, None)?.joints[0].link, link);
+    /// # Ok::<(), rodcal::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// [`Error::NotApplicable`] where the robot has a root or a flange of its own, as one read from
     /// a URDF: a table has no place for them.

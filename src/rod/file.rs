@@ -24,6 +24,14 @@ use crate::toml_text::{Number, Required, TomlText};
 impl Rod {
     /// Reads and checks a rod file.
     ///
+    /// ```
+    /// use rodcal::rod::Rod;
+    ///
+    /// let rod = Rod::read("rods/4.toml".as_ref())?;
+    /// assert_eq!(rod.tip().x, rod.l2); // an L: pipe II along x
+    /// # Ok::<(), rodcal::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// [`crate::Error::File`] where it cannot be read; [`crate::Error::Syntax`] or
     /// [`crate::Error::Input`] with line and column otherwise.
@@ -33,6 +41,19 @@ impl Rod {
 
     /// Reads and checks the text of a rod file; `file` names it in errors (and the rod, where it
     /// has no `name`).
+    ///
+    /// ```
+    /// use rodcal::rod::Rod;
+    ///
+    /// const TEXT: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/rods/5.toml"));
+    /// let rod = Rod::from_toml("rods/5.toml", TEXT)?;
+    /// assert!((rod.length() - 0.675).abs() < 1e-12); // 150 mm + 525 mm, sharp corner
+    /// assert!((rod.mass() - 0.58130).abs() < 1e-5);
+    ///
+    /// let error = Rod::from_toml("rods/5.toml", &TEXT.replace("= 150.0", "= -150.0")).unwrap_err();
+    /// assert!(error.to_string().starts_with("rods/5.toml:11:9: `geometry.l1_mm` is -150.0"), "{error}");
+    /// # Ok::<(), rodcal::Error>(())
+    /// ```
     ///
     /// # Errors
     /// As [`Rod::read`].

@@ -29,6 +29,15 @@ impl Campaign {
     /// Reads and checks a campaign file and all files that it names; their paths are relative to
     /// its directory.
     ///
+    /// ```
+    /// use rodcal::prelude::*;
+    ///
+    /// let campaign = Campaign::read("campaigns/tx90-5/campaign.toml".as_ref())?;
+    /// assert_eq!((campaign.measurements.len(), campaign.measurements.groups.len()), (60, 5));
+    /// assert_eq!(default_mode(&campaign), Mode::Meas); // it has readings of its rod
+    /// # Ok::<(), rodcal::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// [`Error::File`] where it cannot be read; [`Error::Syntax`] or [`Error::Input`] with line and
     /// column of whichever file is wrong otherwise.
@@ -40,6 +49,20 @@ impl Campaign {
 
     /// Reads and checks the text of a campaign file; `file` names it in errors, and `open` gives
     /// the text of a file by the name that the campaign has for it.
+    ///
+    /// ```
+    /// use rodcal::prelude::*;
+    ///
+    /// let text = "robot = 'builtin:tx90'\nmeasurements = 'tracker.csv'\n[noise]\nposition_um = 20\n";
+    /// let rows = "pose,q1_deg,q2_deg,q3_deg,q4_deg,q5_deg,q6_deg,x_mm,y_mm,z_mm\n\
+    ///             home,0,0,90,0,0,0,900,-50,350\n";
+    /// let campaign = Campaign::from_texts("campaign.toml", text, &|_name| Ok(rows.to_owned()))?;
+    /// assert!(campaign.noise.is_some_and(|sd| (sd - 20e-6).abs() < 1e-18));
+    /// assert_eq!(campaign.measurements.joints(0)[2], 90f64.to_radians());
+    /// let Targets::Points(points) = &campaign.measurements.targets else { unreachable!() };
+    /// assert!((points[0].x - 0.9).abs() < 1e-15);
+    /// # Ok::<(), rodcal::Error>(())
+    /// ```
     ///
     /// # Errors
     /// As [`Campaign::read`].

@@ -4,6 +4,7 @@ use std::fmt;
 
 /// One row: a load and the offsets that it caused.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Reading {
     /// Direction of the load in {T}.
     pub direction: Direction,
@@ -66,6 +67,16 @@ impl Axis {
 }
 
 impl Direction {
+    /// Along the positive axis.
+    pub fn along(axis: Axis) -> Direction {
+        Direction { axis, sign: 1 }
+    }
+
+    /// Against it.
+    pub fn against(axis: Axis) -> Direction {
+        Direction { axis, sign: -1 }
+    }
+
     /// `x`, `+y`, `-Z`; a Unicode minus is one too.
     pub fn from_name(name: &str) -> Option<Direction> {
         let (sign, axis) = match name.strip_prefix(['-', '\u{2212}']) {
@@ -78,6 +89,33 @@ impl Direction {
 }
 
 impl Reading {
+    /// A load at the tip (N, a magnitude) without an offset so far.
+    pub fn new(direction: Direction, load: f64) -> Reading {
+        Reading {
+            direction,
+            load,
+            offset: [None; 3],
+            trial: None,
+            phase: None,
+            time: None,
+            temperature: None,
+            load_station: None,
+            read_station: None,
+            line: 0,
+        }
+    }
+
+    /// With an offset (m) along an axis of {T}.
+    pub fn with_offset(mut self, axis: Axis, offset: f64) -> Reading {
+        self.offset[axis.index()] = Some(offset);
+        self
+    }
+
+    /// As a repeat of that name.
+    pub fn with_trial(self, trial: impl Into<String>) -> Reading {
+        Reading { trial: Some(trial.into()), ..self }
+    }
+
     /// The load along the positive axis, N: its magnitude with the sign of its direction.
     pub fn signed_load(&self) -> f64 {
         f64::from(self.direction.sign) * self.load

@@ -51,11 +51,16 @@ pub(super) fn all(table: &Table, rows: &[Reading]) -> Vec<Warning> {
         column: column.to_owned(),
         nearest: nearest_name(column, &KNOWN_COLUMNS),
     });
+    commas.into_iter().chain(unknown).chain(about_rows(rows)).collect()
+}
+
+/// Warnings about rows that may come from anywhere.
+pub(super) fn about_rows(rows: &[Reading]) -> Vec<Warning> {
     let groups = Axis::ALL.into_iter().flat_map(|axis| Axis::ALL.map(|channel| (axis, channel)));
     let one_load = groups.filter_map(|(axis, channel)| {
         only_load(rows, axis, channel).map(|load| Warning::OneLoad { axis, channel, load })
     });
-    commas.into_iter().chain(unknown).chain(one_load).chain(size(rows)).collect()
+    one_load.chain(size(rows)).collect()
 }
 
 fn size(rows: &[Reading]) -> Option<Warning> {

@@ -11,6 +11,16 @@ type Column<'a> = (&'a str, &'a dyn Fn(&Reading) -> Option<String>);
 impl Readings {
     /// These readings as a table, the format of [`Readings::from_text`], below `above`, lines of
     /// comments. Loads are in N; columns that no row fills are left out.
+    ///
+    /// ```
+    /// use rodcal::prelude::*;
+    ///
+    /// let row = |load| Reading::new(Direction::along(Axis::Z), load).with_offset(Axis::Z, 4e-6 * load);
+    /// let readings = Readings::from_rows(vec![row(1.0), row(2.0)])?;
+    /// let text = readings.to_csv(&["made by hand".to_owned()]);
+    /// assert_eq!(text, "# made by hand\naxis,load_n,dz_um\nz,1,4\nz,2,8\n");
+    /// # Ok::<(), rodcal::Error>(())
+    /// ```
     pub fn to_csv(&self, above: &[String]) -> String {
         let offset =
             |axis: Axis| move |row: &Reading| row.offset[axis.index()].map(|o| format!("{}", in_unit(o, UM)));

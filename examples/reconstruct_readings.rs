@@ -1,12 +1,14 @@
 //! Makes `stiffness_data/2.csv` and `5.csv`: rig readings as the paper's figures imply them.
 //!
-//! `cargo run --example reconstruct_readings` writes both files; a test makes sure that they are what this makes.
+//! `cargo run --example reconstruct_readings` writes both files; a test makes sure that they are
+//! what this makes.
 //!
-//! Published (Improved MultiCal, *Sensors* 23 (2023) 5717, § 5.1, Table 2): loads of 0.5, 1, 1.5 and 2 kg with five
-//! repeats each; c22(5#)/c22(2#) = 5.9 measured; the lines cross the load axis at 0.09 to 0.11 kg; r_rod = 1.364
-//! (2#) and 1.013 (5#); sensors good to 3 µm with a resolution of 1 µm. Reconstructed: everything else. r22 and r33
-//! of 5# are taken equal; c22 of 2# follows from the ratio 5.9 and its c33 from r_rod; which rod crosses at 0.09
-//! and which at 0.11 kg is a guess; noise is normal with a standard deviation of 3 µm; no creep, no curvature.
+//! Published (Improved MultiCal, *Sensors* 23 (2023) 5717, § 5.1, Table 2): loads of 0.5, 1, 1.5
+//! and 2 kg with five repeats each; c22(5#)/c22(2#) = 5.9 measured; the lines cross the load axis
+//! at 0.09 to 0.11 kg; r_rod = 1.364 (2#) and 1.013 (5#); sensors good to 3 µm with a resolution of
+//! 1 µm. Reconstructed: everything else. r22 and r33 of 5# are taken equal; c22 of 2# follows from
+//! the ratio 5.9 and its c33 from r_rod; which rod crosses at 0.09 and which at 0.11 kg is a guess;
+//! noise is normal with a standard deviation of 3 µm; no creep, no curvature.
 
 #![allow(clippy::unwrap_used)]
 

@@ -1,10 +1,11 @@
 //! Makes `campaigns/tx90-5/`: a small campaign of a TX90 with the paper's rod 5#, simulated.
 //!
-//! `cargo run --example simulate_campaign` writes its files; a test makes sure that they are what this makes.
+//! `cargo run --example simulate_campaign` writes its files; a test makes sure that they are what
+//! this makes.
 //!
-//! Smaller than the paper's (12 poses on each clamp, 30 of validation), so that trying it takes no time. The true rod is
-//! 1.013 times as compliant as its model, the published r_rod of 5#. What is published and what is assumed stands in
-//! `docs/simulation.md`.
+//! Smaller than the paper's (12 poses on each clamp, 30 of validation), so that trying it takes no
+//! time. The true rod is 1.013 times as compliant as its model, the published r_rod of 5#. What is
+//! published and what is assumed stands in `docs/simulation.md`.
 
 #![allow(clippy::unwrap_used)]
 

@@ -1,12 +1,13 @@
-//! The paper's Table 3 by simulation: six rods, every mode of compensation, validation errors beside the published ones.
+//! The paper's Table 3 by simulation: six rods, every mode of compensation, validation errors
+//! beside the published ones.
 //!
-//! `cargo run --release --example table3` prints the tables of `docs/simulation.md`; a number after `--` changes how
-//! many seeds are taken for each rod.
+//! `cargo run --release --example table3` prints the tables of `docs/simulation.md`; a number after
+//! `--` changes how many seeds are taken for each rod.
 //!
-//! Published (Improved MultiCal, *Sensors* 23 (2023) 5717, Tables 1 to 3, § 5): the robot's model, r_rod, noise of
-//! sensors (3 µm), robot (30 µm) and scanner (43 µm), contact force, five clamps, 30 poses, 100 validation poses, and
-//! the figures of Table 3. Ours: the rods' sections (`rods/`), the places of the clamps, the robot's own errors. Nothing
-//! is fitted to Table 3.
+//! Published (Improved MultiCal, *Sensors* 23 (2023) 5717, Tables 1 to 3, § 5): the robot's model,
+//! r_rod, noise of sensors (3 µm), robot (30 µm) and scanner (43 µm), contact force, five clamps,
+//! 30 poses, 100 validation poses, and the figures of Table 3. Ours: the rods' sections (`rods/`),
+//! the places of the clamps, the robot's own errors. Nothing is fitted to Table 3.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
@@ -53,8 +54,9 @@ const PUBLISHED: [Published; 6] = [
     published([1.943, 1306.2, 1.036], (0.601, 2.012), Some((0.522, 2.120)), (0.505, 1.874), (0.507, 1.867)),
 ];
 
-/// Cycles per revolution of an angle error that the robot's model cannot describe, and its rms, rad: the middle of what
-/// was seen on real arms (UR5 60 to 110 µrad, UR10 220 to 400 µrad, 10 to 30 cycles).
+/// Cycles per revolution of an angle error that the robot's model cannot describe, and its rms,
+/// rad: the middle of what was seen on real arms (UR5 60 to 110 µrad, UR10 220 to 400 µrad, 10 to
+/// 30 cycles).
 const CYCLES: f64 = 17.0;
 const ANGLE_ERRORS: [f64; 2] = [85e-6, 310e-6];
 
@@ -294,7 +296,8 @@ fn moved(recording: &mut Recording, by: impl FnMut(usize) -> Vector3<f64>) {
     points.iter_mut().zip(offsets).for_each(|(point, offset)| *point += offset);
 }
 
-/// By how much the tip misses where every joint errs by a wave of its own angle: amplitude (rad) and phase.
+/// By how much the tip misses where every joint errs by a wave of its own angle: amplitude (rad)
+/// and phase.
 fn offsets(setup: &Setup, recording: &Recording, waves: &[(f64, f64)]) -> Vec<Vector3<f64>> {
     let mut kinematics = Kinematics::new(setup);
     (0..recording.len())
@@ -302,7 +305,7 @@ fn offsets(setup: &Setup, recording: &Recording, waves: &[(f64, f64)]) -> Vec<Ve
             let q = recording.joints(row);
             kinematics.update(q, &[]);
             let of_joint = |(j, &(size, phase)): (usize, &(f64, f64))| {
-                kinematics.moved(j) * size * (CYCLES * q[j] + phase).sin()
+                kinematics.joint_jacobian(j) * size * (CYCLES * q[j] + phase).sin()
             };
             waves.iter().enumerate().map(of_joint).sum()
         })
@@ -318,7 +321,8 @@ struct World<'a> {
 }
 
 impl World<'_> {
-    /// Visits every row with the robot at rest under its loads: kinematics, torques, gravity and contact force in {W}.
+    /// Visits every row with the robot at rest under its loads: kinematics, torques, gravity and
+    /// contact force in {W}.
     fn visit(
         &self,
         recording: &Recording,

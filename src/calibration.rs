@@ -1,31 +1,37 @@
-//! Kinematic calibration: joint values and ball positions in, a calibrated robot with honest uncertainties out.
+//! Kinematic calibration: joint values and ball positions in, a calibrated robot with honest
+//! uncertainties out.
 
 mod calibrate;
 pub mod campaign;
+mod checks;
 mod compare;
 mod compensation;
 mod cross_validation;
-mod identify;
+mod identifiability;
 mod noise;
 mod observability;
+mod options;
 mod passes;
 mod problem;
 mod resample;
+mod result;
 pub mod simulate;
 mod start;
 mod validation;
 mod warning;
 mod write_back;
 
-pub use calibrate::{Calibration, Estimated, Options, calibrate, calibrate_from, free_parameters, start};
+pub use calibrate::{calibrate, calibrate_from, free_parameters, start};
 pub use campaign::Campaign;
 pub use compare::{CompareOptions, Comparison, Difference, compare};
 pub use compensation::{Compensation, Mode, TORQUE_ROUNDS, default_mode, modes};
 pub use cross_validation::{CrossValidation, cross_validate};
-pub use identify::{Held, plausible_range};
+pub use identifiability::{UnidentifiedDirection, plausible_range};
 pub use noise::{Noise, Robust};
 pub use observability::Observability;
+pub use options::Options;
 pub use passes::PassRecord;
+pub use result::{Calibration, Estimated};
 pub use validation::{Summary, Validation, validate};
 pub use warning::Warning;
 pub use write_back::{write_back, write_back_with};

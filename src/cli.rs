@@ -13,37 +13,24 @@ mod progress;
 mod rig;
 mod simulate;
 mod trial;
+mod values;
 
-use std::path::PathBuf;
-
-use clap::{Parser, Subcommand, ValueEnum};
+use clap::{CommandFactory, Parser, Subcommand};
 use rodcal::Result;
-use rodcal::beam::Physics;
 
 use output::Outcome;
 
-/// How much a measuring rod bends, how accurate a robot is once that is compensated, and which physics a model left out.
+/// How much a measuring rod bends, how accurate a robot is once that is compensated, and which
+/// physics a model left out.
 #[derive(Debug, Parser)]
 #[command(version, after_help = EXAMPLES, propagate_version = true)]
 pub struct Arguments {
     #[command(subcommand)]
     command: Option<Command>,
 
-    /// Print the result as JSON on stdout and nothing else (warnings still go to stderr).
-    #[arg(long, global = true, help_heading = OUTPUT)]
-    pub json: bool,
-
-    /// Write a report into this directory: index.html for a browser, pictures (SVG), tables (CSV,
-    /// Markdown) and result.json. Made if missing; other files in it stay.
-    #[arg(long, global = true, value_name = "DIR", help_heading = OUTPUT)]
-    pub out: Option<PathBuf>,
-
-    /// With --out: write the pictures as PNG too.
-    #[arg(long, global = true, help_heading = OUTPUT)]
-    pub png: bool,
+    #[command(flatten)]
+    pub output: output::Options,
 }
-
-const OUTPUT: &str = "Output";
 
 // Lines of at most 80 columns: a terminal that wraps them would break their indent.
 const EXAMPLES: &str = "\
@@ -109,29 +96,6 @@ enum Command {
     Completions(completions::Completions),
 }
 
-/// Beam theory.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Theory {
-    /// Slender beams: no shear.
-    EulerBernoulli,
-    /// Shear too.
-    Timoshenko,
-}
-
-impl Theory {
-    fn physics(self) -> Physics {
-        Physics { shear: self == Theory::Timoshenko, ..Physics::default() }
-    }
-}
-
-/// A number of elements that a beam model can have and a machine can hold.
-fn elements(text: &str) -> std::result::Result<usize, String> {
-    match text.parse() {
-        Ok(count) if (1..=1_000_000).contains(&count) => Ok(count),
-        _ => Err("expected a whole number from 1 to 1000000".into()),
-    }
-}
-
 /// Runs the command that was asked for.
 pub fn run(arguments: &Arguments) -> Result<Outcome> {
     match &arguments.command {
@@ -144,6 +108,6 @@ pub fn run(arguments: &Arguments) -> Result<Outcome> {
         Some(Command::Predict(command)) => command.run(),
         Some(Command::Simulate(command)) => command.run(),
         Some(Command::Trial(command)) => command.run(),
-        Some(Command::Completions(command)) => Ok(command.run()),
+        Some(Command::Completions(command)) => Ok(command.run(Arguments::command())),
     }
 }

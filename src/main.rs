@@ -8,7 +8,7 @@ use clap::Parser;
 
 fn main() -> ExitCode {
     let arguments = cli::Arguments::parse();
-    match cli::run(&arguments).and_then(|outcome| cli::output::deliver(&arguments, outcome)) {
+    match cli::run(&arguments).and_then(|outcome| cli::output::deliver(&arguments.output, outcome)) {
         Ok(status) => status,
         Err(error) => {
             cli::output::say(&format!("error: {error}"));

@@ -4,6 +4,7 @@ pub mod laminate;
 
 /// The linear elastic constants a straight or curved pipe needs.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Material {
     /// Name in the rod file.
     pub name: String,
@@ -18,7 +19,15 @@ pub struct Material {
 }
 
 impl Material {
-    /// The isotropic material with Young's modulus (Pa), Poisson's ratio and density (kg/m³): G = E / 2(1+ν).
+    /// The isotropic material with Young's modulus (Pa), Poisson's ratio and density (kg/m³): G = E
+    /// / 2(1+ν).
+    ///
+    /// ```
+    /// use rodcal::material::Material;
+    ///
+    /// let steel = Material::isotropic("steel", 193e9, 0.29, 7930.0);
+    /// assert!((steel.shear_modulus - 74.806e9).abs() < 1e6); // 193 GPa / 2.58
+    /// ```
     pub fn isotropic(name: &str, youngs_modulus: f64, poisson_ratio: f64, density: f64) -> Self {
         Material {
             name: name.to_owned(),
@@ -31,9 +40,9 @@ impl Material {
 
     /// The material with independent Young's and shear moduli (Pa).
     ///
-    /// Cowper's coefficient is derived for isotropic material, with ν = E/2G − 1. The same ν is used where the two
-    /// moduli leave the isotropic range −1 < ν ≤ ½ (unidirectional carbon does): κ of a thin tube then still
-    /// stays between ½ and ⅔.
+    /// Cowper's coefficient is derived for isotropic material, with ν = E/2G − 1. The same ν is
+    /// used where the two moduli leave the isotropic range −1 < ν ≤ ½ (unidirectional carbon does):
+    /// κ of a thin tube then still stays between ½ and ⅔.
     pub fn with_moduli(name: &str, youngs_modulus: f64, shear_modulus: f64, density: f64) -> Self {
         Material {
             name: name.to_owned(),

@@ -7,10 +7,12 @@
 //! Hⱼ = Rz(θⱼ)·Tz(dⱼ)·Tx(aⱼ)·Rx(αⱼ)·Ry(βⱼ)        (the paper's Table 1)
 //! ```
 //!
-//! with θⱼ = offset + qⱼ + cⱼ·τⱼ (and what [`Effect`]s add) for a revolute joint and dⱼ = d + qⱼ for a prismatic one. {0} is
-//! the robot's base frame, {T} the flange's. β is zero but where consecutive axes are nearly parallel: there Denavit and Hartenberg's
-//! common normal jumps with the smallest tilt, and Hayati's β does not (S. Hayati, *IEEE CDC* 22 (1983) 1477–1483).
+//! with θⱼ = offset + qⱼ + cⱼ·τⱼ (and what [`Effect`]s add) for a revolute joint and dⱼ = d + qⱼ
+//! for a prismatic one. {0} is the robot's base frame, {T} the flange's. β is zero but where
+//! consecutive axes are nearly parallel: there Denavit and Hartenberg's common normal jumps with
+//! the smallest tilt, and Hayati's β does not (S. Hayati, *IEEE CDC* 22 (1983) 1477–1483).
 
+mod defaults;
 mod effect;
 mod effects_file;
 mod file;
@@ -31,7 +33,7 @@ pub use file::is_urdf;
 pub use kinematics::{JointFrames, Kinematics};
 pub use minimal::minimal_parameters;
 pub use parameter::{Parameter, Unit};
-pub use predict::Asked;
+pub use predict::PredictionQuery;
 pub use setup::Setup;
 pub use statics::Loads;
 pub use uncertainty::Uncertainty;
@@ -43,6 +45,7 @@ use crate::spatial::Pose;
 
 /// A robot as its file describes it, in SI units.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Robot {
     /// Name, for people.
     pub name: String,
@@ -50,7 +53,8 @@ pub struct Robot {
     pub source: Option<String>,
     /// Acceleration of gravity in {0}, m/s².
     pub gravity: Vector3<f64>,
-    /// Frame of the first joint in {0}: its z axis is the joint's axis. The identity for a robot given as a table.
+    /// Frame of the first joint in {0}: its z axis is the joint's axis. The identity for a robot
+    /// given as a table.
     pub root: Pose,
     /// Joints that move, base to flange; at least one.
     pub joints: Vec<Joint>,
@@ -66,6 +70,7 @@ pub struct Robot {
 
 /// Where the tip is, and how well the robot is known there.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Tip {
     /// In {T}, m.
     pub at: Vector3<f64>,
@@ -75,6 +80,7 @@ pub struct Tip {
 
 /// A joint with the link that it moves.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Joint {
     /// Name, for people.
     pub name: String,
@@ -88,6 +94,13 @@ pub struct Joint {
     pub body: Option<Body>,
     /// Range of the joint, rad or m.
     pub limits: Option<[f64; 2]>,
+}
+
+impl Joint {
+    /// A rigid joint without mass or limits; `link` leads from its axis to its distal frame.
+    pub fn new(name: impl Into<String>, motion: Motion, link: Hayati) -> Joint {
+        Joint { name: name.into(), motion, link, compliance: 0.0, body: None, limits: None }
+    }
 }
 
 /// What a joint does.
@@ -124,6 +137,34 @@ pub struct Body {
 }
 
 impl Robot {
+    /// A robot of these joints, base to flange, on a base frame whose z points up: without effects,
+    /// its first joint's frame {0} and its flange the last distal frame.
+    ///
+    /// ```
+    /// use rodcal::prelude::*;
+    ///
+    /// let link = |a| Hayati { a, ..Hayati::default() };
+    /// let arm = Robot::new("arm", vec![
+    ///     Joint::new("shoulder", Motion::Revolute, link(0.4)),
+    ///     Joint::new("elbow", Motion::Revolute, link(0.3)),
+    /// ]);
+    /// let flange = arm.flange_at(&[0.0, std::f64::consts::FRAC_PI_2]);
+    /// assert!((flange.origin.x - 0.4).abs() < 1e-15 && (flange.origin.y - 0.3).abs() < 1e-15);
+    /// ```
+    pub fn new(name: impl Into<String>, joints: Vec<Joint>) -> Robot {
+        Robot {
+            name: name.into(),
+            source: None,
+            gravity: defaults::DOWN,
+            root: Pose::IDENTITY,
+            joints,
+            flange: Pose::IDENTITY,
+            effects: Vec::new(),
+            tip: None,
+            uncertainty: None,
+        }
+    }
+
     /// True where at least one link has a mass, so that gravity's torques can be computed.
     pub fn has_masses(&self) -> bool {
         self.joints.iter().any(|joint| joint.body.is_some_and(|body| body.mass > 0.0))

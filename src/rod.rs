@@ -3,6 +3,7 @@
 //! Tool frame {T}: origin at the flange, pipe I along +Z, both pipes in the X–Z plane.
 //! A *station* is the arc length along the centreline from the flange; the tip is the largest one.
 
+mod build;
 mod file;
 mod warnings;
 mod write;
@@ -16,8 +17,10 @@ use nalgebra::Vector3;
 use crate::material::Material;
 use crate::section::Round;
 
-/// A rod as its file describes it, in SI units. Made by [`Rod::read`] or [`Rod::from_toml`], which check it.
+/// A rod in SI units, as its file describes it or as it was built. [`Rod::read`], [`Rod::from_toml`]
+/// and [`Rod::checked`] check it.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Rod {
     /// Name, for people.
     pub name: String,
@@ -90,11 +93,13 @@ pub struct Joint {
 ///
 /// With h = tR/r² (t wall, R radius of the bend, r mean radius of the section).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
 pub enum BendFlexibility {
     /// k = 1: beam theory.
     #[default]
     Beam,
-    /// k = (10 + 12h²)/(1 + 12h²). T. von Kármán, "Über die Formänderung dünnwandiger Rohre", Z. VDI 55 (1911) 1889–1895.
+    /// k = (10 + 12h²)/(1 + 12h²). T. von Kármán, "Über die Formänderung dünnwandiger Rohre", Z.
+    /// VDI 55 (1911) 1889–1895.
     VonKarman,
     /// k = 1.65/h, not below 1. ASME B31.3 (2018), Table D300, welding elbow or pipe bend.
     AsmeB313,
@@ -103,7 +108,18 @@ pub enum BendFlexibility {
 }
 
 impl BendFlexibility {
-    /// The factor k on the bending flexibility of the bend (in and out of its plane), dimensionless.
+    /// The factor k on the bending flexibility of the bend (in and out of its plane),
+    /// dimensionless.
+    ///
+    /// ```
+    /// use rodcal::rod::BendFlexibility;
+    /// use rodcal::section::Round;
+    ///
+    /// // t = 1 mm, r = 15.5 mm, R = 60.0625 mm: h = tR/r² = 1/4, k = (10 + 12/16)/(1 + 12/16) = 43/7
+    /// let tube = Round::tube(0.032, 0.030);
+    /// assert!((BendFlexibility::VonKarman.factor(&tube, 0.0600625) - 43.0 / 7.0).abs() < 1e-9);
+    /// assert!((BendFlexibility::AsmeB313.factor(&tube, 0.0600625) - 6.6).abs() < 1e-9); // 1.65/h
+    /// ```
     pub fn factor(&self, section: &Round, bend_radius: f64) -> f64 {
         // h = tR/r²
         let h = section.wall() * bend_radius / section.mean_radius().powi(2);
@@ -117,6 +133,11 @@ impl BendFlexibility {
 }
 
 impl Pipe {
+    /// A pipe of this section and material.
+    pub fn new(section: Round, material: Material) -> Pipe {
+        Pipe { section, material }
+    }
+
     /// Mass per length ρA, kg/m.
     pub fn mass_per_length(&self) -> f64 {
         self.material.density * self.section.area()
@@ -161,6 +182,19 @@ impl Rod {
     }
 
     /// Point of the undeformed centreline at a station (m; kept on the rod), in {T}, m.
+    ///
+    /// ```
+    /// use rodcal::prelude::*;
+    /// use rodcal::rod::BendFlexibility;
+    ///
+    /// let steel = Material::isotropic("steel", 193e9, 0.29, 7930.0);
+    /// let rod = Rod::new("bent", 0.3, 0.3, Pipe::new(Round::solid(0.01), steel))
+    ///     .with_bend(0.1, BendFlexibility::Beam);
+    /// // the middle of the arc is R(1 − 1/√2) off both tangents
+    /// let middle = rod.point((rod.bend_start() + rod.bend_end()) / 2.0);
+    /// assert!((middle.x - 0.1 * (1.0 - 0.5f64.sqrt())).abs() < 1e-12);
+    /// assert!((middle.z - (0.2 + 0.1 * 0.5f64.sqrt())).abs() < 1e-12);
+    /// ```
     pub fn point(&self, station: f64) -> Vector3<f64> {
         let station = station.clamp(0.0, self.length());
         if station <= self.bend_start() {
@@ -215,12 +249,14 @@ impl Rod {
     }
 }
 
-/// What an arc of radius R takes off each pipe at the inside angle γ, m. A straight rod (γ = π) has no bend.
+/// What an arc of radius R takes off each pipe at the inside angle γ, m. A straight rod (γ = π) has
+/// no bend.
 fn tangent_length(bend_radius: f64, gamma: f64) -> f64 {
     bend_radius * ((PI - gamma) / 2.0).tan()
 }
 
-/// Sine and cosine that are exact at the right and the straight angle, where `sin π` would leave 1e-16.
+/// Sine and cosine that are exact at the right and the straight angle, where `sin π` would leave
+/// 1e-16.
 pub(crate) fn sin_cos_exact(angle: f64) -> (f64, f64) {
     let (sin, cos) = angle.sin_cos();
     let clean = |x: f64| if x.abs() < 1e-15 { 0.0 } else { x };

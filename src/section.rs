@@ -3,6 +3,16 @@
 use std::f64::consts::PI;
 
 /// A circular section, hollow (tube) or solid (`inner_diameter = 0`).
+///
+/// ```
+/// use rodcal::section::Round;
+///
+/// // 16 × 12 mm (Roark's Formulas, 7th ed., Table A.1): A = 28π mm², I = 700π mm⁴
+/// let tube = Round::tube(0.016, 0.012);
+/// assert!((tube.area() / 87.965e-6 - 1.0).abs() < 1e-5);
+/// assert!((tube.second_moment() / 2199.1e-12 - 1.0).abs() < 1e-4);
+/// assert_eq!(tube.torsion_constant(), 2.0 * tube.second_moment());
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Round {
     /// Outer diameter D, m.
@@ -12,6 +22,16 @@ pub struct Round {
 }
 
 impl Round {
+    /// A tube; diameters in m.
+    pub fn tube(outer_diameter: f64, inner_diameter: f64) -> Round {
+        Round { outer_diameter, inner_diameter }
+    }
+
+    /// A solid round; diameter in m.
+    pub fn solid(diameter: f64) -> Round {
+        Round { outer_diameter: diameter, inner_diameter: 0.0 }
+    }
+
     /// Area A = π/4 (D² − d²), m².
     pub fn area(&self) -> f64 {
         let (outer, inner) = (self.outer_diameter, self.inner_diameter);
@@ -30,12 +50,21 @@ impl Round {
         2.0 * self.second_moment()
     }
 
-    /// Cowper's shear coefficient κ of a hollow circle (solid: m = 0), dimensionless, for Poisson's ratio ν:
+    /// Cowper's shear coefficient κ of a hollow circle (solid: m = 0), dimensionless, for Poisson's
+    /// ratio ν:
     ///
     /// κ = 6(1+ν)(1+m²)² / ((7+6ν)(1+m²)² + (20+12ν)m²), m = d/D.
     ///
     /// Source: G. R. Cowper, "The Shear Coefficient in Timoshenko's Beam Theory",
     /// J. Appl. Mech. 33 (1966) 335–340, table of coefficients.
+    ///
+    /// ```
+    /// use rodcal::section::Round;
+    ///
+    /// // Cowper's limits for ν = 0.3: solid 6(1+ν)/(7+6ν) = 0.886, thin 2(1+ν)/(4+3ν) = 0.531
+    /// assert!((Round::solid(0.01).shear_coefficient(0.3) - 0.886).abs() < 5e-4);
+    /// assert!((Round::tube(1.0, 0.9999).shear_coefficient(0.3) - 0.531).abs() < 5e-4);
+    /// ```
     pub fn shear_coefficient(&self, poisson_ratio: f64) -> f64 {
         let nu = poisson_ratio;
         let m2 = (self.inner_diameter / self.outer_diameter).powi(2);

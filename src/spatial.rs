@@ -45,6 +45,16 @@ impl Axis {
 }
 
 impl Direction {
+    /// Along the positive axis.
+    pub fn along(axis: Axis) -> Direction {
+        Direction { axis, sign: 1 }
+    }
+
+    /// Against it.
+    pub fn against(axis: Axis) -> Direction {
+        Direction { axis, sign: -1 }
+    }
+
     /// `x`, `+y`, `-Z`; a Unicode minus is one too.
     pub fn from_name(name: &str) -> Option<Direction> {
         let (sign, axis) = match name.strip_prefix(['-', '\u{2212}']) {

@@ -30,7 +30,7 @@ const FLOORS: [&[&str]; 12] = [
     &["trial"],
     &["report"],
     // the library as its users see it
-    &["lib"],
+    &["prelude", "lib"],
     &["cli", "main"],
 ];
 

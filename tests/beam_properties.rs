@@ -9,7 +9,7 @@ use nalgebra::{Matrix3, Rotation3, Vector3};
 use proptest::prelude::*;
 use rodcal::beam::{Chain, Load, Physics, Profile, RodModel};
 use rodcal::compliance::Compliance;
-use rodcal::rod::{BendFlexibility, Joint, LumpedMass, Pipe, Rod};
+use rodcal::rod::{Joint, LumpedMass, Pipe, Rod};
 use rodcal::{material::Material, section::Round};
 
 /// Relative to the largest entry of a block; observed 1e-14.
@@ -91,23 +91,12 @@ fn rod() -> impl Strategy<Value = Rod> {
     };
     (0.1..0.8f64, 0.1..0.8f64, 0.3..PI, 0.0..1.0f64, 0.01..0.05f64, 0.05..1.0f64, 0.0..1.0f64).prop_map(
         move |(l1, l2, gamma, bend, outer, wall, at)| {
-            let mut rod = Rod {
-                name: "drawn".into(),
-                source: None,
-                l1,
-                l2,
-                gamma,
-                bend_radius: if bend < 0.01 { 0.0 } else { bend * l1.min(l2) / ((PI - gamma) / 2.0).tan() },
-                bend_flexibility: BendFlexibility::Beam,
-                pipe1: pipe(outer, wall),
-                bend: pipe(outer, wall / 2.0),
-                pipe2: pipe(outer * 0.8, wall),
-                tip_mass: 0.1,
-                masses: vec![],
-                joints: vec![],
-                linear_range: None,
-                warnings: vec![],
-            };
+            let mut rod = Rod::new("drawn", l1, l2, pipe(outer, wall))
+                .with_angle(gamma)
+                .with_pipe2(pipe(outer * 0.8, wall))
+                .with_tip_mass(0.1);
+            rod.bend_radius = if bend < 0.01 { 0.0 } else { bend * l1.min(l2) / ((PI - gamma) / 2.0).tan() };
+            rod.bend = pipe(outer, wall / 2.0);
             let station = at * rod.length();
             rod.masses.push(LumpedMass { name: "ring".into(), station, mass: 0.05 });
             rod.joints.push(Joint { name: "sleeve".into(), station, bending: 1e-5, torsion: 2e-5 });

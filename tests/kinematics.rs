@@ -108,37 +108,29 @@ fn tip(setup: &Setup, q: &[f64], torque: &[f64], by: Parameter) -> [Dual64; 3] {
 fn robot() -> Robot {
     let joint = |j: usize, motion| {
         let x = j as f64;
-        Joint {
-            name: format!("{j}"),
-            motion,
-            link: Hayati {
-                theta: 0.3 - 0.2 * x,
-                d: 0.1 + 0.05 * x,
-                a: 0.2 - 0.07 * x,
-                alpha: 1.1 - 0.6 * x,
-                beta: 0.01 * (1.0 + x),
-            },
-            compliance: 1e-3 * (1.0 + x),
-            body: Some(Body { mass: 3.0 - 0.5 * x, centre: Vector3::new(0.02, 0.1 * x, -0.05) }),
-            limits: None,
-        }
+        let link = Hayati {
+            theta: 0.3 - 0.2 * x,
+            d: 0.1 + 0.05 * x,
+            a: 0.2 - 0.07 * x,
+            alpha: 1.1 - 0.6 * x,
+            beta: 0.01 * (1.0 + x),
+        };
+        let mut joint = Joint::new(format!("{j}"), motion, link);
+        joint.compliance = 1e-3 * (1.0 + x);
+        joint.body = Some(Body { mass: 3.0 - 0.5 * x, centre: Vector3::new(0.02, 0.1 * x, -0.05) });
+        joint
     };
-    Robot {
-        name: "four".into(),
-        source: None,
-        gravity: Vector3::new(0.3, -1.0, -9.7),
-        root: Pose::from_xyz_rpy([0.1, 0.2, 0.3], [0.1, -0.4, 0.7]),
-        joints: vec![
-            joint(0, Motion::Revolute),
-            joint(1, Motion::Revolute),
-            joint(2, Motion::Prismatic),
-            joint(3, Motion::Revolute),
-        ],
-        flange: Pose::from_xyz_rpy([0.05, -0.02, 0.1], [0.3, 0.2, -0.5]),
-        effects: Vec::new(),
-        tip: None,
-        uncertainty: None,
-    }
+    let joints = vec![
+        joint(0, Motion::Revolute),
+        joint(1, Motion::Revolute),
+        joint(2, Motion::Prismatic),
+        joint(3, Motion::Revolute),
+    ];
+    let mut robot = Robot::new("four", joints);
+    robot.gravity = Vector3::new(0.3, -1.0, -9.7);
+    robot.root = Pose::from_xyz_rpy([0.1, 0.2, 0.3], [0.1, -0.4, 0.7]);
+    robot.flange = Pose::from_xyz_rpy([0.05, -0.02, 0.1], [0.3, 0.2, -0.5]);
+    robot
 }
 
 fn setup(robot: &Robot) -> Setup<'_> {

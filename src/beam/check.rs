@@ -1,15 +1,16 @@
 //! Every solution checks itself before anybody sees it.
 //!
 //! 1. *Finite*: no displacement or rotation is infinite or not a number.
-//! 2. *Equilibrium*: weight carried at each node, found from the tip, must equal the root's reaction less all
-//!    the weight between root and node, summed from the root.
-//! 3. *Reciprocity* (Maxwell–Betti): the work of load a on the displacement by load b equals that of b on a.
-//!    It joins the two sweeps, every element and every read-out, and holds to rounding only if all are right.
+//! 2. *Equilibrium*: weight carried at each node, found from the tip, must equal the root's
+//!    reaction less all the weight between root and node, summed from the root.
+//! 3. *Reciprocity* (Maxwell–Betti): the work of load a on the displacement by load b equals that
+//!    of b on a. It joins the two sweeps, every element and every read-out, and holds to rounding
+//!    only if all are right.
 
 use nalgebra::{Matrix3, Vector3};
 
 use super::chain::Chain;
-use super::solve::{Carried, Load, Motion, Response};
+use super::response::{Carried, Load, Motion, Response};
 use crate::error::{Error, Result};
 use crate::spatial::cross;
 use crate::units::MM;
@@ -86,7 +87,8 @@ type WorksOn = fn(&Motion) -> &Matrix3<f64>;
 
 fn reciprocity(chain: &Chain, loads: &[Load], weight: &[Carried], response: &Response) -> Result<()> {
     for (a, &load_a) in loads.iter().enumerate() {
-        // the displacement at a point load, and through it every element, is compared with all other loads
+        // the displacement at a point load, and through it every element, is compared with all
+        // other loads
         let (node, work_on, what): (usize, WorksOn, &str) = match load_a {
             Load::Force { node } => (node, |motion| &motion.translation, "displacement along"),
             Load::Couple { node } => (node, |motion| &motion.rotation, "rotation about"),
@@ -110,7 +112,8 @@ fn reciprocity(chain: &Chain, loads: &[Load], weight: &[Carried], response: &Res
     Ok(())
 }
 
-/// Work of the weight along each axis (rows) on the motions under the point load `load` (columns), J.
+/// Work of the weight along each axis (rows) on the motions under the point load `load` (columns),
+/// J.
 fn weight_work(
     chain: &Chain,
     load: Load,
@@ -171,7 +174,8 @@ mod tests {
     use super::super::element::Profile;
     use super::*;
 
-    /// A bent chain of nine elements with a mass on the way, its weight and its response to all kinds of load.
+    /// A bent chain of nine elements with a mass on the way, its weight and its response to all
+    /// kinds of load.
     fn solved() -> (Chain, [Load; 3], Vec<Carried>, Response) {
         let profile = Profile {
             axial: 2e-7,

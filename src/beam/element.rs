@@ -1,18 +1,18 @@
 //! The elements: straight and circular Timoshenko beams and rotational springs, as flexibilities.
 //!
-//! An element is described by how its far end moves while its near end is held. Force `F` and moment `M` of
-//! everything beyond it are taken at the element's reference point c (its midpoint), and so are the far end's
-//! displacement and rotation, as if c were rigidly attached to it:
+//! An element is described by how its far end moves while its near end is held. Force `F` and
+//! moment `M` of everything beyond it are taken at the element's reference point c (its midpoint),
+//! and so are the far end's displacement and rotation, as if c were rigidly attached to it:
 //!
 //! ```text
 //! u = A·F + C·M + U·a        A  m/N        C  1/N = rad/N       U  m per m/s²
 //! θ = Cᵀ·F + B·M + V·a       B  rad/(N·m)                       V  rad per m/s²
 //! ```
 //!
-//! with the element's own weight under the acceleration field a. Every term is the exact integral along the
-//! centreline of the section's flexibilities (principle of virtual forces; S. Timoshenko, *Strength of
-//! Materials* I, 3rd ed., §§ 73–79), so that the number of elements does not change the result. In a straight
-//! element C = 0: force and moment at the midpoint do not interact.
+//! with the element's own weight under the acceleration field a. Every term is the exact integral
+//! along the centreline of the section's flexibilities (principle of virtual forces; S. Timoshenko,
+//! *Strength of Materials* I, 3rd ed., §§ 73–79), so that the number of elements does not change
+//! the result. In a straight element C = 0: force and moment at the midpoint do not interact.
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
@@ -70,8 +70,8 @@ impl Shape {
     /// A straight element of `length` (m) along the local z axis, reference at its midpoint.
     pub fn straight(profile: &Profile, length: f64) -> Self {
         let (l, mass) = (length, profile.mass_per_length * length);
-        // A = L·(shear, axial) + L³/12·bending: a force at the midpoint bends both halves like cantilevers;
-        // a force along x bends about y and the other way round
+        // A = L·(shear, axial) + L³/12·bending: a force at the midpoint bends both halves like
+        // cantilevers; a force along x bends about y and the other way round
         let bending = Vector3::new(profile.bending[1], profile.bending[0], 0.0);
         let force = profile.force() * l + Matrix3::from_diagonal(&(bending * (l.powi(3) / 12.0)));
         // B = L·(bending, torsion)
@@ -89,15 +89,16 @@ impl Shape {
         }
     }
 
-    /// A circular arc of `radius` (m) and `angle` (rad, > 0), reference at its midpoint, where the local z axis
-    /// is its tangent; it bends from z towards x.
+    /// A circular arc of `radius` (m) and `angle` (rad, > 0), reference at its midpoint, where the
+    /// local z axis is its tangent; it bends from z towards x.
     pub fn arc(profile: &Profile, radius: f64, angle: f64) -> Self {
         let half = angle / 2.0;
         let mass_per_angle = profile.mass_per_length * radius;
         // r(α) = R (1 − cos α, 0, sin α), the tangent there is (sin α, 0, cos α)
         let point = |a: f64| Vector3::new(2.0 * (a / 2.0).sin().powi(2), 0.0, a.sin()) * radius;
-        // ∫ r dβ from a to b = R (d − sin b + sin a, 0, cos a − cos b) with d = b − a and m = (a + b)/2, written
-        // without differences of nearly equal numbers, for a flat arc has a large R and small angles
+        // ∫ r dβ from a to b = R (d − sin b + sin a, 0, cos a − cos b) with d = b − a and m = (a +
+        // b)/2, written without differences of nearly equal numbers, for a flat arc has a large R
+        // and small angles
         let point_integral = |a: f64, b: f64| {
             let (d, m) = (b - a, (a + b) / 2.0);
             let x = d * (2.0 * (m / 2.0).sin().powi(2) + m.cos() * one_minus_sinc(d / 2.0));
@@ -119,14 +120,15 @@ impl Shape {
             let local = Rotation3::from_axis_angle(&Vector3::y_axis(), a);
             let (section_force, section_moment) =
                 (rotated(&profile.force(), &local) * ds, rotated(&profile.moment(), &local) * ds);
-            // A load at the reference point has the moment M − r×F here, and a rotation here moves the
-            // reference point by θ×(−r) = r×θ.
+            // A load at the reference point has the moment M − r×F here, and a rotation here moves
+            // the reference point by θ×(−r) = r×θ.
             let lever = skew(&point(a));
             let lever_moment = lever * section_moment;
             shape.force += section_force - lever_moment * lever;
             coupling += lever_moment;
             shape.moment += section_moment;
-            // the weight of the part beyond: μ·a, with the first moment h = ∫ (r(β) − r(α)) μ dβ about this point
+            // the weight of the part beyond: μ·a, with the first moment h = ∫ (r(β) − r(α)) μ dβ
+            // about this point
             let beyond = mass_per_angle * (half - a);
             let first_moment = point_integral(a, half) * mass_per_angle - point(a) * beyond;
             let weight_moment = skew(&first_moment);
@@ -137,7 +139,8 @@ impl Shape {
         shape
     }
 
-    /// A spring of no length with the local z axis as its axis; `bending` and `torsion` in rad/(N·m).
+    /// A spring of no length with the local z axis as its axis; `bending` and `torsion` in
+    /// rad/(N·m).
     pub fn spring(bending: f64, torsion: f64) -> Self {
         Shape {
             force: Matrix3::zeros(),
@@ -219,7 +222,8 @@ mod tests {
         assert!((one_minus_sinc(1e-5) / (1e-10 / 6.0) - 1.0).abs() < 1e-10);
     }
 
-    /// An arc of radius L/φ tends to the straight element of length L as φ → 0; the difference is O(φ).
+    /// An arc of radius L/φ tends to the straight element of length L as φ → 0; the difference is
+    /// O(φ).
     #[test]
     fn a_flat_arc_is_a_straight_element() {
         let (length, angle) = (0.3, 1e-6);

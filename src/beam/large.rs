@@ -1,28 +1,29 @@
 //! What large deflections add: the second order of the displacements in the load.
 //!
-//! A beam that bends turns its sections and moves its lever arms. With the rotations θ of the linear solution under a dead force,
-//! every element is turned by its θ and hung on the one before, the chain is solved again in this shape, and its rotations are
-//! put together as finite ones,
+//! A beam that bends turns its sections and moves its lever arms. With the rotations θ of the
+//! linear solution under a dead force, every element is turned by its θ and hung on the one before,
+//! the chain is solved again in this shape, and its rotations are put together as finite ones,
 //!
 //! ```text
 //! R₀ = 1,  R_(k+1) = exp(θ'_(k+1) − θ'_k)·R_k,  p'_(k+1) = p'_k + R_mid·(p_(k+1) − p_k)
 //! ```
 //!
-//! which is exact to the second order in the force: rotations of one element after the other are put together in the order of
-//! the chain. What remains is of the third order: small while the tip moves by less than a tenth of the rod's length. The tests
-//! compare it with the closed form of a straight cantilever, tests/diagnosis with the trials' Cosserat rod.
+//! which is exact to the second order in the force: rotations of one element after the other are
+//! put together in the order of the chain. What remains is of the third order: small while the tip
+//! moves by less than a tenth of the rod's length. The tests compare it with the closed form of a
+//! straight cantilever, tests/diagnosis with the trials' Cosserat rod.
 
 use nalgebra::{Rotation3, Vector3};
 
 use super::RodModel;
 use super::chain::Chain;
-use super::solve::Load;
+use super::response::Load;
 use crate::error::Result;
 
 impl RodModel {
-    /// Second order of the displacements of all nodes, in {T}, m, one per node: what is to be added to the linear displacement.
-    /// `size` (N) is a dead force at `node` along axis `direction` of {T} (0, 1, 2: x, y, z). It grows with the square of the
-    /// force.
+    /// Second order of the displacements of all nodes, in {T}, m, one per node: what is to be added
+    /// to the linear displacement. `size` (N) is a dead force at `node` along axis `direction` of
+    /// {T} (0, 1, 2: x, y, z). It grows with the square of the force.
     ///
     /// # Errors
     /// As [`Chain::solve`].
@@ -48,7 +49,8 @@ impl RodModel {
     }
 }
 
-/// The chain with every element turned, rotations of nodes adding up along it, and where its nodes come to be.
+/// The chain with every element turned, rotations of nodes adding up along it, and where its nodes
+/// come to be.
 fn moved(chain: &Chain, rotations: &[Vector3<f64>]) -> (Chain, Vec<Vector3<f64>>) {
     let mut bent = chain.clone();
     let mut frame = Rotation3::identity();
@@ -81,8 +83,8 @@ mod tests {
         Rod::from_toml("rod", &text).unwrap()
     }
 
-    /// A straight cantilever under F across it is shortened by ½∫θ² ds = F²L⁵/(15·E²I²), and moves across to the second order
-    /// not at all.
+    /// A straight cantilever under F across it is shortened by ½∫θ² ds = F²L⁵/(15·E²I²), and moves
+    /// across to the second order not at all.
     #[test]
     fn a_straight_rod_is_shortened_by_its_bending() {
         let rod = rod(180.0);
@@ -104,8 +106,8 @@ mod tests {
         }
     }
 
-    /// The tip that is pushed across the plane of a bent rod sinks in its plane: pipe I bends and twists, pipe II swings on its
-    /// end.
+    /// The tip that is pushed across the plane of a bent rod sinks in its plane: pipe I bends and
+    /// twists, pipe II swings on its end.
     #[test]
     fn mesh_does_not_matter() {
         let at = |elements: usize| {

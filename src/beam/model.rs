@@ -4,7 +4,7 @@ use nalgebra::{Rotation3, Vector3};
 
 use super::chain::Chain;
 use super::element::Profile;
-use super::solve::{Load, Motion};
+use super::response::{Load, Motion};
 use crate::error::{Error, Result};
 use crate::rod::{BendFlexibility, Pipe, Rod};
 use crate::units::MM;
@@ -59,6 +59,20 @@ impl Default for Physics {
 }
 
 /// A rod's chain in {T}, clamped at the flange.
+///
+/// ```
+/// use rodcal::beam::{Physics, RodModel};
+/// use rodcal::prelude::*;
+///
+/// let steel = Material::isotropic("steel", 193e9, 0.29, 7930.0);
+/// let rod = Rod::new("5#", 0.150, 0.525, Pipe::new(Round::tube(0.032, 0.030), steel));
+/// let ei = 193e9 * rod.pipe1.section.second_moment();
+/// // on pipe I, 100 mm from the flange, the rod is a cantilever: a³/3EI, the corner beyond it no matter
+/// let model = RodModel::new(&rod, &Physics::BENDING_AND_TORSION, 7, &[0.1])?;
+/// let motion = model.force_response(0.1, 0.1)?;
+/// assert!((motion.translation[(1, 1)] / (0.001 / (3.0 * ei)) - 1.0).abs() < 1e-12);
+/// # Ok::<(), rodcal::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct RodModel {
     /// Nodes and elements.
@@ -67,14 +81,16 @@ pub struct RodModel {
 }
 
 impl RodModel {
-    /// Meshes `rod` with `elements` elements (at least one for each part between two stations of interest).
-    /// `stations` (m) get a node besides the tip, the masses and the joints.
+    /// Meshes `rod` with `elements` elements (at least one for each part between two stations of
+    /// interest). `stations` (m) get a node besides the tip, the masses and the joints.
     ///
-    /// The elements are shared out by length. Their number does not change the result: each element is exact.
+    /// The elements are shared out by length. Their number does not change the result: each element
+    /// is exact.
     ///
     /// # Errors
-    /// [`Error::Argument`] for no elements, or a station that is not on the rod; [`Error::Numerical`] for a rod whose
-    /// pipes are too unequal in length, or too short, for double precision.
+    /// [`Error::Argument`] for no elements, or a station that is not on the rod;
+    /// [`Error::Numerical`] for a rod whose pipes are too unequal in length, or too short, for
+    /// double precision.
     pub fn new(rod: &Rod, physics: &Physics, elements: usize, stations: &[f64]) -> Result<Self> {
         if elements == 0 {
             return Err(Error::Argument {
@@ -101,7 +117,8 @@ impl RodModel {
             if middle < rod.bend_start() {
                 chain.straight(&pipe1, length, count);
             } else if middle < rod.bend_end() {
-                // its share of the turn: the rounding of two stations over a tiny radius would turn all beyond it
+                // its share of the turn: the rounding of two stations over a tiny radius would turn
+                // all beyond it
                 chain.arc(&bend, rod.bend_radius, rod.turn() * (length / bend_length), count);
             } else {
                 if std::mem::take(&mut corner_ahead) {
@@ -125,7 +142,8 @@ impl RodModel {
         self.chain.end()
     }
 
-    /// The node at a `station` (m) that was given to [`RodModel::new`]: the outermost one there, beyond any joint.
+    /// The node at a `station` (m) that was given to [`RodModel::new`]: the outermost one there,
+    /// beyond any joint.
     pub fn node_at(&self, station: f64) -> usize {
         let distance = |node: usize| (self.chain.station(node) - station).abs();
         (0..=self.chain.end()).fold(0, |best, node| match distance(node) <= distance(best) + SAME_STATION {
@@ -134,7 +152,8 @@ impl RodModel {
         })
     }
 
-    /// Displacement (m) and rotation (rad) at one station per unit force (N) at another, both in {T}.
+    /// Displacement (m) and rotation (rad) at one station per unit force (N) at another, both in
+    /// {T}.
     ///
     /// # Errors
     /// As [`Chain::solve`].
@@ -145,7 +164,8 @@ impl RodModel {
     }
 }
 
-/// An arc shorter than this is a sharp corner, m: its angle would be lost in the rounding of stations.
+/// An arc shorter than this is a sharp corner, m: its angle would be lost in the rounding of
+/// stations.
 const SHARPEST_BEND: f64 = 1e-6;
 
 /// Stations closer than this are one node, m.
@@ -201,7 +221,8 @@ impl Physics {
     }
 }
 
-/// Refuses a rod of which rounding would lose a pipe: stations of 1e27 m cannot tell the ends of one of 0.5 m apart.
+/// Refuses a rod of which rounding would lose a pipe: stations of 1e27 m cannot tell the ends of
+/// one of 0.5 m apart.
 fn check_resolution(rod: &Rod) -> Result<()> {
     let (length, tangent) = (rod.length(), rod.tangent_length());
     let pipes = [(rod.l1 - tangent, rod.bend_start()), (rod.l2 - tangent, length - rod.bend_end())];
@@ -220,7 +241,8 @@ fn check_resolution(rod: &Rod) -> Result<()> {
     Ok(())
 }
 
-/// Where the centreline is cut into parts: its ends, the bend's, and wherever something sits or is read.
+/// Where the centreline is cut into parts: its ends, the bend's, and wherever something sits or is
+/// read.
 fn cuts(rod: &Rod, stations: &[f64]) -> Result<Vec<f64>> {
     let length = rod.length();
     let mut cuts = vec![0.0, rod.bend_start(), rod.bend_end(), length];
@@ -252,8 +274,8 @@ fn place_features(chain: &mut Chain, rod: &Rod, station: f64) {
     }
 }
 
-/// Shares `total` elements out among the parts between `cuts` by length: at least one each, and exactly `total`
-/// in all where there are that many parts or fewer (largest remainders).
+/// Shares `total` elements out among the parts between `cuts` by length: at least one each, and
+/// exactly `total` in all where there are that many parts or fewer (largest remainders).
 fn share_out(total: usize, cuts: &[f64]) -> Vec<usize> {
     let parts = cuts.len() - 1;
     let spare = total.saturating_sub(parts) as f64;

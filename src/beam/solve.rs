@@ -1,87 +1,25 @@
 //! Equilibrium from the tip to the root, deformation from the root to the tip.
 //!
-//! Loads come in blocks of three: the same load along x, along y and along z. A point force of 1 N is then the
-//! weight of a point mass of 1 kg under unit acceleration, so that forces and self-weight are one kind of load:
-//! a distribution of mass. What an element carries of it is its mass φ and first moment s about the element,
-//! `F = φ·1`, `M = [s]ₓ`.
+//! Loads come in blocks of three: the same load along x, along y and along z. A point force of 1 N
+//! is then the weight of a point mass of 1 kg under unit acceleration, so that forces and
+//! self-weight are one kind of load: a distribution of mass. What an element carries of it is its
+//! mass φ and first moment s about the element, `F = φ·1`, `M = [s]ₓ`.
 
 use nalgebra::{Matrix3, Vector3};
 
 use super::chain::Chain;
 use super::check;
 use super::element::Shape;
+use super::response::{Carried, Load, Motion, Response, Resultant};
 use crate::error::{Error, Result};
-use crate::spatial::{cross, skew};
-
-/// A block of three load cases, one along each axis of space.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Load {
-    /// A force of 1 N at a node, along x, y and z.
-    Force {
-        /// Index of the node.
-        node: usize,
-    },
-    /// A moment of 1 N·m at a node, about x, y and z.
-    Couple {
-        /// Index of the node.
-        node: usize,
-    },
-    /// The weight of elements and masses under an acceleration of 1 m/s², along x, y and z.
-    SelfWeight,
-}
-
-/// Displacement and rotation; column j belongs to the load along axis j, row i to axis i.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Motion {
-    /// m per N, per N·m or per m/s².
-    pub translation: Matrix3<f64>,
-    /// rad per N, per N·m or per m/s².
-    pub rotation: Matrix3<f64>,
-}
-
-/// Resultant of the loads beyond a cut, at the cut; columns as in [`Motion`].
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Resultant {
-    /// N per unit load.
-    pub force: Matrix3<f64>,
-    /// N·m per unit load.
-    pub moment: Matrix3<f64>,
-}
-
-/// What a chain does under the loads it was solved for.
-#[derive(Debug, Clone)]
-pub struct Response {
-    loads: usize,
-    /// Node-major: all loads of node 0, then all of node 1, …
-    motions: Vec<Motion>,
-}
-
-/// Mass φ (kg), its first moment about a point s (kg·m), and a pure moment χ.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Carried {
-    pub mass: f64,
-    pub first_moment: Vector3<f64>,
-    pub couple: f64,
-}
-
-impl Response {
-    /// Displacement and rotation of `node` under the load block `load` (index into the slice given to [`Chain::solve`]).
-    pub fn motion(&self, node: usize, load: usize) -> &Motion {
-        &self.motions[node * self.loads + load]
-    }
-
-    #[cfg(test)]
-    pub(super) fn motion_mut(&mut self, node: usize, load: usize) -> &mut Motion {
-        &mut self.motions[node * self.loads + load]
-    }
-}
+use crate::spatial::cross;
 
 impl Chain {
     /// Solves for all `loads` at once and checks the solution (see `check.rs`).
     ///
     /// # Errors
-    /// [`Error::Argument`] for a load at a node the chain does not have; [`Error::SelfCheck`] with node and freedom
-    /// where equilibrium, reciprocity or finiteness fails.
+    /// [`Error::Argument`] for a load at a node the chain does not have; [`Error::SelfCheck`] with
+    /// node and freedom where equilibrium, reciprocity or finiteness fails.
     pub fn solve(&self, loads: &[Load]) -> Result<Response> {
         for load in loads {
             match *load {
@@ -113,7 +51,8 @@ impl Chain {
         Resultant { force: Matrix3::from_diagonal_element(carried.mass), moment: carried.moment() }
     }
 
-    /// From the tip to the root: mass of everything at and beyond each node and its first moment about that node.
+    /// From the tip to the root: mass of everything at and beyond each node and its first moment
+    /// about that node.
     pub(super) fn weight_beyond(&self) -> Vec<Carried> {
         let mut carried = Carried::NOTHING;
         let mut all = vec![carried; self.nodes.len()];
@@ -122,7 +61,8 @@ impl Chain {
         for k in (0..self.elements.len()).rev() {
             let (near, far, element) = (&self.nodes[k], &self.nodes[k + 1], &self.elements[k]);
             let shape = self.shape(element);
-            // φ_k = φ_{k+1} + m_element + m_node,  s_k = s_{k+1} + φ_{k+1}(p_{k+1} − p_k) + m_element(c + c_m − p_k)
+            // φ_k = φ_{k+1} + m_element + m_node,  s_k = s_{k+1} + φ_{k+1}(p_{k+1} − p_k) +
+            // m_element(c + c_m − p_k)
             carried.first_moment += (far.position - near.position) * carried.mass
                 + (element.reference + shape.mass_centre - near.position) * shape.mass;
             carried.mass += shape.mass + near.mass;
@@ -131,7 +71,8 @@ impl Chain {
         all
     }
 
-    /// From the root to the tip: each node moves with the one before it and by its element's deformation.
+    /// From the root to the tip: each node moves with the one before it and by its element's
+    /// deformation.
     pub(super) fn deform(&self, loads: &[Load], weight: &[Carried]) -> Response {
         let still = Motion { translation: Matrix3::zeros(), rotation: Matrix3::zeros() };
         let mut motions = Vec::with_capacity(self.nodes.len() * loads.len());
@@ -166,7 +107,8 @@ impl Chain {
         }
     }
 
-    /// What a point load at or beyond `node` carries into a cut before it, about `point`; nothing if it acts before.
+    /// What a point load at or beyond `node` carries into a cut before it, about `point`; nothing
+    /// if it acts before.
     fn point_load_beyond(&self, load: Load, node: usize, point: &Vector3<f64>) -> Carried {
         match load {
             Load::Force { node: at } if at >= node => {
@@ -175,15 +117,6 @@ impl Chain {
             Load::Couple { node: at } if at >= node => Carried { couple: 1.0, ..Carried::NOTHING },
             _ => Carried::NOTHING,
         }
-    }
-}
-
-impl Carried {
-    const NOTHING: Carried = Carried { mass: 0.0, first_moment: Vector3::new(0.0, 0.0, 0.0), couple: 0.0 };
-
-    /// M = [s]ₓ + χ·1, N·m per unit load.
-    pub(super) fn moment(&self) -> Matrix3<f64> {
-        skew(&self.first_moment) + Matrix3::from_diagonal_element(self.couple)
     }
 }
 

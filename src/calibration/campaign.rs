@@ -1,12 +1,16 @@
-//! A calibration campaign: the robot, its rod, and what was recorded. One TOML file that names the others.
+//! A calibration campaign: the robot, its rod, and what was recorded. One TOML file that names the
+//! others.
 //!
 //! Every key and column is in `docs/campaign-file.md`.
 
+mod build;
+mod checks;
 mod columns;
+mod constraints;
 mod file;
+mod layout;
 mod recording;
 mod warning;
-mod wishes;
 
 pub use warning::Warning;
 
@@ -19,12 +23,14 @@ use crate::spatial::Pose;
 
 /// All that a calibration starts from, read and checked, in SI units.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Campaign {
     /// The campaign's file as the user named it.
     pub file: String,
     /// Nominal robot.
     pub robot: Robot,
-    /// The robot's file as the campaign names it (`builtin:tx90` is one) and its text, for writing it back.
+    /// The robot's file as the campaign names it (`builtin:tx90` is one) and its text, for writing
+    /// it back.
     pub robot_file: String,
     /// Its text.
     pub robot_text: String,
@@ -52,14 +58,15 @@ pub struct Campaign {
     pub refit: Refit,
     /// Standard deviation of one measured coordinate, m, where the file states it.
     pub noise: Option<f64>,
-    /// The user's wishes about single parameters.
-    pub wishes: Wishes,
+    /// What the user states about single parameters.
+    pub wishes: ParameterConstraints,
     /// What a user should know about the files although they can be read.
     pub warnings: Vec<Warning>,
 }
 
 /// What is fitted again before the validation errors are computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Refit {
     /// Base and tool, as in the paper.
     BaseTool,
@@ -67,9 +74,9 @@ pub enum Refit {
     Nothing,
 }
 
-/// What the user says about single parameters.
+/// What the user states about single parameters: fixed, free, or known beforehand.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Wishes {
+pub struct ParameterConstraints {
     /// Held at their nominal values.
     pub fixed: Vec<Parameter>,
     /// Estimated although the default set leaves them out.
@@ -80,6 +87,7 @@ pub struct Wishes {
 
 /// Joint values with what was seen at them, in recording order.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Recording {
     /// The file as the user named it.
     pub file: String,
@@ -99,6 +107,7 @@ pub struct Recording {
 
 /// One row without its numbers.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Row {
     /// The pose's name as written.
     pub pose: String,
@@ -114,6 +123,7 @@ pub struct Row {
 
 /// Where the ball was held.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Group {
     /// `clamp 3`, `front/0`.
     pub name: String,

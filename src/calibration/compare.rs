@@ -1,14 +1,17 @@
 //! All modes of a campaign side by side, and whether they differ by more than chance.
 //!
-//! A paired bootstrap over poses: measurement poses are drawn again within every clamp, validation poses likewise, every
-//! mode is calibrated on the same draw and judged by the same draw. What is left of a difference between two modes
-//! is its uncertainty, measuring noise and choice of poses included (B. Efron, R. Tibshirani, *An Introduction to the
-//! Bootstrap*, 1993, ch. 13). Without a validation file the held-out errors of a cross-validation are compared.
+//! A paired bootstrap over poses: measurement poses are drawn again within every clamp, validation
+//! poses likewise, every mode is calibrated on the same draw and judged by the same draw. What is
+//! left of a difference between two modes is its uncertainty, measuring noise and choice of poses
+//! included (B. Efron, R. Tibshirani, *An Introduction to the Bootstrap*, 1993, ch. 13). Without a
+//! validation file the held-out errors of a cross-validation are compared.
 
-use super::calibrate::{Calibration, Options, calibrate, calibrate_from};
+use super::calibrate::{calibrate, calibrate_from};
 use super::campaign::Campaign;
 use super::compensation::{Compensation, Mode, modes};
 use super::cross_validation::{CrossValidation, cross_validate};
+use super::options::Options;
+use super::result::Calibration;
 use super::validation::{Summary, validate_from};
 use crate::error::Result;
 use crate::parallel::in_parallel;
@@ -35,6 +38,7 @@ impl Default for CompareOptions {
 
 /// All modes of a campaign.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Comparison<'c> {
     /// One calibration per mode that the files allow, in the paper's order.
     pub calibrations: Vec<Calibration<'c>>,
@@ -50,6 +54,7 @@ pub struct Comparison<'c> {
 
 /// Mean error of one mode less that of another.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Difference {
     /// The mode whose error is taken.
     pub mode: Mode,
@@ -59,7 +64,8 @@ pub struct Difference {
     pub mean: f64,
     /// Its 95 % interval, m.
     pub interval: (f64, f64),
-    /// True where the difference is larger than chance would make the largest of so many differences, 19 times in 20.
+    /// True where the difference is larger than chance would make the largest of so many
+    /// differences, 19 times in 20.
     pub is_significant: bool,
 }
 
@@ -82,6 +88,19 @@ impl Comparison<'_> {
 /// Calibrates in every mode that the campaign's files allow, and compares.
 ///
 /// `progress` is told after each draw how many are done.
+///
+/// ```
+/// use rodcal::prelude::*;
+///
+/// let campaign = Campaign::read("campaigns/tx90-5/campaign.toml".as_ref())?;
+/// let options = CompareOptions { draws: 4, ..CompareOptions::default() };
+/// let comparison = compare(&campaign, &options, &|_| {})?;
+/// let modes: Vec<Mode> = comparison.calibrations.iter().map(|c| c.mode).collect();
+/// assert_eq!(modes, Mode::ALL); // none, calc, fea, meas
+/// assert_eq!(comparison.differences.len(), 6); // every pair of them
+/// assert!(comparison.summary(3).mean < comparison.summary(0).mean);
+/// # Ok::<(), rodcal::Error>(())
+/// ```
 ///
 /// # Errors
 /// As [`calibrate`] and [`cross_validate`].
@@ -137,7 +156,8 @@ pub fn compare<'c>(
                 against,
                 mean: difference,
                 interval,
-                // two-sided 5 % over all pairs (Bonferroni), by the normal distribution of a mean of many errors
+                // two-sided 5 % over all pairs (Bonferroni), by the normal distribution of a mean
+                // of many errors
                 is_significant: sd > 0.0 && two_sided_normal(difference / sd) * pairs as f64 <= 0.05,
             });
         }
@@ -155,15 +175,15 @@ fn mean_errors(
 ) -> Result<Vec<f64>> {
     let Some(validation) = &campaign.validation else {
         // the folds are what they are: only the poses that are judged are drawn
-        let rows = campaign.measurements.drawn_again(random);
-        let of_mode = |m: usize| {
+        let rows = campaign.measurements.bootstrap_rows(random);
+        let mean_error = |m: usize| {
             let errors = comparison.errors(m);
             mean(&rows.iter().map(|&row| errors[row]).collect::<Vec<_>>()).unwrap_or(0.0)
         };
-        return Ok((0..compensations.len()).map(of_mode).collect());
+        return Ok((0..compensations.len()).map(mean_error).collect());
     };
-    let measured = campaign.measurements.subset(&campaign.measurements.drawn_again(random));
-    let judged = validation.subset(&validation.drawn_again(random));
+    let measured = campaign.measurements.subset(&campaign.measurements.bootstrap_rows(random));
+    let judged = validation.subset(&validation.bootstrap_rows(random));
     comparison
         .calibrations
         .iter()
@@ -186,7 +206,8 @@ fn mean_errors(
 
 /// The bootstrap's interval around an estimate, and the standard deviation of the draws.
 ///
-/// The draws are centred on the estimate: their own mean carries the bias of drawing the same pose twice.
+/// The draws are centred on the estimate: their own mean carries the bias of drawing the same pose
+/// twice.
 fn interval(estimate: f64, mut samples: Vec<f64>) -> ((f64, f64), f64) {
     let shift = estimate - mean(&samples).unwrap_or(estimate);
     samples.iter_mut().for_each(|sample| *sample += shift);

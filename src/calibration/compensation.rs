@@ -1,4 +1,5 @@
-//! What bends and yields at each pose: the rod's deflection (Eqs 12–14 and 19) and the torques on the joints.
+//! What bends and yields at each pose: the rod's deflection (Eqs 12–14 and 19) and the torques on
+//! the joints.
 
 use nalgebra::Vector3;
 
@@ -12,8 +13,8 @@ use crate::robot::{Body, Kinematics, Loads, Robot, Setup};
 use crate::statistics::Random;
 use crate::units::STANDARD_GRAVITY;
 
-/// Times that torques and the joints that they turn are computed from each other; each time their error falls by the share by
-/// which a joint yields, below 10⁻³.
+/// Times that torques and the joints that they turn are computed from each other; each time their
+/// error falls by the share by which a joint yields, below 10⁻³.
 pub const TORQUE_ROUNDS: usize = 3;
 
 /// How the rod's deflection is known.
@@ -46,6 +47,7 @@ impl Mode {
 
 /// The loads that a campaign knows, and the rod's compliance in one mode.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Compensation {
     /// The mode.
     pub mode: Mode,
@@ -55,16 +57,28 @@ pub struct Compensation {
     pub payload: Option<Body>,
     /// Force on the ball in the device frame, N.
     pub contact_force: Vector3<f64>,
-    /// What displaced the tip of each row besides, as far as that is known, in {W}, m; empty where nothing is.
+    /// What displaced the tip of each row besides, as far as that is known, in {W}, m; empty where
+    /// nothing is.
     pub displaced: Vec<Vector3<f64>>,
 }
 
 impl Compensation {
     /// Of a campaign in a mode.
     ///
+    /// ```
+    /// use rodcal::prelude::*;
+    ///
+    /// let campaign = Campaign::read("campaigns/tx90-5/campaign.toml".as_ref())?;
+    /// let fea = Compensation::new(&campaign, Mode::Fea)?.compliance.expect("there is a rod");
+    /// let meas = Compensation::new(&campaign, Mode::Meas)?.compliance.expect("there are readings");
+    /// // its true rod is 1.013 times as compliant as its model
+    /// assert!((meas.gravity[(2, 2)] / fea.gravity[(2, 2)] - 1.013).abs() < 0.01);
+    /// # Ok::<(), rodcal::Error>(())
+    /// ```
+    ///
     /// # Errors
-    /// [`Error::NotApplicable`] where the campaign lacks the files that the mode needs; what the beam model and the
-    /// rig fit refuse.
+    /// [`Error::NotApplicable`] where the campaign lacks the files that the mode needs; what the
+    /// beam model and the rig fit refuse.
     pub fn new(campaign: &Campaign, mode: Mode) -> Result<Self> {
         let lacks = |what: &str, key: &str| Error::NotApplicable {
             what: format!("mode {} for {}", mode.name(), campaign.file),
@@ -92,7 +106,8 @@ impl Compensation {
         })
     }
 
-    /// For poses measured with a short rigid rod and without contact: nothing bends, only the links weigh.
+    /// For poses measured with a short rigid rod and without contact: nothing bends, only the links
+    /// weigh.
     pub fn bare() -> Self {
         Compensation {
             mode: Mode::None,
@@ -112,12 +127,13 @@ impl Compensation {
         let mut kinematics = Kinematics::new(setup);
         let in_world = |row: usize| {
             kinematics.update(recording.joints(row), pass.torque(recording, row));
-            kinematics.flange.rotation * pass.bent[row]
+            kinematics.flange.rotation * pass.deflection[row]
         };
         (0..recording.len()).map(in_world).collect()
     }
 
-    /// Fills in deflection and torque of every row for the present `setup`; gives the largest change of a deflection, m.
+    /// Fills in deflection and torque of every row for the present `setup`; gives the largest
+    /// change of a deflection, m.
     pub(super) fn update(&self, setup: &Setup, recording: &Recording, pass: &mut Pass) -> f64 {
         let robot = setup.robot;
         let n = recording.joint_count;
@@ -132,10 +148,10 @@ impl Compensation {
             let loads = Loads { gravity, payload: self.payload, tip_force };
             kinematics.torques(&loads, torque);
             let displaced = self.displaced.get(row).copied().unwrap_or_default();
-            let bent = self.deflection(&kinematics, &gravity, &tip_force)
+            let deflection = self.deflection(&kinematics, &gravity, &tip_force)
                 + kinematics.flange.rotation.tr_mul(&displaced);
-            change = change.max((bent - pass.bent[row]).norm());
-            pass.bent[row] = bent;
+            change = change.max((deflection - pass.deflection[row]).norm());
+            pass.deflection[row] = deflection;
         }
         change
     }
@@ -173,7 +189,8 @@ pub(super) fn largest_torques(robot: &Robot, setup: &Setup, payload: Body) -> Ve
     largest
 }
 
-/// The modes that a campaign's files allow, in the paper's order; Calc only where the closed form applies to the rod.
+/// The modes that a campaign's files allow, in the paper's order; Calc only where the closed form
+/// applies to the rod.
 pub fn modes(campaign: &Campaign) -> Vec<Mode> {
     Mode::ALL.into_iter().filter(|&mode| Compensation::new(campaign, mode).is_ok()).collect()
 }

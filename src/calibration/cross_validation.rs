@@ -2,10 +2,12 @@
 
 use nalgebra::Vector3;
 
-use super::calibrate::{Calibration, Options, calibrate_from};
+use super::calibrate::calibrate_from;
 use super::campaign::{Campaign, Targets};
 use super::compensation::Compensation;
+use super::options::Options;
 use super::problem::Pass;
+use super::result::Calibration;
 use super::validation::Summary;
 use crate::error::Result;
 use crate::parallel::in_parallel;
@@ -13,12 +15,14 @@ use crate::robot::{Kinematics, Setup};
 
 /// Held-out errors of all poses.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct CrossValidation {
     /// Fold of each row.
     pub fold: Vec<usize>,
     /// Number of folds.
     pub folds: usize,
-    /// Predicted less measured, in {W}, m; with sockets less the mean of the socket's predicted tips.
+    /// Predicted less measured, in {W}, m; with sockets less the mean of the socket's predicted
+    /// tips.
     pub deviations: Vec<Vector3<f64>>,
     /// Their lengths, m.
     pub errors: Vec<f64>,
@@ -26,8 +30,23 @@ pub struct CrossValidation {
     pub summary: Summary,
 }
 
-/// Holds out one fold after the other ([`super::campaign::Recording::folds`]), calibrates on the rest as `calibration`
-/// was, and predicts what was held out.
+/// Holds out one fold after the other ([`super::campaign::Recording::folds`]), calibrates on the
+/// rest as `calibration` was, and predicts what was held out.
+///
+/// ```
+/// use rodcal::prelude::*;
+///
+/// let campaign = Campaign::read("campaigns/tx90-5/campaign.toml".as_ref())?;
+/// let options = Options::default();
+/// let calibration = calibrate(&campaign, Mode::Fea, &options)?;
+/// let compensation = Compensation::new(&campaign, Mode::Fea)?;
+/// let held_out = cross_validate(&campaign, &calibration, &compensation, 5, &options)?;
+/// assert_eq!((held_out.folds, held_out.errors.len()), (5, 60));
+/// // poses that a fit has not seen are predicted worse than those that it has
+/// let residual = calibration.residuals().iter().sum::<f64>() / 60.0;
+/// assert!(held_out.summary.mean > residual, "{} {residual}", held_out.summary.mean);
+/// # Ok::<(), rodcal::Error>(())
+/// ```
 ///
 /// # Errors
 /// As [`super::calibrate()`], where a fold leaves too few poses.
@@ -43,13 +62,13 @@ pub fn cross_validate(
     let folds = fold.iter().max().map_or(0, |last| last + 1);
     let free: Vec<_> = calibration.parameters.iter().map(|p| p.parameter).collect();
     let predictions = in_parallel(folds, |held_out| -> Result<Vec<(usize, Vector3<f64>)>> {
-        let of = |wanted: bool| -> Vec<usize> {
+        let rows_where = |wanted: bool| -> Vec<usize> {
             (0..recording.len()).filter(|&row| (fold[row] == held_out) == wanted).collect()
         };
-        let training = recording.subset(&of(false));
+        let training = recording.subset(&rows_where(false));
         let trained =
             calibrate_from(campaign, &training, calibration.start.clone(), &free, compensation, options)?;
-        let rows = of(true);
+        let rows = rows_where(true);
         let deviations = predict(&trained.setup, &recording.subset(&rows), compensation);
         Ok(rows.into_iter().zip(deviations).collect())
     });
@@ -63,7 +82,8 @@ pub fn cross_validate(
     Ok(CrossValidation { fold, folds, summary: Summary::of(&errors), errors, deviations })
 }
 
-/// Deflected tips of a recording as `setup` predicts them, less what was measured or less their sockets' means.
+/// Deflected tips of a recording as `setup` predicts them, less what was measured or less their
+/// sockets' means.
 fn predict(
     setup: &Setup,
     recording: &super::campaign::Recording,
@@ -83,6 +103,6 @@ fn predict(
         .collect();
     match &recording.targets {
         Targets::Points(points) => tips.iter().zip(points).map(|(tip, x)| tip - x).collect(),
-        Targets::Sockets(_) => recording.less_group_means(&tips),
+        Targets::Sockets(_) => recording.minus_group_means(&tips),
     }
 }

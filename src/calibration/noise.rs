@@ -8,8 +8,8 @@ use nalgebra::Vector3;
 
 /// Below this probability that all groups scatter alike, each gets a noise of its own.
 const UNEQUAL: f64 = 0.01;
-/// Least noise that is believed, m: where deviations are smaller still, they are rounding, and weights made of them would drown
-/// what is known besides, such as the distances of sockets.
+/// Least noise that is believed, m: where deviations are smaller still, they are rounding, and
+/// weights made of them would drown what is known besides, such as the distances of sockets.
 const LEAST: f64 = 1e-9;
 /// Fewest degrees of freedom for a noise of its own.
 const FEWEST: f64 = 10.0;
@@ -26,24 +26,27 @@ pub enum Robust {
     Tukey,
 }
 
-/// u beyond which Huber's weight falls: exceeded as rarely by the length of a normal vector in space as 1.345 by the
-/// size of a normal number.
+/// u beyond which Huber's weight falls: exceeded as rarely by the length of a normal vector in
+/// space as 1.345 by the size of a normal number.
 const HUBER: f64 = 2.21;
-/// Tukey's c for 95 % efficiency in three dimensions (R. Maronna et al., *Robust Statistics*, 2nd ed., §6.4).
+/// Tukey's c for 95 % efficiency in three dimensions (R. Maronna et al., *Robust Statistics*, 2nd
+/// ed., §6.4).
 const TUKEY: f64 = 5.49;
 
-/// What a deviation is worth for a variance made of the median of lengths, beside one for their mean square:
-/// (2/3)·(f(m)·m)² with the density f of χ₃ at its median m.
+/// What a deviation is worth for a variance made of the median of lengths, beside one for their
+/// mean square: (2/3)·(f(m)·m)² with the density f of χ₃ at its median m.
 const MEDIAN_EFFICIENCY: f64 = 0.527;
 
 /// Noise of the recording: standard deviation of one coordinate, m.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Noise {
     /// Over all poses.
     pub pooled: f64,
     /// Of each group.
     pub of_group: Vec<f64>,
-    /// Probability that groups of equal noise scatter as unequally as these (Bartlett); `None` for a single group.
+    /// Probability that groups of equal noise scatter as unequally as these (Bartlett); `None` for
+    /// a single group.
     pub p_equal: Option<f64>,
     /// True where the campaign states it.
     pub is_stated: bool,
@@ -65,8 +68,9 @@ impl Noise {
 
     /// From the deviations of a fit of `rank` parameters.
     ///
-    /// Every group has the share of the degrees of freedom that it has of the rows. Robust weights are judged by the
-    /// median length of the deviations in each group: the length of a normal vector in space has the median 1.538 σ.
+    /// Every group has the share of the degrees of freedom that it has of the rows. Robust weights
+    /// are judged by the median length of the deviations in each group: the length of a normal
+    /// vector in space has the median 1.538 σ.
     ///
     /// # Errors
     /// As [`chi_squared_quantile`]; none in practice.
@@ -79,19 +83,19 @@ impl Noise {
     ) -> Result<Noise> {
         let rows = recording.len();
         let share = (1.0 - rank as f64 / (3 * rows) as f64).max(1.0 / (3 * rows) as f64);
-        let mut of_rows: Vec<Vec<usize>> = vec![Vec::new(); recording.groups.len()];
+        let mut rows_by_group: Vec<Vec<usize>> = vec![Vec::new(); recording.groups.len()];
         for (row, entry) in recording.rows.iter().enumerate() {
-            of_rows[entry.group].push(row);
+            rows_by_group[entry.group].push(row);
         }
         let all: Vec<usize> = (0..rows).collect();
-        let variance = |of: &[usize]| -> f64 {
+        let variance = |rows: &[usize]| -> f64 {
             match robust {
                 Robust::None => {
-                    let sum: f64 = of.iter().map(|&row| deviations[row].norm_squared()).sum();
-                    sum / (3.0 * of.len() as f64 * share)
+                    let sum: f64 = rows.iter().map(|&row| deviations[row].norm_squared()).sum();
+                    sum / (3.0 * rows.len() as f64 * share)
                 }
                 _ => {
-                    let lengths: Vec<f64> = of.iter().map(|&row| deviations[row].norm()).collect();
+                    let lengths: Vec<f64> = rows.iter().map(|&row| deviations[row].norm()).collect();
                     // the median of χ with three degrees of freedom
                     const MEDIAN: f64 = 1.538_172_254_5;
                     (median(&lengths).unwrap_or(0.0) / MEDIAN).powi(2) / share
@@ -100,9 +104,10 @@ impl Noise {
         };
         let pooled = variance(&all);
         let of_group: Vec<f64> =
-            of_rows.iter().map(|of| if of.is_empty() { pooled } else { variance(of) }).collect();
+            rows_by_group.iter().map(|rows| if rows.is_empty() { pooled } else { variance(rows) }).collect();
         let worth = if robust == Robust::None { 1.0 } else { MEDIAN_EFFICIENCY };
-        let dof: Vec<f64> = of_rows.iter().map(|of| 3.0 * of.len() as f64 * share * worth).collect();
+        let dof: Vec<f64> =
+            rows_by_group.iter().map(|rows| 3.0 * rows.len() as f64 * share * worth).collect();
         let p_equal = match self.is_stated {
             true => None,
             false => bartlett(&of_group, &dof)?,
@@ -133,7 +138,8 @@ impl Noise {
             .collect()
     }
 
-    /// Rows that are farther out than the farthest of so many normal ones would be in one recording of a hundred.
+    /// Rows that are farther out than the farthest of so many normal ones would be in one recording
+    /// of a hundred.
     ///
     /// # Errors
     /// As [`chi_squared_quantile`]; none in practice.
@@ -146,6 +152,13 @@ impl Noise {
 
 impl Robust {
     /// What a pose counts that is `u` standard deviations out.
+    ///
+    /// ```
+    /// use rodcal::calibration::Robust;
+    ///
+    /// assert_eq!([1.0, 4.42].map(|u| Robust::Huber.weight(u)), [1.0, 0.5]); // 2.21/u beyond 2.21
+    /// assert_eq!(Robust::Tukey.weight(6.0), 0.0);
+    /// ```
     pub fn weight(self, u: f64) -> f64 {
         match self {
             Robust::None => 1.0,

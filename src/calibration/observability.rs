@@ -1,4 +1,5 @@
-//! How well a set of poses shows the parameters: condition number and the five observability indices.
+//! How well a set of poses shows the parameters: condition number and the five observability
+//! indices.
 //!
 //! With the singular values σ₁ ≥ … ≥ σₘ of the Jacobian of all poses and n poses
 //!
@@ -6,9 +7,10 @@
 //! O1 = (Π σᵢ)^(1/m) / √n     O2 = σₘ/σ₁     O3 = σₘ     O4 = σₘ²/σ₁     O5 = 1/Σ(1/σᵢ)
 //! ```
 //!
-//! (Borm & Menq 1991; Driels & Pathre 1990; Nahvi & Hollerbach 1994, 1996; Sun & Hollerbach, *ICRA* 2008). All five depend
-//! on units. Here residuals are in mm and parameters in mm, mrad and, for compliances, in µrad/(N·m). Compare
-//! indices of one robot only, and only their ratios. The condition number is that of columns of norm 1 and has no unit.
+//! (Borm & Menq 1991; Driels & Pathre 1990; Nahvi & Hollerbach 1994, 1996; Sun & Hollerbach, *ICRA*
+//! 2008). All five depend on units. Here residuals are in mm and parameters in mm, mrad and, for
+//! compliances, in µrad/(N·m). Compare indices of one robot only, and only their ratios. The
+//! condition number is that of columns of norm 1 and has no unit.
 
 use nalgebra::DVector;
 
@@ -20,6 +22,7 @@ use crate::units::{MM, URAD_PER_NM};
 
 /// See the top of the file.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Observability {
     /// O1 … O5.
     pub indices: [f64; 5],

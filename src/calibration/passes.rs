@@ -1,10 +1,11 @@
-//! The compensation loop (Eqs 11–14): fit, recompute what bends and yields and how much it scatters, fit again.
+//! The compensation loop (Eqs 11–14): fit, recompute what bends and yields and how much it
+//! scatters, fit again.
 
-use super::calibrate::Options;
 use super::campaign::{Campaign, Recording, Targets};
 use super::compensation::Compensation;
-use super::identify::{self, Held};
+use super::identifiability::{self, UnidentifiedDirection};
 use super::noise::{Noise, Robust};
+use super::options::Options;
 use super::problem::{Pass, Residuals};
 use crate::error::Result;
 use crate::least_squares::{self, Fit, Problem as _};
@@ -14,13 +15,15 @@ use crate::robot::{Parameter, Setup};
 const ASSUMED_NOISE: f64 = 1e-4;
 /// Change of a deflection from one pass to the next below which the compensation stands still, m.
 const STILL: f64 = 1e-9;
-/// Relative change of noise and weights below which they stand still: far below their own uncertainty.
+/// Relative change of noise and weights below which they stand still: far below their own
+/// uncertainty.
 const STILL_RELATIVE: f64 = 1e-3;
 /// Most passes of the compensation loop.
 const MOST_PASSES: usize = 60;
 
 /// One pass of the compensation loop.
 #[derive(Debug, Clone, Copy)]
+#[non_exhaustive]
 pub struct PassRecord {
     /// Largest change of a rod deflection against the pass before, m.
     pub change: f64,
@@ -41,7 +44,7 @@ pub(super) struct Run<'a, 'c> {
     pub setup: Setup<'c>,
     pub pass: Pass,
     pub noise: Noise,
-    pub held: Vec<Held>,
+    pub held: Vec<UnidentifiedDirection>,
     pub passes: Vec<PassRecord>,
     pub is_converged: bool,
 }
@@ -76,7 +79,7 @@ impl<'a, 'c> Run<'a, 'c> {
 
     /// The rough calibration: only where the robot stands and where the tip is.
     pub fn fit_base_and_tool(&mut self) -> Result<()> {
-        let placed: Vec<Parameter> = self.free.iter().copied().filter(|&p| is_placement(p)).collect();
+        let placed: Vec<Parameter> = self.free.iter().copied().filter(|p| p.is_placement()).collect();
         if placed.is_empty() || matches!(self.recording.targets, Targets::Sockets(_)) {
             return Ok(());
         }
@@ -120,9 +123,10 @@ impl<'a, 'c> Run<'a, 'c> {
             self.passes.push(PassRecord { change, rms, noise: noise.pooled });
             let weight = noise.row_weights(self.recording);
             let scale = largest(weight.iter().copied());
-            let moved = largest(weight.iter().zip(&self.pass.weight).map(|(a, b)| a - b));
+            let weight_change = largest(weight.iter().zip(&self.pass.weight).map(|(a, b)| a - b));
             self.noise = noise;
-            let stands_still = change < STILL && moved <= STILL_RELATIVE * scale && self.passes.len() > 1;
+            let stands_still =
+                change < STILL && weight_change <= STILL_RELATIVE * scale && self.passes.len() > 1;
             self.is_converged = stands_still && fit.is_converged();
             if stands_still || self.passes.len() >= MOST_PASSES || !fit.is_converged() {
                 return Ok(fit);
@@ -158,7 +162,8 @@ impl<'a, 'c> Run<'a, 'c> {
         let problem = self.problem();
         let p = problem.start();
         let mut corner = problem.information_root(&p);
-        // before the first fit it is the nominal robot's misfit that parameters have to be told from, not the noise
+        // before the first fit it is the nominal robot's misfit that parameters have to be told
+        // from, not the noise
         if self.passes.is_empty() {
             let squares = problem.residuals(&p).norm_squared();
             corner /= (squares / problem.residual_count() as f64).sqrt().max(1.0);
@@ -176,27 +181,26 @@ impl<'a, 'c> Run<'a, 'c> {
             .free
             .iter()
             .map(|&p| {
-                identify::plausible_range(p, if let Parameter::Compliance(j) = p { torque[j] } else { 0.0 })
+                identifiability::plausible_range(
+                    p,
+                    if let Parameter::Compliance(j) = p { torque[j] } else { 0.0 },
+                )
             })
             .collect();
-        self.held = identify::unidentified(&corner, &ranges, &self.start, self.free)?;
+        self.held = identifiability::unidentified(&corner, &ranges, &self.start, self.free)?;
         Ok(())
     }
 
     /// Largest torque on each joint over the recording, N·m.
     fn largest_torques(&self) -> Vec<f64> {
         let n = self.recording.joint_count;
-        let of_joint = |j: usize| largest(self.pass.torque.iter().skip(j).step_by(n).copied());
-        (0..n).map(of_joint).collect()
+        let largest_at = |j: usize| largest(self.pass.torque.iter().skip(j).step_by(n).copied());
+        (0..n).map(largest_at).collect()
     }
 }
 
-pub(super) fn is_placement(parameter: Parameter) -> bool {
-    matches!(parameter, Parameter::BasePosition(_) | Parameter::BaseRotation(_) | Parameter::Tool(_))
-}
-
-/// Residuals come divided by their noise. A cosine of 1e-6 leaves every parameter within 1e-6·√dof of its standard errors,
-/// which is no error at all: the loop around the fit needs no more.
+/// Residuals come divided by their noise. A cosine of 1e-6 leaves every parameter within 1e-6·√dof
+/// of its standard errors, which is no error at all: the loop around the fit needs no more.
 fn known_noise() -> least_squares::Options {
     least_squares::Options {
         noise: least_squares::Noise::Known(1.0),

@@ -1,19 +1,21 @@
-//! Residuals of a recording as a least-squares problem, with the deflections and torques of one pass held fixed.
+//! Residuals of a recording as a least-squares problem, with the deflections and torques of one
+//! pass held fixed.
 //!
 //! ```text
-//! rᵢ = (f(ρ, qᵢ, τᵢ) + R·Δxᵢ − xᵢ) · wᵢ            the ball was measured at xᵢ, or is in socket k: xᵢ = sₖ
-//! r  = (|s_a − s_b| − D) / σ_D                      a known distance between two sockets
-//! r  = (vᵀ·(ρ − ρ₀)/range) / σ_v                    a direction that the data do not identify, held
+//! rᵢ = (f(ρ, qᵢ, τᵢ) + R·Δxᵢ − xᵢ) · wᵢ    the ball was measured at xᵢ, or is in socket k: xᵢ = sₖ
+//! r  = (|s_a − s_b| − D) / σ_D              a known distance between two sockets
+//! r  = (vᵀ·(ρ − ρ₀)/range) / σ_v            an unidentified direction, held at its nominal value
 //! ```
 //!
-//! f is the rigid tip in {W}, R·Δxᵢ the rod's deflection. Δxᵢ is held fixed in {T}: it turns with the robot, so that how
-//! the rod bends does not seem to tell which way the robot stands. wᵢ is one over the standard deviation of a coordinate.
-//! The unknowns are the free parameters, then the three coordinates of every socket.
+//! f is the rigid tip in {W}, R·Δxᵢ the rod's deflection. Δxᵢ is held fixed in {T}: it turns with
+//! the robot, so that how the rod bends does not seem to tell which way the robot stands. wᵢ is one
+//! over the standard deviation of a coordinate. The unknowns are the free parameters, then the
+//! three coordinates of every socket.
 
 use nalgebra::{DMatrix, DVector, Vector3};
 
 use super::campaign::{Recording, Targets};
-use super::identify::Held;
+use super::identifiability::UnidentifiedDirection;
 use crate::least_squares::{Problem, assembled};
 use crate::linalg::RowReduction;
 use crate::robot::{Kinematics, Parameter, Setup};
@@ -25,7 +27,7 @@ const BLOCK: usize = 128;
 #[derive(Debug, Clone)]
 pub(super) struct Pass {
     /// Δx in {T} by row, m: deflected less undeflected tip.
-    pub bent: Vec<Vector3<f64>>,
+    pub deflection: Vec<Vector3<f64>>,
     /// Torque on every joint by row, N·m, one row after the other.
     pub torque: Vec<f64>,
     /// wᵢ by row, 1/m.
@@ -36,7 +38,7 @@ impl Pass {
     /// Nothing bends, no torque, all rows count the same.
     pub fn at_rest(recording: &Recording) -> Self {
         Pass {
-            bent: vec![Vector3::zeros(); recording.len()],
+            deflection: vec![Vector3::zeros(); recording.len()],
             torque: vec![0.0; recording.len() * recording.joint_count],
             weight: vec![1.0; recording.len()],
         }
@@ -47,10 +49,10 @@ impl Pass {
         &self.torque[row * recording.joint_count..][..recording.joint_count]
     }
 
-    /// Moves to the joint values of a row, joints yielding and the rod bent: the tip is where the ball is.
+    /// Moves to the joint values of a row, joints and rod deflected: the tip is where the ball is.
     pub fn deflect(&self, kinematics: &mut Kinematics, recording: &Recording, row: usize) {
         kinematics.update(recording.joints(row), self.torque(recording, row));
-        kinematics.tip += kinematics.flange.rotation * self.bent[row];
+        kinematics.tip += kinematics.flange.rotation * self.deflection[row];
     }
 }
 
@@ -60,7 +62,7 @@ pub(super) struct Residuals<'a> {
     pub free: &'a [Parameter],
     pub recording: &'a Recording,
     pub pass: &'a Pass,
-    pub held: &'a [Held],
+    pub held: &'a [UnidentifiedDirection],
 }
 
 impl Residuals<'_> {
@@ -72,7 +74,8 @@ impl Residuals<'_> {
         }
     }
 
-    /// Free parameters as they are in the setup, then each socket where the tips of its rows are on average.
+    /// Free parameters as they are in the setup, then each socket where the tips of its rows are on
+    /// average.
     pub fn start(&self) -> DVector<f64> {
         let mut start: Vec<f64> = self.free.iter().map(|&p| self.setup.get(p)).collect();
         let sockets = self.socket_count();
@@ -101,7 +104,8 @@ impl Residuals<'_> {
         setup
     }
 
-    /// Deflected tip less where it was measured or its socket is, in {W}, m: one per row, without weights.
+    /// Deflected tip less where it was measured or its socket is, in {W}, m: one per row, without
+    /// weights.
     pub fn deviations(&self, p: &DVector<f64>) -> Vec<Vector3<f64>> {
         let setup = self.setup_at(p);
         let mut deviations = Vec::with_capacity(self.recording.len());
@@ -134,8 +138,9 @@ impl Residuals<'_> {
         self.pass.torque(self.recording, row)
     }
 
-    /// The square root of the information about the free parameters: the triangle that is left of their columns of the
-    /// Jacobian once those of the sockets are projected out, without what is held. Blockwise, as the fit.
+    /// The square root of the information about the free parameters: the triangle that is left of
+    /// their columns of the Jacobian once those of the sockets are projected out, without what is
+    /// held. Blockwise, as the fit.
     pub fn information_root(&self, p: &DVector<f64>) -> DMatrix<f64> {
         let (count, sockets) = (self.free.len(), 3 * self.socket_count());
         let columns = count + sockets;

@@ -9,8 +9,8 @@ use crate::statistics::Random;
 const LEAST_BLOCK: usize = 5;
 
 impl Recording {
-    /// The rows of these indices, in this order; an index may come again. Clamps and sockets without a row are left
-    /// out.
+    /// The rows of these indices, in this order; an index may come again. Clamps and sockets
+    /// without a row are left out.
     pub fn subset(&self, rows: &[usize]) -> Recording {
         let mut place = vec![None; self.groups.len()];
         let mut groups = Vec::new();
@@ -54,10 +54,22 @@ impl Recording {
         }
     }
 
-    /// Which fold each row belongs to, 0 … `folds` − 1: the rows of every clamp are cut into blocks of consecutive ones,
-    /// four for every fold where they are long enough, and the blocks dealt to the folds in turn. Neighbours, which
-    /// often share an error, are thereby held out together, and yet no fold is a corner of the workspace. With sockets
-    /// whole placements are held out, as many folds as there are placements, where there are two or more.
+    /// Which fold each row belongs to, 0 … `folds` − 1: the rows of every clamp are cut into blocks
+    /// of consecutive ones, four for every fold where they are long enough, and the blocks dealt to
+    /// the folds in turn. Neighbours, which often share an error, are thereby held out together,
+    /// and yet no fold is a corner of the workspace. With sockets whole placements are held out, as
+    /// many folds as there are placements, where there are two or more.
+    ///
+    /// ```
+    /// use rodcal::prelude::*;
+    ///
+    /// let mut recording = Recording::new(1);
+    /// for k in 0..10 {
+    ///     recording.add(&[f64::from(k)], [0.0; 3].into())?;
+    /// }
+    /// assert_eq!(recording.folds(2), [0, 0, 0, 0, 0, 1, 1, 1, 1, 1]); // too few for shorter blocks
+    /// # Ok::<(), rodcal::Error>(())
+    /// ```
     pub fn folds(&self, folds: usize) -> Vec<usize> {
         let placements = self.placements();
         let count = placements.iter().max().map_or(0, |last| last + 1);
@@ -83,19 +95,19 @@ impl Recording {
     }
 
     /// As many rows as there are, drawn with replacement within each clamp or socket.
-    pub fn drawn_again(&self, random: &mut Random) -> Vec<usize> {
-        let mut of_group: Vec<Vec<usize>> = vec![Vec::new(); self.groups.len()];
+    pub fn bootstrap_rows(&self, random: &mut Random) -> Vec<usize> {
+        let mut rows_by_group: Vec<Vec<usize>> = vec![Vec::new(); self.groups.len()];
         for (row, entry) in self.rows.iter().enumerate() {
-            of_group[entry.group].push(row);
+            rows_by_group[entry.group].push(row);
         }
         let mut draw = |rows: &Vec<usize>| -> Vec<usize> {
             rows.iter().map(|_| rows[random.index(rows.len())]).collect()
         };
-        of_group.iter().flat_map(&mut draw).collect()
+        rows_by_group.iter().flat_map(&mut draw).collect()
     }
 
     /// Each point less the mean of the points of its group.
-    pub(super) fn less_group_means(&self, points: &[Vector3<f64>]) -> Vec<Vector3<f64>> {
+    pub(super) fn minus_group_means(&self, points: &[Vector3<f64>]) -> Vec<Vector3<f64>> {
         let mut sum = vec![(Vector3::zeros(), 0.0); self.groups.len()];
         for (point, row) in points.iter().zip(&self.rows) {
             sum[row.group].0 += point;
@@ -105,7 +117,8 @@ impl Recording {
         points.iter().zip(&self.rows).map(less).collect()
     }
 
-    /// The placement of every group, counted in order of appearance: what stands before the `/` of its name.
+    /// The placement of every group, counted in order of appearance: what stands before the `/` of
+    /// its name.
     fn placements(&self) -> Vec<usize> {
         let mut names: Vec<&str> = Vec::new();
         self.groups

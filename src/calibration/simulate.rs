@@ -1,13 +1,17 @@
-//! Simulated campaigns: what the paper's procedure would record with a robot and a rod that are known exactly.
+//! Simulated campaigns: what the paper's procedure would record with a robot and a rod that are
+//! known exactly.
 //!
-//! A robot with small errors of all its parameters brings the ball to five clamps under many orientations; the poses
-//! are picked for their observability. The rod sags and the sensors push, both with physical signs: gravity pulls down,
-//! the contact force pushes the ball up. Everything is drawn from one seed.
+//! A robot with small errors of all its parameters brings the ball to five clamps under many
+//! orientations; the poses are picked for their observability. The rod sags and the sensors push,
+//! both with physical signs: gravity pulls down, the contact force pushes the ball up. Everything
+//! is drawn from one seed.
 
 mod files;
+mod plan;
 mod poses;
 
 pub use files::campaign_files;
+pub use plan::{Plan, RobotErrors};
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -20,62 +24,11 @@ use crate::robot::{Body, Kinematics, Parameter, Robot, Setup, minimal_parameters
 use crate::rod::Rod;
 use crate::spatial::Pose;
 use crate::statistics::Random;
-use crate::units::{DEG, MM, UM};
+use crate::units::{DEG, MM};
 
-/// What is simulated. The defaults are the paper's experiment.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Plan {
-    /// Every random number comes from it.
-    pub seed: u64,
-    /// Poses on every clamp.
-    pub poses_per_clamp: usize,
-    /// Poses of the validation.
-    pub validation_poses: usize,
-    /// The true rod's compliance over that of its model.
-    pub rod_factor: f64,
-    /// Errors of the true robot.
-    pub errors: RobotErrors,
-    /// Standard deviation of a displacement sensor, m.
-    pub sensor_noise: f64,
-    /// Root mean square of the distance by which the robot misses a pose that it takes again, m.
-    pub repeatability: f64,
-    /// Root mean square of the distance by which the scanner misses the ball in the validation, m.
-    pub scanner_noise: f64,
-    /// Root mean square of the error of each clamp's position in the campaign file, m; 0 in the paper's list of noises.
-    pub clamp_error: f64,
-}
-
-/// Standard deviations of the differences between the true and the nominal robot.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct RobotErrors {
-    /// Of d and a, m.
-    pub length: f64,
-    /// Of θ, rad.
-    pub offset: f64,
-    /// Of α and β, rad.
-    pub tilt: f64,
-    /// Angle by which each joint yields, on average, under its largest torque, rad.
-    pub yielding: f64,
-}
-
-impl Default for Plan {
-    fn default() -> Self {
-        Plan {
-            seed: 1,
-            poses_per_clamp: 30,
-            validation_poses: 100,
-            rod_factor: 1.0,
-            errors: RobotErrors { length: 0.3 * MM, offset: 1e-3, tilt: 0.3e-3, yielding: 0.5e-3 },
-            sensor_noise: 3.0 * UM,
-            repeatability: 30.0 * UM,
-            scanner_noise: 43.0 * UM,
-            clamp_error: 0.0,
-        }
-    }
-}
-
-/// Where the clamps of the paper's fixture could be (500 × 300 × 151 mm, § 5.2; their places are not published),
-/// position in {W} (m) and turn about the vertical (rad). {W} stands upright in the third clamp.
+/// Where the clamps of the paper's fixture could be (500 × 300 × 151 mm, § 5.2; their places are
+/// not published), position in {W} (m) and turn about the vertical (rad). {W} stands upright in the
+/// third clamp.
 const CLAMPS: [([f64; 3], f64); 5] = [
     ([0.10, 0.20, 0.10], 20.0 * DEG),
     ([-0.12, 0.12, 0.0], 95.0 * DEG),
@@ -85,11 +38,10 @@ const CLAMPS: [([f64; 3], f64); 5] = [
 ];
 /// {0} in {W}, m: the fixture stands in front of the robot, on its table.
 const BASE: [f64; 3] = [-0.62, 0.03, -0.16];
-/// How far from the middle of the sensors' range the ball comes to rest, m.
-const AIM: f64 = 0.2 * MM;
 
 /// A campaign and the truth behind it.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Simulation<'r> {
     /// What is simulated.
     pub plan: Plan,
@@ -106,6 +58,23 @@ pub struct Simulation<'r> {
 }
 
 /// Simulates the campaign of `plan` with a nominal robot and the model compliance of its rod.
+///
+/// ```
+/// use rodcal::calibration::simulate::{Plan, campaign_files, simulate};
+/// use rodcal::prelude::*;
+///
+/// let (file, text) = Robot::builtin("tx90").expect("the program carries it");
+/// let robot = Robot::from_text(file, text, None, None)?;
+/// let rod = Rod::read("rods/5.toml".as_ref())?;
+/// let model = Compliance::of_model(&rod, &Physics::default(), 20)?;
+/// let plan = Plan { poses_per_clamp: 8, validation_poses: 5, ..Plan::default() };
+/// let simulation = simulate(&robot, &rod, &model, &plan)?;
+/// assert_eq!((simulation.measurements.len(), simulation.validation.len()), (40, 5));
+/// // the ball rests within 0.2 mm of the clamps: what is seen is errors of the robot's calibration
+/// let files = campaign_files(&simulation, "builtin:tx90", "rods/5.toml");
+/// assert!(files.iter().all(|(_, text)| text.starts_with("# SIMULATED")));
+/// # Ok::<(), rodcal::Error>(())
+/// ```
 ///
 /// # Errors
 /// [`crate::Error::NotApplicable`] where the robot does not reach the clamps with this rod.
@@ -133,7 +102,8 @@ pub fn simulate<'r>(robot: &'r Robot, rod: &Rod, model: &Compliance, plan: &Plan
     Ok(Simulation { plan: plan.clone(), truth, compliance, measurements, validation, base_guess })
 }
 
-/// The frame of a device: its three sensors look up at the same angle, so that (1, 1, 1) in it is vertical.
+/// The frame of a device: its three sensors look up at the same angle, so that (1, 1, 1) in it is
+/// vertical.
 fn device_frame(place: [f64; 3], turn: f64) -> Pose {
     let (z, x) = (Vector3::repeat(1.0).normalize(), Vector3::new(1.0, -1.0, 0.0).normalize());
     // rows: where x, y and z of {W} are in the device
@@ -160,7 +130,7 @@ fn true_setup<'r>(robot: &'r Robot, base: Pose, tool: Vector3<f64>, payload: Bod
             Parameter::Alpha(_) | Parameter::Beta(_) => errors.tilt,
             Parameter::Compliance(j) => {
                 // drives yield with their torque, never against it
-                let mean = errors.yielding / torques[j];
+                let mean = errors.joint_turn / torques[j];
                 truth.set(parameter, mean * random.uniform(0.5, 1.5));
                 continue;
             }

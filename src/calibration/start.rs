@@ -1,8 +1,9 @@
 //! The rough start: base and tool from linear equations, with the nominal robot.
 //!
-//! xᵢ = R_b·(Rᵢ·t + oᵢ) + p_b with the nominal flange frames (Rᵢ, oᵢ) in {0}. For a given tool t the best base is
-//! Kabsch's rotation between two clouds of points; for a given base the tool is a linear least-squares problem. Both
-//! in turn, from the user's guess and from a few others, find the base from anywhere.
+//! xᵢ = R_b·(Rᵢ·t + oᵢ) + p_b with the nominal flange frames (Rᵢ, oᵢ) in {0}. For a given tool t
+//! the best base is Kabsch's rotation between two clouds of points; for a given base the tool is a
+//! linear least-squares problem. Both in turn, from the user's guess and from a few others, find
+//! the base from anywhere.
 
 use nalgebra::Vector3;
 
@@ -13,15 +14,16 @@ use crate::spatial::{Pose, best_motion};
 
 /// Most turns of alternation.
 const TURNS: usize = 50;
-/// Gain of a turn, relative to the misfit, below which more are not worth their while: the fit that follows is better
-/// at it.
+/// Gain of a turn, relative to the misfit, below which more are not worth their while: the fit that
+/// follows is better at it.
 const GAIN: f64 = 0.05;
 /// Misfit of a pose below which the start is good, m: a robot as built, not a wrong turn.
 const GOOD: f64 = 0.01;
 /// Poses that take part: a few hundred fix nine numbers.
 const MOST_POSES: usize = 300;
 
-/// Base and tool that fit the recording best, starting from those given; as they are for sockets, which know no {W}.
+/// Base and tool that fit the recording best, starting from those given; as they are for sockets,
+/// which know no {W}.
 ///
 /// # Errors
 /// As [`thin_svd`]; none in practice.
@@ -76,7 +78,8 @@ fn misfit(flanges: &[Pose], points: &[Vector3<f64>], base: &Pose, tool: &Vector3
     pairs.map(|(flange, x)| (base.point(&flange.point(tool)) - x).norm_squared()).sum()
 }
 
-/// Σ (R_b·Rᵢ)ᵀ(xᵢ − p_b − R_b·oᵢ)/n: the normal equations of the tool have the identity as their matrix.
+/// Σ (R_b·Rᵢ)ᵀ(xᵢ − p_b − R_b·oᵢ)/n: the normal equations of the tool have the identity as their
+/// matrix.
 fn best_tool(flanges: &[Pose], points: &[Vector3<f64>], base: &Pose, tool: &Vector3<f64>) -> Vector3<f64> {
     let pairs = flanges.iter().zip(points);
     let sum: Vector3<f64> = pairs

@@ -14,6 +14,7 @@ use crate::statistics;
 
 /// Errors of the poses of a validation recording.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Validation {
     /// Distance of each pose from where it was measured, or from its socket's mean, m.
     pub errors: Vec<f64>,
@@ -33,6 +34,7 @@ pub struct Validation {
 
 /// What the errors of many poses are summed up to, m.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Summary {
     /// Mean.
     pub mean: f64,
@@ -48,6 +50,14 @@ pub struct Summary {
 
 impl Summary {
     /// Of lengths, m; zeros for none.
+    ///
+    /// ```
+    /// use rodcal::calibration::Summary;
+    ///
+    /// let summary = Summary::of(&[3.0, 4.0, 5.0]);
+    /// assert_eq!((summary.mean, summary.max, summary.median, summary.sd), (4.0, 5.0, 4.0, 1.0));
+    /// assert!((summary.rms - (50.0f64 / 3.0).sqrt()).abs() < 1e-12);
+    /// ```
     pub fn of(lengths: &[f64]) -> Summary {
         let squares: f64 = lengths.iter().map(|x| x * x).sum();
         Summary {
@@ -60,8 +70,26 @@ impl Summary {
     }
 }
 
-/// Predicts `recording` with the calibrated `setup`, with base and tool fitted again where `refit` says so. It was
-/// measured with a short rigid rod and without contact: links weigh on the joints, nothing bends.
+/// Predicts `recording` with the calibrated `setup`, with base and tool fitted again where `refit`
+/// says so. It was measured with a short rigid rod and without contact: links weigh on the joints,
+/// nothing bends.
+///
+/// ```
+/// use rodcal::calibration::validate;
+/// use rodcal::prelude::*;
+///
+/// let joint = |a| Joint::new("one", Motion::Revolute, Hayati { a, ..Hayati::default() });
+/// let (drawn, built) = (Robot::new("arm", vec![joint(0.5)]), Robot::new("arm", vec![joint(0.501)]));
+/// let mut recording = Recording::new(1);
+/// for q in [0.0, 1.0, 2.0] {
+///     recording.add(&[q], built.flange_at(&[q]).origin)?;
+/// }
+/// let setup = Setup::new(&drawn, Pose::IDENTITY, [0.0; 3].into());
+/// // with nothing fitted again, a link that is 1 mm longer shows as 1 mm at every pose
+/// let validation = validate(&setup, &recording, Refit::Nothing)?;
+/// assert!(validation.errors.iter().all(|error| (error - 1e-3).abs() < 1e-12));
+/// # Ok::<(), rodcal::Error>(())
+/// ```
 ///
 /// # Errors
 /// What the fit refuses.
@@ -94,8 +122,7 @@ pub(super) fn validate_from(
         setup.base_position = base.origin;
         setup.base_turn = Vector3::zeros();
         setup.tool = tool;
-        let free: Vec<Parameter> =
-            Parameter::all(n).into_iter().filter(|&p| super::passes::is_placement(p)).collect();
+        let free: Vec<Parameter> = Parameter::all(n).into_iter().filter(Parameter::is_placement).collect();
         // torques depend a little on where the base stands
         for _ in 0..3 {
             bare.update(&setup, recording, &mut pass);
@@ -119,7 +146,7 @@ pub(super) fn validate_from(
         .collect();
     let deviations: Vec<Vector3<f64>> = match &recording.targets {
         Targets::Points(points) => tips.iter().zip(points).map(|(tip, x)| tip - x).collect(),
-        Targets::Sockets(_) => recording.less_group_means(&tips),
+        Targets::Sockets(_) => recording.minus_group_means(&tips),
     };
     let errors: Vec<f64> = deviations.iter().map(|d| d.norm()).collect();
     Ok(Validation { summary: Summary::of(&errors), errors, tips, deviations, refit, placement, is_converged })

@@ -2,9 +2,6 @@
 
 use std::fmt;
 
-use super::calibrate::Calibration;
-use super::campaign::{Campaign, Recording};
-use super::identify::{Held, plausible_range};
 use crate::robot::Parameter;
 use crate::units::{MM, UM, significant};
 
@@ -12,7 +9,8 @@ use crate::units::{MM, UM, significant};
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Warning {
-    /// The fit or the compensation loop did not come to rest: why the last fit stopped, and after how many passes.
+    /// The fit or the compensation loop did not come to rest: why the last fit stopped, and after
+    /// how many passes.
     NotConverged {
         /// In the words of the fit.
         reason: String,
@@ -60,77 +58,6 @@ pub enum Warning {
     },
     /// The fit of base and tool to the validation did not converge.
     ValidationNotConverged,
-}
-
-/// All that apply.
-pub(super) fn all(campaign: &Campaign, recording: &Recording, calibration: &Calibration) -> Vec<Warning> {
-    let mut warnings = Vec::new();
-    if !calibration.is_converged {
-        warnings.push(Warning::NotConverged {
-            reason: calibration.fit.reason.to_string(),
-            passes: calibration.passes.len(),
-        });
-    }
-    if !campaign.robot.has_masses() {
-        warnings.push(Warning::NoMasses);
-    }
-    warnings.extend(not_identified(calibration));
-    if !calibration.outliers.is_empty() {
-        let mut poses: Vec<(String, f64)> = calibration
-            .outliers
-            .iter()
-            .map(|&row| (recording.pose_name(row), calibration.deviations[row].norm()))
-            .collect();
-        poses.sort_by(|a, b| b.1.total_cmp(&a.1));
-        let count_in_full = calibration.outliers.iter().all(|&row| calibration.noise.weights[row] == 1.0);
-        warnings.push(Warning::Outliers { poses, count_in_full });
-    }
-    warnings.extend(unequal_noise(recording, calibration));
-    warnings.extend(calibration.parameters.iter().filter_map(|estimate| {
-        let correction = estimate.value - estimate.nominal;
-        let is_link = !matches!(
-            estimate.parameter,
-            Parameter::BasePosition(_)
-                | Parameter::BaseRotation(_)
-                | Parameter::Tool(_)
-                | Parameter::Compliance(_)
-        );
-        let range = plausible_range(estimate.parameter, 0.0);
-        (is_link && estimate.identifiable && correction.abs() > range)
-            .then_some(Warning::Implausible { parameter: estimate.parameter, correction })
-    }));
-    warnings
-}
-
-fn not_identified(calibration: &Calibration) -> Vec<Warning> {
-    /// Combinations that are named one by one.
-    const FEW: usize = 3;
-    if calibration.held.len() > FEW {
-        let parameters =
-            calibration.parameters.iter().filter(|p| !p.identifiable).map(|p| p.parameter).collect();
-        return vec![Warning::ManyNotIdentified { combinations: calibration.held.len(), parameters }];
-    }
-    let of_direction = |held: &Held| {
-        let mut combination: Vec<(Parameter, f64)> = calibration
-            .parameters
-            .iter()
-            .zip(&held.direction)
-            .map(|(estimate, &coefficient)| (estimate.parameter, coefficient))
-            .filter(|(_, coefficient)| coefficient.abs() > 0.1)
-            .collect();
-        combination.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
-        Warning::NotIdentified { combination, relative_error: held.relative_error }
-    };
-    calibration.held.iter().map(of_direction).collect()
-}
-
-fn unequal_noise(recording: &Recording, calibration: &Calibration) -> Option<Warning> {
-    let noise = &calibration.noise;
-    let p_value = noise.p_equal?;
-    let named = recording.groups.iter().zip(&noise.of_group).map(|(group, &sd)| (group.name.clone(), sd));
-    let quietest = named.clone().min_by(|a, b| a.1.total_cmp(&b.1))?;
-    let noisiest = named.max_by(|a, b| a.1.total_cmp(&b.1))?;
-    (noisiest.1 > quietest.1).then_some(Warning::UnequalNoise { quietest, noisiest, p_value })
 }
 
 impl fmt::Display for Warning {

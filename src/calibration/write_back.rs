@@ -1,13 +1,25 @@
 //! The calibrated robot as a file of the format that it came in.
 
-use super::calibrate::Calibration;
 use super::campaign::{Campaign, Targets};
+use super::result::Calibration;
 use crate::error::Result;
 use crate::robot::{Parameter, Tip, Uncertainty, is_urdf};
 use crate::units::{DEG, MM};
 
-/// Name and text of the calibrated robot: a table with compliances, or the URDF with new origins, its `tip_link` at the
-/// tip. Comments on top say where base and tip were found.
+/// Name and text of the calibrated robot: a table with compliances, or the URDF with new origins,
+/// its `tip_link` at the tip. Comments on top say where base and tip were found.
+///
+/// ```
+/// use rodcal::prelude::*;
+///
+/// let campaign = Campaign::read("campaigns/tx90-5/campaign.toml".as_ref())?;
+/// let calibration = calibrate(&campaign, Mode::Fea, &Options::default())?;
+/// let (name, text) = write_back(&campaign, &calibration)?;
+/// let robot = Robot::from_text(&name, &text, None, None)?;
+/// let (written, found) = (robot.joints[1].link.a, calibration.setup.get(Parameter::A(1)));
+/// assert!((written - found).abs() < 1e-12 && (written - 0.425).abs() < 2e-3);
+/// # Ok::<(), rodcal::Error>(())
+/// ```
 ///
 /// # Errors
 /// As [`crate::robot::Robot::to_toml`] and [`crate::robot::Robot::to_urdf`]; none in practice.
@@ -15,7 +27,8 @@ pub fn write_back(campaign: &Campaign, calibration: &Calibration) -> Result<(Str
     write_back_with(campaign, calibration, None, &[])
 }
 
-/// The same with more comments and, in a table, the tip; `sd` is how well the robot is known there, m.
+/// The same with more comments and, in a table, the tip; `sd` is how well the robot is known there,
+/// m.
 ///
 /// # Errors
 /// As [`write_back`].
@@ -59,7 +72,8 @@ pub fn write_back_with(
         robot.to_urdf(&campaign.robot_file, &campaign.robot_text, base, tip, Some(setup.tool), &comments)?;
     Ok(("calibrated.urdf".into(), written.text))
 }
-/// Covariance of what the data determine of the robot and its tool; `None` where the noise is unknown.
+/// Covariance of what the data determine of the robot and its tool; `None` where the noise is
+/// unknown.
 fn uncertainty(calibration: &Calibration) -> Option<Uncertainty> {
     let is_own = |p: Parameter| !matches!(p, Parameter::BasePosition(_) | Parameter::BaseRotation(_));
     let all = &calibration.fit.covariance.matrix;

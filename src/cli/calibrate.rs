@@ -13,13 +13,15 @@ use super::output::Outcome;
 pub struct Calibrate {
     /// Campaign file (TOML): robot, rod, measurements, validation.
     campaign: PathBuf,
-    /// How the rod's deflection is known [default: meas with rig readings, else fea with a rod, else none].
+    /// How the rod's deflection is known [default: meas with rig readings, else fea with a rod,
+    /// else none].
     #[arg(long, value_enum)]
     mode: Option<ModeName>,
     /// What an outlier counts.
     #[arg(long, value_enum, default_value_t = Weights::None)]
     robust: Weights,
-    /// Also predict every pose from a calibration without it, in so many folds of consecutive poses.
+    /// Also predict every pose from a calibration without it, in so many folds of consecutive
+    /// poses.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(2..=1000))]
     folds: Option<u16>,
 }
@@ -109,12 +111,12 @@ pub fn provenance(campaign: &Campaign) -> Vec<(String, String)> {
         );
     }
     list.extend(campaign.readings.iter().map(|readings| ("rig readings".to_owned(), readings.file.clone())));
-    let told = |recording: &Recording| match &recording.source {
+    let described = |recording: &Recording| match &recording.source {
         Some(source) => format!("{} ({source})", recording.file),
         None => recording.file.clone(),
     };
-    list.push(("measurements".into(), told(&campaign.measurements)));
-    list.extend(campaign.validation.iter().map(|recording| ("validation".to_owned(), told(recording))));
+    list.push(("measurements".into(), described(&campaign.measurements)));
+    list.extend(campaign.validation.iter().map(|recording| ("validation".to_owned(), described(recording))));
     list.push(("program".into(), concat!("rodcal ", env!("CARGO_PKG_VERSION")).into()));
     list
 }

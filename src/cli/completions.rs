@@ -1,9 +1,8 @@
 //! `rodcal completions SHELL`.
 
-use clap::{Args, CommandFactory};
+use clap::{Args, Command};
 use clap_complete::Shell;
 
-use super::Arguments;
 use super::output::Outcome;
 
 #[derive(Debug, Args)]
@@ -19,9 +18,10 @@ zsh:  rodcal completions zsh > DIR/_rodcal, with DIR in $fpath
 fish: rodcal completions fish > ~/.config/fish/completions/rodcal.fish";
 
 impl Completions {
-    pub fn run(&self) -> Outcome {
+    /// `command`: the whole command line.
+    pub fn run(&self, mut command: Command) -> Outcome {
         let mut script = Vec::new();
-        clap_complete::generate(self.shell, &mut Arguments::command(), "rodcal", &mut script);
+        clap_complete::generate(self.shell, &mut command, "rodcal", &mut script);
         let script = String::from_utf8_lossy(&script).into_owned();
         Outcome {
             json: serde_json::json!({ "completions": script }),

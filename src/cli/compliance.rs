@@ -8,8 +8,8 @@ use rodcal::rod::Rod;
 use rodcal::units::MM;
 use rodcal::{Result, report};
 
-use super::Theory;
 use super::output::Outcome;
+use super::values::{Theory, elements};
 
 #[derive(Debug, Args)]
 #[command(after_long_help = NOTES)]
@@ -23,7 +23,7 @@ pub struct Compliance {
     #[arg(long, value_enum)]
     theory: Option<Theory>,
     /// Number of beam elements of fea. They are exact: the result does not depend on it.
-    #[arg(long, default_value_t = DEFAULT_ELEMENTS, value_parser = super::elements)]
+    #[arg(long, default_value_t = DEFAULT_ELEMENTS, value_parser = elements)]
     elements: usize,
     /// Also show one point of the rod under a force at another (fea): where the force acts, as arc
     /// length from the flange in mm [default: the tip].

@@ -31,16 +31,16 @@ pub fn run() -> Result<Outcome> {
         let fit = rig::fit(&readings, Some(&rod), &rig::Options::default())?;
         let study =
             Study::new(rod.clone(), Mode::Fea, Physics::default(), DEFAULT_ELEMENTS, paper_contact_force())?;
-        let of_rod = report::compliance::report(&study);
-        let of_rig = report::rig::report(&fit, &readings, Some(&rod));
-        words += &wrapped(&format!("{} {}", of_rod.headline, of_rig.headline));
+        let rod_report = report::compliance::report(&study);
+        let rig_report = report::rig::report(&fit, &readings, Some(&rod));
+        words += &wrapped(&format!("{} {}", rod_report.headline, rig_report.headline));
         words.push('\n');
-        headlines.push(of_rig.headline.clone());
+        headlines.push(rig_report.headline.clone());
         results.push(json!({
             "compliance": report::compliance::json(&study),
             "rig": report::rig::json(&fit, &readings, Some(&rod)),
         }));
-        for part in [of_rod, of_rig] {
+        for part in [rod_report, rig_report] {
             let warnings = part.warnings.into_iter().map(|warning| format!("rod {}: {warning}", rod.name));
             report.warnings.extend(warnings);
             report.sections.extend(part.sections);
@@ -51,19 +51,19 @@ pub fn run() -> Result<Outcome> {
 
     let readings = Readings::from_text(LOAD_CELL_FILE, LOAD_CELL)?;
     let fit = rig::fit(&readings, None, &rig::Options::default())?;
-    let of_cell = report::rig::report(&fit, &readings, None);
-    words += &wrapped(&format!("Load cell (NIST): {}", of_cell.headline));
+    let cell_report = report::rig::report(&fit, &readings, None);
+    words += &wrapped(&format!("Load cell (NIST): {}", cell_report.headline));
     report.warnings.insert(0, RECONSTRUCTED.into());
-    report.warnings.extend(of_cell.warnings.into_iter().map(|warning| format!("load cell: {warning}")));
-    report.sections.extend(of_cell.sections);
+    report.warnings.extend(cell_report.warnings.into_iter().map(|warning| format!("load cell: {warning}")));
+    report.sections.extend(cell_report.sections);
     report.provenance.push(("readings".into(), format!("{LOAD_CELL_FILE} (NIST StRD, Pontius)")));
 
-    let (of_robot, calibrated, compared) = robot()?;
-    words += &format!("\n{}", wrapped(&of_robot.headline));
+    let (robot_report, calibrated, compared) = robot()?;
+    words += &format!("\n{}", wrapped(&robot_report.headline));
     words += &format!("\n{}", wrapped(RECONSTRUCTED));
-    headlines.push(of_robot.headline);
-    report.warnings.extend(of_robot.warnings.into_iter().map(|warning| format!("TX90: {warning}")));
-    report.sections.extend(of_robot.sections);
+    headlines.push(robot_report.headline);
+    report.warnings.extend(robot_report.warnings.into_iter().map(|warning| format!("TX90: {warning}")));
+    report.sections.extend(robot_report.sections);
     report.provenance.push(("campaign".into(), format!("{CAMPAIGN_FILE} (simulated)")));
     report.provenance.push(("program".into(), concat!("rodcal ", env!("CARGO_PKG_VERSION")).into()));
 
@@ -83,7 +83,8 @@ pub fn run() -> Result<Outcome> {
     })
 }
 
-/// The campaign inside the program, calibrated in its default mode, and all modes compared: report and both JSONs.
+/// The campaign inside the program, calibrated in its default mode, and all modes compared: report
+/// and both JSONs.
 fn robot() -> Result<(Report, Value, Value)> {
     let open = |name: &str| {
         named_by_the_campaign(name).map(str::to_owned).ok_or_else(|| Error::File {

@@ -1,14 +1,33 @@
-//! What a command hands back, and where it goes: the result to stdout, warnings to stderr, the report to files.
+//! What a command hands back, and where it goes: the result to stdout, warnings to stderr, the
+//! report to files.
 
 use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use clap::Args;
 use rodcal::report::{Report, text};
 use rodcal::{Error, Result, files};
 use serde_json::Value;
 
-use super::Arguments;
+/// Where the result goes: options of every command.
+#[derive(Debug, Args)]
+pub struct Options {
+    /// Print the result as JSON on stdout and nothing else (warnings still go to stderr).
+    #[arg(long, global = true, help_heading = OUTPUT)]
+    pub json: bool,
+
+    /// Write a report into this directory: index.html for a browser, pictures (SVG), tables (CSV,
+    /// Markdown) and result.json. Made if missing; other files in it stay.
+    #[arg(long, global = true, value_name = "DIR", help_heading = OUTPUT)]
+    pub out: Option<PathBuf>,
+
+    /// With --out: write the pictures as PNG too.
+    #[arg(long, global = true, help_heading = OUTPUT)]
+    pub png: bool,
+}
+
+const OUTPUT: &str = "Output";
 
 /// The result of a command.
 pub struct Outcome {
@@ -44,14 +63,14 @@ impl Outcome {
 ///
 /// # Errors
 /// [`Error::File`] where a file cannot be written.
-pub fn deliver(arguments: &Arguments, outcome: Outcome) -> Result<ExitCode> {
+pub fn deliver(options: &Options, outcome: Outcome) -> Result<ExitCode> {
     let Outcome { mut json, mut report, text, default_directory, files: more, status } = outcome;
-    let directory = arguments.out.clone().or(default_directory);
-    if report.is_none() && arguments.out.is_some() {
+    let directory = options.out.clone().or(default_directory);
+    if report.is_none() && options.out.is_some() {
         say("warning: this command writes no report: --out has no effect");
     }
     if let Some(report) = &mut report {
-        if arguments.png && directory.is_none() {
+        if options.png && directory.is_none() {
             report.warnings.push("--png has no effect without --out".into());
         }
         // the same words on stderr, on the page and in the JSON
@@ -66,7 +85,7 @@ pub fn deliver(arguments: &Arguments, outcome: Outcome) -> Result<ExitCode> {
             });
         }
         // everything is rendered before anything is written
-        let mut files = report.files(arguments.png)?;
+        let mut files = report.files(options.png)?;
         json["report"] = directory.join("index.html").display().to_string().into();
         files.extend(more);
         files.push(("result.json".into(), pretty(&json).into_bytes()));
@@ -76,13 +95,13 @@ pub fn deliver(arguments: &Arguments, outcome: Outcome) -> Result<ExitCode> {
     for warning in warnings {
         say(&format!("warning: {warning}"));
     }
-    let mut words = match (arguments.json, text, &report) {
+    let mut words = match (options.json, text, &report) {
         (true, ..) => pretty(&json),
         (false, Some(text), _) => text,
         (false, None, Some(report)) => text::text(report),
         (false, None, None) => String::new(),
     };
-    if let (false, Some(directory), Some(_)) = (arguments.json, &directory, &report) {
+    if let (false, Some(directory), Some(_)) = (options.json, &directory, &report) {
         words += &format!("\nreport: {}\n", directory.join("index.html").display());
     }
     match std::io::stdout().write_all(words.as_bytes()) {

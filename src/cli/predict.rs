@@ -12,11 +12,13 @@ use super::output::Outcome;
 
 #[derive(Debug, Args)]
 pub struct Predict {
-    /// Calibrated robot (TOML or URDF), as `calibrate --out` and `diagnose calibration --apply` write it.
+    /// Calibrated robot (TOML or URDF), as `calibrate --out` and `diagnose calibration --apply`
+    /// write it.
     model: PathBuf,
     /// Joint values (CSV): pose, q1_deg, q2_deg …
     poses: PathBuf,
-    /// The tip in {T} in mm, as X,Y,Z [default: the tip that the model was calibrated with, else the flange].
+    /// The tip in {T} in mm, as X,Y,Z [default: the tip that the model was calibrated with, else
+    /// the flange].
     #[arg(long, value_name = "X,Y,Z", value_parser = three_numbers, allow_hyphen_values = true)]
     tool: Option<[f64; 3]>,
     /// Table of corrections beside a URDF (CSV).

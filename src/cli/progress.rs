@@ -8,7 +8,8 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 pub struct Progress(ProgressBar);
 
 impl Progress {
-    /// Of `count` tasks; nothing is seen of it in the first second, nor where stderr is no terminal.
+    /// Of `count` tasks; nothing is seen of it in the first second, nor where stderr is no
+    /// terminal.
     pub fn new(what: &'static str, count: usize) -> Self {
         let bar = ProgressBar::with_draw_target(Some(count as u64), ProgressDrawTarget::stderr_with_hz(5));
         if let Ok(style) = ProgressStyle::with_template("{msg} {bar:40} {pos}/{len}, {eta} left") {

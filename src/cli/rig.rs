@@ -9,20 +9,21 @@ use rodcal::rig::readings::Readings;
 use rodcal::rod::Rod;
 use rodcal::{Result, report, rig};
 
-use super::Theory;
 use super::output::Outcome;
+use super::values::{Theory, elements};
 
 #[derive(Debug, Subcommand)]
 pub enum Rig {
-    /// Fit a line to each load direction: slopes, friction, straightness, correction factors r and r_rod,
-    /// measured C^F and C^g, each with its uncertainty.
+    /// Fit a line to each load direction: slopes, friction, straightness, correction factors r and
+    /// r_rod, measured C^F and C^g, each with its uncertainty.
     Fit(Fit),
 }
 
 #[derive(Debug, Args)]
 #[command(after_long_help = NOTES)]
 pub struct Fit {
-    /// Rod file (TOML), or the word `linear`: no model, only slopes and whether the lines are straight.
+    /// Rod file (TOML), or the word `linear`: no model, only slopes and whether the lines are
+    /// straight.
     rod: PathBuf,
     /// Readings (CSV): how far the tip moved under each load.
     readings: PathBuf,
@@ -30,7 +31,7 @@ pub struct Fit {
     #[arg(long, value_enum, default_value_t = Theory::Timoshenko)]
     theory: Theory,
     /// Number of beam elements of that model.
-    #[arg(long, default_value_t = DEFAULT_ELEMENTS, value_parser = super::elements)]
+    #[arg(long, default_value_t = DEFAULT_ELEMENTS, value_parser = elements)]
     elements: usize,
     /// What an outlier counts.
     #[arg(long, value_enum, default_value_t = Weights::None)]

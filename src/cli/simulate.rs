@@ -16,7 +16,8 @@ use super::output::Outcome;
 
 #[derive(Debug, Args)]
 pub struct Simulate {
-    /// Directory for campaign.toml, measurements.csv, validation.csv, readings.csv, robot and rod file; made if missing.
+    /// Directory for campaign.toml, measurements.csv, validation.csv, readings.csv, robot and rod
+    /// file; made if missing.
     directory: PathBuf,
     /// Rod file (TOML).
     #[arg(long)]

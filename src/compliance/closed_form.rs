@@ -1,5 +1,5 @@
-//! Calc mode: the paper's closed form for an L-shaped rod of one uniform pipe, Euler–Bernoulli bending and
-//! torsion only: no extension, no shear, no bend, no joints, no sleeves, no tip mass.
+//! Calc mode: the paper's closed form for an L-shaped rod of one uniform pipe, Euler–Bernoulli
+//! bending and torsion only: no extension, no shear, no bend, no joints, no sleeves, no tip mass.
 //!
 //! Source: Improved MultiCal, *Sensors* 23 (2023) 5717, Eqs 15 and 17.
 
@@ -12,8 +12,24 @@ use crate::units::STANDARD_GRAVITY;
 
 /// Compliance of `rod` by Eqs 15 and 17, in {T}.
 ///
+/// ```
+/// use rodcal::beam::Physics;
+/// use rodcal::compliance::closed_form;
+/// use rodcal::prelude::*;
+///
+/// let rod = Rod::read("rods/5.toml".as_ref())?;
+/// let calc = closed_form::compliance(&rod)?;
+/// let ei = 193e9 * rod.pipe1.section.second_moment();
+/// assert!((calc.force[(0, 0)] / (0.150f64.powi(3) / (3.0 * ei)) - 1.0).abs() < 1e-12); // Eq 15
+/// // the beam model without what the closed form leaves out is the same
+/// let beam = Compliance::of_model(&rod, &Physics::BENDING_AND_TORSION, 10)?;
+/// assert!((beam.force - calc.force).amax() < 1e-12 * calc.force.amax());
+/// # Ok::<(), rodcal::Error>(())
+/// ```
+///
 /// # Errors
-/// [`Error::NotApplicable`] where the equations do not hold: an angle other than 90°, or two different pipes.
+/// [`Error::NotApplicable`] where the equations do not hold: an angle other than 90°, or two
+/// different pipes.
 pub fn compliance(rod: &Rod) -> Result<Compliance> {
     let refuse = |why: String| {
         Err(Error::NotApplicable {

@@ -7,6 +7,7 @@ use crate::rod::{BendFlexibility, Joint, Rod};
 
 /// What one left-out term adds, and where that leaves the compliance.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Step {
     /// The term in the user's words, for example "shear".
     pub term: &'static str,
@@ -16,10 +17,25 @@ pub struct Step {
     pub added: Compliance,
 }
 
-/// From bending and torsion alone (Calc, where the closed form applies) to the whole model, one term after
-/// another: what each term adds to the ones before it. The terms add up to the whole exactly.
+/// From bending and torsion alone (Calc, where the closed form applies) to the whole model, one
+/// term after another: what each term adds to the ones before it. The terms add up to the whole
+/// exactly.
 ///
 /// Terms the rod does not have are not listed; `shear` only where `physics` has it.
+///
+/// ```
+/// use rodcal::compliance::steps;
+/// use rodcal::prelude::*;
+///
+/// let rod = Rod::read("rods/5.toml".as_ref())?;
+/// let steps = steps(&rod, &Physics::default(), 20)?;
+/// let terms: Vec<&str> = steps.iter().map(|step| step.term).collect();
+/// assert_eq!(terms, ["Calc (Eqs 15, 17)", "axial", "shear", "tip mass"]);
+/// let whole = Compliance::of_model(&rod, &Physics::default(), 20)?;
+/// let sum: f64 = steps.iter().map(|step| step.added.gravity[(2, 2)]).sum();
+/// assert!((sum / whole.gravity[(2, 2)] - 1.0).abs() < 1e-12);
+/// # Ok::<(), rodcal::Error>(())
+/// ```
 ///
 /// # Errors
 /// As [`Compliance::of_model`].

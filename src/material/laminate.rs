@@ -1,16 +1,17 @@
 //! Classical laminate theory: from plies to the axial and shear modulus of a thin tube wall.
 //!
-//! Laminate axes: 1 along the pipe (the beam's axis), 2 around it; ply angles are counted from the pipe's axis.
-//! The wall of a closed tube cannot curl, so its membrane stiffness alone decides: with
-//! `A = Σ t_k Q̄_k` (N/m, 3×3) and `a = A⁻¹`,
+//! Laminate axes: 1 along the pipe (the beam's axis), 2 around it; ply angles are counted from the
+//! pipe's axis. The wall of a closed tube cannot curl, so its membrane stiffness alone decides:
+//! with `A = Σ t_k Q̄_k` (N/m, 3×3) and `a = A⁻¹`,
 //!
 //! E = 1/(h a₁₁), G = 1/(h a₆₆), ν₁₂ = −a₁₂/a₁₁, h = Σ t_k.
 //!
-//! The order of the plies through the wall therefore does not matter here. An unbalanced laminate couples
-//! extension with shear (a₁₆ ≠ 0): the tube then twists when it is pulled, which a beam with E and G alone
-//! does not describe; [`Wall::coupling`] says how much is neglected.
+//! The order of the plies through the wall therefore does not matter here. An unbalanced laminate
+//! couples extension with shear (a₁₆ ≠ 0): the tube then twists when it is pulled, which a beam
+//! with E and G alone does not describe; [`Wall::coupling`] says how much is neglected.
 //!
-//! Source: R. M. Jones, *Mechanics of Composite Materials*, 2nd ed. (1999), Eqs 2.80–2.84 (Q̄) and 4.22–4.24 (A).
+//! Source: R. M. Jones, *Mechanics of Composite Materials*, 2nd ed. (1999), Eqs 2.80–2.84 (Q̄) and
+//! 4.22–4.24 (A).
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -52,7 +53,8 @@ impl Ply {
         let nu21 = self.nu12 * self.e2 / self.e1;
         let scale = 1.0 / (1.0 - self.nu12 * nu21);
         let (q11, q22, q12, q66) = (self.e1 * scale, self.e2 * scale, self.nu12 * self.e2 * scale, self.g12);
-        // Q̄ = Tᵀ Q T, T the transformation of engineering strains to ply axes (Jones Eq 2.78 and 2.79)
+        // Q̄ = Tᵀ Q T, T the transformation of engineering strains to ply axes (Jones Eq 2.78 and
+        // 2.79)
         let (s, c) = self.angle.sin_cos();
         let to_ply = Matrix3::new(
             c * c,
@@ -70,7 +72,22 @@ impl Ply {
     }
 }
 
-/// The wall made of `plies`, or `None` where the plies have no invertible stiffness (no plies, or moduli that are not positive).
+/// The wall made of `plies`, or `None` where the plies have no invertible stiffness (no plies, or
+/// moduli that are not positive).
+///
+/// ```
+/// use rodcal::material::laminate::{Ply, wall};
+///
+/// // T300/5208 (Tsai and Hahn 1980, Table 1.7), quasi-isotropic: E = 69.7 GPa, ν = 0.30 (Table 4.4)
+/// let ply = |degrees: f64| Ply {
+///     e1: 181e9, e2: 10.3e9, g12: 7.17e9, nu12: 0.28, thickness: 0.125e-3, angle: degrees.to_radians(),
+/// };
+/// let wall = wall(&[0.0, 45.0, -45.0, 90.0].map(ply)).expect("plies of positive stiffness");
+/// assert!((wall.youngs_modulus - 69.7e9).abs() < 0.1e9 && (wall.poisson_ratio - 0.30).abs() < 0.005);
+/// // isotropic in its plane: G = E / 2(1+ν), and nothing couples extension with shear
+/// let isotropic = wall.youngs_modulus / (2.0 * (1.0 + wall.poisson_ratio));
+/// assert!((wall.shear_modulus / isotropic - 1.0).abs() < 1e-9 && wall.coupling < 1e-9);
+/// ```
 pub fn wall(plies: &[Ply]) -> Option<Wall> {
     let thickness: f64 = plies.iter().map(|ply| ply.thickness).sum();
     // A = Σ t Q̄

@@ -1,7 +1,7 @@
 //! What the axes of a chart span, and how high it is.
 
 use super::chart::{Axis, Chart, Mark, Range};
-use super::draw::NOTE;
+use super::frame::NOTE;
 use super::labels::text_width_px;
 use super::marks;
 use super::scale::{Extent, Scale, drawable, extent};
@@ -24,7 +24,8 @@ pub(super) fn scales(chart: &Chart, width: f64, least_unit: f64) -> (Scale, Scal
     (x, scale(&chart.y, ys, count(height, 36.0), snug), height)
 }
 
-/// The scale along x with at most about `count` ticks, and no more than there is room for their labels.
+/// The scale along x with at most about `count` ticks, and no more than there is room for their
+/// labels.
 fn roomy(width: f64, count: usize, scale: impl Fn(usize) -> Scale) -> Scale {
     let room = |x: &Scale| {
         let widest = x.ticks.iter().map(|(_, label)| text_width_px(label, NOTE.size_px)).fold(0.0, f64::max);

@@ -1,6 +1,7 @@
 //! What `rodcal calibrate` says: JSON, tables and pictures of a [`Calibration`].
 
 mod figures;
+mod groups;
 mod tables;
 
 pub(super) use figures::{convergence, mode_residuals};
@@ -11,6 +12,7 @@ use super::{Block, Report, Section};
 use crate::calibration::campaign::{Recording, Refit, Targets};
 use crate::calibration::{Calibration, Campaign, CrossValidation, Mode, Summary, Validation};
 use crate::units::{DEG, MM, UM, significant};
+use groups::group_summaries;
 
 /// Correlation of two estimates from which on they are reported together.
 const HIGH_CORRELATION: f64 = 0.9;
@@ -139,27 +141,6 @@ fn groups_json(recording: &Recording, calibration: &Calibration) -> Vec<Value> {
         .collect()
 }
 
-/// Name, number of poses and residuals of every clamp or socket.
-fn group_summaries(recording: &Recording, calibration: &Calibration) -> Vec<(String, usize, Summary)> {
-    let residuals = calibration.residuals();
-    recording
-        .groups
-        .iter()
-        .enumerate()
-        .map(|(index, group)| {
-            let of: Vec<f64> = recording
-                .rows
-                .iter()
-                .zip(&residuals)
-                .filter(|(row, _)| row.group == index)
-                .map(|(_, &residual)| residual)
-                .collect();
-            let name = if group.name.is_empty() { "all poses".to_owned() } else { group.name.clone() };
-            (name, of.len(), Summary::of(&of))
-        })
-        .collect()
-}
-
 fn observability_json(calibration: &Calibration) -> Value {
     let names = ["o1", "o2", "o3", "o4", "o5"];
     let mut object: Map<String, Value> = names
@@ -188,8 +169,8 @@ pub fn report(
 
 /// Of the files and of the calibration.
 pub fn warnings(campaign: &Campaign, calibration: &Calibration) -> Vec<String> {
-    let of_files = campaign.warnings.iter().map(ToString::to_string);
-    of_files.chain(calibration.warnings.iter().map(ToString::to_string)).collect()
+    let about_files = campaign.warnings.iter().map(ToString::to_string);
+    about_files.chain(calibration.warnings.iter().map(ToString::to_string)).collect()
 }
 
 /// One sentence: how well the robot is known now.
@@ -213,7 +194,7 @@ pub fn headline(
         campaign.robot.name,
         length(residual.rms)
     );
-    let told =
+    let described =
         |summary: &Summary| format!("{} on average, {} at most", length(summary.mean), length(summary.max));
     if let Some(validation) = &calibration.validation {
         let count = validation.errors.len();
@@ -221,20 +202,21 @@ pub fn headline(
             (Targets::Sockets(_), _) => {
                 format!(
                     "; {count} validation poses scatter in their sockets by {}",
-                    told(&validation.summary)
+                    described(&validation.summary)
                 )
             }
             (_, Refit::BaseTool) => format!(
                 "; it predicts {count} validation poses to {} (base and tool fitted again)",
-                told(&validation.summary)
+                described(&validation.summary)
             ),
             (_, Refit::Nothing) => {
-                format!("; it predicts {count} validation poses to {}", told(&validation.summary))
+                format!("; it predicts {count} validation poses to {}", described(&validation.summary))
             }
         };
     }
     if let Some(cv) = cross_validation {
-        words += &format!("; held-out poses ({} folds) are predicted to {}", cv.folds, told(&cv.summary));
+        words +=
+            &format!("; held-out poses ({} folds) are predicted to {}", cv.folds, described(&cv.summary));
     }
     words + "."
 }

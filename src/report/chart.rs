@@ -165,8 +165,8 @@ pub enum Mark {
         /// Written beside the line; may be empty.
         text: String,
     },
-    /// A stretch along x, between thin lines, with its name at the top of the chart. A name that finds
-    /// no room beside the one before it is left out.
+    /// A stretch along x, between thin lines, with its name at the top of the chart. A name that
+    /// finds no room beside the one before it is left out.
     Stretch {
         /// Where it begins, in x.
         from: f64,
@@ -175,8 +175,8 @@ pub enum Mark {
         /// Its name; may be empty.
         text: String,
     },
-    /// Something that happened at one x: a dashed line with its name at the top, below those names that it would cover. A
-    /// name that finds no room is left out.
+    /// Something that happened at one x: a dashed line with its name at the top, below those names
+    /// that it would cover. A name that finds no room is left out.
     Event {
         /// Where, in x.
         at: f64,
@@ -253,7 +253,8 @@ pub struct Style {
 }
 
 impl Style {
-    /// The `n`th of a series of looks that differ in colour, dash and marker (42 in all, then again).
+    /// The `n`th of a series of looks that differ in colour, dash and marker (42 in all, then
+    /// again).
     pub fn nth(n: usize) -> Self {
         const COLOURS: [Colour; 7] = [
             Colour::Black,

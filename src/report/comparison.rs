@@ -132,12 +132,12 @@ fn um(metres: f64) -> String {
 /// The body of [`report`].
 pub fn sections(campaign: &Campaign, comparison: &Comparison) -> Vec<Section> {
     let recording = &campaign.measurements;
-    let of_modes = |index: usize| {
+    let by_mode = |index: usize| {
         let calibrated = &comparison.calibrations[index];
         let errors_mm = comparison.errors(index).iter().map(|error| error / MM).collect();
         MethodErrors { label: format!("mode {}", calibrated.mode.name()), errors_mm }
     };
-    let methods: Vec<MethodErrors> = (0..comparison.calibrations.len()).map(of_modes).collect();
+    let methods: Vec<MethodErrors> = (0..comparison.calibrations.len()).map(by_mode).collect();
     let residuals: Vec<ModeResiduals> = comparison
         .calibrations
         .iter()

@@ -2,11 +2,11 @@
 
 use super::axes::{has_bars, scales};
 use super::chart::{Chart, Dash, Figure};
-use super::labels::{Area, Crowd, text_width_px, wrap};
+use super::frame::{Frame, NOTE};
+use super::labels::{Area, LabelPlacer, text_width_px, wrap};
 use super::legend::Legend;
 use super::marks;
-use super::plot::{Anchor, Canvas, Lettering, Px, Rgb};
-use super::scale::Scale;
+use super::plot::{Anchor, Canvas, Lettering, Rgb};
 
 /// Width of every figure: the text column of the page.
 const WIDTH_PX: f64 = 760.0;
@@ -14,8 +14,6 @@ const GAP_PX: f64 = 28.0;
 const EDGE_PX: f64 = 8.0;
 const TICK_PX: f64 = 4.0;
 
-pub(super) const NOTE: Lettering =
-    Lettering { size_px: 11.5, bold: false, anchor: Anchor::Middle, upwards: false };
 const LABEL: Lettering = Lettering { size_px: 12.5, ..NOTE };
 const TITLE: Lettering = Lettering { size_px: 13.5, bold: true, anchor: Anchor::Left, upwards: false };
 const TITLE_LINE_PX: f64 = 18.0;
@@ -23,8 +21,8 @@ const TITLE_LINE_PX: f64 = 18.0;
 const TITLE_GAP_PX: f64 = 9.0;
 
 impl Figure {
-    /// The figure as an SVG document, 760 CSS pixels wide. It holds no ids, so many fit into one page;
-    /// the caption becomes its description, for screen readers, and is not drawn.
+    /// The figure as an SVG document, 760 CSS pixels wide. It holds no ids, so many fit into one
+    /// page; the caption becomes its description, for screen readers, and is not drawn.
     pub fn svg(&self) -> String {
         draw(self)
     }
@@ -36,7 +34,7 @@ fn draw(figure: &Figure) -> String {
     let mut plans = plan(figure, columns, width);
     let shared = figure
         .shared_legend
-        .then(|| Legend::of(figure.panels.iter().flat_map(|c| &c.marks), WIDTH_PX - 2.0 * EDGE_PX));
+        .then(|| Legend::new(figure.panels.iter().flat_map(|c| &c.marks), WIDTH_PX - 2.0 * EDGE_PX));
 
     let mut top = EDGE_PX;
     for row in plans.chunks_mut(columns) {
@@ -92,33 +90,6 @@ struct Plan<'a> {
     legend: Option<Legend<'a>>,
 }
 
-/// The axes: from data to pixels.
-pub(super) struct Frame {
-    pub(super) area: Area,
-    pub(super) x: Scale,
-    pub(super) y: Scale,
-}
-
-impl Frame {
-    /// Where a data point lies on the picture.
-    pub(super) fn px(&self, point: [f64; 2]) -> Px {
-        [
-            self.area.left + self.x.fraction(point[0]) * self.area.width(),
-            self.area.bottom - self.y.fraction(point[1]) * self.area.height(),
-        ]
-    }
-
-    /// How much of x a pixel is.
-    fn unit_per_px(&self) -> f64 {
-        (self.x.to - self.x.from) / self.area.width()
-    }
-
-    /// Whether a data point has a place on the picture, be it beyond the frame.
-    pub(super) fn places(&self, point: [f64; 2]) -> bool {
-        self.x.places(point[0]) && self.y.places(point[1])
-    }
-}
-
 impl<'a> Plan<'a> {
     fn new(chart: &'a Chart, title: &str, left: f64, width: f64, least_unit: f64, with_legend: bool) -> Self {
         let plot_width = (width - left - right_margin(chart)).max(60.0);
@@ -129,7 +100,7 @@ impl<'a> Plan<'a> {
             title: wrap(title, TITLE.size_px * 1.1, width),
             frame: Frame { area, x, y },
             left: 0.0,
-            legend: with_legend.then(|| Legend::of(&chart.marks, plot_width)),
+            legend: with_legend.then(|| Legend::new(&chart.marks, plot_width)),
         }
     }
 
@@ -160,8 +131,8 @@ impl<'a> Plan<'a> {
         } else {
             self.grid(canvas);
         }
-        let mut crowd = Crowd::new(area);
-        marks::draw(canvas, &self.frame, &self.chart.marks, &mut crowd);
+        let mut labels = LabelPlacer::new(area);
+        marks::draw(canvas, &self.frame, &self.chart.marks, &mut labels);
         self.axes(canvas);
         if let Some(legend) = &self.legend {
             legend.draw(canvas, [area.left, self.legend_top()]);

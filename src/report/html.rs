@@ -3,7 +3,7 @@
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::chart::Figure;
-use super::{Block, Report};
+use super::document::{Block, Report};
 
 /// The whole page: style sheet and pictures are inside it.
 pub fn page(report: &Report) -> String {

@@ -100,17 +100,17 @@ impl Area {
     }
 }
 
-/// What is already on a chart, so that notes keep clear of it.
+/// Finds places for labels: it knows what is already on a chart, so that notes keep clear of it.
 #[derive(Debug)]
-pub(super) struct Crowd {
+pub(super) struct LabelPlacer {
     within: Area,
     points: Vec<Px>,
     texts: Vec<Area>,
 }
 
-impl Crowd {
+impl LabelPlacer {
     pub(super) fn new(within: Area) -> Self {
-        Crowd { within, points: Vec::new(), texts: Vec::new() }
+        LabelPlacer { within, points: Vec::new(), texts: Vec::new() }
     }
 
     /// Something is drawn at this point.
@@ -191,10 +191,10 @@ mod tests {
 
     #[test]
     fn notes_keep_clear_of_each_other_of_lines_and_of_the_edge() {
-        let mut crowd = Crowd::new(BOX);
-        crowd.add_line([0.0, 50.0], [100.0, 50.0]);
-        let first = crowd.place([90.0, 50.0], 30.0, 10.0);
-        let second = crowd.place([90.0, 50.0], 30.0, 10.0);
+        let mut labels = LabelPlacer::new(BOX);
+        labels.add_line([0.0, 50.0], [100.0, 50.0]);
+        let first = labels.place([90.0, 50.0], 30.0, 10.0);
+        let second = labels.place([90.0, 50.0], 30.0, 10.0);
         assert!(!first.touches(&second) && BOX.encloses(&first) && BOX.encloses(&second));
         for area in [first, second] {
             assert!(area.bottom < 50.0 || area.top > 50.0, "{area:?}");

@@ -1,7 +1,7 @@
 //! The legend below a chart: a sample of each mark and its label, in rows.
 
 use super::chart::{Dash, Mark};
-use super::draw::NOTE;
+use super::frame::NOTE;
 use super::labels::{Area, text_width_px, wrap};
 use super::marks;
 use super::plot::{Anchor, Canvas, Lettering, Px, Rgb};
@@ -24,7 +24,7 @@ struct Entry<'a> {
 
 impl<'a> Legend<'a> {
     /// The legend of these marks in rows of at most `width_px`. Marks of one label share an entry.
-    pub(super) fn of(marks: impl IntoIterator<Item = &'a Mark>, width_px: f64) -> Self {
+    pub(super) fn new(marks: impl IntoIterator<Item = &'a Mark>, width_px: f64) -> Self {
         let mut labelled: Vec<(&str, Vec<&Mark>)> = Vec::new();
         for mark in marks {
             let label = marks::label(mark);

@@ -1,9 +1,9 @@
 //! Draws the marks of a chart inside its axes, and finds what the axes have to span.
 
 use super::chart::{Bar, Chart, Dash, Direction, Mark, Marker, Point, Style};
-use super::draw::{Frame, NOTE};
-use super::flags;
-use super::labels::{Area, Crowd, text_width_px};
+use super::event_labels;
+use super::frame::{Frame, NOTE};
+use super::labels::{Area, LabelPlacer, text_width_px};
 use super::plot::{Anchor, Canvas, Lettering, Px, Rgb};
 use super::scale::{Extent, drawable, extent};
 
@@ -87,41 +87,42 @@ fn foot_extent(bars: &[Bar]) -> Vec<f64> {
     range.map_or(Vec::new(), |(low, high)| vec![low - 0.03 * (high - low), high + 0.03 * (high - low)])
 }
 
-/// Draws all marks: areas, then clouds, then lines, then points, then words, so that nothing hides what is finer.
-pub(super) fn draw(canvas: &mut Canvas, frame: &Frame, marks: &[Mark], crowd: &mut Crowd) {
+/// Draws all marks: areas, then clouds, then lines, then points, then words, so that nothing hides
+/// what is finer.
+pub(super) fn draw(canvas: &mut Canvas, frame: &Frame, marks: &[Mark], labels: &mut LabelPlacer) {
     for layer in 0..4 {
         for mark in marks {
             match (layer, mark) {
                 (0, Mark::Band { points, style, .. }) => band(canvas, frame, points, style),
                 (0, Mark::Bars { bars, direction, style, .. }) => {
-                    bars.iter().for_each(|b| whole_bar(canvas, frame, b, *direction, style, crowd));
+                    bars.iter().for_each(|b| whole_bar(canvas, frame, b, *direction, style, labels));
                 }
-                (2, Mark::Horizontal { at, .. }) => reference(canvas, frame, [f64::NAN, *at], crowd),
-                (2, Mark::Vertical { at, .. }) => reference(canvas, frame, [*at, f64::NAN], crowd),
-                (2, Mark::Stretch { from, to, text }) => stretch(canvas, frame, [*from, *to], text, crowd),
-                (2, Mark::Line { points, style, .. }) => line(canvas, frame, points, style, crowd),
+                (2, Mark::Horizontal { at, .. }) => reference(canvas, frame, [f64::NAN, *at], labels),
+                (2, Mark::Vertical { at, .. }) => reference(canvas, frame, [*at, f64::NAN], labels),
+                (2, Mark::Stretch { from, to, text }) => stretch(canvas, frame, [*from, *to], text, labels),
+                (2, Mark::Line { points, style, .. }) => line(canvas, frame, points, style, labels),
                 (2, Mark::Arrow { from, to, style, .. }) if frame.places(*from) && frame.places(*to) => {
                     let (from, to) = (frame.px(*from), frame.px(*to));
-                    crowd.add_line(from, to);
+                    labels.add_line(from, to);
                     arrow(canvas, from, to, style);
                 }
                 (1 | 3, Mark::Points { points, style, .. })
                     if (layer == 1) == (style.marker == Marker::Dot) =>
                 {
                     let size_px = marker_px(style, points.len());
-                    points.iter().for_each(|p| point(canvas, frame, p, style, size_px, crowd));
+                    points.iter().for_each(|p| point(canvas, frame, p, style, size_px, labels));
                 }
                 _ => {}
             }
         }
     }
-    flags::draw(canvas, frame, marks, crowd);
+    event_labels::draw(canvas, frame, marks, labels);
     for mark in marks {
         match mark {
-            Mark::Note { at, text } => note(canvas, frame, *at, text, crowd),
-            Mark::Arrow { from, text, .. } => note(canvas, frame, *from, text, crowd),
-            Mark::Horizontal { at, text } => note(canvas, frame, [frame.x.to, *at], text, crowd),
-            Mark::Vertical { at, text } => note(canvas, frame, [*at, frame.y.to], text, crowd),
+            Mark::Note { at, text } => note(canvas, frame, *at, text, labels),
+            Mark::Arrow { from, text, .. } => note(canvas, frame, *from, text, labels),
+            Mark::Horizontal { at, text } => note(canvas, frame, [frame.x.to, *at], text, labels),
+            Mark::Vertical { at, text } => note(canvas, frame, [*at, frame.y.to], text, labels),
             _ => {}
         }
     }
@@ -229,14 +230,14 @@ fn is_drawable<const N: usize>(point: &[f64; N]) -> bool {
     point.iter().all(|v| drawable(*v))
 }
 
-fn line(canvas: &mut Canvas, frame: &Frame, points: &[[f64; 2]], style: &Style, crowd: &mut Crowd) {
+fn line(canvas: &mut Canvas, frame: &Frame, points: &[[f64; 2]], style: &Style, labels: &mut LabelPlacer) {
     // A point that is not finite interrupts the line: nothing is known about the way past it.
     for run in points.split(|p| !frame.places(*p)) {
         let mut piece: Vec<Px> = Vec::new();
         for pair in run.windows(2) {
             let (from, to) = (frame.px(pair[0]), frame.px(pair[1]));
             let Some((a, b)) = frame.area.clip(from, to) else { continue };
-            crowd.add_line(a, b);
+            labels.add_line(a, b);
             if piece.last() != Some(&a) {
                 canvas.line(&piece, style.colour.into(), style.width_px, style.dash);
                 piece = vec![a];
@@ -264,7 +265,7 @@ fn band(canvas: &mut Canvas, frame: &Frame, points: &[[f64; 3]], style: &Style) 
     }
 }
 
-fn reference(canvas: &mut Canvas, frame: &Frame, [x, y]: [f64; 2], crowd: &mut Crowd) {
+fn reference(canvas: &mut Canvas, frame: &Frame, [x, y]: [f64; 2], labels: &mut LabelPlacer) {
     let ends = if frame.x.places(x) {
         [frame.px([x, frame.y.from]), frame.px([x, frame.y.to])]
     } else if frame.y.places(y) {
@@ -273,13 +274,13 @@ fn reference(canvas: &mut Canvas, frame: &Frame, [x, y]: [f64; 2], crowd: &mut C
         return;
     };
     if let Some((a, b)) = frame.area.clip(ends[0], ends[1]) {
-        crowd.add_line(a, b);
+        labels.add_line(a, b);
         canvas.line(&[a, b], Rgb::GREY, 1.2, Dash::Solid);
     }
 }
 
 /// Lines at both ends, below the strip along the top in which the names stand.
-fn stretch(canvas: &mut Canvas, frame: &Frame, ends: [f64; 2], text: &str, crowd: &mut Crowd) {
+fn stretch(canvas: &mut Canvas, frame: &Frame, ends: [f64; 2], text: &str, labels: &mut LabelPlacer) {
     if !ends.iter().all(|x| frame.x.places(*x)) {
         return;
     }
@@ -295,13 +296,20 @@ fn stretch(canvas: &mut Canvas, frame: &Frame, ends: [f64; 2], text: &str, crowd
     let middle = (0.5 * xs[0] + 0.5 * xs[1]).min(area.right - half).max(area.left + half);
     let name =
         Area { left: middle - half, right: middle + half, top: area.top, bottom: area.top + NOTE_LINE_PX };
-    if !text.is_empty() && crowd.is_free(&name) {
+    if !text.is_empty() && labels.is_free(&name) {
         canvas.text(name.centre(), text, NOTE, Rgb::INK);
-        crowd.add_text(name);
+        labels.add_text(name);
     }
 }
 
-fn point(canvas: &mut Canvas, frame: &Frame, point: &Point, style: &Style, size_px: f64, crowd: &mut Crowd) {
+fn point(
+    canvas: &mut Canvas,
+    frame: &Frame,
+    point: &Point,
+    style: &Style,
+    size_px: f64,
+    labels: &mut LabelPlacer,
+) {
     let [x, y] = frame.px([point.x, point.y]);
     if !frame.places([point.x, point.y]) || frame.area.clip([x, y], [x, y]).is_none() {
         return;
@@ -311,12 +319,12 @@ fn point(canvas: &mut Canvas, frame: &Frame, point: &Point, style: &Style, size_
             frame.px([point.x, point.y + sign * point.error])[1].clamp(frame.area.top, frame.area.bottom)
         };
         error_bar(canvas, x, end(1.0), end(-1.0), style);
-        crowd.add_line([x, end(1.0)], [x, end(-1.0)]);
+        labels.add_line([x, end(1.0)], [x, end(-1.0)]);
     }
     marker(canvas, [x, y], style, size_px);
     let radius = if style.marker == Marker::Ring { 2.2 * size_px } else { size_px };
     for [dx, dy] in [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]] {
-        crowd.add_point([x + dx * radius, y + dy * radius]);
+        labels.add_point([x + dx * radius, y + dy * radius]);
     }
 }
 
@@ -326,7 +334,7 @@ fn whole_bar(
     b: &Bar,
     direction: Direction,
     style: &Style,
-    crowd: &mut Crowd,
+    labels: &mut LabelPlacer,
 ) {
     if !is_drawable(&[b.from, b.to]) {
         return;
@@ -354,20 +362,20 @@ fn whole_bar(
         Direction::Right => ([area.right + 5.0, middle_y], Anchor::Left),
     };
     canvas.text(at, &b.text, Lettering { anchor, ..NOTE }, Rgb::INK);
-    crowd.add_text(area);
+    labels.add_text(area);
 }
 
 /// A note beside its point, with a thin leader where it had to move away from it.
-fn note(canvas: &mut Canvas, frame: &Frame, at: [f64; 2], text: &str, crowd: &mut Crowd) {
+fn note(canvas: &mut Canvas, frame: &Frame, at: [f64; 2], text: &str, labels: &mut LabelPlacer) {
     if text.is_empty() || !frame.places(at) {
         return;
     }
     let at = frame.px(at);
-    let area = crowd.place(at, text_width_px(text, NOTE.size_px) + 4.0, NOTE_LINE_PX);
+    let area = labels.place(at, text_width_px(text, NOTE.size_px) + 4.0, NOTE_LINE_PX);
     let near = [at[0].clamp(area.left, area.right), at[1].clamp(area.top, area.bottom)];
     if f64::hypot(near[0] - at[0], near[1] - at[1]) > 18.0 {
         canvas.line(&[at, near], Rgb::GREY, 0.8, Dash::Solid);
-        crowd.add_line(at, near);
+        labels.add_line(at, near);
     }
     canvas.text(area.centre(), text, NOTE, Rgb::INK);
 }

@@ -1,5 +1,5 @@
-//! The pictures: from plain numbers to a [`Figure`]. Those of a rod and its rig are here, those of a
-//! robot's calibration in [`calibration`], those of a diagnosis in [`diagnosis`].
+//! The pictures: from plain numbers to a [`Figure`]. Those of a rod and its rig are here, those of
+//! a robot's calibration in [`calibration`], those of a diagnosis in [`diagnosis`].
 
 pub mod calibration;
 pub mod diagnosis;
@@ -35,7 +35,8 @@ pub struct LoadLine {
     pub slope_um_per_n: f64,
     /// Deflection at no load, µm.
     pub intercept_um: f64,
-    /// The fit through the readings: drawn solid, with the load at which it crosses the load axis marked.
+    /// The fit through the readings: drawn solid, with the load at which it crosses the load axis
+    /// marked.
     pub is_fit: bool,
 }
 
@@ -61,7 +62,8 @@ pub enum LoadUnit {
 }
 
 /// Deflection over load, one panel per rod: lines of the models and of the fit, readings with
-/// standard errors, and the load at which the fit crosses the load axis (what friction takes off every load).
+/// standard errors, and the load at which the fit crosses the load axis (what friction takes off
+/// every load).
 pub fn load_deflection(rods: &[LoadDeflection], unit: LoadUnit) -> Figure {
     let (symbol, newtons) = match unit {
         LoadUnit::Newton => ("N", 1.0),
@@ -180,7 +182,8 @@ pub fn contributions(groups: &[Contributions]) -> Figure {
 pub struct Residuals {
     /// Which rod and fit.
     pub title: String,
-    /// Name of each series with its load (N) and residual (µm), for example one series per direction.
+    /// Name of each series with its load (N) and residual (µm), for example one series per
+    /// direction.
     pub series: Vec<(String, Vec<[f64; 2]>)>,
     /// Half width of the band within which noise alone would keep them, µm; 0 draws none.
     pub noise_um: f64,

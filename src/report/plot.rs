@@ -118,7 +118,8 @@ impl Canvas {
         svg + &self.body + "</svg>\n"
     }
 
-    /// Draws one element and keeps it without the document around it. Writing to a string cannot fail.
+    /// Draws one element and keeps it without the document around it. Writing to a string cannot
+    /// fail.
     fn with<E>(&mut self, draw: impl FnOnce(&mut SVGBackend) -> Result<(), E>) {
         let mut document = String::new();
         let _ = draw(&mut SVGBackend::with_string(&mut document, self.size()));

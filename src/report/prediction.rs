@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 
 use super::table::{Column, Table};
 use super::{Block, Report, Section};
-use crate::robot::{Asked, Robot};
+use crate::robot::{PredictionQuery, Robot};
 use crate::units::MM;
 
 /// Tips of poses.
@@ -13,26 +13,27 @@ use crate::units::MM;
 pub struct Prediction {
     /// The tool, m in {T}.
     pub tool: Vector3<f64>,
-    /// Poses with their tips in {0}, m, and the standard deviations of their coordinates where the model knows them.
-    pub tips: Vec<(Asked, Vector3<f64>, Option<Vector3<f64>>)>,
+    /// Poses with their tips in {0}, m, and the standard deviations of their coordinates where the
+    /// model knows them.
+    pub tips: Vec<(PredictionQuery, Vector3<f64>, Option<Vector3<f64>>)>,
 }
 
 impl Prediction {
     /// Of poses.
-    pub fn new(robot: &Robot, tool: Vector3<f64>, poses: Vec<Asked>) -> Self {
-        let of_pose = |asked: Asked| {
-            let (tip, sd) = robot.tip_at(tool, &asked.joints);
-            (asked, tip, sd)
+    pub fn new(robot: &Robot, tool: Vector3<f64>, poses: Vec<PredictionQuery>) -> Self {
+        let predicted = |query: PredictionQuery| {
+            let (tip, sd) = robot.tip_at(tool, &query.joints);
+            (query, tip, sd)
         };
-        Prediction { tool, tips: poses.into_iter().map(of_pose).collect() }
+        Prediction { tool, tips: poses.into_iter().map(predicted).collect() }
     }
 }
 
 /// The JSON of `rodcal predict --json`.
 pub fn json(robot: &Robot, prediction: &Prediction) -> Value {
-    let poses = prediction.tips.iter().map(|(asked, tip, sd)| {
+    let poses = prediction.tips.iter().map(|(query, tip, sd)| {
         json!({
-            "pose": asked.pose,
+            "pose": query.pose,
             "x_mm": tip.x / MM,
             "y_mm": tip.y / MM,
             "z_mm": tip.z / MM,
@@ -53,8 +54,8 @@ pub fn report(robot: &Robot, prediction: &Prediction) -> Report {
     let caption = "The tip in the base frame {0}. sd: standard deviation, of the error of poses that the diagnosis had held \
                    out and of what the calibration does not know better.";
     let mut table = Table::new("prediction", caption, columns);
-    for (asked, tip, sd) in &prediction.tips {
-        let mut cells = vec![asked.pose.clone()];
+    for (query, tip, sd) in &prediction.tips {
+        let mut cells = vec![query.pose.clone()];
         cells.extend(tip.iter().map(|x| format!("{:.4}", x / MM)));
         cells.extend((0..3).map(|axis| sd.map_or("–".into(), |sd| format!("{:.4}", sd[axis] / MM))));
         table.row(cells);

@@ -19,9 +19,9 @@ use crate::units::{MM, UM, significant};
 /// The JSON of `rodcal rig fit --json`.
 pub fn json(fit: &Fit, readings: &Readings, rod: Option<&Rod>) -> Value {
     let measured = fit.measured.as_ref();
-    let by_name = |of: fn(&Estimate) -> Value| -> Value {
+    let by_name = |part: fn(&Estimate) -> Value| -> Value {
         let ratios = measured.map_or(&[][..], |m| &m.ratios);
-        ratios.iter().map(|ratio| (ratio.name(), of(&ratio.value))).collect::<Map<_, _>>().into()
+        ratios.iter().map(|ratio| (ratio.name(), part(&ratio.value))).collect::<Map<_, _>>().into()
     };
     json!({
         "rod": rod.map(|rod| &rod.name),
@@ -114,9 +114,9 @@ pub fn headline(fit: &Fit, rod: Option<&Rod>) -> String {
             format!("{verdict}: r_rod = {}{}.", significant(r.value, 5), interval(r))
         }
         _ => {
-            let of_line =
+            let words =
                 |line: &Line| format!("{}: {} µm/N{}", line.key.label(), line.slope.show(UM), verdict(line));
-            format!("{}.", fit.lines.iter().map(of_line).collect::<Vec<_>>().join("; "))
+            format!("{}.", fit.lines.iter().map(words).collect::<Vec<_>>().join("; "))
         }
     }
 }
@@ -292,17 +292,17 @@ fn picture(index: usize, line: &Line, fit: &Fit, rod: Option<&Rod>) -> LoadDefle
     lines.extend(line.unload_intercept.map(|b| fitted(format!("{name}, unloading"), &b, false)));
     let noise = line.noise_sd.unwrap_or(0.0);
     let readings = |phase: Phase| {
-        let of_phase = line.points.iter().filter(move |point| point.phase == phase);
+        let points = line.points.iter().filter(move |point| point.phase == phase);
         let mean = |point: &Point| MeanReading {
             load_n: point.load,
             mean_um: point.mean / UM,
             standard_error_um: noise / point.count.sqrt() / UM,
         };
-        of_phase.map(mean).collect()
+        points.map(mean).collect()
     };
-    let of_rod = rod.map_or(String::new(), |rod| format!("rod {}, ", rod.name));
+    let prefix = rod.map_or(String::new(), |rod| format!("rod {}, ", rod.name));
     LoadDeflection {
-        title: format!("{of_rod}{}", line.key.label()),
+        title: format!("{prefix}{}", line.key.label()),
         lines,
         readings: readings(Phase::Load),
         unloading: readings(Phase::Unload),
@@ -367,9 +367,9 @@ fn measured_section(measured: &Measured, readings: &Readings, rod: &Rod) -> Sect
 }
 
 fn warnings(fit: &Fit, readings: &Readings, rod: Option<&Rod>) -> Vec<String> {
-    let of_rod = rod.map_or(&[][..], |rod| &rod.warnings).iter().map(ToString::to_string);
-    let of_readings = readings.warnings.iter().map(|warning| format!("{}: {warning}", readings.file));
-    of_rod.chain(of_readings).chain(fit.warnings.iter().map(ToString::to_string)).collect()
+    let about_rod = rod.map_or(&[][..], |rod| &rod.warnings).iter().map(ToString::to_string);
+    let about_readings = readings.warnings.iter().map(|warning| format!("{}: {warning}", readings.file));
+    about_rod.chain(about_readings).chain(fit.warnings.iter().map(ToString::to_string)).collect()
 }
 
 #[cfg(test)]

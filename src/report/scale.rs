@@ -31,8 +31,8 @@ impl Scale {
         Scale { from: lower, to: upper, ticks: linear_ticks(lower, upper, step), log: false }
     }
 
-    /// Logarithmic from `from` to `to` as they are, with at most about `count` ticks: at powers of ten,
-    /// and at two and five times them where there are only few.
+    /// Logarithmic from `from` to `to` as they are, with at most about `count` ticks: at powers of
+    /// ten, and at two and five times them where there are only few.
     pub(super) fn log(from: f64, to: f64, count: usize) -> Scale {
         let (from, to) = proper_ratio(from, to);
         Scale { from, to, ticks: log_ticks(from, to, count), log: true }
@@ -90,7 +90,8 @@ pub(super) fn extent(values: impl IntoIterator<Item = f64>) -> Extent {
     })
 }
 
-/// The largest of …, 0.1, 0.2, 0.5, 1, 2, 5, 10, … that is not above `value`; 1 where there is none.
+/// The largest of …, 0.1, 0.2, 0.5, 1, 2, 5, 10, … that is not above `value`; 1 where there is
+/// none.
 pub(super) fn one_two_five_below(value: f64) -> f64 {
     if !(drawable(value) && value > 1e-200) {
         return 1.0;
@@ -107,8 +108,8 @@ pub(super) fn one_two_five_below(value: f64) -> f64 {
     digit * power_of_ten(exponent + carry)
 }
 
-/// A number with the true minus sign and thin spaces between thousands from 10 000 on; anything that
-/// does not begin like a number stays as it is.
+/// A number with the true minus sign and thin spaces between thousands from 10 000 on; anything
+/// that does not begin like a number stays as it is.
 pub(super) fn typeset(number: &str) -> String {
     let (sign, digits) = match number.strip_prefix('-') {
         Some(rest) => ("\u{2212}", rest),
@@ -222,7 +223,8 @@ pub(super) fn label(value: f64, step: f64) -> String {
     }
 }
 
-/// `powi` of a negative exponent is one over the power, which is exact for as many of them as can be.
+/// `powi` of a negative exponent is one over the power, which is exact for as many of them as can
+/// be.
 fn power_of_ten(exponent: i32) -> f64 {
     if exponent < 0 { 1.0 / 10f64.powi(-exponent) } else { 10f64.powi(exponent) }
 }

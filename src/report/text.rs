@@ -37,7 +37,8 @@ pub fn wrapped(words: &str) -> String {
     words.lines().map(|line| hanging("", line)).collect()
 }
 
-/// One paragraph after `mark`, further lines below its first word. What is longer than a line stays whole.
+/// One paragraph after `mark`, further lines below its first word. What is longer than a line stays
+/// whole.
 fn hanging(mark: &str, words: &str) -> String {
     let indent = mark.chars().count();
     let (mut text, mut column) = (mark.to_owned(), indent);

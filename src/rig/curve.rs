@@ -1,8 +1,9 @@
-//! A polynomial through averaged repeats: its coefficients, how well they are known, and whether it fits.
+//! A polynomial through averaged repeats: its coefficients, how well they are known, and whether it
+//! fits.
 //!
-//! Repeats at one load are averaged before any inference: they share whatever was wrong with that load, and taken
-//! as independent they make every line look better known than it is. With the averages ȳ_k of n_k readings at
-//! load F_k,
+//! Repeats at one load are averaged before any inference: they share whatever was wrong with that
+//! load, and taken as independent they make every line look better known than it is. With the
+//! averages ȳ_k of n_k readings at load F_k,
 //!
 //! ```text
 //! ȳ_k = c·F_k + b         weights n_k; b of its own for loading and for unloading
@@ -11,19 +12,22 @@
 //! F = s_f² / s_e²
 //! ```
 //!
-//! (N. R. Draper, H. Smith, *Applied Regression Analysis*, 3rd ed., § 2.1.) A sensor of resolution q moves every
-//! average by up to q/2 however often it is read, which repeats do not show: s_e² counts as n·q²/12 at least.
+//! (N. R. Draper, H. Smith, *Applied Regression Analysis*, 3rd ed., § 2.1.) A sensor of resolution
+//! q moves every average by up to q/2 however often it is read, which repeats do not show: s_e²
+//! counts as n·q²/12 at least.
 //!
-//! Standard errors rest on both variances together, or on s_f² alone where it is the larger one with p < 0.25: what
-//! makes the line crooked then counts too. (That level is T. A. Bancroft's for pooling, *Biometrics* 20 (1964) 427–442.)
+//! Standard errors rest on both variances together, or on s_f² alone where it is the larger one
+//! with p < 0.25: what makes the line crooked then counts too. (That level is T. A. Bancroft's for
+//! pooling, *Biometrics* 20 (1964) 427–442.)
 //!
-//! The readings of one trial may share an error too: a zero that was off, a rod that sat differently. Where an F test
-//! finds that trials differ by an offset or a slope of their own, these leave the pure error (with their degrees of
-//! freedom), and the trial is the unit that the standard errors count. With the residuals e of the readings and
-//! the T trials t,
+//! The readings of one trial may share an error too: a zero that was off, a rod that sat
+//! differently. Where an F test finds that trials differ by an offset or a slope of their own,
+//! these leave the pure error (with their degrees of freedom), and the trial is the unit that the
+//! standard errors count. With the residuals e of the readings and the T trials t,
 //!
 //! ```text
-//! cov(b, c) = T/(T − 1) · U·(Σ_t g_t g_tᵀ)·U,   g_t = Σ x e over the trial,   U = (Σ x xᵀ)⁻¹;   T − 1 dof
+//! cov(b, c) = T/(T − 1) · U·(Σ_t g_t g_tᵀ)·U      g_t = Σ x e over the trial
+//!                                                 U = (Σ x xᵀ)⁻¹;  T − 1 dof
 //! ```
 //!
 //! which is the scatter of the trials' own lines where every trial has every load.
@@ -33,9 +37,9 @@ use std::collections::BTreeMap;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::line::{LackOfFit, Point, Sample};
 use super::readings::Phase;
 use super::repeats::{Repeats, average, mean_square};
+use super::sample::{LackOfFit, Point, Sample};
 use crate::error::Result;
 use crate::least_squares::{self, Noise, Options};
 use crate::statistics::{self, Estimate};
@@ -67,7 +71,8 @@ impl Columns {
 /// A polynomial through the averages, with its tests.
 pub(super) struct Curve {
     pub coefficients: DVector<f64>,
-    /// Covariances that the coefficients may have, with their degrees of freedom; the larger one counts.
+    /// Covariances that the coefficients may have, with their degrees of freedom; the larger one
+    /// counts.
     pub covariances: Vec<(DMatrix<f64>, usize)>,
     pub points: Vec<Point>,
     pub residual_sd: Option<f64>,
@@ -111,13 +116,13 @@ impl Curve {
         };
         let unit = &fit.covariance.matrix;
         let stays = lack_of_fit.is_some_and(|test| test.p_value >= LEAVES_THE_LINE);
-        let of_fit = fit_variance.filter(|_| !stays).map(|variance| (unit * variance, dof_fit));
-        let mut covariances: Vec<(DMatrix<f64>, usize)> = of_fit.into_iter().collect();
+        let from_fit = fit_variance.filter(|_| !stays).map(|variance| (unit * variance, dof_fit));
+        let mut covariances: Vec<(DMatrix<f64>, usize)> = from_fit.into_iter().collect();
         match (trials, noise_variance) {
             (Some(trials), _) => {
-                let of_trials = trial_covariance(columns, &fit.parameters, unit, samples);
+                let from_trials = trial_covariance(columns, &fit.parameters, unit, samples);
                 // trials that agree by luck still have the sensor's resolution
-                covariances.extend([(of_trials, trials - 1), (unit * least, trials - 1)]);
+                covariances.extend([(from_trials, trials - 1), (unit * least, trials - 1)]);
             }
             (None, Some(variance)) if stays => {
                 let dof = dof_fit + noise.dof;
@@ -160,8 +165,9 @@ impl Curve {
         }
     }
 
-    /// wᵀβ / β₁, a load, by propagation to first order: d(u/c) = (du − (u/c) dc)/c. `None` without a slope that
-    /// differs from zero: the 95 % interval of such a ratio is unbounded (E. C. Fieller, *JRSS B* 16 (1954) 175–185).
+    /// wᵀβ / β₁, a load, by propagation to first order: d(u/c) = (du − (u/c) dc)/c. `None` without
+    /// a slope that differs from zero: the 95 % interval of such a ratio is unbounded (E. C.
+    /// Fieller, *JRSS B* 16 (1954) 175–185).
     pub(super) fn ratio(&self, row: &[f64]) -> Option<Estimate> {
         let slope = self.estimate(1);
         if slope.half_width_95().is_some_and(|half_width| slope.value.abs() <= half_width) {
@@ -177,7 +183,8 @@ impl Curve {
     }
 }
 
-/// Covariance of the coefficients by the scatter of whole trials; `unit` is theirs per unit variance of a reading.
+/// Covariance of the coefficients by the scatter of whole trials; `unit` is theirs per unit
+/// variance of a reading.
 fn trial_covariance(
     columns: Columns,
     coefficients: &DVector<f64>,

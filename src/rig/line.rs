@@ -1,18 +1,18 @@
-//! One load–deflection line: which readings it rests on, its slope, where it crosses the load axis, its friction.
+//! One load–deflection line: which readings it rests on, its slope, where it crosses the load axis,
+//! its friction.
 //!
-//! How repeats become averages and averages a line with standard errors stands in `curve.rs` and `repeats.rs`.
+//! How repeats become averages and averages a line with standard errors stands in `curve.rs` and
+//! `repeats.rs`.
 
 use nalgebra::{DMatrix, DVector};
 
 use super::curve::{Columns, Curve};
-use super::readings::{Axis, Direction, Phase};
+use super::readings::{Axis, Direction, Phase, Reading};
 use super::repeats::resolution;
+pub use super::sample::{LackOfFit, Point, Sample};
 use crate::error::{Error, Result};
 use crate::least_squares::{self, Options, Robust};
 use crate::statistics::Estimate;
-
-/// Below this probability a line is called crooked.
-const CROOKED: f64 = 0.01;
 
 /// What a line is fitted to: one channel under loads along one direction at one place.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,44 +27,9 @@ pub struct LineKey {
     pub read_station: Option<f64>,
 }
 
-/// One reading of a line.
-#[derive(Debug, Clone, Copy)]
-pub struct Sample {
-    /// Magnitude of the load, N.
-    pub load: f64,
-    /// Offset of the channel, m.
-    pub offset: f64,
-    /// Loading or unloading.
-    pub phase: Phase,
-    /// Which trial it belongs to; all alike where the file names none.
-    pub trial: usize,
-    /// Line in the file.
-    pub line: usize,
-}
-
-/// The average of the repeats at one load.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Point {
-    /// Magnitude of the load, N.
-    pub load: f64,
-    /// Loading or unloading.
-    pub phase: Phase,
-    /// Mean offset, m.
-    pub mean: f64,
-    /// Number of readings.
-    pub count: f64,
-    /// Offset less that of the fitted line, m.
-    pub residual: f64,
-}
-
-impl Point {
-    pub(super) fn has(&self, sample: &Sample) -> bool {
-        self.load == sample.load && self.phase == sample.phase
-    }
-}
-
 /// A fitted line.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Line {
     /// What was fitted.
     pub key: LineKey,
@@ -76,7 +41,8 @@ pub struct Line {
     pub unload_intercept: Option<Estimate>,
     /// Load at which the loading line crosses the load axis, N: what friction takes off every load.
     pub load_offset: Option<Estimate>,
-    /// Half the distance between the loading and the unloading line, N: Coulomb friction, free of any offset.
+    /// Half the distance between the loading and the unloading line, N: Coulomb friction, free of
+    /// any offset.
     pub friction: Option<Estimate>,
     /// Averages with their residuals.
     pub points: Vec<Point>,
@@ -84,9 +50,11 @@ pub struct Line {
     pub count: usize,
     /// Standard deviation of one reading about the line, m.
     pub residual_sd: Option<f64>,
-    /// Standard deviation of one reading about the average of its repeats, m; where trials differ, about its trial.
+    /// Standard deviation of one reading about the average of its repeats, m; where trials differ,
+    /// about its trial.
     pub noise_sd: Option<f64>,
-    /// The readings of a trial share an error, and the standard errors come from the scatter of trials.
+    /// The readings of a trial share an error, and the standard errors come from the scatter of
+    /// trials.
     pub trials_differ: bool,
     /// Whether the line is straight.
     pub lack_of_fit: Option<LackOfFit>,
@@ -96,21 +64,9 @@ pub struct Line {
     pub distrusted: Vec<usize>,
 }
 
-/// F test of a curve against the scatter of repeats.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct LackOfFit {
-    /// s_f² / s_e².
-    pub f: f64,
-    /// K − p.
-    pub dof_fit: usize,
-    /// N − K, less what trials take up where they differ.
-    pub dof_repeats: usize,
-    /// Probability of so large an F, were the curve right and all repeats independent.
-    pub p_value: f64,
-}
-
 /// ȳ = b0 + b1·F + b2·F².
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Quadratic {
     /// b0 (m), b1 (m/N), b2 (m/N²), F the magnitude of the load.
     pub coefficients: [Estimate; 3],
@@ -120,14 +76,17 @@ pub struct Quadratic {
     pub lack_of_fit: Option<LackOfFit>,
 }
 
-impl LackOfFit {
-    /// The averages leave the curve by more than the repeats allow (p < 0.01).
-    pub fn is_crooked(&self) -> bool {
-        self.p_value < CROOKED
-    }
-}
-
 impl LineKey {
+    /// The line that one channel of a reading belongs to.
+    pub(super) fn of_reading(row: &Reading, channel: Axis) -> LineKey {
+        LineKey {
+            direction: row.direction,
+            channel,
+            load_station: row.load_station,
+            read_station: row.read_station,
+        }
+    }
+
     /// "dz under load z": channel and load direction, with the stations where they are not the tip.
     pub fn label(&self) -> String {
         let at = |station: Option<f64>, what| match station {
@@ -141,6 +100,22 @@ impl LineKey {
 
 impl Line {
     /// Fits a line to `samples`; `None` where they have fewer than two different loads.
+    ///
+    /// ```
+    /// use rodcal::least_squares::Robust;
+    /// use rodcal::rig::line::{Line, LineKey, Sample};
+    /// use rodcal::rig::readings::{Axis, Direction, Phase};
+    ///
+    /// let key = LineKey {
+    ///     direction: Direction::along(Axis::Z), channel: Axis::Z, load_station: None, read_station: None,
+    /// };
+    /// let sample = |line, load: f64, offset: f64| Sample { load, offset, phase: Phase::Load, trial: 0, line };
+    /// let samples = [sample(2, 5.0, 50e-6), sample(3, 10.0, 101e-6), sample(4, 15.0, 149e-6)];
+    /// let line = Line::fit(key, &samples, Robust::None)?.expect("two different loads or more");
+    /// // Σ(F − F̄)(d − d̄)/Σ(F − F̄)² = 495/50 µm/N
+    /// assert!((line.slope.value - 9.9e-6).abs() < 1e-15);
+    /// # Ok::<(), rodcal::Error>(())
+    /// ```
     ///
     /// # Errors
     /// As [`least_squares::linear`].
@@ -186,12 +161,12 @@ impl Line {
     }
 }
 
-/// Readings that least squares treats as the robust fit treated the real ones, and the lines of those it trusts
-/// less than half.
+/// Readings that least squares treats as the robust fit treated the real ones, and the lines of
+/// those it trusts less than half.
 ///
-/// Huber's pseudo-observations y* = ŷ + K·ψ(y − ŷ)/ψ̄': their least-squares line is the robust one, and their
-/// residual variance is the robust one too, so that all that follows needs to know nothing of weights
-/// (P. J. Huber, *Robust Statistics*, 1981, § 7.10).
+/// Huber's pseudo-observations y* = ŷ + K·ψ(y − ŷ)/ψ̄': their least-squares line is the robust one,
+/// and their residual variance is the robust one too, so that all that follows needs to know
+/// nothing of weights (P. J. Huber, *Robust Statistics*, 1981, § 7.10).
 fn resistant(samples: Vec<Sample>, columns: Columns, robust: Robust) -> Result<(Vec<Sample>, Vec<usize>)> {
     if robust == Robust::None {
         return Ok((samples, Vec::new()));

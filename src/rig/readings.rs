@@ -3,6 +3,8 @@
 //! A CSV file with one reading per row; its columns and their units are those of [`KNOWN_COLUMNS`].
 //! Offsets are differences from the unloaded, zeroed rod.
 
+mod columns;
+mod reading;
 mod warning;
 mod write;
 
@@ -11,34 +13,19 @@ use std::path::Path;
 use crate::delimited::{Row, Table, comments_above, nearest_name};
 use crate::error::{Error, Place, Result};
 use crate::files;
-pub use crate::spatial::{Axis, Direction};
 use crate::units::{MM, STANDARD_GRAVITY, UM};
-pub use warning::Warning;
+use columns::{LOAD_COLUMNS, OFFSET_COLUMNS, TEXT_COLUMNS, is_one_of};
+use reading::{loads_of, newtons, only_load};
 
-/// The columns that are read. `axis`, one of the loads and one of the offsets must be there.
-pub const KNOWN_COLUMNS: [&str; 12] = [
-    "axis",
-    "load_n",
-    "load_kg",
-    "dx_um",
-    "dy_um",
-    "dz_um",
-    "trial",
-    "phase",
-    "time_s",
-    "temperature_c",
-    "load_station_mm",
-    "read_station_mm",
-];
-const TEXT_COLUMNS: [&str; 3] = ["axis", "trial", "phase"];
-const LOAD_COLUMNS: [&str; 2] = ["load_n", "load_kg"];
-/// By channel: the offset along X, Y and Z.
-const OFFSET_COLUMNS: [&str; 3] = ["dx_um", "dy_um", "dz_um"];
+pub use columns::KNOWN_COLUMNS;
+pub use reading::{Axis, Direction, Phase, Reading};
+pub use warning::Warning;
 
 const ABSOLUTE_ZERO_C: f64 = -273.15;
 
 /// The readings of one file.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Readings {
     /// The file as the user named it.
     pub file: String,
@@ -48,40 +35,6 @@ pub struct Readings {
     pub rows: Vec<Reading>,
     /// What a user should know about the file although it can be read.
     pub warnings: Vec<Warning>,
-}
-
-/// One row: a load and the offsets that it caused.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Reading {
-    /// Direction of the load in {T}.
-    pub direction: Direction,
-    /// Magnitude of the load, N, ≥ 0.
-    pub load: f64,
-    /// Offset of the tip (or of the read station) along X, Y, Z of {T}, m; `None`: not measured. One is there.
-    pub offset: [Option<f64>; 3],
-    /// Name or number of the repeat.
-    pub trial: Option<String>,
-    /// Whether the load was reached by loading or by unloading.
-    pub phase: Option<Phase>,
-    /// Time of the reading, s, from any zero.
-    pub time: Option<f64>,
-    /// Temperature, °C.
-    pub temperature: Option<f64>,
-    /// Arc length from the flange to the load, m; `None`: the tip.
-    pub load_station: Option<f64>,
-    /// Arc length from the flange to the sensor, m; `None`: the tip.
-    pub read_station: Option<f64>,
-    /// Line in the file, from 1.
-    pub line: usize,
-}
-
-/// On the way up or down.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Phase {
-    /// The load was raised to this one.
-    Load,
-    /// The load was lowered to this one.
-    Unload,
 }
 
 impl Readings {
@@ -105,12 +58,56 @@ impl Readings {
         }
     }
 
-    /// Reads `text`, the contents of `file`.
+    /// Readings that were taken, or computed, by the caller.
+    ///
+    /// A rod that gives way by 45 µm/N, with 1 N of friction:
+    ///
+    /// ```
+    /// use rodcal::prelude::*;
+    ///
+    /// let row = |load: f64| {
+    ///     Reading::new(Direction::along(Axis::Y), load).with_offset(Axis::Y, 45e-6 * (load - 1.0))
+    /// };
+    /// let readings = Readings::from_rows([5.0, 10.0, 15.0].map(row).to_vec())?;
+    /// let fit = rig::fit(&readings, None, &rig::Options::default())?;
+    /// assert!((fit.lines[0].slope.value - 45e-6).abs() < 1e-15);
+    /// assert!((fit.lines[0].load_offset.map_or(0.0, |load| load.value) - 1.0).abs() < 1e-9);
+    /// # Ok::<(), rodcal::Error>(())
+    /// ```
     ///
     /// # Errors
-    /// [`Error::Input`] with line and column: what [`Table::parse`] refuses; `load_n` and `load_kg` both or neither,
-    /// no `axis`, no offset; a cell that is not what its column holds; a row without any offset; and a file in
-    /// which no axis has two different loads, since a slope cannot be found from one.
+    /// [`Error::Argument`] for a row without an offset, for a load or a station that is negative and
+    /// for numbers that are not finite; [`Error::Input`] where no axis has two different loads,
+    /// since a slope cannot be found from one.
+    pub fn from_rows(mut rows: Vec<Reading>) -> Result<Readings> {
+        const FILE: &str = "readings";
+        for (row, number) in rows.iter_mut().zip(1..) {
+            row.line = number;
+            check_numbers(row)?;
+        }
+        check_loads(FILE, &rows)?;
+        Ok(Readings { file: FILE.into(), source: None, warnings: warning::about_rows(&rows), rows })
+    }
+
+    /// Reads `text`, the contents of `file`.
+    ///
+    /// ```
+    /// use rodcal::rig::readings::Readings;
+    ///
+    /// let readings = Readings::from_text("rig.csv", "axis,load_kg,dz_um\n-z,1,-40\n-z,2,-80\n")?;
+    /// assert_eq!(readings.rows[0].signed_load(), -9.80665); // a kilogram under standard gravity
+    /// assert!(readings.rows[1].offset[2].is_some_and(|dz| (dz + 80e-6).abs() < 1e-18));
+    ///
+    /// let error = Readings::from_text("rig.csv", "axis,load_kg,dz_um\nz,1,4O\n").unwrap_err();
+    /// assert!(error.to_string().starts_with("rig.csv:2:5"), "{error}");
+    /// # Ok::<(), rodcal::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::Input`] with line and column: what [`Table::parse`] refuses; `load_n` and `load_kg`
+    /// both or neither, no `axis`, no offset; a cell that is not what its column holds; a row
+    /// without any offset; and a file in which no axis has two different loads, since a slope
+    /// cannot be found from one.
     pub fn from_text(file: &str, text: &str) -> Result<Readings> {
         let table = Table::parse(file, text, |column| {
             is_one_of(column, &KNOWN_COLUMNS) && !is_one_of(column, &TEXT_COLUMNS)
@@ -127,15 +124,27 @@ impl Readings {
     }
 }
 
-impl Reading {
-    /// The load along the positive axis, N: its magnitude with the sign of its direction.
-    pub fn signed_load(&self) -> f64 {
-        f64::from(self.direction.sign) * self.load
+/// What a cell of a file cannot be, a row of a program cannot either.
+fn check_numbers(row: &Reading) -> Result<()> {
+    let wrong = |name, found: String, expected: &str| {
+        let found = format!("{found} in row {}", row.line);
+        Err(Error::Argument { name, found, expected: expected.to_owned() })
+    };
+    for (name, value) in
+        [("load", Some(row.load)), ("load_station", row.load_station), ("read_station", row.read_station)]
+    {
+        if let Some(value) = value.filter(|value| !(value.is_finite() && *value >= 0.0)) {
+            return wrong(name, value.to_string(), "a number >= 0, in SI units");
+        }
     }
-}
-
-fn is_one_of(column: &str, names: &[&str]) -> bool {
-    names.iter().any(|name| name.eq_ignore_ascii_case(column))
+    let others = [row.time, row.temperature].into_iter().chain(row.offset).flatten();
+    if let Some(value) = others.into_iter().find(|value| !value.is_finite()) {
+        return wrong("row", value.to_string(), "finite numbers");
+    }
+    match row.offset.iter().all(Option::is_none) {
+        true => wrong("offset", "missing".into(), "an offset along x, y or z"),
+        false => Ok(()),
+    }
 }
 
 fn check_columns(table: &Table) -> Result<()> {
@@ -239,25 +248,6 @@ fn at_least(row: Row<'_>, column: &str, least: f64) -> Result<Option<f64>> {
     }
 }
 
-/// A load for a message, to a millinewton: `5 N`, not `5.00000 N`.
-fn newtons(load: f64) -> String {
-    format!("{} N", (load * 1e3).round() / 1e3)
-}
-
-/// The signed loads of the readings in which `channel` was read under a load along `axis`, N.
-fn loads_of(rows: &[Reading], axis: Axis, channel: Axis) -> impl Iterator<Item = f64> {
-    rows.iter()
-        .filter(move |r| r.direction.axis == axis && r.offset[channel.index()].is_some())
-        .map(Reading::signed_load)
-}
-
-/// The one load of an (axis, channel), N; `None` where there are more, or none at all.
-fn only_load(rows: &[Reading], axis: Axis, channel: Axis) -> Option<f64> {
-    let mut loads = loads_of(rows, axis, channel);
-    let first = loads.next()?;
-    loads.all(|load| load == first).then_some(first)
-}
-
 fn check_loads(file: &str, rows: &[Reading]) -> Result<()> {
     let has_slope = |axis, channel| {
         loads_of(rows, axis, channel).next().is_some() && only_load(rows, axis, channel).is_none()
@@ -289,6 +279,24 @@ fn check_loads(file: &str, rows: &[Reading]) -> Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn rows_that_cannot_be_are_refused() {
+        let row = |load: f64| Reading::new(Direction::along(Axis::X), load).with_offset(Axis::X, load);
+        assert!(Readings::from_rows(vec![row(1.0), row(2.0)]).is_ok());
+        assert!(Readings::from_rows(vec![row(1.0), row(1.0)]).is_err());
+        assert!(Readings::from_rows(vec![]).is_err());
+        for wrong in [
+            row(-1.0),
+            row(f64::NAN),
+            Reading::new(Direction::against(Axis::X), 1.0),
+            Reading { time: Some(f64::INFINITY), ..row(1.0) },
+            Reading { load_station: Some(-0.1), ..row(1.0) },
+        ] {
+            let error = Readings::from_rows(vec![row(3.0), wrong]).unwrap_err();
+            assert!(error.to_string().contains("row 2"), "{error}");
+        }
+    }
 
     #[test]
     fn every_column_is_read_in_si() {

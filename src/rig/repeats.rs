@@ -2,13 +2,14 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::line::{Point, Sample};
+use super::sample::{Point, Sample};
 use crate::error::Result;
 use crate::least_squares::{self, Options};
 use crate::statistics;
 use crate::units::UM;
 
-/// Below this probability trials are said to differ: they are cheap to believe in, and costly to overlook.
+/// Below this probability trials are said to differ: they are cheap to believe in, and costly to
+/// overlook.
 const TRIALS_DIFFER: f64 = 0.05;
 
 /// Averages of the repeats.
@@ -63,12 +64,12 @@ impl Repeats {
     pub(super) fn new(samples: &[Sample], points: &[Point]) -> Result<Repeats> {
         let place: Vec<usize> = samples.iter().filter_map(|s| points.iter().position(|p| p.has(s))).collect();
         // what is left of one number per reading once its average over the repeats is taken off
-        let centred = |of: &dyn Fn(&Sample) -> f64| {
+        let centred = |value: &dyn Fn(&Sample) -> f64| {
             let mut averages = vec![0.0; points.len()];
             for (sample, &k) in samples.iter().zip(&place) {
-                averages[k] += of(sample) / points[k].count;
+                averages[k] += value(sample) / points[k].count;
             }
-            let left = samples.iter().zip(&place).map(|(s, &k)| of(s) - averages[k]);
+            let left = samples.iter().zip(&place).map(|(s, &k)| value(s) - averages[k]);
             DVector::from_iterator(samples.len(), left)
         };
         let deviations = centred(&|s| s.offset);
@@ -183,13 +184,13 @@ pub(super) mod tests {
 
     #[test]
     fn a_resolution_is_the_last_decimal_that_is_used() {
-        let of = |micrometres: &[f64]| {
+        let found = |micrometres: &[f64]| {
             let rows: Vec<_> = micrometres.iter().map(|um| (1.0, 0, um * UM)).collect();
             resolution(&samples(&rows)) / UM
         };
-        assert_eq!(of(&[50.0, -101.0, 0.0]), 1.0);
-        assert_relative_eq!(of(&[50.0, 101.5]), 0.1);
-        assert_relative_eq!(of(&[2798.826, 5576.824]), 0.001);
-        assert_eq!(of(&[std::f64::consts::PI, 1.0]), 0.0);
+        assert_eq!(found(&[50.0, -101.0, 0.0]), 1.0);
+        assert_relative_eq!(found(&[50.0, 101.5]), 0.1);
+        assert_relative_eq!(found(&[2798.826, 5576.824]), 0.001);
+        assert_eq!(found(&[std::f64::consts::PI, 1.0]), 0.0);
     }
 }

@@ -2,9 +2,9 @@
 
 use std::fmt;
 
+use super::comparison::{Measured, Ratio, ratios_of_rod, vanishes};
 use super::line::Line;
 use super::readings::{Axis, Readings};
-use super::{Measured, Ratio, ratios_of_rod, vanishes};
 use crate::rod::Rod;
 use crate::statistics::Estimate;
 use crate::units::{UM, significant};
@@ -44,7 +44,8 @@ pub enum Warning {
         /// Which line.
         line: String,
     },
-    /// The line does not pass near the origin: friction, or a load that is not what it is said to be.
+    /// The line does not pass near the origin: friction, or a load that is not what it is said to
+    /// be.
     LoadOffset {
         /// Which line.
         line: String,
@@ -78,7 +79,7 @@ pub enum Warning {
 }
 
 /// Warnings about single lines.
-pub(super) fn of_lines(lines: &[Line], readings: &Readings, rod: Option<&Rod>) -> Vec<Warning> {
+pub(super) fn about_lines(lines: &[Line], readings: &Readings, rod: Option<&Rod>) -> Vec<Warning> {
     let mut warnings = Vec::new();
     for line in lines {
         let label = line.key.label();
@@ -116,7 +117,7 @@ pub(super) fn of_lines(lines: &[Line], readings: &Readings, rod: Option<&Rod>) -
 }
 
 /// Warnings about the comparison with the model.
-pub(super) fn of_ratios(measured: &Measured, lines: &[Line]) -> Vec<Warning> {
+pub(super) fn about_ratios(measured: &Measured, lines: &[Line]) -> Vec<Warning> {
     let mut warnings = Vec::new();
     for (line, &prediction) in lines.iter().zip(&measured.predicted) {
         if vanishes(prediction, &measured.model) && line.slope.is_significant(SIGNIFICANCE) {

@@ -1,16 +1,16 @@
 //! What joints do besides their geometry: by how much they turn farther than they say.
 //!
 //! ```text
-//! transmission_error   a·sin(n·q) + b·cos(n·q), or a table over q, straight between its rows and constant beyond them
+//! transmission_error   a·sin(n·q) + b·cos(n·q), or a table over q: linear between its rows,
+//!                      constant beyond them
 //! encoder_scale        (s − 1)·q
 //! backlash             ½·b·sign(τ)
 //! wrist_coupling       k·q of another joint
 //! ```
 
-use super::Robot;
-
 /// One of them. Joints count from 0.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub enum Effect {
     /// A wave of so many cycles per revolution.
     Harmonic {
@@ -67,7 +67,17 @@ impl Effect {
         }
     }
 
-    /// Turn of its joint, rad, at the joint values `q` (rad or m) under the torques `torque` (N·m; may be empty).
+    /// Turn of its joint, rad, at the joint values `q` (rad or m) under the torques `torque` (N·m;
+    /// may be empty).
+    ///
+    /// ```
+    /// use rodcal::robot::Effect;
+    ///
+    /// let eccentric = Effect::Harmonic { joint: 0, cycles_per_rev: 1.0, sine: 2e-4, cosine: 0.0 };
+    /// assert!((eccentric.turn(&[30f64.to_radians()], &[]) - 1e-4).abs() < 1e-18);
+    /// let play = Effect::Backlash { joint: 0, play: 2e-4 };
+    /// assert_eq!(play.turn(&[0.0], &[-5.0]), -1e-4); // half the gap, towards the torque
+    /// ```
     pub fn turn(&self, q: &[f64], torque: &[f64]) -> f64 {
         match self {
             Effect::Harmonic { joint, cycles_per_rev, sine, cosine } => {
@@ -92,14 +102,6 @@ fn interpolated(rows: &[(f64, f64)], x: f64) -> f64 {
         (Some((x0, y0)), Some((x1, y1))) => y0 + (y1 - y0) * (x - x0) / (x1 - x0),
         (Some((_, y)), None) | (None, Some(&(_, y))) => y,
         (None, None) => 0.0,
-    }
-}
-
-impl Robot {
-    /// By how much a joint turns farther than it says, rad; see [`Effect::turn`].
-    pub fn correction(&self, joint: usize, q: &[f64], torque: &[f64]) -> f64 {
-        let own = self.effects.iter().filter(|effect| effect.joint() == joint);
-        own.map(|effect| effect.turn(q, torque)).sum()
     }
 }
 

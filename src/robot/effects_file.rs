@@ -1,4 +1,5 @@
-//! The sections `[[effect]]` of a robot file, and the table of corrections that other programs can use.
+//! The sections `[[effect]]` of a robot file, and the table of corrections that other programs can
+//! use.
 
 use serde::Deserialize;
 use toml::Spanned;
@@ -125,7 +126,8 @@ pub(super) fn written(effect: &Effect) -> String {
     }
 }
 
-/// Corrections of joints over their own angles as a table (CSV): joint, angle_deg, correction_urad. `angles` (rad) by joint.
+/// Corrections of joints over their own angles as a table (CSV): joint, angle_deg, correction_urad.
+/// `angles` (rad) by joint.
 pub fn corrections_csv(robot: &Robot, angles: &[Vec<f64>]) -> String {
     let mut text =
         "# add correction_urad to the angle that the joint tells; straight between the rows\n".to_owned();
@@ -171,6 +173,6 @@ pub fn corrections_from_csv(file: &str, text: &str, joints: usize) -> Result<Vec
         }
         rows[joint - 1].push((angle, turn));
     }
-    let of_joint = |(joint, rows): (usize, Vec<(f64, f64)>)| Effect::Table { joint, rows };
-    Ok(rows.into_iter().enumerate().filter(|(_, rows)| !rows.is_empty()).map(of_joint).collect())
+    let table = |(joint, rows): (usize, Vec<(f64, f64)>)| Effect::Table { joint, rows };
+    Ok(rows.into_iter().enumerate().filter(|(_, rows)| !rows.is_empty()).map(table).collect())
 }

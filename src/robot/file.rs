@@ -1,26 +1,60 @@
-//! The reader of robot files: a table of joints in TOML, or a URDF. Every error names the place and what is right.
+//! The reader of robot files: a table of joints in TOML, or a URDF. Every error names the place and
+//! what is right.
 
 use nalgebra::Vector3;
 use serde::Deserialize;
 use toml::Spanned;
 
+use super::defaults::{DOWN, default_name, file_stem};
 use super::effects_file::{self, RawEffect};
 use super::uncertainty::{self, RawUncertainty};
 use super::{Body, Effect, Hayati, Joint, Motion, Robot, Tip, urdf};
 use crate::error::Result;
 use crate::spatial::Pose;
 use crate::toml_text::{Number, Required, TomlText};
-use crate::units::{DEG, MM, STANDARD_GRAVITY, URAD_PER_NM};
-
-/// Gravity where a file does not state it, m/s²: straight down in a base frame whose z points up.
-pub(super) const DOWN: Vector3<f64> = Vector3::new(0.0, 0.0, -STANDARD_GRAVITY);
+use crate::units::{DEG, MM, URAD_PER_NM};
 
 impl Robot {
-    /// Reads and checks the text of a robot file; `file` names it in errors (and the robot, where it has no name).
+    /// Reads and checks the text of a robot file; `file` names it in errors (and the robot, where
+    /// it has no name).
     ///
-    /// A text that begins with `<` is a URDF, of which the chain from `base_link` to `tip_link` is read; where none are
-    /// given, from the link named `base_link` to the one named `tip_link`. Any other text is a table in TOML, which
-    /// needs no links.
+    /// A text that begins with `<` is a URDF, of which the chain from `base_link` to `tip_link` is
+    /// read; where none are given, from the link named `base_link` to the one named `tip_link`. Any
+    /// other text is a table in TOML, which needs no links.
+    ///
+    /// A table, the paper's TX90 (Table 1):
+    ///
+    /// ```
+    /// use rodcal::prelude::*;
+    ///
+    /// let (file, text) = Robot::builtin("tx90").expect("the program carries it");
+    /// let tx90 = Robot::from_text(file, text, None, None)?;
+    /// assert_eq!((tx90.joints.len(), tx90.joints[1].link.a), (6, 0.425));
+    /// # Ok::<(), rodcal::Error>(())
+    /// ```
+    ///
+    /// A URDF, two links of 0.4 m and 0.3 m about z:
+    ///
+    /// ```
+    /// use rodcal::prelude::*;
+    ///
+    /// let text = r#"<robot name="arm">
+    ///   <link name="base_link"/> <link name="upper"/> <link name="lower"/> <link name="tip_link"/>
+    ///   <joint name="shoulder" type="continuous">
+    ///     <parent link="base_link"/> <child link="upper"/> <axis xyz="0 0 1"/>
+    ///   </joint>
+    ///   <joint name="elbow" type="continuous">
+    ///     <parent link="upper"/> <child link="lower"/> <origin xyz="0.4 0 0"/> <axis xyz="0 0 1"/>
+    ///   </joint>
+    ///   <joint name="hand" type="fixed">
+    ///     <parent link="lower"/> <child link="tip_link"/> <origin xyz="0.3 0 0"/>
+    ///   </joint>
+    /// </robot>"#;
+    /// let arm = Robot::from_text("arm.urdf", text, None, None)?;
+    /// let hand = arm.flange_at(&[0.0, std::f64::consts::FRAC_PI_2]).origin;
+    /// assert!((hand.x - 0.4).abs() < 1e-12 && (hand.y - 0.3).abs() < 1e-12);
+    /// # Ok::<(), rodcal::Error>(())
+    /// ```
     ///
     /// # Errors
     /// [`crate::Error::Syntax`] or [`crate::Error::Input`] with line and column.
@@ -48,17 +82,6 @@ impl Robot {
 /// True of XML, which no TOML begins like.
 pub fn is_urdf(text: &str) -> bool {
     text.trim_start_matches(|c: char| c.is_whitespace() || c == '\u{feff}').starts_with('<')
-}
-
-/// `robots/tx90.toml` → `tx90`.
-pub(super) fn file_stem(file: &str) -> String {
-    let path = std::path::Path::new(file);
-    path.file_stem().map_or_else(|| file.to_owned(), |stem| stem.to_string_lossy().into_owned())
-}
-
-/// What a joint is called that has no name.
-pub(super) fn default_name(index: usize) -> String {
-    format!("joint {}", index + 1)
 }
 
 #[derive(Deserialize)]

@@ -1,11 +1,34 @@
-//! Where joints, flange and tip are for given joint values, and how the tip moves with every parameter.
+//! Where joints, flange and tip are for given joint values, and how the tip moves with every
+//! parameter.
 
 use nalgebra::{Matrix3, Vector3};
 
 use super::{Hayati, Motion, Parameter, Robot, Setup};
 use crate::spatial::{Pose, left_jacobian, turned_about_x, turned_about_y, turned_about_z};
 
-/// One configuration of a [`Setup`] in {W}. Made once and moved from pose to pose without allocation.
+/// One configuration of a [`Setup`] in {W}. Made once and moved from pose to pose without
+/// allocation.
+///
+/// ```
+/// use rodcal::prelude::*;
+/// use rodcal::robot::Loads;
+///
+/// // an arm of 0.5 m that turns about a horizontal axis, 2 kg at its end
+/// let mut joint = Joint::new("shoulder", Motion::Revolute, Hayati { a: 0.5, ..Hayati::default() });
+/// joint.body = Some(rodcal::robot::Body { mass: 2.0, centre: [0.0; 3].into() });
+/// let arm = Robot::new("arm", vec![joint]);
+/// // the base stands on a wall: its z is horizontal
+/// let base = Pose::from_xyz_rpy([0.0; 3], [std::f64::consts::FRAC_PI_2, 0.0, 0.0]);
+/// let setup = Setup::new(&arm, base, [0.0; 3].into());
+/// let mut kinematics = Kinematics::new(&setup);
+/// kinematics.update(&[0.0], &[]);
+/// // the tip moves upwards by its lever arm per radian
+/// assert!((kinematics.joint_jacobian(0).z - 0.5).abs() < 1e-15);
+/// let mut torque = [0.0];
+/// let gravity = [0.0, 0.0, -9.80665].into();
+/// kinematics.torques(&Loads { gravity, payload: None, tip_force: [0.0; 3].into() }, &mut torque);
+/// assert!((torque[0] + 2.0 * 9.80665 * 0.5).abs() < 1e-12); // −m·g·a
+/// ```
 #[derive(Debug, Clone)]
 pub struct Kinematics<'s> {
     /// Base to flange, one per joint.
@@ -69,16 +92,16 @@ impl<'s> Kinematics<'s> {
         }
     }
 
-    /// Moves to the joint values `q` (rad or m). `torque` (N·m, one per joint) turns compliant joints on; it may be
-    /// empty where no joint is compliant.
+    /// Moves to the joint values `q` (rad or m). `torque` (N·m, one per joint) turns compliant
+    /// joints on; it may be empty where no joint is compliant.
     pub fn update(&mut self, q: &[f64], torque: &[f64]) {
         let setup = self.setup;
         let mut frame = self.root;
         for (j, frames) in self.joints.iter_mut().enumerate() {
             // θ = offset + q + c·τ + effects
-            let yielding = torque.get(j).map_or(0.0, |torque| setup.compliance[j] * torque);
-            let more = setup.robot.correction(j, q, torque);
-            let link = setup.links[j].moved(frames.motion, q[j] + yielding + more);
+            let compliant_turn = torque.get(j).map_or(0.0, |torque| setup.compliance[j] * torque);
+            let correction = setup.robot.correction(j, q, torque);
+            let link = setup.links[j].moved(frames.motion, q[j] + compliant_turn + correction);
             let turned = turned_about_z(&frame.rotation, link.theta.sin_cos());
             let tilted = turned_about_x(&turned, frames.alpha);
             frames.axis = frame.rotation.column(2).into();
@@ -95,7 +118,8 @@ impl<'s> Kinematics<'s> {
         self.tip = self.flange.point(&setup.tool);
     }
 
-    /// ∂tip/∂parameter in {W}, m per unit of the parameter (SI). `torque` as for [`Kinematics::update`].
+    /// ∂tip/∂parameter in {W}, m per unit of the parameter (SI). `torque` as for
+    /// [`Kinematics::update`].
     pub fn column(&self, parameter: Parameter, torque: &[f64]) -> Vector3<f64> {
         match parameter {
             Parameter::BasePosition(axis) => Matrix3::identity().column(axis).into(),
@@ -112,17 +136,23 @@ impl<'s> Kinematics<'s> {
             Parameter::Alpha(j) => self.joints[j].x.cross(&(self.tip - self.joints[j].distal.origin)),
             Parameter::Beta(j) => self.joints[j].y.cross(&(self.tip - self.joints[j].distal.origin)),
             // ∂q/∂c = τ
-            Parameter::Compliance(j) => self.moved(j) * torque.get(j).copied().unwrap_or(0.0),
+            Parameter::Compliance(j) => self.joint_jacobian(j) * torque.get(j).copied().unwrap_or(0.0),
             Parameter::Tool(axis) => self.flange.rotation.column(axis).into(),
         }
     }
 
-    /// ∂tip/∂q of a joint, m/rad or m/m, in {W}.
-    pub fn moved(&self, joint: usize) -> Vector3<f64> {
+    /// A column of the joint Jacobian: ∂tip/∂q of a joint, m/rad or m/m, in {W}.
+    pub fn joint_jacobian(&self, joint: usize) -> Vector3<f64> {
         match self.joints[joint].motion {
             Motion::Revolute => self.turned(joint),
             Motion::Prismatic => self.joints[joint].axis,
         }
+    }
+
+    /// The former name of [`Kinematics::joint_jacobian`].
+    #[doc(hidden)]
+    pub fn moved(&self, joint: usize) -> Vector3<f64> {
+        self.joint_jacobian(joint)
     }
 
     /// The robot that it is the configuration of.
@@ -155,11 +185,17 @@ impl Hayati {
 }
 
 impl Robot {
+    /// By how much a joint turns farther than it says, rad; see [`super::Effect::turn`].
+    pub fn correction(&self, joint: usize, q: &[f64], torque: &[f64]) -> f64 {
+        let own = self.effects.iter().filter(|effect| effect.joint() == joint);
+        own.map(|effect| effect.turn(q, torque)).sum()
+    }
+
     /// {T} in {0} at the joint values `q` (rad or m, one per joint), with no torque on the joints.
     pub fn flange_at(&self, q: &[f64]) -> Pose {
         let value = |j: usize| q[j] + self.correction(j, q, &[]);
         let joints = self.joints.iter().enumerate().take(q.len());
-        let moved = joints.map(|(j, joint)| joint.link.moved(joint.motion, value(j)));
-        moved.fold(self.root, |frame, link| link.beyond(&frame)).then(&self.flange)
+        let links = joints.map(|(j, joint)| joint.link.moved(joint.motion, value(j)));
+        links.fold(self.root, |frame, link| link.beyond(&frame)).then(&self.flange)
     }
 }

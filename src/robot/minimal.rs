@@ -1,31 +1,49 @@
-//! Which parameters tip positions can tell apart at all: a complete and minimal set, from the geometry.
+//! Which parameters tip positions can tell apart at all: a complete and minimal set, from the
+//! geometry.
 //!
-//! Candidates come in an order of preference, and one is kept where its column of the Jacobian, over many
-//! configurations within the joint limits, is not a combination of those kept before it. For the paper's TX90 this
-//! gives exactly its ρ: θ₁, d₁ (dependent on the base), d₃ (on d₂ along the parallel axes), d₆, y_tool (on θ₆), β₁
-//! and β₃ drop out by themselves (Table 1).
+//! Candidates come in an order of preference, and one is kept where its column of the Jacobian,
+//! over many configurations within the joint limits, is not a combination of those kept before it.
+//! For the paper's TX90 this gives exactly its ρ: θ₁, d₁ (dependent on the base), d₃ (on d₂ along
+//! the parallel axes), d₆, y_tool (on θ₆), β₁ and β₃ drop out by themselves (Table 1).
 
 use nalgebra::{DVector, Vector3};
 
 use super::{Body, Kinematics, Loads, Motion, Parameter, Robot, Setup};
 use crate::spatial::Pose;
 
-/// β is a candidate where consecutive axes are closer to parallel than this, rad: |sin α| < sin 10°.
+/// β is a candidate where consecutive axes are closer to parallel than this, rad: |sin α| < sin
+/// 10°.
 const NEARLY_PARALLEL: f64 = 10.0 * crate::units::DEG;
-/// What must remain of a column, in metres of tip per metre or per radian times the robot's reach. Less is no
-/// direction of its own but the curvature of another one, or a tip that happens to lie within a percent of an axis.
+/// What must remain of a column, in metres of tip per metre or per radian times the robot's reach.
+/// Less is no direction of its own but the curvature of another one, or a tip that happens to lie
+/// within a percent of an axis.
 const OWN: f64 = 0.01;
 /// Configurations that the columns are compared over.
 const CONFIGURATIONS: usize = 80;
 /// Torque, relative to the largest of the robot, below which a joint has none.
 const NO_TORQUE: f64 = 1e-6;
 
-/// The parameters that positions of the tip at `tool` (m, in {T}) can determine while the robot carries `payload`; see
-/// [`crate::robot`] for what they are. Compliances are among them for joints that gravity loads, where the robot's
-/// masses are known.
+/// The parameters that positions of the tip at `tool` (m, in {T}) can determine while the robot
+/// carries `payload`; see [`crate::robot`] for what they are. Compliances are among them for joints
+/// that gravity loads, where the robot's masses are known.
 ///
-/// A turn about the last axis is the same as a shift of the tool around it. θₙ takes it, as in the paper, where the
-/// tool as `drawn` (m, in {T}) lies beside that axis, so that there is a direction to correct; else the tool does.
+/// A turn about the last axis is the same as a shift of the tool around it. θₙ takes it, as in the
+/// paper, where the tool as `drawn` (m, in {T}) lies beside that axis, so that there is a direction
+/// to correct; else the tool does.
+///
+/// ```
+/// use rodcal::prelude::*;
+/// use rodcal::robot::{Body, minimal_parameters};
+///
+/// let (file, text) = Robot::builtin("tx90").expect("the program carries it");
+/// let tx90 = Robot::from_text(file, text, None, None)?;
+/// let rod = Rod::read("rods/5.toml".as_ref())?;
+/// let payload = Body { mass: rod.mass(), centre: rod.centre_of_mass() };
+/// let parameters = minimal_parameters(&tx90, rod.tip(), rod.tip(), Some(payload));
+/// assert_eq!(parameters.len(), 32); // the paper's Table 1
+/// assert!(parameters.contains(&Parameter::Beta(1)) && !parameters.contains(&Parameter::Theta(0)));
+/// # Ok::<(), rodcal::Error>(())
+/// ```
 pub fn minimal_parameters(
     robot: &Robot,
     tool: Vector3<f64>,
@@ -138,7 +156,8 @@ impl<'s> Samples<'s> {
         samples
     }
 
-    /// The column of a parameter over all samples, in the unit of [`OWN`]; `None` for a joint without torque.
+    /// The column of a parameter over all samples, in the unit of [`OWN`]; `None` for a joint
+    /// without torque.
     fn column(&self, parameter: Parameter) -> Option<DVector<f64>> {
         let unit = match parameter {
             Parameter::BasePosition(_) | Parameter::D(_) | Parameter::A(_) | Parameter::Tool(_) => 1.0,
@@ -162,7 +181,8 @@ impl<'s> Samples<'s> {
     }
 }
 
-/// The `sample`th of points that fill (0, 1) evenly, on the `joint`th axis: Kronecker's sequence of √p, p prime.
+/// The `sample`th of points that fill (0, 1) evenly, on the `joint`th axis: Kronecker's sequence of
+/// √p, p prime.
 fn spread(sample: usize, joint: usize) -> f64 {
     const PRIMES: [f64; 12] = [2.0, 3.0, 5.0, 7.0, 11.0, 13.0, 17.0, 19.0, 23.0, 29.0, 31.0, 37.0];
     // beyond twelve joints other multiples of the same roots do

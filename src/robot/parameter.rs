@@ -4,13 +4,22 @@ use std::fmt;
 
 use crate::units::{DEG, MM, URAD_PER_NM};
 
-/// One number of the chain {W} → {0} → joints → {T} → tip. Joints count from 0 here, from 1 in names.
+/// One number of the chain {W} → {0} → joints → {T} → tip. Joints count from 0 here, from 1 in
+/// names.
+///
+/// ```
+/// use rodcal::robot::Parameter;
+///
+/// let parameter = Parameter::from_key("c2_urad_per_nm", 6).expect("a joint of a robot with six");
+/// assert_eq!((parameter, parameter.to_string().as_str()), (Parameter::Compliance(1), "c2"));
+/// assert_eq!(parameter.unit().si, 1e-6);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Parameter {
     /// Position of {0} in {W} along x, y, z (0, 1, 2), m.
     BasePosition(usize),
-    /// Turn of {0} away from its first guess: rotation vector along x, y, z (0, 1, 2) of {W}, rad. Unlike roll, pitch
-    /// and yaw it is regular for a robot on a wall too.
+    /// Turn of {0} away from its first guess: rotation vector along x, y, z (0, 1, 2) of {W}, rad.
+    /// Unlike roll, pitch and yaw it is regular for a robot on a wall too.
     BaseRotation(usize),
     /// θ of a joint's link, rad.
     Theta(usize),
@@ -44,11 +53,16 @@ const DEGREE: Unit = Unit { symbol: "°", suffix: "deg", si: DEG };
 const COMPLIANCE: Unit = Unit { symbol: "µrad/(N·m)", suffix: "urad_per_nm", si: URAD_PER_NM };
 
 impl Parameter {
+    /// True where it says where the robot stands or where its tip is, not how the robot is built.
+    pub fn is_placement(&self) -> bool {
+        matches!(self, Parameter::BasePosition(_) | Parameter::BaseRotation(_) | Parameter::Tool(_))
+    }
+
     /// All parameters of a robot with `joints` joints, base to tip.
     pub fn all(joints: usize) -> Vec<Parameter> {
         let mut all: Vec<Parameter> = (0..3).map(Parameter::BasePosition).collect();
         all.extend((0..3).map(Parameter::BaseRotation));
-        let of_link = [
+        let link_parameters = [
             Parameter::A,
             Parameter::Alpha,
             Parameter::Theta,
@@ -56,7 +70,7 @@ impl Parameter {
             Parameter::Beta,
             Parameter::Compliance,
         ];
-        all.extend((0..joints).flat_map(|j| of_link.map(|kind| kind(j))));
+        all.extend((0..joints).flat_map(|j| link_parameters.map(|kind| kind(j))));
         all.extend((0..3).map(Parameter::Tool));
         all
     }

@@ -1,4 +1,5 @@
-//! A robot that stands somewhere and holds a tip: all numbers that a calibration changes, by [`Parameter`].
+//! A robot that stands somewhere and holds a tip: all numbers that a calibration changes, by
+//! [`Parameter`].
 
 use nalgebra::Vector3;
 
@@ -6,6 +7,18 @@ use super::{Hayati, Parameter, Robot};
 use crate::spatial::{Pose, exponential};
 
 /// A nominal robot with its present geometry, base and tool.
+///
+/// ```
+/// use rodcal::prelude::*;
+///
+/// let joint = Joint::new("one", Motion::Revolute, Hayati { a: 0.5, ..Hayati::default() });
+/// let robot = Robot::new("arm", vec![joint]);
+/// let mut setup = Setup::new(&robot, Pose::IDENTITY, [0.0, 0.0, 0.1].into());
+/// setup.set(Parameter::A(0), 0.501);
+/// setup.set(Parameter::BaseRotation(2), 0.01);
+/// assert!((setup.base().rotation[(1, 0)] - 0.01f64.sin()).abs() < 1e-15);
+/// assert_eq!((setup.calibrated().joints[0].link.a, robot.joints[0].link.a), (0.501, 0.5));
+/// ```
 #[derive(Debug, Clone)]
 pub struct Setup<'r> {
     /// The nominal robot: joints, masses, limits.

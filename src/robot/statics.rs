@@ -1,7 +1,7 @@
 //! Torques on the joints at rest: weights of links and payload, and the force on the tip.
 //!
-//! The recursive Newton–Euler equations without motion: from the tip inwards, every link adds its weight to the force
-//! and the moment that the joint before it carries.
+//! The recursive Newton–Euler equations without motion: from the tip inwards, every link adds its
+//! weight to the force and the moment that the joint before it carries.
 
 use nalgebra::Vector3;
 
@@ -19,7 +19,8 @@ pub struct Loads {
 }
 
 impl Kinematics<'_> {
-    /// The torque of the loads about each joint's axis, N·m (along it for a prismatic joint, N), into `torque`:
+    /// The torque of the loads about each joint's axis, N·m (along it for a prismatic joint, N),
+    /// into `torque`:
     ///
     /// τⱼ = zⱼ · (Σ pₖ × fₖ − oⱼ × Σ fₖ)   over the forces f at the points p beyond the joint
     pub fn torques(&self, loads: &Loads, torque: &mut [f64]) {

@@ -2,13 +2,14 @@
 //!
 //! Cov(tip) = J·Σ·Jᵀ, J = ∂tip/∂parameter, Σ the covariance of the parameters
 //!
-//! In a robot file it is the section `[uncertainty]`: names, standard errors and, below the diagonal, correlations.
+//! In a robot file it is the section `[uncertainty]`: names, standard errors and, below the
+//! diagonal, correlations.
 
-use nalgebra::{DMatrix, DVector, Matrix3, Matrix3xX};
+use nalgebra::{DMatrix, DVector};
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::{Kinematics, Parameter};
+use super::Parameter;
 use crate::error::Result;
 use crate::toml_text::{Number, TomlText};
 
@@ -22,16 +23,6 @@ pub struct Uncertainty {
 }
 
 impl Uncertainty {
-    /// Covariance of the tip in {0}, m², where `kinematics` stands with `torque` (N·m) on its joints.
-    pub fn of_tip(&self, kinematics: &Kinematics, torque: &[f64]) -> Matrix3<f64> {
-        let columns: Vec<_> = self.parameters.iter().map(|&p| kinematics.column(p, torque)).collect();
-        if columns.is_empty() {
-            return Matrix3::zeros();
-        }
-        let jacobian = Matrix3xX::from_columns(&columns);
-        &jacobian * &self.covariance * jacobian.transpose()
-    }
-
     /// The section of a robot file.
     pub(super) fn written(&self) -> String {
         let errors: DVector<f64> = self.covariance.diagonal().map(f64::sqrt);
@@ -68,7 +59,7 @@ pub(super) struct RawUncertainty {
 /// The section of a robot with so many joints.
 pub(super) fn read(toml: &TomlText, raw: &RawUncertainty, joints: usize) -> Result<Uncertainty> {
     let count = raw.parameters.get_ref().len();
-    let of_name = |name: &Spanned<String>| match Parameter::from_key(name.get_ref(), joints) {
+    let parameter = |name: &Spanned<String>| match Parameter::from_key(name.get_ref(), joints) {
         Some(Parameter::BasePosition(_) | Parameter::BaseRotation(_)) | None => Err(toml.is(
             "uncertainty.parameters",
             name,
@@ -76,7 +67,7 @@ pub(super) fn read(toml: &TomlText, raw: &RawUncertainty, joints: usize) -> Resu
         )),
         Some(parameter) => Ok(parameter),
     };
-    let parameters: Vec<Parameter> = raw.parameters.get_ref().iter().map(of_name).collect::<Result<_>>()?;
+    let parameters: Vec<Parameter> = raw.parameters.get_ref().iter().map(parameter).collect::<Result<_>>()?;
     if raw.std_error.get_ref().len() != count {
         let expected = format!("{count} numbers, one for each parameter");
         return Err(toml.is("uncertainty.std_error", &raw.std_error, &expected));

@@ -1,12 +1,14 @@
 //! The reader of URDFs: the joints between two links become a chain of Hayati links.
 //!
-//! In a URDF a joint's frame is anywhere along its axis, turned anyhow; a fixed joint may stand between two that move.
-//! All frames are taken at zero. The joint's frame in the chain has z along its axis **as the URDF signs it**, so that
-//! joint values mean the same in both; [`super::hayati`] finds θ, d, a, α, β from one axis to the next. The first
-//! joint's frame goes to [`Robot::root`]. The last joint's link is zero, and [`Robot::flange`] leads on to `tip_link`.
+//! In a URDF a joint's frame is anywhere along its axis, turned anyhow; a fixed joint may stand
+//! between two that move. All frames are taken at zero. The joint's frame in the chain has z along
+//! its axis **as the URDF signs it**, so that joint values mean the same in both; [`super::hayati`]
+//! finds θ, d, a, α, β from one axis to the next. The first joint's frame goes to [`Robot::root`].
+//! The last joint's link is zero, and [`Robot::flange`] leads on to `tip_link`.
 //!
-//! A body is whatever moves with a joint and not with the next one: the joint's link, links fixed to it and side
-//! branches, the joints of which are taken to stand at zero. What is fixed to `base_link` has no torque on any joint.
+//! A body is whatever moves with a joint and not with the next one: the joint's link, links fixed
+//! to it and side branches, the joints of which are taken to stand at zero. What is fixed to
+//! `base_link` has no torque on any joint.
 
 mod tree;
 mod write;
@@ -18,7 +20,7 @@ use nalgebra::Vector3;
 
 use self::tree::{Kind, Tree};
 use self::xml::Source;
-use super::file::{DOWN, file_stem};
+use super::defaults::{DOWN, file_stem};
 use super::{Body, Hayati, Joint, Motion, Robot, hayati};
 use crate::error::Result;
 use crate::spatial::Pose;
@@ -32,7 +34,7 @@ pub(super) fn read(file: &str, text: &str, base_link: Option<&str>, tip_link: Op
     let document = source.parse()?;
     let tree = Tree::read(source, &document)?;
     let path = tree.path(base_link.unwrap_or(BASE_LINK), tip_link.unwrap_or(TIP_LINK))?;
-    let zero = Zero::of(&tree, &path);
+    let zero = Zero::new(&tree, &path);
 
     let (root, links) = zero.chain();
     let mut distal = root;
@@ -81,7 +83,7 @@ struct Moving {
 }
 
 impl Zero {
-    fn of(tree: &Tree, path: &[usize]) -> Zero {
+    fn new(tree: &Tree, path: &[usize]) -> Zero {
         let mut zero = Zero { moving: vec![], tip: Pose::IDENTITY };
         for &joint in path {
             zero.tip = zero.tip.then(&tree.joints[joint].origin);

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::file::default_name;
+use super::defaults::default_name;
 use super::{Joint, Motion, Robot, Uncertainty, effects_file};
 use crate::error::{Error, Result};
 use crate::spatial::Pose;
@@ -12,12 +12,23 @@ use crate::units::{DEG, MM, URAD_PER_NM};
 impl Robot {
     /// This robot as a table, the format of [`Robot::from_text`], below `comments`.
     ///
-    /// Every number has as many digits as it takes to read the very same one again; where the change of units makes that
-    /// impossible, the last bit may differ.
+    /// Every number has as many digits as it takes to read the very same one again; where the
+    /// change of units makes that impossible, the last bit may differ.
+    ///
+    /// ```
+    /// use rodcal::prelude::*;
+    ///
+    /// let link = Hayati { a: 0.425, alpha: std::f64::consts::FRAC_PI_2, ..Hayati::default() };
+    /// let robot = Robot::new("arm", vec![Joint::new("joint 1", Motion::Revolute, link)]);
+    /// let text = robot.to_toml(&["made by hand".to_owned()])?;
+    /// assert!(text.contains("a_mm = 425.0\nalpha_deg = 90.0"), "{text}");
+    /// assert_eq!(Robot::from_text("arm.toml", &text, None, None)?.joints[0].link, link);
+    /// # Ok::<(), rodcal::Error>(())
+    /// ```
     ///
     /// # Errors
-    /// [`Error::NotApplicable`] where the robot has a root or a flange of its own, as one read from a URDF: a table has
-    /// no place for them.
+    /// [`Error::NotApplicable`] where the robot has a root or a flange of its own, as one read from
+    /// a URDF: a table has no place for them.
     pub fn to_toml(&self, comments: &[String]) -> Result<String> {
         if self.root != Pose::IDENTITY || self.flange != Pose::IDENTITY {
             return Err(Error::NotApplicable {

@@ -1,5 +1,7 @@
-//! The reader of rod files (`rods/*.toml`): every error names the line and what would be right there.
+//! The reader of rod files (`rods/*.toml`): every error names the line and what would be right
+//! there.
 
+mod check;
 mod geometry;
 mod materials;
 mod parts;
@@ -10,6 +12,7 @@ use std::path::Path;
 use serde::Deserialize;
 use toml::Spanned;
 
+use self::check::Check;
 use self::geometry::RawGeometry;
 use self::materials::RawMaterial;
 use self::parts::{RawJoint, RawMass, RawPipe, RawTip};
@@ -21,14 +24,36 @@ use crate::toml_text::{Number, Required, TomlText};
 impl Rod {
     /// Reads and checks a rod file.
     ///
+    /// ```
+    /// use rodcal::rod::Rod;
+    ///
+    /// let rod = Rod::read("rods/4.toml".as_ref())?;
+    /// assert_eq!(rod.tip().x, rod.l2); // an L: pipe II along x
+    /// # Ok::<(), rodcal::Error>(())
+    /// ```
+    ///
     /// # Errors
-    /// [`crate::Error::File`] where it cannot be read; [`crate::Error::Syntax`] or [`crate::Error::Input`] with
-    /// line and column otherwise.
+    /// [`crate::Error::File`] where it cannot be read; [`crate::Error::Syntax`] or
+    /// [`crate::Error::Input`] with line and column otherwise.
     pub fn read(path: &Path) -> Result<Rod> {
         Rod::from_toml(&path.display().to_string(), &files::read_text(path)?)
     }
 
-    /// Reads and checks the text of a rod file; `file` names it in errors (and the rod, where it has no `name`).
+    /// Reads and checks the text of a rod file; `file` names it in errors (and the rod, where it
+    /// has no `name`).
+    ///
+    /// ```
+    /// use rodcal::rod::Rod;
+    ///
+    /// const TEXT: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/rods/5.toml"));
+    /// let rod = Rod::from_toml("rods/5.toml", TEXT)?;
+    /// assert!((rod.length() - 0.675).abs() < 1e-12); // 150 mm + 525 mm, sharp corner
+    /// assert!((rod.mass() - 0.58130).abs() < 1e-5);
+    ///
+    /// let error = Rod::from_toml("rods/5.toml", &TEXT.replace("= 150.0", "= -150.0")).unwrap_err();
+    /// assert!(error.to_string().starts_with("rods/5.toml:11:9: `geometry.l1_mm` is -150.0"), "{error}");
+    /// # Ok::<(), rodcal::Error>(())
+    /// ```
     ///
     /// # Errors
     /// As [`Rod::read`].
@@ -78,12 +103,6 @@ const REQUIRED: &Required = &[
     ("name", "a name in quotes"),
     ("station_mm", "the distance from the flange along the centreline in mm"),
 ];
-
-/// What is checked, and what there is to say about it so far.
-struct Check<'a> {
-    toml: TomlText<'a>,
-    warnings: Vec<Warning>,
-}
 
 impl Check<'_> {
     /// The rod without its name and warnings.
@@ -135,13 +154,6 @@ impl Check<'_> {
             rod.joints.push(joint);
         }
         Ok(rod)
-    }
-
-    /// Warns about a number that is most likely in another unit. Nothing (0) is usual.
-    fn usual(&mut self, key: &str, value: f64, unit: &'static str, least: f64, most: f64) {
-        if value != 0.0 && !(least..=most).contains(&value) {
-            self.warnings.push(Warning::Unusual { key: key.to_owned(), value, unit, least, most });
-        }
     }
 }
 

@@ -8,8 +8,9 @@ use crate::units::{DEG, GPA, GRAM, MM, URAD_PER_NM};
 impl Rod {
     /// This rod as a file, the format of [`Rod::from_toml`], below `above`, lines of comments.
     ///
-    /// Materials are written as moduli, a laminate as the two that a beam needs. Every number has as many digits as it takes to
-    /// read the very same one again; where the change of units makes that impossible, the last bit may differ.
+    /// Materials are written as moduli, a laminate as the two that a beam needs. Every number has
+    /// as many digits as it takes to read the very same one again; where the change of units makes
+    /// that impossible, the last bit may differ.
     pub fn to_toml(&self, above: &[String]) -> String {
         let mut text = comments(above);
         let mut line = |line: String| text += &(line + "\n");

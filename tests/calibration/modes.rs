@@ -18,7 +18,7 @@ fn soft() -> Simulator {
         poses_per_clamp: 16,
         validation_poses: 60,
         rod_factor: 1.3,
-        errors: RobotErrors { length: 0.3 * MM, offset: 1e-3, tilt: 0.3e-3, yielding: 0.3e-3 },
+        errors: RobotErrors { length: 0.3 * MM, offset: 1e-3, tilt: 0.3e-3, joint_turn: 0.3e-3 },
         repeatability: 15.0 * UM,
         scanner_noise: 20.0 * UM,
         ..Plan::default()

@@ -1,7 +1,7 @@
 //! Which columns the CSV files of a campaign have, and what to say where they have others.
 
 use super::Warning;
-use super::recording::{Role, Seen};
+use super::layout::{Role, Seen};
 use crate::delimited::{Row, Table, nearest_name};
 use crate::error::Result;
 use crate::robot::{Motion, Robot};
@@ -25,7 +25,7 @@ struct JointColumn {
 }
 
 impl Columns {
-    pub(super) fn of(robot: &Robot, seen: Seen<'_>) -> Columns {
+    pub(super) fn new(robot: &Robot, seen: Seen<'_>) -> Columns {
         let joints = robot.joints.iter().zip(1..).map(|(joint, number)| match joint.motion {
             Motion::Revolute => JointColumn { name: format!("q{number}_deg"), unit: DEG },
             Motion::Prismatic => JointColumn { name: format!("q{number}_mm"), unit: MM },
@@ -49,7 +49,8 @@ impl Columns {
             && !self.names.iter().any(|name| name.eq_ignore_ascii_case(column))
     }
 
-    /// Refuses a table in which a column is missing, or that is about another robot or other clamps.
+    /// Refuses a table in which a column is missing, or that is about another robot or other
+    /// clamps.
     pub(super) fn check(&self, table: &Table, role: Role) -> Result<()> {
         for &name in self.names {
             if !table.has(name) {

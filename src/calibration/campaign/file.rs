@@ -6,9 +6,9 @@ use nalgebra::Vector3;
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::recording::{self, Clamp, Role, Seen, Sockets};
-use super::wishes::{RawParameters, RawPrior, wishes};
-use super::{Campaign, Refit, Warning, warning};
+use super::constraints::{RawParameters, RawPrior, parameter_constraints};
+use super::layout::{Clamp, Role, Seen, Sockets};
+use super::{Campaign, Refit, Warning, checks, recording};
 use crate::error::{Error, Result};
 use crate::files;
 use crate::rig::readings::Readings;
@@ -18,26 +18,51 @@ use crate::spatial::Pose;
 use crate::toml_text::{Number, Required, TomlText};
 use crate::units::{DEG, MM, UM};
 
-/// Of the known distance between two sockets, unless the file states it, m: what a milled plate keeps easily.
+/// Of the known distance between two sockets, unless the file states it, m: what a milled plate
+/// keeps easily.
 const DISTANCE_SD: f64 = 0.1 * MM;
 
 /// What `robot` begins with where it names a robot that the program carries.
 const BUILTIN: &str = "builtin:";
 
 impl Campaign {
-    /// Reads and checks a campaign file and all files that it names; their paths are relative to its directory.
+    /// Reads and checks a campaign file and all files that it names; their paths are relative to
+    /// its directory.
+    ///
+    /// ```
+    /// use rodcal::prelude::*;
+    ///
+    /// let campaign = Campaign::read("campaigns/tx90-5/campaign.toml".as_ref())?;
+    /// assert_eq!((campaign.measurements.len(), campaign.measurements.groups.len()), (60, 5));
+    /// assert_eq!(default_mode(&campaign), Mode::Meas); // it has readings of its rod
+    /// # Ok::<(), rodcal::Error>(())
+    /// ```
     ///
     /// # Errors
-    /// [`Error::File`] where it cannot be read; [`Error::Syntax`] or [`Error::Input`] with line and column of
-    /// whichever file is wrong otherwise.
+    /// [`Error::File`] where it cannot be read; [`Error::Syntax`] or [`Error::Input`] with line and
+    /// column of whichever file is wrong otherwise.
     pub fn read(path: &Path) -> Result<Campaign> {
         let directory = path.parent().unwrap_or(Path::new(""));
         let open = |name: &str| files::read_text(&directory.join(name));
         Campaign::from_texts(&path.display().to_string(), &files::read_text(path)?, &open)
     }
 
-    /// Reads and checks the text of a campaign file; `file` names it in errors, and `open` gives the text of a
-    /// file by the name that the campaign has for it.
+    /// Reads and checks the text of a campaign file; `file` names it in errors, and `open` gives
+    /// the text of a file by the name that the campaign has for it.
+    ///
+    /// ```
+    /// use rodcal::prelude::*;
+    ///
+    /// let text = "robot = 'builtin:tx90'\nmeasurements = 'tracker.csv'\n[noise]\nposition_um = 20\n";
+    /// let rows = "pose,q1_deg,q2_deg,q3_deg,q4_deg,q5_deg,q6_deg,x_mm,y_mm,z_mm\n\
+    ///             home,0,0,90,0,0,0,900,-50,350\n";
+    /// let campaign = Campaign::from_texts("campaign.toml", text, &|_name| Ok(rows.to_owned()))?;
+    /// assert!(campaign.noise.is_some_and(|sd| (sd - 20e-6).abs() < 1e-18));
+    /// assert_eq!(campaign.measurements.joints(0)[2], 90f64.to_radians());
+    /// let Targets::Points(points) = &campaign.measurements.targets else { unreachable!() };
+    /// assert!((points[0].x - 0.9).abs() < 1e-15);
+    /// # Ok::<(), rodcal::Error>(())
+    /// ```
     ///
     /// # Errors
     /// As [`Campaign::read`].
@@ -119,7 +144,8 @@ const REQUIRED: &Required = &[
     ("sd", "the standard deviation of that knowledge, in the unit that the parameter's name ends with"),
 ];
 
-/// A key of the file itself that stands below a `[section]` belongs to that section, in TOML, not to the file.
+/// A key of the file itself that stands below a `[section]` belongs to that section, in TOML, not
+/// to the file.
 fn above_the_sections(error: Error) -> Error {
     const KEYS: [&str; 9] = [
         "robot",
@@ -177,7 +203,7 @@ impl Reader<'_> {
         }
 
         let (robot, robot_file) = self.robot(raw)?;
-        let wishes = wishes(self.toml, &raw.parameters, &raw.prior, robot.joints.len())?;
+        let wishes = parameter_constraints(self.toml, &raw.parameters, &raw.prior, robot.joints.len())?;
         let rod = match &raw.rod {
             Some(name) => Some(self.named("rod", name).and_then(|n| Rod::from_toml(&n.file, &n.text))?),
             None => None,
@@ -222,7 +248,7 @@ impl Reader<'_> {
             wishes,
             warnings: Vec::new(),
         };
-        self.warnings.extend(warning::about(&campaign, &clamps));
+        self.warnings.extend(checks::about(&campaign, &clamps));
         campaign.warnings = self.warnings;
         Ok(campaign)
     }

@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use nalgebra::Vector3;
 
 use super::columns::{Columns, POSITION, listed, required};
-use super::{Distance, Group, Recording, Row, Targets, Warning, warning};
+use super::layout::{Clamp, Role, Seen, Sockets};
+use super::{Distance, Group, Recording, Row, Targets, Warning, checks};
 use crate::delimited::{Row as Cells, Table, comments_above};
 use crate::error::{Error, Place, Result};
 use crate::robot::Robot;
@@ -14,45 +15,12 @@ use crate::units::MM;
 
 const ABSOLUTE_ZERO_C: f64 = -273.15;
 
-/// Where the ball was, as the campaign file has it.
-#[derive(Clone, Copy)]
-pub(super) enum Seen<'a> {
-    /// Measured in {W}.
-    World,
-    /// Measured in the device frame of one of these clamps.
-    Clamps(&'a [Clamp]),
-    /// Not measured: in a socket.
-    Sockets(Sockets),
-}
-
-/// A clamp and its device frame in {W}.
-pub(super) struct Clamp {
-    pub id: String,
-    pub device: Pose,
-}
-
-/// What is known about the sockets of every placement.
-#[derive(Clone, Copy)]
-pub(super) struct Sockets {
-    /// Between socket 0 and socket 1, m.
-    pub distance: f64,
-    /// Its standard deviation, m.
-    pub sd: f64,
-}
-
-/// What a recording is for.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Role {
-    Measurements,
-    Validation,
-}
-
 /// Reads `text`, the contents of `file`.
 ///
 /// # Errors
-/// [`Error::Input`] with line and column: what [`Table::parse`] refuses; columns that are missing or belong to
-/// another robot; cells that are not what their column holds; a clamp that the campaign does not know; a pose that
-/// is there twice; no rows.
+/// [`Error::Input`] with line and column: what [`Table::parse`] refuses; columns that are missing
+/// or belong to another robot; cells that are not what their column holds; a clamp that the
+/// campaign does not know; a pose that is there twice; no rows.
 pub(super) fn read(
     file: &str,
     text: &str,
@@ -60,7 +28,7 @@ pub(super) fn read(
     seen: Seen<'_>,
     role: Role,
 ) -> Result<(Recording, Vec<Warning>)> {
-    let columns = Columns::of(robot, seen);
+    let columns = Columns::new(robot, seen);
     let table = Table::parse(file, text, |column| columns.holds_numbers(column))?;
     columns.check(&table, role)?;
     let mut reader = Reader { columns: &columns, seen, groups: Vec::new(), lines: BTreeMap::new() };
@@ -90,12 +58,12 @@ pub(super) fn read(
         joint_count: robot.joints.len(),
         joint_values,
         rows,
-        groups: reader.groups.into_iter().map(|held| held.group).collect(),
+        groups: reader.groups.into_iter().map(|named| named.group).collect(),
         targets,
     };
-    let mut warnings = warning::about_dialect(file, &table);
+    let mut warnings = checks::about_dialect(file, &table);
     warnings.extend(columns.unused(file, &table));
-    warnings.extend(warning::about_joints(&recording, robot, role));
+    warnings.extend(checks::about_joints(&recording, robot, role));
     Ok((recording, warnings))
 }
 
@@ -103,13 +71,13 @@ struct Reader<'a> {
     columns: &'a Columns,
     seen: Seen<'a>,
     /// In order of appearance.
-    groups: Vec<Held>,
+    groups: Vec<NamedGroup>,
     /// Line of each group's poses.
     lines: BTreeMap<(usize, String), usize>,
 }
 
 /// A group with the cells that name it: clamp and nothing, placement and socket, or nothing at all.
-struct Held {
+struct NamedGroup {
     names: [String; 2],
     group: Group,
 }
@@ -120,11 +88,11 @@ impl Reader<'_> {
         let pose = name(cells, "pose", "a name for the pose")?.to_owned();
         let group = self.group(cells)?;
         if let Some(line) = self.lines.insert((group, pose.clone()), cells.line()) {
-            let of = match self.groups[group].group.name.as_str() {
+            let whose = match self.groups[group].group.name.as_str() {
                 "" => String::new(),
                 name => format!(" of {name}"),
             };
-            let expected = format!("a pose{of} that is not in line {line} already");
+            let expected = format!("a pose{whose} that is not in line {line} already");
             let hint = "give a pose that was measured again a name of its own, such as 7b";
             return Err(cells.error("pose", expected, Some(hint.to_owned())));
         }
@@ -150,11 +118,11 @@ impl Reader<'_> {
                 ([placement, socket], format!("{placement}/{socket}"), Pose::IDENTITY)
             }
         };
-        if let Some(index) = self.groups.iter().position(|held| held.names == names) {
+        if let Some(index) = self.groups.iter().position(|named| named.names == names) {
             return Ok(index);
         }
         let group = Group { name: label, device };
-        self.groups.push(Held { names: names.map(str::to_owned), group });
+        self.groups.push(NamedGroup { names: names.map(str::to_owned), group });
         Ok(self.groups.len() - 1)
     }
 }
@@ -181,11 +149,11 @@ fn position(cells: Cells<'_>) -> Result<Vector3<f64>> {
 }
 
 /// Between the sockets 0 and 1 of each placement that has both.
-fn distances(groups: &[Held], Sockets { distance, sd }: Sockets) -> Vec<Distance> {
+fn distances(groups: &[NamedGroup], Sockets { distance, sd }: Sockets) -> Vec<Distance> {
     let socket = |placement: &str, socket: &str| {
-        groups.iter().position(|held| held.names[0] == placement && held.names[1] == socket)
+        groups.iter().position(|named| named.names[0] == placement && named.names[1] == socket)
     };
-    let firsts = groups.iter().enumerate().filter(|(_, held)| held.names[1] == "0");
-    let pairs = firsts.filter_map(|(first, held)| Some([first, socket(&held.names[0], "1")?]));
+    let firsts = groups.iter().enumerate().filter(|(_, named)| named.names[1] == "0");
+    let pairs = firsts.filter_map(|(first, named)| Some([first, socket(&named.names[0], "1")?]));
     pairs.map(|between| Distance { between, value: distance, sd }).collect()
 }

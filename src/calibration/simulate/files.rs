@@ -8,8 +8,8 @@ use crate::units::{DEG, MM, STANDARD_GRAVITY, UM};
 
 /// Names and contents of `campaign.toml`, `measurements.csv`, `validation.csv` and `readings.csv`.
 ///
-/// `robot` and `rod` are what the campaign shall name. Joint angles are written to a tenth of a microradian,
-/// displacements to a tenth of a micrometre.
+/// `robot` and `rod` are what the campaign shall name. Joint angles are written to a tenth of a
+/// microradian, displacements to a tenth of a micrometre.
 pub fn campaign_files(simulation: &Simulation, robot: &str, rod: &str) -> Vec<(String, String)> {
     vec![
         ("campaign.toml".into(), campaign(simulation, robot, rod)),
@@ -89,7 +89,8 @@ fn validation(simulation: &Simulation) -> String {
     text
 }
 
-/// The paper's rig on the true rod: four loads, five repeats, along y and z, 1 N of friction, 3 µm of noise.
+/// The paper's rig on the true rod: four loads, five repeats, along y and z, 1 N of friction, 3 µm
+/// of noise.
 fn readings(simulation: &Simulation) -> String {
     const FRICTION_N: f64 = 1.0;
     let mut random = Random::seeded(simulation.plan.seed, 4);

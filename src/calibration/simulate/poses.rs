@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, Matrix3, Vector3};
 
-use super::{AIM, Plan};
+use super::plan::{AIM, Plan};
 use crate::calibration::campaign::Group;
 use crate::error::{Error, Result};
 use crate::robot::{Kinematics, Motion, Parameter, Robot, Setup};
@@ -11,15 +11,16 @@ use crate::units::MM;
 
 /// Candidates for every pose that is picked.
 const CANDIDATES: usize = 6;
-/// Random starts of the inverse kinematics per candidate before the robot counts as unable to reach a clamp.
+/// Random starts of the inverse kinematics per candidate before the robot counts as unable to reach
+/// a clamp.
 const MOST_TRIALS: usize = 400;
 /// How far the flange stays above the ball, m: rod and flange come from above.
 const CLEARANCE: f64 = 0.03;
 
 /// Joint values with the index of their clamp, clamp after clamp.
 ///
-/// From a crowd of random postures that bring the ball to each clamp, those are picked one by one that add most to
-/// the determinant of the information matrix, and so to O1.
+/// From a candidates of random postures that bring the ball to each clamp, those are picked one by
+/// one that add most to the determinant of the information matrix, and so to O1.
 pub(super) fn choose(
     truth: &Setup,
     free: &[Parameter],
@@ -29,7 +30,7 @@ pub(super) fn choose(
     let mut random = Random::seeded(plan.seed, 1);
     let n = free.len();
     let mut kinematics = Kinematics::new(truth);
-    let mut crowd = Vec::new();
+    let mut candidates = Vec::new();
     for (group, clamp) in groups.iter().enumerate() {
         for _ in 0..CANDIDATES * plan.poses_per_clamp {
             let q = reach(truth, &clamp.device.origin, &mut kinematics, &mut random).ok_or_else(|| {
@@ -43,40 +44,40 @@ pub(super) fn choose(
             kinematics.update(&q, &[]);
             let column = |k: usize| kinematics.column(free[k], &torque);
             let rows = DMatrix::from_fn(3, n, |i, k| column(k)[i]);
-            crowd.push((group, q, rows));
+            candidates.push((group, q, rows));
         }
     }
-    // information matrices in sensible units: columns of norm 1 over the whole crowd
+    // information matrices in sensible units: columns of norm 1 over the whole candidates
     let norms: Vec<f64> = (0..n)
-        .map(|k| crowd.iter().map(|(_, _, rows)| rows.column(k).norm_squared()).sum::<f64>().sqrt())
+        .map(|k| candidates.iter().map(|(_, _, rows)| rows.column(k).norm_squared()).sum::<f64>().sqrt())
         .map(|norm: f64| if norm > 0.0 { norm } else { 1.0 })
         .collect();
-    for (_, _, rows) in &mut crowd {
+    for (_, _, rows) in &mut candidates {
         for (k, norm) in norms.iter().enumerate() {
             rows.column_mut(k).scale_mut(1.0 / norm);
         }
     }
     // P = M⁻¹, from a faint multiple of the identity on
     let mut inverse = DMatrix::identity(n, n) * 1e6;
-    let mut left: Vec<bool> = vec![true; crowd.len()];
+    let mut left: Vec<bool> = vec![true; candidates.len()];
     let mut chosen: Vec<(usize, Vec<f64>)> = Vec::new();
     for _ in 0..plan.poses_per_clamp {
         for group in 0..groups.len() {
             let gain = |index: &usize| {
-                let rows = &crowd[*index].2;
+                let rows = &candidates[*index].2;
                 (Matrix3::identity() + fixed(&(rows * &inverse * rows.transpose()))).determinant()
             };
-            let of_group = (0..crowd.len()).filter(|&i| left[i] && crowd[i].0 == group);
-            let Some(best) = of_group.max_by(|a, b| gain(a).total_cmp(&gain(b))) else { continue };
+            let open = (0..candidates.len()).filter(|&i| left[i] && candidates[i].0 == group);
+            let Some(best) = open.max_by(|a, b| gain(a).total_cmp(&gain(b))) else { continue };
             left[best] = false;
-            let rows = &crowd[best].2;
+            let rows = &candidates[best].2;
             // Woodbury: (M + JᵀJ)⁻¹ = P − P·Jᵀ(1 + J·P·Jᵀ)⁻¹J·P
             let across = rows * &inverse;
             let middle = Matrix3::identity() + fixed(&(&across * rows.transpose()));
             if let Some(middle) = middle.try_inverse() {
                 inverse -= across.transpose() * middle * &across;
             }
-            chosen.push((group, crowd[best].1.clone()));
+            chosen.push((group, candidates[best].1.clone()));
         }
     }
     chosen.sort_by_key(|&(group, _)| group);
@@ -110,7 +111,8 @@ pub(super) fn is_above_table(kinematics: &Kinematics, table: f64) -> bool {
         && kinematics.flange.origin.z > table + 50.0 * MM
 }
 
-/// Joint values of a random posture that brings the ball within the aim of a point, if one is found.
+/// Joint values of a random posture that brings the ball within the aim of a point, if one is
+/// found.
 fn reach(
     truth: &Setup,
     point: &Vector3<f64>,
@@ -128,7 +130,7 @@ fn reach(
                 break;
             }
             // the shortest way in joint space, damped: δ = Jᵀ(J·Jᵀ + ε)⁻¹·miss
-            let columns: Vec<Vector3<f64>> = (0..q.len()).map(|j| kinematics.moved(j)).collect();
+            let columns: Vec<Vector3<f64>> = (0..q.len()).map(|j| kinematics.joint_jacobian(j)).collect();
             let square: Matrix3<f64> = columns.iter().map(|c| c * c.transpose()).sum();
             let Some(inverse) = (square + Matrix3::identity() * 1e-6).try_inverse() else { break };
             let pull = inverse * miss;

@@ -92,10 +92,10 @@ pub(super) fn vectors(calibration: &Calibration) -> Figure {
     residual_vectors(&poses)
 }
 
-/// Corrections of lengths and of angles; a compliance as the angle that it makes at the joint's largest torque has no
-/// place here.
+/// Corrections of lengths and of angles; a compliance as the angle that it makes at the joint's
+/// largest torque has no place here.
 pub(super) fn corrections(calibration: &Calibration) -> Figure {
-    let of = |unit: f64, wanted: &dyn Fn(Parameter) -> bool| -> Vec<ParameterCorrection> {
+    let corrections = |unit: f64, wanted: &dyn Fn(Parameter) -> bool| -> Vec<ParameterCorrection> {
         calibration
             .parameters
             .iter()
@@ -114,7 +114,7 @@ pub(super) fn corrections(calibration: &Calibration) -> Figure {
     };
     let is_length = |p: Parameter| matches!(p, Parameter::D(_) | Parameter::A(_) | Parameter::Tool(_));
     let is_angle = |p: Parameter| matches!(p, Parameter::Theta(_) | Parameter::Alpha(_) | Parameter::Beta(_));
-    parameter_corrections(&of(MM, &is_length), &of(MRAD, &is_angle))
+    parameter_corrections(&corrections(MM, &is_length), &corrections(MRAD, &is_angle))
 }
 
 /// How the loops of one or more modes came to rest.

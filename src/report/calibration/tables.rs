@@ -1,6 +1,6 @@
 //! The tables of a calibration's report.
 
-use super::group_summaries;
+use super::groups::group_summaries;
 use crate::calibration::campaign::{Campaign, Recording, Targets};
 use crate::calibration::{Calibration, CrossValidation, Summary};
 use crate::report::Block;

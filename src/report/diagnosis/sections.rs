@@ -1,6 +1,6 @@
 //! The body of a diagnosis' report, of a rig or of a calibration.
 
-use super::headline::{RIVALS_SAID, cause_at, sentence, um};
+use super::headline::{RIVALS_SAID, sentence, um};
 use super::hidden;
 use super::subject::Subject;
 use super::tables::{alternatives, evidence, locate, parameters, proof, replication};

@@ -1,8 +1,9 @@
-//! The pictures of a calibration: what it left at every pose, how far off the robot then is and where,
-//! what was corrected, and how the ways of calibrating compare.
+//! The pictures of a calibration: what it left at every pose, how far off the robot then is and
+//! where, what was corrected, and how the ways of calibrating compare.
 //!
-//! Each function takes plain numbers and returns a figure with its caption. Numbers that are not finite
-//! are left out. Where there are too many to be seen one by one, they are summed up and the caption says how.
+//! Each function takes plain numbers and returns a figure with its caption. Numbers that are not
+//! finite are left out. Where there are too many to be seen one by one, they are summed up and the
+//! caption says how.
 
 mod convergence;
 mod errors;

@@ -67,8 +67,9 @@ pub enum StationKind {
     Located,
 }
 
-/// Side view (X–Z) and top view (X–Y), the latter seen against Z, to the same scale. A case is drawn
-/// only in the views in which it moves anything; deflections are exaggerated as the title says.
+/// Side view (X–Z) and top view (X–Y), the latter seen against Z, to the same scale. A case is
+/// drawn only in the views in which it moves anything; deflections are exaggerated as the title
+/// says.
 pub fn rod_shape(rod: &RodShape) -> Figure {
     let factor = rod.exaggeration.filter(|f| drawable(*f)).unwrap_or_else(|| exaggeration(rod));
     let views = [("side view", "Z", 2), ("view from above", "Y", 1)];
@@ -133,7 +134,8 @@ fn chart(rod: &RodShape, factor: f64, view: &str, name: &str, axis: usize) -> Ch
             [shown(0), shown(axis)]
         };
         let points = rod.centreline_mm.iter().zip(&case.deflection_um).map(bent);
-        // Without points it still stands in the legend, so that the legend keeps the order of the cases.
+        // Without points it still stands in the legend, so that the legend keeps the order of the
+        // cases.
         let points = if moves(rod, case, axis) { points.collect() } else { Vec::new() };
         chart.marks.push(Mark::Line { label: case.label.clone(), points, style: Style::nth(i) });
     }

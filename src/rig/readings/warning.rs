@@ -2,11 +2,13 @@
 
 use std::fmt;
 
-use super::{Axis, KNOWN_COLUMNS, OFFSET_COLUMNS, Reading, is_one_of, newtons, only_load};
+use super::columns::{KNOWN_COLUMNS, OFFSET_COLUMNS, is_one_of};
+use super::reading::{Axis, Reading, newtons, only_load};
 use crate::delimited::{Dialect, Table, nearest_name, quoted};
 use crate::units::{UM, significant};
 
-/// Offsets that are all smaller than this are hardly micrometres: no sensor of a rig resolves a nanometre, m.
+/// Offsets that are all smaller than this are hardly micrometres: no sensor of a rig resolves a
+/// nanometre, m.
 const SMALLEST_LIKELY: f64 = 1e-3 * UM;
 
 /// Advice about a file that was read; its `Display` is one sentence or two for the user.
@@ -49,11 +51,16 @@ pub(super) fn all(table: &Table, rows: &[Reading]) -> Vec<Warning> {
         column: column.to_owned(),
         nearest: nearest_name(column, &KNOWN_COLUMNS),
     });
+    commas.into_iter().chain(unknown).chain(about_rows(rows)).collect()
+}
+
+/// Warnings about rows that may come from anywhere.
+pub(super) fn about_rows(rows: &[Reading]) -> Vec<Warning> {
     let groups = Axis::ALL.into_iter().flat_map(|axis| Axis::ALL.map(|channel| (axis, channel)));
     let one_load = groups.filter_map(|(axis, channel)| {
         only_load(rows, axis, channel).map(|load| Warning::OneLoad { axis, channel, load })
     });
-    commas.into_iter().chain(unknown).chain(one_load).chain(size(rows)).collect()
+    one_load.chain(size(rows)).collect()
 }
 
 fn size(rows: &[Reading]) -> Option<Warning> {

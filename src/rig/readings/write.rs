@@ -9,8 +9,18 @@ use crate::units::{MM, UM};
 type Column<'a> = (&'a str, &'a dyn Fn(&Reading) -> Option<String>);
 
 impl Readings {
-    /// These readings as a table, the format of [`Readings::from_text`], below `above`, lines of comments. Loads are in N;
-    /// columns that no row fills are left out.
+    /// These readings as a table, the format of [`Readings::from_text`], below `above`, lines of
+    /// comments. Loads are in N; columns that no row fills are left out.
+    ///
+    /// ```
+    /// use rodcal::prelude::*;
+    ///
+    /// let row = |load| Reading::new(Direction::along(Axis::Z), load).with_offset(Axis::Z, 4e-6 * load);
+    /// let readings = Readings::from_rows(vec![row(1.0), row(2.0)])?;
+    /// let text = readings.to_csv(&["made by hand".to_owned()]);
+    /// assert_eq!(text, "# made by hand\naxis,load_n,dz_um\nz,1,4\nz,2,8\n");
+    /// # Ok::<(), rodcal::Error>(())
+    /// ```
     pub fn to_csv(&self, above: &[String]) -> String {
         let offset =
             |axis: Axis| move |row: &Reading| row.offset[axis.index()].map(|o| format!("{}", in_unit(o, UM)));
@@ -30,13 +40,13 @@ impl Readings {
             ("dy_um", &dy),
             ("dz_um", &dz),
         ];
-        let is_filled = |(_, of): &Column<'_>| self.rows.iter().any(|row| of(row).is_some());
+        let is_filled = |(_, cell_of): &Column<'_>| self.rows.iter().any(|row| cell_of(row).is_some());
         let filled: Vec<Column<'_>> = columns.into_iter().filter(is_filled).collect();
         let mut text = comments(above);
         let line = |cells: Vec<String>| cells.join(",") + "\n";
         text += &line(filled.iter().map(|(name, _)| (*name).to_owned()).collect());
         for row in &self.rows {
-            text += &line(filled.iter().map(|(_, of)| of(row).unwrap_or_default()).collect());
+            text += &line(filled.iter().map(|(_, cell_of)| cell_of(row).unwrap_or_default()).collect());
         }
         text
     }

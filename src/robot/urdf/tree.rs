@@ -11,7 +11,8 @@ use crate::error::{Error, Place, Result};
 use crate::robot::{Body, Motion};
 use crate::spatial::Pose;
 
-/// A URDF as read and checked: every link but the roots hangs on one joint, and no joints lead in a circle.
+/// A URDF as read and checked: every link but the roots hangs on one joint, and no joints lead in a
+/// circle.
 pub(super) struct Tree<'t> {
     source: Source<'t>,
     /// Of the `<robot>` element.
@@ -94,7 +95,8 @@ impl<'t> Tree<'t> {
         Ok(tree)
     }
 
-    /// The joints from link `base` down to link `tip`, with at least one that moves; every one of them can be read.
+    /// The joints from link `base` down to link `tip`, with at least one that moves; every one of
+    /// them can be read.
     pub fn path(&self, base: &str, tip: &str) -> Result<Vec<usize>> {
         let (base, tip) = (self.find("base_link", base)?, self.find("tip_link", tip)?);
         let mut path = self.joints_above(tip, base);

@@ -1,16 +1,18 @@
 //! Writes a calibrated robot back into its URDF, which stays as it is but for origins.
 //!
-//! A child's frame ℓⱼ is rigidly attached behind its joint's motion: ℓⱼ = Jⱼ·Rz(qⱼ)·Mⱼ, where Jⱼ is the joint's frame in
-//! the chain and the constant Mⱼ is what it is in the file, so that meshes, inertials and side branches stay where they
-//! were on their link. Mⱼ turns the URDF's axis into z and has its origin on it, so the axis stays as written. With
-//! Jⱼ₊₁ = Jⱼ·Rz(qⱼ)·Hⱼ, Hⱼ the calibrated link at zero, one child's frame in the one before must be
+//! A child's frame ℓⱼ is rigidly attached behind its joint's motion: ℓⱼ = Jⱼ·Rz(qⱼ)·Mⱼ, where Jⱼ is
+//! the joint's frame in the chain and the constant Mⱼ is what it is in the file, so that meshes,
+//! inertials and side branches stay where they were on their link. Mⱼ turns the URDF's axis into z
+//! and has its origin on it, so the axis stays as written. With Jⱼ₊₁ = Jⱼ·Rz(qⱼ)·Hⱼ, Hⱼ the
+//! calibrated link at zero, one child's frame in the one before must be
 //!
 //! ```text
-//! base_link → ℓ₁:  root·M₁        ℓⱼ → ℓⱼ₊₁:  Mⱼ⁻¹·Hⱼ·Mⱼ₊₁        ℓₙ → tip_link:  Mₙ⁻¹·Hₙ·flange·tool
+//! base_link → ℓ₁:  root·M₁     ℓⱼ → ℓⱼ₊₁:  Mⱼ⁻¹·Hⱼ·Mⱼ₊₁     ℓₙ → tip_link:  Mₙ⁻¹·Hₙ·flange·tool
 //! ```
 //!
-//! Of the origins in between, fixed joints keep theirs; that of the joint that moves takes up the rest. At the end it is
-//! that of the last fixed joint. Calibrated offsets of the joints' zeros are thereby in the origins, too.
+//! Of the origins in between, fixed joints keep theirs; that of the joint that moves takes up the
+//! rest. At the end it is that of the last fixed joint. Calibrated offsets of the joints' zeros are
+//! thereby in the origins, too.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -28,22 +30,24 @@ use crate::units::URAD_PER_NM;
 pub struct Written {
     /// The whole file.
     pub text: String,
-    /// True where the end of the chain is in the file: the link of the last joint, flange and tool. It is not where
-    /// `tip_link` is what the last joint moves, for then no fixed joint is there to take it up.
+    /// True where the end of the chain is in the file: the link of the last joint, flange and tool.
+    /// It is not where `tip_link` is what the last joint moves, for then no fixed joint is there to
+    /// take it up.
     pub has_tool: bool,
 }
 
 impl Robot {
     /// This robot, calibrated, in the text of the URDF that it was read from.
     ///
-    /// Only the `<origin>`s of joints between `base_link` and `tip_link` are replaced, and only where they change;
-    /// everything else stays byte by byte. Any program that reads it then has this robot's kinematics, to rounding.
-    /// `tool` is the tip in {T}, m: `tip_link` has its origin there afterwards, its orientation unchanged. `comments`
-    /// are written in front of the robot, with a line about what a URDF has no words for.
+    /// Only the `<origin>`s of joints between `base_link` and `tip_link` are replaced, and only
+    /// where they change; everything else stays byte by byte. Any program that reads it then has
+    /// this robot's kinematics, to rounding. `tool` is the tip in {T}, m: `tip_link` has its origin
+    /// there afterwards, its orientation unchanged. `comments` are written in front of the robot,
+    /// with a line about what a URDF has no words for.
     ///
     /// # Errors
-    /// Those of [`Robot::from_text`]; [`Error::Argument`] where the text has another number of joints, or where a
-    /// number of the robot is not finite.
+    /// Those of [`Robot::from_text`]; [`Error::Argument`] where the text has another number of
+    /// joints, or where a number of the robot is not finite.
     pub fn to_urdf(
         &self,
         file: &str,
@@ -82,7 +86,7 @@ impl Robot {
 
     /// The new origins of the joints of `path`, and whether the end of the chain found a place.
     fn origins(&self, tree: &Tree, path: &[usize], tool: Vector3<f64>) -> Result<(Vec<Pose>, bool)> {
-        let zero = Zero::of(tree, path);
+        let zero = Zero::new(tree, path);
         if zero.moving.len() != self.joints.len() {
             let found = format!("a robot with {} joints", self.joints.len());
             let expected = format!("the robot of this URDF, which has {}", zero.moving.len());
@@ -167,7 +171,8 @@ fn edit(text: &str, joint: roxmltree::Node, origin: &Pose) -> (std::ops::Range<u
     if let Some(old) = child(joint, "origin") {
         return (old.range(), new);
     }
-    // in front of the first element of the joint, which has at least its parent and child, and indented like it
+    // in front of the first element of the joint, which has at least its parent and child, and
+    // indented like it
     let start = joint.first_element_child().map_or(joint.range().end, |first| first.range().start);
     let before = &text[..start];
     let indent = &before[before.trim_end().len()..];
@@ -176,8 +181,9 @@ fn edit(text: &str, joint: roxmltree::Node, origin: &Pose) -> (std::ops::Range<u
 
 /// `[roll, pitch, yaw]` of R = Rz(yaw)·Ry(pitch)·Rx(roll), rad.
 ///
-/// Yaw first, then the other two of what is left: where pitch is near ±90° and only roll ∓ yaw is determined, any yaw is
-/// as good as another and roll makes up for it, so that R is met to rounding everywhere.
+/// Yaw first, then the other two of what is left: where pitch is near ±90° and only roll ∓ yaw is
+/// determined, any yaw is as good as another and roll makes up for it, so that R is met to rounding
+/// everywhere.
 fn rpy(r: &Matrix3<f64>) -> [f64; 3] {
     let yaw = r[(1, 0)].atan2(r[(0, 0)]);
     let left = turned_about_z(&Matrix3::identity(), yaw.sin_cos()).transpose() * r;

@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::Check;
+use super::check::Check;
 use crate::error::Result;
 use crate::rod::{BendFlexibility, Warning, tangent_length};
 use crate::toml_text::Number;

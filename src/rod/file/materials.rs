@@ -3,7 +3,7 @@
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::Check;
+use super::check::Check;
 use crate::error::{Error, Result};
 use crate::material::{Material, isotropic_poisson_ratio, laminate};
 use crate::rod::Warning;

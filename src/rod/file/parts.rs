@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::Check;
+use super::check::Check;
 use super::materials::Checked;
 use crate::delimited::nearest_name;
 use crate::error::{Error, Result};

@@ -73,7 +73,7 @@ fn panel(data: &Convergence) -> Chart {
 mod tests {
     use super::*;
 
-    fn of(values: &[f64]) -> Convergence {
+    fn from_values(values: &[f64]) -> Convergence {
         Convergence {
             title: "compensation".into(),
             quantity: "change of the deflection".into(),
@@ -85,7 +85,7 @@ mod tests {
 
     #[test]
     fn passes_are_points_over_powers_of_ten() {
-        let figure = convergence(&[of(&[120.0, 1.5, 0.02, 3e-4, 0.0])]);
+        let figure = convergence(&[from_values(&[120.0, 1.5, 0.02, 3e-4, 0.0])]);
         let Mark::Points { points, .. } = &figure.panels[0].marks[1] else { panic!("no points") };
         assert_eq!((points.len(), points[3].x), (4, 4.0));
         let svg = figure.svg();
@@ -99,7 +99,7 @@ mod tests {
     #[test]
     fn degenerate_loops_draw() {
         for values in [&[][..], &[1.0], &[0.0; 4], &[f64::NAN, 1.0], &[1e-190, 1e190], &[3.0; 100_000]] {
-            convergence(&[of(values), of(values)]).svg();
+            convergence(&[from_values(values), from_values(values)]).svg();
         }
         convergence(&[]).svg();
         convergence(&[Convergence::default()]).svg();

@@ -1,4 +1,5 @@
-//! How far off the robot is after each method: histograms below one another, and the same as cumulative curves.
+//! How far off the robot is after each method: histograms below one another, and the same as
+//! cumulative curves.
 
 use serde::Serialize;
 
@@ -6,8 +7,8 @@ use super::super::super::chart::{Bar, Chart, Colour, Dash, Direction, Figure, Ma
 use super::super::super::scale::{drawable, one_two_five_below, typeset};
 use super::amount;
 
-/// From this ratio of the largest error to the smallest median on, a linear axis would show the best
-/// method as a single bar.
+/// From this ratio of the largest error to the smallest median on, a linear axis would show the
+/// best method as a single bar.
 const WIDE: f64 = 20.0;
 /// Bars in each factor of ten of a logarithmic axis.
 const BARS_PER_DECADE: f64 = 10.0;
@@ -28,7 +29,7 @@ pub struct MethodErrors {
 /// axes, with mean and maximum marked. The axis is logarithmic where the methods differ too much.
 pub fn error_distribution(methods: &[MethodErrors]) -> Figure {
     let sorted: Vec<Vec<f64>> = methods.iter().map(sorted).collect();
-    let bins = Bins::of(&sorted);
+    let bins = Bins::new(&sorted);
     let counts: Vec<Vec<usize>> = sorted.iter().map(|errors| bins.count(errors)).collect();
     let highest = counts.iter().flatten().copied().max().unwrap_or(0).max(1) as f64;
     let panel = |i: usize| {
@@ -79,7 +80,7 @@ pub fn error_distribution(methods: &[MethodErrors]) -> Figure {
 /// methods differ too much.
 pub fn cumulative_errors(methods: &[MethodErrors]) -> Figure {
     let sorted: Vec<Vec<f64>> = methods.iter().map(sorted).collect();
-    let bins = Bins::of(&sorted);
+    let bins = Bins::new(&sorted);
     let (first, last) = (bins.edge(0), bins.edge(bins.number));
     let mut chart = Chart::new("", "positioning error / mm", "share of poses / %");
     chart.x.log = bins.log;
@@ -146,7 +147,7 @@ struct Bins {
 
 impl Bins {
     /// Bins for errors that are sorted.
-    fn of(methods: &[Vec<f64>]) -> Self {
+    fn new(methods: &[Vec<f64>]) -> Self {
         let high = methods.iter().filter_map(|errors| errors.last()).copied().fold(0.0, f64::max);
         let medians = methods.iter().filter_map(|errors| errors.get(errors.len() / 2));
         let smallest_median = medians.copied().filter(|m| *m > 0.0).fold(f64::INFINITY, f64::min);

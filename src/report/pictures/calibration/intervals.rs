@@ -1,4 +1,5 @@
-//! Estimates as dots on their confidence intervals, one row each: corrections of parameters, errors of modes.
+//! Estimates as dots on their confidence intervals, one row each: corrections of parameters, errors
+//! of modes.
 
 use serde::Serialize;
 
@@ -60,15 +61,16 @@ pub struct ModeComparison {
     pub mean_mm: f64,
     /// Ends of its 95 % interval, mm.
     pub mean_interval_mm: Option<[f64; 2]>,
-    /// Mean of the error at each pose minus that of the first mode at the same pose, mm; not read of the first.
+    /// Mean of the error at each pose minus that of the first mode at the same pose, mm; not read
+    /// of the first.
     pub difference_mm: f64,
     /// Ends of the 95 % interval of the difference, mm.
     pub difference_interval_mm: Option<[f64; 2]>,
 }
 
-/// The mean validation error of each mode with its 95 % interval, and beside it the paired difference
-/// to the first mode. Pairing takes out what is hard about a pose under every mode, so an interval
-/// there that misses zero tells two modes apart even where those of the means overlap.
+/// The mean validation error of each mode with its 95 % interval, and beside it the paired
+/// difference to the first mode. Pairing takes out what is hard about a pose under every mode, so
+/// an interval there that misses zero tells two modes apart even where those of the means overlap.
 pub fn mode_comparison(modes: &[ModeComparison]) -> Figure {
     let mean = |m: &ModeComparison| Row {
         name: m.name.clone(),
@@ -150,8 +152,8 @@ fn forest(
         row.ends().map_or(Vec::new(), |[a, b]| vec![[a, y(i)], [b, y(i)], [f64::NAN, f64::NAN]])
     };
     let dots = |open: bool| -> Vec<Point> {
-        let of_kind = shown.iter().enumerate().filter(|(_, row)| row.note.is_empty() != open);
-        let drawn = of_kind.filter(|(_, row)| drawable(row.value));
+        let rows = shown.iter().enumerate().filter(|(_, row)| row.note.is_empty() != open);
+        let drawn = rows.filter(|(_, row)| drawable(row.value));
         drawn.map(|(i, row)| Point { x: row.value.clamp(low, high), y: y(i), error: 0.0 }).collect()
     };
     let style = Style::nth(0).colour(Colour::Blue).dash(Dash::Solid).width(2.4);

@@ -1,5 +1,5 @@
-//! What a fit left at every pose, in the order the poses were recorded: drift, a bad clamp and single
-//! outliers look different here.
+//! What a fit left at every pose, in the order the poses were recorded: drift, a bad clamp and
+//! single outliers look different here.
 
 use serde::Serialize;
 
@@ -51,7 +51,7 @@ pub struct PoseResidual {
 /// triangle at the edge with its value, so that the others are still seen.
 pub fn residuals_by_group(modes: &[ModeResiduals]) -> Figure {
     let shown = &modes[..modes.len().min(MOST_MODES)];
-    let scale = Shared::of(shown);
+    let scale = Shared::new(shown);
     let mut caption = String::from("Length of the residual at every pose, in the order of recording.");
     if modes.len() > shown.len() {
         caption += &format!(" Only the first {MOST_MODES} of {} modes are shown.", modes.len());
@@ -88,7 +88,7 @@ struct Shared {
 }
 
 impl Shared {
-    fn of(modes: &[ModeResiduals]) -> Self {
+    fn new(modes: &[ModeResiduals]) -> Self {
         let largest = |outlier: bool| {
             let poses = modes.iter().flat_map(numbered).map(|(_, pose)| pose);
             let lengths = poses.filter(|pose| pose.outlier == outlier).map(|pose| pose.length_um);
@@ -166,7 +166,8 @@ fn panel(mode: &ModeResiduals, scale: &Shared, last: bool) -> Chart {
     chart
 }
 
-/// All poses, or beyond a few thousand the one with the longest residual of each run of consecutive ones.
+/// All poses, or beyond a few thousand the one with the longest residual of each run of consecutive
+/// ones.
 fn largest_of_bundles(poses: Vec<(f64, &PoseResidual)>, count: usize) -> Vec<(f64, &PoseResidual)> {
     if count <= MOST_POINTS {
         return poses;

@@ -1,4 +1,5 @@
-//! Where in the workspace the errors are, and where to they point: seen from above and from the side.
+//! Where in the workspace the errors are, and where to they point: seen from above and from the
+//! side.
 
 use std::collections::BTreeMap;
 
@@ -27,8 +28,8 @@ pub struct PoseError {
     pub error_mm: f64,
 }
 
-/// The poses in x–y and in x–z, as discs whose diameter is in proportion to the error, in steps that
-/// the legend shows.
+/// The poses in x–y and in x–z, as discs whose diameter is in proportion to the error, in steps
+/// that the legend shows.
 pub fn error_over_workspace(poses: &[PoseError]) -> Figure {
     let known =
         |p: &&PoseError| p.at_mm.iter().chain([&p.error_mm]).all(|v| drawable(*v)) && p.error_mm >= 0.0;
@@ -44,10 +45,11 @@ pub fn error_over_workspace(poses: &[PoseError]) -> Figure {
             round_amount(cell_mm, cell_mm, "mm")
         );
     }
-    let classes = Classes::of(&poses);
+    let classes = Classes::new(&poses);
     let panel = |(view, label, axis): (&str, &str, usize)| {
         let mut chart = room.chart(format!("error, {view}"), label, axis, 0.0);
-        // First for the legend, from small to large; then to be drawn, the small on top of the large.
+        // First for the legend, from small to large; then to be drawn, the small on top of the
+        // large.
         for class in 0..classes.number {
             chart.marks.push(classes.mark(class, Vec::new()));
         }
@@ -132,8 +134,8 @@ fn arrow(from: [f64; 2], to: [f64; 2], text: String) -> Mark {
     Mark::Arrow { from, to, text, style }
 }
 
-/// The 1-2-5 factor with which nine of ten residuals become at most `usual_mm` long, and the longest
-/// at most `longest_mm`.
+/// The 1-2-5 factor with which nine of ten residuals become at most `usual_mm` long, and the
+/// longest at most `longest_mm`.
 fn exaggeration<'a>(poses: impl Iterator<Item = &'a PoseVector>, usual_mm: f64, longest_mm: f64) -> f64 {
     let length_um = |p: &PoseVector| p.residual_um.iter().fold(0.0, |sum, r| f64::hypot(sum, *r));
     let mut lengths: Vec<f64> = poses.map(length_um).filter(|l| *l > 0.0).collect();
@@ -204,7 +206,7 @@ struct Classes {
 }
 
 impl Classes {
-    fn of(poses: &[PoseError]) -> Self {
+    fn new(poses: &[PoseError]) -> Self {
         let largest = extent(poses.iter().map(|p| p.error_mm)).map_or(0.0, |(_, high)| high);
         // Between 3 and 8 of them.
         let step_mm = one_two_five_below(largest / 3.0);
@@ -261,10 +263,10 @@ fn means_of_cells(poses: &[PoseVector], cell_mm: f64, axis: usize) -> Vec<PoseVe
         cells.entry(cell(&pose.at_mm, cell_mm, axis)).or_default().push(pose);
     }
     let mean = |poses: &Vec<&PoseVector>| {
-        let of = |part: fn(&PoseVector) -> [f64; 3]| {
+        let mean_of = |part: fn(&PoseVector) -> [f64; 3]| {
             [0, 1, 2].map(|i| poses.iter().map(|p| part(p)[i] / poses.len() as f64).sum())
         };
-        PoseVector { at_mm: of(|p| p.at_mm), residual_um: of(|p| p.residual_um) }
+        PoseVector { at_mm: mean_of(|p| p.at_mm), residual_um: mean_of(|p| p.residual_um) }
     };
     cells.values().map(mean).collect()
 }

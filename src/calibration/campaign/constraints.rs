@@ -1,9 +1,9 @@
-//! What the user says about single parameters: `[parameters]` and `[[prior]]`.
+//! What the user states about single parameters: `[parameters]` and `[[prior]]`.
 
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::Wishes;
+use super::ParameterConstraints;
 use crate::delimited::nearest_name;
 use crate::error::{Error, Result};
 use crate::robot::Parameter;
@@ -26,25 +26,26 @@ pub(super) struct RawPrior {
     sd: Number,
 }
 
-/// The wishes for a robot with `joints` joints; each parameter may be spoken of once, but freed with a prior.
-pub(super) fn wishes(
+/// The constraints for a robot with `joints` joints; each parameter may be spoken of once, but
+/// freed with a prior.
+pub(super) fn parameter_constraints(
     toml: TomlText<'_>,
     raw: &RawParameters,
     priors: &[RawPrior],
     joints: usize,
-) -> Result<Wishes> {
+) -> Result<ParameterConstraints> {
     let reader = Reader { toml, joints };
-    let mut wishes = Wishes::default();
+    let mut constraints = ParameterConstraints::default();
     for name in &raw.fix {
         let parameter = reader.parameter("parameters.fix", name)?;
-        reader.once(name, parameter, &wishes.fixed, "in fix")?;
-        wishes.fixed.push(parameter);
+        reader.once(name, parameter, &constraints.fixed, "in fix")?;
+        constraints.fixed.push(parameter);
     }
     for name in &raw.free {
         let parameter = reader.parameter("parameters.free", name)?;
-        reader.once(name, parameter, &wishes.freed, "in free")?;
-        reader.once(name, parameter, &wishes.fixed, "in fix")?;
-        wishes.freed.push(parameter);
+        reader.once(name, parameter, &constraints.freed, "in free")?;
+        reader.once(name, parameter, &constraints.fixed, "in fix")?;
+        constraints.freed.push(parameter);
     }
     for RawPrior { parameter: name, value, sd } in priors {
         let parameter = reader.parameter("prior.parameter", name)?;
@@ -53,14 +54,14 @@ pub(super) fn wishes(
             let expected = format!("\"{}\", with the unit of value and sd", parameter.key());
             return Err(toml.is("prior.parameter", name, &expected));
         }
-        let known: Vec<Parameter> = wishes.priors.iter().map(|&(known, ..)| known).collect();
+        let known: Vec<Parameter> = constraints.priors.iter().map(|&(known, ..)| known).collect();
         reader.once(name, parameter, &known, "in another [[prior]]")?;
-        reader.once(name, parameter, &wishes.fixed, "in fix")?;
+        reader.once(name, parameter, &constraints.fixed, "in fix")?;
         let unit = parameter.unit().si;
         let value = toml.finite("prior.value", value)? * unit;
-        wishes.priors.push((parameter, value, toml.positive("prior.sd", sd)? * unit));
+        constraints.priors.push((parameter, value, toml.positive("prior.sd", sd)? * unit));
     }
-    Ok(wishes)
+    Ok(constraints)
 }
 
 struct Reader<'a> {

@@ -1,0 +1,78 @@
+//! What the user of a calibration should know: which warnings apply.
+
+use super::campaign::{Campaign, Recording};
+use super::identifiability::{UnidentifiedDirection, plausible_range};
+use super::result::Calibration;
+use super::warning::Warning;
+use crate::robot::Parameter;
+
+/// All that apply.
+pub(super) fn all(campaign: &Campaign, recording: &Recording, calibration: &Calibration) -> Vec<Warning> {
+    let mut warnings = Vec::new();
+    if !calibration.is_converged {
+        warnings.push(Warning::NotConverged {
+            reason: calibration.fit.reason.to_string(),
+            passes: calibration.passes.len(),
+        });
+    }
+    if !campaign.robot.has_masses() {
+        warnings.push(Warning::NoMasses);
+    }
+    warnings.extend(not_identified(calibration));
+    if !calibration.outliers.is_empty() {
+        let mut poses: Vec<(String, f64)> = calibration
+            .outliers
+            .iter()
+            .map(|&row| (recording.pose_name(row), calibration.deviations[row].norm()))
+            .collect();
+        poses.sort_by(|a, b| b.1.total_cmp(&a.1));
+        let count_in_full = calibration.outliers.iter().all(|&row| calibration.noise.weights[row] == 1.0);
+        warnings.push(Warning::Outliers { poses, count_in_full });
+    }
+    warnings.extend(unequal_noise(recording, calibration));
+    warnings.extend(calibration.parameters.iter().filter_map(|estimate| {
+        let correction = estimate.value - estimate.nominal;
+        let is_link = !matches!(
+            estimate.parameter,
+            Parameter::BasePosition(_)
+                | Parameter::BaseRotation(_)
+                | Parameter::Tool(_)
+                | Parameter::Compliance(_)
+        );
+        let range = plausible_range(estimate.parameter, 0.0);
+        (is_link && estimate.identifiable && correction.abs() > range)
+            .then_some(Warning::Implausible { parameter: estimate.parameter, correction })
+    }));
+    warnings
+}
+
+fn not_identified(calibration: &Calibration) -> Vec<Warning> {
+    /// Combinations that are named one by one.
+    const FEW: usize = 3;
+    if calibration.held.len() > FEW {
+        let parameters =
+            calibration.parameters.iter().filter(|p| !p.identifiable).map(|p| p.parameter).collect();
+        return vec![Warning::ManyNotIdentified { combinations: calibration.held.len(), parameters }];
+    }
+    let describe = |held: &UnidentifiedDirection| {
+        let mut combination: Vec<(Parameter, f64)> = calibration
+            .parameters
+            .iter()
+            .zip(&held.direction)
+            .map(|(estimate, &coefficient)| (estimate.parameter, coefficient))
+            .filter(|(_, coefficient)| coefficient.abs() > 0.1)
+            .collect();
+        combination.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
+        Warning::NotIdentified { combination, relative_error: held.relative_error }
+    };
+    calibration.held.iter().map(describe).collect()
+}
+
+fn unequal_noise(recording: &Recording, calibration: &Calibration) -> Option<Warning> {
+    let noise = &calibration.noise;
+    let p_value = noise.p_equal?;
+    let named = recording.groups.iter().zip(&noise.of_group).map(|(group, &sd)| (group.name.clone(), sd));
+    let quietest = named.clone().min_by(|a, b| a.1.total_cmp(&b.1))?;
+    let noisiest = named.max_by(|a, b| a.1.total_cmp(&b.1))?;
+    (noisiest.1 > quietest.1).then_some(Warning::UnequalNoise { quietest, noisiest, p_value })
+}

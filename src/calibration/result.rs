@@ -1,0 +1,95 @@
+//! A calibrated robot and how well it is known, as data.
+
+use nalgebra::Vector3;
+
+use super::compensation::Mode;
+use super::identifiability::UnidentifiedDirection;
+use super::noise::Noise;
+use super::observability::Observability;
+use super::passes::PassRecord;
+use super::validation::Validation;
+use super::warning::Warning;
+use crate::least_squares::Fit;
+use crate::robot::{Parameter, Setup};
+
+/// A calibrated robot and how well it is known.
+#[derive(Debug, Clone)]
+#[non_exhaustive]
+pub struct Calibration<'c> {
+    /// How the rod's deflection was compensated.
+    pub mode: Mode,
+    /// Base, links, compliances and tool before the first fit: the nominal robot where the rough
+    /// start puts it.
+    pub start: Setup<'c>,
+    /// Base, links, compliances and tool as found.
+    pub setup: Setup<'c>,
+    /// The free parameters.
+    pub parameters: Vec<Estimated>,
+    /// Where the sockets were found, m, with their standard errors; in {0}. Empty for measured
+    /// points.
+    pub sockets: Vec<[(f64, Option<f64>); 3]>,
+    /// Combinations of the free parameters that the data do not identify: held where the
+    /// nominal robot has them.
+    pub held: Vec<UnidentifiedDirection>,
+    /// Deflected tip less measured point or socket, in {W}, m: one per row.
+    pub deviations: Vec<Vector3<f64>>,
+    /// What the rod's deflection added to each row, in {W}, m.
+    pub deflections: Vec<Vector3<f64>>,
+    /// The tip at each row, in {W}, m.
+    pub tips: Vec<Vector3<f64>>,
+    /// How much the recording scatters.
+    pub noise: Noise,
+    /// Rows that are no noise.
+    pub outliers: Vec<usize>,
+    /// The last fit; its parameters are the free ones, then the sockets.
+    pub fit: Fit,
+    /// Every pass of the compensation loop.
+    pub passes: Vec<PassRecord>,
+    /// True where the loop came to rest and its last fit converged.
+    pub is_converged: bool,
+    /// How well the poses show the parameters.
+    pub observability: Observability,
+    /// How well the calibrated robot predicts, where the campaign can tell.
+    pub validation: Option<Validation>,
+    /// What the user should know.
+    pub warnings: Vec<Warning>,
+}
+
+/// A free parameter.
+#[derive(Debug, Clone, Copy)]
+#[non_exhaustive]
+pub struct Estimated {
+    /// Which.
+    pub parameter: Parameter,
+    /// Its nominal value or first guess, SI.
+    pub nominal: f64,
+    /// Its estimate, SI.
+    pub value: f64,
+    /// Its standard error, SI, with what directions that are held may hide of it; `None` where it
+    /// is not identified.
+    pub std_error: Option<f64>,
+    /// False where the data do not determine it.
+    pub identifiable: bool,
+}
+
+impl Calibration<'_> {
+    /// Pairs of free parameters whose estimates correlate by more than `limit` in size, strongest
+    /// first.
+    pub fn correlations_above(&self, limit: f64) -> Vec<(Parameter, Parameter, f64)> {
+        let matrix = self.fit.covariance.correlation();
+        let count = self.parameters.len();
+        let mut pairs: Vec<(Parameter, Parameter, f64)> = (0..count)
+            .flat_map(|i| (0..i).map(move |j| (j, i)))
+            .filter(|&(j, i)| self.parameters[i].identifiable && self.parameters[j].identifiable)
+            .map(|(j, i)| (self.parameters[j].parameter, self.parameters[i].parameter, matrix[(i, j)]))
+            .filter(|(_, _, correlation)| correlation.abs() > limit)
+            .collect();
+        pairs.sort_by(|a, b| b.2.abs().total_cmp(&a.2.abs()));
+        pairs
+    }
+
+    /// Lengths of the deviations, m, one per row.
+    pub fn residuals(&self) -> Vec<f64> {
+        self.deviations.iter().map(|d| d.norm()).collect()
+    }
+}

@@ -1,0 +1,59 @@
+//! What is simulated, and with which errors.
+
+use crate::units::{MM, UM};
+
+/// What is simulated. The defaults are the paper's experiment.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Plan {
+    /// Every random number comes from it.
+    pub seed: u64,
+    /// Poses on every clamp.
+    pub poses_per_clamp: usize,
+    /// Poses of the validation.
+    pub validation_poses: usize,
+    /// The true rod's compliance over that of its model.
+    pub rod_factor: f64,
+    /// Errors of the true robot.
+    pub errors: RobotErrors,
+    /// Standard deviation of a displacement sensor, m.
+    pub sensor_noise: f64,
+    /// Root mean square of the distance by which the robot misses a pose that it takes again, m.
+    pub repeatability: f64,
+    /// Root mean square of the distance by which the scanner misses the ball in the validation, m.
+    pub scanner_noise: f64,
+    /// Root mean square of the error of each clamp's position in the campaign file, m; 0 in the
+    /// paper's list of noises.
+    pub clamp_error: f64,
+}
+
+/// Standard deviations of the differences between the true and the nominal robot.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RobotErrors {
+    /// Of d and a, m.
+    pub length: f64,
+    /// Of θ, rad.
+    pub offset: f64,
+    /// Of α and β, rad.
+    pub tilt: f64,
+    /// Angle by which each joint yields, on average, under its largest torque, rad.
+    pub joint_turn: f64,
+}
+
+impl Default for Plan {
+    fn default() -> Self {
+        Plan {
+            seed: 1,
+            poses_per_clamp: 30,
+            validation_poses: 100,
+            rod_factor: 1.0,
+            errors: RobotErrors { length: 0.3 * MM, offset: 1e-3, tilt: 0.3e-3, joint_turn: 0.5e-3 },
+            sensor_noise: 3.0 * UM,
+            repeatability: 30.0 * UM,
+            scanner_noise: 43.0 * UM,
+            clamp_error: 0.0,
+        }
+    }
+}
+
+/// How far from the middle of the sensors' range the ball comes to rest, m.
+pub(super) const AIM: f64 = 0.2 * MM;

@@ -1,0 +1,91 @@
+//! A report as files.
+
+use super::document::Report;
+use super::{html, png};
+use crate::error::Result;
+
+impl Report {
+    /// Names and bytes of all files of the report: `index.html`, each figure as SVG and, if
+    /// `with_png`, as PNG, each table as CSV and as Markdown. Write them with
+    /// [`crate::files::write_together`].
+    ///
+    /// # Errors
+    /// [`crate::Error::Numerical`] where a picture cannot be rendered as PNG.
+    pub fn files(&self, with_png: bool) -> Result<Vec<(String, Vec<u8>)>> {
+        let mut files = vec![("index.html".to_owned(), html::page(self).into_bytes())];
+        for (i, figure) in self.figures().enumerate() {
+            let name = file_name("figure", i, &figure.name);
+            let svg = figure.svg();
+            if with_png {
+                files.push((format!("{name}.png"), png::png(&svg)?));
+            }
+            files.push((format!("{name}.svg"), svg.into_bytes()));
+        }
+        for (i, table) in self.tables().enumerate() {
+            let name = file_name("table", i, &table.name);
+            files.push((format!("{name}.csv"), table.csv()?.into_bytes()));
+            files.push((format!("{name}.md"), table.markdown().into_bytes()));
+        }
+        Ok(files)
+    }
+}
+
+/// "figure-1-rod-shape": the number makes it unique, the rest is safe on every file system.
+fn file_name(kind: &str, index: usize, name: &str) -> String {
+    let safe: String =
+        name.to_lowercase().chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '-' }).collect();
+    let words: Vec<&str> = safe.split('-').filter(|word| !word.is_empty()).collect();
+    let number = (index + 1).to_string();
+    [kind, &number].into_iter().chain(words).collect::<Vec<_>>().join("-")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::chart::{Chart, Figure, Mark, Style};
+    use super::super::document::{Block, Section};
+    use super::super::table;
+    use super::*;
+
+    fn report() -> Report {
+        let line = |slope: f64| Mark::Line {
+            label: "a & b".into(),
+            points: vec![[0.0, 0.0], [10.0, 10.0 * slope]],
+            style: Style::nth(1),
+        };
+        let chart = Chart::new("<one>", "x / mm", "y / µm").with(line(33.0));
+        let mut table =
+            table::Table::new("../C 22", "Compliance", vec![table::Column::number("C22", "µm/N")]);
+        table.row(["33.0"]);
+        Report {
+            title: "Rod".into(),
+            headline: "It bends.".into(),
+            sections: vec![Section::new(
+                "Lines",
+                vec![Block::Figure(Figure::from(chart).named("lines")), Block::Table(table)],
+            )],
+            ..Report::default()
+        }
+    }
+
+    #[test]
+    fn every_figure_and_table_is_also_a_file_of_a_safe_name() {
+        let files = report().files(true).expect("renders");
+        let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
+        assert_eq!(
+            names,
+            ["index.html", "figure-1-lines.png", "figure-1-lines.svg", "table-1-c-22.csv", "table-1-c-22.md"]
+        );
+        assert!(files.iter().all(|(_, bytes)| !bytes.is_empty()));
+    }
+
+    #[test]
+    fn the_same_report_gives_the_same_bytes() {
+        assert_eq!(report().files(true).expect("renders"), report().files(true).expect("renders"));
+    }
+
+    #[test]
+    fn a_report_is_also_data() {
+        let json = serde_json::to_value(report()).expect("serialises");
+        assert_eq!(json["sections"][0]["blocks"][1]["Table"]["rows"][0][0], "33.0");
+    }
+}

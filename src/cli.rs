@@ -134,6 +134,7 @@ fn elements(text: &str) -> std::result::Result<usize, String> {
 
 /// Runs the command that was asked for.
 pub fn run(arguments: &Arguments) -> Result<Outcome> {
+    output::check(arguments)?;
     match &arguments.command {
         None | Some(Command::Demo) => demo::run(),
         Some(Command::Compliance(command)) => command.run(),

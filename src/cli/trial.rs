@@ -194,8 +194,7 @@ impl ScoreAnswers {
         });
         progress.finish();
         let score = sealed.score(&outcomes.into_iter().collect::<Result<Vec<_>>>()?);
-        let report = report::report(&score.json);
-        Ok(Outcome { text: Some(score.text), ..Outcome::new(score.json, report) })
+        Ok(Outcome { text: Some(score.text()), ..Outcome::new(score.json()?, report::report(&score)) })
     }
 
     /// Makes the measurement that an answer proposes and diagnoses the recording with it.

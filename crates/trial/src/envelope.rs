@@ -132,7 +132,7 @@ pub(super) fn line(value: &impl Serialize) -> Result<String> {
     Ok(serde_json::to_string(value).map_err(unwritable)? + "\n")
 }
 
-fn unwritable(error: serde_json::Error) -> Error {
+pub(super) fn unwritable(error: serde_json::Error) -> Error {
     Error::Numerical { what: "writing JSON", why: error.to_string() }
 }
 

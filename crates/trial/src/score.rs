@@ -4,6 +4,7 @@
 //! the best other effect. Rates have Wilson's 95 % intervals; nothing depends on the order of the answers.
 
 mod counterfactual;
+mod data;
 mod judged;
 mod next;
 mod place;
@@ -14,24 +15,18 @@ mod targets;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use serde_json::{Value, json};
+use rodcal_base::error::{Error, Place, Result};
 
+pub use self::counterfactual::{Counterfactual, Foretold, Worst};
+pub use self::data::{Clean, Coverage, Pairs, Part, Score, Singles, Unknown};
 use self::judged::Judged;
-pub use self::next::{Due, Files, Outcome};
-use self::rate::Rate;
+pub use self::next::{Due, Files, NextMeasurement, Open, Outcome, Said};
+pub use self::rate::Rate;
+pub use self::tables::{Bin, Confusion, Failure, PowerBin};
+pub use self::targets::{Missed, Target};
 use super::answers::{self, Answer};
 use super::envelope::Manifest;
 use super::truth::{Detectability, Kind, Truth};
-use rodcal_base::error::{Error, Place, Result};
-
-/// A trial's score.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Score {
-    /// For `--json`.
-    pub json: Value,
-    /// For people.
-    pub text: String,
-}
 
 /// A key and answers that belong to one trial.
 #[derive(Debug, Clone, PartialEq)]
@@ -48,7 +43,7 @@ impl Sealed {
 
     /// The score; `outcomes` says what became of the proposals, by case.
     pub fn score(&self, outcomes: &[(String, Outcome)]) -> Score {
-        of(&self.truths, &self.given, outcomes)
+        score(&self.truths, &self.given, outcomes)
     }
 }
 
@@ -87,36 +82,25 @@ fn judged<'a>(truths: &'a [Truth], given: &[Answer]) -> Vec<Judged<'a>> {
 }
 
 /// Scores answers; truths without one are left out and counted.
-fn of(truths: &[Truth], given: &[Answer], outcomes: &[(String, Outcome)]) -> Score {
+fn score(truths: &[Truth], given: &[Answer], outcomes: &[(String, Outcome)]) -> Score {
     let cases = judged(truths, given);
-    let outcomes: BTreeMap<&str, &Outcome> = outcomes.iter().map(|(case, of)| (case.as_str(), of)).collect();
-    let of_cases = |cases: &[Judged<'_>]| of_cases(cases, &outcomes);
-    let unanswered = truths.len() - cases.len();
-    let halves: Vec<(&str, Vec<Judged<'_>>)> = ["rig", "calibration"]
-        .into_iter()
-        .map(|half| (half, cases.iter().filter(|case| case.truth.case.starts_with(half)).cloned().collect()))
-        .filter(|(_, of_half): &(&str, Vec<Judged<'_>>)| !of_half.is_empty())
-        .collect();
-    let mut whole = of_cases(&cases);
-    whole.json["unanswered"] = unanswered.into();
-    for (half, of_half) in &halves {
-        let part = if halves.len() > 1 { of_cases(of_half) } else { of_cases(&cases) };
-        if halves.len() > 1 {
-            whole.text += &format!("\n{half}\n{}", part.text);
-        }
-        whole.json[*half] = part.json;
+    let outcomes: BTreeMap<&str, &Outcome> =
+        outcomes.iter().map(|(case, outcome)| (case.as_str(), outcome)).collect();
+    let half = |name: &str| {
+        let is_of_half = |case: &&Judged<'_>| case.truth.case.starts_with(name);
+        let cases: Vec<Judged<'_>> = cases.iter().filter(is_of_half).cloned().collect();
+        (!cases.is_empty()).then(|| part(&cases, &outcomes))
+    };
+    Score {
+        whole: part(&cases, &outcomes),
+        unanswered: truths.len() - cases.len(),
+        rig: half("rig"),
+        calibration: half("calibration"),
     }
-    let mut first = String::new();
-    for (half, _) in &halves {
-        let missed = whole.json[*half]["missed_targets"].as_array().into_iter().flatten();
-        missed.filter_map(Value::as_str).for_each(|words| first += &format!("MISSED {half}: {words}\n"));
-    }
-    whole.text = if first.is_empty() { whole.text } else { first + "\n" + &whole.text };
-    whole
 }
 
 /// The score of cases in their order.
-fn of_cases(cases: &[Judged<'_>], outcomes: &BTreeMap<&str, &Outcome>) -> Score {
+fn part(cases: &[Judged<'_>], outcomes: &BTreeMap<&str, &Outcome>) -> Part {
     let of_kind = |kind: Kind| cases.iter().filter(move |case| case.truth.kind == kind);
     let first = |case: &&Judged<'_>| case.truth.effects.first().map(|e| e.detectability.clone());
     let is_identifiable =
@@ -139,99 +123,61 @@ fn of_cases(cases: &[Judged<'_>], outcomes: &BTreeMap<&str, &Outcome>) -> Score 
 
     let pairs: Vec<&Judged<'_>> = of_kind(Kind::Pair).filter(is_identifiable).collect();
     let found = |case: &Judged<'_>| case.truth.effects.iter().filter(|e| case.found(e).is_some()).count();
-    let both = Rate::of(pairs.iter(), |case| found(case) == 2);
-    let one = Rate::of(pairs.iter(), |case| found(case) >= 1);
+    let both_found = Rate::of(pairs.iter(), |case| found(case) == 2);
+    let one_found = Rate::of(pairs.iter(), |case| found(case) >= 1);
 
     let unknown: Vec<&Judged<'_>> = of_kind(Kind::Unknown).filter(is_identifiable).collect();
-    let called = Rate::of(unknown.iter(), |case| case.is_unexplained && case.findings.is_empty());
-    let wrongly = Rate::of(unknown.iter(), |case| !case.findings.is_empty());
+    let called_unknown = Rate::of(unknown.iter(), |case| case.is_unexplained && case.findings.is_empty());
+    let wrongly_named = Rate::of(unknown.iter(), |case| !case.findings.is_empty());
 
     let speaking = || cases.iter().filter(|case| !case.findings.is_empty());
-    let right = Rate::of(speaking(), |case| case.is_concealed(case.said()));
-    let right_class =
+    let right_when_named = Rate::of(speaking(), |case| case.is_concealed(case.said()));
+    let class_right_when_named =
         Rate::of(speaking(), |case| case.class().into_iter().any(|name| case.is_concealed(name)));
 
-    let mut coverage = Rate::default();
-    let mut by_parameter: BTreeMap<String, Rate> = BTreeMap::new();
+    let mut coverage = Coverage::default();
     for case in cases.iter().filter(|case| case.truth.kind != Kind::Unknown) {
         for concealed in &case.truth.effects {
             for (name, is_in) in case.covered(concealed) {
-                coverage.add(is_in);
-                by_parameter.entry(format!("{} {name}", concealed.effect)).or_default().add(is_in);
+                coverage.all.add(is_in);
+                coverage.by_parameter.entry(format!("{} {name}", concealed.effect)).or_default().add(is_in);
             }
         }
     }
     let gains =
         identifiable.iter().chain(&pairs).filter_map(|case| Some((case.gain?, case.truth.oracle_gain?)));
     let (gained, possible) = gains.fold((0.0, 0.0), |sum, (gain, oracle)| (sum.0 + gain, sum.1 + oracle));
-    let gain_over_oracle = (possible > 0.0).then(|| gained / possible);
-    let by_parameter: BTreeMap<String, Value> =
-        by_parameter.iter().map(|(k, rate)| (k.clone(), rate.json())).collect();
-
-    let (counterfactual_over_oracle, counterfactual) = counterfactual::of(cases);
-    let next = next::of(cases, outcomes);
-
-    let mut json = json!({
-        "cases": cases.len(),
-        "failed": cases.iter().filter(|case| case.failed).count(),
-        "clean": {
-            "n": false_names.of, "false_names": false_names.count, "false_unexplained": false_unexplained.count,
-            "false_names_rate": false_names.json(), "false_unexplained_rate": false_unexplained.json(),
+    let counterfactual = counterfactual::foretold(cases);
+    let mut part = Part {
+        cases: cases.len(),
+        failed: cases.iter().filter(|case| case.failed).count(),
+        clean: Clean { false_names, false_unexplained },
+        single: Singles {
+            n: of_kind(Kind::Single).count(),
+            name_ok,
+            location_ok,
+            missed,
+            in_class,
+            class_size,
         },
-        "single": {
-            "n": of_kind(Kind::Single).count(), "identifiable": identifiable.len(),
-            "name_ok": name_ok.count, "location_ok": location_ok.count, "in_class": in_class.count,
-            "missed": missed.count, "class_size": class_size,
-            "name_ok_rate": name_ok.json(), "location_ok_rate": location_ok.json(), "in_class_rate": in_class.json(),
-        },
-        "pairs": {
-            "n": of_kind(Kind::Pair).count(), "identifiable": pairs.len(),
-            "both_found": both.count, "one_found": one.count, "both_found_rate": both.json(),
-        },
-        "unknown": {
-            "n": of_kind(Kind::Unknown).count(), "identifiable": unknown.len(),
-            "called_unknown": called.count, "wrongly_named": wrongly.count,
-            "called_unknown_rate": called.json(), "wrongly_named_rate": wrongly.json(),
-        },
-        "right_when_named": right.json(),
-        "class_right_when_named": right_class.json(),
-        "coverage": coverage.share(),
-        "coverage_rate": coverage.json(),
-        "coverage_by_parameter": by_parameter,
-        "gain_over_oracle": gain_over_oracle,
-        "counterfactual_over_oracle": counterfactual_over_oracle,
-        "counterfactual": counterfactual,
-        "next_measurement_ok": next,
-        "bins": tables::bins(cases),
-        "confusion": tables::confusion(cases),
-        "outside": tables::outside(cases),
-        "power": tables::power(cases),
-        "failures": tables::failures(cases),
-    });
-    json["missed_targets"] = targets::missed(&json).into();
-    let mut text = String::new();
-    let mut say = |what: &str, words: String| text += &format!("{what:44} {words}\n");
-    say("clean: false names", false_names.words());
-    say("clean: called unexplained", false_unexplained.words());
-    say("single, identifiable: name right", name_ok.words());
-    say("single, identifiable: name and place right", location_ok.words());
-    say("single, identifiable: nothing named", missed.words());
-    say(
-        "single, detectable, named: truth in class",
-        format!("{}; class of {class_size:.1}", in_class.words()),
-    );
-    say("pairs, identifiable: both found", both.words());
-    say("pairs, identifiable: one found", one.words());
-    say("unknown, identifiable: called unexplained", called.words());
-    say("unknown, identifiable: wrongly named", wrongly.words());
-    say("right when it names", right.words());
-    say("right, or in its class, when it names", right_class.words());
-    say("95 % intervals that hold the truth", coverage.words());
-    say("held-out gain over the oracle's", gain_over_oracle.map_or("no case".into(), |g| format!("{g:.3}")));
-    say("error of other readings over the oracle's", counterfactual::words(&json["counterfactual"]));
-    say("ambiguous: settled by what is proposed", next::words(&json["next_measurement_ok"]));
-    text += &tables::confusion_text(cases);
-    Score { json, text }
+        pairs: Pairs { n: of_kind(Kind::Pair).count(), both_found, one_found },
+        unknown: Unknown { n: of_kind(Kind::Unknown).count(), called_unknown, wrongly_named },
+        right_when_named,
+        class_right_when_named,
+        coverage,
+        gain_over_oracle: (possible > 0.0).then(|| gained / possible),
+        counterfactual_over_oracle: counterfactual.median,
+        counterfactual,
+        next_measurement_ok: next::next_measurement(cases, outcomes),
+        bins: tables::bins(cases),
+        confusion: tables::confusion(cases),
+        outside: tables::outside(cases),
+        power: tables::power(cases),
+        failures: tables::failures(cases),
+        missed_targets: Vec::new(),
+    };
+    part.missed_targets = targets::missed(&part);
+    part
 }
 
 #[cfg(test)]

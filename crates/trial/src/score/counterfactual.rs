@@ -1,7 +1,9 @@
 //! How well readings are foretold that were asked for and not given.
 
+use std::fmt;
+
 use nalgebra::Vector3;
-use serde_json::{Value, json};
+use serde::Serialize;
 
 use super::judged::Judged;
 use crate::answers::Answer;
@@ -9,7 +11,7 @@ use crate::truth::{Kind, Truth};
 use rodcal_base::spatial::best_motion;
 
 /// Errors of the readings that were asked for, root mean squares, µm.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Counterfactual {
     /// Of the answer.
     pub answer_um: f64,
@@ -53,8 +55,39 @@ fn moved_onto(said: &[f64], goal: &[f64]) -> Option<Vec<f64>> {
     Some(points.iter().flat_map(|point| <[f64; 3]>::from(motion.point(point))).collect())
 }
 
-/// Of the identifiable cases with an oracle: the median of the ratio, and its details.
-pub fn of(cases: &[Judged<'_>]) -> (Option<f64>, Value) {
+/// Errors of what was asked over the oracle's, of the identifiable cases with an oracle.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct Foretold {
+    /// Such cases.
+    pub n: usize,
+    /// Those that were answered.
+    pub answered: usize,
+    /// Of the ratios of errors; `None` of no case.
+    pub median: Option<f64>,
+    #[allow(missing_docs)]
+    pub quartiles: [Option<f64>; 2],
+    /// Median of the answers' errors over the noise.
+    pub answer_over_noise_median: Option<f64>,
+    /// And of the oracle's.
+    pub oracle_over_noise_median: Option<f64>,
+    /// The largest ratios.
+    pub worst: Vec<Worst>,
+}
+
+/// A case whose answer is far from the oracle's.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Worst {
+    /// `rig/case-0001`.
+    pub case: String,
+    /// Error of the answer over the oracle's.
+    pub ratio: f64,
+    /// Root mean squares.
+    #[serde(flatten)]
+    pub errors: Counterfactual,
+}
+
+/// How well identifiable cases with an oracle are foretold.
+pub fn foretold(cases: &[Judged<'_>]) -> Foretold {
     let is_asked = |case: &&Judged<'_>| {
         let has_oracle = case.truth.asked.as_ref().is_some_and(|asked| asked.oracle_um.is_some());
         let is_identifiable = case.truth.effects.iter().all(|e| e.detectability.is_identifiable());
@@ -72,37 +105,32 @@ pub fn of(cases: &[Judged<'_>]) -> (Option<f64>, Value) {
         all
     };
     let ratios: Vec<f64> = told.iter().map(|(ratio, ..)| *ratio).collect();
-    let median = quantile(&ratios, 0.5);
-    let worst: Vec<Value> = told
-        .iter()
-        .rev()
-        .take(MOST_WORST)
-        .map(|(ratio, errors, case)| {
-            json!({ "case": case.truth.case, "ratio": ratio, "answer_um": errors.answer_um,
-                    "oracle_um": errors.oracle_um, "noise_um": errors.noise_um })
-        })
-        .collect();
-    let json = json!({
-        "n": asked.len(),
-        "answered": told.len(),
-        "median": median,
-        "quartiles": [quantile(&ratios, 0.25), quantile(&ratios, 0.75)],
-        "answer_over_noise_median": quantile(&sorted(&|e| e.answer_um / e.noise_um), 0.5),
-        "oracle_over_noise_median": quantile(&sorted(&|e| e.oracle_um / e.noise_um), 0.5),
-        "worst": worst,
-    });
-    (median, json)
+    let worst = told.iter().rev().take(MOST_WORST);
+    Foretold {
+        n: asked.len(),
+        answered: told.len(),
+        median: quantile(&ratios, 0.5),
+        quartiles: [0.25, 0.75].map(|share| quantile(&ratios, share)),
+        answer_over_noise_median: quantile(&sorted(&|e| e.answer_um / e.noise_um), 0.5),
+        oracle_over_noise_median: quantile(&sorted(&|e| e.oracle_um / e.noise_um), 0.5),
+        worst: worst
+            .map(|(ratio, errors, case)| Worst {
+                case: case.truth.case.clone(),
+                ratio: *ratio,
+                errors: *errors,
+            })
+            .collect(),
+    }
 }
 
-/// `1.31 in 40 of 41 cases, half of them from 1.02 to 2.5`.
-pub fn words(details: &Value) -> String {
-    let [low, high] = [0, 1].map(|k| details["quartiles"][k].as_f64());
-    match (details["median"].as_f64(), low, high) {
-        (Some(median), Some(low), Some(high)) => format!(
-            "{median:.2} (median of {} of {} cases; half of them {low:.2} to {high:.2})",
-            details["answered"], details["n"]
-        ),
-        _ => "no case".into(),
+/// `1.31 (median of 40 of 41 cases; half of them 1.02 to 2.50)`.
+impl fmt::Display for Foretold {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (Some(median), [Some(low), Some(high)]) = (self.median, self.quartiles) else {
+            return f.write_str("no case");
+        };
+        let (answered, n) = (self.answered, self.n);
+        write!(f, "{median:.2} (median of {answered} of {n} cases; half of them {low:.2} to {high:.2})")
     }
 }
 

@@ -2,9 +2,10 @@
 //! effects, put below the recording, and diagnosed once more.
 
 use std::collections::BTreeMap;
+use std::fmt;
 use std::path::Path;
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize, Serializer};
 use serde_json::{Value, json};
 
 use super::judged::{Finding, Judged, first_word};
@@ -129,58 +130,111 @@ fn is_settled(truth: &Truth, before: &Finding, concealed: &Concealed, after: &Ju
     })
 }
 
-/// Counts of what became of the proposals.
-pub fn of(cases: &[Judged<'_>], outcomes: &BTreeMap<&str, &Outcome>) -> Value {
-    let (mut ok, mut of_effects, mut of_places) = (Rate::default(), Rate::default(), Rate::default());
-    let (mut not_proposed, mut not_done) = (0, BTreeMap::<&str, usize>::new());
-    let mut open = Vec::new();
+/// What became of the proposals.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct NextMeasurement {
+    /// Proposals that settled what was ambiguous.
+    pub settled: Rate,
+    /// Those where it was which effect,
+    pub effects: Rate,
+    /// and those where it was only which place.
+    pub places: Rate,
+    /// Ambiguous answers without a proposal.
+    pub not_proposed: usize,
+    /// Proposals that could not be done or not be diagnosed, by their reason.
+    pub not_done: BTreeMap<String, usize>,
+    /// Proposals that did not settle it.
+    pub open: Vec<Open>,
+}
+
+/// A case that a proposal did not settle.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Open {
+    /// `rig/case-0001`.
+    pub case: String,
+    /// What was concealed, and where.
+    pub truth: String,
+    /// The ambiguous finding.
+    pub before: Said,
+    /// What it proposed.
+    pub next_measurement: Option<String>,
+    /// The findings after that measurement.
+    pub after: Vec<Said>,
+    /// A remainder was called unexplained.
+    pub unexplained: bool,
+}
+
+/// Name and place of a finding, and what it may be as well.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[allow(missing_docs)]
+pub struct Said {
+    pub effect: String,
+    pub location: String,
+    pub indistinguishable_from: Vec<String>,
+    pub places: Vec<String>,
+}
+
+impl Said {
+    fn of(finding: &Finding) -> Said {
+        Said {
+            effect: finding.effect.clone(),
+            location: finding.location.clone(),
+            indistinguishable_from: finding.indistinguishable_from.clone(),
+            places: finding.places.clone(),
+        }
+    }
+}
+
+/// Counts what became of the proposals.
+pub fn next_measurement(cases: &[Judged<'_>], outcomes: &BTreeMap<&str, &Outcome>) -> NextMeasurement {
+    let mut next = NextMeasurement::default();
     for case in cases {
         let Some((finding, concealed)) = ambiguous(case) else { continue };
         match outcomes.get(case.truth.case.as_str()) {
-            None => *not_done.entry("not asked").or_default() += 1,
-            Some(Outcome::NotProposed) => not_proposed += 1,
-            Some(Outcome::NotDone(why)) => *not_done.entry(why).or_default() += 1,
+            None => *next.not_done.entry("not asked".into()).or_default() += 1,
+            Some(Outcome::NotProposed) => next.not_proposed += 1,
+            Some(Outcome::NotDone(why)) => *next.not_done.entry(why.clone()).or_default() += 1,
             Some(Outcome::Diagnosed(answer)) => {
                 let after = Judged::of_diagnosis(case.truth, answer);
                 let is_ok = is_settled(case.truth, finding, concealed, &after);
-                ok.add(is_ok);
-                let part =
-                    if finding.indistinguishable_from.is_empty() { &mut of_places } else { &mut of_effects };
+                next.settled.add(is_ok);
+                let is_of_places = finding.indistinguishable_from.is_empty();
+                let part = if is_of_places { &mut next.places } else { &mut next.effects };
                 part.add(is_ok);
                 if !is_ok {
-                    let said = |f: &Finding| {
-                        json!({ "effect": f.effect, "location": f.location,
-                        "indistinguishable_from": f.indistinguishable_from, "places": f.places })
-                    };
-                    open.push(json!({
-                        "case": case.truth.case,
-                        "truth": format!("{} at {}", concealed.effect, concealed.location),
-                        "before": said(finding),
-                        "next_measurement": finding.next_measurement,
-                        "after": after.findings.iter().map(said).collect::<Vec<_>>(),
-                        "unexplained": after.is_unexplained,
-                    }));
+                    next.open.push(Open {
+                        case: case.truth.case.clone(),
+                        truth: format!("{} at {}", concealed.effect, concealed.location),
+                        before: Said::of(finding),
+                        next_measurement: finding.next_measurement.clone(),
+                        after: after.findings.iter().map(Said::of).collect(),
+                        unexplained: after.is_unexplained,
+                    });
                 }
             }
         }
     }
-    json!({
-        "n": ok.of, "ok": ok.count, "rate": ok.json(),
-        "effects": of_effects.json(), "places": of_places.json(),
-        "not_proposed": not_proposed, "not_done": not_done, "open": open,
-    })
+    next
 }
 
-/// `12 of 40, 30 % (18 to 45); 3 without a proposal, 1 could not be done (a station that is not on the rod)`.
-pub fn words(counts: &Value) -> String {
-    let number = |key: &str| counts[key].as_u64().unwrap_or(0) as usize;
-    let mut words = Rate { count: number("ok"), of: number("n") }.words();
-    match number("not_proposed") {
-        0 => {}
-        n => words += &format!("; {n} more without a proposal"),
+impl Serialize for NextMeasurement {
+    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+        json!({
+            "n": self.settled.of, "ok": self.settled.count, "rate": self.settled,
+            "effects": self.effects, "places": self.places,
+            "not_proposed": self.not_proposed, "not_done": self.not_done, "open": self.open,
+        })
+        .serialize(serializer)
     }
-    for (why, count) in counts["not_done"].as_object().into_iter().flatten() {
-        words += &format!("; {count} not done ({why})");
+}
+
+/// `12 of 40, 30.0 % (18.1 to 45.4); 3 more without a proposal; 1 not done (a station that is not on the rod)`.
+impl fmt::Display for NextMeasurement {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.settled)?;
+        if self.not_proposed > 0 {
+            write!(f, "; {} more without a proposal", self.not_proposed)?;
+        }
+        self.not_done.iter().try_for_each(|(why, count)| write!(f, "; {count} not done ({why})"))
     }
-    words
 }

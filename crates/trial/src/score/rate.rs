@@ -1,6 +1,9 @@
 //! A share of cases with its interval.
 
-use serde_json::{Value, json};
+use std::fmt;
+
+use serde::{Serialize, Serializer};
+use serde_json::json;
 
 /// Quantile of the normal distribution for 95 %.
 const Z: f64 = 1.959_964;
@@ -41,26 +44,25 @@ impl Rate {
         let scale = 1.0 + Z * Z / n;
         Some([((centre - half) / scale).max(0.0), ((centre + half) / scale).min(1.0)])
     }
+}
 
-    /// `{"count", "of", "share", "lo", "hi"}`.
-    pub fn json(&self) -> Value {
+/// `{"count", "of", "share", "lo", "hi"}`.
+impl Serialize for Rate {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let [lo, hi] = self.interval().map_or([None; 2], |[lo, hi]| [Some(lo), Some(hi)]);
         json!({"count": self.count, "of": self.of, "share": self.share(), "lo": lo, "hi": hi})
+            .serialize(serializer)
     }
+}
 
-    /// `12 of 40, 30 % (18 to 45)`.
-    pub fn words(&self) -> String {
-        match (self.share(), self.interval()) {
-            (Some(share), Some([lo, hi])) => format!(
-                "{} of {}, {:.1} % ({:.1} to {:.1})",
-                self.count,
-                self.of,
-                100.0 * share,
-                100.0 * lo,
-                100.0 * hi
-            ),
-            _ => "no case".into(),
-        }
+/// `12 of 40, 30.0 % (18.1 to 45.4)`.
+impl fmt::Display for Rate {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (Some(share), Some([lo, hi])) = (self.share(), self.interval()) else {
+            return f.write_str("no case");
+        };
+        let [share, lo, hi] = [share, lo, hi].map(|part| 100.0 * part);
+        write!(f, "{} of {}, {share:.1} % ({lo:.1} to {hi:.1})", self.count, self.of)
     }
 }
 

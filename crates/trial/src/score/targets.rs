@@ -1,80 +1,113 @@
 //! What a diagnosis must reach, and where it does not: METHOD's targets, met by the share itself, not by its interval.
 
-use serde_json::Value;
+use std::fmt;
 
-/// Of a score at this place the number must not be below or above.
-struct Target {
-    what: &'static str,
-    at: &'static str,
-    from: f64,
-    to: f64,
+use serde::{Serialize, Serializer};
+
+use super::Part;
+
+/// A number of a score that must not be below or above.
+#[derive(Debug, Clone, Copy)]
+pub struct Target {
+    /// What it counts.
+    pub what: &'static str,
+    /// The number; `None` where no case speaks about it.
+    of: fn(&Part) -> Option<f64>,
+    /// Least and most, both inclusive.
+    pub from: f64,
+    #[allow(missing_docs)]
+    pub to: f64,
 }
 
-const TARGETS: [Target; 9] = [
-    Target { what: "false names on clean data", at: "/clean/false_names_rate/share", from: 0.0, to: 0.02 },
-    Target { what: "right when it names", at: "/right_when_named/share", from: 0.95, to: 1.0 },
+/// A target that a score misses. Its `Display` is the sentence.
+#[derive(Debug, Clone, Copy)]
+pub struct Missed {
+    /// What was to be reached.
+    pub target: &'static Target,
+    /// What was.
+    pub share: f64,
+}
+
+const fn least(what: &'static str, from: f64, of: fn(&Part) -> Option<f64>) -> Target {
+    Target { what, of, from, to: 1.0 }
+}
+
+const fn most(what: &'static str, to: f64, of: fn(&Part) -> Option<f64>) -> Target {
+    Target { what, of, from: 0.0, to }
+}
+
+static TARGETS: [Target; 9] = [
+    most("false names on clean data", 0.02, |part| part.clean.false_names.share()),
+    least("right when it names", 0.95, |part| part.right_when_named.share()),
+    least("name and place of one identifiable effect", 0.9, |part| part.single.location_ok.share()),
+    least("truth inside the reported class", 0.95, |part| part.single.in_class.share()),
+    least("unknown physics called unexplained", 0.9, |part| part.unknown.called_unknown.share()),
+    most("unknown physics wrongly named", 0.05, |part| part.unknown.wrongly_named.share()),
+    least("both of two identifiable effects found", 0.6, |part| part.pairs.both_found.share()),
     Target {
-        what: "name and place of one identifiable effect",
-        at: "/single/location_ok_rate/share",
+        what: "95 % intervals that hold the truth",
+        of: |part| part.coverage.all.share(),
         from: 0.9,
-        to: 1.0,
+        to: 0.98,
     },
     Target {
-        what: "truth inside the reported class",
-        at: "/single/in_class_rate/share",
-        from: 0.95,
-        to: 1.0,
-    },
-    Target {
-        what: "unknown physics called unexplained",
-        at: "/unknown/called_unknown_rate/share",
+        what: "held-out gain over the oracle's",
+        of: |part| part.gain_over_oracle,
         from: 0.9,
-        to: 1.0,
+        to: f64::INFINITY,
     },
-    Target {
-        what: "unknown physics wrongly named",
-        at: "/unknown/wrongly_named_rate/share",
-        from: 0.0,
-        to: 0.05,
-    },
-    Target {
-        what: "both of two identifiable effects found",
-        at: "/pairs/both_found_rate/share",
-        from: 0.6,
-        to: 1.0,
-    },
-    Target { what: "95 % intervals that hold the truth", at: "/coverage", from: 0.9, to: 0.98 },
-    Target { what: "held-out gain over the oracle's", at: "/gain_over_oracle", from: 0.9, to: f64::INFINITY },
 ];
 
-/// A sentence for each target that a score misses; what no case speaks about is not missed.
-pub fn missed(score: &Value) -> Vec<String> {
-    let sentence = |target: &Target| {
-        let share = score.pointer(target.at)?.as_f64()?;
-        let percent = |share: f64| format!("{:.1} %", 100.0 * share);
-        let wanted = match (target.from, target.to) {
-            (from, to) if from > 0.0 && to < 1.0 => format!("{} to {}", percent(from), percent(to)),
-            (from, _) if from > 0.0 => format!("at least {}", percent(from)),
-            (_, to) => format!("at most {}", percent(to)),
-        };
-        let is_missed = share < target.from || share > target.to;
-        is_missed.then(|| format!("{}: {}, wanted {wanted}", target.what, percent(share)))
+/// The targets that a score misses; what no case speaks about is not missed.
+pub fn missed(part: &Part) -> Vec<Missed> {
+    let of_target = |target: &'static Target| {
+        let share = (target.of)(part)?;
+        (share < target.from || share > target.to).then_some(Missed { target, share })
     };
-    TARGETS.iter().filter_map(sentence).collect()
+    TARGETS.iter().filter_map(of_target).collect()
+}
+
+impl fmt::Display for Missed {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let percent = |share: f64| format!("{:.1} %", 100.0 * share);
+        let Target { what, from, to, .. } = *self.target;
+        write!(f, "{what}: {}, wanted ", percent(self.share))?;
+        match (from, to) {
+            (from, to) if from > 0.0 && to < 1.0 => write!(f, "{} to {}", percent(from), percent(to)),
+            (from, _) if from > 0.0 => write!(f, "at least {}", percent(from)),
+            (_, to) => write!(f, "at most {}", percent(to)),
+        }
+    }
+}
+
+impl PartialEq for Missed {
+    fn eq(&self, other: &Missed) -> bool {
+        self.target.what == other.target.what && self.share == other.share
+    }
+}
+
+/// The sentence.
+impl Serialize for Missed {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
 }
 
 #[cfg(test)]
 mod tests {
-    use serde_json::json;
-
+    use super::super::{Clean, Coverage, Rate};
     use super::*;
 
     #[test]
     fn what_is_missed_is_said_and_what_nobody_asked_is_not() {
-        let score = json!({"clean": {"false_names_rate": {"share": 0.03}}, "coverage": 0.99,
-                           "pairs": {"both_found_rate": {"share": null}}, "gain_over_oracle": 0.95});
+        let part = Part {
+            clean: Clean { false_names: Rate { count: 3, of: 100 }, ..Clean::default() },
+            coverage: Coverage { all: Rate { count: 99, of: 100 }, ..Coverage::default() },
+            gain_over_oracle: Some(0.95),
+            ..Part::default()
+        };
         assert_eq!(
-            missed(&score),
+            missed(&part).iter().map(Missed::to_string).collect::<Vec<_>>(),
             [
                 "false names on clean data: 3.0 %, wanted at most 2.0 %",
                 "95 % intervals that hold the truth: 99.0 %, wanted 90.0 % to 98.0 %"

@@ -1,6 +1,6 @@
 use std::collections::BTreeMap;
 
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::*;
 use crate::truth::{Asked, Concealed, Parameter};
@@ -96,30 +96,63 @@ fn example() -> (Vec<Truth>, Vec<Answer>) {
 #[test]
 fn a_small_trial_is_counted_by_hand() {
     let (truths, answers) = example();
-    let json = of(&truths, &answers, &[]).json;
-    assert_eq!((json["cases"].as_u64(), json["unanswered"].as_u64()), (Some(9), Some(1)));
-    assert_eq!((json["clean"]["n"].as_u64(), json["clean"]["false_names"].as_u64()), (Some(2), Some(1)));
-    let single = &json["single"];
-    let number = |key: &str| single[key].as_u64();
-    assert_eq!((number("n"), number("identifiable")), (Some(4), Some(3)));
+    let score = score(&truths, &answers, &[]);
+    let Part { cases, clean, single, pairs, unknown, .. } = &score.whole;
+    let rate = |count, of| Rate { count, of };
+    assert_eq!((*cases, score.unanswered), (9, 1));
+    assert_eq!(clean.false_names, rate(1, 2));
     // a sleeve at 205 mm is where the joint is; the class of the wrong name holds friction
-    assert_eq!((number("name_ok"), number("location_ok"), number("in_class")), (Some(2), Some(2), Some(3)));
-    assert_eq!(json["pairs"]["both_found"], 1);
-    assert_eq!(
-        (&json["unknown"]["called_unknown"], &json["unknown"]["wrongly_named"]),
-        (&json!(1), &json!(1))
-    );
+    assert_eq!((single.n, single.name_ok, single.location_ok), (4, rate(2, 3), rate(2, 3)));
+    assert_eq!(single.in_class, rate(3, 3));
+    assert_eq!(pairs.both_found, rate(1, 1));
+    assert_eq!((unknown.called_unknown, unknown.wrongly_named), (rate(1, 2), rate(1, 2)));
     // one interval holds 1.0 and one does not; the joint's number was not said
-    assert_eq!(json["coverage"], 0.5);
-    assert_eq!(json["right_when_named"]["count"], 3);
-    assert!((json["gain_over_oracle"].as_f64().unwrap() - 0.75 / 0.8).abs() < 1e-12);
+    assert_eq!(score.whole.coverage.all.share(), Some(0.5));
+    assert_eq!(score.whole.right_when_named.count, 3);
+    assert!((score.whole.gain_over_oracle.unwrap() - 0.75 / 0.8).abs() < 1e-12);
     // nobody was asked for other readings, and nothing was measured once more
-    assert!(json["counterfactual_over_oracle"].is_null());
-    assert_eq!(
-        (&json["next_measurement_ok"]["n"], &json["next_measurement_ok"]["ok"]),
-        (&json!(0), &json!(0))
-    );
-    assert_eq!(json["next_measurement_ok"]["not_done"], json!({"not asked": 4}));
+    assert_eq!(score.whole.counterfactual_over_oracle, None);
+    let next = &score.whole.next_measurement_ok;
+    assert_eq!((next.settled, &next.not_done), (rate(0, 0), &BTreeMap::from([("not asked".to_owned(), 4)])));
+    assert_eq!((score.rig.as_ref(), score.calibration.as_ref()), (Some(&score.whole), None));
+}
+
+/// Scores of former versions are compared with those of today: keys stay, and their order.
+#[test]
+fn as_json_a_score_has_the_keys_that_it_always_had() {
+    let (truths, answers) = example();
+    let json = score(&truths, &answers, &[]).json().unwrap();
+    let keys = |value: &Value| -> Vec<String> { value.as_object().unwrap().keys().cloned().collect() };
+    let part = [
+        "cases",
+        "failed",
+        "clean",
+        "single",
+        "pairs",
+        "unknown",
+        "right_when_named",
+        "class_right_when_named",
+        "coverage",
+        "coverage_rate",
+        "coverage_by_parameter",
+        "gain_over_oracle",
+        "counterfactual_over_oracle",
+        "counterfactual",
+        "next_measurement_ok",
+        "bins",
+        "confusion",
+        "outside",
+        "power",
+        "failures",
+        "missed_targets",
+    ];
+    assert_eq!(keys(&json), [&part[..], &["unanswered", "rig"]].concat());
+    assert_eq!(keys(&json["rig"]), part);
+    assert_eq!(json["single"]["identifiable"], 3);
+    assert_eq!(json["clean"]["false_names_rate"]["share"], 0.5);
+    let missed = "false names on clean data: 50.0 %, wanted at most 2.0 %";
+    assert_eq!(json["missed_targets"][0], missed);
+    assert!(score(&truths, &answers, &[]).text().starts_with(&format!("MISSED rig: {missed}\n")));
 }
 
 #[test]
@@ -131,11 +164,10 @@ fn other_readings_are_scored_against_the_oracle() {
         truths[k].asked = Some(Asked { true_um: vec![1.0, 2.0], oracle_um, is_any_frame: false });
         answers[k].asked_um = Some(said);
     }
-    let json = of(&truths, &answers, &[]).json;
-    assert!((json["counterfactual_over_oracle"].as_f64().unwrap() - 2.0).abs() < 1e-9);
-    let counts = &json["counterfactual"];
-    assert_eq!((&counts["n"], &counts["answered"]), (&json!(2), &json!(1)));
-    assert_eq!(counts["worst"][0]["case"], "rig/case-0003");
+    let part = score(&truths, &answers, &[]).whole;
+    assert!((part.counterfactual_over_oracle.unwrap() - 2.0).abs() < 1e-9);
+    let told = &part.counterfactual;
+    assert_eq!((told.n, told.answered, told.worst[0].case.as_str()), (2, 1, "rig/case-0003"));
 }
 
 #[test]
@@ -156,18 +188,19 @@ fn what_was_measured_once_more_settles_or_does_not() {
     ];
     let outcomes: Vec<(String, Outcome)> = due.into_iter().zip(outcomes).collect();
     let score = sealed.score(&outcomes);
-    let next = &score.json["next_measurement_ok"];
+    let next = &score.whole.next_measurement_ok;
     // a rival that is new is another question
-    assert_eq!((&next["n"], &next["ok"], &next["not_proposed"]), (&json!(2), &json!(1), &json!(1)));
-    assert_eq!(next["not_done"], json!({"the rod broke": 1}));
-    assert_eq!(next["open"][0]["case"], "rig/case-0005");
-    assert!(score.text.contains("1 more without a proposal; 1 not done (the rod broke)"), "{}", score.text);
+    assert_eq!((next.settled, next.not_proposed), (Rate { count: 1, of: 2 }, 1));
+    assert_eq!(next.not_done, BTreeMap::from([("the rod broke".to_owned(), 1)]));
+    assert_eq!(next.open[0].case, "rig/case-0005");
+    let text = score.text();
+    assert!(text.contains("1 more without a proposal; 1 not done (the rod broke)"), "{text}");
 }
 
 #[test]
 fn the_order_of_answers_does_not_matter() {
     let (truths, mut answers) = example();
-    let before = of(&truths, &answers, &[]);
+    let before = score(&truths, &answers, &[]);
     answers.reverse();
-    assert_eq!(of(&truths, &answers, &[]), before);
+    assert_eq!(score(&truths, &answers, &[]), before);
 }

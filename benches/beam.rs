@@ -2,7 +2,7 @@
 //! dense stiffness method of our own on the same elements. Only the ratios mean anything: run them in one go.
 //! Before that, how far each is off the independent references.
 //!
-//! `cargo bench --bench beam`
+//! `cargo bench -p rodcal-benches --bench beam`
 
 #![allow(missing_docs, clippy::unwrap_used, clippy::print_stdout)]
 

@@ -1,7 +1,7 @@
 //! Time of one calibration of a simulated TX90 campaign, beside what the bare QR factorisations of its Jacobians cost,
 //! and over the number of poses. Only the ratios mean anything: run them in one go.
 //!
-//! `cargo bench --bench calibration`
+//! `cargo bench -p rodcal-benches --bench calibration`
 
 #![allow(missing_docs, clippy::unwrap_used, clippy::print_stdout)]
 

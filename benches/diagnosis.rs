@@ -2,7 +2,7 @@
 //! rows and as many columns as there are candidates; of a campaign on all cores, beside its calibration. Only the ratio of
 //! the two means the same on every machine.
 //!
-//! `cargo bench --bench diagnosis`
+//! `cargo bench -p rodcal-benches --bench diagnosis`
 
 #![allow(missing_docs, clippy::unwrap_used, clippy::print_stdout)]
 
@@ -21,8 +21,8 @@ use rodcal::diagnosis::{World, calibration};
 use rodcal::rig::readings::Readings;
 use rodcal::robot::Robot;
 use rodcal::rod::Rod;
-use rodcal::trial::rig::{Effect, Order};
 use rodcal::units::UM;
+use rodcal_trial::rig::{Effect, Order};
 
 /// Friction and a soft sensor: two effects to be found, in every fold again.
 fn recording(trials: usize) -> (Rod, Readings) {

@@ -2,7 +2,7 @@
 //! what the search costs on top of what no Gauss–Newton method can do without. And the time of one linear fit over
 //! the number of its rows, in blocks: it should grow as they do.
 //!
-//! `cargo bench --bench least_squares`; with the argument `fits 100` or `factorisations 100` it does only that, for
+//! `cargo bench -p rodcal-benches --bench least_squares`; with the argument `fits 100` or `factorisations 100` it does only that, for
 //! `valgrind --tool=callgrind`.
 
 #![allow(missing_docs, clippy::unwrap_used, clippy::print_stdout)]

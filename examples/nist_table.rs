@@ -1,12 +1,11 @@
 //! Prints the table of matching digits of docs/least-squares.md; see there.
-#![allow(clippy::print_stdout, missing_docs)]
 
 #[path = "../tests/nist/problems.rs"]
 mod problems;
 
 use problems::Nist;
 
-fn main() {
+pub fn main() {
     let Some(all) = Nist::all(&Nist::folder()) else {
         println!("no NIST files in {}", Nist::folder().display());
         return;

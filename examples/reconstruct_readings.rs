@@ -1,6 +1,6 @@
 //! Makes `stiffness_data/2.csv` and `5.csv`: rig readings as the paper's figures imply them.
 //!
-//! `cargo run --example reconstruct_readings` writes both files; a test makes sure that they are
+//! `cargo run --example regenerate -- readings` writes both files; a test makes sure that they are
 //! what this makes.
 //!
 //! Published (Improved MultiCal, *Sensors* 23 (2023) 5717, § 5.1, Table 2): loads of 0.5, 1, 1.5
@@ -78,7 +78,7 @@ fn normal(random: &mut ChaCha8Rng) -> f64 {
 }
 
 #[allow(dead_code)]
-fn main() {
+pub fn main() {
     let project = Path::new(env!("CARGO_MANIFEST_DIR"));
     for (name, text) in files(project) {
         rodcal::files::write_whole(&project.join(name), text.as_bytes()).unwrap();

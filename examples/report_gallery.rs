@@ -1,5 +1,5 @@
 //! Writes a report with one of every picture into a directory, to look at while working on them:
-//! `cargo run --example report_gallery -- <directory> <poses>`. The numbers are invented but of the
+//! `cargo run --example regenerate -- gallery <directory> <poses>`. The numbers are invented but of the
 //! right size.
 
 use rand::{RngExt, SeedableRng};
@@ -17,10 +17,10 @@ use rodcal::report::pictures::{
 use rodcal::report::table::{Column, Table};
 use rodcal::report::{Block, Report, Section};
 
-fn main() -> rodcal::Result<()> {
-    let directory = std::env::args().nth(1).unwrap_or_else(|| "reports/gallery".into());
-    let poses = std::env::args().nth(2).and_then(|n| n.parse().ok()).unwrap_or(150);
-    let files = report(poses).files(true)?;
+pub fn main(arguments: &[String]) -> rodcal::Result<()> {
+    let directory = arguments.first().cloned().unwrap_or_else(|| "reports/gallery".into());
+    let poses = arguments.get(1).and_then(|n| n.parse().ok()).unwrap_or(150);
+    let files = report(poses).files()?;
     rodcal::files::write_together(std::path::Path::new(&directory), &files)
 }
 

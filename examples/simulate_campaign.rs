@@ -1,6 +1,6 @@
 //! Makes `campaigns/tx90-5/`: a small campaign of a TX90 with the paper's rod 5#, simulated.
 //!
-//! `cargo run --example simulate_campaign` writes its files; a test makes sure that they are what
+//! `cargo run --example regenerate -- campaign` writes its files; a test makes sure that they are what
 //! this makes.
 //!
 //! Smaller than the paper's (12 poses on each clamp, 30 of validation), so that trying it takes no
@@ -37,7 +37,7 @@ pub fn files(project: &Path) -> Vec<(String, String)> {
 }
 
 #[allow(dead_code)]
-fn main() {
+pub fn main() {
     let project = Path::new(env!("CARGO_MANIFEST_DIR"));
     for (name, text) in files(project) {
         rodcal::files::write_whole(&project.join(name), text.as_bytes()).unwrap();

@@ -1,7 +1,7 @@
 //! The paper's Table 3 by simulation: six rods, every mode of compensation, validation errors
 //! beside the published ones.
 //!
-//! `cargo run --release --example table3` prints the tables of `docs/simulation.md`; a number after
+//! `cargo run --release --example regenerate -- table3` prints the tables of `docs/simulation.md`; a number after
 //! `--` changes how many seeds are taken for each rod.
 //!
 //! Published (Improved MultiCal, *Sensors* 23 (2023) 5717, Tables 1 to 3, § 5): the robot's model,
@@ -102,8 +102,8 @@ struct Field {
     after_all: f64,
 }
 
-fn main() {
-    let seeds: usize = std::env::args().nth(1).map_or(40, |count| count.parse().unwrap());
+pub fn main(arguments: &[String]) {
+    let seeds: usize = arguments.first().map_or(40, |count| count.parse().unwrap());
     let (_, text) = Robot::builtin("tx90").unwrap();
     let robot = Robot::from_text("tx90.toml", text, None, None).unwrap();
     let project = Path::new(env!("CARGO_MANIFEST_DIR"));

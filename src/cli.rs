@@ -98,6 +98,7 @@ enum Command {
 
 /// Runs the command that was asked for.
 pub fn run(arguments: &Arguments) -> Result<Outcome> {
+    output::check(&arguments.output)?;
     match &arguments.command {
         None | Some(Command::Demo) => demo::run(),
         Some(Command::Compliance(command)) => command.run(),

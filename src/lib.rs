@@ -66,25 +66,21 @@
 pub mod beam;
 pub mod calibration;
 pub mod compliance;
-pub mod delimited;
 pub mod diagnosis;
-pub mod error;
-pub mod files;
 pub mod inference;
-pub mod least_squares;
-pub mod linalg;
 pub mod material;
-pub mod parallel;
 pub mod prelude;
 pub mod report;
 pub mod rig;
 pub mod robot;
 pub mod rod;
 pub mod section;
-pub mod spatial;
-pub mod statistics;
-pub mod toml_text;
-pub mod trial;
-pub mod units;
+
+// The ground floor has a crate of its own (`crates/base`); its rooms keep their names here.
+pub use rodcal_base::units;
+#[doc(hidden)]
+pub use rodcal_base::{
+    delimited, error, files, least_squares, linalg, parallel, spatial, statistics, toml_text,
+};
 
 pub use error::{Error, Result};

@@ -4,10 +4,9 @@
 //! the bytes of a self-contained page and of every table and figure on its own. Nothing here reads
 //! or writes a file, and the same report always gives the same bytes.
 //!
-//! - [`chart`]: charts as data, drawn by [`chart::Figure::svg`] · [`png`]: SVG to PNG
+//! - [`chart`]: charts as data, drawn by [`chart::Figure::svg`]
 //! - [`pictures`]: the pictures of a rod and of a calibration, from numbers to charts
 //! - [`compliance`] · [`rig`] · [`diagnosis`]: results of the library as reports and as JSON
-//! - [`trial`]: the score of a concealed-effect trial
 //! - [`text`]: a report for the terminal · [`table`]: tables to text, HTML, Markdown, CSV ·
 //!   [`html`]: the page
 
@@ -28,12 +27,10 @@ mod legend;
 mod marks;
 pub mod pictures;
 mod plot;
-pub mod png;
 pub mod prediction;
 pub mod rig;
 mod scale;
 pub mod table;
 pub mod text;
-pub mod trial;
 
 pub use document::{Block, Report, Section};

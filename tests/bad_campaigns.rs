@@ -1,10 +1,7 @@
 //! Campaigns that are wrong are refused with a message that names the place, whichever file is to blame.
 //! No bytes at all make the reader panic.
 
-#[path = "campaigns/desk.rs"]
-mod desk;
-
-use desk::Desk;
+use crate::campaigns::desk::Desk;
 use proptest::prelude::*;
 use rodcal::error::Error;
 

@@ -1,11 +1,8 @@
 //! Robot files that are wrong are refused with a message that names the place, what stood there and what is right.
 //! No text at all makes the reader, the kinematics or the writers panic.
 
-#[path = "bad_robots/any_text.rs"]
 mod any_text;
-#[path = "bad_robots/tables.rs"]
 mod tables;
-#[path = "bad_robots/urdfs.rs"]
 mod urdfs;
 
 use rodcal::error::Error;

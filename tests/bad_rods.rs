@@ -1,11 +1,8 @@
 //! Rod files that are wrong are refused with a message that names the place, what stood there and what is right;
 //! rod files that are odd are warned about. No text at all makes the reader or the beam model panic.
 
-#[path = "bad_rods/any_text.rs"]
 mod any_text;
-#[path = "bad_rods/odd.rs"]
 mod odd;
-#[path = "bad_rods/refused.rs"]
 mod refused;
 
 use rodcal::error::Error;

@@ -2,8 +2,7 @@
 
 #![allow(clippy::unwrap_used)]
 
-#[path = "campaigns/desk.rs"]
-mod desk;
+pub(crate) mod desk;
 
 use std::f64::consts::FRAC_PI_2;
 use std::path::Path;

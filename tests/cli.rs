@@ -2,27 +2,16 @@
 
 #![allow(clippy::unwrap_used)]
 
-#[path = "cli/calibrate.rs"]
 mod calibrate;
-#[path = "cli/diagnose.rs"]
 mod diagnose;
-#[path = "cli/diagnose_calibration.rs"]
 mod diagnose_calibration;
-#[path = "cli/files.rs"]
 mod files;
-#[path = "cli/json.rs"]
 mod json;
-#[path = "cli/page.rs"]
 mod page;
-#[path = "cli/readme.rs"]
 mod readme;
-#[path = "cli/refused.rs"]
 mod refused;
-#[path = "cli/streams.rs"]
 mod streams;
-#[path = "cli/trial.rs"]
 mod trial;
-#[path = "cli/words.rs"]
 mod words;
 
 use std::collections::BTreeMap;
@@ -31,6 +20,9 @@ use std::process::{Command, Stdio};
 
 use serde_json::Value;
 use tempfile::TempDir;
+
+/// Asks for PNGs where this build can write them.
+const PNG: &str = if cfg!(feature = "png") { " --png" } else { "" };
 
 /// A directory of its own for each test, with copies of the project's data: what a test writes harms nobody.
 struct Sandbox(TempDir);

@@ -3,24 +3,18 @@
 
 #![allow(clippy::unwrap_used)]
 
-#[path = "diagnosis/beyond.rs"]
 mod beyond;
-#[path = "diagnosis/clean.rs"]
 mod clean;
-#[path = "diagnosis/confused.rs"]
 mod confused;
-#[path = "diagnosis/effects.rs"]
 mod effects;
-#[path = "diagnosis/poor.rs"]
 mod poor;
-#[path = "diagnosis/same.rs"]
 mod same;
 
 use rodcal::diagnosis::rig::{RigDiagnosis, diagnose};
 use rodcal::report;
 use rodcal::rig::readings::Readings;
 use rodcal::rod::Rod;
-use rodcal::trial::rig::{Effect, Made, Order};
+use rodcal_trial::rig::{Effect, Made, Order};
 use serde_json::Value;
 
 /// A diagnosis with its JSON.

@@ -3,30 +3,31 @@
 #![allow(clippy::unwrap_used)]
 
 use nalgebra::Vector3;
-use num_dual::{Dual64, DualNum};
 use rodcal::robot::{Body, Hayati, Joint, Kinematics, Loads, Motion, Parameter, Robot, Setup};
 use rodcal::spatial::Pose;
+
+use crate::dual::{Dual, Number};
 
 /// Rounding of a chain of a dozen products of numbers of size 1.
 const ROUNDING: f64 = 1e-13;
 
-type Matrix = [[Dual64; 3]; 3];
-type Frame = (Matrix, [Dual64; 3]);
+type Matrix = [[Dual; 3]; 3];
+type Frame = (Matrix, [Dual; 3]);
 
-fn constant(x: f64) -> Dual64 {
-    Dual64::from_re(x)
+fn constant(x: f64) -> Dual {
+    Dual::from(x)
 }
 
 fn product(a: &Matrix, b: &Matrix) -> Matrix {
     [0, 1, 2].map(|i| [0, 1, 2].map(|j| a[i][0] * b[0][j] + a[i][1] * b[1][j] + a[i][2] * b[2][j]))
 }
 
-fn applied(a: &Matrix, v: &[Dual64; 3]) -> [Dual64; 3] {
+fn applied(a: &Matrix, v: &[Dual; 3]) -> [Dual; 3] {
     [0, 1, 2].map(|i| a[i][0] * v[0] + a[i][1] * v[1] + a[i][2] * v[2])
 }
 
 /// Rotation about an axis (0, 1, 2) by an angle.
-fn rotation(axis: usize, angle: Dual64) -> Matrix {
+fn rotation(axis: usize, angle: Dual) -> Matrix {
     let (s, c, one, nil) = (angle.sin(), angle.cos(), constant(1.0), constant(0.0));
     match axis {
         0 => [[one, nil, nil], [nil, c, -s], [nil, s, c]],
@@ -40,11 +41,11 @@ fn then(frame: &Frame, next: &Frame) -> Frame {
     (product(&frame.0, &next.0), [0, 1, 2].map(|i| frame.1[i] + moved[i]))
 }
 
-fn turn(axis: usize, angle: Dual64) -> Frame {
+fn turn(axis: usize, angle: Dual) -> Frame {
     (rotation(axis, angle), [constant(0.0); 3])
 }
 
-fn shift(axis: usize, by: Dual64) -> Frame {
+fn shift(axis: usize, by: Dual) -> Frame {
     let mut origin = [constant(0.0); 3];
     origin[axis] = by;
     (rotation(0, constant(0.0)), origin)
@@ -58,7 +59,7 @@ fn of_pose(pose: &Pose) -> Frame {
 }
 
 /// exp([v]×) by its power series.
-fn exponential(v: [Dual64; 3]) -> Matrix {
+fn exponential(v: [Dual; 3]) -> Matrix {
     let nil = constant(0.0);
     let k = [[nil, -v[2], v[1]], [v[2], nil, -v[0]], [-v[1], v[0], nil]];
     let mut sum = rotation(0, nil);
@@ -71,7 +72,7 @@ fn exponential(v: [Dual64; 3]) -> Matrix {
 }
 
 /// The tip in {W}, with the derivative by `by`.
-fn tip(setup: &Setup, q: &[f64], torque: &[f64], by: Parameter) -> [Dual64; 3] {
+fn tip(setup: &Setup, q: &[f64], torque: &[f64], by: Parameter) -> [Dual; 3] {
     let value = |p: Parameter| {
         let value = constant(setup.get(p));
         if p == by { value.derivative() } else { value }

@@ -3,7 +3,6 @@
 //!
 //! NIST's files are not part of this project; where their folder is absent, the test says so and passes.
 
-#[path = "nist/problems.rs"]
 #[allow(missing_docs)]
 mod problems;
 

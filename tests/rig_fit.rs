@@ -3,11 +3,8 @@
 
 #![allow(clippy::unwrap_used)]
 
-#[path = "rig_fit/coverage.rs"]
 mod coverage;
-#[path = "rig_fit/made.rs"]
 mod made;
-#[path = "rig_fit/published.rs"]
 mod published;
 
 use approx::assert_relative_eq;

@@ -1,14 +1,9 @@
 //! Robot files of every kind become the chain that they describe, and are written back without loss.
 
-#[path = "robot_files/product.rs"]
 mod product;
-#[path = "robot_files/tables.rs"]
 mod tables;
-#[path = "robot_files/tx90.rs"]
 mod tx90;
-#[path = "robot_files/urdfs.rs"]
 mod urdfs;
-#[path = "robot_files/written.rs"]
 mod written;
 
 use nalgebra::Vector3;

@@ -2,9 +2,6 @@
 
 #![allow(clippy::unwrap_used)]
 
-#[path = "validation/beams.rs"]
 mod beams;
-#[path = "validation/paper.rs"]
 mod paper;
-#[path = "validation/sections.rs"]
 mod sections;

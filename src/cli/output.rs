@@ -85,7 +85,10 @@ pub fn deliver(options: &Options, outcome: Outcome) -> Result<ExitCode> {
             });
         }
         // everything is rendered before anything is written
-        let mut files = report.files(options.png)?;
+        let mut files = report.files()?;
+        if options.png {
+            files.extend(pngs(&files)?);
+        }
         json["report"] = directory.join("index.html").display().to_string().into();
         files.extend(more);
         files.push(("result.json".into(), pretty(&json).into_bytes()));
@@ -111,6 +114,32 @@ pub fn deliver(options: &Options, outcome: Outcome) -> Result<ExitCode> {
         }
         _ => Ok(ExitCode::from(status)),
     }
+}
+
+/// Refuses what this build cannot do, before anything is calculated.
+///
+/// # Errors
+/// [`Error::NotApplicable`] for `--png` in a build without it.
+pub fn check(options: &Options) -> Result<()> {
+    if options.png && !cfg!(feature = "png") {
+        return Err(Error::NotApplicable {
+            what: "--png".into(),
+            why: "this build of rodcal writes SVG only".into(),
+            hint: "build one that can: cargo install --path . --features png".into(),
+        });
+    }
+    Ok(())
+}
+
+#[cfg(feature = "png")]
+fn pngs(files: &[(String, Vec<u8>)]) -> Result<Vec<(String, Vec<u8>)>> {
+    rodcal_png::beside(files)
+}
+
+/// [`check`] has refused it.
+#[cfg(not(feature = "png"))]
+fn pngs(_: &[(String, Vec<u8>)]) -> Result<Vec<(String, Vec<u8>)>> {
+    Ok(Vec::new())
 }
 
 /// A line on stderr. Nobody may be listening (`2>&1 | head`), and `eprintln!` would panic.

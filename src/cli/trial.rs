@@ -1,16 +1,17 @@
 //! `rodcal trial make|answer|score`.
 
 mod case;
+mod report;
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
 use rodcal::parallel::in_parallel;
-use rodcal::trial::answers::{self, Answer};
-use rodcal::trial::envelope::{self, Manifest};
-use rodcal::trial::{Half, score};
-use rodcal::{Error, Result, report};
+use rodcal::{Error, Result};
+use rodcal_trial::answers::{self, Answer};
+use rodcal_trial::envelope::{self, Manifest};
+use rodcal_trial::{Half, score};
 use serde_json::{Value, json};
 
 use self::case::CaseFiles;
@@ -193,8 +194,7 @@ impl ScoreAnswers {
         });
         progress.finish();
         let score = sealed.score(&outcomes.into_iter().collect::<Result<Vec<_>>>()?);
-        let report = report::trial::report(&score.json);
-        Ok(Outcome { text: Some(score.text), ..Outcome::new(score.json, report) })
+        Ok(Outcome { text: Some(score.text()), ..Outcome::new(score.json()?, report::report(&score)) })
     }
 
     /// Makes the measurement that an answer proposes and diagnoses the recording with it.

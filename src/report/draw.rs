@@ -205,7 +205,7 @@ fn right_margin(chart: &Chart) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use resvg::usvg::roxmltree::Document;
+    use roxmltree::Document;
 
     use super::super::chart::{Bar, Direction, Mark, Marker, Point, Range, Style};
     use super::*;

@@ -1,25 +1,21 @@
 //! A report as files.
 
 use super::document::Report;
-use super::{html, png};
+use super::html;
 use crate::error::Result;
 
 impl Report {
-    /// Names and bytes of all files of the report: `index.html`, each figure as SVG and, if
-    /// `with_png`, as PNG, each table as CSV and as Markdown. Write them with
+    /// Names and bytes of all files of the report: `index.html`, each figure as SVG, each
+    /// table as CSV and as Markdown. Write them with
     /// [`crate::files::write_together`].
     ///
     /// # Errors
-    /// [`crate::Error::Numerical`] where a picture cannot be rendered as PNG.
-    pub fn files(&self, with_png: bool) -> Result<Vec<(String, Vec<u8>)>> {
+    /// [`crate::Error::Numerical`] where a table cannot be written as CSV.
+    pub fn files(&self) -> Result<Vec<(String, Vec<u8>)>> {
         let mut files = vec![("index.html".to_owned(), html::page(self).into_bytes())];
         for (i, figure) in self.figures().enumerate() {
             let name = file_name("figure", i, &figure.name);
-            let svg = figure.svg();
-            if with_png {
-                files.push((format!("{name}.png"), png::png(&svg)?));
-            }
-            files.push((format!("{name}.svg"), svg.into_bytes()));
+            files.push((format!("{name}.svg"), figure.svg().into_bytes()));
         }
         for (i, table) in self.tables().enumerate() {
             let name = file_name("table", i, &table.name);
@@ -69,18 +65,15 @@ mod tests {
 
     #[test]
     fn every_figure_and_table_is_also_a_file_of_a_safe_name() {
-        let files = report().files(true).expect("renders");
+        let files = report().files().expect("renders");
         let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
-        assert_eq!(
-            names,
-            ["index.html", "figure-1-lines.png", "figure-1-lines.svg", "table-1-c-22.csv", "table-1-c-22.md"]
-        );
+        assert_eq!(names, ["index.html", "figure-1-lines.svg", "table-1-c-22.csv", "table-1-c-22.md"]);
         assert!(files.iter().all(|(_, bytes)| !bytes.is_empty()));
     }
 
     #[test]
     fn the_same_report_gives_the_same_bytes() {
-        assert_eq!(report().files(true).expect("renders"), report().files(true).expect("renders"));
+        assert_eq!(report().files().expect("renders"), report().files().expect("renders"));
     }
 
     #[test]

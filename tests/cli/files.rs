@@ -48,6 +48,24 @@ fn a_report_is_a_page_with_its_pictures_tables_and_result() {
     }
 }
 
+#[cfg(not(feature = "png"))]
+#[test]
+fn a_build_without_png_says_how_to_get_it() {
+    let sandbox = Sandbox::new();
+    let before = sandbox.listing();
+    for line in ["compliance rods/5.toml --out pictures --png", "compliance rods/5.toml --png --json"] {
+        let answer = sandbox.run(line);
+        assert_eq!((answer.status, answer.stdout.as_str()), (Some(2), ""), "{line}");
+        assert_eq!(
+            answer.stderr,
+            "error: --png is not possible: this build of rodcal writes SVG only\n\
+             hint: build one that can: cargo install --path . --features png\n"
+        );
+    }
+    assert!(sandbox.listing() == before, "something was written");
+}
+
+#[cfg(feature = "png")]
 #[test]
 fn png_on_request() {
     let sandbox = Sandbox::new();
@@ -71,7 +89,7 @@ fn png_on_request() {
 fn a_second_report_has_the_same_bytes_and_leaves_other_files_alone() {
     for line in ["rig fit rods/5.toml stiffness_data/5.csv", "compliance rods/2.toml"] {
         let sandbox = Sandbox::new();
-        let command = format!("{line} --png --out report");
+        let command = format!("{line}{} --out report", super::PNG);
         let first = sandbox.run(&command).succeeded();
         sandbox.write("report/notes.txt", "mine");
         std::fs::create_dir(sandbox.path().join("report/more")).unwrap();

@@ -76,7 +76,8 @@ fn what_cannot_be_done_is_one_error_and_leaves_no_trace() {
     let sandbox = sandbox();
     let before = sandbox.listing();
     for (line, begins, tells) in CASES {
-        for more in ["", " --json", " --out new/report", " --json --png --out new/report"] {
+        let all = format!(" --json{} --out new/report", super::PNG);
+        for more in ["", " --json", " --out new/report", &all] {
             assert_refused(&sandbox.run(&format!("{line}{more}")), begins, tells);
         }
     }

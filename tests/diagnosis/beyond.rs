@@ -1,7 +1,7 @@
 //! Physics that the library does not have gets none of its names.
 
-use rodcal::trial::rig::{Effect, Order};
 use rodcal::units::UM;
+use rodcal_trial::rig::{Effect, Order};
 
 use super::Answer;
 

@@ -1,8 +1,8 @@
 //! Where nothing is wrong, nothing is found.
 
 use rodcal::parallel::in_parallel;
-use rodcal::trial::rig::Order;
 use rodcal::units::UM;
+use rodcal_trial::rig::Order;
 
 use super::Answer;
 

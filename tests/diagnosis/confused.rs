@@ -1,7 +1,7 @@
 //! What a recording cannot tell apart is said to be so, with a measurement that would tell.
 
-use rodcal::trial::rig::{Effect, Order};
 use rodcal::units::UM;
+use rodcal_trial::rig::{Effect, Order};
 
 use super::Answer;
 

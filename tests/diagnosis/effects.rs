@@ -1,7 +1,7 @@
 //! Every effect of the library, injected by itself, is named, located and measured.
 
-use rodcal::trial::rig::{Columns, Effect, Order};
 use rodcal::units::{DEG, MM, UM, URAD_PER_NM};
+use rodcal_trial::rig::{Columns, Effect, Order};
 
 use super::{Answer, interval};
 

@@ -2,8 +2,8 @@
 
 use rodcal::diagnosis::rig::Limit;
 use rodcal::rig::readings::{Axis, Readings};
-use rodcal::trial::rig::{Columns, Effect, Order};
 use rodcal::units::UM;
+use rodcal_trial::rig::{Columns, Effect, Order};
 use serde_json::Value;
 
 use super::{Answer, interval};

@@ -1,7 +1,7 @@
 //! What says the same gets the same diagnosis.
 
-use rodcal::trial::rig::{Columns, Effect, Order};
 use rodcal::units::{STANDARD_GRAVITY, UM};
+use rodcal_trial::rig::{Columns, Effect, Order};
 use serde_json::Value;
 
 use super::Answer;

@@ -7,8 +7,9 @@ use std::f64::consts::PI;
 use std::path::{Path, PathBuf};
 
 use nalgebra::{DMatrix, DVector};
-use num_dual::{Dual64, DualNum};
 use rodcal::least_squares::{Fit, Options, Problem, fit};
+
+use crate::dual::{Dual, Number};
 
 /// A problem as NIST states it.
 pub struct Nist {
@@ -116,7 +117,7 @@ impl Problem for Nist {
     }
 
     fn jacobian(&self, b: &DVector<f64>) -> DMatrix<f64> {
-        let mut dual: Vec<Dual64> = b.iter().map(|&b| Dual64::from_re(b)).collect();
+        let mut dual: Vec<Dual> = b.iter().map(|&b| Dual::from(b)).collect();
         let mut j = DMatrix::zeros(self.y.len(), b.len());
         for column in 0..b.len() {
             dual[column].eps = 1.0;
@@ -139,7 +140,7 @@ fn matching_digits(computed: f64, certified: f64) -> f64 {
 struct Model {
     name: &'static str,
     value: fn(&[f64], &[f64]) -> f64,
-    dual: fn(&[Dual64], &[f64]) -> Dual64,
+    dual: fn(&[Dual], &[f64]) -> Dual,
     /// What of the first column of the data is modelled.
     response: fn(f64) -> f64,
 }
@@ -147,7 +148,7 @@ struct Model {
 const fn model(
     name: &'static str,
     value: fn(&[f64], &[f64]) -> f64,
-    dual: fn(&[Dual64], &[f64]) -> Dual64,
+    dual: fn(&[Dual], &[f64]) -> Dual,
 ) -> Model {
     Model { name, value, dual, response: |y| y }
 }
@@ -182,63 +183,63 @@ const MODELS: [Model; 27] = [
     model("Bennett5", bennett, bennett),
 ];
 
-fn rise<D: DualNum<f64> + Copy>(b: &[D], x: &[f64]) -> D {
+fn rise<D: Number>(b: &[D], x: &[f64]) -> D {
     b[0] * (D::one() - (-b[1] * x[0]).exp())
 }
 
-fn ultrasound<D: DualNum<f64> + Copy>(b: &[D], x: &[f64]) -> D {
+fn ultrasound<D: Number>(b: &[D], x: &[f64]) -> D {
     (-b[0] * x[0]).exp() / (b[1] + b[2] * x[0])
 }
 
-fn three_exponentials<D: DualNum<f64> + Copy>(b: &[D], x: &[f64]) -> D {
+fn three_exponentials<D: Number>(b: &[D], x: &[f64]) -> D {
     b[0] * (-b[1] * x[0]).exp() + b[2] * (-b[3] * x[0]).exp() + b[4] * (-b[5] * x[0]).exp()
 }
 
-fn two_peaks<D: DualNum<f64> + Copy>(b: &[D], x: &[f64]) -> D {
+fn two_peaks<D: Number>(b: &[D], x: &[f64]) -> D {
     let peak = |height: D, centre: D, width: D| height * (-((-centre + x[0]) / width).powi(2)).exp();
     b[0] * (-b[1] * x[0]).exp() + peak(b[2], b[3], b[4]) + peak(b[5], b[6], b[7])
 }
 
-fn power<D: DualNum<f64> + Copy>(b: &[D], x: &[f64]) -> D {
+fn power<D: Number>(b: &[D], x: &[f64]) -> D {
     b[0] * (b[1] * x[0].ln()).exp()
 }
 
-fn misra1b<D: DualNum<f64> + Copy>(b: &[D], x: &[f64]) -> D {
+fn misra1b<D: Number>(b: &[D], x: &[f64]) -> D {
     b[0] * (D::one() - (b[1] * x[0] / 2.0 + 1.0).powi(-2))
 }
 
-fn misra1c<D: DualNum<f64> + Copy>(b: &[D], x: &[f64]) -> D {
+fn misra1c<D: Number>(b: &[D], x: &[f64]) -> D {
     b[0] * (D::one() - (b[1] * 2.0 * x[0] + 1.0).powf(-0.5))
 }
 
-fn misra1d<D: DualNum<f64> + Copy>(b: &[D], x: &[f64]) -> D {
+fn misra1d<D: Number>(b: &[D], x: &[f64]) -> D {
     b[0] * b[1] * x[0] / (b[1] * x[0] + 1.0)
 }
 
-fn quadratic_over_quadratic<D: DualNum<f64> + Copy>(b: &[D], x: &[f64]) -> D {
+fn quadratic_over_quadratic<D: Number>(b: &[D], x: &[f64]) -> D {
     let x = x[0];
     (b[0] + b[1] * x + b[2] * (x * x)) / (b[3] * x + b[4] * (x * x) + 1.0)
 }
 
-fn cubic_over_cubic<D: DualNum<f64> + Copy>(b: &[D], x: &[f64]) -> D {
+fn cubic_over_cubic<D: Number>(b: &[D], x: &[f64]) -> D {
     let x = x[0];
     let (x2, x3) = (x * x, x * x * x);
     (b[0] + b[1] * x + b[2] * x2 + b[3] * x3) / (b[4] * x + b[5] * x2 + b[6] * x3 + 1.0)
 }
 
-fn nelson<D: DualNum<f64> + Copy>(b: &[D], x: &[f64]) -> D {
+fn nelson<D: Number>(b: &[D], x: &[f64]) -> D {
     b[0] - b[1] * x[0] * (-b[2] * x[1]).exp()
 }
 
-fn two_exponentials<D: DualNum<f64> + Copy>(b: &[D], x: &[f64]) -> D {
+fn two_exponentials<D: Number>(b: &[D], x: &[f64]) -> D {
     b[0] + b[1] * (-b[3] * x[0]).exp() + b[2] * (-b[4] * x[0]).exp()
 }
 
-fn roszman<D: DualNum<f64> + Copy>(b: &[D], x: &[f64]) -> D {
+fn roszman<D: Number>(b: &[D], x: &[f64]) -> D {
     b[0] - b[1] * x[0] - (b[2] / (-b[3] + x[0])).atan() / PI
 }
 
-fn cycles<D: DualNum<f64> + Copy>(b: &[D], x: &[f64]) -> D {
+fn cycles<D: Number>(b: &[D], x: &[f64]) -> D {
     let wave = |period: D, cosine: D, sine: D| {
         let phase = period.recip() * (2.0 * PI * x[0]);
         cosine * phase.cos() + sine * phase.sin()
@@ -246,27 +247,27 @@ fn cycles<D: DualNum<f64> + Copy>(b: &[D], x: &[f64]) -> D {
     b[0] + wave(D::from(12.0), b[1], b[2]) + wave(b[3], b[4], b[5]) + wave(b[6], b[7], b[8])
 }
 
-fn mgh09<D: DualNum<f64> + Copy>(b: &[D], x: &[f64]) -> D {
+fn mgh09<D: Number>(b: &[D], x: &[f64]) -> D {
     let x = x[0];
     b[0] * (b[1] * x + x * x) / (b[2] * x + b[3] + x * x)
 }
 
-fn rat42<D: DualNum<f64> + Copy>(b: &[D], x: &[f64]) -> D {
+fn rat42<D: Number>(b: &[D], x: &[f64]) -> D {
     b[0] / ((b[1] - b[2] * x[0]).exp() + 1.0)
 }
 
-fn rat43<D: DualNum<f64> + Copy>(b: &[D], x: &[f64]) -> D {
+fn rat43<D: Number>(b: &[D], x: &[f64]) -> D {
     b[0] / (((b[1] - b[2] * x[0]).exp() + 1.0).ln() / b[3]).exp()
 }
 
-fn mgh10<D: DualNum<f64> + Copy>(b: &[D], x: &[f64]) -> D {
+fn mgh10<D: Number>(b: &[D], x: &[f64]) -> D {
     b[0] * (b[1] / (b[2] + x[0])).exp()
 }
 
-fn eckerle<D: DualNum<f64> + Copy>(b: &[D], x: &[f64]) -> D {
+fn eckerle<D: Number>(b: &[D], x: &[f64]) -> D {
     b[0] / b[1] * (((-b[2] + x[0]) / b[1]).powi(2) * -0.5).exp()
 }
 
-fn bennett<D: DualNum<f64> + Copy>(b: &[D], x: &[f64]) -> D {
+fn bennett<D: Number>(b: &[D], x: &[f64]) -> D {
     b[0] * (-(b[1] + x[0]).ln() / b[2]).exp()
 }

@@ -7,9 +7,9 @@ use rodcal::calibration::{Options, default_mode};
 use rodcal::diagnosis::{calibration, rig};
 use rodcal::rig::readings::Readings;
 use rodcal::rod::Rod;
-use rodcal::trial::score;
 use rodcal::units::UM;
 use rodcal::{Result, files, report};
+use rodcal_trial::score;
 use serde_json::Value;
 
 /// The files of a case, some of them in another form than in its directory.

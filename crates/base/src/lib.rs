@@ -1,0 +1,19 @@
+//! The ground floor of rodcal: what knows nothing of rods and robots.
+//!
+//! - [`error`]: the one error type · [`files`]: text in, whole files out · [`units`]: SI inside, these at the boundary
+//! - [`delimited`], [`toml_text`]: tables and TOML whose errors name file, line and column
+//! - [`linalg`], [`least_squares`], [`spatial`], [`statistics`]: numbers
+//! - [`parallel`]: jobs side by side whose results do not depend on it
+
+pub mod delimited;
+pub mod error;
+pub mod files;
+pub mod least_squares;
+pub mod linalg;
+pub mod parallel;
+pub mod spatial;
+pub mod statistics;
+pub mod toml_text;
+pub mod units;
+
+pub use error::{Error, Result};

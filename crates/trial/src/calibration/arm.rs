@@ -1,0 +1,145 @@
+//! An arm: a product of 4×4 transforms, and what its weight does to it.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use nalgebra::{Matrix4, Vector3, Vector4};
+
+use crate::rig::draw::happens;
+use rodcal_base::statistics::Random;
+
+/// A joint and its link: Rz(θ + q)·Tz(d)·Tx(a)·Rx(α)·Ry(β).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Link {
+    /// θ rad, d m, a m, α rad, β rad.
+    pub numbers: [f64; 5],
+    /// Mass, kg, and its centre in the frame behind the link, m.
+    pub mass: f64,
+    pub centre: Vector3<f64>,
+    /// Angle by which the drive yields, rad/(N·m).
+    pub compliance: f64,
+}
+
+/// From the base to the flange.
+pub type Arm = Vec<Link>;
+
+/// Force at a point beyond all joints, N and m.
+pub type Pull = (Vector3<f64>, Vector3<f64>);
+
+fn rotation(axis: usize, angle: f64) -> Matrix4<f64> {
+    let (s, c) = angle.sin_cos();
+    let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
+    let mut m = Matrix4::identity();
+    (m[(i, i)], m[(j, j)]) = (c, c);
+    (m[(i, j)], m[(j, i)]) = (-s, s);
+    m
+}
+
+fn shift(x: f64, z: f64) -> Matrix4<f64> {
+    Matrix4::new_translation(&Vector3::new(x, 0.0, z))
+}
+
+/// A frame from position and roll, pitch, yaw: Rz·Ry·Rx.
+pub fn frame(xyz: &Vector3<f64>, rpy: &Vector3<f64>) -> Matrix4<f64> {
+    let turned = rotation(2, rpy.z) * rotation(1, rpy.y) * rotation(0, rpy.x);
+    Matrix4::new_translation(xyz) * turned
+}
+
+/// A point of a frame.
+pub fn point(frame: &Matrix4<f64>, p: &Vector3<f64>) -> Vector3<f64> {
+    (frame * Vector4::new(p.x, p.y, p.z, 1.0)).xyz()
+}
+
+/// A direction of a frame.
+pub fn turned(frame: &Matrix4<f64>, v: &Vector3<f64>) -> Vector3<f64> {
+    (frame * Vector4::new(v.x, v.y, v.z, 0.0)).xyz()
+}
+
+/// The base and the frame behind every link.
+pub fn frames(arm: &[Link], base: &Matrix4<f64>, q: &[f64]) -> Vec<Matrix4<f64>> {
+    let mut frames = vec![*base];
+    for (link, q) in arm.iter().zip(q) {
+        let [theta, d, a, alpha, beta] = link.numbers;
+        let last = frames[frames.len() - 1];
+        frames.push(last * rotation(2, theta + q) * shift(a, d) * rotation(0, alpha) * rotation(1, beta));
+    }
+    frames
+}
+
+/// Torque of weight and pulls about every joint's axis, N·m; gravity is along −z of the world.
+pub fn torques(arm: &[Link], frames: &[Matrix4<f64>], gravity: &Vector3<f64>, pulls: &[Pull]) -> Vec<f64> {
+    let weights: Vec<Pull> = arm
+        .iter()
+        .zip(&frames[1..])
+        .map(|(link, at)| (gravity * link.mass, point(at, &link.centre)))
+        .collect();
+    let about = |joint: usize| {
+        let axis = frames[joint].column(2).xyz();
+        let origin = frames[joint].column(3).xyz();
+        let moment = |(force, at): &Pull| (at - origin).cross(force).dot(&axis);
+        weights[joint..].iter().chain(pulls).map(moment).sum()
+    };
+    (0..arm.len()).map(about).collect()
+}
+
+/// A six-axis arm as makers build them: with a spherical wrist, or with three parallel axes and an offset wrist.
+pub fn draw(random: &mut Random) -> (Arm, &'static str) {
+    let spherical = happens(random, 0.5);
+    let h = FRAC_PI_2;
+    // θ, d, a, α; mass kg, centre m
+    type Row = ([f64; 4], f64, [f64; 3]);
+    let rows: [Row; 6] = if spherical {
+        [
+            ([0.0, 0.15, 0.05, h], 17.0, [-0.03, -0.06, -0.02]),
+            ([h, -0.05, 0.425, 0.0], 25.0, [-0.25, 0.0, -0.17]),
+            ([h, 0.0, 0.0, h], 24.0, [0.0, 0.03, 0.06]),
+            ([0.0, 0.425, 0.0, -h], 9.0, [0.0, 0.14, 0.0]),
+            ([0.0, 0.0, 0.0, h], 2.0, [0.0, 0.01, 0.02]),
+            ([0.0, 0.1, 0.0, 0.0], 0.3, [0.005, 0.0, -0.02]),
+        ]
+    } else {
+        [
+            ([0.0, 0.128, 0.0, h], 7.5, [0.0, -0.02, 0.02]),
+            ([0.0, 0.0, -0.612, 0.0], 12.5, [0.3, 0.0, 0.16]),
+            ([0.0, 0.0, -0.572, 0.0], 4.5, [0.27, 0.0, 0.05]),
+            ([0.0, 0.164, 0.0, h], 2.1, [0.0, -0.01, 0.02]),
+            ([0.0, 0.116, 0.0, -h], 2.1, [0.0, 0.01, 0.02]),
+            ([0.0, 0.092, 0.0, 0.0], 0.4, [0.0, 0.005, -0.03]),
+        ]
+    };
+    let links = rows.into_iter().enumerate().map(|(joint, ([theta, d, a, alpha], mass, centre))| {
+        let scale = random.uniform(0.9, 1.1);
+        let [from, to] = if joint < 3 { [0.5e-6, 3e-6] } else { [3e-6, 15e-6] };
+        Link {
+            numbers: [theta, rounded(d * scale), rounded(a * scale), alpha, 0.0],
+            mass: rounded(mass * random.uniform(0.8, 1.2)),
+            centre: Vector3::from(centre) * scale,
+            compliance: crate::rig::draw::log_uniform(random, from, to),
+        }
+    });
+    (links.collect(), if spherical { "spherical wrist" } else { "offset wrist" })
+}
+
+fn rounded(value: f64) -> f64 {
+    (value * 1e4).round() / 1e4
+}
+
+/// The arm as it was really built.
+pub fn built(nominal: &[Link], random: &mut Random) -> Arm {
+    let one = |link: &Link, random: &mut Random| {
+        let mut link = link.clone();
+        let [theta, d, a, alpha, beta] = &mut link.numbers;
+        let is_parallel = alpha.abs() < 1e-9;
+        *theta += 1e-3 * random.normal();
+        *d += if is_parallel { 0.0 } else { 0.3e-3 * random.normal() };
+        *a += 0.3e-3 * random.normal();
+        *alpha += 0.5e-3 * random.normal();
+        *beta += if is_parallel { 0.5e-3 * random.normal() } else { 0.0 };
+        link
+    };
+    nominal.iter().map(|link| one(link, random)).collect()
+}
+
+/// An angle within a turn.
+pub fn within_a_turn(angle: f64) -> f64 {
+    (angle + PI).rem_euclid(2.0 * PI) - PI
+}

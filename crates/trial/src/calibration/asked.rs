@@ -1,0 +1,236 @@
+//! Poses that are asked for and not measured: where the ball would have been, free in space, with another force on it and, on a
+//! rod, with a heavier ball.
+//!
+//! A campaign of its own beside the recorded one, without points. Its clock goes on after the recording, in a room that may
+//! have become warmer. It begins with the first recorded pose, so that the move that led there is known, and what it asks
+//! depends on the protocol alone: it tells nothing of the effect.
+
+use nalgebra::{DMatrix, DVector, Vector3};
+
+use super::arm::turned;
+use super::draw::direction;
+use super::effect::Effect;
+use super::rod::Rod;
+use super::setup::pose;
+use super::site::{Devices, Row, Site};
+use super::{taken_up, text};
+use crate::rig::drawing::{Drawing, rounded};
+use crate::truth::Asked;
+use rodcal_base::linalg::thin_svd;
+use rodcal_base::statistics::Random;
+use rodcal_base::units::UM;
+
+/// Poses.
+const COUNT: usize = 30;
+/// Force on the ball, N, and mass that a ball has more, kg.
+const FORCE: (f64, f64) = (1.0, 3.0);
+const HEAVIER: (f64, f64) = (0.05, 0.3);
+/// How much warmer or colder the room became, K.
+const WARMER: f64 = 3.0;
+/// Singular values below this share of the largest are none; columns are scaled before.
+const RANK: f64 = 1e-9;
+
+/// What is asked.
+pub struct Question {
+    /// The first recorded row, and all that are asked for.
+    site: Site,
+    /// Force on the ball as the file states it, N: in the world, or in {0} where nobody knows that.
+    force: Vector3<f64>,
+}
+
+/// What is asked of whoever recorded at `recorded`.
+pub fn draw(recorded: &Site, random: &mut Random) -> Question {
+    let force = (direction(random) * random.uniform(FORCE.0, FORCE.1)).map(|f| rounded(f, 2));
+    let heavier = rounded(random.uniform(HEAVIER.0, HEAVIER.1), 3);
+    let rod = recorded.rod.as_ref().map(|rod| {
+        Rod::of(Drawing { tip_mass: rounded(rod.drawing.tip_mass + heavier, 3), ..rod.drawing.clone() })
+    });
+    let first = recorded.rows[0].clone();
+    let (mut time, warmer) =
+        (recorded.rows.last().map_or(0.0, |row| row.time), random.uniform(-WARMER, WARMER));
+    let temperature = rounded(recorded.rows.last().map_or(20.0, |row| row.temperature) + warmer, 2);
+    let mut site = Site {
+        rod,
+        // free in space
+        devices: Devices::Tracker(match recorded.devices {
+            Devices::Tracker(at) => at,
+            _ => Vector3::zeros(),
+        }),
+        contact: if recorded.has_sockets() { turned(&recorded.base, &force) } else { force },
+        rows: vec![Row { group: 0, ..first.clone() }],
+        ..recorded.clone()
+    };
+    for k in 0..COUNT {
+        time = rounded(time + random.uniform(15.0, 45.0), 1);
+        site.rows.push(Row { q: first.q.clone(), group: 0, time, temperature });
+        if k > 0 {
+            site.rows[k + 1].q = pose(&site, k + 1, random);
+        }
+    }
+    Question { site, force }
+}
+
+impl Question {
+    /// The files that ask.
+    pub fn files(&self) -> Vec<(String, String)> {
+        text::question(&self.site, &self.force)
+    }
+
+    /// Where the ball would be, and what an oracle says that knows which effects there are and where, and fits their numbers,
+    /// together with all that the calibration is free to change, to a recording with this `noise`: to first order, from the
+    /// truth.
+    pub fn truth(&self, recorded: &Site, effects: &[Effect], noise: &[Vector3<f64>]) -> Asked {
+        let still: Vec<Effect> = effects.iter().filter(|effect| effect.is_of_robot()).cloned().collect();
+        let truth = self.asked(&still);
+        let is_known = !effects.is_empty() && effects.iter().all(|effect| !effect.larger().is_empty());
+        let error = is_known.then(|| self.error(recorded, effects, &still, noise)).flatten();
+        let um = |all: DVector<f64>| -> Vec<f64> { all.iter().map(|m| rounded(m / UM, 5)).collect() };
+        Asked {
+            oracle_um: error.map(|error| um(&truth + error)),
+            true_um: um(truth),
+            is_any_frame: recorded.has_sockets(),
+        }
+    }
+
+    /// Coordinates of the rows that are asked for, m.
+    fn asked(&self, effects: &[Effect]) -> DVector<f64> {
+        let all = self.site.each(|row, q| self.site.ball(row, q, effects));
+        all.rows(3, all.len() - 3).into_owned()
+    }
+
+    /// J′·A⁺·n: by how much the noise n misleads the oracle, m. A, J′: what its parameters do to the recorded and to these
+    /// rows.
+    fn error(
+        &self,
+        recorded: &Site,
+        effects: &[Effect],
+        still: &[Effect],
+        noise: &[Vector3<f64>],
+    ) -> Option<DVector<f64>> {
+        let absorbed = taken_up::columns(recorded);
+        let rows = absorbed.nrows();
+        let mut columns: Vec<DVector<f64>> = absorbed.column_iter().map(Into::into).collect();
+        let mut asked = taken_up::of_robot(&self.site);
+        asked.iter_mut().for_each(|column| *column = column.rows(3, column.len() - 3).into_owned());
+        // where sockets are concerns no other pose
+        asked.resize(columns.len(), DVector::zeros(3 * COUNT));
+        let known = self.asked(still);
+        for effect in effects {
+            let others: Vec<Effect> = still.iter().filter(|other| *other != effect).cloned().collect();
+            for (larger, step) in effect.larger() {
+                let own = recorded.added(std::slice::from_ref(&larger), std::slice::from_ref(effect));
+                columns.push(own.resize_vertically(rows, 0.0) / (step * recorded.noise));
+                asked.push(match effect.is_of_robot() {
+                    true => {
+                        let all: Vec<Effect> = others.iter().cloned().chain([larger]).collect();
+                        (self.asked(&all) - &known) / step
+                    }
+                    false => DVector::zeros(3 * COUNT),
+                });
+            }
+        }
+        let norms: Vec<f64> = columns.iter().map(|column| column.norm().max(f64::MIN_POSITIVE)).collect();
+        let scaled = DMatrix::from_fn(rows, columns.len(), |i, j| columns[j][i] / norms[j]);
+        let svd = thin_svd(&scaled).ok()?;
+        // a ball is read off by its noise, or sits in a socket off by it
+        let sign = if recorded.has_sockets() { -1.0 } else { 1.0 };
+        let noise = DVector::from_iterator(3 * noise.len(), noise.iter().flat_map(|n| <[f64; 3]>::from(*n)));
+        let noise = noise.resize_vertically(rows, 0.0) * (sign / recorded.noise);
+        let rank = svd.rank(RANK);
+        let mut parameters = DVector::zeros(columns.len());
+        for k in 0..rank {
+            let share = svd.u.column(k).dot(&noise) / svd.singular_values[k];
+            parameters += svd.v.column(k) * share;
+        }
+        let mut error = DVector::zeros(3 * COUNT);
+        for ((column, norm), parameter) in asked.iter().zip(&norms).zip(parameters.iter()) {
+            error += column * (parameter / norm);
+        }
+        Some(error)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::calibration::draw::{LIBRARY, library, needs};
+    use crate::calibration::setup;
+
+    /// A site that can carry an effect of the library, and the effect.
+    fn site(effect: usize, seed: u64) -> (Site, Effect) {
+        let mut random = Random::seeded(seed, 0);
+        let site = setup::draw(needs(effect), &mut random);
+        let effect = library(effect, &site, 0.5, &mut random);
+        (site, effect)
+    }
+
+    fn norm(coordinates_um: &[f64], others: &[f64]) -> f64 {
+        coordinates_um.iter().zip(others).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
+    }
+
+    #[test]
+    fn what_is_asked_was_not_recorded() {
+        for seed in 0..6 {
+            let (site, _) = site(11, seed);
+            let question = draw(&site, &mut Random::seeded(seed, 1));
+            let rows = &question.site.rows[1..];
+            assert_eq!((rows.len(), &rows[0].q), (COUNT, &site.rows[0].q));
+            assert!(rows[1..].iter().all(|row| site.rows.iter().all(|known| known.q != row.q)));
+            assert!(rows[0].time > site.rows.last().unwrap().time);
+            assert!(question.site.contact.norm() > 0.9 && question.site.contact != site.contact);
+            let mass = |site: &Site| site.rod.as_ref().unwrap().drawing.tip_mass;
+            assert!(mass(&question.site) > mass(&site) + 0.04);
+            let files = question.files();
+            assert_eq!(files.len(), 3);
+            assert!(files.iter().all(|(_, text)| text.starts_with("# SIMULATED")));
+        }
+    }
+
+    #[test]
+    fn without_noise_the_oracle_is_right_and_with_it_as_wrong_as_that() {
+        for effect in 0..LIBRARY {
+            let (site, effect) = site(effect, 3);
+            let question = draw(&site, &mut Random::seeded(3, 1));
+            let effects = [effect];
+            let mut noise = setup::noise(&site, 0, &mut Random::seeded(4, 0));
+            let error = |noise: &[Vector3<f64>]| {
+                let truth = question.truth(&site, &effects, noise);
+                norm(&truth.true_um, &truth.oracle_um.unwrap())
+            };
+            assert_eq!(error(&vec![Vector3::zeros(); noise.len()]), 0.0);
+            let once = error(&noise);
+            noise.iter_mut().for_each(|n| *n *= 2.0);
+            assert!(once > 1.0 && (error(&noise) / once - 2.0).abs() < 1e-3, "{effects:?} {once}");
+        }
+    }
+
+    #[test]
+    fn noise_that_looks_like_another_arm_is_taken_for_it() {
+        // measured by a tracker, so that noise is what a coordinate is more by
+        let (site, effect) = (0..20)
+            .map(|seed| site(0, seed))
+            .find(|(s, _)| matches!(s.devices, Devices::Tracker(_)))
+            .unwrap();
+        let question = draw(&site, &mut Random::seeded(3, 1));
+        let mut other = site.clone();
+        other.real[2].numbers[0] += 2e-5;
+        other.tool.y += 3e-5;
+        let Effect::Transmission { joint, mut waves, beat } = effect.clone() else { panic!("a gear") };
+        waves[0][1] += 1e-5;
+        let larger = Effect::Transmission { joint, waves, beat };
+        let ball = |site: &Site, row: usize, effect: &Effect| {
+            site.ball(row, &site.rows[row].q, std::slice::from_ref(effect))
+        };
+        let noise: Vec<Vector3<f64>> =
+            (0..site.rows.len()).map(|row| ball(&other, row, &larger) - ball(&site, row, &effect)).collect();
+        let told = question.truth(&site, &[effect], &noise);
+        let asked = Question {
+            site: Site { real: other.real, tool: other.tool, ..question.site.clone() },
+            force: question.force,
+        };
+        let others = asked.truth(&site, &[larger], &noise).true_um;
+        let moved = norm(&told.true_um, &others);
+        let left = norm(&told.oracle_um.unwrap(), &others);
+        assert!(moved > 100.0 && left < 0.01 * moved, "{left} of {moved}");
+    }
+}

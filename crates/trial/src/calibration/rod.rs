@@ -1,0 +1,87 @@
+//! A rod on the flange: its drawing, and what gives way of it.
+
+use nalgebra::{Matrix3, Vector3};
+
+use crate::rig::drawing::{Deviation, Drawing};
+use crate::rig::tube::Tube;
+use rodcal_base::statistics::Random;
+use rodcal_base::units::{DEG, MM};
+
+/// Parts of its weight.
+const SLICES: usize = 12;
+
+/// As it is mounted; its drawing is right.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rod {
+    /// What its file states.
+    pub drawing: Drawing,
+    /// Deflection of its tip per force on it, and per acceleration of gravity, in {T}.
+    pub per_force: Matrix3<f64>,
+    pub per_gravity: Matrix3<f64>,
+    /// Its weight: mass kg and place in {T}, m.
+    pub slices: Vec<(f64, Vector3<f64>)>,
+}
+
+impl Rod {
+    /// Some steel tube.
+    pub fn drawn(random: &mut Random) -> Rod {
+        let outer = random.uniform(12.0, 20.0).round();
+        let tube = Tube {
+            material: "steel",
+            youngs_modulus: 200e9,
+            shear_modulus: 77e9,
+            density: 7900.0,
+            outer: outer / 2.0 * MM,
+            inner: (outer - 4.0) / 2.0 * MM,
+        };
+        Rod::of(Drawing {
+            legs: [random.uniform(100.0, 200.0).round() * MM, random.uniform(200.0, 500.0).round() * MM],
+            gamma: (random.uniform(80.0, 130.0)).round() * DEG,
+            bend_radius: 0.0,
+            bend_factor: 1.0,
+            tubes: [tube.clone(), tube],
+            joints: Vec::new(),
+            tip_mass: (random.uniform(20.0, 80.0)).round() * 1e-3,
+        })
+    }
+
+    /// By its drawing, of a rod with a sharp corner.
+    pub fn of(drawing: Drawing) -> Rod {
+        let [l1, l2] = drawing.legs;
+        let body = drawing.body(&Deviation::default());
+        let length = drawing.length();
+        // a small force, so that the rod is linear
+        let per = |station: f64| {
+            let column = |axis: usize| body.deflection(&Vector3::ith(axis, 1e-2), station, length) / 1e-2;
+            Matrix3::from_columns(&[0, 1, 2].map(column))
+        };
+        let mut weights: Vec<(f64, f64)> = vec![(drawing.tip_mass, length)];
+        for (tube, (from, leg)) in drawing.tubes.iter().zip([(0.0, l1), (l1, l2)]) {
+            let mass = tube.density * tube.area() * leg / SLICES as f64;
+            weights.extend((0..SLICES).map(|k| (mass, from + leg * (k as f64 + 0.5) / SLICES as f64)));
+        }
+        Rod {
+            per_force: per(length),
+            per_gravity: weights.iter().map(|(mass, station)| per(*station) * *mass).sum(),
+            slices: weights.iter().map(|(mass, station)| (*mass, at(&drawing, *station))).collect(),
+            drawing,
+        }
+    }
+
+    /// The ball by the drawing, in {T}, m.
+    pub fn tip(&self) -> Vector3<f64> {
+        at(&self.drawing, self.drawing.length())
+    }
+}
+
+/// A station of the centreline in {T}, m.
+fn at(drawing: &Drawing, station: f64) -> Vector3<f64> {
+    let [l1, _] = drawing.legs;
+    match station < l1 {
+        true => Vector3::new(0.0, 0.0, station),
+        false => {
+            let along = Vector3::new(drawing.gamma.sin(), 0.0, -drawing.gamma.cos());
+            Vector3::new(0.0, 0.0, l1) + along * (station - l1)
+        }
+    }
+}

@@ -1,0 +1,94 @@
+//! How large an effect is: the numbers that somebody who knows its law and its place has to find out.
+
+use super::bench::Bench;
+use super::effect::Effect;
+use rodcal_base::units::{DEG, UM};
+
+/// Largest force of friction or of a load's offset, N, and largest share of the smallest load.
+const FORCE: (f64, f64) = (2.0, 0.7);
+
+impl Effect {
+    /// Its sizes, 0 for no effect, each with the upper end of the range that it is drawn from. Nothing for what belongs to
+    /// single rows and for physics that no library has.
+    pub(super) fn sizes(&self, bench: &Bench) -> Vec<(f64, f64)> {
+        let (full, smallest) = (bench.full_scale, bench.protocol.smallest_load());
+        let [bends, twists] = bench.drawing.rotation();
+        match *self {
+            Effect::StiffnessScale(factor) => vec![(factor - 1.0, 0.4)],
+            Effect::ShearModulus(factor) => vec![(factor - 1.0, 0.6)],
+            Effect::Joint { bending, torsion, .. } | Effect::Root { bending, torsion } => {
+                vec![(bending, bends), (torsion, twists)]
+            }
+            Effect::Bend(factor) => {
+                let oval = bench.drawing.tubes[0].ovalisation(bench.drawing.bend_radius);
+                vec![(factor - 1.0, 2.0 * (oval - 1.0))]
+            }
+            Effect::Friction { force, .. } => vec![(force, FORCE.0.min(FORCE.1 * smallest))],
+            Effect::LoadOffset { force, .. } => vec![(force, FORCE.0)],
+            Effect::Backlash { play, .. } => vec![(play, 100.0 * UM)],
+            Effect::Creep { per_decade, .. } => vec![(per_decade, 0.1)],
+            Effect::Hysteresis { fraction, .. } => vec![(fraction, 0.1)],
+            Effect::Cubic(k) => vec![(k, 0.2 / (full * full))],
+            Effect::Quadratic(k) => vec![(k, 0.2 / full)],
+            Effect::SensorScale { factor, .. } => vec![(factor - 1.0, 0.2)],
+            Effect::SensorMisalignment { angle, .. } | Effect::LoadMisalignment { angle, .. } => {
+                vec![(angle, 10.0 * DEG)]
+            }
+            Effect::Drift { rate, by_time, .. } => {
+                vec![(rate, 50.0 * UM / if by_time { 3600.0 } else { 1.0 })]
+            }
+            _ => Vec::new(),
+        }
+    }
+
+    /// The same effect with its `which`-th size changed by so much.
+    pub(super) fn resized(&self, which: usize, by: f64) -> Effect {
+        let mut effect = self.clone();
+        match &mut effect {
+            Effect::Joint { torsion, .. } | Effect::Root { torsion, .. } if which == 1 => *torsion += by,
+            Effect::Joint { bending: size, .. }
+            | Effect::Root { bending: size, .. }
+            | Effect::StiffnessScale(size)
+            | Effect::ShearModulus(size)
+            | Effect::Bend(size)
+            | Effect::Friction { force: size, .. }
+            | Effect::LoadOffset { force: size, .. }
+            | Effect::Backlash { play: size, .. }
+            | Effect::Creep { per_decade: size, .. }
+            | Effect::Hysteresis { fraction: size, .. }
+            | Effect::Cubic(size)
+            | Effect::Quadratic(size)
+            | Effect::SensorScale { factor: size, .. }
+            | Effect::SensorMisalignment { angle: size, .. }
+            | Effect::LoadMisalignment { angle: size, .. }
+            | Effect::Drift { rate: size, .. } => *size += by,
+            _ => {}
+        }
+        effect
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rig::bench::tests::bench;
+    use crate::rig::draw;
+    use rodcal_base::statistics::Random;
+
+    #[test]
+    fn every_effect_of_the_library_has_its_sizes_within_the_range() {
+        let (bench, mut random) = (bench(), Random::seeded(3, 0));
+        for number in (0..draw::LIBRARY - 2).filter(|number| *number != 4) {
+            let effect = draw::library(number, &bench, UM, 0.0, &mut random);
+            let sizes = effect.sizes(&bench);
+            assert!(!sizes.is_empty(), "{effect:?}");
+            for (k, (size, most)) in sizes.into_iter().enumerate() {
+                // torsion goes up to three times bending's share
+                assert!(size.abs() <= 3.0 * most, "{effect:?}");
+                let larger = effect.resized(k, most).sizes(&bench)[k].0;
+                assert!((larger - size - most).abs() < 1e-12 * most, "{effect:?}");
+            }
+        }
+        assert!(Effect::Outlier(vec![(0, 1.0)]).sizes(&bench).is_empty());
+    }
+}

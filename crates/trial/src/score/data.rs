@@ -1,0 +1,249 @@
+//! A score as data, as JSON and as text.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Display;
+
+use rodcal_base::error::Result;
+use serde::{Serialize, Serializer};
+use serde_json::{Value, json};
+
+use super::{
+    Bin, Confusion, Failure, Foretold, Missed, NextMeasurement, PowerBin, Rate, tables::confusion_text,
+};
+use crate::envelope::unwritable;
+
+/// A trial's score: of all cases, and of each half of them. As JSON its keys are those of [`Part`], then the halves.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Score {
+    /// All cases.
+    #[serde(flatten)]
+    pub whole: Part,
+    /// Cases of the key without an answer.
+    pub unanswered: usize,
+    /// Rods at a rig; `None` where there is no such case.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rig: Option<Part>,
+    /// Calibrations of arms.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub calibration: Option<Part>,
+}
+
+/// The score of some cases.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct Part {
+    /// Answered cases.
+    pub cases: usize,
+    /// Those whose answer is no diagnosis.
+    pub failed: usize,
+    /// Nothing is concealed.
+    pub clean: Clean,
+    /// One effect is concealed.
+    pub single: Singles,
+    /// Two are.
+    pub pairs: Pairs,
+    /// Physics that no library has.
+    pub unknown: Unknown,
+    /// The strongest finding is concealed, of the cases with a finding.
+    pub right_when_named: Rate,
+    /// Something of its class is.
+    pub class_right_when_named: Rate,
+    /// 95 % intervals that hold the truth.
+    #[serde(flatten)]
+    pub coverage: Coverage,
+    /// Gain of held-out errors over what an oracle gains, identifiable cases together.
+    pub gain_over_oracle: Option<f64>,
+    /// Readings that were asked for and not given: the median of `counterfactual`, and all of it.
+    pub counterfactual_over_oracle: Option<f64>,
+    #[allow(missing_docs)]
+    pub counterfactual: Foretold,
+    /// What became of the proposals of ambiguous answers.
+    pub next_measurement_ok: NextMeasurement,
+    /// Cases with one effect by what the oracle could know.
+    pub bins: Vec<Bin>,
+    /// Truth → answer → cases.
+    pub confusion: Confusion,
+    /// Names of effects that no library has.
+    pub outside: BTreeSet<String>,
+    /// Probability of the right name over size, by effect.
+    pub power: BTreeMap<String, Vec<PowerBin>>,
+    /// Cases that somebody should look at.
+    pub failures: Vec<Failure>,
+    /// What was to be reached and was not.
+    pub missed_targets: Vec<Missed>,
+}
+
+/// Of clean cases.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Clean {
+    /// Something was named.
+    pub false_names: Rate,
+    /// A remainder was called unexplained.
+    pub false_unexplained: Rate,
+}
+
+/// Of cases with one effect.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Singles {
+    /// All of them; the rates but `in_class` are of the identifiable ones.
+    pub n: usize,
+    /// The name is right,
+    pub name_ok: Rate,
+    /// and the place.
+    pub location_ok: Rate,
+    /// Nothing was named.
+    pub missed: Rate,
+    /// Of detectable cases with a finding: the truth is in its class.
+    pub in_class: Rate,
+    /// Mean size of that class.
+    pub class_size: f64,
+}
+
+/// Of cases with two effects.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Pairs {
+    /// All of them; the rates are of those whose effects are both identifiable.
+    pub n: usize,
+    /// Both effects were found,
+    pub both_found: Rate,
+    /// or at least one.
+    pub one_found: Rate,
+}
+
+/// Of cases with physics that no library has.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Unknown {
+    /// All of them; the rates are of the identifiable ones.
+    pub n: usize,
+    /// Called unexplained and nothing else.
+    pub called_unknown: Rate,
+    /// Something was named.
+    pub wrongly_named: Rate,
+}
+
+/// Intervals that hold the truth.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Coverage {
+    /// Of all numbers,
+    pub all: Rate,
+    /// and of each, by the names of effect and number.
+    pub by_parameter: BTreeMap<String, Rate>,
+}
+
+impl Serialize for Clean {
+    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+        let Clean { false_names, false_unexplained } = self;
+        json!({
+            "n": false_names.of,
+            "false_names": false_names.count, "false_unexplained": false_unexplained.count,
+            "false_names_rate": false_names, "false_unexplained_rate": false_unexplained,
+        })
+        .serialize(serializer)
+    }
+}
+
+impl Serialize for Singles {
+    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+        let Singles { n, name_ok, location_ok, missed, in_class, class_size } = self;
+        json!({
+            "n": n, "identifiable": name_ok.of,
+            "name_ok": name_ok.count, "location_ok": location_ok.count, "in_class": in_class.count,
+            "missed": missed.count, "class_size": class_size,
+            "name_ok_rate": name_ok, "location_ok_rate": location_ok, "in_class_rate": in_class,
+        })
+        .serialize(serializer)
+    }
+}
+
+impl Serialize for Pairs {
+    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+        let Pairs { n, both_found, one_found } = self;
+        json!({
+            "n": n, "identifiable": both_found.of,
+            "both_found": both_found.count, "one_found": one_found.count, "both_found_rate": both_found,
+        })
+        .serialize(serializer)
+    }
+}
+
+impl Serialize for Unknown {
+    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+        let Unknown { n, called_unknown, wrongly_named } = self;
+        json!({
+            "n": n, "identifiable": called_unknown.of,
+            "called_unknown": called_unknown.count, "wrongly_named": wrongly_named.count,
+            "called_unknown_rate": called_unknown, "wrongly_named_rate": wrongly_named,
+        })
+        .serialize(serializer)
+    }
+}
+
+impl Serialize for Coverage {
+    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+        json!({
+            "coverage": self.all.share(), "coverage_rate": self.all, "coverage_by_parameter": self.by_parameter,
+        })
+        .serialize(serializer)
+    }
+}
+
+impl Score {
+    /// The halves that have cases, by name.
+    pub fn halves(&self) -> impl Iterator<Item = (&'static str, &Part)> {
+        [("rig", &self.rig), ("calibration", &self.calibration)]
+            .into_iter()
+            .filter_map(|(name, part)| Some((name, part.as_ref()?)))
+    }
+
+    /// For `--json`.
+    ///
+    /// # Errors
+    /// [`rodcal_base::Error::Numerical`] for what JSON has no words for.
+    pub fn json(&self) -> Result<Value> {
+        serde_json::to_value(self).map_err(unwritable)
+    }
+
+    /// For people: missed targets, all cases, then each half if there are both.
+    pub fn text(&self) -> String {
+        let mut text = String::new();
+        for (half, part) in self.halves() {
+            part.missed_targets.iter().for_each(|missed| text += &format!("MISSED {half}: {missed}\n"));
+        }
+        if !text.is_empty() {
+            text += "\n";
+        }
+        text += &self.whole.text();
+        if self.halves().count() > 1 {
+            self.halves().for_each(|(half, part)| text += &format!("\n{half}\n{}", part.text()));
+        }
+        text
+    }
+}
+
+impl Part {
+    fn text(&self) -> String {
+        let Part { clean, single, pairs, unknown, .. } = self;
+        let mut text = String::new();
+        let mut say = |what: &str, words: &dyn Display| text += &format!("{what:44} {words}\n");
+        say("clean: false names", &clean.false_names);
+        say("clean: called unexplained", &clean.false_unexplained);
+        say("single, identifiable: name right", &single.name_ok);
+        say("single, identifiable: name and place right", &single.location_ok);
+        say("single, identifiable: nothing named", &single.missed);
+        say(
+            "single, detectable, named: truth in class",
+            &format!("{}; class of {:.1}", single.in_class, single.class_size),
+        );
+        say("pairs, identifiable: both found", &pairs.both_found);
+        say("pairs, identifiable: one found", &pairs.one_found);
+        say("unknown, identifiable: called unexplained", &unknown.called_unknown);
+        say("unknown, identifiable: wrongly named", &unknown.wrongly_named);
+        say("right when it names", &self.right_when_named);
+        say("right, or in its class, when it names", &self.class_right_when_named);
+        say("95 % intervals that hold the truth", &self.coverage.all);
+        let gain = self.gain_over_oracle.map_or("no case".into(), |gain| format!("{gain:.3}"));
+        say("held-out gain over the oracle's", &gain);
+        say("error of other readings over the oracle's", &self.counterfactual);
+        say("ambiguous: settled by what is proposed", &self.next_measurement_ok);
+        text + &confusion_text(&self.confusion)
+    }
+}

@@ -1,0 +1,213 @@
+//! Tables of a score: by detectability, by size, truth against answer, and what went wrong.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use serde::Serialize;
+
+use super::judged::Judged;
+use super::rate::Rate;
+use crate::truth::Kind;
+
+/// Edges of the bins of detectability, expected log Bayes factor.
+const DETECTABILITY: [f64; 7] = [0.5, 2.0, 5.0, 10.0, 30.0, 100.0, 1000.0];
+/// Edges of the bins of size over noise.
+const SIZE: [f64; 6] = [0.1, 0.3, 1.0, 3.0, 10.0, 30.0];
+
+fn bin(edges: &[f64], value: f64) -> usize {
+    edges.iter().take_while(|edge| value >= **edge).count()
+}
+
+fn limits(edges: &[f64], bin: usize) -> [Option<f64>; 2] {
+    [bin.checked_sub(1).and_then(|k| edges.get(k)).copied(), edges.get(bin).copied()]
+}
+
+/// Cases with one effect whose detectability is in a bin.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Bin {
+    /// Edges, expected log Bayes factor of the oracle; the outer bins have one.
+    pub from: Option<f64>,
+    #[allow(missing_docs)]
+    pub to: Option<f64>,
+    /// Cases in it.
+    pub n: usize,
+    /// Of those: the name was right.
+    pub name_ok: usize,
+    /// The name and the place.
+    pub location_ok: usize,
+    #[allow(missing_docs)]
+    pub location_ok_rate: Rate,
+    /// The truth was in the reported class.
+    pub in_class: usize,
+    /// Nothing was named.
+    pub missed: usize,
+}
+
+/// Singles by what the oracle could know.
+pub fn bins(cases: &[Judged<'_>]) -> Vec<Bin> {
+    let mut rates = vec![[Rate::default(); 4]; DETECTABILITY.len() + 1];
+    for case in cases.iter().filter(|case| case.truth.kind == Kind::Single) {
+        let Some(concealed) = case.truth.effects.first() else { continue };
+        let [name, place, class, missed] =
+            &mut rates[bin(&DETECTABILITY, concealed.detectability.separation())];
+        name.add(case.name_ok());
+        place.add(case.location_ok());
+        class.add(case.in_class());
+        missed.add(case.findings.is_empty());
+    }
+    let of_bin = |(k, [name, place, class, missed]): (usize, &[Rate; 4])| {
+        let [from, to] = limits(&DETECTABILITY, k);
+        Bin {
+            from,
+            to,
+            n: name.of,
+            name_ok: name.count,
+            location_ok: place.count,
+            location_ok_rate: *place,
+            in_class: class.count,
+            missed: missed.count,
+        }
+    };
+    rates.iter().enumerate().map(of_bin).collect()
+}
+
+/// Cases with one effect of a name whose size over noise is in a bin.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PowerBin {
+    /// Edges, size over noise; the outer bins have one.
+    pub from: Option<f64>,
+    #[allow(missing_docs)]
+    pub to: Option<f64>,
+    /// Cases in it.
+    pub n: usize,
+    /// Of those: the name was right.
+    pub name_ok: usize,
+    #[allow(missing_docs)]
+    pub name_ok_rate: Rate,
+}
+
+/// Probability of the right name against size over noise, for each effect.
+pub fn power(cases: &[Judged<'_>]) -> BTreeMap<String, Vec<PowerBin>> {
+    let mut rates: BTreeMap<&str, Vec<Rate>> = BTreeMap::new();
+    for case in cases.iter().filter(|case| case.truth.kind == Kind::Single) {
+        let Some(concealed) = case.truth.effects.first() else { continue };
+        let of = rates.entry(&concealed.effect).or_insert_with(|| vec![Rate::default(); SIZE.len() + 1]);
+        of[bin(&SIZE, concealed.size_over_noise)].add(case.name_ok());
+    }
+    let of_effect = |(effect, rates): (&str, Vec<Rate>)| {
+        let of_bin = |(k, rate): (usize, &Rate)| {
+            let [from, to] = limits(&SIZE, k);
+            PowerBin { from, to, n: rate.of, name_ok: rate.count, name_ok_rate: *rate }
+        };
+        let bins = rates.iter().enumerate().filter(|(_, rate)| rate.of > 0);
+        (effect.to_owned(), bins.map(of_bin).collect())
+    };
+    rates.into_iter().map(of_effect).collect()
+}
+
+/// Truth → answer → number of cases: clean ones, and identifiable ones with a single effect or an unknown one.
+pub type Confusion = BTreeMap<String, BTreeMap<String, usize>>;
+
+/// For each truth how often which answer came.
+pub fn confusion(cases: &[Judged<'_>]) -> Confusion {
+    let mut counts = Confusion::new();
+    for case in cases {
+        let truth = match (case.truth.kind, case.truth.effects.first()) {
+            (Kind::Clean, _) => "nothing",
+            (Kind::Single | Kind::Unknown, Some(e)) if e.detectability.is_identifiable() => &e.effect,
+            _ => continue,
+        };
+        *counts.entry(truth.to_owned()).or_default().entry(case.said().to_owned()).or_default() += 1;
+    }
+    counts
+}
+
+/// Names of the effects that the library does not have: "unexplained" is the right answer to them.
+pub fn outside(cases: &[Judged<'_>]) -> BTreeSet<String> {
+    let unknown = cases.iter().filter(|case| case.truth.kind == Kind::Unknown);
+    unknown.flat_map(|case| case.truth.effects.iter().map(|e| e.effect.clone())).collect()
+}
+
+/// As a table with a line for each truth.
+pub fn confusion_text(counts: &Confusion) -> String {
+    let mut text = String::from("\ntruth (identifiable)    answers\n");
+    for (truth, row) in counts {
+        let total: usize = row.values().sum();
+        let mut cells: Vec<(&String, &usize)> = row.iter().collect();
+        cells.sort_by_key(|(_, count)| std::cmp::Reverse(**count));
+        let cells: Vec<String> = cells.iter().map(|(answer, count)| format!("{answer} {count}")).collect();
+        text += &format!("{truth:23} {total:3}: {}\n", cells.join(", "));
+    }
+    text
+}
+
+/// A case that somebody should look at.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Failure {
+    /// `rig/case-0001`.
+    pub case: String,
+    /// What went wrong: `single, wrong name`.
+    pub what: &'static str,
+    /// What was concealed, with its numbers.
+    pub truth: Vec<String>,
+    /// What was said.
+    pub said: Vec<String>,
+    /// A remainder was called unexplained.
+    pub unexplained: bool,
+    /// Least expected log Bayes factor of the concealed effects.
+    pub separation: f64,
+    /// Shape of the noise.
+    pub noise: String,
+    /// Loads, trials, axes.
+    pub protocol: String,
+    /// What the oracle would take the strongest effect for, if not for itself.
+    pub best_rival: Option<String>,
+}
+
+/// Every case where something went wrong that need not have.
+pub fn failures(cases: &[Judged<'_>]) -> Vec<Failure> {
+    let what = |case: &Judged<'_>| -> Option<&'static str> {
+        let is_identifiable = case.truth.effects.iter().all(|e| e.detectability.is_identifiable());
+        Some(match case.truth.kind {
+            _ if case.failed => "failed",
+            Kind::Clean if !case.findings.is_empty() => "clean, named",
+            Kind::Clean if case.is_unexplained => "clean, called unexplained",
+            _ if !is_identifiable => return None,
+            Kind::Single if case.findings.is_empty() && case.is_unexplained => "single, called unexplained",
+            Kind::Single if case.findings.is_empty() => "single, missed",
+            Kind::Single if !case.name_ok() => "single, wrong name",
+            Kind::Single if !case.location_ok() => "single, wrong place",
+            Kind::Single if case.has_more() => "single, more named",
+            Kind::Pair if case.truth.effects.iter().any(|e| case.found(e).is_none()) => "pair, not both",
+            Kind::Unknown if !case.findings.is_empty() => "unknown, named",
+            Kind::Unknown if !case.is_unexplained => "unknown, missed",
+            _ => return None,
+        })
+    };
+    let failure = |case: &Judged<'_>| {
+        let truth: Vec<String> = case
+            .truth
+            .effects
+            .iter()
+            .map(|e| {
+                let numbers: Vec<String> =
+                    e.parameters.iter().map(|p| format!("{} {:.3e}", p.name, p.value)).collect();
+                format!("{} at {} ({})", e.effect, e.location, numbers.join(", "))
+            })
+            .collect();
+        let said: Vec<String> =
+            case.findings.iter().map(|f| format!("{} at {}", f.effect, f.location)).collect();
+        let separations = case.truth.effects.iter().map(|e| e.detectability.separation());
+        Some(Failure {
+            case: case.truth.case.clone(),
+            what: what(case)?,
+            truth,
+            said,
+            unexplained: case.is_unexplained,
+            separation: separations.fold(f64::INFINITY, f64::min).min(1e300),
+            noise: case.truth.noise_shape.clone(),
+            protocol: case.truth.protocol.clone(),
+            best_rival: case.truth.effects.first().map(|e| e.detectability.best_rival.clone()),
+        })
+    };
+    cases.iter().filter_map(failure).collect()
+}

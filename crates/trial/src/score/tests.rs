@@ -1,0 +1,206 @@
+use std::collections::BTreeMap;
+
+use serde_json::{Value, json};
+
+use super::*;
+use crate::truth::{Asked, Concealed, Parameter};
+
+fn concealed(effect: &str, location: &str, parameter: (&str, f64), separation: f64) -> Concealed {
+    Concealed {
+        effect: effect.into(),
+        location: location.into(),
+        parameters: vec![Parameter { name: parameter.0.into(), value: parameter.1 }],
+        size_over_noise: 4.0,
+        detectability: Detectability {
+            against_none: 2.0 * separation,
+            against_rival: separation,
+            best_rival: "load_offset".into(),
+            class: Vec::new(),
+            places: vec![location.into()],
+            stations_mm: (effect == "joint_compliance").then_some([190.0, 230.0]),
+        },
+    }
+}
+
+fn truth(case: usize, kind: Kind, effects: Vec<Concealed>) -> Truth {
+    Truth {
+        case: format!("rig/case-{case:04}"),
+        kind,
+        effects,
+        noise_um: 1.0,
+        noise_shape: "normal".into(),
+        quantum_um: 0.0,
+        readings: 10,
+        protocol: String::new(),
+        joints: BTreeMap::from([("sleeve".to_owned(), 205.0)]),
+        geometric_um: 0.0,
+        oracle_gain: Some(0.8),
+        seed: None,
+        asked: None,
+    }
+}
+
+fn answer(case: usize, findings: &[(&str, &str, Value)], unexplained: bool) -> Answer {
+    let findings: Vec<Value> = findings
+        .iter()
+        .map(|(effect, location, parameter)| {
+            json!({"effect": effect, "location": location, "parameters": [parameter],
+                   "indistinguishable_from": ["friction"]})
+        })
+        .collect();
+    let unexplained = unexplained.then(|| json!({"location": "load"}));
+    Answer {
+        case: format!("rig/case-{case:04}"),
+        answer: json!({"verdict": "mismatch", "findings": findings, "unexplained": unexplained,
+                       "heldout_before_um": 2.0, "heldout_after_um": 1.0}),
+        sha256: BTreeMap::new(),
+        asked_um: None,
+    }
+}
+
+fn example() -> (Vec<Truth>, Vec<Answer>) {
+    let friction = || concealed("friction", "slide", ("force_n", 1.0), 20.0);
+    let joint = || concealed("joint_compliance", "station 205.0 mm", ("bending_urad_per_nm", 5.0), 8.0);
+    let force = |lo: f64, hi: f64| json!({"name": "force_n", "value": 1.0, "lo": lo, "hi": hi});
+    let none = || json!({"name": "um", "value": 0.0, "lo": 0.0, "hi": 0.0});
+    let truths = vec![
+        truth(1, Kind::Clean, vec![]),
+        truth(2, Kind::Clean, vec![]),
+        truth(3, Kind::Single, vec![friction()]),
+        truth(4, Kind::Single, vec![friction()]),
+        truth(5, Kind::Single, vec![joint()]),
+        truth(6, Kind::Single, vec![concealed("creep", "rod", ("per_decade", 0.1), 1.0)]),
+        truth(7, Kind::Pair, vec![friction(), joint()]),
+        truth(8, Kind::Unknown, vec![concealed("sensor ripple", "dy", ("amplitude_um", 5.0), 9.0)]),
+        truth(9, Kind::Unknown, vec![concealed("Hertzian seat", "rod", ("um", 5.0), 9.0)]),
+        truth(10, Kind::Clean, vec![]),
+    ];
+    let answers = vec![
+        answer(1, &[], false),
+        answer(2, &[("slip", "y", none())], false),
+        answer(3, &[("friction", "slide", force(0.9, 1.1))], false),
+        answer(4, &[("load_offset", "hanger", force(0.9, 1.1))], false),
+        answer(5, &[("joint_compliance", "sleeve", none())], false),
+        answer(6, &[], false),
+        answer(
+            7,
+            &[("joint_compliance", "station 400.0 mm", none()), ("friction", "slide", force(1.1, 1.2))],
+            false,
+        ),
+        answer(8, &[], true),
+        answer(9, &[("backlash", "clamp", none())], false),
+    ];
+    (truths, answers)
+}
+
+#[test]
+fn a_small_trial_is_counted_by_hand() {
+    let (truths, answers) = example();
+    let score = score(&truths, &answers, &[]);
+    let Part { cases, clean, single, pairs, unknown, .. } = &score.whole;
+    let rate = |count, of| Rate { count, of };
+    assert_eq!((*cases, score.unanswered), (9, 1));
+    assert_eq!(clean.false_names, rate(1, 2));
+    // a sleeve at 205 mm is where the joint is; the class of the wrong name holds friction
+    assert_eq!((single.n, single.name_ok, single.location_ok), (4, rate(2, 3), rate(2, 3)));
+    assert_eq!(single.in_class, rate(3, 3));
+    assert_eq!(pairs.both_found, rate(1, 1));
+    assert_eq!((unknown.called_unknown, unknown.wrongly_named), (rate(1, 2), rate(1, 2)));
+    // one interval holds 1.0 and one does not; the joint's number was not said
+    assert_eq!(score.whole.coverage.all.share(), Some(0.5));
+    assert_eq!(score.whole.right_when_named.count, 3);
+    assert!((score.whole.gain_over_oracle.unwrap() - 0.75 / 0.8).abs() < 1e-12);
+    // nobody was asked for other readings, and nothing was measured once more
+    assert_eq!(score.whole.counterfactual_over_oracle, None);
+    let next = &score.whole.next_measurement_ok;
+    assert_eq!((next.settled, &next.not_done), (rate(0, 0), &BTreeMap::from([("not asked".to_owned(), 4)])));
+    assert_eq!((score.rig.as_ref(), score.calibration.as_ref()), (Some(&score.whole), None));
+}
+
+/// Scores of former versions are compared with those of today: keys stay, and their order.
+#[test]
+fn as_json_a_score_has_the_keys_that_it_always_had() {
+    let (truths, answers) = example();
+    let json = score(&truths, &answers, &[]).json().unwrap();
+    let keys = |value: &Value| -> Vec<String> { value.as_object().unwrap().keys().cloned().collect() };
+    let part = [
+        "cases",
+        "failed",
+        "clean",
+        "single",
+        "pairs",
+        "unknown",
+        "right_when_named",
+        "class_right_when_named",
+        "coverage",
+        "coverage_rate",
+        "coverage_by_parameter",
+        "gain_over_oracle",
+        "counterfactual_over_oracle",
+        "counterfactual",
+        "next_measurement_ok",
+        "bins",
+        "confusion",
+        "outside",
+        "power",
+        "failures",
+        "missed_targets",
+    ];
+    assert_eq!(keys(&json), [&part[..], &["unanswered", "rig"]].concat());
+    assert_eq!(keys(&json["rig"]), part);
+    assert_eq!(json["single"]["identifiable"], 3);
+    assert_eq!(json["clean"]["false_names_rate"]["share"], 0.5);
+    let missed = "false names on clean data: 50.0 %, wanted at most 2.0 %";
+    assert_eq!(json["missed_targets"][0], missed);
+    assert!(score(&truths, &answers, &[]).text().starts_with(&format!("MISSED rig: {missed}\n")));
+}
+
+#[test]
+fn other_readings_are_scored_against_the_oracle() {
+    let (mut truths, mut answers) = example();
+    // of an identifiable case, of one that is not, and of one whose answer leaves a reading out
+    for (k, said) in [(2, vec![1.2, 2.2]), (5, vec![9.0, 9.0]), (3, vec![1.0])] {
+        let oracle_um = Some(vec![1.1, 2.1]);
+        truths[k].asked = Some(Asked { true_um: vec![1.0, 2.0], oracle_um, is_any_frame: false });
+        answers[k].asked_um = Some(said);
+    }
+    let part = score(&truths, &answers, &[]).whole;
+    assert!((part.counterfactual_over_oracle.unwrap() - 2.0).abs() < 1e-9);
+    let told = &part.counterfactual;
+    assert_eq!((told.n, told.answered, told.worst[0].case.as_str()), (2, 1, "rig/case-0003"));
+}
+
+#[test]
+fn what_was_measured_once_more_settles_or_does_not() {
+    let (truths, answers) = example();
+    let sealed = Sealed { truths, given: answers };
+    let due: Vec<String> = sealed.due().into_iter().map(|due| due.case).collect();
+    assert_eq!(due, [3, 4, 5, 7].map(|case| format!("rig/case-{case:04}")));
+    let diagnosed = |effect: &str, place: &str, others: &[&str]| {
+        let finding = json!({"effect": effect, "location": place, "indistinguishable_from": others});
+        Outcome::Diagnosed(json!({"verdict": "mismatch", "findings": [finding]}))
+    };
+    let outcomes = [
+        Outcome::NotProposed,
+        diagnosed("friction", "slide", &["backlash"]),
+        diagnosed("joint_compliance", "sleeve", &["friction"]),
+        Outcome::NotDone("the rod broke".into()),
+    ];
+    let outcomes: Vec<(String, Outcome)> = due.into_iter().zip(outcomes).collect();
+    let score = sealed.score(&outcomes);
+    let next = &score.whole.next_measurement_ok;
+    // a rival that is new is another question
+    assert_eq!((next.settled, next.not_proposed), (Rate { count: 1, of: 2 }, 1));
+    assert_eq!(next.not_done, BTreeMap::from([("the rod broke".to_owned(), 1)]));
+    assert_eq!(next.open[0].case, "rig/case-0005");
+    let text = score.text();
+    assert!(text.contains("1 more without a proposal; 1 not done (the rod broke)"), "{text}");
+}
+
+#[test]
+fn the_order_of_answers_does_not_matter() {
+    let (truths, mut answers) = example();
+    let before = score(&truths, &answers, &[]);
+    answers.reverse();
+    assert_eq!(score(&truths, &answers, &[]), before);
+}

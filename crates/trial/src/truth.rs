@@ -1,0 +1,138 @@
+//! What is concealed in a case: one line of the key.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use rodcal_base::statistics::Random;
+
+/// One case of the key. Units are those of the names.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Truth {
+    /// `rig/case-0001`.
+    pub case: String,
+    /// Clean, single, pair or unknown.
+    pub kind: Kind,
+    /// What is wrong, strongest first; of an unknown case physics that no library has.
+    pub effects: Vec<Concealed>,
+    /// Standard deviation of a reading, µm, its shape, and the step of the display, µm.
+    pub noise_um: f64,
+    /// `normal`, `student-t (5)`, `contaminated`.
+    pub noise_shape: String,
+    /// Step of the display, µm.
+    pub quantum_um: f64,
+    /// Numbers in the file.
+    pub readings: usize,
+    /// For people: loads, trials, axes.
+    pub protocol: String,
+    /// Joints that the rod file declares, and where, mm.
+    pub joints: BTreeMap<String, f64>,
+    /// Root mean square of what large deflection adds to the linear rod, µm: no effect, but no noise either.
+    pub geometric_um: f64,
+    /// Share of the held-out squares that goes once the effects are known, 1 − noise²/(noise² + effects²), the noise with
+    /// that of the zero; `None` where there is nothing to gain: no effect, or one that a single run has.
+    pub oracle_gain: Option<f64>,
+    /// Seed of the trial, from which whoever scores makes the case once more. A key of before has none.
+    #[serde(default)]
+    pub seed: Option<u64>,
+    /// What belongs into the readings that are asked for.
+    #[serde(default)]
+    pub asked: Option<Asked>,
+}
+
+/// Readings, or coordinates x, y, z of balls, that are asked for and not given, in the order of the file that asks, µm.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Asked {
+    /// What would be read without noise.
+    pub true_um: Vec<f64>,
+    /// What an oracle says that knows the law and the place of every effect and finds its size out from the recording; `None`
+    /// where there is no such size: no effect, one of a single run, or physics that no library has.
+    pub oracle_um: Option<Vec<f64>>,
+    /// True for points in a frame that nobody knows: they are compared after the best motion of all of them.
+    #[serde(default)]
+    pub is_any_frame: bool,
+}
+
+/// What sort of case.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+#[allow(missing_docs)]
+pub enum Kind {
+    Clean,
+    Single,
+    Pair,
+    Unknown,
+}
+
+/// Shares of clean, single and paired cases; the rest is unknown.
+const SHARES: [f64; 3] = [0.25, 0.45, 0.15];
+
+impl Kind {
+    /// One by chance.
+    pub fn drawn(random: &mut Random) -> Kind {
+        let drawn = random.uniform(0.0, 1.0);
+        let [clean, single, pair] = SHARES;
+        match drawn {
+            u if u < clean => Kind::Clean,
+            u if u < clean + single => Kind::Single,
+            u if u < clean + single + pair => Kind::Pair,
+            _ => Kind::Unknown,
+        }
+    }
+}
+
+/// One concealed effect.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Concealed {
+    /// Its name.
+    pub effect: String,
+    /// Where.
+    pub location: String,
+    /// Its numbers, by name.
+    pub parameters: Vec<Parameter>,
+    /// Root mean square of what it does to the readings over the noise.
+    pub size_over_noise: f64,
+    /// What an oracle could have known.
+    pub detectability: Detectability,
+}
+
+/// A number of an effect.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Parameter {
+    /// Name with its unit.
+    pub name: String,
+    /// Its value.
+    pub value: f64,
+}
+
+/// Expected log Bayes factors of an oracle that knows the readings without noise, natural logarithms.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Detectability {
+    /// Against nothing being wrong.
+    pub against_none: f64,
+    /// Against the best effect of another name.
+    pub against_rival: f64,
+    /// That effect.
+    pub best_rival: String,
+    /// Effects of other names less than 5 away: nobody could tell them apart.
+    pub class: Vec<String>,
+    /// Locations of the same effect less than 3 away.
+    pub places: Vec<String>,
+    /// For joints: the stations that cannot be told apart, mm.
+    pub stations_mm: Option<[f64; 2]>,
+}
+
+impl Detectability {
+    /// Expected log Bayes factor from which on an effect counts as identifiable.
+    pub const IDENTIFIABLE: f64 = 5.0;
+
+    /// The smaller of both separations.
+    pub fn separation(&self) -> f64 {
+        self.against_none.min(self.against_rival)
+    }
+
+    /// True where the recording tells it from nothing and from every other effect.
+    pub fn is_identifiable(&self) -> bool {
+        self.separation() >= Self::IDENTIFIABLE
+    }
+}

@@ -1,0 +1,239 @@
+//! The report of a trial: targets that are missed, rates, what was taken for what, and how large an effect must be.
+
+use std::collections::BTreeSet;
+
+use rodcal::report::chart::{Axis, Chart, Colour, Figure, Mark, Marker, Point, Range, Style};
+use rodcal::report::table::{Column, Table};
+use rodcal::report::{Block, Report, Section};
+use rodcal_trial::score::{Failure, Part, Rate, Score};
+
+/// Half the size of a circle that stands for all cases of a row, CSS pixels.
+const FULL_PX: f64 = 9.0;
+/// Beyond these ends a bin has none: where it is drawn.
+const OPEN: f64 = 3.0;
+/// Failures that are listed.
+const MOST_FAILURES: usize = 200;
+
+/// The report of a score.
+pub fn report(score: &Score) -> Report {
+    let missed: Vec<String> = score
+        .halves()
+        .flat_map(|(half, part)| part.missed_targets.iter().map(move |missed| format!("{half}: {missed}")))
+        .collect();
+    let cases = score.whole.cases;
+    let headline = match missed.len() {
+        0 => format!("{cases} cases with concealed effects: every target is met."),
+        n => format!("{cases} cases with concealed effects: {n} targets are missed. {}.", missed.join(". ")),
+    };
+    Report {
+        title: "Concealed-effect trial".into(),
+        headline,
+        warnings: Vec::new(),
+        sections: score.halves().map(|(half, part)| section(half, part)).collect(),
+        provenance: vec![("program".into(), concat!("rodcal ", env!("CARGO_PKG_VERSION")).into())],
+    }
+}
+
+fn section(half: &str, part: &Part) -> Section {
+    let heading = match half {
+        "rig" => "Rods at a stiffness rig",
+        _ => "Calibrations of arms",
+    };
+    let mut blocks = vec![Block::Table(rates(half, part))];
+    let figures = [Some(confusion(half, part)), bins(half, part), power(half, part)];
+    blocks.extend(figures.into_iter().flatten().map(Block::Figure));
+    blocks.push(Block::Table(failures(half, &part.failures)));
+    Section::new(heading, blocks)
+}
+
+fn rates(half: &str, part: &Part) -> Table {
+    let Part { clean, single, pairs, unknown, .. } = part;
+    let rows = [
+        ("clean: something named", clean.false_names, "≤ 2 %"),
+        ("clean: called unexplained", clean.false_unexplained, ""),
+        ("one identifiable effect: name right", single.name_ok, ""),
+        ("one identifiable effect: name and place right", single.location_ok, "≥ 90 %"),
+        ("one detectable effect, something named: truth in its class", single.in_class, "≥ 95 %"),
+        ("two identifiable effects: both found", pairs.both_found, "≥ 60 %"),
+        ("unknown physics, identifiable: called unexplained", unknown.called_unknown, "≥ 90 %"),
+        ("unknown physics, identifiable: wrongly named", unknown.wrongly_named, "≤ 5 %"),
+        ("right when it names", part.right_when_named, "≥ 95 %"),
+        ("right, or in its class, when it names", part.class_right_when_named, ""),
+        ("95 % intervals that hold the truth", part.coverage.all, "90 to 98 %"),
+        (
+            "ambiguous, truth in its class: settled by the proposed measurement",
+            part.next_measurement_ok.settled,
+            "",
+        ),
+    ];
+    let percent =
+        |share: Option<f64>| share.map_or("–".to_owned(), |share| format!("{:.1}", 100.0 * share));
+    let row = |(what, rate, target): (&str, Rate, &str)| {
+        let [lo, hi] = rate.interval().map_or([None; 2], |ends| ends.map(Some));
+        vec![
+            what.to_owned(),
+            format!("{} of {}", rate.count, rate.of),
+            percent(rate.share()),
+            percent(lo),
+            percent(hi),
+            target.to_owned(),
+        ]
+    };
+    let mut rows: Vec<Vec<String>> = rows.into_iter().map(row).collect();
+    rows.push(vec![
+        "held-out gain over the oracle's".into(),
+        String::new(),
+        percent(part.gain_over_oracle),
+        String::new(),
+        String::new(),
+        "≥ 90 %".into(),
+    ]);
+    let foretold = &part.counterfactual;
+    let number = |ratio: Option<f64>| ratio.map_or("–".into(), |ratio| format!("{:.0}", 100.0 * ratio));
+    if foretold.n > 0 {
+        rows.push(vec![
+            "error of what was asked, over the oracle's: median, quartiles".into(),
+            format!("{} of {}", foretold.answered, foretold.n),
+            number(foretold.median),
+            number(foretold.quartiles[0]),
+            number(foretold.quartiles[1]),
+            String::new(),
+        ]);
+    }
+    Table {
+        name: format!("{half}-rates"),
+        caption: "What was asked and how often it was so, with Wilson's 95 % intervals.".into(),
+        columns: vec![
+            Column::text("what"),
+            Column::text("cases"),
+            Column::number("share", "%"),
+            Column::number("from", "%"),
+            Column::number("to", "%"),
+            Column::text("target"),
+        ],
+        rows,
+        notes: Vec::new(),
+    }
+}
+
+/// Truth against answer: circles as large as the share of their row.
+fn confusion(half: &str, part: &Part) -> Figure {
+    let rows = &part.confusion;
+    // what is an answer comes first, in the same order along both axes
+    let answered: BTreeSet<&str> = rows.values().flat_map(|row| row.keys().map(String::as_str)).collect();
+    let unanswered = rows.keys().map(String::as_str).filter(|truth| !answered.contains(truth));
+    let names: Vec<&str> = answered.iter().copied().chain(unanswered).collect();
+    let answers = answered.len();
+    let place = |name: &str| names.iter().position(|known| *known == name).map(|k| k as f64 + 1.0);
+    let mut chart = Chart::new("", "answer, by its number", "truth");
+    for (truth, row) in rows {
+        let total: f64 = row.values().map(|&count| count as f64).sum();
+        for (answer, &count) in row {
+            let (Some(x), Some(y)) = (place(answer), place(truth).map(|y| -y)) else { continue };
+            let is_right = answer == truth || (answer == "unexplained" && part.outside.contains(truth));
+            let colour = if is_right { Colour::Blue } else { Colour::Vermilion };
+            let marker = if is_right { Marker::Circle } else { Marker::Square };
+            let size = FULL_PX * (count as f64 / total.max(1.0)).sqrt().max(0.2);
+            let style = Style::nth(0).colour(colour).marker(marker).size(size);
+            let label = if is_right { "right" } else { "another name" };
+            chart = chart.with(Mark::Points {
+                label: label.into(),
+                points: vec![Point { x, y, error: 0.0 }],
+                style,
+            });
+            chart = chart.with(Mark::Note { at: [x, y], text: format!("{count}") });
+        }
+    }
+    let number = |k: usize| k as f64 + 1.0;
+    chart.x.range = Range::Fixed(0.4, answers as f64 + 0.6);
+    chart.x.names = (0..answers).map(|k| (number(k), (k + 1).to_string())).collect();
+    chart.y.names =
+        (0..names.len()).map(|k| (-number(k), format!("{} {}", k + 1, names[k].replace('_', " ")))).collect();
+    chart.y.range = Range::Fixed(-(names.len() as f64) - 0.6, -0.4);
+    chart.height_px = Some(26.0 * names.len() as f64);
+    let truths = rows.len();
+    Figure::from(chart).named(format!("{half}-confusion")).captioned(format!(
+        "What was taken for what: {truths} truths that could have been identified, and the strongest finding. The numbers are cases; \
+         a circle or a square is as large as its share of the row. To physics outside the library `unexplained` is the right answer."
+    ))
+}
+
+/// Where a bin is drawn, its share and the interval of that; `None` of an empty bin.
+fn point(from: Option<f64>, to: Option<f64>, rate: &Rate) -> Option<[f64; 4]> {
+    let from = from.or(to.map(|to| to / OPEN))?;
+    let to = to.unwrap_or(from * OPEN);
+    let [low, high] = rate.interval()?;
+    Some([(from * to).sqrt(), rate.share()?, low, high])
+}
+
+fn curve(mut chart: Chart, points: &[[f64; 4]]) -> Chart {
+    chart.x.log = true;
+    chart.y.range = Range::Fixed(0.0, 1.0);
+    let style = Style::nth(2);
+    chart
+        .with(Mark::Band {
+            label: "95 % interval".into(),
+            points: points.iter().map(|[x, _, low, high]| [*x, *low, *high]).collect(),
+            style,
+        })
+        .with(Mark::Line {
+            label: "share".into(),
+            points: points.iter().map(|[x, y, ..]| [*x, *y]).collect(),
+            style,
+        })
+        .with(Mark::Points {
+            label: String::new(),
+            points: points.iter().map(|[x, y, ..]| Point { x: *x, y: *y, error: 0.0 }).collect(),
+            style,
+        })
+}
+
+fn bins(half: &str, part: &Part) -> Option<Figure> {
+    let points: Vec<[f64; 4]> =
+        part.bins.iter().filter_map(|bin| point(bin.from, bin.to, &bin.location_ok_rate)).collect();
+    if points.len() < 2 {
+        return None;
+    }
+    let chart = Chart::new("", "expected log Bayes factor of the oracle", "name and place right");
+    let chart = curve(chart, &points).with(Mark::Vertical { at: 5.0, text: "identifiable".into() });
+    Some(Figure::from(chart).named(format!("{half}-detectability")).captioned(
+        "Cases with one effect: share whose name and place are right, against what could have been known at best. Points stand \
+         in the middle of their bins; bins without an end are drawn as wide as a factor of 3.",
+    ))
+}
+
+fn power(half: &str, part: &Part) -> Option<Figure> {
+    let mut panels = Vec::new();
+    for (effect, bins) in &part.power {
+        let points: Vec<[f64; 4]> =
+            bins.iter().filter_map(|bin| point(bin.from, bin.to, &bin.name_ok_rate)).collect();
+        let mut chart = Chart::new(effect.replace('_', " "), "size over noise", "name right");
+        chart.x = Axis { range: Range::Fixed(0.02, 100.0), ..chart.x };
+        chart.height_px = Some(110.0);
+        if !points.is_empty() {
+            panels.push(curve(chart, &points));
+        }
+    }
+    (!panels.is_empty()).then(|| {
+        Figure { panels, columns: 3, shared_legend: true, ..Figure::default() }
+            .named(format!("{half}-power"))
+            .captioned(
+                "Probability of the right name against the root mean square of what an effect does to the readings, over their \
+                 noise. All cases with one effect count, those that nobody could have identified as well.",
+            )
+    })
+}
+
+fn failures(half: &str, failures: &[Failure]) -> Table {
+    let row = |failure: &Failure| {
+        vec![failure.case.clone(), failure.what.to_owned(), failure.truth.join("; "), failure.said.join("; ")]
+    };
+    let left_out = failures.len().saturating_sub(MOST_FAILURES);
+    Table {
+        name: format!("{half}-failures"),
+        caption: "Cases that somebody should look at.".into(),
+        columns: ["case", "what", "truth", "said"].map(Column::text).to_vec(),
+        rows: failures.iter().take(MOST_FAILURES).map(row).collect(),
+        notes: (left_out > 0).then(|| format!("{left_out} more are in the JSON.")).into_iter().collect(),
+    }
+}

@@ -8,7 +8,7 @@
 //! stiffness matrix of the same elements has a condition number that grows with the fourth power of
 //! their number.
 //!
-//! - [`Profile`]: what a cross-section gives way by, per length.
+//! - [`Profile`]: flexibilities of a cross-section, per length.
 //! - [`Chain`]: nodes and elements, built piece by piece in any direction in space.
 //! - [`Response`]: displacement and rotation of every node, from [`Chain::solve`], which checks
 //!   itself.

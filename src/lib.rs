@@ -2,8 +2,8 @@
 //! compensated, and which physics a model left out.
 //!
 //! Everything inside is in SI units and `f64`; units appear as suffixes of keys and columns in
-//! files (`l1_mm`, `dy_um`) and nowhere else. Nothing prints or panics; warnings are data, and every
-//! error says where it is and what would be right. [`prelude`] has what most programs need.
+//! files (`l1_mm`, `dy_um`) and nowhere else. Nothing prints or panics; warnings are data, and
+//! every error says where it is and what would be right. [`prelude`] has what most programs need.
 //!
 //! Frames: {W} world, {0} robot base, {T} flange (tool frame, pipe I along z, both pipes in its
 //! x–z plane). The paper is *Improved MultiCal*, Sensors 2023, 23(12), 5717.

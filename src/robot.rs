@@ -60,7 +60,7 @@ pub struct Robot {
     pub joints: Vec<Joint>,
     /// {T} in the last joint's distal frame. The identity for a robot given as a table.
     pub flange: Pose,
-    /// What joints do besides their geometry.
+    /// Errors and deflections of the joints that their geometry does not describe.
     pub effects: Vec<Effect>,
     /// The tip that it was calibrated with, where its file states it.
     pub tip: Option<Tip>,

@@ -17,8 +17,8 @@ use nalgebra::Vector3;
 use crate::material::Material;
 use crate::section::Round;
 
-/// A rod in SI units, as its file describes it or as it was built. [`Rod::read`], [`Rod::from_toml`]
-/// and [`Rod::checked`] check it.
+/// A rod in SI units, as its file describes it or as it was built. [`Rod::read`],
+/// [`Rod::from_toml`] and [`Rod::checked`] check it.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Rod {
@@ -34,7 +34,7 @@ pub struct Rod {
     pub gamma: f64,
     /// Radius of the bend's centreline R, m; 0 is a sharp corner. The arc is tangent to both pipes.
     pub bend_radius: f64,
-    /// How the bend's cross-section gives way beyond beam theory.
+    /// How much more flexible the bend's cross-section is than beam theory says.
     pub bend_flexibility: BendFlexibility,
     /// Flange to bend.
     pub pipe1: Pipe,
@@ -74,7 +74,7 @@ pub struct LumpedMass {
     pub mass: f64,
 }
 
-/// A connection that yields in rotation, of no length.
+/// A connection of no length that is compliant in rotation.
 ///
 /// At a sharp corner its axis is that of the pipe on the flange's side.
 #[derive(Debug, Clone, PartialEq)]

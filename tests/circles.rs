@@ -1,10 +1,13 @@
-//! No circles inside a room: the files of one room can be read in an order in which each rests on those before it.
+//! No circles inside a room: the files of one room can be read in an order in which each rests on
+//! those before it.
 //!
 //! **The rule.** File A rests on file B where A's code names something that is defined in B.
 //!
-//! - A name that a parent module re-exports (`pub use child::Name;`) counts for the child that defines it. So a
-//!   parent that only declares its children and re-exports from them rests on nothing, and nothing rests on it.
-//! - A parent that also holds code is a file like any other: it must not rest on a child that rests on it.
+//! - A name that a parent module re-exports (`pub use child::Name;`) counts for the child that
+//!   defines it. So a parent that only declares its children and re-exports from them rests on
+//!   nothing, and nothing rests on it.
+//! - A parent that also holds code is a file like any other: it must not rest on a child that rests
+//!   on it.
 //! - Methods are not imports: `impl Type` may stand in a file above the one that defines `Type`.
 //! - Code for tests does not count; nor do comments, and with them links in documentation.
 
@@ -14,8 +17,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Paths below `src` that may have circles: diagnosis and its report are written anew (effects become values), the
-/// ground rooms and the trial become crates of their own, which this test does not read.
+/// Paths below `src` that may have circles: diagnosis and its report are written anew (effects
+/// become values), the ground rooms and the trial become crates of their own, which this test does
+/// not read.
 const EXCEPTED: [&str; 6] =
     ["diagnosis", "report/diagnosis", "delimited", "least_squares", "toml_text", "trial"];
 

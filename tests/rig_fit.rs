@@ -319,7 +319,7 @@ fn huber_and_tukey_resist_gross_outliers_that_ruin_least_squares() {
     for (robust, tolerance) in [(HUBER, 0.45), (TUKEY, 0.45)] {
         let line = slope(robust);
         assert!((line.slope.value / UM - 20.0).abs() < tolerance, "{robust:?} {:?}", line.slope);
-        assert_eq!(line.distrusted, [3, last + 1], "{robust:?}");
+        assert_eq!(line.downweighted, [3, last + 1], "{robust:?}");
     }
     // what Tukey sets aside leaves the standard error as if it had not been read
     let clean = made::fit(&readings(&rig, &[truth], 11)).lines.remove(0).slope.std_error.unwrap();

@@ -7,8 +7,8 @@ use super::element::{Profile, Shape};
 /// A cantilever in space: node 0 is clamped, each further node hangs on the one before by one
 /// element.
 ///
-/// The chain is drawn like a turtle drawing: a current point and a current frame whose z axis
-/// points ahead.
+/// It is built like a turtle drawing, from a current point and a current frame whose z axis points
+/// ahead.
 ///
 /// ```
 /// use nalgebra::{Rotation3, Vector3};

@@ -18,7 +18,7 @@ use nalgebra::{Matrix3, Rotation3, Vector3};
 
 use crate::spatial::{rotated, skew};
 
-/// What a cross-section gives way by, per unit length, and what it weighs.
+/// Flexibilities of a cross-section per unit length, and its mass.
 ///
 /// Local axes: z along the centreline, x and y principal axes of the section.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -82,7 +82,7 @@ pub struct RodModel {
 
 impl RodModel {
     /// Meshes `rod` with `elements` elements (at least one for each part between two stations of
-    /// interest). `stations` (m) get a node besides the tip, the masses and the joints.
+    /// interest). The tip, the masses, the joints and the given `stations` (m) get a node.
     ///
     /// The elements are shared out by length. Their number does not change the result: each element
     /// is exact.
@@ -204,7 +204,7 @@ impl Physics {
         rod
     }
 
-    /// What a pipe gives way by under this physics, its bending flexibility times `bend_factor`.
+    /// Flexibilities of a pipe under this physics, its bending flexibility times `bend_factor`.
     fn profile(&self, pipe: &Pipe, bend_factor: f64) -> Profile {
         let (section, material) = (&pipe.section, &pipe.material);
         let (e, g, area) = (material.youngs_modulus, material.shear_modulus, section.area());
@@ -221,8 +221,8 @@ impl Physics {
     }
 }
 
-/// Refuses a rod of which rounding would lose a pipe: stations of 1e27 m cannot tell the ends of
-/// one of 0.5 m apart.
+/// Refuses a rod one of whose pipes would be lost in rounding: stations of 1e27 m cannot tell the
+/// ends of one of 0.5 m apart.
 fn check_resolution(rod: &Rod) -> Result<()> {
     let (length, tangent) = (rod.length(), rod.tangent_length());
     let pipes = [(rod.l1 - tangent, rod.bend_start()), (rod.l2 - tangent, length - rod.bend_end())];

@@ -39,7 +39,7 @@ pub fn calibrate<'c>(campaign: &'c Campaign, mode: Mode, options: &Options) -> R
     let compensation = Compensation::new(campaign, mode)?;
     let mut start = start(campaign)?;
     let free = free_parameters(campaign, &start, &compensation);
-    // what is not free stays as it is drawn
+    // what is not free keeps its nominal value
     for axis in (0..3).filter(|&axis| !free.contains(&Parameter::Tool(axis))) {
         start.tool[axis] = campaign.tool[axis];
     }
@@ -52,7 +52,7 @@ pub fn calibrate<'c>(campaign: &'c Campaign, mode: Mode, options: &Options) -> R
 }
 
 /// Calibrates `free` parameters on a recording, from a given start, without validation: for folds
-/// and recordings that were drawn again.
+/// and bootstrap samples.
 ///
 /// # Errors
 /// As [`calibrate`].
@@ -107,6 +107,7 @@ pub fn calibrate_from<'c>(
     let outliers = noise.outliers(recording, &deviations)?;
     let mut calibration = Calibration {
         mode: compensation.mode,
+        options: *options,
         parameters,
         sockets,
         held,
@@ -136,7 +137,7 @@ pub fn start(campaign: &Campaign) -> Result<Setup<'_>> {
     let (guess, tool) = first_guess(campaign);
     let (base, tool) = rough_start(&campaign.robot, &campaign.measurements, guess, tool)?;
     let mut setup = Setup::new(&campaign.robot, base, tool);
-    // the user's own guess is what corrections are told against, unless it is another world
+    // corrections are reported relative to the user's guess, unless that is far off
     let turn = nalgebra::Rotation3::from_matrix_unchecked(base.rotation * guess.rotation.transpose());
     if campaign.base_is_given && turn.angle() < 0.5 {
         setup.base_guess = guess;

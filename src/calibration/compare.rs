@@ -87,7 +87,7 @@ impl Comparison<'_> {
 
 /// Calibrates in every mode that the campaign's files allow, and compares.
 ///
-/// `progress` is told after each draw how many are done.
+/// `progress` is called after each draw with the number of draws that are done.
 ///
 /// ```
 /// use rodcal::prelude::*;

@@ -1,5 +1,4 @@
-//! What bends and yields at each pose: the rod's deflection (Eqs 12–14 and 19) and the torques on
-//! the joints.
+//! Deflection of the rod at each pose (Eqs 12–14 and 19) and torques on the joints.
 
 use nalgebra::Vector3;
 
@@ -20,7 +19,7 @@ pub const TORQUE_ROUNDS: usize = 3;
 /// How the rod's deflection is known.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Mode {
-    /// It is taken for rigid.
+    /// It is assumed rigid.
     None,
     /// The paper's closed form.
     Calc,
@@ -57,7 +56,7 @@ pub struct Compensation {
     pub payload: Option<Body>,
     /// Force on the ball in the device frame, N.
     pub contact_force: Vector3<f64>,
-    /// What displaced the tip of each row besides, as far as that is known, in {W}, m; empty where
+    /// Other known displacements of the tip at each row, in {W}, m; empty where
     /// nothing is.
     pub displaced: Vec<Vector3<f64>>,
 }

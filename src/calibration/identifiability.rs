@@ -47,7 +47,8 @@ impl UnidentifiedDirection {
 }
 
 /// How far a parameter of a robot as built may be from its nominal value, SI. `largest_torque` on
-/// the parameter's joint, N·m, makes compliances comparable: no drive yields by more than 10 mrad.
+/// the parameter's joint, N·m, makes compliances comparable: no drive deflects by more than 10
+/// mrad.
 pub fn plausible_range(parameter: Parameter, largest_torque: f64) -> f64 {
     match parameter {
         // base and tool may be anywhere, but a rough start has been there: what it has not seen, no

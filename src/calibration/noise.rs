@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 /// Below this probability that all groups scatter alike, each gets a noise of its own.
 const UNEQUAL: f64 = 0.01;
 /// Least noise that is believed, m: where deviations are smaller still, they are rounding, and
-/// weights made of them would drown what is known besides, such as the distances of sockets.
+/// weights made of them would outweigh other knowledge, such as the distances of sockets.
 const LEAST: f64 = 1e-9;
 /// Fewest degrees of freedom for a noise of its own.
 const FEWEST: f64 = 10.0;

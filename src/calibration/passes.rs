@@ -1,4 +1,4 @@
-//! The compensation loop (Eqs 11–14): fit, recompute what bends and yields and how much it
+//! The compensation loop (Eqs 11–14): fit, recompute deflections, torques and how much it
 //! scatters, fit again.
 
 use super::campaign::{Campaign, Recording, Targets};
@@ -11,13 +11,13 @@ use crate::error::Result;
 use crate::least_squares::{self, Fit, Problem as _};
 use crate::robot::{Parameter, Setup};
 
-/// Noise of a coordinate that is assumed until the residuals tell, m.
+/// Noise of a coordinate that is assumed until there are residuals, m.
 const ASSUMED_NOISE: f64 = 1e-4;
-/// Change of a deflection from one pass to the next below which the compensation stands still, m.
-const STILL: f64 = 1e-9;
-/// Relative change of noise and weights below which they stand still: far below their own
+/// Change of a deflection from one pass to the next below which the loop has converged, m.
+const SETTLED: f64 = 1e-9;
+/// Relative change of noise and weights below which the loop has converged: far below their own
 /// uncertainty.
-const STILL_RELATIVE: f64 = 1e-3;
+const SETTLED_RELATIVE: f64 = 1e-3;
 /// Most passes of the compensation loop.
 const MOST_PASSES: usize = 60;
 
@@ -100,7 +100,7 @@ impl<'a, 'c> Run<'a, 'c> {
         Ok(())
     }
 
-    /// Fits and recomputes deflections, torques, noise and weights until they stand still.
+    /// Fits and recomputes deflections, torques, noise and weights until they converge.
     pub fn compensate(&mut self, options: &Options) -> Result<Fit> {
         loop {
             let change = self.compensation.update(&self.setup, self.recording, &mut self.pass);
@@ -125,10 +125,10 @@ impl<'a, 'c> Run<'a, 'c> {
             let scale = largest(weight.iter().copied());
             let weight_change = largest(weight.iter().zip(&self.pass.weight).map(|(a, b)| a - b));
             self.noise = noise;
-            let stands_still =
-                change < STILL && weight_change <= STILL_RELATIVE * scale && self.passes.len() > 1;
-            self.is_converged = stands_still && fit.is_converged();
-            if stands_still || self.passes.len() >= MOST_PASSES || !fit.is_converged() {
+            let has_settled =
+                change < SETTLED && weight_change <= SETTLED_RELATIVE * scale && self.passes.len() > 1;
+            self.is_converged = has_settled && fit.is_converged();
+            if has_settled || self.passes.len() >= MOST_PASSES || !fit.is_converged() {
                 return Ok(fit);
             }
             self.pass.weight = weight;

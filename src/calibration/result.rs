@@ -6,6 +6,7 @@ use super::compensation::Mode;
 use super::identifiability::UnidentifiedDirection;
 use super::noise::Noise;
 use super::observability::Observability;
+use super::options::Options;
 use super::passes::PassRecord;
 use super::validation::Validation;
 use super::warning::Warning;
@@ -18,6 +19,8 @@ use crate::robot::{Parameter, Setup};
 pub struct Calibration<'c> {
     /// How the rod's deflection was compensated.
     pub mode: Mode,
+    /// How it was calibrated: a diagnosis calibrates again in the same way.
+    pub options: Options,
     /// Base, links, compliances and tool before the first fit: the nominal robot where the rough
     /// start puts it.
     pub start: Setup<'c>,
@@ -45,7 +48,7 @@ pub struct Calibration<'c> {
     pub fit: Fit,
     /// Every pass of the compensation loop.
     pub passes: Vec<PassRecord>,
-    /// True where the loop came to rest and its last fit converged.
+    /// True where the loop and its last fit converged.
     pub is_converged: bool,
     /// How well the poses show the parameters.
     pub observability: Observability,

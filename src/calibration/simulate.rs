@@ -129,7 +129,7 @@ fn true_setup<'r>(robot: &'r Robot, base: Pose, tool: Vector3<f64>, payload: Bod
             Parameter::Theta(_) => errors.offset,
             Parameter::Alpha(_) | Parameter::Beta(_) => errors.tilt,
             Parameter::Compliance(j) => {
-                // drives yield with their torque, never against it
+                // drives deflect with their torque, never against it
                 let mean = errors.joint_turn / torques[j];
                 truth.set(parameter, mean * random.uniform(0.5, 1.5));
                 continue;

@@ -9,7 +9,7 @@ use crate::units::{MM, UM, significant};
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Warning {
-    /// The fit or the compensation loop did not come to rest: why the last fit stopped, and after
+    /// The fit or the compensation loop did not converge: why the last fit stopped, and after
     /// how many passes.
     NotConverged {
         /// In the words of the fit.
@@ -17,7 +17,7 @@ pub enum Warning {
         /// Passes of the compensation loop.
         passes: usize,
     },
-    /// The robot's file has no masses, so that no joint yields under a known torque.
+    /// The robot's file has no masses, so that the torques on its joints are unknown.
     NoMasses,
     /// A combination of parameters that the data do not identify.
     NotIdentified {

@@ -49,7 +49,7 @@ pub struct Study {
     pub fea: Compliance,
     /// From Calc to FEA, one left-out term after another.
     pub steps: Vec<Step>,
-    /// The rod at rest and bent.
+    /// The rod undeformed and deformed.
     pub shape: Shape,
     /// What one station does under a force at another, where that was asked for.
     pub stations: Option<StationResponse>,

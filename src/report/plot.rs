@@ -49,7 +49,7 @@ impl Canvas {
         Canvas { width_px, height_px, body: String::new() }
     }
 
-    /// A line through points, dashed as told.
+    /// A line through points, with this dash.
     pub(super) fn line(&mut self, points: &[Px], colour: Rgb, width_px: f64, dash: Dash) {
         let style = shape(colour, width_px, false);
         match pattern(dash) {

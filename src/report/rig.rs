@@ -79,7 +79,7 @@ fn line_json(line: &Line) -> Value {
         }),
         "load_station_mm": line.key.load_station.map(|s| s / MM),
         "read_station_mm": line.key.read_station.map(|s| s / MM),
-        "distrusted_lines": line.distrusted,
+        "distrusted_lines": line.downweighted,
     })
 }
 
@@ -134,7 +134,7 @@ fn four(value: f64) -> String {
 
 fn verdict(line: &Line) -> String {
     match line.lack_of_fit {
-        Some(test) if test.is_crooked() => {
+        Some(test) if test.is_significant() => {
             format!(", but the readings leave a straight line (lack of fit F = {})", four(test.f))
         }
         Some(test) => format!(", straight within its noise (lack of fit F = {})", four(test.f)),
@@ -236,8 +236,8 @@ fn quadratic_table(fit: &Fit) -> Option<Table> {
             Column::number("F", ""),
         ],
     );
-    let crooked = fit.lines.iter().filter(|line| line.lack_of_fit.is_some_and(|t| t.is_crooked()));
-    for (line, curve) in crooked.filter_map(|line| Some((line, line.quadratic?))) {
+    let curved = fit.lines.iter().filter(|line| line.lack_of_fit.is_some_and(|t| t.is_significant()));
+    for (line, curve) in curved.filter_map(|line| Some((line, line.quadratic?))) {
         let [b0, b1, b2] = curve.coefficients;
         table.row([
             line.key.label(),

@@ -132,7 +132,7 @@ pub(super) fn vanishes(entry: f64, model: &Compliance) -> bool {
     entry.abs() < 1e-9 * model.force.amax()
 }
 
-/// A rod yields along its load; anything else that is more than noise is a sign error in the file.
+/// A rod deflects along its load; anything else beyond noise is a sign error in the file.
 fn check_signs(readings: &Readings, lines: &[Line], ratios: &[Ratio]) -> Result<()> {
     let is_against =
         |r: &&Ratio| r.channel == r.load && r.value.value < -r.value.half_width_95().unwrap_or_default();

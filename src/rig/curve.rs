@@ -17,7 +17,7 @@
 //! counts as n·q²/12 at least.
 //!
 //! Standard errors rest on both variances together, or on s_f² alone where it is the larger one
-//! with p < 0.25: what makes the line crooked then counts too. (That level is T. A. Bancroft's for
+//! with p < 0.25: what bends the line then counts too. (That level is T. A. Bancroft's for
 //! pooling, *Biometrics* 20 (1964) 427–442.)
 //!
 //! The readings of one trial may share an error too: a zero that was off, a rod that sat

@@ -60,8 +60,8 @@ pub struct Line {
     pub lack_of_fit: Option<LackOfFit>,
     /// The same readings with a quadratic term, where there are four different loads or more.
     pub quadratic: Option<Quadratic>,
-    /// Lines of the file whose readings a robust fit trusts less than half.
-    pub distrusted: Vec<usize>,
+    /// Lines of the file whose readings a robust fit gives less than half their weight.
+    pub downweighted: Vec<usize>,
 }
 
 /// ȳ = b0 + b1·F + b2·F².
@@ -129,7 +129,7 @@ impl Line {
         let [up, down] = [Phase::Load, Phase::Unload].map(|p| distinct_loads(&samples, Some(p)));
         let columns = Columns { degree: 1, unload: up.min(down) >= 1 && up.max(down) >= 2 };
         let resolution = resolution(&samples);
-        let (samples, distrusted) = resistant(samples, columns, robust)?;
+        let (samples, downweighted) = resistant(samples, columns, robust)?;
         let line = Curve::fit(columns, &samples, resolution)?;
 
         let [b, c] = [0, 1].map(|i| line.estimate(i));
@@ -155,7 +155,7 @@ impl Line {
                 residual_sd: curve.residual_sd,
                 lack_of_fit: curve.lack_of_fit,
             }),
-            distrusted,
+            downweighted,
             points: line.points,
         }))
     }
@@ -186,11 +186,11 @@ fn resistant(samples: Vec<Sample>, columns: Columns, robust: Robust) -> Result<(
         Some(sd) if pull.norm() > 0.0 => sd * (fit.degrees_of_freedom as f64).sqrt() / pull.norm(),
         _ => 1.0,
     };
-    let distrusted = samples.iter().zip(fit.weights.iter()).filter(|(_, w)| **w < 0.5).map(|(s, _)| s.line);
-    let distrusted = distrusted.collect();
+    let downweighted = samples.iter().zip(fit.weights.iter()).filter(|(_, w)| **w < 0.5).map(|(s, _)| s.line);
+    let downweighted = downweighted.collect();
     let fitted = &design * &fit.parameters;
     let pseudo = |(k, sample): (usize, Sample)| Sample { offset: fitted[k] + factor * pull[k], ..sample };
-    Ok((samples.into_iter().enumerate().map(pseudo).collect(), distrusted))
+    Ok((samples.into_iter().enumerate().map(pseudo).collect(), downweighted))
 }
 
 fn distinct_loads(samples: &[Sample], phase: Option<Phase>) -> usize {

@@ -60,7 +60,7 @@ impl Readings {
 
     /// Readings that were taken, or computed, by the caller.
     ///
-    /// A rod that gives way by 45 µm/N, with 1 N of friction:
+    /// A rod of 45 µm/N, with 1 N of friction:
     ///
     /// ```
     /// use rodcal::prelude::*;
@@ -76,8 +76,8 @@ impl Readings {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Argument`] for a row without an offset, for a load or a station that is negative and
-    /// for numbers that are not finite; [`Error::Input`] where no axis has two different loads,
+    /// [`Error::Argument`] for a row without an offset, for a load or a station that is negative
+    /// and for numbers that are not finite; [`Error::Input`] where no axis has two different loads,
     /// since a slope cannot be found from one.
     pub fn from_rows(mut rows: Vec<Reading>) -> Result<Readings> {
         const FILE: &str = "readings";

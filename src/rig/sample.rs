@@ -2,8 +2,8 @@
 
 use super::readings::Phase;
 
-/// Below this probability a line is called crooked.
-const CROOKED: f64 = 0.01;
+/// Significance level of a lack of fit.
+const SIGNIFICANCE: f64 = 0.01;
 
 /// One reading of a line.
 #[derive(Debug, Clone, Copy)]
@@ -58,7 +58,7 @@ impl Point {
 
 impl LackOfFit {
     /// The averages leave the curve by more than the repeats allow (p < 0.01).
-    pub fn is_crooked(&self) -> bool {
-        self.p_value < CROOKED
+    pub fn is_significant(&self) -> bool {
+        self.p_value < SIGNIFICANCE
     }
 }

@@ -70,7 +70,7 @@ pub enum Warning {
         axis: Axis,
     },
     /// A robust fit set readings aside.
-    Distrusted {
+    Downweighted {
         /// Which line.
         line: String,
         /// Lines of the file.
@@ -84,7 +84,7 @@ pub(super) fn about_lines(lines: &[Line], readings: &Readings, rod: Option<&Rod>
     for line in lines {
         let label = line.key.label();
         match line.lack_of_fit {
-            Some(test) if test.is_crooked() => warnings.push(Warning::NotStraight {
+            Some(test) if test.is_significant() => warnings.push(Warning::NotStraight {
                 line: label.clone(),
                 f: test.f,
                 p_value: test.p_value,
@@ -99,14 +99,14 @@ pub(super) fn about_lines(lines: &[Line], readings: &Readings, rod: Option<&Rod>
         if is_along && line.slope.value < 0.0 {
             warnings.push(Warning::AgainstTheLoad { line: label.clone() });
         }
-        // a crooked line crosses the axis wherever its curvature sends it
-        let is_straight = line.lack_of_fit.is_none_or(|test| !test.is_crooked());
+        // where a curved line crosses the axis says nothing about friction
+        let is_straight = line.lack_of_fit.is_none_or(|test| !test.is_significant());
         let offset = line.load_offset.filter(|offset| is_straight && offset.is_significant(SIGNIFICANCE));
         if let Some(offset) = offset.filter(|_| is_along) {
             warnings.push(Warning::LoadOffset { line: label.clone(), offset });
         }
-        if !line.distrusted.is_empty() {
-            warnings.push(Warning::Distrusted { line: label, rows: line.distrusted.clone() });
+        if !line.downweighted.is_empty() {
+            warnings.push(Warning::Downweighted { line: label, rows: line.downweighted.clone() });
         }
     }
     let largest = readings.rows.iter().fold(0.0, |max: f64, row| row.load.max(max));
@@ -183,7 +183,7 @@ impl fmt::Display for Warning {
                 f,
                 "r_rod rests on loads along {axis} alone; the paper's definition takes y and z together"
             ),
-            Warning::Distrusted { line, rows } => {
+            Warning::Downweighted { line, rows } => {
                 let rows = rows.iter().map(usize::to_string).collect::<Vec<_>>().join(", ");
                 write!(f, "{line}: the robust fit sets aside the readings in line {rows} of the file")
             }

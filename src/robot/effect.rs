@@ -1,4 +1,4 @@
-//! What joints do besides their geometry: by how much they turn farther than they say.
+//! Joint errors that geometry does not describe: how much farther a joint turns than it reads.
 //!
 //! ```text
 //! transmission_error   a·sin(n·q) + b·cos(n·q), or a table over q: linear between its rows,
@@ -8,7 +8,7 @@
 //! wrist_coupling       k·q of another joint
 //! ```
 
-/// One of them. Joints count from 0.
+/// An error of a joint. Joints count from 0.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Effect {
@@ -30,21 +30,21 @@ pub enum Effect {
         /// Angle and correction.
         rows: Vec<(f64, f64)>,
     },
-    /// A joint that turns s times as far as it says.
+    /// A joint that turns s times as far as it reads.
     EncoderScale {
         /// The joint.
         joint: usize,
         /// s.
         factor: f64,
     },
-    /// Play that gravity's torque takes up.
+    /// Play, taken up by gravity's torque.
     Backlash {
         /// The joint.
         joint: usize,
         /// b, rad.
         play: f64,
     },
-    /// A joint that another one takes along.
+    /// A joint that turns with another one.
     Coupling {
         /// The one that drives.
         from: usize,

@@ -70,7 +70,7 @@ fn parallel(p: &Vector3<f64>, w: &Vector3<f64>) -> Hayati {
     }
 }
 
-/// The one of x and −x that lies within ±90° of (1, 0, 0); at ±90°, where rounding decides, +90°.
+/// Whichever of x and −x lies within ±90° of (1, 0, 0); at ±90°, where rounding decides, +90°.
 fn forwards(x: Vector3<f64>) -> Vector3<f64> {
     const TIE: f64 = 1e-9;
     if x.x < -TIE || (x.x < TIE && x.y < 0.0) { -x } else { x }

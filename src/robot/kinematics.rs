@@ -185,7 +185,7 @@ impl Hayati {
 }
 
 impl Robot {
-    /// By how much a joint turns farther than it says, rad; see [`super::Effect::turn`].
+    /// How much farther a joint turns than it reads, rad; see [`super::Effect::turn`].
     pub fn correction(&self, joint: usize, q: &[f64], torque: &[f64]) -> f64 {
         let own = self.effects.iter().filter(|effect| effect.joint() == joint);
         own.map(|effect| effect.turn(q, torque)).sum()

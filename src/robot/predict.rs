@@ -34,9 +34,9 @@ impl Uncertainty {
 }
 
 impl Robot {
-    /// The tip at `tool` (m, in {T}), in {0}, m: joints yield to the robot's own weight, the tool
-    /// is rigid. With it the standard deviation of each coordinate, m, where the robot's file says
-    /// what it takes: √(sd² + diag J·Σ·Jᵀ), sd the error of poses that were held out and Σ the
+    /// The tip at `tool` (m, in {T}), in {0}, m: joints deflect under the robot's own weight, the
+    /// tool is rigid. With it the standard deviation of each coordinate, m, where the robot's file
+    /// says what it takes: √(sd² + diag J·Σ·Jᵀ), sd the error of poses that were held out and Σ the
     /// covariance of the parameters.
     ///
     /// ```

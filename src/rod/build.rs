@@ -8,7 +8,8 @@ use crate::units::MM;
 
 impl Rod {
     /// An L-shaped rod of one pipe with a sharp corner, nothing mounted on it and no mass at its
-    /// tip; `l1` and `l2` in m. The `with_…` methods change that, [`Rod::checked`] checks the whole.
+    /// tip; `l1` and `l2` in m. The `with_…` methods change that, [`Rod::checked`] checks the
+    /// whole.
     ///
     /// ```
     /// use rodcal::prelude::*;
@@ -78,9 +79,9 @@ impl Rod {
     /// The rod itself, if it can be one.
     ///
     /// # Errors
-    /// [`Error::Argument`] for a length or a modulus that is not positive, a wall without thickness,
-    /// an angle beyond 0 < γ ≤ π, a bend that does not fit between the pipes, a mass or a
-    /// compliance that is negative, and a station that is not on the rod. Numbers that are not
+    /// [`Error::Argument`] for a length or a modulus that is not positive, a wall without
+    /// thickness, an angle beyond 0 < γ ≤ π, a bend that does not fit between the pipes, a mass or
+    /// a compliance that is negative, and a station that is not on the rod. Numbers that are not
     /// finite are none of these.
     pub fn checked(self) -> Result<Rod> {
         positive("l1", self.l1)?;

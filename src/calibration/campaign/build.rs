@@ -155,8 +155,8 @@ impl Recording {
         }
     }
 
-    /// Adds a pose: joint values (rad, or m of a prismatic joint) and where the ball was, in {W}, m.
-    /// Poses are named by their number.
+    /// Adds a pose: joint values (rad, or m of a prismatic joint) and where the ball was, in {W},
+    /// m. Poses are named by their number.
     ///
     /// # Errors
     /// [`Error::Argument`] for another number of joint values than the recording has, for a value

@@ -13,7 +13,7 @@ const OPTIONAL: [&str; 2] = ["time_s", "temperature_c"];
 /// The columns of one file.
 pub(super) struct Columns {
     joints: Vec<JointColumn>,
-    /// `pose`, and what tells where the ball was held.
+    /// `pose`, and the columns that name where the ball was held.
     names: &'static [&'static str],
     has_positions: bool,
 }

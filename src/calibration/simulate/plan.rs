@@ -35,7 +35,7 @@ pub struct RobotErrors {
     pub offset: f64,
     /// Of α and β, rad.
     pub tilt: f64,
-    /// Angle by which each joint yields, on average, under its largest torque, rad.
+    /// Angle by which each joint deflects, on average, under its largest torque, rad.
     pub joint_turn: f64,
 }
 

@@ -117,7 +117,7 @@ pub(super) fn corrections(calibration: &Calibration) -> Figure {
     parameter_corrections(&corrections(MM, &is_length), &corrections(MRAD, &is_angle))
 }
 
-/// How the loops of one or more modes came to rest.
+/// How the loops of one or more modes converged.
 pub(in crate::report) fn convergence(calibrations: &[&Calibration]) -> Figure {
     let curves = |value: &dyn Fn(&crate::calibration::PassRecord) -> f64| -> Vec<(String, Vec<f64>)> {
         calibrations

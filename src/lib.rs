@@ -5,7 +5,7 @@ pub mod beam;
 pub mod calibration;
 pub mod compliance;
 pub mod delimited;
-// pub mod diagnosis;
+pub mod diagnosis;
 pub mod error;
 pub mod files;
 pub mod inference;

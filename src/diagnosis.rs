@@ -4,4 +4,5 @@
 //! [`crate::inference`] finds which of them a recording needs. Here is what they are: one folder of
 //! effects for each world (`rig/effects`, `calibration/effects`), and the model in which they act.
 
+pub mod calibration;
 pub mod rig;

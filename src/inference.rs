@@ -41,6 +41,8 @@ mod whitening;
 #[cfg(test)]
 mod tests;
 
+#[cfg(test)]
+pub(crate) use self::{linearised::Linearised, pruning::infer, selection::DiscrepancyModel};
 pub use description::Description;
 pub use diagnose::diagnose;
 pub use diagnosis::{Diagnosed, Diagnosis, Discrepancy};

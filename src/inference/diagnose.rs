@@ -187,6 +187,10 @@ fn part(
         location: model.location(term),
         estimates,
         first,
+        covariance: {
+            let count = term.values.len();
+            hypothesis.covariance.view((first, first), (count, count)).into_owned()
+        },
         coverage_factor,
         p_value: chi_squared_survival(gained.max(0.0), determined).unwrap_or(1.0),
         explains: rms(&model.response(std::slice::from_ref(term))),

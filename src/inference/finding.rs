@@ -1,5 +1,7 @@
 //! A finding, complete in itself: what, where, how large, how sure, what else it may be, what to do.
 
+use nalgebra::DMatrix;
+
 use super::{Description, Effect, Hypothesis, Kind, Location, Proposal, Quantity, Term};
 
 /// An effect that was adopted: one term of the hypothesis, or several that are reported as one.
@@ -41,6 +43,8 @@ pub struct FindingPart {
     pub estimates: Vec<Estimate>,
     /// Its first parameter among those of the hypothesis: where it stands in the covariance.
     pub first: usize,
+    /// Posterior covariance of its values, SI.
+    pub covariance: DMatrix<f64>,
     /// Half of a 95 % interval in standard deviations (GUM: coverage factor).
     pub coverage_factor: f64,
     /// Probability that noise alone fits as much better.

@@ -1,14 +1,14 @@
 //! Held-out proof: the whole selection is repeated without a fold, and its hypothesis predicts that
 //! fold.
 //!
-//! What a theme (an effect; in a joint, at that joint) is worth is found in the same folds: the
+//! What a theme (an effect; in joints, at those joints) is worth is found in the same folds: the
 //! hypothesis of a fold is fitted once more without it, and predicts the fold again.
 
 use nalgebra::DVector;
 
 use super::linearised::Linearised;
 use super::pruning::infer;
-use super::{Candidate, Effect, Evidence, ForwardModel, Term};
+use super::{Candidate, Effect, Evidence, ForwardModel, Location, Term};
 use crate::parallel::in_parallel;
 use crate::statistics::{Random, percentile_interval};
 
@@ -39,17 +39,22 @@ pub struct HeldOut {
     pub errors_after: DVector<f64>,
 }
 
-/// What counts as the same finding in another search: an effect, and in a joint its joint.
+/// What counts as the same finding in another search: an effect, and in joints its joints.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Theme {
     effect: &'static Effect,
-    joint: Option<usize>,
+    joints: Option<[usize; 2]>,
 }
 
 impl Theme {
     /// Of a candidate.
     pub fn new(candidate: &Candidate) -> Theme {
-        Theme { effect: candidate.effect, joint: candidate.location.joint() }
+        let joints = match &candidate.location {
+            Location::Joint { joint, .. } => Some([*joint, *joint]),
+            Location::Coupling { from, to } => Some([*from, *to]),
+            _ => None,
+        };
+        Theme { effect: candidate.effect, joints }
     }
 }
 

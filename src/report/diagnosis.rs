@@ -3,6 +3,7 @@
 //! What differs between a rig and a calibration is data ([`subject::Subject`]): its nouns, its
 //! pictures, its remainder, and what becomes of the model.
 
+pub mod calibration;
 mod headline;
 mod json;
 mod place;

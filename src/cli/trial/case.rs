@@ -48,18 +48,18 @@ impl CaseFiles {
             let campaign = self.campaign("campaign.toml")?;
             let found = calibration::diagnose(&campaign, default_mode(&campaign), &Options::default())?;
             let asked = self.has("asked.toml").then(|| self.campaign("asked.toml")).transpose()?;
-            let foretold = asked.and_then(|asked| found.predicted(&campaign, &asked).ok());
+            let foretold = asked.and_then(|asked| found.predicted(&asked).ok());
             let coordinates =
                 foretold.map(|tips| tips.iter().flat_map(|tip| micrometres(tip.as_slice())).collect());
-            return Ok((report::diagnosis::calibration::json(&campaign, &found), coordinates));
+            return Ok((report::diagnosis::calibration::json(&found), coordinates));
         }
         let rod = Rod::read(&self.directory.join("rod.toml"))?;
         let readings = self.readings("readings.csv")?;
         let found = rig::diagnose(&readings, Some(&rod))?;
         let asked = self.has("asked.csv").then(|| self.readings("asked.csv")).transpose()?;
-        let foretold = asked.and_then(|asked| found.predicted(&asked, Some(&rod)).ok());
+        let foretold = asked.and_then(|asked| found.predicted(&asked).ok());
         let readings_um = foretold.map(|readings| micrometres(&readings));
-        Ok((report::diagnosis::json(&found, &readings, Some(&rod)), readings_um))
+        Ok((report::diagnosis::rig::json(&found, found.correction()?.as_ref()), readings_um))
     }
 }
 

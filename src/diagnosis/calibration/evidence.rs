@@ -12,12 +12,13 @@ use std::collections::BTreeMap;
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen, Vector3};
 
-use super::posture::Posture;
-use super::scene::Scene;
+use super::configuration::Configuration;
+use super::context::Context;
 use crate::calibration::Calibration;
 use crate::calibration::campaign::{Campaign, Recording, Targets};
-use crate::diagnosis::{Covariate, Evidence};
+use crate::inference::{Covariate, Evidence, JointVariable, Variable};
 use crate::robot::{Kinematics, Parameter};
+use crate::spatial::Axis;
 use crate::units::MM;
 
 /// Most folds, and the rows that each should have at least.
@@ -36,18 +37,18 @@ struct Known {
 }
 
 /// The evidence of a calibration.
-pub(super) fn of(campaign: &Campaign, calibration: &Calibration, scene: &Scene) -> Evidence {
+pub(super) fn of(campaign: &Campaign, calibration: &Calibration, context: &Context) -> Evidence {
     let recording = &campaign.measurements;
     let known = known(campaign, calibration);
     let (rows, data) = (recording.len(), 3 * recording.len() + known.len());
-    let sigma = scene.noise;
+    let sigma = context.noise;
     let mut residual = DVector::zeros(data);
     for row in 0..rows {
-        residual.fixed_rows_mut::<3>(3 * row).copy_from(&(-calibration.deviations[row] * scene.scale[row]));
+        residual.fixed_rows_mut::<3>(3 * row).copy_from(&(-calibration.deviations[row] * context.scale[row]));
     }
     let columns = calibration.parameters.len() + 3 * calibration.sockets.len();
     let mut jacobian = DMatrix::zeros(data, columns);
-    fill(&mut jacobian, calibration, scene);
+    fill(&mut jacobian, calibration, context);
     for (at, known) in known.iter().enumerate() {
         residual[3 * rows + at] = known.residual * sigma;
         for &(column, slope) in &known.slopes {
@@ -58,21 +59,21 @@ pub(super) fn of(campaign: &Campaign, calibration: &Calibration, scene: &Scene) 
         let of_rows = of_row.into_iter().flat_map(|number| [number; 3]);
         of_rows.chain((3 * rows..data).map(further)).collect()
     };
-    let cells = cells(recording);
+    let groups = replicate_groups(recording);
     Evidence {
         nuisance: without_held(jacobian, calibration),
         background: DMatrix::zeros(data, 0),
-        cell: cells
+        replicate_group: groups
             .iter()
-            .flat_map(|cell| [3 * cell, 3 * cell + 1, 3 * cell + 2])
+            .flat_map(|group| [3 * group, 3 * group + 1, 3 * group + 2])
             .chain(3 * rows..data)
             .collect(),
         shared: (0..data).collect(),
-        fold: per_row(folds(recording, &cells), &|_| Evidence::KEPT),
-        session: per_row(sessions(recording), &|_| Evidence::KEPT),
-        level: levels(recording, data),
+        fold: per_row(folds(recording, &groups), &|_| Evidence::NONE),
+        session: per_row(sessions(recording), &|_| Evidence::NONE),
+        intercept: intercepts(recording, data),
         resolution: resolution(recording),
-        covariates: covariates(scene, data),
+        covariates: covariates(context, data),
         residual,
     }
 }
@@ -107,18 +108,18 @@ fn free_count(calibration: &Calibration) -> usize {
 }
 
 /// The rows of the Jacobian that belong to rows of the recording.
-fn fill(jacobian: &mut DMatrix<f64>, calibration: &Calibration, scene: &Scene) {
+fn fill(jacobian: &mut DMatrix<f64>, calibration: &Calibration, context: &Context) {
     let mut kinematics = Kinematics::new(&calibration.setup);
-    for (row, posture) in scene.postures.iter().enumerate() {
-        kinematics.update(&posture.joints, &posture.torque);
-        kinematics.tip = posture.tip;
-        let scale = scene.scale[row];
+    for (row, configuration) in context.configurations.iter().enumerate() {
+        kinematics.update(&configuration.joints, &configuration.torque);
+        kinematics.tip = configuration.tip;
+        let scale = context.scale[row];
         for (k, estimated) in calibration.parameters.iter().enumerate() {
-            let column = kinematics.column(estimated.parameter, &posture.torque) * scale;
+            let column = kinematics.column(estimated.parameter, &configuration.torque) * scale;
             jacobian.fixed_view_mut::<3, 1>(3 * row, k).copy_from(&column);
         }
-        if scene.has_sockets() {
-            let first = free_count(calibration) + 3 * scene.recording.rows[row].group;
+        if context.has_sockets() {
+            let first = free_count(calibration) + 3 * context.recording.rows[row].group;
             (0..3).for_each(|axis| jacobian[(3 * row + axis, first + axis)] = -scale);
         }
     }
@@ -146,7 +147,7 @@ fn without_held(jacobian: DMatrix<f64>, calibration: &Calibration) -> DMatrix<f6
 }
 
 /// Rows of the same joint values in the same clamp or socket have one number.
-fn cells(recording: &Recording) -> Vec<usize> {
+fn replicate_groups(recording: &Recording) -> Vec<usize> {
     let mut known: BTreeMap<(usize, Vec<u64>), usize> = BTreeMap::new();
     (0..recording.len())
         .map(|row| {
@@ -157,56 +158,60 @@ fn cells(recording: &Recording) -> Vec<usize> {
         .collect()
 }
 
-/// Blocks of consecutive rows of each clamp or socket, dealt to the folds in turn: neighbours, which often share an error,
-/// are held out together, and no fold is a corner of the workspace. Rows of one cell stay together.
-fn folds(recording: &Recording, cells: &[usize]) -> Vec<usize> {
+/// Blocks of consecutive rows of each clamp or socket, dealt to the folds in turn: neighbours, which
+/// often share an error, are held out together, and no fold is a corner of the workspace. Repeats
+/// stay together.
+fn folds(recording: &Recording, replicate_groups: &[usize]) -> Vec<usize> {
     let folds = (recording.len() / ROWS_PER_FOLD).clamp(2, MOST_FOLDS);
     let mut size = vec![0usize; recording.groups.len()];
     recording.rows.iter().for_each(|row| size[row.group] += 1);
     let mut seen = vec![0usize; recording.groups.len()];
-    let mut of_cell = BTreeMap::new();
+    let mut fold_of = BTreeMap::new();
     recording
         .rows
         .iter()
-        .zip(cells)
-        .map(|(row, &cell)| {
+        .zip(replicate_groups)
+        .map(|(row, &replicates)| {
             let (at, size) = (seen[row.group], size[row.group]);
             seen[row.group] += 1;
             let rounds = if size >= ROUNDS * folds * LEAST_BLOCK { ROUNDS } else { 1 };
-            *of_cell.entry(cell).or_insert((at * folds * rounds / size + row.group) % folds)
+            *fold_of.entry(replicates).or_insert((at * folds * rounds / size + row.group) % folds)
         })
         .collect()
 }
 
 /// For each row the number of its clamp, or of its sockets' placement.
 fn sessions(recording: &Recording) -> Vec<usize> {
+    let names = session_names(recording);
+    let number = |name: &str| names.iter().position(|known| *known == name).unwrap_or_default();
+    recording.rows.iter().map(|row| number(session_name(&recording.groups[row.group].name))).collect()
+}
+
+/// Names of all sessions, by number.
+pub(super) fn session_names(recording: &Recording) -> Vec<&str> {
     let mut known: Vec<&str> = Vec::new();
-    let names = recording.groups.iter().map(|group| session_name(&group.name));
-    let of_group: Vec<usize> = names
-        .map(|name| {
-            known.iter().position(|k| *k == name).unwrap_or_else(|| {
-                known.push(name);
-                known.len() - 1
-            })
-        })
-        .collect();
-    recording.rows.iter().map(|row| of_group[row.group]).collect()
+    for name in recording.groups.iter().map(|group| session_name(&group.name)) {
+        if !known.contains(&name) {
+            known.push(name);
+        }
+    }
+    known
 }
 
 /// `front` of the socket `front/0`; a clamp's own name.
-pub(super) fn session_name(group: &str) -> &str {
+fn session_name(group: &str) -> &str {
     group.rsplit_once('/').map_or(group, |(placement, _)| placement)
 }
 
-/// Coordinates of a socket have a level of their own: nobody knows where it is.
-fn levels(recording: &Recording, data: usize) -> Vec<usize> {
+/// Coordinates of a socket have an intercept of their own: nobody knows where it is.
+fn intercepts(recording: &Recording, data: usize) -> Vec<usize> {
     let of_row = |row: usize, axis: usize| match recording.targets {
-        Targets::Points(_) => Evidence::KEPT,
+        Targets::Points(_) => Evidence::NONE,
         Targets::Sockets(_) => 3 * recording.rows[row].group + axis,
     };
     let of_datum = |datum: usize| match datum / 3 < recording.len() {
         true => of_row(datum / 3, datum % 3),
-        false => Evidence::KEPT,
+        false => Evidence::NONE,
     };
     (0..data).map(of_datum).collect()
 }
@@ -234,43 +239,37 @@ fn resolution(recording: &Recording) -> f64 {
     steps.into_iter().find(is_step).map_or(0.0, |step| step * MM)
 }
 
-/// What a row has of a covariate.
-type Value<'a> = Box<dyn Fn(usize, &Posture) -> Option<f64> + 'a>;
+/// What a row has of a variable.
+type Value<'a> = Box<dyn Fn(usize, &Configuration) -> Option<f64> + 'a>;
 
-fn covariates(scene: &Scene, data: usize) -> Vec<Covariate> {
-    let rows = &scene.recording.rows;
-    let mut all: Vec<(String, &str, Value)> = vec![
-        ("order".into(), "", Box::new(|row, _| Some(row as f64))),
-        ("time".into(), "s", Box::new(|row, _| rows[row].time)),
-        ("temperature".into(), "°C", Box::new(|row, _| rows[row].temperature)),
-        ("group".into(), "", Box::new(|row, _| Some(rows[row].group as f64))),
+fn covariates(context: &Context, data: usize) -> Vec<Covariate> {
+    let rows = &context.recording.rows;
+    let mut all: Vec<(Variable, Value)> = vec![
+        (Variable::Order, Box::new(|row, _| Some(row as f64))),
+        (Variable::Time, Box::new(|row, _| rows[row].time)),
+        (Variable::Temperature, Box::new(|row, _| rows[row].temperature)),
+        (Variable::Fixture, Box::new(|row, _| Some(rows[row].group as f64))),
     ];
-    for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
-        all.push((name.into(), "m", Box::new(move |_, posture| Some(posture.tip[axis]))));
+    for axis in Axis::ALL {
+        all.push((Variable::Tip(axis), Box::new(move |_, there| Some(there.tip[axis.index()]))));
     }
-    for j in 0..scene.joint_count() {
-        let of = |what: &str| format!("joint {} {what}", j + 1);
-        all.push((of("angle"), "rad", Box::new(move |_, posture| Some(posture.joints[j]))));
-        all.push((of("torque"), "N·m", Box::new(move |_, posture| Some(posture.torque[j]))));
-        all.push((of("approach"), "", Box::new(move |_, posture| Some(posture.approach[j]))));
-        all.push((of("move"), "rad", Box::new(move |_, posture| Some(posture.step[j]))));
+    for j in 0..context.joint_count() {
+        let of_joint = |what: JointVariable| Variable::Joint(j, what);
+        all.push((of_joint(JointVariable::Angle), Box::new(move |_, there| Some(there.joints[j]))));
+        all.push((of_joint(JointVariable::Torque), Box::new(move |_, there| Some(there.torque[j]))));
+        all.push((of_joint(JointVariable::Approach), Box::new(move |_, there| Some(there.approach[j]))));
+        all.push((of_joint(JointVariable::Move), Box::new(move |_, there| Some(there.step[j]))));
     }
-    let of_all = all.into_iter().map(|(name, unit, value)| {
-        let of_rows = scene
-            .postures
+    let covariates = all.into_iter().map(|(variable, value)| {
+        let of_rows = context
+            .configurations
             .iter()
             .enumerate()
-            .flat_map(|(row, posture)| [value(row, posture).unwrap_or(f64::NAN); 3]);
-        let further = data - 3 * scene.postures.len();
-        let values: Vec<f64> = of_rows.chain(std::iter::repeat_n(f64::NAN, further)).collect();
-        Covariate { name, unit: unit.into(), values }
+            .flat_map(|(row, there)| [value(row, there).unwrap_or(f64::NAN); 3]);
+        let further = data - 3 * context.configurations.len();
+        let values = of_rows.chain(std::iter::repeat_n(f64::NAN, further)).collect();
+        Covariate { variable, values }
     });
     // nothing can follow what does not vary
-    of_all.filter(|covariate| varies(&covariate.values)).collect()
-}
-
-fn varies(values: &[f64]) -> bool {
-    let mut known = values.iter().filter(|value| !value.is_nan());
-    let first = known.next();
-    known.any(|value| Some(value) != first)
+    covariates.filter(Covariate::varies).collect()
 }

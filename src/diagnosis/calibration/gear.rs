@@ -1,8 +1,27 @@
-//! The error of a joint's gear or encoder as a function of its angle.
+//! The error of a joint's gear or encoder as a function of its angle, and what it amounts to.
+//!
+//! ```text
+//! amplitude of a harmonic    √(a² + b²)
+//! amplitude of a wave        √(a² + b² + (c² + d²)·mean(u²))
+//! frequency of a wave        n + h·(a·d − b·c)/(a² + b²)
+//! amplitude of a curve       √2 times its rms over the recorded angles: that of a wave of that rms
+//! frequency of a curve       that of the one wave that explains most of it
+//! ```
+//!
+//! A constant and one cycle per revolution are taken out of a curve first: the calibration takes
+//! most of them up, and what is said of them is little more than a guess.
+
+use std::f64::consts::TAU;
 
 use nalgebra::{DMatrix, DVector};
 
 use super::cosines::Cosines;
+use super::vector::{Length, length, weighted_length};
+use crate::inference::{Estimate, FindingPart, rms};
+use crate::units::URAD;
+
+/// Step of the scan for a curve's strongest wave, cycles per revolution.
+const WAVE_STEP: f64 = 0.25;
 
 /// What a transmission error is made of.
 #[derive(Debug, Clone, PartialEq)]
@@ -14,8 +33,8 @@ pub enum Gear {
         /// n.
         cycles_per_rev: f64,
     },
-    /// (a + c·u)·sin(n·q) + (b + d·u)·cos(n·q), u = (q − q̄)·h: to first order a wave of n + h·(a·d − b·c)/(a² + b²) cycles per
-    /// revolution, whose amplitude may grow along the range.
+    /// (a + c·u)·sin(n·q) + (b + d·u)·cos(n·q), u = (q − q̄)·h: to first order a wave of
+    /// n + h·(a·d − b·c)/(a² + b²) cycles per revolution, whose amplitude may grow along the range.
     Wave {
         /// The joint, from 0.
         joint: usize,
@@ -57,7 +76,13 @@ impl Gear {
         }
     }
 
-    /// Cycles per revolution of a wave of these values, with the gradient; of any other its highest, as if that were exact.
+    /// By how much these values turn the joint at angle q, rad.
+    pub fn turn(&self, values: &[f64], q: f64) -> f64 {
+        values.iter().enumerate().map(|(k, value)| value * self.term(k, q)).sum()
+    }
+
+    /// Cycles per revolution of a wave of these values, with the gradient; of any other its
+    /// highest, as if that were exact.
     pub fn frequency(&self, values: &[f64]) -> (f64, DVector<f64>) {
         let (Gear::Wave { cycles_per_rev, half_step, .. }, &[a, b, c, d]) = (self, values) else {
             return (self.highest(values.len()), DVector::zeros(values.len()));
@@ -67,6 +92,35 @@ impl Gear {
         let gradient = [d - 2.0 * a * shift, -c - 2.0 * b * shift, -b, a].map(|x| x * half_step / square);
         // beyond the next step the wave would be another one
         (cycles_per_rev + half_step * shift.clamp(-2.0, 2.0), DVector::from_column_slice(&gradient))
+    }
+
+    /// Frequency and amplitude of the error that a part of a finding is, over the recorded `angles`.
+    pub(super) fn estimates(&self, part: &FindingPart, angles: &[f64]) -> Vec<Estimate> {
+        let values = &part.term.values;
+        let resolved = |cycles: f64| (cycles, 0.5 / turns(angles));
+        let ((cycles, half_cycles), amplitude) = match self {
+            Gear::Harmonic { cycles_per_rev, .. } => (resolved(*cycles_per_rev), length(values)),
+            Gear::Wave { middle, half_step, .. } => {
+                let (cycles, gradient) = self.frequency(values);
+                let square = |q: &f64| ((q - middle) * half_step).powi(2);
+                let mean = angles.iter().map(square).sum::<f64>() / angles.len().max(1) as f64;
+                let half = Length { value: cycles, gradient }.half_interval(part);
+                ((cycles, half), weighted_length(values, &[1.0, 1.0, mean, mean]))
+            }
+            Gear::Curve { .. } => {
+                let (cycles, amplitude) = of_curve(self, values, angles);
+                (resolved(cycles), amplitude)
+            }
+        };
+        let estimate = |name: &str, unit: f64, value: f64, half: f64| {
+            let (low, high) = ((value - half).max(0.0), value + half);
+            Estimate { name: name.into(), unit, value, low, high }
+        };
+        let half = amplitude.half_interval(part);
+        vec![
+            estimate("cycles_per_rev", 1.0, cycles, half_cycles),
+            estimate("amplitude_urad", URAD, amplitude.value, half),
+        ]
     }
 
     /// Highest frequency of so many terms, cycles per revolution.
@@ -84,7 +138,8 @@ impl Gear {
 pub struct Curve {
     /// The joint, from 0.
     pub joint: usize,
-    /// Each part with its values, rad, and the mean that is taken out of it: a constant is the joint's offset.
+    /// Each part with its values, rad, and the mean that is taken out of it: a constant is the
+    /// joint's offset.
     parts: Vec<(Gear, Vec<f64>)>,
     mean: f64,
     /// Posterior covariance of all values, rad².
@@ -106,10 +161,8 @@ impl Curve {
 
     /// By how much the joint is farther than its angle q says, rad: add it to q.
     pub fn at(&self, q: f64) -> f64 {
-        let of_part = |(gear, values): &(Gear, Vec<f64>)| -> f64 {
-            values.iter().enumerate().map(|(k, value)| value * gear.term(k, q)).sum()
-        };
-        self.parts.iter().map(of_part).sum::<f64>() - self.mean
+        let turns = self.parts.iter().map(|(gear, values)| gear.turn(values, q));
+        turns.sum::<f64>() - self.mean
     }
 
     /// Standard deviation of that, rad.
@@ -123,4 +176,43 @@ impl Curve {
     pub fn highest(&self) -> f64 {
         self.parts.iter().map(|(gear, values)| gear.highest(values.len())).fold(0.0, f64::max)
     }
+}
+
+/// Range of angles in revolutions: frequencies closer than its inverse are hard to tell apart.
+fn turns(angles: &[f64]) -> f64 {
+    let (low, high) =
+        angles.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), &q| (a.min(q), b.max(q)));
+    ((high - low) / TAU).max(f64::MIN_POSITIVE)
+}
+
+/// Frequency and amplitude of a curve over the recorded angles.
+fn of_curve(gear: &Gear, values: &[f64], angles: &[f64]) -> (f64, Length) {
+    let slow = DMatrix::from_fn(angles.len(), 3, |row, k| match k {
+        0 => 1.0,
+        1 => angles[row].sin(),
+        _ => angles[row].cos(),
+    });
+    let slow = slow.qr().q();
+    let terms = DMatrix::from_fn(angles.len(), values.len(), |row, k| gear.term(k, angles[row]));
+    let terms = &terms - &slow * slow.tr_mul(&terms);
+    let curve = &terms * DVector::from_column_slice(values);
+    let rms = rms(&curve).max(f64::MIN_POSITIVE);
+    let gradient = terms.tr_mul(&curve) * (2.0f64.sqrt() / (angles.len().max(1) as f64 * rms));
+    let amplitude = Length { value: 2.0f64.sqrt() * rms, gradient };
+    (strongest_wave(&curve, angles, gear.highest(values.len())), amplitude)
+}
+
+/// Cycles per revolution of the one wave that explains most of a curve.
+fn strongest_wave(curve: &DVector<f64>, angles: &[f64], highest: f64) -> f64 {
+    let power = |cycles: f64| {
+        let wave = DMatrix::from_fn(angles.len(), 2, |row, k| {
+            let (sine, cosine) = (cycles * angles[row]).sin_cos();
+            if k == 0 { sine } else { cosine }
+        });
+        wave.qr().q().tr_mul(curve).norm_squared()
+    };
+    let steps = (1..).map(|step| f64::from(step) * WAVE_STEP);
+    let powers = steps.take_while(|cycles| *cycles <= highest).map(|cycles| (cycles, power(cycles)));
+    let stronger = |most: (f64, f64), next: (f64, f64)| if next.1 > most.1 { next } else { most };
+    powers.fold((0.0, 0.0), stronger).0
 }

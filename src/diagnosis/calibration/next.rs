@@ -1,170 +1,163 @@
-//! The measurement that would tell a mismatch from its rivals.
+//! The measurement that would tell a finding from its rivals.
 //!
-//! With poses added to those of the campaign, story A says ηA of all of them. What story B, fitted to that together with all
-//! that the calibration absorbs, cannot follow is left: M_B·ηA. The ln of the odds between the two is then expected to be
+//! With poses added to those of the campaign, hypothesis A predicts ηA of all of them. What
+//! hypothesis B, fitted to that together with all that the calibration absorbs, cannot follow is
+//! left: M_B·ηA. The ln of the odds between the two is then expected to be
 //!
 //! ½·‖M_B·ηA‖²/σ²
 //!
-//! of which what the recorded poses make already is not counted, and of which the less counts of both ways round. Of all
-//! plans the one is proposed that leaves least of the rivals (`choice.rs`). What can be weighed or gauged needs no poses.
+//! of which what the recorded poses make already is not counted, and of which the less counts of
+//! both ways round. Of all feasible poses those are proposed that leave least of the rivals
+//! ([`ExperimentDesign`]). What can be weighed or gauged needs no poses.
 
 use nalgebra::DMatrix;
 
-use super::feasible::{Plan, feasible};
-use super::findings::{Mismatch, location};
-use super::scene::Scene;
-use super::{CalibrationWorld, evidence, library};
-use crate::calibration::Calibration;
-use crate::calibration::campaign::Campaign;
-use crate::diagnosis::choice::{Choice, is_told};
-use crate::diagnosis::whitening::Whitening;
-use crate::diagnosis::{Chosen, Diagnosis, Evidence, Rival, World};
+use super::context::Context;
+use super::effects::registry;
+use super::evidence;
+use super::feasible_poses::{FeasiblePoses, feasible};
+use super::linear_terms::LinearTerms;
+use super::model::CalibrationModel;
 use crate::error::Result;
+use crate::inference::{
+    Candidate, Diagnosis, Effect, Evidence, ExperimentDesign, Finding, Location, Plan, Proposal, Rival, Term,
+    Whitening, separates,
+};
 
 /// Rivals that poses have to separate the finding from: the likeliest ones.
 const MOST_RIVALS: usize = 3;
 /// Ln odds that leave no doubt: as of what is weighed or gauged.
 const DECISIVE: f64 = 30.0;
 
-/// Poses to measure next.
-#[derive(Debug, Clone, PartialEq)]
-pub struct NextPoses {
-    /// In the user's words; a full sentence.
-    pub words: String,
-    /// The same as numbers; `None` for what is weighed or gauged without any poses.
-    pub plan: Option<Plan>,
-    /// By how much they would tell the mismatch from the closest of the rivals that they can tell: ln of the odds that are
-    /// expected, 30 at most.
-    pub log_odds: f64,
-}
-
-/// The poses that best tell `mismatch` from its rivals; `None` where it has none, or where none of the plans can.
+/// The poses that best tell `finding` from its rivals; `None` where it has none, or where no
+/// feasible poses can.
 pub(super) fn next_poses(
-    campaign: &Campaign,
-    calibration: &Calibration,
-    scene: &Scene,
-    world: &CalibrationWorld,
+    model: &CalibrationModel,
+    context: &Context,
     present: &Evidence,
     diagnosis: &Diagnosis,
-    mismatch: &Mismatch,
-) -> Result<Option<NextPoses>> {
-    let rivals = apart(world, diagnosis, mismatch);
+    finding: &Finding,
+) -> Result<Option<Proposal>> {
+    let rivals = apart(finding);
     if rivals.is_empty() {
         return Ok(None);
     }
-    // what can be weighed or gauged needs no poses
-    let effects = rivals.iter().map(|rival| world.candidates()[rival.chosen.candidate].effect.as_str());
-    if let Some(words) = std::iter::once(mismatch.effect.as_str()).chain(effects).find_map(directly) {
-        return Ok(Some(NextPoses { words: words.into(), plan: None, log_odds: DECISIVE }));
+    if let Some(checked) = direct_check(finding, &rivals) {
+        return Ok(Some(checked));
     }
-    let own = Named::of(world, &diagnosis.story.chosen);
-    let others: Vec<Named> = rivals.iter().map(|rival| Named::of(world, &rival.story.chosen)).collect();
-    let variance = diagnosis.story.sigma.powi(2);
-    let distances = |world: &CalibrationWorld, evidence: &Evidence| -> Option<Vec<Option<f64>>> {
-        let own = own.found_in(world)?;
+    let (campaign, calibration) = (model.campaign, &model.calibration);
+    let own = Named::new(&model.terms, &diagnosis.hypothesis.terms);
+    let named = |rival: &&Rival| Named::new(&model.terms, &rival.hypothesis.terms);
+    let others: Vec<Named> = rivals.iter().map(named).collect();
+    let variance = diagnosis.hypothesis.sigma.powi(2);
+    let distances = |terms: &LinearTerms, evidence: &Evidence| -> Option<Vec<Option<f64>>> {
+        let own = own.found_in(terms)?;
         let apart = |other: &Named| {
-            let other = other.found_in(world)?;
-            let one_way = unfollowed(world, evidence, &own, &other);
-            Some(one_way.min(unfollowed(world, evidence, &other, &own)) / (2.0 * variance))
+            let other = other.found_in(terms)?;
+            let one_way = unfollowed(terms, evidence, &own, &other);
+            let other_way = unfollowed(terms, evidence, &other, &own);
+            Some(one_way.min(other_way) / (2.0 * variance))
         };
         Some(others.iter().map(apart).collect())
     };
-    let Some(now) = distances(world, present) else { return Ok(None) };
+    let Some(now) = distances(&model.terms, present) else { return Ok(None) };
     let odds: Vec<f64> = rivals.iter().map(|rival| rival.odds).collect();
-    let mut choice = Choice::new();
-    for plan in feasible(campaign, &scene.postures) {
-        let stories: Vec<&Named> = std::iter::once(&own).chain(&others).collect();
-        let (world, evidence) = future(campaign, calibration, &plan, &stories)?;
-        let Some(then) = distances(&world, &evidence) else { continue };
+    let mut design = ExperimentDesign::new();
+    let hypotheses: Vec<&Named> = std::iter::once(&own).chain(&others).collect();
+    for poses in feasible(campaign, &context.configurations) {
+        let (campaign, calibration) = poses.measured(campaign, calibration);
+        let context = Context::new(&campaign, &calibration)?;
+        let evidence = evidence::of(&campaign, &calibration, &context);
+        let (mut entries, _) = registry::candidates(&context);
+        entries.retain(|entry| hypotheses.iter().any(|hypothesis| hypothesis.holds(&entry.candidate)));
+        let (terms, _) = LinearTerms::new(entries, &evidence);
+        let Some(then) = distances(&terms, &evidence) else { continue };
         let gained = |(then, now): (&Option<f64>, &Option<f64>)| match (then, now) {
             (Some(then), Some(now)) => then - now,
             // the scan of another number of rows has no place for this rival: nothing is known
             _ => 0.0,
         };
-        let gained = then.iter().zip(&now).map(gained).collect();
-        choice.offer(plan, gained, &odds);
+        design.offer(poses, then.iter().zip(&now).map(gained).collect(), &odds);
     }
-    Ok(choice.best().map(|(plan, gained)| {
-        let told = gained.into_iter().filter(|apart| is_told(*apart));
-        let log_odds = told.fold(DECISIVE, f64::min);
-        NextPoses { words: plan.words.clone(), plan: Some(plan), log_odds }
-    }))
+    Ok(design.best().map(|(poses, gained)| proposal(poses, &gained, &rivals)))
 }
 
-/// The likeliest rivals that are told as something else than the mismatch.
-fn apart<'d>(world: &CalibrationWorld, diagnosis: &'d Diagnosis, mismatch: &Mismatch) -> Vec<&'d Rival> {
-    let is_other = |rival: &&Rival| {
-        let effect = &world.candidates()[rival.chosen.candidate].effect;
-        effect != &mismatch.effect || location(effect, &rival.place) != mismatch.location
+/// The likeliest rivals that are told as something else than the finding.
+fn apart(finding: &Finding) -> Vec<&Rival> {
+    let is_other =
+        |rival: &&Rival| rival.effect != finding.effect || rival.location.place() != finding.location;
+    finding.rivals.iter().filter(is_other).take(MOST_RIVALS).collect()
+}
+
+/// What can be weighed or gauged without the robot: the finding, or else the likeliest such rival.
+fn direct_check(finding: &Finding, rivals: &[&Rival]) -> Option<Proposal> {
+    let effects = std::iter::once(finding.effect).chain(rivals.iter().map(|rival| rival.effect));
+    let checked = effects.into_iter().find(|effect| effect.direct_check.is_some())?;
+    // a finding that is gauged is told from all others; a rival that is gauged only from itself
+    let is_told = |rival: &&&Rival| match checked == finding.effect {
+        true => rival.effect != checked,
+        false => rival.effect == checked,
     };
-    let rivals = mismatch.parts.iter().flat_map(|&part| &diagnosis.findings[part].rivals);
-    let mut rivals: Vec<&Rival> = rivals.filter(is_other).collect();
-    rivals.sort_by(|a, b| a.odds.total_cmp(&b.odds));
-    rivals.truncate(MOST_RIVALS);
-    rivals
+    Some(Proposal {
+        words: checked.direct_check?.to_owned(),
+        plan: None,
+        log_odds: DECISIVE,
+        separates_from: rivals.iter().filter(is_told).map(|rival| place(rival)).collect(),
+    })
 }
 
-/// How a cause is measured without the robot.
-fn directly(effect: &str) -> Option<&'static str> {
-    match effect {
-        "tip_mass" => Some("Weigh the ball with its holder."),
-        "payload_mass" => Some("Weigh what is on the flange."),
-        "contact_force_variation" => Some("Measure the contact force with a spring balance."),
-        "rod_stiffness" => Some("Hang known weights on the rod and let `rodcal rig fit` find its stiffness."),
-        _ => None,
+/// Poses to measure, by what they gain against each rival.
+fn proposal(poses: FeasiblePoses, gained: &[f64], rivals: &[&Rival]) -> Proposal {
+    let told = || gained.iter().zip(rivals).filter(|(gained, _)| separates(**gained));
+    let FeasiblePoses { words, plan } = poses;
+    Proposal {
+        words,
+        plan: Some(Plan::Poses(plan)),
+        log_odds: told().map(|(gained, _)| *gained).fold(DECISIVE, f64::min),
+        separates_from: told().map(|(_, rival)| place(rival)).collect(),
     }
 }
 
-/// A story whose effects are known by name and place, so that they are found in another world.
-struct Named(Vec<(String, String, Vec<f64>)>);
+fn place(rival: &Rival) -> (&'static Effect, Location) {
+    (rival.effect, rival.location.place())
+}
+
+/// A hypothesis whose effects are known by name and place, so that they are found among other
+/// candidates.
+struct Named(Vec<(&'static Effect, Location, Vec<f64>)>);
 
 impl Named {
-    fn of(world: &CalibrationWorld, story: &[Chosen]) -> Self {
-        let of = |chosen: &Chosen| {
-            let candidate = &world.candidates()[chosen.candidate];
-            (candidate.effect.clone(), candidate.location.clone(), chosen.values.clone())
+    fn new(model: &LinearTerms, hypothesis: &[Term]) -> Self {
+        let named = |term: &Term| {
+            let candidate = &model.candidates[term.candidate];
+            (candidate.effect, candidate.location.clone(), term.values.clone())
         };
-        Named(story.iter().map(of).collect())
+        Named(hypothesis.iter().map(named).collect())
     }
 
     /// `None` where one of them is not there, or has other parameters.
-    fn found_in(&self, world: &CalibrationWorld) -> Option<Vec<Chosen>> {
-        let of = |(effect, location, values): &(String, String, Vec<f64>)| {
-            let is_it = |c: &crate::diagnosis::Candidate| {
-                &c.effect == effect && &c.location == location && c.parameters.len() == values.len()
+    fn found_in(&self, model: &LinearTerms) -> Option<Vec<Term>> {
+        let term = |(effect, location, values): &(&'static Effect, Location, Vec<f64>)| {
+            let is_it = |c: &Candidate| {
+                c.effect == *effect && c.location == *location && c.parameters.len() == values.len()
             };
-            let candidate = world.candidates().iter().position(is_it)?;
-            Some(Chosen { candidate, values: values.clone() })
+            let candidate = model.candidates.iter().position(is_it)?;
+            Some(Term { candidate, values: values.clone() })
         };
-        self.0.iter().map(of).collect()
+        self.0.iter().map(term).collect()
     }
 
-    fn holds(&self, effect: &str, location: &str) -> bool {
-        self.0.iter().any(|(own, place, _)| own == effect && place == location)
+    fn holds(&self, candidate: &Candidate) -> bool {
+        let is_it = |(effect, location, _): &(&'static Effect, Location, Vec<f64>)| {
+            *effect == candidate.effect && *location == candidate.location
+        };
+        self.0.iter().any(is_it)
     }
-}
-
-/// The world with a plan's poses, of the effects of some stories only.
-fn future(
-    campaign: &Campaign,
-    calibration: &Calibration,
-    plan: &Plan,
-    stories: &[&Named],
-) -> Result<(CalibrationWorld, Evidence)> {
-    let (campaign, calibration) = plan.made(campaign, calibration);
-    let scene = Scene::new(&campaign, &calibration)?;
-    let evidence = evidence::of(&campaign, &calibration, &scene);
-    let (mut entries, _) = library::all(&scene);
-    entries.retain(|entry| {
-        let candidate = &entry.candidate;
-        stories.iter().any(|story| story.holds(&candidate.effect, &candidate.location))
-    });
-    Ok((CalibrationWorld::of(entries, &evidence), evidence))
 }
 
 /// ‖M_B·ηA‖², m².
-fn unfollowed(world: &CalibrationWorld, evidence: &Evidence, a: &[Chosen], b: &[Chosen]) -> f64 {
-    let own: Vec<DMatrix<f64>> = (0..b.len()).map(|position| world.columns(b, position)).collect();
+fn unfollowed(model: &LinearTerms, evidence: &Evidence, a: &[Term], b: &[Term]) -> f64 {
+    let own: Vec<DMatrix<f64>> = b.iter().map(|term| model.columns(term.candidate)).collect();
     let columns: Vec<_> = std::iter::once(&evidence.nuisance)
         .chain(&own)
         .flat_map(|matrix| matrix.column_iter().map(|column| column.into_owned()).collect::<Vec<_>>())
@@ -175,5 +168,5 @@ fn unfollowed(world: &CalibrationWorld, evidence: &Evidence, a: &[Chosen], b: &[
     };
     let evidence = Evidence { nuisance: absorbed, ..evidence.clone() };
     let whitening = Whitening::new(&evidence, &evidence.residual);
-    whitening.apply(&world.change(a)).norm_squared()
+    whitening.apply(&model.response(a)).norm_squared()
 }

@@ -1,24 +1,35 @@
-//! Columns against a robot that is moved for it, and effects that are put into simulated campaigns by such robots.
+//! Columns against a robot that is moved for it, and effects that are put into simulated campaigns
+//! by such robots.
 
-mod carried;
 mod changed;
 mod columns;
+mod descriptions;
+mod evidence;
 mod finding;
 mod happened;
 mod next;
 mod recorded;
-mod told;
+mod transfer;
 mod turned;
 mod unnamed;
-mod words;
 
 use nalgebra::Vector3;
 
+use nalgebra::DVector;
+
+use super::context::Context;
+use super::diagnose::Prepared;
+use super::effects::registry;
+use super::entry::Entry;
+use super::linear_terms::LinearTerms;
 use super::*;
+use crate::calibration::Calibration;
+use crate::calibration::Campaign;
 use crate::calibration::campaign::Targets;
 use crate::calibration::simulate::{Plan, campaign_files, simulate};
 use crate::calibration::{Mode, Options, calibrate};
 use crate::compliance::{Compliance, DEFAULT_ELEMENTS};
+use crate::inference::{Candidate, Evidence, ForwardModel, Location, Term, Whitening};
 use crate::robot::Robot;
 use crate::rod::Rod;
 use crate::statistics::Random;
@@ -53,11 +64,24 @@ fn recorded(campaign: &Campaign, by: &dyn Fn(usize) -> Vector3<f64>, noise: f64,
     recorded
 }
 
-fn find(world: &CalibrationWorld, effect: &str, location: &str) -> usize {
-    let is_it = |c: &Candidate| c.effect == effect && c.location == location;
-    world.candidates().iter().position(is_it).unwrap_or_else(|| {
-        let of: Vec<_> =
-            world.candidates().iter().filter(|c| c.effect == effect).map(|c| &c.location).take(9).collect();
-        panic!("no {effect} at {location}: {of:?}")
+fn find(model: &CalibrationModel, effect: &str, location: &str) -> usize {
+    let is_it = |c: &Candidate| c.effect.name == effect && c.location.to_string() == location;
+    model.candidates().iter().position(is_it).unwrap_or_else(|| {
+        let same = model.candidates().iter().filter(|c| c.effect.name == effect);
+        let places: Vec<String> = same.map(|c| c.location.to_string()).take(9).collect();
+        panic!("no {effect} at {location}: {places:?}")
     })
+}
+
+/// The model of a campaign, and what it leaves as numbers.
+fn modelled(campaign: &Campaign, mode: Mode) -> (CalibrationModel<'_>, Evidence) {
+    let calibration = calibrate(campaign, mode, &Options::default()).unwrap();
+    CalibrationModel::new(campaign, calibration).unwrap()
+}
+
+/// All candidates of a campaign, whatever of them its calibration would absorb.
+fn entries(context: &Context) -> Vec<Entry> {
+    let mut entries = registry::candidates(context).0;
+    entries.extend(nonparametric::all(context));
+    entries
 }

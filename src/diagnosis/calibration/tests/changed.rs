@@ -5,8 +5,8 @@ use crate::calibration::{Calibration, Compensation};
 use crate::robot::{Kinematics, Loads, Setup};
 use crate::spatial::exponential;
 
-/// Share of a size at which columns are compared, and of their largest number by which they may differ: yields are to first
-/// order.
+/// Share of a size at which columns are compared, and of their largest number by which they may
+/// differ: yields are to first order.
 const STEP: f64 = 0.01;
 const FIRST_ORDER: f64 = 0.01;
 
@@ -16,7 +16,7 @@ pub(super) struct Row<'a> {
     pub q: Vec<f64>,
     pub loads: Loads,
     /// Deflection in {T}, m.
-    pub bent: Vector3<f64>,
+    pub deflection: Vector3<f64>,
     /// What the fixture adds to the recorded place of the tip, m.
     pub off: Vector3<f64>,
 }
@@ -33,14 +33,14 @@ impl Row<'_> {
     }
 
     /// What is known of the robot at rest.
-    pub fn at_rest<T>(&self, of: impl FnOnce(&Kinematics) -> T) -> T {
+    pub fn at_rest<T>(&self, ask: impl FnOnce(&Kinematics) -> T) -> T {
         let mut kinematics = Kinematics::new(&self.setup);
         kinematics.update(&self.q, &self.torque());
-        of(&kinematics)
+        ask(&kinematics)
     }
 
     pub fn tip(&self) -> Vector3<f64> {
-        self.at_rest(|kinematics| kinematics.tip + kinematics.flange.rotation * self.bent) + self.off
+        self.at_rest(|kinematics| kinematics.tip + kinematics.flange.rotation * self.deflection) + self.off
     }
 
     /// Turns the whole robot about a point, by a rotation vector.
@@ -67,9 +67,10 @@ pub(super) fn row<'a>(
         payload: compensation.payload,
         tip_force: device.rotation * compensation.contact_force,
     };
-    let (bent, off) = (Vector3::zeros(), Vector3::zeros());
-    let mut there = Row { setup, q: campaign.measurements.joints(row).to_vec(), loads, bent, off };
-    there.bent = there.at_rest(|kinematics| kinematics.flange.rotation.tr_mul(&calibration.deflections[row]));
+    let (deflection, off) = (Vector3::zeros(), Vector3::zeros());
+    let mut there = Row { setup, q: campaign.measurements.joints(row).to_vec(), loads, deflection, off };
+    there.deflection =
+        there.at_rest(|kinematics| kinematics.flange.rotation.tr_mul(&calibration.deflections[row]));
     there
 }
 
@@ -82,16 +83,15 @@ pub(super) type Case<'a> = (&'a str, &'a str, &'a str, Box<Change<'a>>);
 /// Are the columns what the changes do?
 pub(super) fn assert_changes<'a>(campaign: &Campaign, calibration: &Calibration<'a>, cases: Vec<Case<'a>>) {
     let compensation = Compensation::new(campaign, calibration.mode).unwrap();
-    let scene = Scene::new(campaign, calibration).unwrap();
+    let context = Context::new(campaign, calibration).unwrap();
     // whatever of it the calibration would absorb
-    let mut entries = library::all(&scene).0;
-    entries.extend(unknown::all(&scene));
+    let entries = entries(&context);
     let mut wrong = Vec::new();
     for (effect, location, name, change) in cases {
-        let of_effect = entries.iter().filter(|entry| entry.candidate.effect == effect);
-        let places: Vec<&str> = of_effect.clone().map(|entry| entry.candidate.location.as_str()).collect();
-        let found = of_effect.clone().find(|entry| entry.candidate.location == location);
-        let entry = found.unwrap_or_else(|| panic!("no {effect} at {location}: {places:?}"));
+        let same = entries.iter().filter(|entry| entry.candidate.effect.name == effect);
+        let places: Vec<String> = same.clone().map(|entry| entry.candidate.location.to_string()).collect();
+        let found = same.zip(&places).find(|(_, place)| *place == location);
+        let (entry, _) = found.unwrap_or_else(|| panic!("no {effect} at {location}: {places:?}"));
         let parameters = &entry.candidate.parameters;
         let names: Vec<&str> = parameters.iter().map(|parameter| parameter.name.as_str()).collect();
         let k = names.iter().position(|own| *own == name).unwrap_or_else(|| panic!("no {name} in {names:?}"));
@@ -103,7 +103,7 @@ pub(super) fn assert_changes<'a>(campaign: &Campaign, calibration: &Calibration<
             let mut there = row(campaign, calibration, &compensation, at);
             let before = there.tip();
             change(&mut there, at, value);
-            let expected = (there.tip() - before) * scene.scale[at];
+            let expected = (there.tip() - before) * context.scale[at];
             difference = difference.max((expected - told.fixed_rows::<3>(3 * at)).norm());
         }
         if told.amax() == 0.0 || difference > FIRST_ORDER * told.amax() {

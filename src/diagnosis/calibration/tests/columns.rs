@@ -13,14 +13,14 @@ fn columns_are_what_a_changed_robot_does() {
     campaign.wishes.fixed.push(Parameter::Compliance(3));
     let calibration = calibrate(&campaign, Mode::Fea, &Options::default()).unwrap();
     let compensation = Compensation::new(&campaign, Mode::Fea).unwrap();
-    let (world, _) = CalibrationWorld::new(&campaign, &calibration).unwrap();
+    let (model, _) = CalibrationModel::new(&campaign, calibration.clone()).unwrap();
     let force = compensation.compliance.as_ref().unwrap().force;
     let recording = &campaign.measurements;
     let step = |row: usize, j: usize| recording.joints(row)[j] - recording.joints(row.saturating_sub(1))[j];
     let bend = move |row: &mut Row, pull: Vector3<f64>| {
         let mut kinematics = Kinematics::new(&row.setup);
         kinematics.update(&row.q, &row.torque());
-        row.bent += force * kinematics.flange.rotation.tr_mul(&pull);
+        row.deflection += force * kinematics.flange.rotation.tr_mul(&pull);
     };
     let cases: Vec<(&str, &str, Box<Change>)> = vec![
         (
@@ -72,7 +72,7 @@ fn columns_are_what_a_changed_robot_does() {
                 r.loads.payload = Some(Body { mass, centre: rod.centre * (rod.mass / mass) });
             }),
         ),
-        ("rod_stiffness", "rod", Box::new(|r, _, v| r.bent *= 1.0 + v)),
+        ("rod_stiffness", "rod", Box::new(|r, _, v| r.deflection *= 1.0 + v)),
         (
             "contact_force_variation",
             "all clamps",
@@ -99,11 +99,11 @@ fn columns_are_what_a_changed_robot_does() {
         ),
     ];
     for (effect, location, change) in cases {
-        let index = find(&world, effect, location);
-        let parameter = &world.candidates()[index].parameters[0];
-        let mut chosen = world.candidates()[index].neutral(index);
-        chosen.values[0] += 0.01 * parameter.size;
-        let told = world.change(&[chosen]);
+        let index = find(&model, effect, location);
+        let parameter = &model.candidates()[index].parameters[0];
+        let mut term = model.candidates()[index].neutral(index);
+        term.values[0] += 0.01 * parameter.size;
+        let told = model.response(&[term]);
         let mut difference = 0.0f64;
         for at in 0..recording.len() {
             let mut there = row(&campaign, &calibration, &compensation, at);
@@ -122,11 +122,11 @@ fn a_link_bends_about_its_joint_and_clamps_move_the_other_way() {
     let campaign = clamps(12);
     let calibration = calibrate(&campaign, Mode::Fea, &Options::default()).unwrap();
     let compensation = Compensation::new(&campaign, Mode::Fea).unwrap();
-    let (world, _) = CalibrationWorld::new(&campaign, &calibration).unwrap();
-    let index = find(&world, "link_flexibility", "joint 3");
-    let mut chosen = world.candidates()[index].neutral(index);
-    chosen.values[0] = 1e-7;
-    let told = world.change(&[chosen]);
+    let (model, _) = CalibrationModel::new(&campaign, calibration.clone()).unwrap();
+    let index = find(&model, "link_flexibility", "joint 3");
+    let mut term = model.candidates()[index].neutral(index);
+    term.values[0] = 1e-7;
+    let told = model.response(&[term]);
     for at in [0, 17, 40] {
         let there = row(&campaign, &calibration, &compensation, at);
         let mut kinematics = Kinematics::new(&there.setup);
@@ -149,10 +149,10 @@ fn a_link_bends_about_its_joint_and_clamps_move_the_other_way() {
         assert!((found - expected).norm() < 1e-3 * expected.norm() + 1e-12, "{found} {expected}");
     }
     for (effect, location) in [("clamp_pose", "clamp 2"), ("clamp_shift", "clamp 2, after pose 16")] {
-        let index = find(&world, effect, location);
-        let mut chosen = world.candidates()[index].neutral(index);
-        chosen.values[0] = 5.0 * UM;
-        let told = world.change(&[chosen]);
+        let index = find(&model, effect, location);
+        let mut term = model.candidates()[index].neutral(index);
+        term.values[0] = 5.0 * UM;
+        let told = model.response(&[term]);
         for (at, entry) in campaign.measurements.rows.iter().enumerate() {
             let is_moved = campaign.measurements.groups[entry.group].name == "clamp 2"
                 && (effect == "clamp_pose" || at > 15);
@@ -164,17 +164,16 @@ fn a_link_bends_about_its_joint_and_clamps_move_the_other_way() {
 #[test]
 fn columns_are_the_derivatives_of_the_change() {
     let campaign = clamps(8);
-    let calibration = calibrate(&campaign, Mode::Fea, &Options::default()).unwrap();
-    let (world, evidence) = CalibrationWorld::new(&campaign, &calibration).unwrap();
+    let (model, evidence) = modelled(&campaign, Mode::Fea);
     assert_eq!(evidence.residual.len(), 3 * campaign.measurements.len());
-    for (index, candidate) in world.candidates().iter().enumerate().step_by(7) {
+    for (index, candidate) in model.candidates().iter().enumerate().step_by(7) {
         let neutral = candidate.neutral(index);
-        assert_eq!(world.change(std::slice::from_ref(&neutral)).norm(), 0.0);
-        let columns = world.columns(std::slice::from_ref(&neutral), 0);
+        assert_eq!(model.response(std::slice::from_ref(&neutral)).norm(), 0.0);
+        let columns = model.columns(std::slice::from_ref(&neutral), 0);
         for (k, parameter) in candidate.parameters.iter().enumerate() {
             let mut moved = neutral.clone();
             moved.values[k] += parameter.size;
-            let difference = (world.change(&[moved]) - columns.column(k)).amax();
+            let difference = (model.response(&[moved]) - columns.column(k)).amax();
             assert!(difference <= 1e-9 * columns.amax(), "{} {}", candidate.effect, candidate.location);
         }
     }

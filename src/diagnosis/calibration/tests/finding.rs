@@ -1,9 +1,8 @@
 //! What the engine finds in campaigns into which something was put, and in those into which nothing was.
 
 use super::*;
-use crate::diagnosis::judgement::judged;
-use crate::diagnosis::linear::Linearised;
-use crate::diagnosis::selection::Remainder;
+use crate::inference::Effect;
+use crate::inference::{DiscrepancyModel, Linearised, infer};
 use crate::robot::{Kinematics, Setup};
 
 /// A coordinate's noise in the simulated campaigns, m: 30 µm of repeatability and 3 µm of sensors.
@@ -12,19 +11,18 @@ const NOISE: f64 = 17.5 * UM;
 /// What is found: effects with their locations, and whether something structured is left.
 fn found(campaign: &Campaign) -> (Vec<String>, Option<String>) {
     let mode = crate::calibration::default_mode(campaign);
-    let calibration = calibrate(campaign, mode, &Options::default()).unwrap();
-    let (world, evidence) = CalibrationWorld::new(campaign, &calibration).unwrap();
-    let linear = Linearised::new(&world);
-    let (_, story, unknown) = judged(&linear, &evidence);
-    let name = |c: &Chosen| {
-        let candidate = &world.candidates()[c.candidate];
+    let (model, evidence) = modelled(campaign, mode);
+    let linear = Linearised::new(&model);
+    let (_, hypothesis, unknown) = infer(&linear, &evidence);
+    let name = |term: &Term| {
+        let candidate = &model.candidates()[term.candidate];
         format!("{}: {}", candidate.effect, candidate.location)
     };
-    let left = unknown.map(|remainder| match remainder {
-        Remainder::Curve(longer) => longer.chosen.last().map(name).unwrap_or_default(),
-        Remainder::Cells => "repeats".to_owned(),
+    let left = unknown.map(|discrepancy| match discrepancy {
+        DiscrepancyModel::Curve(longer) => longer.terms.last().map(name).unwrap_or_default(),
+        DiscrepancyModel::Replicates => "repeats".to_owned(),
     });
-    (story.chosen.iter().map(name).collect(), left)
+    (hypothesis.terms.iter().map(name).collect(), left)
 }
 
 /// Displacement of the nominal robot's tip where the joints are turned, m.
@@ -108,13 +106,13 @@ fn a_readback_lag_is_no_backlash() {
 fn what_the_calibration_absorbs_is_said() {
     let campaign = clamps(12);
     let calibration = calibrate(&campaign, Mode::Fea, &Options::default()).unwrap();
-    let (world, _) = CalibrationWorld::new(&campaign, &calibration).unwrap();
+    let Prepared { model, absorbed, not_testable, .. } = Prepared::new(&campaign, calibration).unwrap();
     // joint compliances are fitted
-    let is_absorbed = |effect: &str, location: &str| {
-        world.absorbed.iter().any(|a| a.effect == effect && a.location == location && a.survival < 0.02)
-    };
-    assert!(is_absorbed("joint_compliance", "joint 2"), "{:?}", world.absorbed);
-    assert!(world.candidates().iter().all(|c| c.effect != "joint_compliance" || c.location != "joint 2"));
-    let untested: Vec<&str> = world.not_testable.iter().map(|n| n.effect.as_str()).collect();
+    let compliance = &effects::joints::JOINT_COMPLIANCE.effect;
+    let second = Location::Joint { joint: 1, form: None };
+    let is_it = |effect: &Effect, location: &Location| effect == compliance && *location == second;
+    assert!(absorbed.iter().any(|a| is_it(a.effect, &a.location) && a.unabsorbed < 0.02), "{absorbed:?}");
+    assert!(model.candidates().iter().all(|c| !is_it(c.effect, &c.location)));
+    let untested: Vec<&str> = not_testable.iter().map(|not| not.effect.name).collect();
     assert_eq!(untested, ["thermal_drift"]);
 }

@@ -1,7 +1,7 @@
 //! Poses that are proposed where a mismatch may be something else.
 
 use super::*;
-use crate::diagnosis::calibration::diagnose;
+use crate::inference::Plan as NextPlan;
 
 #[test]
 fn one_clamp_more_tells_which_of_a_few_is_misplaced() {
@@ -17,13 +17,15 @@ fn one_clamp_more_tells_which_of_a_few_is_misplaced() {
     let by = |row: usize| if campaign.measurements.rows[row].group == 2 { off } else { Vector3::zeros() };
     let campaign = recorded(&campaign, &by, 15.0 * UM, 3);
     let found = diagnose(&campaign, Mode::Fea, &Options::default()).unwrap();
-    assert_eq!(found.mismatches[0].effect, "clamp_pose");
-    assert!(found.others(&found.mismatches[0]).iter().any(|(effect, _)| effect == "clamp_pose"));
-    let next = found.next[0].as_ref().unwrap();
+    let first = &found.diagnosis.findings[0];
+    assert_eq!(first.effect.name, "clamp_pose");
+    assert!(first.others().iter().any(|(effect, _)| effect.name == "clamp_pose"));
+    let next = first.next.as_ref().unwrap();
     assert!(next.words.contains("et up one more clamp where clamp "), "{}", next.words);
     assert!(next.log_odds > 3.0);
-    let plan = next.plan.as_ref().unwrap();
-    assert!(plan.group.is_some() && plan.poses.iter().any(|pose| pose.group == 3));
+    assert!(next.separates_from.iter().any(|(effect, _)| effect.name == "clamp_pose"));
+    let Some(NextPlan::Poses(plan)) = &next.plan else { panic!("no poses") };
+    assert!(plan.new_clamp.is_some() && plan.poses.iter().any(|pose| pose.group == 3));
     // no farther than the robot turns
     let [low, high] = campaign.robot.joints[0].limits.unwrap();
     assert!(plan.poses.iter().all(|pose| (low..=high).contains(&pose.joints[0])));

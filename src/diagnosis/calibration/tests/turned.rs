@@ -2,6 +2,8 @@
 
 use std::f64::consts::{PI, TAU};
 
+use nalgebra::DMatrix;
+
 use super::changed::{Case, Row, assert_changes};
 use super::*;
 use crate::calibration::Compensation;
@@ -80,8 +82,9 @@ fn gears_err_as_their_formulae_say() {
 fn a_wave_between_two_steps_says_where_it_is() {
     let campaign = clamps(12);
     let calibration = calibrate(&campaign, Mode::Fea, &Options::default()).unwrap();
-    let (world, _) = CalibrationWorld::new(&campaign, &calibration).unwrap();
-    let gear = world.gear(find(&world, "transmission_error", "joint 3, near 7.5 cycles/rev")).unwrap();
+    let (model, _) = CalibrationModel::new(&campaign, calibration).unwrap();
+    let wave_there = find(&model, "transmission_error", "joint 3, near 7.5 cycles/rev");
+    let gear = model.law(wave_there).gear().unwrap();
     let (low, high) = range(&campaign, 2);
     // 3·sin(n·q + 0.4 + δ·(q − q̄)), to first order in δ
     let (off, middle) = (1e-3, 0.5 * (low + high));
@@ -158,7 +161,7 @@ fn joints_and_base_give_way_to_their_torques() {
             "factor",
             Box::new(move |r, _, v| {
                 let pull = r.at_rest(|kinematics| kinematics.flange.rotation.tr_mul(&r.loads.tip_force));
-                r.bent += rod.force * pull * v;
+                r.deflection += rod.force * pull * v;
             }),
         ),
         (
@@ -167,7 +170,7 @@ fn joints_and_base_give_way_to_their_torques() {
             "factor",
             Box::new(move |r, _, v| {
                 let down = r.at_rest(|kinematics| kinematics.flange.rotation.tr_mul(&r.loads.gravity));
-                r.bent += rod.gravity * down * (v / STANDARD_GRAVITY);
+                r.deflection += rod.gravity * down * (v / STANDARD_GRAVITY);
             }),
         ),
     ];
@@ -188,7 +191,7 @@ fn one_clamp_may_push_harder_than_the_others() {
             }
             let pull = group.device.rotation.column(axis) * v;
             let of_tool = r.at_rest(|kinematics| kinematics.flange.rotation.tr_mul(&pull));
-            r.bent += force * of_tool;
+            r.deflection += force * of_tool;
             r.loads.tip_force += pull;
         }
     };

@@ -2,17 +2,18 @@
 
 use nalgebra::{Rotation3, Unit, Vector3};
 
-use super::posture::Posture;
+use super::configuration::Configuration;
 use crate::calibration::Calibration;
 use crate::calibration::campaign::{Campaign, Group, Row, Targets};
+use crate::inference::{PlannedPose, PosePlan};
 use crate::spatial::Pose;
 
 /// Most poses of one proposal: an hour's work.
 const MOST: usize = 40;
 /// Steps of a joint that is moved alone, there and as many back.
 const STEPS: usize = 20;
-/// Turn of joint 1 for a clamp that is set up once more, degrees, and how far that joint turns where the robot's file does not
-/// say it.
+/// Turn of joint 1 for a clamp that is set up once more, degrees, and how far that joint turns where
+/// the robot's file does not say it.
 const TURN: f64 = 40.0;
 const WIDEST: f64 = 170.0;
 /// Fewest poses that are worth a clamp.
@@ -20,29 +21,21 @@ const FEWEST: usize = 6;
 
 /// Poses to measure beside those that were.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Plan {
+pub(super) struct FeasiblePoses {
     /// In the user's words; a full sentence.
     pub words: String,
-    /// In their order.
-    pub poses: Vec<NewPose>,
-    /// A clamp that is not there yet; its index is the next one.
-    pub group: Option<Group>,
+    /// The same as numbers.
+    pub plan: PosePlan,
 }
 
-/// A pose to measure.
-#[derive(Debug, Clone, PartialEq)]
-pub struct NewPose {
-    /// Joint values, rad or m.
-    pub joints: Vec<f64>,
-    /// Index of its clamp or socket.
-    pub group: usize,
-    /// The recorded row that is most like it: it has its point and its deflection.
-    like: usize,
-}
+impl FeasiblePoses {
+    /// With the clamps that are there.
+    fn in_place(words: String, poses: Vec<PlannedPose>) -> Self {
+        FeasiblePoses { words, plan: PosePlan { poses, new_clamp: None } }
+    }
 
-impl Plan {
     /// The campaign and its calibration with these poses measured, without any error.
-    pub fn made<'c>(
+    pub fn measured<'c>(
         &self,
         campaign: &Campaign,
         calibration: &Calibration<'c>,
@@ -53,7 +46,7 @@ impl Plan {
         let first = recording.rows.first().and_then(|row| row.time);
         let pace = first.zip(last).map(|(a, b)| (b - a) / (recording.rows.len().max(2) - 1) as f64);
         let temperature = recording.rows.last().and_then(|row| row.temperature);
-        for (number, NewPose { joints, like, group }) in self.poses.iter().enumerate() {
+        for (number, PlannedPose { joints, like, group }) in self.plan.poses.iter().enumerate() {
             let time = last.zip(pace).map(|(last, pace)| last + pace * (number + 1) as f64);
             let pose = format!("new {}", number + 1);
             recording.rows.push(Row {
@@ -71,8 +64,8 @@ impl Plan {
             calibration.deflections.push(calibration.deflections[*like]);
             calibration.tips.push(calibration.tips[*like]);
         }
-        if let Some(group) = &self.group {
-            recording.groups.push(group.clone());
+        if let Some((name, device)) = &self.plan.new_clamp {
+            recording.groups.push(Group { name: name.clone(), device: *device });
             calibration.noise.of_group.push(calibration.noise.pooled);
         }
         (campaign, calibration)
@@ -80,14 +73,14 @@ impl Plan {
 }
 
 /// All plans, the least laborious first.
-pub(super) fn feasible(campaign: &Campaign, postures: &[Posture]) -> Vec<Plan> {
+pub(super) fn feasible(campaign: &Campaign, configurations: &[Configuration]) -> Vec<FeasiblePoses> {
     let recording = &campaign.measurements;
-    let count = postures.len();
+    let count = configurations.len();
     if count == 0 {
         return Vec::new();
     }
-    let again = |row: usize| NewPose {
-        joints: postures[row].joints.clone(),
+    let again = |row: usize| PlannedPose {
+        joints: configurations[row].joints.clone(),
         like: row,
         group: recording.rows[row].group,
     };
@@ -99,28 +92,26 @@ pub(super) fn feasible(campaign: &Campaign, postures: &[Posture]) -> Vec<Plan> {
         3 => "every third pose".to_owned(),
         n => format!("every {n}th pose"),
     };
-    let plan = |words: String, poses| Plan { words, poses, group: None };
+    let same_order = format!("Measure {which} once more, in the same order.");
+    let reverse_order =
+        format!("Measure {which} once more in reverse order, so that every joint comes from the other side.");
     let mut plans = vec![
-        plan(format!("Measure {which} once more, in the same order."), some().map(again).collect()),
-        plan(
-            format!(
-                "Measure {which} once more in reverse order, so that every joint comes from the other side."
-            ),
-            some().rev().map(again).collect(),
-        ),
+        FeasiblePoses::in_place(same_order, some().map(again).collect()),
+        FeasiblePoses::in_place(reverse_order, some().rev().map(again).collect()),
     ];
     let is_tracked = matches!(recording.targets, Targets::Points(_))
         && recording.groups.len() == 1
         && recording.groups[0].name.is_empty();
     match (&recording.targets, is_tracked) {
         (_, true) => {
-            plans.extend((0..recording.joint_count).filter_map(|joint| alone(campaign, postures, joint)))
+            let joints = 0..recording.joint_count;
+            plans.extend(joints.filter_map(|joint| alone(campaign, configurations, joint)));
         }
         (Targets::Points(_), false) => {
             let again: Vec<_> = some().map(again).collect();
-            plans.extend(turned_clamp(campaign, postures, Vec::new(), ""));
+            plans.extend(turned_clamp(campaign, configurations, Vec::new(), ""));
             let first = format!("Measure {which} once more. ");
-            plans.extend(turned_clamp(campaign, postures, again, &first));
+            plans.extend(turned_clamp(campaign, configurations, again, &first));
         }
         (Targets::Sockets(_), false) => {}
     }
@@ -128,16 +119,16 @@ pub(super) fn feasible(campaign: &Campaign, postures: &[Posture]) -> Vec<Plan> {
 }
 
 /// One joint moved alone over its range and back, from the pose in which it moves the tip most.
-fn alone(campaign: &Campaign, postures: &[Posture], joint: usize) -> Option<Plan> {
-    let lever = |row: &usize| postures[*row].lever[joint].norm();
-    let at = (0..postures.len()).max_by(|a, b| lever(a).total_cmp(&lever(b)))?;
-    let values = postures.iter().map(|posture| posture.joints[joint]);
+fn alone(campaign: &Campaign, configurations: &[Configuration], joint: usize) -> Option<FeasiblePoses> {
+    let lever = |row: &usize| configurations[*row].tip_jacobian[joint].norm();
+    let at = (0..configurations.len()).max_by(|a, b| lever(a).total_cmp(&lever(b)))?;
+    let values = configurations.iter().map(|there| there.joints[joint]);
     let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), q| (a.min(q), b.max(q)));
     let there = (0..STEPS).map(|step| low + (high - low) * step as f64 / (STEPS - 1) as f64);
     let poses = there.clone().chain(there.rev()).map(|q| {
-        let mut joints = postures[at].joints.clone();
+        let mut joints = configurations[at].joints.clone();
         joints[joint] = q;
-        NewPose { joints, like: at, group: campaign.measurements.rows[at].group }
+        PlannedPose { joints, like: at, group: campaign.measurements.rows[at].group }
     });
     let words = format!(
         "Move joint {} alone through its range and back in {STEPS} steps each, the other joints as in pose {}, and \
@@ -145,27 +136,35 @@ fn alone(campaign: &Campaign, postures: &[Posture], joint: usize) -> Option<Plan
         joint + 1,
         campaign.measurements.rows[at].pose
     );
-    (high > low).then(|| Plan { words, poses: poses.collect(), group: None })
+    (high > low).then(|| FeasiblePoses::in_place(words, poses.collect()))
 }
 
-/// After some other poses the clamp with most poses once more, turned about joint 1 with all of them: what it needs is a place
-/// to stand.
-fn turned_clamp(campaign: &Campaign, postures: &[Posture], before: Vec<NewPose>, said: &str) -> Option<Plan> {
+/// After some other poses the clamp with most poses once more, turned about joint 1 with all of
+/// them: what it needs is a place to stand.
+fn turned_clamp(
+    campaign: &Campaign,
+    configurations: &[Configuration],
+    before: Vec<PlannedPose>,
+    said: &str,
+) -> Option<FeasiblePoses> {
     let recording = &campaign.measurements;
-    let rows_of = |group: usize| (0..postures.len()).filter(move |&row| recording.rows[row].group == group);
+    let rows_of = |group: usize| {
+        let rows = 0..configurations.len();
+        rows.filter(move |&row| recording.rows[row].group == group)
+    };
     let group = (0..recording.groups.len()).max_by_key(|&group| rows_of(group).count())?;
-    let first = postures.first()?;
+    let first = configurations.first()?;
     let [low, high] = campaign.robot.joints.first()?.limits.unwrap_or_else(|| {
-        let recorded = postures.iter().map(|posture| posture.joints[0].abs()).fold(0.0, f64::max);
-        let widest = recorded.max(WIDEST.to_radians());
+        let recorded = configurations.iter().map(|there| there.joints[0].abs());
+        let widest = recorded.fold(0.0, f64::max).max(WIDEST.to_radians());
         [-widest, widest]
     });
     let within = |degrees: f64| {
-        let turned = |row: usize| (row, postures[row].joints[0] + degrees.to_radians());
+        let turned = |row: usize| (row, configurations[row].joints[0] + degrees.to_radians());
         rows_of(group).map(turned).filter(|(_, q)| (low..=high).contains(q)).take(MOST).collect::<Vec<_>>()
     };
     // towards the middle of the joint's range, unless that is the way out of it
-    let mean = rows_of(group).map(|row| postures[row].joints[0]).sum::<f64>();
+    let mean = rows_of(group).map(|row| configurations[row].joints[0]).sum::<f64>();
     let degrees = if mean > 0.0 { -TURN } else { TURN };
     let degrees = if within(-degrees).len() > within(degrees).len() { -degrees } else { degrees };
     let reached = within(degrees);
@@ -181,18 +180,16 @@ fn turned_clamp(campaign: &Campaign, postures: &[Posture], before: Vec<NewPose>,
     let some =
         if reached.len() < rows_of(group).count().min(MOST) { " as far as joint 1 reaches" } else { "" };
     let poses = reached.into_iter().map(|(row, q)| {
-        let mut joints = postures[row].joints.clone();
+        let mut joints = configurations[row].joints.clone();
         joints[0] = q;
-        NewPose { joints, like: row, group: recording.groups.len() }
+        PlannedPose { joints, like: row, group: recording.groups.len() }
     });
     let name = &recording.groups[group].name;
     let words = format!(
         "{said}Set up one more clamp where {name} would be if joint 1 were turned by {degrees}°, and measure the poses of \
          {name} there{some}."
     );
-    Some(Plan {
-        words,
-        poses: before.into_iter().chain(poses).collect(),
-        group: Some(Group { name: "new clamp".into(), device }),
-    })
+    let poses = before.into_iter().chain(poses).collect();
+    let new_clamp = Some(("new clamp".into(), device));
+    Some(FeasiblePoses { words, plan: PosePlan { poses, new_clamp } })
 }

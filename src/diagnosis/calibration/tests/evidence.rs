@@ -17,14 +17,15 @@ fn noisy(campaign: &Campaign, of_group: impl Fn(usize) -> f64, seed: u64) -> Cam
     recorded(campaign, &|row| off[row], 0.0, seed)
 }
 
-/// At the optimum nothing that the calibration can do takes more out of what is left: Jᵀr = 0, once rows and what is known
-/// besides count as they did in the calibration, which has other noises than the evidence (`Scene::noise`).
+/// At the optimum nothing that the calibration can do takes more out of what is left: Jᵀr = 0, once
+/// rows and what is known besides count as they did in the calibration, which has other noises than
+/// the evidence (`Context::noise`).
 fn assert_nothing_more_is_absorbed(campaign: &Campaign, calibration: &Calibration, evidence: &Evidence) {
-    let scene = Scene::new(campaign, calibration).unwrap();
+    let context = Context::new(campaign, calibration).unwrap();
     let (rows, noise) = (&campaign.measurements.rows, &calibration.noise);
     let counted = |datum: usize| match rows.get(datum / 3) {
-        Some(row) => noise.pooled / noise.of_group[row.group] / scene.scale[datum / 3],
-        None => noise.pooled / scene.noise,
+        Some(row) => noise.pooled / noise.of_group[row.group] / context.scale[datum / 3],
+        None => noise.pooled / context.noise,
     };
     let weighted = |v: DVector<f64>| DVector::from_fn(v.len(), |datum, _| v[datum] * counted(datum));
     let left = weighted(evidence.residual.clone());
@@ -39,13 +40,13 @@ fn assert_nothing_more_is_absorbed(campaign: &Campaign, calibration: &Calibratio
 fn a_clamp_of_five_times_the_noise_counts_a_twenty_fifth() {
     let campaign = noisy(&clamps(30), |group| if group == 1 { 50.0 * UM } else { 10.0 * UM }, 3);
     let calibration = calibrate(&campaign, Mode::Fea, &Options::default()).unwrap();
-    let (world, evidence) = CalibrationWorld::new(&campaign, &calibration).unwrap();
+    let (model, evidence) = CalibrationModel::new(&campaign, calibration.clone()).unwrap();
     let rows = &campaign.measurements.rows;
     let of = |is_noisy: bool| (0..rows.len()).filter(move |&row| (rows[row].group == 1) == is_noisy);
     let (loud, quiet) = (of(true).next().unwrap(), of(false).next().unwrap());
     // 90 and 360 coordinates tell the ratio of the two variances within a sixth or so
     let mean = |is_noisy: bool| {
-        of(is_noisy).map(|row| world.scale(row).powi(-2)).sum::<f64>() / of(is_noisy).count() as f64
+        of(is_noisy).map(|row| model.scale(row).powi(-2)).sum::<f64>() / of(is_noisy).count() as f64
     };
     let ratio = mean(true) / mean(false);
     assert!((15.0..40.0).contains(&ratio), "{ratio}");
@@ -61,16 +62,16 @@ fn a_clamp_of_five_times_the_noise_counts_a_twenty_fifth() {
     assert!((rms(true) / rms(false) - 1.0).abs() < 0.2, "{} {}", rms(true), rms(false));
     for row in [loud, quiet] {
         let told: Vector3<f64> = evidence.residual.fixed_rows::<3>(3 * row).into();
-        assert!((told + calibration.deviations[row] * world.scale(row)).norm() < 1e-12);
+        assert!((told + calibration.deviations[row] * model.scale(row)).norm() < 1e-12);
     }
     // effects are felt with the same weight
-    let index = find(&world, "thermal_drift", "base, with order");
-    let mut drift = world.candidates()[index].neutral(index);
+    let index = find(&model, "thermal_drift", "base, with order");
+    let mut drift = model.candidates()[index].neutral(index);
     drift.values[0] = 1.0;
-    let change = world.change(&[drift]);
+    let change = model.response(&[drift]);
     for row in [loud, quiet] {
         let share = row as f64 / (rows.len() - 1) as f64 - 0.5;
-        assert!((change[3 * row] - share * world.scale(row)).abs() < 1e-12);
+        assert!((change[3 * row] - share * model.scale(row)).abs() < 1e-12);
     }
     assert_nothing_more_is_absorbed(&campaign, &calibration, &evidence);
 }
@@ -86,22 +87,25 @@ fn what_a_user_knows_is_a_datum_without_a_row() {
     let mean = found.value + 5.0 * sd;
     campaign.wishes.priors.push((parameter, mean, sd));
     let calibration = calibrate(&campaign, Mode::Fea, &Options::default()).unwrap();
-    let (world, evidence) = CalibrationWorld::new(&campaign, &calibration).unwrap();
+    let (model, evidence) = CalibrationModel::new(&campaign, calibration.clone()).unwrap();
     let (last, rows) = (evidence.residual.len() - 1, campaign.measurements.len());
     assert_eq!(last, 3 * rows);
-    let sigma = Scene::new(&campaign, &calibration).unwrap().noise;
+    let sigma = Context::new(&campaign, &calibration).unwrap().noise;
     let value = calibration.setup.links[1].a;
     assert!((evidence.residual[last] - (mean - value) / sd * sigma).abs() < 1e-6 * sigma);
     assert!(evidence.residual[last] > sigma, "the data pull");
     assert_nothing_more_is_absorbed(&campaign, &calibration, &evidence);
-    assert_eq!(evidence.cell.iter().filter(|&&cell| cell == evidence.cell[last]).count(), 1);
-    for of in [&evidence.fold, &evidence.session, &evidence.level] {
-        assert_eq!(of[last], Evidence::KEPT);
+    assert_eq!(
+        evidence.replicate_group.iter().filter(|&&group| group == evidence.replicate_group[last]).count(),
+        1
+    );
+    for of in [&evidence.fold, &evidence.session, &evidence.intercept] {
+        assert_eq!(of[last], Evidence::NONE);
     }
-    assert!(evidence.fold[..last].iter().all(|&fold| fold != Evidence::KEPT));
+    assert!(evidence.fold[..last].iter().all(|&fold| fold != Evidence::NONE));
     // no effect changes what is known
-    for (index, candidate) in world.candidates().iter().enumerate().step_by(11) {
-        let columns = world.columns(&[candidate.neutral(index)], 0);
+    for (index, candidate) in model.candidates().iter().enumerate().step_by(11) {
+        let columns = model.columns(&[candidate.neutral(index)], 0);
         assert_eq!(columns.row(last).amax(), 0.0);
     }
 }
@@ -113,15 +117,15 @@ fn distances_between_sockets_are_known_and_their_places_are_not() {
     let known = |(between, value): ([usize; 2], f64)| Distance { between, value, sd: 100.0 * UM };
     campaign.measurements.targets = Targets::Sockets(distances.map(known).to_vec());
     let calibration = calibrate(&campaign, Mode::Fea, &Options::default()).unwrap();
-    let (_, evidence) = CalibrationWorld::new(&campaign, &calibration).unwrap();
+    let (_, evidence) = CalibrationModel::new(&campaign, calibration.clone()).unwrap();
     let rows = campaign.measurements.len();
-    let sigma = Scene::new(&campaign, &calibration).unwrap().noise;
+    let sigma = Context::new(&campaign, &calibration).unwrap().noise;
     assert_eq!(evidence.residual.len(), 3 * rows + distances.len());
     let place = |socket: usize| Vector3::from(calibration.sockets[socket].map(|(value, _)| value));
     for (k, ([a, b], value)) in distances.into_iter().enumerate() {
         let expected = (value - (place(a) - place(b)).norm()) / (100.0 * UM) * sigma;
         assert!((evidence.residual[3 * rows + k] - expected).abs() < 1e-9 * sigma, "{k}");
-        assert_eq!(evidence.level[3 * rows + k], Evidence::KEPT);
+        assert_eq!(evidence.intercept[3 * rows + k], Evidence::NONE);
         // by how much the distance changes where a socket moves
         let first = evidence.nuisance.ncols() - 3 * calibration.sockets.len();
         for (socket, axis) in
@@ -137,7 +141,7 @@ fn distances_between_sockets_are_known_and_their_places_are_not() {
     // every coordinate of a socket has its own level, every plate its session
     for (row, entry) in campaign.measurements.rows.iter().enumerate() {
         for axis in 0..3 {
-            assert_eq!(evidence.level[3 * row + axis], 3 * entry.group + axis);
+            assert_eq!(evidence.intercept[3 * row + axis], 3 * entry.group + axis);
         }
         assert_eq!(evidence.session[3 * row], usize::from(entry.group >= 3));
     }
@@ -148,8 +152,8 @@ fn what_the_calibration_holds_it_does_not_absorb() {
     // no distance: nothing tells a robot from one twice as large
     let campaign = sockets();
     let calibration = calibrate(&campaign, Mode::Fea, &Options::default()).unwrap();
-    let scene = Scene::new(&campaign, &calibration).unwrap();
-    let evidence = evidence::of(&campaign, &calibration, &scene);
+    let context = Context::new(&campaign, &calibration).unwrap();
+    let evidence = super::super::evidence::of(&campaign, &calibration, &context);
     let (free, held) = (calibration.parameters.len(), calibration.held.len());
     assert!(held > 0);
     assert_eq!(evidence.nuisance.ncols(), free - held + 3 * calibration.sockets.len());
@@ -157,13 +161,13 @@ fn what_the_calibration_holds_it_does_not_absorb() {
     let left = |direction: &[f64]| {
         let mut kinematics = crate::robot::Kinematics::new(&calibration.setup);
         let mut moved = DVector::zeros(evidence.residual.len());
-        for (row, posture) in scene.postures.iter().enumerate() {
-            kinematics.update(&posture.joints, &posture.torque);
-            kinematics.tip = posture.tip;
+        for (row, configuration) in context.configurations.iter().enumerate() {
+            kinematics.update(&configuration.joints, &configuration.torque);
+            kinematics.tip = configuration.tip;
             for ((estimated, factor), range) in
                 calibration.parameters.iter().zip(direction).zip(&calibration.held[0].ranges)
             {
-                let column = kinematics.column(estimated.parameter, &posture.torque) * (factor * range);
+                let column = kinematics.column(estimated.parameter, &configuration.torque) * (factor * range);
                 let mut tip = moved.fixed_rows_mut::<3>(3 * row);
                 tip += column;
             }
@@ -182,7 +186,7 @@ fn what_the_calibration_holds_it_does_not_absorb() {
 }
 
 #[test]
-fn repeats_are_one_cell_and_are_held_out_together() {
+fn repeats_are_one_group_and_are_held_out_together() {
     let mut campaign = clamps(30);
     let recording = &mut campaign.measurements;
     // row 40 is taken again later in the same clamp, and its joint values once more in another one
@@ -194,11 +198,11 @@ fn repeats_are_one_cell_and_are_held_out_together() {
         recording.joint_values[row * count..][..count].copy_from_slice(&again);
     }
     let calibration = calibrate(&campaign, Mode::Fea, &Options::default()).unwrap();
-    let (_, evidence) = CalibrationWorld::new(&campaign, &calibration).unwrap();
+    let (_, evidence) = CalibrationModel::new(&campaign, calibration.clone()).unwrap();
     for axis in 0..3 {
-        assert_eq!(evidence.cell[3 * same + axis], evidence.cell[120 + axis]);
-        assert_ne!(evidence.cell[3 * other + axis], evidence.cell[120 + axis]);
-        assert_ne!(evidence.cell[120 + axis], evidence.cell[120 + (axis + 1) % 3]);
+        assert_eq!(evidence.replicate_group[3 * same + axis], evidence.replicate_group[120 + axis]);
+        assert_ne!(evidence.replicate_group[3 * other + axis], evidence.replicate_group[120 + axis]);
+        assert_ne!(evidence.replicate_group[120 + axis], evidence.replicate_group[120 + (axis + 1) % 3]);
     }
     assert_eq!(evidence.fold[3 * same], evidence.fold[120]);
     // every fold has rows of every clamp, and no two are of unlike size
@@ -221,8 +225,7 @@ fn the_last_digit_of_a_displacement_is_seen() {
             let read = device.inverse().point(point);
             *point = step.map_or(*point, |step| device.point(&read.map(|x| (x / step).round() * step)));
         }
-        let calibration = calibrate(&campaign, Mode::Fea, &Options::default()).unwrap();
-        CalibrationWorld::new(&campaign, &calibration).unwrap().1.resolution
+        modelled(&campaign, Mode::Fea).1.resolution
     };
     for step in [1.0 * UM, 2.0 * UM, 5.0 * UM, 20.0 * UM] {
         let found = resolution(Some(step));
@@ -242,8 +245,8 @@ fn a_clamp_that_moved_does_not_count_less_and_so_stays_visible() {
     let calibration = calibrate(&campaign, Mode::Fea, &Options::default()).unwrap();
     let noise = &calibration.noise;
     assert!(noise.of_group[1] > 5.0 * noise.of_group[0], "the calibration takes the clamp for a noisy one");
-    let (world, _) = CalibrationWorld::new(&campaign, &calibration).unwrap();
-    let of = |group: usize| world.scale(rows.iter().position(|row| row.group == group).unwrap());
+    let (model, _) = CalibrationModel::new(&campaign, calibration).unwrap();
+    let of = |group: usize| model.scale(rows.iter().position(|row| row.group == group).unwrap());
     assert!(of(1) > 0.5 * of(0), "{} {}", of(1), of(0));
 }
 
@@ -252,9 +255,9 @@ fn the_weight_of_a_rod_tells_no_torque_of_an_arm_of_unknown_masses() {
     let mut campaign = noisy(&clamps(12), |_| 20.0 * UM, 9);
     campaign.robot.joints.iter_mut().for_each(|joint| joint.body = None);
     let calibration = calibrate(&campaign, Mode::Fea, &Options::default()).unwrap();
-    let (world, _) = CalibrationWorld::new(&campaign, &calibration).unwrap();
-    let compliances = world.candidates().iter().filter(|c| c.effect == "joint_compliance");
-    let places: Vec<&str> = compliances.map(|c| c.location.as_str()).collect();
+    let Prepared { model, not_testable, .. } = Prepared::new(&campaign, calibration).unwrap();
+    let compliances = model.candidates().iter().filter(|c| c.effect.name == "joint_compliance");
+    let places: Vec<String> = compliances.map(|c| c.location.to_string()).collect();
     assert!(!places.is_empty() && places.iter().all(|place| place.ends_with("masses unknown")), "{places:?}");
-    assert!(world.not_testable.iter().any(|not| not.effect == "joint_nonlinear_stiffness"));
+    assert!(not_testable.iter().any(|not| not.effect.name == "joint_nonlinear_stiffness"));
 }

@@ -1,21 +1,20 @@
-//! A calibrated campaign as the effects see it, and the columns that they make of it.
+//! A calibrated campaign as the effects see it.
 
-use nalgebra::{DVector, Matrix3, Vector3};
+use nalgebra::{Matrix3, Vector3};
 
-use super::gear::Gear;
-use super::posture::{self, Posture};
+use super::configuration::{self, Configuration};
+use super::entry::Column;
 use crate::calibration::campaign::{Campaign, Recording, Targets};
 use crate::calibration::{Calibration, Compensation, Mode, Robust};
-use crate::diagnosis::{Candidate, EffectParameter};
 use crate::error::Result;
 use crate::robot::{Motion, Setup};
 
 /// All that effects need to know of a campaign and its calibration.
-pub(super) struct Scene<'a> {
+pub(super) struct Context<'a> {
     pub recording: &'a Recording,
     /// The recording whose clock and whose mean temperature count: this one, or the one that came before.
     pub since: &'a Recording,
-    pub postures: Vec<Posture>,
+    pub configurations: Vec<Configuration>,
     /// What each row counts, relative to the others: pooled noise over the noise of its group.
     pub scale: Vec<f64>,
     /// Pooled noise of a coordinate, m.
@@ -24,50 +23,38 @@ pub(super) struct Scene<'a> {
     off: Vec<f64>,
     /// Motion of every joint.
     pub motions: Vec<Motion>,
-    /// Does the robot's file have masses? Without them the torques are those of rod and contact alone.
+    /// Does the robot's file have masses? Without them the torques are those of rod and contact
+    /// alone.
     pub has_masses: bool,
     /// C^F of the rod in {T}, m/N; zero for a rigid one.
     pub force_compliance: Matrix3<f64>,
-    /// Deflections in {W} by the rod's model, m, by contact force and by gravity; empty without a rod.
-    pub bent: Vec<[Vector3<f64>; 2]>,
-    /// Share of `bent` that the calibration took into account: 1, or 0 where it took the rod for rigid.
+    /// Deflections in {W} by the rod's model, m, by contact force and by gravity; empty without a
+    /// rod.
+    pub deflection: Vec<[Vector3<f64>; 2]>,
+    /// Share of `deflection` that the calibration took into account: 1, or 0 where it took the rod
+    /// for rigid.
     pub accounted: f64,
 }
 
-/// ∂change/∂parameter: data from `first` on, m per unit of the parameter; zero elsewhere.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Column {
-    pub first: usize,
-    pub values: Vec<f64>,
-}
-
-/// A candidate with what each of its parameters does.
-pub(super) struct Entry {
-    pub candidate: Candidate,
-    pub columns: Vec<Column>,
-    /// For a transmission error, what it is a function of.
-    pub gear: Option<Gear>,
-}
-
-impl<'a> Scene<'a> {
+impl<'a> Context<'a> {
     pub fn new(campaign: &'a Campaign, calibration: &Calibration) -> Result<Self> {
         let recording = &campaign.measurements;
         let steps = steps(recording, &calibration.deviations);
         let determined = calibration.fit.covariance.rank;
         let noise = calibration.noise.estimate(recording, &steps, determined, Robust::Huber)?;
         let off = recording.rows.iter().zip(&calibration.deviations);
-        Ok(Scene {
+        Ok(Context {
             noise: noise.pooled,
             scale: recording.rows.iter().map(|row| noise.pooled / noise.of_group[row.group]).collect(),
             off: off.map(|(row, deviation)| deviation.norm() / noise.of_group[row.group]).collect(),
-            ..Scene::still(campaign, calibration.mode, &calibration.setup, &calibration.deflections)?
+            ..Context::still(campaign, calibration.mode, &calibration.setup, &calibration.deflections)?
         })
     }
 
     /// Of poses that nobody measured, in a recording that came after that of `campaign`.
     pub fn later(asked: &'a Campaign, mode: Mode, setup: &Setup, campaign: &'a Campaign) -> Result<Self> {
         let deflections = Compensation::new(asked, mode)?.deflections(setup, &asked.measurements);
-        Ok(Scene { since: &campaign.measurements, ..Scene::still(asked, mode, setup, &deflections)? })
+        Ok(Context { since: &campaign.measurements, ..Context::still(asked, mode, setup, &deflections)? })
     }
 
     /// Without what only measured points tell.
@@ -79,21 +66,21 @@ impl<'a> Scene<'a> {
     ) -> Result<Self> {
         let used = Compensation::new(campaign, mode)?;
         let recording = &campaign.measurements;
-        let postures = posture::all(recording, setup, deflections, &used);
+        let configurations = configuration::all(recording, setup, deflections, &used);
         // a rod that was taken for rigid bends as its beam model says
         let (rod, accounted) = match (mode, &campaign.rod) {
             (Mode::None, Some(_)) => (Compensation::new(campaign, Mode::Fea)?.compliance, 0.0),
             _ => (used.compliance, 1.0),
         };
-        let bend = |(row, posture): (usize, &Posture)| {
+        let deflection = |(row, configuration): (usize, &Configuration)| {
             let device = &recording.groups[recording.rows[row].group].device;
             let force = device.rotation * used.contact_force;
             rod.as_ref().map(|rod| {
-                let per_g = posture.gravity / crate::units::STANDARD_GRAVITY;
-                [posture.in_world(&rod.force) * force, posture.in_world(&rod.gravity) * per_g]
+                let per_g = configuration.gravity / crate::units::STANDARD_GRAVITY;
+                [configuration.in_world(&rod.force) * force, configuration.in_world(&rod.gravity) * per_g]
             })
         };
-        Ok(Scene {
+        Ok(Context {
             recording,
             since: recording,
             scale: vec![1.0; recording.len()],
@@ -102,34 +89,34 @@ impl<'a> Scene<'a> {
             has_masses: campaign.robot.has_masses(),
             motions: campaign.robot.joints.iter().map(|joint| joint.motion).collect(),
             force_compliance: rod.as_ref().map_or_else(Matrix3::zeros, |rod| rod.force),
-            bent: postures.iter().enumerate().filter_map(bend).collect(),
+            deflection: configurations.iter().enumerate().filter_map(deflection).collect(),
             accounted,
-            postures,
+            configurations,
         })
     }
 
     /// A column of a displacement of the tip, m per unit of the parameter, by row.
-    pub fn column(&self, displacement: impl Fn(usize, &Posture) -> Vector3<f64>) -> Column {
-        self.part(0..self.postures.len(), displacement)
+    pub fn column(&self, displacement: impl Fn(usize, &Configuration) -> Vector3<f64>) -> Column {
+        self.part(0..self.configurations.len(), displacement)
     }
 
     /// One that is zero but for a range of rows.
     pub fn part(
         &self,
         rows: std::ops::Range<usize>,
-        displacement: impl Fn(usize, &Posture) -> Vector3<f64>,
+        displacement: impl Fn(usize, &Configuration) -> Vector3<f64>,
     ) -> Column {
         let first = 3 * rows.start;
         let at = |row: usize| {
-            let scaled: [f64; 3] = (displacement(row, &self.postures[row]) * self.scale[row]).into();
+            let scaled: [f64; 3] = (displacement(row, &self.configurations[row]) * self.scale[row]).into();
             scaled
         };
         Column { first, values: rows.flat_map(at).collect() }
     }
 
     /// A turn of a joint by so much at each row, rad per unit of the parameter.
-    pub fn turn(&self, joint: usize, angle: impl Fn(usize, &Posture) -> f64) -> Column {
-        self.column(|row, posture| posture.lever[joint] * angle(row, posture))
+    pub fn turn(&self, joint: usize, angle: impl Fn(usize, &Configuration) -> f64) -> Column {
+        self.column(|row, configuration| configuration.tip_jacobian[joint] * angle(row, configuration))
     }
 
     /// How far a row is off, in noises of its group.
@@ -148,13 +135,14 @@ impl<'a> Scene<'a> {
 
     /// Least and greatest value of a joint, rad or m.
     pub fn range(&self, joint: usize) -> (f64, f64) {
-        let values = self.postures.iter().map(|posture| posture.joints[joint]);
+        let values = self.configurations.iter().map(|configuration| configuration.joints[joint]);
         values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)))
     }
 
     /// Largest size of a number over all rows.
-    pub fn largest(&self, of: impl Fn(&Posture) -> f64) -> f64 {
-        self.postures.iter().fold(0.0, |most: f64, posture| most.max(of(posture).abs()))
+    pub fn largest(&self, number: impl Fn(&Configuration) -> f64) -> f64 {
+        let sizes = self.configurations.iter().map(|configuration| number(configuration).abs());
+        sizes.fold(0.0, f64::max)
     }
 
     pub fn has_sockets(&self) -> bool {
@@ -172,8 +160,9 @@ impl<'a> Scene<'a> {
     }
 }
 
-/// Differences of neighbours in each clamp or socket, over √2: as large as noise alone, whatever else a clamp is off by. With
-/// the median of their lengths neither a pose that was misread nor a clamp that moved makes all its poses count less.
+/// Differences of neighbours in each clamp or socket, over √2: as large as noise alone, whatever
+/// else a clamp is off by. With the median of their lengths neither a pose that was misread nor a
+/// clamp that moved makes all its poses count less.
 fn steps(recording: &Recording, deviations: &[Vector3<f64>]) -> Vec<Vector3<f64>> {
     let mut steps = deviations.to_vec();
     for group in 0..recording.groups.len() {
@@ -187,44 +176,4 @@ fn steps(recording: &Recording, deviations: &[Vector3<f64>]) -> Vec<Vector3<f64>
         }
     }
     steps
-}
-
-impl Column {
-    /// Adds `value` times the column to a recording.
-    pub fn add_to(&self, change: &mut DVector<f64>, value: f64) {
-        let slots = change.as_mut_slice().iter_mut().skip(self.first);
-        slots.zip(&self.values).for_each(|(slot, v)| *slot += value * v);
-    }
-
-    pub fn is_zero(&self) -> bool {
-        self.values.iter().all(|&v| v == 0.0)
-    }
-}
-
-/// A parameter without effect at zero and without bounds.
-pub(super) fn linear(name: impl Into<String>, unit: f64, size: f64) -> EffectParameter {
-    let bounds = (f64::NEG_INFINITY, f64::INFINITY);
-    EffectParameter { name: name.into(), unit, neutral: 0.0, size, bounds }
-}
-
-/// An effect of the library.
-pub(super) fn entry(
-    effect: &str,
-    location: impl Into<String>,
-    parameters: Vec<(EffectParameter, Column)>,
-) -> Entry {
-    let (parameters, columns) = parameters.into_iter().unzip();
-    let (effect, location) = (effect.into(), location.into());
-    Entry {
-        candidate: Candidate {
-            effect,
-            location,
-            parameters,
-            weight: 1.0,
-            is_alternative: false,
-            is_unknown: false,
-        },
-        columns,
-        gear: None,
-    }
 }

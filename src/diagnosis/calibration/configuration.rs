@@ -11,11 +11,11 @@ use crate::spatial::Pose;
 const STANDSTILL: f64 = 1e-7;
 /// The calibrated robot at one row.
 #[derive(Debug, Clone)]
-pub(super) struct Posture {
+pub(super) struct Configuration {
     /// Joint values as recorded, rad or m.
     pub joints: Vec<f64>,
     /// ∂tip/∂q of every joint, m/rad or m/m.
-    pub lever: Vec<Vector3<f64>>,
+    pub tip_jacobian: Vec<Vector3<f64>>,
     /// Direction of every joint's axis.
     pub axis: Vec<Vector3<f64>>,
     /// A point on it, m.
@@ -40,12 +40,13 @@ pub(super) struct Posture {
     pub approach: Vec<f64>,
 }
 
-impl Posture {
+impl Configuration {
     /// Displacement of the tip by joints that yield to one more force (N) at a point (m) beyond all of them:
     /// Σ lever·c·(∂point/∂q · force).
     pub fn yielding(&self, point: &Vector3<f64>, force: &Vector3<f64>) -> Vector3<f64> {
-        let of_joint = |j: usize| self.lever[j] * (self.compliance[j] * self.torque_of(j, point, force));
-        (0..self.lever.len()).map(of_joint).sum()
+        let of_joint =
+            |j: usize| self.tip_jacobian[j] * (self.compliance[j] * self.torque_of(j, point, force));
+        (0..self.tip_jacobian.len()).map(of_joint).sum()
     }
 
     /// Torque about a joint's axis of one more force (N) at a point (m), N·m.
@@ -65,7 +66,7 @@ pub(super) fn all(
     setup: &Setup,
     deflections: &[Vector3<f64>],
     compensation: &Compensation,
-) -> Vec<Posture> {
+) -> Vec<Configuration> {
     let count = recording.joint_count;
     let mut kinematics = Kinematics::new(setup);
     let gravity = setup.base().rotation * setup.robot.gravity;
@@ -88,9 +89,9 @@ pub(super) fn all(
             for (approach, step) in approach.iter_mut().zip(&step).filter(|(_, s)| s.abs() > STANDSTILL) {
                 *approach = step.signum();
             }
-            Posture {
+            Configuration {
                 joints: recording.joints(row).to_vec(),
-                lever: (0..count).map(|j| kinematics.moved(j)).collect(),
+                tip_jacobian: (0..count).map(|j| kinematics.moved(j)).collect(),
                 axis: kinematics.joints.iter().map(|joint| joint.axis).collect(),
                 origin: kinematics.joints.iter().map(|joint| joint.origin).collect(),
                 torque,

@@ -2,8 +2,6 @@
 
 use super::*;
 use crate::calibration::Compensation;
-use crate::diagnosis::calibration::diagnose;
-use crate::diagnosis::calibration::scene::Scene;
 
 /// Of the campaign's rows, the even ones as a recording of their own and the odd ones as what is asked for.
 fn halves(campaign: &Campaign) -> [Campaign; 2] {
@@ -29,10 +27,10 @@ fn error(foretold: &[Vector3<f64>], truth: &[Vector3<f64>]) -> f64 {
 fn a_gear_acts_in_other_poses_and_a_misplaced_clamp_does_not() {
     let campaign = clamps(40);
     let calibration = calibrate(&campaign, Mode::Fea, &Options::default()).unwrap();
-    let scene = Scene::new(&campaign, &calibration).unwrap();
+    let context = Context::new(&campaign, &calibration).unwrap();
     let turned = |row: usize| {
-        let posture = &scene.postures[row];
-        posture.lever[2] * (200e-6 * (7.0 * posture.joints[2]).sin())
+        let configuration = &context.configurations[row];
+        configuration.tip_jacobian[2] * (200e-6 * (7.0 * configuration.joints[2]).sin())
     };
     let rows = &campaign.measurements.rows;
     let off = Vector3::new(400.0, -300.0, 200.0) * UM;
@@ -42,16 +40,16 @@ fn a_gear_acts_in_other_poses_and_a_misplaced_clamp_does_not() {
     let [recorded, _] = halves(&recorded(&campaign, &said, 10.0 * UM, 1));
     let [_, asked] = halves(&truth);
     let found = diagnose(&recorded, Mode::Fea, &Options::default()).unwrap();
-    let effects: Vec<&str> = found.mismatches.iter().map(|m| m.effect.as_str()).collect();
+    let effects: Vec<&str> = found.diagnosis.findings.iter().map(|finding| finding.effect.name).collect();
     assert!(effects.contains(&"transmission_error") && effects.contains(&"clamp_pose"), "{effects:?}");
-    let foretold = found.predicted(&recorded, &asked).unwrap();
+    let foretold = found.predicted(&asked).unwrap();
     let with = error(&foretold, points(&asked));
     assert!(with < 8.0, "{with} µm");
     // without what was found
     let mut nothing = found.clone();
     nothing.diagnosis.findings.clear();
-    nothing.diagnosis.story.chosen.clear();
-    let without = error(&nothing.predicted(&recorded, &asked).unwrap(), points(&asked));
+    nothing.diagnosis.hypothesis.terms.clear();
+    let without = error(&nothing.predicted(&asked).unwrap(), points(&asked));
     assert!(without > 5.0 * with, "{without} µm, {with} µm");
 }
 
@@ -60,20 +58,22 @@ fn another_force_bends_the_rod_by_its_compliance() {
     let campaign = clamps(25);
     let recorded = recorded(&campaign, &|_| Vector3::zeros(), 5.0 * UM, 2);
     let found = diagnose(&recorded, Mode::Fea, &Options::default()).unwrap();
-    assert!(found.mismatches.is_empty());
+    assert!(found.diagnosis.findings.is_empty());
     let more = Vector3::new(0.0, 1.5, -2.0);
     let pushed = Campaign { contact_force: campaign.contact_force.map(|f| f + more), ..campaign.clone() };
-    let moved = found.predicted(&recorded, &pushed).unwrap();
-    let still = found.predicted(&recorded, &campaign).unwrap();
+    let moved = found.predicted(&pushed).unwrap();
+    let still = found.predicted(&campaign).unwrap();
     let compliance = Compensation::new(&campaign, Mode::Fea).unwrap().compliance.unwrap();
     let calibration = calibrate(&recorded, Mode::Fea, &Options::default()).unwrap();
-    let scene = Scene::new(&recorded, &calibration).unwrap();
+    let context = Context::new(&recorded, &calibration).unwrap();
     let expected: Vec<Vector3<f64>> = (0..still.len())
         .map(|row| {
             let group = campaign.measurements.rows[row].group;
             let force = campaign.measurements.groups[group].device.rotation * more;
-            let posture = &scene.postures[row];
-            still[row] + posture.in_world(&compliance.force) * force + posture.yielding(&posture.tip, &force)
+            let configuration = &context.configurations[row];
+            still[row]
+                + configuration.in_world(&compliance.force) * force
+                + configuration.yielding(&configuration.tip, &force)
         })
         .collect();
     let largest = moved.iter().zip(&still).map(|(a, b)| (a - b).norm() / UM).fold(0.0, f64::max);
@@ -92,24 +92,24 @@ fn a_drift_goes_on_with_its_clock_and_asks_for_it() {
     let [recorded, _] = halves(&recorded(&campaign, &drift, 5.0 * UM, 3));
     let [_, mut asked] = halves(&campaign);
     let found = diagnose(&recorded, Mode::Fea, &Options::default()).unwrap();
-    assert_eq!(found.mismatches[0].effect, "thermal_drift");
+    assert_eq!(found.diagnosis.findings[0].effect.name, "thermal_drift");
     // 4 K warmer than the mean of the recording, whatever that is with which drifts are compared
     let mean = recorded.measurements.rows.iter().filter_map(|row| row.temperature).sum::<f64>()
         / recorded.measurements.len() as f64;
     let foretold = |kelvin: f64, asked: &mut Campaign| {
         asked.measurements.rows.iter_mut().for_each(|row| row.temperature = Some(mean + kelvin));
-        found.predicted(&recorded, asked).unwrap()
+        found.predicted(asked).unwrap()
     };
     let (cold, warm) = (foretold(0.0, &mut asked), foretold(4.0, &mut asked));
     let drifted: Vec<Vector3<f64>> = cold.iter().map(|at| at + per_kelvin * 4.0).collect();
     let off = error(&warm, &drifted);
     assert!(off < 10.0, "{off} µm of 400");
     asked.measurements.rows.iter_mut().for_each(|row| row.temperature = None);
-    let refused = found.predicted(&recorded, &asked).unwrap_err().to_string();
+    let refused = found.predicted(&asked).unwrap_err().to_string();
     assert!(refused.contains("thermal_drift"), "{refused}");
     let mut other = asked;
     other.robot.joints.pop();
-    assert!(found.predicted(&recorded, &other).is_err());
+    assert!(found.predicted(&other).is_err());
 }
 
 #[test]
@@ -124,8 +124,8 @@ fn a_base_that_moved_stays_there() {
     let [recorded, _] = halves(&recorded(&campaign, &shifted, 10.0 * UM, 4));
     let [_, asked] = halves(&campaign);
     let found = diagnose(&recorded, Mode::Fea, &Options::default()).unwrap();
-    assert_eq!(found.mismatches[0].effect, "base_shift", "{:?}", found.mismatches);
-    let foretold = found.predicted(&recorded, &asked).unwrap();
+    assert_eq!(found.diagnosis.findings[0].effect.name, "base_shift", "{:?}", found.diagnosis.findings);
+    let foretold = found.predicted(&asked).unwrap();
     let moved: Vec<Vector3<f64>> = points(&asked).iter().map(|point| point + by).collect();
     let off = error(&foretold, &moved);
     assert!(off < 20.0, "{off} µm");

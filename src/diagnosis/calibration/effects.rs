@@ -1,0 +1,181 @@
+//! The effects that a calibration may have left out: one file for a family, one record for an effect.
+//!
+//! A record ([`CalibrationEffect`]) and the functions below it say everything of an effect: its
+//! formula, its usual size and the source of that number, what it needs of a recording, how it is
+//! said, where it is written, what it does to other poses. [`registry::ALL`] is the list of them.
+//!
+//! A prior size is what a robot or a fixture of this kind is usually wrong by, not what these
+//! residuals say. All effects are linear: the response of a recording is a sum of columns, each
+//! ∂tip/∂parameter through the calibrated kinematics. In the formulae Jⱼ is the tip Jacobian of
+//! joint j, ∂tip/∂qⱼ in {W}, τⱼ the torque of all loads beyond it about its axis.
+
+pub(super) mod events;
+pub(super) mod fixture;
+pub(super) mod gear;
+pub(super) mod joints;
+pub(super) mod loads;
+pub(super) mod procedure;
+pub mod registry;
+
+use nalgebra::Vector3;
+
+use super::context::Context;
+use super::entry::{Column, Entry, linear};
+use super::law::Law;
+use super::model::CalibrationModel;
+use crate::calibration::campaign::{Campaign, Targets};
+use crate::inference::{
+    Candidate, Effect, Estimate, Finding, FindingPart, JointVariable, Location, NotTestable, Parameter,
+    Quantity, Variable, WrittenTo,
+};
+use crate::units::MM;
+
+/// Error of one joint angle, rad rms: a UR5 shows 60 to 110 µrad, a UR10 220 to 400.
+pub(super) const JOINT_ANGLE: f64 = 150e-6;
+/// What a knock does, m and rad: millimetres when one sees it, tenths when one does not.
+const KNOCK: (f64, f64) = (0.5 * MM, 0.5e-3);
+/// Most rows of a clamp or socket after which a shift is looked for (of longer ones every second,
+/// third …), and most rows that may be outliers.
+const MOST_PLACES: usize = 200;
+/// Names of the parameters of a displacement and of a turn.
+const SHIFT: [&str; 3] = ["dx_um", "dy_um", "dz_um"];
+const TURN: [&str; 3] = ["rx_urad", "ry_urad", "rz_urad"];
+
+/// An effect with what it does to a calibrated robot.
+pub struct CalibrationEffect {
+    /// Everything that is said of it.
+    pub effect: Effect,
+    /// Its candidates for a recording, in the order of preference among equals, those that do
+    /// nothing to it included; what it lacks of data for more is added to the list.
+    pub(super) candidates: fn(&Context, &mut Vec<NotTestable>) -> Vec<Entry>,
+    /// What the parts of a finding amount to.
+    pub(super) estimates: fn(&CalibrationModel, &[FindingPart]) -> Vec<Estimate>,
+    /// What the poses show, with numbers: `Joint 3 has 210 ± 20 µrad of play, …`.
+    pub(super) observed: fn(&Finding, &CalibrationModel) -> String,
+    /// Puts a finding into a campaign that is to be calibrated again, or takes it out of its points;
+    /// the answer is where it went.
+    pub(super) write: fn(&Finding, &CalibrationModel, &mut Campaign) -> WrittenTo,
+    /// What it does to other poses of the same robot.
+    pub(super) transfer: Transfer,
+    /// For what happened at one pose: how a picture of the order marks it.
+    pub(super) event: fn(&Location) -> Option<String>,
+}
+
+/// What an effect does to other poses of the same robot.
+#[derive(Clone, Copy)]
+pub(super) enum Transfer {
+    /// Nothing: it happened to the fixture, to its force or to single poses of the recording.
+    Nothing,
+    /// What its candidate at the same place does there.
+    Candidate,
+    /// What this makes of the candidate and its law there.
+    Made(fn(&Context, &Candidate, &Law) -> Entry),
+}
+
+/// An effect without data.
+fn lack(effect: &'static CalibrationEffect, reason: &str) -> NotTestable {
+    NotTestable { effect: &effect.effect, reason: reason.into() }
+}
+
+/// A candidate of one parameter.
+fn single(
+    effect: &'static CalibrationEffect,
+    location: Location,
+    parameter: Parameter,
+    column: Column,
+) -> Entry {
+    Entry::new(&effect.effect, location, vec![(parameter, column)])
+}
+
+/// A joint, from 0, as a place.
+fn joint(joint: usize) -> Location {
+    Location::Joint { joint, form: None }
+}
+
+/// A joint, from 0, that errs by one of several laws.
+fn joint_by(joint: usize, form: impl Into<String>) -> Location {
+    Location::Joint { joint, form: Some(form.into()) }
+}
+
+/// A number of the joint that a place is.
+fn along(location: &Location, what: JointVariable) -> Vec<Variable> {
+    location.joint().map(|joint| Variable::Joint(joint, what)).into_iter().collect()
+}
+
+/// The unit vector of an axis of {W}.
+fn unit(axis: usize) -> Vector3<f64> {
+    Vector3::ith(axis, 1.0)
+}
+
+/// Three parameters of one size.
+fn three(
+    names: &[&str; 3],
+    unit: f64,
+    size: f64,
+    column: impl Fn(usize) -> Column,
+) -> Vec<(Parameter, Column)> {
+    let parameter = |(axis, name): (usize, &&str)| (linear(*name, unit, size), column(axis));
+    names.iter().enumerate().map(parameter).collect()
+}
+
+/// The parameters as they are.
+fn own_parameters(_: &CalibrationModel, parts: &[FindingPart]) -> Vec<Estimate> {
+    parts.iter().flat_map(|part| part.estimates.clone()).collect()
+}
+
+/// No file has a place for it.
+fn nowhere(_: &Finding, _: &CalibrationModel, _: &mut Campaign) -> WrittenTo {
+    WrittenTo::Nowhere
+}
+
+/// Taken out of the measured points; sockets have none.
+fn out_of_the_points(finding: &Finding, model: &CalibrationModel, extended: &mut Campaign) -> WrittenTo {
+    let moved = model.by_row(&model.response_of(finding));
+    match &mut extended.measurements.targets {
+        Targets::Sockets(_) => WrittenTo::Nowhere,
+        Targets::Points(points) => {
+            points.iter_mut().zip(moved).for_each(|(point, moved)| *point -= moved);
+            WrittenTo::Recording
+        }
+    }
+}
+
+/// Nothing that happened at one pose.
+fn no_event(_: &Location) -> Option<String> {
+    None
+}
+
+/// The law of a finding's strongest part.
+fn law<'m>(finding: &Finding, model: &'m CalibrationModel) -> &'m Law {
+    finding.parts.first().map_or(&Law::Only, |part| model.law(part.term.candidate))
+}
+
+/// The value of the first parameter of a finding's strongest part, SI.
+fn first_value(finding: &Finding) -> f64 {
+    let value = finding.parts.first().and_then(|part| part.term.values.first());
+    value.copied().unwrap_or_default()
+}
+
+/// An estimate of a finding, in its unit.
+fn nth(finding: &Finding, index: usize) -> Quantity {
+    let nothing = Quantity { value: f64::NAN, low: f64::NAN, high: f64::NAN };
+    finding.estimates.get(index).map_or(nothing, Estimate::quantity)
+}
+
+/// The first estimate of a finding, in its unit.
+fn first(finding: &Finding) -> Quantity {
+    nth(finding, 0)
+}
+
+/// A vector's length over the first three values of a finding's strongest part, in `unit`.
+fn size(finding: &Finding, unit: f64) -> Quantity {
+    let nothing = Quantity { value: f64::NAN, low: f64::NAN, high: f64::NAN };
+    finding.parts.first().map_or(nothing, |part| super::vector::size(part, unit))
+}
+
+/// A place at the beginning of a sentence.
+fn capital(place: &impl ToString) -> String {
+    let place = place.to_string();
+    let mut letters = place.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}

@@ -1,0 +1,287 @@
+//! What is wrong with the fixture, or happened to it or to the robot's base.
+//!
+//! A shift leaves two rows at least on either side, else it is an outlier.
+
+use std::ops::Range;
+
+use nalgebra::Vector3;
+
+use super::{
+    CalibrationEffect, Context, Entry, KNOCK, MOST_PLACES, SHIFT, TURN, Transfer, capital, lack, no_event,
+    nowhere, out_of_the_points, own_parameters, size, three, unit,
+};
+use crate::diagnosis::calibration::configuration::Configuration;
+use crate::diagnosis::calibration::law::Law;
+use crate::inference::{Candidate, Effect, Finding, Kind, Location, NotTestable, Reported, WrittenTo};
+use crate::units::{UM, URAD};
+
+/// Error of a clamp's place, m and rad.
+const MISPLACED: (f64, f64) = (100.0 * UM, 0.5e-3);
+/// Most rows after which the base may have moved: with its six parameters each of them is dear.
+const MOST_OF_BASE: usize = 100;
+/// Angle by which a knock turns a plate of sockets, rad: 0.5 mm over its width.
+const PLATE: f64 = 3e-3;
+
+/// A clamp that is not where the campaign says.
+pub static CLAMP_POSE: CalibrationEffect = CalibrationEffect {
+    effect: Effect {
+        name: "clamp_pose",
+        kind: Kind::Physics,
+        summary: "a clamp is not where the campaign says",
+        formula: "−(t + φ × (ball − clamp)): t and φ are where the clamp is, less where the file says \
+                  it is",
+        prior: "100 µm and 0.5 mrad: a fixture that was measured by a hand-held gauge",
+        parameters: &[
+            ("dx_um, dy_um, dz_um", "displacement of the clamp in {W}"),
+            ("rx_urad, ry_urad, rz_urad", "its turn about the axes of {W}"),
+        ],
+        needs: "two clamps at least",
+        cause: "a clamp that is not where the campaign says",
+        cause_at: |location| format!("the place of {location}"),
+        written_to: WrittenTo::Recording,
+        reported: Reported::Alone,
+        seen_along: |_| Vec::new(),
+        direct_check: None,
+    },
+    candidates: clamps,
+    estimates: own_parameters,
+    observed: |finding, _| {
+        let by = size(finding, UM).say("µm");
+        format!("{} is {by} from where the campaign has it", capital(&finding.location))
+    },
+    write: out_of_the_points,
+    transfer: Transfer::Nothing,
+    event: no_event,
+};
+
+fn clamps(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
+    let groups = &context.recording.groups;
+    if context.has_sockets() || groups.len() < 2 {
+        lacks.push(lack(&CLAMP_POSE, "there are no clamps whose places could disagree"));
+        return Vec::new();
+    }
+    let of_clamp = |k: usize| {
+        let at = |displacement: &dyn Fn(&Configuration) -> Vector3<f64>| {
+            context.column(|row, there| match context.recording.rows[row].group == k {
+                true => -displacement(there),
+                false => Vector3::zeros(),
+            })
+        };
+        let mut six = three(&SHIFT, UM, MISPLACED.0, |axis| at(&|_| unit(axis)));
+        let centre = groups[k].device.origin;
+        let turned = |axis: usize| at(&|there: &Configuration| unit(axis).cross(&(there.tip - centre)));
+        six.extend(three(&TURN, URAD, MISPLACED.1, turned));
+        Entry::new(&CLAMP_POSE.effect, Location::Named(groups[k].name.clone()), six)
+    };
+    (0..groups.len()).map(of_clamp).collect()
+}
+
+/// A clamp that moved.
+pub static CLAMP_SHIFT: CalibrationEffect = CalibrationEffect {
+    effect: Effect {
+        name: "clamp_shift",
+        kind: Kind::Event,
+        summary: "a clamp moved after one pose",
+        formula: "−t from some row on: t is how far the clamp moved",
+        prior: "0.5 mm: millimetres when one sees a knock, tenths when one does not",
+        parameters: &[("dx_um, dy_um, dz_um", "displacement of the clamp in {W}")],
+        needs: "four poses in a clamp",
+        cause: "the clamp was knocked or slipped",
+        cause_at: |location| format!("a shift ({location})"),
+        written_to: WrittenTo::Recording,
+        reported: Reported::Alone,
+        seen_along: |_| Vec::new(),
+        direct_check: None,
+    },
+    candidates: |context, _| match context.has_sockets() {
+        true => Vec::new(),
+        false => shifts(context, &CLAMP_SHIFT),
+    },
+    estimates: own_parameters,
+    observed: |finding, _| moved_observed(finding),
+    write: out_of_the_points,
+    transfer: Transfer::Nothing,
+    event: moved_event,
+};
+
+/// A socket that moved, or a plate of them.
+pub static SOCKET_SHIFT: CalibrationEffect = CalibrationEffect {
+    effect: Effect {
+        name: "socket_shift",
+        kind: Kind::Event,
+        summary: "a socket, or a plate of sockets, moved after one pose",
+        formula: "−(t + φ × (ball − middle)) from some row on: t is how far the socket moved; a plate \
+                  also turns by φ about the middle of its points",
+        prior: "0.5 mm, and 3 mrad for a plate: 0.5 mm over its width",
+        parameters: &[
+            ("dx_um, dy_um, dz_um", "displacement of the socket or plate in {W}"),
+            ("rx_urad, ry_urad, rz_urad", "turn of a plate about the axes of {W}"),
+        ],
+        needs: "four poses in a socket, or on a plate",
+        cause: "the socket was knocked or slipped",
+        cause_at: |location| format!("a shift ({location})"),
+        written_to: WrittenTo::Nowhere,
+        reported: Reported::Alone,
+        seen_along: |_| Vec::new(),
+        direct_check: None,
+    },
+    candidates: |context, _| match context.has_sockets() {
+        true => shifts(context, &SOCKET_SHIFT),
+        false => Vec::new(),
+    },
+    estimates: own_parameters,
+    observed: |finding, _| moved_observed(finding),
+    write: nowhere,
+    transfer: Transfer::Nothing,
+    event: moved_event,
+};
+
+fn moved_observed(finding: &Finding) -> String {
+    let by = size(finding, UM).say("µm");
+    match &finding.location {
+        Location::Shift { what: Some(what), after, .. } => {
+            format!("{} moved by {by} after {after}", capital(what))
+        }
+        other => format!("{} moved by {by}", capital(other)),
+    }
+}
+
+fn moved_event(location: &Location) -> Option<String> {
+    match location {
+        Location::Shift { what: Some(what), .. } => Some(format!("{what} moved")),
+        other => Some(format!("{other} moved")),
+    }
+}
+
+fn rows_of(context: &Context, is_of: impl Fn(usize) -> bool) -> Vec<usize> {
+    let rows = 0..context.configurations.len();
+    rows.filter(|&row| is_of(context.recording.rows[row].group)).collect()
+}
+
+/// At most `most` positions in `count` rows after which a shift is looked for: the number of rows
+/// before it.
+fn places(count: usize, most: usize) -> impl Iterator<Item = usize> {
+    let places: Range<usize> = 2..count.saturating_sub(1);
+    let stride = places.len().div_ceil(most).max(1);
+    places.step_by(stride)
+}
+
+/// A clamp or a socket that moved, or the whole plate of a placement, which may have turned as well.
+fn shifts(context: &Context, effect: &'static CalibrationEffect) -> Vec<Entry> {
+    let groups = &context.recording.groups;
+    let is_fixture = context.has_sockets() || groups.len() > 1 || !groups[0].name.is_empty();
+    let mut fixtures: Vec<(String, Vec<usize>)> = Vec::new();
+    if is_fixture {
+        fixtures.extend((0..groups.len()).map(|k| (groups[k].name.clone(), vec![k])));
+    }
+    let mut plates: Vec<(String, Vec<usize>)> = Vec::new();
+    if context.has_sockets() {
+        for (k, group) in groups.iter().enumerate() {
+            let Some((placement, _)) = group.name.rsplit_once('/') else { continue };
+            match plates.iter_mut().find(|(name, _)| name == placement) {
+                Some((_, members)) => members.push(k),
+                None => plates.push((placement.to_owned(), vec![k])),
+            }
+        }
+        // a plate of one socket is that socket
+        plates.retain(|(_, members)| members.len() > 1);
+    }
+    let alone = fixtures.iter().flat_map(|(name, members)| moved(context, effect, name, members, false));
+    let whole = plates.iter().flat_map(|(name, members)| moved(context, effect, name, members, true));
+    alone.chain(whole).collect()
+}
+
+/// What moved, after each of its rows; what turns does so about the middle of its points.
+fn moved(
+    context: &Context,
+    effect: &'static CalibrationEffect,
+    name: &str,
+    members: &[usize],
+    turns: bool,
+) -> Vec<Entry> {
+    let rows = rows_of(context, |group| members.contains(&group));
+    let tips = rows.iter().map(|&row| context.configurations[row].tip);
+    let middle = tips.sum::<Vector3<f64>>() / rows.len().max(1) as f64;
+    let after = |before: usize| {
+        let on = |displacement: &dyn Fn(&Configuration) -> Vector3<f64>| {
+            context.part(rows[before]..context.configurations.len(), |row, there| {
+                match members.contains(&context.recording.rows[row].group) {
+                    true => -displacement(there),
+                    false => Vector3::zeros(),
+                }
+            })
+        };
+        let mut columns = three(&SHIFT, UM, KNOCK.0, |axis| on(&|_| unit(axis)));
+        if turns {
+            let turned = |axis: usize| on(&|there: &Configuration| unit(axis).cross(&(there.tip - middle)));
+            columns.extend(three(&TURN, URAD, PLATE, turned));
+        }
+        let row = rows[before - 1];
+        // poses in sockets often have no names of their own
+        let after = match context.has_sockets() {
+            true => format!("row {}", row + 1),
+            false => context.pose_name(row),
+        };
+        let location = Location::Shift { what: Some(name.to_owned()), row, after };
+        Entry::new(&effect.effect, location, columns)
+    };
+    places(rows.len(), MOST_PLACES).map(after).collect()
+}
+
+/// A robot that moved on its base.
+pub static BASE_SHIFT: CalibrationEffect = CalibrationEffect {
+    effect: Effect {
+        name: "base_shift",
+        kind: Kind::Event,
+        summary: "the robot moved on its base after one pose",
+        formula: "t + φ × (ball − base) from some row on",
+        prior: "0.5 mm and 0.5 mrad: millimetres when one sees a knock, tenths when one does not",
+        parameters: &[
+            ("dx_um, dy_um, dz_um", "displacement of the base in {W}"),
+            ("rx_urad, ry_urad, rz_urad", "its turn about the axes of {W}"),
+        ],
+        needs: "measured points; with sockets, whose places nobody knows, a plate moved instead",
+        cause: "the robot slipped on its base",
+        cause_at: |location| format!("a shift of the base ({location})"),
+        written_to: WrittenTo::Recording,
+        reported: Reported::Alone,
+        seen_along: |_| Vec::new(),
+        direct_check: None,
+    },
+    candidates: bases,
+    estimates: own_parameters,
+    observed: |finding, _| {
+        let by = size(finding, UM).say("µm");
+        format!("The robot moved on its base by {by} {}", finding.location)
+    },
+    write: out_of_the_points,
+    transfer: Transfer::Made(stays_moved),
+    event: |_| Some("the base moved".into()),
+};
+
+fn bases(context: &Context, _: &mut Vec<NotTestable>) -> Vec<Entry> {
+    let count = if context.has_sockets() { 0 } else { context.configurations.len() };
+    let after = |before: usize| {
+        let row = before - 1;
+        let location = Location::Shift { what: None, row, after: context.pose_name(row) };
+        base_moved(context, before..count, location)
+    };
+    places(count, MOST_OF_BASE).map(after).collect()
+}
+
+/// The robot on a base that is displaced at some rows.
+fn base_moved(context: &Context, rows: Range<usize>, location: Location) -> Entry {
+    let on = |displacement: &dyn Fn(&Configuration) -> Vector3<f64>| {
+        context.part(rows.clone(), |_, there| displacement(there))
+    };
+    let mut six = three(&SHIFT, UM, KNOCK.0, |axis| on(&|_| unit(axis)));
+    let turned = |axis: usize| on(&|there: &Configuration| unit(axis).cross(&(there.tip - there.origin[0])));
+    six.extend(three(&TURN, URAD, KNOCK.1, turned));
+    Entry::new(&BASE_SHIFT.effect, location, six)
+}
+
+/// The robot stands where it was moved to, whatever row that was after: also if a later pose has
+/// that one's name.
+fn stays_moved(context: &Context, candidate: &Candidate, _: &Law) -> Entry {
+    base_moved(context, 0..context.configurations.len(), candidate.location.clone())
+}

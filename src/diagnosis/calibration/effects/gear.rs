@@ -1,0 +1,222 @@
+//! Errors of gears and encoders as functions of the joint's own angle.
+//!
+//! ```text
+//! harmonic   Jⱼ·(a·sin(n·qⱼ) + b·cos(n·qⱼ))     n cycles per revolution, whole numbers
+//! wave       Jⱼ·((a + c·u)·sin(n·qⱼ) + (b + d·u)·cos(n·qⱼ))     u ∝ qⱼ − q̄ⱼ, n scanned: gear.rs
+//! curve      Jⱼ·f(qⱼ)                            f a smooth curve: cosines.rs
+//! ```
+//!
+//! Two cycles per revolution can be told apart over a range of ρ revolutions if they differ by 1/ρ
+//! or so; the scan has steps of half of that, of one half at most, up to 40; c and d reach what lies
+//! between. Beyond, only what gears in use have: a strain-wave gear of ratio i errs with i and 2·i
+//! cycles per revolution of its output, and the joint's motor with i.
+
+use std::f64::consts::TAU;
+
+use super::{
+    CalibrationEffect, Context, Entry, JOINT_ANGLE, Transfer, along, capital, first, joint_by, law, no_event,
+    nth,
+};
+use crate::calibration::campaign::Campaign;
+use crate::diagnosis::calibration::correction_table::table;
+use crate::diagnosis::calibration::cosines::Cosines;
+use crate::diagnosis::calibration::entry::{Column, linear};
+use crate::diagnosis::calibration::gear::Gear;
+use crate::diagnosis::calibration::law::Law;
+use crate::diagnosis::calibration::model::CalibrationModel;
+use crate::inference::{
+    Candidate, Effect, Estimate, Finding, FindingPart, JointVariable, Kind, NotTestable, Reported, WrittenTo,
+};
+use crate::robot;
+use crate::units::{URAD, significant};
+
+/// Last frequency of the scan, cycles per revolution, and its widest step.
+const SCAN: (f64, f64) = (40.0, 0.5);
+/// Ratios of strain-wave gears that arms are built with.
+const RATIOS: [f64; 8] = [50.0, 51.0, 80.0, 100.0, 101.0, 120.0, 121.0, 160.0];
+/// Length scales ℓ of curves, rad, as 1/ℓ: their spectrum falls to 1/√e of its amplitude at √2/ℓ
+/// cycles per revolution.
+const CURVES: [f64; 5] = [2.0, 4.0, 8.0, 16.0, 32.0];
+/// Beyond so many cosines there is no curve: over a wide range a scan sees what is fine. Nor is
+/// there one of more than this many for every pose: it would go through them all.
+const MOST_COSINES: (usize, f64) = (160, 0.5);
+
+/// A gear or an encoder that errs with its joint's own angle.
+pub static TRANSMISSION_ERROR: CalibrationEffect = CalibrationEffect {
+    effect: Effect {
+        name: "transmission_error",
+        kind: Kind::Physics,
+        summary: "a gear or encoder errs with its joint's own angle",
+        formula: "Jⱼ·f(qⱼ): f is a wave of a gear's whole harmonics and ratios, a wave scanned up to \
+                  40 cycles per revolution, or a smooth curve of one of five length scales",
+        prior: "150 µrad rms: a UR5 shows 60 to 110 µrad, a UR10 220 to 400",
+        parameters: &[
+            ("cycles_per_rev", "frequency of the strongest part"),
+            ("amplitude_urad", "its amplitude; of a curve that of a wave of the same rms"),
+        ],
+        needs: "a joint that turns",
+        cause: "an error of its gear or encoder",
+        cause_at: |location| format!("the gear or encoder of {}", location.place()),
+        written_to: WrittenTo::Model,
+        reported: Reported::ByPlace,
+        seen_along: |location| along(location, JointVariable::Angle),
+        direct_check: None,
+    },
+    candidates: all,
+    estimates: frequency_and_amplitude,
+    observed,
+    write,
+    transfer: Transfer::Made(elsewhere),
+    event: no_event,
+};
+
+pub(in crate::diagnosis::calibration) fn all(context: &Context, _: &mut Vec<NotTestable>) -> Vec<Entry> {
+    let of_joint = |j: usize| {
+        let (steps, half_step) = scan(context, j);
+        let whole = (1..=SCAN.0 as usize).map(|n| n as f64).chain(ratios());
+        let harmonics = whole.map(move |n| harmonic(context, j, n));
+        let waves = steps.into_iter().map(move |n| wave(context, j, n, half_step));
+        let curves = CURVES.into_iter().filter_map(move |cycles| curve(context, j, cycles));
+        harmonics.chain(waves).chain(curves)
+    };
+    context.revolute().into_iter().flat_map(of_joint).collect()
+}
+
+/// Cycles per revolution of a joint's waves, and half their step.
+fn scan(context: &Context, j: usize) -> (Vec<f64>, f64) {
+    let (low, high) = context.range(j);
+    let turns = (high - low) / TAU;
+    // an integer number of steps per cycle, so that whole numbers are in the scan
+    let per_cycle = (2.0 * turns).ceil().max(1.0 / SCAN.1);
+    let steps = (1..=(SCAN.0 * per_cycle) as usize).map(|k| k as f64 / per_cycle);
+    (steps.collect(), 0.5 / per_cycle)
+}
+
+/// Frequencies of gears in use beyond the scan, cycles per revolution.
+fn ratios() -> Vec<f64> {
+    let mut ratios: Vec<f64> = RATIOS.iter().flat_map(|ratio| [*ratio, 2.0 * ratio]).collect();
+    ratios.sort_by(f64::total_cmp);
+    ratios.dedup();
+    ratios
+}
+
+fn harmonic(context: &Context, j: usize, cycles: f64) -> Entry {
+    let gear = Gear::Harmonic { joint: j, cycles_per_rev: cycles };
+    terms(context, gear, format!("{cycles} cycles/rev"), &["sin_urad", "cos_urad"])
+}
+
+fn wave(context: &Context, j: usize, cycles: f64, half_step: f64) -> Entry {
+    let (low, high) = context.range(j);
+    let middle = 0.5 * (low + high);
+    let gear = Gear::Wave { joint: j, cycles_per_rev: cycles, middle, half_step };
+    let names = ["sin_urad", "cos_urad", "sin_urad_per_rad", "cos_urad_per_rad"];
+    let form = format!("near {} cycles/rev", (cycles * 100.0).round() / 100.0);
+    terms(context, gear, form, &names)
+}
+
+fn terms(context: &Context, gear: Gear, form: String, names: &[&str]) -> Entry {
+    let parameter = |(k, name): (usize, &&str)| (linear(*name, URAD, JOINT_ANGLE), turned(context, &gear, k));
+    let parameters = names.iter().enumerate().map(parameter).collect();
+    let location = joint_by(gear.joint(), form);
+    Entry::new(&TRANSMISSION_ERROR.effect, location, parameters).by(Law::Gear(gear))
+}
+
+/// What the `k`th parameter of a gear's error does.
+fn turned(context: &Context, gear: &Gear, k: usize) -> Column {
+    let joint = gear.joint();
+    context.turn(joint, |_, there| gear.term(k, there.joints[joint]))
+}
+
+fn curve(context: &Context, j: usize, cycles: f64) -> Option<Entry> {
+    let (low, high) = context.range(j);
+    let scale = 1.0 / cycles;
+    let cosines = Cosines::new((low, high), scale);
+    // the constant is the joint's offset
+    let per_pose = (MOST_COSINES.1 * context.configurations.len() as f64) as usize;
+    if !(3..=MOST_COSINES.0.min(per_pose)).contains(&cosines.sizes.len()) {
+        return None;
+    }
+    let sizes = cosines.sizes.clone();
+    let gear = Gear::Curve { joint: j, cosines };
+    let parameters = sizes.iter().enumerate().skip(1).map(|(k, size)| {
+        let parameter = linear(format!("cosine_{k}_urad"), URAD, JOINT_ANGLE * size);
+        (parameter, turned(context, &gear, k - 1))
+    });
+    let location = joint_by(j, format!("a smooth curve, scale {:.2}°", scale.to_degrees()));
+    let entry = Entry::new(&TRANSMISSION_ERROR.effect, location, parameters.collect());
+    Some(entry.by(Law::Gear(gear)))
+}
+
+/// The same function of the joint's angle in other poses, which may have another scan.
+fn elsewhere(context: &Context, candidate: &Candidate, law: &Law) -> Entry {
+    let columns = |gear: &Gear| {
+        let parameters = candidate.parameters.iter().cloned().enumerate();
+        parameters.map(|(k, parameter)| (parameter, turned(context, gear, k))).collect()
+    };
+    let parameters = law.gear().map_or_else(Vec::new, columns);
+    Entry::new(candidate.effect, candidate.location.clone(), parameters).by(law.clone())
+}
+
+/// Of the strongest part.
+fn frequency_and_amplitude(model: &CalibrationModel, parts: &[FindingPart]) -> Vec<Estimate> {
+    let Some(part) = parts.first() else { return Vec::new() };
+    let estimates = |gear: &Gear| gear.estimates(part, &model.angles(gear.joint()));
+    model.gear_of(part).map_or_else(Vec::new, estimates)
+}
+
+fn observed(finding: &Finding, model: &CalibrationModel) -> String {
+    let named = capital(&finding.location);
+    let (cycles, amplitude) = (cycles(first(finding).value), nth(finding, 1).say("µrad"));
+    match law(finding, model) {
+        Law::Gear(Gear::Curve { .. }) => format!(
+            "{named} turns by up to about {amplitude} more or less than it says, in a curve of mostly {cycles}"
+        ),
+        Law::Gear(Gear::Harmonic { .. } | Gear::Wave { .. })
+        | Law::Only
+        | Law::Play(_)
+        | Law::Nonlinear(_)
+        | Law::MassesUnknown
+        | Law::Rod(_)
+        | Law::Drift(..) => {
+            format!("{named} turns by up to {amplitude} more or less than it says, {cycles}")
+        }
+    }
+}
+
+/// `once per revolution`, `18.5 times per revolution`.
+fn cycles(cycles: f64) -> String {
+    match cycles {
+        1.0 => "once per revolution".into(),
+        2.0 => "twice per revolution".into(),
+        cycles => format!("{} times per revolution", three_digits(cycles)),
+    }
+}
+
+/// With three digits, without zeros behind the point.
+fn three_digits(cycles: f64) -> String {
+    let said = significant(cycles, 3);
+    match said.contains('.') {
+        true => said.trim_end_matches('0').trim_end_matches('.').to_owned(),
+        false => said,
+    }
+}
+
+/// Waves as they are, curves as tables over the recorded angles.
+fn write(finding: &Finding, model: &CalibrationModel, extended: &mut Campaign) -> WrittenTo {
+    let of_part = |part: &FindingPart| {
+        let values = &part.term.values;
+        match (model.gear_of(part)?, &values[..]) {
+            (&Gear::Harmonic { joint, cycles_per_rev }, &[sine, cosine]) => {
+                Some(robot::Effect::Harmonic { joint, cycles_per_rev, sine, cosine })
+            }
+            (Gear::Harmonic { .. }, _) => None,
+            (gear @ (Gear::Wave { joint, .. } | Gear::Curve { joint, .. }), values) => {
+                let highest = gear.highest(values.len());
+                let rows = table(&model.angles(*joint), highest, |q| gear.turn(values, q));
+                Some(robot::Effect::Table { joint: *joint, rows })
+            }
+        }
+    };
+    extended.robot.effects.extend(finding.parts.iter().filter_map(of_part));
+    WrittenTo::Model
+}

@@ -1,0 +1,488 @@
+//! What a joint and its link do besides their geometry, and the base below them.
+//!
+//! Where a robot's masses are unknown its torques are a sum over its links,
+//! τⱼ = Σ_k m_k·zⱼ·((p_k − oⱼ) × g), and the compliance has one parameter for every frame beyond the
+//! joint: c·m_k·g, rad per metre of horizontal lever.
+
+use nalgebra::Vector3;
+
+use super::{
+    CalibrationEffect, Context, Entry, JOINT_ANGLE, Transfer, along, capital, first, first_value, joint,
+    joint_by, lack, law, no_event, nowhere, own_parameters, single,
+};
+use crate::calibration::campaign::Campaign;
+use crate::diagnosis::calibration::configuration::Configuration;
+use crate::diagnosis::calibration::entry::{Column, linear};
+use crate::diagnosis::calibration::law::{Law, Power, TakenUp};
+use crate::diagnosis::calibration::model::CalibrationModel;
+use crate::inference::{
+    Effect, Finding, JointVariable, Kind, Location, NotTestable, Parameter, Part, Reported, WrittenTo,
+};
+use crate::robot;
+use crate::units::{URAD, URAD_PER_NM};
+
+/// Angle by which a joint or a link yields to its largest torque beyond what is modelled, rad: a
+/// tenth to a half of what industrial drives yield by altogether (0.5 mrad).
+const YIELDING: f64 = 200e-6;
+/// Scale of an encoder, rad per rad.
+const SCALE: f64 = 1e-4;
+/// What a wrist joint takes along of its neighbour, rad per rad.
+const COUPLED: f64 = 1e-4;
+/// Torque relative to the robot's largest below which a joint counts as unloaded.
+const NO_TORQUE: f64 = 1e-3;
+/// Distance below which frames are at one point and weights have no lever, m.
+const ONE_POINT: f64 = 0.01;
+/// Joints of a wrist.
+const WRIST: usize = 3;
+/// What is said where torques are unknown.
+const NO_MASSES: &str = "the robot file has no masses, so that no torque is known";
+
+/// Joints that turn and are loaded, with their largest torque, N·m; none without masses.
+fn loaded(context: &Context) -> Vec<(usize, f64)> {
+    let largest = |j: usize| context.largest(|there| there.torque[j]);
+    let most = (0..context.joint_count()).map(largest).fold(0.0, f64::max);
+    let is_loaded =
+        |&(_, torque): &(usize, f64)| context.has_masses && most > 0.0 && torque > NO_TORQUE * most;
+    context.revolute().into_iter().map(|j| (j, largest(j))).filter(is_loaded).collect()
+}
+
+/// A drive that yields to its load.
+pub static JOINT_COMPLIANCE: CalibrationEffect = CalibrationEffect {
+    effect: Effect {
+        name: "joint_compliance",
+        kind: Kind::Physics,
+        summary: "a drive yields to its load",
+        formula: "Jⱼ·c·τⱼ; without masses Jⱼ·Σ_k c_k·(horizontal lever of frame k about the joint)",
+        prior: "200 µrad at the largest torque: a tenth to a half of what industrial drives yield by \
+                altogether (0.5 mrad)",
+        parameters: &[
+            ("compliance_urad_per_nm", "angle per torque, besides what is modelled"),
+            ("joint_N_urad_per_m, flange_urad_per_m", "of an unknown weight at that frame"),
+        ],
+        needs: "a joint that is loaded differently from pose to pose",
+        cause: "its drive yields",
+        cause_at: |location| format!("{} yielding", location.place()),
+        written_to: WrittenTo::Model,
+        reported: Reported::Alone,
+        seen_along: |location| along(location, JointVariable::Torque),
+        direct_check: None,
+    },
+    candidates: compliances,
+    estimates: own_parameters,
+    observed: compliance_observed,
+    write: write_compliance,
+    transfer: Transfer::Candidate,
+    event: no_event,
+};
+
+fn compliances(context: &Context, _: &mut Vec<NotTestable>) -> Vec<Entry> {
+    let loaded = loaded(context);
+    if loaded.is_empty() {
+        let joints = context.revolute().into_iter();
+        return joints.filter_map(|j| compliance_without_masses(context, j)).collect();
+    }
+    let of_joint = |(j, largest): (usize, f64)| {
+        let compliance = linear("compliance_urad_per_nm", URAD_PER_NM, YIELDING / largest);
+        single(&JOINT_COMPLIANCE, joint(j), compliance, context.turn(j, |_, there| there.torque[j]))
+    };
+    loaded.into_iter().map(of_joint).collect()
+}
+
+fn compliance_without_masses(context: &Context, j: usize) -> Option<Entry> {
+    let down = context.configurations.first()?.gravity.try_normalize(0.0)?;
+    let beyond: Vec<Option<usize>> = (j + 1..context.joint_count()).map(Some).chain([None]).collect();
+    let point =
+        |there: &Configuration, frame: Option<usize>| frame.map_or(there.flange.origin, |k| there.origin[k]);
+    // frames that are always at one point are one; the outermost stands for all
+    let differs = |(at, frame): (usize, &Option<usize>)| {
+        let apart = |there: &Configuration| {
+            beyond[at + 1..]
+                .iter()
+                .map(|other| (point(there, *other) - point(there, *frame)).norm())
+                .fold(f64::INFINITY, f64::min)
+        };
+        context.configurations.iter().any(|there| apart(there) > ONE_POINT)
+    };
+    let frames =
+        beyond.iter().enumerate().filter(|&(at, frame)| differs((at, frame))).map(|(_, frame)| *frame);
+    let parameters: Vec<(Parameter, Column)> = frames
+        .filter_map(|frame| {
+            // horizontal lever of a force down at the frame, m
+            let arm = |there: &Configuration| there.torque_of(j, &point(there, frame), &down);
+            let largest = context.largest(arm);
+            let name = frame.map_or("flange_urad_per_m".into(), |k| format!("joint_{}_urad_per_m", k + 1));
+            let column = context.turn(j, |_, there| arm(there));
+            let mut yielding = linear(name, URAD, YIELDING / largest.max(ONE_POINT));
+            // drives yield with their torque, never against it
+            yielding.bounds.0 = 0.0;
+            (largest > ONE_POINT).then_some((yielding, column))
+        })
+        .collect();
+    let location = joint_by(j, "masses unknown");
+    let entry = || Entry::new(&JOINT_COMPLIANCE.effect, location, parameters.clone());
+    (!parameters.is_empty()).then(|| entry().by(Law::MassesUnknown))
+}
+
+fn compliance_observed(finding: &Finding, model: &CalibrationModel) -> String {
+    let named = capital(&finding.location);
+    match law(finding, model) {
+        Law::MassesUnknown => {
+            format!("{named} yields to the weight beyond it (the robot file has no masses)")
+        }
+        Law::Only | Law::Gear(_) | Law::Play(_) | Law::Nonlinear(_) | Law::Rod(_) | Law::Drift(..) => {
+            let by = first(finding);
+            let word = if by.value >= 0.0 { "more" } else { "less" };
+            format!("{named} yields {} {word} than modelled", by.size().say("µrad/(N·m)"))
+        }
+    }
+}
+
+/// A weight that nobody knows is no compliance.
+fn write_compliance(finding: &Finding, model: &CalibrationModel, extended: &mut Campaign) -> WrittenTo {
+    match (finding.location.joint(), law(finding, model)) {
+        (Some(joint), Law::Only) => {
+            let known = model.calibration.setup.compliance[joint];
+            extended.robot.joints[joint].compliance = known + first_value(finding);
+            WrittenTo::Model
+        }
+        _ => WrittenTo::Nowhere,
+    }
+}
+
+/// A drive that yields out of proportion to its load.
+pub static JOINT_NONLINEAR_STIFFNESS: CalibrationEffect = CalibrationEffect {
+    effect: Effect {
+        name: "joint_nonlinear_stiffness",
+        kind: Kind::Physics,
+        summary: "it does so out of proportion",
+        formula: "Jⱼ·k₂·τⱼ|τⱼ| or Jⱼ·k₃·τⱼ³",
+        prior: "200 µrad at the largest torque, as joint_compliance",
+        parameters: &[
+            ("urad_per_nm2", "angle per square of the torque"),
+            ("urad_per_nm3", "angle per third power of the torque"),
+        ],
+        needs: "masses in the robot file, and a joint that they load",
+        cause: "a stiffness that depends on the load",
+        cause_at: |location| format!("{} yielding out of proportion to its load", location.place()),
+        written_to: WrittenTo::Nowhere,
+        reported: Reported::Alone,
+        seen_along: |location| along(location, JointVariable::Torque),
+        direct_check: None,
+    },
+    candidates: nonlinear,
+    estimates: own_parameters,
+    observed: nonlinear_observed,
+    write: nowhere,
+    transfer: Transfer::Candidate,
+    event: no_event,
+};
+
+fn nonlinear(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
+    let loaded = loaded(context);
+    if loaded.is_empty() {
+        lacks.push(lack(&JOINT_NONLINEAR_STIFFNESS, NO_MASSES));
+    }
+    let of_joint = |(j, largest): (usize, f64)| {
+        let turn = |angle: fn(f64) -> f64| context.turn(j, move |_, there| angle(there.torque[j]));
+        let quadratic = linear("urad_per_nm2", URAD, YIELDING / largest.powi(2));
+        let cubic = linear("urad_per_nm3", URAD, YIELDING / largest.powi(3));
+        let square = turn(|torque| torque * torque.abs());
+        let cube = turn(|torque| torque.powi(3));
+        [
+            single(&JOINT_NONLINEAR_STIFFNESS, joint(j), quadratic, square).by(Law::Nonlinear(Power::Square)),
+            single(&JOINT_NONLINEAR_STIFFNESS, joint_by(j, "cubic"), cubic, cube)
+                .by(Law::Nonlinear(Power::Cube)),
+        ]
+    };
+    loaded.into_iter().flat_map(of_joint).collect()
+}
+
+fn nonlinear_observed(finding: &Finding, model: &CalibrationModel) -> String {
+    let (unit, power) = match law(finding, model) {
+        Law::Nonlinear(Power::Cube) => ("µrad/(N·m)³", "the third power of"),
+        Law::Nonlinear(Power::Square)
+        | Law::Only
+        | Law::Gear(_)
+        | Law::Play(_)
+        | Law::MassesUnknown
+        | Law::Rod(_)
+        | Law::Drift(..) => ("µrad/(N·m)²", "the square of"),
+    };
+    format!("{} yields with {power} its load, {}", capital(&finding.location), first(finding).say(unit))
+}
+
+/// A link that bends across its joint's axis.
+pub static LINK_FLEXIBILITY: CalibrationEffect = CalibrationEffect {
+    effect: Effect {
+        name: "link_flexibility",
+        kind: Kind::Physics,
+        summary: "a link bends",
+        formula: "(k·M⊥) × (tip − oⱼ): M⊥ is the moment of all beyond the joint, without what acts \
+                  about its axis",
+        prior: "200 µrad at the largest moment, as joint_compliance",
+        parameters: &[("bending_urad_per_nm", "angle per moment")],
+        needs: "masses in the robot file, and a joint that they load",
+        cause: "a link that bends",
+        cause_at: |location| format!("the link before {location} bending"),
+        written_to: WrittenTo::Nowhere,
+        reported: Reported::Alone,
+        seen_along: |location| along(location, JointVariable::Torque),
+        direct_check: None,
+    },
+    candidates: links,
+    estimates: own_parameters,
+    observed: |finding, _| {
+        let by = first(finding).say("µrad/(N·m)");
+        format!("The link before {} bends by {by} of moment there", finding.location)
+    },
+    write: nowhere,
+    transfer: Transfer::Candidate,
+    event: no_event,
+};
+
+fn links(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
+    let loaded = loaded(context);
+    if loaded.is_empty() {
+        lacks.push(lack(&LINK_FLEXIBILITY, NO_MASSES));
+    }
+    loaded.into_iter().filter_map(|(j, _)| link(context, j)).collect()
+}
+
+fn link(context: &Context, j: usize) -> Option<Entry> {
+    let across = |moment: &Vector3<f64>, axis: &Vector3<f64>| moment - axis * axis.dot(moment);
+    let largest = context.largest(|there| across(&there.moment[j], &there.axis[j]).norm());
+    let column = context
+        .column(|_, there| across(&there.moment[j], &there.axis[j]).cross(&(there.tip - there.origin[j])));
+    let size = YIELDING / largest.max(f64::MIN_POSITIVE);
+    let bending = linear("bending_urad_per_nm", URAD_PER_NM, size);
+    (largest > 0.0).then(|| single(&LINK_FLEXIBILITY, joint(j), bending, column))
+}
+
+/// A base that tilts under the arm.
+pub static GRAVITY_TILT: CalibrationEffect = CalibrationEffect {
+    effect: Effect {
+        name: "gravity_tilt",
+        kind: Kind::Physics,
+        summary: "the base yields to the arm's weight",
+        formula: "φ × (tip − base): φ = k·(moment at the base, its horizontal part)",
+        prior: "200 µrad at the largest moment, as joint_compliance",
+        parameters: &[("tilt_urad_per_nm", "angle per moment")],
+        needs: "masses in the robot file",
+        cause: "a base that yields to the arm's weight",
+        cause_at: |_| "the base tilting under the arm's weight".into(),
+        written_to: WrittenTo::Nowhere,
+        reported: Reported::Alone,
+        seen_along: |_| Vec::new(),
+        direct_check: None,
+    },
+    candidates: tilts,
+    estimates: own_parameters,
+    observed: |finding, _| {
+        format!("The base tilts by {} of the arm's moment", first(finding).say("µrad/(N·m)"))
+    },
+    write: nowhere,
+    transfer: Transfer::Candidate,
+    event: no_event,
+};
+
+/// Also by what is known to pull where the masses of the arm are not.
+fn tilts(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
+    if loaded(context).is_empty() {
+        lacks.push(lack(&GRAVITY_TILT, NO_MASSES));
+    }
+    tilt(context).into_iter().collect()
+}
+
+fn tilt(context: &Context) -> Option<Entry> {
+    let upright = context.configurations.first()?.gravity.try_normalize(0.0)?;
+    let moment = |there: &Configuration| {
+        let moment = there.moment[0];
+        moment - upright * upright.dot(&moment)
+    };
+    let largest = context.largest(|there| moment(there).norm());
+    let column = context.column(|_, there| moment(there).cross(&(there.tip - there.origin[0])));
+    let size = YIELDING / largest.max(f64::MIN_POSITIVE);
+    let tilting = linear("tilt_urad_per_nm", URAD_PER_NM, size);
+    (largest > 0.0).then(|| single(&GRAVITY_TILT, Location::Part(Part::Base), tilting, column))
+}
+
+/// Play of a gear.
+pub static BACKLASH: CalibrationEffect = CalibrationEffect {
+    effect: Effect {
+        name: "backlash",
+        kind: Kind::Physics,
+        summary: "play in a gear",
+        formula: "Jⱼ·½b·sign(τⱼ) or, where friction holds the joint, Jⱼ·½b·(direction it came from)",
+        prior: "150 µrad: the error of a joint angle that a UR5 shows (60 to 110 µrad), and half of \
+                a UR10's",
+        parameters: &[("play_urad", "the whole play")],
+        needs: "masses in the robot file, and a joint whose load turns round; by the direction that \
+                it came from, rows in the order of recording",
+        cause: "play in its gear",
+        cause_at: |location| format!("play in {}", location.place()),
+        written_to: WrittenTo::Model,
+        reported: Reported::Alone,
+        seen_along: |location| {
+            let numbers = [JointVariable::Approach, JointVariable::Torque];
+            numbers.into_iter().flat_map(|number| along(location, number)).collect()
+        },
+        direct_check: None,
+    },
+    candidates: plays,
+    estimates: own_parameters,
+    observed: play_observed,
+    write: write_play,
+    transfer: Transfer::Candidate,
+    event: no_event,
+};
+
+fn plays(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
+    let play = || linear("play_urad", URAD, JOINT_ANGLE);
+    let loaded = loaded(context);
+    if loaded.is_empty() {
+        lacks.push(lack(&BACKLASH, NO_MASSES));
+    }
+    let sign = |torque: f64| if torque == 0.0 { 0.0 } else { 0.5 * torque.signum() };
+    let by_torque = loaded.into_iter().map(|(j, _)| {
+        let hangs = context.turn(j, |_, there| sign(there.torque[j]));
+        single(&BACKLASH, joint(j), play(), hangs).by(Law::Play(TakenUp::ByTorque))
+    });
+    let by_approach = context.revolute().into_iter().map(|j| {
+        let came_from = context.turn(j, |_, there| 0.5 * there.approach[j]);
+        single(&BACKLASH, joint_by(j, "by approach"), play(), came_from).by(Law::Play(TakenUp::ByApproach))
+    });
+    by_torque.chain(by_approach).collect()
+}
+
+fn play_observed(finding: &Finding, model: &CalibrationModel) -> String {
+    let by = match law(finding, model) {
+        Law::Play(TakenUp::ByApproach) => "depending on the way it came from",
+        Law::Play(TakenUp::ByTorque)
+        | Law::Only
+        | Law::Gear(_)
+        | Law::Nonlinear(_)
+        | Law::MassesUnknown
+        | Law::Rod(_)
+        | Law::Drift(..) => "and hangs to the side that its load pulls it to",
+    };
+    let play = first(finding).size().say("µrad");
+    format!("{} has {play} of play, {by}", capital(&finding.location))
+}
+
+/// A robot file knows torques, and not where a joint came from.
+fn write_play(finding: &Finding, model: &CalibrationModel, extended: &mut Campaign) -> WrittenTo {
+    match (finding.location.joint(), law(finding, model)) {
+        (Some(joint), Law::Play(TakenUp::ByTorque)) => {
+            let play = first_value(finding);
+            extended.robot.effects.push(robot::Effect::Backlash { joint, play });
+            WrittenTo::Model
+        }
+        _ => WrittenTo::Nowhere,
+    }
+}
+
+/// A joint that turns more or less than its encoder says.
+pub static ENCODER_SCALE: CalibrationEffect = CalibrationEffect {
+    effect: Effect {
+        name: "encoder_scale",
+        kind: Kind::Physics,
+        summary: "a joint turns more or less than its encoder says",
+        formula: "Jⱼ·(s − 1)·qⱼ",
+        prior: "1e-4: 1 count in 10⁴, the share of an eccentric disc read over part of a turn",
+        parameters: &[("factor", "s: the joint turns s times as far as it says")],
+        needs: "a joint that turns",
+        cause: "the scale of its encoder",
+        cause_at: |location| format!("the encoder's scale in {location}"),
+        written_to: WrittenTo::Model,
+        reported: Reported::Alone,
+        seen_along: |location| along(location, JointVariable::Angle),
+        direct_check: None,
+    },
+    candidates: scales,
+    estimates: own_parameters,
+    observed: scale_observed,
+    write: write_scale,
+    transfer: Transfer::Candidate,
+    event: no_event,
+};
+
+fn scales(context: &Context, _: &mut Vec<NotTestable>) -> Vec<Entry> {
+    let of_joint = |j: usize| {
+        let mut factor = linear("factor", 1.0, SCALE);
+        factor.neutral = 1.0;
+        single(&ENCODER_SCALE, joint(j), factor, context.turn(j, |_, there| there.joints[j]))
+    };
+    context.revolute().into_iter().map(of_joint).collect()
+}
+
+fn scale_observed(finding: &Finding, _: &CalibrationModel) -> String {
+    let excess = first(finding).map(|factor| 1e6 * (factor - 1.0));
+    let word = if excess.value >= 0.0 { "more" } else { "less" };
+    let (named, excess) = (capital(&finding.location), excess.size().say(""));
+    format!("{named} turns {excess} µrad per radian {word} than its encoder says")
+}
+
+fn write_scale(finding: &Finding, _: &CalibrationModel, extended: &mut Campaign) -> WrittenTo {
+    let Some(joint) = finding.location.joint() else { return WrittenTo::Nowhere };
+    let factor = first_value(finding);
+    extended.robot.effects.push(robot::Effect::EncoderScale { joint, factor });
+    WrittenTo::Model
+}
+
+/// A wrist joint that takes its neighbour along.
+pub static WRIST_COUPLING: CalibrationEffect = CalibrationEffect {
+    effect: Effect {
+        name: "wrist_coupling",
+        kind: Kind::Physics,
+        summary: "a wrist joint takes its neighbour along",
+        formula: "J_J·k·q_I: joint I drives joint J, neighbours among the last three",
+        prior: "1e-4 rad per rad",
+        parameters: &[("fraction", "turn of the driven joint per turn of the driving one")],
+        needs: "neighbouring joints of a wrist that turn",
+        cause: "coupled wrist gears",
+        cause_at: |location| format!("{location} coupled"),
+        written_to: WrittenTo::Model,
+        reported: Reported::Alone,
+        seen_along: |_| Vec::new(),
+        direct_check: None,
+    },
+    candidates: couplings,
+    estimates: own_parameters,
+    observed: coupling_observed,
+    write: write_coupling,
+    transfer: Transfer::Candidate,
+    event: no_event,
+};
+
+/// Neighbours among the last joints, either driving the other.
+fn couplings(context: &Context, _: &mut Vec<NotTestable>) -> Vec<Entry> {
+    let count = context.joint_count();
+    let turning = context.revolute();
+    let neighbours = count.saturating_sub(WRIST)..count.saturating_sub(1);
+    let pairs = neighbours.flat_map(|k| [(k, k + 1), (k + 1, k)]);
+    let both = pairs.filter(|(i, j)| turning.contains(i) && turning.contains(j));
+    both.map(|(from, to)| {
+        let column = context.turn(to, |_, there| there.joints[from]);
+        let fraction = linear("fraction", 1.0, COUPLED);
+        single(&WRIST_COUPLING, Location::Coupling { from, to }, fraction, column)
+    })
+    .collect()
+}
+
+fn coupling_observed(finding: &Finding, _: &CalibrationModel) -> String {
+    let share = first(finding).map(|share| 1e6 * share).say("µrad");
+    match finding.location {
+        Location::Coupling { from, to } => {
+            let (from, to) = (from + 1, to + 1);
+            format!("Joint {to} turns along by {share} for every radian of joint {from}")
+        }
+        _ => format!("{}: {share} per radian", finding.location),
+    }
+}
+
+fn write_coupling(finding: &Finding, _: &CalibrationModel, extended: &mut Campaign) -> WrittenTo {
+    let Location::Coupling { from, to } = finding.location else { return WrittenTo::Nowhere };
+    let fraction = first_value(finding);
+    extended.robot.effects.push(robot::Effect::Coupling { from, joint: to, fraction });
+    WrittenTo::Model
+}

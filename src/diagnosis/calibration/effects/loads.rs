@@ -1,0 +1,262 @@
+//! What pulls and what bends: rod, masses and contact force.
+//!
+//! ```text
+//! yield(p, f) = Σ_j Jⱼ·cⱼ·zⱼ·((p − oⱼ) × f)             the calibrated joints give way
+//! ```
+
+use nalgebra::Vector3;
+
+use super::{
+    CalibrationEffect, Context, Entry, Transfer, first, lack, law, no_event, nowhere, own_parameters, single,
+    size,
+};
+use crate::diagnosis::calibration::configuration::Configuration;
+use crate::diagnosis::calibration::entry::linear;
+use crate::diagnosis::calibration::law::{Law, RodLoad};
+use crate::diagnosis::calibration::model::CalibrationModel;
+use crate::inference::{
+    Effect, Estimate, Finding, FindingPart, Kind, Location, NotTestable, Part, Reported, WrittenTo,
+};
+use crate::units::GRAM;
+
+/// Share by which a rod is softer than its model.
+const SOFTNESS: f64 = 0.27;
+/// Mass at the tip that was forgotten, kg.
+const FORGOTTEN_AT_TIP: f64 = 0.05;
+/// Mass at the flange that was forgotten, kg.
+const FORGOTTEN_AT_FLANGE: f64 = 0.5;
+/// Error of a contact force, N.
+const CONTACT: f64 = 0.3;
+
+/// A rod that is softer or stiffer than its model.
+pub static ROD_STIFFNESS: CalibrationEffect = CalibrationEffect {
+    effect: Effect {
+        name: "rod_stiffness",
+        kind: Kind::Physics,
+        summary: "the rod is softer or stiffer than its model",
+        formula: "(1/s − 1/s₀)·R·Δx: s is the rod's stiffness over that of its model, s₀ what was \
+                  compensated, Δx the model's deflection under all loads or under one of them",
+        prior: "27 % of deflection: 1 − 1/r is 0.27 rms over the r_rod of the paper's six rods; all \
+                of it where the rod was assumed rigid",
+        parameters: &[("factor", "s: stiffness over that of the model")],
+        needs: "a rod in the campaign",
+        cause: "the rod's stiffness is not that of its model",
+        cause_at: |_| "a rod of another stiffness".into(),
+        written_to: WrittenTo::Nowhere,
+        reported: Reported::Alone,
+        seen_along: |_| Vec::new(),
+        direct_check: Some("Hang known weights on the rod and let `rodcal rig fit` find its stiffness."),
+    },
+    candidates: rods,
+    estimates: stiffness,
+    observed: rod_observed,
+    write: nowhere,
+    transfer: Transfer::Candidate,
+    event: no_event,
+};
+
+fn rods(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
+    if context.deflection.is_empty() {
+        lacks.push(lack(&ROD_STIFFNESS, "the campaign names no rod"));
+        return Vec::new();
+    }
+    let under = |load: RodLoad| {
+        let mut factor = linear("factor", 1.0, SOFTNESS);
+        factor.neutral = context.accounted;
+        // a rod that was taken for rigid bends by all of its model
+        factor.size = factor.size.max(1.0 - context.accounted);
+        factor.bounds = (0.0, 10.0);
+        let column = context.column(|row, _| {
+            let [by_contact, by_weight] = context.deflection[row];
+            match load {
+                RodLoad::All => by_contact + by_weight,
+                RodLoad::Contact => by_contact,
+                RodLoad::Weight => by_weight,
+            }
+        });
+        let location = match load.words() {
+            None => Location::Part(Part::Rod),
+            Some(words) => Location::Form { part: Part::Rod, form: words.into() },
+        };
+        single(&ROD_STIFFNESS, location, factor, column).by(Law::Rod(load))
+    };
+    [RodLoad::All, RodLoad::Contact, RodLoad::Weight].map(under).into()
+}
+
+/// The model counts by how much more a rod bends, which its columns are linear in; people count its
+/// stiffness, as on a rig.
+fn stiffness(_: &CalibrationModel, parts: &[FindingPart]) -> Vec<Estimate> {
+    let softness = parts.iter().flat_map(|part| part.estimates.clone());
+    let inverse = |soft: Estimate| Estimate {
+        value: 1.0 / soft.value,
+        low: 1.0 / soft.high,
+        high: 1.0 / soft.low,
+        ..soft
+    };
+    softness.map(inverse).collect()
+}
+
+fn rod_observed(finding: &Finding, model: &CalibrationModel) -> String {
+    let under = match law(finding, model) {
+        Law::Rod(load) => load.words(),
+        Law::Only | Law::Gear(_) | Law::Play(_) | Law::Nonlinear(_) | Law::MassesUnknown | Law::Drift(..) => {
+            None
+        }
+    };
+    let under = under.map_or_else(String::new, |under| format!(" {under}"));
+    format!("The rod's stiffness is {} times that of its model{under}", first(finding).say(""))
+}
+
+/// Displacement of the tip by one more force on it, m: the rod bends and the joints give way.
+fn pulled(context: &Context, there: &Configuration, force: &Vector3<f64>) -> Vector3<f64> {
+    there.in_world(&context.force_compliance) * force + there.yielding(&there.tip, force)
+}
+
+/// True where something is known to give way to a force on the tip.
+fn gives_way(context: &Context) -> bool {
+    context.force_compliance.amax() > 0.0 || joints_give_way(context)
+}
+
+fn joints_give_way(context: &Context) -> bool {
+    context.configurations.first().is_some_and(|there| there.compliance.iter().any(|&c| c != 0.0))
+}
+
+/// A mass at the tip that was forgotten.
+pub static TIP_MASS: CalibrationEffect = CalibrationEffect {
+    effect: Effect {
+        name: "tip_mass",
+        kind: Kind::Physics,
+        summary: "a mass at the tip that was forgotten",
+        formula: "R·C^F·Rᵀ·(m·g) + yield(tip, m·g)",
+        prior: "50 g: the paper's ball and holder have 55 g",
+        parameters: &[("mass_g", "mass beyond the stated one")],
+        needs: "a rod or joints that are known to give way",
+        cause: "a mass that nobody told of",
+        cause_at: |_| "a mass at the tip".into(),
+        written_to: WrittenTo::Nowhere,
+        reported: Reported::Alone,
+        seen_along: |_| Vec::new(),
+        direct_check: Some("Weigh the ball with its holder."),
+    },
+    candidates: tip_masses,
+    estimates: own_parameters,
+    observed: |finding, _| format!("{} more hang on the tip than stated", first(finding).say("g")),
+    write: nowhere,
+    transfer: Transfer::Candidate,
+    event: no_event,
+};
+
+fn tip_masses(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
+    if !gives_way(context) {
+        lacks.push(lack(&TIP_MASS, "neither a rod nor joints are known to give way"));
+        return Vec::new();
+    }
+    let column = context.column(|_, there| pulled(context, there, &there.gravity));
+    let mass = linear("mass_g", GRAM, FORGOTTEN_AT_TIP);
+    vec![single(&TIP_MASS, Location::Part(Part::Tip), mass, column)]
+}
+
+/// A mass at the flange that was forgotten.
+pub static PAYLOAD_MASS: CalibrationEffect = CalibrationEffect {
+    effect: Effect {
+        name: "payload_mass",
+        kind: Kind::Physics,
+        summary: "a mass at the flange that was forgotten",
+        formula: "yield(flange, m·g)",
+        prior: "0.5 kg: an adapter, a cable",
+        parameters: &[("mass_kg", "mass beyond the stated one")],
+        needs: "joints that are known to give way",
+        cause: "a load that nobody told of",
+        cause_at: |_| "a load on the flange".into(),
+        written_to: WrittenTo::Nowhere,
+        reported: Reported::Alone,
+        seen_along: |_| Vec::new(),
+        direct_check: Some("Weigh what is on the flange."),
+    },
+    candidates: payload_masses,
+    estimates: own_parameters,
+    observed: |finding, _| format!("{} more hang on the flange than stated", first(finding).say("kg")),
+    write: nowhere,
+    transfer: Transfer::Candidate,
+    event: no_event,
+};
+
+fn payload_masses(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
+    if !joints_give_way(context) {
+        lacks.push(lack(&PAYLOAD_MASS, "no joint is known to give way"));
+        return Vec::new();
+    }
+    let column = context.column(|_, there| there.yielding(&there.flange.origin, &there.gravity));
+    let mass = linear("mass_kg", 1.0, FORGOTTEN_AT_FLANGE);
+    vec![single(&PAYLOAD_MASS, Location::Part(Part::Flange), mass, column)]
+}
+
+/// A ball that is pushed harder or softer than stated.
+pub static CONTACT_FORCE_VARIATION: CalibrationEffect = CalibrationEffect {
+    effect: Effect {
+        name: "contact_force_variation",
+        kind: Kind::Physics,
+        summary: "the ball is pushed harder or softer than stated",
+        formula: "R·C^F·Rᵀ·F + yield(tip, F): F in the device frame of the clamp",
+        prior: "0.3 N: sensor springs are stated to 10 or 20 % of 2 N",
+        parameters: &[
+            ("x_n", "force beyond the stated one along x of the device"),
+            ("y_n", "along its y"),
+            ("z_n", "along its z"),
+        ],
+        needs: "clamps, and a rod or joints that are known to give way",
+        cause: "a contact force that is not the stated one",
+        cause_at: |location| format!("another contact force ({location})"),
+        written_to: WrittenTo::Nowhere,
+        reported: Reported::Alone,
+        seen_along: |_| Vec::new(),
+        direct_check: Some("Measure the contact force with a spring balance."),
+    },
+    candidates: contacts,
+    estimates: own_parameters,
+    observed: contact_observed,
+    write: nowhere,
+    transfer: Transfer::Nothing,
+    event: no_event,
+};
+
+fn contacts(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
+    let groups = &context.recording.groups;
+    let is_of_clamps = !context.has_sockets() && groups.iter().any(|group| !group.name.is_empty());
+    if !is_of_clamps || !gives_way(context) {
+        let reason = "there are no clamps, or neither a rod nor joints are known to give way";
+        lacks.push(lack(&CONTACT_FORCE_VARIATION, reason));
+        return Vec::new();
+    }
+    let at = |location: Location, is_there: &dyn Fn(usize) -> bool| {
+        let along = |(axis, name): (usize, &str)| {
+            let column = context.column(|row, there| {
+                let group = context.recording.rows[row].group;
+                match is_there(group) {
+                    true => {
+                        let push = groups[group].device.rotation.column(axis).into();
+                        pulled(context, there, &push)
+                    }
+                    false => Vector3::zeros(),
+                }
+            });
+            (linear(name, 1.0, CONTACT), column)
+        };
+        let parameters = ["x_n", "y_n", "z_n"].into_iter().enumerate().map(along).collect();
+        Entry::new(&CONTACT_FORCE_VARIATION.effect, location, parameters)
+    };
+    let mut entries = vec![at(Location::AllClamps, &|_| true)];
+    if groups.len() > 1 {
+        let named = |k: usize| at(Location::Named(groups[k].name.clone()), &|group| group == k);
+        entries.extend((0..groups.len()).map(named));
+    }
+    entries
+}
+
+fn contact_observed(finding: &Finding, _: &CalibrationModel) -> String {
+    let at = match &finding.location {
+        Location::AllClamps => "In all clamps".to_owned(),
+        clamp => format!("At {clamp}"),
+    };
+    format!("{at} the ball is pushed by {} more than stated", size(finding, 1.0).say("N"))
+}

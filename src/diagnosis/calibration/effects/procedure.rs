@@ -1,0 +1,192 @@
+//! What the way of recording does: angles that are read too early, and what drifts meanwhile.
+
+use nalgebra::Vector3;
+
+use super::{
+    CalibrationEffect, Context, Entry, Transfer, along, first, joint, lack, law, no_event, out_of_the_points,
+    own_parameters, single, size, three, unit,
+};
+use crate::calibration::campaign::Row;
+use crate::diagnosis::calibration::configuration::Configuration;
+use crate::diagnosis::calibration::entry::linear;
+use crate::diagnosis::calibration::law::{Course, Frame, Law};
+use crate::diagnosis::calibration::model::CalibrationModel;
+use crate::inference::{
+    Effect, Finding, JointVariable, Kind, Location, NotTestable, Reported, Variable, WrittenTo,
+};
+use crate::units::UM;
+
+/// Share of a move that is not made yet when an angle is read.
+const LAG: f64 = 3e-4;
+/// Drift, m/K.
+const PER_KELVIN: f64 = 10.0 * UM;
+/// Drift, m/h; the same over a whole recording without a clock.
+const PER_HOUR: f64 = 20.0 * UM;
+/// What a cold robot is off by, m.
+const WARM_UP: f64 = 50.0 * UM;
+/// Seconds in an hour.
+const HOUR: f64 = 3600.0;
+/// Time constants of a robot that warms up, as parts of the recording.
+const WARMING: [f64; 4] = [0.03, 0.1, 0.2, 0.4];
+
+/// Angles that were read before the arm had settled.
+pub static READBACK_LAG: CalibrationEffect = CalibrationEffect {
+    effect: Effect {
+        name: "readback_lag",
+        kind: Kind::Physics,
+        summary: "angles were read before the arm had settled",
+        formula: "Σ Jⱼ·f·(qⱼ − qⱼ before): f is the share of the last move that was still to come \
+                  when q was read; of one joint, or of all with one share",
+        prior: "3e-4: 100 to 1000 µrad of a move of 1 rad",
+        parameters: &[("fraction", "share of the last move that was still to come")],
+        needs: "rows in the order of recording",
+        cause: "angles were read before the arm had settled",
+        cause_at: |location| format!("angles read too early ({location})"),
+        written_to: WrittenTo::Recording,
+        reported: Reported::Alone,
+        seen_along: |location| along(location, JointVariable::Move),
+        direct_check: None,
+    },
+    candidates: lags,
+    estimates: own_parameters,
+    observed: lag_observed,
+    write: out_of_the_points,
+    transfer: Transfer::Candidate,
+    event: no_event,
+};
+
+fn lags(context: &Context, _: &mut Vec<NotTestable>) -> Vec<Entry> {
+    let fraction = || linear("fraction", 1.0, LAG);
+    let joints: Vec<usize> = (0..context.joint_count()).collect();
+    let of_all =
+        context.column(|_, there| joints.iter().map(|&j| there.tip_jacobian[j] * there.step[j]).sum());
+    let together = single(&READBACK_LAG, Location::AllJoints, fraction(), of_all);
+    let alone = joints.iter().map(|&j| {
+        let column = context.turn(j, |_, there| there.step[j]);
+        single(&READBACK_LAG, joint(j), fraction(), column)
+    });
+    std::iter::once(together).chain(alone).collect()
+}
+
+fn lag_observed(finding: &Finding, _: &CalibrationModel) -> String {
+    let whose = match finding.location.joint() {
+        Some(_) => finding.location.to_string(),
+        None => "every joint".into(),
+    };
+    format!(
+        "When the angles were read, {} of the last move of {whose} was still to come",
+        first(finding).map(|share| 100.0 * share).say("%")
+    )
+}
+
+/// What follows temperature, time or order.
+pub static THERMAL_DRIFT: CalibrationEffect = CalibrationEffect {
+    effect: Effect {
+        name: "thermal_drift",
+        kind: Kind::Physics,
+        summary: "the arm follows temperature, time or order",
+        formula: "d·(T − T̄), d·(t − t̄) or d·e^(−t/t₁), of the robot in {W} or of its tool in {T}",
+        prior: "10 µm/K (an arm of steel of 1 m grows by 12); 20 µm/h, as in a room that warms by \
+                2 K in an hour, or over a recording without a clock; 50 µm for a cold robot (a UR5 \
+                starts a recording some 60 µm off)",
+        parameters: &[
+            ("x_um_per_k, y_um_per_k, z_um_per_k", "displacement per kelvin"),
+            ("x_um_per_h, y_um_per_h, z_um_per_h", "displacement per hour"),
+            ("x_um, y_um, z_um", "displacement over the recording, or of the cold robot"),
+        ],
+        needs: "temperatures or times of the rows; without them only their order can tell",
+        cause: "drift, as of something that warms up",
+        cause_at: |location| format!("drift ({location})"),
+        written_to: WrittenTo::Recording,
+        reported: Reported::Alone,
+        seen_along: |_| vec![Variable::Temperature, Variable::Time],
+        direct_check: None,
+    },
+    candidates: drifts,
+    estimates: own_parameters,
+    observed: drift_observed,
+    write: out_of_the_points,
+    transfer: Transfer::Candidate,
+    event: no_event,
+};
+
+/// With temperature or time where they are known, and in any case with the order; steadily, or as a
+/// robot warms up.
+fn drifts(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
+    let courses = courses(context);
+    if !courses.iter().any(|(course, _)| course.is_clocked()) {
+        let reason = "rows have neither temperature nor time: only their order can tell";
+        lacks.push(lack(&THERMAL_DRIFT, reason));
+    }
+    let of_course = |(course, values): (Course, Vec<f64>)| {
+        let (suffix, _, unit_si) = course.unit();
+        let names = ["x", "y", "z"].map(|axis| format!("{axis}_{suffix}"));
+        let drifting = |frame: Frame, along: &dyn Fn(&Configuration, usize) -> Vector3<f64>| {
+            let column = |axis: usize| context.column(|row, there| along(there, axis) * values[row]);
+            let names = [0, 1, 2].map(|axis| names[axis].as_str());
+            let parameters = three(&names, unit_si, usual(course), column);
+            let location = Location::Form { part: frame.part(), form: format!("with {course}") };
+            Entry::new(&THERMAL_DRIFT.effect, location, parameters).by(Law::Drift(course, frame))
+        };
+        [
+            drifting(Frame::World, &|_, axis| unit(axis)),
+            drifting(Frame::Tool, &|there, axis| there.flange.rotation.column(axis).into()),
+        ]
+    };
+    courses.into_iter().flat_map(of_course).collect()
+}
+
+/// Usual size of a drift's parameters, SI.
+fn usual(course: Course) -> f64 {
+    match course {
+        Course::Order => PER_HOUR,
+        Course::WarmUp(_) => WARM_UP,
+        Course::Temperature => PER_KELVIN,
+        Course::Time => PER_HOUR / HOUR,
+    }
+}
+
+/// How a drift may go: its value by row less the mean of the recording that it was found in.
+fn courses(context: &Context) -> Vec<(Course, Vec<f64>)> {
+    let (rows, since) = (&context.recording.rows, &context.since.rows);
+    let is_later = !std::ptr::eq(context.recording, context.since);
+    let known = |number: fn(&Row) -> Option<f64>| -> Option<[Vec<f64>; 2]> {
+        let of_rows = |rows: &[Row]| rows.iter().map(number).collect::<Option<Vec<f64>>>();
+        Some([of_rows(since)?, of_rows(rows)?])
+    };
+    let (temperature, time) = (known(|row| row.temperature), known(|row| row.time));
+    // a recording without a clock drifts from its first to its last row; what comes later goes on
+    let count = |from: usize, rows: usize| (from..from + rows).map(|row| row as f64).collect();
+    let order = || [count(0, since.len()), count(if is_later { since.len() } else { 0 }, rows.len())];
+    let clock = time.clone().unwrap_or_else(order);
+    let start = clock[0].iter().copied().fold(f64::INFINITY, f64::min);
+    let end = clock[0].iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let share = |t: f64| (t - start) / (end - start).max(f64::MIN_POSITIVE);
+    let less_mean = |[since, own]: [Vec<f64>; 2]| -> Vec<f64> {
+        let mean = since.iter().sum::<f64>() / since.len().max(1) as f64;
+        own.into_iter().map(|value| value - mean).collect()
+    };
+    let by_clock = |course: &dyn Fn(f64) -> f64| {
+        let values = |times: Vec<f64>| times.into_iter().map(|t| course(share(t))).collect();
+        less_mean(clock.clone().map(values))
+    };
+    let mut courses = vec![(Course::Order, by_clock(&|share| share))];
+    courses.extend(WARMING.map(|part| (Course::WarmUp(part), by_clock(&|share| (-share / part).exp()))));
+    courses.extend(temperature.map(|values| (Course::Temperature, less_mean(values))));
+    courses.extend(time.map(|values| (Course::Time, less_mean(values))));
+    courses
+}
+
+fn drift_observed(finding: &Finding, model: &CalibrationModel) -> String {
+    let unit_si = finding.estimates.first().map_or(1.0, |estimate| estimate.unit);
+    let size = size(finding, unit_si);
+    match law(finding, model) {
+        Law::Drift(course, frame) => {
+            let (_, unit, _) = course.unit();
+            format!("The {} drifts by {} with {course}", frame.part(), size.say(unit))
+        }
+        Law::Only | Law::Gear(_) | Law::Play(_) | Law::Nonlinear(_) | Law::MassesUnknown | Law::Rod(_) => {
+            format!("Drift by {} at {}", size.say("µm"), finding.location)
+        }
+    }
+}

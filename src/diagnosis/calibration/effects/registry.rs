@@ -1,0 +1,84 @@
+//! The list of all effects of a calibration: the only source of their names.
+
+use super::events::OUTLIER;
+use super::fixture::{BASE_SHIFT, CLAMP_POSE, CLAMP_SHIFT, SOCKET_SHIFT};
+use super::gear::TRANSMISSION_ERROR;
+use super::joints::{
+    BACKLASH, ENCODER_SCALE, GRAVITY_TILT, JOINT_COMPLIANCE, JOINT_NONLINEAR_STIFFNESS, LINK_FLEXIBILITY,
+    WRIST_COUPLING,
+};
+use super::loads::{CONTACT_FORCE_VARIATION, PAYLOAD_MASS, ROD_STIFFNESS, TIP_MASS};
+use super::procedure::{READBACK_LAG, THERMAL_DRIFT};
+use super::{CalibrationEffect, Context, Entry};
+use crate::diagnosis::calibration::law::{Law, TakenUp};
+use crate::inference::{Effect, NotTestable};
+
+/// All of them, as they are listed wherever they are.
+pub static ALL: [&CalibrationEffect; 19] = [
+    &ROD_STIFFNESS,
+    &TIP_MASS,
+    &PAYLOAD_MASS,
+    &CONTACT_FORCE_VARIATION,
+    &JOINT_COMPLIANCE,
+    &JOINT_NONLINEAR_STIFFNESS,
+    &LINK_FLEXIBILITY,
+    &GRAVITY_TILT,
+    &BACKLASH,
+    &ENCODER_SCALE,
+    &WRIST_COUPLING,
+    &TRANSMISSION_ERROR,
+    &READBACK_LAG,
+    &CLAMP_POSE,
+    &CLAMP_SHIFT,
+    &SOCKET_SHIFT,
+    &BASE_SHIFT,
+    &THERMAL_DRIFT,
+    &OUTLIER,
+];
+
+/// What pulls on the arm as a whole: preferred to what a single joint does.
+static OF_LOADS: [&CalibrationEffect; 5] =
+    [&ROD_STIFFNESS, &TIP_MASS, &PAYLOAD_MASS, &CONTACT_FORCE_VARIATION, &GRAVITY_TILT];
+/// What follows the torque of a joint.
+static OF_TORQUE: [&CalibrationEffect; 4] =
+    [&JOINT_COMPLIANCE, &JOINT_NONLINEAR_STIFFNESS, &BACKLASH, &LINK_FLEXIBILITY];
+/// What follows the motion of a joint.
+static OF_MOTION: [&CalibrationEffect; 2] = [&BACKLASH, &ENCODER_SCALE];
+
+/// The record of an effect; `None` for what nobody has named.
+pub(in crate::diagnosis::calibration) fn record(effect: &Effect) -> Option<&'static CalibrationEffect> {
+    ALL.into_iter().find(|known| known.effect == *effect)
+}
+
+/// The candidates of all effects for a recording, those that do nothing to it included, in the order
+/// of preference among those that explain it exactly as well; with the effects that it has no data
+/// for. Where a base is upright, for example, a tilting base and the bending first link do the same.
+pub(in crate::diagnosis::calibration) fn candidates(context: &Context) -> (Vec<Entry>, Vec<NotTestable>) {
+    let mut lacks = Vec::new();
+    let mut entries = Vec::new();
+    for effect in ALL {
+        entries.extend((effect.candidates)(context, &mut lacks));
+    }
+    // stable: the candidates of one effect stay in its own order
+    entries.sort_by_key(preference);
+    (entries, lacks)
+}
+
+/// Block, joint in it, and place in the block: what loads do, joint by joint what its torque does,
+/// joint by joint what its motion does, and then all else in the order of the list.
+fn preference(entry: &Entry) -> (usize, usize, usize) {
+    let place =
+        |block: &[&CalibrationEffect]| block.iter().position(|known| known.effect == *entry.candidate.effect);
+    let joint = entry.candidate.location.joint().unwrap_or_default();
+    let is_by_approach = entry.law == Law::Play(TakenUp::ByApproach);
+    if let Some(place) = place(&OF_LOADS) {
+        return (0, 0, place);
+    }
+    if let Some(place) = place(&OF_TORQUE).filter(|_| !is_by_approach) {
+        return (1, joint, place);
+    }
+    match place(&OF_MOTION) {
+        Some(place) => (2, joint, place),
+        None => (3, 0, place(&ALL).unwrap_or(ALL.len())),
+    }
+}

@@ -1,0 +1,150 @@
+//! How an effect acts, where it may act in several ways: as data, beside the candidate.
+//!
+//! The location of a candidate says the same to people; nothing reads it back from there.
+
+use std::fmt;
+
+use super::gear::Gear;
+use crate::inference::Part;
+use crate::units::UM;
+
+/// Seconds in an hour.
+const HOUR: f64 = 3600.0;
+
+/// The law of a candidate.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Law {
+    /// The only one of its effect, or a curve that nobody has named.
+    Only,
+    /// An error of a gear or encoder.
+    Gear(Gear),
+    /// Play of a joint.
+    Play(TakenUp),
+    /// A stiffness that depends on the load.
+    Nonlinear(Power),
+    /// Compliance of a joint whose loads nobody knows: one parameter for every frame beyond it.
+    MassesUnknown,
+    /// A rod of another stiffness.
+    Rod(RodLoad),
+    /// Drift.
+    Drift(Course, Frame),
+}
+
+/// What takes up the play of a joint.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum TakenUp {
+    /// The torque of its load.
+    ByTorque,
+    /// Friction: it stays at the side that it was driven to.
+    ByApproach,
+}
+
+/// Power of the torque that a joint yields with, besides the first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Power {
+    /// τ|τ|.
+    Square,
+    /// τ³.
+    Cube,
+}
+
+/// The load under which a rod's stiffness is another one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RodLoad {
+    /// All of them.
+    All,
+    /// The contact force.
+    Contact,
+    /// The weight of rod and ball.
+    Weight,
+}
+
+/// What a drift follows.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Course {
+    /// The share of the recording that is over.
+    Order,
+    /// An exponential whose time constant is this share of the recording.
+    WarmUp(f64),
+    /// Temperature.
+    Temperature,
+    /// Time.
+    Time,
+}
+
+/// Where a drift goes on in a fixed direction.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Frame {
+    /// In {W}: the robot drifts on its base.
+    World,
+    /// In {T}: the tool drifts on its flange.
+    Tool,
+}
+
+impl Law {
+    /// What a transmission error is a function of; `None` for any other law.
+    pub fn gear(&self) -> Option<&Gear> {
+        match self {
+            Law::Gear(gear) => Some(gear),
+            Law::Only
+            | Law::Play(_)
+            | Law::Nonlinear(_)
+            | Law::MassesUnknown
+            | Law::Rod(_)
+            | Law::Drift(..) => None,
+        }
+    }
+}
+
+impl RodLoad {
+    /// `under its weight`; nothing for all loads.
+    pub fn words(self) -> Option<&'static str> {
+        match self {
+            RodLoad::All => None,
+            RodLoad::Contact => Some("under the contact force"),
+            RodLoad::Weight => Some("under its weight"),
+        }
+    }
+}
+
+impl Course {
+    /// True for what needs a thermometer or a clock.
+    pub fn is_clocked(self) -> bool {
+        match self {
+            Course::Temperature | Course::Time => true,
+            Course::Order | Course::WarmUp(_) => false,
+        }
+    }
+
+    /// Unit of a drift's parameters: at the end of their names, for people, and in SI.
+    pub fn unit(self) -> (&'static str, &'static str, f64) {
+        match self {
+            Course::Order | Course::WarmUp(_) => ("um", "µm", UM),
+            Course::Temperature => ("um_per_k", "µm per kelvin", UM),
+            Course::Time => ("um_per_h", "µm per hour", UM / HOUR),
+        }
+    }
+}
+
+impl fmt::Display for Course {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Course::Order => f.write_str("order"),
+            Course::WarmUp(share) => {
+                write!(f, "warm-up over {} % of the recording", 100.0 * share)
+            }
+            Course::Temperature => f.write_str("temperature"),
+            Course::Time => f.write_str("time"),
+        }
+    }
+}
+
+impl Frame {
+    /// What drifts.
+    pub fn part(self) -> Part {
+        match self {
+            Frame::World => Part::Base,
+            Frame::Tool => Part::Tool,
+        }
+    }
+}

@@ -1,0 +1,395 @@
+//! Rivals for physics that nobody has named: smooth displacements of the tip along whatever a row
+//! may depend on.
+//!
+//! ```text
+//! along one number      Σ_k a_k·cos(π k x)        a_k a vector in {W} or in {T}, x from 0 to 1,
+//!                       a_k ~ s/(1 + k)
+//! again and again       a·sin(2π n t) + b·cos(2π n t), n cycles over the recording, scanned
+//! over the workspace    products of such cosines along x, y, z of {W}
+//! by its orientation    first and second order in the direction that an axis of {W} has in {T}, a
+//!                       vector in {T}; the same in the direction in {T} of a line that is fixed in
+//!                       the clamp, along that line, scanned; first and second order in the whole
+//!                       orientation of {T} to the clamp, a vector in the clamp's frame
+//! of a joint's reversal it turns by Σ a_k·cos(π k x) one way, by as much the other way when it came
+//!                       from there, or is loaded the other way
+//! of two joints         both turn by Σ a_kl·cos(π k x)·cos(π l y): what neither does as a function
+//!                       of its own angle
+//! of a link             all beyond a joint turns about any axis of its link by products of two
+//!                       joints' angles
+//! of each clamp         a vector in {W}
+//! ```
+//!
+//! for every shape is more likely to be smooth than not.
+
+use std::f64::consts::PI;
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::context::Context;
+use super::entry::{Column, Entry, linear};
+use super::law::Frame;
+use crate::inference::{JointVariable, Location, Parameter, UNKNOWN, Variable};
+use crate::units::{UM, URAD};
+
+/// Size of a displacement, m: what calibrated arms of 1 m reach miss by.
+const SIZE: f64 = 100.0 * UM;
+/// Size of a turn, rad: as large at 1 m.
+const TURN: f64 = 100e-6;
+/// Cosines along one number, beside the constant.
+const MOST: usize = 6;
+/// The same where a joint turns back: a tooth is worn over a part of a turn.
+const MOST_OF_REVERSAL: usize = 12;
+/// Largest torque below which a joint is not loaded, N·m.
+const LEAST_TORQUE: f64 = 0.1;
+/// Lines through the middle of a cube: of its faces, edges and corners. None is farther than 27°
+/// from any other line.
+const SIDES: [[f64; 3]; 13] = [
+    [1.0, 0.0, 0.0],
+    [0.0, 1.0, 0.0],
+    [0.0, 0.0, 1.0],
+    [1.0, 1.0, 0.0],
+    [1.0, -1.0, 0.0],
+    [1.0, 0.0, 1.0],
+    [1.0, 0.0, -1.0],
+    [0.0, 1.0, 1.0],
+    [0.0, 1.0, -1.0],
+    [1.0, 1.0, 1.0],
+    [1.0, 1.0, -1.0],
+    [1.0, -1.0, 1.0],
+    [-1.0, 1.0, 1.0],
+];
+/// Highest order of a product of cosines over the workspace, along each of two joints, and in a link.
+const ORDER: (usize, usize, usize) = (3, 3, 1);
+/// Most frequencies at which something may come back over a recording.
+const RETURNS: usize = 200;
+const AXES: [&str; 3] = ["x", "y", "z"];
+/// What is said of what depends on the orientation.
+const BY_ORIENTATION: &str = "follows how the tool is held";
+
+/// All of them for this recording.
+pub(super) fn all(context: &Context) -> Vec<Entry> {
+    let mut entries = Vec::new();
+    let rows = &context.recording.rows;
+    let known = |of: &dyn Fn(usize) -> Option<f64>| (0..rows.len()).map(of).collect::<Option<Vec<f64>>>();
+    let clocks = [
+        (Variable::Order, "the order of the poses", known(&|row| Some(row as f64))),
+        (Variable::Time, "the time", known(&|row| rows[row].time)),
+        (Variable::Temperature, "the temperature", known(&|row| rows[row].temperature)),
+    ];
+    for (variable, words, values) in clocks {
+        let label = variable.to_string();
+        let curve = |values: Vec<f64>| along(context, variable, &label, words, &values, Frame::World);
+        entries.extend(values.and_then(curve));
+    }
+    for j in 0..context.joint_count() {
+        let values: Vec<f64> = context.configurations.iter().map(|there| there.joints[j]).collect();
+        let label = format!("joint {}", j + 1);
+        let words = format!("the angle of {label}");
+        for frame in [Frame::World, Frame::Tool] {
+            entries.extend(along(context, angle_of(j), &label, &words, &values, frame));
+        }
+    }
+    entries.extend(again_and_again(context));
+    entries.extend(workspace(context));
+    entries.extend((0..3).map(|axis| by_orientation(context, axis)));
+    entries.extend(SIDES.iter().map(|side| from_a_side(context, side)));
+    entries.push(by_whole_orientation(context));
+    for j in context.revolute() {
+        let came_from = |row: usize| context.configurations[row].approach[j];
+        entries.extend(reversal(context, j, Way::Approach, &came_from));
+        let is_known = context.has_masses && context.largest(|there| there.torque[j]) > LEAST_TORQUE;
+        let loaded = |row: usize| context.configurations[row].torque[j].signum();
+        let by_load = is_known.then(|| reversal(context, j, Way::Load, &loaded));
+        entries.extend(by_load.flatten());
+    }
+    entries.extend(pairs(context));
+    entries.extend(links(context));
+    entries.extend(clamps(context));
+    entries
+}
+
+/// A curve: its name in tables, what is said of it, and the number that it is a function of.
+fn curve(
+    label: impl Into<String>,
+    follows: impl Into<String>,
+    along: Option<Variable>,
+    parameters: Vec<(Parameter, Column)>,
+) -> Entry {
+    let location = Location::Curve { label: label.into(), follows: follows.into(), along };
+    let mut entry = Entry::new(&UNKNOWN, location, parameters);
+    entry.candidate.is_nonparametric = true;
+    entry
+}
+
+fn angle_of(joint: usize) -> Variable {
+    Variable::Joint(joint, JointVariable::Angle)
+}
+
+/// From 0 to 1; `None` where the values do not differ.
+fn scaled(values: &[f64]) -> Option<Vec<f64>> {
+    let (low, high) =
+        values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), &v| (a.min(v), b.max(v)));
+    (high > low).then(|| values.iter().map(|v| (v - low) / (high - low)).collect())
+}
+
+fn cosine(k: usize, x: f64) -> f64 {
+    (PI * k as f64 * x).cos()
+}
+
+/// A vector in {W} or in {T} times a weight for each row.
+fn vectors(
+    context: &Context,
+    name: &str,
+    size: f64,
+    frame: Frame,
+    weight: &dyn Fn(usize) -> f64,
+) -> Vec<(Parameter, Column)> {
+    let along = |(axis, letter): (usize, &&str)| {
+        let column = context.column(|row, configuration| {
+            let unit = match frame {
+                Frame::Tool => configuration.flange.rotation.column(axis).into(),
+                Frame::World => Vector3::ith(axis, 1.0),
+            };
+            unit * weight(row)
+        });
+        (linear(format!("{letter}_{name}_um"), UM, size), column)
+    };
+    AXES.iter().enumerate().map(along).collect()
+}
+
+fn along(
+    context: &Context,
+    variable: Variable,
+    label: &str,
+    words: &str,
+    values: &[f64],
+    frame: Frame,
+) -> Option<Entry> {
+    let x = scaled(values)?;
+    let parameters = (1..=MOST).flat_map(|k| {
+        let size = SIZE / (1 + k) as f64;
+        vectors(context, &format!("cosine_{k}"), size, frame, &|row| cosine(k, x[row]))
+    });
+    let (label, directions) = match frame {
+        Frame::World => (format!("{label}, a curve in the world"), "fixed directions"),
+        Frame::Tool => (format!("{label}, a curve in the tool"), "directions that turn with the tool"),
+    };
+    let follows = format!("follows {words}, along {directions}");
+    Some(curve(label, follows, Some(variable), parameters.collect()))
+}
+
+fn workspace(context: &Context) -> Option<Entry> {
+    let of_axis = |axis: usize| {
+        scaled(
+            &context.configurations.iter().map(|configuration| configuration.tip[axis]).collect::<Vec<_>>(),
+        )
+    };
+    let x = [of_axis(0)?, of_axis(1)?, of_axis(2)?];
+    let orders = (0..=ORDER.0).flat_map(|i| (0..=ORDER.0 - i).map(move |j| (i, j)));
+    let products = orders.flat_map(|(i, j)| (0..=ORDER.0 - i - j).map(move |k| [i, j, k]));
+    let parameters = products.skip(1).flat_map(|[i, j, k]| {
+        let size = SIZE / (1 + i + j + k) as f64;
+        vectors(context, &format!("cosines_{i}{j}{k}"), size, Frame::World, &|row| {
+            cosine(i, x[0][row]) * cosine(j, x[1][row]) * cosine(k, x[2][row])
+        })
+    });
+    let follows = "follows the place in the workspace";
+    Some(curve("over the workspace", follows, None, parameters.collect()))
+}
+
+/// What comes back after so many rows: from twice over the recording to every third row, or as far
+/// as the scan goes.
+fn again_and_again(context: &Context) -> Vec<Entry> {
+    let rows = context.configurations.len();
+    // steps of half a cycle tell all frequencies apart
+    let counts = (4..=2 * rows / 3).take(RETURNS).map(|halves| 0.5 * halves as f64);
+    let of_count = |count: f64| {
+        let phase = |row: usize| 2.0 * PI * count * row as f64 / rows as f64;
+        let mut parameters = vectors(context, "sin", SIZE, Frame::World, &|row| phase(row).sin());
+        parameters.extend(vectors(context, "cos", SIZE, Frame::World, &|row| phase(row).cos()));
+        let every = rows as f64 / count;
+        let again = format!("again every {every:.1} poses");
+        let (label, follows) = (format!("order, {again}"), format!("comes back {again}"));
+        curve(label, follows, Some(Variable::Order), parameters)
+    };
+    counts.map(of_count).collect()
+}
+
+/// Products of first and second order of a direction's three numbers, with their sizes; of the
+/// squares, which add up to one, two.
+fn orders() -> impl Iterator<Item = (Vec<usize>, f64)> {
+    let second = [[0, 0], [1, 1], [0, 1], [0, 2], [1, 2]].map(|pair| (pair.to_vec(), SIZE / 3.0));
+    (0..3).map(|k| (vec![k], SIZE / 2.0)).chain(second)
+}
+
+fn name_of(factors: &[usize]) -> String {
+    factors.iter().map(|&k| AXES[k]).collect()
+}
+
+/// What depends on how the tool is held.
+fn by_orientation(context: &Context, axis: usize) -> Entry {
+    let direction = |row: usize, k: usize| context.configurations[row].flange.rotation[(axis, k)];
+    let parameters = orders().flat_map(|(factors, size)| {
+        let weight = |row: usize| factors.iter().map(|&k| direction(row, k)).product::<f64>();
+        vectors(context, &name_of(&factors), size, Frame::Tool, &weight)
+    });
+    let label = format!("orientation, the world's {} in the tool", AXES[axis]);
+    curve(label, BY_ORIENTATION, None, parameters.collect())
+}
+
+/// A ball that is not round and is touched from one side, a prism that is read from there.
+fn from_a_side(context: &Context, side: &[f64; 3]) -> Entry {
+    let side = Vector3::from(*side).normalize();
+    let groups = &context.recording.groups;
+    let line = |row: usize| groups[context.recording.rows[row].group].device.rotation * side;
+    let parameters = orders().map(|(factors, size)| {
+        let column = context.column(|row, configuration| {
+            let held = configuration.flange.rotation.tr_mul(&line(row));
+            line(row) * factors.iter().map(|&k| held[k]).product::<f64>()
+        });
+        (linear(format!("{}_um", name_of(&factors)), UM, size), column)
+    });
+    let [x, y, z] = side.into();
+    let label = format!("orientation, from the side ({x:.1} {y:.1} {z:.1})");
+    curve(label, BY_ORIENTATION, None, parameters.collect())
+}
+
+/// The same where the fixture sees it: with Q = R_Tᵀ·R_clamp its nine numbers, and tr(E_m·Q·E_n·Qᵀ)
+/// with the five symmetric matrices E without a trace, which are all functions of first and second
+/// order of a rotation.
+fn by_whole_orientation(context: &Context) -> Entry {
+    let half = 0.5f64.sqrt();
+    let traceless = [
+        Matrix3::new(0.0, half, 0.0, half, 0.0, 0.0, 0.0, 0.0, 0.0),
+        Matrix3::new(0.0, 0.0, half, 0.0, 0.0, 0.0, half, 0.0, 0.0),
+        Matrix3::new(0.0, 0.0, 0.0, 0.0, 0.0, half, 0.0, half, 0.0),
+        Matrix3::from_diagonal(&Vector3::new(half, -half, 0.0)),
+        Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, -2.0)) / 6.0f64.sqrt(),
+    ];
+    let groups = &context.recording.groups;
+    let device = |row: usize| &groups[context.recording.rows[row].group].device.rotation;
+    let held: Vec<Matrix3<f64>> = context
+        .configurations
+        .iter()
+        .enumerate()
+        .map(|(row, p)| p.flange.rotation.tr_mul(device(row)))
+        .collect();
+    let mut parameters = Vec::new();
+    let mut add = |name: String, size: f64, weight: &dyn Fn(&Matrix3<f64>) -> f64| {
+        for (axis, letter) in AXES.iter().enumerate() {
+            let column = context.column(|row, _| device(row).column(axis) * weight(&held[row]));
+            parameters.push((linear(format!("{letter}_{name}_um"), UM, size), column));
+        }
+    };
+    for (i, j) in (0..9).map(|k| (k / 3, k % 3)) {
+        add(format!("{}{}", AXES[i], AXES[j]), SIZE / 2.0, &|q| q[(i, j)]);
+    }
+    for (m, n) in (0..25).map(|k| (k / 5, k % 5)) {
+        add(format!("second_{m}{n}"), SIZE / 3.0, &|q| {
+            (traceless[m] * q * traceless[n] * q.transpose()).trace()
+        });
+    }
+    curve("orientation, as the fixture sees it", BY_ORIENTATION, None, parameters)
+}
+
+/// What tells one way of a joint from the other.
+#[derive(Clone, Copy)]
+enum Way {
+    Approach,
+    Load,
+}
+
+/// What a joint does one way and not the other, by its angle: `sign` is 1 or −1, 0 where nobody
+/// knows.
+fn reversal(context: &Context, j: usize, way: Way, sign: &dyn Fn(usize) -> f64) -> Option<Entry> {
+    let x = angles(context, j)?;
+    let parameters = (0..=MOST_OF_REVERSAL).map(|k| {
+        let column = context.turn(j, |row, _| sign(row) * cosine(k, x[row]));
+        let name = format!("reversed_cosine_{k}_urad");
+        (linear(name, URAD, TURN / (1 + k) as f64), column)
+    });
+    let joint = format!("joint {}", j + 1);
+    let (form, either) = match way {
+        Way::Approach => ("a curve for either way", "either way of coming there"),
+        Way::Load => ("a curve for either load", "either way in which it is loaded"),
+    };
+    let follows = format!("follows the angle of {joint}, another curve for {either}");
+    let label = format!("{joint}, {form}");
+    Some(curve(label, follows, Some(angle_of(j)), parameters.collect()))
+}
+
+/// Angles of a joint from 0 to 1, by row.
+fn angles(context: &Context, joint: usize) -> Option<Vec<f64>> {
+    let angles = context.configurations.iter().map(|there| there.joints[joint]);
+    scaled(&angles.collect::<Vec<_>>())
+}
+
+/// All beyond joint i turns about the axes that it moves along, by what depends on the angles of two
+/// joints.
+fn links(context: &Context) -> Vec<Entry> {
+    let joints = context.revolute();
+    let x: Vec<Option<Vec<f64>>> = (0..context.joint_count()).map(|j| angles(context, j)).collect();
+    let mut entries = Vec::new();
+    for &link in &joints {
+        for (at, &i) in joints.iter().enumerate() {
+            for &j in &joints[at + 1..] {
+                let (Some(x), Some(y)) = (&x[i], &x[j]) else { continue };
+                let orders = (0..=ORDER.2).flat_map(|k| (0..=ORDER.2).map(move |l| (k, l))).skip(1);
+                let parameters = orders.flat_map(|(k, l)| {
+                    (0..3).map(move |axis| {
+                        let column = context.column(|row, configuration| {
+                            let about = configuration.link[link].rotation.column(axis).into_owned();
+                            about.cross(&(configuration.tip - configuration.link[link].origin))
+                                * (cosine(k, x[row]) * cosine(l, y[row]))
+                        });
+                        let name = format!("about_{}_cosines_{k}{l}_urad", AXES[axis]);
+                        (linear(name, URAD, TURN / (1 + k + l) as f64), column)
+                    })
+                });
+                let link = format!("link {}", link + 1);
+                let joints = format!("joint {} and joint {}", i + 1, j + 1);
+                let label = format!("{link}, turned by {joints}");
+                let follows = format!("turns or bends {link} with {joints}");
+                entries.push(curve(label, follows, None, parameters.collect()));
+            }
+        }
+    }
+    entries
+}
+
+/// Both joints of a pair, turned by what depends on both angles.
+fn pairs(context: &Context) -> Vec<Entry> {
+    let joints = context.revolute();
+    let x: Vec<Option<Vec<f64>>> = (0..context.joint_count()).map(|j| angles(context, j)).collect();
+    let mut entries = Vec::new();
+    for (at, &i) in joints.iter().enumerate() {
+        for &j in &joints[at + 1..] {
+            let (Some(x), Some(y)) = (&x[i], &x[j]) else { continue };
+            let parameters = [i, j].into_iter().flat_map(|turned| {
+                let orders = (0..=ORDER.1).flat_map(|k| (0..=ORDER.1).map(move |l| (k, l))).skip(1);
+                orders.map(move |(k, l)| {
+                    let column = context.column(|row, configuration| {
+                        configuration.tip_jacobian[turned] * (cosine(k, x[row]) * cosine(l, y[row]))
+                    });
+                    let name = format!("joint_{}_cosines_{k}{l}_urad", turned + 1);
+                    (linear(name, URAD, TURN / (1 + k + l) as f64), column)
+                })
+            });
+            let joints = format!("joint {} and joint {}", i + 1, j + 1);
+            let follows = format!("depends on {joints} together");
+            entries.push(curve(format!("{joints}, a surface"), follows, None, parameters.collect()));
+        }
+    }
+    entries
+}
+
+fn clamps(context: &Context) -> Option<Entry> {
+    let groups = &context.recording.groups;
+    (groups.len() > 1 && !context.has_sockets()).then_some(())?;
+    let parameters = (0..groups.len()).flat_map(|k| {
+        let is_there = |row: usize| if context.recording.rows[row].group == k { 1.0 } else { 0.0 };
+        vectors(context, &format!("group_{k}"), SIZE, Frame::World, &is_there)
+    });
+    let follows = "shifts whole clamps against one another";
+    Some(curve("each clamp by itself", follows, None, parameters.collect()))
+}

@@ -1,0 +1,195 @@
+//! Every effect of the registry has its words.
+
+use nalgebra::DMatrix;
+
+use super::*;
+use crate::inference::{
+    Description, Effect, Estimate, Finding, FindingPart, Hypothesis, Kind, Parameter, WrittenTo,
+};
+
+/// A finding of one candidate, as if it had been found at its usual size.
+fn as_if(model: &CalibrationModel, candidate: usize) -> Finding {
+    let found = &model.candidates()[candidate];
+    let values: Vec<f64> = found.parameters.iter().map(|p| p.neutral + 2.0 * p.size).collect();
+    let variances = found.parameters.iter().map(|p| (0.1 * p.size).powi(2)).collect();
+    let covariance = DMatrix::from_diagonal(&DVector::from_vec(variances));
+    let estimate = |p: &Parameter| Estimate {
+        name: p.name.clone(),
+        unit: p.unit,
+        value: p.neutral + 2.0 * p.size,
+        low: p.neutral + 1.8 * p.size,
+        high: p.neutral + 2.2 * p.size,
+    };
+    let term = Term { candidate, values };
+    let part = FindingPart {
+        term: term.clone(),
+        location: found.location.clone(),
+        estimates: found.parameters.iter().map(estimate).collect(),
+        first: 0,
+        covariance: covariance.clone(),
+        coverage_factor: 2.0,
+        p_value: 0.0,
+        explains: 0.0,
+        rivals: Vec::new(),
+    };
+    let hypothesis = Hypothesis {
+        terms: vec![term],
+        log_probability: 0.0,
+        sigma: 1.0,
+        covariance,
+        background: DVector::zeros(0),
+        determined: 1.0,
+    };
+    let parts = vec![part];
+    let mut finding = Finding {
+        effect: found.effect,
+        location: found.location.place(),
+        estimates: model.estimates(&parts, &hypothesis),
+        description: Description { observed: String::new(), cause: String::new() },
+        rivals: Vec::new(),
+        p_value: 0.0,
+        explains: 0.0,
+        found_in_folds: None,
+        held_out_loss: None,
+        next: None,
+        parts,
+    };
+    finding.description = model.describe(&finding);
+    finding
+}
+
+/// The campaign with times and temperatures.
+fn clocked() -> Campaign {
+    let mut campaign = clamps(12);
+    for (k, row) in campaign.measurements.rows.iter_mut().enumerate() {
+        (row.time, row.temperature) = (Some(k as f64 * 30.0), Some(20.0 + k as f64 / 100.0));
+    }
+    campaign
+}
+
+#[test]
+fn every_effect_has_words_and_its_number() {
+    let campaign = clocked();
+    let (model, _) = modelled(&campaign, Mode::None);
+    let mut effects = Vec::new();
+    let named = model.candidates().iter().enumerate().filter(|(_, c)| !c.is_nonparametric);
+    for (index, candidate) in named {
+        let effect = candidate.effect;
+        let finding = as_if(&model, index);
+        let words = finding.description.to_string();
+        let is_bare = *model.law(index) == Law::MassesUnknown;
+        assert!(is_bare || words.contains('±') || words.contains(" to "), "{effect}: {words}");
+        assert!(!words.contains("NaN") && !words.contains('_'), "{effect}: {words}");
+        assert!(!(effect.cause_at)(&candidate.location).contains('_'));
+        if !effects.contains(&effect) {
+            effects.push(effect);
+        }
+    }
+    assert!(effects.len() >= 15, "{effects:?}");
+}
+
+#[test]
+fn sentences_are_those_of_the_laws() {
+    let campaign = clocked();
+    let (model, _) = modelled(&campaign, Mode::None);
+    let said =
+        |effect: &str, location: &str| as_if(&model, find(&model, effect, location)).description.to_string();
+    let cases = [
+        (
+            "backlash",
+            "joint 4, by approach",
+            "Joint 4 has 300 ± 30 µrad of play, depending on the way it came from: play in its gear",
+        ),
+        (
+            "thermal_drift",
+            "tool, with temperature",
+            "The tool drifts by 35 ± 2 µm per kelvin with temperature: drift, as of something that \
+             warms up",
+        ),
+        (
+            "base_shift",
+            "after pose 20",
+            "The robot moved on its base by 1732 ± 100 µm after pose 20: the robot slipped on its base",
+        ),
+        (
+            "clamp_shift",
+            "clamp 2, after pose 16",
+            "Clamp 2 moved by 1732 ± 100 µm after pose 16: the clamp was knocked or slipped",
+        ),
+        (
+            "clamp_pose",
+            "clamp 2",
+            "Clamp 2 is 346 ± 20 µm from where the campaign has it: a clamp that is not where the \
+             campaign says",
+        ),
+        ("outlier", "pose 7", "Pose 7 is off by 1732 ± 100 µm: misread or disturbed"),
+        (
+            "wrist_coupling",
+            "joint 5 to 6",
+            "Joint 6 turns along by 200 ± 20 µrad for every radian of joint 5: coupled wrist gears",
+        ),
+        (
+            "encoder_scale",
+            "joint 4",
+            "Joint 4 turns 200 ± 20 µrad per radian more than its encoder says: the scale of its encoder",
+        ),
+        (
+            "readback_lag",
+            "all joints",
+            "When the angles were read, 0.060 ± 0.006 % of the last move of every joint was still to \
+             come: angles were read before the arm had settled",
+        ),
+        (
+            "rod_stiffness",
+            "rod, under its weight",
+            "The rod's stiffness is 0.50 (0.45 to 0.56) times that of its model under its weight: the \
+             rod's stiffness is not that of its model",
+        ),
+    ];
+    for (effect, location, expected) in cases {
+        assert_eq!(said(effect, location), expected);
+    }
+}
+
+#[test]
+fn a_record_says_everything_of_its_effect() {
+    let mut names: Vec<&str> = registry::ALL.iter().map(|known| known.effect.name).collect();
+    names.sort_unstable();
+    names.dedup();
+    assert_eq!(names.len(), registry::ALL.len());
+    for known in registry::ALL {
+        let Effect { name, summary, formula, prior, parameters, needs, cause, .. } = &known.effect;
+        for text in [summary, formula, prior, needs, cause] {
+            assert!(!text.is_empty(), "{name}");
+        }
+        assert!(!parameters.is_empty() && !cause.contains('_'), "{name}");
+        assert_eq!(registry::record(&known.effect).map(|own| own.effect.name), Some(*name));
+        // what happened at one pose is marked there, and only that
+        let place = Location::Pose { row: 0, name: "pose 1".into() };
+        assert_eq!((known.event)(&place).is_some(), known.effect.kind == Kind::Event, "{name}");
+    }
+}
+
+/// The candidates that are written are those whose record says so.
+#[test]
+fn findings_go_where_their_record_says() {
+    let campaign = clocked();
+    let (model, _) = modelled(&campaign, Mode::Fea);
+    for (index, candidate) in model.candidates().iter().enumerate().filter(|(_, c)| !c.is_nonparametric) {
+        let finding = as_if(&model, index);
+        let mut extended = campaign.clone();
+        let record = registry::record(candidate.effect).unwrap();
+        let written = (record.write)(&finding, &model, &mut extended);
+        // a robot file has no place for where a joint came from
+        let expected = match model.law(index) {
+            Law::Play(TakenUp::ByApproach) => WrittenTo::Nowhere,
+            _ => candidate.effect.written_to,
+        };
+        assert_eq!(written, expected, "{} {}", candidate.effect, candidate.location);
+        let is_same_robot = extended.robot.effects == campaign.robot.effects
+            && extended.robot.joints == campaign.robot.joints;
+        assert_eq!(is_same_robot, written != WrittenTo::Model, "{}", candidate.effect);
+        let is_same_recording = extended.measurements == campaign.measurements;
+        assert_eq!(is_same_recording, written != WrittenTo::Recording, "{}", candidate.effect);
+    }
+}

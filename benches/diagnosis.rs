@@ -16,8 +16,9 @@ use rodcal::calibration::campaign::Campaign;
 use rodcal::calibration::simulate::{Plan, campaign_files, simulate};
 use rodcal::calibration::{Mode, Options, calibrate};
 use rodcal::compliance::{Compliance, DEFAULT_ELEMENTS};
-use rodcal::diagnosis::rig::{RigWorld, diagnose};
-use rodcal::diagnosis::{World, calibration};
+use rodcal::diagnosis::calibration;
+use rodcal::diagnosis::rig::{RigModel, diagnose};
+use rodcal::inference::ForwardModel;
 use rodcal::rig::readings::Readings;
 use rodcal::robot::Robot;
 use rodcal::rod::Rod;
@@ -46,8 +47,8 @@ fn whole_diagnosis(c: &mut Criterion) {
     // 28 readings in a trial
     for trials in [4, 11, 18] {
         let (rod, readings) = recording(trials);
-        let (world, _) = RigWorld::new(&readings, Some(&rod)).unwrap();
-        let (rows, columns) = (world.data().len(), world.candidates().len());
+        let (model, _) = RigModel::new(&readings, Some(&rod)).unwrap();
+        let (rows, columns) = (model.data().len(), model.candidates().len());
         println!("{rows} readings, {columns} candidates");
         group.bench_function(BenchmarkId::new("diagnose", rows), |b| {
             b.iter(|| run(&|| drop(black_box(diagnose(&readings, Some(&rod)).unwrap()))));

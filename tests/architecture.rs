@@ -23,6 +23,8 @@ const FLOORS: &[&[&str]] = &[
         "least_squares",
         "spatial",
     ],
+    // the engine that knows no physics: nothing but the ground
+    &["inference"],
     &["section", "material", "rod"],
     &["beam"],
     &["compliance"],
@@ -200,6 +202,49 @@ fn trials_share_no_model_with_what_they_try() {
 #[test]
 fn the_ground_stands_on_nothing() {
     assert_eq!(members_needed("crates/base/Cargo.toml"), [""; 0]);
+}
+
+/// The engine copies records of effects and places into findings and looks into neither.
+#[test]
+fn inference_knows_no_physics() {
+    let mut count = 0;
+    for Source { file, text, .. } in files("src").into_iter().filter(|source| source.room == "inference") {
+        for named in named_rooms(&text) {
+            count += 1;
+            assert!(
+                FLOORS[0].contains(&named.as_str()) || named == "inference",
+                "{file} imports from `{named}`"
+            );
+        }
+        let code = text.split("#[cfg(test)]").next().unwrap();
+        let is_vocabulary = ["location.rs", "variable.rs", "limit.rs"].iter().any(|own| file.ends_with(own));
+        for word in ["friction", "backlash", "gear", "clamp", "slide", "creep"] {
+            let is_said =
+                code.lines().any(|line| !line.trim_start().starts_with("//") && line.contains(word));
+            assert!(is_vocabulary || !is_said, "{file} speaks of {word}");
+        }
+    }
+    assert!(count > 10, "only {count} imports found: does the test still read them?");
+}
+
+/// Outside the registries an effect is a value: nothing compares its name.
+#[test]
+fn no_effect_is_compared_by_its_name() {
+    let names: Vec<&str> = rodcal::diagnosis::rig::effects::registry::ALL
+        .iter()
+        .map(|known| known.effect.name)
+        .chain(rodcal::diagnosis::calibration::effects::registry::ALL.iter().map(|known| known.effect.name))
+        .collect();
+    assert!(names.len() > 30);
+    let is_asked = |file: &str| file.contains("diagnosis") || file.contains("inference");
+    for Source { file, text, .. } in files("src").into_iter().filter(|source| is_asked(&source.file)) {
+        let code = text.split("#[cfg(test)]").next().unwrap();
+        let is_family = file.contains("/effects/") || file.contains("/tests");
+        for name in &names {
+            let literal = format!("\"{name}\"");
+            assert!(is_family || !code.contains(&literal), "{file} names {literal}");
+        }
+    }
 }
 
 #[test]

@@ -28,7 +28,7 @@ impl Answer {
         let rod = rod.map(|text| Rod::from_toml("rod.toml", text).unwrap());
         let readings = Readings::from_text("readings.csv", readings).unwrap();
         let found = diagnose(&readings, rod.as_ref()).unwrap();
-        let json = report::diagnosis::json(&found, &readings, rod.as_ref());
+        let json = report::diagnosis::rig::json(&found, found.correction().unwrap().as_ref());
         Answer { found, json }
     }
 

@@ -1,6 +1,6 @@
 //! Poor readings: what they cannot say is said, and nothing breaks.
 
-use rodcal::diagnosis::rig::Limit;
+use rodcal::inference::Limit;
 use rodcal::rig::readings::{Axis, Readings};
 use rodcal::units::UM;
 use rodcal_trial::rig::{Columns, Effect, Order};
@@ -15,8 +15,8 @@ const BARE: Columns =
     Columns { trial: false, phase: false, time: false, temperature: false, kilograms: false };
 
 fn reason<'a>(answer: &'a Answer, effect: &str) -> &'a str {
-    let of = answer.found.not_testable.iter().find(|not| not.effect == effect);
-    of.unwrap_or_else(|| panic!("{effect} is testable: {:?}", answer.found.not_testable)).reason
+    let of = answer.found.not_testable.iter().find(|not| not.effect.name == effect);
+    &of.unwrap_or_else(|| panic!("{effect} is testable: {:?}", answer.found.not_testable)).reason
 }
 
 /// A diagnosis of anything: numbers that must be there are finite, and findings are whole.

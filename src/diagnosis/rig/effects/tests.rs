@@ -49,6 +49,7 @@ fn finding(model: &RigModel, index: usize) -> Finding {
         location: location.clone(),
         estimates: estimates.clone(),
         first: 0,
+        covariance: nalgebra::DMatrix::zeros(0, 0),
         coverage_factor: 2.0,
         p_value: 0.0,
         explains: 0.0,

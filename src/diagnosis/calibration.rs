@@ -7,8 +7,8 @@
 //! are made once (`linear_terms.rs`). Which effects there are, with all that is said of each:
 //! `effects/`. The rivals that stand for physics nobody has named: `nonparametric.rs`.
 //!
-//! What a calibration absorbs cannot be seen: an eccentricity of the last joint is nothing where the
-//! target lies on that joint's axis. Such effects are no candidates, but
+//! What a calibration absorbs cannot be seen: an eccentricity of the last joint is nothing where
+//! the target lies on that joint's axis. Such effects are no candidates, but
 //! [`absorbed`](crate::inference::Diagnosed::absorbed) says which they are.
 
 mod apply;

@@ -1,8 +1,8 @@
 //! What was found, written into the robot: its model with effects, calibrated again.
 //!
 //! What belongs to the robot enters its model, and the campaign is calibrated once more with it, so
-//! that base, geometry and effects fit together. What happened to the fixture, and single bad poses,
-//! are taken out of the measured points before that. What neither can hold is said.
+//! that base, geometry and effects fit together. What happened to the fixture, and single bad
+//! poses, are taken out of the measured points before that. What neither can hold is said.
 
 use super::correction_table;
 use super::diagnose::CalibrationDiagnosis;
@@ -29,8 +29,8 @@ pub struct Applied {
     pub mean: f64,
 }
 
-/// The robot of the diagnosed campaign with what `found` says; `None` where nothing of it belongs to
-/// the robot.
+/// The robot of the diagnosed campaign with what `found` says; `None` where nothing of it belongs
+/// to the robot.
 ///
 /// # Errors
 /// As [`calibrate`] and [`crate::calibration::write_back`].

@@ -1,4 +1,5 @@
-//! What the robot does at every row: levers, loads and the move that led there, in {W}, once and for all effects.
+//! What the robot does at every row: Jacobians, loads and the move that led there, in {W}, once and
+//! for all effects.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -41,8 +42,8 @@ pub(super) struct Configuration {
 }
 
 impl Configuration {
-    /// Displacement of the tip by joints that yield to one more force (N) at a point (m) beyond all of them:
-    /// Σ lever·c·(∂point/∂q · force).
+    /// Displacement of the tip by joints that yield to one more force (N) at a point (m) beyond all
+    /// of them: Σ J·c·(∂point/∂q · force).
     pub fn yielding(&self, point: &Vector3<f64>, force: &Vector3<f64>) -> Vector3<f64> {
         let of_joint =
             |j: usize| self.tip_jacobian[j] * (self.compliance[j] * self.torque_of(j, point, force));
@@ -113,7 +114,8 @@ fn step(recording: &Recording, row: usize) -> Vec<f64> {
     recording.joints(row).iter().zip(before).map(|(now, before)| now - before).collect()
 }
 
-/// Moment of all that hangs beyond each joint about the point on its axis, N·m; zero for a prismatic joint.
+/// Moment of all that hangs beyond each joint about the point on its axis, N·m; zero for a
+/// prismatic joint.
 fn moments(kinematics: &Kinematics, loads: &Loads, bodies: &[Option<Body>]) -> Vec<Vector3<f64>> {
     let mut force = loads.tip_force;
     let mut moment = kinematics.tip.cross(&force);

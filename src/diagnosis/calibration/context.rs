@@ -12,7 +12,8 @@ use crate::robot::{Motion, Setup};
 /// All that effects need to know of a campaign and its calibration.
 pub(super) struct Context<'a> {
     pub recording: &'a Recording,
-    /// The recording whose clock and whose mean temperature count: this one, or the one that came before.
+    /// The recording whose clock and whose mean temperature count: this one, or the one that came
+    /// before.
     pub since: &'a Recording,
     pub configurations: Vec<Configuration>,
     /// What each row counts, relative to the others: pooled noise over the noise of its group.

@@ -1,12 +1,13 @@
 //! Smooth curves: the leading eigenfunctions of a Gaussian process over an interval.
 //!
 //! ```text
-//! f(x) = Σ_k a_k·cos(π k (x − low)/L)     a_k ~ N(0, s_k²)     s_k² ∝ exp(−½·(ω_k·ℓ)²), s₀² half of it     ω_k = π k/L
+//! f(x) = Σ_k a_k·cos(π k (x − low)/L)     a_k ~ N(0, s_k²)
+//! s_k² ∝ exp(−½·(ω_k·ℓ)²), s₀² half of it     ω_k = π k/L
 //! ```
 //!
-//! is the process with squared-exponential kernel of length scale ℓ and variance 1 (A. Solin, S. Särkkä, *Statistics and
-//! Computing* 30 (2020) 419–446, with cosines for a curve that is free at its ends). The interval reaches beyond the data by
-//! ℓ, so that their ends are no turning points.
+//! is the process with squared-exponential kernel of length scale ℓ and variance 1 (A. Solin, S.
+//! Särkkä, *Statistics and Computing* 30 (2020) 419–446, with cosines for a curve that is free at
+//! its ends). The interval reaches beyond the data by ℓ, so that their ends are no turning points.
 
 use std::f64::consts::PI;
 
@@ -31,7 +32,7 @@ impl Cosines {
             .take_while(|&x| x <= CUT)
             .map(|x| (-0.5 * x * x).exp())
             .collect();
-        // a cosine has the mean square ½; the constant counts half, as an end of the integral over ω
+        // a cosine has the mean square ½; the constant counts half, as an end of the integral
         let total = 0.5 * (weights.iter().sum::<f64>() - 0.5 * weights[0]);
         let share = |k: usize| if k == 0 { 0.5 } else { 1.0 };
         let sizes =

@@ -65,7 +65,7 @@ impl<'c> Prepared<'c> {
     /// Data are rows × (x, y, z), in {W}, then what is known besides; see `evidence.rs`.
     pub fn new(campaign: &'c Campaign, calibration: Calibration<'c>) -> Result<Prepared<'c>> {
         let context = Context::new(campaign, &calibration)?;
-        let evidence = evidence::of(campaign, &calibration, &context);
+        let evidence = evidence::evidence_of(campaign, &calibration, &context);
         let (mut entries, not_testable) = registry::candidates(&context);
         entries.extend(nonparametric::all(&context));
         let (terms, absorbed) = LinearTerms::new(entries, &evidence);

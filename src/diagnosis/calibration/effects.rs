@@ -1,4 +1,5 @@
-//! The effects that a calibration may have left out: one file for a family, one record for an effect.
+//! The effects that a calibration may have left out: one file for a family, one record for an
+//! effect.
 //!
 //! A record ([`CalibrationEffect`]) and the functions below it say everything of an effect: its
 //! formula, its usual size and the source of that number, what it needs of a recording, how it is
@@ -52,8 +53,8 @@ pub struct CalibrationEffect {
     pub(super) estimates: fn(&CalibrationModel, &[FindingPart]) -> Vec<Estimate>,
     /// What the poses show, with numbers: `Joint 3 has 210 ± 20 µrad of play, …`.
     pub(super) observed: fn(&Finding, &CalibrationModel) -> String,
-    /// Puts a finding into a campaign that is to be calibrated again, or takes it out of its points;
-    /// the answer is where it went.
+    /// Puts a finding into a campaign that is to be calibrated again, or takes it out of its
+    /// points; the answer is where it went.
     pub(super) write: fn(&Finding, &CalibrationModel, &mut Campaign) -> WrittenTo,
     /// What it does to other poses of the same robot.
     pub(super) transfer: Transfer,

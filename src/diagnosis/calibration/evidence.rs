@@ -1,12 +1,16 @@
-//! What the engine is told about a calibrated campaign: what is left, what the calibration can absorb, what to hold out.
+//! What the engine is told about a calibrated campaign: what is left, what the calibration can
+//! absorb, what to hold out.
 //!
 //! ```text
-//! datum      (recorded − predicted)·w     three per row, in {W}, m; w = pooled noise / noise of the group
-//! nuisance   ∂predicted/∂ρ·w              over all that the calibration is free to change, −w for a socket's own place
+//! datum      (recorded − predicted)·w     three per row, in {W}, m; w is the pooled noise over the
+//!                                         noise of the group
+//! nuisance   ∂predicted/∂ρ·w              over all that the calibration is free to change, −w for
+//!                                         a socket's own place
 //! ```
 //!
-//! so that one noise σ holds for all data. Directions of ρ that the calibration holds are no columns. What is known besides
-//! (socket distances, the user's priors) are further data with no row, in units of σ; no fold holds them out.
+//! so that one noise σ holds for all data. Directions of ρ that the calibration holds are no
+//! columns. What is known besides (socket distances, the user's priors) are further data with no
+//! row, in units of σ; no fold holds them out.
 
 use std::collections::BTreeMap;
 
@@ -24,20 +28,22 @@ use crate::units::MM;
 /// Most folds, and the rows that each should have at least.
 const MOST_FOLDS: usize = 5;
 const ROWS_PER_FOLD: usize = 10;
-/// Blocks of a fold in the rows of a clamp or socket, where these are at least [`LEAST_BLOCK`] long; else there is one.
+/// Blocks of a fold in the rows of a clamp or socket, where these are at least [`LEAST_BLOCK`]
+/// long; else there is one.
 const ROUNDS: usize = 4;
 const LEAST_BLOCK: usize = 5;
 /// Coarsest and finest last digit of a displacement that is looked for: mm to the power of ten.
 const DIGITS: std::ops::RangeInclusive<i32> = -6..=-1;
 
-/// A number that is known besides what was recorded: residual and ∂/∂ρ (free parameters, then sockets), both over σ.
+/// A number that is known besides what was recorded: residual and ∂/∂ρ (free parameters, then
+/// sockets), both over σ.
 struct Known {
     residual: f64,
     slopes: Vec<(usize, f64)>,
 }
 
 /// The evidence of a calibration.
-pub(super) fn of(campaign: &Campaign, calibration: &Calibration, context: &Context) -> Evidence {
+pub(super) fn evidence_of(campaign: &Campaign, calibration: &Calibration, context: &Context) -> Evidence {
     let recording = &campaign.measurements;
     let known = known(campaign, calibration);
     let (rows, data) = (recording.len(), 3 * recording.len() + known.len());
@@ -125,7 +131,8 @@ fn fill(jacobian: &mut DMatrix<f64>, calibration: &Calibration, context: &Contex
     }
 }
 
-/// Columns of the free parameters, combined to an orthonormal basis (in plausible ranges) of all that is not held.
+/// Columns of the free parameters, combined to an orthonormal basis (in plausible ranges) of all
+/// that is not held.
 fn without_held(jacobian: DMatrix<f64>, calibration: &Calibration) -> DMatrix<f64> {
     let Some(first) = calibration.held.first() else { return jacobian };
     let free = free_count(calibration);
@@ -158,9 +165,9 @@ fn replicate_groups(recording: &Recording) -> Vec<usize> {
         .collect()
 }
 
-/// Blocks of consecutive rows of each clamp or socket, dealt to the folds in turn: neighbours, which
-/// often share an error, are held out together, and no fold is a corner of the workspace. Repeats
-/// stay together.
+/// Blocks of consecutive rows of each clamp or socket, dealt to the folds in turn: neighbours,
+/// which often share an error, are held out together, and no fold is a corner of the workspace.
+/// Repeats stay together.
 fn folds(recording: &Recording, replicate_groups: &[usize]) -> Vec<usize> {
     let folds = (recording.len() / ROWS_PER_FOLD).clamp(2, MOST_FOLDS);
     let mut size = vec![0usize; recording.groups.len()];
@@ -216,7 +223,8 @@ fn intercepts(recording: &Recording, data: usize) -> Vec<usize> {
     (0..data).map(of_datum).collect()
 }
 
-/// The step that all displacements are multiples of, m; 0 where they show none and where nothing is measured.
+/// The step that all displacements are multiples of, m; 0 where they show none and where nothing is
+/// measured.
 fn resolution(recording: &Recording) -> f64 {
     /// The file's decimals are not exact in binary, and clamps are turned.
     const INEXACT: f64 = 1e-4;

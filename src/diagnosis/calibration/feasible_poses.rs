@@ -12,8 +12,8 @@ use crate::spatial::Pose;
 const MOST: usize = 40;
 /// Steps of a joint that is moved alone, there and as many back.
 const STEPS: usize = 20;
-/// Turn of joint 1 for a clamp that is set up once more, degrees, and how far that joint turns where
-/// the robot's file does not say it.
+/// Turn of joint 1 for a clamp that is set up once more, degrees, and how far that joint turns
+/// where the robot's file does not say it.
 const TURN: f64 = 40.0;
 const WIDEST: f64 = 170.0;
 /// Fewest poses that are worth a clamp.

@@ -94,7 +94,8 @@ impl Gear {
         (cycles_per_rev + half_step * shift.clamp(-2.0, 2.0), DVector::from_column_slice(&gradient))
     }
 
-    /// Frequency and amplitude of the error that a part of a finding is, over the recorded `angles`.
+    /// Frequency and amplitude of the error that a part of a finding is, over the recorded
+    /// `angles`.
     pub(super) fn estimates(&self, part: &FindingPart, angles: &[f64]) -> Vec<Estimate> {
         let values = &part.term.values;
         let resolved = |cycles: f64| (cycles, 0.5 / turns(angles));

@@ -67,7 +67,7 @@ pub(super) fn next_poses(
     for poses in feasible(campaign, &context.configurations) {
         let (campaign, calibration) = poses.measured(campaign, calibration);
         let context = Context::new(&campaign, &calibration)?;
-        let evidence = evidence::of(&campaign, &calibration, &context);
+        let evidence = evidence::evidence_of(&campaign, &calibration, &context);
         let (mut entries, _) = registry::candidates(&context);
         entries.retain(|entry| hypotheses.iter().any(|hypothesis| hypothesis.holds(&entry.candidate)));
         let (terms, _) = LinearTerms::new(entries, &evidence);

@@ -10,8 +10,8 @@
 //!                       vector in {T}; the same in the direction in {T} of a line that is fixed in
 //!                       the clamp, along that line, scanned; first and second order in the whole
 //!                       orientation of {T} to the clamp, a vector in the clamp's frame
-//! of a joint's reversal it turns by Σ a_k·cos(π k x) one way, by as much the other way when it came
-//!                       from there, or is loaded the other way
+//! of a joint's reversal it turns by Σ a_k·cos(π k x) one way, by as much the other way when it
+//!                       came from there, or is loaded the other way
 //! of two joints         both turn by Σ a_kl·cos(π k x)·cos(π l y): what neither does as a function
 //!                       of its own angle
 //! of a link             all beyond a joint turns about any axis of its link by products of two
@@ -58,7 +58,8 @@ const SIDES: [[f64; 3]; 13] = [
     [1.0, -1.0, 1.0],
     [-1.0, 1.0, 1.0],
 ];
-/// Highest order of a product of cosines over the workspace, along each of two joints, and in a link.
+/// Highest order of a product of cosines over the workspace, along each of two joints, and in a
+/// link.
 const ORDER: (usize, usize, usize) = (3, 3, 1);
 /// Most frequencies at which something may come back over a recording.
 const RETURNS: usize = 200;
@@ -70,7 +71,8 @@ const BY_ORIENTATION: &str = "follows how the tool is held";
 pub(super) fn all(context: &Context) -> Vec<Entry> {
     let mut entries = Vec::new();
     let rows = &context.recording.rows;
-    let known = |of: &dyn Fn(usize) -> Option<f64>| (0..rows.len()).map(of).collect::<Option<Vec<f64>>>();
+    let known =
+        |number: &dyn Fn(usize) -> Option<f64>| (0..rows.len()).map(number).collect::<Option<Vec<f64>>>();
     let clocks = [
         (Variable::Order, "the order of the poses", known(&|row| Some(row as f64))),
         (Variable::Time, "the time", known(&|row| rows[row].time)),
@@ -324,8 +326,8 @@ fn angles(context: &Context, joint: usize) -> Option<Vec<f64>> {
     scaled(&angles.collect::<Vec<_>>())
 }
 
-/// All beyond joint i turns about the axes that it moves along, by what depends on the angles of two
-/// joints.
+/// All beyond joint i turns about the axes that it moves along, by what depends on the angles of
+/// two joints.
 fn links(context: &Context) -> Vec<Entry> {
     let joints = context.revolute();
     let x: Vec<Option<Vec<f64>>> = (0..context.joint_count()).map(|j| angles(context, j)).collect();

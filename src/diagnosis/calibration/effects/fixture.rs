@@ -166,7 +166,8 @@ fn places(count: usize, most: usize) -> impl Iterator<Item = usize> {
     places.step_by(stride)
 }
 
-/// A clamp or a socket that moved, or the whole plate of a placement, which may have turned as well.
+/// A clamp or a socket that moved, or the whole plate of a placement, which may have turned as
+/// well.
 fn shifts(context: &Context, effect: &'static CalibrationEffect) -> Vec<Entry> {
     let groups = &context.recording.groups;
     let is_fixture = context.has_sockets() || groups.len() > 1 || !groups[0].name.is_empty();

@@ -7,9 +7,9 @@
 //! ```
 //!
 //! Two cycles per revolution can be told apart over a range of ρ revolutions if they differ by 1/ρ
-//! or so; the scan has steps of half of that, of one half at most, up to 40; c and d reach what lies
-//! between. Beyond, only what gears in use have: a strain-wave gear of ratio i errs with i and 2·i
-//! cycles per revolution of its output, and the joint's motor with i.
+//! or so; the scan has steps of half of that, of one half at most, up to 40; c and d reach what
+//! lies between. Beyond, only what gears in use have: a strain-wave gear of ratio i errs with i and
+//! 2·i cycles per revolution of its output, and the joint's motor with i.
 
 use std::f64::consts::TAU;
 

@@ -1,8 +1,8 @@
 //! What a joint and its link do besides their geometry, and the base below them.
 //!
-//! Where a robot's masses are unknown its torques are a sum over its links,
-//! τⱼ = Σ_k m_k·zⱼ·((p_k − oⱼ) × g), and the compliance has one parameter for every frame beyond the
-//! joint: c·m_k·g, rad per metre of horizontal lever.
+//! Where a robot's masses are unknown its torques are a sum over its links, τⱼ = Σ_k m_k·zⱼ·((p_k −
+//! oⱼ) × g), and the compliance has one parameter for every frame beyond the joint: c·m_k·g, rad
+//! per metre of horizontal lever.
 
 use nalgebra::Vector3;
 

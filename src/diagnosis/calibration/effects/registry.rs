@@ -50,9 +50,10 @@ pub(in crate::diagnosis::calibration) fn record(effect: &Effect) -> Option<&'sta
     ALL.into_iter().find(|known| known.effect == *effect)
 }
 
-/// The candidates of all effects for a recording, those that do nothing to it included, in the order
-/// of preference among those that explain it exactly as well; with the effects that it has no data
-/// for. Where a base is upright, for example, a tilting base and the bending first link do the same.
+/// The candidates of all effects for a recording, those that do nothing to it included, in the
+/// order of preference among those that explain it exactly as well; with the effects that it has no
+/// data for. Where a base is upright, for example, a tilting base and the bending first link do the
+/// same.
 pub(in crate::diagnosis::calibration) fn candidates(context: &Context) -> (Vec<Entry>, Vec<NotTestable>) {
     let mut lacks = Vec::new();
     let mut entries = Vec::new();

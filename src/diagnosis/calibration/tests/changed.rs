@@ -1,4 +1,5 @@
-//! A robot at one row whose joints, masses, loads and fixture may be changed, and which is then asked where its tip is.
+//! A robot at one row whose joints, masses, loads and fixture may be changed, and which is then
+//! asked where its tip is.
 
 use super::*;
 use crate::calibration::{Calibration, Compensation};

@@ -1,4 +1,5 @@
-//! Every column against a robot whose joints, masses and loads are changed, and which is then asked where its tip is.
+//! Every column against a robot whose joints, masses and loads are changed, and which is then asked
+//! where its tip is.
 
 use nalgebra::Rotation3;
 

@@ -5,7 +5,8 @@ use super::*;
 use crate::calibration::campaign::Distance;
 use crate::robot::Parameter;
 
-/// Cosine of the angle between a direction in which the calibration is free and what it left, at its optimum.
+/// Cosine of the angle between a direction in which the calibration is free and what it left, at
+/// its optimum.
 const RIGHT_ANGLE: f64 = 1e-3;
 
 /// Noise of a coordinate of every row, m, in 1 … 5 by its group.
@@ -42,18 +43,19 @@ fn a_clamp_of_five_times_the_noise_counts_a_twenty_fifth() {
     let calibration = calibrate(&campaign, Mode::Fea, &Options::default()).unwrap();
     let (model, evidence) = CalibrationModel::new(&campaign, calibration.clone()).unwrap();
     let rows = &campaign.measurements.rows;
-    let of = |is_noisy: bool| (0..rows.len()).filter(move |&row| (rows[row].group == 1) == is_noisy);
-    let (loud, quiet) = (of(true).next().unwrap(), of(false).next().unwrap());
+    let rows_where = |is_noisy: bool| (0..rows.len()).filter(move |&row| (rows[row].group == 1) == is_noisy);
+    let (loud, quiet) = (rows_where(true).next().unwrap(), rows_where(false).next().unwrap());
     // 90 and 360 coordinates tell the ratio of the two variances within a sixth or so
     let mean = |is_noisy: bool| {
-        of(is_noisy).map(|row| model.scale(row).powi(-2)).sum::<f64>() / of(is_noisy).count() as f64
+        rows_where(is_noisy).map(|row| model.scale(row).powi(-2)).sum::<f64>()
+            / rows_where(is_noisy).count() as f64
     };
     let ratio = mean(true) / mean(false);
     assert!((15.0..40.0).contains(&ratio), "{ratio}");
     // one noise holds for all data
     let rms = |is_noisy: bool| {
         let (mut square, mut count) = (0.0, 0.0);
-        for row in of(is_noisy) {
+        for row in rows_where(is_noisy) {
             square += evidence.residual.fixed_rows::<3>(3 * row).norm_squared();
             count += 3.0;
         }
@@ -153,7 +155,7 @@ fn what_the_calibration_holds_it_does_not_absorb() {
     let campaign = sockets();
     let calibration = calibrate(&campaign, Mode::Fea, &Options::default()).unwrap();
     let context = Context::new(&campaign, &calibration).unwrap();
-    let evidence = super::super::evidence::of(&campaign, &calibration, &context);
+    let evidence = super::super::evidence::evidence_of(&campaign, &calibration, &context);
     let (free, held) = (calibration.parameters.len(), calibration.held.len());
     assert!(held > 0);
     assert_eq!(evidence.nuisance.ncols(), free - held + 3 * calibration.sockets.len());
@@ -246,8 +248,8 @@ fn a_clamp_that_moved_does_not_count_less_and_so_stays_visible() {
     let noise = &calibration.noise;
     assert!(noise.of_group[1] > 5.0 * noise.of_group[0], "the calibration takes the clamp for a noisy one");
     let (model, _) = CalibrationModel::new(&campaign, calibration).unwrap();
-    let of = |group: usize| model.scale(rows.iter().position(|row| row.group == group).unwrap());
-    assert!(of(1) > 0.5 * of(0), "{} {}", of(1), of(0));
+    let scale = |group: usize| model.scale(rows.iter().position(|row| row.group == group).unwrap());
+    assert!(scale(1) > 0.5 * scale(0), "{} {}", scale(1), scale(0));
 }
 
 #[test]

@@ -1,4 +1,5 @@
-//! What the engine finds in campaigns into which something was put, and in those into which nothing was.
+//! What the engine finds in campaigns into which something was put, and in those into which nothing
+//! was.
 
 use super::*;
 use crate::inference::Effect;

@@ -1,4 +1,5 @@
-//! What happened to fixture and robot: columns against a fixture that is moved, and a robot that is moved or warms up.
+//! What happened to fixture and robot: columns against a fixture that is moved, and a robot that is
+//! moved or warms up.
 
 use super::changed::{Case, Row, assert_changes};
 use super::*;
@@ -10,7 +11,8 @@ fn axis(axis: usize) -> Vector3<f64> {
     Vector3::ith(axis, 1.0)
 }
 
-/// What a device in another place than the file says adds to the recorded place of the tip: it reads the tip in its own frame.
+/// What a device in another place than the file says adds to the recorded place of the tip: it
+/// reads the tip in its own frame.
 fn read_elsewhere(r: &mut Row<'_>, file: &Pose, shift: Vector3<f64>, turn: Vector3<f64>) {
     let actual = Pose { rotation: exponential(&turn) * file.rotation, origin: file.origin + shift };
     let tip = r.tip();
@@ -96,9 +98,9 @@ fn what_warms_up_grows_with_its_clock() {
     }
     let calibration = calibrate(&campaign, Mode::Fea, &Options::default()).unwrap();
     let rows = campaign.measurements.len();
-    let about_mean = |of: &dyn Fn(usize) -> f64| {
-        let mean = (0..rows).map(of).sum::<f64>() / rows as f64;
-        (0..rows).map(|row| of(row) - mean).collect::<Vec<f64>>()
+    let about_mean = |number: &dyn Fn(usize) -> f64| {
+        let mean = (0..rows).map(number).sum::<f64>() / rows as f64;
+        (0..rows).map(|row| number(row) - mean).collect::<Vec<f64>>()
     };
     let warmth = about_mean(&temperature);
     let clock = about_mean(&time);
@@ -149,7 +151,8 @@ fn a_socket_moves_alone_and_a_plate_turns_about_its_middle() {
     let mut campaign = sockets();
     let rows = &campaign.measurements.rows;
     let group = |row: usize| rows[row].group;
-    let rows_of = |of: &dyn Fn(usize) -> bool| (0..rows.len()).filter(|&row| of(group(row))).collect();
+    let rows_of =
+        |is_there: &dyn Fn(usize) -> bool| (0..rows.len()).filter(|&row| is_there(group(row))).collect();
     let (of_socket, of_plate): (Vec<usize>, Vec<usize>) =
         (rows_of(&|group| group == 1), rows_of(&|group| group < 3));
     let (last_of_socket, last_of_plate) = (of_socket[4], of_plate[9]);

@@ -1,4 +1,4 @@
-//! Poses that are proposed where a mismatch may be something else.
+//! Poses that are proposed where a finding may be something else.
 
 use super::*;
 use crate::inference::Plan as NextPlan;

@@ -53,7 +53,7 @@ fn a_placebo_is_refused() {
     let Some(campaign) = ur5() else { return };
     let calibration = calibrate(&campaign, Mode::None, &Options::default()).unwrap();
     let mut context = Context::new(&campaign, &calibration).unwrap();
-    let evidence = super::super::evidence::of(&campaign, &calibration, &context);
+    let evidence = super::super::evidence::evidence_of(&campaign, &calibration, &context);
     let mut entries = entries(&context);
     let joints: Vec<Vec<f64>> =
         context.configurations.iter().map(|configuration| configuration.joints.clone()).collect();

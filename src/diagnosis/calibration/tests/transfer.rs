@@ -3,7 +3,8 @@
 use super::*;
 use crate::calibration::Compensation;
 
-/// Of the campaign's rows, the even ones as a recording of their own and the odd ones as what is asked for.
+/// Of the campaign's rows, the even ones as a recording of their own and the odd ones as what is
+/// asked for.
 fn halves(campaign: &Campaign) -> [Campaign; 2] {
     let rows = campaign.measurements.len();
     [0, 1].map(|first| {

@@ -1,4 +1,5 @@
-//! Joints, links and loads: columns against a robot that is turned and bent by what its formula says.
+//! Joints, links and loads: columns against a robot that is turned and bent by what its formula
+//! says.
 
 use std::f64::consts::{PI, TAU};
 

@@ -1,4 +1,5 @@
-//! Physics that nobody has named: columns against a robot whose links turn and whose tool and place change.
+//! Physics that nobody has named: columns against a robot whose links turn and whose tool and place
+//! change.
 
 use std::f64::consts::{PI, TAU};
 
@@ -26,7 +27,8 @@ fn links_turn_and_joints_err_together() {
     };
     let link = "link 3, turned by joint 2 and joint 3";
     let cases: Vec<Case> = vec![
-        // the link's frame is where its table ends: α turns about its x axis, β about its y axis, the next joint about z
+        // the link's frame is where its table ends: α turns about its x axis, β about its y axis,
+        // the next joint about z
         (
             "unknown",
             link,

@@ -3,7 +3,8 @@
 use nalgebra::DVector;
 
 use super::{
-    Absorbed, Finding, HeldOut, Hypothesis, LackOfFit, LeftOutSession, Location, NotTestable, Structure,
+    Absorbed, Finding, HeldOut, Hypothesis, LackOfFit, LeftOutSession, Location, NoiseTest, NominalEstimate,
+    NotTestable, Structure, Suspect,
 };
 
 /// The answer of the engine.
@@ -16,6 +17,14 @@ pub struct Diagnosis {
     /// Noise of a datum, with what it shares with others: the standard deviation of what is left of
     /// the data once the hypothesis, and the discrepancy, are taken out.
     pub noise: f64,
+    /// A stated noise against what is left.
+    pub noise_test: NoiseTest,
+    /// Single data far off: remarks, not findings.
+    pub suspects: Vec<Suspect>,
+    /// Numbers of the model's file that moved within what they are known to, the farthest first.
+    pub nominal: Vec<NominalEstimate>,
+    /// What all of them explain of the recording.
+    pub nominal_explains: DVector<f64>,
     /// Variance of the errors that data share, over that of their own.
     pub shared_ratio: f64,
     /// What the base model leaves, once it has absorbed what it can.

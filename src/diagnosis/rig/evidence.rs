@@ -14,24 +14,37 @@ const FEWEST_FOLDS: usize = 3;
 /// Error of a sensor's zero that all runs have in common, as a share of its full scale: the zero balance of good load cells
 /// and displacement sensors is stated as 0.05 to 1 %.
 const ZERO: f64 = 5e-4;
+/// Scatter that a rig may have, as a share of its largest reading: displacement sensors repeat to
+/// 0.1 % of their range or better, and a range is not used to less than a tenth.
+const SCATTER: f64 = 0.03;
+/// And in steps of the display.
+const STEPS_OF_DISPLAY: f64 = 2.0;
 
 /// The evidence of `data`, whose predictions are made.
 pub(super) fn of(data: &[Datum], nuisance: DMatrix<f64>, large: Option<DVector<f64>>) -> Evidence {
+    let residual = DVector::from_iterator(data.len(), data.iter().map(|d| d.measured - d.predicted));
     Evidence {
-        residual: DVector::from_iterator(data.len(), data.iter().map(|d| d.measured - d.predicted)),
         nuisance,
         background: background(data, large),
+        is_robust: true,
+        most_scatter: most_scatter(data),
         replicate_group: numbered(
             data.iter().map(|d| (d.line_key(), d.direction.sign, d.load.to_bits(), d.phase)),
         ),
         // the zero of a run is that of one sensor at one place
         shared: numbered(data.iter().map(|d| (d.run, d.channel, d.stations()[1]))),
         fold: folds(data),
-        session: vec![Evidence::NONE; data.len()],
-        intercept: vec![Evidence::NONE; data.len()],
         resolution: resolution(data),
         covariates: covariates(data),
+        ..Evidence::new(residual)
     }
+}
+
+/// The largest scatter that a rig may have, m: a share of its largest reading, and some steps of the
+/// display. What is larger is no noise, whether or not anything was repeated.
+fn most_scatter(data: &[Datum]) -> Option<f64> {
+    let largest = data.iter().fold(0.0, |most: f64, datum| most.max(datum.measured.abs()));
+    Some((SCATTER * largest).max(STEPS_OF_DISPLAY * resolution(data)))
 }
 
 /// What every hypothesis holds: the zeros of the channels, and what large deflections add (`large`), which the linear model leaves

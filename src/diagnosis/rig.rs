@@ -113,7 +113,8 @@ impl RigModel {
                 let tip = rod.length();
                 let at = |station: Option<f64>| station.unwrap_or(tip).min(tip);
                 let pair = |d: &Datum| (at(d.load_station), at(d.read_station));
-                let place = datum::numbered(data.iter().map(pair));
+                let bits = |(load, read): (f64, f64)| (load.to_bits(), read.to_bits());
+                let place = datum::numbered(data.iter().map(pair).map(bits));
                 let mut pairs = Vec::new();
                 for (datum, &number) in data.iter().zip(&place) {
                     if number == pairs.len() {

@@ -18,6 +18,10 @@ use crate::linalg::{least_squares, thin_svd, transposed_product};
 const RATIO_BEFORE: f64 = 1.0;
 /// What that belief counts, in degrees of freedom.
 const BELIEF: f64 = 10.0;
+/// Of fewer groups nobody knows which mean is far out; and how far that is, in robust standard
+/// deviations.
+const FEWEST_GROUPS: usize = 6;
+const FAR: f64 = 3.0;
 /// Length, relative to what it was, below which a nuisance column is a combination of the others.
 const DEPENDENT: f64 = 1e-9;
 
@@ -204,9 +208,22 @@ fn shared_ratio(evidence: &Evidence, left: &DVector<f64>) -> f64 {
         *squares += deviation * deviation;
         *members += 1.0;
     }
+    // a step between two runs is no scatter of their zeros: a mean far out counts as far as usual
+    let limit = match groups.len() >= FEWEST_GROUPS {
+        true => {
+            let mut means: Vec<f64> =
+                groups.values().map(|(total, _, members)| (total / members).abs()).collect();
+            means.sort_by(f64::total_cmp);
+            FAR * 1.4826 * means[means.len() / 2]
+        }
+        false => f64::INFINITY,
+    };
     let (mut product, mut pairs) = (0.0, 0.0);
     for (total, squares, members) in groups.into_values() {
-        product += total * total - squares;
+        let mean = total / members;
+        let clipped = mean.clamp(-limit, limit);
+        let squares = squares - members * (mean * mean - clipped * clipped);
+        product += (clipped * members).powi(2) - squares;
         pairs += members * (members - 1.0);
     }
     if count == 0.0 || pairs == 0.0 || square == 0.0 {

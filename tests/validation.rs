@@ -4,6 +4,8 @@
 
 #[path = "validation/beams.rs"]
 mod beams;
+#[path = "validation/flexure.rs"]
+mod flexure;
 #[path = "validation/paper.rs"]
 mod paper;
 #[path = "validation/sections.rs"]

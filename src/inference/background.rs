@@ -68,6 +68,9 @@ pub(super) struct Folded {
 /// Puts the nominal numbers into the background.
 pub(super) fn folded(evidence: &Evidence) -> Folded {
     let first = evidence.background.ncols();
+    if evidence.nominal.ncols() == 0 {
+        return Folded { evidence: evidence.clone(), basis: DMatrix::zeros(0, 0), first };
+    }
     let eigen = SymmetricEigen::new(transposed_product(&evidence.nominal, &evidence.nominal));
     let largest = eigen.eigenvalues.iter().copied().fold(0.0, f64::max);
     let mut kept: Vec<usize> = (0..eigen.eigenvalues.len())
@@ -83,20 +86,19 @@ pub(super) fn folded(evidence: &Evidence) -> Folded {
 }
 
 impl Folded {
-    /// What the numbers explain of the recording, under a hypothesis.
-    pub fn explained(&self, hypothesis: &Hypothesis) -> DVector<f64> {
-        let count = self.basis.ncols();
-        self.evidence.background.columns(self.first, count) * hypothesis.background.rows(self.first, count)
-    }
-
-    /// The numbers that moved, the farthest first.
-    pub fn estimates(&self, hypothesis: &Hypothesis, coverage_factor: f64) -> Vec<NominalEstimate> {
+    /// Factors of all numbers, in standard uncertainties, with their covariance.
+    pub fn factors(&self, hypothesis: &Hypothesis) -> (DVector<f64>, DMatrix<f64>) {
         let count = self.basis.ncols();
         let factors = &self.basis * hypothesis.background.rows(self.first, count);
         let own = hypothesis.background_covariance.view((self.first, self.first), (count, count));
         let known = &self.basis * own * self.basis.transpose();
         let all = DMatrix::identity(factors.len(), factors.len());
-        let covariance = known + (all - &self.basis * self.basis.transpose());
+        (factors, known + (all - &self.basis * self.basis.transpose()))
+    }
+
+    /// The numbers that moved, the farthest first.
+    pub fn estimates(&self, hypothesis: &Hypothesis, coverage_factor: f64) -> Vec<NominalEstimate> {
+        let (factors, covariance) = self.factors(hypothesis);
         let mut moved: Vec<NominalEstimate> = Vec::new();
         for (k, number) in self.evidence.nominal_numbers.iter().enumerate() {
             let (factor, sd) = (factors[k], covariance[(k, k)].max(0.0).sqrt());
@@ -104,12 +106,11 @@ impl Folded {
                 continue;
             }
             let at = |factor: f64| number.value + factor * number.standard_uncertainty;
-            let (low, high) = (factor - coverage_factor * sd, factor + coverage_factor * sd);
             moved.push(NominalEstimate {
                 number: number.clone(),
                 estimate: at(factor),
-                low: at(low),
-                high: at(high),
+                low: at(factor - coverage_factor * sd),
+                high: at(factor + coverage_factor * sd),
             });
         }
         moved.sort_by(|a, b| b.moved().abs().total_cmp(&a.moved().abs()));

@@ -98,7 +98,7 @@ pub fn diagnose(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
         noise,
         noise_test,
         suspects,
-        nominal_explains: folded.explained(longest),
+        nominal_factors: folded.factors(longest),
         nominal,
         shared_ratio: search.shared_ratio(),
         lack_of_fit_before: search.lack_of_fit(&none, &by_base),

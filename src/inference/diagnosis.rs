@@ -1,6 +1,6 @@
 //! What a recording says about the physics that its model left out.
 
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 
 use super::{
     Absorbed, Finding, HeldOut, Hypothesis, LackOfFit, LeftOutSession, Location, NoiseTest, NominalEstimate,
@@ -23,8 +23,8 @@ pub struct Diagnosis {
     pub suspects: Vec<Suspect>,
     /// Numbers of the model's file that moved within what they are known to, the farthest first.
     pub nominal: Vec<NominalEstimate>,
-    /// What all of them explain of the recording.
-    pub nominal_explains: DVector<f64>,
+    /// Factors of all nominal numbers, in standard uncertainties, with their covariance.
+    pub nominal_factors: (DVector<f64>, DMatrix<f64>),
     /// Variance of the errors that data share, over that of their own.
     pub shared_ratio: f64,
     /// What the base model leaves, once it has absorbed what it can.

@@ -17,6 +17,9 @@ use crate::linalg::transposed_product;
 
 /// Singular value, relative to the largest, below which a direction draws nothing.
 const NOTHING: f64 = 1e-6;
+/// Standard deviation of an offset that data share for good, over that of a datum: a zero is one
+/// reading or a few, taken a while ago.
+const OFFSET: f64 = 1.5;
 /// A number has moved if it is off by so many of its standard uncertainties, and by so many of what
 /// is then left of them.
 const MOVED: (f64, f64) = (0.3, 1.5);
@@ -65,24 +68,43 @@ pub(super) struct Folded {
     first: usize,
 }
 
-/// Puts the nominal numbers into the background.
+/// Puts the nominal numbers and the offsets into the background.
 pub(super) fn folded(evidence: &Evidence) -> Folded {
     let first = evidence.background.ncols();
-    if evidence.nominal.ncols() == 0 {
-        return Folded { evidence: evidence.clone(), basis: DMatrix::zeros(0, 0), first };
+    let basis = basis(&evidence.nominal);
+    let own = &evidence.nominal * &basis;
+    let (count, offsets) = (own.ncols(), evidence.offsets.ncols());
+    let mut background = DMatrix::zeros(evidence.residual.len(), first + count + offsets);
+    background.columns_mut(0, first).copy_from(&evidence.background);
+    background.columns_mut(first, count).copy_from(&own);
+    let mut evidence = Evidence { background, ..evidence.clone() };
+    size_offsets(&mut evidence, 0.0);
+    Folded { evidence, basis, first }
+}
+
+/// V without the directions that draw nothing.
+fn basis(nominal: &DMatrix<f64>) -> DMatrix<f64> {
+    if nominal.ncols() == 0 {
+        return DMatrix::zeros(0, 0);
     }
-    let eigen = SymmetricEigen::new(transposed_product(&evidence.nominal, &evidence.nominal));
+    let eigen = SymmetricEigen::new(transposed_product(nominal, nominal));
     let largest = eigen.eigenvalues.iter().copied().fold(0.0, f64::max);
     let mut kept: Vec<usize> = (0..eigen.eigenvalues.len())
         .filter(|&k| eigen.eigenvalues[k] > NOTHING * NOTHING * largest)
         .collect();
     kept.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
-    let basis = eigen.eigenvectors.select_columns(&kept);
-    let own = &evidence.nominal * &basis;
-    let mut background = DMatrix::zeros(evidence.residual.len(), first + own.ncols());
-    background.columns_mut(0, first).copy_from(&evidence.background);
-    background.columns_mut(first, own.ncols()).copy_from(&own);
-    Folded { evidence: Evidence { background, ..evidence.clone() }, basis, first }
+    eigen.eigenvectors.select_columns(&kept)
+}
+
+/// Gives the offsets, the last columns of the background, the size that goes with a noise.
+pub(super) fn size_offsets(evidence: &mut Evidence, noise: f64) {
+    let count = evidence.offsets.ncols();
+    let first = evidence.background.ncols() - count;
+    for k in 0..count {
+        let size = evidence.least_offset[k].hypot(OFFSET * noise);
+        let column = evidence.offsets.column(k) * size;
+        evidence.background.set_column(first + k, &column);
+    }
 }
 
 impl Folded {

@@ -18,6 +18,12 @@ pub struct Evidence {
     pub nominal_numbers: Vec<NominalNumber>,
     /// For each of them a column of n: ∂predicted/∂number times its standard uncertainty.
     pub nominal: DMatrix<f64>,
+    /// Offsets that data share for good, such as a zero that is taken once: a column of ones and
+    /// zeros for each, and the least standard deviation of its size. A zero is as uncertain as
+    /// readings are, whatever that is.
+    pub offsets: DMatrix<f64>,
+    /// See `offsets`.
+    pub least_offset: Vec<f64>,
     /// Standard deviation of a datum's noise, where somebody stated it.
     pub stated_noise: Option<f64>,
     /// The largest root mean square that can be scatter; `None` where nothing is known of it.
@@ -59,6 +65,8 @@ impl Evidence {
             background: DMatrix::zeros(count, 0),
             nominal_numbers: Vec::new(),
             nominal: DMatrix::zeros(count, 0),
+            offsets: DMatrix::zeros(count, 0),
+            least_offset: Vec::new(),
             stated_noise: None,
             most_scatter: None,
             is_robust: false,
@@ -83,6 +91,8 @@ impl Evidence {
             background: self.background.select_rows(rows),
             nominal_numbers: self.nominal_numbers.clone(),
             nominal: self.nominal.select_rows(rows),
+            offsets: self.offsets.select_rows(rows),
+            least_offset: self.least_offset.clone(),
             stated_noise: self.stated_noise,
             most_scatter: self.most_scatter,
             is_robust: self.is_robust,

@@ -3,6 +3,7 @@
 use nalgebra::DVector;
 
 use super::Hypothesis;
+use super::background::size_offsets;
 use super::evidence::rms;
 use super::linearised::Linearised;
 use super::scatter::Tails;
@@ -25,7 +26,8 @@ pub fn settled(model: &Linearised<'_>, evidence: &Evidence) -> Evidence {
     let mut evidence = evidence.clone();
     let mut known: Vec<Term> = Vec::new();
     let search = Search::new(model, &evidence, &[]);
-    if !evidence.is_robust && !search.whitening.is_of_shared_errors() {
+    let is_plain = !evidence.is_robust && evidence.offsets.ncols() == 0;
+    if is_plain && !search.whitening.is_of_shared_errors() {
         evidence.shared_ratio = Some(search.shared_ratio());
         return evidence;
     }
@@ -49,10 +51,12 @@ pub fn settled(model: &Linearised<'_>, evidence: &Evidence) -> Evidence {
         let candidates = |terms: &[Term]| terms.iter().map(|t| t.candidate).collect::<Vec<_>>();
         let is_same = candidates(&known) == candidates(&hypothesis.terms);
         let ratio = search.shared_ratio();
+        let noise = longest.sigma;
         known = hypothesis.terms;
         let has_shared = search.whitening.is_of_shared_errors();
         evidence.weight = if is_same_weight { evidence.weight } else { weight };
-        let is_settled = is_same_weight && (is_same || !has_shared);
+        let is_settled = pass > 0 && is_same_weight && (is_same || !has_shared);
+        size_offsets(&mut evidence, noise);
         if is_settled || pass + 1 == PASSES {
             evidence.shared_ratio = Some(match is_settled {
                 true => ratio,

@@ -15,7 +15,7 @@ use super::datum::Datum;
 use super::structure::responses;
 use crate::error::Result;
 use crate::inference::NominalNumber;
-use crate::rod::{self, Rod};
+use crate::rod::Rod;
 use crate::spatial::Axis;
 use crate::units::MM;
 

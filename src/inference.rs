@@ -9,6 +9,7 @@
 //! evidence + forward model → search (score) → selection → pruning → held out, sessions → findings
 //! ```
 
+mod background;
 mod description;
 mod diagnose;
 mod diagnosis;
@@ -25,10 +26,12 @@ mod limit;
 mod linearised;
 mod locate;
 mod location;
+mod pairs;
 mod proposal;
 mod pruning;
 mod quantity;
 mod ranking;
+mod scatter;
 mod score;
 mod search;
 mod selection;
@@ -43,6 +46,7 @@ mod tests;
 
 #[cfg(test)]
 pub(crate) use self::{linearised::Linearised, pruning::infer, selection::DiscrepancyModel};
+pub use background::{NominalEstimate, NominalNumber};
 pub use description::Description;
 pub use diagnose::diagnose;
 pub use diagnosis::{Diagnosed, Diagnosis, Discrepancy};
@@ -60,6 +64,7 @@ pub use location::{Location, Part, Run, RunName};
 pub use proposal::{LoadPlan, Plan, PlannedPose, PosePlan, Proposal};
 pub use quantity::Quantity;
 pub use ranking::{Rank, Ranked, ranking};
+pub use scatter::{NoiseTest, Suspect};
 pub use selection::NAMED;
 pub use sessions::LeftOutSession;
 pub use untested::{Absorbed, NotTestable};

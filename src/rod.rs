@@ -5,9 +5,13 @@
 
 mod build;
 mod file;
+mod nominal;
+mod uncertainty;
 mod warnings;
 mod write;
 
+pub use nominal::{Feature, Nominal, NominalNumber, Part, SectionConstant};
+pub use uncertainty::StandardUncertainty;
 pub use warnings::Warning;
 
 use std::f64::consts::PI;
@@ -15,7 +19,7 @@ use std::f64::consts::PI;
 use nalgebra::Vector3;
 
 use crate::material::Material;
-use crate::section::Round;
+use crate::section::Section;
 
 /// A rod in SI units, as its file describes it or as it was built. [`Rod::read`],
 /// [`Rod::from_toml`] and [`Rod::checked`] check it.
@@ -50,6 +54,8 @@ pub struct Rod {
     pub joints: Vec<Joint>,
     /// Largest load up to which the rod's maker or user calls it linear, N.
     pub linear_range: Option<f64>,
+    /// How well the dimensions are known; each material carries its own.
+    pub standard_uncertainty: StandardUncertainty,
     /// What the reader of the file wants its user to know.
     pub warnings: Vec<Warning>,
 }
@@ -58,7 +64,7 @@ pub struct Rod {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pipe {
     /// Cross-section.
-    pub section: Round,
+    pub section: Section,
     /// Material.
     pub material: Material,
 }
@@ -109,33 +115,54 @@ pub enum BendFlexibility {
 
 impl BendFlexibility {
     /// The factor k on the bending flexibility of the bend (in and out of its plane),
-    /// dimensionless.
+    /// dimensionless; `bend_radius` in m. The two formulas are for round tubes: 1 for any other
+    /// section.
     ///
     /// ```
     /// use rodcal::rod::BendFlexibility;
     /// use rodcal::section::Round;
     ///
     /// // t = 1 mm, r = 15.5 mm, R = 60.0625 mm: h = tR/r² = 1/4, k = (10 + 12/16)/(1 + 12/16) = 43/7
-    /// let tube = Round::tube(0.032, 0.030);
+    /// let tube = Round::tube(0.032, 0.030).into();
     /// assert!((BendFlexibility::VonKarman.factor(&tube, 0.0600625) - 43.0 / 7.0).abs() < 1e-9);
     /// assert!((BendFlexibility::AsmeB313.factor(&tube, 0.0600625) - 6.6).abs() < 1e-9); // 1.65/h
     /// ```
-    pub fn factor(&self, section: &Round, bend_radius: f64) -> f64 {
+    pub fn factor(&self, section: &Section, bend_radius: f64) -> f64 {
         // h = tR/r²
-        let h = section.wall() * bend_radius / section.mean_radius().powi(2);
-        match *self {
-            BendFlexibility::Beam => 1.0,
-            BendFlexibility::VonKarman => (10.0 + 12.0 * h * h) / (1.0 + 12.0 * h * h),
-            BendFlexibility::AsmeB313 => (1.65 / h).max(1.0),
-            BendFlexibility::Factor(k) => k,
+        let h = section.as_round().map(|tube| tube.wall() * bend_radius / tube.mean_radius().powi(2));
+        match (*self, h) {
+            (BendFlexibility::Factor(k), _) => k,
+            (BendFlexibility::VonKarman, Some(h)) => (10.0 + 12.0 * h * h) / (1.0 + 12.0 * h * h),
+            (BendFlexibility::AsmeB313, Some(h)) => (1.65 / h).max(1.0),
+            (BendFlexibility::Beam, _) | (_, None) => 1.0,
         }
+    }
+
+    /// True where k follows from the wall of a round tube.
+    pub fn is_for_tubes(&self) -> bool {
+        matches!(self, BendFlexibility::VonKarman | BendFlexibility::AsmeB313)
     }
 }
 
 impl Pipe {
     /// A pipe of this section and material.
-    pub fn new(section: Round, material: Material) -> Pipe {
-        Pipe { section, material }
+    ///
+    /// ```
+    /// use rodcal::prelude::*;
+    /// use rodcal::section::Rectangle;
+    ///
+    /// let steel = Material::isotropic("steel", 193e9, 0.29, 7930.0);
+    /// let bar = Pipe::new(Rectangle::solid(0.010, 0.020), steel);
+    /// assert!((bar.mass_per_length() - 7930.0 * 2e-4).abs() < 1e-12);
+    /// ```
+    pub fn new(section: impl Into<Section>, material: Material) -> Pipe {
+        Pipe { section: section.into(), material }
+    }
+
+    /// Shear coefficients κ for forces in the rod's plane and out of it, dimensionless.
+    pub fn shear_coefficients(&self) -> [f64; 2] {
+        let (ratio, nu) = (self.material.modulus_ratio(), self.material.poisson_ratio);
+        self.section.shear_coefficients(ratio, nu).map(|kappa| kappa * self.material.shear_coefficient_factor)
     }
 
     /// Mass per length ρA, kg/m.

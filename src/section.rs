@@ -1,86 +1,148 @@
-//! Cross-sections of pipes: tubes and solid rounds.
+//! Cross-sections of pipes: tubes and rounds, rectangles and boxes, and others by their constants.
+//!
+//! Axes: a rod's two pipes lie in the X–Z plane of {T}. A section has one axis Y, normal to that
+//! plane, and one that lies in it, across the centreline. `I_y` is the second moment of area
+//! *about Y*: it resists bending **in** the rod's plane. `I_z` is the one about the axis in the
+//! plane (for pipe II of an L that is Z): it resists bending **out of** the plane. Both axes must
+//! be principal axes of the section.
 
-use std::f64::consts::PI;
+mod rectangle;
+mod round;
 
-/// A circular section, hollow (tube) or solid (`inner_diameter = 0`).
-///
-/// ```
-/// use rodcal::section::Round;
-///
-/// // 16 × 12 mm (Roark's Formulas, 7th ed., Table A.1): A = 28π mm², I = 700π mm⁴
-/// let tube = Round::tube(0.016, 0.012);
-/// assert!((tube.area() / 87.965e-6 - 1.0).abs() < 1e-5);
-/// assert!((tube.second_moment() / 2199.1e-12 - 1.0).abs() < 1e-4);
-/// assert_eq!(tube.torsion_constant(), 2.0 * tube.second_moment());
-/// ```
+pub use rectangle::Rectangle;
+pub use round::Round;
+
+/// The cross-section of a pipe.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Round {
-    /// Outer diameter D, m.
-    pub outer_diameter: f64,
-    /// Inner diameter d, m; 0 for a solid round.
-    pub inner_diameter: f64,
+#[non_exhaustive]
+pub enum Section {
+    /// A tube or a solid round.
+    Round(Round),
+    /// A solid rectangle or a box.
+    Rectangle(Rectangle),
+    /// Any other section, by its constants.
+    General(General),
 }
 
-impl Round {
-    /// A tube; diameters in m.
-    pub fn tube(outer_diameter: f64, inner_diameter: f64) -> Round {
-        Round { outer_diameter, inner_diameter }
-    }
+/// A section that is known by its constants, as a handbook or a profile's maker states them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct General {
+    /// Area A, m².
+    pub area: f64,
+    /// Second moment of area about Y, for bending in the rod's plane, I_y, m⁴.
+    pub iy: f64,
+    /// Second moment of area about the axis in the rod's plane, for bending out of it, I_z, m⁴.
+    pub iz: f64,
+    /// Torsion constant J, m⁴.
+    pub torsion_constant: f64,
+    /// Shear coefficient κ for both directions, dimensionless.
+    pub shear_coefficient: f64,
+}
 
-    /// A solid round; diameter in m.
-    pub fn solid(diameter: f64) -> Round {
-        Round { outer_diameter: diameter, inner_diameter: 0.0 }
-    }
-
-    /// Area A = π/4 (D² − d²), m².
+impl Section {
+    /// Area A, m².
     pub fn area(&self) -> f64 {
-        let (outer, inner) = (self.outer_diameter, self.inner_diameter);
-        // (D − d)(D + d) keeps its digits on thin walls, where D² − d² would cancel
-        PI / 4.0 * (outer - inner) * (outer + inner)
+        match self {
+            Section::Round(round) => round.area(),
+            Section::Rectangle(rectangle) => rectangle.area(),
+            Section::General(general) => general.area,
+        }
     }
 
-    /// Second moment of area about any diameter, I = π/64 (D⁴ − d⁴), m⁴.
+    /// I_y and I_z, m⁴: for bending in the rod's plane and out of it.
+    ///
+    /// ```
+    /// use rodcal::section::{Rectangle, Round, Section};
+    ///
+    /// // 20 mm high in the rod's plane, 10 mm wide across it
+    /// let bar = Section::from(Rectangle::solid(0.010, 0.020));
+    /// assert_eq!(bar.second_moments(), [0.010 * 0.020f64.powi(3) / 12.0, 0.020 * 0.010f64.powi(3) / 12.0]);
+    /// let [iy, iz] = Section::from(Round::solid(0.01)).second_moments();
+    /// assert_eq!(iy, iz);
+    /// ```
+    pub fn second_moments(&self) -> [f64; 2] {
+        match self {
+            Section::Round(round) => [round.second_moment(); 2],
+            Section::Rectangle(rectangle) => rectangle.second_moments(),
+            Section::General(general) => [general.iy, general.iz],
+        }
+    }
+
+    /// I_y, m⁴, for bending in the rod's plane: the first of [`Section::second_moments`].
     pub fn second_moment(&self) -> f64 {
-        // I = A (D² + d²)/16
-        self.area() * (self.outer_diameter.powi(2) + self.inner_diameter.powi(2)) / 16.0
+        self.second_moments()[0]
     }
 
-    /// Torsion constant, for a circular section the polar moment J = 2I, m⁴.
+    /// Torsion constant J, m⁴.
     pub fn torsion_constant(&self) -> f64 {
-        2.0 * self.second_moment()
+        match self {
+            Section::Round(round) => round.torsion_constant(),
+            Section::Rectangle(rectangle) => rectangle.torsion_constant(),
+            Section::General(general) => general.torsion_constant,
+        }
     }
 
-    /// Cowper's shear coefficient κ of a hollow circle (solid: m = 0), dimensionless, for Poisson's
-    /// ratio ν:
-    ///
-    /// κ = 6(1+ν)(1+m²)² / ((7+6ν)(1+m²)² + (20+12ν)m²), m = d/D.
-    ///
-    /// Source: G. R. Cowper, "The Shear Coefficient in Timoshenko's Beam Theory",
-    /// J. Appl. Mech. 33 (1966) 335–340, table of coefficients.
-    ///
-    /// ```
-    /// use rodcal::section::Round;
-    ///
-    /// // Cowper's limits for ν = 0.3: solid 6(1+ν)/(7+6ν) = 0.886, thin 2(1+ν)/(4+3ν) = 0.531
-    /// assert!((Round::solid(0.01).shear_coefficient(0.3) - 0.886).abs() < 5e-4);
-    /// assert!((Round::tube(1.0, 0.9999).shear_coefficient(0.3) - 0.531).abs() < 5e-4);
-    /// ```
-    pub fn shear_coefficient(&self, poisson_ratio: f64) -> f64 {
-        let nu = poisson_ratio;
-        let m2 = (self.inner_diameter / self.outer_diameter).powi(2);
-        let ring = (1.0 + m2).powi(2);
-        6.0 * (1.0 + nu) * ring / ((7.0 + 6.0 * nu) * ring + (20.0 + 12.0 * nu) * m2)
+    /// Shear coefficients κ for forces in the rod's plane and out of it, dimensionless, of a
+    /// material with `ratio` e = E/G and Poisson's ratio ν: [`Round::shear_coefficient`] or
+    /// [`Rectangle::shear_coefficients`]; those of a general section are as stated.
+    pub fn shear_coefficients(&self, ratio: f64, poisson_ratio: f64) -> [f64; 2] {
+        match self {
+            Section::Round(round) => [round.shear_coefficient(ratio, poisson_ratio); 2],
+            Section::Rectangle(rectangle) => rectangle.shear_coefficients(ratio, poisson_ratio),
+            Section::General(general) => [general.shear_coefficient; 2],
+        }
     }
 
-    /// Wall thickness t = (D − d)/2, m; the radius for a solid round.
-    pub fn wall(&self) -> f64 {
-        (self.outer_diameter - self.inner_diameter) / 2.0
+    /// The round, if it is one.
+    pub fn as_round(&self) -> Option<&Round> {
+        match self {
+            Section::Round(round) => Some(round),
+            _ => None,
+        }
     }
 
-    /// Mean radius of the wall r = (D + d)/4, m.
-    pub fn mean_radius(&self) -> f64 {
-        (self.outer_diameter + self.inner_diameter) / 4.0
+    /// Wall thickness, m, where the section has one: of a tube or a box.
+    pub fn wall(&self) -> Option<f64> {
+        match self {
+            Section::Round(round) => Some(round.wall()),
+            Section::Rectangle(rectangle) => rectangle.wall,
+            Section::General(_) => None,
+        }
     }
+
+    /// Extent in the rod's plane, across the centreline, m; of a general section that of the
+    /// rectangle of the same area and I_y.
+    pub fn height(&self) -> f64 {
+        match self {
+            Section::Round(round) => round.outer_diameter,
+            Section::Rectangle(rectangle) => rectangle.height,
+            Section::General(general) => (12.0 * general.iy / general.area).sqrt(),
+        }
+    }
+}
+
+impl From<Round> for Section {
+    fn from(round: Round) -> Section {
+        Section::Round(round)
+    }
+}
+
+impl From<Rectangle> for Section {
+    fn from(rectangle: Rectangle) -> Section {
+        Section::Rectangle(rectangle)
+    }
+}
+
+impl From<General> for Section {
+    fn from(general: General) -> Section {
+        Section::General(general)
+    }
+}
+
+/// ν/e for a shear coefficient. Of an isotropic material it is at most ⅙; beyond ½, which no known
+/// wall reaches, the formulas lose their meaning.
+fn contraction(ratio: f64, poisson_ratio: f64) -> f64 {
+    (poisson_ratio / ratio).min(0.5)
 }
 
 #[cfg(test)]
@@ -88,19 +150,35 @@ mod tests {
     use super::*;
     use approx::assert_relative_eq;
 
-    const TUBE: Round = Round { outer_diameter: 0.016, inner_diameter: 0.012 };
-
     #[test]
-    fn tube_16_by_12_has_the_textbook_constants() {
-        // Roark's Formulas, 7th ed., Table A.1, hollow circle: A = π(R² − Ri²), I = π(R⁴ − Ri⁴)/4
-        assert_relative_eq!(TUBE.area(), PI * (64e-6 - 36e-6), max_relative = 1e-14);
-        assert_relative_eq!(TUBE.second_moment(), PI / 4.0 * (4096e-12 - 1296e-12), max_relative = 1e-14);
-        assert_relative_eq!(TUBE.torsion_constant(), PI / 2.0 * (4096e-12 - 1296e-12), max_relative = 1e-14);
+    fn a_general_section_with_the_constants_of_a_rectangle_is_that_rectangle() {
+        let bar = Section::from(Rectangle::solid(0.010, 0.020));
+        let [iy, iz] = bar.second_moments();
+        let general = Section::from(General {
+            area: bar.area(),
+            iy,
+            iz,
+            torsion_constant: bar.torsion_constant(),
+            shear_coefficient: 5.0 / 6.0,
+        });
+        assert_eq!(general.second_moments(), bar.second_moments());
+        assert_relative_eq!(general.height(), 0.020, max_relative = 1e-14);
+        assert_eq!(general.shear_coefficients(2.6, 0.3), [5.0 / 6.0; 2]);
+        assert_eq!(general.shear_coefficients(2.6, 0.3)[0], 5.0 / 6.0);
+        assert_eq!((general.wall(), bar.wall(), bar.as_round()), (None, None, None));
     }
 
     #[test]
-    fn wall_and_mean_radius_describe_the_tube() {
-        assert_relative_eq!(TUBE.wall(), 0.002, max_relative = 1e-14);
-        assert_relative_eq!(TUBE.mean_radius(), 0.007, max_relative = 1e-14);
+    fn absurd_moduli_leave_the_coefficients_positive() {
+        for section in [
+            Section::from(Round::tube(0.03, 0.029)),
+            Section::from(Rectangle::solid(0.01, 0.02)),
+            Section::from(Rectangle::hollow(0.01, 0.02, 0.001)),
+        ] {
+            for ratio in [1e-6, 0.1, 1.0, 1e9] {
+                let [a, b] = section.shear_coefficients(ratio, 0.3);
+                assert!(a > 0.0 && b > 0.0 && a < 2.0 && b < 2.0, "{section:?} {ratio} {a} {b}");
+            }
+        }
     }
 }

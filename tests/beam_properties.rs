@@ -86,7 +86,7 @@ fn assert_same(a: &Matrix3<f64>, b: &Matrix3<f64>) -> Result<(), TestCaseError> 
 
 fn rod() -> impl Strategy<Value = Rod> {
     let pipe = |outer: f64, wall: f64| Pipe {
-        section: Round { outer_diameter: outer, inner_diameter: outer * (1.0 - wall) },
+        section: Round::tube(outer, outer * (1.0 - wall)).into(),
         material: Material::isotropic("steel", 193e9, 0.29, 7930.0),
     };
     (0.1..0.8f64, 0.1..0.8f64, 0.3..PI, 0.0..1.0f64, 0.01..0.05f64, 0.05..1.0f64, 0.0..1.0f64).prop_map(

@@ -3,5 +3,6 @@
 #![allow(clippy::unwrap_used)]
 
 mod beams;
+mod flexure;
 mod paper;
 mod sections;

@@ -208,13 +208,17 @@ impl Physics {
     fn profile(&self, pipe: &Pipe, bend_factor: f64) -> Profile {
         let (section, material) = (&pipe.section, &pipe.material);
         let (e, g, area) = (material.youngs_modulus, material.shear_modulus, section.area());
-        let kappa = section.shear_coefficient(material.poisson_ratio);
-        let shear = if self.shear { 1.0 / (kappa * g * area) } else { 0.0 };
-        let bending = bend_factor / (e * section.second_moment());
+        // local axes: x in the rod's plane, y = Y of {T} normal to it; a force in the plane shears
+        // along x and bends about y
+        let [iy, iz] = section.second_moments();
+        let shear = match self.shear {
+            true => pipe.shear_coefficients().map(|kappa| 1.0 / (kappa * g * area)),
+            false => [0.0; 2],
+        };
         Profile {
             axial: if self.axial { 1.0 / (e * area) } else { 0.0 },
-            shear: [shear; 2],
-            bending: [bending; 2],
+            shear,
+            bending: [iz, iy].map(|about| bend_factor / (e * about)),
             torsion: 1.0 / (g * section.torsion_constant()),
             mass_per_length: pipe.mass_per_length(),
         }

@@ -49,13 +49,15 @@ pub fn compliance(rod: &Rod) -> Result<Compliance> {
         );
     }
     let (l1, l2) = (rod.l1, rod.l2);
-    let ei = rod.pipe1.material.youngs_modulus * rod.pipe1.section.second_moment();
+    // in the rod's plane and, for y, out of it: the paper's pipes are round and have one
+    let [ei, ei_out] =
+        rod.pipe1.section.second_moments().map(|about| rod.pipe1.material.youngs_modulus * about);
     let gj = rod.pipe1.material.shear_modulus * rod.pipe1.section.torsion_constant();
 
     // Eq 15
     let f11 = l1.powi(3) / (3.0 * ei);
     let f13 = -l1.powi(2) * l2 / (2.0 * ei);
-    let f22 = (l1.powi(3) + l2.powi(3)) / (3.0 * ei) + l1 * l2.powi(2) / gj;
+    let f22 = (l1.powi(3) + l2.powi(3)) / (3.0 * ei_out) + l1 * l2.powi(2) / gj;
     let f33 = l2.powi(3) / (3.0 * ei) + l1 * l2.powi(2) / ei;
 
     // Eq 17, with q the weight per length under one g, N/m
@@ -65,9 +67,9 @@ pub fn compliance(rod: &Rod) -> Result<Compliance> {
     let g31 = -q * (l1.powi(3) * l2 / (6.0 * ei) + l1.powi(2) * l2.powi(2) / (2.0 * ei));
     let g33 = q * (l2.powi(4) / (8.0 * ei) + l1 * l2.powi(3) / (2.0 * ei));
     let g22 = q
-        * (l2.powi(4) / (8.0 * ei)
-            + l1.powi(3) * l2 / (3.0 * ei)
-            + l1.powi(4) / (8.0 * ei)
+        * (l2.powi(4) / (8.0 * ei_out)
+            + l1.powi(3) * l2 / (3.0 * ei_out)
+            + l1.powi(4) / (8.0 * ei_out)
             + l1 * l2.powi(3) / (2.0 * gj));
 
     Ok(Compliance {

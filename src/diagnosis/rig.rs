@@ -24,6 +24,7 @@ mod feasible;
 mod limits;
 mod load_history;
 mod next;
+mod nominal;
 mod nonparametric;
 mod structure;
 #[cfg(test)]
@@ -113,7 +114,8 @@ impl RigModel {
                 let tip = rod.length();
                 let at = |station: Option<f64>| station.unwrap_or(tip).min(tip);
                 let pair = |d: &Datum| (at(d.load_station), at(d.read_station));
-                let place = datum::numbered(data.iter().map(pair));
+                let bits = |(load, read): (f64, f64)| (load.to_bits(), read.to_bits());
+                let place = datum::numbered(data.iter().map(pair).map(bits));
                 let mut pairs = Vec::new();
                 for (datum, &number) in data.iter().zip(&place) {
                     if number == pairs.len() {
@@ -154,7 +156,16 @@ impl RigModel {
             }
             Body::Lines(_) => None,
         };
-        let evidence = evidence::of(&model.data, nuisance, large);
+        let mut evidence = evidence::of(&model.data, nuisance, large);
+        if let Some(rod) = rod {
+            let stations = |rod: &Rod, d: &Datum| {
+                let tip = rod.length();
+                let at = |station: Option<f64>| station.unwrap_or(tip).min(tip);
+                (at(d.load_station), at(d.read_station))
+            };
+            let (numbers, columns) = nominal::all(&model.data, rod, &stations)?;
+            (evidence.nominal_numbers, evidence.nominal) = (numbers, columns);
+        }
         let not_testable = model.add_candidates(is_wanted);
         Ok((model, evidence, not_testable))
     }

@@ -2,20 +2,21 @@
 
 use nalgebra::DVector;
 
+use super::background;
 use super::effect::Reported;
 use super::evidence::rms;
 use super::held_out::{Theme, hold_out};
 use super::linearised::Linearised;
 use super::locate::locate;
-use super::pruning::infer;
+use super::pruning::{infer, settled};
+use super::scatter::{NoiseTest, Tails};
 use super::search::Search;
 use super::selection::DiscrepancyModel;
 use super::sessions::leave_one_session_out;
 use super::{
     Diagnosis, Discrepancy, Estimate, Evidence, Finding, FindingPart, ForwardModel, HeldOut, Hypothesis,
-    Parameter, Rival, Term,
+    Kind, Parameter, Rival, Term,
 };
-use crate::parallel::both;
 use crate::statistics::{chi_squared_survival, student_t_quantile};
 
 /// Odds within which another explanation counts as indistinguishable: 20 to 1.
@@ -24,11 +25,20 @@ const APART: f64 = 20.0;
 /// A form of a law that leaves at most so much more, as a factor, may be the right one.
 const HARDLY_MORE: f64 = 1.1;
 
+/// A stated noise is contradicted below this probability.
+const CONTRADICTED: f64 = 1e-3;
+/// Ln odds from which on it is said what the nominal numbers explain.
+const WORTH_SAYING: f64 = 3.0;
+
 /// Diagnoses a recording.
 pub fn diagnose(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
     let model = &Linearised::new(model);
-    let ((search, hypothesis, left_over), held_out) =
-        both(|| infer(model, evidence), || hold_out(model, evidence));
+    let folded = background::folded(evidence);
+    let settled = settled(model, &folded.evidence);
+    let evidence = &settled;
+    let (search, hypothesis, left_over) = infer(model, evidence);
+    let held_out = hold_out(model, evidence, &hypothesis.terms);
+    let (hypothesis, left_over) = confirmed(model, &search, hypothesis, left_over, held_out.as_ref());
     let none = search.fit(&[]);
     let by_base = search.predicted(&none, evidence, &DVector::zeros(evidence.residual.len()));
     let predicted = search.predicted(&hypothesis, evidence, &model.response(&hypothesis.terms));
@@ -42,13 +52,13 @@ pub fn diagnose(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
     parts.sort_by(|(_, a), (_, b)| b.explains.total_cmp(&a.explains));
     let findings = findings(model, &hypothesis, held_out.as_ref(), parts);
     let lack_of_fit_after = search.lack_of_fit(&hypothesis, &predicted);
-    let (mut left, mut determined) = (after.clone(), hypothesis.determined);
+    let mut longest = &hypothesis;
     let mut discrepancy = None;
-    if let Some(DiscrepancyModel::Curve(longer)) = left_over {
-        left = &evidence.residual - search.predicted(&longer, evidence, &model.response(&longer.terms));
-        determined = longer.determined;
+    if let Some(DiscrepancyModel::Curve(longer)) = &left_over {
+        longest = longer;
         // what the calibration would take up of the curve is not left
-        let shape = &after - &left;
+        let response = model.response(&longer.terms);
+        let shape = search.predicted(longer, evidence, &response) - &predicted;
         let curve = longer.terms.last();
         discrepancy = Some(Discrepancy {
             candidate: curve.map(|curve| curve.candidate),
@@ -60,11 +70,36 @@ pub fn diagnose(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
         let (rms, shape) = (rms(&after), after.clone());
         discrepancy = Some(Discrepancy { candidate: None, location: None, rms, shape });
     }
-    let degrees_of_freedom = (search.degrees_of_freedom() as f64 - determined).max(1.0);
+    let left = &evidence.residual - search.predicted(longest, evidence, &model.response(&longest.terms));
+    let degrees_of_freedom = (search.degrees_of_freedom() as f64 - longest.determined).max(1.0);
+    let weighted: f64 = left.iter().zip(&evidence.weight).map(|(r, w)| w * r * r).sum();
+    let noise = (weighted / degrees_of_freedom).sqrt();
+    let residual = search.plain_residual(longest);
+    let suspects = match evidence.is_robust {
+        true => Tails::of(&residual).suspects(&residual),
+        false => Vec::new(),
+    };
+    let noise_test = noise_test(evidence.stated_noise, longest.sigma, degrees_of_freedom);
+    let is_contradicted = noise_test.p_value.is_some_and(|p| p < CONTRADICTED);
+    let is_too_much = evidence.most_scatter.is_some_and(|most| noise > most);
+    if discrepancy.is_none() && (is_contradicted || is_too_much) {
+        let (rms, shape) = (rms(&after), after.clone());
+        discrepancy = Some(Discrepancy { candidate: None, location: None, rms, shape });
+    }
+    let coverage_factor = student_t_quantile(0.975, degrees_of_freedom).unwrap_or(1.96);
+    let worth = longest.background_worth();
+    let nominal = match worth > WORTH_SAYING {
+        true => folded.estimates(longest, coverage_factor),
+        false => Vec::new(),
+    };
     Diagnosis {
         findings,
         discrepancy,
-        noise: left.norm() / degrees_of_freedom.sqrt(),
+        noise,
+        noise_test,
+        suspects,
+        nominal_factors: folded.factors(longest),
+        nominal,
         shared_ratio: search.shared_ratio(),
         lack_of_fit_before: search.lack_of_fit(&none, &by_base),
         lack_of_fit_after,
@@ -80,6 +115,38 @@ pub fn diagnose(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
         after,
         hypothesis,
     }
+}
+
+/// A hypothesis without physics that held-out data do not confirm: where they are predicted no worse
+/// without it, it has no name. What happened once says nothing of other data.
+fn confirmed(
+    model: &Linearised<'_>,
+    search: &Search,
+    hypothesis: Hypothesis,
+    left_over: Option<DiscrepancyModel>,
+    held_out: Option<&HeldOut>,
+) -> (Hypothesis, Option<DiscrepancyModel>) {
+    let Some(held_out) = held_out else { return (hypothesis, left_over) };
+    let is_confirmed = |term: &Term| {
+        let candidate = &model.candidates()[term.candidate];
+        candidate.effect.kind == Kind::Event || held_out.loss(Theme::new(candidate)) > 0.0
+    };
+    let kept: Vec<Term> = hypothesis.terms.iter().filter(|term| is_confirmed(term)).cloned().collect();
+    if kept.len() == hypothesis.terms.len() {
+        return (hypothesis, left_over);
+    }
+    let shorter = search.fit(&kept);
+    let left_over = search.remains(&shorter);
+    (shorter, left_over)
+}
+
+/// χ² of what is left against the noise that was stated.
+fn noise_test(stated: Option<f64>, estimated: f64, degrees_of_freedom: f64) -> NoiseTest {
+    let p_value = stated.and_then(|stated| {
+        let square = degrees_of_freedom * (estimated / stated).powi(2);
+        chi_squared_survival(square, degrees_of_freedom).ok()
+    });
+    NoiseTest { stated, estimated, p_value }
 }
 
 /// Parts as they are reported: the waves of one gear, all misread poses, are one finding.

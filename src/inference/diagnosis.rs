@@ -1,9 +1,10 @@
 //! What a recording says about the physics that its model left out.
 
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 
 use super::{
-    Absorbed, Finding, HeldOut, Hypothesis, LackOfFit, LeftOutSession, Location, NotTestable, Structure,
+    Absorbed, Finding, HeldOut, Hypothesis, LackOfFit, LeftOutSession, Location, NoiseTest, NominalEstimate,
+    NotTestable, Structure, Suspect,
 };
 
 /// The answer of the engine.
@@ -16,6 +17,14 @@ pub struct Diagnosis {
     /// Noise of a datum, with what it shares with others: the standard deviation of what is left of
     /// the data once the hypothesis, and the discrepancy, are taken out.
     pub noise: f64,
+    /// A stated noise against what is left.
+    pub noise_test: NoiseTest,
+    /// Single data far off: remarks, not findings.
+    pub suspects: Vec<Suspect>,
+    /// Numbers of the model's file that moved within what they are known to, the farthest first.
+    pub nominal: Vec<NominalEstimate>,
+    /// Factors of all nominal numbers, in standard uncertainties, with their covariance.
+    pub nominal_factors: (DVector<f64>, DMatrix<f64>),
     /// Variance of the errors that data share, over that of their own.
     pub shared_ratio: f64,
     /// What the base model leaves, once it has absorbed what it can.

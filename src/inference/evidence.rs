@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::Variable;
+use super::{NominalNumber, Variable};
 
 /// A recording as the engine sees it, n data.
 #[derive(Debug, Clone)]
@@ -14,6 +14,27 @@ pub struct Evidence {
     /// What the base model is always a little wrong by: n × b, each column times the size of its unknown factor, whose prior
     /// is the standard normal. Part of every hypothesis.
     pub background: DMatrix<f64>,
+    /// The numbers of the model's file and of the set-up that are known to a standard uncertainty.
+    pub nominal_numbers: Vec<NominalNumber>,
+    /// For each of them a column of n: ∂predicted/∂number times its standard uncertainty.
+    pub nominal: DMatrix<f64>,
+    /// Offsets that data share for good, such as a zero that is taken once: a column of ones and
+    /// zeros for each, and the least standard deviation of its size. A zero is as uncertain as
+    /// readings are, whatever that is.
+    pub offsets: DMatrix<f64>,
+    /// See `offsets`.
+    pub least_offset: Vec<f64>,
+    /// Standard deviation of a datum's noise, where somebody stated it.
+    pub stated_noise: Option<f64>,
+    /// The largest root mean square that can be scatter; `None` where nothing is known of it.
+    pub most_scatter: Option<f64>,
+    /// True where single data may be far off: weights are found, and such data are remarks.
+    pub is_robust: bool,
+    /// How much each datum counts; all of them 1 unless tails are heavy.
+    pub weight: Vec<f64>,
+    /// Variance of the errors that data share, over that of their own; `None` where it is to be
+    /// found out.
+    pub shared_ratio: Option<f64>,
     /// Repeats: data of the same number were recorded under the same conditions.
     pub replicate_group: Vec<usize>,
     /// Data of the same number share an error, such as the zero that their readings are offsets from.
@@ -35,6 +56,32 @@ impl Evidence {
     /// Number of no fold, session or intercept: of what is known besides the recording, or has none.
     pub const NONE: usize = usize::MAX;
 
+    /// Of residuals that have nothing to do with each other, each in a fold of none.
+    pub fn new(residual: DVector<f64>) -> Evidence {
+        let count = residual.len();
+        Evidence {
+            residual,
+            nuisance: DMatrix::zeros(count, 0),
+            background: DMatrix::zeros(count, 0),
+            nominal_numbers: Vec::new(),
+            nominal: DMatrix::zeros(count, 0),
+            offsets: DMatrix::zeros(count, 0),
+            least_offset: Vec::new(),
+            stated_noise: None,
+            most_scatter: None,
+            is_robust: false,
+            weight: vec![1.0; count],
+            shared_ratio: None,
+            replicate_group: (0..count).collect(),
+            shared: (0..count).collect(),
+            fold: vec![Evidence::NONE; count],
+            session: vec![Evidence::NONE; count],
+            intercept: vec![Evidence::NONE; count],
+            resolution: 0.0,
+            covariates: Vec::new(),
+        }
+    }
+
     /// The data of these rows.
     pub fn part(&self, rows: &[usize]) -> Evidence {
         let pick = |of: &[usize]| rows.iter().map(|&row| of[row]).collect();
@@ -42,6 +89,15 @@ impl Evidence {
             residual: self.residual.select_rows(rows),
             nuisance: self.nuisance.select_rows(rows),
             background: self.background.select_rows(rows),
+            nominal_numbers: self.nominal_numbers.clone(),
+            nominal: self.nominal.select_rows(rows),
+            offsets: self.offsets.select_rows(rows),
+            least_offset: self.least_offset.clone(),
+            stated_noise: self.stated_noise,
+            most_scatter: self.most_scatter,
+            is_robust: self.is_robust,
+            weight: rows.iter().map(|&row| self.weight[row]).collect(),
+            shared_ratio: self.shared_ratio,
             replicate_group: pick(&self.replicate_group),
             shared: pick(&self.shared),
             fold: pick(&self.fold),

@@ -2,13 +2,13 @@
 //! fold.
 //!
 //! What a theme (an effect; in joints, at those joints) is worth is found in the same folds: the
-//! hypothesis of a fold is fitted once more without it, and predicts the fold again.
+//! hypothesis of all data is fitted to the others with and without it, and predicts the fold.
 
 use nalgebra::DVector;
 
 use super::linearised::Linearised;
 use super::pruning::infer;
-use super::{Candidate, Effect, Evidence, ForwardModel, Location, Term};
+use super::{Candidate, Effect, Evidence, ForwardModel, Hypothesis, Location, Term};
 use crate::parallel::in_parallel;
 use crate::statistics::{Random, percentile_interval};
 
@@ -80,38 +80,47 @@ pub(super) struct Trained {
     pub after: DVector<f64>,
     /// Its terms.
     pub terms: Vec<Term>,
-    /// What is left without each of its themes.
+    /// What a given hypothesis leaves, fitted to them, and what it leaves without each of its
+    /// themes.
+    pub with: DVector<f64>,
+    /// See `with`.
     pub without: Vec<(Theme, DVector<f64>)>,
 }
 
-/// Selects with the data `kept` only.
-pub(super) fn trained_on(model: &Linearised<'_>, evidence: &Evidence, kept: &[usize]) -> Trained {
+/// Selects with the data `kept` only; `whole` are the terms that all data tell.
+pub(super) fn trained_on(
+    model: &Linearised<'_>,
+    evidence: &Evidence,
+    kept: &[usize],
+    whole: &[Term],
+) -> Trained {
     let (part, training) = (model.part(kept), evidence.part(kept));
     let (search, hypothesis, _) = infer(&part, &training);
-    let base = search.predicted(&search.fit(&[]), evidence, &DVector::zeros(evidence.residual.len()));
-    let all = search.predicted(&hypothesis, evidence, &model.response(&hypothesis.terms));
+    let left = |hypothesis: &Hypothesis| {
+        let response = model.response(&hypothesis.terms);
+        &evidence.residual - search.predicted(hypothesis, evidence, &response)
+    };
     let theme = |term: &Term| Theme::new(&model.candidates()[term.candidate]);
     let mut without: Vec<(Theme, DVector<f64>)> = Vec::new();
-    for term in &hypothesis.terms {
+    for term in whole {
         let own = theme(term);
-        if without.iter().any(|(known, _)| *known == own) {
-            continue;
+        if without.iter().all(|(known, _)| *known != own) {
+            let others: Vec<Term> = whole.iter().filter(|term| theme(term) != own).cloned().collect();
+            without.push((own, left(&search.fit(&others))));
         }
-        let others: Vec<Term> = hypothesis.terms.iter().filter(|term| theme(term) != own).cloned().collect();
-        let rest = search.fit(&others);
-        let left = &evidence.residual - search.predicted(&rest, evidence, &model.response(&rest.terms));
-        without.push((own, left));
     }
     Trained {
-        before: &evidence.residual - base,
-        after: &evidence.residual - all,
+        before: left(&search.fit(&[])),
+        after: left(&hypothesis),
+        with: if whole.is_empty() { DVector::zeros(0) } else { left(&search.fit(whole)) },
         terms: hypothesis.terms,
         without,
     }
 }
 
-/// Selects without each fold in turn, and predicts it. `None` with fewer than two folds.
-pub fn hold_out(model: &Linearised<'_>, evidence: &Evidence) -> Option<HeldOut> {
+/// Selects without each fold in turn, and predicts it; `whole` are the terms that all data tell.
+/// `None` with fewer than two folds. Data that hardly count for the fit hardly count here.
+pub fn hold_out(model: &Linearised<'_>, evidence: &Evidence, whole: &[Term]) -> Option<HeldOut> {
     let mut folds: Vec<usize> = evidence.fold.clone();
     folds.sort_unstable();
     folds.dedup();
@@ -123,22 +132,25 @@ pub fn hold_out(model: &Linearised<'_>, evidence: &Evidence) -> Option<HeldOut> 
     let by_fold = in_parallel(folds.len(), |k| {
         let (held_out, kept): (Vec<usize>, Vec<usize>) =
             (0..n).partition(|&row| evidence.fold[row] == folds[k]);
-        let trained = trained_on(model, evidence, &kept);
+        let trained = trained_on(model, evidence, &kept, whole);
         (held_out, trained)
     });
     let (mut errors_before, mut errors_after) = (DVector::repeat(n, f64::NAN), DVector::repeat(n, f64::NAN));
     let (mut squares, mut hypotheses) = (Vec::<Squares>::new(), Vec::new());
     let mut losses: Vec<(Theme, f64)> = Vec::new();
+    let square = |errors: &DVector<f64>, rows: &[usize]| -> f64 {
+        rows.iter().map(|&row| evidence.weight[row] * errors[row].powi(2)).sum()
+    };
     for (held_out, trained) in by_fold {
-        let (before, after) = (trained.before.select_rows(&held_out), trained.after.select_rows(&held_out));
-        squares.push((before.norm_squared(), after.norm_squared(), held_out.len() as f64));
+        let count: f64 = held_out.iter().map(|&row| evidence.weight[row]).sum();
+        let (before, after) = (square(&trained.before, &held_out), square(&trained.after, &held_out));
+        squares.push((before, after, count));
         for (theme, left) in trained.without {
-            let left = left.select_rows(&held_out).norm_squared();
-            losses.push((theme, left - after.norm_squared()));
+            losses.push((theme, square(&left, &held_out) - square(&trained.with, &held_out)));
         }
         hypotheses.push(trained.terms);
-        for (k, &row) in held_out.iter().enumerate() {
-            (errors_before[row], errors_after[row]) = (before[k], after[k]);
+        for &row in &held_out {
+            (errors_before[row], errors_after[row]) = (trained.before[row], trained.after[row]);
         }
     }
     let total = |of_fold: &dyn Fn(&Squares) -> f64| squares.iter().map(of_fold).sum::<f64>();
@@ -148,7 +160,7 @@ pub fn hold_out(model: &Linearised<'_>, evidence: &Evidence) -> Option<HeldOut> 
     Some(HeldOut {
         before: (all_before / count).sqrt(),
         after: (all_after / count).sqrt(),
-        gain: 1.0 - all_after / all_before.max(f64::MIN_POSITIVE),
+        gain: 1.0 - all_after * per_square,
         gain_interval: (squares.len() > 2).then(|| interval(&squares)).flatten(),
         hypotheses,
         losses,

@@ -24,6 +24,18 @@ pub struct Hypothesis {
     pub covariance: DMatrix<f64>,
     /// Factors of the evidence's background columns.
     pub background: DVector<f64>,
+    /// Posterior covariance of these factors.
+    pub background_covariance: DMatrix<f64>,
     /// How many parameters, background included, the data determine.
     pub determined: f64,
+}
+
+impl Hypothesis {
+    /// Ln odds, about, that the factors of the background are not all zero: ½·zᵀ·C⁻¹·z less the
+    /// price of the numbers that the data determine.
+    pub fn background_worth(&self) -> f64 {
+        let Some(root) = self.background_covariance.clone().cholesky() else { return 0.0 };
+        0.5 * self.background.dot(&root.solve(&self.background))
+            + root.l_dirty().diagonal().map(f64::ln).sum()
+    }
 }

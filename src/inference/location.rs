@@ -139,6 +139,8 @@ pub enum Part {
     Flange,
     Tool,
     Base,
+    Sensors,
+    LoadFrame,
 }
 
 /// One pass through the loads of an axis.
@@ -239,6 +241,8 @@ impl fmt::Display for Part {
             Part::Flange => "flange",
             Part::Tool => "tool",
             Part::Base => "base",
+            Part::Sensors => "sensors",
+            Part::LoadFrame => "load frame",
         })
     }
 }

@@ -3,8 +3,10 @@
 use nalgebra::DVector;
 
 use super::Hypothesis;
+use super::background::size_offsets;
 use super::evidence::rms;
 use super::linearised::Linearised;
+use super::scatter::Tails;
 use super::search::Search;
 use super::selection::DiscrepancyModel;
 use super::{Evidence, ForwardModel, Term};
@@ -12,23 +14,71 @@ use super::{Evidence, ForwardModel, Term};
 /// What is left is little: as a share of what an effect explains, and of the noise.
 const LITTLE: (f64, f64) = (0.1, 0.5);
 
-/// The hypothesis that a recording tells, what it leaves unexplained, and the search that found them.
-///
-/// The scatter is that of what the first hypothesis leaves: what is found first changes how the rest scatters.
+/// Most times that weights and scatter are found anew.
+const PASSES: usize = 3;
+/// A change of a weight's root that changes nothing else.
+const SAME_WEIGHT: f64 = 0.05;
+
+/// A recording with the scatter that its hypothesis leaves: weights of the data, and the ratio of
+/// shared to own errors. What is found first changes how the rest scatters, so that both are found in
+/// turns. `evidence` may fix the ratio beforehand; then its weights count too.
+pub fn settled(model: &Linearised<'_>, evidence: &Evidence) -> Evidence {
+    let mut evidence = evidence.clone();
+    let mut known: Vec<Term> = Vec::new();
+    let search = Search::new(model, &evidence, &[]);
+    let is_plain = !evidence.is_robust && evidence.offsets.ncols() == 0;
+    if is_plain && !search.whitening.is_of_shared_errors() {
+        evidence.shared_ratio = Some(search.shared_ratio());
+        return evidence;
+    }
+    for pass in 0..PASSES {
+        let search = Search::new(model, &evidence, &known);
+        let (hypothesis, left_over) = search.best();
+        // a curve that explains what is left is no scatter
+        let longest = match &left_over {
+            Some(DiscrepancyModel::Curve(longer)) => longer,
+            _ => &hypothesis,
+        };
+        let residual = search.plain_residual(longest);
+        let weight = match evidence.is_robust {
+            true => Tails::of(&residual).weights(&residual),
+            false => evidence.weight.clone(),
+        };
+        let is_same_weight = weight
+            .iter()
+            .zip(&evidence.weight)
+            .all(|(new, old)| (new.sqrt() - old.sqrt()).abs() < SAME_WEIGHT);
+        let candidates = |terms: &[Term]| terms.iter().map(|t| t.candidate).collect::<Vec<_>>();
+        let is_same = candidates(&known) == candidates(&hypothesis.terms);
+        let ratio = search.shared_ratio();
+        let noise = longest.sigma;
+        known = hypothesis.terms;
+        let has_shared = search.whitening.is_of_shared_errors();
+        evidence.weight = if is_same_weight { evidence.weight } else { weight };
+        let is_settled = pass > 0 && is_same_weight && (is_same || !has_shared);
+        size_offsets(&mut evidence, noise);
+        if is_settled || pass + 1 == PASSES {
+            evidence.shared_ratio = Some(match is_settled {
+                true => ratio,
+                false => Search::new(model, &evidence, &known).shared_ratio(),
+            });
+            break;
+        }
+    }
+    evidence
+}
+
+/// The hypothesis that a recording tells, what it leaves unexplained, and the search that found them,
+/// with the scatter that [`settled`] has found.
 pub fn infer<'a>(
     model: &'a Linearised<'a>,
     evidence: &'a Evidence,
 ) -> (Search<'a>, Hypothesis, Option<DiscrepancyModel>) {
-    let mut search = Search::new(model, evidence, &[]);
-    let (mut hypothesis, mut unknown) = search.best();
-    // without shared errors there is no scatter to settle
-    if !hypothesis.terms.is_empty() && search.whitening.is_of_shared_errors() {
-        search = Search::new(model, evidence, &hypothesis.terms);
-        (hypothesis, unknown) = search.best();
-    }
+    let search = Search::new(model, evidence, &[]);
+    let (hypothesis, left_over) = search.best();
     let hypothesis = beyond_the_tails(&search, hypothesis);
-    let (hypothesis, unknown) = convincing(&search, hypothesis, unknown);
-    (search, hypothesis, unknown)
+    let (hypothesis, left_over) = convincing(&search, hypothesis, left_over);
+    (search, hypothesis, left_over)
 }
 
 /// A hypothesis without the effects that may as well be a part of what is left unexplained, and what is left then.
@@ -112,6 +162,13 @@ impl Search<'_> {
     pub fn standardised(&self, hypothesis: &Hypothesis) -> DVector<f64> {
         let told = self.predicted(hypothesis, self.evidence, &self.model.response(&hypothesis.terms));
         self.whitening.whitened(&(&self.evidence.residual - told)) / hypothesis.sigma
+    }
+
+    /// What a hypothesis leaves of each datum, errors that data share taken out, not weighted.
+    pub fn plain_residual(&self, hypothesis: &Hypothesis) -> DVector<f64> {
+        let left = &self.evidence.residual
+            - self.predicted(hypothesis, self.evidence, &self.model.response(&hypothesis.terms));
+        self.whitening.without_shared(&left)
     }
 
     /// Root mean square of what repeats agree on that a hypothesis leaves; 0 where they do not.

@@ -25,6 +25,9 @@ use crate::statistics::ln_normal_mass;
 /// Least noise variance relative to that of the residual.
 const LEAST: f64 = 1e-12;
 
+/// What a stated noise counts at least, in degrees of freedom: it is known to a tenth.
+const STATED: f64 = 50.0;
+
 /// Least and largest κ.
 const SCALES: (f64, f64) = (1.0 / 30.0, 30.0);
 /// Steps of expectation–maximisation to κ: one settles what the data determine well.
@@ -57,6 +60,8 @@ pub struct Moments {
     pub degrees_of_freedom: usize,
     /// Least noise: what rounding alone makes.
     pub floor: f64,
+    /// σ₀, where somebody stated it: it counts as [`STATED`] data, or as many as there are.
+    pub stated: Option<f64>,
 }
 
 /// Columns that may be added to those of a hypothesis.
@@ -98,7 +103,8 @@ impl Moments {
         floor: f64,
     ) -> Self {
         let (gram, product) = (transposed_product(columns, columns), columns.tr_mul(r));
-        Moments { square: r.norm_squared(), gram, product, bounds, effects, degrees_of_freedom, floor }
+        let square = r.norm_squared();
+        Moments { square, gram, product, bounds, effects, degrees_of_freedom, floor, stated: None }
     }
 
     /// The score: σ² and κ are found together, by MacKay's fixed point and expectation–maximisation.
@@ -110,15 +116,17 @@ impl Moments {
     /// 415–447, §4)
     pub fn score(&self) -> Score {
         let (p, nu) = (self.gram.ncols(), (self.degrees_of_freedom as f64).max(1.0));
-        let all = self.square / nu;
+        let (count, believed) = self.believed();
+        let all = (self.square + believed) / (nu + count);
         let lowest = self.floor.powi(2).max(LEAST * all).max(f64::MIN_POSITIVE.sqrt());
         let highest = all.max(lowest);
         let (mut s, mut scales) = (highest, vec![1.0; self.effects.len()]);
         let mut sizes = self.sizes(&scales);
         let mut solved = Ridge::new(&self.gram, &self.product, |k| s / sizes[k].powi(2));
         for step in 0..STEPS {
-            let next = (self.left(&solved.solution) / (nu - solved.determined(&sizes, s)).max(1e-3 * nu))
-                .clamp(lowest, 2.0 * highest);
+            let next = ((self.left(&solved.solution) + believed)
+                / (nu + count - solved.determined(&sizes, s)).max(1e-3 * nu))
+            .clamp(lowest, 2.0 * highest);
             let mut moved = (next / s).ln().abs() * SETTLED.1 / SETTLED.0;
             if step < SCALE_STEPS {
                 let rescaled = self.rescaled(&scales, &solved, s);
@@ -144,15 +152,24 @@ impl Moments {
         let quadratic = (self.square - self.product.dot(&solved.solution)).max(0.0);
         let determinant =
             solved.ln_determinant + sizes.iter().map(|size| (size.powi(2) / s).ln()).sum::<f64>();
+        let counted = self.degrees_of_freedom as f64 + count;
+        let fit = counted * s.ln() + determinant + (quadratic + believed) / s;
         Score {
-            log_evidence: -0.5 * (self.degrees_of_freedom as f64 * s.ln() + determinant + quadratic / s)
-                + room
-                - price,
+            log_evidence: -0.5 * fit + room - price,
             sigma: s.sqrt(),
             determined: solved.determined(&sizes, s),
             covariance: solved.inverse * s,
             estimate: solved.solution,
         }
+    }
+
+    /// What the stated noise counts, and what it adds to the squares.
+    fn believed(&self) -> (f64, f64) {
+        let count = |sigma: f64| {
+            let count = STATED.max(self.degrees_of_freedom as f64);
+            (count, count * sigma * sigma)
+        };
+        self.stated.map_or((0.0, 0.0), count)
     }
 
     /// |r − C·x|² = rᵀr − 2bᵀx + xᵀGx.
@@ -187,7 +204,7 @@ impl Moments {
     ///
     /// gain ≈ −½·ν·ln(1 − Δ/νσ²) − ½·ln|1 + κ²G'/s'| + ln(room)
     pub fn about(&self, score: &Score, more: &ColumnBlock) -> f64 {
-        let (nu, s) = ((self.degrees_of_freedom as f64).max(1.0), score.sigma.powi(2));
+        let (nu, s) = ((self.degrees_of_freedom as f64 + self.believed().0).max(1.0), score.sigma.powi(2));
         let (gram, product) = self.reduced(score, more);
         let k = gram.ncols();
         // what a hypothesis holds already leaves rounding: it is no smaller a prior
@@ -239,6 +256,7 @@ impl Moments {
             effects: Vec::new(),
             degrees_of_freedom: self.degrees_of_freedom.saturating_sub(score.determined.round() as usize),
             floor: self.floor,
+            stated: self.stated,
         }
     }
 

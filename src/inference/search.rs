@@ -101,6 +101,7 @@ impl<'a> Search<'a> {
             sigma: scored.sigma,
             covariance: &sizes * own * &sizes,
             background: scored.estimate.rows(0, background).into_owned(),
+            background_covariance: scored.covariance.view((0, 0), (background, background)).into_owned(),
             determined: scored.determined,
             terms,
         }
@@ -222,6 +223,16 @@ impl<'a> Search<'a> {
             + &evidence.nuisance * self.whitening.nuisance(&self.evidence.nuisance, &left)
     }
 
+    /// Residual and columns of a hypothesis, whitened, the residual without what its values explain.
+    pub(super) fn linear_part(&self, terms: &[Term]) -> (DVector<f64>, DMatrix<f64>) {
+        self.linear(terms)
+    }
+
+    /// Ln of the prior of a candidate over that of none.
+    pub(super) fn prior_of(&self, index: usize) -> f64 {
+        self.prior[index]
+    }
+
     /// Residual and columns of a hypothesis, linear about the neutral values and whitened: the background, then its effects at
     /// their values. Estimates are in sizes from the neutral values.
     fn linear(&self, terms: &[Term]) -> (DVector<f64>, DMatrix<f64>) {
@@ -275,10 +286,11 @@ impl<'a> Search<'a> {
         let beside = gram.view((0, first), (first, count - first)).transpose();
         gram.view_mut((first, 0), (count - first, first)).copy_from(&beside);
         let (bounds, floor) = (self.bounds(terms), self.floor());
+        let stated = self.evidence.stated_noise;
         let square = self.residual.norm_squared();
         let degrees_of_freedom = self.whitening.degrees_of_freedom;
         let effects = terms.iter().map(|c| c.values.len()).collect();
-        let moments = Moments { square, gram, product, bounds, effects, degrees_of_freedom, floor };
+        let moments = Moments { square, gram, product, bounds, effects, degrees_of_freedom, floor, stated };
         (moments, Box::new(move |index| (cross(index), kept.residual(index).clone())))
     }
 
@@ -293,7 +305,11 @@ impl<'a> Search<'a> {
     fn moments_of(&self, r: &DVector<f64>, columns: &DMatrix<f64>, terms: &[Term]) -> Moments {
         let bounds = self.bounds(terms);
         let effects = terms.iter().map(|c| c.values.len()).collect();
-        Moments::new(r, columns, bounds, effects, self.whitening.degrees_of_freedom, self.floor())
+        let degrees_of_freedom = self.whitening.degrees_of_freedom;
+        Moments {
+            stated: self.evidence.stated_noise,
+            ..Moments::new(r, columns, bounds, effects, degrees_of_freedom, self.floor())
+        }
     }
 
     /// Bounds of a hypothesis's parameters, background first.

@@ -16,6 +16,9 @@ const REFITTED: usize = 5;
 /// And how many of them may be of one effect.
 const OF_ONE_EFFECT: usize = 2;
 
+/// By how much the odds of a name may be shared among effects that explain the same.
+const MOST_SHARED: f64 = 10.0;
+
 /// What a hypothesis leaves that no effect of the library explains.
 #[derive(Debug, Clone)]
 pub enum DiscrepancyModel {
@@ -28,20 +31,49 @@ pub enum DiscrepancyModel {
 impl Search<'_> {
     /// The most probable hypothesis of known effects, and what it leaves, if that is more than chance.
     ///
-    /// Known effects are named only as far as they are likelier than a shorter hypothesis that leaves something unknown: several
-    /// of them together can draw the shape of something that is none of them.
+    /// Known effects are named only as far as they are likelier than a shorter hypothesis that leaves
+    /// something unknown: several of them together can draw the shape of something that is none of
+    /// them. Effects are added one by one from nothing, and from the best pair: two that hide each
+    /// other are found by no single step.
     pub fn best(&self) -> (Hypothesis, Option<DiscrepancyModel>) {
-        let mut path = vec![self.fit(&[])];
-        let mut remainders = Vec::new();
+        let none = self.fit(&[]);
+        let additions = self.additions(&none);
+        let by_steps = self.along(vec![none.clone()], Some(&additions));
+        let pair = self.best_pair(&none, &additions);
+        // a pair that the steps have found is theirs
+        let is_new = |pair: &Hypothesis| {
+            by_steps.0.log_probability + 1e-6 < pair.log_probability || by_steps.1.is_some()
+        };
+        let Some(pair) = pair.filter(is_new) else { return (by_steps.0, by_steps.1) };
+        let by_pair = self.along(vec![none, pair], None);
+        match by_pair.2 > by_steps.2 + 1e-6 {
+            true => (by_pair.0, by_pair.1),
+            false => (by_steps.0, by_steps.1),
+        }
+    }
+
+    /// The best hypothesis on the way on from the last of `path`, what it leaves, and the ln of the
+    /// probability of both.
+    fn along(
+        &self,
+        mut path: Vec<Hypothesis>,
+        first: Option<&[f64]>,
+    ) -> (Hypothesis, Option<DiscrepancyModel>, f64) {
+        let mut remainders: Vec<Option<(f64, DiscrepancyModel)>> = Vec::new();
+        for hypothesis in &path[..path.len() - 1] {
+            remainders.push(self.remainder(hypothesis, &self.additions(hypothesis)));
+        }
         loop {
             let hypothesis = &path[path.len() - 1];
-            let additions = self.additions(hypothesis);
+            let known = first.filter(|_| path.len() == 1);
+            let additions = known.map_or_else(|| self.additions(hypothesis), <[f64]>::to_vec);
             remainders.push(self.remainder(hypothesis, &additions));
             if hypothesis.terms.len() >= MOST {
                 break;
             }
             let Some(longer) = self.longer(hypothesis, &additions, false) else { break };
-            match self.accepted(hypothesis, longer) {
+            let shared = self.shared(&additions, &longer, hypothesis);
+            match self.accepted(hypothesis, longer, shared) {
                 Some(longer) => path.push(longer),
                 None => break,
             }
@@ -58,20 +90,53 @@ impl Search<'_> {
             && path[last].log_probability + AS_WELL.0.ln() > most
             && self.left_rms(&path[last]) < AS_WELL.1 * self.left_rms(longer)
         {
-            return (path.swap_remove(last), None);
+            return (path.swap_remove(last), None, most);
         }
         let remainder = remainders.swap_remove(named).map(|(_, remainder)| remainder);
-        (path.swap_remove(named), remainder)
+        (path.swap_remove(named), remainder, most)
+    }
+
+    /// Ln of how much likelier it is that any effect is there than the likeliest one: several that
+    /// explain the same share its odds.
+    fn shared(&self, additions: &[f64], longer: &Hypothesis, hypothesis: &Hypothesis) -> f64 {
+        let best = longer.log_probability - hypothesis.log_probability;
+        let Some(added) = longer.terms.last() else { return 0.0 };
+        let others: f64 = (0..additions.len())
+            .filter(|&index| index != added.candidate)
+            .filter(|&index| !self.model.candidates()[index].is_nonparametric)
+            .map(|index| (additions[index].min(best) - best).exp())
+            .sum();
+        (1.0 + others).ln().min(MOST_SHARED.ln())
+    }
+
+    /// Two effects at once, refitted, that are worth more than the price of two names and more than
+    /// each of them alone; see [`super::pairs`].
+    fn best_pair(&self, none: &Hypothesis, additions: &[f64]) -> Option<Hypothesis> {
+        let screened = self.pairs(none, additions);
+        let refitted = screened.into_iter().map(|(first, second)| {
+            let both = [first, second].map(|index| self.model.candidates()[index].neutral(index));
+            self.fit(&both)
+        });
+        let best = refitted
+            .reduce(|best, other| if other.log_probability > best.log_probability { other } else { best })?;
+        if best.log_probability < none.log_probability + 2.0 * NAMED.ln() {
+            return None;
+        }
+        let best = self.exchanged(best);
+        let is_needed = |position: usize| {
+            self.without(&best, position).log_probability + NAMED.ln() < best.log_probability
+        };
+        (best.terms.len() > 1 && (0..best.terms.len()).all(is_needed)).then_some(best)
     }
 
     /// The longer hypothesis with its effects exchanged for better ones, if each of them is likelier, by the odds of a name, than
     /// chance. Where one alone is not, another one may be needed with it: two outliers hide each other in the noise that they
     /// make.
-    fn accepted(&self, hypothesis: &Hypothesis, longer: Hypothesis) -> Option<Hypothesis> {
+    fn accepted(&self, hypothesis: &Hypothesis, longer: Hypothesis, shared: f64) -> Option<Hypothesis> {
         /// Odds against chance that make a second effect worth a try.
         const HOPELESS: f64 = 1.0 / 400.0;
         let mut longer = longer;
-        let mut least = hypothesis.log_probability + NAMED.ln();
+        let mut least = hypothesis.log_probability + NAMED.ln() - shared;
         if longer.log_probability < least
             && longer.log_probability > hypothesis.log_probability + HOPELESS.ln()
         {
@@ -86,7 +151,7 @@ impl Search<'_> {
         let rests = (0..longer.terms.len()).map(|position| self.without(&longer, position));
         let likelier = |a: &Hypothesis, b: &Hypothesis| a.log_probability.total_cmp(&b.log_probability);
         let rest = rests.max_by(likelier)?;
-        match rest.log_probability + NAMED.ln() < longer.log_probability {
+        match rest.log_probability + NAMED.ln() - shared < longer.log_probability {
             true => Some(longer),
             false => (rest.log_probability > hypothesis.log_probability + NAMED.ln()).then_some(rest),
         }

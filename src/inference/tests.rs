@@ -101,19 +101,7 @@ fn model() -> Columns {
 
 /// Data that have nothing to do with each other.
 pub(super) fn independent(residual: Vec<f64>) -> Evidence {
-    let count = residual.len();
-    Evidence {
-        residual: DVector::from_vec(residual),
-        nuisance: DMatrix::zeros(count, 0),
-        background: DMatrix::zeros(count, 0),
-        replicate_group: (0..count).collect(),
-        shared: (0..count).collect(),
-        fold: vec![Evidence::NONE; count],
-        session: vec![Evidence::NONE; count],
-        intercept: vec![Evidence::NONE; count],
-        resolution: 0.0,
-        covariates: Vec::new(),
-    }
+    Evidence::new(DVector::from_vec(residual))
 }
 
 fn evidence(seed: u64, truth: impl Fn(f64) -> f64) -> Evidence {

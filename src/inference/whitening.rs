@@ -18,12 +18,18 @@ use crate::linalg::{least_squares, thin_svd, transposed_product};
 const RATIO_BEFORE: f64 = 1.0;
 /// What that belief counts, in degrees of freedom.
 const BELIEF: f64 = 10.0;
+/// Of fewer groups nobody knows which mean is far out; and how far that is, in robust standard
+/// deviations.
+const FEWEST_GROUPS: usize = 6;
+const FAR: f64 = 3.0;
 /// Length, relative to what it was, below which a nuisance column is a combination of the others.
 const DEPENDENT: f64 = 1e-9;
 
 /// Whitens and projects vectors of n data.
 #[derive(Debug, Clone)]
 pub struct Whitening {
+    /// Root of how much each datum counts; nothing where all count alike.
+    roots: Vec<f64>,
     /// Rows of every group with more than one datum, and what is taken off times their mean.
     groups: Vec<(Vec<usize>, f64)>,
     /// Orthonormal basis of the whitened nuisance columns.
@@ -37,7 +43,12 @@ pub struct Whitening {
 impl Whitening {
     /// For an evidence whose residuals, without what is explained already, are `left`: ρ is estimated from them.
     pub fn new(evidence: &Evidence, left: &DVector<f64>) -> Self {
-        let ratio = shared_ratio(evidence, left);
+        let ratio = evidence.shared_ratio.unwrap_or_else(|| shared_ratio(evidence, left));
+        let is_even = evidence.weight.iter().all(|weight| *weight == 1.0);
+        let roots = match is_even {
+            true => Vec::new(),
+            false => evidence.weight.iter().map(|weight| weight.sqrt()).collect(),
+        };
         let mut members: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         for (row, &group) in evidence.shared.iter().enumerate() {
             members.entry(group).or_default().push(row);
@@ -50,8 +61,13 @@ impl Whitening {
                 (rows, 1.0 - 1.0 / (1.0 + ratio * m).sqrt())
             })
             .collect();
-        let mut whitening =
-            Whitening { groups, basis: Vec::new(), ratio, degrees_of_freedom: evidence.residual.len() };
+        let mut whitening = Whitening {
+            roots,
+            groups,
+            basis: Vec::new(),
+            ratio,
+            degrees_of_freedom: evidence.residual.len(),
+        };
         for column in evidence.nuisance.column_iter() {
             let mut own = whitening.whitened(&column.into_owned());
             let before = own.norm();
@@ -128,6 +144,20 @@ impl Whitening {
         fitted.unwrap_or_else(|_| DVector::zeros(columns.ncols()))
     }
 
+    /// Without the errors that data share, estimated from each group: (1 − (1 − 1/√(1 + ρ·m))/m · J)
+    /// times v, weights only in the group's mean.
+    pub fn without_shared(&self, v: &DVector<f64>) -> DVector<f64> {
+        let mut result = v.clone();
+        for (rows, share) in &self.groups {
+            let weight = |row: usize| self.roots.get(row).map_or(1.0, |root| root * root);
+            let total: f64 = rows.iter().map(|&row| weight(row)).sum();
+            let mean =
+                rows.iter().map(|&row| weight(row) * v[row]).sum::<f64>() / total.max(f64::MIN_POSITIVE);
+            rows.iter().for_each(|&row| result[row] -= share * mean);
+        }
+        result
+    }
+
     /// Whitened, not projected.
     pub fn whitened(&self, v: &DVector<f64>) -> DVector<f64> {
         let mut v = v.clone();
@@ -136,6 +166,7 @@ impl Whitening {
     }
 
     fn whiten(&self, v: &mut [f64]) {
+        v.iter_mut().zip(&self.roots).for_each(|(v, root)| *v *= root);
         for (rows, share) in &self.groups {
             let mean = rows.iter().map(|&row| v[row]).sum::<f64>() / rows.len() as f64;
             for &row in rows {
@@ -177,9 +208,22 @@ fn shared_ratio(evidence: &Evidence, left: &DVector<f64>) -> f64 {
         *squares += deviation * deviation;
         *members += 1.0;
     }
+    // a step between two runs is no scatter of their zeros: a mean far out counts as far as usual
+    let limit = match groups.len() >= FEWEST_GROUPS {
+        true => {
+            let mut means: Vec<f64> =
+                groups.values().map(|(total, _, members)| (total / members).abs()).collect();
+            means.sort_by(f64::total_cmp);
+            FAR * 1.4826 * means[means.len() / 2]
+        }
+        false => f64::INFINITY,
+    };
     let (mut product, mut pairs) = (0.0, 0.0);
     for (total, squares, members) in groups.into_values() {
-        product += total * total - squares;
+        let mean = total / members;
+        let clipped = mean.clamp(-limit, limit);
+        let squares = squares - members * (mean * mean - clipped * clipped);
+        product += (clipped * members).powi(2) - squares;
         pairs += members * (members - 1.0);
     }
     if count == 0.0 || pairs == 0.0 || square == 0.0 {
@@ -210,18 +254,11 @@ mod tests {
                 shared.push(trial);
             }
         }
-        let n = residual.len();
         Evidence {
-            residual: DVector::from_vec(residual),
-            nuisance: DMatrix::zeros(n, 0),
-            background: DMatrix::zeros(n, 0),
             replicate_group,
             fold: shared.clone(),
             shared,
-            session: vec![Evidence::NONE; n],
-            intercept: vec![Evidence::NONE; n],
-            resolution: 0.0,
-            covariates: Vec::new(),
+            ..Evidence::new(DVector::from_vec(residual))
         }
     }
 

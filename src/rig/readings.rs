@@ -4,13 +4,15 @@
 //! Offsets are differences from the unloaded, zeroed rod.
 
 mod columns;
+mod header;
+mod instant;
 mod reading;
 mod warning;
 mod write;
 
 use std::path::Path;
 
-use crate::delimited::{Row, Table, comments_above, nearest_name};
+use crate::delimited::{Row, Table, nearest_name};
 use crate::error::{Error, Place, Result};
 use crate::files;
 use crate::units::{MM, STANDARD_GRAVITY, UM};
@@ -18,6 +20,8 @@ use columns::{LOAD_COLUMNS, OFFSET_COLUMNS, TEXT_COLUMNS, is_one_of};
 use reading::{loads_of, newtons, only_load};
 
 pub use columns::KNOWN_COLUMNS;
+pub use header::{Driven, RigHeader};
+pub use instant::Instant;
 pub use reading::{Axis, Direction, Phase, Reading};
 pub use warning::Warning;
 
@@ -29,8 +33,11 @@ const ABSOLUTE_ZERO_C: f64 = -273.15;
 pub struct Readings {
     /// The file as the user named it.
     pub file: String,
-    /// Where the readings come from: the comment lines above the header, joined.
+    /// Where the readings come from: the comment lines above the header, joined, but for those
+    /// that `header` was read from.
     pub source: Option<String>,
+    /// What the comment lines above the header say of the rig.
+    pub header: RigHeader,
     /// The readings in the order of the file; at least one (axis, channel) has two different loads.
     pub rows: Vec<Reading>,
     /// What a user should know about the file although it can be read.
@@ -86,7 +93,22 @@ impl Readings {
             check_numbers(row)?;
         }
         check_loads(FILE, &rows)?;
-        Ok(Readings { file: FILE.into(), source: None, warnings: warning::about_rows(&rows), rows })
+        Ok(Readings {
+            file: FILE.into(),
+            source: None,
+            header: RigHeader::default(),
+            warnings: warning::about_rows(&rows),
+            rows,
+        })
+    }
+
+    /// With what is known of the rig.
+    ///
+    /// # Errors
+    /// [`Error::Argument`] for a noise or a scale that is negative or not finite.
+    pub fn with_header(self, header: RigHeader) -> Result<Readings> {
+        header.check()?;
+        Ok(Readings { header, ..self })
     }
 
     /// Reads `text`, the contents of `file`.
@@ -106,7 +128,7 @@ impl Readings {
     /// # Errors
     /// [`Error::Input`] with line and column: what [`Table::parse`] refuses; `load_n` and `load_kg`
     /// both or neither, no `axis`, no offset; a cell that is not what its column holds; a row
-    /// without any offset; and a file in which no axis has two different loads, since a slope
+    /// without any offset; a header line whose value is none of its key's; and a file in which no axis has two different loads, since a slope
     /// cannot be found from one.
     pub fn from_text(file: &str, text: &str) -> Result<Readings> {
         let table = Table::parse(file, text, |column| {
@@ -115,12 +137,10 @@ impl Readings {
         check_columns(&table)?;
         let rows = table.rows().map(read_row).collect::<Result<Vec<_>>>()?;
         check_loads(file, &rows)?;
-        Ok(Readings {
-            file: file.to_owned(),
-            source: comments_above(text),
-            warnings: warning::all(&table, &rows),
-            rows,
-        })
+        let (header, source, misspelt) = header::read(file, text, table.dialect())?;
+        let mut warnings = warning::all(&table, &rows);
+        warnings.extend(misspelt);
+        Ok(Readings { file: file.to_owned(), source, header, warnings, rows })
     }
 }
 
@@ -137,7 +157,12 @@ fn check_numbers(row: &Reading) -> Result<()> {
             return wrong(name, value.to_string(), "a number >= 0, in SI units");
         }
     }
-    let others = [row.time, row.temperature].into_iter().chain(row.offset).flatten();
+    if let (Some(time), Some(loaded_at)) = (row.time, row.loaded_at)
+        && loaded_at > time
+    {
+        return wrong("loaded_at", loaded_at.to_string(), "at most the time of the reading");
+    }
+    let others = [row.time, row.temperature, row.loaded_at].into_iter().chain(row.offset).flatten();
     if let Some(value) = others.into_iter().find(|value| !value.is_finite()) {
         return wrong("row", value.to_string(), "finite numbers");
     }
@@ -178,18 +203,32 @@ fn check_columns(table: &Table) -> Result<()> {
 
 fn read_row(row: Row<'_>) -> Result<Reading> {
     let direction = read_direction(row)?;
+    let time = row.number("time_s")?;
     Ok(Reading {
         direction,
         load: read_load(row, direction)?,
         offset: read_offset(row)?,
         trial: row.text("trial").map(str::to_owned),
         phase: read_phase(row)?,
-        time: row.number("time_s")?,
+        time,
         temperature: at_least(row, "temperature_c", ABSOLUTE_ZERO_C)?,
         load_station: at_least(row, "load_station_mm", 0.0)?.map(|mm| mm * MM),
         read_station: at_least(row, "read_station_mm", 0.0)?.map(|mm| mm * MM),
+        session: row.text("session").map(str::to_owned),
+        loaded_at: read_loaded_at(row, time)?,
         line: row.line(),
     })
+}
+
+fn read_loaded_at(row: Row<'_>, time: Option<f64>) -> Result<Option<f64>> {
+    let loaded_at = row.number("loaded_at_s")?;
+    if let (Some(loaded_at), Some(time)) = (loaded_at, time)
+        && loaded_at > time
+    {
+        let expected = format!("at most time_s, {time}: the load hangs when it is read");
+        return Err(row.error("loaded_at_s", expected, None));
+    }
+    Ok(loaded_at)
 }
 
 fn read_direction(row: Row<'_>) -> Result<Direction> {
@@ -292,6 +331,8 @@ mod tests {
             Reading::new(Direction::against(Axis::X), 1.0),
             Reading { time: Some(f64::INFINITY), ..row(1.0) },
             Reading { load_station: Some(-0.1), ..row(1.0) },
+            Reading { time: Some(5.0), loaded_at: Some(6.0), ..row(1.0) },
+            Reading { loaded_at: Some(f64::NAN), ..row(1.0) },
         ] {
             let error = Readings::from_rows(vec![row(3.0), wrong]).unwrap_err();
             assert!(error.to_string().contains("row 2"), "{error}");
@@ -302,9 +343,9 @@ mod tests {
     fn every_column_is_read_in_si() {
         let text = "\
 # a rig
-READ_STATION_MM, load_station_mm, Temperature_C, time_s, phase, trial, dz_um, dy_um, dx_um, load_n, axis
-210, 525, 20.5, -3, Unload, 2b, -12, , 1.5, 5, -Z
-,,,,,,3,,,0,+z
+LOADED_AT_S, Session, READ_STATION_MM, load_station_mm, Temperature_C, time_s, phase, trial, dz_um, dy_um, dx_um, load_n, axis
+-63.5, day 2, 210, 525, 20.5, -3, Unload, 2b, -12, , 1.5, 5, -Z
+,,,,,,,,3,,,0,+z
 ";
         let readings = Readings::from_text("rig.csv", text).unwrap();
         let first = Reading {
@@ -317,6 +358,8 @@ READ_STATION_MM, load_station_mm, Temperature_C, time_s, phase, trial, dz_um, dy
             temperature: Some(20.5),
             load_station: Some(525.0 * MM),
             read_station: Some(210.0 * MM),
+            session: Some("day 2".into()),
+            loaded_at: Some(-63.5),
             line: 3,
         };
         assert_eq!(readings.rows[0], first);
@@ -336,6 +379,16 @@ READ_STATION_MM, load_station_mm, Temperature_C, time_s, phase, trial, dz_um, dy
     fn loads_in_both_directions_are_two_loads() {
         assert!(Readings::from_text("f", "axis,load_n,dx_um\nx,5,2\n-x,5,-2\n").is_ok());
         assert!(Readings::from_text("f", "axis,load_n,dx_um\nx,5,2\ny,5,-2\n").is_err());
+    }
+
+    #[test]
+    fn a_load_is_not_read_before_it_hangs() {
+        let text = "axis,load_n,dx_um,time_s,loaded_at_s\nx,5,2,60,0\nx,7,3,60,61\n";
+        let error = Readings::from_text("f", text).unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "f:3:11: loaded_at_s is \"61\", expected at most time_s, 60: the load hangs when it is read"
+        );
     }
 
     #[test]

@@ -2,8 +2,10 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use super::{BendFlexibility, Joint, LumpedMass, Pipe, Rod};
+use super::{BendFlexibility, Joint, LumpedMass, Pipe, Rod, StandardUncertainty};
 use crate::error::{Error, Result};
+use crate::material::MaterialUncertainty;
+use crate::section::Section;
 use crate::units::MM;
 
 impl Rod {
@@ -39,6 +41,7 @@ impl Rod {
             masses: Vec::new(),
             joints: Vec::new(),
             linear_range: None,
+            standard_uncertainty: StandardUncertainty::default(),
             warnings: Vec::new(),
         }
     }
@@ -79,10 +82,11 @@ impl Rod {
     /// The rod itself, if it can be one.
     ///
     /// # Errors
-    /// [`Error::Argument`] for a length or a modulus that is not positive, a wall without
-    /// thickness, an angle beyond 0 < γ ≤ π, a bend that does not fit between the pipes, a mass or
-    /// a compliance that is negative, and a station that is not on the rod. Numbers that are not
-    /// finite are none of these.
+    /// [`Error::Argument`] for a length or a modulus that is not positive, a wall without thickness,
+    /// an angle beyond 0 < γ ≤ π, a bend that does not fit between the pipes, a flexibility for
+    /// round tubes on a bend that is none, a mass, a compliance or a standard uncertainty that is
+    /// negative, and a station that is not on the rod. Numbers that are not finite are none of
+    /// these.
     pub fn checked(self) -> Result<Rod> {
         positive("l1", self.l1)?;
         positive("l2", self.l2)?;
@@ -90,15 +94,20 @@ impl Rod {
             return Err(wrong("gamma", self.gamma, "an angle in rad, 0 < gamma <= π"));
         }
         for pipe in [&self.pipe1, &self.bend, &self.pipe2] {
-            positive("outer_diameter", pipe.section.outer_diameter)?;
-            not_negative("inner_diameter", pipe.section.inner_diameter)?;
-            if pipe.section.inner_diameter >= pipe.section.outer_diameter {
-                let expected = "less than the outer diameter";
-                return Err(wrong("inner_diameter", pipe.section.inner_diameter, expected));
+            check_section(&pipe.section)?;
+            let material = &pipe.material;
+            positive("youngs_modulus", material.youngs_modulus)?;
+            positive("shear_modulus", material.shear_modulus)?;
+            not_negative("density", material.density)?;
+            if !(material.poisson_ratio > -1.0 && material.poisson_ratio <= 1.0) {
+                return Err(wrong("poisson_ratio", material.poisson_ratio, "-1 < ν <= 1"));
             }
-            positive("youngs_modulus", pipe.material.youngs_modulus)?;
-            positive("shear_modulus", pipe.material.shear_modulus)?;
-            not_negative("density", pipe.material.density)?;
+            positive("shear_coefficient_factor", material.shear_coefficient_factor)?;
+            let MaterialUncertainty { youngs_modulus, shear_modulus, density, shear_coefficient } =
+                material.standard_uncertainty;
+            for uncertainty in [youngs_modulus, shear_modulus, density, shear_coefficient] {
+                not_negative("standard_uncertainty", uncertainty)?;
+            }
         }
         not_negative("bend_radius", self.bend_radius)?;
         if self.bend_radius > 0.0 && self.tangent_length() > self.l1.min(self.l2) {
@@ -106,6 +115,20 @@ impl Rod {
         }
         if let BendFlexibility::Factor(factor) = self.bend_flexibility {
             positive("bend_flexibility", factor)?;
+        }
+        if self.bend_radius > 0.0
+            && self.bend_flexibility.is_for_tubes()
+            && self.bend.section.as_round().is_none()
+        {
+            return Err(Error::Argument {
+                name: "bend_flexibility",
+                found: format!("{:?}", self.bend_flexibility),
+                expected: "beam theory or a factor: the bend is no round tube".into(),
+            });
+        }
+        let StandardUncertainty { diameter, length, tip_mass, section } = self.standard_uncertainty;
+        for uncertainty in [diameter, length, tip_mass, section] {
+            not_negative("standard_uncertainty", uncertainty)?;
         }
         not_negative("tip_mass", self.tip_mass)?;
         for mass in &self.masses {
@@ -132,6 +155,37 @@ impl Rod {
     }
 }
 
+fn check_section(section: &Section) -> Result<()> {
+    match section {
+        Section::Round(round) => {
+            positive("outer_diameter", round.outer_diameter)?;
+            not_negative("inner_diameter", round.inner_diameter)?;
+            if round.inner_diameter >= round.outer_diameter {
+                let expected = "less than the outer diameter";
+                return Err(wrong("inner_diameter", round.inner_diameter, expected));
+            }
+        }
+        Section::Rectangle(rectangle) => {
+            positive("width", rectangle.width)?;
+            positive("height", rectangle.height)?;
+            if let Some(wall) = rectangle.wall {
+                positive("wall", wall)?;
+                if 2.0 * wall >= rectangle.width.min(rectangle.height) {
+                    return Err(wrong("wall", wall, "less than half of width and height"));
+                }
+            }
+        }
+        Section::General(general) => {
+            positive("area", general.area)?;
+            positive("iy", general.iy)?;
+            positive("iz", general.iz)?;
+            positive("torsion_constant", general.torsion_constant)?;
+            positive("shear_coefficient", general.shear_coefficient)?;
+        }
+    }
+    Ok(())
+}
+
 fn positive(name: &'static str, value: f64) -> Result<()> {
     match value > 0.0 && value.is_finite() {
         true => Ok(()),
@@ -154,7 +208,7 @@ fn wrong(name: &'static str, value: f64, expected: &str) -> Error {
 mod tests {
     use super::*;
     use crate::material::Material;
-    use crate::section::Round;
+    use crate::section::{Rectangle, Round};
 
     fn rod() -> Rod {
         let steel = Material::isotropic("steel", 193e9, 0.29, 7930.0);
@@ -191,5 +245,22 @@ mod tests {
             assert_eq!(found, name);
         }
         assert!(bent(0.150).with_mass("ring", 0.6, 0.1).checked().is_ok());
+        let steel = rod().pipe1.material;
+        let bar = |section: Rectangle| Rod::new("bar", 0.15, 0.5, Pipe::new(section, steel.clone()));
+        let solid = bar(Rectangle::solid(0.01, 0.02));
+        assert!(solid.clone().with_bend(0.05, BendFlexibility::Factor(2.0)).checked().is_ok());
+        let (mut vague, mut ratio) = (rod(), rod());
+        vague.standard_uncertainty.length = -1e-3;
+        ratio.pipe2.material.poisson_ratio = 1.5;
+        for (rod, name) in [
+            (bar(Rectangle::solid(0.01, 0.0)), "height"),
+            (bar(Rectangle::hollow(0.01, 0.02, 0.005)), "wall"),
+            (solid.with_bend(0.05, BendFlexibility::VonKarman), "bend_flexibility"),
+            (vague, "standard_uncertainty"),
+            (ratio, "poisson_ratio"),
+        ] {
+            let Err(Error::Argument { name: found, .. }) = rod.checked() else { panic!("{name}") };
+            assert_eq!(found, name);
+        }
     }
 }

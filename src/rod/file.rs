@@ -5,6 +5,8 @@ mod check;
 mod geometry;
 mod materials;
 mod parts;
+mod sections;
+mod uncertainty;
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -16,6 +18,7 @@ use self::check::Check;
 use self::geometry::RawGeometry;
 use self::materials::RawMaterial;
 use self::parts::{RawJoint, RawMass, RawPipe, RawTip};
+use self::uncertainty::RawUncertainty;
 use super::{Rod, Warning};
 use crate::error::Result;
 use crate::files;
@@ -77,14 +80,16 @@ struct RawRod {
     linear_range_n: Option<Number>,
     geometry: RawGeometry,
     material: BTreeMap<String, Spanned<RawMaterial>>,
-    pipe1: RawPipe,
-    pipe2: RawPipe,
-    bend: Option<RawPipe>,
+    pipe1: Spanned<RawPipe>,
+    pipe2: Spanned<RawPipe>,
+    bend: Option<Spanned<RawPipe>>,
     tip: Option<RawTip>,
     #[serde(default)]
     mass: Vec<RawMass>,
     #[serde(default)]
     joint: Vec<RawJoint>,
+    #[serde(default)]
+    standard_uncertainty: RawUncertainty,
 }
 
 /// What a rod file cannot do without, in words.
@@ -97,8 +102,6 @@ const REQUIRED: &Required = &[
     ("l2_mm", "the length from the corner to the ball centre in mm"),
     ("density_kg_m3", "the density in kg/m³"),
     ("material", "the name of one of the file's materials"),
-    ("outer_diameter_mm", "the outer diameter in mm"),
-    ("inner_diameter_mm", "the inner diameter in mm, 0 for a solid rod"),
     ("mass_g", "the mass in g"),
     ("name", "a name in quotes"),
     ("station_mm", "the distance from the flange along the centreline in mm"),
@@ -108,9 +111,11 @@ impl Check<'_> {
     /// The rod without its name and warnings.
     fn rod(&mut self, raw: &RawRod) -> Result<Rod> {
         let geometry = self.geometry(&raw.geometry)?;
+        let standard_uncertainty = self.standard_uncertainty(&raw.standard_uncertainty)?;
         let mut materials = BTreeMap::new();
         for (name, material) in &raw.material {
-            materials.insert(name.as_str(), self.material(name, material)?);
+            let material = self.material(name, material, &raw.standard_uncertainty)?;
+            materials.insert(name.as_str(), material);
         }
         let pipe1 = self.pipe("pipe1", &raw.pipe1, &materials)?;
         let pipe2 = self.pipe("pipe2", &raw.pipe2, &materials)?;
@@ -118,7 +123,10 @@ impl Check<'_> {
             Some(bend) => self.pipe("bend", bend, &materials)?,
             None => pipe1.clone(),
         };
-        let (radius, tube_radius) = (geometry.bend_radius, bend.section.outer_diameter / 2.0);
+        let (radius, tube_radius) = (geometry.bend_radius, bend.section.height() / 2.0);
+        if radius > 0.0 && geometry.bend_flexibility.is_for_tubes() && bend.section.as_round().is_none() {
+            return Err(self.no_round_bend(&raw.geometry));
+        }
         if radius > 0.0 && radius < tube_radius {
             self.warnings.push(Warning::TightBend { radius, tube_radius });
         }
@@ -143,6 +151,7 @@ impl Check<'_> {
                 Some(range) => Some(self.toml.positive("linear_range_n", range)?),
                 None => None,
             },
+            standard_uncertainty,
             warnings: Vec::new(),
         };
         for mass in &raw.mass {
@@ -165,9 +174,9 @@ fn file_stem(file: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::material::Material;
-    use crate::rod::{BendFlexibility, Joint, LumpedMass, Pipe};
-    use crate::section::Round;
+    use crate::material::{Material, MaterialUncertainty};
+    use crate::rod::{BendFlexibility, Joint, LumpedMass, Pipe, StandardUncertainty};
+    use crate::section::{Rectangle, Round, Section};
     use crate::units::{GRAM, MM, URAD_PER_NM};
     use approx::assert_relative_eq;
 
@@ -211,7 +220,7 @@ torsion_urad_per_nm = 3.0
     #[test]
     fn a_rod_file_is_read_into_si_units() {
         let pipe = Pipe {
-            section: Round { outer_diameter: 16.0 * MM, inner_diameter: 12.0 * MM },
+            section: Round::tube(16.0 * MM, 12.0 * MM).into(),
             material: Material::with_moduli("steel", 193e9, 74.8e9, 7930.0),
         };
         let expected = Rod {
@@ -234,6 +243,7 @@ torsion_urad_per_nm = 3.0
                 torsion: 3.0 * URAD_PER_NM,
             }],
             linear_range: None,
+            standard_uncertainty: StandardUncertainty::default(),
             warnings: vec![],
         };
         let rod = read(EXAMPLE);
@@ -274,7 +284,7 @@ torsion_urad_per_nm = 3.0
     fn a_bend_may_be_a_pipe_of_its_own_and_of_its_own_flexibility() {
         let solid = "[bend]\nmaterial = \"steel\"\nouter_diameter_mm = 15\ninner_diameter_mm = 0\n[tip]";
         let text = EXAMPLE.replace("[tip]", solid);
-        assert_eq!(read(&text).bend.section, Round { outer_diameter: 15.0 * MM, inner_diameter: 0.0 });
+        assert_eq!(read(&text).bend.section, Round::solid(15.0 * MM).into());
         for (value, flexibility) in [
             ("\"beam\"", BendFlexibility::Beam),
             ("\"von-karman\"", BendFlexibility::VonKarman),
@@ -292,5 +302,54 @@ torsion_urad_per_nm = 3.0
     fn the_tip_is_a_station_even_when_rounded() {
         let rod = read(&EXAMPLE.replace("205.0", "675.0005"));
         assert_eq!(rod.joints[0].station, rod.length());
+    }
+    #[test]
+    fn a_section_may_be_a_rectangle_a_box_or_its_constants() {
+        let with = |section: &str| {
+            let pipe2 = "[pipe2]\nmaterial = \"steel\"\n";
+            let diameters = "outer_diameter_mm = 16.0\ninner_diameter_mm = 12.0";
+            let text = EXAMPLE.replace(&format!("{pipe2}{diameters}"), &format!("{pipe2}{section}"));
+            read(&text).pipe2.section
+        };
+        assert_eq!(with("width_mm = 10\nheight_mm = 20"), Rectangle::solid(10.0 * MM, 20.0 * MM).into());
+        assert_eq!(
+            with("width_mm = 10\nheight_mm = 20\nwall_mm = 1.5"),
+            Rectangle::hollow(10.0 * MM, 20.0 * MM, 1.5 * MM).into()
+        );
+        let general = "area_mm2 = 200\niy_mm4 = 6000\niz_mm4 = 2000\nj_mm4 = 4000\nkappa = 0.85";
+        let Section::General(general) = with(general) else { panic!("a general section") };
+        for (found, expected) in [
+            (general.area, 2e-4),
+            (general.iy, 6e-9),
+            (general.iz, 2e-9),
+            (general.torsion_constant, 4e-9),
+            (general.shear_coefficient, 0.85),
+        ] {
+            assert_relative_eq!(found, expected, max_relative = 1e-14);
+        }
+    }
+
+    #[test]
+    fn standard_uncertainties_are_those_of_the_material_the_file_or_the_kind() {
+        let of_kind = read(EXAMPLE);
+        assert_eq!(of_kind.standard_uncertainty, StandardUncertainty::default());
+        assert_eq!(of_kind.pipe1.material.standard_uncertainty, MaterialUncertainty::ISOTROPIC);
+        let stated = "youngs_modulus_percent = 1.5\nshear_modulus_percent = 0\ndiameter_mm = 0.05\n\
+                      length_mm = 0\ntip_mass_g = 1\n";
+        let own =
+            EXAMPLE.replace("density_kg_m3 = 7930.0", "density_kg_m3 = 7930.0\nyoungs_modulus_percent = 0.5");
+        for (text, youngs) in [(EXAMPLE, 0.015), (own.as_str(), 0.005)] {
+            let rod = read(&format!("{text}[standard_uncertainty]\n{stated}"));
+            let StandardUncertainty { diameter, length, tip_mass, section } = rod.standard_uncertainty;
+            assert_relative_eq!(diameter, 0.05e-3, max_relative = 1e-14);
+            assert_relative_eq!(tip_mass, 1e-3, max_relative = 1e-14);
+            assert_eq!((length, section), (0.0, 0.01));
+            let material = rod.pipe2.material.standard_uncertainty;
+            assert_relative_eq!(material.youngs_modulus, youngs, max_relative = 1e-14);
+            assert_eq!((material.shear_modulus, material.density), (0.0, 0.01));
+            assert_eq!(material.shear_coefficient, 0.03);
+        }
+        let carbon = EXAMPLE.replace("shear_modulus_gpa = 74.8", "shear_modulus_gpa = 9.5");
+        assert_eq!(read(&carbon).pipe1.material.standard_uncertainty, MaterialUncertainty::ANISOTROPIC);
     }
 }

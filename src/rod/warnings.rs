@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use crate::material::TYPICAL_POISSON_RATIO;
 use crate::units::{MM, significant};
 
 /// Something in a rod file that is allowed but worth a second look.
@@ -48,7 +49,8 @@ pub enum Warning {
         /// |a16| / √(a11 a66).
         coupling: f64,
     },
-    /// Young's and shear modulus leave the isotropic range; Cowper's κ is then only approximate.
+    /// Young's and shear modulus leave the isotropic range and Poisson's ratio is not stated: it is
+    /// taken as [`crate::material::TYPICAL_POISSON_RATIO`].
     Anisotropic {
         /// Name of the material.
         material: String,
@@ -84,7 +86,7 @@ impl fmt::Display for Warning {
             ),
             Warning::Anisotropic { material, ratio } => write!(
                 f,
-                "material `{material}` has E/2G − 1 = {ratio:.2}, more than an isotropic material can have: Cowper's shear coefficient, derived for isotropic ones, is only approximate here"
+                "material `{material}` has E/2G − 1 = {ratio:.2}, more than an isotropic material can have: it is taken as anisotropic, with Poisson's ratio {TYPICAL_POISSON_RATIO} in its shear coefficient; state poisson_ratio if you know it"
             ),
         }
     }

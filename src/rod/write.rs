@@ -1,14 +1,16 @@
 //! Writes a rod as a file, such that reading it gives the same rod.
 
-use super::{BendFlexibility, Pipe, Rod};
+use super::{BendFlexibility, Pipe, Rod, StandardUncertainty};
 use crate::material::Material;
+use crate::section::Section;
 use crate::toml_text::{comments, in_unit, quoted};
 use crate::units::{DEG, GPA, GRAM, MM, URAD_PER_NM};
 
 impl Rod {
     /// This rod as a file, the format of [`Rod::from_toml`], below `above`, lines of comments.
     ///
-    /// Materials are written as moduli, a laminate as the two that a beam needs. Every number has
+    /// Materials are written as moduli, a laminate as the two that a beam needs and Poisson's
+    /// ratio; standard uncertainties where they are not the default. Every number has
     /// as many digits as it takes to read the very same one again; where the change of units makes
     /// that impossible, the last bit may differ.
     pub fn to_toml(&self, above: &[String]) -> String {
@@ -43,13 +45,15 @@ impl Rod {
             line(format!("youngs_modulus_gpa = {:?}", in_unit(material.youngs_modulus, GPA)));
             line(format!("shear_modulus_gpa = {:?}", in_unit(material.shear_modulus, GPA)));
             line(format!("density_kg_m3 = {:?}", material.density));
+            material_details(material).into_iter().for_each(&mut line);
         }
         for (key, pipe) in pipes {
             let known = materials.iter().find(|(_, material)| *material == &pipe.material);
             let name = known.map_or(pipe.material.name.as_str(), |(name, _)| name.as_str());
             line(format!("\n[{key}]\nmaterial = {}", quoted(name)));
-            line(format!("outer_diameter_mm = {:?}", in_unit(pipe.section.outer_diameter, MM)));
-            line(format!("inner_diameter_mm = {:?}", in_unit(pipe.section.inner_diameter, MM)));
+            for (key, value, unit) in section(&pipe.section) {
+                line(format!("{key} = {:?}", in_unit(value, unit)));
+            }
         }
         line(format!("\n[tip]\nmass_g = {:?}", in_unit(self.tip_mass, GRAM)));
         for mass in &self.masses {
@@ -63,7 +67,72 @@ impl Rod {
             line(format!("bending_urad_per_nm = {:?}", in_unit(joint.bending, URAD_PER_NM)));
             line(format!("torsion_urad_per_nm = {:?}", in_unit(joint.torsion, URAD_PER_NM)));
         }
+        let (own, usual) = (&self.standard_uncertainty, StandardUncertainty::default());
+        let known = [
+            ("diameter_mm", own.diameter, usual.diameter, MM),
+            ("length_mm", own.length, usual.length, MM),
+            ("tip_mass_g", own.tip_mass, usual.tip_mass, GRAM),
+            ("section_percent", own.section, usual.section, PERCENT),
+        ];
+        if known.iter().any(|(_, own, usual, _)| own != usual) {
+            line("\n[standard_uncertainty]".into());
+        }
+        for (key, own, _, unit) in known.into_iter().filter(|(_, own, usual, _)| own != usual) {
+            line(format!("{key} = {:?}", in_unit(own, unit)));
+        }
         text
+    }
+}
+
+const PERCENT: f64 = 0.01;
+
+/// What a material has besides E, G and ρ and what does not follow from them.
+fn material_details(material: &Material) -> Vec<String> {
+    let Material { name, youngs_modulus: e, shear_modulus: g, density, .. } = material;
+    let mut lines = Vec::new();
+    let mut read = Material::with_moduli(name, *e, *g, *density);
+    // by moduli alone the ratio is the same but for its last bits
+    if (read.poisson_ratio - material.poisson_ratio).abs() > 1e-12 {
+        lines.push(format!("poisson_ratio = {:?}", material.poisson_ratio));
+        read = Material::anisotropic(name, *e, *g, material.poisson_ratio, *density);
+    }
+    if material.shear_coefficient_factor != 1.0 {
+        lines.push(format!("shear_coefficient_factor = {:?}", material.shear_coefficient_factor));
+    }
+    let (own, usual) = (&material.standard_uncertainty, &read.standard_uncertainty);
+    for (key, own, usual) in [
+        ("youngs_modulus_percent", own.youngs_modulus, usual.youngs_modulus),
+        ("shear_modulus_percent", own.shear_modulus, usual.shear_modulus),
+        ("density_percent", own.density, usual.density),
+        ("shear_coefficient_percent", own.shear_coefficient, usual.shear_coefficient),
+    ] {
+        if own != usual {
+            lines.push(format!("{key} = {:?}", in_unit(own, PERCENT)));
+        }
+    }
+    lines
+}
+
+/// Keys, values in SI and units of a section.
+fn section(section: &Section) -> Vec<(&'static str, f64, f64)> {
+    let fourth = MM * MM * MM * MM;
+    match section {
+        Section::Round(round) => vec![
+            ("outer_diameter_mm", round.outer_diameter, MM),
+            ("inner_diameter_mm", round.inner_diameter, MM),
+        ],
+        Section::Rectangle(rectangle) => [("width_mm", rectangle.width), ("height_mm", rectangle.height)]
+            .into_iter()
+            .chain(rectangle.wall.map(|wall| ("wall_mm", wall)))
+            .map(|(key, value)| (key, value, MM))
+            .collect(),
+        Section::General(general) => vec![
+            ("area_mm2", general.area, MM * MM),
+            ("iy_mm4", general.iy, fourth),
+            ("iz_mm4", general.iz, fourth),
+            ("j_mm4", general.torsion_constant, fourth),
+            ("kappa", general.shear_coefficient, 1.0),
+        ],
     }
 }
 
@@ -85,6 +154,7 @@ fn named<'a>(pipes: &[(&str, &'a Pipe)]) -> Vec<(String, &'a Material)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::section::{General, Rectangle};
 
     /// Written and read again.
     fn again(rod: &Rod) -> Rod {
@@ -123,5 +193,36 @@ mod tests {
         assert_eq!(written.joints, rod.joints);
         assert_eq!(written.bend_flexibility, rod.bend_flexibility);
         assert_ne!(written.pipe1.material.youngs_modulus, written.pipe2.material.youngs_modulus);
+    }
+    #[test]
+    fn sections_and_uncertainties_are_written_where_they_are_not_the_usual() {
+        let plain = Rod::from_toml("rod", include_str!("../../rods/5.toml")).unwrap();
+        let text = plain.to_toml(&[]);
+        assert!(!text.contains("percent") && !text.contains("uncertainty"), "{text}");
+
+        let mut rod = plain;
+        rod.pipe2.section = Rectangle::hollow(0.01, 0.02, 0.0015).into();
+        rod.pipe1.section =
+            General { area: 2e-4, iy: 6e-9, iz: 2.3e-9, torsion_constant: 4e-9, shear_coefficient: 0.85 }
+                .into();
+        rod.bend.section = Rectangle::solid(0.01, 0.02).into();
+        rod.pipe2.material = Material::anisotropic("carbon", 118e9, 9.5e9, 0.35, 1600.0);
+        rod.pipe2.material.shear_coefficient_factor = 1.07;
+        rod.pipe2.material.standard_uncertainty.youngs_modulus = 0.03;
+        rod.pipe1.material.standard_uncertainty.density = 0.0;
+        rod.standard_uncertainty.length = 0.1 * MM;
+        rod.standard_uncertainty.section = 0.02;
+        let written = again(&rod);
+        for (a, b) in [(&rod.pipe1, &written.pipe1), (&rod.bend, &written.bend), (&rod.pipe2, &written.pipe2)]
+        {
+            assert_eq!(
+                (a.section, a.material.standard_uncertainty),
+                (b.section, b.material.standard_uncertainty)
+            );
+            assert_eq!(a.material.shear_coefficient_factor, b.material.shear_coefficient_factor);
+            assert!((a.material.poisson_ratio - b.material.poisson_ratio).abs() < 1e-12);
+        }
+        assert_eq!(rod.standard_uncertainty, written.standard_uncertainty);
+        assert_eq!(written.to_toml(&[]), rod.to_toml(&[]));
     }
 }

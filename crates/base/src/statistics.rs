@@ -15,7 +15,8 @@ pub use normal::ln_normal_mass;
 pub use random::Random;
 
 use statrs::function::beta::beta_reg;
-use statrs::function::gamma::{gamma_ur, ln_gamma};
+use statrs::function::gamma::gamma_ur;
+pub use statrs::function::gamma::ln_gamma;
 
 use crate::error::{Error, Result};
 

@@ -25,6 +25,9 @@ use crate::robot::{Kinematics, Parameter};
 use crate::spatial::Axis;
 use crate::units::MM;
 
+/// Scatter that an arm may have, as a share of its reach: an uncalibrated industrial arm is off by
+/// millimetres per metre, and that is no scatter.
+const SCATTER: f64 = 5e-3;
 /// Most folds, and the rows that each should have at least.
 const MOST_FOLDS: usize = 5;
 const ROWS_PER_FOLD: usize = 10;
@@ -68,7 +71,7 @@ pub(super) fn evidence_of(campaign: &Campaign, calibration: &Calibration, contex
     let groups = replicate_groups(recording);
     Evidence {
         nuisance: without_held(jacobian, calibration),
-        background: DMatrix::zeros(data, 0),
+        most_scatter: most_scatter(context),
         replicate_group: groups
             .iter()
             .flat_map(|group| [3 * group, 3 * group + 1, 3 * group + 2])
@@ -80,8 +83,19 @@ pub(super) fn evidence_of(campaign: &Campaign, calibration: &Calibration, contex
         intercept: intercepts(recording, data),
         resolution: resolution(recording),
         covariates: covariates(context, data),
-        residual,
+        ..Evidence::new(residual)
     }
+}
+
+/// The largest scatter of a coordinate that an arm may have, m; `None` where it does not reach
+/// anywhere.
+fn most_scatter(context: &Context) -> Option<f64> {
+    let reach = context
+        .configurations
+        .iter()
+        .filter_map(|there| Some((there.tip - there.origin.first()?).norm()))
+        .fold(0.0, f64::max);
+    (reach > 0.0).then_some(SCATTER * reach)
 }
 
 fn known(campaign: &Campaign, calibration: &Calibration) -> Vec<Known> {

@@ -45,6 +45,8 @@ pub(super) enum Action {
     SensorScale(Axis),
     /// The channel turns from its own axis towards another one, rad \[0\].
     TurnSensor(Axis, Axis),
+    /// All channels turn, as one block, from the first axis towards the second, rad \[0\].
+    TurnSensors(Axis, Axis),
     /// Play of the clamp under loads along these axes, m \[0\].
     Play([bool; 3]),
     /// Adds to readings: index of the datum, weight \[0\].
@@ -125,6 +127,10 @@ impl<'a> State<'a> {
             Action::TurnSensor(channel, towards) => {
                 let sensor = &mut self.sensor[channel.index()];
                 *sensor = turn(*channel, *towards, value) * *sensor;
+            }
+            Action::TurnSensors(from, towards) => {
+                let turn = turn(*from, *towards, value);
+                self.sensor.iter_mut().for_each(|sensor| *sensor = turn * *sensor);
             }
             Action::Play(axes) => add(&mut self.play, axes, value),
             Action::Shift(weights) => self.shifts.push((weights, value)),

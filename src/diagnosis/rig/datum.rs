@@ -1,5 +1,9 @@
 //! The data of a recording: one for each offset that was measured, with the run through the loads that it belongs to.
 
+use std::collections::HashMap;
+use std::hash::Hash;
+
+use crate::inference::RunName;
 use crate::rig::readings::{Axis, Direction, Phase, Reading};
 
 /// One measured offset.
@@ -48,6 +52,11 @@ impl Datum {
         format!("row {} d{}", self.row, self.channel)
     }
 
+    /// How its run is told from the others of its axis; nothing where the file has no names.
+    pub(super) fn run_name(&self) -> Option<RunName> {
+        self.trial.clone().map(RunName::Trial)
+    }
+
     /// A phase that is not stated counts as loading.
     pub(super) fn is_unloading(&self) -> bool {
         self.phase == Some(Phase::Unload)
@@ -94,15 +103,13 @@ pub(super) fn all(rows: &[Reading]) -> Vec<Datum> {
 }
 
 /// Number of each value among the different ones, in order of appearance.
-pub(super) fn numbered<K: PartialEq>(keys: impl IntoIterator<Item = K>) -> Vec<usize> {
-    let mut known: Vec<K> = Vec::new();
-    let mut number = |key: K| {
-        known.iter().position(|k| *k == key).unwrap_or_else(|| {
-            known.push(key);
-            known.len() - 1
-        })
+pub(super) fn numbered<K: Eq + Hash>(keys: impl IntoIterator<Item = K>) -> Vec<usize> {
+    let mut known: HashMap<K, usize> = HashMap::new();
+    let number = |key: K| {
+        let next = known.len();
+        *known.entry(key).or_insert(next)
     };
-    keys.into_iter().map(&mut number).collect()
+    keys.into_iter().map(number).collect()
 }
 
 /// A load as it is told from others: direction, size, phase, places.

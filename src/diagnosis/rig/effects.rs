@@ -4,8 +4,9 @@
 //! usual size and the source of that number, what it needs of a recording, how it is said, where it
 //! is written. [`registry::ALL`] is the list of them.
 //!
-//! A prior size is what a rig of this kind is usually wrong by, not what these readings say. Where
-//! it follows from the rod or from the loads it is given relative to them. "The paper": Improved
+//! A prior size is what a rig of this kind is usually wrong by: a share of the recording's own
+//! loads, readings, times and temperatures, so that the same recording in other units, or of a rod
+//! ten times as large, has the same answer. "The paper": Improved
 //! MultiCal, Sensors 2023, 23(12), 5717.
 
 pub(super) mod events;
@@ -55,6 +56,11 @@ impl Context<'_> {
     /// The largest load, N.
     pub fn largest_load(&self) -> f64 {
         largest_load(self.data)
+    }
+
+    /// The largest reading, m.
+    pub fn largest_reading(&self) -> f64 {
+        self.data.iter().fold(0.0, |most: f64, d| most.max(d.measured.abs()))
     }
 }
 

@@ -14,46 +14,61 @@ const FEWEST_FOLDS: usize = 3;
 /// Error of a sensor's zero that all runs have in common, as a share of its full scale: the zero balance of good load cells
 /// and displacement sensors is stated as 0.05 to 1 %.
 const ZERO: f64 = 5e-4;
+/// Scatter that a rig may have, as a share of its largest reading: displacement sensors repeat to
+/// 0.1 % of their range or better, and a range is not used to less than a tenth.
+const SCATTER: f64 = 0.03;
+/// And in steps of the display.
+const STEPS_OF_DISPLAY: f64 = 2.0;
 
 /// The evidence of `data`, whose predictions are made.
 pub(super) fn of(data: &[Datum], nuisance: DMatrix<f64>, large: Option<DVector<f64>>) -> Evidence {
+    let residual = DVector::from_iterator(data.len(), data.iter().map(|d| d.measured - d.predicted));
+    let (offsets, least_offset) = zeros(data);
     Evidence {
-        residual: DVector::from_iterator(data.len(), data.iter().map(|d| d.measured - d.predicted)),
         nuisance,
         background: background(data, large),
+        offsets,
+        least_offset,
+        is_robust: true,
+        most_scatter: most_scatter(data),
         replicate_group: numbered(
             data.iter().map(|d| (d.line_key(), d.direction.sign, d.load.to_bits(), d.phase)),
         ),
         // the zero of a run is that of one sensor at one place
         shared: numbered(data.iter().map(|d| (d.run, d.channel, d.stations()[1]))),
         fold: folds(data),
-        session: vec![Evidence::NONE; data.len()],
-        intercept: vec![Evidence::NONE; data.len()],
         resolution: resolution(data),
         covariates: covariates(data),
+        ..Evidence::new(residual)
     }
 }
 
-/// What every hypothesis holds: the zeros of the channels, and what large deflections add (`large`), which the linear model leaves
-/// out; whether the readings show it is not the diagnosis' question.
+/// The largest scatter that a rig may have, m: a share of its largest reading, and some steps of the
+/// display. What is larger is no noise, whether or not anything was repeated.
+fn most_scatter(data: &[Datum]) -> Option<f64> {
+    let largest = data.iter().fold(0.0, |most: f64, datum| most.max(datum.measured.abs()));
+    Some((SCATTER * largest).max(STEPS_OF_DISPLAY * resolution(data)))
+}
+
+/// What large deflections add (`large`), which the linear model leaves out; whether the readings show
+/// it is not the diagnosis' question.
 fn background(data: &[Datum], large: Option<DVector<f64>>) -> DMatrix<f64> {
-    let zeros = zeros(data);
     match large {
-        Some(large) => {
-            zeros.insert_columns(0, 1, 0.0).map_with_location(|i, k, x| if k == 0 { large[i] } else { x })
-        }
-        None => zeros,
+        Some(large) => DMatrix::from_columns(&[large]),
+        None => DMatrix::zeros(data.len(), 0),
     }
 }
 
-/// The zero of each channel: one column of its size per channel.
-fn zeros(data: &[Datum]) -> DMatrix<f64> {
-    let channels = numbered(data.iter().map(|d| d.channel));
-    DMatrix::from_fn(data.len(), count(&channels), |i, k| {
-        let of_channel = data.iter().zip(&channels).filter(|(_, channel)| **channel == k);
-        let full_scale = of_channel.fold(0.0, |max: f64, (d, _)| max.max(d.measured.abs()));
-        if channels[i] == k { ZERO * full_scale } else { 0.0 }
-    })
+/// The zero of each channel at each place where it reads, with its least size.
+fn zeros(data: &[Datum]) -> (DMatrix<f64>, Vec<f64>) {
+    let sensors = numbered(data.iter().map(|d| (d.channel, d.stations()[1])));
+    let count = count(&sensors);
+    let offsets = DMatrix::from_fn(data.len(), count, |i, k| f64::from(u8::from(sensors[i] == k)));
+    let mut largest = vec![0.0f64; count];
+    for (datum, &sensor) in data.iter().zip(&sensors) {
+        largest[sensor] = largest[sensor].max(datum.measured.abs());
+    }
+    (offsets, largest.into_iter().map(|largest| ZERO * largest).collect())
 }
 
 /// One column for each straight line through the origin: the signed load, N. For readings without a rod.

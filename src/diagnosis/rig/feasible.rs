@@ -189,6 +189,8 @@ impl<'a> Rig<'a> {
                     temperature,
                     load_station: plan.load_station,
                     read_station: plan.read_station,
+                    session: None,
+                    loaded_at: None,
                     line: 0,
                 });
             }

@@ -25,8 +25,9 @@ use crate::units::UM;
 const MOST_COLUMNS: usize = 6;
 /// Size of a curve as a share of the largest reading, or of the deflection.
 const SHARE: f64 = 0.05;
-/// A sensor and its holder are wrong by a few micrometres even where hardly anything is to be read, m.
-const LEAST_SHIFT: f64 = 5.0 * UM;
+/// The same, as a share of the largest of all readings: a sensor and its holder are a little wrong
+/// even where hardly anything is to be read.
+const LEAST_SHIFT: f64 = 0.01;
 /// Share by which the slope of a line may be off, and share of the steepest line's slope that a flat one may have: as large as
 /// the known effects on a rod.
 const SLOPE: (f64, f64) = (0.27, 0.02);
@@ -96,7 +97,7 @@ pub(super) fn all(data: &[Datum], deflections: &[f64], has_rod: bool) -> Vec<Ent
         }));
         for (place, group) in if is_of_line { &lines } else { &channels } {
             let largest = group.iter().fold(0.0, |max: f64, &i| max.max(data[i].measured.abs()));
-            let size = (SHARE * largest).max(LEAST_SHIFT);
+            let size = (SHARE * largest).max(LEAST_SHIFT * largest_reading(data));
             entries.extend(curve(along, place, &coordinate, group, UM, size, |_| 1.0));
         }
     }
@@ -105,6 +106,11 @@ pub(super) fn all(data: &[Datum], deflections: &[f64], has_rod: bool) -> Vec<Ent
         entries.extend(slopes(data, deflections, &lines));
     }
     entries
+}
+
+/// The largest reading, m.
+fn largest_reading(data: &[Datum]) -> f64 {
+    data.iter().fold(0.0, |most: f64, datum| most.max(datum.measured.abs()))
 }
 
 /// What a reading may follow: name, coordinate, and whether it acts by line (loads) or by channel (drifts).
@@ -207,7 +213,7 @@ fn along_the_load(data: &[Datum]) -> Option<Entry> {
     let axes = numbered(along.iter().map(|&i| data[i].channel)).into_iter().max()? + 1;
     let coordinate: Coordinate = scaled(&data.iter().map(|d| Some(d.load)).collect::<Vec<_>>());
     let largest = along.iter().fold(0.0, |max: f64, &i| max.max(data[i].measured.abs()));
-    let size = (SHARE * largest).max(LEAST_SHIFT);
+    let size = (SHARE * largest).max(LEAST_SHIFT * largest_reading(data));
     let sign = |i: usize| f64::from(data[i].direction.sign);
     (axes > 1).then(|| curve(LOAD, "readings along the load", &coordinate, &along, UM, size, sign)).flatten()
 }

@@ -240,7 +240,7 @@ pub(super) fn check_stations(readings: &Readings, rod: &Rod) -> Result<()> {
 }
 
 /// Displacement at the read station per force at the load station, m/N.
-fn responses(rod: &Rod, pairs: &[(f64, f64)]) -> Result<Parts> {
+pub(super) fn responses(rod: &Rod, pairs: &[(f64, f64)]) -> Result<Parts> {
     let stations: Vec<f64> = pairs.iter().flat_map(|&(load, read)| [load, read]).collect();
     let model = RodModel::new(rod, &Physics::WHOLE, 1, &stations)?;
     pairs.iter().map(|&(load, read)| Ok(model.force_response(load, read)?.translation)).collect()

@@ -17,6 +17,8 @@ use crate::report::{Block, Report, Section};
 use crate::robot::Motion;
 use crate::units::{DEG, MM, UM, URAD};
 
+/// Coordinates of a pose.
+const AXES: [&str; 3] = ["x", "y", "z"];
 /// Most samples of the shape.
 const SAMPLES: usize = 12;
 
@@ -80,6 +82,11 @@ fn subject<'a>(found: &'a CalibrationDiagnosis<'_>) -> Subject<'a> {
         per: " per coordinate",
         agrees: "The calibrated robot explains the poses",
         errors: Errors { averaged: " on average", before, after, held_out: distances.held_out_means() },
+        nominal: None,
+        suspect: Box::new(|datum| {
+            let row = &campaign.measurements.rows[datum / 3];
+            json!({ "pose": row.pose, "channel": AXES[datum % 3] })
+        }),
         remainder: remainder(found),
         warnings: of_calibration(campaign, &model.calibration),
         head: vec![

@@ -14,20 +14,21 @@ pub const RIVALS_SAID: usize = 2;
 /// What was found, and what it does to the errors.
 pub fn headline(subject: &Subject) -> String {
     let diagnosis = subject.diagnosis;
-    let noise = format!("{} µm{}", um(diagnosis.noise), subject.per);
     let findings = &diagnosis.findings;
     let remains = subject.remainder.as_ref().map(|left| left.sentence.clone());
+    let nominal = subject.nominal.as_ref().map_or_else(String::new, |words| format!(" {words}"));
     if findings.is_empty() {
-        let with_noise = |words: String| format!("{words} Noise is {noise}.");
-        return remains.map(with_noise).unwrap_or_else(|| {
-            format!(
-                "{}: what is left, {} µm{}, is noise ({} µm).",
+        return match remains {
+            Some(remains) => format!("{remains}{nominal} {}", capital(&scatter(subject))),
+            None => format!(
+                "{}:{} what is left, {} µm{}, is {}.",
                 subject.agrees,
-                um(rms(&diagnosis.before)),
+                nominal.trim_end_matches('.').to_owned() + if nominal.is_empty() { "" } else { ";" },
+                um(rms(&diagnosis.after)),
                 subject.per,
-                um(diagnosis.noise)
-            )
-        });
+                scatter_of(subject)
+            ),
+        };
     }
     let said: Vec<String> = findings.iter().take(IN_FULL).map(|finding| sentence(subject, finding)).collect();
     let mut words = said.join(" ");
@@ -42,21 +43,47 @@ pub fn headline(subject: &Subject) -> String {
     }
     words += &worth(subject);
     match remains {
-        Some(remains) => format!("{words} {remains}"),
-        None => words,
+        Some(remains) => format!("{words} {remains}{nominal}"),
+        None => words + &nominal,
     }
+}
+
+/// How the data scatter: noise only where somebody stated it; what repeats show; else of unknown
+/// origin.
+fn scatter(subject: &Subject) -> String {
+    let (test, noise) = (&subject.diagnosis.noise_test, um(subject.diagnosis.noise));
+    match (test.stated, &subject.diagnosis.lack_of_fit_after) {
+        (Some(stated), _) => format!("noise is {noise} µm, stated are {} µm.", um(stated)),
+        (None, Some(_)) => format!("the repeats scatter by {noise} µm{}.", subject.per),
+        (None, None) => format!("{noise} µm{} are scatter of unknown origin.", subject.per),
+    }
+}
+
+/// The same of what is left: `the scatter of the repeats`.
+fn scatter_of(subject: &Subject) -> String {
+    let (test, noise) = (&subject.diagnosis.noise_test, um(subject.diagnosis.noise));
+    match (test.stated, &subject.diagnosis.lack_of_fit_after) {
+        (Some(stated), _) => format!("noise ({noise} µm; stated are {} µm)", um(stated)),
+        (None, Some(_)) => format!("as large as the scatter of the repeats ({noise} µm)"),
+        (None, None) => "scatter of unknown origin (nothing was repeated)".to_owned(),
+    }
+}
+
+fn capital(words: &str) -> String {
+    let mut letters = words.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
 /// What the findings do to the errors.
 fn worth(subject: &Subject) -> String {
     let (findings, errors) = (&subject.diagnosis.findings, subject.errors);
-    let noise = um(subject.diagnosis.noise);
+    let scatter = scatter(subject);
     let it = if findings.len() > 1 { "them" } else { "it" };
     let averaged = errors.averaged;
     let fitted = |why: &str| {
         let (before, after) = (um(errors.before), um(errors.after));
         format!(
-            " Taking {it} into account lowers the error from {before} to {after} µm{averaged}{why}; noise is {noise} µm."
+            " Taking {it} into account lowers the error from {before} to {after} µm{averaged}{why}; {scatter}"
         )
     };
     // a single event says nothing about data that were held out
@@ -64,7 +91,7 @@ fn worth(subject: &Subject) -> String {
     match errors.held_out {
         _ if are_events => fitted(""),
         Some((before, after)) if um(after) != um(before) && after < before => format!(
-            " Taking {it} into account lowers the held-out error from {} to {} µm{averaged}; noise is {noise} µm.",
+            " Taking {it} into account lowers the held-out error from {} to {} µm{averaged}; {scatter}",
             um(before),
             um(after)
         ),

@@ -7,7 +7,8 @@ use super::place::place;
 use super::subject::Subject;
 use super::{hidden, warnings};
 use crate::inference::{
-    Covariate, Estimate, Finding, FindingPart, LackOfFit, LoadPlan, Rank, Rival, Structure, ranking, rms,
+    Covariate, Estimate, Finding, FindingPart, LackOfFit, LoadPlan, NominalEstimate, Rank, Rival, Structure,
+    ranking, rms,
 };
 use crate::units::{MM, UM};
 
@@ -42,12 +43,24 @@ pub fn json(subject: &Subject) -> Value {
             "after_um": um(session.after),
         })
     });
+    let suspects = diagnosis.suspects.iter().map(|suspect| {
+        let mut json = (subject.suspect)(suspect.datum);
+        json["sigma"] = suspect.sigma.into();
+        json
+    });
     let head = subject.head.iter().map(|(key, value)| ((*key).to_owned(), value.clone()));
     let mut all: Map<String, Value> = head.collect();
     let main = json!({
         "headline": headline(subject),
         "verdict": if diagnosis.is_mismatch() { "mismatch" } else { "consistent" },
         "noise_um": um(diagnosis.noise),
+        "noise": {
+            "stated_um": diagnosis.noise_test.stated.map(um),
+            "estimated_um": um(diagnosis.noise_test.estimated),
+            "p_value": diagnosis.noise_test.p_value,
+        },
+        "nominal": diagnosis.nominal.iter().map(nominal).collect::<Vec<_>>(),
+        "suspects": suspects.collect::<Vec<_>>(),
         "noise_shared_ratio": diagnosis.shared_ratio,
         "residual_sd_um": um(diagnosis.hypothesis.sigma),
         "rms_before_um": um(rms(&diagnosis.before)),
@@ -116,6 +129,20 @@ fn estimate(estimate: &Estimate) -> Value {
         "value": estimate.value / unit,
         "lo": estimate.low / unit,
         "hi": estimate.high / unit,
+    })
+}
+
+/// A nominal number that moved, in its own unit.
+fn nominal(moved: &NominalEstimate) -> Value {
+    let number = &moved.number;
+    json!({
+        "parameter": number.name,
+        "unit": number.unit,
+        "nominal": number.value / number.si,
+        "estimate": moved.estimate / number.si,
+        "lo": moved.low / number.si,
+        "hi": moved.high / number.si,
+        "standard_uncertainty": number.standard_uncertainty / number.si,
     })
 }
 

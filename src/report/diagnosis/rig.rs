@@ -3,6 +3,7 @@
 mod correction;
 mod figures;
 
+use nalgebra::DVector;
 use serde_json::{Value, json};
 
 use super::headline::um;
@@ -10,10 +11,10 @@ use super::remainder::{Remainder, Sample};
 use super::subject::{Errors, Subject};
 use super::{json as whole_json, report as whole_report};
 use crate::diagnosis::rig::{Correction, Datum, RigDiagnosis};
-use crate::inference::{Discrepancy, ForwardModel, Location, Plan, Variable, rms};
+use crate::inference::{Discrepancy, ForwardModel, Location, Plan, Quantity, Variable, rms};
 use crate::report::{Block, Report};
 use crate::rig::readings::Phase;
-use crate::units::MM;
+use crate::units::{MM, significant};
 
 /// Most samples of the shape along one line.
 const SAMPLES: usize = 12;
@@ -57,6 +58,11 @@ fn subject<'a>(found: &'a RigDiagnosis, correction: Option<&Correction>) -> Subj
             after: rms(&diagnosis.after),
             held_out: diagnosis.held_out.as_ref().map(|errors| (errors.before, errors.after)),
         },
+        nominal: nominal(found),
+        suspect: Box::new(|datum| {
+            let datum = &model.data()[datum];
+            json!({ "row": datum.row, "channel": format!("d{}", datum.channel) })
+        }),
         remainder: remainder(found),
         warnings: of_rod.chain(of_readings).collect(),
         head: vec![("rod", json!(rod.map(|rod| &rod.name))), ("readings", json!(readings.file))],
@@ -74,6 +80,30 @@ fn subject<'a>(found: &'a RigDiagnosis, correction: Option<&Correction>) -> Subj
         consequences: correction.map(correction::section),
         count: model.data().len(),
     }
+}
+
+/// `Stiffness is 0.4 ± 0.1 % above the file's: within what the file says of E of steel (1 %).`
+fn nominal(found: &RigDiagnosis) -> Option<String> {
+    let moved = found.diagnosis.nominal.first()?;
+    let (factors, covariance) = &found.diagnosis.nominal_factors;
+    let predicted = found.model.data().iter().map(|datum| datum.predicted);
+    let predicted = DVector::from_iterator(found.model.data().len(), predicted);
+    // share of the deflections that the numbers add, and its gradient to their factors
+    let gradient = found.evidence.nominal.tr_mul(&predicted) / predicted.norm_squared();
+    let value = -100.0 * gradient.dot(factors);
+    let half = 196.0 * gradient.dot(&(covariance * &gradient)).max(0.0).sqrt();
+    let word = if value >= 0.0 { "above" } else { "below" };
+    let share = Quantity { value, low: value - half, high: value + half }.size().say("%");
+    let number = &moved.number;
+    let percent = 100.0 * number.standard_uncertainty / number.value.abs();
+    let known = match number.value != 0.0 && percent < 50.0 {
+        true => format!("{} %", significant(percent, 2)),
+        false => format!("{} {}", significant(number.standard_uncertainty / number.si, 2), number.unit),
+    };
+    Some(format!(
+        "Stiffness is {share} {word} the file's: within what the file says of {} ({known}).",
+        number.name
+    ))
 }
 
 /// What is one line of readings, for example `dy under loads along y`.

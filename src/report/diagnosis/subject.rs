@@ -31,6 +31,10 @@ pub struct Subject<'a> {
     pub agrees: &'static str,
     /// Whose errors are compared before and after.
     pub errors: Errors,
+    /// What the nominal numbers explain, in a sentence.
+    pub nominal: Option<String>,
+    /// A suspect datum as JSON: its row or pose, its channel.
+    pub suspect: Box<dyn Fn(usize) -> Value + 'a>,
     /// What no effect explains.
     pub remainder: Option<Remainder>,
     /// Warnings of the input files and of the base model.

@@ -1,7 +1,7 @@
 //! Names of the columns.
 
 /// The columns that are read. `axis`, one of the loads and one of the offsets must be there.
-pub const KNOWN_COLUMNS: [&str; 12] = [
+pub const KNOWN_COLUMNS: [&str; 14] = [
     "axis",
     "load_n",
     "load_kg",
@@ -14,8 +14,10 @@ pub const KNOWN_COLUMNS: [&str; 12] = [
     "temperature_c",
     "load_station_mm",
     "read_station_mm",
+    "session",
+    "loaded_at_s",
 ];
-pub(super) const TEXT_COLUMNS: [&str; 3] = ["axis", "trial", "phase"];
+pub(super) const TEXT_COLUMNS: [&str; 4] = ["axis", "trial", "phase", "session"];
 pub(super) const LOAD_COLUMNS: [&str; 2] = ["load_n", "load_kg"];
 /// By channel: the offset along X, Y and Z.
 pub(super) const OFFSET_COLUMNS: [&str; 3] = ["dx_um", "dy_um", "dz_um"];

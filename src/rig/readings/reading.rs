@@ -25,6 +25,10 @@ pub struct Reading {
     pub load_station: Option<f64>,
     /// Arc length from the flange to the sensor, m; `None`: the tip.
     pub read_station: Option<f64>,
+    /// Name or number of the session: the rod was mounted anew in each.
+    pub session: Option<String>,
+    /// Time at which this load was hung, s, on the clock of `time`.
+    pub loaded_at: Option<f64>,
     /// Line in the file, from 1.
     pub line: usize,
 }
@@ -51,6 +55,8 @@ impl Reading {
             temperature: None,
             load_station: None,
             read_station: None,
+            session: None,
+            loaded_at: None,
             line: 0,
         }
     }
@@ -64,6 +70,11 @@ impl Reading {
     /// As a repeat of that name.
     pub fn with_trial(self, trial: impl Into<String>) -> Reading {
         Reading { trial: Some(trial.into()), ..self }
+    }
+
+    /// Of that session.
+    pub fn with_session(self, session: impl Into<String>) -> Reading {
+        Reading { session: Some(session.into()), ..self }
     }
 
     /// The load along the positive axis, N: its magnitude with the sign of its direction.

@@ -40,6 +40,13 @@ pub enum Warning {
     },
     /// Every offset is zero.
     OnlyZeros,
+    /// A comment line above the header looks like a statement about the rig, but is none.
+    UnknownKey {
+        /// The key as written.
+        key: String,
+        /// The key that it may be meant to be.
+        nearest: &'static str,
+    },
 }
 
 /// All warnings about the `rows` that were read from `table`.
@@ -95,6 +102,9 @@ impl fmt::Display for Warning {
                 "the largest offset is {} µm: the offsets look like metres or millimetres, and are read as micrometres",
                 significant(largest / UM, 2)
             ),
+            Warning::UnknownKey { key, nearest } => {
+                write!(f, "the comment line with {} is not read; did you mean {nearest}?", quoted(key))
+            }
             Warning::OnlyZeros => write!(f, "every offset is zero: was the sensor connected?"),
         }
     }

@@ -10,7 +10,7 @@ type Column<'a> = (&'a str, &'a dyn Fn(&Reading) -> Option<String>);
 
 impl Readings {
     /// These readings as a table, the format of [`Readings::from_text`], below `above`, lines of
-    /// comments. Loads are in N; columns that no row fills are left out.
+    /// comments, and what the header says of the rig where it is not the default. Loads are in N; columns that no row fills are left out.
     ///
     /// ```
     /// use rodcal::prelude::*;
@@ -25,7 +25,7 @@ impl Readings {
         let offset =
             |axis: Axis| move |row: &Reading| row.offset[axis.index()].map(|o| format!("{}", in_unit(o, UM)));
         let (dx, dy, dz) = (offset(Axis::X), offset(Axis::Y), offset(Axis::Z));
-        let columns: [Column<'_>; 11] = [
+        let columns: [Column<'_>; 13] = [
             ("axis", &|row| Some(row.direction.to_string())),
             ("load_n", &|row| Some(row.load.to_string())),
             ("trial", &|row| row.trial.as_deref().map(cell)),
@@ -34,6 +34,8 @@ impl Readings {
             }),
             ("time_s", &|row| row.time.map(|t| t.to_string())),
             ("temperature_c", &|row| row.temperature.map(|t| t.to_string())),
+            ("session", &|row| row.session.as_deref().map(cell)),
+            ("loaded_at_s", &|row| row.loaded_at.map(|t| t.to_string())),
             ("load_station_mm", &|row| row.load_station.map(|s| in_unit(s, MM).to_string())),
             ("read_station_mm", &|row| row.read_station.map(|s| in_unit(s, MM).to_string())),
             ("dx_um", &dx),
@@ -42,7 +44,7 @@ impl Readings {
         ];
         let is_filled = |(_, cell_of): &Column<'_>| self.rows.iter().any(|row| cell_of(row).is_some());
         let filled: Vec<Column<'_>> = columns.into_iter().filter(is_filled).collect();
-        let mut text = comments(above);
+        let mut text = comments(above) + &comments(&self.header.lines());
         let line = |cells: Vec<String>| cells.join(",") + "\n";
         text += &line(filled.iter().map(|(name, _)| (*name).to_owned()).collect());
         for row in &self.rows {
@@ -58,8 +60,9 @@ mod tests {
 
     #[test]
     fn readings_that_are_written_are_read_as_the_same() {
-        let text = "axis,load_kg,trial,phase,time_s,load_station_mm,dx_um,dz_um\n\
-                    y,0.5,\"a, b\",load,0,,1.25,\n-z,1,2,,60,205.3,,-3\ny,2,2,unload,61.5,,7,8\n";
+        let text = "axis,load_kg,trial,phase,time_s,load_station_mm,dx_um,dz_um,session,loaded_at_s\n\
+                    y,0.5,\"a, b\",load,0,,1.25,,\"1, am\",-2.5\n-z,1,2,,60,205.3,,-3,2,\n\
+                    y,2,2,unload,61.5,,7,8,2,0\n";
         let mut readings = Readings::from_text("f", text).unwrap();
         let written = readings.to_csv(&["made by hand".into()]);
         assert!(written.starts_with("# made by hand\naxis,load_n,"), "{written}");

@@ -6,7 +6,7 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use super::check::Check;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::rod::{BendFlexibility, Warning, tangent_length};
 use crate::toml_text::Number;
 use crate::units::{MM, significant};
@@ -95,6 +95,16 @@ impl Check<'_> {
             significant(shorter / MM, 4)
         );
         Err(self.toml.is(key, number, &expected))
+    }
+
+    /// The error that the bend's flexibility asks for a round tube.
+    pub(super) fn no_round_bend(&self, raw: &RawGeometry) -> Error {
+        let expected = "\"beam\" or a factor > 0: \"von-karman\" and \"asme-b31.3\" are for round tubes, \
+                        and the bend is none";
+        match &raw.bend_flexibility {
+            Some(raw) => self.toml.is("geometry.bend_flexibility", raw, expected),
+            None => self.toml.wrong(&raw.l1_mm, "a bend that is no round tube".into(), expected),
+        }
     }
 
     fn bend_flexibility(&self, raw: &Spanned<RawFlexibility>) -> Result<BendFlexibility> {

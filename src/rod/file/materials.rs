@@ -4,8 +4,9 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use super::check::Check;
+use super::uncertainty::{RawUncertainty, of_table};
 use crate::error::{Error, Result};
-use crate::material::{Material, isotropic_poisson_ratio, laminate};
+use crate::material::{Material, MaterialUncertainty, isotropic_poisson_ratio, laminate};
 use crate::rod::Warning;
 use crate::toml_text::Number;
 use crate::units::{GPA, MM, significant};
@@ -23,6 +24,11 @@ pub(super) struct RawMaterial {
     ply_nu12: Option<Number>,
     ply_thickness_mm: Option<Number>,
     ply_angles_deg: Option<Spanned<Vec<Number>>>,
+    shear_coefficient_factor: Option<Number>,
+    youngs_modulus_percent: Option<Number>,
+    shear_modulus_percent: Option<Number>,
+    density_percent: Option<Number>,
+    shear_coefficient_percent: Option<Number>,
 }
 
 /// A material as checked, with what its laminate has to say to the pipes that use it.
@@ -44,35 +50,95 @@ impl RawMaterial {
 }
 
 impl Check<'_> {
-    pub(super) fn material(&mut self, name: &str, raw: &Spanned<RawMaterial>) -> Result<Checked> {
+    /// The material with the standard uncertainties of its own table, else of the file's, else those
+    /// of its kind.
+    pub(super) fn material(
+        &mut self,
+        name: &str,
+        raw: &Spanned<RawMaterial>,
+        of_file: &RawUncertainty,
+    ) -> Result<Checked> {
+        let mut checked = self.moduli(name, raw)?;
+        let fields = raw.get_ref();
+        let material = &mut checked.material;
+        let key = |field: &str| format!("material.{name}.{field}");
+        if let Some(factor) = &fields.shear_coefficient_factor {
+            material.shear_coefficient_factor =
+                self.toml.positive(&key("shear_coefficient_factor"), factor)?;
+        }
+        let known = &mut material.standard_uncertainty;
+        for (field, own, file, target) in [
+            (
+                "youngs_modulus_percent",
+                &fields.youngs_modulus_percent,
+                &of_file.youngs_modulus_percent,
+                &mut known.youngs_modulus,
+            ),
+            (
+                "shear_modulus_percent",
+                &fields.shear_modulus_percent,
+                &of_file.shear_modulus_percent,
+                &mut known.shear_modulus,
+            ),
+            ("density_percent", &fields.density_percent, &of_file.density_percent, &mut known.density),
+            (
+                "shear_coefficient_percent",
+                &fields.shear_coefficient_percent,
+                &of_file.shear_coefficient_percent,
+                &mut known.shear_coefficient,
+            ),
+        ] {
+            match (own, file) {
+                (Some(own), _) => *target = self.percent(&key(field), own)?,
+                (None, Some(file)) => *target = self.percent(&of_table(field), file)?,
+                (None, None) => {}
+            }
+        }
+        Ok(checked)
+    }
+
+    /// The material with its moduli and the standard uncertainties of its kind.
+    fn moduli(&mut self, name: &str, raw: &Spanned<RawMaterial>) -> Result<Checked> {
         let fields = raw.get_ref();
         let key = |field: &str| format!("material.{name}.{field}");
         let density = self.toml.not_negative(&key("density_kg_m3"), &fields.density_kg_m3)?;
         self.usual(&key("density_kg_m3"), density, "kg/m³", 100.0, 25_000.0);
         let moduli = (&fields.youngs_modulus_gpa, &fields.shear_modulus_gpa, &fields.poisson_ratio);
-        match moduli {
-            (None, None, None) if fields.is_laminate() => self.laminate(name, raw, density),
-            (Some(e), Some(g), None) if !fields.is_laminate() => {
+        let material = match moduli {
+            (None, None, None) if fields.is_laminate() => return self.laminate(name, raw, density),
+            (Some(e), Some(g), nu) if !fields.is_laminate() => {
                 let e = self.modulus(&key("youngs_modulus_gpa"), e)?;
                 let g = self.modulus(&key("shear_modulus_gpa"), g)?;
-                let ratio = isotropic_poisson_ratio(e, g);
-                if ratio > 0.5 {
-                    self.warnings.push(Warning::Anisotropic { material: name.to_owned(), ratio });
+                match nu {
+                    // across an anisotropic wall it may exceed that of any isotropic material
+                    Some(nu) => {
+                        Material::anisotropic(name, e, g, self.poisson_ratio(name, nu, 1.0)?, density)
+                    }
+                    None => {
+                        let ratio = isotropic_poisson_ratio(e, g);
+                        if ratio > 0.5 {
+                            self.warnings.push(Warning::Anisotropic { material: name.to_owned(), ratio });
+                        }
+                        Material::with_moduli(name, e, g, density)
+                    }
                 }
-                let material = Material::with_moduli(name, e, g, density);
-                Ok(Checked { material, laminate_thickness: None })
             }
             (Some(e), None, Some(nu)) if !fields.is_laminate() => {
                 let e = self.modulus(&key("youngs_modulus_gpa"), e)?;
-                let ratio = self.toml.finite(&key("poisson_ratio"), nu)?;
-                if !(ratio > -1.0 && ratio <= 0.5) {
-                    return Err(self.toml.is(&key("poisson_ratio"), nu, "a Poisson's ratio, -1 < ν <= 0.5"));
-                }
-                let material = Material::isotropic(name, e, ratio, density);
-                Ok(Checked { material, laminate_thickness: None })
+                Material::isotropic(name, e, self.poisson_ratio(name, nu, 0.5)?, density)
             }
-            _ => Err(self.undecided(name, raw)),
+            _ => return Err(self.undecided(name, raw)),
+        };
+        Ok(Checked { material, laminate_thickness: None })
+    }
+
+    fn poisson_ratio(&self, name: &str, number: &Number, largest: f64) -> Result<f64> {
+        let key = format!("material.{name}.poisson_ratio");
+        let ratio = self.toml.finite(&key, number)?;
+        if ratio > -1.0 && ratio <= largest {
+            return Ok(ratio);
         }
+        Err(self.toml.is(&key, number, &format!("a Poisson's ratio, -1 < ν <= {largest}")))
     }
 
     /// Neither the one way to state a material nor the other.
@@ -84,9 +150,6 @@ impl Check<'_> {
                     "has ply_… keys and a modulus or ratio of its own",
                     "one of the two: the plies alone make E and G".to_owned(),
                 ),
-                (Some(_), Some(_), Some(_)) => {
-                    ("has shear_modulus_gpa and poisson_ratio", "one of the two".to_owned())
-                }
                 (None, ..) => {
                     ("has no youngs_modulus_gpa", format!("youngs_modulus_gpa, or for a laminate {LAMINATE}"))
                 }
@@ -141,13 +204,10 @@ impl Check<'_> {
             let coupling = wall.coupling;
             self.warnings.push(Warning::LaminateCoupling { material: name.to_owned(), coupling });
         }
-        let material = Material {
-            name: name.to_owned(),
-            youngs_modulus: wall.youngs_modulus,
-            shear_modulus: wall.shear_modulus,
-            density,
-            poisson_ratio: wall.poisson_ratio.clamp(0.0, 0.5),
-        };
+        let nu = wall.poisson_ratio.clamp(0.0, 0.5);
+        let mut material = Material::anisotropic(name, wall.youngs_modulus, wall.shear_modulus, nu, density);
+        // lay-up and fibre content are not better known where E/G happens to be an isotropic one
+        material.standard_uncertainty = MaterialUncertainty::ANISOTROPIC;
         Ok(Checked { material, laminate_thickness: Some(wall.thickness) })
     }
 
@@ -205,5 +265,17 @@ mod tests {
         assert_relative_eq!(material.shear_modulus, wall.shear_modulus, max_relative = 1e-12);
         assert_relative_eq!(material.poisson_ratio, wall.poisson_ratio, max_relative = 1e-12);
         assert_eq!((material.density, rod.warnings), (1600.0, vec![])); // eight plies fill the wall of 1 mm
+    }
+    #[test]
+    fn an_anisotropic_material_may_state_its_poisson_ratio() {
+        let rod = read("youngs_modulus_gpa = 118\nshear_modulus_gpa = 9.5\npoisson_ratio = 0.35");
+        assert_eq!(rod.pipe1.material, Material::anisotropic("m", 118e9, 9.5e9, 0.35, 1600.0));
+        assert_eq!(rod.warnings, []);
+        let rod = read("youngs_modulus_gpa = 118\nshear_modulus_gpa = 9.5\nshear_coefficient_factor = 1.1");
+        assert_eq!(rod.pipe1.material.poisson_ratio, 0.3);
+        assert_eq!(rod.pipe1.material.shear_coefficient_factor, 1.1);
+        assert_eq!(rod.warnings.len(), 1);
+        let kappa = rod.pipe1.section.shear_coefficients(118.0 / 9.5, 0.3)[0];
+        assert_relative_eq!(rod.pipe1.shear_coefficients()[0], 1.1 * kappa, max_relative = 1e-12);
     }
 }

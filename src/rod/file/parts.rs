@@ -10,7 +10,6 @@ use super::materials::Checked;
 use crate::delimited::nearest_name;
 use crate::error::{Error, Result};
 use crate::rod::{Joint, LumpedMass, Pipe, Rod, Warning};
-use crate::section::Round;
 use crate::toml_text::Number;
 use crate::units::{GRAM, MM, URAD_PER_NM};
 
@@ -18,8 +17,16 @@ use crate::units::{GRAM, MM, URAD_PER_NM};
 #[serde(deny_unknown_fields, expecting = "a section with material, outer_diameter_mm, inner_diameter_mm")]
 pub(super) struct RawPipe {
     material: Spanned<String>,
-    outer_diameter_mm: Number,
-    inner_diameter_mm: Number,
+    pub outer_diameter_mm: Option<Number>,
+    pub inner_diameter_mm: Option<Number>,
+    pub width_mm: Option<Number>,
+    pub height_mm: Option<Number>,
+    pub wall_mm: Option<Number>,
+    pub area_mm2: Option<Number>,
+    pub iy_mm4: Option<Number>,
+    pub iz_mm4: Option<Number>,
+    pub j_mm4: Option<Number>,
+    pub kappa: Option<Number>,
 }
 
 #[derive(Deserialize)]
@@ -49,27 +56,20 @@ impl Check<'_> {
     pub(super) fn pipe(
         &mut self,
         which: &'static str,
-        raw: &RawPipe,
+        raw: &Spanned<RawPipe>,
         materials: &BTreeMap<&str, Checked>,
     ) -> Result<Pipe> {
         let key = |field: &str| format!("{which}.{field}");
-        let material = raw.material.get_ref();
+        let named = &raw.get_ref().material;
+        let material = named.get_ref();
         let Some(checked) = materials.get(material.as_str()) else {
-            return Err(self.unknown_material(&key("material"), &raw.material, materials));
+            return Err(self.unknown_material(&key("material"), named, materials));
         };
-        let outer_mm = self.toml.positive(&key("outer_diameter_mm"), &raw.outer_diameter_mm)?;
-        let inner_mm = self.toml.not_negative(&key("inner_diameter_mm"), &raw.inner_diameter_mm)?;
-        if inner_mm >= outer_mm {
-            let outer = self.toml.source(&raw.outer_diameter_mm);
-            let expected = format!("less than the outer diameter, {outer} mm");
-            return Err(self.toml.is(&key("inner_diameter_mm"), &raw.inner_diameter_mm, &expected));
-        }
-        self.usual(&key("outer_diameter_mm"), outer_mm, "mm", 1.0, 1000.0);
-        let section = Round { outer_diameter: outer_mm * MM, inner_diameter: inner_mm * MM };
-        if let Some(plies) = checked.laminate_thickness
-            && (plies / section.wall() - 1.0).abs() > 0.01
+        let section = self.section(which, raw)?;
+        if let (Some(plies), Some(wall)) = (checked.laminate_thickness, section.wall())
+            && (plies / wall - 1.0).abs() > 0.01
         {
-            let (material, wall) = (material.clone(), section.wall());
+            let material = material.clone();
             self.warnings.push(Warning::LaminateThickness { material, plies, pipe: which, wall });
         }
         Ok(Pipe { section, material: checked.material.clone() })

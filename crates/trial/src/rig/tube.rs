@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-/// A round tube of an isotropic material, SI.
+/// A round tube of one material, SI.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tube {
     /// Name of the material in the rod file.
@@ -43,14 +43,19 @@ impl Tube {
         PI / 4.0 * (self.outer.powi(4) - self.inner.powi(4))
     }
 
-    /// Shear coefficient of a hollow circle, m = a/b (G. R. Cowper, *J. Appl. Mech.* 33 (1966) 335–340):
+    /// Shear coefficient of a hollow circle, m = a/b, e = E/G (S. Dharmarajan, H. McCutchen, *J. Compos. Mater.* 7 (1973)
+    /// 530–535; with e = 2(1 + ν) it is G. R. Cowper's, *J. Appl. Mech.* 33 (1966) 335–340):
     ///
-    /// κ = 6(1 + ν)(1 + m²)² / ((7 + 6ν)(1 + m²)² + (20 + 12ν)m²), ν = E/2G − 1.
+    /// κ = 3e(1 + m²)² / ((3.5e − ν)(1 + m²)² + (10e − 8ν)m²).
+    ///
+    /// ν = E/2G − 1 of an isotropic wall, 0.3 of any other.
     pub fn shear_coefficient(&self) -> f64 {
-        let nu = self.youngs_modulus / (2.0 * self.shear_modulus) - 1.0;
+        let e = self.youngs_modulus / self.shear_modulus;
+        let isotropic = e / 2.0 - 1.0;
+        let nu = if (0.0..=0.5).contains(&isotropic) { isotropic } else { 0.3 };
         let ratio = (self.inner / self.outer).powi(2);
         let square = (1.0 + ratio) * (1.0 + ratio);
-        6.0 * (1.0 + nu) / (7.0 + 6.0 * nu + (20.0 + 12.0 * nu) * ratio / square)
+        3.0 * e / (3.5 * e - nu + (10.0 * e - 8.0 * nu) * ratio / square)
     }
 
     /// What it gives way, with E and G multiplied by factors.
@@ -100,6 +105,9 @@ mod tests {
     fn a_solid_round_has_cowpers_coefficient_of_a_circle() {
         // 6(1 + ν)/(7 + 6ν) with ν = 0.25
         assert!((tube(0.0).shear_coefficient() - 7.5 / 8.5).abs() < 1e-12);
+        // carbon, 30 × 26 mm: ν is not E/2G − 1 = 5
+        let carbon = Tube { youngs_modulus: 118e9, shear_modulus: 9.5e9, outer: 15e-3, ..tube(13e-3) };
+        assert!((carbon.shear_coefficient() - 0.510).abs() < 5e-4);
         let flexibility = tube(6e-3).flexibility(1.0, 1.0);
         assert!((flexibility.bending * 200e9 * tube(6e-3).second_moment() - 1.0).abs() < 1e-12);
     }

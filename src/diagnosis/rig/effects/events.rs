@@ -1,16 +1,13 @@
 //! What happened once: slips and misread values.
 
-use super::places::runs_by_channel;
-use super::{Context, Entry, RigEffect, UNBOUNDED, entry, of, parameter};
+use super::places::{measured_channels, runs_by_channel};
+use super::{Context, Datum, Entry, RigEffect, UNBOUNDED, entry, of, parameter};
 use crate::diagnosis::rig::action::Action;
 use crate::inference::{Effect, Kind, Location, Reported, Run, Variable, WrittenTo};
 use crate::units::UM;
 
-/// Slip of a bond or a clamp within a run, m: well above a sensor's noise of 3 µm. A knock may be
-/// millimetres.
-const STEP: f64 = 50.0 * UM;
-/// A display that was read wrongly, m.
-const MISREAD: f64 = 50.0 * UM;
+/// Slip of a bond or a clamp as a share of the largest reading.
+const STEP: f64 = 0.05;
 
 /// Everything after one row of a run is shifted.
 pub static SLIP: RigEffect = RigEffect {
@@ -19,7 +16,7 @@ pub static SLIP: RigEffect = RigEffect {
         kind: Kind::Event,
         summary: "everything after one reading is shifted",
         formula: "y + s for the rest of a run",
-        prior: "50 µm: a bond or a clamp that slips; a knock may be millimetres",
+        prior: "5 % of the largest reading: a bond or a clamp that slips; a knock may be more",
         parameters: &[("um", "shift")],
         needs: "runs with two readings on either side",
         cause: "something slipped",
@@ -35,42 +32,12 @@ pub static SLIP: RigEffect = RigEffect {
     observed: |finding, _| format!("Readings jump by {} ({})", of(finding, "um").say("µm"), finding.location),
 };
 
-/// One reading is wrong.
-pub static OUTLIER: RigEffect = RigEffect {
-    effect: Effect {
-        name: "outlier",
-        kind: Kind::Event,
-        summary: "one reading is wrong",
-        formula: "y + s at one reading",
-        prior: "50 µm: a display that was read wrongly",
-        parameters: &[("um", "error")],
-        needs: "readings",
-        cause: "a misread or disturbed reading",
-        cause_at: |location| format!("{location} misread"),
-        written_to: WrittenTo::Recording,
-        reported: Reported::Alone,
-        seen_along: |_| vec![Variable::Order],
-        direct_check: None,
-    },
-    needs_rod: false,
-    candidates: |context| {
-        let of_datum = |(i, datum): (usize, &super::Datum)| {
-            let um = parameter("um", UM, 0.0, MISREAD, UNBOUNDED);
-            let location = Location::Reading { row: datum.row, channel: datum.channel };
-            entry(&OUTLIER, location, um, Action::Shift(vec![(i, 1.0)]))
-        };
-        context.data.iter().enumerate().map(of_datum).collect()
-    },
-    missing: |_| "nothing was read",
-    observed: |finding, _| {
-        format!("The reading of {} is off by {}", finding.location, of(finding, "um").say("µm"))
-    },
-};
-
-/// A slip between any two rows of a run, with two rows at least on either side: one row would be an
-/// outlier.
+/// A slip between any two rows of a run, with two rows at least on either side (one row would be a
+/// suspect), which the next zero takes out; and one between two runs, or within one, that no later
+/// zero takes out.
 fn slips(context: &mut Context) -> Vec<Entry> {
     let data = context.data;
+    let size = STEP * context.largest_reading();
     let of_run = |(run, rows): (Run, Vec<usize>)| {
         (2..rows.len().saturating_sub(1)).map(move |first| {
             let before = &data[rows[first - 1]];
@@ -78,9 +45,39 @@ fn slips(context: &mut Context) -> Vec<Entry> {
             let channel = is_other.then_some(before.channel);
             let location = Location::AfterRow { run: run.clone(), row: before.row, channel };
             let weights = rows[first..].iter().map(|&i| (i, 1.0)).collect();
-            let um = parameter("um", UM, 0.0, STEP, UNBOUNDED);
+            let um = parameter("um", UM, 0.0, size, UNBOUNDED);
             entry(&SLIP, location, um, Action::Shift(weights))
         })
     };
-    runs_by_channel(data).into_iter().flat_map(of_run).collect()
+    let within: Vec<Entry> = runs_by_channel(data).into_iter().flat_map(of_run).collect();
+    within.into_iter().chain(between_runs(data, size)).collect()
+}
+
+/// Everything after a run is shifted: of each channel, between any two runs with runs on either side.
+fn between_runs(data: &[Datum], size: f64) -> Vec<Entry> {
+    let mut entries = Vec::new();
+    for channel in measured_channels(data) {
+        let mut last_of_run: Vec<(usize, usize)> = Vec::new();
+        for (i, datum) in data.iter().enumerate().filter(|(_, datum)| datum.channel == channel) {
+            match last_of_run.iter_mut().find(|(run, _)| *run == datum.run) {
+                Some((_, last)) => *last = i,
+                None => last_of_run.push((datum.run, i)),
+            }
+        }
+        last_of_run.sort_by_key(|(_, last)| data[*last].row);
+        for &(_, last) in last_of_run.iter().skip(1).rev().skip(2) {
+            let before = &data[last];
+            let weights: Vec<(usize, f64)> = data
+                .iter()
+                .enumerate()
+                .filter(|(_, later)| later.channel == channel && later.row > before.row)
+                .map(|(i, _)| (i, 1.0))
+                .collect();
+            let run = Run { axis: before.direction.axis, name: before.run_name() };
+            let location = Location::AfterRow { run, row: before.row, channel: Some(channel) };
+            let um = parameter("um", UM, 0.0, size, UNBOUNDED);
+            entries.push(entry(&SLIP, location, um, Action::Shift(weights)));
+        }
+    }
+    entries
 }

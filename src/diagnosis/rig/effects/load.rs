@@ -2,7 +2,8 @@
 
 use super::places::loaded_axes;
 use super::{
-    Context, Entry, NOT_NEGATIVE, RigEffect, along_the_load, entry, of, parameter, preferring, said,
+    Context, Entry, NOT_NEGATIVE, RigEffect, along_the_load, candidate, entry, of, parameter, preferring,
+    said,
 };
 use crate::diagnosis::rig::action::Action;
 use crate::diagnosis::rig::datum::Datum;
@@ -10,16 +11,17 @@ use crate::inference::{Effect, Finding, Kind, Location, Parameter, Part, Reporte
 use crate::spatial::Axis;
 use crate::units::{DEG, UM};
 
-/// Friction of a slide, N.
-const SLIDE: f64 = 1.0;
-/// Weight of a hanger that was forgotten, or error of a tare, N.
-const TARE: f64 = 1.0;
-/// Play of a clamp or of a threaded holder, m.
-const PLAY: f64 = 20.0 * UM;
+/// Friction of a slide as a share of the largest load.
+const SLIDE: f64 = 0.05;
+/// Weight of a hanger that was forgotten, or error of a tare, as a share of the largest load.
+const TARE: f64 = 0.05;
+/// Play of a clamp or of a threaded holder as a share of the largest reading.
+const PLAY: f64 = 0.025;
 /// What the eye allows when a load or a sensor is set up, rad.
 pub(super) const ALIGNMENT: f64 = 1.0 * DEG;
 /// Beyond this nobody would call it the same axis, rad.
 const MOST_MISALIGNED: f64 = 30.0 * DEG;
+pub(super) const WIDEST: (f64, f64) = (-MOST_MISALIGNED, MOST_MISALIGNED);
 
 /// Friction of the slide that guides the load.
 pub static FRICTION: RigEffect = RigEffect {
@@ -28,7 +30,7 @@ pub static FRICTION: RigEffect = RigEffect {
         kind: Kind::Physics,
         summary: "the slide takes off load, and holds it on the way down",
         formula: "F = load − f while loading (not below zero), load + f while unloading",
-        prior: "1 N: the paper's lines cross the load axis at 0.09 to 0.11 kg",
+        prior: "5 % of the largest load: the paper's lines cross the load axis at 0.9 to 1.1 of 20 N",
         parameters: &[("force_n", "friction force")],
         needs: "loads; unloading (column `phase`) tells it from an offset",
         cause: "friction in the slide",
@@ -42,7 +44,7 @@ pub static FRICTION: RigEffect = RigEffect {
     candidates: |context| {
         let largest = context.largest_load();
         of_axes(context.data, Part::Slide, &|location, axes| {
-            let force = parameter("force_n", 1.0, 0.0, SLIDE, (0.0, largest));
+            let force = parameter("force_n", 1.0, 0.0, SLIDE * largest, (0.0, largest));
             entry(&FRICTION, location, force, Action::Friction(axes))
         })
     },
@@ -67,7 +69,7 @@ pub static LOAD_OFFSET: RigEffect = RigEffect {
         kind: Kind::Physics,
         summary: "a hanger or a tare adds to every load",
         formula: "F = load + f, for every load but zero",
-        prior: "1 N: that of the paper's friction, from which its lines do not tell it",
+        prior: "5 % of the largest load, as the paper's friction, from which its lines do not tell it",
         parameters: &[("force_n", "added force")],
         needs: "loads",
         cause: "an offset of the load (hanger or tare)",
@@ -81,7 +83,7 @@ pub static LOAD_OFFSET: RigEffect = RigEffect {
     candidates: |context| {
         let largest = context.largest_load();
         of_axes(context.data, Part::Hanger, &|location, axes| {
-            let force = parameter("force_n", 1.0, 0.0, TARE, (-largest, largest));
+            let force = parameter("force_n", 1.0, 0.0, TARE * largest, (-largest, largest));
             entry(&LOAD_OFFSET, location, force, Action::LoadOffset(axes))
         })
     },
@@ -99,7 +101,7 @@ pub static BACKLASH: RigEffect = RigEffect {
         kind: Kind::Physics,
         summary: "play before the rod bends",
         formula: "y = bending + p towards the load, for every load but zero",
-        prior: "20 µm: play of a clamp or of a threaded holder",
+        prior: "2.5 % of the largest reading: 20 µm of play of a clamp where a rod bends by 0.8 mm",
         parameters: &[("play_um", "the way that it moves freely")],
         needs: "a channel along a load",
         cause: "play in the clamp",
@@ -111,8 +113,9 @@ pub static BACKLASH: RigEffect = RigEffect {
     },
     needs_rod: false,
     candidates: |context| {
+        let largest = context.largest_reading();
         of_axes(context.data, Part::Clamp, &|location, axes| {
-            let play = parameter("play_um", UM, 0.0, PLAY, NOT_NEGATIVE);
+            let play = parameter("play_um", UM, 0.0, PLAY * largest, NOT_NEGATIVE);
             entry(&BACKLASH, location, play, Action::Play(axes))
         })
     },
@@ -131,7 +134,12 @@ pub static LOAD_MISALIGNMENT: RigEffect = RigEffect {
         summary: "a load is not square",
         formula: "d = nominal direction, turned by φ",
         prior: "1°: what the eye allows when a load is set up",
-        parameters: &[("angle_deg", "angle")],
+        parameters: &[
+            ("angle_deg", "angle"),
+            ("about_x_deg", "turn of the whole frame about x"),
+            ("about_y_deg", "about y"),
+            ("about_z_deg", "about z"),
+        ],
         needs: "a rod file; channels across the loads",
         cause: "a load that is not square to the rod",
         cause_at: |location| format!("loads turned, {location}"),
@@ -153,7 +161,7 @@ pub static LOAD_MISALIGNMENT: RigEffect = RigEffect {
             Location::LoadFrame { axes: [a, b], about } => {
                 format!("Loads along {a} and {b}, about {about} are turned by {}", angle.say("°"))
             }
-            other => format!("Loads along {other} are turned by {}", angle.say("°")),
+            _ => format!("The frame of the loads is turned by {}", whole_turn(finding)),
         }
     },
 };
@@ -179,7 +187,7 @@ pub(super) fn pairs(from: &[Axis]) -> Vec<(Axis, Axis)> {
 
 /// An angle by which something was set up wrongly.
 pub(super) fn misalignment() -> Parameter {
-    parameter("angle_deg", DEG, 0.0, ALIGNMENT, (-MOST_MISALIGNED, MOST_MISALIGNED))
+    parameter("angle_deg", DEG, 0.0, ALIGNMENT, WIDEST)
 }
 
 /// Each load is set up by itself; where two axes were loaded their frame may be turned as a whole
@@ -200,7 +208,33 @@ fn load_turns(context: &mut Context) -> Vec<Entry> {
             let action = Action::TurnLoad([true; 3], from, towards);
             entry(&LOAD_MISALIGNMENT, location, misalignment(), action)
         });
-    single.chain(both).collect()
+    let whole = (axes.len() > 1).then(|| {
+        let about = TURNS.map(|(name, from, towards)| {
+            (parameter(name, DEG, 0.0, ALIGNMENT, WIDEST), Action::TurnLoad([true; 3], from, towards))
+        });
+        let (parameters, actions) = about.into_iter().unzip();
+        let location = Location::Part(Part::LoadFrame);
+        (candidate(&LOAD_MISALIGNMENT.effect, location, parameters), actions)
+    });
+    single.chain(both).chain(whole).collect()
+}
+
+/// A frame that is turned about each of its axes: name of the angle, from which axis towards which.
+pub(super) const TURNS: [(&str, Axis, Axis); 3] =
+    [("about_x_deg", Axis::Y, Axis::Z), ("about_y_deg", Axis::Z, Axis::X), ("about_z_deg", Axis::X, Axis::Y)];
+
+/// The whole angle of a frame that is turned about several axes: `2.1 ± 0.1°`.
+pub(super) fn whole_turn(finding: &Finding) -> String {
+    let angles: Vec<_> = finding.estimates.iter().map(|estimate| estimate.quantity()).collect();
+    let value = angles.iter().map(|angle| angle.value.powi(2)).sum::<f64>().sqrt();
+    // the interval along the turn that was found
+    let half = angles
+        .iter()
+        .map(|angle| angle.value / value.max(f64::MIN_POSITIVE) * 0.5 * (angle.high - angle.low))
+        .map(|part| part * part)
+        .sum::<f64>()
+        .sqrt();
+    crate::inference::Quantity { value, low: value - half, high: value + half }.say("°")
 }
 
 /// `Loads`, or `Loads along y` where it is those of one axis only.

@@ -3,7 +3,7 @@
 use super::{RigEffect, events, history, load, sensor, structure};
 
 /// Every effect that the diagnosis of a rig knows.
-pub static ALL: [&RigEffect; 17] = [
+pub static ALL: [&RigEffect; 16] = [
     &load::FRICTION,
     &load::LOAD_OFFSET,
     &load::BACKLASH,
@@ -20,5 +20,4 @@ pub static ALL: [&RigEffect; 17] = [
     &history::HYSTERESIS,
     &sensor::THERMAL_DRIFT,
     &events::SLIP,
-    &events::OUTLIER,
 ];

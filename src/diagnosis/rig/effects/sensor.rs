@@ -1,20 +1,18 @@
 //! What a displacement sensor shows of a displacement: scale, direction, drift.
 
-use super::load::{misalignment, pairs};
+use super::load::{ALIGNMENT, TURNS, WIDEST, misalignment, pairs, whole_turn};
 use super::places::measured_channels;
-use super::{Context, Entry, RigEffect, UNBOUNDED, along_the_load, entry, of, parameter};
+use super::{Context, Entry, RigEffect, UNBOUNDED, along_the_load, candidate, entry, of, parameter};
 use crate::diagnosis::rig::action::Action;
 use crate::diagnosis::rig::datum::Datum;
-use crate::inference::{Effect, Finding, Kind, Location, Reported, Variable, WrittenTo};
+use crate::inference::{Effect, Finding, Kind, Location, Part, Reported, Variable, WrittenTo};
 use crate::spatial::Axis;
-use crate::units::UM;
+use crate::units::{DEG, UM};
 
 /// Scale error of a displacement sensor that was not calibrated in place.
 const SCALE: f64 = 0.03;
-/// Drift, m/K.
-const PER_KELVIN: f64 = 5.0 * UM;
-/// Drift in a room that warms by 2 K in an hour, m/s.
-const PER_SECOND: f64 = 10.0 * UM / HOUR;
+/// Drift over the whole recording as a share of its largest reading.
+const DRIFT: f64 = 0.02;
 const HOUR: f64 = 3600.0;
 
 /// A sensor that shows too much or too little.
@@ -59,7 +57,12 @@ pub static SENSOR_MISALIGNMENT: RigEffect = RigEffect {
         summary: "a sensor is not square",
         formula: "y = e·u, e turned by φ from the channel's axis",
         prior: "1°: what the eye allows when a sensor is set up",
-        parameters: &[("angle_deg", "angle")],
+        parameters: &[
+            ("angle_deg", "angle"),
+            ("about_x_deg", "turn of the whole block about x"),
+            ("about_y_deg", "about y"),
+            ("about_z_deg", "about z"),
+        ],
         needs: "a rod file; loads across the channel",
         cause: "a sensor that is not square to the rod",
         cause_at: |location| format!("sensor {location} (not square to the rod)"),
@@ -75,10 +78,23 @@ pub static SENSOR_MISALIGNMENT: RigEffect = RigEffect {
             let action = Action::TurnSensor(from, towards);
             entry(&SENSOR_MISALIGNMENT, location, misalignment(), action)
         };
-        pairs(&measured_channels(context.data)).into_iter().map(turned).collect()
+        let channels = measured_channels(context.data);
+        let single = pairs(&channels).into_iter().map(turned);
+        let whole = (channels.len() > 1).then(|| {
+            let about = TURNS.map(|(name, from, towards)| {
+                (parameter(name, DEG, 0.0, ALIGNMENT, WIDEST), Action::TurnSensors(from, towards))
+            });
+            let (parameters, actions) = about.into_iter().unzip();
+            let location = Location::Part(Part::Sensors);
+            (candidate(&SENSOR_MISALIGNMENT.effect, location, parameters), actions)
+        });
+        single.chain(whole).collect()
     },
     missing: |_| "the channels would show nothing of it",
     observed: |finding, _| {
+        if finding.location == Location::Part(Part::Sensors) {
+            return format!("The block of sensors is turned by {}", whole_turn(finding));
+        }
         let angle = of(finding, "angle_deg");
         let word = if angle.value >= 0.0 { "towards" } else { "away from" };
         let (from, towards) = match &finding.location {
@@ -96,8 +112,17 @@ pub static THERMAL_DRIFT: RigEffect = RigEffect {
         kind: Kind::Physics,
         summary: "readings follow temperature or time",
         formula: "y + d·(T − T₀), or y + d·(t − t₀); zero at the first reading of file or run",
-        prior: "5 µm/K: steel of 0.5 m grows by 6 µm/K; 10 µm/h in a room that warms by 2 K in an hour",
-        parameters: &[("um_per_k", "drift per kelvin"), ("um_per_h", "drift per hour")],
+        prior: "2 % of the largest reading over the recording: steel of 0.5 m grows by 6 µm/K",
+        parameters: &[
+            ("um_per_k", "drift per kelvin"),
+            ("um_per_h", "drift per hour"),
+            ("dx_um_per_k", "the same of each sensor where all drift"),
+            ("dy_um_per_k", ""),
+            ("dz_um_per_k", ""),
+            ("dx_um_per_h", ""),
+            ("dy_um_per_h", ""),
+            ("dz_um_per_h", ""),
+        ],
         needs: "temperatures or times (columns `temperature_c`, `time_s`)",
         cause: "thermal drift",
         cause_at: |location| format!("drift of {location}"),
@@ -116,15 +141,21 @@ pub static THERMAL_DRIFT: RigEffect = RigEffect {
         }
     },
     observed: |finding: &Finding, _| {
-        let drift = match finding.quantity("um_per_k") {
-            Some(drift) => drift.say("µm per kelvin"),
-            None => of(finding, "um_per_h").say("µm per hour"),
-        };
-        let (channel, since) = match &finding.location {
-            Location::Channel { channel, form } => (format!("d{channel}"), form.map(|f| format!(" {f}"))),
-            other => (other.to_string(), None),
-        };
-        format!("Sensor {channel} drifts by {drift}{}", since.unwrap_or_default())
+        let per = |name: &str| if name.ends_with("um_per_k") { "µm per kelvin" } else { "µm per hour" };
+        let each = finding.estimates.iter().map(|estimate| {
+            let channel = estimate.name.split_once('_').map_or("", |(channel, _)| channel);
+            let channel = if channel == "um" { String::new() } else { format!("{channel} ") };
+            format!("{channel}{}", estimate.quantity().say(per(&estimate.name)))
+        });
+        let drift = each.collect::<Vec<_>>().join(", ");
+        match &finding.location {
+            Location::Channel { channel, form } => {
+                let since = form.map(|form| format!(" {form}")).unwrap_or_default();
+                format!("Sensor d{channel} drifts by {drift}{since}")
+            }
+            Location::Form { form, .. } => format!("The sensors drift by {drift} {form}"),
+            _ => format!("The sensors drift by {drift}"),
+        }
     },
 };
 
@@ -133,25 +164,47 @@ pub static THERMAL_DRIFT: RigEffect = RigEffect {
 fn drifts(context: &mut Context) -> Vec<Entry> {
     let data = context.data;
     let known = |value: &dyn Fn(&Datum) -> Option<f64>| data.iter().map(value).collect::<Option<Vec<f64>>>();
-    let (values, name, unit, size) = match (known(&|d| d.temperature), known(&|d| d.time)) {
-        (Some(temperature), _) => (temperature, "um_per_k", UM, PER_KELVIN),
-        (None, Some(time)) => (time, "um_per_h", UM / HOUR, PER_SECOND),
+    let (values, suffix, unit) = match (known(&|d| d.temperature), known(&|d| d.time)) {
+        (Some(temperature), _) => (temperature, "um_per_k", UM),
+        (None, Some(time)) => (time, "um_per_h", UM / HOUR),
         (None, None) => return Vec::new(),
     };
+    let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    if most <= least {
+        return Vec::new();
+    }
+    let size = DRIFT * context.largest_reading() / (most - least);
     let first_of_run = |run: usize| data.iter().position(|d| d.run == run).unwrap_or_default();
-    let of_channel = |channel: Axis, form: Option<&'static str>, zero: &dyn Fn(&Datum) -> usize| {
+    let course = |channel: Axis, zero: &dyn Fn(&Datum) -> usize| {
         let own = data.iter().enumerate().filter(|(_, d)| d.channel == channel);
-        let weights = own.map(|(i, d)| (i, values[i] - values[zero(d)])).collect();
-        let drift = parameter(name, unit, 0.0, size, UNBOUNDED);
-        entry(&THERMAL_DRIFT, Location::Channel { channel, form }, drift, Action::Shift(weights))
+        Action::Shift(own.map(|(i, d)| (i, values[i] - values[zero(d)])).collect())
     };
+    let channels = measured_channels(data);
     let mut entries = Vec::new();
-    for channel in measured_channels(data) {
-        entries.push(of_channel(channel, None, &|_| 0));
-        if data.iter().any(|d| d.run != data[0].run) {
-            let form = Some("since the zero of each run");
-            entries.push(of_channel(channel, form, &|d| first_of_run(d.run)));
+    let mut add = |form: Option<&'static str>, zero: &dyn Fn(&Datum) -> usize| {
+        for &channel in &channels {
+            let drift = parameter(suffix, unit, 0.0, size, UNBOUNDED);
+            let location = Location::Channel { channel, form };
+            entries.push(entry(&THERMAL_DRIFT, location, drift, course(channel, zero)));
         }
+        if channels.len() > 1 {
+            // what warms up moves the tip in some direction
+            let vector = channels.iter().map(|&channel| {
+                let name = format!("d{channel}_{suffix}");
+                (parameter(&name, unit, 0.0, size, UNBOUNDED), course(channel, zero))
+            });
+            let (parameters, actions) = vector.unzip();
+            let location = match form {
+                None => Location::Part(Part::Sensors),
+                Some(form) => Location::Form { part: Part::Sensors, form: form.into() },
+            };
+            entries.push((candidate(&THERMAL_DRIFT.effect, location, parameters), actions));
+        }
+    };
+    add(None, &|_| 0);
+    if data.iter().any(|d| d.run != data[0].run) {
+        add(Some("since the zero of each run"), &|d| first_of_run(d.run));
     }
     entries
 }

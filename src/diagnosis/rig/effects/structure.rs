@@ -209,12 +209,16 @@ fn joints(context: &mut Context) -> Vec<Entry> {
         0.5 * distances.filter(|distance| *distance > 0.0).fold(f64::INFINITY, f64::min)
     };
     let mut entries = Vec::new();
+    let structure_has_arc = structure.has_arc();
     for declared in &rod.joints {
         let location = Location::Named(declared.name.clone());
         let of_file = [declared.bending, declared.torsion];
         entries.extend(joint(structure, &JOINT_COMPLIANCE, location, declared.station, of_file, None));
     }
-    for &station in &scan {
+    // a hinge inside the arc is the bend
+    let (start, end) = (rod.bend_start(), rod.bend_end());
+    let is_in_arc = |station: f64| structure_has_arc && start < station && station < end;
+    for &station in scan.iter().filter(|station| !is_in_arc(**station)) {
         let location = Location::Station(station);
         let reach = Some(reach(station));
         entries.extend(joint(structure, &JOINT_COMPLIANCE, location, station, [0.0; 2], reach));

@@ -1,0 +1,114 @@
+//! Which two effects together may explain what neither does alone.
+//!
+//! A modulus that is too low and a root that gives way hide each other: each alone makes the fit
+//! worse. All pairs are screened by the inner products of their columns, G and b, what the hypothesis
+//! so far explains taken out:
+//!
+//! ```text
+//! gain ≈ −½·ν·ln(1 − Δ/νσ²) − ½·ln|1 + G/s|     Δ = bᵀ(G + s)⁻¹b, s what is then left of σ²
+//! ```
+//!
+//! and only the best are fitted.
+
+use nalgebra::{Cholesky, DMatrix, DVector};
+
+use super::search::Search;
+use super::{ForwardModel, Hypothesis, Kind};
+use crate::linalg::transposed_product;
+
+/// Pairs that are fitted.
+const REFITTED: usize = 16;
+/// Most candidates that are paired, the likeliest alone and the first of every effect.
+const MOST: usize = 120;
+/// Of more candidates no pairs are screened.
+const TOO_MANY: usize = 400;
+/// A pair must be worth so much more than the better of the two alone.
+const TOGETHER: f64 = 3.0;
+
+impl Search<'_> {
+    /// The best pairs of candidates beside a hypothesis, by their columns at neutral values.
+    /// Events come one by one: a pair of them explains no more than both.
+    pub(super) fn pairs(&self, hypothesis: &Hypothesis, additions: &[f64]) -> Vec<(usize, usize)> {
+        let candidates = self.model.candidates();
+        let mut paired: Vec<usize> = self
+            .likeliest(additions, false)
+            .into_iter()
+            .filter(|&index| candidates[index].effect.kind != Kind::Event)
+            .collect();
+        // a scan over hundreds of waves of every joint has too many pairs, and no two of them hide
+        if paired.len() > TOO_MANY {
+            return Vec::new();
+        }
+        paired.truncate(MOST);
+        let (residual, base) = self.linear_part(&hypothesis.terms);
+        let blocks: Vec<DMatrix<f64>> =
+            paired.iter().map(|&index| self.whitening.apply_columns(&self.model.neutral[index])).collect();
+        let starts: Vec<usize> = blocks
+            .iter()
+            .scan(0, |next, block| {
+                let start = *next;
+                *next += block.ncols();
+                Some(start)
+            })
+            .collect();
+        let total: usize = blocks.iter().map(DMatrix::ncols).sum();
+        let mut all = DMatrix::zeros(residual.len(), total);
+        for (block, &start) in blocks.iter().zip(&starts) {
+            all.columns_mut(start, block.ncols()).copy_from(block);
+        }
+        let s = hypothesis.sigma.powi(2);
+        let (mut gram, mut product) = (transposed_product(&all, &all), all.tr_mul(&residual));
+        if base.ncols() > 0 {
+            let mut ridge = transposed_product(&base, &base);
+            (0..ridge.ncols()).for_each(|k| ridge[(k, k)] += s);
+            if let Some(root) = Cholesky::new(ridge) {
+                let cross = transposed_product(&base, &all);
+                let solved = root.solve(&cross);
+                gram -= transposed_product(&cross, &solved);
+                product -= solved.tr_mul(&base.tr_mul(&residual));
+            }
+        }
+        let nu = (self.degrees_of_freedom() as f64).max(1.0);
+        let gain = |columns: &[usize]| gain(&gram, &product, columns, s, nu);
+        let own = |k: usize| -> Vec<usize> { (starts[k]..starts[k] + blocks[k].ncols()).collect() };
+        let alone: Vec<f64> = (0..paired.len()).map(|k| gain(&own(k))).collect();
+        let mut gains: Vec<(f64, usize, usize)> = Vec::new();
+        for i in 0..paired.len() {
+            for j in i + 1..paired.len() {
+                let (a, b) = (&candidates[paired[i]], &candidates[paired[j]]);
+                if a.is_alternative && b.is_alternative && a.effect == b.effect {
+                    continue;
+                }
+                let prior = self.prior_of(paired[i]) + self.prior_of(paired[j]);
+                let together = gain(&[own(i), own(j)].concat());
+                let best_alone =
+                    (alone[i] + self.prior_of(paired[i])).max(alone[j] + self.prior_of(paired[j])).max(0.0);
+                if together + prior > best_alone + TOGETHER {
+                    gains.push((together + prior, paired[i], paired[j]));
+                }
+            }
+        }
+        gains.sort_by(|a, b| b.0.total_cmp(&a.0));
+        gains.into_iter().take(REFITTED).map(|(_, first, second)| (first, second)).collect()
+    }
+}
+
+/// About what some columns of a whole are worth.
+fn gain(gram: &DMatrix<f64>, product: &DVector<f64>, columns: &[usize], noise: f64, nu: f64) -> f64 {
+    let k = columns.len();
+    let own = DMatrix::from_fn(k, k, |i, j| gram[(columns[i], columns[j])]);
+    let b = DVector::from_fn(k, |i, _| product[columns[i]]);
+    let mut left = noise;
+    let mut value = 0.0;
+    for _ in 0..3 {
+        let mut ridge = own.clone();
+        (0..k).for_each(|i| ridge[(i, i)] += left + 1e-9 * own[(i, i)]);
+        let Some(root) = Cholesky::new(ridge) else { return f64::NEG_INFINITY };
+        let explained = (b.dot(&root.solve(&b)) / (nu * noise)).clamp(0.0, 1.0 - 1e-9);
+        let lower = root.l_dirty();
+        let determinant: f64 = (0..k).map(|i| 2.0 * lower[(i, i)].ln() - left.ln()).sum();
+        value = -0.5 * (nu * (-explained).ln_1p() + determinant);
+        left = (noise * (1.0 - explained)).max(f64::MIN_POSITIVE);
+    }
+    value
+}

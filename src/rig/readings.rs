@@ -387,7 +387,7 @@ LOADED_AT_S, Session, READ_STATION_MM, load_station_mm, Temperature_C, time_s, p
         let error = Readings::from_text("f", text).unwrap_err();
         assert_eq!(
             error.to_string(),
-            "f:3:11: loaded_at_s is \"61\", expected at most time_s, 60: the load hangs when it is read"
+            "f:3:10: loaded_at_s is \"61\", expected at most time_s, 60: the load hangs when it is read"
         );
     }
 

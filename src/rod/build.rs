@@ -115,7 +115,9 @@ impl Rod {
         if let BendFlexibility::Factor(factor) = self.bend_flexibility {
             positive("bend_flexibility", factor)?;
         }
-        if self.bend_radius > 0.0 && self.bend_flexibility.is_for_tubes() && self.bend.section.as_round().is_none()
+        if self.bend_radius > 0.0
+            && self.bend_flexibility.is_for_tubes()
+            && self.bend.section.as_round().is_none()
         {
             return Err(Error::Argument {
                 name: "bend_flexibility",

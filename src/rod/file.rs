@@ -336,8 +336,8 @@ torsion_urad_per_nm = 3.0
         assert_eq!(of_kind.pipe1.material.standard_uncertainty, MaterialUncertainty::ISOTROPIC);
         let stated = "youngs_modulus_percent = 1.5\nshear_modulus_percent = 0\ndiameter_mm = 0.05\n\
                       length_mm = 0\ntip_mass_g = 1\n";
-        let own = EXAMPLE
-            .replace("density_kg_m3 = 7930.0", "density_kg_m3 = 7930.0\nyoungs_modulus_percent = 0.5");
+        let own =
+            EXAMPLE.replace("density_kg_m3 = 7930.0", "density_kg_m3 = 7930.0\nyoungs_modulus_percent = 0.5");
         for (text, youngs) in [(EXAMPLE, 0.015), (own.as_str(), 0.005)] {
             let rod = read(&format!("{text}[standard_uncertainty]\n{stated}"));
             let StandardUncertainty { diameter, length, tip_mass, section } = rod.standard_uncertainty;
@@ -351,5 +351,31 @@ torsion_urad_per_nm = 3.0
         }
         let carbon = EXAMPLE.replace("shear_modulus_gpa = 74.8", "shear_modulus_gpa = 9.5");
         assert_eq!(read(&carbon).pipe1.material.standard_uncertainty, MaterialUncertainty::ANISOTROPIC);
+    }
+    /// The sections and standard uncertainties that docs/rod-file.md shows are read.
+    #[test]
+    fn the_examples_of_the_documents_are_read() {
+        let document = include_str!("../../docs/rod-file.md");
+        let piece = |heading: &str| {
+            let below = document.split(heading).nth(1).unwrap_or_default();
+            below.split("```toml\n").nth(1).and_then(|rest| rest.split("```").next()).unwrap_or_default()
+        };
+        let above = EXAMPLE.split("[pipe1]").next().unwrap_or_default();
+        let rod = read(&format!("{above}{}", piece("## Cross-sections")));
+        let (solid, boxed) = (Rectangle::solid(0.010, 0.020), rod.pipe2.section);
+        assert_eq!(boxed, Rectangle::hollow(10.0 * MM, 20.0 * MM, 1.5 * MM).into());
+        // the constants are those of the solid rectangle
+        let [iy, iz] = rod.bend.section.second_moments();
+        assert_relative_eq!(iy, solid.second_moments()[0], max_relative = 1e-5);
+        assert_relative_eq!(iz, solid.second_moments()[1], max_relative = 3e-5);
+        assert_relative_eq!(
+            rod.bend.section.torsion_constant(),
+            solid.torsion_constant(),
+            max_relative = 2e-5
+        );
+
+        let rod = read(&format!("{EXAMPLE}{}", piece("## Standard uncertainties")));
+        assert_eq!(rod.standard_uncertainty, StandardUncertainty::default());
+        assert_eq!(rod.pipe1.material.standard_uncertainty, MaterialUncertainty::ISOTROPIC);
     }
 }

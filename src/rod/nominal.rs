@@ -610,7 +610,14 @@ mod tests {
     #[test]
     fn names_and_units_are_those_of_the_file() {
         for (number, key, place, change, nominal, expected) in [
-            (NominalNumber::YoungsModulus("steel".into()), "youngs_modulus_percent", "material.steel", 2e9, 200e9, 1.0),
+            (
+                NominalNumber::YoungsModulus("steel".into()),
+                "youngs_modulus_percent",
+                "material.steel",
+                2e9,
+                200e9,
+                1.0,
+            ),
             (NominalNumber::InnerDiameter(Part::Bend), "inner_diameter_mm", "bend", 1e-4, 0.03, 0.1),
             (NominalNumber::LengthL1, "l1_mm", "geometry", -2e-4, 0.15, -0.2),
             (NominalNumber::TipMass, "mass_g", "tip", 1e-3, 0.06, 1.0),

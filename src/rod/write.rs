@@ -202,14 +202,9 @@ mod tests {
 
         let mut rod = plain;
         rod.pipe2.section = Rectangle::hollow(0.01, 0.02, 0.0015).into();
-        rod.pipe1.section = General {
-            area: 2e-4,
-            iy: 6e-9,
-            iz: 2.3e-9,
-            torsion_constant: 4e-9,
-            shear_coefficient: 0.85,
-        }
-        .into();
+        rod.pipe1.section =
+            General { area: 2e-4, iy: 6e-9, iz: 2.3e-9, torsion_constant: 4e-9, shear_coefficient: 0.85 }
+                .into();
         rod.bend.section = Rectangle::solid(0.01, 0.02).into();
         rod.pipe2.material = Material::anisotropic("carbon", 118e9, 9.5e9, 0.35, 1600.0);
         rod.pipe2.material.shear_coefficient_factor = 1.07;
@@ -218,8 +213,12 @@ mod tests {
         rod.standard_uncertainty.length = 0.1 * MM;
         rod.standard_uncertainty.section = 0.02;
         let written = again(&rod);
-        for (a, b) in [(&rod.pipe1, &written.pipe1), (&rod.bend, &written.bend), (&rod.pipe2, &written.pipe2)] {
-            assert_eq!((a.section, a.material.standard_uncertainty), (b.section, b.material.standard_uncertainty));
+        for (a, b) in [(&rod.pipe1, &written.pipe1), (&rod.bend, &written.bend), (&rod.pipe2, &written.pipe2)]
+        {
+            assert_eq!(
+                (a.section, a.material.standard_uncertainty),
+                (b.section, b.material.standard_uncertainty)
+            );
             assert_eq!(a.material.shear_coefficient_factor, b.material.shear_coefficient_factor);
             assert!((a.material.poisson_ratio - b.material.poisson_ratio).abs() < 1e-12);
         }

@@ -20,7 +20,12 @@ struct Quarter {
 impl Quarter {
     /// Elements between the lines `us` and `vs` of a grid that `at` maps onto the section, without
     /// those whose middle lies in the `hole`.
-    fn new(us: &[f64], vs: &[f64], at: impl Fn(f64, f64) -> (f64, f64), hole: impl Fn(f64, f64) -> bool) -> Self {
+    fn new(
+        us: &[f64],
+        vs: &[f64],
+        at: impl Fn(f64, f64) -> (f64, f64),
+        hole: impl Fn(f64, f64) -> bool,
+    ) -> Self {
         let halves = |lines: &[f64]| -> Vec<f64> {
             let between = lines.windows(2).flat_map(|ends| [ends[0], (ends[0] + ends[1]) / 2.0]);
             between.chain(lines.last().copied()).collect()
@@ -82,8 +87,7 @@ impl Quarter {
                     });
                     let point = |k: usize| self.points[element[k]];
                     let place = (0..9).map(|k| point(k) * n[k]).sum();
-                    let jacobian: nalgebra::Matrix2<f64> =
-                        (0..9).map(|k| d[k] * point(k).transpose()).sum();
+                    let jacobian: nalgebra::Matrix2<f64> = (0..9).map(|k| d[k] * point(k).transpose()).sum();
                     let inverse = jacobian.try_inverse().unwrap();
                     let gradient = d.map(|d| inverse * d);
                     add(element, &n, &gradient, place, wa * wb * jacobian.determinant().abs());
@@ -189,7 +193,7 @@ fn the_ratio_of_the_moduli_is_no_poisson_ratio() {
     let exact = Quarter::annulus(m).kappa(e, 0.3);
     assert_abs_diff_eq!(exact, 0.510, epsilon = 5e-4);
     let as_if_isotropic = Round::tube(1.0, m).shear_coefficient(e, e / 2.0 - 1.0);
-    assert_abs_diff_eq!(as_if_isotropic, 0.640, epsilon = 2e-3);
+    assert_abs_diff_eq!(as_if_isotropic, 0.637, epsilon = 5e-4);
 }
 
 /// κ = 5e/(6e − ν), whatever the sides; the elements leave 1e-4.
@@ -206,19 +210,20 @@ fn a_solid_rectangle() {
     }
 }
 
-/// Formulas of thin walls, at a twentieth of the side.
+/// Formulas of thin walls: they leave 0.7 of wall over shorter side (1.75 and 3.5 % here), so that the error goes with
+/// the wall.
 #[test]
 fn a_box() {
-    for (along, across) in [(1.0, 1.0), (2.0, 1.0), (1.0, 2.0)] {
-        let section = Quarter::hollow(along, across, 0.05);
-        let hollow = Section::from(Rectangle::hollow(across, along, 0.05));
-        for (e, nu) in [(2.6, 0.3), (12.4, 0.3)] {
-            let [kappa, _] = hollow.shear_coefficients(e, nu);
-            let exact = section.kappa(e, nu);
-            eprintln!("box {along} {across} e {e}: kappa {kappa} exact {exact}");
-            assert_relative_eq!(exact, kappa, max_relative = 0.03);
+    for wall in [0.05, 0.025] {
+        for (along, across) in [(1.0, 1.0), (2.0, 1.0), (1.0, 2.0)] {
+            let section = Quarter::hollow(along, across, wall);
+            let hollow = Section::from(Rectangle::hollow(across, along, wall));
+            for (e, nu) in [(2.6, 0.3), (12.4, 0.3)] {
+                let [kappa, _] = hollow.shear_coefficients(e, nu);
+                assert_relative_eq!(section.kappa(e, nu), kappa, max_relative = 0.7 * wall);
+            }
+            let j = hollow.torsion_constant();
+            assert_relative_eq!(section.torsion_constant(), j, max_relative = 0.7 * wall);
         }
-        eprintln!("J {} {}", section.torsion_constant(), hollow.torsion_constant());
-        assert_relative_eq!(section.torsion_constant(), hollow.torsion_constant(), max_relative = 0.03);
     }
 }

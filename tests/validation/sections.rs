@@ -2,10 +2,10 @@
 
 use approx::assert_abs_diff_eq;
 use approx::assert_relative_eq;
-use rodcal::material::laminate::{Ply, wall};
 use rodcal::beam::Physics;
 use rodcal::compliance::{Compliance, closed_form};
 use rodcal::material::Material;
+use rodcal::material::laminate::{Ply, wall};
 use rodcal::rod::{BendFlexibility, Pipe, Rod};
 use rodcal::section::{General, Rectangle, Round, Section};
 
@@ -36,8 +36,7 @@ fn cowper_is_the_isotropic_case() {
     for m in [0.0, 0.3, 0.75, 0.96] {
         for nu in [-0.2, 0.0, 0.29, 0.5] {
             let ring = (1.0 + m * m) * (1.0 + m * m);
-            let cowper =
-                6.0 * (1.0 + nu) * ring / ((7.0 + 6.0 * nu) * ring + (20.0 + 12.0 * nu) * m * m);
+            let cowper = 6.0 * (1.0 + nu) * ring / ((7.0 + 6.0 * nu) * ring + (20.0 + 12.0 * nu) * m * m);
             let ours = Round::tube(1.0, m).shear_coefficient(2.0 * (1.0 + nu), nu);
             assert_relative_eq!(ours, cowper, max_relative = 1e-14);
         }
@@ -95,19 +94,14 @@ fn a_rectangular_bar_bends_by_its_two_second_moments() {
 /// In plane only I_y counts, out of it only I_z and J, in straight pipes and in an arc.
 #[test]
 fn each_second_moment_has_its_plane() {
-    let general = General {
-        area: 2e-4,
-        iy: 6e-9,
-        iz: 2e-9,
-        torsion_constant: 4e-9,
-        shear_coefficient: 0.85,
-    };
+    let general = General { area: 2e-4, iy: 6e-9, iz: 2e-9, torsion_constant: 4e-9, shear_coefficient: 0.85 };
     for radius in [0.0, 0.06] {
         let of = |general: General| {
             let rod = rod_of(general).with_bend(radius, BendFlexibility::Factor(1.3));
             compliance(&rod.checked().unwrap()).force
         };
-        let (as_is, iy, iz) = (of(general), of(General { iy: 9e-9, ..general }), of(General { iz: 3e-9, ..general }));
+        let (as_is, iy, iz) =
+            (of(general), of(General { iy: 9e-9, ..general }), of(General { iz: 3e-9, ..general }));
         for in_plane in [(0, 0), (0, 2), (2, 2)] {
             assert_relative_eq!(as_is[in_plane], iz[in_plane], max_relative = 1e-14);
             assert!((iy[in_plane] / as_is[in_plane]).abs() < 0.7, "{in_plane:?}");

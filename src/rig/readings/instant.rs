@@ -133,7 +133,8 @@ mod tests {
                 rows.push(format!("z,{},{station},{},{channel}\n", 1 + time / 2, 60 * time));
             }
         }
-        let text = |rows: &[String]| format!("axis,load_n,read_station_mm,time_s,dy_um,dz_um\n{}", rows.concat());
+        let text =
+            |rows: &[String]| format!("axis,load_n,read_station_mm,time_s,dy_um,dz_um\n{}", rows.concat());
         let groups = |rows: &[String]| -> Vec<Vec<String>> {
             let found = instants(&text(rows)).into_iter();
             let named = found.map(|group| group.into_iter().map(|row| rows[row].clone()).collect());
@@ -157,7 +158,8 @@ mod tests {
                     z,5,200,1,1\nz,5,400,1,1\n\
                     z,9,200,1,1\nz,5,400,1,1\n";
         assert_eq!(instants(text), [vec![0, 1, 2], vec![3, 4], vec![5], vec![6]]);
-        let hung_anew = "axis,load_n,loaded_at_s,read_station_mm,dz_um\nz,5,0,200,1\nz,5,9,400,1\nz,6,20,200,1\n";
+        let hung_anew =
+            "axis,load_n,loaded_at_s,read_station_mm,dz_um\nz,5,0,200,1\nz,5,9,400,1\nz,6,20,200,1\n";
         assert_eq!(instants(hung_anew), [[0], [1], [2]]);
     }
 }

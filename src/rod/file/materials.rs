@@ -112,7 +112,14 @@ impl Check<'_> {
                 match nu {
                     // across an anisotropic wall it may exceed that of any isotropic material
                     Some(nu) => {
-                        Material::anisotropic(name, e, g, self.poisson_ratio(name, nu, 1.0)?, density)
+                        let stated = self.poisson_ratio(name, nu, 1.0)?;
+                        let material = Material::anisotropic(name, e, g, stated, density);
+                        let ratio = isotropic_poisson_ratio(e, g);
+                        if material.is_anisotropic() && (0.0..=0.5).contains(&ratio) {
+                            let material = name.to_owned();
+                            self.warnings.push(Warning::PoissonRatio { material, stated, ratio });
+                        }
+                        material
                     }
                     None => {
                         let ratio = isotropic_poisson_ratio(e, g);
@@ -205,8 +212,7 @@ impl Check<'_> {
             self.warnings.push(Warning::LaminateCoupling { material: name.to_owned(), coupling });
         }
         let nu = wall.poisson_ratio.clamp(0.0, 0.5);
-        let mut material =
-            Material::anisotropic(name, wall.youngs_modulus, wall.shear_modulus, nu, density);
+        let mut material = Material::anisotropic(name, wall.youngs_modulus, wall.shear_modulus, nu, density);
         // lay-up and fibre content are not better known where E/G happens to be an isotropic one
         material.standard_uncertainty = MaterialUncertainty::ANISOTROPIC;
         Ok(Checked { material, laminate_thickness: Some(wall.thickness) })

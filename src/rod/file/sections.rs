@@ -19,8 +19,10 @@ const GENERAL: &str = "area_mm2, iy_mm4, iz_mm4, j_mm4 and kappa";
 impl Check<'_> {
     pub(super) fn section(&mut self, which: &str, raw: &Spanned<RawPipe>) -> Result<Section> {
         let fields = raw.get_ref();
-        let diameters: [Key<'_>; 2] =
-            [("outer_diameter_mm", &fields.outer_diameter_mm), ("inner_diameter_mm", &fields.inner_diameter_mm)];
+        let diameters: [Key<'_>; 2] = [
+            ("outer_diameter_mm", &fields.outer_diameter_mm),
+            ("inner_diameter_mm", &fields.inner_diameter_mm),
+        ];
         let sides: [Key<'_>; 3] =
             [("width_mm", &fields.width_mm), ("height_mm", &fields.height_mm), ("wall_mm", &fields.wall_mm)];
         let constants: [Key<'_>; 5] = [
@@ -36,14 +38,18 @@ impl Check<'_> {
             (false, true, false) => self.rectangle(which, raw).map(Section::Rectangle),
             (false, false, true) => self.general(which, raw).map(Section::General),
             (false, false, false) => {
-                let found = format!("{which} has no section");
+                let found = format!("[{which}] has no cross-section");
                 Err(self.toml.wrong(raw, found, &format!("{ROUND}, or {RECTANGLE}, or {GENERAL}")))
             }
             _ => {
                 let all = || diameters.iter().chain(&sides).chain(&constants);
                 let stated: Vec<&str> = all().filter(|(_, n)| n.is_some()).map(|&(key, _)| key).collect();
-                let found = format!("{which} has {}", stated.join(", "));
-                Err(self.toml.wrong(raw, found, &format!("one of the three: {ROUND}; {RECTANGLE}; {GENERAL}")))
+                let found = format!("[{which}] has {}", stated.join(", "));
+                Err(self.toml.wrong(
+                    raw,
+                    found,
+                    &format!("one of the three: {ROUND}; {RECTANGLE}; {GENERAL}"),
+                ))
             }
         }
     }
@@ -53,7 +59,9 @@ impl Check<'_> {
         let key = |field: &str| format!("{which}.{field}");
         let (outer, inner) = match (&fields.outer_diameter_mm, &fields.inner_diameter_mm) {
             (Some(outer), Some(inner)) => (outer, inner),
-            (None, _) => return Err(self.missing(which, raw, "outer_diameter_mm", "the outer diameter in mm")),
+            (None, _) => {
+                return Err(self.missing(which, raw, "outer_diameter_mm", "the outer diameter in mm"));
+            }
             (_, None) => {
                 let expected = "the inner diameter in mm, 0 for a solid rod";
                 return Err(self.missing(which, raw, "inner_diameter_mm", expected));
@@ -88,7 +96,8 @@ impl Check<'_> {
             Some(number) => {
                 let wall = self.toml.positive(&key("wall_mm"), number)?;
                 if 2.0 * wall >= width.min(height) {
-                    let expected = format!("less than half of the shorter side, {} mm", width.min(height) / 2.0);
+                    let expected =
+                        format!("less than half of the shorter side, {} mm", width.min(height) / 2.0);
                     return Err(self.toml.is(&key("wall_mm"), number, &expected));
                 }
                 Some(wall * MM)
@@ -134,7 +143,7 @@ impl Check<'_> {
 
     /// The error that a key of a pipe is missing.
     fn missing(&self, which: &str, raw: &Spanned<RawPipe>, field: &str, expected: &str) -> Error {
-        self.toml.wrong(raw, format!("there is no {field} in {which}"), expected)
+        self.toml.wrong(raw, format!("there is no {field} in [{which}]"), expected)
     }
 }
 

@@ -128,8 +128,8 @@ impl Readings {
     /// # Errors
     /// [`Error::Input`] with line and column: what [`Table::parse`] refuses; `load_n` and `load_kg`
     /// both or neither, no `axis`, no offset; a cell that is not what its column holds; a row
-    /// without any offset; a header line whose value is none of its key's; and a file in which no axis has two different loads, since a slope
-    /// cannot be found from one.
+    /// without any offset; a line above the header whose value is none of its key's; and a file in
+    /// which no axis has two different loads, since a slope cannot be found from one.
     pub fn from_text(file: &str, text: &str) -> Result<Readings> {
         let table = Table::parse(file, text, |column| {
             is_one_of(column, &KNOWN_COLUMNS) && !is_one_of(column, &TEXT_COLUMNS)

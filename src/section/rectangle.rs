@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::contraction;
+use super::contraction::contraction;
 
 /// A rectangle, `height` in the rod's plane and `width` across it.
 ///

@@ -2,7 +2,7 @@
 //!
 //! Saint-Venant's flexure of a transversely isotropic bar (axis z, force along x; docs/beam.md has
 //! the derivation): with curvature growing by 1 per length, W is the warping with
-//! ∬ (∇W + p)·∇v = −e ∬ x v for every v, p = ν((x² − y²)/2, xy), e = E/G, and Cowper's coefficient is
+//! ∬ (∇W + p)·∇v = −e ∬ x v for every v, p = ν((x² − y²)/2, xy), e = E/G. Cowper's coefficient is
 //! κ = −e I / (ν(∬x² − ∬y²)/2 + (A/I) ∬ x W), I = ∬x².
 //!
 //! Torsion: ∬ (∇φ + (−y, x))·∇v = 0, J = ∬ (x² + y² + x φ_y − y φ_x).
@@ -210,8 +210,8 @@ fn a_solid_rectangle() {
     }
 }
 
-/// Formulas of thin walls: they leave 0.7 of wall over shorter side (1.75 and 3.5 % here), so that the error goes with
-/// the wall.
+/// Formulas of thin walls: they leave 0.7 of wall over shorter side (1.75 and 3.5 % here), so that
+/// the error goes with the wall.
 #[test]
 fn a_box() {
     for wall in [0.05, 0.025] {

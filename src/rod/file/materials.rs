@@ -50,8 +50,8 @@ impl RawMaterial {
 }
 
 impl Check<'_> {
-    /// The material with the standard uncertainties of its own table, else of the file's, else those
-    /// of its kind.
+    /// The material with the standard uncertainties of its own table, else of the file's, else
+    /// those of its kind.
     pub(super) fn material(
         &mut self,
         name: &str,

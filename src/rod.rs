@@ -122,7 +122,7 @@ impl BendFlexibility {
     /// use rodcal::rod::BendFlexibility;
     /// use rodcal::section::Round;
     ///
-    /// // t = 1 mm, r = 15.5 mm, R = 60.0625 mm: h = tR/r² = 1/4, k = (10 + 12/16)/(1 + 12/16) = 43/7
+    /// // t 1 mm, r 15.5 mm, R 60.0625 mm: h = tR/r² = 1/4, k = (10 + 12/16)/(1 + 12/16) = 43/7
     /// let tube = Round::tube(0.032, 0.030).into();
     /// assert!((BendFlexibility::VonKarman.factor(&tube, 0.0600625) - 43.0 / 7.0).abs() < 1e-9);
     /// assert!((BendFlexibility::AsmeB313.factor(&tube, 0.0600625) - 6.6).abs() < 1e-9); // 1.65/h

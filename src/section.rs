@@ -6,6 +6,7 @@
 //! plane (for pipe II of an L that is Z): it resists bending **out of** the plane. Both axes must
 //! be principal axes of the section.
 
+mod contraction;
 mod rectangle;
 mod round;
 
@@ -55,8 +56,9 @@ impl Section {
     /// use rodcal::section::{Rectangle, Round, Section};
     ///
     /// // 20 mm high in the rod's plane, 10 mm wide across it
-    /// let bar = Section::from(Rectangle::solid(0.010, 0.020));
-    /// assert_eq!(bar.second_moments(), [0.010 * 0.020f64.powi(3) / 12.0, 0.020 * 0.010f64.powi(3) / 12.0]);
+    /// let [iy, iz] = Section::from(Rectangle::solid(0.010, 0.020)).second_moments();
+    /// assert_eq!(iy, 0.010 * 0.020f64.powi(3) / 12.0);
+    /// assert_eq!(iz, 0.020 * 0.010f64.powi(3) / 12.0);
     /// let [iy, iz] = Section::from(Round::solid(0.01)).second_moments();
     /// assert_eq!(iy, iz);
     /// ```
@@ -137,12 +139,6 @@ impl From<General> for Section {
     fn from(general: General) -> Section {
         Section::General(general)
     }
-}
-
-/// ν/e for a shear coefficient. Of an isotropic material it is at most ⅙; beyond ½, which no known
-/// wall reaches, the formulas lose their meaning.
-fn contraction(ratio: f64, poisson_ratio: f64) -> f64 {
-    (poisson_ratio / ratio).min(0.5)
 }
 
 #[cfg(test)]

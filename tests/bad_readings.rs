@@ -219,7 +219,7 @@ fn odd_files_are_read_with_a_warning() {
         warnings(&GOOD.replace("phase", "dy_µm")),
         [
             "the column \"dy_µm\" is not read; did you mean dy_um? known columns: axis, load_n, load_kg, dx_um, dy_um, dz_um, \
-          trial, phase, time_s, temperature_c, load_station_mm, read_station_mm"
+          trial, phase, time_s, temperature_c, load_station_mm, read_station_mm, session, loaded_at_s"
         ]
     );
     assert_eq!(
@@ -227,7 +227,7 @@ fn odd_files_are_read_with_a_warning() {
         [
             "read with `;` separators and decimal commas",
             "the column \"by\" is not read; known columns: axis, load_n, load_kg, dx_um, dy_um, dz_um, \
-             trial, phase, time_s, temperature_c, load_station_mm, read_station_mm",
+             trial, phase, time_s, temperature_c, load_station_mm, read_station_mm, session, loaded_at_s",
             "dz_um has only the load -7 N along y: there is no slope without a second load",
         ]
     );

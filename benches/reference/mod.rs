@@ -102,7 +102,7 @@ fn element(pipe: &Pipe, along: Vector3<f64>) -> (Stiffness, Loads) {
     let t = along / length;
     let (lengthwise, across) = (t * t.transpose(), Matrix3::identity() - t * t.transpose());
 
-    let kappa = section.shear_coefficient(material.poisson_ratio);
+    let [kappa, _] = pipe.shear_coefficients();
     let ei = material.youngs_modulus * section.second_moment();
     let ea = material.youngs_modulus * section.area();
     let gj = material.shear_modulus * section.torsion_constant();

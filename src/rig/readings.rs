@@ -128,8 +128,8 @@ impl Readings {
     /// # Errors
     /// [`Error::Input`] with line and column: what [`Table::parse`] refuses; `load_n` and `load_kg`
     /// both or neither, no `axis`, no offset; a cell that is not what its column holds; a row
-    /// without any offset; a header line whose value is none of its key's; and a file in which no axis has two different loads, since a slope
-    /// cannot be found from one.
+    /// without any offset; a line above the header whose value is none of its key's; and a file in
+    /// which no axis has two different loads, since a slope cannot be found from one.
     pub fn from_text(file: &str, text: &str) -> Result<Readings> {
         let table = Table::parse(file, text, |column| {
             is_one_of(column, &KNOWN_COLUMNS) && !is_one_of(column, &TEXT_COLUMNS)
@@ -387,7 +387,7 @@ LOADED_AT_S, Session, READ_STATION_MM, load_station_mm, Temperature_C, time_s, p
         let error = Readings::from_text("f", text).unwrap_err();
         assert_eq!(
             error.to_string(),
-            "f:3:11: loaded_at_s is \"61\", expected at most time_s, 60: the load hangs when it is read"
+            "f:3:10: loaded_at_s is \"61\", expected at most time_s, 60: the load hangs when it is read"
         );
     }
 

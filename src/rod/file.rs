@@ -352,4 +352,30 @@ torsion_urad_per_nm = 3.0
         let carbon = EXAMPLE.replace("shear_modulus_gpa = 74.8", "shear_modulus_gpa = 9.5");
         assert_eq!(read(&carbon).pipe1.material.standard_uncertainty, MaterialUncertainty::ANISOTROPIC);
     }
+    /// The sections and standard uncertainties that docs/rod-file.md shows are read.
+    #[test]
+    fn the_examples_of_the_documents_are_read() {
+        let document = include_str!("../../docs/rod-file.md");
+        let piece = |heading: &str| {
+            let below = document.split(heading).nth(1).unwrap_or_default();
+            below.split("```toml\n").nth(1).and_then(|rest| rest.split("```").next()).unwrap_or_default()
+        };
+        let above = EXAMPLE.split("[pipe1]").next().unwrap_or_default();
+        let rod = read(&format!("{above}{}", piece("## Cross-sections")));
+        let (solid, boxed) = (Rectangle::solid(0.010, 0.020), rod.pipe2.section);
+        assert_eq!(boxed, Rectangle::hollow(10.0 * MM, 20.0 * MM, 1.5 * MM).into());
+        // the constants are those of the solid rectangle
+        let [iy, iz] = rod.bend.section.second_moments();
+        assert_relative_eq!(iy, solid.second_moments()[0], max_relative = 1e-5);
+        assert_relative_eq!(iz, solid.second_moments()[1], max_relative = 3e-5);
+        assert_relative_eq!(
+            rod.bend.section.torsion_constant(),
+            solid.torsion_constant(),
+            max_relative = 2e-5
+        );
+
+        let rod = read(&format!("{EXAMPLE}{}", piece("## Standard uncertainties")));
+        assert_eq!(rod.standard_uncertainty, StandardUncertainty::default());
+        assert_eq!(rod.pipe1.material.standard_uncertainty, MaterialUncertainty::ISOTROPIC);
+    }
 }

@@ -49,6 +49,15 @@ pub enum Warning {
         /// |a16| / √(a11 a66).
         coupling: f64,
     },
+    /// Poisson's ratio and the moduli contradict each other, were the material isotropic.
+    PoissonRatio {
+        /// Name of the material.
+        material: String,
+        /// As stated.
+        stated: f64,
+        /// E/2G − 1.
+        ratio: f64,
+    },
     /// Young's and shear modulus leave the isotropic range and Poisson's ratio is not stated: it is
     /// taken as [`crate::material::TYPICAL_POISSON_RATIO`].
     Anisotropic {
@@ -83,6 +92,10 @@ impl fmt::Display for Warning {
             Warning::LaminateCoupling { material, coupling } => write!(
                 f,
                 "the laminate of material `{material}` is not balanced (extension–shear coupling {coupling:.2}): a beam with E and G alone leaves its bending–twisting out; pair every +θ ply with a −θ ply"
+            ),
+            Warning::PoissonRatio { material, stated, ratio } => write!(
+                f,
+                "material `{material}` states Poisson's ratio {stated}, and E/2G − 1 = {ratio:.2} were it isotropic: it is taken as anisotropic, with standard uncertainties of 5 % for E and 10 % for G"
             ),
             Warning::Anisotropic { material, ratio } => write!(
                 f,

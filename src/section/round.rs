@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::contraction;
+use super::contraction::contraction;
 
 /// A circular section, hollow (tube) or solid (`inner_diameter = 0`).
 ///
@@ -73,7 +73,8 @@ impl Round {
     /// assert!((Round::solid(0.01).shear_coefficient(2.6, 0.3) - 0.886).abs() < 5e-4);
     /// assert!((Round::tube(1.0, 0.9999).shear_coefficient(2.6, 0.3) - 0.531).abs() < 5e-4);
     /// // a carbon tube of 30 × 26 mm, E 118 GPa, G 9.5 GPa
-    /// assert!((Round::tube(0.030, 0.026).shear_coefficient(118.0 / 9.5, 0.3) - 0.510).abs() < 5e-4);
+    /// let tube = Round::tube(0.030, 0.026);
+    /// assert!((tube.shear_coefficient(118.0 / 9.5, 0.3) - 0.510).abs() < 5e-4);
     /// ```
     pub fn shear_coefficient(&self, ratio: f64, poisson_ratio: f64) -> f64 {
         // divided by e, so that ν/e is what remains of the material

@@ -29,7 +29,11 @@ fn an_odd_file_is_read_with_a_warning() {
         ),
         (
             &[("poisson_ratio = 0.29", "shear_modulus_gpa = 50")],
-            "material `steel` has E/2G − 1 = 0.93, more than an isotropic material can have: Cowper's shear coefficient, derived for isotropic ones, is only approximate here",
+            "material `steel` has E/2G − 1 = 0.93, more than an isotropic material can have: it is taken as anisotropic, with Poisson's ratio 0.3 in its shear coefficient; state poisson_ratio if you know it",
+        ),
+        (
+            &[("poisson_ratio = 0.29", "poisson_ratio = 0.2\nshear_modulus_gpa = 74.8")],
+            "material `steel` states Poisson's ratio 0.2, and E/2G − 1 = 0.29 were it isotropic: it is taken as anisotropic, with standard uncertainties of 5 % for E and 10 % for G",
         ),
         // units
         (

@@ -136,12 +136,12 @@ fn a_key_or_section_that_is_not_known_is_named_with_its_neighbour() {
         (
             "name = \"5#\"",
             "nmae = \"5#\"",
-            "rod.toml:1:1: unknown key `nmae`, expected one of name, source, linear_range_n, geometry, material, pipe1, pipe2, bend, tip, mass, joint -> if it belongs to a section, write it below that section's [header]",
+            "rod.toml:1:1: unknown key `nmae`, expected one of name, source, linear_range_n, geometry, material, pipe1, pipe2, bend, tip, mass, joint, standard_uncertainty -> if it belongs to a section, write it below that section's [header]",
         ),
         (
             "name = \"5#\"",
             "operator = \"Ann\"",
-            "rod.toml:1:1: unknown key `operator`, expected one of name, source, linear_range_n, geometry, material, pipe1, pipe2, bend, tip, mass, joint -> if it belongs to a section, write it below that section's [header]",
+            "rod.toml:1:1: unknown key `operator`, expected one of name, source, linear_range_n, geometry, material, pipe1, pipe2, bend, tip, mass, joint, standard_uncertainty -> if it belongs to a section, write it below that section's [header]",
         ),
         (
             "l1_mm = 150.0",
@@ -166,37 +166,37 @@ fn a_key_or_section_that_is_not_known_is_named_with_its_neighbour() {
         (
             "density_kg_m3 = 7930.0",
             "density_g_cm3 = 7.93",
-            "rod.toml:12:1: unknown key `density_g_cm3`, expected one of density_kg_m3, youngs_modulus_gpa, shear_modulus_gpa, poisson_ratio, ply_e1_gpa, ply_e2_gpa, ply_g12_gpa, ply_nu12, ply_thickness_mm, ply_angles_deg -> did you mean density_kg_m3?",
+            "rod.toml:12:1: unknown key `density_g_cm3`, expected one of density_kg_m3, youngs_modulus_gpa, shear_modulus_gpa, poisson_ratio, ply_e1_gpa, ply_e2_gpa, ply_g12_gpa, ply_nu12, ply_thickness_mm, ply_angles_deg, shear_coefficient_factor, youngs_modulus_percent, shear_modulus_percent, density_percent, shear_coefficient_percent -> did you mean density_kg_m3?",
         ),
         (
             "poisson_ratio = 0.29",
             "poissons_ratio = 0.29",
-            "rod.toml:11:1: unknown key `poissons_ratio`, expected one of density_kg_m3, youngs_modulus_gpa, shear_modulus_gpa, poisson_ratio, ply_e1_gpa, ply_e2_gpa, ply_g12_gpa, ply_nu12, ply_thickness_mm, ply_angles_deg -> did you mean poisson_ratio?",
+            "rod.toml:11:1: unknown key `poissons_ratio`, expected one of density_kg_m3, youngs_modulus_gpa, shear_modulus_gpa, poisson_ratio, ply_e1_gpa, ply_e2_gpa, ply_g12_gpa, ply_nu12, ply_thickness_mm, ply_angles_deg, shear_coefficient_factor, youngs_modulus_percent, shear_modulus_percent, density_percent, shear_coefficient_percent -> did you mean poisson_ratio?",
         ),
         (
             "[geometry]",
             "[geometri]",
-            "rod.toml:4:2: unknown section [geometri], expected one of name, source, linear_range_n, geometry, material, pipe1, pipe2, bend, tip, mass, joint -> did you mean [geometry]?",
+            "rod.toml:4:2: unknown section [geometri], expected one of name, source, linear_range_n, geometry, material, pipe1, pipe2, bend, tip, mass, joint, standard_uncertainty -> did you mean [geometry]?",
         ),
         (
             "[geometry]\n",
             "",
-            "rod.toml:6:1: unknown key `gamma_deg`, expected one of name, source, linear_range_n, geometry, material, pipe1, pipe2, bend, tip, mass, joint -> if it belongs to a section, write it below that section's [header]",
+            "rod.toml:6:1: unknown key `gamma_deg`, expected one of name, source, linear_range_n, geometry, material, pipe1, pipe2, bend, tip, mass, joint, standard_uncertainty -> if it belongs to a section, write it below that section's [header]",
         ),
         (
             "[tip]",
             "[Tip]",
-            "rod.toml:33:2: unknown section [Tip], expected one of name, source, linear_range_n, geometry, material, pipe1, pipe2, bend, tip, mass, joint -> did you mean [tip]?",
+            "rod.toml:33:2: unknown section [Tip], expected one of name, source, linear_range_n, geometry, material, pipe1, pipe2, bend, tip, mass, joint, standard_uncertainty -> did you mean [tip]?",
         ),
         (
             "[pipe2]",
             "[pipe3]",
-            "rod.toml:28:2: unknown section [pipe3], expected one of name, source, linear_range_n, geometry, material, pipe1, pipe2, bend, tip, mass, joint -> did you mean [pipe1]?",
+            "rod.toml:28:2: unknown section [pipe3], expected one of name, source, linear_range_n, geometry, material, pipe1, pipe2, bend, tip, mass, joint, standard_uncertainty -> did you mean [pipe1]?",
         ),
         (
             "[material.steel]",
             "[materials.steel]",
-            "rod.toml:9:2: unknown section [materials], expected one of name, source, linear_range_n, geometry, material, pipe1, pipe2, bend, tip, mass, joint -> did you mean [material]?",
+            "rod.toml:9:2: unknown section [materials], expected one of name, source, linear_range_n, geometry, material, pipe1, pipe2, bend, tip, mass, joint, standard_uncertainty -> did you mean [material]?",
         ),
         (
             "station_mm = 300.0",
@@ -314,7 +314,7 @@ fn a_key_or_section_that_is_misplaced_or_repeated_is_named() {
         (
             "[geometry]",
             "geometry = 5\n[geometri]",
-            "rod.toml:5:2: unknown section [geometri], expected one of name, source, linear_range_n, geometry, material, pipe1, pipe2, bend, tip, mass, joint -> did you mean [geometry]?",
+            "rod.toml:5:2: unknown section [geometri], expected one of name, source, linear_range_n, geometry, material, pipe1, pipe2, bend, tip, mass, joint, standard_uncertainty -> did you mean [geometry]?",
         ),
         (
             "[tip]\nmass_g = 55.0",
@@ -527,11 +527,6 @@ fn a_material_must_be_stated_in_one_way() {
         ),
         (
             "poisson_ratio = 0.29",
-            "poisson_ratio = 0.29\nshear_modulus_gpa = 74.8",
-            "rod.toml:9:1: material `steel` has shear_modulus_gpa and poisson_ratio, expected one of the two",
-        ),
-        (
-            "poisson_ratio = 0.29",
             "",
             "rod.toml:9:1: material `steel` has neither shear_modulus_gpa nor poisson_ratio, expected one of the two",
         ),
@@ -633,4 +628,92 @@ fn text_that_is_no_rod_file_is_recognised() {
         ),
     ];
     check(&cases);
+}
+
+#[test]
+fn a_standard_uncertainty_is_a_number_from_0_on() {
+    let cases = [
+        (
+            "station_mm = 300.0",
+            "station_mm = 300.0\n[standard_uncertainty]\ndiameter_mm = -0.1",
+            "rod.toml:49:15: `standard_uncertainty.diameter_mm` is -0.1, expected one standard deviation >= 0 (0 is exact)",
+        ),
+        (
+            "station_mm = 300.0",
+            "station_mm = 300.0\n[standard_uncertainty]\nshear_modulus_percent = nan",
+            "rod.toml:49:25: `standard_uncertainty.shear_modulus_percent` is nan, expected a finite number",
+        ),
+        (
+            "station_mm = 300.0",
+            "station_mm = 300.0\n[standard_uncertainty]\nyoungs_modulus = 1",
+            "rod.toml:49:1: unknown key `youngs_modulus`, expected one of youngs_modulus_percent, shear_modulus_percent, density_percent, shear_coefficient_percent, diameter_mm, length_mm, tip_mass_g, section_percent -> did you mean youngs_modulus_percent?",
+        ),
+        (
+            "density_kg_m3 = 7930.0",
+            "density_kg_m3 = 7930.0\nyoungs_modulus_percent = -1",
+            "rod.toml:13:26: `material.steel.youngs_modulus_percent` is -1, expected one standard deviation >= 0 (0 is exact)",
+        ),
+        (
+            "density_kg_m3 = 7930.0",
+            "density_kg_m3 = 7930.0\ndensity_percent = 1000",
+            "rod.toml:13:19: `material.steel.density_percent` is 1000, expected at most 100 per cent: what is known worse is not known",
+        ),
+    ];
+    check(&cases);
+}
+
+#[test]
+fn a_cross_section_is_stated_whole_and_in_one_way() {
+    const ROUND: &str = "outer_diameter_mm = 20.0\ninner_diameter_mm = 16.0";
+    let cases = [
+        (
+            ROUND,
+            "",
+            "rod.toml:28:1: [pipe2] has no cross-section, expected outer_diameter_mm and inner_diameter_mm, or width_mm and height_mm (wall_mm: a box), or area_mm2, iy_mm4, iz_mm4, j_mm4 and kappa",
+        ),
+        (
+            ROUND,
+            "width_mm = 10.0",
+            "rod.toml:28:1: there is no height_mm in [pipe2], expected the side in the rod's plane in mm",
+        ),
+        (
+            ROUND,
+            "outer_diameter_mm = 20.0\nwidth_mm = 10.0",
+            "rod.toml:28:1: [pipe2] has outer_diameter_mm, width_mm, expected one of the three: outer_diameter_mm and inner_diameter_mm; width_mm and height_mm (wall_mm: a box); area_mm2, iy_mm4, iz_mm4, j_mm4 and kappa",
+        ),
+        (
+            ROUND,
+            "width_mm = 10\nheight_mm = 20\nwall_mm = 5",
+            "rod.toml:32:11: `pipe2.wall_mm` is 5, expected less than half of the shorter side, 5 mm",
+        ),
+        (
+            ROUND,
+            "width_mm = -10\nheight_mm = 20",
+            "rod.toml:30:12: `pipe2.width_mm` is -10, expected a number > 0",
+        ),
+        (
+            ROUND,
+            "area_mm2 = 200\niy_mm4 = 6000\niz_mm4 = 2000\nkappa = 0.85",
+            "rod.toml:28:1: there is no j_mm4 in [pipe2], expected the torsion constant in mm⁴",
+        ),
+        (
+            ROUND,
+            "area_mm2 = 200\niy_mm4 = 6000\niz_mm4 = 2000\nj_mm4 = 9000\nkappa = 0.85",
+            "rod.toml:33:9: `pipe2.j_mm4` is 9000, expected at most iy_mm4 + iz_mm4 = 8000, the polar moment",
+        ),
+        (
+            ROUND,
+            "area_mm2 = 200\niy_mm4 = 6000\niz_mm4 = 2000\nj_mm4 = 4000\nkappa = 85",
+            "rod.toml:34:9: `pipe2.kappa` is 85, expected a shear coefficient, 0 < κ <= 1.2 (5/6 for a rectangle)",
+        ),
+    ];
+    check(&cases);
+    let text = changed(&[
+        ("gamma_deg = 90.0", "bend_radius_mm = 40\nbend_flexibility = \"von-karman\""),
+        ("outer_diameter_mm = 16.0\ninner_diameter_mm = 12.0", "width_mm = 10\nheight_mm = 20"),
+    ]);
+    assert_eq!(
+        in_words(&read(&text).expect_err(&text)),
+        "rod.toml:8:20: `geometry.bend_flexibility` is \"von-karman\", expected \"beam\" or a factor > 0: \"von-karman\" and \"asme-b31.3\" are for round tubes, and the bend is none"
+    );
 }

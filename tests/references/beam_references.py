@@ -76,6 +76,20 @@ def cowper(nu, m):
     return 6 * (1 + nu) * q / ((7 + 6 * nu) * q + (20 + 12 * nu) * m * m)
 
 
+def orthotropic(e, nu, m):
+    """Dharmarajan & McCutchen (1973), hollow circle, e = E/G: Cowper's where e = 2(1 + nu)."""
+    q = (1 + m * m) ** 2
+    return 3 * e * q / ((mpf(7) / 2 * e - nu) * q + (10 * e - 8 * nu) * m * m)
+
+
+def poisson(mat, e, g):
+    """As stated; of an isotropic material (0 <= E/2G - 1 <= 1/2) what E and G say; else 0.3."""
+    if "poisson_ratio" in mat:
+        return mpf(mat["poisson_ratio"])
+    nu = e / (2 * g) - 1
+    return nu if 0 <= nu <= mpf(1) / 2 else mpf(3) / 10
+
+
 class Section:
     """Flexibility and mass per length of a tube."""
 
@@ -86,12 +100,12 @@ class Section:
             g = mpf(mat["shear_modulus_gpa"]) * mpf(10) ** 9
         else:
             g = e / (2 * (1 + mpf(mat["poisson_ratio"])))
-        nu = e / (2 * g) - 1
+        nu = poisson(mat, e, g)
         od, bore = mpf(pipe["outer_diameter_mm"]) / 1000, mpf(pipe["inner_diameter_mm"]) / 1000
         area = pi * (od**2 - bore**2) / 4
         inertia = pi * (od**4 - bore**4) / 64
         self.axial = 1 / (e * area)
-        self.shear = 1 / (cowper(nu, bore / od) * g * area) if theory == "timoshenko" else mpf(0)
+        self.shear = 1 / (orthotropic(e / g, nu, bore / od) * g * area) if theory == "timoshenko" else mpf(0)
         self.bending = 1 / (e * inertia)
         self.torsion = 1 / (g * 2 * inertia)
         self.line_mass = mpf(mat["density_kg_m3"]) * area

@@ -197,7 +197,7 @@ def calculix(text, theory, per_metre=160):
     (mat,) = f["material"].values()
     e = mat["youngs_modulus_gpa"]
     nu = mat["poisson_ratio"] if "poisson_ratio" in mat else e / mat["shear_modulus_gpa"] / 2 - 1
-    if nu > 0.5:
+    if nu > 0.5:  # anisotropic: ccx's beam is not
         return None
     outer, bore = f["pipe1"]["outer_diameter_mm"] / 2, f["pipe1"]["inner_diameter_mm"] / 2
     stations, borders = [0.0], [float(s) for s in rod.borders()]

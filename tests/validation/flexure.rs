@@ -2,7 +2,7 @@
 //!
 //! Saint-Venant's flexure of a transversely isotropic bar (axis z, force along x; docs/beam.md has
 //! the derivation): with curvature growing by 1 per length, W is the warping with
-//! ∬ (∇W + p)·∇v = −e ∬ x v for every v, p = ν((x² − y²)/2, xy), e = E/G, and Cowper's coefficient is
+//! ∬ (∇W + p)·∇v = −e ∬ x v for every v, p = ν((x² − y²)/2, xy), e = E/G. Cowper's coefficient is
 //! κ = −e I / (ν(∬x² − ∬y²)/2 + (A/I) ∬ x W), I = ∬x².
 //!
 //! Torsion: ∬ (∇φ + (−y, x))·∇v = 0, J = ∬ (x² + y² + x φ_y − y φ_x).
@@ -193,7 +193,7 @@ fn the_ratio_of_the_moduli_is_no_poisson_ratio() {
     let exact = Quarter::annulus(m).kappa(e, 0.3);
     assert_abs_diff_eq!(exact, 0.510, epsilon = 5e-4);
     let as_if_isotropic = Round::tube(1.0, m).shear_coefficient(e, e / 2.0 - 1.0);
-    assert_abs_diff_eq!(as_if_isotropic, 0.640, epsilon = 2e-3);
+    assert_abs_diff_eq!(as_if_isotropic, 0.637, epsilon = 5e-4);
 }
 
 /// κ = 5e/(6e − ν), whatever the sides; the elements leave 1e-4.
@@ -210,19 +210,20 @@ fn a_solid_rectangle() {
     }
 }
 
-/// Formulas of thin walls, at a twentieth of the side.
+/// Formulas of thin walls: they leave 0.7 of wall over shorter side (1.75 and 3.5 % here), so that
+/// the error goes with the wall.
 #[test]
 fn a_box() {
-    for (along, across) in [(1.0, 1.0), (2.0, 1.0), (1.0, 2.0)] {
-        let section = Quarter::hollow(along, across, 0.05);
-        let hollow = Section::from(Rectangle::hollow(across, along, 0.05));
-        for (e, nu) in [(2.6, 0.3), (12.4, 0.3)] {
-            let [kappa, _] = hollow.shear_coefficients(e, nu);
-            let exact = section.kappa(e, nu);
-            eprintln!("box {along} {across} e {e}: kappa {kappa} exact {exact}");
-            assert_relative_eq!(exact, kappa, max_relative = 0.03);
+    for wall in [0.05, 0.025] {
+        for (along, across) in [(1.0, 1.0), (2.0, 1.0), (1.0, 2.0)] {
+            let section = Quarter::hollow(along, across, wall);
+            let hollow = Section::from(Rectangle::hollow(across, along, wall));
+            for (e, nu) in [(2.6, 0.3), (12.4, 0.3)] {
+                let [kappa, _] = hollow.shear_coefficients(e, nu);
+                assert_relative_eq!(section.kappa(e, nu), kappa, max_relative = 0.7 * wall);
+            }
+            let j = hollow.torsion_constant();
+            assert_relative_eq!(section.torsion_constant(), j, max_relative = 0.7 * wall);
         }
-        eprintln!("J {} {}", section.torsion_constant(), hollow.torsion_constant());
-        assert_relative_eq!(section.torsion_constant(), hollow.torsion_constant(), max_relative = 0.03);
     }
 }

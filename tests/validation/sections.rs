@@ -67,7 +67,7 @@ fn compliance(rod: &Rod) -> Compliance {
     Compliance::of_model(rod, &Physics::default(), 10).unwrap()
 }
 
-/// A bar of 10 × 20 mm, upright in the rod's plane, by Castigliano's theorem by hand: I_y = 10·20³/12,
+/// A bar of 10 × 20 mm, upright in the rod's plane, by Castigliano's theorem: I_y = 10·20³/12,
 /// I_z = 20·10³/12 mm⁴, J = 0.2287·20·10³ mm⁴ (Timoshenko & Goodier, art. 109: 0.229), κ = 50/59.
 #[test]
 fn a_rectangular_bar_bends_by_its_two_second_moments() {
@@ -87,7 +87,7 @@ fn a_rectangular_bar_bends_by_its_two_second_moments() {
     for (entry, by_hand) in [((0, 0), c11), ((2, 2), c33), ((0, 2), c13), ((2, 0), c13), ((1, 1), c22)] {
         assert_relative_eq!(found.force[entry], by_hand, max_relative = 1e-12);
     }
-    // by a desk calculator, bending alone: L2³/3EI_y + L1L2²/EI_y = 0.0693333/1333.33 m/N = 52.0 µm/N
+    // by hand, bending alone: L2³/3EI_y + L1L2²/EI_y = 0.0693333/1333.33 m/N = 52.0 µm/N
     assert_abs_diff_eq!((found.force[(2, 2)] - l2 / (kappa * G * area)) * 1e6, 52.0, epsilon = 0.01);
 }
 

@@ -246,12 +246,25 @@ mod tests {
             driven: Driven::Displacement,
             noise: Some(1.37e-6),
             load_scale: 0.0,
-            sensor_scale: 0.0035,
+            sensor_scale: 0.35 * PERCENT,
         };
         let readings = header_of("# made\n").unwrap().with_header(header).unwrap();
         let again = Readings::from_text("f", &readings.to_csv(&["made again".into()])).unwrap();
         assert_eq!((again.header, again.source.as_deref()), (header, Some("made again")));
         let wrong = RigHeader { noise: Some(-1.0), ..header };
         assert!(header_of("").unwrap().with_header(wrong).is_err());
+    }
+    /// The example of docs/rig.md is what it says it is.
+    #[test]
+    fn the_example_of_the_documents_is_read() {
+        let text = include_str!("../../../docs/rig.md");
+        let example = text.split("```csv\n").nth(1).and_then(|rest| rest.split("```").next()).unwrap();
+        let readings = Readings::from_text("docs/rig.md", example).unwrap();
+        let RigHeader { noise, load_scale, .. } = readings.header;
+        assert_eq!((noise, load_scale), (Some(1.5 * UM), 0.01 * PERCENT));
+        assert_eq!(readings.source.as_deref(), Some("cell 3, weights of class M1"));
+        let sizes: Vec<usize> = readings.instants().iter().map(|instant| instant.rows.len()).collect();
+        assert_eq!(sizes, [2, 2, 1]);
+        assert_eq!(readings.rows[4].session.as_deref(), Some("tuesday"));
     }
 }

@@ -27,9 +27,9 @@ struct Key<'r> {
 impl Readings {
     /// The rows grouped by instant, each row in one group, in the order of their first rows.
     ///
-    /// Rows of one session, trial, phase, direction, load, load station and time are readings of one
-    /// instant, wherever they stand in the file: what they share (friction, creep, a slip) happened
-    /// once. Where rows have no time, those that follow each other directly are one instant, up to
+    /// Rows of one session, trial, phase, direction, load, load station and time are readings of
+    /// one instant, wherever they stand in the file: what they share (friction, creep, a slip)
+    /// happened once. Where rows have no time, those that follow each other directly are one instant, up to
     /// the row that reads a channel at a station again: that is a repeat.
     ///
     /// ```

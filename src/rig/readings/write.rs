@@ -10,7 +10,8 @@ type Column<'a> = (&'a str, &'a dyn Fn(&Reading) -> Option<String>);
 
 impl Readings {
     /// These readings as a table, the format of [`Readings::from_text`], below `above`, lines of
-    /// comments, and what the header says of the rig where it is not the default. Loads are in N; columns that no row fills are left out.
+    /// comments, and what the header says of the rig where it is not the default. Loads are in N;
+    /// columns that no row fills are left out.
     ///
     /// ```
     /// use rodcal::prelude::*;

@@ -50,8 +50,8 @@ impl RawMaterial {
 }
 
 impl Check<'_> {
-    /// The material with the standard uncertainties of its own table, else of the file's, else those
-    /// of its kind.
+    /// The material with the standard uncertainties of its own table, else of the file's, else
+    /// those of its kind.
     pub(super) fn material(
         &mut self,
         name: &str,
@@ -112,7 +112,14 @@ impl Check<'_> {
                 match nu {
                     // across an anisotropic wall it may exceed that of any isotropic material
                     Some(nu) => {
-                        Material::anisotropic(name, e, g, self.poisson_ratio(name, nu, 1.0)?, density)
+                        let stated = self.poisson_ratio(name, nu, 1.0)?;
+                        let material = Material::anisotropic(name, e, g, stated, density);
+                        let ratio = isotropic_poisson_ratio(e, g);
+                        if material.is_anisotropic() && (0.0..=0.5).contains(&ratio) {
+                            let material = name.to_owned();
+                            self.warnings.push(Warning::PoissonRatio { material, stated, ratio });
+                        }
+                        material
                     }
                     None => {
                         let ratio = isotropic_poisson_ratio(e, g);

@@ -38,13 +38,13 @@ impl Check<'_> {
             (false, true, false) => self.rectangle(which, raw).map(Section::Rectangle),
             (false, false, true) => self.general(which, raw).map(Section::General),
             (false, false, false) => {
-                let found = format!("{which} has no section");
+                let found = format!("[{which}] has no cross-section");
                 Err(self.toml.wrong(raw, found, &format!("{ROUND}, or {RECTANGLE}, or {GENERAL}")))
             }
             _ => {
                 let all = || diameters.iter().chain(&sides).chain(&constants);
                 let stated: Vec<&str> = all().filter(|(_, n)| n.is_some()).map(|&(key, _)| key).collect();
-                let found = format!("{which} has {}", stated.join(", "));
+                let found = format!("[{which}] has {}", stated.join(", "));
                 Err(self.toml.wrong(
                     raw,
                     found,
@@ -143,7 +143,7 @@ impl Check<'_> {
 
     /// The error that a key of a pipe is missing.
     fn missing(&self, which: &str, raw: &Spanned<RawPipe>, field: &str, expected: &str) -> Error {
-        self.toml.wrong(raw, format!("there is no {field} in {which}"), expected)
+        self.toml.wrong(raw, format!("there is no {field} in [{which}]"), expected)
     }
 }
 

@@ -63,7 +63,7 @@ impl Check<'_> {
             let expected = format!("at most {LARGEST_PERCENT} per cent: what is known worse is not known");
             return Err(self.toml.is(key, number, &expected));
         }
-        Ok(percent / 100.0)
+        Ok(percent * PERCENT)
     }
 
     fn standard_deviation(&self, key: &str, number: &Number) -> Result<f64> {
@@ -74,6 +74,8 @@ impl Check<'_> {
         }
     }
 }
+
+const PERCENT: f64 = 0.01;
 
 /// A factor of two either way at one standard deviation.
 const LARGEST_PERCENT: f64 = 100.0;

@@ -58,13 +58,6 @@ pub fn deliver(arguments: &Arguments, outcome: Outcome) -> Result<ExitCode> {
         json["warnings"] = report.warnings.as_slice().into();
     }
     if let (Some(report), Some(directory)) = (&report, &directory) {
-        if directory.exists() && !directory.is_dir() {
-            return Err(Error::Argument {
-                name: "--out",
-                found: format!("{}, which is a file", directory.display()),
-                expected: "a directory, or a name that is still free".into(),
-            });
-        }
         // everything is rendered before anything is written
         let mut files = report.files()?;
         if arguments.png {
@@ -97,10 +90,10 @@ pub fn deliver(arguments: &Arguments, outcome: Outcome) -> Result<ExitCode> {
     }
 }
 
-/// Refuses what this build cannot do, before anything is calculated.
+/// Refuses what cannot be delivered, before anything is calculated.
 ///
 /// # Errors
-/// [`Error::NotApplicable`] for `--png` in a build without it.
+/// [`Error::NotApplicable`] for `--png` in a build without it, [`Error::Argument`] for a file in the place of the directory.
 pub fn check(arguments: &Arguments) -> Result<()> {
     if arguments.png && !cfg!(feature = "png") {
         return Err(Error::NotApplicable {
@@ -109,7 +102,14 @@ pub fn check(arguments: &Arguments) -> Result<()> {
             hint: "build one that can: cargo install --path . --features png".into(),
         });
     }
-    Ok(())
+    match &arguments.out {
+        Some(directory) if directory.exists() && !directory.is_dir() => Err(Error::Argument {
+            name: "--out",
+            found: format!("{}, which is a file", directory.display()),
+            expected: "a directory, or a name that is still free".into(),
+        }),
+        _ => Ok(()),
+    }
 }
 
 #[cfg(feature = "png")]

@@ -17,6 +17,7 @@ mod words;
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::{Command, Stdio};
+use std::sync::{LazyLock, Mutex, OnceLock};
 
 use serde_json::Value;
 use tempfile::TempDir;
@@ -108,7 +109,7 @@ fn list(directory: &Path, prefix: &str, found: &mut BTreeMap<String, Vec<u8>>) {
 }
 
 /// What the program answered.
-#[derive(Debug, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 struct Answer {
     line: String,
     status: Option<i32>,
@@ -139,6 +140,29 @@ impl Answer {
         };
         self.stderr.lines().map(warning).collect()
     }
+}
+
+/// A command on the project's data whose answer several tests read: it runs once.
+struct Ran {
+    answer: Answer,
+    /// The files before and after.
+    before: BTreeMap<String, Vec<u8>>,
+    after: BTreeMap<String, Vec<u8>>,
+}
+
+fn ran(line: &str) -> &'static Ran {
+    static RUNS: LazyLock<Mutex<BTreeMap<String, &'static OnceLock<Ran>>>> = LazyLock::new(Mutex::default);
+    let run: &'static OnceLock<Ran> = RUNS
+        .lock()
+        .unwrap_or_else(|poisoned| poisoned.into_inner())
+        .entry(line.to_owned())
+        .or_insert_with(|| Box::leak(Box::default()));
+    run.get_or_init(|| {
+        let sandbox = Sandbox::new();
+        let before = sandbox.listing();
+        let answer = sandbox.run(line);
+        Ran { answer, before, after: sandbox.listing() }
+    })
 }
 
 /// Steel rod and readings, carbon rod and readings, real readings: every command that makes a report.

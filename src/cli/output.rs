@@ -77,13 +77,6 @@ pub fn deliver(options: &Options, outcome: Outcome) -> Result<ExitCode> {
         json["warnings"] = report.warnings.as_slice().into();
     }
     if let (Some(report), Some(directory)) = (&report, &directory) {
-        if directory.exists() && !directory.is_dir() {
-            return Err(Error::Argument {
-                name: "--out",
-                found: format!("{}, which is a file", directory.display()),
-                expected: "a directory, or a name that is still free".into(),
-            });
-        }
         // everything is rendered before anything is written
         let mut files = report.files()?;
         if options.png {
@@ -116,10 +109,11 @@ pub fn deliver(options: &Options, outcome: Outcome) -> Result<ExitCode> {
     }
 }
 
-/// Refuses what this build cannot do, before anything is calculated.
+/// Refuses what cannot be delivered, before anything is calculated.
 ///
 /// # Errors
-/// [`Error::NotApplicable`] for `--png` in a build without it.
+/// [`Error::NotApplicable`] for `--png` in a build without it, [`Error::Argument`] for a file in the
+/// place of the directory.
 pub fn check(options: &Options) -> Result<()> {
     if options.png && !cfg!(feature = "png") {
         return Err(Error::NotApplicable {
@@ -128,7 +122,14 @@ pub fn check(options: &Options) -> Result<()> {
             hint: "build one that can: cargo install --path . --features png".into(),
         });
     }
-    Ok(())
+    match &options.out {
+        Some(directory) if directory.exists() && !directory.is_dir() => Err(Error::Argument {
+            name: "--out",
+            found: format!("{}, which is a file", directory.display()),
+            expected: "a directory, or a name that is still free".into(),
+        }),
+        _ => Ok(()),
+    }
 }
 
 #[cfg(feature = "png")]

@@ -1,8 +1,6 @@
 //! Held-out errors are those of poses that no fit has seen, and differences between modes are claimed only where there are
 //! some.
 
-use std::process::Command;
-
 use nalgebra::Vector3;
 use rodcal::calibration::campaign::Targets;
 use rodcal::calibration::{
@@ -13,7 +11,6 @@ use rodcal::robot::Kinematics;
 
 use super::lab::PHYSICS;
 use super::recovery::Clamped;
-use super::rods;
 use super::simulated::Simulator;
 
 const FOLDS: usize = 5;
@@ -149,32 +146,4 @@ fn a_better_mode_is_called_better() {
     let d = comparison.differences.iter().find(|d| d.mode == Mode::Calc && d.against == Mode::None).unwrap();
     assert!(d.is_significant && d.mean < 0.0 && d.interval.1 < 0.0, "{d:?}");
     assert_eq!(comparison.draws, 60);
-}
-
-/// One thread or two: the same bytes. The number of threads is a matter of the process, hence the program itself.
-#[test]
-fn the_number_of_threads_changes_no_byte() {
-    let directory = tempfile::tempdir().unwrap();
-    let program = env!("CARGO_BIN_EXE_rodcal");
-    let rod = directory.path().join("rod.toml");
-    std::fs::write(&rod, rods::SOFT).unwrap();
-    let simulated = Command::new(program)
-        .args(["simulate", "s", "--rod", "rod.toml", "--poses", "10", "--validation", "20"])
-        .current_dir(directory.path())
-        .output()
-        .unwrap();
-    assert!(simulated.status.success(), "{}", String::from_utf8_lossy(&simulated.stderr));
-    let compared = |threads: &str| {
-        let output = Command::new(program)
-            .args(["compare", "s/campaign.toml", "--json", "--draws", "50"])
-            .current_dir(directory.path())
-            .env("RAYON_NUM_THREADS", threads)
-            .output()
-            .unwrap();
-        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-        output.stdout
-    };
-    let one = compared("1");
-    assert!(one.len() > 1000);
-    assert_eq!(one, compared("2"));
 }

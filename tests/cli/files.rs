@@ -1,29 +1,26 @@
 //! `--out DIR` and the demo: which files there are, whole, alone and the same every time.
 
-use super::{REPORTS, Sandbox};
+use super::{REPORTS, Ran, Sandbox, ran};
 
 #[test]
 fn a_report_is_a_page_with_its_pictures_tables_and_result() {
     for line in REPORTS {
-        let sandbox = Sandbox::new();
-        let out = sandbox.run(&format!("{line} --out a/report --json")).succeeded().stdout;
-        assert_eq!(sandbox.read("a/report/result.json"), out, "{line}");
-        let names: Vec<String> = sandbox
-            .listing()
-            .into_keys()
-            .filter_map(|name| name.strip_prefix("a/report/").map(str::to_owned))
-            .filter(|name| !name.is_empty())
-            .collect();
-        let known = |name: &&String| {
+        let ran = ran(&format!("{line} --out a/report --json"));
+        let out = ran.answer.clone().succeeded().stdout;
+        let read = |name: &str| std::str::from_utf8(&ran.after[&format!("a/report/{name}")]).unwrap();
+        assert_eq!(read("result.json"), out, "{line}");
+        let names: Vec<&str> = ran.after.keys().filter_map(|name| name.strip_prefix("a/report/")).collect();
+        let names: Vec<&str> = names.into_iter().filter(|name| !name.is_empty()).collect();
+        let known = |name: &&&str| {
             let is = |start: &str, ends: &[&str]| {
                 name.starts_with(start) && ends.iter().any(|e| name.ends_with(e))
             };
-            ["index.html", "result.json"].contains(&name.as_str())
+            ["index.html", "result.json"].contains(*name)
                 || is("figure-", &[".svg"])
                 || is("table-", &[".csv", ".md"])
         };
         assert_eq!(names.iter().find(|name| !known(name)), None, "{line}");
-        let page = sandbox.read("a/report/index.html");
+        let page = read("index.html");
         for (kind, tag, ending) in
             [("figure", "<figure>", ".svg"), ("table", "<table>", ".csv"), ("table", "<table>", ".md")]
         {
@@ -32,7 +29,7 @@ fn a_report_is_a_page_with_its_pictures_tables_and_result() {
             assert_eq!(files, page.matches(tag).count(), "{line}: {kind}s as {ending} and on the page");
         }
         for name in &names {
-            let text = sandbox.read(&format!("a/report/{name}"));
+            let text = read(name);
             let starts = match name.rsplit('.').next() {
                 Some("html") => "<!DOCTYPE html>",
                 Some("svg") => "<svg ",
@@ -104,32 +101,30 @@ fn a_second_report_has_the_same_bytes_and_leaves_other_files_alone() {
 
 #[test]
 fn nothing_is_written_unasked() {
-    let sandbox = Sandbox::new();
-    let before = sandbox.listing();
     for line in REPORTS.into_iter().filter(|line| *line != "demo") {
-        sandbox.run(line).succeeded();
-        sandbox.run(&format!("{line} --json")).succeeded();
+        for line in [line, &format!("{line} --json")] {
+            let ran = ran(line);
+            ran.answer.clone().succeeded();
+            assert!(ran.after == ran.before, "{line}");
+        }
     }
-    assert!(sandbox.listing() == before);
 }
 
 #[test]
 fn the_demo_needs_nothing_and_says_where_its_report_is() {
-    let mut answers = Vec::new();
-    for line in ["", "demo"] {
-        let sandbox = Sandbox::empty();
-        let answer = sandbox.run(line).succeeded();
-        let path = answer.stdout.lines().find_map(|line| line.strip_prefix("report: ")).unwrap();
-        assert_eq!(path, "reports/demo/index.html");
-        assert!(sandbox.read(path).starts_with("<!DOCTYPE html>"));
-        let outside = sandbox
-            .listing()
-            .into_keys()
-            .find(|name| !name.starts_with("reports/demo/") && name != "reports/");
-        assert_eq!(outside, None);
-        answers.push((answer.stdout, answer.stderr, sandbox.listing()));
-    }
-    assert!(answers[0] == answers[1], "rodcal and rodcal demo differ");
+    let sandbox = Sandbox::empty();
+    let answer = sandbox.run("").succeeded();
+    let path = answer.stdout.lines().find_map(|line| line.strip_prefix("report: ")).unwrap();
+    assert_eq!(path, "reports/demo/index.html");
+    assert!(sandbox.read(path).starts_with("<!DOCTYPE html>"));
+    let files = sandbox.listing();
+    let outside = files.keys().find(|name| !name.starts_with("reports/demo/") && *name != "reports/");
+    assert_eq!(outside, None);
+    // `rodcal demo` is the same, also among the project's files
+    let Ran { answer: demo, before, after } = ran("demo");
+    assert_eq!((&answer.stdout, &answer.stderr), (&demo.stdout, &demo.stderr));
+    assert!(files.iter().all(|(name, bytes)| after.get(name) == Some(bytes)), "the files differ");
+    assert_eq!(after.len(), before.len() + files.len());
 }
 
 #[test]
@@ -144,7 +139,7 @@ fn the_demo_also_goes_where_it_is_told() {
 #[test]
 fn the_demo_is_made_of_the_other_commands() {
     let sandbox = Sandbox::new();
-    let demo = sandbox.run("demo --json").json();
+    let demo = ran("demo --json").answer.clone().json();
     for (i, rod) in ["2", "5"].into_iter().enumerate() {
         let compliance = sandbox.run(&format!("compliance rods/{rod}.toml --json")).json();
         let fit = sandbox.run(&format!("rig fit rods/{rod}.toml stiffness_data/{rod}.csv --json")).json();

@@ -2,16 +2,15 @@
 
 use std::process::Stdio;
 
-use super::{REPORTS, Sandbox};
+use super::{REPORTS, Sandbox, ran};
 
 #[test]
 fn warnings_go_to_stderr_and_with_json_also_into_it() {
     for line in REPORTS {
-        let sandbox = Sandbox::new();
-        let plain = sandbox.run(line).succeeded();
+        let plain = ran(line).answer.clone().succeeded();
         let told = plain.warnings();
         assert!(!plain.stdout.contains("warning"), "{line}");
-        let answer = sandbox.run(&format!("{line} --json"));
+        let answer = ran(&format!("{line} --json")).answer.clone();
         assert_eq!(answer.warnings(), told, "{line}");
         let json = answer.json();
         let inside: Vec<&str> =
@@ -22,7 +21,6 @@ fn warnings_go_to_stderr_and_with_json_also_into_it() {
 
 #[test]
 fn there_are_warnings_where_there_is_something_to_warn_about() {
-    let sandbox = Sandbox::new();
     for (line, word) in [
         ("compliance rods/5.toml --mode calc --theory timoshenko", "calc is Euler–Bernoulli by definition"),
         ("rig fit rods/2.toml stiffness_data/2.csv", "beyond the 15.0 N"),
@@ -30,10 +28,10 @@ fn there_are_warnings_where_there_is_something_to_warn_about() {
         ("rig fit linear stiffness_data/nist-load-cell.csv", "not a straight line"),
         ("demo", "load cell: "),
     ] {
-        let warnings = sandbox.run(line).succeeded().warnings();
+        let warnings = ran(line).answer.clone().succeeded().warnings();
         assert!(warnings.iter().any(|warning| warning.contains(word)), "{line}: {warnings:?}");
     }
-    assert_eq!(sandbox.run("compliance rods/5.toml").warnings(), [""; 0]);
+    assert_eq!(ran("compliance rods/5.toml").answer.warnings(), [""; 0]);
 }
 
 /// `rodcal … | head -1`: the reader leaves before the end.

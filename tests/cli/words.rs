@@ -1,7 +1,7 @@
 //! What a user reads. A changed word is shown by a failing snapshot: read it as somebody who has never seen the
 //! program, and accept it only if it still teaches.
 
-use super::Sandbox;
+use super::{Sandbox, ran};
 
 /// Compares with `tests/snapshots/NAME.snap`.
 pub fn assert_reads(name: &str, text: &str) {
@@ -33,7 +33,6 @@ fn help_teaches() {
 
 #[test]
 fn results_explain_themselves() {
-    let sandbox = Sandbox::new();
     for (name, line) in [
         ("compliance", "compliance rods/5.toml"),
         ("rig-fit", "rig fit rods/5.toml stiffness_data/5.csv"),
@@ -42,7 +41,7 @@ fn results_explain_themselves() {
         ("diagnose-rig-linear", "diagnose rig linear stiffness_data/nist-load-cell.csv"),
         ("demo", "demo"),
     ] {
-        let answer = sandbox.run(line).succeeded();
+        let answer = ran(line).answer.clone().succeeded();
         let told = format!("{}\n[stderr]\n{}", answer.stdout, answer.stderr);
         assert_reads(name, &told);
     }
@@ -51,9 +50,9 @@ fn results_explain_themselves() {
 /// Only tables may need more, and those say so by their rules.
 #[test]
 fn words_fit_a_terminal() {
-    let sandbox = Sandbox::new();
+    let sandbox = Sandbox::empty();
     for line in super::REPORTS {
-        let answer = sandbox.run(line).succeeded();
+        let answer = ran(line).answer.clone().succeeded();
         // a table is a block of lines, one of which is its rule
         for block in answer.stdout.split("\n\n").filter(|block| !block.contains("──  ──")) {
             let long = block.lines().find(|line| line.chars().count() > 100);

@@ -157,13 +157,14 @@ impl RigModel {
             Body::Lines(_) => None,
         };
         let mut evidence = evidence::of(&model.data, nuisance, large);
+        evidence.stated_noise = readings.header.noise;
         if let Some(rod) = rod {
             let stations = |rod: &Rod, d: &Datum| {
                 let tip = rod.length();
                 let at = |station: Option<f64>| station.unwrap_or(tip).min(tip);
                 (at(d.load_station), at(d.read_station))
             };
-            let (numbers, columns) = nominal::all(&model.data, rod, &stations)?;
+            let (numbers, columns) = nominal::all(&model.data, rod, &readings.header, &stations)?;
             (evidence.nominal_numbers, evidence.nominal) = (numbers, columns);
         }
         let not_testable = model.add_candidates(is_wanted);

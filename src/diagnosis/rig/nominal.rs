@@ -15,19 +15,18 @@ use super::datum::Datum;
 use super::structure::responses;
 use crate::error::Result;
 use crate::inference::NominalNumber;
+use crate::rig::readings::RigHeader;
 use crate::rod::Rod;
 use crate::spatial::Axis;
 use crate::units::MM;
 
-/// Standard uncertainty of the scale of loads, and of a displacement sensor, unless the readings say
-/// otherwise: weights of class M1 and calibrated inductive sensors are well within 0.1 %.
-const SCALE: f64 = 1e-3;
 const PERCENT: f64 = 0.01;
 
 /// The numbers and their columns; `stations` are the load and read stations of a datum on a rod.
 pub(super) fn all(
     data: &[Datum],
     rod: &Rod,
+    header: &RigHeader,
     stations: &dyn Fn(&Rod, &Datum) -> (f64, f64),
 ) -> Result<(Vec<NominalNumber>, DMatrix<f64>)> {
     let mut numbers = Vec::new();
@@ -59,17 +58,20 @@ pub(super) fn all(
             column.collect(),
         );
     }
-    let scale = |name: String| NominalNumber {
+    let scale = |name: String, standard_uncertainty: f64| NominalNumber {
         name,
         unit: "%",
         si: PERCENT,
         value: 1.0,
-        standard_uncertainty: SCALE,
+        standard_uncertainty,
     };
-    add(scale("scale of the loads".into()), data.iter().map(|d| SCALE * d.predicted).collect());
+    let (loads, sensors) = (header.load_scale, header.sensor_scale);
+    let column = data.iter().map(|d| loads * d.predicted).collect();
+    add(scale("scale of the loads".into(), loads), column);
     for channel in Axis::ALL {
-        let of_channel = |d: &Datum| if d.channel == channel { SCALE * d.predicted } else { 0.0 };
-        add(scale(format!("scale of sensor d{channel}")), data.iter().map(of_channel).collect());
+        let of_channel = |d: &Datum| if d.channel == channel { sensors * d.predicted } else { 0.0 };
+        let name = format!("scale of sensor d{channel}");
+        add(scale(name, sensors), data.iter().map(of_channel).collect());
     }
     let length = rod.standard_uncertainty.length;
     for station in pairs.stated(data) {

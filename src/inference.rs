@@ -45,7 +45,11 @@ mod whitening;
 mod tests;
 
 #[cfg(test)]
-pub(crate) use self::{linearised::Linearised, pruning::infer, selection::DiscrepancyModel};
+pub(crate) use self::{
+    linearised::Linearised,
+    pruning::infer,
+    selection::{DiscrepancyModel, Pairs},
+};
 pub use background::{NominalEstimate, NominalNumber};
 pub use description::Description;
 pub use diagnose::diagnose;

@@ -11,7 +11,7 @@ use super::locate::locate;
 use super::pruning::{infer, settled};
 use super::scatter::{NoiseTest, Tails};
 use super::search::Search;
-use super::selection::DiscrepancyModel;
+use super::selection::{DiscrepancyModel, Pairs};
 use super::sessions::leave_one_session_out;
 use super::{
     Diagnosis, Discrepancy, Estimate, Evidence, Finding, FindingPart, ForwardModel, HeldOut, Hypothesis,
@@ -36,7 +36,7 @@ pub fn diagnose(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
     let folded = background::folded(evidence);
     let settled = settled(model, &folded.evidence);
     let evidence = &settled;
-    let (search, hypothesis, left_over) = infer(model, evidence);
+    let (search, hypothesis, left_over) = infer(model, evidence, Pairs::Screened);
     let held_out = hold_out(model, evidence, &hypothesis.terms);
     let (hypothesis, left_over) = confirmed(model, &search, hypothesis, left_over, held_out.as_ref());
     let none = search.fit(&[]);
@@ -50,7 +50,7 @@ pub fn diagnose(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
         })
         .collect();
     parts.sort_by(|(_, a), (_, b)| b.explains.total_cmp(&a.explains));
-    let findings = findings(model, &hypothesis, held_out.as_ref(), parts);
+    let findings = findings(model, &hypothesis, held_out.as_ref(), rms(&before), parts);
     let lack_of_fit_after = search.lack_of_fit(&hypothesis, &predicted);
     let mut longest = &hypothesis;
     let mut discrepancy = None;
@@ -149,11 +149,13 @@ fn noise_test(stated: Option<f64>, estimated: f64, degrees_of_freedom: f64) -> N
     NoiseTest { stated, estimated, p_value }
 }
 
-/// Parts as they are reported: the waves of one gear, all misread poses, are one finding.
+/// Parts as they are reported, the strongest first: the waves of one gear, all misread poses, are one
+/// finding. `base` is the root mean square that the base model leaves.
 fn findings(
     model: &Linearised<'_>,
     hypothesis: &Hypothesis,
     held_out: Option<&HeldOut>,
+    base: f64,
     parts: Vec<(Theme, FindingPart)>,
 ) -> Vec<Finding> {
     let mut findings: Vec<(Theme, Finding)> = Vec::new();
@@ -192,7 +194,15 @@ fn findings(
         finding.description = model.describe(finding);
     }
     let mut findings: Vec<Finding> = findings.into_iter().map(|(_, finding)| finding).collect();
-    findings.sort_by(|a, b| b.explains.total_cmp(&a.explains));
+    // by what held-out data lose without it; of what happened once they know nothing
+    let strength = |finding: &Finding| {
+        let explained = (finding.explains / base.max(f64::MIN_POSITIVE)).powi(2);
+        match finding.kind() {
+            Kind::Event => explained,
+            Kind::Physics | Kind::Mistake => finding.held_out_loss.unwrap_or(explained),
+        }
+    };
+    findings.sort_by(|a, b| strength(b).total_cmp(&strength(a)));
     findings
 }
 

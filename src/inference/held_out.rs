@@ -8,6 +8,7 @@ use nalgebra::DVector;
 
 use super::linearised::Linearised;
 use super::pruning::infer;
+use super::selection::Pairs;
 use super::{Candidate, Effect, Evidence, ForwardModel, Hypothesis, Location, Term};
 use crate::parallel::in_parallel;
 use crate::statistics::{Random, percentile_interval};
@@ -95,7 +96,8 @@ pub(super) fn trained_on(
     whole: &[Term],
 ) -> Trained {
     let (part, training) = (model.part(kept), evidence.part(kept));
-    let (search, hypothesis, _) = infer(&part, &training);
+    let pairs = if whole.len() > 1 { Pairs::Screened } else { Pairs::LeftOut };
+    let (search, hypothesis, _) = infer(&part, &training, pairs);
     let left = |hypothesis: &Hypothesis| {
         let response = model.response(&hypothesis.terms);
         &evidence.residual - search.predicted(hypothesis, evidence, &response)

@@ -8,7 +8,7 @@ use super::evidence::rms;
 use super::linearised::Linearised;
 use super::scatter::Tails;
 use super::search::Search;
-use super::selection::DiscrepancyModel;
+use super::selection::{DiscrepancyModel, Pairs};
 use super::{Evidence, ForwardModel, Term};
 
 /// What is left is little: as a share of what an effect explains, and of the noise.
@@ -33,7 +33,7 @@ pub fn settled(model: &Linearised<'_>, evidence: &Evidence) -> Evidence {
     }
     for pass in 0..PASSES {
         let search = Search::new(model, &evidence, &known);
-        let (hypothesis, left_over) = search.best();
+        let (hypothesis, left_over) = search.best(Pairs::Screened);
         // a curve that explains what is left is no scatter
         let longest = match &left_over {
             Some(DiscrepancyModel::Curve(longer)) => longer,
@@ -73,9 +73,10 @@ pub fn settled(model: &Linearised<'_>, evidence: &Evidence) -> Evidence {
 pub fn infer<'a>(
     model: &'a Linearised<'a>,
     evidence: &'a Evidence,
+    pairs: Pairs,
 ) -> (Search<'a>, Hypothesis, Option<DiscrepancyModel>) {
     let search = Search::new(model, evidence, &[]);
-    let (hypothesis, left_over) = search.best();
+    let (hypothesis, left_over) = search.best(pairs);
     let hypothesis = beyond_the_tails(&search, hypothesis);
     let (hypothesis, left_over) = convincing(&search, hypothesis, left_over);
     (search, hypothesis, left_over)

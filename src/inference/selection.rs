@@ -19,6 +19,15 @@ const OF_ONE_EFFECT: usize = 2;
 /// By how much the odds of a name may be shared among effects that explain the same.
 const MOST_SHARED: f64 = 10.0;
 
+/// Whether pairs of effects are screened.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Pairs {
+    /// They are.
+    Screened,
+    /// Not where all data have told a single effect at most: a part of them tells no more.
+    LeftOut,
+}
+
 /// What a hypothesis leaves that no effect of the library explains.
 #[derive(Debug, Clone)]
 pub enum DiscrepancyModel {
@@ -35,11 +44,14 @@ impl Search<'_> {
     /// something unknown: several of them together can draw the shape of something that is none of
     /// them. Effects are added one by one from nothing, and from the best pair: two that hide each
     /// other are found by no single step.
-    pub fn best(&self) -> (Hypothesis, Option<DiscrepancyModel>) {
+    pub fn best(&self, pairs: Pairs) -> (Hypothesis, Option<DiscrepancyModel>) {
         let none = self.fit(&[]);
         let additions = self.additions(&none);
         let by_steps = self.along(vec![none.clone()], Some(&additions));
-        let pair = self.best_pair(&none, &additions);
+        let pair = match pairs {
+            Pairs::Screened => self.best_pair(&none, &additions),
+            Pairs::LeftOut => None,
+        };
         // a pair that the steps have found is theirs
         let is_new = |pair: &Hypothesis| {
             by_steps.0.log_probability + 1e-6 < pair.log_probability || by_steps.1.is_some()

@@ -38,6 +38,7 @@ fn as_if(model: &CalibrationModel, candidate: usize) -> Finding {
         sigma: 1.0,
         covariance,
         background: DVector::zeros(0),
+        background_covariance: nalgebra::DMatrix::zeros(0, 0),
         determined: 1.0,
     };
     let parts = vec![part];

@@ -109,7 +109,7 @@ pub static SOCKET_SHIFT: CalibrationEffect = CalibrationEffect {
     effect: Effect {
         name: "socket_shift",
         kind: Kind::Event,
-        summary: "a socket, or a plate of sockets, moved after one pose",
+        summary: "a socket or a plate of sockets moved after a pose",
         formula: "−(t + φ × (ball − middle)) from some row on: t is how far the socket moved; a plate \
                   also turns by φ about the middle of its points",
         prior: "0.5 mm, and 3 mrad for a plate: 0.5 mm over its width",

@@ -46,7 +46,7 @@ pub static TRANSMISSION_ERROR: CalibrationEffect = CalibrationEffect {
     effect: Effect {
         name: "transmission_error",
         kind: Kind::Physics,
-        summary: "an error of gear or encoder over the joint's own angle",
+        summary: "an error of gear or encoder over the joint's angle",
         formula: "Jⱼ·f(qⱼ): f is a wave of a gear's whole harmonics and ratios, a wave scanned up to \
                   40 cycles per revolution, or a smooth curve of one of five length scales",
         prior: "150 µrad rms: a UR5 shows 60 to 110 µrad, a UR10 220 to 400",

@@ -28,7 +28,7 @@ pub static STIFFNESS_SCALE: RigEffect = RigEffect {
     effect: Effect {
         name: "stiffness_scale",
         kind: Kind::Physics,
-        summary: "all of the rod is softer or stiffer than its file says",
+        summary: "the whole rod is softer or stiffer than stated",
         formula: "E → f·E, G → f·G in all pipes",
         prior: "27 %: 1 − 1/r, rms over the r_rod of the paper's six rods",
         parameters: &[("factor", "actual over nominal stiffness")],
@@ -82,7 +82,7 @@ pub static JOINT_COMPLIANCE: RigEffect = RigEffect {
     effect: Effect {
         name: "joint_compliance",
         kind: Kind::Physics,
-        summary: "a joint of the file, or one found on the rod, gives way",
+        summary: "a joint of the file or on the rod gives way",
         formula: "θ = β·M at a station, in bending and in torsion",
         prior: "20 % of the rod's own ∫ds/EI and ∫ds/GJ, as at the corner of the paper's rod 2#",
         parameters: &[

@@ -75,7 +75,7 @@ fn remains(subject: &Subject) -> Section {
     let Some(left) = &subject.remainder else {
         let of = if subject.per.is_empty() { format!(" of the {}", subject.noun) } else { String::new() };
         let words = format!(
-            "The residual{of} is {} µm rms{}; their scatter is {} µm.",
+            "The residual{of} is {} µm rms{}; the scatter is {} µm.",
             um(rms(&diagnosis.after)),
             subject.per,
             um(diagnosis.noise)

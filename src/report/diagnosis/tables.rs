@@ -46,7 +46,7 @@ pub fn parameters(findings: &[Finding]) -> Table {
                 first(finding.effect.spoken()),
                 first(finding.location.to_string()),
                 meaning(finding, &estimate.name),
-                unit(&estimate.name).to_owned(),
+                unit(&estimate.name).map_or("", |(_, unit)| unit).to_owned(),
                 value,
                 low,
                 high,
@@ -60,20 +60,19 @@ pub fn parameters(findings: &[Finding]) -> Table {
 /// What a parameter is, by its effect's record: `friction force`; of a vector its axis as well.
 fn meaning(finding: &Finding, name: &str) -> String {
     for (names, meaning) in finding.effect.parameters {
-        let of_vector = ["x", "y", "z"].iter().zip(names.split(", ")).find(|(_, one)| *one == name);
-        match of_vector {
-            Some((axis, _)) if names.contains(", ") && !names.contains(" N") => {
-                return format!("{meaning}, {axis}");
-            }
+        let names: Vec<&str> = names.split(", ").collect();
+        match names.iter().position(|one| *one == name) {
+            Some(axis) if names.len() == 3 => return format!("{meaning}, {}", ["x", "y", "z"][axis]),
             Some(_) => return (*meaning).to_owned(),
             None => {}
         }
     }
-    name.replace('_', " ")
+    let bare = unit(name).map_or(name, |(end, _)| name.trim_end_matches(end));
+    bare.trim_end_matches('_').replace('_', " ")
 }
 
-/// The unit that a parameter's name ends with.
-fn unit(name: &str) -> &'static str {
+/// The end of a parameter's name that is its unit, and the unit as people write it.
+fn unit(name: &str) -> Option<(&'static str, &'static str)> {
     const UNITS: [(&str, &str); 21] = [
         ("cycles_per_rev", "1/rev"),
         ("per_decade", "1/decade"),
@@ -97,7 +96,7 @@ fn unit(name: &str) -> &'static str {
         ("_s", "s"),
         ("_k", "K"),
     ];
-    UNITS.iter().find(|(end, _)| name.ends_with(end)).map_or("", |(_, unit)| unit)
+    UNITS.into_iter().find(|(end, _)| name.ends_with(end))
 }
 
 /// What else a finding may be (causes beyond those of its sentence), and where else.

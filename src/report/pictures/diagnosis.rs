@@ -94,7 +94,8 @@ fn powers(candidates: &[Candidate]) -> Vec<(f64, String)> {
     let of = candidates.iter().map(|candidate| candidate.log10_odds).filter(|odds| drawable(*odds));
     let (low, high) = of.fold((0.0f64, 2.0f64), |(low, high), odds| (low.min(odds), high.max(odds)));
     let step = ((high - low) / 6.0).ceil().max(1.0);
-    let ticks = (low / step).ceil() as i64..=(high / step).floor() as i64;
+    // the axis ends at its outer ticks: beyond every bar and its number
+    let ticks = (low / step).floor() as i64..=(1.1 * high / step).ceil() as i64;
     ticks.map(|k| (k as f64 * step, to_one(k as f64 * step))).collect()
 }
 

@@ -52,7 +52,7 @@ pub static TRANSMISSION_ERROR: CalibrationEffect = CalibrationEffect {
         prior: "150 µrad rms: a UR5 shows 60 to 110 µrad, a UR10 220 to 400",
         parameters: &[
             ("cycles_per_rev", "frequency of the strongest part"),
-            ("amplitude_urad", "its amplitude; of a curve that of a wave of the same rms"),
+            ("amplitude_urad", "amplitude of the strongest part; of a curve, of a wave of the same rms"),
         ],
         needs: "a joint that turns",
         cause: "an error of its gear or encoder",

@@ -211,8 +211,8 @@ pub static CONTACT_FORCE_VARIATION: CalibrationEffect = CalibrationEffect {
         prior: "0.3 N: sensor springs are stated to 10 or 20 % of 2 N",
         parameters: &[
             ("x_n", "force beyond the stated one along x of the device frame"),
-            ("y_n", "along its y"),
-            ("z_n", "along its z"),
+            ("y_n", "force beyond the stated one along y of the device frame"),
+            ("z_n", "force beyond the stated one along z of the device frame"),
         ],
         needs: "clamps, and a rod or joints of known compliance",
         cause: "a contact force that differs from the stated one",

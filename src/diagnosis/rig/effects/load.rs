@@ -138,8 +138,8 @@ pub static LOAD_MISALIGNMENT: RigEffect = RigEffect {
         parameters: &[
             ("angle_deg", "angle"),
             ("about_x_deg", "rotation of all loads about x"),
-            ("about_y_deg", "about y"),
-            ("about_z_deg", "about z"),
+            ("about_y_deg", "rotation of all loads about y"),
+            ("about_z_deg", "rotation of all loads about z"),
         ],
         needs: "a rod file; channels across the loads",
         cause: "a misaligned load",

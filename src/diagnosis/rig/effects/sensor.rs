@@ -63,8 +63,8 @@ pub static SENSOR_MISALIGNMENT: RigEffect = RigEffect {
         parameters: &[
             ("angle_deg", "angle"),
             ("about_x_deg", "rotation of all sensors about x"),
-            ("about_y_deg", "about y"),
-            ("about_z_deg", "about z"),
+            ("about_y_deg", "rotation of all sensors about y"),
+            ("about_z_deg", "rotation of all sensors about z"),
         ],
         needs: "a rod file; loads across the channel",
         cause: "a misaligned sensor",

@@ -87,8 +87,8 @@ pub static JOINT_COMPLIANCE: RigEffect = RigEffect {
         prior: "20 % of the rod's own ∫ds/EI and ∫ds/GJ, as at the corner of the paper's rod 2#",
         parameters: &[
             ("bending_urad_per_nm", "the joint's compliance in bending"),
-            ("torsion_urad_per_nm", "and in torsion"),
-            ("station_mm", "where it is, if the file does not say"),
+            ("torsion_urad_per_nm", "the joint's compliance in torsion"),
+            ("station_mm", "station of the joint"),
         ],
         needs: "a rod file",
         cause: "a compliant connection",
@@ -136,7 +136,7 @@ pub static ROOT_COMPLIANCE: RigEffect = RigEffect {
         prior: "20 % of the rod's own ∫ds/EI and ∫ds/GJ",
         parameters: &[
             ("bending_urad_per_nm", "compliance in bending"),
-            ("torsion_urad_per_nm", "and in torsion"),
+            ("torsion_urad_per_nm", "compliance in torsion"),
         ],
         needs: "a rod file",
         cause: "a compliant flange or adapter",

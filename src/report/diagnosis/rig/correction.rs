@@ -42,7 +42,7 @@ pub fn section(correction: &Correction) -> Section {
     ];
     let points: Vec<String> = said
         .into_iter()
-        .flat_map(|(what, list)| list.iter().map(move |words| format!("{what}: {words}")))
+        .flat_map(|(what, list)| list.iter().map(move |words| format!("{what}: {}", spoken(words))))
         .collect();
     if !points.is_empty() {
         blocks.push(Block::List(points));
@@ -50,6 +50,12 @@ pub fn section(correction: &Correction) -> Section {
     blocks.push(Block::Table(table(correction)));
     blocks.push(matrices("corrected", "The corrected rod (FEA with the findings).", &correction.after));
     Section::new("The corrected rod", blocks)
+}
+
+/// `stiffness_scale, rod` with the effect's name as words.
+fn spoken(entry: &str) -> String {
+    let (effect, place) = entry.split_once(", ").unwrap_or((entry, ""));
+    [effect.replace('_', " "), place.to_owned()].join(", ").trim_end_matches(", ").to_owned()
 }
 
 /// The diagonals and c_rod by each way.

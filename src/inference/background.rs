@@ -68,6 +68,9 @@ pub(super) struct Folded {
 /// Puts the nominal numbers into the background.
 pub(super) fn folded(evidence: &Evidence) -> Folded {
     let first = evidence.background.ncols();
+    if evidence.nominal.ncols() == 0 {
+        return Folded { evidence: evidence.clone(), basis: DMatrix::zeros(0, 0), first };
+    }
     let eigen = SymmetricEigen::new(transposed_product(&evidence.nominal, &evidence.nominal));
     let largest = eigen.eigenvalues.iter().copied().fold(0.0, f64::max);
     let mut kept: Vec<usize> = (0..eigen.eigenvalues.len())

@@ -17,7 +17,7 @@ use crate::units::{MM, STANDARD_GRAVITY, UM};
 use columns::{LOAD_COLUMNS, OFFSET_COLUMNS, TEXT_COLUMNS, is_one_of};
 use reading::{loads_of, newtons, only_load};
 
-pub use columns::KNOWN_COLUMNS;
+pub use columns::{KNOWN_COLUMNS, LoadColumn};
 pub use reading::{Axis, Direction, Phase, Reading};
 pub use warning::Warning;
 
@@ -31,6 +31,8 @@ pub struct Readings {
     pub file: String,
     /// Where the readings come from: the comment lines above the header, joined.
     pub source: Option<String>,
+    /// The column that the loads stand in.
+    pub load_column: LoadColumn,
     /// The readings in the order of the file; at least one (axis, channel) has two different loads.
     pub rows: Vec<Reading>,
     /// What a user should know about the file although it can be read.
@@ -86,7 +88,13 @@ impl Readings {
             check_numbers(row)?;
         }
         check_loads(FILE, &rows)?;
-        Ok(Readings { file: FILE.into(), source: None, warnings: warning::about_rows(&rows), rows })
+        Ok(Readings {
+            file: FILE.into(),
+            source: None,
+            load_column: LoadColumn::Newtons,
+            warnings: warning::about_rows(&rows),
+            rows,
+        })
     }
 
     /// Reads `text`, the contents of `file`.
@@ -118,6 +126,7 @@ impl Readings {
         Ok(Readings {
             file: file.to_owned(),
             source: comments_above(text),
+            load_column: if table.has("load_kg") { LoadColumn::Kilograms } else { LoadColumn::Newtons },
             warnings: warning::all(&table, &rows),
             rows,
         })

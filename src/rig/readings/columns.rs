@@ -15,6 +15,17 @@ pub const KNOWN_COLUMNS: [&str; 12] = [
     "load_station_mm",
     "read_station_mm",
 ];
+
+/// Which of the two columns held the loads.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum LoadColumn {
+    /// `load_n`.
+    #[default]
+    Newtons,
+    /// `load_kg`.
+    Kilograms,
+}
+
 pub(super) const TEXT_COLUMNS: [&str; 3] = ["axis", "trial", "phase"];
 pub(super) const LOAD_COLUMNS: [&str; 2] = ["load_n", "load_kg"];
 /// By channel: the offset along X, Y and Z.

@@ -23,6 +23,7 @@ mod evidence;
 mod feasible;
 mod limits;
 mod load_history;
+mod mistakes;
 mod next;
 mod nominal;
 mod nonparametric;
@@ -45,6 +46,7 @@ use crate::rig::readings::Readings;
 use crate::rod::Rod;
 pub use correction::Correction;
 pub use datum::Datum;
+pub use mistakes::suspected;
 
 /// The parameter of a joint that may be anywhere.
 const STATION: &str = "station_mm";
@@ -58,11 +60,42 @@ pub type RigDiagnosis = Diagnosed<RigModel>;
 /// # Errors
 /// See [`RigModel::new`].
 pub fn diagnose(readings: &Readings, rod: Option<&Rod>) -> Result<RigDiagnosis> {
-    let (model, evidence, not_testable) = RigModel::with_effects(readings, rod, &|_| true)?;
+    diagnose_among(readings, rod, &[])
+}
+
+/// Diagnoses `readings` as [`diagnose`] does, where they may also be those of one of `others`: rods
+/// with the names of their files, such as all that stand beside the given one.
+///
+/// Mistakes are looked for first. They stand before all other findings, which are those of the corrected readings and the
+/// corrected rod.
+///
+/// # Errors
+/// See [`RigModel::new`].
+pub fn diagnose_among(
+    readings: &Readings,
+    rod: Option<&Rod>,
+    others: &[(String, Rod)],
+) -> Result<RigDiagnosis> {
+    let mended = mistakes::mended(readings, rod, others)?;
+    let (mended_readings, mended_rod) = match mended.has_data {
+        true => (&mended.readings, mended.rod.as_ref()),
+        false => (readings, rod),
+    };
+    let (mut model, evidence, not_testable) = RigModel::with_effects(mended_readings, mended_rod, &|_| true)?;
     let mut diagnosis = infer(&model, &evidence);
-    for k in 0..diagnosis.findings.len() {
-        let next = next::next_measurement(&model, &evidence, &diagnosis, &diagnosis.findings[k])?;
-        diagnosis.findings[k].next = next;
+    if mended.has_data {
+        for k in 0..diagnosis.findings.len() {
+            let next = next::next_measurement(&model, &evidence, &diagnosis, &diagnosis.findings[k])?;
+            diagnosis.findings[k].next = next;
+        }
+    } else {
+        // nothing is left that physics could be seen in
+        diagnosis.findings.clear();
+        diagnosis.discrepancy = None;
+    }
+    if !mended.found.is_empty() {
+        diagnosis.findings.splice(0..0, mended.found);
+        model.as_recorded = Some(Box::new((readings.clone(), rod.cloned())));
     }
     let limits = limits::limits(&model, &evidence);
     Ok(Diagnosed { absorbed: Vec::new(), not_testable, limits, diagnosis, evidence, model })
@@ -73,6 +106,8 @@ pub fn diagnose(readings: &Readings, rod: Option<&Rod>) -> Result<RigDiagnosis> 
 pub struct RigModel {
     readings: Readings,
     rod: Option<Rod>,
+    /// Readings and rod before mistakes were undone, where there were any.
+    as_recorded: Option<Box<(Readings, Option<Rod>)>>,
     data: Vec<Datum>,
     body: Body,
     /// For each datum the pair of stations (with a rod) or the line (without).
@@ -132,6 +167,7 @@ impl RigModel {
         let mut model = RigModel {
             readings: readings.clone(),
             rod: rod.cloned(),
+            as_recorded: None,
             data,
             body,
             place,
@@ -176,14 +212,24 @@ impl RigModel {
         &self.data
     }
 
-    /// The readings.
+    /// The readings, without the mistakes that were found.
     pub fn readings(&self) -> &Readings {
         &self.readings
     }
 
-    /// The rod, where there is one.
+    /// The rod, where there is one, without the mistakes that were found.
     pub fn rod(&self) -> Option<&Rod> {
         self.rod.as_ref()
+    }
+
+    /// The readings as they were given, mistakes included.
+    pub fn recorded(&self) -> &Readings {
+        self.as_recorded.as_ref().map_or(&self.readings, |given| &given.0)
+    }
+
+    /// The rod as its file gives it, mistakes included.
+    pub fn rod_of_file(&self) -> Option<&Rod> {
+        self.as_recorded.as_ref().map_or(self.rod.as_ref(), |given| given.1.as_ref())
     }
 
     /// Fills in the effects and their nonparametric rivals, without what can do nothing to these

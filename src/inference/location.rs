@@ -32,6 +32,8 @@ pub enum Location {
     },
     /// A joint of the rod, a clamp, a socket: what the user's file names.
     Named(String),
+    /// Columns, keys, axes or files as the user's files name them: `dy_um and dz_um`.
+    Key(String),
     /// A place along the rod without a name, m from the flange.
     Station(f64),
     /// A sensor.
@@ -196,7 +198,7 @@ impl fmt::Display for Location {
             Location::Part(part) => write!(f, "{part}"),
             Location::UnderLoads { part, axis } => write!(f, "{part}, loads along {axis}"),
             Location::Form { part, form } => write!(f, "{part}, {form}"),
-            Location::Named(name) => f.write_str(name),
+            Location::Named(name) | Location::Key(name) => f.write_str(name),
             Location::Station(station) => write!(f, "station {:.1} mm", station / MM),
             Location::Channel { channel, form: None } => write!(f, "d{channel}"),
             Location::Channel { channel, form: Some(form) } => write!(f, "d{channel}, {form}"),

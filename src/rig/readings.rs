@@ -19,7 +19,7 @@ use crate::units::{MM, STANDARD_GRAVITY, UM};
 use columns::{LOAD_COLUMNS, OFFSET_COLUMNS, TEXT_COLUMNS, is_one_of};
 use reading::{loads_of, newtons, only_load};
 
-pub use columns::KNOWN_COLUMNS;
+pub use columns::{KNOWN_COLUMNS, LoadColumn};
 pub use header::{Driven, RigHeader};
 pub use instant::Instant;
 pub use reading::{Axis, Direction, Phase, Reading};
@@ -38,6 +38,8 @@ pub struct Readings {
     pub source: Option<String>,
     /// What the comment lines above the header say of the rig.
     pub header: RigHeader,
+    /// The column that the loads stand in.
+    pub load_column: LoadColumn,
     /// The readings in the order of the file; at least one (axis, channel) has two different loads.
     pub rows: Vec<Reading>,
     /// What a user should know about the file although it can be read.
@@ -97,6 +99,7 @@ impl Readings {
             file: FILE.into(),
             source: None,
             header: RigHeader::default(),
+            load_column: LoadColumn::Newtons,
             warnings: warning::about_rows(&rows),
             rows,
         })
@@ -140,7 +143,8 @@ impl Readings {
         let (header, source, misspelt) = header::read(file, text, table.dialect())?;
         let mut warnings = warning::all(&table, &rows);
         warnings.extend(misspelt);
-        Ok(Readings { file: file.to_owned(), source, header, warnings, rows })
+        let load_column = if table.has("load_kg") { LoadColumn::Kilograms } else { LoadColumn::Newtons };
+        Ok(Readings { file: file.to_owned(), source, header, load_column, warnings, rows })
     }
 }
 

@@ -7,7 +7,7 @@ use super::{Body, RigDiagnosis, RigModel};
 use crate::beam::Physics;
 use crate::compliance::{Compliance, DEFAULT_ELEMENTS};
 use crate::error::Result;
-use crate::inference::{Finding, ForwardModel, Location, Term, WrittenTo};
+use crate::inference::{Finding, ForwardModel, Kind, Location, Term, WrittenTo};
 use crate::rig::{self, readings::Readings};
 use crate::rod::{BendFlexibility, Joint, Rod};
 use crate::units::UM;
@@ -31,6 +31,8 @@ pub struct Correction {
     /// r_rod of the readings as they are, by Eq 21, with what the paper's rule makes of it: C^g = r_rod × FEA. `None` where
     /// the readings give no such number.
     pub by_ratio: Option<(f64, Compliance)>,
+    /// Mistakes that were undone in the readings or in the rod's file: what was wrong, with the correction.
+    pub undone: Vec<String>,
     /// What was entered into the rod, in words.
     pub entered: Vec<String>,
     /// Findings that are the rig's: taken out of the readings, not entered into the rod.
@@ -58,6 +60,9 @@ impl RigDiagnosis {
 fn corrected(model: &RigModel, rod: &Rod, findings: &[Finding]) -> Result<Correction> {
     let readings = model.readings();
     let mut corrected = rod.clone();
+    let is_mistake = |finding: &&Finding| finding.kind() == Kind::Mistake;
+    let undone: Vec<String> =
+        findings.iter().filter(is_mistake).map(|finding| finding.description.observed.clone()).collect();
     let (mut entered, mut removed, mut left_out) = (Vec::new(), Vec::new(), Vec::new());
     let (mut all, mut of_rod) = (Vec::new(), Vec::new());
     for part in findings.iter().flat_map(|finding| &finding.parts) {
@@ -75,11 +80,13 @@ fn corrected(model: &RigModel, rod: &Rod, findings: &[Finding]) -> Result<Correc
         }
     }
     let provenance = format!("Rod {} with what its rig readings ({}) show", rod.name, readings.file);
-    let rod_toml = corrected.to_toml(&[
-        provenance + ":",
+    let mut above = vec![provenance + ":"];
+    above.extend(undone.iter().map(|mistake| format!("{mistake} (done)")));
+    above.extend([
         if entered.is_empty() { "no finding belongs to the rod".into() } else { entered.join("; ") },
         "Moduli are effective values: with them the beam model is as stiff as the rod was.".into(),
     ]);
+    let rod_toml = corrected.to_toml(&above);
     // what a user will get from the file
     let corrected = Rod::from_toml(&rod.name, &rod_toml)?;
     let physics = Physics::default();
@@ -87,16 +94,24 @@ fn corrected(model: &RigModel, rod: &Rod, findings: &[Finding]) -> Result<Correc
     let by_ratio = fit.and_then(|fit| fit.measured).map(|m| (m.rod_ratio.value, m.compliance));
     let of_rig = model.response(&all) - model.response(&of_rod);
     Ok(Correction {
-        readings_csv: without(readings, model, &of_rig, &removed, &left_out),
-        before: Compliance::of_model(rod, &physics, DEFAULT_ELEMENTS)?,
+        readings_csv: without(readings, model, &of_rig, [&undone, &removed, &left_out]),
+        before: of_file(model, rod, &physics)?,
         after: Compliance::of_model(&corrected, &physics, DEFAULT_ELEMENTS)?,
         rod: corrected,
         rod_toml,
         by_ratio,
+        undone,
         entered,
         removed,
         left_out,
     })
+}
+
+/// Compliance of the rod as its file gave it; of the one that was meant where a mistake made it a rod that
+/// cannot be computed.
+fn of_file(model: &RigModel, meant: &Rod, physics: &Physics) -> Result<Compliance> {
+    let of_file = Compliance::of_model(model.rod_of_file().unwrap_or(meant), physics, DEFAULT_ELEMENTS);
+    of_file.or_else(|_| Compliance::of_model(meant, physics, DEFAULT_ELEMENTS))
 }
 
 /// Puts an effect of the structure into the rod.
@@ -150,8 +165,7 @@ fn without(
     readings: &Readings,
     model: &RigModel,
     of_rig: &DVector<f64>,
-    removed: &[String],
-    left_out: &[String],
+    [undone, removed, left_out]: [&[String]; 3],
 ) -> String {
     let mut readings = readings.clone();
     for (datum, change) in model.data().iter().zip(of_rig.iter()) {
@@ -170,6 +184,7 @@ fn without(
             "CORRECTED, not as recorded: the readings of {} without the effects of a diagnosis",
             readings.file
         ),
+        of("Mistakes undone", undone),
         of("Removed, effects of the rig", removed),
         of("Removed, so that the compliance at small loads directly after loading remains", left_out),
     ];

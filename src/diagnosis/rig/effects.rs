@@ -12,6 +12,7 @@
 pub(super) mod events;
 pub(super) mod history;
 pub(super) mod load;
+pub mod mistakes;
 mod places;
 pub mod registry;
 pub(super) mod sensor;

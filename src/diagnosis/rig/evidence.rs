@@ -107,7 +107,7 @@ fn level(data: &[Datum], datum: &Datum) -> usize {
 }
 
 /// The step that all offsets are multiples of, m: 10, 5, 2, 1, 0.5 µm and so on; 0 where they show none.
-fn resolution(data: &[Datum]) -> f64 {
+pub(super) fn resolution(data: &[Datum]) -> f64 {
     const COARSEST: i32 = 1;
     const FINEST: i32 = -6;
     /// The file's decimals are not exact in binary, and the more steps the less so.

@@ -14,6 +14,7 @@ pub fn place(location: &Location) -> Value {
         }
         Location::Form { part, form } => json!({ "part": part.to_string(), "form": form }),
         Location::Named(name) => json!({ "name": name }),
+        Location::Key(key) => json!({ "key": key }),
         Location::Station(station) => json!({ "station_mm": station / MM }),
         Location::Channel { channel, form } => {
             json!({ "channel": format!("d{channel}"), "form": form })

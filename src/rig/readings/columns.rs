@@ -18,6 +18,17 @@ pub const KNOWN_COLUMNS: [&str; 14] = [
     "loaded_at_s",
 ];
 pub(super) const TEXT_COLUMNS: [&str; 4] = ["axis", "trial", "phase", "session"];
+
+/// Which of the two columns held the loads.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum LoadColumn {
+    /// `load_n`.
+    #[default]
+    Newtons,
+    /// `load_kg`.
+    Kilograms,
+}
+
 pub(super) const LOAD_COLUMNS: [&str; 2] = ["load_n", "load_kg"];
 /// By channel: the offset along X, Y and Z.
 pub(super) const OFFSET_COLUMNS: [&str; 3] = ["dx_um", "dy_um", "dz_um"];

@@ -11,7 +11,7 @@ type Column<'a> = (&'a str, &'a dyn Fn(&Reading) -> Option<String>);
 impl Readings {
     /// These readings as a table, the format of [`Readings::from_text`], below `above`, lines of
     /// comments, and what the header says of the rig where it is not the default. Loads are in N;
-    /// columns that no row fills are left out.
+    /// columns that no row fills are left out, and so are rows without an offset.
     ///
     /// ```
     /// use rodcal::prelude::*;
@@ -48,7 +48,7 @@ impl Readings {
         let mut text = comments(above) + &comments(&self.header.lines());
         let line = |cells: Vec<String>| cells.join(",") + "\n";
         text += &line(filled.iter().map(|(name, _)| (*name).to_owned()).collect());
-        for row in &self.rows {
+        for row in self.rows.iter().filter(|row| row.offset.iter().any(Option::is_some)) {
             text += &line(filled.iter().map(|(_, cell_of)| cell_of(row).unwrap_or_default()).collect());
         }
         text

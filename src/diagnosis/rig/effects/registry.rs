@@ -1,6 +1,7 @@
 //! All effects of a rig, in the order of preference among equals: the single source of names.
 
-use super::{RigEffect, events, history, load, sensor, structure};
+use super::{RigEffect, events, history, load, mistakes, sensor, structure};
+use crate::inference::Effect;
 
 /// Every effect that the diagnosis of a rig knows.
 pub static ALL: [&RigEffect; 16] = [
@@ -20,4 +21,16 @@ pub static ALL: [&RigEffect; 16] = [
     &history::HYSTERESIS,
     &sensor::THERMAL_DRIFT,
     &events::SLIP,
+];
+
+/// Every mistake that the diagnosis of a rig knows. They are no terms of a model: they are undone
+/// before there is one.
+pub static MISTAKES: [&Effect; 7] = [
+    &mistakes::UNIT_MISTAKE,
+    &mistakes::SIGN_MISTAKE,
+    &mistakes::SWAP_MISTAKE,
+    &mistakes::OFFSET_MISTAKE,
+    &mistakes::ROD_MISTAKE,
+    &mistakes::STUCK_SENSOR,
+    &mistakes::SATURATED_SENSOR,
 ];

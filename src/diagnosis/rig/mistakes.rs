@@ -1,0 +1,308 @@
+//! Mistakes before physics: units, signs, names, zeros, sensors, files.
+//!
+//! They are discrete, few and of enormous evidence, so they are undone before there is a model. Three steps:
+//!
+//! 1. readings that no load could give: channels that are stuck or cut off, runs whose sign is the other way (`sensors.rs`,
+//!    `groups.rs`); a line of readings tells these by itself;
+//! 2. the slopes of all lines against the rod (`lines.rs`, `physics.rs`): where what is left is more than ordinary physics
+//!    leaves, some hundred hypotheses (`moves.rs`, `rods.rs`), each a [`change::Change`] of readings and rod, compete with
+//!    each other and with all that physics may add (`search.rs`);
+//! 3. zeros that were not taken, on the corrected lines (`groups.rs`).
+//!
+//! A mistake is named where what it acts on is more than 22 % (rms) off without it and plausible with it, at odds of 1000
+//! against everything else. Physics may stand beside: a unit counts where what remains is a factor of 0.8 to 1.25.
+
+mod change;
+mod groups;
+mod lines;
+mod moves;
+mod part;
+mod physics;
+mod rods;
+mod search;
+mod sensors;
+#[cfg(test)]
+mod tests;
+
+use nalgebra::{DMatrix, DVector};
+
+use self::change::Move;
+use self::lines::{Line, lines};
+use self::moves::Labels;
+use self::part::Part;
+use self::physics::Physics;
+use self::rods::Body;
+use self::search::{Found, Search, Trial};
+use self::sensors::Expected;
+use super::datum;
+use super::structure::check_stations;
+use crate::error::Result;
+use crate::inference::{Description, Effect, Estimate, Finding, Hypothesis, Location, Rival, Term};
+use crate::rig::readings::Readings;
+use crate::rod::Rod;
+use crate::units::significant;
+
+/// So many lines are enough.
+const MOST_LINES: usize = 45;
+
+/// Readings and a rod without the mistakes that were found in them.
+#[derive(Debug, Clone)]
+pub(super) struct Mended {
+    /// The mistakes, complete in themselves.
+    pub found: Vec<Finding>,
+    pub readings: Readings,
+    pub rod: Option<Rod>,
+    /// For each of them one line: what it looks like.
+    pub suspicions: Vec<String>,
+    /// False where nothing that could be compared is left of the readings.
+    pub has_data: bool,
+}
+
+/// One line for each mistake that `readings` seem to hold, for those who do not ask for a diagnosis: `load_n looks like
+/// kilograms: the rod seems 9.8 times softer than its file; rodcal diagnose rig says more`.
+///
+/// # Errors
+/// What the beam model refuses of the rod.
+pub fn suspected(readings: &Readings, rod: Option<&Rod>) -> Result<Vec<String>> {
+    Ok(mended(readings, rod, &[])?.suspicions)
+}
+
+/// Readings and rod without mistakes; `others` are rods that may have been meant, by their files.
+pub(super) fn mended(readings: &Readings, rod: Option<&Rod>, others: &[(String, Rod)]) -> Result<Mended> {
+    let mut mended = Mended {
+        found: Vec::new(),
+        readings: readings.clone(),
+        rod: rod.cloned(),
+        suspicions: Vec::new(),
+        has_data: true,
+    };
+    mended.sensors()?;
+    if mended.has_data {
+        mended.labels(others)?;
+        mended.zeros();
+    }
+    mended.has_data = mended.has_data && has_slope(&mended.readings);
+    mended.found.sort_by(|a, b| b.explains.total_cmp(&a.explains));
+    Ok(mended)
+}
+
+fn has_slope(readings: &Readings) -> bool {
+    lines(&datum::all(&readings.rows), |_| true).iter().any(|line| line.has_slope)
+}
+
+impl Mended {
+    /// Sensors that are stuck or cut off, and signs of single runs.
+    fn sensors(&mut self) -> Result<()> {
+        // a limit first: what stays at it looks frozen, and what is frozen for long looks stuck
+        for kind in 0..3 {
+            let data = datum::all(&self.readings.rows);
+            let all = lines(&data, |_| true);
+            let parts = match kind {
+                0 => sensors::saturated(&data),
+                1 => sensors::frozen(&data),
+                _ => sensors::stuck(&data, &all, self.expected(&all)?.as_ref()),
+            };
+            for part in parts {
+                for &i in &part.data {
+                    self.readings.rows[data[i].row - 1].offset[data[i].channel.index()] = None;
+                }
+                self.add_part(part);
+            }
+        }
+        if !has_slope(&self.readings) {
+            self.has_data = false;
+            return Ok(());
+        }
+        let data = datum::all(&self.readings.rows);
+        let all = lines(&data, |_| true);
+        let expected = self.expected(&all)?;
+        for part in groups::flipped(&data, &all, expected.as_ref().map(|of| &of.slopes[..])) {
+            for &i in &part.data {
+                let offset = &mut self.readings.rows[data[i].row - 1].offset[data[i].channel.index()];
+                *offset = offset.map(|offset| -offset);
+            }
+            self.add_part(part);
+        }
+        Ok(())
+    }
+
+    /// The slope of each line by the rod, in the scale that most lines have.
+    fn expected(&self, lines: &[Line]) -> Result<Option<Expected>> {
+        let Some(rod) = &self.rod else { return Ok(None) };
+        let (pairs, pair) = pairs(lines);
+        let physics = Physics::new(rod, &pairs)?;
+        let of = |(line, &pair): (&Line, &usize)| {
+            physics.compliance(pair)[(line.channel.index(), line.axis.index())]
+        };
+        let expected: Vec<f64> = lines.iter().zip(&pair).map(of).collect();
+        let most = lines.iter().zip(&expected).map(|(l, e)| e.abs() * l.largest_load).fold(0.0, f64::max);
+        let mut scales: Vec<f64> = Vec::new();
+        for (line, expected) in lines.iter().zip(&expected) {
+            let is_shown = line.fit.slope.abs() > 10.0 * line.fit.error;
+            if is_shown && expected.abs() * line.largest_load > 0.05 * most {
+                scales.push((line.fit.slope / expected).abs());
+            }
+        }
+        let scale = crate::statistics::median(&scales).unwrap_or(1.0);
+        Ok(Some(Expected { slopes: expected.into_iter().map(|slope| slope * scale).collect(), scale }))
+    }
+
+    /// Units, signs and names of columns and keys, and other rods.
+    fn labels(&mut self, others: &[(String, Rod)]) -> Result<()> {
+        let Some(rod) = self.rod.clone() else { return Ok(()) };
+        let data = datum::all(&self.readings.rows);
+        let mut all = lines(&data, |_| true);
+        all.retain(|line| line.fit.error.is_finite());
+        if all.len() > MOST_LINES {
+            let shown = |line: &Line| line.fit.slope.abs() * line.largest_load;
+            all.sort_by(|a, b| shown(b).total_cmp(&shown(a)));
+            all.truncate(MOST_LINES);
+        }
+        let (pairs, pair) = pairs(&all);
+        let base = Physics::new(&rod, &pairs)?;
+        let is_possible = check_stations(&self.readings, &rod).is_ok();
+        let search = Search { lines: &all, pair: &pair, pairs: &pairs, base: &base, is_possible };
+        if all.is_empty() || !search.is_implausible() {
+            return Ok(());
+        }
+        let has = |k: usize| pairs.iter().any(|pair| pair[k].is_some());
+        let (bodies, keys): (Vec<Body>, Vec<Move>) =
+            rods::all(&rod, others, [has(0), has(1)]).into_iter().unzip();
+        let mut moves = moves::all(&Labels::of(&all, self.readings.load_column));
+        moves.extend(keys);
+        let physics = search::physics(&bodies, search.pairs);
+        let trial = Trial { search, moves: &moves, bodies: &physics };
+        let Some((state, found)) = trial.found() else { return Ok(()) };
+        for one in found {
+            self.add_move(&moves, &one);
+        }
+        if state.change.body > 0 {
+            let body = &bodies[state.change.body - 1];
+            for row in &mut self.readings.rows {
+                row.load_station = row.load_station.map(|s| s * body.stations[0]);
+                row.read_station = row.read_station.map(|s| s * body.stations[1]);
+            }
+            self.rod = Some(body.rod.clone());
+        }
+        state.change.undo(&mut self.readings);
+        Ok(())
+    }
+
+    /// Zeros that were not taken.
+    fn zeros(&mut self) {
+        if self.rod.is_none() {
+            return;
+        }
+        let data = datum::all(&self.readings.rows);
+        for part in groups::offsets(&data, &lines(&data, |_| true)) {
+            let zero = part.estimates.first().map_or(0.0, |estimate| estimate.value);
+            for &i in &part.data {
+                let offset = &mut self.readings.rows[data[i].row - 1].offset[data[i].channel.index()];
+                *offset = offset.map(|offset| offset - zero);
+            }
+            self.add_part(part);
+        }
+    }
+
+    fn add_part(&mut self, part: Part) {
+        self.suspicions.push(format!("{}; `rodcal diagnose rig` says more.", part.looks_like));
+        let rivals = part.rivals.into_iter().map(|(effect, at)| rival(effect, at, 1.0)).collect();
+        self.found.push(finding(
+            part.effect,
+            part.location,
+            part.estimates,
+            part.observed,
+            rivals,
+            0.0,
+            part.explains,
+        ));
+    }
+
+    fn add_move(&mut self, moves: &[Move], found: &Found) {
+        let own = &moves[found.number];
+        let times = found.log_scale_before.abs().exp();
+        let softer = if found.log_scale_before > 0.0 { "softer" } else { "stiffer" };
+        let why = match times > 2.0 && own.effect.name == "unit_mistake" {
+            true => format!(": the rod seems {} times {softer} than its file", significant(times, 2)),
+            false => String::new(),
+        };
+        self.suspicions.push(format!("{}{why}; `rodcal diagnose rig` says more.", own.looks_like));
+        let mut rivals: Vec<Rival> = Vec::new();
+        for &(number, odds) in &found.rivals {
+            let other = &moves[number];
+            let location = Location::Key(other.location.clone());
+            let is_known =
+                rivals.iter().any(|known| known.effect == other.effect && known.location == location);
+            if !is_known && (other.effect, &other.location) != (own.effect, &own.location) {
+                rivals.push(rival(other.effect, other.location.clone(), odds.max(1.0)));
+            }
+        }
+        let p_value = (-found.log_odds).exp();
+        self.found.push(finding(
+            own.effect,
+            own.location.clone(),
+            own.estimates.clone(),
+            own.observed.clone(),
+            rivals,
+            p_value,
+            found.explains,
+        ));
+    }
+}
+
+/// The pairs of stations of lines, and for each line its own.
+fn pairs(lines: &[Line]) -> (Vec<[Option<f64>; 2]>, Vec<usize>) {
+    let pair =
+        datum::numbered(lines.iter().map(|line| line.stations.map(|station| station.map(f64::to_bits))));
+    let mut pairs = Vec::new();
+    for (line, &number) in lines.iter().zip(&pair) {
+        if number == pairs.len() {
+            pairs.push(line.stations);
+        }
+    }
+    (pairs, pair)
+}
+
+/// A finding without terms: nothing of it is left in the model.
+fn finding(
+    effect: &'static Effect,
+    location: String,
+    estimates: Vec<Estimate>,
+    observed: String,
+    rivals: Vec<Rival>,
+    p_value: f64,
+    explains: f64,
+) -> Finding {
+    Finding {
+        effect,
+        location: Location::Key(location),
+        estimates,
+        description: Description { observed, cause: effect.cause.to_owned() },
+        rivals,
+        p_value,
+        explains,
+        found_in_folds: None,
+        held_out_loss: None,
+        next: None,
+        parts: Vec::new(),
+    }
+}
+
+/// What explains as much; it has no term either.
+fn rival(effect: &'static Effect, location: String, odds: f64) -> Rival {
+    Rival {
+        effect,
+        location: Location::Key(location),
+        term: Term { candidate: usize::MAX, values: Vec::new() },
+        hypothesis: Hypothesis {
+            terms: Vec::new(),
+            log_probability: -odds.ln(),
+            sigma: 0.0,
+            covariance: DMatrix::zeros(0, 0),
+            background: DVector::zeros(0),
+            background_covariance: DMatrix::zeros(0, 0),
+            determined: 0.0,
+        },
+        odds,
+    }
+}

@@ -1,0 +1,287 @@
+//! Mistakes in whole runs or directions: a sign that was lost, a zero that was not taken.
+
+use super::super::datum::Datum;
+use super::super::effects::mistakes::{OFFSET_MISTAKE, SIGN_MISTAKE};
+use super::lines::{Fit, Line, fit};
+use super::moves::column;
+use super::part::Part;
+use crate::inference::{Estimate, Quantity};
+use crate::spatial::Axis;
+use crate::statistics::median;
+use crate::units::UM;
+
+/// A flipped group has the slope of the others, within this share.
+const ALIKE: f64 = 0.3;
+/// And leaves at most this share of the squares.
+const LEFT: f64 = 0.03;
+/// What the rod moves under a group, in scatters.
+const TIMES_SCATTER: f64 = 20.0;
+/// A zero that no play and no friction explains, as a share of the rod's deflection along the axis.
+const FAR: f64 = 0.3;
+/// One of a run.
+const FAR_FOR_A_RUN: f64 = 1.0;
+/// One that a play could be.
+const FAR_FOR_PLAY: f64 = 3.0;
+/// How constant such a zero is.
+const CONSTANT: f64 = 0.15;
+
+/// Some data of a line.
+struct Group {
+    data: Vec<usize>,
+    fit: Fit,
+    has_slope: bool,
+}
+
+fn group(data: &[Datum], of: Vec<usize>) -> Group {
+    let points: Vec<(f64, f64)> = of.iter().map(|&i| (data[i].signed_load(), data[i].measured)).collect();
+    let largest = points.iter().fold(0.0, |most: f64, (x, _)| most.max(x.abs()));
+    let has_slope = of.len() >= 3 && points.iter().any(|(x, _)| (x - points[0].0).abs() > 0.2 * largest);
+    Group { fit: fit(&points), data: of, has_slope }
+}
+
+fn split(data: &[Datum], line: &Line, key: impl Fn(&Datum) -> i64) -> Vec<(i64, Group)> {
+    let mut keys: Vec<i64> = line.data.iter().map(|&i| key(&data[i])).collect();
+    keys.sort_unstable();
+    keys.dedup();
+    let of = |&own: &i64| {
+        (own, group(data, line.data.iter().copied().filter(|&i| key(&data[i]) == own).collect()))
+    };
+    keys.iter().map(of).collect()
+}
+
+/// True where the data of a group follow −`slope` instead of `slope`.
+fn is_flipped(data: &[Datum], group: &Group, slope: f64, scatter: f64) -> bool {
+    let loads: Vec<f64> = group.data.iter().map(|&i| data[i].signed_load()).collect();
+    let mean = loads.iter().sum::<f64>() / loads.len() as f64;
+    let all: f64 = loads.iter().map(|x| (slope * (x - mean)).powi(2)).sum();
+    let off: Vec<f64> = group.data.iter().zip(&loads).map(|(&i, x)| data[i].measured + slope * x).collect();
+    let zero = off.iter().sum::<f64>() / off.len() as f64;
+    let left: f64 = off.iter().map(|r| (r - zero).powi(2)).sum();
+    group.has_slope
+        && (group.fit.slope / slope + 1.0).abs() < ALIKE
+        && left < LEFT * all
+        && (all / loads.len() as f64).sqrt() > 0.25 * TIMES_SCATTER * scatter
+}
+
+/// Runs, or directions, of a channel whose sign is the other way than that of the rest; `expected` is the slope of each
+/// line by the rod, in the scale of the readings, where there is one.
+pub(super) fn flipped(data: &[Datum], lines: &[Line], expected: Option<&[f64]>) -> Vec<Part> {
+    let mut found: Vec<Part> = Vec::new();
+    for (k, line) in lines.iter().enumerate() {
+        let hint = expected.map(|of| of[k]);
+        let Some((flipped, place)) =
+            flipped_runs(data, line, hint).or_else(|| flipped_direction(data, line, hint))
+        else {
+            continue;
+        };
+        let name = column(line.channel);
+        let explains = line.fit.slope.abs().max(hint.unwrap_or(0.0).abs()) * line.largest_load;
+        match found.iter_mut().find(|part| part.rivals[0].1 == place) {
+            // the other channels of the same rows: their direction is the likelier cause
+            Some(part) => {
+                part.data.extend(flipped);
+                part.location =
+                    format!("{}, {place}", part.location.split(", axis").next().unwrap_or_default());
+                part.location =
+                    part.location.replacen(&format!(", {place}"), &format!(", {name}, {place}"), 1);
+                part.observed = words(&part.location);
+            }
+            None => {
+                let location = format!("{name}, {place}");
+                found.push(Part {
+                    effect: &SIGN_MISTAKE,
+                    observed: words(&location),
+                    looks_like: format!("{location}: the sign looks wrong"),
+                    location,
+                    estimates: Vec::new(),
+                    explains,
+                    data: flipped,
+                    rivals: vec![(&SIGN_MISTAKE, place)],
+                });
+            }
+        }
+    }
+    found
+}
+
+fn words(location: &str) -> String {
+    format!(
+        "The sign is wrong in some rows ({location}): multiply these readings by −1 (or turn their direction in the column axis round)"
+    )
+}
+
+/// Fewer runs than the others.
+fn flipped_runs(data: &[Datum], line: &Line, hint: Option<f64>) -> Option<(Vec<usize>, String)> {
+    let groups = split(data, line, |d| d.run as i64);
+    let usable: Vec<&(i64, Group)> = groups.iter().filter(|(_, group)| group.has_slope).collect();
+    let against = usable.iter().filter(|(_, group)| group.fit.slope < 0.0).count();
+    let with = usable.len() - against;
+    // a minority; where they are as many, the rod knows
+    let sign = match (against.cmp(&with), hint) {
+        (std::cmp::Ordering::Less, _) => 1.0,
+        (std::cmp::Ordering::Greater, _) => -1.0,
+        (_, Some(hint)) => hint.signum(),
+        _ => return None,
+    };
+    let right: Vec<f64> =
+        usable.iter().map(|(_, g)| g.fit.slope).filter(|slope| slope * sign > 0.0).collect();
+    let slope = median(&right)?;
+    let scatter = median(&usable.iter().map(|(_, g)| g.fit.scatter).collect::<Vec<_>>())?;
+    if right.iter().any(|other| (other / slope - 1.0).abs() > ALIKE) {
+        return None;
+    }
+    let wrong: Vec<&&(i64, Group)> =
+        usable.iter().filter(|(_, group)| group.fit.slope * sign < 0.0).collect();
+    if wrong.is_empty() || !wrong.iter().all(|(_, group)| is_flipped(data, group, slope, scatter)) {
+        return None;
+    }
+    let flipped: Vec<usize> = wrong.iter().flat_map(|(_, group)| group.data.clone()).collect();
+    let mut trials: Vec<&str> = flipped.iter().filter_map(|&i| data[i].trial.as_deref()).collect();
+    trials.dedup();
+    let rows = flipped.iter().map(|&i| data[i].row);
+    let rows = (rows.clone().min()?, rows.max()?);
+    let place = match trials.is_empty() {
+        false => format!("axis {}, trial {}", line.axis, trials.join(" and ")),
+        true => format!("axis {}, rows {} to {}", line.axis, rows.0, rows.1),
+    };
+    Some((flipped, place))
+}
+
+/// The loads of one direction, where those of the other are right.
+fn flipped_direction(data: &[Datum], line: &Line, hint: Option<f64>) -> Option<(Vec<usize>, String)> {
+    let groups = split(data, line, |d| i64::from(d.direction.sign));
+    let [(_, minus), (_, plus)] = &groups[..] else { return None };
+    // the other way round by the rod; without one the smaller group, else the negative one
+    let is_plus_wrong = match hint {
+        Some(hint) => plus.fit.slope * hint < 0.0,
+        None => minus.data.len() > plus.data.len(),
+    };
+    let (wrong, right, name) = match is_plus_wrong {
+        true => (plus, minus, format!("{}", line.axis)),
+        false => (minus, plus, format!("-{}", line.axis)),
+    };
+    let is_it = right.has_slope
+        && hint.is_none_or(|hint| right.fit.slope * hint > 0.0)
+        && is_flipped(data, wrong, right.fit.slope, right.fit.scatter);
+    is_it.then(|| (wrong.data.clone(), format!("axis {name}")))
+}
+
+/// Zeros of channels and of runs that were not taken. The lines are right otherwise.
+pub(super) fn offsets(data: &[Datum], lines: &[Line]) -> Vec<Part> {
+    let moved = |axis: Axis| {
+        let of_axis = lines.iter().filter(|line| line.axis == axis);
+        of_axis.map(|line| line.fit.slope.abs() * line.largest_load).fold(0.0, f64::max)
+    };
+    let most = Axis::ALL.into_iter().map(moved).fold(0.0, f64::max);
+    let mut found = Vec::new();
+    for channel in Axis::ALL {
+        let own: Vec<&Line> = lines.iter().filter(|line| line.channel == channel).collect();
+        found.extend(of_channel(data, &own, channel, most));
+        if found.last().is_some_and(|part: &Part| part.location == column(channel)) {
+            continue;
+        }
+        for line in own {
+            found.extend(of_run(data, line, moved(line.axis)));
+        }
+    }
+    found
+}
+
+/// What a datum is off its line through the origin, m.
+fn off(data: &[Datum], line: &Line, i: usize) -> f64 {
+    data[i].measured - line.fit.slope * data[i].signed_load()
+}
+
+fn of_channel(data: &[Datum], lines: &[&Line], channel: Axis, most: f64) -> Option<Part> {
+    let zeros: Vec<(usize, f64)> =
+        lines.iter().flat_map(|line| line.data.iter().map(|&i| (i, off(data, line, i)))).collect();
+    let values: Vec<f64> = zeros.iter().map(|(_, zero)| *zero).collect();
+    let zero = median(&values)?;
+    let scatter = spread(&values, zero)?;
+    // play and friction depend on the direction, and on the axis
+    let is_of = |is_of: &dyn Fn(&Datum) -> bool| zeros.iter().any(|(i, _)| is_of(&data[*i]));
+    let is_independent = is_of(&|d| d.direction.axis != channel)
+        || is_of(&|d| d.load == 0.0)
+        || (is_of(&|d| d.direction.sign > 0) && is_of(&|d| d.direction.sign < 0));
+    let least = if is_independent { FAR } else { FAR_FOR_PLAY };
+    let near = values.iter().filter(|value| (*value - zero).abs() < 2.0 * CONSTANT * zero.abs()).count();
+    if zero.abs() < least * most || scatter > CONSTANT * zero.abs() || near * 10 < values.len() * 9 {
+        return None;
+    }
+    let data = zeros.iter().map(|(i, _)| *i).collect();
+    Some(part(column(channel), zero, scatter / (values.len() as f64).sqrt(), data))
+}
+
+fn spread(values: &[f64], about: f64) -> Option<f64> {
+    Some(1.4826 * median(&values.iter().map(|value| (value - about).abs()).collect::<Vec<_>>())?)
+}
+
+fn part(location: String, zero: f64, error: f64, data: Vec<usize>) -> Part {
+    let estimate = Estimate {
+        name: "um".into(),
+        unit: UM,
+        value: zero,
+        low: zero - 2.0 * error,
+        high: zero + 2.0 * error,
+    };
+    let said: Quantity = estimate.quantity();
+    Part {
+        effect: &OFFSET_MISTAKE,
+        observed: format!(
+            "A zero was not taken ({location}): subtract {} from these readings",
+            said.say("µm")
+        ),
+        looks_like: format!("{location}: a zero looks not taken"),
+        location,
+        explains: zero.abs(),
+        estimates: vec![estimate],
+        data,
+        rivals: Vec::new(),
+    }
+}
+
+/// Runs that start elsewhere than most runs of their line; what stays until the end has slipped.
+fn of_run(data: &[Datum], line: &Line, moved: f64) -> Vec<Part> {
+    let runs = split(data, line, |d| d.run as i64);
+    if runs.len() < 3 {
+        return Vec::new();
+    }
+    let zero_of = |group: &Group| {
+        // play and friction change sides with the load
+        let play = |i: usize| line.fit.play * f64::from(data[i].direction.sign);
+        let values: Vec<f64> = group.data.iter().map(|&i| off(data, line, i) - play(i)).collect();
+        let zero = median(&values)?;
+        let most = values.iter().fold(0.0, |most: f64, v| most.max((v - zero).abs()));
+        Some((zero, spread(&values, zero)?, most))
+    };
+    let Some(zeros) = runs.iter().map(|(_, group)| zero_of(group)).collect::<Option<Vec<_>>>() else {
+        return Vec::new();
+    };
+    let Some(usual) = median(&zeros.iter().map(|(zero, ..)| *zero).collect::<Vec<_>>()) else {
+        return Vec::new();
+    };
+    let is_far = |k: usize| (zeros[k].0 - usual).abs() > FAR_FOR_A_RUN * moved && moved > 0.0;
+    let far: Vec<usize> = (0..runs.len()).filter(|&k| is_far(k)).collect();
+    let stays = far.len() > 1 && far.iter().enumerate().all(|(n, &k)| k == runs.len() - far.len() + n);
+    if far.len() * 3 > runs.len() || stays {
+        return Vec::new();
+    }
+    let mut found = Vec::new();
+    for k in far {
+        let (zero, scatter, most) = zeros[k];
+        let group = &runs[k].1;
+        let distance = zero - usual;
+        if most > 2.0 * CONSTANT * distance.abs() || group.data.len() < 2 {
+            continue;
+        }
+        let first = &data[group.data[0]];
+        let rows = (first.row, group.data.last().map_or(first.row, |&i| data[i].row));
+        let name = column(line.channel);
+        let location = match &first.trial {
+            Some(trial) => format!("{name}, axis {}, trial {trial}", line.axis),
+            None => format!("{name}, axis {}, rows {} to {}", line.axis, rows.0, rows.1),
+        };
+        found.push(part(location, distance, scatter / (group.data.len() as f64).sqrt(), group.data.clone()));
+    }
+    found
+}

@@ -1,0 +1,353 @@
+//! What a rod says of each line, and what ordinary physics may add to that: the rivals of every mistake.
+//!
+//! ```text
+//! b = G·C[m, n]·eᵗ + Σ size·column + own      b the slope of a line, m/N; G the factor of the mistakes
+//! ```
+//!
+//! Columns: stiffness, shear, joints along the rod, one axis' loads, one channel, loads and sensors turned; `own` is each
+//! line's own. How large they may be is a [`MOODS`] entry: as files are, some times that, much, and, one after another, one
+//! thing far off with the rest as files are. Everything is relative to the rod, so that units do not matter, and the density
+//! is that of the slopes as recorded, so that no rescaling is favoured.
+
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn, Matrix3};
+
+use super::super::structure::{Softening, Structure};
+use super::lines::Line;
+use crate::error::Result;
+use crate::rod::Rod;
+use crate::spatial::Axis;
+
+/// Standard deviations of the columns: how far off rod, rig and sensors are.
+struct Mood {
+    log_weight: f64,
+    /// Of the common factor about its best value, and of that value about 1.
+    scale: (f64, f64),
+    shear: f64,
+    joint: f64,
+    axis: f64,
+    channel: f64,
+    turn: f64,
+    own: f64,
+}
+
+/// As files are: moduli 2 %, alignment 1°.
+const FILE: Mood = Mood {
+    log_weight: -0.7,
+    scale: (0.02, 0.02),
+    shear: 0.03,
+    joint: 0.02,
+    axis: 0.01,
+    channel: 0.01,
+    turn: 0.02,
+    own: 0.01,
+};
+/// Four times that.
+const SOME: Mood = Mood {
+    log_weight: -1.2,
+    scale: (0.02, 0.08),
+    shear: 0.12,
+    joint: 0.08,
+    axis: 0.04,
+    channel: 0.04,
+    turn: 0.08,
+    own: 0.03,
+};
+/// Everything far off.
+const MUCH: Mood = Mood {
+    log_weight: -3.0,
+    scale: (0.05, 0.4),
+    shear: 0.3,
+    joint: 0.2,
+    axis: 0.15,
+    channel: 0.12,
+    turn: 0.15,
+    own: 0.15,
+};
+/// One common factor: moduli or walls are not those of the file; a rod that is three times softer
+/// is within three times this.
+const STIFFNESS: Mood = Mood { log_weight: -5.0, scale: (0.02, 0.45), ..FILE };
+const MOODS: [Mood; 4] = [FILE, SOME, MUCH, STIFFNESS];
+
+/// One thing far off, each as likely.
+const SINGLE: f64 = -5.0;
+/// Joints have many places.
+const ONE_JOINT: f64 = -7.0;
+const SINGLE_JOINT: f64 = 0.7;
+const SINGLE_SHEAR: f64 = 1.0;
+const SINGLE_AXIS: f64 = 0.3;
+const SINGLE_CHANNEL: f64 = 0.3;
+const SINGLE_TURN: f64 = 0.09;
+
+/// What it costs to say that a rod moves against its load: a passive structure cannot.
+const AGAINST_THE_LOAD: f64 = 30.0;
+
+/// From this share of the rod's own deflection on: less may be a sensor that is turned, or drift.
+const AS_THE_ROD: f64 = 0.3;
+
+/// A rod at the pairs of stations of the readings, m/N.
+#[derive(Debug, Clone)]
+pub(super) struct Physics {
+    compliance: Vec<Matrix3<f64>>,
+    shear: Vec<Matrix3<f64>>,
+    /// Softer joints along the rod, each in bending and in torsion, by the whole rod's own flexibility.
+    joints: Vec<Vec<Matrix3<f64>>>,
+}
+
+impl Physics {
+    /// Of `rod` between pairs of load and read stations, m; `None` is the tip.
+    pub fn new(rod: &Rod, pairs: &[[Option<f64>; 2]]) -> Result<Physics> {
+        let tip = rod.length();
+        let at = |station: Option<f64>| station.unwrap_or(tip).min(tip);
+        let pairs: Vec<(f64, f64)> = pairs.iter().map(|[load, read]| (at(*load), at(*read))).collect();
+        let mut structure = Structure::new(rod, pairs)?;
+        let rotation = structure.rotation();
+        let corner = rod.bend_start();
+        // dense enough that a joint anywhere is one of them to a few percent
+        let first = [0.0, 0.2, 0.4, 0.6, 0.8, 1.0].map(|share| share * corner);
+        let second = [0.15, 0.3, 0.45, 0.6, 0.8].map(|share| corner + share * (tip - corner));
+        let places = first.into_iter().chain(second);
+        let mut joints = Vec::new();
+        for place in places {
+            joints.extend(structure.add_joint(place)?.into_iter().zip(rotation));
+        }
+        let whole = structure.softened(&Softening::default());
+        let more = |softening: Softening| -> Vec<Matrix3<f64>> {
+            structure.softened(&softening).iter().zip(&whole).map(|(soft, whole)| soft - whole).collect()
+        };
+        let joints = joints
+            .into_iter()
+            .map(|joint| more(Softening { joints: vec![joint], ..Softening::default() }))
+            .collect();
+        Ok(Physics {
+            shear: more(Softening { shear: 0.5, ..Softening::default() }),
+            compliance: whole,
+            joints,
+        })
+    }
+
+    /// Displacement per load of a pair of stations, m/N.
+    pub fn compliance(&self, pair: usize) -> &Matrix3<f64> {
+        &self.compliance[pair]
+    }
+}
+
+/// What a line of the file really is: channel m under loads along n, times G.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct View {
+    pub channel: Axis,
+    pub axis: Axis,
+    pub factor: f64,
+}
+
+/// Lines of the file with the views of a hypothesis on them.
+pub(super) struct Seen<'a> {
+    pub lines: &'a [Line],
+    /// For each line its pair of stations.
+    pub pair: &'a [usize],
+    pub physics: &'a Physics,
+    pub views: Vec<View>,
+}
+
+/// How well a hypothesis explains the slopes.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Verdict {
+    /// Ln of the density of the slopes.
+    pub log_evidence: f64,
+    /// Ln of the factor that all lines have in common, measured over expected.
+    pub log_scale: f64,
+}
+
+impl Seen<'_> {
+    /// Expected slope of each line, m/N.
+    pub fn expected(&self) -> Vec<f64> {
+        (0..self.lines.len()).map(|k| self.of(k, &self.physics.compliance)).collect()
+    }
+
+    fn of(&self, line: usize, parts: &[Matrix3<f64>]) -> f64 {
+        let view = &self.views[line];
+        view.factor * parts[self.pair[line]][(view.channel.index(), view.axis.index())]
+    }
+
+    /// Ln of the common factor: the weighted median of the lines' own, which some wrong ones do not move.
+    fn log_scale(&self, expected: &[f64]) -> f64 {
+        let most = self.largest(expected);
+        let mut ratios: Vec<(f64, f64)> = Vec::new();
+        for (k, line) in self.lines.iter().enumerate() {
+            let (b, e) = (line.fit.slope, expected[k]);
+            let relative = e.abs() * line.largest_load / (most[k] * line.largest_load).max(f64::MIN_POSITIVE);
+            if relative > 0.1 && b != 0.0 && b.abs() > 3.0 * line.fit.error {
+                ratios.push(((b / e).abs().ln(), relative));
+            }
+        }
+        ratios.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let total: f64 = ratios.iter().map(|(_, weight)| weight).sum();
+        let mut sum = 0.0;
+        for (k, (ratio, weight)) in ratios.iter().enumerate() {
+            sum += weight;
+            if 2.0 * sum > total * (1.0 + 1e-9) {
+                return *ratio;
+            }
+            if 2.0 * sum >= total * (1.0 - 1e-9) {
+                return 0.5 * (ratio + ratios.get(k + 1).map_or(*ratio, |next| next.0));
+            }
+        }
+        0.0
+    }
+
+    /// For each line the largest slope that the rod has under the same load, m/N.
+    fn largest(&self, expected: &[f64]) -> Vec<f64> {
+        let of_view = |k: usize| {
+            let view = &self.views[k];
+            let column = self.physics.compliance[self.pair[k]].column(view.axis.index()).amax();
+            (view.factor.abs() * column).max(expected[k].abs()).max(f64::MIN_POSITIVE)
+        };
+        (0..self.lines.len()).map(of_view).collect()
+    }
+
+    /// How well the slopes are explained, with all that ordinary physics may add.
+    pub fn verdict(&self) -> Verdict {
+        let expected = self.expected();
+        let log_scale = self.log_scale(&expected);
+        let columns = self.columns(&expected);
+        let mut terms = Vec::new();
+        for (mood, is_first) in MOODS.iter().zip([true, false, false, false]) {
+            let scales: &[f64] = if is_first { &[0.0] } else { &[0.0, log_scale] };
+            for &scale in scales {
+                let Some(solved) = self.solved(&expected, &columns, mood, scale) else { continue };
+                let (about, prior) = mood.scale;
+                let price = -0.5 * (scale / prior).powi(2) - (prior / about).ln();
+                terms.push(mood.log_weight + price + solved.log_density);
+                if is_first {
+                    terms.extend(self.singles(&columns, &solved));
+                }
+            }
+        }
+        let best = terms.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let sum: f64 = terms.iter().map(|term| (term - best).exp()).sum();
+        let log_evidence = best + sum.ln() - AGAINST_THE_LOAD * self.against_the_load() as f64;
+        Verdict {
+            log_evidence: if log_evidence.is_nan() { f64::NEG_INFINITY } else { log_evidence },
+            log_scale,
+        }
+    }
+
+    /// Lines that would move against their load.
+    pub fn against_the_load(&self) -> usize {
+        let is_against = |k: &usize| {
+            let (line, view) = (&self.lines[*k], &self.views[*k]);
+            let slope = line.fit.slope / view.factor;
+            let error = line.fit.error / view.factor.abs();
+            line.is_collocated() && view.axis == view.channel && slope < -4.0 * error && {
+                // of a channel that shows the load at all
+                let own = self.physics.compliance[self.pair[*k]][(view.axis.index(), view.axis.index())];
+                slope.abs() > AS_THE_ROD * own
+                    && line.fit.slope.abs() * line.largest_load > 5.0 * line.fit.scatter
+            }
+        };
+        (0..self.lines.len()).filter(is_against).count()
+    }
+
+    fn columns(&self, expected: &[f64]) -> Columns {
+        let n = self.lines.len();
+        let column = |of: &dyn Fn(usize) -> f64| DVector::from_fn(n, |k, _| of(k));
+        let compliance = |k: usize, channel: Axis, axis: Axis| {
+            self.views[k].factor * self.physics.compliance[self.pair[k]][(channel.index(), axis.index())]
+        };
+        let mut turns = Vec::new();
+        for (from, towards) in Axis::ALL.into_iter().flat_map(|a| Axis::ALL.map(|b| (a, b))) {
+            if from == towards {
+                continue;
+            }
+            turns.push(column(&|k| match self.views[k].axis == from {
+                true => compliance(k, self.views[k].channel, towards),
+                false => 0.0,
+            }));
+            turns.push(column(&|k| match self.views[k].channel == from {
+                true => compliance(k, towards, self.views[k].axis),
+                false => 0.0,
+            }));
+        }
+        turns.retain(|turn| turn.amax() > 0.0);
+        let part = |is_of: &dyn Fn(&View) -> bool| {
+            column(&|k| if is_of(&self.views[k]) { expected[k] } else { 0.0 })
+        };
+        Columns {
+            whole: column(&|k| expected[k]),
+            shear: column(&|k| self.of(k, &self.physics.shear)),
+            joints: self.physics.joints.iter().map(|joint| column(&|k| self.of(k, joint))).collect(),
+            axes: Axis::ALL.map(|axis| part(&|view| view.axis == axis)).into(),
+            channels: Axis::ALL.map(|channel| part(&|view| view.channel == channel)).into(),
+            turns,
+            own: DVector::from_vec(self.largest(expected)),
+        }
+    }
+
+    /// The Gaussian model of one mood, solved.
+    fn solved(&self, expected: &[f64], columns: &Columns, mood: &Mood, scale: f64) -> Option<Solved> {
+        let n = self.lines.len();
+        let factor = scale.exp();
+        let mut covariance = DMatrix::zeros(n, n);
+        for (k, line) in self.lines.iter().enumerate() {
+            covariance[(k, k)] = line.fit.error.powi(2) + (factor * mood.own * columns.own[k]).powi(2);
+        }
+        let mut add =
+            |column: &DVector<f64>, size: f64| covariance.ger((factor * size).powi(2), column, column, 1.0);
+        add(&columns.whole, mood.scale.0);
+        add(&columns.shear, mood.shear);
+        columns.joints.iter().for_each(|joint| add(joint, mood.joint));
+        columns.axes.iter().for_each(|axis| add(axis, mood.axis));
+        columns.channels.iter().for_each(|channel| add(channel, mood.channel));
+        columns.turns.iter().for_each(|turn| add(turn, mood.turn));
+        let off = DVector::from_fn(n, |k, _| self.lines[k].fit.slope - factor * expected[k]);
+        let root = Cholesky::new(covariance)?;
+        let log_root: f64 = root.l_dirty().diagonal().iter().map(|d| d.ln()).sum();
+        let solved = root.solve(&off);
+        Some(Solved { log_density: -0.5 * off.dot(&solved) - log_root, root, solved })
+    }
+
+    /// One column after another far off: by the Sherman–Morrison formula.
+    fn singles(&self, columns: &Columns, with: &Solved) -> Vec<f64> {
+        let mut terms = Vec::new();
+        let mut single = |column: &DVector<f64>, size: f64, weight: f64, only_softer: bool| {
+            let along = with.root.solve(column);
+            let (own, projection) = (column.dot(&along), column.dot(&with.solved));
+            if only_softer && projection <= 0.0 {
+                return;
+            }
+            let grown = 1.0 + size * size * own;
+            let gained = 0.5 * (size * projection).powi(2) / grown - 0.5 * grown.ln();
+            terms.push(weight + with.log_density + gained);
+        };
+        columns.joints.iter().for_each(|joint| single(joint, SINGLE_JOINT, ONE_JOINT, true));
+        // what yields in bending mostly does so in torsion
+        columns.joints.chunks(2).for_each(|both| {
+            single(
+                &both.iter().fold(DVector::zeros(both[0].len()), |sum, part| sum + part),
+                SINGLE_JOINT,
+                ONE_JOINT,
+                true,
+            );
+        });
+        single(&columns.shear, SINGLE_SHEAR, SINGLE, true);
+        columns.axes.iter().for_each(|axis| single(axis, SINGLE_AXIS, SINGLE, false));
+        columns.channels.iter().for_each(|channel| single(channel, SINGLE_CHANNEL, SINGLE, false));
+        columns.turns.iter().for_each(|turn| single(turn, SINGLE_TURN, SINGLE, false));
+        terms
+    }
+}
+
+struct Columns {
+    whole: DVector<f64>,
+    shear: DVector<f64>,
+    joints: Vec<DVector<f64>>,
+    axes: Vec<DVector<f64>>,
+    channels: Vec<DVector<f64>>,
+    turns: Vec<DVector<f64>>,
+    own: DVector<f64>,
+}
+
+struct Solved {
+    log_density: f64,
+    root: Cholesky<f64, Dyn>,
+    solved: DVector<f64>,
+}

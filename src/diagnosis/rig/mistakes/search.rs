@@ -1,0 +1,282 @@
+//! Which mistakes of labels, units and files turn readings that fit nothing into readings that fit.
+//!
+//! A beam search: one mistake, then a second beside each of the best, then a third. A state is kept
+//! where it is a thousand times more probable than the one that it grew from.
+
+use super::change::{Change, Move};
+use super::lines::Line;
+use super::physics::{Physics, Seen, Verdict, View};
+use super::rods::Body;
+use crate::inference::Kind;
+use crate::spatial::Axis;
+
+/// A mistake is named at these odds against all else, physics included: ln 1000.
+pub(super) const ODDS: f64 = 6.907_755;
+/// Another mistake within these odds explains alike: ln 20.
+const ALIKE: f64 = 2.995_732;
+/// How rare any mistake is against none: ln.
+const RARE: f64 = -0.5;
+const MOST_MISTAKES: usize = 3;
+const BEAM: usize = 6;
+/// Share of the squares of the slopes that ordinary physics hardly leaves: 22 % rms.
+const IMPLAUSIBLE: f64 = 0.05;
+/// What a key in another unit must leave at least: 60 % rms.
+const FAR_OFF: f64 = 0.36;
+/// And that a corrected recording may leave: a unit's factor stands for itself, a sign is one
+/// whatever the rod does.
+const LEFT_BY_FACTOR: f64 = 0.06;
+const LEFT_BY_NAME: f64 = 0.15;
+/// At most this share of what was left before.
+const CURED: f64 = 0.25;
+/// A channel that shows less than this share of the largest deflection says nothing.
+const SHOWN: f64 = 0.03;
+
+/// Lines of readings against a rod and what else it may be.
+pub(super) struct Search<'a> {
+    pub lines: &'a [Line],
+    pub pair: &'a [usize],
+    pub pairs: &'a [[Option<f64>; 2]],
+    pub base: &'a Physics,
+    /// False where the readings are not on the rod at all.
+    pub is_possible: bool,
+}
+
+/// Mistakes together, by their numbers among the moves.
+#[derive(Clone)]
+pub(super) struct State {
+    pub moves: Vec<usize>,
+    pub change: Change,
+    pub log_scale: f64,
+    /// Ln of its probability, less a constant.
+    pub score: f64,
+}
+
+/// A mistake that was found.
+pub(super) struct Found {
+    pub number: usize,
+    /// Ln of the odds against what there is without it.
+    pub log_odds: f64,
+    /// Moves that explain as much in its place, with the odds against them.
+    pub rivals: Vec<(usize, f64)>,
+    /// Ln of what the lines have in common, measured over expected, without it.
+    pub log_scale_before: f64,
+    /// Root mean square of what it changes of the expected deflections at the largest loads, m.
+    pub explains: f64,
+}
+
+impl Search<'_> {
+    /// True where no ordinary physics would leave so much, so that mistakes are worth a try.
+    pub fn is_implausible(&self) -> bool {
+        let seen = self.seen(self.base, &Change::default());
+        let expected = seen.expected();
+        let all: Vec<usize> = (0..self.lines.len()).collect();
+        let most = all.iter().map(|&k| self.deflection(k, expected[k])).fold(0.0, f64::max);
+        let is_off = |part: &[usize]| {
+            let shown = part.iter().map(|&k| self.deflection(k, expected[k])).fold(0.0, f64::max);
+            shown > SHOWN * most && self.left(part, &expected, 0.0) > IMPLAUSIBLE
+        };
+        let of = |is_of: &dyn Fn(&Line) -> bool| -> Vec<usize> {
+            all.iter().copied().filter(|&k| is_of(&self.lines[k])).collect()
+        };
+        !self.is_possible
+            || seen.against_the_load() > 0
+            || is_off(&all)
+            || Axis::ALL.into_iter().any(|axis| {
+                is_off(&of(&|line| line.channel == axis)) || is_off(&of(&|line| line.axis == axis))
+            })
+    }
+
+    /// The largest deflection of a line, measured or expected, m.
+    fn deflection(&self, line: usize, expected: f64) -> f64 {
+        self.lines[line].fit.slope.abs().max(expected.abs()) * self.lines[line].largest_load
+    }
+
+    /// Share of the squares of the deflections that is left of some lines; the larger one of measured and
+    /// expected counts, so that no unit is favoured.
+    fn left(&self, part: &[usize], expected: &[f64], log_scale: f64) -> f64 {
+        let factor = log_scale.exp();
+        let (mut left, mut all) = (0.0, 0.0);
+        for &k in part {
+            let line = &self.lines[k];
+            let off = ((line.fit.slope - factor * expected[k]).abs() - 2.0 * line.fit.error).max(0.0);
+            left += (off * line.largest_load).powi(2);
+            all += self.deflection(k, factor * expected[k]).powi(2);
+        }
+        if all > 0.0 { left / all } else { 0.0 }
+    }
+
+    /// Share of the squares that is scatter about the lines: what does not follow the load, no factor cures.
+    fn scattered(&self, part: &[usize], expected: &[f64], log_scale: f64) -> f64 {
+        let all: f64 = part.iter().map(|&k| self.deflection(k, log_scale.exp() * expected[k]).powi(2)).sum();
+        let scatter: f64 = part.iter().map(|&k| self.lines[k].fit.scatter.powi(2)).sum();
+        if all > 0.0 { scatter / all } else { 0.0 }
+    }
+
+    fn seen<'s>(&'s self, physics: &'s Physics, change: &Change) -> Seen<'s> {
+        let view = |line: &Line| {
+            let (axis, channel) = (line.axis.index(), line.channel.index());
+            View {
+                channel: Axis::ALL[change.channel[channel]],
+                axis: Axis::ALL[change.axis[axis]],
+                factor: change.load[axis] / change.reading[axis][channel],
+            }
+        };
+        let views = self.lines.iter().map(view).collect();
+        Seen { lines: self.lines, pair: self.pair, physics, views }
+    }
+}
+
+/// A search with the moves that there are.
+pub(super) struct Trial<'a> {
+    pub search: Search<'a>,
+    pub moves: &'a [Move],
+    /// By number of the body, from 1; `None` where the readings cannot be on it.
+    pub bodies: &'a [Option<Physics>],
+}
+
+impl Trial<'_> {
+    fn physics(&self, change: &Change) -> Option<&Physics> {
+        match change.body {
+            0 => Some(self.search.base),
+            number => self.bodies[number - 1].as_ref(),
+        }
+    }
+
+    fn state(&self, moves: Vec<usize>) -> Option<State> {
+        let mut change = Change::default();
+        for &number in &moves {
+            change = change.and(&self.moves[number].change)?;
+        }
+        if change.body == 0 && !self.search.is_possible {
+            let score = f64::NEG_INFINITY;
+            return moves.is_empty().then_some(State { moves, change, log_scale: 0.0, score });
+        }
+        let Verdict { log_evidence, log_scale } = self.search.seen(self.physics(&change)?, &change).verdict();
+        let is_within = moves.iter().all(|&number| log_scale.abs() <= self.moves[number].within.ln());
+        let prior: f64 = moves.iter().map(|&number| RARE + self.moves[number].log_prior).sum();
+        let score = log_evidence + prior;
+        (is_within || moves.is_empty()).then_some(State { moves, change, log_scale, score })
+    }
+
+    fn gained(after: &State, before: &State) -> f64 {
+        if after.score.is_finite() { after.score - before.score } else { 0.0 }
+    }
+
+    /// The mistakes, with what the readings and the rod become.
+    pub fn found(&self) -> Option<(State, Vec<Found>)> {
+        let base = self.state(Vec::new())?;
+        let mut best = base.clone();
+        let mut frontier = vec![base.clone()];
+        for _ in 0..MOST_MISTAKES {
+            let mut next: Vec<State> = Vec::new();
+            for from in &frontier {
+                for number in 0..self.moves.len() {
+                    let mut moves = from.moves.clone();
+                    if moves.contains(&number) {
+                        continue;
+                    }
+                    moves.push(number);
+                    moves.sort_unstable();
+                    if next.iter().any(|known| known.moves == moves) {
+                        continue;
+                    }
+                    next.extend(self.state(moves).filter(|state| Self::gained(state, from) > ODDS));
+                }
+            }
+            next.sort_by(|a, b| b.score.total_cmp(&a.score));
+            next.truncate(BEAM);
+            match next.first() {
+                Some(first) if first.score > best.score + ODDS => best = first.clone(),
+                _ => break,
+            }
+            frontier = next;
+        }
+        if best.moves.is_empty() {
+            return None;
+        }
+        let mut found = Vec::new();
+        for &number in &best.moves {
+            found.push(self.judged(&best, number)?);
+        }
+        found.sort_by(|a, b| b.log_odds.total_cmp(&a.log_odds));
+        Some((best, found))
+    }
+
+    /// One mistake of several; `None` where it is not needed or does not cure what it acts on.
+    fn judged(&self, best: &State, number: usize) -> Option<Found> {
+        let rest: Vec<usize> = best.moves.iter().copied().filter(|&other| other != number).collect();
+        let is_wrong_body =
+            rest.iter().all(|&other| self.moves[other].change.body == 0) && !self.search.is_possible;
+        let before = match is_wrong_body {
+            true => State { score: f64::NEG_INFINITY, ..best.clone() },
+            // what is left without it may be beyond what a unit allows
+            false => self.without(&rest)?,
+        };
+        let log_odds = (best.score - before.score).min(1e3);
+        let expected = self.search.seen(self.physics(&best.change)?, &best.change).expected();
+        let (cured, explains) = match is_wrong_body {
+            true => (true, 0.0),
+            false => {
+                let old = self.search.seen(self.physics(&before.change)?, &before.change).expected();
+                let is_changed =
+                    |&k: &usize| (expected[k] - old[k]).abs() > 0.1 * expected[k].abs().max(old[k].abs());
+                let part: Vec<usize> = (0..expected.len()).filter(is_changed).collect();
+                let left = self.search.left(&part, &old, 0.0);
+                let leaves = self.search.left(&part, &expected, best.log_scale);
+                let effect = self.moves[number].effect;
+                let is_name =
+                    ["sign_mistake", "swap_mistake"].contains(&effect.name) && best.change.body == 0;
+                let most = if is_name { LEFT_BY_NAME } else { LEFT_BY_FACTOR };
+                let change =
+                    |k: &usize| ((expected[*k] - old[*k]) * self.search.lines[*k].largest_load).powi(2);
+                let rms = (part.iter().map(change).sum::<f64>() / part.len().max(1) as f64).sqrt();
+                let leaves = leaves + self.search.scattered(&part, &expected, best.log_scale);
+                // walls and lengths are off by a third in many a file: a unit is more than that
+                let is_key = effect.name == "unit_mistake" && best.change.body != before.change.body;
+                let least = if is_key { FAR_OFF } else { IMPLAUSIBLE };
+                (left > least && leaves < most && leaves < CURED * left, rms)
+            }
+        };
+        if !(cured && log_odds > ODDS) {
+            return None;
+        }
+        let with = |other: usize| {
+            let mut moves = rest.clone();
+            moves.push(other);
+            moves.sort_unstable();
+            self.state(moves).map(|state| (other, best.score - state.score))
+        };
+        let is_other = |other: &usize| *other != number && !rest.contains(other);
+        let mut rivals: Vec<(usize, f64)> = (0..self.moves.len()).filter(is_other).filter_map(with).collect();
+        rivals.retain(|(_, log_odds)| *log_odds < ALIKE);
+        rivals.sort_by(|a, b| a.1.total_cmp(&b.1));
+        let rivals = rivals.into_iter().map(|(other, log_odds)| (other, log_odds.exp())).collect();
+        debug_assert_eq!(self.moves[number].effect.kind, Kind::Mistake);
+        Some(Found { number, log_odds, rivals, log_scale_before: before.log_scale, explains })
+    }
+
+    fn without(&self, moves: &[usize]) -> Option<State> {
+        let mut change = Change::default();
+        for &number in moves {
+            change = change.and(&self.moves[number].change)?;
+        }
+        let Verdict { log_evidence, log_scale } = self.search.seen(self.physics(&change)?, &change).verdict();
+        let prior: f64 = moves.iter().map(|&number| RARE + self.moves[number].log_prior).sum();
+        Some(State { moves: moves.to_vec(), change, log_scale, score: log_evidence + prior })
+    }
+}
+
+/// The physics of each body; `None` where the readings cannot be on it.
+pub(super) fn physics(bodies: &[Body], pairs: &[[Option<f64>; 2]]) -> Vec<Option<Physics>> {
+    let of = |body: &Body| {
+        let pairs: Vec<[Option<f64>; 2]> = pairs
+            .iter()
+            .map(|[load, read]| [load.map(|s| s * body.stations[0]), read.map(|s| s * body.stations[1])])
+            .collect();
+        let tip = body.rod.length() + crate::units::UM;
+        let is_on_it = pairs.iter().flatten().flatten().all(|station| *station <= tip);
+        let physics = Physics::new(&body.rod, &pairs).ok().filter(|_| is_on_it)?;
+        (0..pairs.len()).all(|pair| physics.compliance(pair).iter().all(|c| c.is_finite())).then_some(physics)
+    };
+    bodies.iter().map(of).collect()
+}

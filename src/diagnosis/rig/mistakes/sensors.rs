@@ -1,0 +1,228 @@
+//! Sensors that are stuck or at the end of their range: the same value, whatever the load.
+
+use super::super::datum::Datum;
+use super::super::effects::mistakes::{SATURATED_SENSOR, STUCK_SENSOR};
+use super::lines::{Line, lines};
+use super::moves::column;
+use super::part::Part;
+use crate::inference::{Estimate, Quantity};
+use crate::spatial::Axis;
+use crate::units::{UM, significant};
+
+/// Readings that are the same differ by no more than this share of the channel's largest.
+const SAME: f64 = 1e-9;
+/// What the rod expects of a stuck channel: this share of the largest deflection at least, so many
+/// times the scatter.
+const EXPECTED: f64 = 0.05;
+const TIMES_SCATTER: f64 = 20.0;
+/// And this share of it at most is there.
+const MOVES: f64 = 0.03;
+/// A line is right that is off by less than this share.
+const RIGHT: f64 = 0.3;
+/// Readings at a limit, at least; and a frozen display.
+const AT_LIMIT: usize = 3;
+const FROZEN: usize = 4;
+/// How far beyond a limit the readings would lie, as a share of it.
+const BEYOND: f64 = 0.05;
+
+/// What the rod says of each line.
+pub(super) struct Expected {
+    /// m/N, in the scale of the readings.
+    pub slopes: Vec<f64>,
+    /// What most lines are of the rod's own slopes.
+    pub scale: f64,
+}
+
+/// Channels that do not move where the rod says that they must.
+pub(super) fn stuck(data: &[Datum], lines: &[Line], expected: Option<&Expected>) -> Vec<Part> {
+    let is_scale_right = expected.is_some_and(|expected| expected.scale.ln().abs() < RIGHT);
+    let expected = expected.map(|expected| &expected.slopes[..]);
+    let deflections: Vec<f64> =
+        (0..lines.len()).map(|k| expected.map_or(0.0, |of| of[k].abs() * lines[k].largest_load)).collect();
+    let most = deflections.iter().copied().fold(0.0, f64::max);
+    let most_shown = lines.iter().map(|line| line.fit.slope.abs() * line.largest_load).fold(0.0, f64::max);
+    // a display that is still but for noise is only stuck where the rod is right otherwise
+    let is_right_else = |channel: Axis| {
+        let is_right = |k: usize| {
+            let size = deflections[k].max(lines[k].fit.slope.abs() * lines[k].largest_load);
+            let off = expected.map_or(0.0, |of| (lines[k].fit.slope - of[k]) * lines[k].largest_load);
+            size < MOVES * most_shown || off.abs() < RIGHT * size
+        };
+        let mut others = (0..lines.len()).filter(|&k| lines[k].channel != channel).peekable();
+        is_scale_right && others.peek().is_some() && others.all(is_right)
+    };
+    let mut found = Vec::new();
+    for channel in Axis::ALL {
+        let of = |k: &usize| lines[*k].channel == channel && lines[*k].has_slope;
+        let own: Vec<usize> = match expected {
+            Some(_) => (0..lines.len()).filter(of).filter(|&k| deflections[k] > EXPECTED * most).collect(),
+            None => (0..lines.len()).filter(of).filter(|&k| lines[k].axis == channel).collect(),
+        };
+        // what moves under another load, or by another rod, is not stuck
+        let shown = |k: usize| lines[k].fit.slope.abs() * lines[k].largest_load;
+        let is_moving = (0..lines.len()).any(|k| {
+            let is_sure = lines[k].fit.slope.abs() > 5.0 * lines[k].fit.error;
+            lines[k].channel == channel && is_sure && shown(k) > MOVES * most_shown
+        });
+        let is_still = |&k: &usize| {
+            let line = &lines[k];
+            let values: Vec<f64> = line.data.iter().map(|&i| data[i].measured).collect();
+            let is_same = is_same(&values);
+            match expected {
+                Some(expected) => {
+                    let moves = line.fit.slope.abs();
+                    (is_same || (moves < 4.0 * line.fit.error && is_right_else(channel)))
+                        && moves < MOVES * expected[k].abs()
+                        && deflections[k] > TIMES_SCATTER * line.fit.scatter
+                }
+                None => is_same && line.data.len() >= FROZEN && values[0] != 0.0,
+            }
+        };
+        if own.is_empty() || is_moving || !own.iter().all(is_still) {
+            continue;
+        }
+        let of_channel: Vec<usize> = (0..data.len()).filter(|&i| data[i].channel == channel).collect();
+        let mut values: Vec<f64> = of_channel.iter().map(|&i| data[i].measured).collect();
+        values.sort_by(f64::total_cmp);
+        let (value, low, high) = (values[values.len() / 2], values[0], values[values.len() - 1]);
+        let name = column(channel);
+        found.push(Part {
+            effect: &STUCK_SENSOR,
+            location: name.clone(),
+            estimates: vec![Estimate { name: "um".into(), unit: UM, value, low, high }],
+            observed: format!(
+                "{name} shows {} whatever the load: leave the column out, and look at its sensor",
+                Quantity { value: value / UM, low: low / UM, high: high / UM }.say("µm")
+            ),
+            looks_like: format!("{name} looks stuck"),
+            explains: deflections[own[0]],
+            data: of_channel,
+            rivals: Vec::new(),
+        });
+    }
+    found
+}
+
+fn is_same(values: &[f64]) -> bool {
+    let most = values.iter().fold(0.0, |most: f64, v| most.max(v.abs()));
+    values.iter().all(|value| (value - values[0]).abs() <= SAME * most)
+}
+
+/// Readings at the largest or the smallest value that a channel shows, beyond which others of their lines
+/// would lie.
+pub(super) fn saturated(data: &[Datum]) -> Vec<Part> {
+    let mut found = Vec::new();
+    for channel in Axis::ALL {
+        let own: Vec<usize> = (0..data.len()).filter(|&i| data[i].channel == channel).collect();
+        let most = own.iter().fold(0.0, |most: f64, &i| most.max(data[i].measured.abs()));
+        for side in [1.0, -1.0] {
+            let limit = own.iter().map(|&i| side * data[i].measured).fold(f64::NEG_INFINITY, f64::max);
+            if !(limit > 0.0 && limit > EXPECTED * most) {
+                continue;
+            }
+            let is_at = |i: usize| (side * data[i].measured - limit).abs() <= SAME * most;
+            let at: Vec<usize> = own.iter().copied().filter(|&i| is_at(i)).collect();
+            // the other end of the range is no part of a line either
+            let other_end =
+                own.iter().copied().filter(|&i| (side * data[i].measured + limit).abs() <= SAME * most);
+            let ends: Vec<usize> = at.iter().copied().chain(other_end).collect();
+            if at.len() < AT_LIMIT || at.len() == own.len() {
+                continue;
+            }
+            let Some(expected) = expected(data, &at, &ends) else { continue };
+            let beyond =
+                |(value, scatter): &&(f64, f64)| side * value - limit > (BEYOND * limit).max(2.0 * scatter);
+            if expected.iter().filter(beyond).count() * 3 < at.len() * 2 {
+                continue;
+            }
+            // the same value at different loads, or with noise all round it
+            let values = expected.iter().map(|(value, _)| side * value);
+            let (low, high) =
+                values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+            let scatter = expected.iter().fold(0.0, |most: f64, (_, scatter)| most.max(*scatter));
+            let step = super::super::evidence::resolution(data);
+            if high - low < BEYOND * limit && scatter < 3.0 * step.max(SAME * most) {
+                continue;
+            }
+            let name = column(channel);
+            let shown = side * limit / UM;
+            found.push(Part {
+                effect: &SATURATED_SENSOR,
+                location: name.clone(),
+                estimates: vec![Estimate { name: "um".into(), unit: UM, value: side * limit, low: side * limit, high: side * limit }],
+                observed: format!(
+                    "{name} is cut off at {} µm in {} readings: leave them out, or use a sensor of a longer range",
+                    significant(shown, 4),
+                    at.len()
+                ),
+                looks_like: format!("{name} looks cut off at {} µm", significant(shown, 4)),
+                explains: high - limit,
+                data: at,
+                rivals: Vec::new(),
+            });
+        }
+    }
+    found
+}
+
+/// Displays that stood still for some rows in which the loads changed.
+pub(super) fn frozen(data: &[Datum]) -> Vec<Part> {
+    let mut found = Vec::new();
+    for channel in Axis::ALL {
+        let own: Vec<usize> = (0..data.len()).filter(|&i| data[i].channel == channel).collect();
+        let mut first = 0;
+        while first < own.len() {
+            let same =
+                own[first..].iter().take_while(|&&i| data[i].measured == data[own[first]].measured).count();
+            let at = &own[first..first + same];
+            first += same;
+            if same < FROZEN || same == own.len() {
+                continue;
+            }
+            let Some(expected) = expected(data, at, at) else { continue };
+            let value = data[at[0]].measured;
+            let range = expected
+                .iter()
+                .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), (v, _)| (l.min(*v), h.max(*v)));
+            let scatter = expected.iter().fold(0.0, |most: f64, (_, scatter)| most.max(*scatter));
+            let largest = own.iter().fold(0.0, |most: f64, &i| most.max(data[i].measured.abs()));
+            if range.1 - range.0 < (0.2 * largest).max(TIMES_SCATTER * scatter) {
+                continue;
+            }
+            let (name, rows) = (column(channel), (data[at[0]].row, data[at[same - 1]].row));
+            let shown = significant(value / UM, 4);
+            found.push(Part {
+                effect: &STUCK_SENSOR,
+                location: format!("{name}, rows {} to {}", rows.0, rows.1),
+                estimates: vec![Estimate { name: "um".into(), unit: UM, value, low: value, high: value }],
+                observed: format!(
+                    "{name} stands still at {shown} µm in the rows {} to {} while the loads change: leave these readings out",
+                    rows.0, rows.1
+                ),
+                looks_like: format!("{name} looks stuck in the rows {} to {}", rows.0, rows.1),
+                explains: range.1 - range.0,
+                data: at.to_vec(),
+                rivals: Vec::new(),
+            });
+        }
+    }
+    found
+}
+
+/// What the other readings of their lines say of some data, with the scatter about those; `None`
+/// where they say nothing of one.
+fn expected(data: &[Datum], at: &[usize], without: &[usize]) -> Option<Vec<(f64, f64)>> {
+    let rest = lines(data, |i| !without.contains(&i));
+    let of = |&i: &usize| {
+        let d = &data[i];
+        let is_it = |line: &&Line| {
+            (line.axis, line.channel, line.stations)
+                == (d.direction.axis, d.channel, [d.load_station, d.read_station])
+        };
+        let line = rest.iter().find(is_it).filter(|line| line.has_slope && line.data.len() >= 3)?;
+        // loads beyond those of the others are foretold no better than the slope is known
+        let scatter = line.fit.scatter + line.fit.error * d.load;
+        Some((line.fit.at(d.signed_load()), scatter))
+    };
+    at.iter().map(of).collect()
+}

@@ -180,7 +180,7 @@ pub fn main(arguments: &[String]) {
     println!();
     for (variant, name) in VARIANTS.iter().enumerate() {
         let restless = runs.iter().filter(|run| !run.judged[variant].came_to_rest).count();
-        println!("{name}: {restless} of {} campaigns have a mode that did not come to rest", runs.len());
+        println!("{name}: {restless} of {} campaigns have a mode that did not converge", runs.len());
     }
 }
 

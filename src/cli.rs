@@ -36,7 +36,7 @@ pub struct Arguments {
 const EXAMPLES: &str = "\
 Examples:
   rodcal
-      try everything on examples inside the program; says where the report is
+      try everything on examples inside the program; prints the report's path
   rodcal compliance rods/5.toml
       how much a rod bends, from its drawing alone
   rodcal rig fit rods/5.toml stiffness_data/5.csv --out reports/5
@@ -50,7 +50,7 @@ Examples:
   rodcal compare campaigns/tx90-5/campaign.toml
       does it matter how the deflection is known?
   rodcal diagnose calibration campaigns/tx90-5/campaign.toml
-      what the calibration leaves: noise, or which joint, clamp, time or pose?
+      calibration residuals: noise, or which joint, clamp, time or pose?
 
 Words:
   C^F     deflection of the tip in µm per newton of force on the ball; 3x3,
@@ -80,12 +80,12 @@ enum Command {
     Rig(rig::Rig),
     /// How accurate a robot is once its rod's deflection is compensated: kinematic calibration.
     Calibrate(calibrate::Calibrate),
-    /// Calibrate in every mode of compensation, and tell differences from chance.
+    /// Calibrate in every mode of compensation, and test which differences are significant.
     Compare(compare::Compare),
     /// Where recording and model disagree: which physics did the model leave out?
     #[command(subcommand)]
     Diagnose(diagnose::Diagnose),
-    /// Where a calibrated robot's tip is at any joint values, and how sure that is.
+    /// Where a calibrated robot's tip is at any joint values, with its uncertainty.
     Predict(predict::Predict),
     /// Make the files of a campaign of a robot and a rod that are known exactly.
     Simulate(simulate::Simulate),

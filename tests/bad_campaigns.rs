@@ -157,17 +157,17 @@ fn every_bad_key_is_named_with_its_place() {
         (
             "\"d2\"",
             "\"theta1\"",
-            "campaign.toml:20:18: \"theta1_deg\" stands in fix already, expected one wish for each parameter",
+            "campaign.toml:20:18: \"theta1_deg\" stands in fix already, expected one constraint for each parameter",
         ),
         (
             "\"c1_urad_per_nm\"",
             "\"d2_mm\"",
-            "campaign.toml:21:9: \"d2_mm\" stands in fix already, expected one wish for each parameter",
+            "campaign.toml:21:9: \"d2_mm\" stands in fix already, expected one constraint for each parameter",
         ),
         (
             "\"c1_urad_per_nm\"",
             "\"c1\", \"c1\"",
-            "campaign.toml:21:15: \"c1\" stands in free already, expected one wish for each parameter",
+            "campaign.toml:21:15: \"c1\" stands in free already, expected one constraint for each parameter",
         ),
         (
             "\"a1_mm\"",
@@ -177,7 +177,7 @@ fn every_bad_key_is_named_with_its_place() {
         (
             "\"a1_mm\"",
             "\"d2_mm\"",
-            "campaign.toml:23:13: \"d2_mm\" stands in fix already, expected one wish for each parameter",
+            "campaign.toml:23:13: \"d2_mm\" stands in fix already, expected one constraint for each parameter",
         ),
         ("sd = 0.1", "sd = -0.1", "campaign.toml:25:6: `prior.sd` is -0.1, expected a number > 0"),
         (
@@ -188,7 +188,7 @@ fn every_bad_key_is_named_with_its_place() {
         (
             "sd = 0.1",
             "sd = 0.1\n[[prior]]\nparameter = \"a1_mm\"\nvalue = 1\nsd = 1",
-            "campaign.toml:27:13: \"a1_mm\" stands in another [[prior]] already, expected one wish for each parameter",
+            "campaign.toml:27:13: \"a1_mm\" stands in another [[prior]] already, expected one constraint for each parameter",
         ),
         // files
         (

@@ -143,14 +143,14 @@ fn odd_files_are_read_with_a_warning() {
         tracker(rows(&|i| format!("{i},{},12.3{},{},{i}00,2,3\n", 13 * i, i % 2, 20 + i % 3))),
         [
             "measurements.csv: joint 1 is beyond its limits -130° to 130° in 1 row, first in pose 11 (line 13, 143°): is it the same robot?",
-            "measurements.csv: joint 2 moves by 0.01° in all: theta2 and c2 can hardly be told from their neighbours; add poses in which it moves",
+            "measurements.csv: joint 2 moves by 0.01° in all: theta2 and c2 can hardly be distinguished from their neighbours; add poses in which it moves",
         ]
     );
     assert_eq!(
         tracker("1,10,20,-11,1,2,3\n2,20,30,-11.5,90,50,3\n".into()),
         [
             "measurements.csv: joint 3 is beyond its limits -10 mm to 150 mm in 2 rows, first in pose 1 (line 2, -11 mm): is it the same robot?",
-            "measurements.csv: joint 3 moves by 0.5 mm in all: d3 can hardly be told from their neighbours; add poses in which it moves",
+            "measurements.csv: joint 3 moves by 0.5 mm in all: d3 can hardly be distinguished from their neighbours; add poses in which it moves",
         ]
     );
     assert_eq!(
@@ -172,7 +172,7 @@ fn odd_files_are_read_with_a_warning() {
             "campaign.toml",
             "rod = \"rod.toml\"\nrig = \"rig.csv\"\n",
             "",
-            "there is a contact_force_n, but no rod that it could bend",
+            "there is a contact_force_n, but no rod for it to bend",
         ),
         (
             Desk::with_clamps(),

@@ -64,7 +64,8 @@ impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Warning::NotConverged { reason, passes } => {
-                write!(f, "the calibration did not come to rest after {passes} passes ({reason}): do not use its numbers")
+                write!(f, "the calibration did not converge in {passes} passes ({reason}): do not use \
+                    its numbers")
             }
             Warning::NoMasses => f.write_str(
                 "the robot's file has no masses, so the torques on its joints are unknown: joint compliances are off",
@@ -76,18 +77,19 @@ impl fmt::Display for Warning {
                 match relative_error.is_finite() && *relative_error < 1e6 {
                     true => write!(
                         f,
-                        "(each in its plausible range; the data know it to {} ranges only)",
+                        "(each in its plausible range; the data determine it to {} ranges only)",
                         significant(*relative_error, 2)
                     )?,
-                    false => write!(f, "(each in its plausible range; the data say nothing about it)")?,
+                    false => write!(f, "(each in its plausible range; the data do not determine it)")?,
                 }
-                f.write_str(": it is held at its nominal value; more varied poses would show it")
+                f.write_str(": it is held at its nominal value; more varied poses would identify it")
             }
             Warning::ManyNotIdentified { combinations, parameters } => {
                 let names: Vec<String> = parameters.iter().map(ToString::to_string).collect();
                 write!(
                     f,
-                    "these poses do not identify {combinations} combinations of the parameters {}: they are held at their nominal values; more varied poses would show them",
+                    "these poses do not identify {combinations} combinations of the parameters {}: \
+                     they are held at their nominal values; more varied poses would identify them",
                     names.join(", ")
                 )
             }
@@ -97,15 +99,16 @@ impl fmt::Display for Warning {
                     shown.map(|(name, d)| format!("{name} ({} mm)", significant(d / MM, 2))).collect();
                 let more = if more > 0 { format!(" and {more} more") } else { String::new() };
                 let (noun, verb) = if poses.len() == 1 { ("pose", "lies") } else { ("poses", "lie") };
-                write!(f, "{noun} {}{more} {verb} farther out than noise reaches", names.join(", "))?;
+                write!(f, "{noun} {}{more} {verb} farther out than noise explains", names.join(", "))?;
                 match count_in_full {
-                    true => f.write_str(": look at them, or let them count less with --robust huber"),
+                    true => f.write_str(": check them, or reduce their weight with --robust huber"),
                     false => f.write_str(" and were given less weight"),
                 }
             }
             Warning::UnequalNoise { quietest, noisiest, p_value } => write!(
                 f,
-                "the groups scatter unequally, from {} µm ({}) to {} µm ({}) per coordinate (Bartlett p = {}): each counts by its own noise",
+                "the groups scatter unequally, from {} µm ({}) to {} µm ({}) per coordinate (Bartlett \
+                 p = {}): each is weighted by its own scatter",
                 significant(quietest.1 / UM, 3),
                 quietest.0,
                 significant(noisiest.1 / UM, 3),
@@ -114,7 +117,8 @@ impl fmt::Display for Warning {
             ),
             Warning::Implausible { parameter, correction } => write!(
                 f,
-                "{parameter} is corrected by {} {}, which is more than a robot as built is off: are the angles' signs and zeros those of the robot's file?",
+                "{parameter} is corrected by {} {}, more than manufacturing errors explain: are the \
+                 angles' signs and zeros those of the robot's file?",
                 significant(correction / parameter.unit().si, 3),
                 parameter.unit().symbol
             ),

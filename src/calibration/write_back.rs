@@ -62,7 +62,7 @@ pub fn write_back_with(
     }
     comments.extend_from_slice(more);
     if !calibration.is_converged {
-        comments.push("THE CALIBRATION DID NOT COME TO REST: do not use these numbers.".into());
+        comments.push("THE CALIBRATION DID NOT CONVERGE: do not use these numbers.".into());
     }
     if !is_urdf(&campaign.robot_text) {
         return Ok(("calibrated.toml".into(), robot.to_toml(&comments)?));

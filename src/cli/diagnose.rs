@@ -16,7 +16,7 @@ use super::output::Outcome;
 
 #[derive(Debug, Subcommand)]
 pub enum Diagnose {
-    /// Which physics of rod or rig the model of a rod left out: located, named, fitted, proved on held-out readings.
+    /// Which physics the model of a rod left out: located, named, measured, confirmed on held-out readings.
     Rig(Rig),
     /// Which physics of robot, rod, fixture or procedure a calibration left out: which joint, clamp, time or pose.
     Calibration(calibration::Calibration),
@@ -39,13 +39,14 @@ fn notes() -> String {
     let effects = listed(registry::ALL.iter().map(|known| &known.effect));
     format!(
         "\
-The model is the rod as its file gives it, nothing fitted. Readings that differ
-from it are explained by as few of these effects as they need:
+The model is the rod as its file gives it; nothing is fitted. Readings that
+differ from it are explained by as few of these effects as possible:
 
 {effects}
-What these readings cannot tell apart is said, with the measurement that would.
-What no effect explains is described, and not named. More columns tell more:
-trial, phase (load, unload), time_s, temperature_c.
+Effects that these readings cannot distinguish are listed, with the measurement
+that would distinguish them. What no effect explains is described, not named.
+Optional columns make more effects testable: trial, phase (load, unload),
+time_s, temperature_c, session, loaded_at_s.
 
 Exit status: 0 the readings agree with the model; 1 they do not, and the first
 line says why; 2 could not run."

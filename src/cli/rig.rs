@@ -63,8 +63,8 @@ Readings are offsets from the unloaded, zeroed rod, one row for each loading:
   trial                 number of the repeat, optional
 
 Three loads or more, twice or more each, give every slope a standard error and
-show whether the line is straight. A line that does not pass through zero tells
-of friction in the slide or of a tare. `rodcal --help` explains r and r_rod.";
+show whether the line is straight. A line that does not pass through zero means
+friction in the slide or a tare. `rodcal --help` explains r and r_rod.";
 
 impl Rig {
     pub fn run(&self) -> Result<Outcome> {

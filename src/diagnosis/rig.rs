@@ -197,7 +197,7 @@ impl RigModel {
         }
         let missing = registry::ALL.map(|effect| match has_rod || !effect.needs_rod {
             true => (effect.missing)(&context),
-            false => "there is no rod: straight lines have no parts",
+            false => "it needs a rod file",
         });
         entries.extend(nonparametric::all(&self.data, &deflections, has_rod));
         entries.retain(|(candidate, _)| is_wanted(candidate));

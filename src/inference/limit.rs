@@ -35,48 +35,54 @@ impl fmt::Display for Limit {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Limit::NoRepeats => f.write_str(
-                "No reading was repeated: the noise is judged by what the best story leaves, so that every claim is \
-                 weaker. Read every load at least twice, each time from a new zero.",
+                "No reading was repeated: the scatter is estimated from the residuals of the best \
+                 hypothesis, which weakens every conclusion. Read every load at least twice, each time \
+                 from a new zero.",
             ),
             Limit::OneAxis(axis) => write!(
                 f,
-                "Loads along {axis} only: many parts of the rod yield alike under them. Loads along a second axis tell \
-                 more than repeats do.",
+                "Loads along {axis} only: many parts of the rod deflect alike under them. A second \
+                 load axis shows more than repeats do.",
             ),
             Limit::OneLoad => f.write_str(
-                "One size of load only: friction, offsets and play look like stiffness. Use three loads or more.",
+                "One size of load only: friction, offsets and play cannot be distinguished from \
+                 stiffness. Use three loads or more.",
             ),
             Limit::FewReadings(count) => write!(
                 f,
-                "Only {count} readings: what is held out for the proof leaves little to learn from, and small effects \
-                 stay unseen.",
+                "Only {count} readings: few are left to fit when some are held out, and small effects \
+                 cannot be detected.",
             ),
-            Limit::NoFoldsOfReadings => {
-                f.write_str("The readings are too few to hold any out: nothing is proved by prediction.")
-            }
+            Limit::NoFoldsOfReadings => f.write_str(
+                "The readings are too few to hold any out: no finding is confirmed by \
+                    prediction.",
+            ),
             Limit::NotConverged => f.write_str(
-                "The calibration did not come to rest: what it leaves is no measure of the robot. Look at `calibrate` first.",
+                "The calibration did not converge: its residuals do not describe the robot. Run rodcal \
+                 calibrate first.",
             ),
             Limit::FewPoses(rows, parameters) => write!(
                 f,
-                "Only {rows} poses for {parameters} calibrated parameters: these take up most of what else is wrong, and small \
-                 effects stay unseen.",
+                "Only {rows} poses for {parameters} calibrated parameters: these absorb most other \
+                 errors, and small effects cannot be detected.",
             ),
             Limit::NarrowJoint(joint, range) => write!(
                 f,
-                "Joint {} moved over {:.0}° only: what depends on its angle stays unseen.",
+                "Joint {} moved over {:.0}° only: effects that follow its angle cannot be detected.",
                 joint + 1,
                 range.to_degrees()
             ),
             Limit::OnAxis(joint, lever) => write!(
                 f,
-                "Joint {} cannot be seen: the target lies on its axis (at most {:.2} mm beside it). Offset the tool.",
+                "Joint {} cannot be observed: the target lies on its axis (at most {:.2} mm away). \
+                 Offset the tool.",
                 joint + 1,
                 lever / MM
             ),
-            Limit::NoFoldsOfPoses => {
-                f.write_str("The poses are too few to hold any out: nothing is proved by prediction.")
-            }
+            Limit::NoFoldsOfPoses => f.write_str(
+                "The poses are too few to hold any out: no finding is confirmed by \
+                    prediction.",
+            ),
         }
     }
 }

@@ -28,6 +28,17 @@ impl Quantity {
         if self.value < 0.0 { self.map(|value| -value) } else { self }
     }
 
+    /// A ratio in words: `12 ± 2 % softer` up to a factor of 2, `9.8 ± 0.1 times softer` beyond it;
+    /// of a ratio below 1 its inverse, with the other word.
+    pub fn compared(self, above: &str, below: &str) -> String {
+        let is_above = self.value >= 1.0;
+        let (ratio, word) = if is_above { (self, above) } else { (self.map(|ratio| 1.0 / ratio), below) };
+        match ratio.value <= 2.0 {
+            true => format!("{} {word}", ratio.map(|ratio| 100.0 * (ratio - 1.0)).say("%")),
+            false => format!("{} times {word}", ratio.say("")),
+        }
+    }
+
     /// `1.02 ± 0.04 N`; where a bound cuts the interval off, `0.3 (0 to 0.9) N`.
     pub fn say(&self, unit: &str) -> String {
         let half = (self.high - self.low) / 2.0;
@@ -58,6 +69,17 @@ impl Quantity {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_ratio_is_in_percent_up_to_two_and_a_factor_beyond() {
+        let words = |value: f64| {
+            Quantity { value, low: 0.98 * value, high: 1.02 * value }.compared("softer", "stiffer")
+        };
+        assert_eq!(words(1.12), "12 ± 2 % softer");
+        assert_eq!(words(9.8), "9.80 ± 0.20 times softer");
+        assert_eq!(words(0.5), "100 ± 4 % stiffer");
+        assert_eq!(words(1.0 / 7.0), "7.00 ± 0.14 times stiffer");
+    }
 
     #[test]
     fn a_value_has_the_digits_of_its_uncertainty() {

@@ -180,17 +180,17 @@ pub fn headline(
     cross_validation: Option<&CrossValidation>,
 ) -> String {
     if !calibration.is_converged {
-        return format!("{}: the calibration did not come to rest.", campaign.robot.name);
+        return format!("{}: the calibration did not converge.", campaign.robot.name);
     }
     let residual = Summary::of(&calibration.residuals());
     let (count, poses) = (calibration.parameters.len(), campaign.measurements.len());
     let rod = match (&campaign.rod, calibration.mode) {
-        (Some(rod), Mode::None) => format!(", rod {} taken for rigid", rod.name),
+        (Some(rod), Mode::None) => format!(", rod {} assumed rigid", rod.name),
         (Some(rod), mode) => format!(", rod {} compensated ({})", rod.name, mode.name()),
         (None, _) => String::new(),
     };
     let mut words = format!(
-        "{}{rod}: {poses} poses fit {count} parameters to {} rms",
+        "{}{rod}: {count} parameters fitted to {poses} poses, residual {} rms",
         campaign.robot.name,
         length(residual.rms)
     );
@@ -201,22 +201,21 @@ pub fn headline(
         words += &match (&campaign.measurements.targets, validation.refit) {
             (Targets::Sockets(_), _) => {
                 format!(
-                    "; {count} validation poses scatter in their sockets by {}",
+                    "; the scatter of {count} validation poses in their sockets is {}",
                     described(&validation.summary)
                 )
             }
             (_, Refit::BaseTool) => format!(
-                "; it predicts {count} validation poses to {} (base and tool fitted again)",
+                "; error at {count} validation poses {} (base and tool fitted again)",
                 described(&validation.summary)
             ),
             (_, Refit::Nothing) => {
-                format!("; it predicts {count} validation poses to {}", described(&validation.summary))
+                format!("; error at {count} validation poses {}", described(&validation.summary))
             }
         };
     }
     if let Some(cv) = cross_validation {
-        words +=
-            &format!("; held-out poses ({} folds) are predicted to {}", cv.folds, described(&cv.summary));
+        words += &format!("; error at held-out poses ({} folds) {}", cv.folds, described(&cv.summary));
     }
     words + "."
 }

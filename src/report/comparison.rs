@@ -99,8 +99,8 @@ pub fn verdict(campaign: &Campaign, comparison: &Comparison) -> String {
     let largest = comparison.differences.iter().max_by(|a, b| a.mean.abs().total_cmp(&b.mean.abs()));
     match (better.as_slice(), largest) {
         ([], Some(d)) => format!(
-            "{name}: no mode is better than another beyond chance. Mean errors on {on}: {means}; the largest difference, \
-             {} less {}, is {} µm with a 95 % interval of {} to {} µm.",
+            "{name}: no difference between the modes is significant. Mean errors on {on}: {means}; the \
+             largest difference, {} less {}, is {} µm with a 95 % interval of {} to {} µm.",
             d.mode.name(),
             d.against.name(),
             um(d.mean),
@@ -149,13 +149,14 @@ pub fn sections(campaign: &Campaign, comparison: &Comparison) -> Vec<Section> {
             "Modes side by side",
             vec![
                 Block::Paragraph(format!(
-                    "Every mode is calibrated on the same {} poses and judged by its errors on {}. Intervals come from \
-                     a paired bootstrap over poses ({} draws): poses are drawn again, and {}.",
+                    "Every mode is calibrated on the same {} poses and compared by its errors on {}. \
+                     Intervals come from a paired bootstrap over poses ({} draws): poses are drawn \
+                     again, and {}.",
                     recording.len(),
                     judged_by(campaign, comparison),
                     comparison.draws,
                     match comparison.cross_validations {
-                        None => "both the calibration and its judgement are repeated on them",
+                        None => "the calibration and its validation are repeated on them",
                         Some(_) => "their held-out errors are compared",
                     }
                 )),
@@ -224,7 +225,7 @@ fn modes_table(comparison: &Comparison) -> Table {
         let (summary, (low, high)) = (comparison.summary(index), comparison.intervals[index]);
         let residual = crate::calibration::Summary::of(&calibrated.residuals());
         let words = match calibrated.mode {
-            Mode::None => "taken for rigid",
+            Mode::None => "assumed rigid",
             Mode::Calc => "closed form",
             Mode::Fea => "beam model",
             Mode::Meas => "measured on a rig",
@@ -239,7 +240,7 @@ fn modes_table(comparison: &Comparison) -> Table {
 fn differences_table(comparison: &Comparison) -> Table {
     let mut columns = vec![Column::text("mode"), Column::text("less")];
     columns.extend(["difference", "95 % from", "to"].map(|name| Column::number(name, "µm")));
-    columns.push(Column::text("more than chance"));
+    columns.push(Column::text("significant"));
     let mut table = Table::new(
         "differences",
         "Differences of the mean errors; negative where the first mode is better.",

@@ -51,8 +51,8 @@ pub fn json(robot: &Robot, prediction: &Prediction) -> Value {
 pub fn report(robot: &Robot, prediction: &Prediction) -> Report {
     let mut columns = vec![Column::text("pose")];
     columns.extend(["x", "y", "z", "sd x", "sd y", "sd z"].map(|name| Column::number(name, "mm")));
-    let caption = "The tip in the base frame {0}. sd: standard deviation, of the error of poses that the diagnosis had held \
-                   out and of what the calibration does not know better.";
+    let caption = "The tip in the base frame {0}. sd: standard deviation, from the error of held-out \
+                   poses in the diagnosis and from the uncertainty of the calibration.";
     let mut table = Table::new("prediction", caption, columns);
     for (query, tip, sd) in &prediction.tips {
         let mut cells = vec![query.pose.clone()];
@@ -63,13 +63,17 @@ pub fn report(robot: &Robot, prediction: &Prediction) -> Report {
     let most = prediction.tips.iter().filter_map(|(_, _, sd)| Some(sd.as_ref()?.amax())).reduce(f64::max);
     let known = match most {
         Some(sd) => format!(", each coordinate to {:.3} mm or better (1 σ)", sd / MM),
-        None => "; the model does not say how accurate it is".into(),
+        None => "; the model states no uncertainty".into(),
+    };
+    let tips = match prediction.tips.len() {
+        1 => "1 tip".to_owned(),
+        many => format!("{many} tips"),
     };
     Report {
         title: format!("Predicted tips of {}", robot.name),
-        headline: format!("{}: {} tips predicted{known}.", robot.name, prediction.tips.len()),
+        headline: format!("{}: {tips} predicted{known}.", robot.name),
         warnings: Vec::new(),
-        sections: vec![Section::new("Where the tip is", vec![Block::Table(table)])],
+        sections: vec![Section::new("Predicted tips", vec![Block::Table(table)])],
         provenance: Vec::new(),
     }
 }

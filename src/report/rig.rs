@@ -104,12 +104,15 @@ pub fn headline(fit: &Fit, rod: Option<&Rod>) -> String {
     match (&fit.measured, rod) {
         (Some(m), Some(rod)) => {
             let (name, r) = (&rod.name, &m.rod_ratio);
-            let percent = significant(100.0 * (r.value - 1.0).abs(), 2);
+            let (ratio, word) = if r.value >= 1.0 { (r.value, "softer") } else { (1.0 / r.value, "stiffer") };
+            let by = match ratio <= 2.0 {
+                true => format!("{} %", significant(100.0 * (ratio - 1.0), 2)),
+                false => format!("{} times", significant(ratio, 3)),
+            };
             let agrees = r.half_width_95().is_some_and(|w| (r.value - 1.0).abs() <= w);
-            let verdict = match (agrees, r.value >= 1.0) {
-                (true, _) => format!("Rod {name} is as stiff as its model, within the uncertainty"),
-                (false, true) => format!("Rod {name} is {percent} % softer than its model"),
-                (false, false) => format!("Rod {name} is {percent} % stiffer than its model"),
+            let verdict = match agrees {
+                true => format!("Rod {name} is as stiff as its model, within the uncertainty"),
+                false => format!("Rod {name} is {by} {word} than its model"),
             };
             format!("{verdict}: r_rod = {}{}.", significant(r.value, 5), interval(r))
         }
@@ -135,9 +138,9 @@ fn four(value: f64) -> String {
 fn verdict(line: &Line) -> String {
     match line.lack_of_fit {
         Some(test) if test.is_significant() => {
-            format!(", but the readings leave a straight line (lack of fit F = {})", four(test.f))
+            format!(", but the readings do not lie on a straight line (lack of fit F = {})", four(test.f))
         }
-        Some(test) => format!(", straight within its noise (lack of fit F = {})", four(test.f)),
+        Some(test) => format!(", straight within its scatter (lack of fit F = {})", four(test.f)),
         None => String::new(),
     }
 }
@@ -145,14 +148,13 @@ fn verdict(line: &Line) -> String {
 /// The sections of [`report`], for reports that hold more than one rod.
 pub fn sections(fit: &Fit, readings: &Readings, rod: Option<&Rod>) -> Vec<Section> {
     let name = rod.map_or("straight line".to_owned(), |rod| format!("rod {}", rod.name));
-    let mut lines = vec![
-        Block::Paragraph(
-            "Repeats are averaged before anything is concluded from them. Each line has an intercept: where it \
-             crosses the load axis is what friction in the slide (or a tare) takes off every load. F compares the averages' \
-             distance from the line with the scatter of repeats; a p below 0.01 means the line is not straight."
-                .into(),
-        ),
-    ];
+    let mut lines = vec![Block::Paragraph(
+        "Repeats are averaged first. Each line has an intercept: the point where it crosses the \
+             load axis is the load that friction in the slide (or a tare) takes off. F compares the \
+             averages' distance from the line with the scatter of repeats; a p below 0.01 means that \
+             the line is not straight."
+            .into(),
+    )];
     lines.extend(
         readings.source.iter().map(|source| Block::Paragraph(format!("Source of the readings: {source}"))),
     );
@@ -208,7 +210,7 @@ fn lines_table(fit: &Fit) -> Table {
         ]);
         if line.trials_differ {
             table.notes.push(format!(
-                "{}: trials differ by more than their noise; the standard errors count whole trials.",
+                "{}: trials differ by more than their scatter; the standard errors count whole trials.",
                 line.key.label()
             ));
         }
@@ -321,14 +323,12 @@ fn residual_figure(fit: &Fit) -> Option<super::chart::Figure> {
     };
     (!fit.lines.is_empty()).then(|| {
         residuals(&Residuals {
-            title: "What the lines leave".into(),
+            title: "Residuals of the lines".into(),
             series: fit.lines.iter().map(series).collect(),
             noise_um,
             noise_label: "± 2 standard errors of an average, from repeats".into(),
         })
-        .captioned(
-            "Averages less the fitted line. Points that follow a curve, or leave the band, are more than noise.",
-        )
+        .captioned("Averages less the fitted line. Pure noise would lie within the band and follow no curve.")
     })
 }
 

@@ -150,7 +150,8 @@ impl fmt::Display for Warning {
             ),
             Warning::Untested { line } => write!(
                 f,
-                "{line} has two loads and no repeats: its slope has no standard error, and nothing shows whether it is straight; read at three loads or more, twice or more each"
+                "{line} has two loads and no repeats: its slope has no standard error, and its \
+                 straightness cannot be tested; read at three loads or more, twice or more each"
             ),
             Warning::BeyondLinearRange { load, range } => write!(
                 f,
@@ -163,7 +164,8 @@ impl fmt::Display for Warning {
             }
             Warning::LoadOffset { line, offset } => write!(
                 f,
-                "{line} crosses the load axis at {} N, not at zero: as if friction in the slide took that off every load, or the loads had a tare",
+                "{line} crosses the load axis at {} N, not at zero: friction in the slide or a tare of \
+                 the loads would explain it",
                 offset.show(1.0)
             ),
             Warning::CrossTalk { line, slope } => write!(

@@ -105,7 +105,7 @@ fn readings_of_the_model_are_consistent_and_end_with_status_0() {
     let answer = sandbox.run("diagnose rig rods/5.toml clean.csv");
     assert_eq!(answer.status, Some(0), "{}", answer.stdout);
     assert!(
-        answer.stdout.starts_with("The readings agree with the model: what is left, "),
+        answer.stdout.starts_with("The readings agree with the model: the residual, "),
         "{}",
         answer.stdout
     );

@@ -99,6 +99,6 @@ impl Reader<'_> {
             return Ok(());
         }
         let found = format!("{} stands {there} already", self.toml.source(name));
-        Err(self.toml.wrong(name, found, "one wish for each parameter"))
+        Err(self.toml.wrong(name, found, "one constraint for each parameter"))
     }
 }

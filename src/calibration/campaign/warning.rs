@@ -155,8 +155,8 @@ impl fmt::Display for Warning {
                 };
                 write!(
                     f,
-                    "{file}: joint {number} moves by {range} in all: {suffering} can hardly be told from their \
-                     neighbours; add poses in which it moves"
+                    "{file}: joint {number} moves by {range} in all: {suffering} can hardly be \
+                     distinguished from their neighbours; add poses in which it moves"
                 )
             }
             Warning::OtherSize { file, measured, nominal } => write!(
@@ -182,7 +182,7 @@ impl fmt::Display for Warning {
                 "there is a rod and there are clamps, but no contact_force_n: the rod bends under gravity only"
             ),
             Warning::ContactForceWithoutRod => {
-                write!(f, "there is a contact_force_n, but no rod that it could bend")
+                write!(f, "there is a contact_force_n, but no rod for it to bend")
             }
             Warning::ContactForceWithoutClamp => {
                 write!(f, "there is a contact_force_n, but no clamp: its components are read as along {{W}}")

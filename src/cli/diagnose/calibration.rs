@@ -30,13 +30,13 @@ fn notes() -> String {
     let effects = listed(registry::ALL.iter().map(|known| &known.effect));
     format!(
         "\
-The robot is calibrated first. What that leaves is explained by as few of these
-effects as it needs, each judged after all that the calibration can absorb:
+The robot is calibrated first. Its residuals are explained by as few of these
+effects as possible, each without the part that the calibration absorbs:
 
 {effects}
-What these poses cannot tell apart is said, and so is what cannot be seen in
-them. What no effect explains is described, and not named. The order of the
-rows is the order of recording; columns time_s and temperature_c tell more.
+Effects that these poses cannot distinguish, or cannot show, are listed. What
+no effect explains is described, not named. The order of the rows is the order
+of recording; columns time_s and temperature_c make more effects testable.
 
 Exit status: 0 the calibration explains the poses; 1 it does not, and the first
 line says why; 2 could not run."

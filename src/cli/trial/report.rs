@@ -102,7 +102,7 @@ fn rates(half: &str, part: &Part) -> Table {
     }
     Table {
         name: format!("{half}-rates"),
-        caption: "What was asked and how often it was so, with Wilson's 95 % intervals.".into(),
+        caption: "Rates with Wilson's 95 % intervals.".into(),
         columns: vec![
             Column::text("what"),
             Column::text("cases"),
@@ -153,8 +153,9 @@ fn confusion(half: &str, part: &Part) -> Figure {
     chart.height_px = Some(26.0 * names.len() as f64);
     let truths = rows.len();
     Figure::from(chart).named(format!("{half}-confusion")).captioned(format!(
-        "What was taken for what: {truths} truths that could have been identified, and the strongest finding. The numbers are cases; \
-         a circle or a square is as large as its share of the row. To physics outside the library `unexplained` is the right answer."
+        "Confusion matrix: {truths} identifiable truths against the strongest finding. The numbers are \
+         cases; a circle or a square is as large as its share of the row. For physics outside the \
+         library, unexplained is the right answer."
     ))
 }
 
@@ -197,8 +198,9 @@ fn bins(half: &str, part: &Part) -> Option<Figure> {
     let chart = Chart::new("", "expected log Bayes factor of the oracle", "name and place right");
     let chart = curve(chart, &points).with(Mark::Vertical { at: 5.0, text: "identifiable".into() });
     Some(Figure::from(chart).named(format!("{half}-detectability")).captioned(
-        "Cases with one effect: share whose name and place are right, against what could have been known at best. Points stand \
-         in the middle of their bins; bins without an end are drawn as wide as a factor of 3.",
+        "Cases with one effect: share whose name and place are right, against the evidence that an \
+         oracle would have. Points stand in the middle of their bins; bins without an end are drawn as \
+         wide as a factor of 3.",
     ))
 }
 
@@ -218,8 +220,9 @@ fn power(half: &str, part: &Part) -> Option<Figure> {
         Figure { panels, columns: 3, shared_legend: true, ..Figure::default() }
             .named(format!("{half}-power"))
             .captioned(
-                "Probability of the right name against the root mean square of what an effect does to the readings, over their \
-                 noise. All cases with one effect count, those that nobody could have identified as well.",
+                "Probability of the right name against the rms change of the readings by the effect, \
+                 over their noise. All cases with one effect count, also those that are not \
+                 identifiable.",
             )
     })
 }
@@ -231,7 +234,7 @@ fn failures(half: &str, failures: &[Failure]) -> Table {
     let left_out = failures.len().saturating_sub(MOST_FAILURES);
     Table {
         name: format!("{half}-failures"),
-        caption: "Cases that somebody should look at.".into(),
+        caption: "Cases to inspect.".into(),
         columns: ["case", "what", "truth", "said"].map(Column::text).to_vec(),
         rows: failures.iter().take(MOST_FAILURES).map(row).collect(),
         notes: (left_out > 0).then(|| format!("{left_out} more are in the JSON.")).into_iter().collect(),

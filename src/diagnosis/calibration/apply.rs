@@ -54,15 +54,15 @@ pub fn apply(found: &CalibrationDiagnosis) -> Result<Option<Applied>> {
     let calibration = calibrate(&extended, model.calibration.mode, &Options::default())?;
     let held_out = found.diagnosis.held_out.as_ref();
     let sd = held_out.map_or(found.diagnosis.noise, |held_out| held_out.after);
-    let mut comments = vec![format!("With what was found: {}.", entered.join("; "))];
+    let mut comments = vec![format!("With the findings: {}.", entered.join("; "))];
     if !removed.is_empty() {
-        comments.push(format!("Taken out of the measured points: {}.", removed.join("; ")));
+        comments.push(format!("Removed from the measured points: {}.", removed.join("; ")));
     }
     if !left_out.is_empty() {
-        comments.push(format!("Left out, for this file cannot hold it: {}.", left_out.join("; ")));
+        comments.push(format!("Not written, because this file has no key for it: {}.", left_out.join("; ")));
     }
     let sd_um = sd / UM;
-    comments.push(format!("sd: {sd_um:.1} µm per coordinate, the error of poses that were held out."));
+    comments.push(format!("sd: {sd_um:.1} µm per coordinate, the error of held-out poses."));
     let mut files = vec![write_back_with(&extended, &calibration, Some(sd), &comments)?];
     if is_urdf(&model.campaign.robot_text) {
         let joints = 0..extended.robot.joints.len();

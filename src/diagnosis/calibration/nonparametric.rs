@@ -312,8 +312,8 @@ fn reversal(context: &Context, j: usize, way: Way, sign: &dyn Fn(usize) -> f64) 
     });
     let joint = format!("joint {}", j + 1);
     let (form, either) = match way {
-        Way::Approach => ("a curve for either way", "either way of coming there"),
-        Way::Load => ("a curve for either load", "either way in which it is loaded"),
+        Way::Approach => ("a curve for each direction of approach", "each direction of approach"),
+        Way::Load => ("a curve for each sign of the torque", "each sign of its torque"),
     };
     let follows = format!("follows the angle of {joint}, another curve for {either}");
     let label = format!("{joint}, {form}");
@@ -351,7 +351,7 @@ fn links(context: &Context) -> Vec<Entry> {
                 let link = format!("link {}", link + 1);
                 let joints = format!("joint {} and joint {}", i + 1, j + 1);
                 let label = format!("{link}, turned by {joints}");
-                let follows = format!("turns or bends {link} with {joints}");
+                let follows = format!("bends {link} with {joints}");
                 entries.push(curve(label, follows, None, parameters.collect()));
             }
         }

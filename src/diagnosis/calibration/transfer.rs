@@ -63,7 +63,7 @@ impl CalibrationDiagnosis<'_> {
             let law = model.law(part.term.candidate);
             let moved = moved(candidate, law, &part.term, &context).ok_or_else(|| {
                 not(
-                    format!("it does not say what {}, {}, depends on", candidate.effect, part.location),
+                    format!("it lacks the variable that {}, {}, depends on", candidate.effect, part.location),
                     "give its rows the columns of the diagnosed recording",
                 )
             })?;

@@ -77,8 +77,8 @@ fn corrected(model: &RigModel, rod: &Rod, findings: &[Finding]) -> Result<Correc
     let provenance = format!("Rod {} with what its rig readings ({}) show", rod.name, readings.file);
     let rod_toml = corrected.to_toml(&[
         provenance + ":",
-        if entered.is_empty() { "nothing that is the rod's".into() } else { entered.join("; ") },
-        "Materials are effective ones: moduli that make the beam model yield as the rod did.".into(),
+        if entered.is_empty() { "no finding belongs to the rod".into() } else { entered.join("; ") },
+        "Moduli are effective values: with them the beam model is as stiff as the rod was.".into(),
     ]);
     // what a user will get from the file
     let corrected = Rod::from_toml(&rod.name, &rod_toml)?;
@@ -167,11 +167,11 @@ fn without(
     let source = readings.source.as_deref().map(|source| format!("Recorded: {source}"));
     let mut above = vec![
         format!(
-            "CORRECTED, not as recorded: the readings of {} without what a diagnosis found",
+            "CORRECTED, not as recorded: the readings of {} without the effects of a diagnosis",
             readings.file
         ),
-        of("Taken out as the rig's", removed),
-        of("Taken out, so that the compliance at small loads right after loading is left", left_out),
+        of("Removed, effects of the rig", removed),
+        of("Removed, so that the compliance at small loads directly after loading remains", left_out),
     ];
     above.extend(source);
     readings.to_csv(&above)

@@ -7,10 +7,10 @@ use crate::report::Block;
 use crate::report::table::{Column, Table};
 use crate::units::{DEG, MM, UM, significant};
 
-pub(super) const PARAMETERS_NOTE: &str = "Names are those of the Hayati table: theta, d, a, alpha, beta of each link; c is \
-     a joint's compliance, base_* where {0} stands in {W}, base_r* its turn away from the first guess about the axes of \
-     {W}, tool_* the undeflected tip in {T}. Standard errors are for the noise that the residuals show, unless the \
-     campaign states it.";
+pub(super) const PARAMETERS_NOTE: &str = "Names are those of the Hayati table: theta, d, a, alpha, \
+     beta of each link; c is a joint's compliance, base_* the position of {0} in {W}, base_r* the \
+     correction to the base rotation, about the world axes, tool_* the undeflected tip in {T}. \
+     Standard errors follow from the scatter of the residuals, unless the campaign states the noise.";
 
 /// A number of micrometres for a table.
 fn um(metres: f64) -> String {
@@ -21,7 +21,7 @@ pub(super) fn errors(calibration: &Calibration, cross_validation: Option<&CrossV
     let columns = ["mean", "max", "median", "SD", "rms"].map(|name| Column::number(name, "µm"));
     let mut table = Table::new(
         "errors",
-        "Distances of the tip from where it was measured.",
+        "Distances of the tip from its measured position.",
         [vec![Column::text("of"), Column::number("poses", "")], columns.to_vec()].concat(),
     );
     let mut row = |name: &str, count: usize, summary: &Summary| {
@@ -42,7 +42,7 @@ pub(super) fn errors(calibration: &Calibration, cross_validation: Option<&CrossV
 pub(super) fn groups(recording: &Recording, calibration: &Calibration) -> Table {
     let mut table = Table::new(
         "groups",
-        "Residuals by clamp or socket, and the noise of one coordinate that each counts by.",
+        "Residuals by clamp or socket, and the noise of one coordinate by which each is weighted.",
         vec![
             Column::text("group"),
             Column::number("poses", ""),
@@ -132,8 +132,10 @@ pub(super) fn correlations(calibration: &Calibration, limit: f64) -> Block {
     if pairs.is_empty() {
         return Block::Paragraph(format!("No two estimates correlate by more than {limit}."));
     }
-    let caption =
-        format!("Estimates that correlate by more than {limit}: the poses tell them apart only roughly.");
+    let caption = format!(
+        "Estimates that correlate by more than {limit}: the poses distinguish them only \
+            roughly."
+    );
     let mut table = Table::new(
         "correlations",
         caption,
@@ -151,7 +153,7 @@ pub(super) fn correlations(calibration: &Calibration, limit: f64) -> Block {
 pub(super) fn observability(calibration: &Calibration) -> Table {
     let mut table = Table::new(
         "observability",
-        "How well the poses show the parameters.",
+        "How well the poses determine the parameters.",
         vec![Column::text("index"), Column::text("meaning"), Column::number("value", "")],
     );
     let show = |value: f64| if value.is_finite() { significant(value, 4) } else { "∞".into() };
@@ -178,7 +180,7 @@ pub(super) fn passes(calibration: &Calibration) -> Table {
     let mut table = Table::new(
         "passes",
         format!(
-            "Compensation loop: deflections recomputed until they stand still. Last fit: {}.",
+            "Compensation loop: deflections recomputed until they converge. Last fit: {}.",
             calibration.fit.reason
         ),
         vec![

@@ -41,19 +41,19 @@ pub fn headline(found: &CalibrationDiagnosis) -> String {
 /// What was written into the robot, on the page and in the JSON.
 pub fn applied(report: &mut Report, json: &mut Value, applied: &Applied) {
     let said = [
-        ("Entered into the robot", &applied.entered),
-        ("Taken out of the measured points", &applied.removed),
-        ("Left out, for the model cannot hold it", &applied.left_out),
+        ("Written into the robot file", &applied.entered),
+        ("Removed from the measured points", &applied.removed),
+        ("Not written, because the file has no key for it", &applied.left_out),
     ];
     let list = |(what, list): (&str, &Vec<String>)| {
         list.iter().map(|words| format!("{what}: {words}")).collect::<Vec<_>>()
     };
     let mut points: Vec<String> = said.into_iter().flat_map(list).collect();
     points.push(format!(
-        "Calibrated again with that, the tip is {} µm on average from where it was measured.",
+        "Calibrated again with that, the mean distance of the tip from its measured position is {} µm.",
         um(applied.mean)
     ));
-    report.sections.push(Section::new("What becomes of the robot", vec![Block::List(points)]));
+    report.sections.push(Section::new("The corrected robot", vec![Block::List(points)]));
     json["applied"] = json!({
         "files": applied.files.iter().map(|(name, _)| name).collect::<Vec<_>>(),
         "entered": applied.entered,
@@ -117,7 +117,7 @@ fn subject<'a>(found: &'a CalibrationDiagnosis<'_>) -> Subject<'a> {
 /// A gear's shape takes several terms.
 fn details(found: &CalibrationDiagnosis, finding: &Finding) -> String {
     match gear_of(found, finding).is_some() && finding.parts.len() > 1 {
-        true => format!(" Its shape takes {} terms; the strongest is told.", finding.parts.len()),
+        true => format!(" Its shape has {} terms; the strongest is given.", finding.parts.len()),
         false => String::new(),
     }
 }
@@ -182,13 +182,9 @@ fn remainder(found: &CalibrationDiagnosis) -> Option<Remainder> {
     let left = found.diagnosis.discrepancy.as_ref()?;
     let (location, words, along) = match &left.location {
         Some(Location::Curve { label, follows, along }) => {
-            (label.clone(), format!("Something that no effect of the library explains {follows}"), *along)
+            (label.clone(), format!("An unexplained error {follows}"), *along)
         }
-        _ => (
-            "repeated poses".to_owned(),
-            "Repeated poses agree on something that no effect of the library explains".to_owned(),
-            None,
-        ),
+        _ => ("repeated poses".to_owned(), "Repeated poses share an unexplained error".to_owned(), None),
     };
     let rows = found.model.by_row(&left.shape);
     let largest = rows.iter().map(|row| row.norm()).fold(0.0, f64::max);
@@ -272,7 +268,7 @@ impl Distances {
     fn table(&self) -> Table {
         let columns = ["mean", "max", "median", "rms"].map(|name| Column::number(name, "µm"));
         let columns = [vec![Column::text("of"), Column::number("poses", "")], columns.to_vec()].concat();
-        let caption = "Distances of the tip from where it was measured.";
+        let caption = "Distances of the tip from its measured position.";
         let mut table = Table::new("distances", caption, columns);
         let mut row = |name: &str, lengths: &[f64]| {
             let summary = Summary::of(lengths);
@@ -280,10 +276,10 @@ impl Distances {
             table.row([vec![name.to_owned(), lengths.len().to_string()], numbers.to_vec()].concat());
         };
         row("calibration as it is", &self.before);
-        row("with what was found", &self.after);
+        row("with the findings", &self.after);
         if let Some((before, after)) = &self.held_out {
             row("held out, calibration as it is", before);
-            row("held out, with what was found", after);
+            row("held out, with the findings", after);
         }
         table
     }

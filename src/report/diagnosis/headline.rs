@@ -21,7 +21,7 @@ pub fn headline(subject: &Subject) -> String {
         return match remains {
             Some(remains) => format!("{remains}{nominal} {}", capital(&scatter(subject))),
             None => format!(
-                "{}:{} what is left, {} µm{}, is {}.",
+                "{}:{} the residual, {} µm{}, is {}.",
                 subject.agrees,
                 nominal.trim_end_matches('.').to_owned() + if nominal.is_empty() { "" } else { ";" },
                 um(rms(&diagnosis.after)),
@@ -39,7 +39,7 @@ pub fn headline(subject: &Subject) -> String {
             0 => String::new(),
             more => format!("; and {more} more"),
         };
-        words += &format!(" Found besides: {}{more}.", named.join("; "));
+        words += &format!(" Also found: {}{more}.", named.join("; "));
     }
     words += &worth(subject);
     match remains {
@@ -53,9 +53,9 @@ pub fn headline(subject: &Subject) -> String {
 fn scatter(subject: &Subject) -> String {
     let (test, noise) = (&subject.diagnosis.noise_test, um(subject.diagnosis.noise));
     match (test.stated, &subject.diagnosis.lack_of_fit_after) {
-        (Some(stated), _) => format!("noise is {noise} µm, stated are {} µm.", um(stated)),
+        (Some(stated), _) => format!("noise is {noise} µm (stated: {} µm).", um(stated)),
         (None, Some(_)) => format!("the repeats scatter by {noise} µm{}.", subject.per),
-        (None, None) => format!("{noise} µm{} are scatter of unknown origin.", subject.per),
+        (None, None) => format!("{noise} µm{} of unexplained scatter remain.", subject.per),
     }
 }
 
@@ -63,9 +63,9 @@ fn scatter(subject: &Subject) -> String {
 fn scatter_of(subject: &Subject) -> String {
     let (test, noise) = (&subject.diagnosis.noise_test, um(subject.diagnosis.noise));
     match (test.stated, &subject.diagnosis.lack_of_fit_after) {
-        (Some(stated), _) => format!("noise ({noise} µm; stated are {} µm)", um(stated)),
+        (Some(stated), _) => format!("noise ({noise} µm; stated: {} µm)", um(stated)),
         (None, Some(_)) => format!("as large as the scatter of the repeats ({noise} µm)"),
-        (None, None) => "scatter of unknown origin (nothing was repeated)".to_owned(),
+        (None, None) => "unexplained scatter (nothing was repeated)".to_owned(),
     }
 }
 
@@ -82,16 +82,14 @@ fn worth(subject: &Subject) -> String {
     let averaged = errors.averaged;
     let fitted = |why: &str| {
         let (before, after) = (um(errors.before), um(errors.after));
-        format!(
-            " Taking {it} into account lowers the error from {before} to {after} µm{averaged}{why}; {scatter}"
-        )
+        format!(" With {it}, the error falls from {before} to {after} µm{averaged}{why}; {scatter}")
     };
     // a single event says nothing about data that were held out
     let are_events = findings.iter().all(|finding| finding.kind() == Kind::Event);
     match errors.held_out {
         _ if are_events => fitted(""),
         Some((before, after)) if um(after) != um(before) && after < before => format!(
-            " Taking {it} into account lowers the held-out error from {} to {} µm{averaged}; {scatter}",
+            " With {it}, the held-out error falls from {} to {} µm{averaged}; {scatter}",
             um(before),
             um(after)
         ),
@@ -116,7 +114,7 @@ pub fn sentence(subject: &Subject, finding: &Finding) -> String {
         others.iter().take(RIVALS_SAID).map(|(effect, place)| format!(", or {}", (effect.cause_at)(place)));
     let more = if others.len() > RIVALS_SAID { ", or others" } else { "" };
     let said = said.collect::<String>();
-    format!("{description}{said}{more}; these {} cannot tell.", subject.noun)
+    format!("{description}{said}{more}; these {} cannot distinguish them.", subject.noun)
 }
 
 /// A finding without numbers.

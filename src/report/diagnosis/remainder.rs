@@ -63,7 +63,7 @@ impl Remainder {
         let of = if self.of == "row" { "pose" } else { self.of };
         let mut columns = vec![Column::text(of), Column::number(self.along.title(noun), self.along.unit())];
         columns.extend(self.coordinates.iter().map(|name| Column::number(*name, "µm")));
-        let mut table = Table::new("remainder", "The shape of what remains.", columns);
+        let mut table = Table::new("remainder", "The shape of the unexplained error.", columns);
         for sample in &self.samples {
             let mut cells = vec![sample.name.clone(), significant(sample.value, 4)];
             cells.extend(sample.left.iter().map(|left| format!("{:.1}", left / UM)));

@@ -101,7 +101,8 @@ fn nominal(found: &RigDiagnosis) -> Option<String> {
         false => format!("{} {}", significant(number.standard_uncertainty / number.si, 2), number.unit),
     };
     Some(format!(
-        "Stiffness is {share} {word} the file's: within what the file says of {} ({known}).",
+        "The stiffness is {share} {word} that of the rod file, within the stated uncertainty of {} \
+         ({known}).",
         number.name
     ))
 }
@@ -152,7 +153,7 @@ fn of_curve(
     Remainder {
         location: label.to_owned(),
         sentence: format!(
-            "Something that no effect of the library explains {follows}: {} µm rms, up to {} µm.",
+            "An unexplained error {follows}: {} µm rms, up to {} µm.",
             um(left.rms),
             um(left.shape.amax())
         ),
@@ -176,8 +177,9 @@ fn of_conditions(found: &RigDiagnosis, left: &Discrepancy) -> Remainder {
     });
     Remainder {
         sentence: format!(
-            "Averages of repeated readings leave the model by more than noise, in no shape that a smooth curve or an \
-             effect of the library describes: {} µm rms, most at {location} ({} µm).",
+            "Averages of repeated readings differ from the model by more than their scatter, in a \
+             shape that neither a smooth curve nor an effect of the library describes: {} µm rms, most \
+             at {location} ({} µm).",
             um(left.rms),
             um(average)
         ),

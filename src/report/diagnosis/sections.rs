@@ -36,7 +36,7 @@ fn findings(subject: &Subject) -> Section {
     }
     let points = findings.iter().enumerate().map(|(k, finding)| {
         let next = finding.next.as_ref();
-        let next = next.map_or_else(String::new, |next| format!(" To tell them apart: {}", next.words));
+        let next = next.map_or_else(String::new, |next| format!(" To distinguish them: {}", next.words));
         format!("{} {}{next}", sentence(subject, finding), details(subject, k, finding))
     });
     blocks.push(Block::List(points.collect()));
@@ -49,7 +49,7 @@ fn details(subject: &Subject, index: usize, finding: &Finding) -> String {
     let of = if subject.per.is_empty() { format!(" of the {}", subject.noun) } else { String::new() };
     let mut words = format!("It explains {} µm rms{of}{}", um(finding.explains), subject.per);
     if let Some((some, all)) = finding.found_in_folds {
-        words += &format!(", and is found again in {some} of {all} searches without a part of them");
+        words += &format!(", and is found in {some} of {all} searches that leave a part of them out");
     }
     words.push('.');
     words += subject.details.get(index).map_or("", String::as_str);
@@ -67,7 +67,7 @@ fn details(subject: &Subject, index: usize, finding: &Finding) -> String {
 fn location(subject: &mut Subject) -> Section {
     let mut blocks = vec![locate(subject)];
     blocks.append(&mut subject.places);
-    Section::new("Where it lives", blocks)
+    Section::new("Where the mismatch appears", blocks)
 }
 
 fn remains(subject: &Subject) -> Section {
@@ -75,7 +75,7 @@ fn remains(subject: &Subject) -> Section {
     let Some(left) = &subject.remainder else {
         let of = if subject.per.is_empty() { format!(" of the {}", subject.noun) } else { String::new() };
         let words = format!(
-            "{} µm rms are left{of}{}; that is their noise ({} µm).",
+            "The residual{of} is {} µm rms{}; the scatter is {} µm.",
             um(rms(&diagnosis.after)),
             subject.per,
             um(diagnosis.noise)
@@ -89,11 +89,7 @@ fn remains(subject: &Subject) -> Section {
 /// What the base model hides, and what the files have no data for.
 fn not_seen(subject: &Subject) -> Option<Section> {
     let hidden = hidden(subject).into_iter().map(|(effect, places)| {
-        format!(
-            "{} ({}): the calibration takes it up; its parameters would hide it.",
-            effect.spoken(),
-            places.join(", ")
-        )
+        format!("{} ({}): the parameters of the calibration absorb it.", effect.spoken(), places.join(", "))
     });
     let lacking = subject.not_testable.iter().map(|not| format!("{}: {}", not.effect.spoken(), not.reason));
     let points: Vec<String> = hidden.chain(lacking).collect();

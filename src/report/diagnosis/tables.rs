@@ -8,7 +8,7 @@ use crate::inference::{
     UNKNOWN, ranking, rms,
 };
 use crate::report::chart::Figure;
-use crate::report::pictures::diagnosis::{Candidate, Class, HeldOut, held_out, ranking as bars};
+use crate::report::pictures::diagnosis::{Candidate, Class, HeldOut, held_out, ranking as bars, to_one};
 use crate::report::table::{Column, Table};
 use crate::report::{Block, Section};
 use crate::units::{UM, significant};
@@ -28,13 +28,14 @@ pub fn parameters(findings: &[Finding]) -> Table {
         Column::text("effect"),
         Column::text("where"),
         Column::text("parameter"),
+        Column::text("unit"),
         Column::number("value", ""),
         Column::number("from", ""),
         Column::number("to", ""),
-        Column::number("chance", ""),
+        Column::number("p", ""),
     ];
-    let caption = "Parameters, in the units of their names, with 95 % intervals. Chance: the probability that noise alone \
-                   looks as much like it.";
+    let caption =
+        "Parameters with 95 % intervals. p: the probability that noise alone looks as much like the effect.";
     let mut table = Table::new("findings", caption, columns);
     for finding in findings {
         for (k, estimate) in finding.estimates.iter().enumerate() {
@@ -44,7 +45,8 @@ pub fn parameters(findings: &[Finding]) -> Table {
             table.row([
                 first(finding.effect.spoken()),
                 first(finding.location.to_string()),
-                estimate.name.clone(),
+                meaning(finding, &estimate.name),
+                unit(&estimate.name).map_or("", |(_, unit)| unit).to_owned(),
                 value,
                 low,
                 high,
@@ -53,6 +55,48 @@ pub fn parameters(findings: &[Finding]) -> Table {
         }
     }
     table
+}
+
+/// What a parameter is, by its effect's record: `friction force`; of a vector its axis as well.
+fn meaning(finding: &Finding, name: &str) -> String {
+    for (names, meaning) in finding.effect.parameters {
+        let names: Vec<&str> = names.split(", ").collect();
+        match names.iter().position(|one| *one == name) {
+            Some(axis) if names.len() == 3 => return format!("{meaning}, {}", ["x", "y", "z"][axis]),
+            Some(_) => return (*meaning).to_owned(),
+            None => {}
+        }
+    }
+    let bare = unit(name).map_or(name, |(end, _)| name.trim_end_matches(end));
+    bare.trim_end_matches('_').replace('_', " ")
+}
+
+/// The end of a parameter's name that is its unit, and the unit as people write it.
+fn unit(name: &str) -> Option<(&'static str, &'static str)> {
+    const UNITS: [(&str, &str); 21] = [
+        ("cycles_per_rev", "1/rev"),
+        ("per_decade", "1/decade"),
+        ("urad_per_nm3", "µrad/(N·m)³"),
+        ("urad_per_nm2", "µrad/(N·m)²"),
+        ("urad_per_nm", "µrad/(N·m)"),
+        ("urad_per_m", "µrad/m"),
+        ("urad_per_rad", "µrad/rad"),
+        ("n_per_mm", "N/mm"),
+        ("per_n2", "1/N²"),
+        ("per_n", "1/N"),
+        ("um_per_k", "µm/K"),
+        ("um_per_h", "µm/h"),
+        ("urad", "µrad"),
+        ("deg", "°"),
+        ("um", "µm"),
+        ("mm", "mm"),
+        ("kg", "kg"),
+        ("_g", "g"),
+        ("_n", "N"),
+        ("_s", "s"),
+        ("_k", "K"),
+    ];
+    UNITS.into_iter().find(|(end, _)| name.ends_with(end))
 }
 
 /// What else a finding may be (causes beyond those of its sentence), and where else.
@@ -87,8 +131,9 @@ pub fn locate(subject: &Subject) -> Block {
     let mut table = Table::new(
         "locate",
         format!(
-            "How much the {noun}' distance from the model follows each number of the recording. Strength: 0 none, 1 nothing \
-             else; z: standard deviations from what chance gives."
+            "How clearly the residuals of the {noun} follow each variable of the recording. Strength: \
+             0 not at all, 1 completely; z: distance from the value expected by chance, in standard \
+             deviations."
         ),
         vec![
             Column::text("along"),
@@ -117,10 +162,11 @@ pub fn locate(subject: &Subject) -> Block {
     table.rows.retain(|row| row[1] != "none" || row[4] != "none");
     match table.rows.len() {
         0 => Block::Paragraph(format!(
-            "What is left follows none of {all} numbers: order, place in the workspace, angles, torques and moves of joints."
+            "The residuals follow none of {all} variables: order, place in the workspace, angles, \
+             torques and moves of joints."
         )),
         some => {
-            table.notes.push(format!("Nothing follows any of {} other numbers.", all - some));
+            table.notes.push(format!("The residuals follow none of {} other variables.", all - some));
             Block::Table(table)
         }
     }
@@ -128,7 +174,7 @@ pub fn locate(subject: &Subject) -> Block {
 
 fn word(z: f64) -> &'static str {
     match z {
-        z if z >= STRONG => "strong",
+        z if z >= STRONG => "clear",
         z if z >= WEAK => "weak",
         _ => "none",
     }
@@ -140,15 +186,15 @@ pub fn proof(subject: &Subject) -> Section {
     let mut table = Table::new(
         "errors",
         format!(
-            "What is left of the {noun}. Held out: parts of the {noun} are predicted from the others, the search for effects \
-             included. F compares the averages of repeats with their scatter; a p below 0.001 says that something is left \
-             out."
+            "Residuals of the {noun}. Held out: each part of the {noun} is predicted from the others, \
+             the search for effects included. F compares the averages of repeats with their scatter; a \
+             p below 0.001 means that the model leaves something out."
         ),
         vec![
             Column::text("model"),
             Column::number("rms", "µm"),
             Column::number("held out", "µm"),
-            Column::number("noise", "µm"),
+            Column::number("scatter", "µm"),
             Column::number("F", ""),
             Column::number("p", ""),
         ],
@@ -171,7 +217,7 @@ pub fn proof(subject: &Subject) -> Section {
         test(&diagnosis.lack_of_fit_before),
     );
     row(
-        "with what was found",
+        "with the findings",
         rms(&diagnosis.after),
         held_out(|p| p.after),
         um(diagnosis.noise),
@@ -182,7 +228,7 @@ pub fn proof(subject: &Subject) -> Section {
         let interval = proof.gain_interval.map_or_else(String::new, |(low, high)| {
             format!(" (95 % interval {} to {} %)", percent(low), percent(high))
         });
-        let words = format!("Of the squares of held-out errors {} % vanish{interval}.", percent(proof.gain));
+        let words = format!("The squared held-out error falls by {} %{interval}.", percent(proof.gain));
         if !diagnosis.findings.is_empty() {
             blocks.push(Block::Paragraph(words));
         }
@@ -201,12 +247,12 @@ pub fn evidence(subject: &Subject) -> Section {
     let ranked = ranking(subject.candidates, subject.diagnosis);
     let mut table = Table::new(
         "ranking",
-        "Every effect by itself against noise alone, at its best place. Odds are powers of ten: 2 is a hundred to one. \
-         An effect that says little by itself may be adopted for what another one leaves.",
+        "Every effect by itself against noise alone, at its best place. An effect with small odds by itself may be \
+         adopted for what another one leaves unexplained.",
         vec![
             Column::text("effect"),
             Column::text("where"),
-            Column::number("log10 of the odds", ""),
+            Column::number("odds", ""),
             Column::text("verdict"),
         ],
     );
@@ -215,10 +261,10 @@ pub fn evidence(subject: &Subject) -> Section {
         let verdict = match ranked.rank {
             Rank::Adopted if ranked.effect == &UNKNOWN => "remains",
             Rank::Adopted => "adopted",
-            Rank::Rival => "cannot be told from it",
+            Rank::Rival => "indistinguishable",
             Rank::Rejected => "rejected",
         };
-        let odds = if odds.is_finite() { format!("{odds:.1}") } else { "–".into() };
+        let odds = if odds.is_finite() { to_one(odds) } else { "–".into() };
         table.row([ranked.effect.spoken(), ranked.location.to_string(), odds, verdict.into()]);
     }
     let blocks = vec![Block::Figure(candidates(&ranked)), Block::Table(table)];
@@ -238,8 +284,8 @@ fn candidates(ranked: &[Ranked]) -> Figure {
     };
     let candidates: Vec<Candidate> = ranked.iter().map(candidate).collect();
     bars(&candidates, NAMED).captioned(
-        "How likely each effect is by itself, at its best place, against noise alone: 2 is a hundred to one. An effect may \
-         reach far and yet be rejected, where what was adopted explains the same readings better.",
+        "How likely each effect is by itself, at its best place, against noise alone. An effect with large odds is rejected \
+         where an adopted one explains the same data better.",
     )
 }
 
@@ -248,10 +294,10 @@ pub fn replication(subject: &Subject) -> Table {
     let columns = vec![
         Column::text("left out"),
         Column::number("calibration as it is", "µm"),
-        Column::number("with what the others show", "µm"),
+        Column::number("with the findings of the others", "µm"),
     ];
-    let caption = "Each clamp or placement predicted from the others, the search for effects included; rms of a coordinate, \
-                   about the socket's own place where nobody knows it.";
+    let caption = "Each clamp or placement predicted from the others, the search for effects included; \
+                   rms of a coordinate, about the socket's fitted position where that is unknown.";
     let mut table = Table::new("replication", caption, columns);
     for session in &subject.diagnosis.sessions {
         let name = (subject.session_name)(session.session);
@@ -264,14 +310,18 @@ pub fn replication(subject: &Subject) -> Table {
 fn proof_picture(noun: &str, proof: &HeldOutErrors, noise: f64) -> Figure {
     // after² = before²·(1 − gain)
     let after = |gain: f64| proof.before * (1.0 - gain).max(0.0).sqrt() / UM;
-    held_out(noun, &HeldOut {
-        before_um: proof.before / UM,
-        after_um: proof.after / UM,
-        after_95_um: proof.gain_interval.map(|(low, high)| (after(high), after(low))),
-        noise_um: noise / UM,
-    })
+    held_out(
+        noun,
+        &HeldOut {
+            before_um: proof.before / UM,
+            after_um: proof.after / UM,
+            after_95_um: proof.gain_interval.map(|(low, high)| (after(high), after(low))),
+            noise_um: noise / UM,
+        },
+    )
     .captioned(format!(
-        "Error of {noun} that the fit had not seen: {} µm before, {} µm after. No model comes below the noise.",
+        "Error of held-out {noun}: {} µm before, {} µm after. No model predicts better than the \
+         scatter.",
         um(proof.before),
         um(proof.after)
     ))

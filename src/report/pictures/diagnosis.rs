@@ -48,15 +48,14 @@ pub enum Class {
 
 /// Horizontal bars, the likeliest on top, with the line from which on an effect is named.
 pub fn ranking(candidates: &[Candidate], named_from: f64) -> Figure {
-    let mut chart =
-        Chart::new("how likely each effect is by itself", "log10 of the odds against noise alone", "");
+    let mut chart = Chart::new("how likely each effect is by itself", "odds against noise alone", "");
     let row = |i: usize| -(i as f64);
     let names = candidates.iter().enumerate().map(|(i, c)| (row(i), c.name.clone())).collect();
     chart.y = Axis { names, ..Axis::default() };
     chart.height_px = Some(40.0 + 19.0 * candidates.len() as f64);
     let looks = [
         (Class::Adopted, "adopted", Style::nth(0).colour(Colour::Vermilion)),
-        (Class::Rival, "cannot be told from it", Style::nth(0).colour(Colour::Orange).dash(Dash::Dashed)),
+        (Class::Rival, "indistinguishable", Style::nth(0).colour(Colour::Orange).dash(Dash::Dashed)),
         (Class::Rejected, "rejected", Style::nth(0).colour(Colour::Grey).dash(Dash::Dotted)),
     ];
     for (class, label, style) in looks {
@@ -67,16 +66,37 @@ pub fn ranking(candidates: &[Candidate], named_from: f64) -> Figure {
                 from: row(i) - 0.33,
                 to: row(i) + 0.33,
                 value: c.log10_odds,
-                text: typeset(&significant(c.log10_odds, 2)),
+                text: to_one(c.log10_odds),
             })
             .collect();
         if !bars.is_empty() {
             chart.marks.push(Mark::Bars { label: label.into(), bars, direction: Direction::Right, style });
         }
     }
-    let text = format!("{} : 1", significant(named_from, 2));
+    chart.x.names = powers(candidates);
+    let text = to_one(named_from.log10());
     chart.marks.push(Mark::Vertical { at: named_from.log10(), text });
     Figure::from(chart).named("ranking")
+}
+
+/// Odds by their power of ten: `20 : 1`, `1 : 160`, `10^31 : 1`.
+pub fn to_one(log10_odds: f64) -> String {
+    let size = log10_odds.abs();
+    let number = match size < 4.0 {
+        true => significant(10f64.powf(size), 2),
+        false => format!("10^{size:.0}"),
+    };
+    if log10_odds >= 0.0 { format!("{number} : 1") } else { format!("1 : {number}") }
+}
+
+/// Ticks at whole powers of ten, about six of them.
+fn powers(candidates: &[Candidate]) -> Vec<(f64, String)> {
+    let of = candidates.iter().map(|candidate| candidate.log10_odds).filter(|odds| drawable(*odds));
+    let (low, high) = of.fold((0.0f64, 2.0f64), |(low, high), odds| (low.min(odds), high.max(odds)));
+    let step = ((high - low) / 6.0).ceil().max(1.0);
+    // the axis ends at its outer ticks: beyond every bar and its number
+    let ticks = (low / step).floor() as i64..=(1.1 * high / step).ceil() as i64;
+    ticks.map(|k| (k as f64 * step, to_one(k as f64 * step))).collect()
 }
 
 /// Errors of readings that the model had not seen.
@@ -95,7 +115,7 @@ pub struct HeldOut {
 /// Two bars, the interval on the second, and the noise below which no model comes. `noun` says what was held out.
 pub fn held_out(noun: &str, data: &HeldOut) -> Figure {
     let mut chart = Chart::new(format!("error of held-out {noun}"), "root mean square / µm", "");
-    chart.y.names = vec![(0.0, "model as it is".into()), (-1.0, "with what was found".into())];
+    chart.y.names = vec![(0.0, "model as it is".into()), (-1.0, "with the findings".into())];
     chart.y.range = Range::Fixed(-1.6, 0.6);
     chart.height_px = Some(110.0);
     let bar = |row: f64, value: f64, label: &str, style: Style| Mark::Bars {
@@ -114,7 +134,7 @@ pub fn held_out(noun: &str, data: &HeldOut) -> Figure {
         }
     }
     if drawable(data.noise_um) {
-        let text = format!("noise {}\u{a0}µm", typeset(&significant(data.noise_um, 2)));
+        let text = format!("scatter {}\u{a0}µm", typeset(&significant(data.noise_um, 2)));
         chart.marks.push(Mark::Vertical { at: data.noise_um, text });
     }
     Figure::from(chart).named("held-out")

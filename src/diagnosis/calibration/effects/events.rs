@@ -19,7 +19,7 @@ pub static OUTLIER: CalibrationEffect = CalibrationEffect {
     effect: Effect {
         name: "outlier",
         kind: Kind::Event,
-        summary: "a pose is wrong",
+        summary: "a pose was misread or disturbed",
         formula: "t at one row",
         prior: "0.5 mm: a reading that is wrong by a tooth or by a digit",
         parameters: &[
@@ -28,8 +28,8 @@ pub static OUTLIER: CalibrationEffect = CalibrationEffect {
             ("dz_um", "displacement along z of {W}"),
         ],
         needs: "poses",
-        cause: "misread or disturbed",
-        cause_at: |location| format!("{location} misread"),
+        cause: "a misread or disturbed pose",
+        cause_at: |location| format!("a misreading of {location}"),
         written_to: WrittenTo::Recording,
         reported: Reported::Together,
         seen_along: |_| Vec::new(),

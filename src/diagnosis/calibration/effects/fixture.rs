@@ -33,11 +33,11 @@ pub static CLAMP_POSE: CalibrationEffect = CalibrationEffect {
         prior: "100 µm and 0.5 mrad: a fixture that was measured by a hand-held gauge",
         parameters: &[
             ("dx_um, dy_um, dz_um", "displacement of the clamp in {W}"),
-            ("rx_urad, ry_urad, rz_urad", "its turn about the axes of {W}"),
+            ("rx_urad, ry_urad, rz_urad", "its rotation about the axes of {W}"),
         ],
-        needs: "two clamps at least",
-        cause: "a clamp that is not where the campaign says",
-        cause_at: |location| format!("the place of {location}"),
+        needs: "at least two clamps",
+        cause: "a wrong clamp position in the campaign",
+        cause_at: |location| format!("the position of {location}"),
         written_to: WrittenTo::Recording,
         reported: Reported::Alone,
         seen_along: |_| Vec::new(),
@@ -47,7 +47,7 @@ pub static CLAMP_POSE: CalibrationEffect = CalibrationEffect {
     estimates: own_parameters,
     observed: |finding, _| {
         let by = size(finding, UM).say("µm");
-        format!("{} is {by} from where the campaign has it", capital(&finding.location))
+        format!("{} is {by} away from its position in the campaign", capital(&finding.location))
     },
     write: out_of_the_points,
     transfer: Transfer::Nothing,
@@ -57,7 +57,7 @@ pub static CLAMP_POSE: CalibrationEffect = CalibrationEffect {
 fn clamps(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
     let groups = &context.recording.groups;
     if context.has_sockets() || groups.len() < 2 {
-        lacks.push(lack(&CLAMP_POSE, "there are no clamps whose places could disagree"));
+        lacks.push(lack(&CLAMP_POSE, "there are fewer than two clamps"));
         return Vec::new();
     }
     let of_clamp = |k: usize| {
@@ -86,7 +86,7 @@ pub static CLAMP_SHIFT: CalibrationEffect = CalibrationEffect {
         prior: "0.5 mm: millimetres when one sees a knock, tenths when one does not",
         parameters: &[("dx_um, dy_um, dz_um", "displacement of the clamp in {W}")],
         needs: "four poses in a clamp",
-        cause: "the clamp was knocked or slipped",
+        cause: "a knock or a slip of the clamp",
         cause_at: |location| format!("a shift ({location})"),
         written_to: WrittenTo::Recording,
         reported: Reported::Alone,
@@ -109,16 +109,16 @@ pub static SOCKET_SHIFT: CalibrationEffect = CalibrationEffect {
     effect: Effect {
         name: "socket_shift",
         kind: Kind::Event,
-        summary: "a socket, or a plate of sockets, moved after one pose",
+        summary: "a socket or a plate of sockets moved after a pose",
         formula: "−(t + φ × (ball − middle)) from some row on: t is how far the socket moved; a plate \
                   also turns by φ about the middle of its points",
         prior: "0.5 mm, and 3 mrad for a plate: 0.5 mm over its width",
         parameters: &[
             ("dx_um, dy_um, dz_um", "displacement of the socket or plate in {W}"),
-            ("rx_urad, ry_urad, rz_urad", "turn of a plate about the axes of {W}"),
+            ("rx_urad, ry_urad, rz_urad", "rotation of a plate about the axes of {W}"),
         ],
         needs: "four poses in a socket, or on a plate",
-        cause: "the socket was knocked or slipped",
+        cause: "a knock or a slip of the socket",
         cause_at: |location| format!("a shift ({location})"),
         written_to: WrittenTo::Nowhere,
         reported: Reported::Alone,
@@ -239,10 +239,10 @@ pub static BASE_SHIFT: CalibrationEffect = CalibrationEffect {
         prior: "0.5 mm and 0.5 mrad: millimetres when one sees a knock, tenths when one does not",
         parameters: &[
             ("dx_um, dy_um, dz_um", "displacement of the base in {W}"),
-            ("rx_urad, ry_urad, rz_urad", "its turn about the axes of {W}"),
+            ("rx_urad, ry_urad, rz_urad", "its rotation about the axes of {W}"),
         ],
-        needs: "measured points; with sockets, whose places nobody knows, a plate moved instead",
-        cause: "the robot slipped on its base",
+        needs: "measured points (the points of sockets are unknown: there a moved plate stands for it)",
+        cause: "a slip of the robot on its base",
         cause_at: |location| format!("a shift of the base ({location})"),
         written_to: WrittenTo::Recording,
         reported: Reported::Alone,

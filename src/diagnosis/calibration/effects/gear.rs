@@ -46,17 +46,17 @@ pub static TRANSMISSION_ERROR: CalibrationEffect = CalibrationEffect {
     effect: Effect {
         name: "transmission_error",
         kind: Kind::Physics,
-        summary: "a gear or encoder errs with its joint's own angle",
+        summary: "an error of gear or encoder over the joint's angle",
         formula: "Jⱼ·f(qⱼ): f is a wave of a gear's whole harmonics and ratios, a wave scanned up to \
                   40 cycles per revolution, or a smooth curve of one of five length scales",
         prior: "150 µrad rms: a UR5 shows 60 to 110 µrad, a UR10 220 to 400",
         parameters: &[
             ("cycles_per_rev", "frequency of the strongest part"),
-            ("amplitude_urad", "its amplitude; of a curve that of a wave of the same rms"),
+            ("amplitude_urad", "amplitude of the strongest part; of a curve, of a wave of the same rms"),
         ],
         needs: "a joint that turns",
         cause: "an error of its gear or encoder",
-        cause_at: |location| format!("the gear or encoder of {}", location.place()),
+        cause_at: |location| format!("an error of the gear or encoder of {}", location.place()),
         written_to: WrittenTo::Model,
         reported: Reported::ByPlace,
         seen_along: |location| along(location, JointVariable::Angle),
@@ -168,9 +168,9 @@ fn observed(finding: &Finding, model: &CalibrationModel) -> String {
     let named = capital(&finding.location);
     let (cycles, amplitude) = (cycles(first(finding).value), nth(finding, 1).say("µrad"));
     match law(finding, model) {
-        Law::Gear(Gear::Curve { .. }) => format!(
-            "{named} turns by up to about {amplitude} more or less than it says, in a curve of mostly {cycles}"
-        ),
+        Law::Gear(Gear::Curve { .. }) => {
+            format!("{named} has an angle error of up to about {amplitude}, mostly {cycles}")
+        }
         Law::Gear(Gear::Harmonic { .. } | Gear::Wave { .. })
         | Law::Only
         | Law::Play(_)
@@ -178,7 +178,7 @@ fn observed(finding: &Finding, model: &CalibrationModel) -> String {
         | Law::MassesUnknown
         | Law::Rod(_)
         | Law::Drift(..) => {
-            format!("{named} turns by up to {amplitude} more or less than it says, {cycles}")
+            format!("{named} has an angle error of up to {amplitude}, {cycles}")
         }
     }
 }

@@ -51,17 +51,21 @@ pub static JOINT_COMPLIANCE: CalibrationEffect = CalibrationEffect {
     effect: Effect {
         name: "joint_compliance",
         kind: Kind::Physics,
-        summary: "a drive yields to its load",
+        summary: "a drive is not as compliant as modelled",
         formula: "Jⱼ·c·τⱼ; without masses Jⱼ·Σ_k c_k·(horizontal lever of frame k about the joint)",
-        prior: "200 µrad at the largest torque: a tenth to a half of what industrial drives yield by \
-                altogether (0.5 mrad)",
+        prior: "200 µrad at the largest torque: a tenth to a half of the whole deflection of \
+                industrial drives (0.5 mrad)",
         parameters: &[
-            ("compliance_urad_per_nm", "angle per torque, besides what is modelled"),
-            ("joint_N_urad_per_m, flange_urad_per_m", "of an unknown weight at that frame"),
+            ("compliance_urad_per_nm", "angle per torque, beyond the model"),
+            (
+                "joint_N_urad_per_m, flange_urad_per_m",
+                "angle per metre of horizontal lever, by an \
+                unknown weight at that frame",
+            ),
         ],
         needs: "a joint that is loaded differently from pose to pose",
-        cause: "its drive yields",
-        cause_at: |location| format!("{} yielding", location.place()),
+        cause: "the compliance of its drive",
+        cause_at: |location| format!("the compliance of {}", location.place()),
         written_to: WrittenTo::Model,
         reported: Reported::Alone,
         seen_along: |location| along(location, JointVariable::Torque),
@@ -127,12 +131,12 @@ fn compliance_observed(finding: &Finding, model: &CalibrationModel) -> String {
     let named = capital(&finding.location);
     match law(finding, model) {
         Law::MassesUnknown => {
-            format!("{named} yields to the weight beyond it (the robot file has no masses)")
+            format!("{named} gives way to the weight beyond it (the robot file has no masses)")
         }
         Law::Only | Law::Gear(_) | Law::Play(_) | Law::Nonlinear(_) | Law::Rod(_) | Law::Drift(..) => {
             let by = first(finding);
             let word = if by.value >= 0.0 { "more" } else { "less" };
-            format!("{named} yields {} {word} than modelled", by.size().say("µrad/(N·m)"))
+            format!("{named} gives way by {} {word} than modelled", by.size().say("µrad/(N·m)"))
         }
     }
 }
@@ -154,7 +158,7 @@ pub static JOINT_NONLINEAR_STIFFNESS: CalibrationEffect = CalibrationEffect {
     effect: Effect {
         name: "joint_nonlinear_stiffness",
         kind: Kind::Physics,
-        summary: "it does so out of proportion",
+        summary: "a drive's compliance depends on its load",
         formula: "Jⱼ·k₂·τⱼ|τⱼ| or Jⱼ·k₃·τⱼ³",
         prior: "200 µrad at the largest torque, as joint_compliance",
         parameters: &[
@@ -163,7 +167,7 @@ pub static JOINT_NONLINEAR_STIFFNESS: CalibrationEffect = CalibrationEffect {
         ],
         needs: "masses in the robot file, and a joint that they load",
         cause: "a stiffness that depends on the load",
-        cause_at: |location| format!("{} yielding out of proportion to its load", location.place()),
+        cause_at: |location| format!("a load-dependent stiffness of {}", location.place()),
         written_to: WrittenTo::Nowhere,
         reported: Reported::Alone,
         seen_along: |location| along(location, JointVariable::Torque),
@@ -208,7 +212,7 @@ fn nonlinear_observed(finding: &Finding, model: &CalibrationModel) -> String {
         | Law::Rod(_)
         | Law::Drift(..) => ("µrad/(N·m)²", "the square of"),
     };
-    format!("{} yields with {power} its load, {}", capital(&finding.location), first(finding).say(unit))
+    format!("{} gives way with {power} its load, by {}", capital(&finding.location), first(finding).say(unit))
 }
 
 /// A link that bends across its joint's axis.
@@ -223,7 +227,7 @@ pub static LINK_FLEXIBILITY: CalibrationEffect = CalibrationEffect {
         parameters: &[("bending_urad_per_nm", "angle per moment")],
         needs: "masses in the robot file, and a joint that they load",
         cause: "a link that bends",
-        cause_at: |location| format!("the link before {location} bending"),
+        cause_at: |location| format!("bending of the link before {location}"),
         written_to: WrittenTo::Nowhere,
         reported: Reported::Alone,
         seen_along: |location| along(location, JointVariable::Torque),
@@ -233,7 +237,7 @@ pub static LINK_FLEXIBILITY: CalibrationEffect = CalibrationEffect {
     estimates: own_parameters,
     observed: |finding, _| {
         let by = first(finding).say("µrad/(N·m)");
-        format!("The link before {} bends by {by} of moment there", finding.location)
+        format!("The link before {} bends by {by} under the moment there", finding.location)
     },
     write: nowhere,
     transfer: Transfer::Candidate,
@@ -263,13 +267,13 @@ pub static GRAVITY_TILT: CalibrationEffect = CalibrationEffect {
     effect: Effect {
         name: "gravity_tilt",
         kind: Kind::Physics,
-        summary: "the base yields to the arm's weight",
+        summary: "the base tilts under the arm's weight",
         formula: "φ × (tip − base): φ = k·(moment at the base, its horizontal part)",
         prior: "200 µrad at the largest moment, as joint_compliance",
         parameters: &[("tilt_urad_per_nm", "angle per moment")],
         needs: "masses in the robot file",
-        cause: "a base that yields to the arm's weight",
-        cause_at: |_| "the base tilting under the arm's weight".into(),
+        cause: "a compliant base",
+        cause_at: |_| "a base that tilts under the arm's weight".into(),
         written_to: WrittenTo::Nowhere,
         reported: Reported::Alone,
         seen_along: |_| Vec::new(),
@@ -278,7 +282,7 @@ pub static GRAVITY_TILT: CalibrationEffect = CalibrationEffect {
     candidates: tilts,
     estimates: own_parameters,
     observed: |finding, _| {
-        format!("The base tilts by {} of the arm's moment", first(finding).say("µrad/(N·m)"))
+        format!("The base tilts by {} under the arm's moment", first(finding).say("µrad/(N·m)"))
     },
     write: nowhere,
     transfer: Transfer::Candidate,
@@ -312,12 +316,12 @@ pub static BACKLASH: CalibrationEffect = CalibrationEffect {
         name: "backlash",
         kind: Kind::Physics,
         summary: "play in a gear",
-        formula: "Jⱼ·½b·sign(τⱼ) or, where friction holds the joint, Jⱼ·½b·(direction it came from)",
+        formula: "Jⱼ·½b·sign(τⱼ) or, where friction holds the joint, Jⱼ·½b·(direction of approach)",
         prior: "150 µrad: the error of a joint angle that a UR5 shows (60 to 110 µrad), and half of \
                 a UR10's",
-        parameters: &[("play_urad", "the whole play")],
-        needs: "masses in the robot file, and a joint whose load turns round; by the direction that \
-                it came from, rows in the order of recording",
+        parameters: &[("play_urad", "the whole gap")],
+        needs: "masses in the robot file and a joint whose torque changes sign; for play by approach, \
+                rows in the order of recording",
         cause: "play in its gear",
         cause_at: |location| format!("play in {}", location.place()),
         written_to: WrittenTo::Model,
@@ -356,14 +360,14 @@ fn plays(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
 
 fn play_observed(finding: &Finding, model: &CalibrationModel) -> String {
     let by = match law(finding, model) {
-        Law::Play(TakenUp::ByApproach) => "depending on the way it came from",
+        Law::Play(TakenUp::ByApproach) => "taken up according to the direction of approach",
         Law::Play(TakenUp::ByTorque)
         | Law::Only
         | Law::Gear(_)
         | Law::Nonlinear(_)
         | Law::MassesUnknown
         | Law::Rod(_)
-        | Law::Drift(..) => "and hangs to the side that its load pulls it to",
+        | Law::Drift(..) => "taken up on the side that its load pulls to",
     };
     let play = first(finding).size().say("µrad");
     format!("{} has {play} of play, {by}", capital(&finding.location))
@@ -386,13 +390,13 @@ pub static ENCODER_SCALE: CalibrationEffect = CalibrationEffect {
     effect: Effect {
         name: "encoder_scale",
         kind: Kind::Physics,
-        summary: "a joint turns more or less than its encoder says",
+        summary: "a joint turns more or less than its encoder shows",
         formula: "Jⱼ·(s − 1)·qⱼ",
         prior: "1e-4: 1 count in 10⁴, the share of an eccentric disc read over part of a turn",
-        parameters: &[("factor", "s: the joint turns s times as far as it says")],
+        parameters: &[("factor", "s: angle turned over angle shown")],
         needs: "a joint that turns",
         cause: "the scale of its encoder",
-        cause_at: |location| format!("the encoder's scale in {location}"),
+        cause_at: |location| format!("the encoder's scale of {location}"),
         written_to: WrittenTo::Model,
         reported: Reported::Alone,
         seen_along: |location| along(location, JointVariable::Angle),
@@ -419,7 +423,7 @@ fn scale_observed(finding: &Finding, _: &CalibrationModel) -> String {
     let excess = first(finding).map(|factor| 1e6 * (factor - 1.0));
     let word = if excess.value >= 0.0 { "more" } else { "less" };
     let (named, excess) = (capital(&finding.location), excess.size().say(""));
-    format!("{named} turns {excess} µrad per radian {word} than its encoder says")
+    format!("{named} turns {excess} µrad per radian {word} than its encoder shows")
 }
 
 fn write_scale(finding: &Finding, _: &CalibrationModel, extended: &mut Campaign) -> WrittenTo {
@@ -434,13 +438,13 @@ pub static WRIST_COUPLING: CalibrationEffect = CalibrationEffect {
     effect: Effect {
         name: "wrist_coupling",
         kind: Kind::Physics,
-        summary: "a wrist joint takes its neighbour along",
+        summary: "a wrist joint drives its neighbour",
         formula: "J_J·k·q_I: joint I drives joint J, neighbours among the last three",
         prior: "1e-4 rad per rad",
-        parameters: &[("fraction", "turn of the driven joint per turn of the driving one")],
+        parameters: &[("fraction", "rotation of the driven joint per rotation of the driving one")],
         needs: "neighbouring joints of a wrist that turn",
         cause: "coupled wrist gears",
-        cause_at: |location| format!("{location} coupled"),
+        cause_at: |location| format!("coupling of {location}"),
         written_to: WrittenTo::Model,
         reported: Reported::Alone,
         seen_along: |_| Vec::new(),
@@ -474,7 +478,7 @@ fn coupling_observed(finding: &Finding, _: &CalibrationModel) -> String {
     match finding.location {
         Location::Coupling { from, to } => {
             let (from, to) = (from + 1, to + 1);
-            format!("Joint {to} turns along by {share} for every radian of joint {from}")
+            format!("Joint {to} turns by {share} for every radian of joint {from}")
         }
         _ => format!("{}: {share} per radian", finding.location),
     }

@@ -40,12 +40,15 @@ pub static ROD_STIFFNESS: CalibrationEffect = CalibrationEffect {
                 of it where the rod was assumed rigid",
         parameters: &[("factor", "s: stiffness over that of the model")],
         needs: "a rod in the campaign",
-        cause: "the rod's stiffness is not that of its model",
+        cause: "a rod stiffness that differs from its model",
         cause_at: |_| "a rod of another stiffness".into(),
         written_to: WrittenTo::Nowhere,
         reported: Reported::Alone,
         seen_along: |_| Vec::new(),
-        direct_check: Some("Hang known weights on the rod and let `rodcal rig fit` find its stiffness."),
+        direct_check: Some(
+            "Hang known weights on the rod and measure its stiffness with rodcal rig \
+            fit.",
+        ),
     },
     candidates: rods,
     estimates: stiffness,
@@ -104,7 +107,14 @@ fn rod_observed(finding: &Finding, model: &CalibrationModel) -> String {
         }
     };
     let under = under.map_or_else(String::new, |under| format!(" {under}"));
-    format!("The rod's stiffness is {} times that of its model{under}", first(finding).say(""))
+    let softer = first(finding).map(|stiffness| 1.0 / stiffness).compared("softer", "stiffer");
+    format!("The rod is {softer} than its model{under}")
+}
+
+/// `12 ± 2 g more`.
+fn heavier(finding: &Finding, unit: &str) -> String {
+    let mass = first(finding);
+    format!("{} {}", mass.size().say(unit), if mass.value < 0.0 { "less" } else { "more" })
 }
 
 /// Displacement of the tip by one more force on it, m: the rod bends and the joints give way.
@@ -126,12 +136,12 @@ pub static TIP_MASS: CalibrationEffect = CalibrationEffect {
     effect: Effect {
         name: "tip_mass",
         kind: Kind::Physics,
-        summary: "a mass at the tip that was forgotten",
+        summary: "a mass at the tip that the files do not state",
         formula: "R·C^F·Rᵀ·(m·g) + yield(tip, m·g)",
         prior: "50 g: the paper's ball and holder have 55 g",
         parameters: &[("mass_g", "mass beyond the stated one")],
-        needs: "a rod or joints that are known to give way",
-        cause: "a mass that nobody told of",
+        needs: "a rod or joints of known compliance",
+        cause: "a mass that the files do not state",
         cause_at: |_| "a mass at the tip".into(),
         written_to: WrittenTo::Nowhere,
         reported: Reported::Alone,
@@ -140,7 +150,7 @@ pub static TIP_MASS: CalibrationEffect = CalibrationEffect {
     },
     candidates: tip_masses,
     estimates: own_parameters,
-    observed: |finding, _| format!("{} more hang on the tip than stated", first(finding).say("g")),
+    observed: |finding, _| format!("The tip carries {} than stated", heavier(finding, "g")),
     write: nowhere,
     transfer: Transfer::Candidate,
     event: no_event,
@@ -148,7 +158,7 @@ pub static TIP_MASS: CalibrationEffect = CalibrationEffect {
 
 fn tip_masses(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
     if !gives_way(context) {
-        lacks.push(lack(&TIP_MASS, "neither a rod nor joints are known to give way"));
+        lacks.push(lack(&TIP_MASS, "there is neither a rod nor a joint of known compliance"));
         return Vec::new();
     }
     let column = context.column(|_, there| pulled(context, there, &there.gravity));
@@ -161,13 +171,13 @@ pub static PAYLOAD_MASS: CalibrationEffect = CalibrationEffect {
     effect: Effect {
         name: "payload_mass",
         kind: Kind::Physics,
-        summary: "a mass at the flange that was forgotten",
+        summary: "a mass at the flange that the files do not state",
         formula: "yield(flange, m·g)",
         prior: "0.5 kg: an adapter, a cable",
         parameters: &[("mass_kg", "mass beyond the stated one")],
-        needs: "joints that are known to give way",
-        cause: "a load that nobody told of",
-        cause_at: |_| "a load on the flange".into(),
+        needs: "joints of known compliance",
+        cause: "a mass that the files do not state",
+        cause_at: |_| "a mass on the flange".into(),
         written_to: WrittenTo::Nowhere,
         reported: Reported::Alone,
         seen_along: |_| Vec::new(),
@@ -175,7 +185,7 @@ pub static PAYLOAD_MASS: CalibrationEffect = CalibrationEffect {
     },
     candidates: payload_masses,
     estimates: own_parameters,
-    observed: |finding, _| format!("{} more hang on the flange than stated", first(finding).say("kg")),
+    observed: |finding, _| format!("The flange carries {} than stated", heavier(finding, "kg")),
     write: nowhere,
     transfer: Transfer::Candidate,
     event: no_event,
@@ -183,7 +193,7 @@ pub static PAYLOAD_MASS: CalibrationEffect = CalibrationEffect {
 
 fn payload_masses(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
     if !joints_give_way(context) {
-        lacks.push(lack(&PAYLOAD_MASS, "no joint is known to give way"));
+        lacks.push(lack(&PAYLOAD_MASS, "no joint has a known compliance"));
         return Vec::new();
     }
     let column = context.column(|_, there| there.yielding(&there.flange.origin, &there.gravity));
@@ -196,17 +206,17 @@ pub static CONTACT_FORCE_VARIATION: CalibrationEffect = CalibrationEffect {
     effect: Effect {
         name: "contact_force_variation",
         kind: Kind::Physics,
-        summary: "the ball is pushed harder or softer than stated",
+        summary: "the contact force is not the stated one",
         formula: "R·C^F·Rᵀ·F + yield(tip, F): F in the device frame of the clamp",
         prior: "0.3 N: sensor springs are stated to 10 or 20 % of 2 N",
         parameters: &[
-            ("x_n", "force beyond the stated one along x of the device"),
-            ("y_n", "along its y"),
-            ("z_n", "along its z"),
+            ("x_n", "force beyond the stated one along x of the device frame"),
+            ("y_n", "force beyond the stated one along y of the device frame"),
+            ("z_n", "force beyond the stated one along z of the device frame"),
         ],
-        needs: "clamps, and a rod or joints that are known to give way",
-        cause: "a contact force that is not the stated one",
-        cause_at: |location| format!("another contact force ({location})"),
+        needs: "clamps, and a rod or joints of known compliance",
+        cause: "a contact force that differs from the stated one",
+        cause_at: |location| format!("a contact force that differs from the stated one ({location})"),
         written_to: WrittenTo::Nowhere,
         reported: Reported::Alone,
         seen_along: |_| Vec::new(),
@@ -224,7 +234,7 @@ fn contacts(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
     let groups = &context.recording.groups;
     let is_of_clamps = !context.has_sockets() && groups.iter().any(|group| !group.name.is_empty());
     if !is_of_clamps || !gives_way(context) {
-        let reason = "there are no clamps, or neither a rod nor joints are known to give way";
+        let reason = "there are no clamps, or neither a rod nor a joint of known compliance";
         lacks.push(lack(&CONTACT_FORCE_VARIATION, reason));
         return Vec::new();
     }
@@ -258,5 +268,5 @@ fn contact_observed(finding: &Finding, _: &CalibrationModel) -> String {
         Location::AllClamps => "In all clamps".to_owned(),
         clamp => format!("At {clamp}"),
     };
-    format!("{at} the ball is pushed by {} more than stated", size(finding, 1.0).say("N"))
+    format!("{at} the contact force differs by {} from the stated one", size(finding, 1.0).say("N"))
 }

@@ -41,7 +41,7 @@ pub static READBACK_LAG: CalibrationEffect = CalibrationEffect {
         parameters: &[("fraction", "share of the last move that was still to come")],
         needs: "rows in the order of recording",
         cause: "angles were read before the arm had settled",
-        cause_at: |location| format!("angles read too early ({location})"),
+        cause_at: |location| format!("angles read before the arm had settled ({location})"),
         written_to: WrittenTo::Recording,
         reported: Reported::Alone,
         seen_along: |location| along(location, JointVariable::Move),
@@ -84,7 +84,7 @@ pub static THERMAL_DRIFT: CalibrationEffect = CalibrationEffect {
     effect: Effect {
         name: "thermal_drift",
         kind: Kind::Physics,
-        summary: "the arm follows temperature, time or order",
+        summary: "the arm drifts with temperature, time or order",
         formula: "d·(T − T̄), d·(t − t̄) or d·e^(−t/t₁), of the robot in {W} or of its tool in {T}",
         prior: "10 µm/K (an arm of steel of 1 m grows by 12); 20 µm/h, as in a room that warms by \
                 2 K in an hour, or over a recording without a clock; 50 µm for a cold robot (a UR5 \
@@ -94,8 +94,8 @@ pub static THERMAL_DRIFT: CalibrationEffect = CalibrationEffect {
             ("x_um_per_h, y_um_per_h, z_um_per_h", "displacement per hour"),
             ("x_um, y_um, z_um", "displacement over the recording, or of the cold robot"),
         ],
-        needs: "temperatures or times of the rows; without them only their order can tell",
-        cause: "drift, as of something that warms up",
+        needs: "temperatures or times of the rows; without them only the order of the rows",
+        cause: "thermal drift",
         cause_at: |location| format!("drift ({location})"),
         written_to: WrittenTo::Recording,
         reported: Reported::Alone,
@@ -115,7 +115,8 @@ pub static THERMAL_DRIFT: CalibrationEffect = CalibrationEffect {
 fn drifts(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
     let courses = courses(context);
     if !courses.iter().any(|(course, _)| course.is_clocked()) {
-        let reason = "rows have neither temperature nor time: only their order can tell";
+        let reason = "the rows have neither temperatures nor times: only drift with their order was \
+            tested";
         lacks.push(lack(&THERMAL_DRIFT, reason));
     }
     let of_course = |(course, values): (Course, Vec<f64>)| {

@@ -98,40 +98,39 @@ fn sentences_are_those_of_the_laws() {
         (
             "backlash",
             "joint 4, by approach",
-            "Joint 4 has 300 ± 30 µrad of play, depending on the way it came from: play in its gear",
+            "Joint 4 has 300 ± 30 µrad of play, taken up according to the direction of approach: play in its gear",
         ),
         (
             "thermal_drift",
             "tool, with temperature",
-            "The tool drifts by 35 ± 2 µm per kelvin with temperature: drift, as of something that \
-             warms up",
+            "The tool drifts by 35 ± 2 µm per kelvin with temperature: thermal drift",
         ),
         (
             "base_shift",
             "after pose 20",
-            "The robot moved on its base by 1732 ± 100 µm after pose 20: the robot slipped on its base",
+            "The robot moved on its base by 1732 ± 100 µm after pose 20: a slip of the robot on its base",
         ),
         (
             "clamp_shift",
             "clamp 2, after pose 16",
-            "Clamp 2 moved by 1732 ± 100 µm after pose 16: the clamp was knocked or slipped",
+            "Clamp 2 moved by 1732 ± 100 µm after pose 16: a knock or a slip of the clamp",
         ),
         (
             "clamp_pose",
             "clamp 2",
-            "Clamp 2 is 346 ± 20 µm from where the campaign has it: a clamp that is not where the \
-             campaign says",
+            "Clamp 2 is 346 ± 20 µm away from its position in the campaign: a wrong clamp position in \
+             the campaign",
         ),
-        ("outlier", "pose 7", "Pose 7 is off by 1732 ± 100 µm: misread or disturbed"),
+        ("outlier", "pose 7", "Pose 7 is off by 1732 ± 100 µm: a misread or disturbed pose"),
         (
             "wrist_coupling",
             "joint 5 to 6",
-            "Joint 6 turns along by 200 ± 20 µrad for every radian of joint 5: coupled wrist gears",
+            "Joint 6 turns by 200 ± 20 µrad for every radian of joint 5: coupled wrist gears",
         ),
         (
             "encoder_scale",
             "joint 4",
-            "Joint 4 turns 200 ± 20 µrad per radian more than its encoder says: the scale of its encoder",
+            "Joint 4 turns 200 ± 20 µrad per radian more than its encoder shows: the scale of its encoder",
         ),
         (
             "readback_lag",
@@ -142,8 +141,8 @@ fn sentences_are_those_of_the_laws() {
         (
             "rod_stiffness",
             "rod, under its weight",
-            "The rod's stiffness is 0.50 (0.45 to 0.56) times that of its model under its weight: the \
-             rod's stiffness is not that of its model",
+            "The rod is 100 ± 20 % softer than its model under its weight: a rod stiffness that differs \
+             from its model",
         ),
     ];
     for (effect, location, expected) in cases {

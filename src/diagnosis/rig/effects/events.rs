@@ -14,12 +14,12 @@ pub static SLIP: RigEffect = RigEffect {
     effect: Effect {
         name: "slip",
         kind: Kind::Event,
-        summary: "everything after one reading is shifted",
+        summary: "all readings after one of them are shifted",
         formula: "y + s for the rest of a run",
         prior: "5 % of the largest reading: a bond or a clamp that slips; a knock may be more",
         parameters: &[("um", "shift")],
         needs: "runs with two readings on either side",
-        cause: "something slipped",
+        cause: "a slip of the clamp or of a sensor",
         cause_at: |location| format!("a slip ({location})"),
         written_to: WrittenTo::Recording,
         reported: Reported::Alone,
@@ -29,7 +29,9 @@ pub static SLIP: RigEffect = RigEffect {
     needs_rod: false,
     candidates: slips,
     missing: |_| "no run has two readings on either side of a slip",
-    observed: |finding, _| format!("Readings jump by {} ({})", of(finding, "um").say("µm"), finding.location),
+    observed: |finding, _| {
+        format!("The readings jump by {} ({})", of(finding, "um").say("µm"), finding.location)
+    },
 };
 
 /// A slip between any two rows of a run, with two rows at least on either side (one row would be a

@@ -24,7 +24,7 @@ pub static NONLINEAR_STIFFNESS: RigEffect = RigEffect {
         summary: "the stiffness depends on the load",
         formula: "u = C·F·(1 + k₂·F²), or u = C·F·(1 + k₁·|F|)",
         prior: "5 % of the displacement at the largest load",
-        parameters: &[("per_n2", "k₂"), ("per_n", "k₁")],
+        parameters: &[("per_n2", "k₂, coefficient of F²"), ("per_n", "k₁, coefficient of |F|")],
         needs: "two sizes of load",
         cause: "a stiffness that depends on the load",
         cause_at: |_| "a stiffness that depends on the load".into(),
@@ -35,7 +35,7 @@ pub static NONLINEAR_STIFFNESS: RigEffect = RigEffect {
     },
     needs_rod: false,
     candidates: curvature,
-    missing: |_| "there is one size of load only",
+    missing: |_| "only one size of load was applied",
     observed: observed_curvature,
 };
 
@@ -47,7 +47,7 @@ pub static CREEP: RigEffect = RigEffect {
         summary: "the deflection grows with the logarithm of time",
         formula: "u = C·F·(1 + k·log₁₀(1 + t/t₀)), t₀ 1, 10, 60 or 600 s, by four clocks",
         prior: "3 % per decade of time: bondlines and laminates",
-        parameters: &[("per_decade", "k")],
+        parameters: &[("per_decade", "k, growth per decade of time")],
         needs: "times that differ (column `time_s`)",
         cause: "creep",
         cause_at: |_| "creep".into(),
@@ -58,14 +58,14 @@ pub static CREEP: RigEffect = RigEffect {
     },
     needs_rod: false,
     candidates: creeping,
-    missing: |_| "there are no times, or they do not differ (column `time_s`)",
+    missing: |_| "no times were recorded, or they do not differ",
     observed: |finding, model| {
         let since = match history(finding, model) {
             Some(History::Creep(clock, _)) => clock.name(),
             _ => "under load",
         };
         let growth = of(finding, "per_decade").map(|share| 100.0 * share).say("%");
-        format!("Deflections grow by {growth} with every tenfold time {since}")
+        format!("The deflections grow by {growth} per decade of time {since}")
     },
 };
 
@@ -74,10 +74,10 @@ pub static HYSTERESIS: RigEffect = RigEffect {
     effect: Effect {
         name: "hysteresis",
         kind: Kind::Physics,
-        summary: "the way down is not the way up, and it is not friction",
+        summary: "unloading differs from loading, and not by friction",
         formula: "a loop h of full scale wide at half load, in six forms",
         prior: "2 % of full scale: 0.1 % of a load cell, some per cent of bonds and clamps",
-        parameters: &[("fraction", "h")],
+        parameters: &[("fraction", "h, width of the loop over full scale")],
         needs: "unloading (column `phase`)",
         cause: "hysteresis",
         cause_at: |_| "hysteresis".into(),
@@ -88,14 +88,12 @@ pub static HYSTERESIS: RigEffect = RigEffect {
     },
     needs_rod: false,
     candidates: lagging,
-    missing: |_| "nothing was read while unloading (column `phase`)",
+    missing: |_| "no readings were taken while unloading",
     observed: |finding, model| {
         let is_open = matches!(history(finding, model), Some(History::Loop(Loop::Remanent)));
         let at = if is_open { "zero load" } else { "half load" };
         let share = of(finding, "fraction").map(|share| 100.0 * share).say("%");
-        format!(
-            "On the way down more deflection is left than on the way up, at {at} by {share} of full scale"
-        )
+        format!("The unloading curve lies above the loading curve, by {share} of full scale at {at}")
     },
 };
 
@@ -118,16 +116,16 @@ fn curvature(context: &mut Context) -> Vec<Entry> {
 /// By how much the stiffness has changed at the largest load.
 fn observed_curvature(finding: &Finding, model: &RigModel) -> String {
     let largest = super::largest_load(model.data());
-    let quadratic = finding.quantity("per_n2").map(|k| k.map(|k| 100.0 * k * largest * largest));
-    let linear = finding.quantity("per_n").map(|k| k.map(|k| 100.0 * k * largest));
+    // deflection over that of the linear rod
+    let quadratic = finding.quantity("per_n2").map(|k| k.map(|k| 1.0 + k * largest * largest));
+    let linear = finding.quantity("per_n").map(|k| k.map(|k| 1.0 + k * largest));
     let body = match model.body {
         Body::Rod(_) => "The rod",
-        Body::Lines(_) => "What is loaded",
+        Body::Lines(_) => "The loaded part",
     };
     let Some(change) = quadratic.or(linear) else { return format!("{body} is not linear") };
-    let word = if change.value >= 0.0 { "softer" } else { "stiffer" };
-    let (change, load) = (change.size().say("%"), newtons(largest));
-    format!("{body} grows {word} with the load, by {change} at {load}")
+    let (change, load) = (change.compared("softer", "stiffer"), newtons(largest));
+    format!("{body} is {change} at {load} than at small loads")
 }
 
 /// Creep by each clock that may be meant.

@@ -28,11 +28,11 @@ pub static FRICTION: RigEffect = RigEffect {
     effect: Effect {
         name: "friction",
         kind: Kind::Physics,
-        summary: "the slide takes off load, and holds it on the way down",
+        summary: "friction in the slide holds back part of each load",
         formula: "F = load − f while loading (not below zero), load + f while unloading",
         prior: "5 % of the largest load: the paper's lines cross the load axis at 0.9 to 1.1 of 20 N",
         parameters: &[("force_n", "friction force")],
-        needs: "loads; unloading (column `phase`) tells it from an offset",
+        needs: "loads; unloading (column `phase`) distinguishes it from an offset",
         cause: "friction in the slide",
         cause_at: |location| "friction in the slide".to_owned() + &under(location),
         written_to: WrittenTo::Recording,
@@ -48,16 +48,15 @@ pub static FRICTION: RigEffect = RigEffect {
             entry(&FRICTION, location, force, Action::Friction(axes))
         })
     },
-    missing: |_| "nothing was loaded",
+    missing: |_| "no load was applied",
     observed: |finding, model| {
-        let (loads, force) = (loads(finding), said(finding, "force_n", "N"));
+        let (load, force) = (each_load(finding), said(finding, "force_n", "N"));
         match model.data().iter().any(Datum::is_unloading) {
             true => format!(
-                "{loads} are felt {force} too small while loading and as much too large while unloading"
+                "About {force} of {load} does not reach the rod while loading, and as much remains on it \
+                 while unloading"
             ),
-            false => {
-                format!("{loads} are felt {force} too small (nothing was read while unloading)")
-            }
+            false => format!("About {force} of {load} does not reach the rod (no unloading was recorded)"),
         }
     },
 };
@@ -69,7 +68,8 @@ pub static LOAD_OFFSET: RigEffect = RigEffect {
         kind: Kind::Physics,
         summary: "a hanger or a tare adds to every load",
         formula: "F = load + f, for every load but zero",
-        prior: "5 % of the largest load, as the paper's friction, from which its lines do not tell it",
+        prior: "5 % of the largest load, as the paper's friction, which its lines cannot distinguish \
+            from it",
         parameters: &[("force_n", "added force")],
         needs: "loads",
         cause: "an offset of the load (hanger or tare)",
@@ -87,10 +87,11 @@ pub static LOAD_OFFSET: RigEffect = RigEffect {
             entry(&LOAD_OFFSET, location, force, Action::LoadOffset(axes))
         })
     },
-    missing: |_| "nothing was loaded",
+    missing: |_| "no load was applied",
     observed: |finding, _| {
         let word = if of(finding, "force_n").value >= 0.0 { "larger" } else { "smaller" };
-        format!("{} are {} {word} than stated", loads(finding), said(finding, "force_n", "N"))
+        let force = said(finding, "force_n", "N");
+        format!("The true value of {} is {force} {word} than stated", each_load(finding))
     },
 };
 
@@ -102,7 +103,7 @@ pub static BACKLASH: RigEffect = RigEffect {
         summary: "play before the rod bends",
         formula: "y = bending + p towards the load, for every load but zero",
         prior: "2.5 % of the largest reading: 20 µm of play of a clamp where a rod bends by 0.8 mm",
-        parameters: &[("play_um", "the way that it moves freely")],
+        parameters: &[("play_um", "free travel")],
         needs: "a channel along a load",
         cause: "play in the clamp",
         cause_at: |location| "play in the clamp".to_owned() + &under(location),
@@ -121,8 +122,8 @@ pub static BACKLASH: RigEffect = RigEffect {
     },
     missing: |_| "no channel was read along a load",
     observed: |finding, _| {
-        let (loads, play) = (loads(finding), said(finding, "play_um", "µm"));
-        format!("{loads} move the rod {play} before it bends")
+        let (under, play) = (under(&finding.location), said(finding, "play_um", "µm"));
+        format!("The rod moves freely by {play} before it bends{under}")
     },
 };
 
@@ -131,18 +132,18 @@ pub static LOAD_MISALIGNMENT: RigEffect = RigEffect {
     effect: Effect {
         name: "load_misalignment",
         kind: Kind::Physics,
-        summary: "a load is not square",
+        summary: "a load is not aligned with the tool frame",
         formula: "d = nominal direction, turned by φ",
         prior: "1°: what the eye allows when a load is set up",
         parameters: &[
             ("angle_deg", "angle"),
-            ("about_x_deg", "turn of the whole frame about x"),
-            ("about_y_deg", "about y"),
-            ("about_z_deg", "about z"),
+            ("about_x_deg", "rotation of all loads about x"),
+            ("about_y_deg", "rotation of all loads about y"),
+            ("about_z_deg", "rotation of all loads about z"),
         ],
         needs: "a rod file; channels across the loads",
-        cause: "a load that is not square to the rod",
-        cause_at: |location| format!("loads turned, {location}"),
+        cause: "a misaligned load",
+        cause_at: |location| format!("misaligned loads ({location})"),
         written_to: WrittenTo::Recording,
         reported: Reported::Alone,
         seen_along: along_the_load,
@@ -150,18 +151,18 @@ pub static LOAD_MISALIGNMENT: RigEffect = RigEffect {
     },
     needs_rod: true,
     candidates: load_turns,
-    missing: |_| "the channels would show nothing of it",
+    missing: |_| "no measured channel would show it",
     observed: |finding, _| {
         let angle = of(finding, "angle_deg");
         match &finding.location {
             Location::LoadTurn { from, towards } => {
                 let word = if angle.value >= 0.0 { "towards" } else { "away from" };
-                format!("Loads along {from} pull {} {word} {towards}", angle.size().say("°"))
+                format!("Loads along {from} point {} {word} {towards}", angle.size().say("°"))
             }
             Location::LoadFrame { axes: [a, b], about } => {
-                format!("Loads along {a} and {b}, about {about} are turned by {}", angle.say("°"))
+                format!("Loads along {a} and {b} are rotated about {about} by {}", angle.say("°"))
             }
-            _ => format!("The frame of the loads is turned by {}", whole_turn(finding)),
+            _ => format!("All load directions are rotated together by {}", whole_turn(finding)),
         }
     },
 };
@@ -237,11 +238,11 @@ pub(super) fn whole_turn(finding: &Finding) -> String {
     crate::inference::Quantity { value, low: value - half, high: value + half }.say("°")
 }
 
-/// `Loads`, or `Loads along y` where it is those of one axis only.
-fn loads(finding: &Finding) -> String {
+/// `each load`, or `each load along y` where it is those of one axis only.
+fn each_load(finding: &Finding) -> String {
     match finding.location {
-        Location::UnderLoads { axis, .. } => format!("Loads along {axis}"),
-        _ => "Loads".to_owned(),
+        Location::UnderLoads { axis, .. } => format!("each load along {axis}"),
+        _ => "each load".to_owned(),
     }
 }
 

@@ -41,11 +41,14 @@ pub static SENSOR_SCALE: RigEffect = RigEffect {
         };
         measured_channels(context.data).into_iter().map(of_channel).collect()
     },
-    missing: |_| "nothing was read",
+    missing: |_| "no readings were taken",
     observed: |finding, _| {
-        let excess = of(finding, "factor").map(|factor| 100.0 * (factor - 1.0));
-        let word = if excess.value >= 0.0 { "much" } else { "little" };
-        format!("Sensor {} shows {} too {word}", finding.location, excess.size().say("%"))
+        let factor = of(finding, "factor");
+        let words = match factor.value < 1.0 && factor.value > 0.5 {
+            true => factor.map(|factor| 100.0 * (1.0 - factor)).say("%") + " too low",
+            false => factor.compared("too high", "too low"),
+        };
+        format!("Sensor {} reads {words}", finding.location)
     },
 };
 
@@ -54,18 +57,18 @@ pub static SENSOR_MISALIGNMENT: RigEffect = RigEffect {
     effect: Effect {
         name: "sensor_misalignment",
         kind: Kind::Physics,
-        summary: "a sensor is not square",
+        summary: "a sensor is not aligned with its channel's axis",
         formula: "y = e·u, e turned by φ from the channel's axis",
         prior: "1°: what the eye allows when a sensor is set up",
         parameters: &[
             ("angle_deg", "angle"),
-            ("about_x_deg", "turn of the whole block about x"),
-            ("about_y_deg", "about y"),
-            ("about_z_deg", "about z"),
+            ("about_x_deg", "rotation of all sensors about x"),
+            ("about_y_deg", "rotation of all sensors about y"),
+            ("about_z_deg", "rotation of all sensors about z"),
         ],
         needs: "a rod file; loads across the channel",
-        cause: "a sensor that is not square to the rod",
-        cause_at: |location| format!("sensor {location} (not square to the rod)"),
+        cause: "a misaligned sensor",
+        cause_at: |location| format!("a misaligned sensor ({location})"),
         written_to: WrittenTo::Recording,
         reported: Reported::Alone,
         seen_along: along_the_load,
@@ -90,10 +93,10 @@ pub static SENSOR_MISALIGNMENT: RigEffect = RigEffect {
         });
         single.chain(whole).collect()
     },
-    missing: |_| "the channels would show nothing of it",
+    missing: |_| "no measured channel would show it",
     observed: |finding, _| {
         if finding.location == Location::Part(Part::Sensors) {
-            return format!("The block of sensors is turned by {}", whole_turn(finding));
+            return format!("All sensors are rotated together by {}", whole_turn(finding));
         }
         let angle = of(finding, "angle_deg");
         let word = if angle.value >= 0.0 { "towards" } else { "away from" };
@@ -101,7 +104,7 @@ pub static SENSOR_MISALIGNMENT: RigEffect = RigEffect {
             Location::SensorTurn { from, towards } => (format!("d{from}"), format!("d{towards}")),
             other => (other.to_string(), "the others".into()),
         };
-        format!("Sensor {from} is turned by {} {word} {towards}", angle.size().say("°"))
+        format!("Sensor {from} is rotated by {} {word} {towards}", angle.size().say("°"))
     },
 };
 
@@ -110,13 +113,13 @@ pub static THERMAL_DRIFT: RigEffect = RigEffect {
     effect: Effect {
         name: "thermal_drift",
         kind: Kind::Physics,
-        summary: "readings follow temperature or time",
+        summary: "the readings follow temperature or time",
         formula: "y + d·(T − T₀), or y + d·(t − t₀); zero at the first reading of file or run",
         prior: "2 % of the largest reading over the recording: steel of 0.5 m grows by 6 µm/K",
         parameters: &[
             ("um_per_k", "drift per kelvin"),
             ("um_per_h", "drift per hour"),
-            ("dx_um_per_k", "the same of each sensor where all drift"),
+            ("dx_um_per_k", "the same for each sensor where all drift"),
             ("dy_um_per_k", ""),
             ("dz_um_per_k", ""),
             ("dx_um_per_h", ""),
@@ -136,8 +139,8 @@ pub static THERMAL_DRIFT: RigEffect = RigEffect {
     missing: |context| {
         let has = |value: fn(&Datum) -> Option<f64>| context.data.iter().any(|d| value(d).is_some());
         match has(|d| d.time) || has(|d| d.temperature) {
-            true => "times or temperatures are missing in places, or do not differ",
-            false => "there are neither times nor temperatures (columns `time_s`, `temperature_c`)",
+            true => "the times or temperatures are incomplete, or do not differ",
+            false => "neither times nor temperatures were recorded",
         }
     },
     observed: |finding: &Finding, _| {

@@ -21,20 +21,20 @@ const JOINT: f64 = 0.2;
 /// Least departure of a bend's flexibility factor; else von Kármán's for the section counts.
 const BEND: f64 = 0.3;
 
-const NOT_YIELDING: &str = "the loads do not make it yield";
+const NOT_YIELDING: &str = "these loads do not deform it";
 
 /// Moduli, or walls, of the whole rod.
 pub static STIFFNESS_SCALE: RigEffect = RigEffect {
     effect: Effect {
         name: "stiffness_scale",
         kind: Kind::Physics,
-        summary: "all of the rod is softer or stiffer than its file says",
+        summary: "the whole rod is softer or stiffer than stated",
         formula: "E → f·E, G → f·G in all pipes",
         prior: "27 %: 1 − 1/r, rms over the r_rod of the paper's six rods",
         parameters: &[("factor", "actual over nominal stiffness")],
         needs: "a rod file",
-        cause: "its moduli or walls are not those of its file",
-        cause_at: |_| "moduli or walls that are not those of the rod file".into(),
+        cause: "moduli or walls that differ from the rod file",
+        cause_at: |_| "moduli or walls that differ from the rod file".into(),
         written_to: WrittenTo::Model,
         reported: Reported::Alone,
         seen_along: along_the_load,
@@ -46,7 +46,7 @@ pub static STIFFNESS_SCALE: RigEffect = RigEffect {
         vec![entry(&STIFFNESS_SCALE, Location::Part(Part::Rod), factor, Action::Stiffness)]
     },
     missing: |_| NOT_YIELDING,
-    observed: |finding, _| format!("The rod is {} than its model everywhere", softer(of(finding, "factor"))),
+    observed: |finding, _| format!("The whole rod is {} than its model", softer(of(finding, "factor"))),
 };
 
 /// The shear modulus of the whole rod.
@@ -54,13 +54,13 @@ pub static SHEAR_MODULUS: RigEffect = RigEffect {
     effect: Effect {
         name: "shear_modulus",
         kind: Kind::Physics,
-        summary: "it twists and shears more easily",
+        summary: "torsion and shear are softer or stiffer than stated",
         formula: "G → f·G in all pipes",
         prior: "27 %, as for the whole stiffness",
         parameters: &[("factor", "actual over nominal stiffness")],
         needs: "a rod file; loads that twist or shear the rod",
-        cause: "its shear modulus",
-        cause_at: |_| "another shear modulus".into(),
+        cause: "a shear modulus that differs from the rod file",
+        cause_at: |_| "a shear modulus that differs from the rod file".into(),
         written_to: WrittenTo::Model,
         reported: Reported::Alone,
         seen_along: along_the_load,
@@ -73,7 +73,7 @@ pub static SHEAR_MODULUS: RigEffect = RigEffect {
     },
     missing: |_| "the loads neither twist nor shear the rod",
     observed: |finding, _| {
-        format!("The rod is {} in torsion and shear than its model", softer(of(finding, "factor")))
+        format!("In torsion and shear the rod is {} than its model", softer(of(finding, "factor")))
     },
 };
 
@@ -82,19 +82,19 @@ pub static JOINT_COMPLIANCE: RigEffect = RigEffect {
     effect: Effect {
         name: "joint_compliance",
         kind: Kind::Physics,
-        summary: "a joint yields: one of the file, or one found on the rod",
+        summary: "a joint of the file or on the rod gives way",
         formula: "θ = β·M at a station, in bending and in torsion",
         prior: "20 % of the rod's own ∫ds/EI and ∫ds/GJ, as at the corner of the paper's rod 2#",
         parameters: &[
-            ("bending_urad_per_nm", "the joint's whole compliance in bending"),
-            ("torsion_urad_per_nm", "and in torsion"),
-            ("station_mm", "where it is, if the file does not say"),
+            ("bending_urad_per_nm", "the joint's compliance in bending"),
+            ("torsion_urad_per_nm", "the joint's compliance in torsion"),
+            ("station_mm", "station of the joint"),
         ],
         needs: "a rod file",
-        cause: "a connection that yields",
+        cause: "a compliant connection",
         cause_at: |location| match location {
-            Location::Station(_) => format!("a connection that yields at {location}"),
-            named => format!("the joint \"{named}\" yielding"),
+            Location::Station(_) => format!("a compliant connection at {location}"),
+            named => format!("the compliance of joint \"{named}\""),
         },
         written_to: WrittenTo::Model,
         reported: Reported::Alone,
@@ -117,12 +117,12 @@ pub static JOINT_COMPLIANCE: RigEffect = RigEffect {
                     .map(|rival| format!(", or the joint \"{}\"", rival.location))
                     .collect();
                 let (low, high) = (low / MM, high / MM);
-                format!("Something at {place} (between {low:.0} and {high:.0} mm{declared})")
+                format!("At {place} (between {low:.0} and {high:.0} mm{declared}) the rod")
             }
-            (None, Location::Station(_)) => format!("Something at {place}"),
+            (None, Location::Station(_)) => format!("At {place} the rod"),
             (None, named) => format!("The joint \"{named}\""),
         };
-        format!("{what} yields {}", amount(finding, model))
+        format!("{what} gives way by {}", amount(finding, model))
     },
 };
 
@@ -131,16 +131,16 @@ pub static ROOT_COMPLIANCE: RigEffect = RigEffect {
     effect: Effect {
         name: "root_compliance",
         kind: Kind::Physics,
-        summary: "flange or adapter yield",
+        summary: "the flange or its adapter gives way",
         formula: "θ = β·M at the root",
         prior: "20 % of the rod's own ∫ds/EI and ∫ds/GJ",
         parameters: &[
             ("bending_urad_per_nm", "compliance in bending"),
-            ("torsion_urad_per_nm", "and in torsion"),
+            ("torsion_urad_per_nm", "compliance in torsion"),
         ],
         needs: "a rod file",
-        cause: "a flange or adapter that yields",
-        cause_at: |_| "a flange or adapter that yields".into(),
+        cause: "a compliant flange or adapter",
+        cause_at: |_| "a compliant flange or adapter".into(),
         written_to: WrittenTo::Model,
         reported: Reported::Alone,
         seen_along: along_the_load,
@@ -154,7 +154,7 @@ pub static ROOT_COMPLIANCE: RigEffect = RigEffect {
             .collect()
     },
     missing: |_| NOT_YIELDING,
-    observed: |finding, model| format!("The rod's root yields {}", amount(finding, model)),
+    observed: |finding, model| format!("The rod's root gives way by {}", amount(finding, model)),
 };
 
 /// The pipe of the bend becomes oval.
@@ -162,13 +162,13 @@ pub static BEND_FLEXIBILITY: RigEffect = RigEffect {
     effect: Effect {
         name: "bend_flexibility",
         kind: Kind::Physics,
-        summary: "the pipe of the bend becomes oval",
+        summary: "the bend's cross-section becomes oval under load",
         formula: "bending of the arc × k",
         prior: "von Kármán's factor for the section, less the file's; 0.3 at least",
         parameters: &[("factor", "k: the arc's flexibility over that of a beam")],
         needs: "a rod file with a bend radius",
-        cause: "its pipe becomes oval there",
-        cause_at: |_| "a bend whose pipe becomes oval".into(),
+        cause: "its cross-section becomes oval",
+        cause_at: |_| "a bend whose cross-section becomes oval".into(),
         written_to: WrittenTo::Model,
         reported: Reported::Alone,
         seen_along: along_the_load,
@@ -191,7 +191,7 @@ pub static BEND_FLEXIBILITY: RigEffect = RigEffect {
     },
     missing: |context| match context.rod.is_some_and(|rod| rod.arc_length() > 0.0) {
         true => NOT_YIELDING,
-        false => "the rod's corner is sharp: it has no arc that could ovalise",
+        false => "the rod's corner is sharp: no arc could become oval",
     },
     observed: |finding, _| format!("The bend is {} times as flexible as a beam", said(finding, "factor", "")),
 };
@@ -287,7 +287,5 @@ fn amount(finding: &Finding, model: &RigModel) -> String {
 
 /// `12 ± 2 % softer`, of a factor on a modulus.
 fn softer(factor: Quantity) -> String {
-    let excess = factor.map(|factor| 100.0 * (1.0 / factor - 1.0));
-    let word = if excess.value >= 0.0 { "softer" } else { "stiffer" };
-    format!("{} {word}", excess.size().say("%"))
+    factor.map(|factor| 1.0 / factor).compared("softer", "stiffer")
 }

@@ -106,12 +106,12 @@ fn the_words_say_what_a_mechanic_would() {
     };
     assert_eq!(
         say("friction", "slide, loads along y"),
-        "Loads along y are felt 2.0 ± 1.0 N too small while loading and as much too large while unloading: \
-         friction in the slide"
+        "About 2.0 ± 1.0 N of each load along y does not reach the rod while loading, and as much remains on it \
+         while unloading: friction in the slide"
     );
-    assert!(say("joint_compliance", "sleeve").starts_with("The joint \"sleeve\" yields"));
+    assert!(say("joint_compliance", "sleeve").starts_with("The joint \"sleeve\" gives way by"));
     assert!(say("thermal_drift", "dy").starts_with("Sensor dy drifts by 10 ± 5 µm per kelvin"));
-    assert!(say("nonlinear_stiffness", "rod").contains("grows softer with the load, by 10 ± 5 % at 20.0 N"));
+    assert!(say("nonlinear_stiffness", "rod").contains("is 10 ± 5 % softer at 20.0 N than at small loads"));
 }
 
 #[test]

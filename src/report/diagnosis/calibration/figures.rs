@@ -71,7 +71,7 @@ fn residuals(found: &CalibrationDiagnosis, covariate: &Covariate, joint: Option<
     let (title, unit) = (covariate.variable.title(NOUN), covariate.variable.unit());
     let unit = if unit.is_empty() { String::new() } else { format!(" / {unit}") };
     let events = if is_order { events::all(found) } else { Vec::new() };
-    let marked = if events.is_empty() { "" } else { " What happened is marked where it did." };
+    let marked = if events.is_empty() { "" } else { " Events are marked where they happened." };
     let figure = before_after(&BeforeAfter {
         along: format!("{title}{unit}"),
         names: Vec::new(),
@@ -81,8 +81,9 @@ fn residuals(found: &CalibrationDiagnosis, covariate: &Covariate, joint: Option<
         events,
     });
     figure.captioned(format!(
-        "What the calibration leaves of the poses along the {}, before and after, with what the findings say, and what \
-         remains. What is noise stays in the band.{marked}",
+        "Residuals of the calibration along the {}, before and after the findings are included. Lines: \
+         what the findings explain, and the unexplained remainder. Pure noise would lie within the \
+         band.{marked}",
         title
     ))
 }
@@ -144,11 +145,11 @@ pub fn distribution(found: &CalibrationDiagnosis, distances: &Distances) -> Figu
     };
     let mut methods = vec![method("calibration as it is", &distances.before)];
     if !found.diagnosis.findings.is_empty() {
-        methods.push(method("with what was found", &distances.after));
+        methods.push(method("with the findings", &distances.after));
     }
     if let Some((before, after)) = &distances.held_out {
         methods.push(method("held out, as it is", before));
-        methods.push(method("held out, with what was found", after));
+        methods.push(method("held out, with the findings", after));
     }
     error_distribution(&methods)
 }

@@ -30,26 +30,32 @@ pub fn json(correction: &Correction) -> Value {
 
 pub fn section(correction: &Correction) -> Section {
     let mut blocks = vec![Block::Paragraph(
-        "With --apply the physics that was found is written into files: what belongs to the rod into its rod file, what \
-         belongs to the rig is taken out of the readings. The compliance under gravity, C^g, then follows from the \
-         physics and not from one factor r_rod on everything."
+        "With --apply the findings are written into files: effects of the rod into its rod file; \
+         effects of the rig are removed from the readings. The compliance under gravity, C^g, then \
+         follows from these effects and not from one factor r_rod."
             .into(),
     )];
     let said = [
-        ("Entered into the rod", &correction.entered),
-        ("Taken out of the readings", &correction.removed),
-        ("Left out, for neither file can hold it", &correction.left_out),
+        ("Written into the rod file", &correction.entered),
+        ("Removed from the readings", &correction.removed),
+        ("Not written, because neither file has a key for it", &correction.left_out),
     ];
     let points: Vec<String> = said
         .into_iter()
-        .flat_map(|(what, list)| list.iter().map(move |words| format!("{what}: {words}")))
+        .flat_map(|(what, list)| list.iter().map(move |words| format!("{what}: {}", spoken(words))))
         .collect();
     if !points.is_empty() {
         blocks.push(Block::List(points));
     }
     blocks.push(Block::Table(table(correction)));
-    blocks.push(matrices("corrected", "The corrected rod (FEA with what was found).", &correction.after));
-    Section::new("What becomes of the rod", blocks)
+    blocks.push(matrices("corrected", "The corrected rod (FEA with the findings).", &correction.after));
+    Section::new("The corrected rod", blocks)
+}
+
+/// `stiffness_scale, rod` with the effect's name as words.
+fn spoken(entry: &str) -> String {
+    let (effect, place) = entry.split_once(", ").unwrap_or((entry, ""));
+    [effect.replace('_', " "), place.to_owned()].join(", ").trim_end_matches(", ").to_owned()
 }
 
 /// The diagonals and c_rod by each way.
@@ -59,11 +65,8 @@ fn table(correction: &Correction) -> Table {
         columns.extend(["11", "22", "33"].map(|entry| Column::number(format!("{matrix} {entry}"), unit)));
     }
     columns.push(Column::number("c_rod", "µm"));
-    let mut table = Table::new(
-        "correction",
-        "The rod by its file, by one ratio, and by the physics that was found.",
-        columns,
-    );
+    let mut table =
+        Table::new("correction", "The rod by its file, by one ratio, and with the findings.", columns);
     let mut row = |name: String, compliance: &Compliance| {
         let diagonals = [&compliance.force, &compliance.gravity].map(|matrix| matrix.diagonal());
         let mut cells = vec![name];

@@ -76,7 +76,7 @@ pub fn residuals(found: &RigDiagnosis) -> Figure {
     let unit = if variable.unit().is_empty() { String::new() } else { format!(" / {}", variable.unit()) };
     let plainest = most_structured(found).filter(|_| diagnosis.is_mismatch()).map_or_else(String::new, |k| {
         format!(
-            " The mismatch is plainest along this number: {}.",
+            " The residuals follow this variable most clearly: {}.",
             found.evidence.covariates[k].variable.title(NOUN)
         )
     });
@@ -88,8 +88,9 @@ pub fn residuals(found: &RigDiagnosis) -> Figure {
         ..BeforeAfter::default()
     })
     .captioned(format!(
-        "What the model leaves of the readings, before and after; lines show what the findings say, and what remains. What \
-         is noise stays in the band.{plainest}"
+        "Residuals of the readings, before and after the findings are included. Lines: what the \
+         findings explain, and the unexplained remainder. Pure noise would lie within the \
+         band.{plainest}"
     ))
 }
 
@@ -175,7 +176,7 @@ pub fn places(found: &RigDiagnosis, rod: &Rod) -> Option<Figure> {
     Some(
         figure
             .named("places")
-            .captioned(format!("Where the rod yields more than its model says: {}.", names.join("; "))),
+            .captioned(format!("Where the rod is more compliant than its model: {}.", names.join("; "))),
     )
 }
 

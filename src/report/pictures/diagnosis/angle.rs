@@ -33,7 +33,9 @@ pub fn angle_errors(joints: &[AngleError]) -> Vec<Figure> {
     let of_joint = |joint: &AngleError| match (has_both, joint.curve.is_empty()) {
         (false, _) => vec![panel(joint, 2, "")],
         (true, true) => vec![panel(joint, 1, ": before"), panel(joint, 2, ": after")],
-        (true, false) => vec![panel(joint, 1, ": before, without all else"), panel(joint, 2, ": after")],
+        (true, false) => {
+            vec![panel(joint, 1, ": before, without the other findings"), panel(joint, 2, ": after")]
+        }
     };
     let figure = |joints: &[AngleError]| Figure {
         name: "angle-errors".into(),
@@ -51,7 +53,7 @@ fn panel(joint: &AngleError, which: usize, title: &str) -> Chart {
     let y = padded(extent(all.chain(joint.curve.iter().map(|c| c[1]))), 0.06);
     let x = padded(extent(joint.poses.iter().map(|pose| pose[0])), 0.03);
     let label = format!("angle of {} / °", joint.joint);
-    let mut chart = Chart::new(format!("{}{title}", joint.joint), label, "true − told / µrad");
+    let mut chart = Chart::new(format!("{}{title}", joint.joint), label, "angle error / µrad");
     (chart.x.range, chart.y.range) = (Range::Fixed(x.0, x.1), Range::Fixed(y.0, y.1));
     chart.height_px = Some(HEIGHT);
     let has_curve = which == 1 && !joint.curve.is_empty();
@@ -72,7 +74,7 @@ fn panel(joint: &AngleError, which: usize, title: &str) -> Chart {
     });
     if has_curve {
         chart.marks.push(Mark::Line {
-            label: "what was found".into(),
+            label: "finding".into(),
             points: joint.curve.iter().map(|c| [c[0], c[1]]).collect(),
             style: Style::nth(0).dash(Dash::Solid).width(1.8),
         });

@@ -76,13 +76,13 @@ type Shown = (&'static str, fn(&ResidualPoint) -> f64, fn(&ResidualPoint) -> f64
 /// explains; bands are twice the noise. Where a number repeats, series stand beside one another.
 pub fn before_after(data: &BeforeAfter) -> Figure {
     let found = |p: &ResidualPoint| p.before_um - p.after_um;
-    let (found_says, unexplained) = ("what was found says", "what no effect explains");
+    let (found_says, unexplained) = ("explained by the findings", "unexplained");
     let mut points = data.series.iter().flat_map(|series| &series.points);
     let shown: Vec<Shown> = match points.all(|p| found(p) == 0.0) {
-        true => vec![("what the model leaves", |p| p.after_um, |p| p.unexplained_um, unexplained)],
+        true => vec![("residuals of the model", |p| p.after_um, |p| p.unexplained_um, unexplained)],
         false => vec![
             ("before: the model as it is", |p| p.before_um, found, found_says),
-            ("after: with what was found", |p| p.after_um, |p| p.unexplained_um, unexplained),
+            ("after: with the findings", |p| p.after_um, |p| p.unexplained_um, unexplained),
         ],
     };
     let layout = Layout::of(data);
@@ -153,10 +153,10 @@ impl<'a> Layout<'a> {
         (chart.x.range, chart.y.range) = (Range::Fixed(low, high), Range::Fixed(self.y.0, self.y.1));
         if self.data.is_apart && self.data.series.len() > 1 {
             chart.height_px = Some(ROW_HEIGHT);
-            chart.y.label = "left / µm".into();
+            chart.y.label = "residual / µm".into();
         }
         chart.marks.push(Mark::Band {
-            label: "± 2 × noise".into(),
+            label: "± 2 σ of the scatter".into(),
             points: [low, high].map(|x| [x, -self.noise, self.noise]).to_vec(),
             style: Style::nth(0).colour(Colour::SkyBlue),
         });
@@ -231,7 +231,7 @@ fn cloud(series: &Residual, (_, residual, said, words): &Shown, is_jagged: bool)
         let of_stretch = |points| Mark::Line { label: (*words).into(), points, style };
         unbroken(line).into_iter().map(of_stretch).collect()
     };
-    (dots("what was measured", left, Colour::Grey), said)
+    (dots("measured", left, Colour::Grey), said)
 }
 
 /// Whether neighbours have little in common.

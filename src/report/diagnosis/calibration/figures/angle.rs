@@ -36,12 +36,12 @@ pub fn errors(found: &CalibrationDiagnosis) -> Vec<Figure> {
 }
 
 fn caption(has_findings: bool, has_curve: bool) -> String {
-    let mut words = "How far joints are from where they say they are, over their own angles: what the calibration leaves of a \
-                     pose along the way that the joint moves the tip, over the joint's lever"
+    let mut words = "Angle errors of joints over their own angles: the pose residual projected on the \
+                     joint's motion, divided by its lever arm"
         .to_owned();
-    words += if has_findings { "; before, and after with what was found." } else { "." };
+    words += if has_findings { "; before, and after with the findings." } else { "." };
     if has_curve {
-        words += " Where a curve was found, all else that was found is taken out beforehand.";
+        words += " Where a curve was found, the other findings are removed first.";
     }
     words
 }

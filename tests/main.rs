@@ -13,6 +13,7 @@ mod campaigns;
 mod circles;
 mod cli;
 mod diagnosis;
+mod documents;
 mod dual;
 mod kinematics;
 mod nist;

@@ -1,4 +1,4 @@
-//! README.md promises nothing that does not run.
+//! README.md and docs/ promise nothing that does not run.
 
 use std::path::Path;
 use std::process::Stdio;
@@ -85,6 +85,93 @@ fn every_command_of_the_readme_runs() {
         );
         assert!(!output.stdout.is_empty(), "README.md: `{command}` says nothing");
     }
+}
+
+/// What stands for a user's own files in the synopses of docs/, with the files that a test has instead.
+const PLACEHOLDERS: [(&str, &str); 12] = [
+    ("[--cases N]", "--cases 2"),
+    ("[--draws N]", "--draws 50"),
+    ("ROD", "rods/5.toml"),
+    ("READINGS", "stiffness_data/5.csv"),
+    ("CAMPAIGN", "campaigns/tx90-5/campaign.toml"),
+    ("DIR", "made-here"),
+    ("MODEL", "robots/tx90.toml"),
+    ("POSES", "poses.csv"),
+    ("KEY", "made-here.key.jsonl"),
+    ("S", "7"),
+    ("N", "7"),
+    ("…", ""),
+];
+
+/// A synopsis without its options, for the test's files; and the options that it names.
+fn concrete(synopsis: &str) -> (String, Vec<String>) {
+    let synopsis = synopsis.split(" #").next().unwrap_or_default();
+    let options = synopsis.split(|c: char| c.is_whitespace() || c == '[' || c == ']');
+    let options = options.filter(|word| word.starts_with("--")).map(str::to_owned).collect();
+    let mut line = synopsis.to_owned();
+    for (placeholder, file) in PLACEHOLDERS.iter().take(2) {
+        line = line.replace(placeholder, file);
+    }
+    let mut required = String::new();
+    let mut depth = 0;
+    for letter in line.chars() {
+        depth += i32::from(letter == '[');
+        if depth == 0 {
+            required.push(letter);
+        }
+        depth -= i32::from(letter == ']');
+    }
+    let own = |word: &str| -> String {
+        let known = PLACEHOLDERS.iter().find(|(placeholder, _)| *placeholder == word);
+        known.map_or(word, |(_, file)| *file).to_owned()
+    };
+    (required.split_whitespace().map(own).collect::<Vec<_>>().join(" "), options)
+}
+
+#[test]
+fn a_synopsis_becomes_a_command() {
+    let (line, options) = concrete("rodcal rig fit ROD READINGS [--robust huber|tukey] [--json]  # words");
+    assert_eq!(line, "rodcal rig fit rods/5.toml stiffness_data/5.csv");
+    assert_eq!(options, ["--robust", "--json"]);
+}
+
+/// Every synopsis and every command of docs/ runs, and every option that one names exists. What the README runs on the same
+/// files is not run again.
+#[test]
+fn every_command_of_the_docs_runs() {
+    let project = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let of = |name: &Path| commands(&std::fs::read_to_string(name).unwrap());
+    let of_readme = of(&project.join("README.md"));
+    let mut documents: Vec<_> =
+        std::fs::read_dir(project.join("docs")).unwrap().map(|entry| entry.unwrap().path()).collect();
+    documents.retain(|path| path.extension().is_some_and(|extension| extension == "md"));
+    documents.sort();
+    let mut ran = 0;
+    for document in documents {
+        let sandbox = Sandbox::new();
+        for synopsis in of(&document) {
+            // examples/regenerate.rs makes the pages of docs/; it is no command of the program
+            if synopsis.contains("--example") {
+                continue;
+            }
+            let (line, options) = concrete(&synopsis);
+            let words = line.strip_prefix("rodcal").unwrap_or_default().trim();
+            let subcommands = words.split(' ').take_while(|word| word.chars().all(char::is_alphabetic));
+            let subcommands: Vec<&str> =
+                subcommands.filter(|word| !["linear", "made"].contains(word)).collect();
+            let help = sandbox.run(&format!("{} --help", subcommands.join(" "))).succeeded().stdout;
+            for option in options {
+                assert!(help.contains(&option), "{}: {synopsis}: no {option}", document.display());
+            }
+            let base = line.split(" --").next().unwrap_or_default();
+            if of_readme.iter().any(|command| command.starts_with(base)) {
+                continue;
+            }
+            sandbox.run(words).succeeded();
+            ran += 1;
+        }
+    }
+    assert!(ran >= 4, "docs/ show {ran} commands only");
 }
 
 /// The README's picture is what the program draws today.

@@ -1,4 +1,4 @@
-//! The library in one small program: rod, rig, calibration, and what to do with the result.
+//! The library in one small program: rod, rig, calibration, diagnosis, and what to do with the result.
 //!
 //! `cargo run --example library`
 
@@ -45,7 +45,19 @@ fn main() -> Result<()> {
         );
     }
 
-    // 4. Use it: where the tip is at a pose of the user's, and the robot as a file
+    // 4. What rod and robot do that their models leave out
+    let found = diagnosis::rig::diagnose(&readings, Some(&rod))?;
+    for finding in &found.diagnosis.findings {
+        println!("{} ({}): {}", finding.effect, finding.location, finding.description);
+    }
+    let of_robot = diagnosis::calibration::diagnose_calibrated(&campaign, calibration.clone())?;
+    println!(
+        "{} findings in the calibration, scatter {:.1} µm",
+        of_robot.diagnosis.findings.len(),
+        of_robot.diagnosis.noise / UM
+    );
+
+    // 5. Use it: where the tip is at a pose of the user's, and the robot as a file
     let tool = calibration.setup.tool;
     let (tip, _) = calibration.setup.calibrated().tip_at(tool, campaign.measurements.joints(0));
     println!("tip at pose 1: [{:.3}, {:.3}, {:.3}] mm in {{0}}", tip.x / MM, tip.y / MM, tip.z / MM);

@@ -61,7 +61,22 @@
 //!
 //! # From a recording to what its model left out
 //!
-//! See [`diagnosis`].
+//! ```
+//! use rodcal::diagnosis::rig::diagnose;
+//! use rodcal::prelude::*;
+//!
+//! // reconstructed with 0.09 kg (0.88 N) of friction in the slide
+//! let rod = Rod::read("rods/5.toml".as_ref())?;
+//! let readings = Readings::read("stiffness_data/5.csv".as_ref())?;
+//! let found = diagnose(&readings, Some(&rod))?;
+//! let friction = &found.diagnosis.findings[0];
+//! assert_eq!((friction.effect.name, friction.location.to_string().as_str()), ("friction", "slide"));
+//! let force = friction.quantity("force_n").expect("friction is a force"); // with its 95 % interval
+//! assert!((force.value - 0.91).abs() < 0.1 && force.low < 0.88 && force.high > 0.88, "{force:?}");
+//! // nothing was read while unloading, so that an offset of the load explains the readings as well
+//! assert_eq!(friction.rivals[0].effect.name, "load_offset");
+//! # Ok::<(), rodcal::Error>(())
+//! ```
 
 pub mod beam;
 pub mod calibration;

@@ -32,6 +32,19 @@ pub fn diagnose<'c>(
 
 /// Diagnoses what a calibration of `campaign` leaves.
 ///
+/// ```
+/// use rodcal::diagnosis::calibration::diagnose_calibrated;
+/// use rodcal::prelude::*;
+///
+/// // simulated with nothing but noise of 18 µm, and a rod that the readings of its rig describe
+/// let campaign = Campaign::read("campaigns/tx90-5/campaign.toml".as_ref())?;
+/// let calibration = calibrate(&campaign, Mode::Meas, &Options::default())?;
+/// let found = diagnose_calibrated(&campaign, calibration)?;
+/// assert!(found.diagnosis.findings.is_empty());
+/// assert!((found.diagnosis.noise - 18e-6).abs() < 4e-6, "{}", found.diagnosis.noise);
+/// # Ok::<(), rodcal::Error>(())
+/// ```
+///
 /// # Errors
 /// As [`crate::calibration::Compensation::new`].
 pub fn diagnose_calibrated<'c>(

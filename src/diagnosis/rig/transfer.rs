@@ -50,6 +50,20 @@ impl RigDiagnosis {
     /// with what large deflections add to second order.
     /// One number for each offset of `asked`, row by row, dx before dy before dz; the offsets that stand there do not matter.
     ///
+    /// ```
+    /// use rodcal::prelude::*;
+    ///
+    /// let rod = Rod::read("rods/5.toml".as_ref())?;
+    /// let readings = Readings::read("stiffness_data/5.csv".as_ref())?;
+    /// let found = diagnosis::rig::diagnose(&readings, Some(&rod))?;
+    /// // what 10 N along y would read; the 0 says which offset is asked for
+    /// let asked = Readings::from_text("asked.csv", "axis,load_n,dy_um\ny,5,0\ny,10,0\n")?;
+    /// let predicted = found.predicted(&asked)?;
+    /// // 46.3 µm/N, less the 0.9 N that friction holds back
+    /// assert!((predicted[1] - 46.3e-6 * (10.0 - 0.9)).abs() < 12e-6, "{predicted:?}");
+    /// # Ok::<(), rodcal::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// As [`RigModel::new`]. Without a rod nothing is known of the slope of another line: [`crate::Error::NotApplicable`].
     pub fn predicted(&self, asked: &Readings) -> Result<Vec<f64>> {

@@ -75,7 +75,6 @@
 //! assert!((force.value - 0.91).abs() < 0.1 && force.low < 0.88 && force.high > 0.88, "{force:?}");
 //! // nothing was read while unloading, so that an offset of the load explains the readings as well
 //! assert_eq!(friction.rivals[0].effect.name, "load_offset");
-//! println!("{}", friction.description); // About 0.90 ± 0.05 N of each load does not reach the rod …
 //! # Ok::<(), rodcal::Error>(())
 //! ```
 

@@ -172,7 +172,7 @@ fn odd_files_are_read_with_a_warning() {
             "campaign.toml",
             "rod = \"rod.toml\"\nrig = \"rig.csv\"\n",
             "",
-            "there is a contact_force_n, but no rod that it could bend",
+            "there is a contact_force_n, but no rod for it to bend",
         ),
         (
             Desk::with_clamps(),

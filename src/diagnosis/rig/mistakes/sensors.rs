@@ -221,7 +221,7 @@ fn expected(data: &[Datum], at: &[usize], without: &[usize]) -> Option<Vec<(f64,
         };
         let line = rest.iter().find(is_it).filter(|line| line.has_slope && line.data.len() >= 3)?;
         // loads beyond those of the others are foretold no better than the slope is known
-        let scatter = line.fit.scatter + line.fit.error * d.load;
+        let scatter = line.fit.scatter.hypot(line.fit.error * d.load);
         Some((line.fit.at(d.signed_load()), scatter))
     };
     at.iter().map(of).collect()

@@ -71,8 +71,8 @@ const MOODS: [Mood; 4] = [FILE, SOME, MUCH, STIFFNESS];
 /// One thing far off, each as likely.
 const SINGLE: f64 = -5.0;
 /// Joints have many places.
-const ONE_JOINT: f64 = -7.0;
-const SINGLE_JOINT: f64 = 0.7;
+const ONE_JOINT: f64 = -7.5;
+const SINGLE_JOINT: f64 = 0.6;
 const SINGLE_SHEAR: f64 = 1.0;
 const SINGLE_AXIS: f64 = 0.3;
 const SINGLE_CHANNEL: f64 = 0.3;

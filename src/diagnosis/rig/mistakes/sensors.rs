@@ -130,18 +130,20 @@ pub(super) fn saturated(data: &[Datum]) -> Vec<Part> {
                 continue;
             }
             let Some(expected) = expected(data, &at, &ends) else { continue };
-            let beyond =
-                |(value, scatter): &&(f64, f64)| side * value - limit > (BEYOND * limit).max(2.0 * scatter);
-            if expected.iter().filter(beyond).count() * 3 < at.len() * 2 {
-                continue;
-            }
-            // the same value at different loads, or with noise all round it
-            let values = expected.iter().map(|(value, _)| side * value);
-            let (low, high) =
-                values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+            let beyond = |(value, _): &(f64, f64)| side * value - limit;
             let scatter = expected.iter().fold(0.0, |most: f64, (_, scatter)| most.max(*scatter));
+            let (low, high) = expected.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), of| {
+                (low.min(beyond(of)), high.max(beyond(of)))
+            });
+            let mean = expected.iter().map(beyond).sum::<f64>() / at.len() as f64;
+            // the same value to the last digit at loads that differ, all of them beyond; friction holds
+            // a rod on the way down, but not all of these
+            let is_flat =
+                high - low > (BEYOND * limit).max(scatter) && low > -scatter && mean > 2.0 * scatter;
+            // or, at one load, well beyond, with noise in all other readings
             let step = super::super::evidence::resolution(data);
-            if high - low < BEYOND * limit && scatter < 3.0 * step.max(SAME * most) {
+            let is_still = low > 3.0 * scatter && scatter > 3.0 * step.max(SAME * most);
+            if mean < BEYOND * limit || !(is_flat || is_still) {
                 continue;
             }
             let name = column(channel);
@@ -156,7 +158,7 @@ pub(super) fn saturated(data: &[Datum]) -> Vec<Part> {
                     at.len()
                 ),
                 looks_like: format!("{name} looks cut off at {} µm", significant(shown, 4)),
-                explains: high - limit,
+                explains: high,
                 data: at,
                 rivals: Vec::new(),
             });
@@ -221,7 +223,7 @@ fn expected(data: &[Datum], at: &[usize], without: &[usize]) -> Option<Vec<(f64,
         };
         let line = rest.iter().find(is_it).filter(|line| line.has_slope && line.data.len() >= 3)?;
         // loads beyond those of the others are foretold no better than the slope is known
-        let scatter = line.fit.scatter + line.fit.error * d.load;
+        let scatter = line.fit.scatter.hypot(line.fit.error * d.load);
         Some((line.fit.at(d.signed_load()), scatter))
     };
     at.iter().map(of).collect()

@@ -26,6 +26,7 @@ mod limit;
 mod linearised;
 mod locate;
 mod location;
+mod nominal;
 mod pairs;
 mod proposal;
 mod pruning;
@@ -50,7 +51,6 @@ pub(crate) use self::{
     pruning::infer,
     selection::{DiscrepancyModel, Pairs},
 };
-pub use background::{NominalEstimate, NominalNumber};
 pub use description::Description;
 pub use diagnose::diagnose;
 pub use diagnosis::{Diagnosed, Diagnosis, Discrepancy};
@@ -65,6 +65,7 @@ pub use lack_of_fit::LackOfFit;
 pub use limit::Limit;
 pub use locate::Structure;
 pub use location::{Location, Part, Run, RunName};
+pub use nominal::{NominalEstimate, NominalNumber};
 pub use proposal::{LoadPlan, Plan, PlannedPose, PosePlan, Proposal};
 pub use quantity::Quantity;
 pub use ranking::{Rank, Ranked, ranking};

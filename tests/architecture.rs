@@ -219,8 +219,10 @@ fn inference_knows_no_physics() {
         let code = text.split("#[cfg(test)]").next().unwrap();
         let is_vocabulary = ["location.rs", "variable.rs", "limit.rs"].iter().any(|own| file.ends_with(own));
         for word in ["friction", "backlash", "gear", "clamp", "slide", "creep"] {
-            let is_said =
-                code.lines().any(|line| !line.trim_start().starts_with("//") && line.contains(word));
+            let is_said = code
+                .lines()
+                .map(|line| line.replace(".clamp(", ""))
+                .any(|line| !line.trim_start().starts_with("//") && line.contains(word));
             assert!(is_vocabulary || !is_said, "{file} speaks of {word}");
         }
     }

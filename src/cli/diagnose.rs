@@ -1,18 +1,22 @@
 //! `rodcal diagnose rig ROD READINGS`, `rodcal diagnose calibration CAMPAIGN`.
 
 mod calibration;
+mod listed;
 
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
 use rodcal::diagnosis::rig::effects::registry;
-use rodcal::diagnosis::rig::{Correction, diagnose};
-use rodcal::inference::Effect;
+use rodcal::diagnosis::rig::{Correction, diagnose_among};
 use rodcal::rig::readings::Readings;
 use rodcal::rod::Rod;
-use rodcal::{Result, report};
+use rodcal::{Result, files, report};
 
+use self::listed::listed;
 use super::output::Outcome;
+
+/// More rods than these in one directory are not compared.
+const MOST_NEIGHBOURS: usize = 50;
 
 #[derive(Debug, Subcommand)]
 pub enum Diagnose {
@@ -53,11 +57,6 @@ line says why; 2 could not run."
     )
 }
 
-/// A line for each effect: its name, and what happens.
-pub fn listed<'a>(effects: impl Iterator<Item = &'a Effect>) -> String {
-    effects.map(|effect| format!("  {:<25}  {}\n", effect.name, effect.summary)).collect()
-}
-
 impl Diagnose {
     pub fn run(&self) -> Result<Outcome> {
         match self {
@@ -71,7 +70,8 @@ impl Rig {
     fn run(&self) -> Result<Outcome> {
         let rod = if self.rod == Path::new("linear") { None } else { Some(Rod::read(&self.rod)?) };
         let readings = Readings::read(&self.readings)?;
-        let found = diagnose(&readings, rod.as_ref())?;
+        let others = if rod.is_some() { neighbours(&self.rod) } else { Vec::new() };
+        let found = diagnose_among(&readings, rod.as_ref(), &others)?;
         let correction = found.correction()?;
         let mut report = report::diagnosis::rig::report(&found, correction.as_ref());
         let model = rod.as_ref().map_or("none, straight lines".into(), |_| self.rod.display().to_string());
@@ -111,4 +111,13 @@ impl Rig {
             (format!("{}-diagnosed.csv", stem(&self.readings)), correction.readings_csv.clone().into_bytes()),
         ]
     }
+}
+
+/// The rods whose files stand beside `file`, by their file names: one of them may have been on the rig.
+fn neighbours(file: &Path) -> Vec<(String, Rod)> {
+    let named = |path: PathBuf| {
+        let name = path.file_name()?.to_string_lossy().into_owned();
+        Some((name, Rod::read(&path).ok()?))
+    };
+    files::beside(file).into_iter().take(MOST_NEIGHBOURS).filter_map(named).collect()
 }

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand, ValueEnum};
 use rodcal::compliance::DEFAULT_ELEMENTS;
+use rodcal::diagnosis::rig::suspected;
 use rodcal::least_squares::{Robust, RobustScale};
 use rodcal::rig::readings::Readings;
 use rodcal::rod::Rod;
@@ -94,6 +95,7 @@ impl Fit {
             ("readings".into(), self.readings.display().to_string()),
             ("program".into(), concat!("rodcal ", env!("CARGO_PKG_VERSION")).into()),
         ];
+        report.warnings.extend(suspected(&readings, rod.as_ref())?);
         Ok(Outcome::new(report::rig::json(&fit, &readings, rod.as_ref()), report))
     }
 }

@@ -12,7 +12,7 @@
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
-use super::{Evidence, Hypothesis};
+use super::{Evidence, Hypothesis, NominalEstimate};
 use crate::linalg::transposed_product;
 
 /// Singular value, relative to the largest, below which a direction draws nothing.
@@ -23,41 +23,6 @@ const OFFSET: f64 = 1.5;
 /// A number has moved if it is off by so many of its standard uncertainties, and by so many of what
 /// is then left of them.
 const MOVED: (f64, f64) = (0.3, 1.5);
-
-/// A number of the model's file, or of the rig's set-up.
-#[derive(Debug, Clone, PartialEq)]
-pub struct NominalNumber {
-    /// For people: `E of steel`.
-    pub name: String,
-    /// Unit for people.
-    pub unit: &'static str,
-    /// What one unit is in SI.
-    pub si: f64,
-    /// Nominal value, SI.
-    pub value: f64,
-    /// Standard uncertainty, SI.
-    pub standard_uncertainty: f64,
-}
-
-/// What a recording says of a nominal number.
-#[derive(Debug, Clone, PartialEq)]
-pub struct NominalEstimate {
-    /// The number.
-    pub number: NominalNumber,
-    /// Estimate and 95 % interval, SI.
-    pub estimate: f64,
-    /// Lower end.
-    pub low: f64,
-    /// Upper end.
-    pub high: f64,
-}
-
-impl NominalEstimate {
-    /// How far it moved, in standard uncertainties.
-    pub fn moved(&self) -> f64 {
-        (self.estimate - self.number.value) / self.number.standard_uncertainty
-    }
-}
 
 /// An evidence whose nominal numbers stand among its background, and how to get them back.
 pub(super) struct Folded {

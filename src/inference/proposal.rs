@@ -53,7 +53,7 @@ pub struct PosePlan {
     /// In their order.
     pub poses: Vec<PlannedPose>,
     /// A clamp that is not there yet, its name and its frame in {W}; its index is the next one.
-    pub new_clamp: Option<(String, Pose)>,
+    pub new_fixture: Option<(String, Pose)>,
 }
 
 /// A pose to measure.

@@ -69,17 +69,22 @@ fn a_small_trial_is_answered_as_well_as_ever() {
     assert!(count("clean", "false_names") + count("clean", "false_unexplained") <= 1, "{}", score["clean"]);
     let single = &score["single"];
     assert!(count("single", "identifiable") == 8 && count("single", "name_ok") >= 7, "{single}");
-    assert!(count("single", "location_ok") >= 7 && count("single", "in_class") >= 12, "{single}");
+    assert!(count("single", "location_ok") >= 7, "{single}");
+    // in the class wherever something is named; where nothing is, the numbers of the rod's file are
+    // uncertain by as much
+    let class = &single["in_class_rate"];
+    assert!(class["of"].as_u64().unwrap() >= 9 && class["share"].as_f64().unwrap() >= 0.9, "{single}");
     assert!(count("pairs", "identifiable") == 4 && count("pairs", "both_found") >= 3, "{}", score["pairs"]);
     assert!(count("unknown", "wrongly_named") == 0, "{}", score["unknown"]);
     for (key, least) in [("coverage", 0.75), ("gain_over_oracle", 0.9)] {
         assert!(score[key].as_f64().unwrap() > least, "{key}: {}", score[key]);
     }
-    // what is asked for is foretold about as well as by an oracle; of rods there are three cases only
-    for (half, most) in [("rig", 4.0), ("calibration", 1.5)] {
+    // what is asked for is foretold about as well as by an oracle; that of a rod knows its file's
+    // numbers exactly, which nobody does, so that its cases are compared with their noise
+    for (half, key, most) in [("rig", "answer_over_noise_median", 1.0), ("calibration", "median", 1.5)] {
         let told = &score[half]["counterfactual"];
         assert!(told["n"] == told["answered"] && told["n"].as_u64().unwrap() >= 3, "{half}: {told}");
-        assert!(told["median"].as_f64().unwrap() < most, "{half}: {told}");
+        assert!(told[key].as_f64().unwrap() < most, "{half}: {told}");
     }
 }
 

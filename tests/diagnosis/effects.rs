@@ -169,9 +169,21 @@ fn slip() {
     assert_found(&Order::default(), &Effect::Slip { loading, channel: 1, by: 40.0 * UM });
 }
 
+/// A misread display is no physics: the reading is a suspect, and nothing is named.
 #[test]
-fn outlier() {
-    assert_found(&Order::default(), &Effect::Outlier(vec![(20, 40.0 * UM)]));
+fn a_misread_display_is_a_suspect() {
+    let made = Order::default().made(&[Effect::Outlier(vec![(20, 40.0 * UM)])], SEED);
+    let answer = Answer::of_made(&made);
+    assert_eq!(answer.effects(), [""; 0], "{}", answer.json["headline"]);
+    assert_eq!(suspects(&answer), made.places, "{}", answer.json["suspects"]);
+}
+
+/// Readings that weigh less than others, as the trial writes their places.
+fn suspects(answer: &Answer) -> Vec<String> {
+    let place = |suspect: &serde_json::Value| {
+        format!("row {} {}", suspect["row"], suspect["channel"].as_str().unwrap())
+    };
+    answer.json["suspects"].as_array().unwrap().iter().map(place).collect()
 }
 
 /// Two effects at once are both found.
@@ -192,11 +204,18 @@ fn pairs() {
         ],
     ];
     for pair in pairs {
-        let answer = Answer::made(&order, &pair, SEED);
+        let made = order.made(&pair, SEED);
+        let answer = Answer::of_made(&made);
         let mut names = answer.effects();
         names.sort_unstable();
-        let mut expected = pair.each_ref().map(Effect::name);
+        let (misread, physics): (Vec<usize>, Vec<usize>) = (0..2).partition(|&k| pair[k].name() == "outlier");
+        let mut expected: Vec<&str> = physics.into_iter().map(|k| pair[k].name()).collect();
         expected.sort_unstable();
+        assert!(
+            misread.iter().all(|&k| suspects(&answer).contains(&made.places[k])),
+            "{}",
+            answer.json["suspects"]
+        );
         assert_eq!(names, expected, "{}", answer.json["headline"]);
     }
 }

@@ -1,9 +1,22 @@
 //! Text in, whole files out. The only place that touches the file system.
 
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::error::{Error, Place, Result};
+
+/// The other files of the directory of `path` with the same extension, sorted; none where the
+/// directory cannot be read.
+pub fn beside(path: &Path) -> Vec<PathBuf> {
+    let directory = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let entries = std::fs::read_dir(directory).into_iter().flatten();
+    let is_like =
+        |other: &PathBuf| other.extension() == path.extension() && other.file_name() != path.file_name();
+    let mut others: Vec<PathBuf> =
+        entries.filter_map(|entry| Some(entry.ok()?.path())).filter(is_like).collect();
+    others.sort();
+    others
+}
 
 /// Reads a text file. A byte-order mark (Excel writes one) is dropped.
 ///

@@ -8,8 +8,8 @@ use rodcal::diagnosis::calibration::effects::registry;
 use rodcal::diagnosis::calibration::{apply, diagnose};
 use rodcal::{Result, report};
 
+use super::listed::listed;
 use crate::cli::calibrate::{ModeName, provenance};
-use crate::cli::diagnose::listed;
 use crate::cli::output::Outcome;
 
 #[derive(Debug, Args)]

@@ -31,7 +31,7 @@ pub(super) struct FeasiblePoses {
 impl FeasiblePoses {
     /// With the clamps that are there.
     fn in_place(words: String, poses: Vec<PlannedPose>) -> Self {
-        FeasiblePoses { words, plan: PosePlan { poses, new_clamp: None } }
+        FeasiblePoses { words, plan: PosePlan { poses, new_fixture: None } }
     }
 
     /// The campaign and its calibration with these poses measured, without any error.
@@ -64,7 +64,7 @@ impl FeasiblePoses {
             calibration.deflections.push(calibration.deflections[*like]);
             calibration.tips.push(calibration.tips[*like]);
         }
-        if let Some((name, device)) = &self.plan.new_clamp {
+        if let Some((name, device)) = &self.plan.new_fixture {
             recording.groups.push(Group { name: name.clone(), device: *device });
             calibration.noise.of_group.push(calibration.noise.pooled);
         }
@@ -190,6 +190,6 @@ fn turned_clamp(
          {name} there{some}."
     );
     let poses = before.into_iter().chain(poses).collect();
-    let new_clamp = Some(("new clamp".into(), device));
-    Some(FeasiblePoses { words, plan: PosePlan { poses, new_clamp } })
+    let new_fixture = Some(("new clamp".into(), device));
+    Some(FeasiblePoses { words, plan: PosePlan { poses, new_fixture } })
 }

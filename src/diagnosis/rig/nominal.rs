@@ -158,7 +158,7 @@ mod tests {
     #[test]
     fn a_column_is_the_difference_to_the_rod_with_another_number() {
         let rod = Rod::from_toml("rod", include_str!("../../../rods/5.toml")).unwrap();
-        let text = "axis,load_n,dy_um,dz_um\ny,10,400,\nz,20,,800\n";
+        let text = "axis,load_n,dy_um,dz_um\ny,10,400,\ny,20,800,\nz,20,,800\n";
         let readings = Readings::from_text("f", text).unwrap();
         let (model, evidence) = RigModel::new(&readings, Some(&rod)).unwrap();
         let k = evidence.nominal_numbers.iter().position(|n| n.name == "E of steel").unwrap();

@@ -1,8 +1,10 @@
 //! What was found in one recording, in the model of other readings: what the rod and the rig would show there.
 
+use nalgebra::DVector;
+
 use super::{Datum, RigDiagnosis, RigModel};
 use crate::error::Result;
-use crate::inference::{Candidate, ForwardModel, Kind, Term};
+use crate::inference::{Candidate, Evidence, ForwardModel, Kind, Term};
 use crate::rig::readings::Readings;
 
 /// Terms in a model that is not their own.
@@ -83,8 +85,21 @@ impl RigDiagnosis {
         // what large deflections add, the first column of what every hypothesis holds, is known of
         // the rod: nobody fits it
         let large = evidence.background.column(0);
-        let of_datum = |(i, datum): (usize, &Datum)| datum.predicted + large[i] + change[i];
+        let nominal = &evidence.nominal * self.nominal_factors(&evidence);
+        let of_datum = |(i, datum): (usize, &Datum)| datum.predicted + large[i] + nominal[i] + change[i];
         Ok(model.data.iter().enumerate().map(of_datum).collect())
+    }
+
+    /// Factors of the nominal numbers of `asked` as these readings gave them, in standard
+    /// uncertainties; 0 for a number that they have not.
+    fn nominal_factors(&self, asked: &Evidence) -> DVector<f64> {
+        let (factors, _) = &self.diagnosis.nominal_factors;
+        let known = &self.evidence.nominal_numbers;
+        let factor = |name: &str| known.iter().position(|own| own.name == name).map_or(0.0, |k| factors[k]);
+        DVector::from_iterator(
+            asked.nominal_numbers.len(),
+            asked.nominal_numbers.iter().map(|number| factor(&number.name)),
+        )
     }
 }
 

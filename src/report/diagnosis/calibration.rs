@@ -157,7 +157,7 @@ fn more_of(found: &CalibrationDiagnosis, finding: &Finding) -> Vec<(&'static str
 fn pose_plan(found: &CalibrationDiagnosis, plan: &PosePlan) -> Value {
     let campaign = found.model.campaign;
     let mut names: Vec<&str> = campaign.measurements.groups.iter().map(|group| group.name.as_str()).collect();
-    names.extend(plan.new_clamp.iter().map(|(name, _)| name.as_str()));
+    names.extend(plan.new_fixture.iter().map(|(name, _)| name.as_str()));
     let poses = plan.poses.iter().map(|pose| {
         let joints = pose.joints.iter().zip(&campaign.robot.joints);
         let joints = joints.map(|(value, joint)| match joint.motion {
@@ -169,7 +169,7 @@ fn pose_plan(found: &CalibrationDiagnosis, plan: &PosePlan) -> Value {
     });
     json!({
         "poses": poses.collect::<Vec<_>>(),
-        "new_clamp": plan.new_clamp.as_ref().map(|(name, frame)| json!({
+        "new_fixture": plan.new_fixture.as_ref().map(|(name, frame)| json!({
             "name": name,
             "xyz_mm": <[f64; 3]>::from(frame.origin / MM),
             "rpy_deg": frame.roll_pitch_yaw().map(|angle| angle / DEG),

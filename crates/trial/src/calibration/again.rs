@@ -17,7 +17,7 @@ pub struct Proposed {
     /// In their order.
     pub poses: Vec<ProposedPose>,
     /// A clamp to be set up for some of them.
-    pub new_clamp: Option<NewClamp>,
+    pub new_fixture: Option<NewClamp>,
 }
 
 /// One of them.
@@ -74,7 +74,7 @@ fn append(site: &mut Site, effects: &[Effect], proposed: &Proposed) -> Result<()
         return Err("no poses, or too many");
     }
     let mut names: Vec<String> = (0..site.groups()).map(|group| site.group_name(group)).collect();
-    if let Some(clamp) = &proposed.new_clamp {
+    if let Some(clamp) = &proposed.new_fixture {
         let Devices::Clamps(clamps) = &mut site.devices else { return Err("there are no clamps") };
         if !clamp.xyz_mm.iter().chain(&clamp.rpy_deg).all(|value| value.is_finite()) {
             return Err("not a place for a clamp");
@@ -122,7 +122,7 @@ mod tests {
             group: Some(drawn.site.group_name(row.group)).filter(|name| !name.is_empty()),
         };
         let rows = &drawn.site.rows;
-        Proposed { poses: vec![pose(&rows[0]), pose(&rows[rows.len() - 1])], new_clamp: None }
+        Proposed { poses: vec![pose(&rows[0]), pose(&rows[rows.len() - 1])], new_fixture: None }
     }
 
     #[test]
@@ -168,7 +168,7 @@ mod tests {
         let at = drawn.site.ball(0, &drawn.site.rows[0].q, &drawn.effects) / MM;
         let name = "new clamp".to_owned();
         proposed.poses[0].group = Some(name.clone());
-        proposed.new_clamp = Some(NewClamp { name, xyz_mm: at.into(), rpy_deg: [10.0, 20.0, 30.0] });
+        proposed.new_fixture = Some(NewClamp { name, xyz_mm: at.into(), rpy_deg: [10.0, 20.0, 30.0] });
         let again = again(5, number, &proposed).unwrap();
         let clamps = |files: &[(String, String)]| files[0].1.matches("[[clamp]]").count();
         assert_eq!(clamps(&again.after), clamps(&again.before) + 1);

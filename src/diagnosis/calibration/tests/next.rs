@@ -25,7 +25,7 @@ fn one_clamp_more_tells_which_of_a_few_is_misplaced() {
     assert!(next.log_odds > 3.0);
     assert!(next.separates_from.iter().any(|(effect, _)| effect.name == "clamp_pose"));
     let Some(NextPlan::Poses(plan)) = &next.plan else { panic!("no poses") };
-    assert!(plan.new_clamp.is_some() && plan.poses.iter().any(|pose| pose.group == 3));
+    assert!(plan.new_fixture.is_some() && plan.poses.iter().any(|pose| pose.group == 3));
     // no farther than the robot turns
     let [low, high] = campaign.robot.joints[0].limits.unwrap();
     assert!(plan.poses.iter().all(|pose| (low..=high).contains(&pose.joints[0])));

@@ -55,19 +55,19 @@ fn links_turn_and_joints_err_together() {
         ),
         (
             "unknown",
-            "joint 3, a curve for either way",
+            "joint 3, a curve for each direction of approach",
             "reversed_cosine_0_urad",
             Box::new(move |r, row, v| r.q[2] += v * either_way(row)),
         ),
         (
             "unknown",
-            "joint 3, a curve for either way",
+            "joint 3, a curve for each direction of approach",
             "reversed_cosine_2_urad",
             Box::new(|r, row, v| r.q[2] += v * either_way(row) * (TAU * y[row]).cos()),
         ),
         (
             "unknown",
-            "joint 3, a curve for either load",
+            "joint 3, a curve for each sign of the torque",
             "reversed_cosine_2_urad",
             Box::new(|r, row, v| r.q[2] += v * r.torque()[2].signum() * (TAU * y[row]).cos()),
         ),

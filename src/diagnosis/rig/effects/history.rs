@@ -58,7 +58,7 @@ pub static CREEP: RigEffect = RigEffect {
     },
     needs_rod: false,
     candidates: creeping,
-    missing: |_| "no times were recorded, or they do not differ",
+    missing: |_| "no times were recorded (column `time_s`), or they do not differ",
     observed: |finding, model| {
         let since = match history(finding, model) {
             Some(History::Creep(clock, _)) => clock.name(),
@@ -88,7 +88,7 @@ pub static HYSTERESIS: RigEffect = RigEffect {
     },
     needs_rod: false,
     candidates: lagging,
-    missing: |_| "no readings were taken while unloading",
+    missing: |_| "no readings were taken while unloading (column `phase`)",
     observed: |finding, model| {
         let is_open = matches!(history(finding, model), Some(History::Loop(Loop::Remanent)));
         let at = if is_open { "zero load" } else { "half load" };

@@ -140,7 +140,7 @@ pub static THERMAL_DRIFT: RigEffect = RigEffect {
         let has = |value: fn(&Datum) -> Option<f64>| context.data.iter().any(|d| value(d).is_some());
         match has(|d| d.time) || has(|d| d.temperature) {
             true => "the times or temperatures are incomplete, or do not differ",
-            false => "neither times nor temperatures were recorded",
+            false => "neither times nor temperatures were recorded (columns `time_s`, `temperature_c`)",
         }
     },
     observed: |finding: &Finding, _| {

@@ -5,6 +5,7 @@ use crate::diagnosis::rig::effects::registry;
 use crate::inference::{Estimate, Finding, FindingPart, ForwardModel, Location, Reported};
 use crate::rig::readings::Readings;
 use crate::rod::Rod;
+use crate::units::UM;
 
 /// Readings that every effect of the registry has a meaning for.
 fn everything() -> RigModel {
@@ -110,7 +111,12 @@ fn the_words_say_what_a_mechanic_would() {
          while unloading: friction in the slide"
     );
     assert!(say("joint_compliance", "sleeve").starts_with("The joint \"sleeve\" gives way by"));
-    assert!(say("thermal_drift", "dy").starts_with("Sensor dy drifts by 10 ± 5 µm per kelvin"));
+    let drift = say("thermal_drift", "dy");
+    let said: f64 = drift.split(' ').nth(4).and_then(|number| number.parse().ok()).unwrap();
+    let is_drift = |c: &&crate::inference::Candidate| c.effect.name == "thermal_drift";
+    let size = model.candidates().iter().find(is_drift).unwrap().parameters[0].size / UM;
+    assert!(drift.starts_with("Sensor dy drifts by") && drift.contains("µm per kelvin"), "{drift}");
+    assert!((said - size).abs() < 0.1 * size, "{drift}: {size}");
     assert!(say("nonlinear_stiffness", "rod").contains("is 10 ± 5 % softer at 20.0 N than at small loads"));
 }
 

@@ -431,26 +431,6 @@ fn no_physics_is_a_mistake_however_large() {
 }
 
 #[test]
-fn a_clean_recording_costs_little() {
-    let clean = recorded(&rod(ROD_5), Bench::Full, 7);
-    let mut rows = clean.rows.clone();
-    while rows.len() < 200 {
-        rows.extend(clean.rows.clone());
-    }
-    rows.truncate(200);
-    let readings = Readings::from_rows(rows).unwrap();
-    let file = rod(ROD_5);
-    let best = (0..5)
-        .map(|_| {
-            let start = std::time::Instant::now();
-            assert!(found(&readings, Some(&file)).is_empty());
-            start.elapsed()
-        })
-        .min();
-    assert!(best.is_some_and(|best| best.as_millis() < 30), "{best:?}");
-}
-
-#[test]
 fn a_diagnosis_names_the_mistake_first_and_writes_the_corrected_file() {
     let file = rod(ROD_5);
     let clean = recorded(&file, Bench::Own, 3);

@@ -66,7 +66,7 @@ fn what_has_no_column_is_not_testable() {
     assert!(reason(&answer, "thermal_drift").contains("temperature_c"));
     assert!(reason(&answer, "bend_flexibility").contains("sharp"));
     // the NIST load cell is no rod
-    assert!(reason(&Answer::of(None, LOAD_CELL), "shear_modulus").contains("no rod"));
+    assert!(reason(&Answer::of(None, LOAD_CELL), "shear_modulus").contains("needs a rod file"));
 }
 
 #[test]

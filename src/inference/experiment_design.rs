@@ -21,12 +21,13 @@ pub struct ExperimentDesign<M> {
     best: Option<(M, Vec<f64>)>,
 }
 
-impl<M> ExperimentDesign<M> {
-    /// None yet.
-    pub fn new() -> Self {
+impl<M> Default for ExperimentDesign<M> {
+    fn default() -> Self {
         ExperimentDesign { left: f64::INFINITY, best: None }
     }
+}
 
+impl<M> ExperimentDesign<M> {
     /// A measurement with its separation from each rival; `odds` are those against the rivals by now.
     pub fn offer(&mut self, measurement: M, separations: Vec<f64>, odds: &[f64]) {
         let of_rivals = separations.iter().zip(odds);
@@ -53,7 +54,7 @@ mod tests {
     use super::*;
 
     fn chosen(offers: &[(&'static str, &[f64])], odds: &[f64]) -> Option<&'static str> {
-        let mut choice = ExperimentDesign::new();
+        let mut choice = ExperimentDesign::default();
         offers.iter().for_each(|(name, apart)| choice.offer(*name, apart.to_vec(), odds));
         choice.best().map(|(name, _)| name)
     }

@@ -62,7 +62,7 @@ pub(super) fn next_poses(
     };
     let Some(now) = distances(&model.terms, present) else { return Ok(None) };
     let odds: Vec<f64> = rivals.iter().map(|rival| rival.odds).collect();
-    let mut design = ExperimentDesign::new();
+    let mut design = ExperimentDesign::default();
     let hypotheses: Vec<&Named> = std::iter::once(&own).chain(&others).collect();
     for poses in feasible(campaign, &context.configurations) {
         let (campaign, calibration) = poses.measured(campaign, calibration);

@@ -37,7 +37,7 @@ pub(super) fn next_measurement(
     }
     let noise = diagnosis.hypothesis.sigma.max(evidence.resolution / 12.0f64.sqrt());
     let odds: Vec<f64> = rivals.iter().map(|rival| rival.odds).collect();
-    let mut design = ExperimentDesign::new();
+    let mut design = ExperimentDesign::default();
     let hypotheses = rivals.iter().map(|rival| &rival.hypothesis).chain([&diagnosis.hypothesis]);
     let involved: Vec<&Candidate> = hypotheses
         .flat_map(|hypothesis| &hypothesis.terms)

@@ -17,6 +17,7 @@ mod resample;
 mod result;
 pub mod simulate;
 mod start;
+mod stations;
 mod validation;
 mod warning;
 mod write_back;

@@ -1,7 +1,7 @@
 //! The calibration itself: rough start, fit, compensation recomputed until it stands still (Eqs
 //! 7–14).
 
-use super::campaign::{Campaign, Recording, Targets};
+use super::campaign::{Campaign, Recording, Refit, Targets};
 use super::compensation::{Compensation, Mode};
 use super::identifiability;
 use super::observability::Observability;
@@ -46,6 +46,10 @@ pub fn calibrate<'c>(campaign: &'c Campaign, mode: Mode, options: &Options) -> R
     let recording = &campaign.measurements;
     let mut calibration = calibrate_from(campaign, recording, start, &free, &compensation, options)?;
     if let Some(recording) = &campaign.validation {
+        let recording = match campaign.refit {
+            Refit::Nothing => &recording.seen_from(&campaign.measurements, &calibration)?,
+            Refit::BaseTool => recording,
+        };
         calibration.validation = Some(validate(&calibration.setup, recording, campaign.refit)?);
     }
     Ok(calibration)
@@ -96,6 +100,7 @@ pub fn calibrate_from<'c>(
             })
         })
         .collect();
+    let stations = problem.motions(&fit.parameters);
     let mut kinematics = Kinematics::new(&setup);
     let (tips, deflections) = (0..recording.len())
         .map(|row| {
@@ -110,6 +115,7 @@ pub fn calibrate_from<'c>(
         options: *options,
         parameters,
         sockets,
+        stations,
         held,
         deviations,
         deflections,
@@ -161,7 +167,7 @@ pub fn free_parameters(campaign: &Campaign, start: &Setup, compensation: &Compen
 
 fn check_count(recording: &Recording, free: &[Parameter]) -> Result<()> {
     let unknown = match &recording.targets {
-        Targets::Points(_) => free.len(),
+        Targets::Points(_) => free.len() + 6 * (recording.stations.len().saturating_sub(1)),
         Targets::Sockets(distances) => {
             (free.len() + 3 * recording.groups.len()).saturating_sub(distances.len())
         }

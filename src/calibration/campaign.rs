@@ -101,6 +101,8 @@ pub struct Recording {
     pub rows: Vec<Row>,
     /// Clamps or sockets that rows belong to; one of name "" for a tracker.
     pub groups: Vec<Group>,
+    /// Where tracker or base stood, in order of appearance; one of name "" where that is not said.
+    pub stations: Vec<Station>,
     /// What is known about the points.
     pub targets: Targets,
 }
@@ -115,6 +117,8 @@ pub struct Row {
     pub line: usize,
     /// Index of its group.
     pub group: usize,
+    /// Index of its station.
+    pub station: usize,
     /// Time, s, from any zero.
     pub time: Option<f64>,
     /// Temperature, °C.
@@ -129,6 +133,24 @@ pub struct Group {
     pub name: String,
     /// Device frame in {W}; the identity where there is no device.
     pub device: Pose,
+}
+
+/// Where the tracker, or the robot's base, stood for some of the rows.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Station {
+    /// As in the column `station`.
+    pub name: String,
+    /// {W} of this station in that of the first one, as the nominal robot shows it: points are given
+    /// in the first station's {W} by it, and a calibration corrects the rest.
+    pub frame: Pose,
+}
+
+impl Station {
+    /// The only one, or the first.
+    pub fn first(name: &str) -> Station {
+        Station { name: name.to_owned(), frame: Pose::IDENTITY }
+    }
 }
 
 /// What is known about the points that the tip touched.
@@ -160,6 +182,15 @@ impl Recording {
     /// True without rows.
     pub fn is_empty(&self) -> bool {
         self.rows.is_empty()
+    }
+
+    /// Device frame of a row's clamp in {W}, that of the first station.
+    pub fn device(&self, row: usize) -> Pose {
+        let Row { group, station, .. } = self.rows[row];
+        match station {
+            0 => self.groups[group].device,
+            station => self.stations[station].frame.then(&self.groups[group].device),
+        }
     }
 
     /// Joint values of a row, rad or m.

@@ -142,8 +142,7 @@ impl Compensation {
         for row in 0..recording.len() {
             let torque = &mut pass.torque[row * n..][..n];
             kinematics.update(recording.joints(row), torque);
-            let device = &recording.groups[recording.rows[row].group].device;
-            let tip_force = device.rotation * self.contact_force;
+            let tip_force = recording.device(row).rotation * self.contact_force;
             let loads = Loads { gravity, payload: self.payload, tip_force };
             kinematics.torques(&loads, torque);
             let displaced = self.displaced.get(row).copied().unwrap_or_default();

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use super::calibrate::calibrate_from;
-use super::campaign::{Campaign, Targets};
+use super::campaign::{Campaign, Recording, Targets};
 use super::compensation::Compensation;
 use super::options::Options;
 use super::problem::Pass;
@@ -11,7 +11,7 @@ use super::result::Calibration;
 use super::validation::Summary;
 use crate::error::Result;
 use crate::parallel::in_parallel;
-use crate::robot::{Kinematics, Setup};
+use crate::robot::Kinematics;
 
 /// Held-out errors of all poses.
 #[derive(Debug, Clone, PartialEq)]
@@ -69,7 +69,7 @@ pub fn cross_validate(
         let trained =
             calibrate_from(campaign, &training, calibration.start.clone(), &free, compensation, options)?;
         let rows = rows_where(true);
-        let deviations = predict(&trained.setup, &recording.subset(&rows), compensation);
+        let deviations = predict(&trained, &training, &recording.subset(&rows), compensation);
         Ok(rows.into_iter().zip(deviations).collect())
     });
     let mut deviations = vec![Vector3::zeros(); recording.len()];
@@ -82,13 +82,15 @@ pub fn cross_validate(
     Ok(CrossValidation { fold, folds, summary: Summary::of(&errors), errors, deviations })
 }
 
-/// Deflected tips of a recording as `setup` predicts them, less what was measured or less their
-/// sockets' means.
+/// Deflected tips of a recording as a calibration on `training` predicts them, less what was measured
+/// or less their sockets' means.
 fn predict(
-    setup: &Setup,
-    recording: &super::campaign::Recording,
+    trained: &Calibration,
+    training: &Recording,
+    recording: &Recording,
     compensation: &Compensation,
 ) -> Vec<Vector3<f64>> {
+    let setup = &trained.setup;
     let mut pass = Pass::at_rest(recording);
     // torques turn the joints that they act on: the second time they are those of the turned joints
     for _ in 0..3 {
@@ -102,7 +104,12 @@ fn predict(
         })
         .collect();
     match &recording.targets {
-        Targets::Points(points) => tips.iter().zip(points).map(|(tip, x)| tip - x).collect(),
+        Targets::Points(points) => {
+            let motions = trained.motions(training, recording);
+            let targets = points.iter().zip(&recording.rows);
+            let targets = targets.map(|(point, row)| motions[row.station].point(point));
+            tips.iter().zip(targets).map(|(tip, x)| tip - x).collect()
+        }
         Targets::Sockets(_) => recording.minus_group_means(&tips),
     }
 }

@@ -7,18 +7,22 @@
 //! r  = (vᵀ·(ρ − ρ₀)/range) / σ_v            an unidentified direction, held at its nominal value
 //! ```
 //!
+//! At every station but the first xᵢ is exp([φ]×)·(xᵢ − b) + b + t, with b the first guess of the
+//! base's position: what the frame of the station is still wrong by.
+//!
 //! f is the rigid tip in {W}, R·Δxᵢ the rod's deflection. Δxᵢ is held fixed in {T}: it turns with
 //! the robot, so that how the rod bends does not seem to tell which way the robot stands. wᵢ is one
 //! over the standard deviation of a coordinate. The unknowns are the free parameters, then the
-//! three coordinates of every socket.
+//! three coordinates of every socket, or t and φ of every station but the first.
 
-use nalgebra::{DMatrix, DVector, Vector3};
+use nalgebra::{DMatrix, DVector, Matrix3, Matrix3x6, Vector3};
 
 use super::campaign::{Recording, Targets};
 use super::identifiability::UnidentifiedDirection;
 use crate::least_squares::{Problem, assembled};
 use crate::linalg::RowReduction;
 use crate::robot::{Kinematics, Parameter, Setup};
+use crate::spatial::{Pose, exponential, left_jacobian, skew};
 
 /// Poses per block of the Jacobian.
 const BLOCK: usize = 128;
@@ -74,8 +78,32 @@ impl Residuals<'_> {
         }
     }
 
+    /// Number of stations whose frames are unknown: all but the first.
+    pub fn moved_count(&self) -> usize {
+        match self.recording.targets {
+            Targets::Points(_) => self.recording.stations.len().saturating_sub(1),
+            Targets::Sockets(_) => 0,
+        }
+    }
+
+    /// Unknowns that are no parameters of the robot.
+    fn nuisance_count(&self) -> usize {
+        3 * self.socket_count() + 6 * self.moved_count()
+    }
+
+    /// What brings the points of a station into {W}: the identity for the first.
+    pub fn motion(&self, p: &DVector<f64>, station: usize) -> Pose {
+        if station == 0 || self.moved_count() == 0 {
+            return Pose::IDENTITY;
+        }
+        let six = &p.as_slice()[self.free.len() + 6 * (station - 1)..][..6];
+        let rotation = exponential(&Vector3::from_column_slice(&six[3..]));
+        let centre = self.setup.base_guess.origin;
+        Pose { rotation, origin: Vector3::from_column_slice(&six[..3]) + centre - rotation * centre }
+    }
+
     /// Free parameters as they are in the setup, then each socket where the tips of its rows are on
-    /// average.
+    /// average, or no correction of the stations' frames.
     pub fn start(&self) -> DVector<f64> {
         let mut start: Vec<f64> = self.free.iter().map(|&p| self.setup.get(p)).collect();
         let sockets = self.socket_count();
@@ -92,6 +120,7 @@ impl Residuals<'_> {
                 mean
             }));
         }
+        start.resize(self.free.len() + self.nuisance_count(), 0.0);
         DVector::from_vec(start)
     }
 
@@ -108,16 +137,25 @@ impl Residuals<'_> {
     /// weights.
     pub fn deviations(&self, p: &DVector<f64>) -> Vec<Vector3<f64>> {
         let setup = self.setup_at(p);
+        let motions = self.motions(p);
         let mut deviations = Vec::with_capacity(self.recording.len());
         self.for_each_tip(&setup, |row, kinematics| {
-            deviations.push(kinematics.tip - self.target(p, row));
+            deviations.push(kinematics.tip - self.target(p, row, &motions));
         });
         deviations
     }
 
-    fn target(&self, p: &DVector<f64>, row: usize) -> Vector3<f64> {
+    /// [`Residuals::motion`] of every station.
+    pub fn motions(&self, p: &DVector<f64>) -> Vec<Pose> {
+        (0..self.recording.stations.len()).map(|station| self.motion(p, station)).collect()
+    }
+
+    fn target(&self, p: &DVector<f64>, row: usize, motions: &[Pose]) -> Vector3<f64> {
         match &self.recording.targets {
-            Targets::Points(points) => points[row],
+            Targets::Points(points) => match self.recording.rows[row].station {
+                0 => points[row],
+                station => motions[station].point(&points[row]),
+            },
             Targets::Sockets(_) => self.socket(p, self.recording.rows[row].group),
         }
     }
@@ -142,14 +180,14 @@ impl Residuals<'_> {
     /// their columns of the Jacobian once those of the sockets are projected out, without what is
     /// held. Blockwise, as the fit.
     pub fn information_root(&self, p: &DVector<f64>) -> DMatrix<f64> {
-        let (count, sockets) = (self.free.len(), 3 * self.socket_count());
+        let (count, sockets) = (self.free.len(), self.nuisance_count());
         let columns = count + sockets;
         let rows = 3 * self.recording.len() + self.distances().len();
         let mut reduction = RowReduction::new(columns, rows);
         let unheld = Residuals { setup: self.setup.clone(), held: &[], ..*self };
         unheld.jacobian_blocks(p, &mut |_, block| {
             reduction.push(block.nrows(), |range, column, entries| {
-                // sockets first
+                // sockets and stations first
                 let source = block.column((column + count) % columns);
                 entries.copy_from_slice(&source.as_slice()[range]);
             });
@@ -165,7 +203,8 @@ impl Residuals<'_> {
     }
 
     /// Rows of the Jacobian for the poses `rows`.
-    fn pose_block(&self, setup: &Setup, rows: std::ops::Range<usize>) -> DMatrix<f64> {
+    fn pose_block(&self, setup: &Setup, p: &DVector<f64>, rows: std::ops::Range<usize>) -> DMatrix<f64> {
+        let motions = self.motions(p);
         let mut block = DMatrix::zeros(3 * rows.len(), self.parameter_count());
         let mut kinematics = Kinematics::new(setup);
         for (at, row) in rows.enumerate() {
@@ -181,8 +220,25 @@ impl Residuals<'_> {
                     block[(3 * at + axis, first + axis)] = -weight;
                 }
             }
+            let station = self.recording.rows[row].station;
+            if self.moved_count() > 0 && station > 0 {
+                let first = self.free.len() + 6 * (station - 1);
+                let columns = self.station_columns(p, station, &self.target(p, row, &motions)) * -weight;
+                block.view_mut((3 * at, first), (3, 6)).copy_from(&columns);
+            }
         }
         block
+    }
+
+    /// ∂target/∂(t, φ) of a station at a target of it, 3 × 6.
+    fn station_columns(&self, p: &DVector<f64>, station: usize, target: &Vector3<f64>) -> Matrix3x6<f64> {
+        let six = &p.as_slice()[self.free.len() + 6 * (station - 1)..][..6];
+        let (t, turn) = (Vector3::from_column_slice(&six[..3]), Vector3::from_column_slice(&six[3..]));
+        let arm = target - t - self.setup.base_guess.origin;
+        let mut columns = Matrix3x6::zeros();
+        columns.fixed_columns_mut::<3>(0).copy_from(&Matrix3::identity());
+        columns.fixed_columns_mut::<3>(3).copy_from(&(-skew(&arm) * left_jacobian(&turn)));
+        columns
     }
 
     /// The rows that no pose has: distances, then directions that are held.
@@ -216,7 +272,7 @@ impl Residuals<'_> {
 
 impl Problem for Residuals<'_> {
     fn parameter_count(&self) -> usize {
-        self.free.len() + 3 * self.socket_count()
+        self.free.len() + self.nuisance_count()
     }
 
     fn residual_count(&self) -> usize {
@@ -244,7 +300,7 @@ impl Problem for Residuals<'_> {
         let setup = self.setup_at(p);
         let rows = self.recording.len();
         for first in (0..rows).step_by(BLOCK) {
-            visit(3 * first, &self.pose_block(&setup, first..(first + BLOCK).min(rows)));
+            visit(3 * first, &self.pose_block(&setup, p, first..(first + BLOCK).min(rows)));
         }
         let last = self.last_block(p);
         if last.nrows() > 0 {

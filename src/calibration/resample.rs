@@ -9,11 +9,15 @@ use crate::statistics::Random;
 const LEAST_BLOCK: usize = 5;
 
 impl Recording {
-    /// The rows of these indices, in this order; an index may come again. Clamps and sockets
-    /// without a row are left out.
+    /// The rows of these indices, in this order; an index may come again. Clamps, sockets
+    /// and stations without a row are left out.
     pub fn subset(&self, rows: &[usize]) -> Recording {
         let mut place = vec![None; self.groups.len()];
         let mut groups = Vec::new();
+        // in their own order, so that {W} stays that of the first
+        let is_used = |&station: &usize| rows.iter().any(|&row| self.rows[row].station == station);
+        let used: Vec<usize> = (0..self.stations.len()).filter(is_used).collect();
+        let stations = used.iter().map(|&station| self.stations[station].clone()).collect();
         let mut kept = Vec::with_capacity(rows.len());
         for &row in rows {
             let mut entry = self.rows[row].clone();
@@ -22,6 +26,7 @@ impl Recording {
                 groups.push(self.groups[old].clone());
                 groups.len() - 1
             });
+            entry.station = used.iter().filter(|&&known| known < entry.station).count();
             kept.push(entry);
         }
         let targets = match &self.targets {
@@ -41,6 +46,7 @@ impl Recording {
             joint_values: rows.iter().flat_map(|&row| self.joints(row).iter().copied()).collect(),
             rows: kept,
             groups,
+            stations,
             targets,
         }
     }

@@ -2,6 +2,7 @@
 
 use nalgebra::Vector3;
 
+use super::campaign::Recording;
 use super::compensation::Mode;
 use super::identifiability::UnidentifiedDirection;
 use super::noise::Noise;
@@ -12,6 +13,7 @@ use super::validation::Validation;
 use super::warning::Warning;
 use crate::least_squares::Fit;
 use crate::robot::{Parameter, Setup};
+use crate::spatial::Pose;
 
 /// A calibrated robot and how well it is known.
 #[derive(Debug, Clone)]
@@ -31,6 +33,9 @@ pub struct Calibration<'c> {
     /// Where the sockets were found, m, with their standard errors; in {0}. Empty for measured
     /// points.
     pub sockets: Vec<[(f64, Option<f64>); 3]>,
+    /// For each station what brings its points, as the recording has them, into {W}: the identity for
+    /// the first.
+    pub stations: Vec<Pose>,
     /// Combinations of the free parameters that the data do not identify: held where the
     /// nominal robot has them.
     pub held: Vec<UnidentifiedDirection>,
@@ -44,7 +49,7 @@ pub struct Calibration<'c> {
     pub noise: Noise,
     /// Rows that are no noise.
     pub outliers: Vec<usize>,
-    /// The last fit; its parameters are the free ones, then the sockets.
+    /// The last fit; its parameters are the free ones, then the sockets, or the stations' frames.
     pub fit: Fit,
     /// Every pass of the compensation loop.
     pub passes: Vec<PassRecord>,
@@ -89,6 +94,16 @@ impl Calibration<'_> {
             .collect();
         pairs.sort_by(|a, b| b.2.abs().total_cmp(&a.2.abs()));
         pairs
+    }
+
+    /// What brings the points of each station of another `recording` into {W}, by the stations of the
+    /// same name in that which was calibrated on; the identity for a station that is not there.
+    pub fn motions(&self, calibrated: &Recording, recording: &Recording) -> Vec<Pose> {
+        let of = |name: &str| {
+            let known = calibrated.stations.iter().position(|known| known.name == name);
+            known.and_then(|known| self.stations.get(known).copied()).unwrap_or(Pose::IDENTITY)
+        };
+        recording.stations.iter().map(|station| of(&station.name)).collect()
     }
 
     /// Lengths of the deviations, m, one per row.

@@ -15,7 +15,7 @@ pub use plan::{Plan, RobotErrors};
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::campaign::{Group, Recording, Row, Targets};
+use super::campaign::{Group, Recording, Row, Station, Targets};
 use super::compensation::{Compensation, Mode};
 use super::problem::Pass;
 use crate::compliance::{Compliance, PAPER_CONTACT_FORCE};
@@ -161,6 +161,7 @@ fn measure(
             pose: format!("{pose}"),
             line: pose + 1,
             group,
+            station: 0,
             time: None,
             temperature: None,
         })
@@ -173,6 +174,7 @@ fn measure(
         joint_values,
         rows,
         groups,
+        stations: vec![Station::first("")],
         targets: Targets::Sockets(Vec::new()),
     };
     let tips = deflected_tips(truth, compensation, &recording);
@@ -220,6 +222,7 @@ fn scan(truth: &Setup, plan: &Plan) -> Recording {
         joint_values: Vec::new(),
         rows: Vec::new(),
         groups: vec![Group { name: String::new(), device: Pose::IDENTITY }],
+        stations: vec![Station::first("")],
         targets: Targets::Points(Vec::new()),
     };
     let mut kinematics = Kinematics::new(&short);
@@ -235,6 +238,7 @@ fn scan(truth: &Setup, plan: &Plan) -> Recording {
                 pose: format!("{pose}"),
                 line: pose + 1,
                 group: 0,
+                station: 0,
                 time: None,
                 temperature: None,
             });

@@ -113,6 +113,7 @@ pub(super) fn validate_from(
     let mut setup = setup.clone();
     let mut is_converged = true;
     let mut placement = None;
+    let mut motions = vec![Pose::IDENTITY; recording.stations.len()];
     if let (Targets::Points(_), Refit::BaseTool) = (&recording.targets, refit) {
         let (base, tool) = match guess {
             Some(guess) => guess,
@@ -130,6 +131,7 @@ pub(super) fn validate_from(
             let options = least_squares::Options::default();
             let fit = least_squares::fit(&problem, &problem.start(), &options)?;
             is_converged = fit.is_converged();
+            motions = problem.motions(&fit.parameters);
             for (k, &parameter) in free.iter().enumerate() {
                 setup.set(parameter, fit.parameters[k]);
             }
@@ -145,7 +147,11 @@ pub(super) fn validate_from(
         })
         .collect();
     let deviations: Vec<Vector3<f64>> = match &recording.targets {
-        Targets::Points(points) => tips.iter().zip(points).map(|(tip, x)| tip - x).collect(),
+        Targets::Points(points) => {
+            let targets = points.iter().zip(&recording.rows);
+            let targets = targets.map(|(point, row)| motions[row.station].point(point));
+            tips.iter().zip(targets).map(|(tip, x)| tip - x).collect()
+        }
         Targets::Sockets(_) => recording.minus_group_means(&tips),
     };
     let errors: Vec<f64> = deviations.iter().map(|d| d.norm()).collect();

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::{Campaign, Group, ParameterConstraints, Recording, Refit, Row, Targets};
+use super::{Campaign, Group, ParameterConstraints, Recording, Refit, Row, Station, Targets};
 use crate::error::{Error, Result};
 use crate::rig::readings::Readings;
 use crate::robot::Robot;
@@ -151,6 +151,7 @@ impl Recording {
             joint_values: Vec::new(),
             rows: Vec::new(),
             groups: Vec::new(),
+            stations: vec![Station::first("")],
             targets: Targets::Points(Vec::new()),
         }
     }
@@ -210,6 +211,7 @@ impl Recording {
             pose: number.to_string(),
             line: number,
             group: index,
+            station: 0,
             time: None,
             temperature: None,
         });

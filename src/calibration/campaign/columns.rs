@@ -8,7 +8,9 @@ use crate::robot::{Motion, Robot};
 use crate::units::{DEG, MM};
 
 pub(super) const POSITION: [&str; 3] = ["x_mm", "y_mm", "z_mm"];
-const OPTIONAL: [&str; 2] = ["time_s", "temperature_c"];
+/// Where tracker or base stood.
+pub(super) const STATION: &str = "station";
+const OPTIONAL: [&str; 3] = ["time_s", "temperature_c", STATION];
 
 /// The columns of one file.
 pub(super) struct Columns {
@@ -47,6 +49,7 @@ impl Columns {
     pub(super) fn holds_numbers(&self, column: &str) -> bool {
         self.known().any(|known| known.eq_ignore_ascii_case(column))
             && !self.names.iter().any(|name| name.eq_ignore_ascii_case(column))
+            && !column.eq_ignore_ascii_case(STATION)
     }
 
     /// Refuses a table in which a column is missing, or that is about another robot or other

@@ -248,6 +248,13 @@ impl Reader<'_> {
             wishes,
             warnings: Vec::new(),
         };
+        let guess = Pose::from_xyz_rpy(
+            [campaign.base[0], campaign.base[1], campaign.base[2]],
+            [campaign.base[3], campaign.base[4], campaign.base[5]],
+        );
+        for recording in std::iter::once(&mut campaign.measurements).chain(&mut campaign.validation) {
+            recording.align_stations(&campaign.robot, guess, campaign.tool)?;
+        }
         self.warnings.extend(checks::about(&campaign, &clamps));
         campaign.warnings = self.warnings;
         Ok(campaign)

@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use nalgebra::Vector3;
 
-use super::columns::{Columns, POSITION, listed, required};
+use super::columns::{Columns, POSITION, STATION, listed, required};
 use super::layout::{Clamp, Role, Seen, Sockets};
-use super::{Distance, Group, Recording, Row, Targets, Warning, checks};
+use super::{Distance, Group, Recording, Row, Station, Targets, Warning, checks};
 use crate::delimited::{Row as Cells, Table, comments_above};
 use crate::error::{Error, Place, Result};
 use crate::robot::Robot;
@@ -14,6 +14,8 @@ use crate::spatial::Pose;
 use crate::units::MM;
 
 const ABSOLUTE_ZERO_C: f64 = -273.15;
+/// Fewest poses that place a station.
+const LEAST_AT_STATION: usize = 3;
 
 /// Reads `text`, the contents of `file`.
 ///
@@ -31,7 +33,14 @@ pub(super) fn read(
     let columns = Columns::new(robot, seen);
     let table = Table::parse(file, text, |column| columns.holds_numbers(column))?;
     columns.check(&table, role)?;
-    let mut reader = Reader { columns: &columns, seen, groups: Vec::new(), lines: BTreeMap::new() };
+    let mut reader = Reader {
+        columns: &columns,
+        seen,
+        has_stations: table.has(STATION),
+        groups: Vec::new(),
+        stations: Vec::new(),
+        lines: BTreeMap::new(),
+    };
     let (mut rows, mut joint_values, mut points) = (Vec::new(), Vec::new(), Vec::new());
     for cells in table.rows() {
         let row = reader.row(cells)?;
@@ -48,6 +57,7 @@ pub(super) fn read(
         let found = "there are no rows under the header".to_owned();
         return Err(Error::Input { at: Place::whole_file(file), found, expected, hint: None });
     }
+    reader.enough_rows(file, &rows)?;
     let targets = match seen {
         Seen::Sockets(sockets) => Targets::Sockets(distances(&reader.groups, sockets)),
         _ => Targets::Points(points),
@@ -59,6 +69,7 @@ pub(super) fn read(
         joint_values,
         rows,
         groups: reader.groups.into_iter().map(|named| named.group).collect(),
+        stations: reader.stations.iter().map(|name| Station::first(name)).collect(),
         targets,
     };
     let mut warnings = checks::about_dialect(file, &table);
@@ -70,8 +81,11 @@ pub(super) fn read(
 struct Reader<'a> {
     columns: &'a Columns,
     seen: Seen<'a>,
+    has_stations: bool,
     /// In order of appearance.
     groups: Vec<NamedGroup>,
+    /// Their names, in order of appearance; one of name "" without the column.
+    stations: Vec<String>,
     /// Line of each group's poses.
     lines: BTreeMap<(usize, String), usize>,
 }
@@ -86,7 +100,8 @@ impl Reader<'_> {
     /// All of a row but its joint values and its point.
     fn row(&mut self, cells: Cells<'_>) -> Result<Row> {
         let pose = name(cells, "pose", "a name for the pose")?.to_owned();
-        let group = self.group(cells)?;
+        let station = self.station(cells)?;
+        let group = self.group(cells, station)?;
         if let Some(line) = self.lines.insert((group, pose.clone()), cells.line()) {
             let whose = match self.groups[group].group.name.as_str() {
                 "" => String::new(),
@@ -102,27 +117,62 @@ impl Reader<'_> {
             }
             value => value,
         };
-        Ok(Row { pose, line: cells.line(), group, time: cells.number("time_s")?, temperature })
+        Ok(Row { pose, line: cells.line(), group, station, time: cells.number("time_s")?, temperature })
     }
 
-    fn group(&mut self, cells: Cells<'_>) -> Result<usize> {
+    fn station(&mut self, cells: Cells<'_>) -> Result<usize> {
+        let name = match self.has_stations {
+            true => name(cells, STATION, "a name for where the tracker or the base stood")?,
+            false => "",
+        };
+        if let Some(index) = self.stations.iter().position(|known| known == name) {
+            return Ok(index);
+        }
+        self.stations.push(name.to_owned());
+        Ok(self.stations.len() - 1)
+    }
+
+    /// A frame takes three points.
+    fn enough_rows(&self, file: &str, rows: &[Row]) -> Result<()> {
+        let is_measured = !matches!(self.seen, Seen::Sockets(_)) && self.stations.len() > 1;
+        for (station, name) in self.stations.iter().enumerate().filter(|_| is_measured) {
+            let count = rows.iter().filter(|row| row.station == station).count();
+            if count < LEAST_AT_STATION {
+                let at = Place::whole_file(file);
+                let found = format!("{count} poses at station {name}");
+                let expected =
+                    format!("at least {LEAST_AT_STATION}: each station has a frame of its own, six numbers");
+                let hint = Some("the column station tells where the tracker or the base stood".into());
+                return Err(Error::Input { at, found, expected, hint });
+            }
+        }
+        Ok(())
+    }
+
+    fn group(&mut self, cells: Cells<'_>, station: usize) -> Result<usize> {
         let (names, label, device) = match self.seen {
-            Seen::World => ([""; 2], String::new(), Pose::IDENTITY),
+            Seen::World => ([String::new(), String::new()], String::new(), Pose::IDENTITY),
             Seen::Clamps(clamps) => {
                 let clamp = known_clamp(cells, clamps)?;
-                ([&clamp.id, ""], format!("clamp {}", clamp.id), clamp.device)
+                ([clamp.id.clone(), String::new()], format!("clamp {}", clamp.id), clamp.device)
             }
             Seen::Sockets(_) => {
                 let placement = name(cells, "placement", "a name for where the sockets stood")?;
                 let socket = name(cells, "socket", "the number of the socket")?;
-                ([placement, socket], format!("{placement}/{socket}"), Pose::IDENTITY)
+                // seen from another place, sockets that stand still are others
+                let placement = match station {
+                    0 => placement.to_owned(),
+                    _ => format!("{placement}, station {}", self.stations[station]),
+                };
+                let label = format!("{placement}/{socket}");
+                ([placement, socket.to_owned()], label, Pose::IDENTITY)
             }
         };
         if let Some(index) = self.groups.iter().position(|named| named.names == names) {
             return Ok(index);
         }
         let group = Group { name: label, device };
-        self.groups.push(NamedGroup { names: names.map(str::to_owned), group });
+        self.groups.push(NamedGroup { names, group });
         Ok(self.groups.len() - 1)
     }
 }

@@ -75,8 +75,7 @@ pub(super) fn all(
     let mut approach = vec![0.0; count];
     (0..recording.len())
         .map(|row| {
-            let device = &recording.groups[recording.rows[row].group].device;
-            let tip_force = device.rotation * compensation.contact_force;
+            let tip_force = recording.device(row).rotation * compensation.contact_force;
             let loads = Loads { gravity, payload: compensation.payload, tip_force };
             let mut torque = vec![0.0; count];
             for _ in 0..TORQUE_ROUNDS {

@@ -74,8 +74,7 @@ impl<'a> Context<'a> {
             _ => (used.compliance, 1.0),
         };
         let deflection = |(row, configuration): (usize, &Configuration)| {
-            let device = &recording.groups[recording.rows[row].group].device;
-            let force = device.rotation * used.contact_force;
+            let force = recording.device(row).rotation * used.contact_force;
             rod.as_ref().map(|rod| {
                 let per_g = configuration.gravity / crate::units::STANDARD_GRAVITY;
                 [configuration.in_world(&rod.force) * force, configuration.in_world(&rod.gravity) * per_g]

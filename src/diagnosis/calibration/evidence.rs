@@ -5,7 +5,7 @@
 //! datum      (recorded − predicted)·w     three per row, in {W}, m; w is the pooled noise over the
 //!                                         noise of the group
 //! nuisance   ∂predicted/∂ρ·w              over all that the calibration is free to change, −w for
-//!                                         a socket's own place
+//!                                         a socket's own place or a station's frame
 //! ```
 //!
 //! so that one noise σ holds for all data. Directions of ρ that the calibration holds are no
@@ -22,7 +22,7 @@ use crate::calibration::Calibration;
 use crate::calibration::campaign::{Campaign, Recording, Targets};
 use crate::inference::{Covariate, Evidence, JointVariable, Variable};
 use crate::robot::{Kinematics, Parameter};
-use crate::spatial::Axis;
+use crate::spatial::{Axis, skew};
 use crate::units::MM;
 
 /// Scatter that an arm may have, as a share of its reach: an uncalibrated industrial arm is off by
@@ -55,7 +55,8 @@ pub(super) fn evidence_of(campaign: &Campaign, calibration: &Calibration, contex
     for row in 0..rows {
         residual.fixed_rows_mut::<3>(3 * row).copy_from(&(-calibration.deviations[row] * context.scale[row]));
     }
-    let columns = calibration.parameters.len() + 3 * calibration.sockets.len();
+    let moved = if context.has_sockets() { 0 } else { recording.stations.len().saturating_sub(1) };
+    let columns = calibration.parameters.len() + 3 * calibration.sockets.len() + 6 * moved;
     let mut jacobian = DMatrix::zeros(data, columns);
     fill(&mut jacobian, calibration, context);
     for (at, known) in known.iter().enumerate() {
@@ -141,6 +142,16 @@ fn fill(jacobian: &mut DMatrix<f64>, calibration: &Calibration, context: &Contex
         if context.has_sockets() {
             let first = free_count(calibration) + 3 * context.recording.rows[row].group;
             (0..3).for_each(|axis| jacobian[(3 * row + axis, first + axis)] = -scale);
+            continue;
+        }
+        let station = context.recording.rows[row].station;
+        if station > 0 {
+            // the frame of its station, to first order: t and φ about the base
+            let first = free_count(calibration) + 6 * (station - 1);
+            let arm = configuration.tip - calibration.setup.base_guess.origin;
+            let turn = skew(&arm) * scale;
+            (0..3).for_each(|axis| jacobian[(3 * row + axis, first + axis)] = -scale);
+            jacobian.fixed_view_mut::<3, 3>(3 * row, first + 3).copy_from(&turn);
         }
     }
 }
@@ -245,9 +256,9 @@ fn resolution(recording: &Recording) -> f64 {
     let Targets::Points(points) = &recording.targets else { return 0.0 };
     let read: Vec<f64> = points
         .iter()
-        .zip(&recording.rows)
-        .flat_map(|(point, row)| {
-            let read: [f64; 3] = (recording.groups[row.group].device.inverse().point(point) / MM).into();
+        .enumerate()
+        .flat_map(|(row, point)| {
+            let read: [f64; 3] = (recording.device(row).inverse().point(point) / MM).into();
             read
         })
         .collect();

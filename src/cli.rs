@@ -7,6 +7,7 @@ mod compliance;
 mod demo;
 mod diagnose;
 mod embedded;
+mod neighbours;
 pub mod output;
 mod predict;
 mod progress;

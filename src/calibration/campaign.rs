@@ -40,12 +40,16 @@ pub struct Campaign {
     pub tip_link: Option<String>,
     /// Measuring rod on the flange.
     pub rod: Option<Rod>,
+    /// The rod's file as the campaign names it.
+    pub rod_file: Option<String>,
     /// Rig readings of the rod; they make the Meas mode available.
     pub readings: Option<Readings>,
     /// Contact force **on the ball**, in the device frame of each clamp, N.
     pub contact_force: Option<Vector3<f64>>,
     /// First guess of the undeflected tip in {T}, m.
     pub tool: Vector3<f64>,
+    /// False where the file says nothing about the tool; the guess is then the rod's tip or the flange.
+    pub tool_is_given: bool,
     /// First guess of {0} in {W}: position (m) and roll, pitch, yaw (rad).
     pub base: [f64; 6],
     /// False where the file says nothing about the base; the guess is then the identity.

@@ -1,6 +1,6 @@
 //! A finding, complete in itself: what, where, how large, how sure, what else it may be, what to do.
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 use super::{Description, Effect, Hypothesis, Kind, Location, Proposal, Quantity, Term};
 
@@ -85,6 +85,23 @@ pub struct Rival {
     pub odds: f64,
 }
 
+impl Rival {
+    /// A rival of a finding without terms.
+    pub(crate) fn without_term(effect: &'static Effect, location: Location, odds: f64) -> Rival {
+        let hypothesis = Hypothesis {
+            terms: Vec::new(),
+            log_probability: -odds.ln(),
+            sigma: 0.0,
+            covariance: DMatrix::zeros(0, 0),
+            background: DVector::zeros(0),
+            background_covariance: DMatrix::zeros(0, 0),
+            determined: 0.0,
+        };
+        let term = Term { candidate: usize::MAX, values: Vec::new() };
+        Rival { effect, location, term, hypothesis, odds }
+    }
+}
+
 impl Estimate {
     /// In the unit of its name.
     pub fn quantity(&self) -> Quantity {
@@ -113,6 +130,28 @@ impl Finding {
             held_out_loss: None,
             next: None,
             parts: vec![part],
+        }
+    }
+
+    /// A finding that is no term of a model: something that was undone before there was one.
+    pub(crate) fn without_terms(
+        effect: &'static Effect,
+        location: Location,
+        estimates: Vec<Estimate>,
+        description: Description,
+    ) -> Finding {
+        Finding {
+            effect,
+            location,
+            estimates,
+            description,
+            rivals: Vec::new(),
+            p_value: 0.0,
+            explains: 0.0,
+            found_in_folds: None,
+            held_out_loss: None,
+            next: None,
+            parts: Vec::new(),
         }
     }
 

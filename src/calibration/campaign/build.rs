@@ -53,9 +53,11 @@ impl Campaign {
             base_link: None,
             tip_link: None,
             rod: None,
+            rod_file: None,
             readings: None,
             contact_force: None,
             tool: Vector3::zeros(),
+            tool_is_given: false,
             base: [0.0; 6],
             base_is_given: false,
             measurements,
@@ -85,7 +87,7 @@ impl Campaign {
 
     /// With a first guess of the undeflected tip in {T}, m.
     pub fn with_tool(self, tool: Vector3<f64>) -> Campaign {
-        Campaign { tool, ..self }
+        Campaign { tool, tool_is_given: true, ..self }
     }
 
     /// With a first guess of {0} in {W}: position (m) and roll, pitch, yaw (rad).

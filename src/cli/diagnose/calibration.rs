@@ -5,10 +5,11 @@ use std::path::PathBuf;
 use clap::Args;
 use rodcal::calibration::{self, Campaign, Options};
 use rodcal::diagnosis::calibration::effects::registry;
-use rodcal::diagnosis::calibration::{apply, diagnose};
+use rodcal::diagnosis::calibration::{apply, mend};
 use rodcal::{Result, report};
 
 use super::listed::listed;
+use crate::cli::neighbours::neighbours;
 use crate::cli::calibrate::{ModeName, provenance};
 use crate::cli::output::Outcome;
 
@@ -47,7 +48,9 @@ impl Calibration {
     pub fn run(&self) -> Result<Outcome> {
         let campaign = Campaign::read(&self.campaign)?;
         let mode = self.mode.map_or_else(|| calibration::default_mode(&campaign), ModeName::mode);
-        let found = diagnose(&campaign, mode, &Options::default())?;
+        let options = Options::default();
+        let mended = mend(&campaign, mode, &neighbours(&campaign), &options)?;
+        let found = mended.diagnose(&options)?;
         let mut report = report::diagnosis::calibration::report(&found);
         report.provenance = provenance(&campaign);
         let mut json = report::diagnosis::calibration::json(&found);

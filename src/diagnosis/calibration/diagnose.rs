@@ -89,6 +89,7 @@ impl<'c> Prepared<'c> {
             campaign,
             calibration,
             tip_jacobians: jacobians.collect(),
+            recorded: None,
             groups: recording.rows.iter().map(|row| name(row.group)).collect(),
             scale: context.scale.clone(),
             terms,

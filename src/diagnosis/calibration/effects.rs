@@ -15,6 +15,7 @@ pub(super) mod fixture;
 pub(super) mod gear;
 pub(super) mod joints;
 pub(super) mod loads;
+pub(super) mod mistakes;
 pub(super) mod procedure;
 pub mod registry;
 

@@ -6,7 +6,7 @@ use super::evidence;
 use super::gear::Gear;
 use super::law::Law;
 use super::linear_terms::LinearTerms;
-use crate::calibration::Calibration;
+use crate::calibration::{Calibration, Summary};
 use crate::calibration::campaign::Campaign;
 use crate::inference::{Finding, FindingPart, Term};
 
@@ -19,6 +19,8 @@ pub struct CalibrationModel<'c> {
     pub calibration: Calibration<'c>,
     /// ∂tip/∂q of every joint at each row, m/rad (or m/m).
     pub tip_jacobians: Vec<Vec<Vector3<f64>>>,
+    /// Errors of a calibration on what was recorded, where mistakes were undone.
+    pub(crate) recorded: Option<Summary>,
     /// Name of the clamp or socket of each row.
     pub groups: Vec<String>,
     /// What each row counts.

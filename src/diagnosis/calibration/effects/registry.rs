@@ -9,7 +9,7 @@ use super::joints::{
 };
 use super::loads::{CONTACT_FORCE_VARIATION, PAYLOAD_MASS, ROD_STIFFNESS, TIP_MASS};
 use super::procedure::{READBACK_LAG, THERMAL_DRIFT};
-use super::{CalibrationEffect, Context, Entry};
+use super::{CalibrationEffect, Context, Entry, mistakes};
 use crate::diagnosis::calibration::law::{Law, TakenUp};
 use crate::inference::{Effect, NotTestable};
 
@@ -34,6 +34,21 @@ pub static ALL: [&CalibrationEffect; 19] = [
     &BASE_SHIFT,
     &THERMAL_DRIFT,
     &OUTLIER,
+];
+
+/// Every mistake that the diagnosis of a calibration knows. They are no terms of a model: they are
+/// undone before there is one.
+pub static MISTAKES: [&Effect; 10] = [
+    &mistakes::SIGN_MISTAKE,
+    &mistakes::SWAP_MISTAKE,
+    &mistakes::UNIT_MISTAKE,
+    &mistakes::OFFSET_MISTAKE,
+    &mistakes::ROW_MISTAKE,
+    &mistakes::FRAME_MISTAKE,
+    &mistakes::ROD_MISTAKE,
+    &mistakes::ROBOT_MISTAKE,
+    &mistakes::STUCK_SENSOR,
+    &mistakes::COPIED_COLUMN,
 ];
 
 /// What pulls on the arm as a whole: preferred to what a single joint does.

@@ -1,0 +1,41 @@
+//! Files that stand beside those of a campaign: one of them may have been meant.
+
+use std::path::{Path, PathBuf};
+
+use rodcal::calibration::Campaign;
+use rodcal::diagnosis::calibration::Neighbours;
+use rodcal::files;
+use rodcal::robot::Robot;
+use rodcal::rod::Rod;
+
+/// More files than these in one directory are not compared.
+const MOST: usize = 50;
+
+/// The rods and robots in the folders of a campaign's own, by their names relative to the campaign.
+pub fn neighbours(campaign: &Campaign) -> Neighbours {
+    let directory = Path::new(&campaign.file).parent().unwrap_or(Path::new(""));
+    let beside = |name: &str| -> Vec<(String, PathBuf)> {
+        let own = Path::new(name);
+        let paths = files::beside(&directory.join(own)).into_iter().take(MOST);
+        let named = |path: PathBuf| {
+            let name = own.with_file_name(path.file_name()?).to_string_lossy().into_owned();
+            Some((name, path))
+        };
+        paths.filter_map(named).collect()
+    };
+    let rod = |(name, path): (String, PathBuf)| Some((name, Rod::read(&path).ok()?));
+    let robot = |(name, path): (String, PathBuf)| {
+        let text = files::read_text(&path).ok()?;
+        let (base, tip) = (campaign.base_link.as_deref(), campaign.tip_link.as_deref());
+        let robot = Robot::from_text(&name, &text, base, tip).ok()?;
+        Some((name, robot, text))
+    };
+    let is_file = !campaign.robot_file.starts_with("builtin:");
+    Neighbours {
+        rods: campaign.rod_file.iter().flat_map(|name| beside(name)).filter_map(rod).collect(),
+        robots: match is_file {
+            true => beside(&campaign.robot_file).into_iter().filter_map(robot).collect(),
+            false => Vec::new(),
+        },
+    }
+}

@@ -1,0 +1,149 @@
+//! What may have been written, named or wired wrongly in a campaign: signs, orders, units, zeros,
+//! frames, rows, files, columns that do not move.
+//!
+//! These are records only: a mistake is no term of a model but something that is undone before
+//! there is one. How they are found: `diagnosis/calibration/mistakes`.
+
+use crate::inference::{Effect, Kind, Location, Reported, WrittenTo};
+
+const NONE: Effect = Effect {
+    name: "",
+    kind: Kind::Mistake,
+    summary: "",
+    formula: "",
+    prior: "one of some hundred, at odds of 1000, where what it acts on is then three times nearer",
+    parameters: &[],
+    needs: "",
+    cause: "",
+    cause_at: |location| location.to_string(),
+    written_to: WrittenTo::Recording,
+    reported: Reported::Alone,
+    seen_along: |_| Vec::new(),
+    direct_check: None,
+};
+
+fn at(what: &str, location: &Location) -> String {
+    format!("{what} ({location})")
+}
+
+/// A joint, or an axis of the device, the wrong way round.
+pub static SIGN_MISTAKE: Effect = Effect {
+    name: "sign_mistake",
+    summary: "a joint, or an axis of the device, has the wrong sign",
+    formula: "true = −recorded",
+    needs: "joints that move by more than a few degrees",
+    cause: "a wrong sign",
+    cause_at: |location| at("a wrong sign", location),
+    direct_check: Some("Move the joint alone and look which way the arm goes."),
+    ..NONE
+};
+
+/// Columns, clamps or axes exchanged.
+pub static SWAP_MISTAKE: Effect = Effect {
+    name: "swap_mistake",
+    summary: "joints, axes of the device or clamps are exchanged",
+    formula: "names exchanged",
+    needs: "joints that move, or two clamps",
+    cause: "names exchanged",
+    cause_at: |location| at("names exchanged", location),
+    direct_check: Some("Move one joint alone and look which column changes."),
+    ..NONE
+};
+
+/// Radians, metres, inches.
+pub static UNIT_MISTAKE: Effect = Effect {
+    name: "unit_mistake",
+    summary: "angles or positions are in another unit",
+    formula: "true = factor × recorded",
+    parameters: &[("factor", "what the numbers must be multiplied by")],
+    needs: "joints that move",
+    cause: "a wrong unit",
+    cause_at: |location| at("a wrong unit", location),
+    ..NONE
+};
+
+/// A joint's zero by a quarter or half turn.
+pub static OFFSET_MISTAKE: Effect = Effect {
+    name: "offset_mistake",
+    summary: "a joint's zero is off by a quarter or half turn",
+    formula: "true = recorded + constant",
+    parameters: &[("deg", "what must be added to the recorded angle")],
+    needs: "joints that move; of the first joint a stated base, of the last one a stated tool",
+    cause: "a wrong zero of the joint",
+    cause_at: |location| at("a wrong zero", location),
+    direct_check: Some("Drive the joint to zero and compare with the robot's drawing."),
+    ..NONE
+};
+
+/// Angles and positions that do not belong together.
+pub static ROW_MISTAKE: Effect = Effect {
+    name: "row_mistake",
+    summary: "positions stand some rows away from their angles",
+    formula: "position of row i = recorded position of row i + rows",
+    parameters: &[("rows", "how many rows further down a row's position stands")],
+    needs: "poses that differ from row to row",
+    cause: "rows displaced",
+    cause_at: |location| at("rows displaced", location),
+    ..NONE
+};
+
+/// A frame read in another convention, or the other way round.
+pub static FRAME_MISTAKE: Effect = Effect {
+    name: "frame_mistake",
+    summary: "a frame of base, tool or clamp is given in another convention, inverted, or in another frame",
+    formula: "another order of roll, pitch and yaw; the inverse; axes exchanged",
+    needs: "a stated base, a stated tool or rod, clamps",
+    cause: "a frame given in another way",
+    cause_at: |location| at("a frame given in another way", location),
+    ..NONE
+};
+
+/// The rod that was on the flange is another one.
+pub static ROD_MISTAKE: Effect = Effect {
+    name: "rod_mistake",
+    summary: "the rod is that of another file of the same folder",
+    formula: "another rod's tip and compliance",
+    needs: "other rod files beside the given one",
+    cause: "another rod's file",
+    cause_at: |location| at("another rod's file", location),
+    written_to: WrittenTo::Model,
+    direct_check: Some("Measure L1 and L2 of the rod on the flange."),
+    ..NONE
+};
+
+/// The robot is another one.
+pub static ROBOT_MISTAKE: Effect = Effect {
+    name: "robot_mistake",
+    summary: "the robot is that of another file of the same folder",
+    formula: "another robot's kinematics",
+    needs: "other robot files beside the given one",
+    cause: "another robot's file",
+    cause_at: |location| at("another robot's file", location),
+    written_to: WrittenTo::Model,
+    ..NONE
+};
+
+/// A column that shows the same value in all rows.
+pub static STUCK_SENSOR: Effect = Effect {
+    name: "stuck_sensor",
+    summary: "a column shows the same value in all rows",
+    formula: "recorded = constant",
+    parameters: &[("mm", "what a position shows"), ("deg", "what a joint shows")],
+    needs: "five rows; of a joint a fit that fails",
+    cause: "a value that was not recorded",
+    cause_at: |location| at("a column that stands still", location),
+    written_to: WrittenTo::Nowhere,
+    ..NONE
+};
+
+/// A column that repeats another one.
+pub static COPIED_COLUMN: Effect = Effect {
+    name: "copied_column",
+    summary: "a column repeats another one",
+    formula: "column = another column",
+    needs: "five rows",
+    cause: "one column stands twice",
+    cause_at: |location| at("a column that stands twice", location),
+    written_to: WrittenTo::Nowhere,
+    ..NONE
+};

@@ -1,0 +1,388 @@
+//! Mistakes before physics: signs, orders, units, zeros, rows, frames, files, and frames that moved.
+//!
+//! They are discrete, few and of enormous evidence, so they are undone before the robot is
+//! calibrated and its residuals are asked for physics. Three steps:
+//!
+//! 1. every mistake that the files could hold, as a list of what undoes it (`moves.rs`);
+//! 2. each is tried on a draft of the campaign (`draft.rs`) with a quick robust fit (`quick.rs`); what
+//!    turns poses that fit nothing into poses that fit is kept, one after another (`search.rs`).
+//!    That tracker or base stood elsewhere from some row on competes with the mistakes;
+//! 3. columns that say nothing (`columns.rs`) cannot be undone: with them there is no physics to see.
+//!
+//! A mistake that these poses cannot tell from another one names it as a rival; one that they hide
+//! altogether (the zero of the first joint without a stated base) is not named.
+
+mod columns;
+mod draft;
+mod moves;
+mod quick;
+mod search;
+#[cfg(test)]
+mod tests;
+
+use nalgebra::Vector3;
+
+use self::draft::{Change, Draft, change_joints};
+use self::moves::{Move, Other};
+use self::quick::Body;
+use self::search::{Found, Search, State, Step};
+use super::diagnose::{CalibrationDiagnosis, diagnose_calibrated};
+use super::effects::fixture::{BASE_SHIFT, CLAMP_POSE};
+use super::effects::mistakes::FRAME_MISTAKE;
+use crate::calibration::campaign::{Campaign, Recording};
+use crate::calibration::{Compensation, Mode, Options, Summary, calibrate};
+use crate::error::Result;
+use crate::inference::{Description, Effect, Estimate, Finding, Kind, Location, Rival};
+use crate::robot::Robot;
+use crate::rod::Rod;
+use crate::spatial::Pose;
+use crate::units::{DEG, MM, UM, URAD, significant};
+
+/// Files of the same folders that may have been meant.
+#[derive(Debug, Clone, Default)]
+pub struct Neighbours {
+    /// Rods, by their files.
+    pub rods: Vec<(String, Rod)>,
+    /// Robots, by their files, with the text of those.
+    pub robots: Vec<(String, Robot, String)>,
+}
+
+/// A campaign without the mistakes that were found in it.
+#[derive(Debug, Clone)]
+pub struct Mended {
+    /// The campaign that was meant.
+    pub campaign: Campaign,
+    /// How its rod's deflection is known.
+    pub mode: Mode,
+    /// What was wrong, the strongest first, complete in itself.
+    pub found: Vec<Finding>,
+    /// For each of them one line for those who did not ask for a diagnosis.
+    pub suspicions: Vec<String>,
+    /// True where `campaign` is not what was recorded.
+    pub is_changed: bool,
+    /// False where columns say nothing, so that physics cannot be seen.
+    pub has_data: bool,
+    /// Errors of a calibration on what was recorded; `None` where nothing was found.
+    recorded: Option<Summary>,
+}
+
+/// Looks for mistakes in a campaign and undoes them.
+///
+/// ```
+/// use rodcal::diagnosis::calibration::{Neighbours, mend};
+/// use rodcal::prelude::*;
+///
+/// let campaign = Campaign::read("campaigns/tx90-5/campaign.toml".as_ref())?;
+/// let clean = mend(&campaign, Mode::Fea, &Neighbours::default(), &Options::default())?;
+/// assert!(clean.found.is_empty());
+/// // a joint that counts the other way round
+/// let mut wrong = campaign.clone();
+/// wrong.measurements.joint_values.iter_mut().skip(3).step_by(6).for_each(|q| *q = -*q);
+/// let mended = mend(&wrong, Mode::Fea, &Neighbours::default(), &Options::default())?;
+/// assert_eq!(mended.found[0].effect.name, "sign_mistake");
+/// assert_eq!(mended.found[0].location.to_string(), "q4_deg");
+/// assert_eq!(mended.campaign.measurements.joint_values, campaign.measurements.joint_values);
+/// # Ok::<(), rodcal::Error>(())
+/// ```
+///
+/// # Errors
+/// What [`Compensation::new`] refuses; what a calibration refuses.
+pub fn mend(campaign: &Campaign, mode: Mode, others: &Neighbours, options: &Options) -> Result<Mended> {
+    let mut mended = search(campaign, mode, others)?;
+    if !mended.found.is_empty() {
+        let recorded = calibrate(campaign, mode, options);
+        mended.recorded = recorded.ok().map(|calibration| Summary::of(&calibration.residuals()));
+    }
+    Ok(mended)
+}
+
+/// One line for each mistake that `campaign` seems to hold, for those who do not ask for a
+/// diagnosis.
+///
+/// # Errors
+/// As [`mend`].
+pub fn suspected(campaign: &Campaign, mode: Mode, others: &Neighbours) -> Result<Vec<String>> {
+    Ok(search(campaign, mode, others)?.suspicions)
+}
+
+impl Mended {
+    /// Calibrates the mended campaign and diagnoses what is left; the mistakes stand before all else.
+    ///
+    /// # Errors
+    /// As [`super::diagnose()`].
+    pub fn diagnose(&self, options: &Options) -> Result<CalibrationDiagnosis<'_>> {
+        let mut found = diagnose_calibrated(&self.campaign, calibrate(&self.campaign, self.mode, options)?)?;
+        let diagnosis = &mut found.diagnosis;
+        let has_failed = found.evidence.most_scatter.is_some_and(|most| diagnosis.noise > most);
+        if has_failed || !self.has_data {
+            // laws that are fitted to what is no robot's error mean nothing
+            diagnosis.findings.retain(|finding| finding.kind() == Kind::Event && self.has_data);
+        }
+        if !self.has_data {
+            diagnosis.discrepancy = None;
+        }
+        diagnosis.findings.splice(0..0, self.found.iter().cloned());
+        found.model.recorded = self.recorded;
+        Ok(found)
+    }
+}
+
+fn search(campaign: &Campaign, mode: Mode, others: &Neighbours) -> Result<Mended> {
+    let mut mended = Mended {
+        campaign: campaign.clone(),
+        mode,
+        found: Vec::new(),
+        suspicions: Vec::new(),
+        is_changed: false,
+        has_data: true,
+        recorded: None,
+    };
+    let draft = Draft::of(campaign);
+    let compensation = Compensation::new(campaign, mode)?;
+    let mut bodies = vec![Body::new(&campaign.robot, compensation.clone(), campaign.tool, &draft)];
+    let mut meant = Vec::new();
+    for (file, rod) in &others.rods {
+        let with = Campaign { rod: Some(rod.clone()), readings: None, ..campaign.clone() };
+        let mode = if mode == Mode::Meas { Mode::Fea } else { mode };
+        let Ok(compensation) = Compensation::new(&with, mode) else { continue };
+        let tip = (!campaign.tool_is_given).then(|| rod.tip());
+        let body = bodies.len();
+        meant.push(Other { file: file.clone(), name: rod.name.clone(), is_rod: true, tip, body });
+        bodies.push(Body::new(&campaign.robot, compensation, tip.unwrap_or(campaign.tool), &draft));
+    }
+    let is_alike = |robot: &&(String, Robot, String)| robot.1.joints.len() == campaign.robot.joints.len();
+    for (file, robot, _) in others.robots.iter().filter(is_alike) {
+        let (name, body) = (robot.name.clone(), bodies.len());
+        meant.push(Other { file: file.clone(), name, is_rod: false, tip: None, body });
+        bodies.push(Body::new(robot, compensation.clone(), campaign.tool, &draft));
+    }
+    let silent = columns::silent(campaign, &draft);
+    let is_sure = silent.iter().any(|silent| !silent.only_if_failed);
+    let moves = moves::all(campaign, &draft, &meant);
+    let search = Search { draft, bodies, moves };
+    let result = if is_sure { None } else { search.found() };
+    let has_failed = result.as_ref().is_none_or(|(_, best, _)| search.has_failed(best));
+    for silent in silent.into_iter().filter(|silent| has_failed || !silent.only_if_failed) {
+        mended.has_data = false;
+        mended.add(silent.effect, Location::Key(silent.location), silent.estimates, &silent.cure, &silent.why);
+    }
+    let Some((_, best, found)) = result.filter(|_| mended.has_data) else { return Ok(mended) };
+    for found in &found {
+        mended.add_found(&search, &best, found);
+    }
+    if !best.steps.is_empty() {
+        mended.is_changed = true;
+        mended.undo(campaign, others, &search, &best, &meant)?;
+    }
+    let mut order: Vec<usize> = (0..mended.found.len()).collect();
+    order.sort_by(|&a, &b| mended.found[b].explains.total_cmp(&mended.found[a].explains));
+    mended.found = order.iter().map(|&k| mended.found[k].clone()).collect();
+    mended.suspicions = order.iter().map(|&k| mended.suspicions[k].clone()).collect();
+    Ok(mended)
+}
+
+impl Mended {
+    fn add(
+        &mut self,
+        effect: &'static Effect,
+        location: Location,
+        estimates: Vec<Estimate>,
+        cure: &str,
+        why: &str,
+    ) {
+        let lower = lower(cure);
+        self.suspicions.push(format!(
+            "likely mistake in {location}: {why}; {lower} (`rodcal diagnose calibration` says more)"
+        ));
+        let description = Description { observed: cure.to_owned(), cause: why.to_owned() };
+        self.found.push(Finding::without_terms(effect, location, estimates, description));
+    }
+
+    fn add_found(&mut self, search: &Search, best: &State, found: &Found) {
+        match &found.step {
+            Step::Move(number) => {
+                let own = &search.moves[*number];
+                self.add(own.effect, Location::Key(own.location.clone()), own.estimates.clone(), &own.cure, &own.why);
+            }
+            Step::Elsewhere(change) => self.add_elsewhere(search, best, found, change),
+        }
+        let Some(finding) = self.found.last_mut() else { return };
+        finding.p_value = (-found.log_odds).exp();
+        finding.explains = found.explains;
+        let mut rivals: Vec<Rival> = Vec::new();
+        for &(number, odds) in &found.rivals {
+            let Move { effect, location, .. } = &search.moves[number];
+            let location = Location::Key(location.clone());
+            let is_it = |e: &Effect, at: &Location| e == *effect && *at == location;
+            if !is_it(finding.effect, &finding.location) && !rivals.iter().any(|r| is_it(r.effect, &r.location)) {
+                rivals.push(Rival::without_term(effect, location, odds));
+            }
+        }
+        if let Some(clamp) = found.may_be_clamp {
+            let name = self.campaign.measurements.groups[clamp].name.clone();
+            rivals.push(Rival::without_term(&CLAMP_POSE.effect, Location::Named(name), 1.0));
+        }
+        finding.rivals = rivals;
+    }
+
+    /// A frame that moved, with how far.
+    fn add_elsewhere(&mut self, search: &Search, best: &State, found: &Found, change: &Change) {
+        // its number among the stations: those of the file, then one for each such step
+        let earlier = best.steps.iter().take_while(|step| **step != found.step);
+        let number = search.draft.stations + earlier.filter(|step| matches!(step, Step::Elsewhere(_))).count();
+        let bases = &best.fit.bases;
+        let recording = &self.campaign.measurements;
+        let old = match change {
+            Change::Moved(first) => {
+                let before = search.changed(&best.steps);
+                let at = before.rows.iter().position(|&row| row >= *first).unwrap_or(0);
+                before.station[at.saturating_sub(1)]
+            }
+            _ => 0,
+        };
+        let (Some(from), Some(to)) = (bases.get(old), bases.get(number)) else { return };
+        let (way, angle) = search::moved(from, to);
+        let said = format!("{} mm and {}°", significant(way / MM, 4), significant(angle / DEG, 3));
+        match change {
+            Change::Moved(first) => {
+                let row = first.saturating_sub(1);
+                let after = pose_name(recording, row);
+                let cure = format!(
+                    "Tracker or base moved by {said} after {after}: give the later rows another name in a column station"
+                );
+                let location = Location::Shift { what: None, row, after };
+                let estimates = motion_estimates(from, to);
+                self.add(&BASE_SHIFT.effect, location, estimates, &cure, "it stood in two places");
+            }
+            Change::Apart(clamp) => {
+                let name = recording.groups[*clamp].name.clone();
+                let device = recording.groups[*clamp].device;
+                let there = from.then(&to.inverse()).then(&device);
+                let said = there.origin / MM;
+                let [roll, pitch, yaw] = there.roll_pitch_yaw().map(|angle| significant(angle / DEG, 5));
+                let cure = format!(
+                    "Give {name} xyz_mm = [{:.2}, {:.2}, {:.2}] and rpy_deg = [{roll}, {pitch}, {yaw}]",
+                    said.x, said.y, said.z
+                );
+                let (way, _) = search::moved(&device, &there);
+                let why = format!("it stands {} mm from where the campaign says", significant(way / MM, 3));
+                let estimates = motion_estimates(&device, &there);
+                self.add(&FRAME_MISTAKE, Location::Key(name), estimates, &cure, &why);
+            }
+            _ => {}
+        }
+    }
+
+    /// The campaign that was meant.
+    fn undo(
+        &mut self,
+        recorded: &Campaign,
+        others: &Neighbours,
+        search: &Search,
+        best: &State,
+        meant: &[Other],
+    ) -> Result<()> {
+        let mut draft = search.changed(&best.steps);
+        if let Some(other) = meant.iter().find(|other| other.body == draft.body && draft.body > 0) {
+            if other.is_rod {
+                let rod = others.rods.iter().find(|(file, _)| *file == other.file);
+                self.campaign.rod = rod.map(|(_, rod)| rod.clone());
+                self.campaign.rod_file = Some(other.file.clone());
+                self.campaign.readings = None;
+                self.mode = if self.mode == Mode::Meas { Mode::Fea } else { self.mode };
+            } else if let Some((file, robot, text)) = others.robots.iter().find(|(file, ..)| *file == other.file) {
+                self.campaign.robot = robot.clone();
+                (self.campaign.robot_file, self.campaign.robot_text) = (file.clone(), text.clone());
+            }
+        }
+        // a clamp that stands elsewhere has another frame, not a station
+        let mut station = search.draft.stations;
+        for step in &best.steps {
+            let Step::Elsewhere(change) = step else { continue };
+            if let (Change::Apart(clamp), Some(to)) = (change, best.fit.bases.get(station)) {
+                draft.devices[*clamp] = best.fit.bases[0].then(&to.inverse()).then(&draft.devices[*clamp]);
+                draft.station.iter_mut().for_each(|own| *own = if *own == station { 0 } else { *own });
+            }
+            station += 1;
+        }
+        drop_unused(&mut draft);
+        self.campaign.measurements = draft.recording(&recorded.measurements);
+        if let Some(base) = draft.base {
+            let [roll, pitch, yaw] = base.roll_pitch_yaw();
+            self.campaign.base = [base.origin.x, base.origin.y, base.origin.z, roll, pitch, yaw];
+        }
+        if let Some(tool) = draft.tool {
+            self.campaign.tool_is_given |= (tool - self.campaign.rod.as_ref().map_or(tool, Rod::tip)).norm() > UM;
+            self.campaign.tool = tool;
+        }
+        let [x, y, z, roll, pitch, yaw] = self.campaign.base;
+        let base = Pose::from_xyz_rpy([x, y, z], [roll, pitch, yaw]);
+        let (robot, tool) = (self.campaign.robot.clone(), self.campaign.tool);
+        self.campaign.measurements.align_stations(&robot, base, tool)?;
+        if let Some(validation) = &mut self.campaign.validation {
+            turn_joints(validation, &robot, tool, &draft.joint_changes);
+        }
+        Ok(())
+    }
+}
+
+/// Stations in the order of their rows, without those that have none.
+fn drop_unused(draft: &mut Draft) {
+    let mut known: Vec<usize> = Vec::new();
+    for station in &mut draft.station {
+        let at = known.iter().position(|old| old == station).unwrap_or_else(|| {
+            known.push(*station);
+            known.len() - 1
+        });
+        *station = at;
+    }
+    draft.stations = known.len();
+}
+
+/// The joints of a validation as they are meant, where it holds the mistake too: where the robot fits
+/// it better so.
+fn turn_joints(validation: &mut Recording, robot: &Robot, tool: Vector3<f64>, changes: &[Change]) {
+    if changes.is_empty() {
+        return;
+    }
+    let count = validation.joint_count;
+    let mut turned = validation.clone();
+    for row in turned.joint_values.chunks_mut(count.max(1)) {
+        changes.iter().for_each(|change| change_joints(change, row));
+    }
+    let left = |recording: &Recording| {
+        let alone = Campaign::new(robot.clone(), recording.clone()).ok()?.with_tool(tool);
+        let draft = Draft::of(&alone).thinned(100);
+        let body = Body::new(robot, Compensation::bare(), tool, &draft);
+        quick::fit(&draft, &body, f64::INFINITY).map(|fit| fit.log_likelihood)
+    };
+    if left(&turned) > left(validation) {
+        *validation = turned;
+    }
+}
+
+fn motion_estimates(from: &Pose, to: &Pose) -> Vec<Estimate> {
+    let way = to.origin - from.origin;
+    let turn = nalgebra::Rotation3::from_matrix_unchecked(to.rotation * from.rotation.transpose()).scaled_axis();
+    let names = ["dx_um", "dy_um", "dz_um", "rx_urad", "ry_urad", "rz_urad"];
+    let values = [way.x, way.y, way.z, turn.x, turn.y, turn.z];
+    let estimate = |(k, name): (usize, &&str)| {
+        let unit = if k < 3 { UM } else { URAD };
+        Estimate { name: (*name).into(), unit, value: values[k], low: values[k], high: values[k] }
+    };
+    names.iter().enumerate().map(estimate).collect()
+}
+
+/// `pose 7`, with its clamp where several poses have that name.
+fn pose_name(recording: &Recording, row: usize) -> String {
+    let own = &recording.rows[row].pose;
+    match recording.rows.iter().filter(|other| &other.pose == own).count() {
+        1 => format!("pose {own}"),
+        _ => format!("pose {}", recording.pose_name(row)),
+    }
+}
+
+fn lower(words: &str) -> String {
+    let mut letters = words.chars();
+    letters.next().map_or_else(String::new, |first| first.to_lowercase().chain(letters).collect())
+}

@@ -1,0 +1,265 @@
+//! A campaign as bare numbers, so that it can be read in another way than its files say.
+
+use nalgebra::{Matrix3, Vector3};
+
+use crate::calibration::campaign::{Campaign, Recording, Station, Targets};
+use crate::spatial::Pose;
+
+/// What was recorded, row by row, with all that a mistake may have changed.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Draft {
+    pub joint_count: usize,
+    /// Joint values, rad or m, one row after the other.
+    pub joints: Vec<f64>,
+    /// Where the ball was, in the frame of its clamp, or in {W} of its station, m; empty with
+    /// sockets.
+    pub seen: Vec<Vector3<f64>>,
+    /// Clamp or socket of each row.
+    pub group: Vec<usize>,
+    /// Frame of each clamp in {W}.
+    pub devices: Vec<Pose>,
+    /// Station of each row.
+    pub station: Vec<usize>,
+    pub stations: usize,
+    /// Rows of the recording that the rows are.
+    pub rows: Vec<usize>,
+    /// First guess of the base, where the file states one.
+    pub base: Option<Pose>,
+    /// First guess of the tip, where file or rod state one, m.
+    pub tool: Option<Vector3<f64>>,
+    /// Which of the bodies: robot and rod.
+    pub body: usize,
+    /// Changes of the angles, in their order: the validation has them too.
+    pub joint_changes: Vec<Change>,
+}
+
+/// What undoes a mistake.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Change {
+    /// true joint j = factor[j]·recorded[order[j]] + offset[j].
+    Joints { order: Vec<usize>, factor: Vec<f64>, offset: Vec<f64> },
+    /// true position = M·recorded.
+    Seen(Matrix3<f64>),
+    /// The positions of row i are those that stand in row i + k; with the clamps or without.
+    Rows { by: isize, with_clamps: bool },
+    /// Two clamps or sockets exchanged.
+    Groups(usize, usize),
+    /// Other frames of clamps.
+    Devices(Vec<(usize, Pose)>),
+    /// Another first guess of the base.
+    Base(Pose),
+    /// Another first guess of the tip.
+    Tool(Vector3<f64>),
+    /// Another robot or rod.
+    Body(usize, Option<Vector3<f64>>),
+    /// From this row on tracker or base stood elsewhere.
+    Moved(usize),
+    /// A clamp stands somewhere else.
+    Apart(usize),
+}
+
+impl Change {
+    /// True where only a first guess is another one, which no fit depends on.
+    pub fn is_guess(&self) -> bool {
+        matches!(self, Change::Base(_) | Change::Tool(_))
+    }
+
+    /// A factor on some joints.
+    pub fn factors(joints: &[usize], count: usize, factor: f64) -> Change {
+        let factor = (0..count).map(|j| if joints.contains(&j) { factor } else { 1.0 }).collect();
+        Change::Joints { order: (0..count).collect(), factor, offset: vec![0.0; count] }
+    }
+
+    /// A constant on one joint, rad, after a factor.
+    pub fn offset(joint: usize, count: usize, factor: f64, angle: f64) -> Change {
+        let only = |value: f64, other: f64| (0..count).map(|j| if j == joint { value } else { other }).collect();
+        Change::Joints { order: (0..count).collect(), factor: only(factor, 1.0), offset: only(angle, 0.0) }
+    }
+
+    /// Other names.
+    pub fn order(order: Vec<usize>) -> Change {
+        let count = order.len();
+        Change::Joints { order, factor: vec![1.0; count], offset: vec![0.0; count] }
+    }
+}
+
+impl Draft {
+    pub fn of(campaign: &Campaign) -> Draft {
+        let recording = &campaign.measurements;
+        let [x, y, z, roll, pitch, yaw] = campaign.base;
+        let has_tool = campaign.tool_is_given || campaign.rod.is_some();
+        let seen = match &recording.targets {
+            Targets::Sockets(_) => Vec::new(),
+            Targets::Points(points) => {
+                let of_row = |(row, point): (usize, &Vector3<f64>)| recording.device(row).inverse().point(point);
+                points.iter().enumerate().map(of_row).collect()
+            }
+        };
+        Draft {
+            joint_count: recording.joint_count,
+            joints: recording.joint_values.clone(),
+            seen,
+            group: recording.rows.iter().map(|row| row.group).collect(),
+            devices: recording.groups.iter().map(|group| group.device).collect(),
+            station: recording.rows.iter().map(|row| row.station).collect(),
+            stations: recording.stations.len(),
+            rows: (0..recording.len()).collect(),
+            base: campaign.base_is_given.then(|| Pose::from_xyz_rpy([x, y, z], [roll, pitch, yaw])),
+            tool: has_tool.then_some(campaign.tool),
+            body: 0,
+            joint_changes: Vec::new(),
+        }
+    }
+
+    pub fn len(&self) -> usize {
+        self.rows.len()
+    }
+
+    pub fn has_sockets(&self) -> bool {
+        self.seen.is_empty()
+    }
+
+    pub fn joints(&self, row: usize) -> &[f64] {
+        &self.joints[row * self.joint_count..][..self.joint_count]
+    }
+
+    /// Where the ball was, in {W} of its station, m.
+    pub fn point(&self, row: usize) -> Vector3<f64> {
+        self.devices[self.group[row]].point(&self.seen[row])
+    }
+
+    /// The draft with a mistake undone.
+    pub fn with(&self, change: &Change) -> Draft {
+        let mut draft = self.clone();
+        draft.apply(change);
+        draft
+    }
+
+    fn apply(&mut self, change: &Change) {
+        match change {
+            Change::Joints { .. } => {
+                for row in self.joints.chunks_mut(self.joint_count) {
+                    change_joints(change, row);
+                }
+                self.joint_changes.push(change.clone());
+            }
+            Change::Seen(matrix) => self.seen.iter_mut().for_each(|seen| *seen = matrix * *seen),
+            Change::Rows { by, with_clamps } => self.displace(*by, *with_clamps),
+            Change::Groups(a, b) => {
+                for group in &mut self.group {
+                    *group = if *group == *a {
+                        *b
+                    } else if *group == *b {
+                        *a
+                    } else {
+                        *group
+                    };
+                }
+            }
+            Change::Devices(frames) => frames.iter().for_each(|&(group, frame)| self.devices[group] = frame),
+            Change::Base(base) => self.base = Some(*base),
+            Change::Tool(tool) => self.tool = Some(*tool),
+            Change::Body(body, tool) => {
+                self.body = *body;
+                self.tool = tool.or(self.tool);
+            }
+            Change::Moved(first) => {
+                let (old, new) = (self.station_at(*first), self.stations);
+                for (row, station) in self.rows.iter().zip(&mut self.station) {
+                    if row >= first && *station == old {
+                        *station = new;
+                    }
+                }
+                self.stations += 1;
+            }
+            Change::Apart(group) => {
+                for (own, station) in self.group.iter().zip(&mut self.station) {
+                    if own == group {
+                        *station = self.stations;
+                    }
+                }
+                self.stations += 1;
+            }
+        }
+    }
+
+    /// The station of a row of the recording, or of the next that is here.
+    fn station_at(&self, row: usize) -> usize {
+        let at = self.rows.iter().position(|&known| known >= row);
+        at.map_or(0, |at| self.station[at])
+    }
+
+    fn displace(&mut self, by: isize, with_clamps: bool) {
+        let count = self.len() as isize;
+        let kept: Vec<usize> = (0..count).filter(|i| (0..count).contains(&(i + by))).map(|i| i as usize).collect();
+        let there = |&row: &usize| (row as isize + by) as usize;
+        let seen = kept.iter().map(|row| self.seen[there(row)]).collect();
+        let group = kept.iter().map(|row| self.group[if with_clamps { there(row) } else { *row }]).collect();
+        *self = Draft { seen, group, ..self.part(&kept) };
+    }
+
+    /// Some of the rows.
+    pub fn part(&self, rows: &[usize]) -> Draft {
+        Draft {
+            joints: rows.iter().flat_map(|&row| self.joints(row).iter().copied()).collect(),
+            seen: if self.has_sockets() { Vec::new() } else { rows.iter().map(|&row| self.seen[row]).collect() },
+            group: rows.iter().map(|&row| self.group[row]).collect(),
+            station: rows.iter().map(|&row| self.station[row]).collect(),
+            rows: rows.iter().map(|&row| self.rows[row]).collect(),
+            devices: self.devices.clone(),
+            joint_changes: self.joint_changes.clone(),
+            ..*self
+        }
+    }
+
+    /// At most `most` rows, evenly spread.
+    pub fn thinned(&self, most: usize) -> Draft {
+        if self.len() <= most {
+            return self.clone();
+        }
+        let rows: Vec<usize> = (0..most).map(|k| k * self.len() / most).collect();
+        self.part(&rows)
+    }
+
+    /// The recording that was meant.
+    pub fn recording(&self, recorded: &Recording) -> Recording {
+        let mut meant = recorded.subset(&self.rows);
+        meant.groups = recorded.groups.clone();
+        meant.joint_values = self.joints.clone();
+        for (group, device) in meant.groups.iter_mut().zip(&self.devices) {
+            group.device = *device;
+        }
+        for (k, row) in meant.rows.iter_mut().enumerate() {
+            (row.group, row.station) = (self.group[k], self.station[k]);
+        }
+        let names: Vec<String> = recorded.stations.iter().map(|station| station.name.clone()).collect();
+        meant.stations = named(names, self.stations).iter().map(|name| Station::first(name)).collect();
+        if let Targets::Points(points) = &mut meant.targets {
+            *points = (0..self.len()).map(|row| self.point(row)).collect();
+        }
+        meant
+    }
+}
+
+/// Names of so many stations: those that there are, then numbers.
+fn named(mut names: Vec<String>, count: usize) -> Vec<String> {
+    if count > 1 && names.len() == 1 && names[0].is_empty() {
+        names[0] = "1".into();
+    }
+    while names.len() < count {
+        let is_free = |name: &String| !names.contains(name);
+        let name = (names.len() + 1..).map(|number| number.to_string()).find(is_free);
+        names.extend(name);
+    }
+    names
+}
+
+/// The joint values of one row as they are meant.
+pub(super) fn change_joints(change: &Change, row: &mut [f64]) {
+    if let Change::Joints { order, factor, offset } = change {
+        let recorded = row.to_vec();
+        for (j, value) in row.iter_mut().enumerate() {
+            *value = factor[j] * recorded[order[j]] + offset[j];
+        }
+    }
+}

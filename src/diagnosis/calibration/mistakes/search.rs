@@ -1,0 +1,352 @@
+//! Which mistakes turn poses that fit nothing into poses that fit.
+//!
+//! Greedy: the change that gains most, then the best beside it; where no single one cures a fit that
+//! fails, pairs that begin with the best few. A state is kept where it is a thousand times more
+//! probable than the one that it grew from **and** what it touches lies three times nearer.
+
+use super::draft::{Change, Draft};
+use super::moves::{Move, turn};
+use super::quick::{Body, Fit, fit};
+use crate::parallel::in_parallel;
+use crate::spatial::Pose;
+use crate::statistics::median;
+use crate::units::{DEG, MM};
+
+/// A change is made at these odds against what there is without it: ln 1000.
+const ODDS: f64 = 6.907_755;
+/// Another change within these odds explains alike: ln 20.
+const ALIKE: f64 = 2.995_732;
+/// How rare any one of some hundred mistakes is: ln.
+const RARE: f64 = -4.0;
+/// The price of a frame that moved: half of ln 150 for each of its six numbers, and which row.
+const MOVED: f64 = -20.0;
+/// What a change touches must come so many times nearer.
+const NEARER: f64 = 3.0;
+/// Share of the rows that it touches at least, and their number.
+const TOUCHED: (f64, usize) = (0.05, 3);
+/// Rows that a fit sees.
+const ROWS: usize = 120;
+/// Rows after which a move of the base is tried first.
+const PLACES: usize = 24;
+/// Fewest rows of a station.
+const LEAST_ROWS: usize = 4;
+const MOST_CHANGES: usize = 6;
+const BEAM: usize = 5;
+/// What a robot as drawn leaves, as a share of the reach: what is tried must not be far worse.
+const DRAWN: f64 = 0.02;
+/// A fit that leaves more, as a share of the reach, fails.
+const FAILED: f64 = 5e-3;
+/// How sure a stated base is: share of the reach, rad; and a stated tip: m and share of its length.
+/// Then what it costs at most that it was a rough guess, ln.
+const BASE: (f64, f64, f64) = (0.03, 2.0 * DEG, 24.0);
+const TOOL: (f64, f64, f64) = (5.0 * MM, 0.03, 12.0);
+/// The least that is called a move of the base: less is found, and told from drift, by the effects.
+const LEAST_MOVE: (f64, f64) = (2.0 * MM, 2e-3);
+
+/// One of the changes that make a state.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Step {
+    /// By its number among the moves.
+    Move(usize),
+    /// Tracker or base, or a clamp, stands elsewhere.
+    Elsewhere(Change),
+}
+
+/// A draft with some changes, fitted.
+#[derive(Clone)]
+pub(super) struct State {
+    pub steps: Vec<Step>,
+    /// Some of the rows.
+    thin: Draft,
+    pub fit: Fit,
+    score: f64,
+    /// The part of the score that first guesses make.
+    guess: f64,
+}
+
+/// A change that was found necessary.
+pub(super) struct Found {
+    pub step: Step,
+    pub log_odds: f64,
+    /// Root mean square of what it explains, m.
+    pub explains: f64,
+    /// Moves that explain as much in its place, with the odds against them.
+    pub rivals: Vec<(usize, f64)>,
+    /// True where a clamp, instead, may stand elsewhere from the same row on.
+    pub may_be_clamp: Option<usize>,
+}
+
+/// A campaign with all that may have been mistaken.
+pub(super) struct Search<'a> {
+    pub draft: Draft,
+    pub bodies: Vec<Body<'a>>,
+    pub moves: Vec<Move>,
+}
+
+impl Search<'_> {
+    /// The changes that this campaign needs, with the state that they make, and what was there
+    /// before; `None` where nothing can be fitted at all.
+    pub fn found(&self) -> Option<(State, State, Vec<Found>)> {
+        let base = self.state(&[], f64::INFINITY)?;
+        let mut best = base.clone();
+        while best.steps.len() < MOST_CHANGES {
+            let tried = self.extended(&best);
+            let next = tried.iter().find(|state| self.is_better(state, &best));
+            let next = match next {
+                Some(next) => Some(next.clone()),
+                None if self.has_failed(&best) => self.pair(&best, &tried),
+                None => None,
+            };
+            let Some(next) = next else { break };
+            best = self.sharpened(next);
+        }
+        // what a later one made needless goes
+        loop {
+            let needless = (0..best.steps.len()).find_map(|k| {
+                let rest = self.state(&without(&best.steps, k), f64::INFINITY)?;
+                (best.steps.len() > 1 && !self.is_better(&best, &rest)).then_some(rest)
+            });
+            match needless {
+                Some(rest) => best = rest,
+                None => break,
+            }
+        }
+        let found = (0..best.steps.len()).filter_map(|k| self.judged(&best, k)).collect();
+        Some((base, best, found))
+    }
+
+    /// True where even the best fit leaves what no robot leaves.
+    pub fn has_failed(&self, state: &State) -> bool {
+        let reach = self.bodies[state.thin.body].reach;
+        median(&state.fit.residuals).is_some_and(|left| left > FAILED * reach)
+    }
+
+    /// The draft with some changes.
+    pub fn changed(&self, steps: &[Step]) -> Draft {
+        steps.iter().fold(self.draft.clone(), |draft, step| draft.with(self.change(step)))
+    }
+
+    fn change<'s>(&'s self, step: &'s Step) -> &'s Change {
+        match step {
+            Step::Move(number) => &self.moves[*number].change,
+            Step::Elsewhere(change) => change,
+        }
+    }
+
+    fn state(&self, steps: &[Step], limit: f64) -> Option<State> {
+        let thin = self.thinned(&self.changed(steps));
+        let body = &self.bodies[thin.body];
+        let fit = fit(&thin, body, limit)?;
+        Some(self.scored(steps.to_vec(), thin, fit))
+    }
+
+    /// Always the same rows of the recording, so that states can be compared row by row.
+    fn thinned(&self, draft: &Draft) -> Draft {
+        let count = self.draft.len();
+        let is_kept = |row: usize| count <= ROWS || (row * ROWS) % count < ROWS;
+        let rows: Vec<usize> = (0..draft.len()).filter(|&row| is_kept(draft.rows[row])).collect();
+        draft.part(&rows)
+    }
+
+    fn scored(&self, steps: Vec<Step>, thin: Draft, fit: Fit) -> State {
+        let price = |step: &Step| match step {
+            Step::Move(number) => RARE + self.moves[*number].log_prior,
+            Step::Elsewhere(_) => MOVED,
+        };
+        let prior: f64 = steps.iter().map(price).sum();
+        let guess = guess(&thin, &fit, self.bodies[thin.body].reach);
+        State { score: fit.log_likelihood + guess + prior, steps, thin, fit, guess }
+    }
+
+    /// The state with every further change, the best first.
+    fn extended(&self, from: &State) -> Vec<State> {
+        let reach = self.bodies[from.thin.body].reach;
+        let limit = (0.8 * from.fit.rough).max(DRAWN * reach);
+        let mut steps: Vec<Step> = (0..self.moves.len()).map(Step::Move).collect();
+        steps.retain(|step| !from.steps.contains(step));
+        steps.extend(self.elsewhere(from).into_iter().map(Step::Elsewhere));
+        let tried = in_parallel(steps.len(), |k| {
+            let mut all = from.steps.clone();
+            all.push(steps[k].clone());
+            if self.change(&steps[k]).is_guess() {
+                // the same fit, another guess
+                let thin = from.thin.with(self.change(&steps[k]));
+                return Some(self.scored(all, thin, from.fit.clone()));
+            }
+            let is_two_bodies = matches!(self.change(&steps[k]), Change::Body(..)) && from.thin.body != 0;
+            if is_two_bodies { None } else { self.state(&all, limit) }
+        });
+        let mut tried: Vec<State> = tried.into_iter().flatten().collect();
+        tried.sort_by(|a, b| b.score.total_cmp(&a.score));
+        tried
+    }
+
+    /// Where tracker, base or a clamp may have been elsewhere.
+    fn elsewhere(&self, from: &State) -> Vec<Change> {
+        if self.draft.has_sockets() {
+            return Vec::new();
+        }
+        let rows = &from.thin.rows;
+        let count = rows.len();
+        let mut places: Vec<usize> = (1..PLACES).map(|k| k * count / PLACES).collect();
+        places.dedup();
+        places.retain(|&at| at >= LEAST_ROWS && at + LEAST_ROWS <= count);
+        let mut all: Vec<Change> = places.into_iter().map(|at| Change::Moved(rows[at])).collect();
+        let clamps = self.draft.devices.len();
+        if clamps > 2 {
+            let has_rows = |k: &usize| from.thin.group.iter().filter(|&group| group == k).count() >= LEAST_ROWS;
+            all.extend((0..clamps).filter(has_rows).map(Change::Apart));
+        }
+        all
+    }
+
+    /// Two changes at once, from the best few.
+    fn pair(&self, from: &State, tried: &[State]) -> Option<State> {
+        let first: Vec<&State> =
+            tried.iter().filter(|state| !matches!(state.steps.last(), Some(Step::Elsewhere(_)))).take(BEAM).collect();
+        let grown = first.iter().flat_map(|state| self.extended(state).into_iter().take(1));
+        let mut grown: Vec<State> = grown.filter(|state| self.is_better(state, from)).collect();
+        grown.sort_by(|a, b| b.score.total_cmp(&a.score));
+        grown.into_iter().next()
+    }
+
+    /// True where `after` is beyond doubt better than `before`.
+    fn is_better(&self, after: &State, before: &State) -> bool {
+        let more = after.steps.len().saturating_sub(before.steps.len()) as f64;
+        if after.score - before.score < ODDS * more.max(1.0) || !self.is_far(after) {
+            return false;
+        }
+        // a first guess that fits now where it did not
+        after.guess - before.guess > ODDS || self.is_nearer(after, before)
+    }
+
+    /// True where what differs between two states lies so many times nearer, and is enough.
+    fn is_nearer(&self, after: &State, before: &State) -> bool {
+        let sure = 3.0 * after.fit.scale;
+        let touched: Vec<(f64, f64)> =
+            pairs(before, after).into_iter().filter(|(old, new)| (old - new).abs() > sure).collect();
+        let least = (TOUCHED.0 * after.thin.len() as f64).max(TOUCHED.1 as f64);
+        let (old, new): (Vec<f64>, Vec<f64>) = touched.into_iter().unzip();
+        let (old_middle, new_middle) = (median(&old), median(&new));
+        old.len() as f64 >= least
+            && old_middle.zip(new_middle).is_some_and(|(old, new)| old > NEARER * new)
+    }
+
+    /// False where a base moved by so little that the effects find it.
+    fn is_far(&self, state: &State) -> bool {
+        match state.steps.last() {
+            Some(Step::Elsewhere(_)) => match &state.fit.bases[..] {
+                [first, .., last] => {
+                    let (way, angle) = moved(first, last);
+                    way > LEAST_MOVE.0 || angle > LEAST_MOVE.1
+                }
+                _ => true,
+            },
+            _ => true,
+        }
+    }
+
+    /// A move of the base at the very row.
+    fn sharpened(&self, state: State) -> State {
+        let mut state = state;
+        for _ in 0..3 {
+            let Some(Step::Elsewhere(Change::Moved(first))) = state.steps.last().cloned() else { return state };
+            let draft = self.changed(&state.steps);
+            let new = draft.stations - 1;
+            let before = self.changed(&state.steps[..state.steps.len() - 1]);
+            let at = before.rows.iter().position(|&row| row >= first).unwrap_or(0);
+            let old = before.station[at];
+            let body = &self.bodies[draft.body];
+            let rows: Vec<usize> = (0..draft.len()).filter(|&row| before.station[row] == old).collect();
+            let part = draft.part(&rows);
+            let cost = |lengths: Vec<f64>| -> Vec<f64> {
+                lengths.iter().map(|r| (r / state.fit.scale).powi(2).ln_1p()).collect()
+            };
+            let (here, there) = (
+                cost(state.fit.lengths_at(&part, body, old)),
+                cost(state.fit.lengths_at(&part, body, new)),
+            );
+            let mut sum: f64 = there.iter().sum();
+            let (mut least, mut best) = (f64::INFINITY, 0);
+            for k in 0..rows.len() {
+                if sum < least && k >= LEAST_ROWS && k + LEAST_ROWS <= rows.len() {
+                    (least, best) = (sum, k);
+                }
+                sum += here[k] - there[k];
+            }
+            let row = part.rows[best];
+            if row == first {
+                return state;
+            }
+            let mut steps = state.steps.clone();
+            if let Some(last) = steps.last_mut() {
+                *last = Step::Elsewhere(Change::Moved(row));
+            }
+            match self.state(&steps, f64::INFINITY) {
+                Some(next) if next.score > state.score => state = next,
+                _ => return state,
+            }
+        }
+        state
+    }
+
+    /// One change of a state against the state without it.
+    fn judged(&self, best: &State, k: usize) -> Option<Found> {
+        let rest = self.state(&without(&best.steps, k), f64::INFINITY)?;
+        let square: f64 = pairs(&rest, best).iter().map(|(old, new)| old * old - new * new).sum();
+        let explains = (square / best.thin.len().max(1) as f64).max(0.0).sqrt();
+        let log_odds = (best.score - rest.score).min(700.0);
+        let step = best.steps[k].clone();
+        let alike: Vec<State> = self
+            .extended(&rest)
+            .into_iter()
+            .filter(|state| best.score - state.score < ALIKE && state.steps.last() != Some(&step))
+            .collect();
+        let rivals = alike.iter().filter_map(|state| match state.steps.last() {
+            Some(Step::Move(number)) => Some((*number, (best.score - state.score).max(0.0).exp())),
+            _ => None,
+        });
+        let may_be_clamp = match &step {
+            Step::Elsewhere(Change::Moved(_)) => alike.iter().find_map(|state| match state.steps.last() {
+                Some(Step::Elsewhere(Change::Apart(clamp))) => Some(*clamp),
+                _ => None,
+            }),
+            _ => None,
+        };
+        Some(Found { rivals: rivals.collect(), step, log_odds, explains, may_be_clamp })
+    }
+}
+
+fn without(steps: &[Step], k: usize) -> Vec<Step> {
+    let mut rest = steps.to_vec();
+    rest.remove(k);
+    rest
+}
+
+/// Residuals of the rows that two states have in common.
+fn pairs(before: &State, after: &State) -> Vec<(f64, f64)> {
+    let of = |row: usize| before.thin.rows.binary_search(&row).ok().map(|at| before.fit.residuals[at]);
+    let rows = after.thin.rows.iter().zip(&after.fit.residuals);
+    rows.filter_map(|(&row, &new)| Some((of(row)?, new))).collect()
+}
+
+/// How far, m, and by which angle, rad, a base moved.
+pub(super) fn moved(from: &Pose, to: &Pose) -> (f64, f64) {
+    ((to.origin - from.origin).norm(), turn(&from.rotation, &to.rotation))
+}
+
+/// Ln of how well the stated base and tip agree with those found, at most a rough guess' price.
+fn guess(draft: &Draft, fit: &Fit, reach: f64) -> f64 {
+    let saturated = |square: f64, most: f64| -most * -(-square / (2.0 * most)).exp_m1();
+    let mut sum = 0.0;
+    if let (Some(stated), Some(found)) = (&draft.base, fit.bases.first()) {
+        let (way, angle) = moved(stated, found);
+        let square = (way / (BASE.0 * reach)).powi(2) + (angle / BASE.1).powi(2);
+        sum += saturated(square, BASE.2);
+    }
+    if let Some(stated) = draft.tool.filter(|_| !draft.has_sockets()) {
+        let square = ((stated - fit.tool).norm() / (TOOL.0 + TOOL.1 * stated.norm())).powi(2);
+        sum += saturated(square, TOOL.2);
+    }
+    sum
+}

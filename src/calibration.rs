@@ -27,7 +27,7 @@ pub use campaign::Campaign;
 pub use compare::{CompareOptions, Comparison, Difference, compare};
 pub use compensation::{Compensation, Mode, TORQUE_ROUNDS, default_mode, modes};
 pub use cross_validation::{CrossValidation, cross_validate};
-pub use identifiability::{UnidentifiedDirection, plausible_range};
+pub use identifiability::{MOST_SCATTER, UnidentifiedDirection, plausible_range};
 pub use noise::{Noise, Robust};
 pub use observability::Observability;
 pub use options::Options;

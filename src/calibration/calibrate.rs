@@ -127,6 +127,7 @@ pub fn calibrate_from<'c>(
         is_converged,
         observability,
         validation: None,
+        reach: reach(campaign, recording),
         warnings: Vec::new(),
         start: nominal,
         setup,
@@ -163,6 +164,13 @@ pub fn free_parameters(campaign: &Campaign, start: &Setup, compensation: &Compen
         .filter(|p| (minimal.contains(p) && (has_world || !is_base(p))) || constraints.freed.contains(p))
         .filter(|p| !constraints.fixed.contains(p))
         .collect()
+}
+
+/// Largest distance of the nominal tip from the first joint, m.
+fn reach(campaign: &Campaign, recording: &Recording) -> f64 {
+    let (robot, from) = (&campaign.robot, campaign.robot.root.origin);
+    let distance = |row: usize| (robot.flange_at(recording.joints(row)).point(&campaign.tool) - from).norm();
+    (0..recording.len()).map(distance).fold(0.0, f64::max)
 }
 
 fn check_count(recording: &Recording, free: &[Parameter]) -> Result<()> {

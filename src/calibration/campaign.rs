@@ -11,8 +11,10 @@ mod file;
 mod layout;
 mod recording;
 mod warning;
+mod write;
 
 pub use warning::Warning;
+pub use write::FileNames;
 
 use nalgebra::Vector3;
 

@@ -1,7 +1,7 @@
 //! What the user of a calibration should know: which warnings apply.
 
 use super::campaign::{Campaign, Recording};
-use super::identifiability::{UnidentifiedDirection, plausible_range};
+use super::identifiability::{MOST_SCATTER, UnidentifiedDirection, plausible_range};
 use super::result::Calibration;
 use super::warning::Warning;
 use crate::robot::Parameter;
@@ -14,6 +14,10 @@ pub(super) fn all(campaign: &Campaign, recording: &Recording, calibration: &Cali
             reason: calibration.fit.reason.to_string(),
             passes: calibration.passes.len(),
         });
+    }
+    let rms = calibration.rms();
+    if rms > MOST_SCATTER * calibration.reach {
+        warnings.push(Warning::NotPlausible { rms, reach: calibration.reach });
     }
     if !campaign.robot.has_masses() {
         warnings.push(Warning::NoMasses);

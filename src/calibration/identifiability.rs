@@ -12,6 +12,10 @@ use crate::error::Result;
 use crate::linalg::thin_svd;
 use crate::robot::{Parameter, Setup};
 
+/// Scatter that an arm may have, as a share of its reach: an uncalibrated industrial arm is off by
+/// millimetres per metre, and that is no scatter.
+pub const MOST_SCATTER: f64 = 5e-3;
+
 /// Share of its plausible range that a parameter may owe to held directions and still count as
 /// identified.
 const SHARE: f64 = 0.1;

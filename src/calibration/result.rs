@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use super::campaign::Recording;
 use super::compensation::Mode;
-use super::identifiability::UnidentifiedDirection;
+use super::identifiability::{MOST_SCATTER, UnidentifiedDirection};
 use super::noise::Noise;
 use super::observability::Observability;
 use super::options::Options;
@@ -59,6 +59,8 @@ pub struct Calibration<'c> {
     pub observability: Observability,
     /// How well the calibrated robot predicts, where the campaign can tell.
     pub validation: Option<Validation>,
+    /// Largest distance of the nominal tip from the first joint over the recording, m.
+    pub reach: f64,
     /// What the user should know.
     pub warnings: Vec<Warning>,
 }
@@ -104,6 +106,18 @@ impl Calibration<'_> {
             known.and_then(|known| self.stations.get(known).copied()).unwrap_or(Pose::IDENTITY)
         };
         recording.stations.iter().map(|station| of(&station.name)).collect()
+    }
+
+    /// False for a fit that did not converge, or that leaves more than a robot's error can be:
+    /// [`MOST_SCATTER`] of the reach. Something is wrong then that no calibration corrects.
+    pub fn is_plausible(&self) -> bool {
+        self.is_converged && self.rms() <= MOST_SCATTER * self.reach
+    }
+
+    /// Root mean square of the lengths of the deviations, m.
+    pub fn rms(&self) -> f64 {
+        let squares: f64 = self.deviations.iter().map(|d| d.norm_squared()).sum();
+        (squares / self.deviations.len().max(1) as f64).sqrt()
     }
 
     /// Lengths of the deviations, m, one per row.

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use super::identifiability::MOST_SCATTER;
 use crate::robot::Parameter;
 use crate::units::{MM, UM, significant};
 
@@ -16,6 +17,13 @@ pub enum Warning {
         reason: String,
         /// Passes of the compensation loop.
         passes: usize,
+    },
+    /// The fit leaves more than a robot's error can be.
+    NotPlausible {
+        /// Root mean square of what is left, m.
+        rms: f64,
+        /// The arm's reach, m.
+        reach: f64,
     },
     /// The robot's file has no masses, so that the torques on its joints are unknown.
     NoMasses,
@@ -67,6 +75,15 @@ impl fmt::Display for Warning {
                 write!(f, "the calibration did not converge in {passes} passes ({reason}): do not use \
                     its numbers")
             }
+            Warning::NotPlausible { rms, reach } => write!(
+                f,
+                "THE FIT IS NOT PLAUSIBLE: {} mm rms are left, {} % of the arm's reach, and no robot's error \
+                 is more than {} %: do not use these numbers; check the signs, order and zeros of the joints, \
+                 the units, the frames, and whether angles and positions of a row belong together",
+                significant(rms / MM, 3),
+                significant(100.0 * rms / reach, 2),
+                100.0 * MOST_SCATTER
+            ),
             Warning::NoMasses => f.write_str(
                 "the robot's file has no masses, so the torques on its joints are unknown: joint compliances are off",
             ),

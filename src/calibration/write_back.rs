@@ -61,6 +61,9 @@ pub fn write_back_with(
         ));
     }
     comments.extend_from_slice(more);
+    if calibration.is_converged && !calibration.is_plausible() {
+        comments.push("THE FIT IS NOT PLAUSIBLE: do not use these numbers.".into());
+    }
     if !calibration.is_converged {
         comments.push("THE CALIBRATION DID NOT CONVERGE: do not use these numbers.".into());
     }

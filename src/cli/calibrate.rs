@@ -5,8 +5,10 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use rodcal::calibration::campaign::Recording;
 use rodcal::calibration::{self, Calibration, Campaign, Compensation, Mode, Options, Robust};
+use rodcal::diagnosis::calibration::suspected;
 use rodcal::{Result, report};
 
+use super::neighbours::neighbours;
 use super::output::Outcome;
 
 #[derive(Debug, Args)]
@@ -91,8 +93,16 @@ impl Calibrate {
         let cross_validation = cross_validation.as_ref();
         let mut report = report::calibration::report(&campaign, &calibrated, cross_validation);
         report.provenance = provenance(&campaign);
-        let mut outcome =
-            Outcome::new(report::calibration::json(&campaign, &calibrated, cross_validation), report);
+        let suspicions = suspected(&campaign, mode, &neighbours(&campaign))?;
+        let is_plausible = calibrated.is_plausible() && suspicions.iter().all(|suspicion| !suspicion.spoils_fit);
+        let lines: Vec<String> = suspicions.into_iter().map(|suspicion| suspicion.words).collect();
+        let mut json = report::calibration::json(&campaign, &calibrated, cross_validation);
+        json["plausible"] = is_plausible.into();
+        json["suspected_mistakes"] = lines.clone().into();
+        // before all else: it explains the rest
+        report.warnings.splice(0..0, lines);
+        let mut outcome = Outcome::new(json, report);
+        outcome.status = u8::from(!is_plausible);
         outcome.files = calibrated_robot(&campaign, &calibrated)?;
         Ok(outcome)
     }

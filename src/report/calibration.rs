@@ -9,8 +9,9 @@ pub(super) use figures::{convergence, mode_residuals};
 use serde_json::{Map, Value, json};
 
 use super::{Block, Report, Section};
-use crate::calibration::campaign::{Recording, Refit, Targets};
+use crate::calibration::campaign::{Recording, Refit, Station, Targets};
 use crate::calibration::{Calibration, Campaign, CrossValidation, Mode, Summary, Validation};
+use crate::spatial::Pose;
 use crate::units::{DEG, MM, UM, significant};
 use groups::group_summaries;
 
@@ -48,6 +49,7 @@ pub fn json(
         "mode": calibration.mode.name(),
         "converged": calibration.is_converged,
         "reason": calibration.fit.reason.to_string(),
+        "plausible": calibration.is_plausible(),
         "poses": recording.len(),
         "measurements_source": recording.source,
         "parameters": parameters,
@@ -58,6 +60,7 @@ pub fn json(
             }),
             Targets::Sockets(_) => Value::Null,
         },
+        "stations": stations_json(recording, calibration),
         "tool_mm": (calibration.setup.tool / MM).as_slice(),
         "residual": summary_json(&Summary::of(&calibration.residuals())),
         "noise_um": calibration.noise.pooled / UM,
@@ -99,6 +102,20 @@ pub fn json(
             "std_error_mm": socket.map(|(_, error)| error.map(|e| e / MM)),
         })).collect::<Vec<_>>(),
     })
+}
+
+/// The frames of stations in {W}, that of the first; empty without a column for them.
+fn stations_json(recording: &Recording, calibration: &Calibration) -> Vec<Value> {
+    let frames = recording.stations.iter().zip(&calibration.stations).filter(|(known, _)| !known.name.is_empty());
+    let of = |(station, motion): (&Station, &Pose)| {
+        let frame = motion.then(&station.frame);
+        json!({
+            "name": station.name,
+            "xyz_mm": (frame.origin / MM).as_slice(),
+            "rpy_deg": frame.roll_pitch_yaw().map(|angle| angle / DEG),
+        })
+    };
+    frames.map(of).collect()
 }
 
 /// JSON has no infinity.
@@ -181,6 +198,14 @@ pub fn headline(
 ) -> String {
     if !calibration.is_converged {
         return format!("{}: the calibration did not converge.", campaign.robot.name);
+    }
+    if !calibration.is_plausible() {
+        return format!(
+            "{}: THE FIT IS NOT PLAUSIBLE, {} rms are left, {} % of the arm's reach. Do not use its numbers.",
+            campaign.robot.name,
+            length(calibration.rms()),
+            significant(100.0 * calibration.rms() / calibration.reach, 2)
+        );
     }
     let residual = Summary::of(&calibration.residuals());
     let (count, poses) = (calibration.parameters.len(), campaign.measurements.len());

@@ -1,12 +1,13 @@
 //! `rodcal diagnose calibration CAMPAIGN`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
+use rodcal::calibration::campaign::FileNames;
 use rodcal::calibration::{self, Campaign, Options};
 use rodcal::diagnosis::calibration::effects::registry;
-use rodcal::diagnosis::calibration::{apply, mend};
-use rodcal::{Result, report};
+use rodcal::diagnosis::calibration::mend;
+use rodcal::{Result, files, report};
 
 use super::listed::listed;
 use crate::cli::neighbours::neighbours;
@@ -21,17 +22,21 @@ pub struct Calibration {
     /// How the rod's deflection is known [default: meas with rig readings, else fea with a rod, else none].
     #[arg(long, value_enum)]
     mode: Option<ModeName>,
-    /// Also write the calibrated robot with what was found, for `calibrate`, `compare` and `predict`; for a URDF with a table of
-    /// corrections beside it [without --out: in reports/diagnosed].
+    /// Also write the calibrated robot with what was found, for `calibrate`, `compare` and `predict`, for a URDF with a table of
+    /// corrections beside it; and the campaign without its mistakes, with all its files [without --out: in reports/diagnosed].
     #[arg(long)]
     apply: bool,
 }
 
 fn notes() -> String {
+    let mistakes = listed(registry::MISTAKES.into_iter());
     let effects = listed(registry::ALL.iter().map(|known| &known.effect));
     format!(
         "\
-The robot is calibrated first. Its residuals are explained by as few of these
+Mistakes come first, and what follows is said of the corrected campaign:
+
+{mistakes}
+Then the robot is calibrated. Its residuals are explained by as few of these
 effects as possible, each without the part that the calibration absorbs:
 
 {effects}
@@ -44,6 +49,39 @@ line says why; 2 could not run."
     )
 }
 
+/// What a corrected campaign calls its files: all of them stand beside it.
+fn names(campaign: &Campaign) -> FileNames {
+    let base = |name: &str| {
+        let end = Path::new(name).file_name();
+        end.map_or_else(|| name.to_owned(), |end| end.to_string_lossy().into_owned())
+    };
+    let is_builtin = campaign.robot_file.starts_with("builtin:");
+    FileNames {
+        robot: if is_builtin { campaign.robot_file.clone() } else { base(&campaign.robot_file) },
+        rod: campaign.rod_file.as_deref().map(base),
+        rig: campaign.readings.as_ref().map(|readings| base(&readings.file)),
+        measurements: "measurements.csv".into(),
+        validation: campaign.validation.as_ref().map(|_| "validation.csv".into()),
+    }
+}
+
+/// Robot, rod and readings as they are, for a corrected campaign in another folder.
+fn copies(campaign: &Campaign) -> Result<Vec<(String, Vec<u8>)>> {
+    let names = names(campaign);
+    let directory = Path::new(&campaign.file).parent().unwrap_or(Path::new(""));
+    let mut copies = Vec::new();
+    if !campaign.robot_file.starts_with("builtin:") {
+        copies.push((names.robot, campaign.robot_text.clone().into_bytes()));
+    }
+    if let (Some(name), Some(file)) = (names.rod, &campaign.rod_file) {
+        copies.push((name, files::read_bytes(&directory.join(file))?));
+    }
+    if let (Some(name), Some(readings)) = (names.rig, &campaign.readings) {
+        copies.push((name, files::read_bytes(Path::new(&readings.file))?));
+    }
+    Ok(copies)
+}
+
 impl Calibration {
     pub fn run(&self) -> Result<Outcome> {
         let campaign = Campaign::read(&self.campaign)?;
@@ -54,17 +92,20 @@ impl Calibration {
         let mut report = report::diagnosis::calibration::report(&found);
         report.provenance = provenance(&campaign);
         let mut json = report::diagnosis::calibration::json(&found);
-        let applied = if self.apply { apply(&found)? } else { None };
+        let applied = if self.apply { mended.apply(&found, &names(&mended.campaign))? } else { None };
         match &applied {
             Some(applied) => report::diagnosis::calibration::applied(&mut report, &mut json, applied),
             None if self.apply => report
                 .warnings
-                .push("--apply has no effect: nothing was found that belongs to the robot".into()),
+                .push("--apply has no effect: nothing was found that belongs to the robot or can be corrected in the campaign".into()),
             None => {}
         }
         let mut outcome = Outcome::new(json, report);
         if let Some(applied) = applied {
             outcome.files = applied.files.into_iter().map(|(name, text)| (name, text.into_bytes())).collect();
+            if mended.is_changed {
+                outcome.files.extend(copies(&mended.campaign)?);
+            }
             outcome.default_directory = Some(PathBuf::from("reports/diagnosed"));
         }
         outcome.status = u8::from(found.diagnosis.is_mismatch());

@@ -19,6 +19,8 @@ use crate::units::UM;
 pub struct Applied {
     /// Names and texts: the calibrated robot, for a URDF with a table of corrections beside it.
     pub files: Vec<(String, String)>,
+    /// Mistakes that the campaign file and its recordings no longer hold.
+    pub undone: Vec<String>,
     /// What entered the model, in words.
     pub entered: Vec<String>,
     /// What was taken out of the measured points.
@@ -38,7 +40,8 @@ pub fn apply(found: &CalibrationDiagnosis) -> Result<Option<Applied>> {
     let model = &found.model;
     let mut extended = model.campaign.clone();
     let (mut entered, mut removed, mut left_out) = (Vec::new(), Vec::new(), Vec::new());
-    for finding in &found.diagnosis.findings {
+    // what was undone before there was a model is nothing to write into it
+    for finding in found.diagnosis.findings.iter().filter(|finding| !finding.parts.is_empty()) {
         let words = (finding.effect.cause_at)(&finding.location);
         let written = registry::record(finding.effect)
             .map_or(WrittenTo::Nowhere, |effect| (effect.write)(finding, model, &mut extended));
@@ -71,7 +74,7 @@ pub fn apply(found: &CalibrationDiagnosis) -> Result<Option<Applied>> {
         files.push(("corrections.csv".into(), corrections_csv(&extended.robot, &angles)));
     }
     let mean = Summary::of(&calibration.residuals()).mean;
-    Ok(Some(Applied { files, entered, removed, left_out, mean }))
+    Ok(Some(Applied { files, undone: Vec::new(), entered, removed, left_out, mean }))
 }
 
 /// Angles over the recorded range of a joint, as fine as its finest effect.

@@ -18,16 +18,13 @@ use nalgebra::{DMatrix, DVector, SymmetricEigen, Vector3};
 
 use super::configuration::Configuration;
 use super::context::Context;
-use crate::calibration::Calibration;
+use crate::calibration::{Calibration, MOST_SCATTER};
 use crate::calibration::campaign::{Campaign, Recording, Targets};
 use crate::inference::{Covariate, Evidence, JointVariable, Variable};
 use crate::robot::{Kinematics, Parameter};
 use crate::spatial::{Axis, skew};
 use crate::units::MM;
 
-/// Scatter that an arm may have, as a share of its reach: an uncalibrated industrial arm is off by
-/// millimetres per metre, and that is no scatter.
-const SCATTER: f64 = 5e-3;
 /// Most folds, and the rows that each should have at least.
 const MOST_FOLDS: usize = 5;
 const ROWS_PER_FOLD: usize = 10;
@@ -72,7 +69,7 @@ pub(super) fn evidence_of(campaign: &Campaign, calibration: &Calibration, contex
     let groups = replicate_groups(recording);
     Evidence {
         nuisance: without_held(jacobian, calibration),
-        most_scatter: most_scatter(context),
+        most_scatter: most_scatter(calibration),
         replicate_group: groups
             .iter()
             .flat_map(|group| [3 * group, 3 * group + 1, 3 * group + 2])
@@ -90,13 +87,8 @@ pub(super) fn evidence_of(campaign: &Campaign, calibration: &Calibration, contex
 
 /// The largest scatter of a coordinate that an arm may have, m; `None` where it does not reach
 /// anywhere.
-fn most_scatter(context: &Context) -> Option<f64> {
-    let reach = context
-        .configurations
-        .iter()
-        .filter_map(|there| Some((there.tip - there.origin.first()?).norm()))
-        .fold(0.0, f64::max);
-    (reach > 0.0).then_some(SCATTER * reach)
+fn most_scatter(calibration: &Calibration) -> Option<f64> {
+    (calibration.reach > 0.0).then_some(MOST_SCATTER * calibration.reach / 3.0f64.sqrt())
 }
 
 fn known(campaign: &Campaign, calibration: &Calibration) -> Vec<Known> {

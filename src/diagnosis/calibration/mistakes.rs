@@ -26,10 +26,11 @@ use self::draft::{Change, Draft, change_joints};
 use self::moves::{Move, Other};
 use self::quick::Body;
 use self::search::{Found, Search, State, Step};
+use super::apply::{Applied, apply};
 use super::diagnose::{CalibrationDiagnosis, diagnose_calibrated};
 use super::effects::fixture::{BASE_SHIFT, CLAMP_POSE};
 use super::effects::mistakes::FRAME_MISTAKE;
-use crate::calibration::campaign::{Campaign, Recording};
+use crate::calibration::campaign::{Campaign, FileNames, Recording};
 use crate::calibration::{Compensation, Mode, Options, Summary, calibrate};
 use crate::error::Result;
 use crate::inference::{Description, Effect, Estimate, Finding, Kind, Location, Rival};
@@ -47,6 +48,15 @@ pub struct Neighbours {
     pub robots: Vec<(String, Robot, String)>,
 }
 
+/// A mistake that a campaign seems to hold, in one line.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Suspicion {
+    /// `likely mistake in q4_deg: its sign is wrong; multiply q4_deg by −1 (…)`.
+    pub words: String,
+    /// False for a first guess of base or tip, which a calibration corrects.
+    pub spoils_fit: bool,
+}
+
 /// A campaign without the mistakes that were found in it.
 #[derive(Debug, Clone)]
 pub struct Mended {
@@ -57,7 +67,7 @@ pub struct Mended {
     /// What was wrong, the strongest first, complete in itself.
     pub found: Vec<Finding>,
     /// For each of them one line for those who did not ask for a diagnosis.
-    pub suspicions: Vec<String>,
+    pub suspicions: Vec<Suspicion>,
     /// True where `campaign` is not what was recorded.
     pub is_changed: bool,
     /// False where columns say nothing, so that physics cannot be seen.
@@ -101,7 +111,7 @@ pub fn mend(campaign: &Campaign, mode: Mode, others: &Neighbours, options: &Opti
 ///
 /// # Errors
 /// As [`mend`].
-pub fn suspected(campaign: &Campaign, mode: Mode, others: &Neighbours) -> Result<Vec<String>> {
+pub fn suspected(campaign: &Campaign, mode: Mode, others: &Neighbours) -> Result<Vec<Suspicion>> {
     Ok(search(campaign, mode, others)?.suspicions)
 }
 
@@ -124,6 +134,40 @@ impl Mended {
         diagnosis.findings.splice(0..0, self.found.iter().cloned());
         found.model.recorded = self.recorded;
         Ok(found)
+    }
+}
+
+impl Mended {
+    /// What becomes of robot and campaign: the robot with what `found` says, and the campaign without
+    /// its mistakes. `names` are the files that the campaign shall name; `None` where nothing could be
+    /// written.
+    ///
+    /// # Errors
+    /// As [`super::apply()`].
+    pub fn apply(&self, found: &CalibrationDiagnosis, names: &FileNames) -> Result<Option<Applied>> {
+        let applied = apply(found)?;
+        if !self.is_changed {
+            return Ok(applied);
+        }
+        let mut applied = applied.unwrap_or_else(|| Applied {
+            files: Vec::new(),
+            undone: Vec::new(),
+            entered: Vec::new(),
+            removed: Vec::new(),
+            left_out: Vec::new(),
+            mean: Summary::of(&found.model.calibration.residuals()).mean,
+        });
+        applied.undone = self.found.iter().map(|finding| finding.description.observed.clone()).collect();
+        let mut above = vec![format!("CORRECTED, not as recorded: {} without mistakes. Done:", self.campaign.file)];
+        above.extend(applied.undone.iter().cloned());
+        let Campaign { robot, measurements, validation, .. } = &self.campaign;
+        applied.files.push(("campaign.toml".into(), self.campaign.to_toml(names, &above)));
+        applied.files.push((names.measurements.clone(), measurements.to_csv(robot, &above)));
+        if let (Some(name), Some(validation)) = (&names.validation, validation) {
+            let text = validation.to_csv(robot, &above[..1]);
+            applied.files.push((name.clone(), text));
+        }
+        Ok(Some(applied))
     }
 }
 
@@ -191,9 +235,8 @@ impl Mended {
         why: &str,
     ) {
         let lower = lower(cure);
-        self.suspicions.push(format!(
-            "likely mistake in {location}: {why}; {lower} (`rodcal diagnose calibration` says more)"
-        ));
+        let words = format!("likely mistake in {location}: {why}; {lower} (`rodcal diagnose calibration` says more)");
+        self.suspicions.push(Suspicion { words, spoils_fit: true });
         let description = Description { observed: cure.to_owned(), cause: why.to_owned() };
         self.found.push(Finding::without_terms(effect, location, estimates, description));
     }
@@ -203,6 +246,9 @@ impl Mended {
             Step::Move(number) => {
                 let own = &search.moves[*number];
                 self.add(own.effect, Location::Key(own.location.clone()), own.estimates.clone(), &own.cure, &own.why);
+                if let Some(last) = self.suspicions.last_mut() {
+                    last.spoils_fit = !own.change.is_guess();
+                }
             }
             Step::Elsewhere(change) => self.add_elsewhere(search, best, found, change),
         }

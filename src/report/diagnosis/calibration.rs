@@ -8,7 +8,7 @@ use super::headline::um;
 use super::remainder::{Remainder, Sample};
 use super::subject::{Errors, Subject};
 use super::{json as whole_json, report as whole_report};
-use crate::calibration::Summary;
+use crate::calibration::{MOST_SCATTER, Summary};
 use crate::diagnosis::calibration::{Applied, CalibrationDiagnosis, Gear};
 use crate::inference::{Finding, ForwardModel, JointVariable, Location, Plan, PosePlan, Variable};
 use crate::report::calibration::warnings as of_calibration;
@@ -41,6 +41,7 @@ pub fn headline(found: &CalibrationDiagnosis) -> String {
 /// What was written into the robot, on the page and in the JSON.
 pub fn applied(report: &mut Report, json: &mut Value, applied: &Applied) {
     let said = [
+        ("Corrected in the campaign", &applied.undone),
         ("Written into the robot file", &applied.entered),
         ("Removed from the measured points", &applied.removed),
         ("Not written, because the file has no key for it", &applied.left_out),
@@ -56,6 +57,7 @@ pub fn applied(report: &mut Report, json: &mut Value, applied: &Applied) {
     report.sections.push(Section::new("The corrected robot", vec![Block::List(points)]));
     json["applied"] = json!({
         "files": applied.files.iter().map(|(name, _)| name).collect::<Vec<_>>(),
+        "undone": applied.undone,
         "entered": applied.entered,
         "removed": applied.removed,
         "left_out": applied.left_out,
@@ -81,7 +83,15 @@ fn subject<'a>(found: &'a CalibrationDiagnosis<'_>) -> Subject<'a> {
         noun: "poses",
         per: " per coordinate",
         agrees: "The calibrated robot explains the poses",
-        errors: Errors { averaged: " on average", before, after, held_out: distances.held_out_means() },
+        errors: Errors {
+            averaged: " on average",
+            before: model.recorded.map_or(before, |recorded| recorded.mean),
+            after,
+            held_out: match model.recorded {
+                Some(recorded) => distances.held_out_means().map(|(_, after)| (recorded.mean, after)),
+                None => distances.held_out_means(),
+            },
+        },
         nominal: None,
         suspect: Box::new(|datum| {
             let row = &campaign.measurements.rows[datum / 3];
@@ -94,7 +104,10 @@ fn subject<'a>(found: &'a CalibrationDiagnosis<'_>) -> Subject<'a> {
             ("campaign", json!(campaign.file)),
             ("mode", json!(model.calibration.mode.name())),
         ],
-        more: vec![("distances", distances.json())],
+        more: vec![
+            ("distances", distances.json()),
+            ("as_recorded", json!(model.recorded.map(|recorded| distances_json(&recorded)))),
+        ],
         of_findings: diagnosis.findings.iter().map(|finding| more_of(found, finding)).collect(),
         details: diagnosis.findings.iter().map(|finding| details(found, finding)).collect(),
         session_name: Box::new(|session| model.session(session).to_owned()),
@@ -187,6 +200,11 @@ fn remainder(found: &CalibrationDiagnosis) -> Option<Remainder> {
         _ => ("repeated poses".to_owned(), "Repeated poses share an unexplained error".to_owned(), None),
     };
     let rows = found.model.by_row(&left.shape);
+    let is_no_scatter = found.evidence.most_scatter.is_some_and(|most| found.diagnosis.noise > most);
+    let (location, words) = match left.location.is_none() && is_no_scatter {
+        true => ("all poses".to_owned(), "The calibrated robot does not explain the poses".to_owned()),
+        false => (location, words),
+    };
     let largest = rows.iter().map(|row| row.norm()).fold(0.0, f64::max);
     let covariate = along
         .and_then(|along| found.evidence.covariate(along))
@@ -206,12 +224,29 @@ fn remainder(found: &CalibrationDiagnosis) -> Option<Remainder> {
     let rms = um(left.rms);
     Some(Remainder {
         location,
-        sentence: format!("{words}: {rms} µm rms per coordinate, up to {} µm.", um(largest)),
+        sentence: match is_no_scatter {
+            true => format!(
+                "{words}: {rms} µm rms per coordinate, up to {} µm. No robot's error is more than {} % of \
+                 its reach: check the signs, order and zeros of the joints, the units, the frames, and \
+                 whether angles and positions of a row belong together.",
+                um(largest),
+                100.0 * MOST_SCATTER
+            ),
+            false => format!("{words}: {rms} µm rms per coordinate, up to {} µm.", um(largest)),
+        },
         rms: left.rms,
         along: covariate.variable,
         of: "row",
         coordinates: &["x", "y", "z"],
         samples: samples.collect(),
+    })
+}
+
+fn distances_json(summary: &Summary) -> Value {
+    json!({
+        "mean_um": summary.mean / UM,
+        "rms_um": summary.rms / UM,
+        "max_um": summary.max / UM,
     })
 }
 
@@ -249,14 +284,7 @@ impl Distances {
     }
 
     fn json(&self) -> Value {
-        let summary = |lengths: &[f64]| {
-            let summary = Summary::of(lengths);
-            json!({
-                "mean_um": summary.mean / UM,
-                "rms_um": summary.rms / UM,
-                "max_um": summary.max / UM,
-            })
-        };
+        let summary = |lengths: &[f64]| distances_json(&Summary::of(lengths));
         json!({
             "before": summary(&self.before),
             "after": summary(&self.after),

@@ -84,8 +84,8 @@ fn worth(subject: &Subject) -> String {
         let (before, after) = (um(errors.before), um(errors.after));
         format!(" With {it}, the error falls from {before} to {after} µm{averaged}{why}; {scatter}")
     };
-    // a single event says nothing about data that were held out
-    let are_events = findings.iter().all(|finding| finding.kind() == Kind::Event);
+    // neither an event nor a mistake says anything about data that were held out
+    let are_events = findings.iter().all(|finding| finding.kind() != Kind::Physics);
     match errors.held_out {
         _ if are_events => fitted(""),
         Some((before, after)) if um(after) != um(before) && after < before => format!(

@@ -286,6 +286,8 @@ impl List<'_> {
         let count = names.len();
         if count > 1 && count <= MOST_CLAMPS {
             for (a, b) in (0..count).flat_map(|a| (a + 1..count).map(move |b| (a, b))) {
+                // in the order of the campaign, whichever is met first
+                let (a, b) = if names[a] > names[b] { (b, a) } else { (a, b) };
                 let place = match (names[a].strip_prefix("clamp "), names[b].strip_prefix("clamp ")) {
                     (Some(a), Some(b)) => format!("clamps {a} and {b}"),
                     _ => format!("sockets {} and {}", names[a], names[b]),

@@ -4,6 +4,8 @@
 //! fails, pairs that begin with the best few. A state is kept where it is a thousand times more
 //! probable than the one that it grew from **and** what it touches lies three times nearer.
 
+use nalgebra::{Matrix3, Vector3};
+
 use super::draft::{Change, Draft};
 use super::moves::{Move, turn};
 use super::quick::{Body, Fit, fit};
@@ -40,6 +42,8 @@ const FAILED: f64 = 5e-3;
 /// Then what it costs at most that it was a rough guess, ln.
 const BASE: (f64, f64, f64) = (0.03, 2.0 * DEG, 24.0);
 const TOOL: (f64, f64, f64) = (5.0 * MM, 0.03, 12.0);
+/// Width of the points of a station, as a share of the reach; see [`width`].
+const WIDTH: f64 = 0.02;
 /// The least that is called a move of the base: less is found, and told from drift, by the effects.
 const LEAST_MOVE: (f64, f64) = (2.0 * MM, 2e-3);
 
@@ -190,12 +194,20 @@ impl Search<'_> {
         let count = rows.len();
         let mut places: Vec<usize> = (1..PLACES).map(|k| k * count / PLACES).collect();
         places.dedup();
-        places.retain(|&at| at >= LEAST_ROWS && at + LEAST_ROWS <= count);
-        let mut all: Vec<Change> = places.into_iter().map(|at| Change::Moved(rows[at])).collect();
+        let reach = self.bodies[from.thin.body].reach;
+        let is_placed = |rows: &[usize]| rows.len() >= LEAST_ROWS && width(&from.thin, rows) > WIDTH * reach;
+        let is_two = |&at: &usize| {
+            let station = from.thin.station[at];
+            let (before, after): (Vec<usize>, Vec<usize>) =
+                (0..count).filter(|&row| from.thin.station[row] == station).partition(|&row| row < at);
+            is_placed(&before) && is_placed(&after)
+        };
+        let mut all: Vec<Change> =
+            places.into_iter().filter(is_two).map(|at| Change::Moved(rows[at])).collect();
         let clamps = self.draft.devices.len();
         if clamps > 2 {
-            let has_rows = |k: &usize| from.thin.group.iter().filter(|&group| group == k).count() >= LEAST_ROWS;
-            all.extend((0..clamps).filter(has_rows).map(Change::Apart));
+            let of = |k: usize| (0..count).filter(move |&row| from.thin.group[row] == k).collect::<Vec<_>>();
+            all.extend((0..clamps).filter(|&k| is_placed(&of(k))).map(Change::Apart));
         }
         all
     }
@@ -315,6 +327,17 @@ impl Search<'_> {
         };
         Some(Found { rivals: rivals.collect(), step, log_odds, explains, may_be_clamp })
     }
+}
+
+/// How far apart some points lie at least, across their longest direction, m (root mean square): no
+/// frame can be placed on points in one spot or on one line.
+fn width(draft: &Draft, rows: &[usize]) -> f64 {
+    let points = || rows.iter().map(|&row| draft.point(row));
+    let mean = points().sum::<Vector3<f64>>() / rows.len().max(1) as f64;
+    let spread: Matrix3<f64> = points().map(|p| (p - mean) * (p - mean).transpose()).sum();
+    let mut values: Vec<f64> = (spread / rows.len().max(1) as f64).symmetric_eigenvalues().iter().copied().collect();
+    values.sort_by(f64::total_cmp);
+    values.get(1).map_or(0.0, |second| second.max(0.0).sqrt())
 }
 
 fn without(steps: &[Step], k: usize) -> Vec<Step> {

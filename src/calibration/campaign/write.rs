@@ -1,0 +1,200 @@
+//! A campaign as files: what [`Campaign::read`] reads.
+
+use std::fmt::Write as _;
+
+use nalgebra::Vector3;
+
+use super::{Campaign, Recording, Refit, Targets};
+use crate::robot::{Motion, Robot};
+use crate::spatial::Pose;
+use crate::units::{DEG, MM, UM};
+
+/// Names of the files that a written campaign refers to.
+#[derive(Debug, Clone)]
+pub struct FileNames {
+    /// The robot's.
+    pub robot: String,
+    /// The rod's, where there is one.
+    pub rod: Option<String>,
+    /// That of the rod's readings, where there are any.
+    pub rig: Option<String>,
+    /// The measurements'.
+    pub measurements: String,
+    /// The validation's, where there is one.
+    pub validation: Option<String>,
+}
+
+impl Campaign {
+    /// The campaign file, with comments above it.
+    pub fn to_toml(&self, names: &FileNames, above: &[String]) -> String {
+        let mut text: String = above.iter().map(|line| format!("# {line}\n")).collect();
+        let mut key = |key: &str, value: String| text += &format!("{key} = {value}\n");
+        key("robot", quoted(&names.robot));
+        names.rod.iter().for_each(|rod| key("rod", quoted(rod)));
+        names.rig.iter().for_each(|rig| key("rig", quoted(rig)));
+        if let Some(force) = self.contact_force {
+            key("contact_force_n", three(&force, 1.0));
+        }
+        key("measurements", quoted(&names.measurements));
+        names.validation.iter().for_each(|name| key("validation", quoted(name)));
+        self.base_link.iter().for_each(|link| key("base_link", quoted(link)));
+        self.tip_link.iter().for_each(|link| key("tip_link", quoted(link)));
+        let has_points = matches!(self.measurements.targets, Targets::Points(_));
+        if has_points && self.refit == Refit::Nothing {
+            key("validation_refit", quoted("none"));
+        }
+        if self.tool_is_given {
+            text += &format!("\n[tool]\nxyz_mm = {}\n", three(&self.tool, MM));
+        }
+        if self.base_is_given {
+            let [x, y, z, roll, pitch, yaw] = self.base;
+            let (xyz, rpy) = (Vector3::new(x, y, z), Vector3::new(roll, pitch, yaw));
+            text += &format!("\n[base]\nxyz_mm = {}\nrpy_deg = {}\n", three(&xyz, MM), three(&rpy, DEG));
+        }
+        text += &self.groups();
+        if let Some(noise) = self.noise {
+            text += &format!("\n[noise]\nposition_um = {}\n", number(noise / UM));
+        }
+        text + &self.constraints()
+    }
+
+    /// Clamps or sockets.
+    fn groups(&self) -> String {
+        let clamp = |(name, device): (&str, &Pose)| {
+            let [roll, pitch, yaw] = device.roll_pitch_yaw();
+            let rpy = Vector3::new(roll, pitch, yaw);
+            let (id, xyz, rpy) = (quoted(name), three(&device.origin, MM), three(&rpy, DEG));
+            format!("\n[[clamp]]\nid = {id}\nxyz_mm = {xyz}\nrpy_deg = {rpy}\n")
+        };
+        match &self.measurements.targets {
+            Targets::Points(_) => {
+                let groups = self.measurements.groups.iter();
+                groups.filter_map(|group| Some((group.name.strip_prefix("clamp ")?, &group.device))).map(clamp).collect()
+            }
+            Targets::Sockets(distances) => match distances.first() {
+                Some(known) => format!(
+                    "\n[sockets]\ndistance_mm = {}\ndistance_sd_mm = {}\n",
+                    number(known.value / MM),
+                    number(known.sd / MM)
+                ),
+                // no placement has two sockets: whatever stands here is not used
+                None => "\n[sockets]\ndistance_mm = 1\n".into(),
+            },
+        }
+    }
+
+    fn constraints(&self) -> String {
+        let constraints = &self.wishes;
+        let mut text = String::new();
+        let list = |parameters: &[crate::robot::Parameter]| {
+            let keys: Vec<String> = parameters.iter().map(|parameter| quoted(&parameter.key())).collect();
+            format!("[{}]", keys.join(", "))
+        };
+        if !constraints.fixed.is_empty() || !constraints.freed.is_empty() {
+            let (fix, free) = (list(&constraints.fixed), list(&constraints.freed));
+            text += &format!("\n[parameters]\nfix = {fix}\nfree = {free}\n");
+        }
+        for (parameter, value, sd) in &constraints.priors {
+            let unit = parameter.unit().si;
+            text += &format!(
+                "\n[[prior]]\nparameter = {}\nvalue = {}\nsd = {}\n",
+                quoted(&parameter.key()),
+                number(value / unit),
+                number(sd / unit)
+            );
+        }
+        text
+    }
+}
+
+impl Recording {
+    /// The CSV file of a recording with `robot`, with comments above it: each position in its clamp's
+    /// frame and at its own station, as it was measured.
+    pub fn to_csv(&self, robot: &Robot, above: &[String]) -> String {
+        let mut text: String = above.iter().map(|line| format!("# {line}\n")).collect();
+        let has_clamps = self.groups.iter().any(|group| group.name.starts_with("clamp "));
+        let has_points = matches!(self.targets, Targets::Points(_));
+        let has_stations = self.stations.iter().any(|station| !station.name.is_empty());
+        let has_time = self.rows.iter().any(|row| row.time.is_some());
+        let has_temperature = self.rows.iter().any(|row| row.temperature.is_some());
+        let mut columns = vec!["pose".to_owned()];
+        let groups: &[&str] = match (has_points, has_clamps) {
+            (true, true) => &["clamp"],
+            (true, false) => &[],
+            (false, _) => &["placement", "socket"],
+        };
+        columns.extend(groups.iter().map(|name| (*name).to_owned()));
+        columns.extend((1..).zip(&robot.joints).map(|(number, joint)| match joint.motion {
+            Motion::Revolute => format!("q{number}_deg"),
+            Motion::Prismatic => format!("q{number}_mm"),
+        }));
+        if has_points {
+            columns.extend(["x_mm", "y_mm", "z_mm"].map(str::to_owned));
+        }
+        for (name, is_there) in
+            [("station", has_stations), ("time_s", has_time), ("temperature_c", has_temperature)]
+        {
+            if is_there {
+                columns.push(name.to_owned());
+            }
+        }
+        text += &(columns.join(",") + "\n");
+        for (row, entry) in self.rows.iter().enumerate() {
+            let mut cells = vec![entry.pose.clone()];
+            let group = self.groups[entry.group].name.as_str();
+            match (has_points, has_clamps) {
+                (true, true) => cells.push(group.trim_start_matches("clamp ").to_owned()),
+                (true, false) => {}
+                (false, _) => {
+                    let (placement, socket) = group.rsplit_once('/').unwrap_or((group, "0"));
+                    cells.extend([placement.to_owned(), socket.to_owned()]);
+                }
+            }
+            cells.extend(self.joints(row).iter().zip(&robot.joints).map(|(q, joint)| {
+                number(q / if joint.motion == Motion::Revolute { DEG } else { MM })
+            }));
+            if let Targets::Points(points) = &self.targets {
+                let seen = self.device(row).inverse().point(&points[row]) / MM;
+                cells.extend(seen.iter().map(|x| number(*x)));
+            }
+            if has_stations {
+                cells.push(self.stations[entry.station].name.clone());
+            }
+            let optional = |value: Option<f64>| value.map_or_else(String::new, number);
+            if has_time {
+                cells.push(optional(entry.time));
+            }
+            if has_temperature {
+                cells.push(optional(entry.temperature));
+            }
+            let cells: Vec<String> = cells.iter().map(|cell| csv_cell(cell)).collect();
+            let _ = writeln!(text, "{}", cells.join(","));
+        }
+        text
+    }
+}
+
+/// A number to 1e-7 of its unit: below any device's last digit, above the rounding of arithmetic.
+fn number(value: f64) -> String {
+    let rounded = (value * 1e7).round() / 1e7;
+    // "-0" is 0
+    format!("{}", if rounded == 0.0 { 0.0 } else { rounded })
+}
+
+fn three(vector: &Vector3<f64>, unit: f64) -> String {
+    let [x, y, z] = [vector.x, vector.y, vector.z].map(|x| number(x / unit));
+    format!("[{x}, {y}, {z}]")
+}
+
+/// A TOML string.
+fn quoted(text: &str) -> String {
+    toml::Value::from(text).to_string()
+}
+
+/// A cell that may hold commas or quotes.
+fn csv_cell(cell: &str) -> String {
+    match cell.contains([',', '"', '\n', ';']) {
+        true => format!("\"{}\"", cell.replace('"', "\"\"")),
+        false => cell.to_owned(),
+    }
+}

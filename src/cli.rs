@@ -67,8 +67,9 @@ Words:
 The paper is Improved MultiCal, Sensors 2023, 23(12), 5717. Units stand in the
 names of keys and columns (l1_mm, load_n, dz_um).
 
-Exit status: 0 done; 1 a diagnosis found a mismatch; 2 could not run (the error
-says what and where), and nothing has been written.";
+Exit status: 0 done; 1 a diagnosis found a mismatch, or a calibration's fit is
+not plausible; 2 could not run (the error says what and where), and nothing has
+been written.";
 
 #[derive(Debug, Subcommand)]
 enum Command {

@@ -7,6 +7,7 @@ mod diagnose;
 mod diagnose_calibration;
 mod files;
 mod json;
+mod mistakes;
 mod page;
 mod readme;
 mod refused;

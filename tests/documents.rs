@@ -43,9 +43,11 @@ fn between_marks<'a>(document: &'a str, name: &str) -> &'a str {
 #[test]
 fn the_tables_of_effects_are_those_of_the_registries() {
     let text = document("docs/diagnosis.md");
-    for (name, effects) in
-        [("effects of a rig", effects_of_a_rig()), ("effects of a calibration", effects_of_a_calibration())]
-    {
+    for (name, effects) in [
+        ("effects of a rig", effects_of_a_rig()),
+        ("mistakes in a campaign", calibration::effects::registry::MISTAKES.to_vec()),
+        ("effects of a calibration", effects_of_a_calibration()),
+    ] {
         let expected = table(&effects);
         assert!(
             between_marks(&text, name).trim() == expected.trim(),

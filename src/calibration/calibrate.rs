@@ -10,9 +10,11 @@ use super::passes::Run;
 use super::problem::Residuals;
 use super::result::{Calibration, Estimated};
 use super::start::{first_guess, rough_start};
-use super::validation::validate;
+use super::validation::{Summary, Validation, validate};
+use super::warning::Warning;
 use crate::error::{Error, Place, Result};
 use crate::robot::{Kinematics, Parameter, Setup, minimal_parameters};
+use crate::spatial::best_motion;
 
 /// Calibrates the robot of a campaign.
 ///
@@ -50,7 +52,11 @@ pub fn calibrate<'c>(campaign: &'c Campaign, mode: Mode, options: &Options) -> R
             Refit::Nothing => &recording.seen_from(&campaign.measurements, &calibration)?,
             Refit::BaseTool => recording,
         };
-        calibration.validation = Some(validate(&calibration.setup, recording, campaign.refit)?);
+        let validation = validate(&calibration.setup, recording, campaign.refit)?;
+        if campaign.refit == Refit::Nothing && matches!(recording.targets, Targets::Points(_)) {
+            calibration.warnings.extend(seen_from_elsewhere(&validation)?);
+        }
+        calibration.validation = Some(validation);
     }
     Ok(calibration)
 }
@@ -164,6 +170,25 @@ pub fn free_parameters(campaign: &Campaign, start: &Setup, compensation: &Compen
         .filter(|p| (minimal.contains(p) && (has_world || !is_base(p))) || constraints.freed.contains(p))
         .filter(|p| !constraints.fixed.contains(p))
         .collect()
+}
+
+/// A warning where a rigid motion of all validation points cures most of their errors: the robot is
+/// good, but tracker or base stood elsewhere.
+fn seen_from_elsewhere(validation: &Validation) -> Result<Option<Warning>> {
+    /// How many times smaller the errors become.
+    const CURED: f64 = 3.0;
+    /// Poses that a motion of six numbers leaves something of.
+    const FEWEST: usize = 6;
+    let tips = &validation.tips;
+    let points: Vec<_> = tips.iter().zip(&validation.deviations).map(|(tip, off)| tip - off).collect();
+    if points.len() < FEWEST {
+        return Ok(None);
+    }
+    let motion = best_motion(&points, tips)?;
+    let left: Vec<f64> =
+        points.iter().zip(tips).map(|(point, tip)| (motion.point(point) - tip).norm()).collect();
+    let (before, after) = (validation.summary.rms, Summary::of(&left).rms);
+    Ok((before > CURED * after && before > 0.0).then_some(Warning::ValidationMoved { before, after }))
 }
 
 /// Largest distance of the nominal tip from the first joint, m.

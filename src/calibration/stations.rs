@@ -57,11 +57,7 @@ impl Recording {
     ///
     /// # Errors
     /// As [`crate::linalg::thin_svd`]; none in practice.
-    pub(super) fn seen_from(
-        &self,
-        calibrated: &Recording,
-        calibration: &Calibration,
-    ) -> Result<Recording> {
+    pub(super) fn seen_from(&self, calibrated: &Recording, calibration: &Calibration) -> Result<Recording> {
         let mut brought = self.clone();
         let is_named = self.stations.iter().any(|station| !station.name.is_empty());
         let Targets::Points(points) = &mut brought.targets else { return Ok(brought) };
@@ -71,8 +67,7 @@ impl Recording {
         let robot = calibration.setup.calibrated();
         let base = calibration.setup.base();
         for (index, station) in self.stations.iter().enumerate() {
-            let rows: Vec<usize> =
-                (0..self.len()).filter(|&row| self.rows[row].station == index).collect();
+            let rows: Vec<usize> = (0..self.len()).filter(|&row| self.rows[row].station == index).collect();
             let known = calibrated.stations.iter().position(|known| known.name == station.name);
             let motion = match known.and_then(|known| Some((known, calibration.stations.get(known)?))) {
                 Some((known, found)) => {

@@ -64,6 +64,13 @@ pub enum Warning {
         /// Its correction, SI.
         correction: f64,
     },
+    /// A rigid motion of all validation points cures most of their errors.
+    ValidationMoved {
+        /// Root mean square of the errors, m.
+        before: f64,
+        /// And after that motion.
+        after: f64,
+    },
     /// The fit of base and tool to the validation did not converge.
     ValidationNotConverged,
 }
@@ -138,6 +145,14 @@ impl fmt::Display for Warning {
                  angles' signs and zeros those of the robot's file?",
                 significant(correction / parameter.unit().si, 3),
                 parameter.unit().symbol
+            ),
+            Warning::ValidationMoved { before, after } => write!(
+                f,
+                "the validation poses are {} µm rms off, but {} µm after one rigid motion of all of them: \
+                 tracker or base stood elsewhere, the robot is not that wrong; name the places in a column \
+                 station, or leave out validation_refit = \"none\"",
+                significant(before / UM, 3),
+                significant(after / UM, 3)
             ),
             Warning::ValidationNotConverged => {
                 f.write_str("the fit of base and tool to the validation poses did not converge")

@@ -94,7 +94,8 @@ impl Calibrate {
         let mut report = report::calibration::report(&campaign, &calibrated, cross_validation);
         report.provenance = provenance(&campaign);
         let suspicions = suspected(&campaign, mode, &neighbours(&campaign))?;
-        let is_plausible = calibrated.is_plausible() && suspicions.iter().all(|suspicion| !suspicion.spoils_fit);
+        let is_plausible =
+            calibrated.is_plausible() && suspicions.iter().all(|suspicion| !suspicion.spoils_fit);
         let lines: Vec<String> = suspicions.into_iter().map(|suspicion| suspicion.words).collect();
         let mut json = report::calibration::json(&campaign, &calibrated, cross_validation);
         json["plausible"] = is_plausible.into();

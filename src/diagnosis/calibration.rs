@@ -39,6 +39,6 @@ pub use apply::{Applied, apply};
 pub use diagnose::{CalibrationDiagnosis, Happened, diagnose, diagnose_calibrated};
 pub use effects::CalibrationEffect;
 pub use gear::{Curve, Gear};
-pub use mistakes::{Mended, Neighbours, Suspicion, mend, suspected};
 pub use law::{Course, Frame, Law, Power, RodLoad, TakenUp};
+pub use mistakes::{Mended, Neighbours, Suspicion, mend, suspected};
 pub use model::CalibrationModel;

@@ -106,7 +106,8 @@ pub fn json(
 
 /// The frames of stations in {W}, that of the first; empty without a column for them.
 fn stations_json(recording: &Recording, calibration: &Calibration) -> Vec<Value> {
-    let frames = recording.stations.iter().zip(&calibration.stations).filter(|(known, _)| !known.name.is_empty());
+    let frames =
+        recording.stations.iter().zip(&calibration.stations).filter(|(known, _)| !known.name.is_empty());
     let of = |(station, motion): (&Station, &Pose)| {
         let frame = motion.then(&station.frame);
         json!({

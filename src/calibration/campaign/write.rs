@@ -69,7 +69,10 @@ impl Campaign {
         match &self.measurements.targets {
             Targets::Points(_) => {
                 let groups = self.measurements.groups.iter();
-                groups.filter_map(|group| Some((group.name.strip_prefix("clamp ")?, &group.device))).map(clamp).collect()
+                groups
+                    .filter_map(|group| Some((group.name.strip_prefix("clamp ")?, &group.device)))
+                    .map(clamp)
+                    .collect()
             }
             Targets::Sockets(distances) => match distances.first() {
                 Some(known) => format!(
@@ -150,9 +153,12 @@ impl Recording {
                     cells.extend([placement.to_owned(), socket.to_owned()]);
                 }
             }
-            cells.extend(self.joints(row).iter().zip(&robot.joints).map(|(q, joint)| {
-                number(q / if joint.motion == Motion::Revolute { DEG } else { MM })
-            }));
+            cells.extend(
+                self.joints(row)
+                    .iter()
+                    .zip(&robot.joints)
+                    .map(|(q, joint)| number(q / if joint.motion == Motion::Revolute { DEG } else { MM })),
+            );
             if let Targets::Points(points) = &self.targets {
                 let seen = self.device(row).inverse().point(&points[row]) / MM;
                 cells.extend(seen.iter().map(|x| number(*x)));

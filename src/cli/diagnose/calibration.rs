@@ -10,8 +10,8 @@ use rodcal::diagnosis::calibration::mend;
 use rodcal::{Result, files, report};
 
 use super::listed::listed;
-use crate::cli::neighbours::neighbours;
 use crate::cli::calibrate::{ModeName, provenance};
+use crate::cli::neighbours::neighbours;
 use crate::cli::output::Outcome;
 
 #[derive(Debug, Args)]

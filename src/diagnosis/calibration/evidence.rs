@@ -18,8 +18,8 @@ use nalgebra::{DMatrix, DVector, SymmetricEigen, Vector3};
 
 use super::configuration::Configuration;
 use super::context::Context;
-use crate::calibration::{Calibration, MOST_SCATTER};
 use crate::calibration::campaign::{Campaign, Recording, Targets};
+use crate::calibration::{Calibration, MOST_SCATTER};
 use crate::inference::{Covariate, Evidence, JointVariable, Variable};
 use crate::robot::{Kinematics, Parameter};
 use crate::spatial::{Axis, skew};

@@ -28,7 +28,9 @@ pub(super) fn limits(context: &Context, calibration: &Calibration, evidence: &Ev
     }));
     let levers = (0..context.joint_count()).map(|j| context.largest(|there| there.tip_jacobian[j].norm()));
     let seen = calibration.noise.pooled / JOINT_ANGLE;
-    for (j, lever) in levers.enumerate().filter(|(_, lever)| *lever < UNSEEN * seen) {
+    // where the fit fails, everything drowns in what is left
+    let is_judged = calibration.is_plausible();
+    for (j, lever) in levers.enumerate().filter(|(_, lever)| is_judged && *lever < UNSEEN * seen) {
         limits.push(Limit::OnAxis(j, lever));
     }
     let folds = evidence.fold.iter().filter(|fold| **fold != Evidence::NONE).max();

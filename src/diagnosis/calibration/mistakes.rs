@@ -31,13 +31,16 @@ use super::diagnose::{CalibrationDiagnosis, diagnose_calibrated};
 use super::effects::fixture::{BASE_SHIFT, CLAMP_POSE};
 use super::effects::mistakes::FRAME_MISTAKE;
 use crate::calibration::campaign::{Campaign, FileNames, Recording};
-use crate::calibration::{Compensation, Mode, Options, Summary, calibrate};
+use crate::calibration::{Calibration, Compensation, Mode, Options, Summary, calibrate};
 use crate::error::Result;
 use crate::inference::{Description, Effect, Estimate, Finding, Kind, Location, Rival};
 use crate::robot::Robot;
 use crate::rod::Rod;
 use crate::spatial::Pose;
 use crate::units::{DEG, MM, UM, URAD, significant};
+
+/// Half of a 95 % interval in standard deviations.
+const COVERAGE: f64 = 1.96;
 
 /// Files of the same folders that may have been meant.
 #[derive(Debug, Clone, Default)]
@@ -131,13 +134,54 @@ impl Mended {
         if !self.has_data {
             diagnosis.discrepancy = None;
         }
-        diagnosis.findings.splice(0..0, self.found.iter().cloned());
+        let mut mistakes = self.found.clone();
+        self.measure_moves(&found.model.calibration, &mut mistakes);
+        diagnosis.findings.splice(0..0, mistakes);
         found.model.recorded = self.recorded;
         Ok(found)
     }
 }
 
 impl Mended {
+    /// How far the base moved by the calibration, with 95 % intervals: the frame of a station is six of
+    /// its unknowns. Of several moves the order is that of the rows.
+    fn measure_moves(&self, calibration: &Calibration, findings: &mut [Finding]) {
+        let recording = &self.campaign.measurements;
+        let rows = recording.rows.windows(2).filter(|pair| pair[0].station != pair[1].station);
+        let places: Vec<(usize, usize)> = rows.map(|pair| (pair[0].station, pair[1].station)).collect();
+        let row_of = |finding: &Finding| match (&finding.location, finding.effect == &BASE_SHIFT.effect) {
+            (Location::Shift { row, .. }, true) => Some(*row),
+            _ => None,
+        };
+        let mut moves: Vec<&mut Finding> =
+            findings.iter_mut().filter(|finding| row_of(finding).is_some()).collect();
+        moves.sort_by_key(|finding| row_of(finding));
+        if moves.len() != places.len() {
+            return;
+        }
+        let base = calibration.setup.base();
+        let base_at = |station: usize| {
+            let frame = calibration.stations[station].then(&recording.stations[station].frame);
+            frame.inverse().then(&base)
+        };
+        let free = calibration.parameters.len();
+        let variance = |station: usize, k: usize| match station {
+            0 => 0.0,
+            station => {
+                let at = free + 6 * (station - 1) + k;
+                calibration.fit.covariance.matrix.get((at, at)).copied().unwrap_or(0.0)
+            }
+        };
+        for (finding, (before, after)) in moves.into_iter().zip(places) {
+            let mut estimates = motion_estimates(&base_at(before), &base_at(after));
+            for (k, estimate) in estimates.iter_mut().enumerate() {
+                let half = COVERAGE * (variance(before, k) + variance(after, k)).max(0.0).sqrt();
+                (estimate.low, estimate.high) = (estimate.value - half, estimate.value + half);
+            }
+            finding.estimates = estimates;
+        }
+    }
+
     /// What becomes of robot and campaign: the robot with what `found` says, and the campaign without
     /// its mistakes. `names` are the files that the campaign shall name; `None` where nothing could be
     /// written.
@@ -158,7 +202,8 @@ impl Mended {
             mean: Summary::of(&found.model.calibration.residuals()).mean,
         });
         applied.undone = self.found.iter().map(|finding| finding.description.observed.clone()).collect();
-        let mut above = vec![format!("CORRECTED, not as recorded: {} without mistakes. Done:", self.campaign.file)];
+        let mut above =
+            vec![format!("CORRECTED, not as recorded: {} without mistakes. Done:", self.campaign.file)];
         above.extend(applied.undone.iter().cloned());
         let Campaign { robot, measurements, validation, .. } = &self.campaign;
         applied.files.push(("campaign.toml".into(), self.campaign.to_toml(names, &above)));
@@ -208,7 +253,13 @@ fn search(campaign: &Campaign, mode: Mode, others: &Neighbours) -> Result<Mended
     let has_failed = result.as_ref().is_none_or(|(_, best, _)| search.has_failed(best));
     for silent in silent.into_iter().filter(|silent| has_failed || !silent.only_if_failed) {
         mended.has_data = false;
-        mended.add(silent.effect, Location::Key(silent.location), silent.estimates, &silent.cure, &silent.why);
+        mended.add(
+            silent.effect,
+            Location::Key(silent.location),
+            silent.estimates,
+            &silent.cure,
+            &silent.why,
+        );
     }
     let Some((_, best, found)) = result.filter(|_| mended.has_data) else { return Ok(mended) };
     for found in &found {
@@ -235,7 +286,8 @@ impl Mended {
         why: &str,
     ) {
         let lower = lower(cure);
-        let words = format!("likely mistake in {location}: {why}; {lower} (`rodcal diagnose calibration` says more)");
+        let words =
+            format!("likely mistake in {location}: {why}; {lower} (`rodcal diagnose calibration` says more)");
         self.suspicions.push(Suspicion { words, spoils_fit: true });
         let description = Description { observed: cure.to_owned(), cause: why.to_owned() };
         self.found.push(Finding::without_terms(effect, location, estimates, description));
@@ -245,7 +297,13 @@ impl Mended {
         match &found.step {
             Step::Move(number) => {
                 let own = &search.moves[*number];
-                self.add(own.effect, Location::Key(own.location.clone()), own.estimates.clone(), &own.cure, &own.why);
+                self.add(
+                    own.effect,
+                    Location::Key(own.location.clone()),
+                    own.estimates.clone(),
+                    &own.cure,
+                    &own.why,
+                );
                 if let Some(last) = self.suspicions.last_mut() {
                     last.spoils_fit = !own.change.is_guess();
                 }
@@ -260,7 +318,9 @@ impl Mended {
             let Move { effect, location, .. } = &search.moves[number];
             let location = Location::Key(location.clone());
             let is_it = |e: &Effect, at: &Location| e == *effect && *at == location;
-            if !is_it(finding.effect, &finding.location) && !rivals.iter().any(|r| is_it(r.effect, &r.location)) {
+            if !is_it(finding.effect, &finding.location)
+                && !rivals.iter().any(|r| is_it(r.effect, &r.location))
+            {
                 rivals.push(Rival::without_term(effect, location, odds));
             }
         }
@@ -275,7 +335,8 @@ impl Mended {
     fn add_elsewhere(&mut self, search: &Search, best: &State, found: &Found, change: &Change) {
         // its number among the stations: those of the file, then one for each such step
         let earlier = best.steps.iter().take_while(|step| **step != found.step);
-        let number = search.draft.stations + earlier.filter(|step| matches!(step, Step::Elsewhere(_))).count();
+        let number =
+            search.draft.stations + earlier.filter(|step| matches!(step, Step::Elsewhere(_))).count();
         let bases = &best.fit.bases;
         let recording = &self.campaign.measurements;
         let old = match change {
@@ -336,7 +397,9 @@ impl Mended {
                 self.campaign.rod_file = Some(other.file.clone());
                 self.campaign.readings = None;
                 self.mode = if self.mode == Mode::Meas { Mode::Fea } else { self.mode };
-            } else if let Some((file, robot, text)) = others.robots.iter().find(|(file, ..)| *file == other.file) {
+            } else if let Some((file, robot, text)) =
+                others.robots.iter().find(|(file, ..)| *file == other.file)
+            {
                 self.campaign.robot = robot.clone();
                 (self.campaign.robot_file, self.campaign.robot_text) = (file.clone(), text.clone());
             }
@@ -358,7 +421,8 @@ impl Mended {
             self.campaign.base = [base.origin.x, base.origin.y, base.origin.z, roll, pitch, yaw];
         }
         if let Some(tool) = draft.tool {
-            self.campaign.tool_is_given |= (tool - self.campaign.rod.as_ref().map_or(tool, Rod::tip)).norm() > UM;
+            self.campaign.tool_is_given |=
+                (tool - self.campaign.rod.as_ref().map_or(tool, Rod::tip)).norm() > UM;
             self.campaign.tool = tool;
         }
         let [x, y, z, roll, pitch, yaw] = self.campaign.base;
@@ -409,7 +473,8 @@ fn turn_joints(validation: &mut Recording, robot: &Robot, tool: Vector3<f64>, ch
 
 fn motion_estimates(from: &Pose, to: &Pose) -> Vec<Estimate> {
     let way = to.origin - from.origin;
-    let turn = nalgebra::Rotation3::from_matrix_unchecked(to.rotation * from.rotation.transpose()).scaled_axis();
+    let turn =
+        nalgebra::Rotation3::from_matrix_unchecked(to.rotation * from.rotation.transpose()).scaled_axis();
     let names = ["dx_um", "dy_um", "dz_um", "rx_urad", "ry_urad", "rz_urad"];
     let values = [way.x, way.y, way.z, turn.x, turn.y, turn.z];
     let estimate = |(k, name): (usize, &&str)| {

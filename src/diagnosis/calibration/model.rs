@@ -6,8 +6,8 @@ use super::evidence;
 use super::gear::Gear;
 use super::law::Law;
 use super::linear_terms::LinearTerms;
-use crate::calibration::{Calibration, Summary};
 use crate::calibration::campaign::Campaign;
+use crate::calibration::{Calibration, Summary};
 use crate::inference::{Finding, FindingPart, Term};
 
 /// A campaign that was calibrated as well as it can be, and what that may have left out.

@@ -1,7 +1,7 @@
 //! Columns that say nothing: the same value in all rows, or the values of another column.
 
-use super::draft::Draft;
 use super::super::effects::mistakes::{COPIED_COLUMN, STUCK_SENSOR};
+use super::draft::Draft;
 use crate::calibration::campaign::Campaign;
 use crate::inference::{Effect, Estimate};
 use crate::robot::Motion;
@@ -84,7 +84,8 @@ fn joints(campaign: &Campaign, draft: &Draft) -> Vec<Silent> {
             };
             let value = columns[a][0] / unit;
             let estimate = Estimate { name: key.into(), unit: 1.0, value, low: value, high: value };
-            let what = format!("it is {}{symbol} in all rows, and the poses do not fit", significant(value, 4));
+            let what =
+                format!("it is {}{symbol} in all rows, and the poses do not fit", significant(value, 4));
             all.push(stuck(name(a), vec![estimate], &name(a), what, true));
             continue;
         }
@@ -97,7 +98,13 @@ fn joints(campaign: &Campaign, draft: &Draft) -> Vec<Silent> {
     all
 }
 
-fn stuck(location: String, estimates: Vec<Estimate>, what: &str, why: String, only_if_failed: bool) -> Silent {
+fn stuck(
+    location: String,
+    estimates: Vec<Estimate>,
+    what: &str,
+    why: String,
+    only_if_failed: bool,
+) -> Silent {
     let cure = format!("Record {what} once more");
     Silent { effect: &STUCK_SENSOR, location, estimates, cure, why, only_if_failed }
 }

@@ -72,7 +72,8 @@ impl Change {
 
     /// A constant on one joint, rad, after a factor.
     pub fn offset(joint: usize, count: usize, factor: f64, angle: f64) -> Change {
-        let only = |value: f64, other: f64| (0..count).map(|j| if j == joint { value } else { other }).collect();
+        let only =
+            |value: f64, other: f64| (0..count).map(|j| if j == joint { value } else { other }).collect();
         Change::Joints { order: (0..count).collect(), factor: only(factor, 1.0), offset: only(angle, 0.0) }
     }
 
@@ -91,7 +92,8 @@ impl Draft {
         let seen = match &recording.targets {
             Targets::Sockets(_) => Vec::new(),
             Targets::Points(points) => {
-                let of_row = |(row, point): (usize, &Vector3<f64>)| recording.device(row).inverse().point(point);
+                let of_row =
+                    |(row, point): (usize, &Vector3<f64>)| recording.device(row).inverse().point(point);
                 points.iter().enumerate().map(of_row).collect()
             }
         };
@@ -191,7 +193,8 @@ impl Draft {
 
     fn displace(&mut self, by: isize, with_clamps: bool) {
         let count = self.len() as isize;
-        let kept: Vec<usize> = (0..count).filter(|i| (0..count).contains(&(i + by))).map(|i| i as usize).collect();
+        let kept: Vec<usize> =
+            (0..count).filter(|i| (0..count).contains(&(i + by))).map(|i| i as usize).collect();
         let there = |&row: &usize| (row as isize + by) as usize;
         let seen = kept.iter().map(|row| self.seen[there(row)]).collect();
         let group = kept.iter().map(|row| self.group[if with_clamps { there(row) } else { *row }]).collect();
@@ -202,7 +205,11 @@ impl Draft {
     pub fn part(&self, rows: &[usize]) -> Draft {
         Draft {
             joints: rows.iter().flat_map(|&row| self.joints(row).iter().copied()).collect(),
-            seen: if self.has_sockets() { Vec::new() } else { rows.iter().map(|&row| self.seen[row]).collect() },
+            seen: if self.has_sockets() {
+                Vec::new()
+            } else {
+                rows.iter().map(|&row| self.seen[row]).collect()
+            },
             group: rows.iter().map(|&row| self.group[row]).collect(),
             station: rows.iter().map(|&row| self.station[row]).collect(),
             rows: rows.iter().map(|&row| self.rows[row]).collect(),

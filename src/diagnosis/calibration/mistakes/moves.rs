@@ -4,11 +4,11 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::draft::{Change, Draft};
 use super::super::effects::mistakes::{
     FRAME_MISTAKE, OFFSET_MISTAKE, ROBOT_MISTAKE, ROD_MISTAKE, ROW_MISTAKE, SIGN_MISTAKE, SWAP_MISTAKE,
     UNIT_MISTAKE,
 };
+use super::draft::{Change, Draft};
 use crate::calibration::campaign::Campaign;
 use crate::inference::{Effect, Estimate};
 use crate::robot::Motion;
@@ -78,7 +78,14 @@ fn exact(name: &str, value: f64) -> Vec<Estimate> {
 }
 
 impl List<'_> {
-    fn add(&mut self, effect: &'static Effect, location: &str, change: Change, cure: &str, why: &str) -> &mut Move {
+    fn add(
+        &mut self,
+        effect: &'static Effect,
+        location: &str,
+        change: Change,
+        cure: &str,
+        why: &str,
+    ) -> &mut Move {
         self.moves.push(Move {
             effect,
             location: location.into(),
@@ -115,21 +122,32 @@ impl List<'_> {
         }
         if count > 1 {
             let change = Change::factors(&all, count, -1.0);
-            self.add(&SIGN_MISTAKE, &every, change, &format!("Multiply {every} by −1"), "their signs are wrong")
-                .log_prior = UNUSUAL;
+            self.add(
+                &SIGN_MISTAKE,
+                &every,
+                change,
+                &format!("Multiply {every} by −1"),
+                "their signs are wrong",
+            )
+            .log_prior = UNUSUAL;
         }
         for &j in &turns {
             let name = self.column(j);
             for quarter in [1.0, -1.0, 2.0] {
                 let degrees = 90.0 * quarter;
-                let said = if degrees > 0.0 { format!("Add {degrees}° to") } else { format!("Subtract {}° from", -degrees) };
+                let said = if degrees > 0.0 {
+                    format!("Add {degrees}° to")
+                } else {
+                    format!("Subtract {}° from", -degrees)
+                };
                 let change = Change::offset(j, count, 1.0, FRAC_PI_2 * quarter);
                 let why = format!("the joint's zero is off by {}°", degrees.abs());
                 self.add(&OFFSET_MISTAKE, &name, change, &format!("{said} {name}"), &why).estimates =
                     exact("deg", degrees);
                 let change = Change::offset(j, count, -1.0, FRAC_PI_2 * quarter);
                 let cure = format!("Replace {name} by {degrees}° − {name}");
-                let mirrored = self.add(&OFFSET_MISTAKE, &name, change, &cure, "its sign and its zero are wrong");
+                let mirrored =
+                    self.add(&OFFSET_MISTAKE, &name, change, &cure, "its sign and its zero are wrong");
                 mirrored.estimates = exact("deg", degrees);
                 mirrored.log_prior = RARE;
             }
@@ -139,11 +157,12 @@ impl List<'_> {
     }
 
     fn orders(&mut self, count: usize) {
-        let same = |a: usize, b: usize| {
-            self.campaign.robot.joints[a].motion == self.campaign.robot.joints[b].motion
-        };
-        let pairs: Vec<(usize, usize)> =
-            (0..count).flat_map(|a| (a + 1..count).map(move |b| (a, b))).filter(|&(a, b)| same(a, b)).collect();
+        let same =
+            |a: usize, b: usize| self.campaign.robot.joints[a].motion == self.campaign.robot.joints[b].motion;
+        let pairs: Vec<(usize, usize)> = (0..count)
+            .flat_map(|a| (a + 1..count).map(move |b| (a, b)))
+            .filter(|&(a, b)| same(a, b))
+            .collect();
         for (a, b) in pairs {
             let mut order: Vec<usize> = (0..count).collect();
             order.swap(a, b);
@@ -152,7 +171,9 @@ impl List<'_> {
             let cure = format!("Exchange the columns {first} and {second}");
             self.add(&SWAP_MISTAKE, &place, Change::order(order), &cure, "each holds the other joint");
         }
-        if count < 3 || (1..count).any(|j| self.campaign.robot.joints[j].motion != self.campaign.robot.joints[0].motion)
+        if count < 3
+            || (1..count)
+                .any(|j| self.campaign.robot.joints[j].motion != self.campaign.robot.joints[0].motion)
         {
             return;
         }
@@ -163,7 +184,11 @@ impl List<'_> {
         let cure = "Turn the order of the joint columns round";
         add((0..count).rev().collect(), cure, "they run from the flange to the base");
         let cure = "Name each joint column by the joint after it, and the last one by the first";
-        add((0..count).map(|j| (j + count - 1) % count).collect(), cure, "the columns are displaced by one joint");
+        add(
+            (0..count).map(|j| (j + count - 1) % count).collect(),
+            cure,
+            "the columns are displaced by one joint",
+        );
         let cure = "Name each joint column by the joint before it, and the first one by the last";
         add((0..count).map(|j| (j + 1) % count).collect(), cure, "the columns are displaced by one joint");
     }
@@ -189,14 +214,16 @@ impl List<'_> {
             if are_small(&joints) {
                 let change = Change::factors(&joints, count, 180.0 / PI);
                 let why = format!("{it} in radians, not in degrees");
-                let radians = self.add(&UNIT_MISTAKE, &name, change, &format!("Multiply {name} by 180/π"), &why);
+                let radians =
+                    self.add(&UNIT_MISTAKE, &name, change, &format!("Multiply {name} by 180/π"), &why);
                 radians.estimates = exact("factor", 180.0 / PI);
                 radians.log_prior = log_prior;
             }
             if are_huge(&joints) {
                 let change = Change::factors(&joints, count, PI / 180.0);
                 let why = format!("{it} degrees that were converted to degrees once more");
-                let twice = self.add(&UNIT_MISTAKE, &name, change, &format!("Multiply {name} by π/180"), &why);
+                let twice =
+                    self.add(&UNIT_MISTAKE, &name, change, &format!("Multiply {name} by π/180"), &why);
                 twice.estimates = exact("factor", PI / 180.0);
                 twice.log_prior = log_prior + UNUSUAL;
             }
@@ -215,16 +242,22 @@ impl List<'_> {
             (1e-3, "micrometres", UNUSUAL),
             (0.1, "tenths of a millimetre", RARE),
         ] {
-            let by = if factor < 1.0 { format!("Divide {ALL} by {}", 1.0 / factor) } else { format!("Multiply {ALL} by {factor}") };
+            let by = if factor < 1.0 {
+                format!("Divide {ALL} by {}", 1.0 / factor)
+            } else {
+                format!("Multiply {ALL} by {factor}")
+            };
             let change = Change::Seen(Matrix3::identity() * factor);
-            let unit = self.add(&UNIT_MISTAKE, ALL, change, &by, &format!("they are in {unit}, not in millimetres"));
+            let unit =
+                self.add(&UNIT_MISTAKE, ALL, change, &by, &format!("they are in {unit}, not in millimetres"));
             (unit.estimates, unit.log_prior) = (exact("factor", factor), log_prior);
         }
         let names = ["x_mm", "y_mm", "z_mm"];
         for order in [[0, 1, 2], [1, 0, 2], [0, 2, 1], [2, 1, 0], [1, 2, 0], [2, 0, 1]] {
             for signs in 0..8u8 {
                 let sign = [0, 1, 2].map(|axis| if signs >> axis & 1 == 1 { -1.0 } else { 1.0 });
-                let flipped: Vec<&str> = (0..3).filter(|&axis| sign[axis] < 0.0).map(|axis| names[axis]).collect();
+                let flipped: Vec<&str> =
+                    (0..3).filter(|&axis| sign[axis] < 0.0).map(|axis| names[axis]).collect();
                 let mut matrix = Matrix3::zeros();
                 (0..3).for_each(|axis| matrix[(axis, order[axis])] = sign[axis]);
                 if matrix == Matrix3::identity() {
@@ -249,9 +282,17 @@ impl List<'_> {
                         (&SWAP_MISTAKE, place, cure, "axes of the device are exchanged", 0.0)
                     }
                     _ => {
-                        let term = |axis: usize| format!("{}{}", if sign[axis] < 0.0 { "−" } else { "" }, names[order[axis]]);
+                        let term = |axis: usize| {
+                            format!("{}{}", if sign[axis] < 0.0 { "−" } else { "" }, names[order[axis]])
+                        };
                         let cure = format!("Replace {ALL} by {}, {}, {}", term(0), term(1), term(2));
-                        (&SWAP_MISTAKE, ALL.to_owned(), cure, "the device is turned", UNUSUAL + if is_swap { 0.0 } else { -0.5 })
+                        (
+                            &SWAP_MISTAKE,
+                            ALL.to_owned(),
+                            cure,
+                            "the device is turned",
+                            UNUSUAL + if is_swap { 0.0 } else { -0.5 },
+                        )
                     }
                 };
                 self.add(effect, &place, Change::Seen(matrix), &cure, why).log_prior = log_prior;
@@ -270,12 +311,16 @@ impl List<'_> {
                 let rows = if count == 1 { "row" } else { "rows" };
                 let what = if with_clamps { "clamp, x_mm, y_mm and z_mm" } else { "x_mm, y_mm and z_mm" };
                 let cure = format!("Move {what} {count} {rows} {way}");
-                let why = format!("each position belongs to the angles {count} {rows} {}", if by > 0 { "above" } else { "below" });
+                let why = format!(
+                    "each position belongs to the angles {count} {rows} {}",
+                    if by > 0 { "above" } else { "below" }
+                );
                 let change = Change::Rows { by, with_clamps };
                 let place = if with_clamps { "clamp, x_mm, y_mm, z_mm" } else { "x_mm, y_mm, z_mm" };
                 let shift = self.add(&ROW_MISTAKE, place, change, &cure, &why);
                 shift.estimates = exact("rows", by as f64);
-                shift.log_prior = if count == 1 { 0.0 } else { UNUSUAL } + if with_clamps { UNUSUAL } else { 0.0 };
+                shift.log_prior =
+                    if count == 1 { 0.0 } else { UNUSUAL } + if with_clamps { UNUSUAL } else { 0.0 };
             }
         }
     }
@@ -293,7 +338,13 @@ impl List<'_> {
                     _ => format!("sockets {} and {}", names[a], names[b]),
                 };
                 let cure = format!("Exchange {place}");
-                self.add(&SWAP_MISTAKE, &place, Change::Groups(a, b), &cure, "each holds the poses of the other");
+                self.add(
+                    &SWAP_MISTAKE,
+                    &place,
+                    Change::Groups(a, b),
+                    &cure,
+                    "each holds the poses of the other",
+                );
             }
         }
         if self.draft.has_sockets() || names.iter().any(String::is_empty) {
@@ -314,16 +365,19 @@ impl List<'_> {
             let kinds: Vec<Said> = readings.iter().flatten().map(|(_, said)| *said).collect();
             for (_, said) in kinds.iter().enumerate().filter(|(k, said)| !kinds[..*k].contains(said)) {
                 let of = |k: usize| {
-                    let rotation = readings[k].iter().find(|(_, own)| own == said).map(|(rotation, _)| *rotation);
+                    let rotation =
+                        readings[k].iter().find(|(_, own)| own == said).map(|(rotation, _)| *rotation);
                     rotation.map(|rotation| of_clamp(k, rotation))
                 };
                 let change = Change::Devices((0..count).filter_map(of).collect());
                 let place = "clamp rpy_deg (all)";
-                self.add(&FRAME_MISTAKE, place, change, &said.cure("rpy_deg of all clamps"), said.why).log_prior = UNUSUAL;
+                self.add(&FRAME_MISTAKE, place, change, &said.cure("rpy_deg of all clamps"), said.why)
+                    .log_prior = UNUSUAL;
             }
         }
         for (factor, unit) in [(1e3, "metres"), (25.4, "inches"), (1e-3, "micrometres")] {
-            let scaled = |(k, device): (usize, &Pose)| (k, Pose { origin: device.origin * factor, ..*device });
+            let scaled =
+                |(k, device): (usize, &Pose)| (k, Pose { origin: device.origin * factor, ..*device });
             let change = Change::Devices(devices.iter().enumerate().map(scaled).collect());
             let cure = format!("Multiply xyz_mm of all clamps by {factor}");
             let why = format!("they are in {unit}, not in millimetres");
@@ -364,7 +418,11 @@ impl List<'_> {
         let is_given = self.campaign.tool_is_given;
         let key = if is_given { "tool.xyz_mm" } else { "rod" };
         let mut known: Vec<Vector3<f64>> = vec![tool];
-        let mut add = |tip: Vector3<f64>, effect: &'static Effect, cure: String, why: &str, estimates: Vec<Estimate>| {
+        let mut add = |tip: Vector3<f64>,
+                       effect: &'static Effect,
+                       cure: String,
+                       why: &str,
+                       estimates: Vec<Estimate>| {
             if known.iter().any(|known| (known - tip).norm() < SAME.1) {
                 return;
             }
@@ -376,16 +434,22 @@ impl List<'_> {
             for signs in 0..8u8 {
                 let sign = [0, 1, 2].map(|axis| if signs >> axis & 1 == 1 { -1.0 } else { 1.0 });
                 let tip = Vector3::from_fn(|axis, _| sign[axis] * tool[order[axis]]);
-                let term = |axis: usize| format!("{}{}", if sign[axis] < 0.0 { "−" } else { "" }, letters[order[axis]]);
+                let term = |axis: usize| {
+                    format!("{}{}", if sign[axis] < 0.0 { "−" } else { "" }, letters[order[axis]])
+                };
                 let axes = [0, 1, 2].map(term).join(", ");
                 let cure = match is_given {
                     true => format!("Replace tool.xyz_mm = [x, y, z] by [{axes}]"),
-                    false => format!("Give the tip as [{axes}] of the rod's, with a [tool]: the rod is turned on the flange"),
+                    false => format!(
+                        "Give the tip as [{axes}] of the rod's, with a [tool]: the rod is turned on the flange"
+                    ),
                 };
                 add(tip, &FRAME_MISTAKE, cure, "it is given in another frame than {T}", Vec::new());
             }
         }
-        for (factor, unit) in [(1e3, "it is in metres, not in millimetres"), (25.4, "it is in inches, not in millimetres")] {
+        for (factor, unit) in
+            [(1e3, "it is in metres, not in millimetres"), (25.4, "it is in inches, not in millimetres")]
+        {
             if is_given {
                 let cure = format!("Multiply tool.xyz_mm by {factor}");
                 add(tool * factor, &UNIT_MISTAKE, cure, unit, exact("factor", factor));
@@ -423,10 +487,7 @@ fn readings(angles: [f64; 3], as_read: &Matrix3<f64>) -> Vec<(Matrix3<f64>, Said
     let [a, b, c] = angles;
     let rpy = |r: f64, p: f64, y: f64| Pose::from_xyz_rpy([0.0; 3], [r, p, y]).rotation;
     let mut all = vec![
-        (
-            rpy(c, b, a),
-            Said { cure: "Turn the order of {} round", why: "it is given as yaw, pitch, roll" },
-        ),
+        (rpy(c, b, a), Said { cure: "Turn the order of {} round", why: "it is given as yaw, pitch, roll" }),
         (
             rpy(-a, -b, -c).transpose(),
             Said {
@@ -434,7 +495,10 @@ fn readings(angles: [f64; 3], as_read: &Matrix3<f64>) -> Vec<(Matrix3<f64>, Said
                 why: "its angles turn about x, y and z in the other order, Rx·Ry·Rz",
             },
         ),
-        (as_read.transpose(), Said { cure: "Invert the rotation of {}", why: "it is given the other way round" }),
+        (
+            as_read.transpose(),
+            Said { cure: "Invert the rotation of {}", why: "it is given the other way round" },
+        ),
         (
             exponential(&Vector3::new(a, b, c)),
             Said { cure: "Convert {} from a rotation vector", why: "it holds a rotation vector" },

@@ -121,8 +121,7 @@ impl Search<'_> {
 
     /// True where even the best fit leaves what no robot leaves.
     pub fn has_failed(&self, state: &State) -> bool {
-        let reach = self.bodies[state.thin.body].reach;
-        median(&state.fit.residuals).is_some_and(|left| left > FAILED * reach)
+        is_failed(&state.fit, self.bodies[state.thin.body].reach)
     }
 
     /// The draft with some changes.
@@ -158,7 +157,9 @@ impl Search<'_> {
             Step::Elsewhere(_) => MOVED,
         };
         let prior: f64 = steps.iter().map(price).sum();
-        let guess = guess(&thin, &fit, self.bodies[thin.body].reach);
+        let reach = self.bodies[thin.body].reach;
+        // where nothing fits, base and tip are anywhere
+        let guess = if is_failed(&fit, reach) { -BASE.2 - TOOL.2 } else { guess(&thin, &fit, reach) };
         State { score: fit.log_likelihood + guess + prior, steps, thin, fit, guess }
     }
 
@@ -214,8 +215,11 @@ impl Search<'_> {
 
     /// Two changes at once, from the best few.
     fn pair(&self, from: &State, tried: &[State]) -> Option<State> {
-        let first: Vec<&State> =
-            tried.iter().filter(|state| !matches!(state.steps.last(), Some(Step::Elsewhere(_)))).take(BEAM).collect();
+        let first: Vec<&State> = tried
+            .iter()
+            .filter(|state| !matches!(state.steps.last(), Some(Step::Elsewhere(_))))
+            .take(BEAM)
+            .collect();
         let grown = first.iter().flat_map(|state| self.extended(state).into_iter().take(1));
         let mut grown: Vec<State> = grown.filter(|state| self.is_better(state, from)).collect();
         grown.sort_by(|a, b| b.score.total_cmp(&a.score));
@@ -228,8 +232,9 @@ impl Search<'_> {
         if after.score - before.score < ODDS * more.max(1.0) || !self.is_far(after) {
             return false;
         }
-        // a first guess that fits now where it did not
-        after.guess - before.guess > ODDS || self.is_nearer(after, before)
+        // a first guess that agrees now where it did not, with a fit that is good both times
+        let agrees = !self.has_failed(before) && after.guess - before.guess > ODDS;
+        agrees || self.is_nearer(after, before)
     }
 
     /// True where what differs between two states lies so many times nearer, and is enough.
@@ -240,8 +245,7 @@ impl Search<'_> {
         let least = (TOUCHED.0 * after.thin.len() as f64).max(TOUCHED.1 as f64);
         let (old, new): (Vec<f64>, Vec<f64>) = touched.into_iter().unzip();
         let (old_middle, new_middle) = (median(&old), median(&new));
-        old.len() as f64 >= least
-            && old_middle.zip(new_middle).is_some_and(|(old, new)| old > NEARER * new)
+        old.len() as f64 >= least && old_middle.zip(new_middle).is_some_and(|(old, new)| old > NEARER * new)
     }
 
     /// False where a base moved by so little that the effects find it.
@@ -262,7 +266,9 @@ impl Search<'_> {
     fn sharpened(&self, state: State) -> State {
         let mut state = state;
         for _ in 0..3 {
-            let Some(Step::Elsewhere(Change::Moved(first))) = state.steps.last().cloned() else { return state };
+            let Some(Step::Elsewhere(Change::Moved(first))) = state.steps.last().cloned() else {
+                return state;
+            };
             let draft = self.changed(&state.steps);
             let new = draft.stations - 1;
             let before = self.changed(&state.steps[..state.steps.len() - 1]);
@@ -274,10 +280,8 @@ impl Search<'_> {
             let cost = |lengths: Vec<f64>| -> Vec<f64> {
                 lengths.iter().map(|r| (r / state.fit.scale).powi(2).ln_1p()).collect()
             };
-            let (here, there) = (
-                cost(state.fit.lengths_at(&part, body, old)),
-                cost(state.fit.lengths_at(&part, body, new)),
-            );
+            let (here, there) =
+                (cost(state.fit.lengths_at(&part, body, old)), cost(state.fit.lengths_at(&part, body, new)));
             let mut sum: f64 = there.iter().sum();
             let (mut least, mut best) = (f64::INFINITY, 0);
             for k in 0..rows.len() {
@@ -335,9 +339,14 @@ fn width(draft: &Draft, rows: &[usize]) -> f64 {
     let points = || rows.iter().map(|&row| draft.point(row));
     let mean = points().sum::<Vector3<f64>>() / rows.len().max(1) as f64;
     let spread: Matrix3<f64> = points().map(|p| (p - mean) * (p - mean).transpose()).sum();
-    let mut values: Vec<f64> = (spread / rows.len().max(1) as f64).symmetric_eigenvalues().iter().copied().collect();
+    let mut values: Vec<f64> =
+        (spread / rows.len().max(1) as f64).symmetric_eigenvalues().iter().copied().collect();
     values.sort_by(f64::total_cmp);
     values.get(1).map_or(0.0, |second| second.max(0.0).sqrt())
+}
+
+fn is_failed(fit: &Fit, reach: f64) -> bool {
+    median(&fit.residuals).is_some_and(|left| left > FAILED * reach)
 }
 
 fn without(steps: &[Step], k: usize) -> Vec<Step> {

@@ -4,6 +4,7 @@ use std::io::Write;
 use std::path::Path;
 
 use super::*;
+use crate::diagnosis::calibration::Neighbours;
 use crate::inference::{Effect, Linearised, UNKNOWN, infer};
 use crate::parallel::in_parallel;
 use crate::units::MM;
@@ -42,6 +43,22 @@ fn the_gears_of_a_ur5_predict_poses_that_they_were_not_fitted_to() {
     for (before, after) in by_fold {
         assert!((0.08 * MM..0.14 * MM).contains(&before), "{before}");
         assert!(after < 0.6 * before, "{after} of {before}");
+    }
+}
+
+/// Nothing in what others recorded is a mistake, nor did anything move.
+#[test]
+fn recordings_of_others_hold_no_mistake() {
+    let real = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/real");
+    for name in ["ur5", "mukca/kuka_14", "mukca/panda_1", "mukca/panda_2_clean"] {
+        let path = real.join(name).join("campaign.toml");
+        if !path.exists() {
+            let _ = writeln!(std::io::stderr(), "skipped: there is no ../shared/real/{name}");
+            continue;
+        }
+        let campaign = Campaign::read(&path).unwrap_or_else(|error| panic!("{error}"));
+        let found = crate::diagnosis::calibration::suspected(&campaign, Mode::None, &Neighbours::default());
+        assert_eq!(found.unwrap(), [], "{name}");
     }
 }
 

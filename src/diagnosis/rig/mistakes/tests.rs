@@ -394,7 +394,7 @@ fn no_physics_is_a_mistake_however_large() {
     recordings(&BENCHES, 1, |what, file, clean| {
         let model = RigModel::new(&clean, Some(file)).unwrap().0;
         for (index, candidate) in model.candidates().iter().enumerate() {
-            let is_one_of_many = candidate.effect.name == "slip" && index % 4 > 0;
+            let is_one_of_many = candidate.effect.name == "slip" && index % 3 > 0;
             if candidate.is_nonparametric || candidate.effect.name == "outlier" || is_one_of_many {
                 continue;
             }
@@ -418,10 +418,15 @@ fn no_physics_is_a_mistake_however_large() {
                     *offset = offset.map(|offset| offset + change);
                 }
                 let case = format!("{what}: {} {} × {times}", candidate.effect, candidate.location);
+                // what a slip before the last run does, a zero that was not taken there does too: both are said
+                let is_said = |found: &Finding| {
+                    let others = found.others();
+                    candidate.effect.name == "slip" && others.iter().any(|(e, _)| *e == candidate.effect)
+                };
                 for rod in [Some(file), None] {
-                    let found = found(&readings, rod);
-                    if !found.is_empty() {
-                        wrong.push(format!("{case}: {found:?}"));
+                    let mended = mended(&readings, rod, &[]).unwrap();
+                    if !mended.found.iter().all(is_said) {
+                        wrong.push(format!("{case}: {:?}", names(&mended)));
                     }
                 }
             }

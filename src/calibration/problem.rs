@@ -11,7 +11,7 @@
 //! base's position: what the frame of the station is still wrong by.
 //!
 //! f is the rigid tip in {W}, R·Δxᵢ the rod's deflection. Δxᵢ is held fixed in {T}: it turns with
-//! the robot, so that how the rod bends does not seem to tell which way the robot stands. wᵢ is one
+//! the robot, so that how the rod bends does not seem to say which way the robot stands. wᵢ is one
 //! over the standard deviation of a coordinate. The unknowns are the free parameters, then the
 //! three coordinates of every socket, or t and φ of every station but the first.
 

@@ -57,7 +57,7 @@ pub struct Calibration<'c> {
     pub is_converged: bool,
     /// How well the poses show the parameters.
     pub observability: Observability,
-    /// How well the calibrated robot predicts, where the campaign can tell.
+    /// How well the calibrated robot predicts, where the campaign can say it.
     pub validation: Option<Validation>,
     /// Largest distance of the nominal tip from the first joint over the recording, m.
     pub reach: f64,

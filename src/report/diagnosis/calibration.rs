@@ -87,11 +87,9 @@ fn subject<'a>(found: &'a CalibrationDiagnosis<'_>) -> Subject<'a> {
             averaged: " on average",
             before: model.recorded.map_or(before, |recorded| recorded.mean),
             after,
-            held_out: match model.recorded {
-                Some(recorded) => distances.held_out_means().map(|(_, after)| (recorded.mean, after)),
-                None => distances.held_out_means(),
-            },
+            held_out: distances.held_out_means(),
         },
+        before_correction: model.recorded.map(|recorded| recorded.rms / 3.0f64.sqrt()),
         nominal: None,
         suspect: Box::new(|datum| {
             let row = &campaign.measurements.rows[datum / 3];

@@ -1,11 +1,12 @@
 //! Which mistakes turn poses that fit nothing into poses that fit.
 //!
 //! Greedy: the change that gains most, then the best beside it; where no single one cures a fit that
-//! fails, pairs that begin with the best few. A state is kept where it is a thousand times more
+//! fails, pairs that begin with the best few, or with a unit; where no pair does, nothing is named. A state is kept where it is a thousand times more
 //! probable than the one that it grew from **and** what it touches lies three times nearer.
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::super::effects::mistakes::UNIT_MISTAKE;
 use super::draft::{Change, Draft};
 use super::moves::{Move, turn};
 use super::quick::{Body, Fit, fit};
@@ -95,7 +96,7 @@ impl Search<'_> {
         let mut best = base.clone();
         while best.steps.len() < MOST_CHANGES {
             let tried = self.extended(&best);
-            let next = tried.iter().find(|state| self.is_better(state, &best));
+            let next = tried.iter().find(|state| self.is_better(state, &best) && !self.has_failed(state));
             let next = match next {
                 Some(next) => Some(next.clone()),
                 None if self.has_failed(&best) => self.pair(&best, &tried),
@@ -215,13 +216,16 @@ impl Search<'_> {
 
     /// Two changes at once, from the best few.
     fn pair(&self, from: &State, tried: &[State]) -> Option<State> {
-        let first: Vec<&State> = tried
-            .iter()
-            .filter(|state| !matches!(state.steps.last(), Some(Step::Elsewhere(_))))
-            .take(BEAM)
-            .collect();
+        let moves = || tried.iter().filter(|state| matches!(state.steps.last(), Some(Step::Move(_))));
+        // what hardly moves, or is of another size, fits anything badly: units are always tried
+        let is_unit = |state: &&State| match state.steps.last() {
+            Some(Step::Move(number)) => self.moves[*number].effect == &UNIT_MISTAKE,
+            _ => false,
+        };
+        let first: Vec<&State> = moves().take(BEAM).chain(moves().skip(BEAM).filter(is_unit)).collect();
         let grown = first.iter().flat_map(|state| self.extended(state).into_iter().take(1));
-        let mut grown: Vec<State> = grown.filter(|state| self.is_better(state, from)).collect();
+        let mut grown: Vec<State> =
+            grown.filter(|state| self.is_better(state, from) && !self.has_failed(state)).collect();
         grown.sort_by(|a, b| b.score.total_cmp(&a.score));
         grown.into_iter().next()
     }

@@ -156,14 +156,19 @@ fn a_tracker_that_moved_is_found_and_gets_its_column() {
 
 #[test]
 fn a_validation_from_another_place_is_told_from_a_bad_robot() {
-    let sandbox = Sandbox::new();
-    let file = "campaigns/tx90-5/validation.csv";
-    let text = rewritten(&sandbox.read(file), |_, header, cells| {
+    let sandbox = from_two_places(false);
+    let text = sandbox.read("sim/validation.csv");
+    let (comments, rows): (Vec<&str>, Vec<&str>) =
+        text.lines().partition(|line| !line.starts_with(char::is_numeric));
+    let file = |rows: &[&str]| [&comments[..], rows].concat().join("\n") + "\n";
+    sandbox.write("sim/tracked.csv", &file(&rows[..70]));
+    let moved = rewritten(&file(&rows[70..]), |_, header, cells| {
         let x = at(header, "x_mm");
         cells[x] = format!("{}", cells[x].parse::<f64>().unwrap() + 250.0);
     });
-    sandbox.write(file, &text);
-    sandbox.write(CAMPAIGN, &format!("validation_refit = \"none\"\n{}", sandbox.read(CAMPAIGN)));
-    let answer = sandbox.run(&format!("calibrate {CAMPAIGN}"));
+    sandbox.write("sim/elsewhere.csv", &moved);
+    let validated = "validation = \"elsewhere.csv\"\nvalidation_refit = \"none\"\n";
+    sandbox.write("sim/tracked.toml", &format!("{validated}{}", sandbox.read("sim/tracked.toml")));
+    let answer = sandbox.run("calibrate sim/tracked.toml");
     assert!(answer.stderr.contains("tracker or base stood elsewhere"), "{}", answer.stderr);
 }

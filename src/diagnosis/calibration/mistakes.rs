@@ -33,7 +33,7 @@ use super::effects::mistakes::FRAME_MISTAKE;
 use crate::calibration::campaign::{Campaign, FileNames, Recording};
 use crate::calibration::{Calibration, Compensation, Mode, Options, Summary, calibrate};
 use crate::error::Result;
-use crate::inference::{Description, Effect, Estimate, Finding, Kind, Location, Proposal, Rival};
+use crate::inference::{Description, Effect, Estimate, Finding, Kind, Location, Rival};
 use crate::robot::Robot;
 use crate::rod::Rod;
 use crate::spatial::Pose;
@@ -329,7 +329,7 @@ impl Mended {
             rivals.push(Rival::without_term(&CLAMP_POSE.effect, Location::Named(name), 1.0));
         }
         finding.rivals = rivals;
-        finding.next = Proposal::direct_check(finding, &finding.rivals.iter().collect::<Vec<_>>());
+        finding.next = finding.direct_check(&finding.rivals.iter().collect::<Vec<_>>());
     }
 
     /// A frame that moved, with how far.

@@ -205,10 +205,10 @@ fn clamps_exchanged_and_frames_in_another_convention() {
     for row in &mut wrong.measurements.rows {
         row.group = [1, 0, 2, 3, 4][row.group];
     }
-    for row in 0..60 {
+    for (row, device) in devices.iter().enumerate() {
         let there = wrong.measurements.device(row);
         let point = &mut points(&mut wrong)[row];
-        *point = there.point(&devices[row].inverse().point(point));
+        *point = there.point(&device.inverse().point(point));
     }
     assert_eq!(found(&wrong), one("swap_mistake", "clamps 1 and 2"));
 

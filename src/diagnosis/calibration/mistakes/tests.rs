@@ -217,9 +217,8 @@ fn clamps_exchanged_and_frames_in_another_convention() {
         let [roll, pitch, yaw] = group.device.roll_pitch_yaw();
         let turned = Pose::from_xyz_rpy(group.device.origin.into(), [yaw, pitch, roll]);
         let Targets::Points(points) = &mut wrong.measurements.targets else { panic!("measured points") };
-        for (point, row) in points.iter_mut().zip(&wrong.measurements.rows).filter(|(_, row)| row.group == k)
-        {
-            let _ = row;
+        let rows = points.iter_mut().zip(&wrong.measurements.rows);
+        for (point, _) in rows.filter(|(_, row)| row.group == k) {
             *point = turned.point(&group.device.inverse().point(point));
         }
         *group = Group { device: turned, ..group.clone() };

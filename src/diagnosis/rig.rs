@@ -16,6 +16,7 @@
 //! which is exact once the engine has fitted its own multiple of F.
 
 mod action;
+mod as_measured;
 mod correction;
 mod datum;
 pub mod effects;
@@ -83,6 +84,7 @@ pub fn diagnose_among(
     };
     let (mut model, evidence, not_testable) = RigModel::with_effects(mended_readings, mended_rod, &|_| true)?;
     let mut diagnosis = infer(&model, &evidence);
+    as_measured::resize(&model, &evidence, &mut diagnosis);
     if mended.has_data {
         for k in 0..diagnosis.findings.len() {
             let next = next::next_measurement(&model, &evidence, &diagnosis, &diagnosis.findings[k])?;

@@ -42,23 +42,23 @@ impl CaseFiles {
     }
 
     /// The diagnosis of a case as its JSON, and what it says of the readings or of the poses that are asked for, µm. What cannot be
-    /// foretold is no reason to keep back what was found: the score counts it.
+    /// predicted is no reason to keep back what was found: the score counts it.
     pub fn diagnosed(&self) -> Result<(Value, Option<Vec<f64>>)> {
         if self.has("campaign.toml") {
             let campaign = self.campaign("campaign.toml")?;
             let found = calibration::diagnose(&campaign, default_mode(&campaign), &Options::default())?;
             let asked = self.has("asked.toml").then(|| self.campaign("asked.toml")).transpose()?;
-            let foretold = asked.and_then(|asked| found.predicted(&asked).ok());
+            let predicted = asked.and_then(|asked| found.predicted(&asked).ok());
             let coordinates =
-                foretold.map(|tips| tips.iter().flat_map(|tip| micrometres(tip.as_slice())).collect());
+                predicted.map(|tips| tips.iter().flat_map(|tip| micrometres(tip.as_slice())).collect());
             return Ok((report::diagnosis::calibration::json(&found), coordinates));
         }
         let rod = Rod::read(&self.directory.join("rod.toml"))?;
         let readings = self.readings("readings.csv")?;
         let found = rig::diagnose(&readings, Some(&rod))?;
         let asked = self.has("asked.csv").then(|| self.readings("asked.csv")).transpose()?;
-        let foretold = asked.and_then(|asked| found.predicted(&asked).ok());
-        let readings_um = foretold.map(|readings| micrometres(&readings));
+        let predicted = asked.and_then(|asked| found.predicted(&asked).ok());
+        let readings_um = predicted.map(|readings| micrometres(&readings));
         Ok((report::diagnosis::rig::json(&found, found.correction()?.as_ref()), readings_um))
     }
 }

@@ -88,15 +88,15 @@ fn rates(half: &str, part: &Part) -> Table {
         String::new(),
         "≥ 90 %".into(),
     ]);
-    let foretold = &part.counterfactual;
+    let predicted = &part.counterfactual;
     let number = |ratio: Option<f64>| ratio.map_or("–".into(), |ratio| format!("{:.0}", 100.0 * ratio));
-    if foretold.n > 0 {
+    if predicted.n > 0 {
         rows.push(vec![
             "error of what was asked, over the oracle's: median, quartiles".into(),
-            format!("{} of {}", foretold.answered, foretold.n),
-            number(foretold.median),
-            number(foretold.quartiles[0]),
-            number(foretold.quartiles[1]),
+            format!("{} of {}", predicted.answered, predicted.n),
+            number(predicted.median),
+            number(predicted.quartiles[0]),
+            number(predicted.quartiles[1]),
             String::new(),
         ]);
     }

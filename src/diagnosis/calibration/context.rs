@@ -58,7 +58,7 @@ impl<'a> Context<'a> {
         Ok(Context { since: &campaign.measurements, ..Context::still(asked, mode, setup, &deflections)? })
     }
 
-    /// Without what only measured points tell.
+    /// Without what only measured points show.
     fn still(
         campaign: &'a Campaign,
         mode: Mode,

@@ -94,9 +94,14 @@ impl Datum {
         format!("row {} d{}", self.row, self.channel)
     }
 
-    /// How its run is told from the others of its axis; nothing where the file has no names.
+    /// What names its run among those of its axis; nothing where the file has no names.
     pub(super) fn run_name(&self) -> Option<RunName> {
-        self.trial.clone().map(RunName::Trial)
+        let session = self.session.as_ref().map(|session| format!("session {session}"));
+        let name = match (self.trial.clone(), session) {
+            (Some(trial), Some(session)) => Some(format!("{trial}, {session}")),
+            (trial, session) => trial.or(session),
+        };
+        name.map(RunName::Trial)
     }
 
     /// A phase that is not stated counts as loading.

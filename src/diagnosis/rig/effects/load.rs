@@ -1,11 +1,11 @@
 //! What happens to a load before the rod feels it: friction, offset, play, direction.
 
-use super::places::loaded_axes;
+use super::places::{loaded_axes, sessions};
 use super::{
     Context, Entry, NOT_NEGATIVE, RigEffect, along_the_load, candidate, entry, of, parameter, preferring,
     said,
 };
-use crate::diagnosis::rig::action::Action;
+use crate::diagnosis::rig::action::{Action, Scope};
 use crate::diagnosis::rig::datum::Datum;
 use crate::inference::{Effect, Finding, Kind, Location, Parameter, Part, Reported, WrittenTo};
 use crate::spatial::Axis;
@@ -15,6 +15,8 @@ use crate::units::{DEG, UM};
 const SLIDE: f64 = 0.05;
 /// Weight of a hanger that was forgotten, or error of a tare, as a share of the largest load.
 const TARE: f64 = 0.05;
+/// Travel over which friction turns round as a share of the largest displacement.
+const PRESLIDING: f64 = 0.05;
 /// Play of a clamp or of a threaded holder as a share of the largest reading.
 const PLAY: f64 = 0.025;
 /// What the eye allows when a load or a sensor is set up, rad.
@@ -31,8 +33,11 @@ pub static FRICTION: RigEffect = RigEffect {
         summary: "friction in the slide holds back part of each load",
         formula: "F = load − f while loading (not below zero), load + f while unloading",
         prior: "5 % of the largest load: the paper's lines cross the load axis at 0.9 to 1.1 of 20 N",
-        parameters: &[("force_n", "friction force")],
-        needs: "loads; unloading (column `phase`) distinguishes it from an offset",
+        parameters: &[
+            ("force_n", "friction force"),
+            ("presliding_um", "travel over which friction turns round, where the displacement is imposed"),
+        ],
+        needs: "loads; unloading distinguishes it from an offset",
         cause: "friction in the slide",
         cause_at: |location| "friction in the slide".to_owned() + &under(location),
         written_to: WrittenTo::Recording,
@@ -43,14 +48,22 @@ pub static FRICTION: RigEffect = RigEffect {
     needs_rod: false,
     candidates: |context| {
         let largest = context.largest_load();
-        of_axes(context.data, Part::Slide, &|location, axes| {
-            let force = parameter("force_n", 1.0, 0.0, SLIDE * largest, (0.0, largest));
-            entry(&FRICTION, location, force, Action::Friction(axes))
-        })
+        let force = || parameter("force_n", 1.0, 0.0, SLIDE * largest, (0.0, largest));
+        let mut entries = of_axes(context.data, Part::Slide, &|location, scope| {
+            entry(&FRICTION, location, force(), Action::Friction(scope))
+        });
+        entries.extend(presliding(context, force()));
+        entries
     },
     missing: |_| "no load was applied",
     observed: |finding, model| {
         let (load, force) = (each_load(finding), said(finding, "force_n", "N"));
+        if model.data().iter().any(|d| d.imposed.is_some()) {
+            let over = finding.quantity("presliding_um").map_or_else(String::new, |travel| {
+                format!(", and turns round over {} of travel", travel.size().say("µm"))
+            });
+            return format!("Friction of {force} resists the motion at every turn{over}");
+        }
         match model.data().iter().any(Datum::is_unloading) {
             true => format!(
                 "About {force} of {load} does not reach the rod while loading, and as much remains on it \
@@ -82,9 +95,9 @@ pub static LOAD_OFFSET: RigEffect = RigEffect {
     needs_rod: false,
     candidates: |context| {
         let largest = context.largest_load();
-        of_axes(context.data, Part::Hanger, &|location, axes| {
+        of_axes(context.data, Part::Hanger, &|location, scope| {
             let force = parameter("force_n", 1.0, 0.0, TARE * largest, (-largest, largest));
-            entry(&LOAD_OFFSET, location, force, Action::LoadOffset(axes))
+            entry(&LOAD_OFFSET, location, force, Action::LoadOffset(scope))
         })
     },
     missing: |_| "no load was applied",
@@ -115,9 +128,9 @@ pub static BACKLASH: RigEffect = RigEffect {
     needs_rod: false,
     candidates: |context| {
         let largest = context.largest_reading();
-        of_axes(context.data, Part::Clamp, &|location, axes| {
+        of_axes(context.data, Part::Clamp, &|location, scope| {
             let play = parameter("play_um", UM, 0.0, PLAY * largest, NOT_NEGATIVE);
-            entry(&BACKLASH, location, play, Action::Play(axes))
+            entry(&BACKLASH, location, play, Action::Play(scope))
         })
     },
     missing: |_| "no channel was read along a load",
@@ -167,16 +180,35 @@ pub static LOAD_MISALIGNMENT: RigEffect = RigEffect {
     },
 };
 
-/// A part as a whole, and under the loads of each axis: a rig is set up anew for each direction.
-fn of_axes(data: &[Datum], part: Part, make: &dyn Fn(Location, [bool; 3]) -> Entry) -> Vec<Entry> {
+/// Friction that turns round over some travel, of loads that are measured while the displacement is imposed.
+fn presliding(context: &Context, force: Parameter) -> Option<Entry> {
+    let largest = context.data.iter().filter_map(|d| d.imposed).fold(0.0, |most: f64, imposed| {
+        most.max(imposed.displacement.abs())
+    });
+    let is_moving = context.data.iter().any(|d| d.imposed.is_some() && d.is_unloading());
+    (largest > 0.0 && is_moving).then(|| {
+        let travel = parameter("presliding_um", UM, 0.0, PRESLIDING * largest, (0.0, largest));
+        let location = Location::Form { part: Part::Slide, form: "with presliding".into() };
+        let scope = Scope { axes: [true; 3], session: None };
+        let actions = vec![Action::Friction(scope), Action::Presliding];
+        (candidate(&FRICTION.effect, location, vec![force, travel]), actions)
+    })
+}
+
+/// A part as a whole, under the loads of each axis and in each session: a rig is set up anew for each.
+fn of_axes(data: &[Datum], part: Part, make: &dyn Fn(Location, Scope) -> Entry) -> Vec<Entry> {
     let axes = loaded_axes(data);
-    let mut entries = vec![make(Location::Part(part), [true; 3])];
+    let everywhere = Scope { axes: [true; 3], session: None };
+    let mut entries = vec![make(Location::Part(part), everywhere)];
     if axes.len() > 1 {
-        entries.extend(
-            axes.into_iter()
-                .map(|axis| make(Location::UnderLoads { part, axis }, Axis::ALL.map(|other| other == axis))),
-        );
+        entries.extend(axes.into_iter().map(|axis| {
+            let scope = Scope { axes: Axis::ALL.map(|other| other == axis), ..everywhere };
+            make(Location::UnderLoads { part, axis }, scope)
+        }));
     }
+    entries.extend(sessions(data).into_iter().map(|(number, session)| {
+        make(Location::InSession { part, session }, Scope { session: Some(number), ..everywhere })
+    }));
     preferring(entries, |candidate| matches!(candidate.location, Location::Part(_)))
 }
 
@@ -240,8 +272,9 @@ pub(super) fn whole_turn(finding: &Finding) -> String {
 
 /// `each load`, or `each load along y` where it is those of one axis only.
 fn each_load(finding: &Finding) -> String {
-    match finding.location {
+    match &finding.location {
         Location::UnderLoads { axis, .. } => format!("each load along {axis}"),
+        Location::InSession { session, .. } => format!("each load of session {session}"),
         _ => "each load".to_owned(),
     }
 }
@@ -250,6 +283,7 @@ fn each_load(finding: &Finding) -> String {
 fn under(location: &Location) -> String {
     match location {
         Location::UnderLoads { axis, .. } => format!(" under loads along {axis}"),
+        Location::InSession { session, .. } => format!(" in session {session}"),
         _ => String::new(),
     }
 }

@@ -1,0 +1,126 @@
+//! Friction and play along a recording: what they do depends on which way it went before.
+//!
+//! ```text
+//! load driven          g ← min(max(g, F − f), F + f)                       play operator: the force that the rod feels
+//! displacement driven  x ← min(max(x, u − p), u + p)                       play operator: the rod behind its play
+//!                      z ← min(max(z + Δx/d, −1), 1)                       stop operator: friction, d its presliding travel
+//!                      F = x/C + f·z in contact, 0 in the gap
+//! ```
+//!
+//! f the friction, p the play, C the compliance. Within its play a rod stays where friction holds it, |x| ≤ f·C, and returns as
+//! far as that by itself. Without presliding z is the direction of motion. Sources: A. Visintin, *Differential Models of
+//! Hysteresis*, 1994, ch. III; J. Awrejcewicz, P. Olejnik, *Appl. Mech. Rev.* 58 (2005) 389–411 (dry friction).
+
+use super::datum::{Datum, numbered};
+use super::load_history::runs;
+
+/// Which data follow which.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Course {
+    /// Runs, where friction follows the direction of motion, as instants of data.
+    pub hung: Vec<Vec<Vec<usize>>>,
+    /// Imposed displacements of one sensor in one run, in their order.
+    pub imposed: Vec<Vec<usize>>,
+}
+
+impl Course {
+    pub(super) fn of(data: &[Datum]) -> Course {
+        let mut course = Course::default();
+        for run in runs(data) {
+            let imposed: Vec<usize> = run.iter().copied().filter(|&i| data[i].imposed.is_some()).collect();
+            let sensors = numbered(imposed.iter().map(|&i| data[i].stations()));
+            for sensor in 0..sensors.iter().max().map_or(0, |last| last + 1) {
+                let of_sensor = imposed.iter().zip(&sensors).filter(|(_, own)| **own == sensor);
+                course.imposed.push(of_sensor.map(|(&i, _)| i).collect());
+            }
+            if imposed.is_empty() && run.iter().any(|&i| data[i].motion.is_some()) {
+                course.hung.push(instants(data, &run));
+            }
+        }
+        course
+    }
+}
+
+/// Data of a run by instant.
+pub(super) fn instants(data: &[Datum], run: &[usize]) -> Vec<Vec<usize>> {
+    run.chunk_by(|&a, &b| data[a].order == data[b].order).map(<[usize]>::to_vec).collect()
+}
+
+/// Friction and play of a hung load: the force that the rod feels, and to which side of its play it leans.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Hung {
+    /// Along the positive axis, N.
+    pub force: f64,
+    /// 1, −1, or 0 before anything was felt.
+    pub side: f64,
+}
+
+impl Hung {
+    /// After a load `load` (N, along the positive axis) with the friction `friction` (N).
+    pub(super) fn next(self, load: f64, friction: f64) -> Hung {
+        let force = self.force.max(load - friction).min(load + friction);
+        Hung { force, side: if force == 0.0 { self.side } else { force.signum() } }
+    }
+}
+
+/// What an imposed displacement meets.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Met {
+    /// Displacement of the rod behind its play, m.
+    pub rod: f64,
+    /// Force of friction over its largest, −1 to 1.
+    pub friction: f64,
+    /// 1, or 0 in the gap, and between them where the contact is just made.
+    pub contact: f64,
+    /// Travel since the last turn, m.
+    travel: f64,
+    /// The displacement before.
+    before: f64,
+}
+
+/// Play and friction as an imposed displacement meets them.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Slide {
+    /// Play on either side, m.
+    pub play: f64,
+    /// Presliding travel, m; 0: friction turns round at once.
+    pub presliding: f64,
+    /// Where friction still holds the rod against its own stiffness: f·C, m.
+    pub held: f64,
+    /// Over so much travel a contact is made, m: the usual step from reading to reading.
+    pub step: f64,
+}
+
+impl Slide {
+    /// After a displacement `u` (m), moved to in `direction` (1, −1, 0 at rest).
+    pub(super) fn next(&self, met: Met, u: f64, direction: f64) -> Met {
+        let rod = match self.play > 0.0 {
+            true => met.rod.clamp(-self.held, self.held).max(u - self.play).min(u + self.play),
+            false => u,
+        };
+        let moved = rod - met.rod;
+        let friction = match self.presliding > 0.0 {
+            true => (met.friction + moved / self.presliding).clamp(-1.0, 1.0),
+            false => direction,
+        };
+        let has_turned = direction * met.travel < 0.0;
+        let travel = if has_turned { u - met.before } else { met.travel + u - met.before };
+        // the last step of the gap is a part of the contact: a share of it, so that it grows with the play without a jump
+        let depth = (rod - u).abs() - self.play;
+        let contact = match self.play > 0.0 && self.step > 0.0 {
+            true => (1.0 + depth / self.step).clamp(0.0, 1.0),
+            false => 1.0,
+        };
+        Met { rod, friction, contact, travel, before: u }
+    }
+}
+
+/// The usual step of an imposed displacement from reading to reading, m.
+pub(super) fn usual_step(data: &[Datum], course: &Course) -> f64 {
+    let steps = course.imposed.iter().flat_map(|line| {
+        line.windows(2).map(|pair| (data[pair[1]].drive() - data[pair[0]].drive()).abs()).collect::<Vec<_>>()
+    });
+    let mut steps: Vec<f64> = steps.filter(|step| *step > 0.0).collect();
+    steps.sort_by(f64::total_cmp);
+    steps.get(steps.len() / 2).copied().unwrap_or_default()
+}

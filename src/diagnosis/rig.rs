@@ -2,7 +2,8 @@
 //!
 //! Three stages act one after another, so that effects combine as they would on the bench (friction on a rod whose modulus
 //! is off too): a nominal load becomes a force, a force becomes a displacement, a displacement becomes a reading. Formulae:
-//! `action.rs` (stages), `structure.rs` (compliance), `load_history.rs` (creep, hysteresis). Which effects there are and how
+//! `action.rs` (stages), `slide.rs` (friction and play along a course), `structure.rs` (compliance), `load_history.rs` (creep,
+//! hysteresis). What was recorded when, in which session and run, and which way the load went: `chronicle.rs`. Which effects there are and how
 //! large they usually are: `effects/`. The rivals that stand for physics nobody has named: `nonparametric.rs`.
 //!
 //! Without a rod (`linear`) each line of readings has a slope c that nobody knows. The evidence leaves it to the engine as
@@ -14,8 +15,13 @@
 //! ```
 //!
 //! which is exact once the engine has fitted its own multiple of F.
+//!
+//! Where the displacement is imposed and the load is measured (`driven = "displacement"`), the loads are what is compared: the
+//! same chain, solved for the load, of which each newton counts as c₀ = max|u|/max|F| metres, so that loads and the readings
+//! of other sensors stand in one unit.
 
 mod action;
+mod chronicle;
 mod correction;
 mod datum;
 pub mod effects;
@@ -27,6 +33,7 @@ mod mistakes;
 mod next;
 mod nominal;
 mod nonparametric;
+mod slide;
 mod structure;
 #[cfg(test)]
 mod tests;
@@ -36,11 +43,12 @@ use nalgebra::{DMatrix, DVector};
 
 use self::action::{Action, State};
 use self::effects::{Context, registry};
-use self::structure::Structure;
+use self::slide::Course;
+use self::structure::{Parts, Structure};
 use crate::error::Result;
 use crate::inference::{
     Candidate, Description, Diagnosed, Effect, Estimate, Evidence, Finding, FindingPart, ForwardModel,
-    Hypothesis, Location, NotTestable, Proposal, Term, diagnose as infer, rms,
+    Hypothesis, Location, NotTestable, Parameter, Proposal, Term, diagnose as infer, rms,
 };
 use crate::rig::readings::Readings;
 use crate::rod::Rod;
@@ -118,6 +126,9 @@ pub struct RigModel {
     body: Body,
     /// For each datum the pair of stations (with a rod) or the line (without).
     place: Vec<usize>,
+    /// Which data follow which, and the usual step of an imposed displacement (m).
+    course: Course,
+    step: f64,
     candidates: Vec<Candidate>,
     /// For each candidate what its parameters do.
     actions: Vec<Vec<Action>>,
@@ -165,7 +176,7 @@ impl RigModel {
         rod: Option<&Rod>,
         is_wanted: &dyn Fn(&Candidate) -> bool,
     ) -> Result<(RigModel, Evidence, Vec<NotTestable>)> {
-        let data = datum::all(&readings.rows);
+        let data = datum::recorded(readings);
         let (body, place) = match rod {
             Some(rod) => {
                 structure::check_stations(readings, rod)?;
@@ -187,7 +198,10 @@ impl RigModel {
                 (Body::Lines(line.iter().max().map_or(0, |last| last + 1)), line)
             }
         };
+        let course = Course::of(&data);
         let mut model = RigModel {
+            step: slide::usual_step(&data, &course),
+            course,
             readings: readings.clone(),
             rod: rod.cloned(),
             as_recorded: None,
@@ -209,7 +223,14 @@ impl RigModel {
             Body::Rod(structure) => {
                 let second = structure.second_order()?;
                 let of = |(d, &place): (&Datum, &usize)| {
-                    second[place][(d.channel.index(), d.direction.axis.index())] * d.load.powi(2)
+                    let more = second[place][(d.channel.index(), d.direction.axis.index())] * d.load.powi(2);
+                    // an imposed displacement needs so much less load
+                    match d.imposed {
+                        Some(imposed) if imposed.displacement != 0.0 => {
+                            -more * d.predicted / imposed.displacement
+                        }
+                        _ => more,
+                    }
                 };
                 Some(DVector::from_iterator(model.data.len(), model.data.iter().zip(&model.place).map(of)))
             }
@@ -230,7 +251,13 @@ impl RigModel {
         Ok((model, evidence, not_testable))
     }
 
-    /// The data, in the order of the evidence.
+    /// Name of a session, by its number in [`Evidence::session`].
+    pub fn session(&self, number: usize) -> &str {
+        let of_session = self.data.iter().find(|datum| datum.session_number == number);
+        of_session.and_then(|datum| datum.session.as_deref()).unwrap_or("without a name")
+    }
+
+    /// The data in the order of recording, which is that of the evidence.
     pub fn data(&self) -> &[Datum] {
         &self.data
     }
@@ -276,6 +303,7 @@ impl RigModel {
             false => "it needs a rod file",
         });
         entries.extend(nonparametric::all(&self.data, &deflections, has_rod));
+        nonparametric::retain_predictive(&mut entries, &self.data, &deflections);
         entries.retain(|(candidate, _)| is_wanted(candidate));
         for (candidate, actions) in entries {
             let (parameters, actions): (Vec<_>, Vec<_>) = candidate
@@ -283,12 +311,13 @@ impl RigModel {
                 .into_iter()
                 .zip(actions)
                 .filter(|(parameter, action)| {
-                    // where a joint is matters as soon as it yields
-                    matches!(action, Action::Station(_))
+                    // where a joint is matters as soon as it gives way, when a load was hung as soon as there is creep
+                    matches!(action, Action::Station(_) | Action::Onset(_) | Action::Presliding)
                         || self.is_felt(action, parameter.neutral, parameter.size, parameter.bounds)
                 })
                 .unzip();
-            if actions.iter().any(|action| !matches!(action, Action::Station(_))) {
+            let is_dependent = |action: &Action| matches!(action, Action::Station(_) | Action::Onset(_) | Action::Presliding);
+            if actions.iter().any(|action| !is_dependent(action)) {
                 self.candidates.push(Candidate { parameters, ..candidate });
                 self.actions.push(actions);
             }
@@ -323,7 +352,7 @@ impl RigModel {
             Body::Rod(_) => self.data.iter().map(|d| d.predicted).collect(),
             Body::Lines(count) => {
                 let measured: Vec<f64> = self.data.iter().map(|d| d.measured).collect();
-                let loads: Vec<f64> = self.data.iter().map(Datum::signed_load).collect();
+                let loads: Vec<f64> = self.data.iter().map(Datum::drive).collect();
                 let slopes = self.slopes(count, &loads, &measured);
                 loads.iter().zip(&self.place).map(|(load, &line)| load * slopes[line]).collect()
             }
@@ -342,13 +371,41 @@ impl RigModel {
 
     /// The readings of a rod, without shifts, m.
     fn displaced(&self, structure: &Structure, state: &State<'_>) -> Vec<f64> {
-        let compliance = structure.softened(&state.softening);
+        let common = structure.softened(&state.softening);
+        let mut of_session: Vec<Option<Parts>> = Vec::new();
+        for &(session, _, _) in &state.of_sessions {
+            of_session.resize(of_session.len().max(session + 1), None);
+            let joints = state.of_sessions.iter().filter(|(of, _, _)| *of == session);
+            let mut softening = state.softening.clone();
+            softening.joints.extend(joints.map(|&(_, joint, by)| (joint, by)));
+            of_session[session] = Some(structure.softened(&softening));
+        }
+        let pulls = state.pulls(&self.data, &self.course);
+        let compliance = |i: usize| {
+            let own = of_session.get(self.data[i].session_number).and_then(Option::as_ref);
+            own.unwrap_or(&common)[self.place[i]]
+        };
         let reading = |(i, datum): (usize, &Datum)| {
-            let pull = state.pull(i, datum);
-            let bent = compliance[self.place[i]] * (pull.direction * pull.load);
+            let pull = &pulls[i];
+            let bent = compliance(i) * (pull.direction * pull.load);
             state.read(datum.channel, &(bent + pull.direction * pull.play))
         };
-        self.data.iter().enumerate().map(reading).collect()
+        let mut readings: Vec<f64> = self.data.iter().enumerate().map(reading).collect();
+        // what a sensor along the load shows per newton
+        let along = |i: usize| {
+            let datum = &self.data[i];
+            let direction = pulls[i].direction * f64::from(datum.direction.sign);
+            state.read(datum.channel, &(compliance(i) * direction))
+        };
+        for (i, met) in state.met(&self.data, &self.course, self.step, &along) {
+            let (datum, along) = (&self.data[i], along(i));
+            let per_newton = datum.imposed.map_or(along, |imposed| imposed.per_newton);
+            readings[i] = match along == 0.0 {
+                true => 0.0,
+                false => per_newton * state.measured_load(i, datum, &met, along),
+            };
+        }
+        readings
     }
 
     fn changed(&self, state: &State<'_>) -> DVector<f64> {
@@ -367,17 +424,29 @@ impl RigModel {
                 }
             }
             Body::Lines(count) => {
-                let mut felt = Vec::with_capacity(self.data.len());
-                let mut left = Vec::with_capacity(self.data.len());
-                for (i, datum) in self.data.iter().enumerate() {
-                    let pull = state.pull(i, datum);
+                let pulls = state.pulls(&self.data, &self.course);
+                let mut felt: Vec<f64> = Vec::with_capacity(self.data.len());
+                for (i, (datum, pull)) in self.data.iter().zip(&pulls).enumerate() {
                     felt.push(pull.load * f64::from(datum.direction.sign));
                     change[i] += pull.direction[datum.channel.index()] * pull.play;
-                    left.push(datum.measured - change[i]);
                 }
+                // of an imposed displacement a line is the load per displacement: c₀ the compliance that its unit is
+                let unit = |i: usize| self.data[i].imposed.map_or(1.0, |imposed| imposed.per_newton);
+                let measured: Vec<f64> = self.data.iter().map(|d| d.measured).collect();
+                let drives: Vec<f64> = self.data.iter().map(Datum::drive).collect();
+                let stiffness = self.slopes(*count, &drives, &measured);
+                let compliance = |i: usize| unit(i) / stiffness[self.place[i]].abs().max(f64::MIN_POSITIVE.sqrt());
+                for (i, met) in state.met(&self.data, &self.course, self.step, &compliance) {
+                    let datum = &self.data[i];
+                    let load = state.measured_load(i, datum, &met, unit(i));
+                    let besides = state.measured_load(i, datum, &slide::Met { rod: 0.0, ..met }, unit(i));
+                    felt[i] = unit(i) * (load - besides);
+                    change[i] += unit(i) * besides;
+                }
+                let left: Vec<f64> = self.data.iter().zip(change.iter()).map(|(d, c)| d.measured - c).collect();
                 let slopes = self.slopes(*count, &felt, &left);
                 for (i, datum) in self.data.iter().enumerate() {
-                    change[i] += slopes[self.place[i]] * (felt[i] - datum.signed_load());
+                    change[i] += slopes[self.place[i]] * (felt[i] - datum.drive());
                 }
             }
         }
@@ -399,6 +468,35 @@ impl ForwardModel for RigModel {
             }
         }
         self.changed(&state)
+    }
+
+    /// Play that an imposed displacement crosses acts in steps: it is moved by half its usual size. What does nothing without
+    /// its effect's first parameter is seen beside the usual size of that.
+    fn columns(&self, terms: &[Term], position: usize) -> DMatrix<f64> {
+        const USUAL: f64 = 1e-4;
+        const WIDE: f64 = 0.5;
+        let term = &terms[position];
+        let parameters = &self.candidates[term.candidate].parameters;
+        let column = |(k, (parameter, action)): (usize, (&Parameter, &Action))| {
+            let mut moved = terms.to_vec();
+            let first = &parameters[0];
+            if matches!(action, Action::Onset(_) | Action::Presliding) && term.values[0] == first.neutral {
+                moved[position].values[0] += first.size;
+            }
+            let is_stepped = !self.course.imposed.is_empty()
+                && matches!(action, Action::Play(_) | Action::Presliding);
+            let h = if is_stepped { WIDE } else { USUAL } * parameter.size;
+            let (low, high) = if is_stepped { parameter.bounds } else { (f64::NEG_INFINITY, f64::INFINITY) };
+            let (more, less) = ((term.values[k] + h).min(high), (term.values[k] - h).max(low));
+            moved[position].values[k] = more;
+            let with_more = self.response(&moved);
+            moved[position].values[k] = less;
+            let with_less = self.response(&moved);
+            (with_more - with_less) * (parameter.size / (more - less))
+        };
+        let columns: Vec<DVector<f64>> =
+            parameters.iter().zip(&self.actions[term.candidate]).enumerate().map(column).collect();
+        DMatrix::from_columns(&columns)
     }
 
     fn location(&self, term: &Term) -> Location {

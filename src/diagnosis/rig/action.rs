@@ -19,7 +19,7 @@
 use nalgebra::{Rotation3, Unit, Vector3};
 
 use super::datum::Datum;
-use super::load_history::{History, Memory, Onset};
+use super::load_history::{Clock, History, Memory, Onset};
 use super::slide::{Course, Hung, Met, Slide};
 use super::structure::{Nodes, Softening};
 use crate::spatial::Axis;
@@ -101,7 +101,8 @@ pub(super) struct State<'a> {
     pub softening: Softening,
     per_load_squared: f64,
     per_load: f64,
-    memories: Vec<(&'a Memory, f64)>,
+    /// With which law they follow.
+    memories: Vec<(&'a Memory, History, f64)>,
     onsets: Vec<(&'a Onset, f64)>,
     /// By channel.
     sensor: [Vector3<f64>; 3],
@@ -169,7 +170,7 @@ impl<'a> State<'a> {
             Action::Station(nodes) => nodes.move_joint(&mut self.softening, value),
             Action::PerLoadSquared => self.per_load_squared += value,
             Action::PerLoad => self.per_load += value,
-            Action::Memory(memory, _) => self.memories.push((memory, value)),
+            Action::Memory(memory, history) => self.memories.push((memory, *history, value)),
             Action::Onset(onset) => self.onsets.push((onset, value)),
             Action::SensorScale(channel) => self.scale[channel.index()] *= value,
             Action::TurnSensor(channel, towards) => {
@@ -226,16 +227,21 @@ impl<'a> State<'a> {
 
     /// Π(1 + v·w).
     fn remembered(&self, index: usize) -> f64 {
-        let factor = |(memory, value): &(&Memory, f64)| {
-            let later: f64 = self.onsets.iter().map(|(onset, by)| onset.adds(index, *by)).sum();
-            1.0 + value * (memory.relative[index] + later)
+        let factor = |(memory, history, value): &(&Memory, History, f64)| {
+            let earlier: f64 = match history {
+                History::Creep(Clock::UnknownOnset, _) => {
+                    self.onsets.iter().map(|(onset, before)| onset.adds(index, *before)).sum()
+                }
+                _ => 0.0,
+            };
+            1.0 + value * (memory.relative[index] + earlier)
         };
         self.memories.iter().map(factor).product()
     }
 
     /// Σ v·W, N.
     fn lingering(&self, index: usize) -> f64 {
-        self.memories.iter().map(|(memory, value)| value * memory.lingering[index]).sum()
+        self.memories.iter().map(|(memory, _, value)| value * memory.lingering[index]).sum()
     }
 
     /// What each imposed displacement meets, by its datum; `compliance` of a datum (m/N) is that along its load.
@@ -252,7 +258,7 @@ impl<'a> State<'a> {
             for &i in line {
                 let datum = &data[i];
                 let play = self.play.of(datum).max(0.0);
-                let held = self.friction.of(datum) * compliance(i).abs();
+                let held = (self.friction.of(datum) * compliance(i)).abs();
                 let slide = Slide { play, presliding: self.presliding.max(0.0), held, step };
                 let direction = datum.motion.map_or(0.0, |motion| motion.direction);
                 met = slide.next(met, datum.drive(), direction);

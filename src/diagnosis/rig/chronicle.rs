@@ -10,7 +10,7 @@
 use std::collections::HashMap;
 
 use super::datum::numbered;
-use crate::rig::readings::{Axis, Driven, Phase, Reading, instants};
+use crate::rig::readings::{Driven, Phase, Reading, instants};
 
 /// Share of the largest load by which a load has to go back for a turn.
 const TURN: f64 = 0.02;

@@ -27,7 +27,7 @@ pub(super) enum History {
 /// Since when a reading has crept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Clock {
-    /// t counts from when this load was hung, as the file says.
+    /// t counts from when this load was hung, as the file says, or else right after the last reading of another load.
     ThisLoad,
     /// t counts from a moment before the first reading of each run that nobody knows.
     UnknownOnset,
@@ -43,8 +43,14 @@ pub(super) enum Clock {
 }
 
 impl Clock {
-    pub(super) const ALL: [Clock; 5] =
-        [Clock::FirstReading, Clock::FirstLoad, Clock::EachLoad, Clock::File, Clock::UnknownOnset];
+    pub(super) const ALL: [Clock; 6] = [
+        Clock::FirstReading,
+        Clock::FirstLoad,
+        Clock::EachLoad,
+        Clock::ThisLoad,
+        Clock::File,
+        Clock::UnknownOnset,
+    ];
     /// Where the file says when each load was hung.
     pub(super) const STATED: [Clock; 3] = [Clock::ThisLoad, Clock::EachLoad, Clock::FirstLoad];
 
@@ -137,10 +143,16 @@ pub(super) fn creep(data: &[Datum], clock: Clock, t0: f64) -> Option<Memory> {
             _ => stated.unwrap_or(times[run[0]] - dwell),
         };
         let grown = |now: f64, since: f64| (1.0 + (now - since).max(0.0) / t0).log10();
+        let mut this_load = start;
         for (place, moment) in moments.iter().enumerate() {
             let relative = match clock {
                 Clock::FirstReading | Clock::FirstLoad | Clock::UnknownOnset => grown(moment.time, start),
-                Clock::ThisLoad => known(moment.hung).map_or(0.0, |hung| grown(moment.time, hung)),
+                Clock::ThisLoad => {
+                    if place > 0 && moments[place - 1].load != moment.load {
+                        this_load = moments[place - 1].time;
+                    }
+                    grown(moment.time, known(moment.hung).unwrap_or(this_load))
+                }
                 Clock::File => grown(moment.time, zero),
                 Clock::EachLoad => {
                     if moments.len() > MOST_CHANGES {
@@ -165,6 +177,15 @@ pub(super) fn creep(data: &[Datum], clock: Clock, t0: f64) -> Option<Memory> {
         }
     }
     Some(memory)
+}
+
+/// Softening with temperature: displacement × (1 + k·(T − T̄)), T̄ the mean of the recording, K. Nothing where a
+/// reading has no temperature, or where all have the same.
+pub(super) fn warmth(data: &[Datum]) -> Option<Memory> {
+    let temperatures: Vec<f64> = data.iter().map(|d| d.temperature).collect::<Option<_>>()?;
+    temperatures.iter().any(|one| *one != temperatures[0]).then_some(())?;
+    let mean = temperatures.iter().sum::<f64>() / temperatures.len() as f64;
+    Some(Memory { relative: temperatures.into_iter().map(|one| one - mean).collect(), ..none(data) })
 }
 
 /// Shape of a hysteresis loop. All are independent of rate and closed at the largest load of the run, F_max, and at half of it

@@ -51,7 +51,7 @@ pub(super) fn instants(data: &[Datum], run: &[usize]) -> Vec<Vec<usize>> {
 pub(super) struct Hung {
     /// Along the positive axis, N.
     pub force: f64,
-    /// 1, −1, or 0 before anything was felt.
+    /// 1, −1, or 0 where nothing is felt.
     pub side: f64,
 }
 
@@ -59,7 +59,7 @@ impl Hung {
     /// After a load `load` (N, along the positive axis) with the friction `friction` (N).
     pub(super) fn next(self, load: f64, friction: f64) -> Hung {
         let force = self.force.max(load - friction).min(load + friction);
-        Hung { force, side: if force == 0.0 { self.side } else { force.signum() } }
+        Hung { force, side: if force == 0.0 { 0.0 } else { force.signum() } }
     }
 }
 
@@ -72,10 +72,6 @@ pub(super) struct Met {
     pub friction: f64,
     /// 1, or 0 in the gap, and between them where the contact is just made.
     pub contact: f64,
-    /// Travel since the last turn, m.
-    travel: f64,
-    /// The displacement before.
-    before: f64,
 }
 
 /// Play and friction as an imposed displacement meets them.
@@ -95,7 +91,7 @@ impl Slide {
     /// After a displacement `u` (m), moved to in `direction` (1, −1, 0 at rest).
     pub(super) fn next(&self, met: Met, u: f64, direction: f64) -> Met {
         let rod = match self.play > 0.0 {
-            true => met.rod.clamp(-self.held, self.held).max(u - self.play).min(u + self.play),
+            true => met.rod.max(-self.held).min(self.held).max(u - self.play).min(u + self.play),
             false => u,
         };
         let moved = rod - met.rod;
@@ -103,15 +99,13 @@ impl Slide {
             true => (met.friction + moved / self.presliding).clamp(-1.0, 1.0),
             false => direction,
         };
-        let has_turned = direction * met.travel < 0.0;
-        let travel = if has_turned { u - met.before } else { met.travel + u - met.before };
         // the last step of the gap is a part of the contact: a share of it, so that it grows with the play without a jump
         let depth = (rod - u).abs() - self.play;
         let contact = match self.play > 0.0 && self.step > 0.0 {
             true => (1.0 + depth / self.step).clamp(0.0, 1.0),
             false => 1.0,
         };
-        Met { rod, friction, contact, travel, before: u }
+        Met { rod, friction, contact }
     }
 }
 

@@ -70,7 +70,7 @@ fn subject<'a>(found: &'a RigDiagnosis, correction: Option<&Correction>) -> Subj
         more: vec![("correction", json!(correction.map(correction::json)))],
         of_findings: Vec::new(),
         details: Vec::new(),
-        session_name: Box::new(|session| session.to_string()),
+        session_name: Box::new(|session| model.session(session).to_owned()),
         plan: Box::new(|plan| match plan {
             Plan::Loads(plan) => super::json::load_plan(plan),
             Plan::Poses(_) => Value::Null,

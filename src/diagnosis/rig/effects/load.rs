@@ -7,7 +7,7 @@ use super::{
 };
 use crate::diagnosis::rig::action::{Action, Scope};
 use crate::diagnosis::rig::datum::Datum;
-use crate::inference::{Effect, Finding, Kind, Location, Parameter, Part, Reported, WrittenTo};
+use crate::inference::{Candidate, Effect, Finding, Kind, Location, Parameter, Part, Reported, WrittenTo};
 use crate::spatial::Axis;
 use crate::units::{DEG, UM};
 
@@ -17,6 +17,8 @@ const SLIDE: f64 = 0.05;
 const TARE: f64 = 0.05;
 /// Travel over which friction turns round as a share of the largest displacement.
 const PRESLIDING: f64 = 0.05;
+/// How often friction that turns round over a travel is met for one that turns round at once.
+const RARE: f64 = 0.2;
 /// Play of a clamp or of a threaded holder as a share of the largest reading.
 const PLAY: f64 = 0.025;
 /// What the eye allows when a load or a sensor is set up, rad.
@@ -52,7 +54,10 @@ pub static FRICTION: RigEffect = RigEffect {
         let mut entries = of_axes(context.data, Part::Slide, &|location, scope| {
             entry(&FRICTION, location, force(), Action::Friction(scope))
         });
-        entries.extend(presliding(context, force()));
+        if let Some(presliding) = presliding(context, force()) {
+            entries[0].0.is_alternative = true;
+            entries.push(presliding);
+        }
         entries
     },
     missing: |_| "no load was applied",
@@ -191,7 +196,8 @@ fn presliding(context: &Context, force: Parameter) -> Option<Entry> {
         let location = Location::Form { part: Part::Slide, form: "with presliding".into() };
         let scope = Scope { axes: [true; 3], session: None };
         let actions = vec![Action::Friction(scope), Action::Presliding];
-        (candidate(&FRICTION.effect, location, vec![force, travel]), actions)
+        let candidate = candidate(&FRICTION.effect, location, vec![force, travel]);
+        (Candidate { is_alternative: true, weight: RARE, ..candidate }, actions)
     })
 }
 

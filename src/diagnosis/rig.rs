@@ -237,7 +237,7 @@ impl RigModel {
             Body::Lines(_) => None,
         };
         let mut evidence = evidence::of(&model.data, nuisance, large);
-        evidence.stated_noise = readings.header.noise;
+        evidence.stated_noise = model.stated_noise();
         if let Some(rod) = rod {
             let stations = |rod: &Rod, d: &Datum| {
                 let tip = rod.length();
@@ -288,6 +288,21 @@ impl RigModel {
         self.as_recorded.as_ref()?.error
     }
 
+    /// What a newton of a measured load counts, m/N; `None` where loads were set.
+    pub fn per_newton(&self) -> Option<f64> {
+        self.data.iter().find_map(|datum| datum.imposed).map(|imposed| imposed.per_newton)
+    }
+
+    /// Stated noise of a datum, m: where the load was measured, that of load and displacement together.
+    fn stated_noise(&self) -> Option<f64> {
+        let header = &self.readings.header;
+        let of_load = self.per_newton().zip(header.load_noise).map(|(per_newton, noise)| per_newton * noise);
+        match (header.noise, of_load) {
+            (Some(a), Some(b)) => Some(a.hypot(b)),
+            (a, b) => a.or(b),
+        }
+    }
+
     /// Fills in the effects and their nonparametric rivals, without what can do nothing to these
     /// readings; the effects that then have no candidate.
     fn add_candidates(&mut self, is_wanted: &dyn Fn(&Candidate) -> bool) -> Vec<NotTestable> {
@@ -316,7 +331,9 @@ impl RigModel {
                         || self.is_felt(action, parameter.neutral, parameter.size, parameter.bounds)
                 })
                 .unzip();
-            let is_dependent = |action: &Action| matches!(action, Action::Station(_) | Action::Onset(_) | Action::Presliding);
+            let is_dependent = |action: &Action| {
+                matches!(action, Action::Station(_) | Action::Onset(_) | Action::Presliding)
+            };
             if actions.iter().any(|action| !is_dependent(action)) {
                 self.candidates.push(Candidate { parameters, ..candidate });
                 self.actions.push(actions);
@@ -435,7 +452,8 @@ impl RigModel {
                 let measured: Vec<f64> = self.data.iter().map(|d| d.measured).collect();
                 let drives: Vec<f64> = self.data.iter().map(Datum::drive).collect();
                 let stiffness = self.slopes(*count, &drives, &measured);
-                let compliance = |i: usize| unit(i) / stiffness[self.place[i]].abs().max(f64::MIN_POSITIVE.sqrt());
+                let compliance =
+                    |i: usize| unit(i) / stiffness[self.place[i]].abs().max(f64::MIN_POSITIVE.sqrt());
                 for (i, met) in state.met(&self.data, &self.course, self.step, &compliance) {
                     let datum = &self.data[i];
                     let load = state.measured_load(i, datum, &met, unit(i));
@@ -443,7 +461,8 @@ impl RigModel {
                     felt[i] = unit(i) * (load - besides);
                     change[i] += unit(i) * besides;
                 }
-                let left: Vec<f64> = self.data.iter().zip(change.iter()).map(|(d, c)| d.measured - c).collect();
+                let left: Vec<f64> =
+                    self.data.iter().zip(change.iter()).map(|(d, c)| d.measured - c).collect();
                 let slopes = self.slopes(*count, &felt, &left);
                 for (i, datum) in self.data.iter().enumerate() {
                     change[i] += slopes[self.place[i]] * (felt[i] - datum.drive());
@@ -470,23 +489,29 @@ impl ForwardModel for RigModel {
         self.changed(&state)
     }
 
-    /// Play that an imposed displacement crosses acts in steps: it is moved by half its usual size. What does nothing without
-    /// its effect's first parameter is seen beside the usual size of that.
+    /// Play that an imposed displacement crosses acts in steps, and friction behind it holds the rod there or does not: they
+    /// are moved by a part of their usual size. What does nothing without its effect's first parameter is seen beside the usual
+    /// size of that.
     fn columns(&self, terms: &[Term], position: usize) -> DMatrix<f64> {
-        const USUAL: f64 = 1e-4;
-        const WIDE: f64 = 0.5;
         let term = &terms[position];
-        let parameters = &self.candidates[term.candidate].parameters;
+        let (parameters, actions) =
+            (&self.candidates[term.candidate].parameters, &self.actions[term.candidate]);
+        let is_imposed = !self.course.imposed.is_empty();
+        let has_play = actions.iter().any(|action| matches!(action, Action::Play(_)));
         let column = |(k, (parameter, action)): (usize, (&Parameter, &Action))| {
             let mut moved = terms.to_vec();
             let first = &parameters[0];
-            if matches!(action, Action::Onset(_) | Action::Presliding) && term.values[0] == first.neutral {
+            let is_second =
+                k > 0 && matches!(action, Action::Onset(_) | Action::Presliding | Action::Play(_));
+            if is_second && term.values[0] == first.neutral {
                 moved[position].values[0] += first.size;
             }
-            let is_stepped = !self.course.imposed.is_empty()
-                && matches!(action, Action::Play(_) | Action::Presliding);
-            let h = if is_stepped { WIDE } else { USUAL } * parameter.size;
-            let (low, high) = if is_stepped { parameter.bounds } else { (f64::NEG_INFINITY, f64::INFINITY) };
+            let (step, (low, high)) = match action {
+                Action::Play(_) | Action::Presliding if is_imposed => (0.5, parameter.bounds),
+                Action::Friction(_) if is_imposed && has_play => (2.0, parameter.bounds),
+                _ => (1e-4, (f64::NEG_INFINITY, f64::INFINITY)),
+            };
+            let h = step * parameter.size;
             let (more, less) = ((term.values[k] + h).min(high), (term.values[k] - h).max(low));
             moved[position].values[k] = more;
             let with_more = self.response(&moved);
@@ -494,8 +519,7 @@ impl ForwardModel for RigModel {
             let with_less = self.response(&moved);
             (with_more - with_less) * (parameter.size / (more - less))
         };
-        let columns: Vec<DVector<f64>> =
-            parameters.iter().zip(&self.actions[term.candidate]).enumerate().map(column).collect();
+        let columns: Vec<DVector<f64>> = parameters.iter().zip(actions).enumerate().map(column).collect();
         DMatrix::from_columns(&columns)
     }
 

@@ -12,8 +12,8 @@ const AS_WELL: (f64, f64) = (20.0, 1.01);
 /// Most effects in one hypothesis.
 const MOST: usize = 8;
 /// Of how many candidates, the likeliest by their columns at neutral values, the values are fitted.
-const REFITTED: usize = 5;
-/// And how many of them may be of one effect.
+const REFITTED: usize = 6;
+/// And how many of them may be of one effect, with as many parameters.
 const OF_ONE_EFFECT: usize = 2;
 
 /// By how much the odds of a name may be shared among effects that explain the same.
@@ -193,7 +193,11 @@ impl Search<'_> {
         // a scan over places must not crowd out what is at one place only
         let mut tried: Vec<usize> = Vec::new();
         for index in self.likeliest(additions, unknown) {
-            let effect = |candidate: usize| &self.model.candidates()[candidate].effect;
+            // nor a form of a law with fewer numbers one with more
+            let effect = |candidate: usize| {
+                let candidate = &self.model.candidates()[candidate];
+                (candidate.effect, candidate.parameters.len())
+            };
             let same = tried.iter().filter(|&&other| effect(other) == effect(index)).count();
             if unknown || same < OF_ONE_EFFECT {
                 tried.push(index);

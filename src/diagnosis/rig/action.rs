@@ -13,7 +13,8 @@
 //! Under an imposed displacement the same chain is solved for the load that was measured:
 //!
 //! ```text
-//! F = c·φ(x/C)/Π(1 + v·w) − Σ v·W·(load per displacement) + friction·z − offset     φ(F)(1 + k₂φ²)(1 + k₁|φ|) = F
+//! F = φ(x/C)·Π(1 − v·w) − Σ v·W·(c₀/C) + friction·z − offset     φ(1 + k₂φ²)(1 + k₁|φ|) = x/C
+//! 1 − v·w of creep, which is relaxation here; 1/(1 + v·w) of all else
 //! ```
 
 use nalgebra::{Rotation3, Unit, Vector3};
@@ -188,7 +189,8 @@ impl<'a> State<'a> {
 
     /// What the load of each datum does, as far as it is the same for every structure.
     pub(super) fn pulls(&self, data: &[Datum], course: &Course) -> Vec<Pull> {
-        let mut pulls: Vec<Pull> = data.iter().enumerate().map(|(i, datum)| self.pull(i, datum, None)).collect();
+        let mut pulls: Vec<Pull> =
+            data.iter().enumerate().map(|(i, datum)| self.pull(i, datum, None)).collect();
         for run in &course.hung {
             let mut hung = Hung::default();
             for instant in run {
@@ -227,16 +229,27 @@ impl<'a> State<'a> {
 
     /// Π(1 + v·w).
     fn remembered(&self, index: usize) -> f64 {
-        let factor = |(memory, history, value): &(&Memory, History, f64)| {
-            let earlier: f64 = match history {
-                History::Creep(Clock::UnknownOnset, _) => {
-                    self.onsets.iter().map(|(onset, before)| onset.adds(index, *before)).sum()
-                }
-                _ => 0.0,
-            };
-            1.0 + value * (memory.relative[index] + earlier)
+        self.memories.iter().map(|memory| 1.0 + self.growth(index, memory)).product()
+    }
+
+    /// The share of the load that is left under a held displacement: 1 − v·w of what relaxes, 1/(1 + v·w) of all else.
+    fn relaxed(&self, index: usize) -> f64 {
+        let factor = |memory: &(&Memory, History, f64)| match memory.1 {
+            History::Creep(..) => 1.0 - self.growth(index, memory),
+            _ => 1.0 / (1.0 + self.growth(index, memory)),
         };
         self.memories.iter().map(factor).product()
+    }
+
+    /// v·w.
+    fn growth(&self, index: usize, (memory, history, value): &(&Memory, History, f64)) -> f64 {
+        let earlier: f64 = match history {
+            History::Creep(Clock::UnknownOnset, _) => {
+                self.onsets.iter().map(|(onset, before)| onset.adds(index, *before)).sum()
+            }
+            _ => 0.0,
+        };
+        value * (memory.relative[index] + earlier)
     }
 
     /// Σ v·W, N.
@@ -273,11 +286,9 @@ impl<'a> State<'a> {
         let per_newton = datum.imposed.map_or(compliance, |imposed| imposed.per_newton);
         let linear = met.rod / compliance;
         let lingering = self.lingering(index) * f64::from(datum.direction.sign) * per_newton / compliance;
-        let elastic = self.without_curvature(linear) / self.remembered(index) - lingering;
-        let tare = match datum.load > 0.0 {
-            true => self.load_offset.of(datum) * f64::from(datum.direction.sign),
-            false => 0.0,
-        };
+        let elastic = self.without_curvature(linear) * self.relaxed(index) - lingering;
+        // a load cell's zero does not know which way the load pulls
+        let tare = self.load_offset.of(datum);
         met.contact * (elastic + self.friction.of(datum) * met.friction) - tare
     }
 
@@ -290,8 +301,8 @@ impl<'a> State<'a> {
         let mut size = load.abs();
         for _ in 0..8 {
             let value = size * (1.0 + k2 * size * size) * (1.0 + k1 * size) - load.abs();
-            let slope = (1.0 + 3.0 * k2 * size * size) * (1.0 + k1 * size)
-                + size * (1.0 + k2 * size * size) * k1;
+            let slope =
+                (1.0 + 3.0 * k2 * size * size) * (1.0 + k1 * size) + size * (1.0 + k2 * size * size) * k1;
             if slope <= 0.1 {
                 break;
             }

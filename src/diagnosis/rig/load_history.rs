@@ -1,7 +1,6 @@
 //! What a rod remembers of its loads: creep and hysteresis.
 
 use super::datum::Datum;
-use super::slide::instants;
 use crate::spatial::Direction;
 
 /// How the history of loads acts on each datum.
@@ -36,23 +35,49 @@ pub(super) enum Clock {
     /// t counts from one reading before that: the first load too had hung for a while when it was read.
     FirstLoad,
     /// Every change of the load creeps by itself and the changes add up (Boltzmann's superposition); a load is taken
-    /// to change right after the reading before, unless the file says when it was hung.
-    EachLoad,
+    /// to change right after the reading before, half way to the reading at it, or when it was first read, unless the file
+    /// says when it was hung.
+    EachLoad(Changed),
     /// t is the file's own time.
     File,
 }
 
+/// When a load was changed between two readings.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Changed {
+    /// Right after the one.
+    Early,
+    /// Half way.
+    Midway,
+    /// Right before the other.
+    Late,
+}
+
+impl Changed {
+    /// The time of the change between readings at two times, s.
+    fn between(self, before: f64, after: f64) -> f64 {
+        match self {
+            Changed::Early => before,
+            Changed::Midway => 0.5 * (before + after),
+            Changed::Late => after,
+        }
+    }
+}
+
 impl Clock {
-    pub(super) const ALL: [Clock; 6] = [
+    pub(super) const ALL: [Clock; 8] = [
         Clock::FirstReading,
         Clock::FirstLoad,
-        Clock::EachLoad,
+        Clock::EachLoad(Changed::Early),
+        Clock::EachLoad(Changed::Midway),
+        Clock::EachLoad(Changed::Late),
         Clock::ThisLoad,
         Clock::File,
         Clock::UnknownOnset,
     ];
     /// Where the file says when each load was hung.
-    pub(super) const STATED: [Clock; 3] = [Clock::ThisLoad, Clock::EachLoad, Clock::FirstLoad];
+    pub(super) const STATED: [Clock; 3] =
+        [Clock::ThisLoad, Clock::EachLoad(Changed::Early), Clock::FirstLoad];
 
     /// For people.
     pub(super) fn name(self) -> &'static str {
@@ -61,7 +86,9 @@ impl Clock {
             Clock::UnknownOnset => "since a moment before each run",
             Clock::FirstReading => "since the first reading",
             Clock::FirstLoad => "since the first load",
-            Clock::EachLoad => "since each load",
+            Clock::EachLoad(Changed::Early) => "since each load",
+            Clock::EachLoad(Changed::Midway) => "since each load, hung between two readings",
+            Clock::EachLoad(Changed::Late) => "since each load, hung as it was read",
             Clock::File => "since time 0",
         }
     }
@@ -114,7 +141,8 @@ struct Moment {
 fn moments(data: &[Datum], run: &[usize], times: &[f64]) -> Vec<Moment> {
     let of_instant = |instant: Vec<usize>| {
         // of an imposed displacement the one that is largest counts, as the load that it would need
-        let load = |i: &usize| data[*i].imposed.map_or(data[*i].signed_load(), |u| u.displacement / u.per_newton);
+        let load =
+            |i: &usize| data[*i].imposed.map_or(data[*i].signed_load(), |u| u.displacement / u.per_newton);
         let is_imposed = |i: &&usize| data[**i].imposed.is_some();
         let imposed = instant.iter().filter(is_imposed).map(load).max_by(|a, b| a.abs().total_cmp(&b.abs()));
         let (first, time) = (instant[0], times[instant[0]]);
@@ -154,13 +182,13 @@ pub(super) fn creep(data: &[Datum], clock: Clock, t0: f64) -> Option<Memory> {
                     grown(moment.time, known(moment.hung).unwrap_or(this_load))
                 }
                 Clock::File => grown(moment.time, zero),
-                Clock::EachLoad => {
+                Clock::EachLoad(when) => {
                     if moments.len() > MOST_CHANGES {
                         return None;
                     }
                     let (mut load, mut changed, mut crept) = (0.0, start, 0.0);
                     for earlier in &moments[..=place] {
-                        let since = known(earlier.hung).unwrap_or(changed);
+                        let since = known(earlier.hung).unwrap_or(when.between(changed, earlier.time));
                         crept += (earlier.load - load) * grown(moment.time, since);
                         (load, changed) = (earlier.load, earlier.time);
                     }
@@ -289,7 +317,8 @@ fn turning(data: &[Datum]) -> Option<Memory> {
     let mut memory = none(data);
     let mut is_any = false;
     for run in runs(data) {
-        let load = |i: usize| data[i].imposed.map_or(data[i].signed_load(), |u| u.displacement / u.per_newton);
+        let load =
+            |i: usize| data[i].imposed.map_or(data[i].signed_load(), |u| u.displacement / u.per_newton);
         let (least, most) = run.iter().fold((0.0f64, 0.0f64), |(a, b), &i| (a.min(load(i)), b.max(load(i))));
         if least >= 0.0 || most <= 0.0 {
             continue;
@@ -318,6 +347,11 @@ pub(super) fn runs(data: &[Datum]) -> Vec<Vec<usize>> {
     }
     runs.retain(|run| !run.is_empty());
     runs
+}
+
+/// Data of a run by instant.
+pub(super) fn instants(data: &[Datum], run: &[usize]) -> Vec<Vec<usize>> {
+    run.chunk_by(|&a, &b| data[a].order == data[b].order).map(<[usize]>::to_vec).collect()
 }
 
 /// Usual time between two readings of a run, s: the median; 0 where no run has two times.
@@ -356,12 +390,12 @@ mod tests {
         assert_eq!(second(Clock::File), 201f64.log10());
         // 5 N for 200 s, 5 N more for 100 s
         let each = (5.0 * 201f64.log10() + 5.0 * 101f64.log10()) / 10.0;
-        assert!((second(Clock::EachLoad) - each).abs() < 1e-15);
+        assert!((second(Clock::EachLoad(Changed::Early)) - each).abs() < 1e-15);
     }
 
     #[test]
     fn an_unloaded_rod_still_recovers() {
-        let memory = creep(&data(TEXT), Clock::EachLoad, 1.0).unwrap();
+        let memory = creep(&data(TEXT), Clock::EachLoad(Changed::Early), 1.0).unwrap();
         let left = 5.0 * (401f64.log10() + 301f64.log10() - 201f64.log10() - 101f64.log10());
         assert!((memory.lingering[3] - left).abs() < 1e-12 && left > 0.0);
         assert_eq!(memory.relative[3], 0.0);

@@ -27,6 +27,8 @@ use crate::spatial::Axis;
 use crate::units::UM;
 
 const MOST_COLUMNS: usize = 6;
+/// Loads that are hung are at most so many different ones.
+const MOST_LEVELS: usize = 30;
 /// Size of a curve as a share of the largest reading, or of the deflection.
 const SHARE: f64 = 0.05;
 /// The same, as a share of the largest of all readings: a sensor and its holder are a little wrong
@@ -166,7 +168,8 @@ fn coordinates(data: &[Datum]) -> Vec<(Along, Coordinate, bool)> {
     found
 }
 
-/// Rank of the load, as `of` counts it, among those along its axis, for the data that `is_of` admits.
+/// Rank of the load, as `of` counts it, among those along its axis, for the data that `is_of` admits. Of more than
+/// [`MOST_LEVELS`] loads the size instead: where a measured load trembles about its levels, its rank is a better load.
 fn by_axis(data: &[Datum], of: impl Fn(&Datum) -> f64, is_of: impl Fn(&Datum) -> bool) -> Coordinate {
     let levels = Axis::ALL.map(|axis| {
         let along = data.iter().filter(|d| is_of(d) && d.direction.axis == axis);
@@ -178,6 +181,10 @@ fn by_axis(data: &[Datum], of: impl Fn(&Datum) -> f64, is_of: impl Fn(&Datum) ->
     let rank = |datum: &Datum| {
         is_of(datum).then_some(())?;
         let levels = &levels[datum.direction.axis.index()];
+        if levels.len() > MOST_LEVELS {
+            let (least, most) = (levels[0], levels[levels.len() - 1]);
+            return Some((of(datum) - least) / (most - least));
+        }
         let rank = levels.partition_point(|&level| level < of(datum));
         Some((rank as f64 + 0.5) / levels.len() as f64)
     };
@@ -289,7 +296,8 @@ fn along_the_load(data: &[Datum]) -> Option<Entry> {
 
 /// A slope of its own for every line: a rod whose compliance differs from the model in a way that no part of it explains.
 fn slopes(data: &[Datum], deflections: &[f64], lines: &[(String, Vec<usize>)]) -> Option<Entry> {
-    let slope = |&i: &usize| if data[i].drive() != 0.0 { (deflections[i] / data[i].drive()).abs() } else { 0.0 };
+    let slope =
+        |&i: &usize| if data[i].drive() != 0.0 { (deflections[i] / data[i].drive()).abs() } else { 0.0 };
     let steepest = (0..data.len()).map(|i| slope(&i)).fold(0.0, f64::max);
     let of_line = |(place, line): &(String, Vec<usize>)| {
         let size = SLOPE.0 * line.iter().map(slope).fold(0.0, f64::max) + SLOPE.1 * steepest;

@@ -12,7 +12,10 @@
 //! Hysteresis*, 1994, ch. III; J. Awrejcewicz, P. Olejnik, *Appl. Mech. Rev.* 58 (2005) 389–411 (dry friction).
 
 use super::datum::{Datum, numbered};
-use super::load_history::runs;
+use super::load_history::{instants, runs};
+
+/// Share of a play over which a contact is made, at most.
+const RAMP: f64 = 0.3;
 
 /// Which data follow which.
 #[derive(Debug, Clone, Default)]
@@ -39,11 +42,6 @@ impl Course {
         }
         course
     }
-}
-
-/// Data of a run by instant.
-pub(super) fn instants(data: &[Datum], run: &[usize]) -> Vec<Vec<usize>> {
-    run.chunk_by(|&a, &b| data[a].order == data[b].order).map(<[usize]>::to_vec).collect()
 }
 
 /// Friction and play of a hung load: the force that the rod feels, and to which side of its play it leans.
@@ -83,7 +81,7 @@ pub(super) struct Slide {
     pub presliding: f64,
     /// Where friction still holds the rod against its own stiffness: f·C, m.
     pub held: f64,
-    /// Over so much travel a contact is made, m: the usual step from reading to reading.
+    /// Over so much travel at most a contact is made, m: the usual step from reading to reading.
     pub step: f64,
 }
 
@@ -96,13 +94,14 @@ impl Slide {
         };
         let moved = rod - met.rod;
         let friction = match self.presliding > 0.0 {
-            true => (met.friction + moved / self.presliding).clamp(-1.0, 1.0),
+            true => (met.friction + moved / self.presliding).max(-1.0).min(1.0),
             false => direction,
         };
-        // the last step of the gap is a part of the contact: a share of it, so that it grows with the play without a jump
+        // the last piece of the gap belongs to the contact, in part: what is measured then changes with the play without a jump
         let depth = (rod - u).abs() - self.play;
-        let contact = match self.play > 0.0 && self.step > 0.0 {
-            true => (1.0 + depth / self.step).clamp(0.0, 1.0),
+        let ramp = self.step.min(RAMP * self.play);
+        let contact = match ramp > 0.0 {
+            true => (1.0 + depth / ramp).max(0.0).min(1.0),
             false => 1.0,
         };
         Met { rod, friction, contact }
@@ -117,4 +116,58 @@ pub(super) fn usual_step(data: &[Datum], course: &Course) -> f64 {
     let mut steps: Vec<f64> = steps.filter(|step| *step > 0.0).collect();
     steps.sort_by(f64::total_cmp);
     steps.get(steps.len() / 2).copied().unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn through(slide: Slide, path: &[f64]) -> Vec<(f64, f64, f64)> {
+        let (mut met, mut before) = (Met::default(), 0.0);
+        let next = |&u: &f64| {
+            let direction = if u > before { 1.0 } else { -1.0 };
+            before = u;
+            met = slide.next(met, u, direction);
+            (met.rod, met.friction, met.contact)
+        };
+        path.iter().map(next).collect()
+    }
+
+    /// A hung load is held back on the way up and on the way down, and nothing moves within 2f of a turn.
+    #[test]
+    fn friction_lags_behind_a_hung_load() {
+        let mut hung = Hung::default();
+        let felt: Vec<f64> = [0.5, 5.0, 10.0, 9.0, 8.5, 5.0, 0.0, -5.0]
+            .map(|load| {
+                hung = hung.next(load, 1.0);
+                hung.force
+            })
+            .into();
+        assert_eq!(felt, [0.0, 4.0, 9.0, 9.0, 9.0, 6.0, 1.0, -4.0]);
+        assert_eq!(hung.side, -1.0);
+    }
+
+    #[test]
+    fn a_free_rod_returns_to_the_middle_of_its_play_and_a_held_one_stays() {
+        let slide = Slide { play: 1.0, presliding: 0.0, held: 0.0, step: 0.0 };
+        let rod = |slide: Slide| -> Vec<f64> {
+            through(slide, &[3.0, 5.0, 3.0, 0.5, -0.5, -3.0]).iter().map(|met| met.0).collect()
+        };
+        assert_eq!(rod(slide), [2.0, 4.0, 2.0, 0.0, 0.0, -2.0]);
+        assert_eq!(rod(Slide { held: 9.0, ..slide }), [2.0, 4.0, 4.0, 1.5, 0.5, -2.0]);
+        // what is within the gap touches nothing
+        let gap = Slide { held: 9.0, step: 0.1, ..slide };
+        let contact: Vec<f64> = through(gap, &[3.0, 5.0, 4.0, 2.5, 0.0]).iter().map(|met| met.2).collect();
+        assert_eq!(contact, [1.0, 1.0, 0.0, 1.0, 1.0]);
+    }
+
+    #[test]
+    fn presliding_is_travelled_before_friction_has_turned_round() {
+        let slide = Slide { play: 0.0, presliding: 0.5, held: 0.0, step: 0.0 };
+        let friction: Vec<f64> =
+            through(slide, &[0.25, 2.0, 1.5, 1.25, 0.0]).iter().map(|met| met.1).collect();
+        assert_eq!(friction, [0.5, 1.0, 0.0, -0.5, -1.0]);
+        let at_once = Slide { presliding: 0.0, ..slide };
+        assert_eq!(through(at_once, &[0.25, 0.2]), [(0.25, 1.0, 1.0), (0.2, -1.0, 1.0)]);
+    }
 }

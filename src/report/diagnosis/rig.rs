@@ -14,7 +14,7 @@ use crate::diagnosis::rig::{Correction, Datum, RigDiagnosis};
 use crate::inference::{Discrepancy, ForwardModel, Location, Plan, Quantity, Variable, rms};
 use crate::report::{Block, Report};
 use crate::rig::readings::Phase;
-use crate::units::{MM, significant};
+use crate::units::{MM, UM, significant};
 
 /// Most samples of the shape along one line.
 const SAMPLES: usize = 12;
@@ -67,7 +67,10 @@ fn subject<'a>(found: &'a RigDiagnosis, correction: Option<&Correction>) -> Subj
         remainder: remainder(found),
         warnings: of_rod.chain(of_readings).collect(),
         head: vec![("rod", json!(rod.map(|rod| &rod.name))), ("readings", json!(readings.file))],
-        more: vec![("correction", json!(correction.map(correction::json)))],
+        more: vec![
+            ("correction", json!(correction.map(correction::json))),
+            ("measured_load", json!(measured_load(found))),
+        ],
         of_findings: Vec::new(),
         details: Vec::new(),
         session_name: Box::new(|session| model.session(session).to_owned()),
@@ -77,7 +80,7 @@ fn subject<'a>(found: &'a RigDiagnosis, correction: Option<&Correction>) -> Subj
         }),
         source: readings.source.clone(),
         places: std::iter::once(Block::Figure(figures::residuals(found))).chain(places).collect(),
-        proof: Vec::new(),
+        proof: loads_in_newtons(found).map(Block::Paragraph).into_iter().collect(),
         consequences: correction.map(correction::section),
         count: model.data().len(),
     }
@@ -105,6 +108,33 @@ fn nominal(found: &RigDiagnosis) -> Option<String> {
         "The stiffness is {share} {word} that of the rod file, within the stated uncertainty of {} \
          ({known}).",
         number.name
+    ))
+}
+
+/// Where the displacement was imposed: what a newton counts, and the errors of the loads in newtons.
+fn measured_load(found: &RigDiagnosis) -> Option<Value> {
+    let per_newton = found.model.per_newton()?;
+    let (diagnosis, newtons) = (&found.diagnosis, |error: f64| error / per_newton);
+    Some(json!({
+        "um_per_n": per_newton / UM,
+        "rms_before_n": newtons(rms(&diagnosis.before)),
+        "rms_after_n": newtons(rms(&diagnosis.after)),
+        "noise_n": newtons(diagnosis.noise),
+    }))
+}
+
+/// The same as sentences.
+fn loads_in_newtons(found: &RigDiagnosis) -> Option<String> {
+    let per_newton = found.model.per_newton()?;
+    let newtons = |error: f64| significant(error / per_newton, 2);
+    Some(format!(
+        "The displacement was imposed: the measured loads are compared with the model. One newton counts as {} µm, \
+         the largest displacement over the largest load. In newtons: {} rms as it is, {} with the findings; the \
+         scatter is {}.",
+        significant(per_newton / UM, 3),
+        newtons(rms(&found.diagnosis.before)),
+        newtons(rms(&found.diagnosis.after)),
+        newtons(found.diagnosis.noise),
     ))
 }
 

@@ -76,7 +76,9 @@ pub static CREEP: RigEffect = RigEffect {
         };
         let growth = of(finding, "per_decade").map(|share| 100.0 * share).say("%");
         match model.data().iter().any(|d| d.imposed.is_some()) {
-            true => format!("Under a held displacement the load falls by {growth} per decade of time {since}"),
+            true => {
+                format!("Under a held displacement the load falls by {growth} per decade of time {since}")
+            }
             false => format!("The deflections grow by {growth} per decade of time {since}"),
         }
     },

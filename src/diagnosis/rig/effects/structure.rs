@@ -8,7 +8,9 @@ use super::{
 use crate::diagnosis::rig::action::Action;
 use crate::diagnosis::rig::structure::Structure;
 use crate::diagnosis::rig::{Body, RigModel, STATION};
-use crate::inference::{Candidate, Effect, Finding, ForwardModel, Kind, Location, Part, Quantity, Reported, WrittenTo};
+use crate::inference::{
+    Candidate, Effect, Finding, ForwardModel, Kind, Location, Part, Quantity, Reported, WrittenTo,
+};
 use crate::rod::BendFlexibility;
 use crate::units::{MM, URAD_PER_NM, significant};
 

@@ -16,6 +16,8 @@ use super::load_history::{instants, runs};
 
 /// Share of a play over which a contact is made, at most.
 const RAMP: f64 = 0.3;
+/// Rounding of a contact, as a share of the play.
+const TOUCHING: f64 = 1e-9;
 
 /// Which data follow which.
 #[derive(Debug, Clone, Default)]
@@ -97,12 +99,16 @@ impl Slide {
             true => (met.friction + moved / self.presliding).max(-1.0).min(1.0),
             false => direction,
         };
-        // the last piece of the gap belongs to the contact, in part: what is measured then changes with the play without a jump
         let depth = (rod - u).abs() - self.play;
         let ramp = self.step.min(RAMP * self.play);
-        let contact = match ramp > 0.0 {
-            true => (1.0 + depth / ramp).max(0.0).min(1.0),
-            false => 1.0,
+        let contact = if depth >= -TOUCHING * self.play {
+            1.0
+        } else if direction * (u - rod) > 0.0 && ramp > 0.0 {
+            // the last piece of the gap belongs to the contact ahead, in part: what is measured then changes with the play
+            // without a jump
+            (1.0 + depth / ramp).max(0.0)
+        } else {
+            0.0
         };
         Met { rod, friction, contact }
     }

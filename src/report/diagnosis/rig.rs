@@ -73,6 +73,11 @@ fn subject<'a>(found: &'a RigDiagnosis, correction: Option<&Correction>) -> Subj
         ],
         of_findings: Vec::new(),
         details: Vec::new(),
+        sessions: (
+            "Each session predicted from the others, the search for effects included; rms of a reading. What belongs to \
+             one session is no part of it.",
+            "model as it is",
+        ),
         session_name: Box::new(|session| model.session(session).to_owned()),
         plan: Box::new(|plan| match plan {
             Plan::Loads(plan) => super::json::load_plan(plan),
@@ -143,8 +148,9 @@ fn line_name(datum: &Datum) -> String {
     let at = |what: &str, station: Option<f64>| {
         station.map_or_else(String::new, |s| format!(", {what} at {:.1} mm", s / MM))
     };
+    let session = datum.session.as_ref().map_or_else(String::new, |session| format!(", session {session}"));
     format!(
-        "d{} under loads along {}{}{}",
+        "d{} under loads along {}{}{}{session}",
         datum.channel,
         datum.direction.axis,
         at("loaded", datum.load_station),

@@ -151,6 +151,11 @@ impl AsRecorded {
     }
 }
 
+/// True for a parameter that does nothing where the first of its effect does nothing.
+fn is_dependent(action: &Action) -> bool {
+    matches!(action, Action::Onset(_) | Action::Presliding | Action::SliderPlay)
+}
+
 /// What turns a force into a displacement.
 #[derive(Debug, Clone)]
 enum Body {
@@ -327,14 +332,13 @@ impl RigModel {
                 .zip(actions)
                 .filter(|(parameter, action)| {
                     // where a joint is matters as soon as it gives way, when a load was hung as soon as there is creep
-                    matches!(action, Action::Station(_) | Action::Onset(_) | Action::Presliding)
+                    matches!(action, Action::Station(_))
+                        || is_dependent(action)
                         || self.is_felt(action, parameter.neutral, parameter.size, parameter.bounds)
                 })
                 .unzip();
-            let is_dependent = |action: &Action| {
-                matches!(action, Action::Station(_) | Action::Onset(_) | Action::Presliding)
-            };
-            if actions.iter().any(|action| !is_dependent(action)) {
+            let is_second = |action: &Action| matches!(action, Action::Station(_)) || is_dependent(action);
+            if actions.iter().any(|action| !is_second(action)) {
                 self.candidates.push(Candidate { parameters, ..candidate });
                 self.actions.push(actions);
             }
@@ -457,7 +461,7 @@ impl RigModel {
                 for (i, met) in state.met(&self.data, &self.course, self.step, &compliance) {
                     let datum = &self.data[i];
                     let load = state.measured_load(i, datum, &met, unit(i));
-                    let besides = state.measured_load(i, datum, &slide::Met { rod: 0.0, ..met }, unit(i));
+                    let besides = state.measured_load(i, datum, &met.unbent(), unit(i));
                     felt[i] = unit(i) * (load - besides);
                     change[i] += unit(i) * besides;
                 }
@@ -489,26 +493,23 @@ impl ForwardModel for RigModel {
         self.changed(&state)
     }
 
-    /// Play that an imposed displacement crosses acts in steps, and friction behind it holds the rod there or does not: they
-    /// are moved by a part of their usual size. What does nothing without its effect's first parameter is seen beside the usual
-    /// size of that.
+    /// Play that an imposed displacement crosses acts in steps: it is moved by half its usual size. What does nothing without
+    /// its effect's first parameter is seen beside the usual size of that.
     fn columns(&self, terms: &[Term], position: usize) -> DMatrix<f64> {
         let term = &terms[position];
         let (parameters, actions) =
             (&self.candidates[term.candidate].parameters, &self.actions[term.candidate]);
         let is_imposed = !self.course.imposed.is_empty();
-        let has_play = actions.iter().any(|action| matches!(action, Action::Play(_)));
         let column = |(k, (parameter, action)): (usize, (&Parameter, &Action))| {
             let mut moved = terms.to_vec();
             let first = &parameters[0];
-            let is_second =
-                k > 0 && matches!(action, Action::Onset(_) | Action::Presliding | Action::Play(_));
-            if is_second && term.values[0] == first.neutral {
+            if is_dependent(action) && term.values[0] == first.neutral {
                 moved[position].values[0] += first.size;
             }
             let (step, (low, high)) = match action {
-                Action::Play(_) | Action::Presliding if is_imposed => (0.5, parameter.bounds),
-                Action::Friction(_) if is_imposed && has_play => (2.0, parameter.bounds),
+                Action::Play(_) | Action::SliderPlay | Action::Presliding if is_imposed => {
+                    (0.5, parameter.bounds)
+                }
                 _ => (1e-4, (f64::NEG_INFINITY, f64::INFINITY)),
             };
             let h = step * parameter.size;

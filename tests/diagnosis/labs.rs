@@ -267,7 +267,6 @@ fn friction_and_play_are_found_under_an_imposed_displacement() {
             let rubbing = of_rod(&imposed(seed, is_sine, 0.6, 0.0));
             assert_eq!(rubbing.effects(), ["friction"], "{}", rubbing.json["headline"]);
             assert_found(rubbing.finding("friction"), "force_n", 0.6, 0.02);
-            // friction behind a play is one cause or two
             let both = of_rod(&imposed(seed, is_sine, 0.6, 150e-6));
             assert_eq!(both.effects()[0], "friction", "{}", both.json["headline"]);
             let loose =

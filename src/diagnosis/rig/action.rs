@@ -32,6 +32,8 @@ pub(super) enum Action {
     Friction(Scope),
     /// Travel over which friction turns round, m \[0\].
     Presliding,
+    /// Play of the slider that rubs, on either side, m \[that of the form\].
+    SliderPlay,
     /// Added to each of these loads, N \[0\].
     LoadOffset(Scope),
     /// Loads along the axes of the mask turn from the first axis towards the second, rad \[0\].
@@ -96,6 +98,7 @@ impl Scoped {
 pub(super) struct State<'a> {
     friction: Scoped,
     presliding: f64,
+    slider_play: f64,
     load_offset: Scoped,
     /// By axis: what a load along its positive direction is directed to.
     load_direction: [Vector3<f64>; 3],
@@ -132,6 +135,7 @@ impl Default for State<'_> {
         State {
             friction: Scoped::default(),
             presliding: 0.0,
+            slider_play: 0.0,
             load_offset: Scoped::default(),
             load_direction: axes,
             softening: Softening::default(),
@@ -156,6 +160,7 @@ impl<'a> State<'a> {
         match action {
             Action::Friction(scope) => self.friction.0.push((*scope, value)),
             Action::Presliding => self.presliding += value,
+            Action::SliderPlay => self.slider_play += value,
             Action::LoadOffset(scope) => self.load_offset.0.push((*scope, value)),
             Action::TurnLoad(axes, from, towards) => {
                 let turn = turn(*from, *towards, value);
@@ -272,7 +277,8 @@ impl<'a> State<'a> {
                 let datum = &data[i];
                 let play = self.play.of(datum).max(0.0);
                 let held = (self.friction.of(datum) * compliance(i)).abs();
-                let slide = Slide { play, presliding: self.presliding.max(0.0), held, step };
+                let (slider_play, presliding) = (self.slider_play.max(0.0), self.presliding.max(0.0));
+                let slide = Slide { play, slider_play, presliding, held, step };
                 let direction = datum.motion.map_or(0.0, |motion| motion.direction);
                 met = slide.next(met, datum.drive(), direction);
                 all.push((i, met));

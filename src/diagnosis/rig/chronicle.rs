@@ -10,7 +10,7 @@
 use std::collections::HashMap;
 
 use super::datum::numbered;
-use crate::rig::readings::{Driven, Phase, Reading, instants};
+use crate::rig::readings::{Direction, Driven, Phase, Reading, instants};
 
 /// Share of the largest load by which a load has to go back for a turn.
 const TURN: f64 = 0.02;
@@ -164,29 +164,49 @@ fn reads_twice(rows: &[Reading], of: &[usize]) -> bool {
     })
 }
 
-/// Without times: neighbours may be one instant, and an instant is the so many-th of its run at its stations.
+/// What all rows of an instant without a time share: direction, load and where it hangs.
+type Hung = (Direction, u64, Option<u64>);
+
+/// Without times: neighbours may be one instant; and where stations were written one after the other, the so many-th instant of
+/// a run at one of them is that of the others, if its load is the same. An instant stands where its first row does.
 fn untimed(rows: &[Reading], run: &[usize]) -> Vec<usize> {
-    let mut first: HashMap<usize, usize> = HashMap::new();
-    let mut count: HashMap<(usize, [u64; 2]), usize> = HashMap::new();
-    let mut place: Vec<(usize, usize)> = vec![(0, 0); rows.len()];
+    let mut known: HashMap<(usize, usize), (usize, Hung)> = HashMap::new();
+    let mut count: HashMap<(usize, u64), usize> = HashMap::new();
+    let mut place = vec![0; rows.len()];
     for instant in instants(rows) {
-        let mut seen: Vec<(usize, [u64; 2])> = Vec::new();
-        for &i in &instant.rows {
-            let first = *first.entry(run[i]).or_insert(i);
-            let stations =
-                [rows[i].load_station, rows[i].read_station].map(|s| s.unwrap_or(f64::NAN).to_bits());
-            let key = (run[i], stations);
-            if !seen.contains(&key) {
-                seen.push(key);
-                *count.entry(key).or_default() += 1;
+        // of rows whose clock begins anew those of one time may be of several runs
+        for run_of_instant in numbered_runs(&instant.rows, run) {
+            let of_run: Vec<usize> =
+                instant.rows.iter().copied().filter(|&i| run[i] == run_of_instant).collect();
+            let first = of_run[0];
+            let hung = (
+                rows[first].direction,
+                rows[first].load.to_bits(),
+                rows[first].load_station.map(f64::to_bits),
+            );
+            let mut stations: Vec<u64> =
+                of_run.iter().map(|&i| rows[i].read_station.unwrap_or(f64::NAN).to_bits()).collect();
+            stations.sort_unstable();
+            stations.dedup();
+            let mut at = 0;
+            for station in stations {
+                let count = count.entry((run_of_instant, station)).or_default();
+                *count += 1;
+                at = at.max(*count);
             }
-            place[i] = (first, count[&key]);
+            let (there, other) = *known.entry((run_of_instant, at)).or_insert((first, hung));
+            let own = if other == hung { there } else { first };
+            of_run.into_iter().for_each(|i| place[i] = own);
         }
     }
-    let mut sorted = place.clone();
-    sorted.sort_unstable();
-    sorted.dedup();
-    place.iter().map(|place| sorted.partition_point(|other| other < place)).collect()
+    place
+}
+
+/// The runs of some rows, each once.
+fn numbered_runs(of: &[usize], run: &[usize]) -> Vec<usize> {
+    let mut runs: Vec<usize> = of.iter().map(|&i| run[i]).collect();
+    runs.dedup();
+    runs
 }
 
 /// What was set, along the positive axis: the load (N) or the displacement (m).
@@ -403,7 +423,7 @@ mod tests {
         let head = "axis,load_n,trial,read_station_mm,dy_um\n";
         let beside: String = [5, 7, 9].map(|load| row(load, 200) + &row(load, 400)).concat();
         let blocks = [200, 400].map(|station| [5, 7, 9].map(|load| row(load, station)).concat()).concat();
-        assert_eq!(column(&(head.to_owned() + &beside), |entry| entry.place), [0, 0, 1, 1, 2, 2]);
+        assert_eq!(column(&(head.to_owned() + &beside), |entry| entry.place), [0, 0, 2, 2, 4, 4]);
         assert_eq!(column(&(head.to_owned() + &blocks), |entry| entry.place), [0, 1, 2, 0, 1, 2]);
     }
 }

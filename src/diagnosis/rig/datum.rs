@@ -199,7 +199,10 @@ fn of_rows(rows: &[Reading], driven: Driven) -> Vec<Datum> {
         (datum.order, datum.run, stations, datum.channel.index(), datum.row)
     });
     let runs = numbered(data.iter().map(|datum| datum.run));
-    data.iter_mut().zip(runs).for_each(|(datum, run)| datum.run = run);
+    let orders = numbered(data.iter().map(|datum| datum.order));
+    for ((datum, run), order) in data.iter_mut().zip(runs).zip(orders) {
+        (datum.run, datum.order) = (run, order);
+    }
     data
 }
 

@@ -3,11 +3,12 @@
 //! ```text
 //! load driven          g ← min(max(g, F − f), F + f)                       play operator: the force that the rod feels
 //! displacement driven  x ← min(max(x, u − p), u + p)                       play operator: the rod behind its play
-//!                      z ← min(max(z + Δx/d, −1), 1)                       stop operator: friction, d its presliding travel
-//!                      F = x/C + f·z in contact, 0 in the gap
+//!                      s ← min(max(s, x − q), x + q)                       the slider behind a play of its own
+//!                      z ← min(max(z + Δs/d, −1), 1)                       stop operator: friction, d its presliding travel
+//!                      F = x/C + f·z in contact, 0 in the gap; no friction in the slider's gap
 //! ```
 //!
-//! f the friction, p the play, C the compliance. Within its play a rod stays where friction holds it, |x| ≤ f·C, and returns as
+//! f the friction, p the play, q that of the slider alone, C the compliance. Within its play a rod stays where friction holds it, |x| ≤ f·C, and returns as
 //! far as that by itself. Without presliding z is the direction of motion. Sources: A. Visintin, *Differential Models of
 //! Hysteresis*, 1994, ch. III; J. Awrejcewicz, P. Olejnik, *Appl. Mech. Rev.* 58 (2005) 389–411 (dry friction).
 
@@ -68,10 +69,21 @@ impl Hung {
 pub(super) struct Met {
     /// Displacement of the rod behind its play, m.
     pub rod: f64,
+    /// Displacement of the slider, m.
+    slider: f64,
+    /// Which way friction would act in contact, −1 to 1.
+    turned: f64,
     /// Force of friction over its largest, −1 to 1.
     pub friction: f64,
     /// 1, or 0 in the gap, and between them where the contact is just made.
     pub contact: f64,
+}
+
+impl Met {
+    /// The same where the rod is not bent.
+    pub(super) fn unbent(&self) -> Met {
+        Met { rod: 0.0, ..*self }
+    }
 }
 
 /// Play and friction as an imposed displacement meets them.
@@ -79,6 +91,8 @@ pub(super) struct Met {
 pub(super) struct Slide {
     /// Play on either side, m.
     pub play: f64,
+    /// Play of the slider on either side, m.
+    pub slider_play: f64,
     /// Presliding travel, m; 0: friction turns round at once.
     pub presliding: f64,
     /// Where friction still holds the rod against its own stiffness: f·C, m.
@@ -94,23 +108,33 @@ impl Slide {
             true => met.rod.max(-self.held).min(self.held).max(u - self.play).min(u + self.play),
             false => u,
         };
-        let moved = rod - met.rod;
-        let friction = match self.presliding > 0.0 {
-            true => (met.friction + moved / self.presliding).max(-1.0).min(1.0),
+        let slider = met.slider.max(rod - self.slider_play).min(rod + self.slider_play);
+        let turned = match self.presliding > 0.0 {
+            true => (met.turned + (slider - met.slider) / self.presliding).max(-1.0).min(1.0),
             false => direction,
         };
-        let depth = (rod - u).abs() - self.play;
-        let ramp = self.step.min(RAMP * self.play);
-        let contact = if depth >= -TOUCHING * self.play {
+        Met {
+            rod,
+            slider,
+            turned,
+            friction: turned * self.contact(self.slider_play, rod - slider, direction),
+            contact: self.contact(self.play, u - rod, direction),
+        }
+    }
+
+    /// Contact across a play where one side is `ahead` of the other, moved in `direction`: 1, or 0 in the gap.
+    fn contact(&self, play: f64, ahead: f64, direction: f64) -> f64 {
+        let depth = ahead.abs() - play;
+        let ramp = self.step.min(RAMP * play);
+        if depth >= -TOUCHING * play {
             1.0
-        } else if direction * (u - rod) > 0.0 && ramp > 0.0 {
+        } else if direction * ahead > 0.0 && ramp > 0.0 {
             // the last piece of the gap belongs to the contact ahead, in part: what is measured then changes with the play
             // without a jump
             (1.0 + depth / ramp).max(0.0)
         } else {
             0.0
-        };
-        Met { rod, friction, contact }
+        }
     }
 }
 
@@ -155,7 +179,7 @@ mod tests {
 
     #[test]
     fn a_free_rod_returns_to_the_middle_of_its_play_and_a_held_one_stays() {
-        let slide = Slide { play: 1.0, presliding: 0.0, held: 0.0, step: 0.0 };
+        let slide = Slide { play: 1.0, slider_play: 0.0, presliding: 0.0, held: 0.0, step: 0.0 };
         let rod = |slide: Slide| -> Vec<f64> {
             through(slide, &[3.0, 5.0, 3.0, 0.5, -0.5, -3.0]).iter().map(|met| met.0).collect()
         };
@@ -169,11 +193,17 @@ mod tests {
 
     #[test]
     fn presliding_is_travelled_before_friction_has_turned_round() {
-        let slide = Slide { play: 0.0, presliding: 0.5, held: 0.0, step: 0.0 };
+        let slide = Slide { play: 0.0, slider_play: 0.0, presliding: 0.5, held: 0.0, step: 0.0 };
         let friction: Vec<f64> =
             through(slide, &[0.25, 2.0, 1.5, 1.25, 0.0]).iter().map(|met| met.1).collect();
         assert_eq!(friction, [0.5, 1.0, 0.0, -0.5, -1.0]);
         let at_once = Slide { presliding: 0.0, ..slide };
         assert_eq!(through(at_once, &[0.25, 0.2]), [(0.25, 1.0, 1.0), (0.2, -1.0, 1.0)]);
+        // a slider with a play of its own: no friction in its gap, and the rod is bent all the same
+        let loose = Slide { slider_play: 0.5, step: 0.0, ..at_once };
+        let path = [1.0, 2.0, 1.5, 1.25, 1.0, 0.0];
+        let met = [(1.0, 1.0), (2.0, 1.0), (1.5, 0.0), (1.25, 0.0), (1.0, -1.0), (0.0, -1.0)];
+        let found: Vec<(f64, f64)> = through(loose, &path).iter().map(|met| (met.0, met.1)).collect();
+        assert!(found.iter().zip(met).all(|(found, met)| found.0 == met.0 && found.1 == met.1), "{found:?}");
     }
 }

@@ -217,7 +217,7 @@ fn at_turns(context: &Context, force: &Parameter) -> Vec<Entry> {
         // a reading is in the gap or beyond it: no step from here leads to a play of another size
         let travel = parameter("play_um", UM, play, 0.25 * play, (play / SPAN, play * SPAN));
         let form = format!("with a play of about {} µm at every turn", significant(play / UM, 2));
-        entries.push(of_form(form, RARE / PLAYS.len() as f64, travel, Action::Play(scope)));
+        entries.push(of_form(form, RARE / PLAYS.len() as f64, travel, Action::SliderPlay));
     }
     entries
 }

@@ -553,6 +553,13 @@ impl RigModel {
         let parameters = |candidate: usize| &self.candidates[candidate].parameters;
         let is_scanned = |candidate: usize| parameters(candidate).iter().any(|p| p.name == STATION);
         let mut estimates = part.estimates.clone();
+        // where between two readings a slider meets the end of its play nobody sees
+        for (own, action) in estimates.iter_mut().zip(&self.actions[part.term.candidate]) {
+            if matches!(action, Action::SliderPlay) {
+                own.low = own.low.min(own.value - 0.5 * self.step).max(0.0);
+                own.high = own.high.max(own.value + 0.5 * self.step);
+            }
+        }
         if !is_scanned(part.term.candidate) {
             return estimates;
         }

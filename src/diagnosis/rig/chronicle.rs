@@ -114,7 +114,8 @@ fn in_walk<K: Eq + std::hash::Hash>(walk: &[usize], key: impl Fn(usize) -> K) ->
 /// The place of each row by its time; `None` where times are missing, or say nothing of the order.
 fn places(rows: &[Reading]) -> Option<Vec<usize>> {
     let times: Vec<f64> = rows.iter().map(|row| row.time).collect::<Option<_>>()?;
-    let group = numbered(rows.iter().map(|row| (row.session.as_deref(), row.trial.as_deref())));
+    let key = |row: &'_ Reading| (row.session.clone(), row.trial.clone(), row.direction.axis);
+    let group = numbered(rows.iter().map(key));
     let count = group.iter().max().map_or(0, |last| last + 1);
     let mut members: Vec<Vec<usize>> = vec![Vec::new(); count];
     for (i, &group) in group.iter().enumerate() {
@@ -130,7 +131,8 @@ fn places(rows: &[Reading]) -> Option<Vec<usize>> {
     };
     let mut spans: Vec<(f64, f64)> = members.iter().map(span).collect();
     spans.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let has_one_clock = spans.windows(2).all(|pair| pair[0].1 <= pair[1].0);
+    let is_apart = spans.windows(2).all(|pair| pair[0].1 <= pair[1].0);
+    let has_one_clock = is_apart || times.is_sorted();
     let mut sorted: Vec<usize> = (0..rows.len()).collect();
     let rank = |i: usize| if has_one_clock { 0 } else { group[i] };
     sorted.sort_by(|&a, &b| rank(a).cmp(&rank(b)).then(times[a].total_cmp(&times[b])));
@@ -410,6 +412,9 @@ mod tests {
         // the second trial was the first one
         let later = format!("{head}y,5,100,1,0\ny,7,110,1,0\ny,5,10,2,0\ny,7,20,2,0\n");
         assert_eq!(column(&later, |entry| entry.trial), [1, 1, 0, 0]);
+        // trials of one name along two axes
+        let axes = format!("{head}y,5,0,1,0\ny,5,20,2,0\nz,5,40,1,0\nz,5,60,2,0\n");
+        assert_eq!(column(&axes, |entry| entry.place), [0, 1, 2, 3]);
         // each trial by a clock of its own: as in the file
         let anew = format!("{head}y,5,0,1,0\ny,7,20,1,0\ny,5,0,2,0\ny,7,20,2,0\n");
         assert_eq!(column(&anew, |entry| entry.trial), [0, 0, 1, 1]);

@@ -1,31 +1,37 @@
 //! Kinematic calibration: joint values and ball positions in, a calibrated robot with honest
 //! uncertainties out.
 
+mod before;
 mod calibrate;
 pub mod campaign;
 mod checks;
 mod compare;
 mod compensation;
 mod cross_validation;
+mod extrapolation;
 mod identifiability;
 mod noise;
 mod observability;
 mod options;
 mod passes;
 mod problem;
+mod prune;
 mod resample;
 mod result;
+mod shrinkage;
 pub mod simulate;
 mod start;
 mod validation;
 mod warning;
 mod write_back;
 
+pub use before::Before;
 pub use calibrate::{calibrate, calibrate_from, free_parameters, start};
 pub use campaign::Campaign;
 pub use compare::{CompareOptions, Comparison, Difference, compare};
 pub use compensation::{Compensation, Mode, TORQUE_ROUNDS, default_mode, modes};
 pub use cross_validation::{CrossValidation, cross_validate};
+pub use extrapolation::Extrapolation;
 pub use identifiability::{UnidentifiedDirection, plausible_range};
 pub use noise::{Noise, Robust};
 pub use observability::Observability;

@@ -1,13 +1,16 @@
 //! The calibration itself: rough start, fit, compensation recomputed until it no longer changes (Eqs
 //! 7–14).
 
+use super::before::before;
 use super::campaign::{Campaign, Recording, Targets};
 use super::compensation::{Compensation, Mode};
+use super::extrapolation::Extrapolation;
 use super::identifiability;
 use super::observability::Observability;
 use super::options::Options;
 use super::passes::Run;
 use super::problem::Residuals;
+use super::prune::pruned;
 use super::result::{Calibration, Estimated};
 use super::start::{first_guess, rough_start};
 use super::validation::validate;
@@ -45,9 +48,16 @@ pub fn calibrate<'c>(campaign: &'c Campaign, mode: Mode, options: &Options) -> R
     }
     let recording = &campaign.measurements;
     let mut calibration = calibrate_from(campaign, recording, start, &free, &compensation, options)?;
+    if options.prune {
+        calibration = pruned(campaign, calibration, &compensation, options)?;
+    }
     if let Some(recording) = &campaign.validation {
         calibration.validation = Some(validate(&calibration.setup, recording, campaign.refit)?);
+        let extrapolation = Extrapolation::new(&calibration, &campaign.measurements, recording);
+        calibration.warnings.extend(super::checks::extrapolation(&extrapolation));
+        calibration.extrapolation = Some(extrapolation);
     }
+    calibration.before = Some(before(campaign, &calibration, &compensation, options)?);
     Ok(calibration)
 }
 
@@ -69,6 +79,7 @@ pub fn calibrate_from<'c>(
     let mut run = Run::new(campaign, recording, start, free, compensation);
     run.fit_base_and_tool()?;
     let fit = run.compensate(options)?;
+    let (priors, drawing_scale) = (run.priors(), run.drawing.scale);
     let Run { setup, pass, noise, held, passes, is_converged, .. } = run;
 
     let problem = Residuals { setup: setup.clone(), free, recording, pass: &pass, held: &held };
@@ -111,6 +122,8 @@ pub fn calibrate_from<'c>(
         parameters,
         sockets,
         held,
+        priors,
+        drawing_scale,
         deviations,
         deflections,
         tips,
@@ -120,7 +133,9 @@ pub fn calibrate_from<'c>(
         passes,
         is_converged,
         observability,
+        before: None,
         validation: None,
+        extrapolation: None,
         warnings: Vec::new(),
         start: nominal,
         setup,
@@ -156,6 +171,8 @@ pub fn free_parameters(campaign: &Campaign, start: &Setup, compensation: &Compen
         .into_iter()
         .filter(|p| (minimal.contains(p) && (has_world || !is_base(p))) || constraints.freed.contains(p))
         .filter(|p| !constraints.fixed.contains(p))
+        // what is known exactly is no unknown
+        .filter(|p| campaign.robot.standard_uncertainty.of(*p) != Some(0.0))
         .collect()
 }
 

@@ -4,7 +4,7 @@ use super::headline::{RIVALS_SAID, sentence, um};
 use super::hidden;
 use super::subject::Subject;
 use super::tables::{alternatives, evidence, locate, parameters, proof, replication};
-use crate::inference::{Finding, rms};
+use crate::inference::Finding;
 use crate::report::{Block, Section};
 
 pub fn all(subject: &mut Subject) -> Vec<Section> {
@@ -77,7 +77,7 @@ fn remains(subject: &Subject) -> Section {
         let of = if subject.per.is_empty() { format!(" of the {}", subject.noun) } else { String::new() };
         let words = format!(
             "The residual{of} is {} µm rms{}; the scatter is {} µm.",
-            um(rms(&diagnosis.after)),
+            um(diagnosis.error_after()),
             subject.per,
             um(diagnosis.noise)
         );

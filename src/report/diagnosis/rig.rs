@@ -11,7 +11,7 @@ use super::remainder::{Remainder, Sample};
 use super::subject::{Errors, Subject};
 use super::{json as whole_json, report as whole_report};
 use crate::diagnosis::rig::{Correction, Datum, RigDiagnosis};
-use crate::inference::{Discrepancy, ForwardModel, Location, Plan, Quantity, Variable};
+use crate::inference::{Discrepancy, ForwardModel, Location, Plan, Quantity, Variable, rms};
 use crate::report::{Block, Report};
 use crate::rig::readings::Phase;
 use crate::units::{MM, UM, significant};

@@ -413,7 +413,7 @@ mod tests {
         let later = format!("{head}y,5,100,1,0\ny,7,110,1,0\ny,5,10,2,0\ny,7,20,2,0\n");
         assert_eq!(column(&later, |entry| entry.trial), [1, 1, 0, 0]);
         // trials of one name along two axes
-        let axes = format!("{head}y,5,0,1,0\ny,5,20,2,0\nz,5,40,1,0\nz,5,60,2,0\n");
+        let axes = format!("{head}y,5,0,1,0\ny,6,20,2,0\nz,5,40,1,0\nz,6,60,2,0\n");
         assert_eq!(column(&axes, |entry| entry.place), [0, 1, 2, 3]);
         // each trial by a clock of its own: as in the file
         let anew = format!("{head}y,5,0,1,0\ny,7,20,1,0\ny,5,0,2,0\ny,7,20,2,0\n");

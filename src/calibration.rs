@@ -3,6 +3,7 @@
 
 mod before;
 mod calibrate;
+mod calibrate_from;
 pub mod campaign;
 mod checks;
 mod compare;
@@ -25,8 +26,8 @@ mod validation;
 mod warning;
 mod write_back;
 
-pub use before::Before;
-pub use calibrate::{calibrate, calibrate_from, free_parameters, start};
+pub use calibrate::{calibrate, free_parameters, start};
+pub use calibrate_from::calibrate_from;
 pub use campaign::Campaign;
 pub use compare::{CompareOptions, Comparison, Difference, compare};
 pub use compensation::{Compensation, Mode, TORQUE_ROUNDS, default_mode, modes};
@@ -38,6 +39,6 @@ pub use observability::Observability;
 pub use options::Options;
 pub use passes::PassRecord;
 pub use result::{Calibration, Estimated};
-pub use validation::{Summary, Validation, validate};
+pub use validation::{Before, Summary, Validation, validate};
 pub use warning::Warning;
 pub use write_back::{write_back, write_back_with};

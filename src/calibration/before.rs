@@ -1,24 +1,13 @@
 //! How accurate the robot was before: the nominal one, placed as well as it can be.
 
-use super::calibrate::calibrate_from;
+use super::calibrate_from::calibrate_from;
 use super::campaign::Campaign;
 use super::compensation::Compensation;
 use super::options::Options;
 use super::result::Calibration;
-use super::validation::{Summary, validate};
+use super::validation::{Before, Summary, validate};
 use crate::error::Result;
 use crate::robot::Parameter;
-
-/// Errors of the nominal robot at the poses of a campaign.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
-pub struct Before {
-    /// Of the calibration's poses: only where the robot stands and where its tip is (or where the
-    /// sockets are) was fitted to them.
-    pub residual: Summary,
-    /// Of the validation's poses; `None` without a validation.
-    pub validation: Option<Summary>,
-}
 
 /// The nominal robot of `calibration`, with base and tool fitted, the rod compensated in the same
 /// way.

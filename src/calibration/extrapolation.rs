@@ -10,8 +10,7 @@
 use nalgebra::{DMatrix, Matrix3xX};
 
 use super::campaign::Recording;
-use super::result::Calibration;
-use crate::robot::{Kinematics, Motion};
+use crate::robot::{Kinematics, Motion, Parameter, Setup};
 
 /// Poses asked for, against those of the calibration.
 #[derive(Debug, Clone, PartialEq)]
@@ -30,10 +29,18 @@ pub struct Extrapolation {
     pub beyond: Vec<f64>,
 }
 
+/// A calibrated robot as far as it is asked here.
+pub(super) struct Known<'a> {
+    pub setup: &'a Setup<'a>,
+    pub free: &'a [Parameter],
+    /// Of the free parameters first, SI.
+    pub covariance: &'a DMatrix<f64>,
+}
+
 impl Extrapolation {
     /// `asked` against the `recording` of a calibration.
-    pub fn new(calibration: &Calibration, recording: &Recording, asked: &Recording) -> Self {
-        let joints = calibration.setup.robot.joints.len();
+    pub(super) fn new(known: &Known, recording: &Recording, asked: &Recording) -> Self {
+        let joints = known.setup.robot.joints.len();
         let range = |of: &Recording, joint: usize| {
             let values = (0..of.len()).map(|row| of.joints(row)[joint]);
             values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), q| (a.min(q), b.max(q)))
@@ -45,10 +52,10 @@ impl Extrapolation {
             (0..asked.len()).filter(is_beyond).count() as f64 / asked.len().max(1) as f64
         };
         Extrapolation {
-            sd: sd(calibration, asked),
-            sd_calibrated: sd(calibration, recording),
+            sd: sd(known, asked),
+            sd_calibrated: sd(known, recording),
             beyond: (0..joints).map(beyond).collect(),
-            motions: calibration.setup.robot.joints.iter().map(|joint| joint.motion).collect(),
+            motions: known.setup.robot.joints.iter().map(|joint| joint.motion).collect(),
             ranges,
         }
     }
@@ -71,23 +78,20 @@ impl Extrapolation {
 }
 
 /// Root mean square of √tr(J·Σ·Jᵀ) over a recording, m.
-fn sd(calibration: &Calibration, recording: &Recording) -> f64 {
-    let own: Vec<usize> = (0..calibration.parameters.len())
-        .filter(|&k| !calibration.parameters[k].parameter.is_placement())
-        .filter(|&k| calibration.fit.covariance.matrix[(k, k)].is_finite())
+fn sd(known: &Known, recording: &Recording) -> f64 {
+    let own: Vec<usize> = (0..known.free.len())
+        .filter(|&k| !known.free[k].is_placement() && known.covariance[(k, k)].is_finite())
         .collect();
     if own.is_empty() || recording.is_empty() {
         return 0.0;
     }
-    let whole = &calibration.fit.covariance.matrix;
-    let covariance = DMatrix::from_fn(own.len(), own.len(), |i, j| whole[(own[i], own[j])]);
-    let mut kinematics = Kinematics::new(&calibration.setup);
+    let covariance = DMatrix::from_fn(own.len(), own.len(), |i, j| known.covariance[(own[i], own[j])]);
+    let mut kinematics = Kinematics::new(known.setup);
     // where the arm stands is what counts, and weights hardly move it
-    let torque = vec![0.0; calibration.setup.robot.joints.len()];
+    let torque = vec![0.0; known.setup.robot.joints.len()];
     let variance = |row: usize| {
         kinematics.update(recording.joints(row), &torque);
-        let columns: Vec<_> =
-            own.iter().map(|&k| kinematics.column(calibration.parameters[k].parameter, &torque)).collect();
+        let columns: Vec<_> = own.iter().map(|&k| kinematics.column(known.free[k], &torque)).collect();
         let jacobian = Matrix3xX::from_columns(&columns);
         (&jacobian * &covariance * jacobian.transpose()).trace()
     };

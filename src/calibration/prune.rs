@@ -3,7 +3,7 @@
 //! A correction that is smaller than its standard error improves no prediction: what it takes out of the bias it adds, and
 //! more, in variance. The least supported go first, for what is held decides what the others are worth.
 
-use super::calibrate::calibrate_from;
+use super::calibrate_from::calibrate_from;
 use super::campaign::Campaign;
 use super::compensation::Compensation;
 use super::options::Options;

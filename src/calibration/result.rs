@@ -2,7 +2,6 @@
 
 use nalgebra::Vector3;
 
-use super::before::Before;
 use super::compensation::Mode;
 use super::extrapolation::Extrapolation;
 use super::identifiability::UnidentifiedDirection;
@@ -10,7 +9,7 @@ use super::noise::Noise;
 use super::observability::Observability;
 use super::options::Options;
 use super::passes::PassRecord;
-use super::validation::Validation;
+use super::validation::{Before, Validation};
 use super::warning::Warning;
 use crate::least_squares::{Fit, Prior};
 use crate::robot::{Parameter, Setup};

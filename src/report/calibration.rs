@@ -210,26 +210,28 @@ pub fn headline(
         campaign.robot.name,
         length(residual.rms)
     );
-    let was = before.and_then(|before| before.validation.as_ref());
-    let was = was.map_or_else(String::new, |was| format!("{} on average before, ", length(was.mean)));
     let described =
         |summary: &Summary| format!("{} on average, {} at most", length(summary.mean), length(summary.max));
     if let Some(validation) = &calibration.validation {
         let count = validation.errors.len();
+        let summary = &validation.summary;
+        let errors = match before.and_then(|before| before.validation.as_ref()) {
+            Some(was) => format!(
+                "{} on average before, {} after ({} at most)",
+                length(was.mean),
+                length(summary.mean),
+                length(summary.max)
+            ),
+            None => described(summary),
+        };
         words += &match (&campaign.measurements.targets, validation.refit) {
             (Targets::Sockets(_), _) => {
-                format!(
-                    "; the scatter of {count} validation poses in their sockets is {was}{}{now}",
-                    described(&validation.summary)
-                )
+                format!("; the scatter of {count} validation poses in their sockets is {errors}")
             }
-            (_, Refit::BaseTool) => format!(
-                "; error at {count} validation poses {was}{}{now} (base and tool fitted again)",
-                described(&validation.summary)
-            ),
-            (_, Refit::Nothing) => {
-                format!("; error at {count} validation poses {was}{}{now}", described(&validation.summary))
+            (_, Refit::BaseTool) => {
+                format!("; error at {count} validation poses {errors}, base and tool fitted again")
             }
+            (_, Refit::Nothing) => format!("; error at {count} validation poses {errors}"),
         };
     }
     if let Some(cv) = cross_validation {

@@ -130,7 +130,7 @@ fn what_the_data_do_not_support_is_held() {
     let own = |p: &&rodcal::calibration::Estimated| !p.parameter.is_placement();
     let (all, kept) = (whole.parameters.iter().filter(own).count(), pruned.parameters.iter().filter(own));
     assert!(kept.clone().all(|p| p.is_supported()));
-    assert!(kept.clone().count() * 2 < all, "{} of {all}", kept.clone().count());
+    assert!(kept.clone().count() * 3 < all * 2, "{} of {all}", kept.clone().count());
     let a2 = kept.clone().find(|p| p.parameter.to_string() == "a2").unwrap();
     assert!((a2.value - a2.nominal - 2.0 * MM).abs() < 3.0 * a2.std_error.unwrap());
     let error = |found: &rodcal::calibration::Calibration| found.validation.as_ref().unwrap().summary.mean;

@@ -40,7 +40,7 @@ pub(super) fn next_poses(
     if rivals.is_empty() {
         return Ok(None);
     }
-    if let Some(check) = Proposal::direct_check(finding, &rivals) {
+    if let Some(check) = finding.direct_check(&rivals) {
         return Ok(Some(check));
     }
     let (campaign, calibration) = (model.campaign, &model.calibration);

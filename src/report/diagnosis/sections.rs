@@ -4,7 +4,7 @@ use super::headline::{RIVALS_SAID, sentence, um};
 use super::hidden;
 use super::subject::Subject;
 use super::tables::{alternatives, evidence, locate, parameters, proof, replication};
-use crate::inference::Finding;
+use crate::inference::{Finding, Kind};
 use crate::report::{Block, Section};
 
 pub fn all(subject: &mut Subject) -> Vec<Section> {
@@ -66,7 +66,10 @@ fn details(subject: &Subject, index: usize, finding: &Finding) -> String {
 }
 
 fn location(subject: &mut Subject) -> Section {
-    let mut blocks = vec![locate(subject)];
+    let has_mistake = subject.diagnosis.findings.iter().any(|finding| finding.kind() == Kind::Mistake);
+    let said = "All that follows is of the recording without the mistakes above.";
+    let mut blocks: Vec<Block> = has_mistake.then(|| Block::Paragraph(said.into())).into_iter().collect();
+    blocks.push(locate(subject));
     blocks.append(&mut subject.places);
     Section::new("Where the mismatch appears", blocks)
 }

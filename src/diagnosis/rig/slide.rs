@@ -110,7 +110,7 @@ impl Slide {
         };
         let slider = met.slider.max(rod - self.slider_play).min(rod + self.slider_play);
         let turned = match self.presliding > 0.0 {
-            true => (met.turned + (slider - met.slider) / self.presliding).max(-1.0).min(1.0),
+            true => (met.turned + (slider - met.slider) / self.presliding).clamp(-1.0, 1.0),
             false => direction,
         };
         Met {

@@ -16,14 +16,16 @@ fn a_trial_is_made_answered_in_pieces_and_scored() {
     assert_eq!(sandbox.read("t/answers.jsonl").lines().count(), 5);
     let score = sandbox.run("trial score t t.key.jsonl --json").json();
     let of = |kind: &str| score[kind]["n"].as_u64().unwrap();
-    assert_eq!(of("clean") + of("single") + of("pairs") + of("unknown"), 5);
+    let rate = |of: &str, rate: &str| score[of][rate]["of"].as_u64().unwrap();
+    let files = rate("mistakes", "named") + rate("suspects", "remarked");
+    assert_eq!(of("clean") + of("single") + of("pairs") + of("unknown") + files, 5);
     for key in ["coverage", "gain_over_oracle", "counterfactual_over_oracle", "next_measurement_ok"] {
         assert!(score.get(key).is_some(), "{key}");
     }
 }
 
 #[test]
-fn other_readings_are_foretold_and_what_is_proposed_is_measured() {
+fn other_readings_are_predicted_and_what_is_proposed_is_measured() {
     let sandbox = Sandbox::empty();
     for (directory, cases) in [("a", "1..24"), ("b", "1..8")] {
         sandbox.run(&format!("trial make {directory} --seed 7 --cases 24 --rig")).succeeded();
@@ -48,7 +50,7 @@ fn other_readings_are_foretold_and_what_is_proposed_is_measured() {
     // whoever answers sees the question and nothing of what belongs there
     let key = sandbox.read("a.key.jsonl");
     assert!(key.contains("true_um") && !sandbox.read("a/manifest.json").contains("true_um"));
-    sandbox.write("a/rig/case-0003/asked.csv", &asked.replacen("x,", "y,", 1));
+    sandbox.write("a/rig/case-0003/asked.csv", &format!("{asked}y,1,0\n"));
     for line in ["trial score a", "trial answer a --answers again.jsonl --case-range 3..3"] {
         let refused = sandbox.run(line);
         assert_eq!(refused.status, Some(2), "{line}");
@@ -82,9 +84,9 @@ fn a_small_trial_is_answered_as_well_as_ever() {
     // what is asked for is foretold about as well as by an oracle; that of a rod knows its file's
     // numbers exactly, which nobody does, so that its cases are compared with their noise
     for (half, key, most) in [("rig", "answer_over_noise_median", 1.0), ("calibration", "median", 1.5)] {
-        let told = &score[half]["counterfactual"];
-        assert!(told["n"] == told["answered"] && told["n"].as_u64().unwrap() >= 3, "{half}: {told}");
-        assert!(told[key].as_f64().unwrap() < most, "{half}: {told}");
+        let asked = &score[half]["counterfactual"];
+        assert!(asked["n"] == asked["answered"] && asked["n"].as_u64().unwrap() >= 3, "{half}: {asked}");
+        assert!(asked[key].as_f64().unwrap() < most, "{half}: {asked}");
     }
 }
 
@@ -129,4 +131,22 @@ fn another_key_and_changed_recordings_are_refused() {
     refuses("trial score t", "t/rig/case-0002/rod.toml");
     assert_eq!(sandbox.run("trial make t --seed 4").status, Some(2));
     assert_eq!(sandbox.run("trial make u --seed 4 --key u/key.jsonl").status, Some(2));
+}
+
+#[test]
+fn noise_can_be_that_of_a_real_recording() {
+    let sandbox = Sandbox::empty();
+    let rows: String = (0..16).map(|k| format!("{}\n", 1e-4 * f64::from(k % 5))).collect();
+    sandbox.write("residuals.csv", &format!("residual\n{rows}"));
+    sandbox.run("trial make t --seed 3 --cases 3 --rig --residuals residuals.csv").succeeded();
+    sandbox.run("trial make u --seed 3 --cases 3 --rig").succeeded();
+    let key = sandbox.read("t.key.jsonl");
+    assert_eq!(key.matches("16 residuals of a recording").count(), 3, "{key}");
+    // rod and loads are the same, what is read is not
+    let [rod, other] = ["t", "u"].map(|trial| sandbox.read(&format!("{trial}/rig/case-0002/rod.toml")));
+    assert!(rod == other && key != sandbox.read("u.key.jsonl"));
+    sandbox.write("residuals.csv", "rest\n1\n2\n");
+    let refused = sandbox.run("trial make v --seed 3 --cases 3 --rig --residuals residuals.csv");
+    assert_eq!(refused.status, Some(2));
+    assert!(refused.stderr.contains("residuals.csv") && refused.stderr.contains("residual"));
 }

@@ -103,7 +103,8 @@ fn truth(case: String, drawn: &Drawn, asked: &Question) -> Truth {
     let oracle = (!effects.is_empty()).then(|| Oracle::new(site));
     let of = |(which, effect): (usize, &Effect)| {
         let alone = site.added(std::slice::from_ref(effect), &[]);
-        let parameter = |(name, value): (&str, f64)| Parameter { name: name.into(), value, with_numbers: None };
+        let parameter =
+            |(name, value): (&str, f64)| Parameter { name: name.into(), value, with_numbers: None };
         let place = draw::place(effect, site);
         Some(Concealed {
             effect: effect.name(site.has_sockets()).into(),

@@ -57,8 +57,12 @@ const SHARES: [(Kind, f64); 5] = [
 ];
 /// How often friction accompanies an effect, and its force as a share of the largest load.
 const COMPANION: (f64, [f64; 2]) = (0.2, [0.01, 0.05]);
-/// Shares of the detection limit from which effects are drawn: single ones, pairs, unknown physics.
-const FAINTEST: [f64; 3] = [0.1, 3.0, 1.0];
+/// How often a single effect is below its detection limit, and how far at most.
+const BELOW: (f64, f64) = (0.3, 0.1);
+/// Multiples of its detection limit from which an effect of a pair is drawn, and unknown physics.
+const FAINTEST: [f64; 2] = [3.0, 2.0];
+/// How often a single effect is recorded with care.
+const CAREFUL: f64 = 0.75;
 /// Noises by which a reading is misread.
 const MISREAD: [f64; 2] = [10.0, 60.0];
 /// How often files of other rods stand beside that of a case.
@@ -118,12 +122,13 @@ fn drawn(seed: u64, number: usize, residuals: &[f64]) -> Drawn {
         Kind::Clean | Kind::Suspect => (Vec::new(), setup::Needs::default()),
         Kind::Single => {
             let number = library(random);
-            (vec![number], draw::needs(number, random))
+            let needs = if draw::happens(random, CAREFUL) { draw::careful } else { draw::needs };
+            (vec![number], needs(number, random))
         }
         Kind::Pair => {
             let first = library(random);
             let second = (first + 1 + random.index(draw::LIBRARY - 1)) % draw::LIBRARY;
-            (vec![first, second], draw::needs(first, random).and(draw::needs(second, random)))
+            (vec![first, second], draw::careful(first, random).and(draw::careful(second, random)))
         }
         Kind::Unknown => {
             let number = random.index(beyond::BEYOND);
@@ -143,11 +148,6 @@ fn drawn(seed: u64, number: usize, residuals: &[f64]) -> Drawn {
     needs.unloading |= has_companion;
     let (bench, noise, times) = setup::draw(needs, residuals, random);
     let oracle = Oracle::new(&bench, &noise);
-    let faintest = match kind {
-        Kind::Single => FAINTEST[0],
-        Kind::Pair => FAINTEST[1],
-        _ => FAINTEST[2],
-    };
     let mut effects: Vec<Effect> = match kind {
         Kind::Clean | Kind::Mistake => Vec::new(),
         Kind::Suspect => misread(&bench, &noise, random),
@@ -157,8 +157,14 @@ fn drawn(seed: u64, number: usize, residuals: &[f64]) -> Drawn {
                     Kind::Unknown => beyond::draw(number, &bench, random),
                     _ => draw::library(number, &bench, random),
                 };
-                let least = (faintest * oracle.limit(&largest)).clamp(1e-4, 0.5);
-                largest.scaled(draw::log_uniform(random, least, 1.0))
+                let limit = oracle.limit(&largest).clamp(1e-4, 1.0);
+                let (least, most) = match kind {
+                    Kind::Single if draw::happens(random, BELOW.0) => (BELOW.1 * limit, limit),
+                    Kind::Single => (limit, 1.0),
+                    Kind::Pair => ((FAINTEST[0] * limit).min(0.5), 1.0),
+                    _ => ((FAINTEST[1] * limit).min(0.5), 1.0),
+                };
+                largest.scaled(draw::log_uniform(random, least, most))
             };
             numbers.iter().map(of).collect()
         }
@@ -263,8 +269,8 @@ fn truth(case: String, mut drawn: Drawn, asked: &Bench) -> Truth {
     }
 }
 
-/// The numbers of an effect. A factor of the stiffness may be said of the modulus of the file or of what
-/// the rod was made of: both are right.
+/// The numbers of an effect. A factor of a stiffness may refer to the numbers of the file or to those of
+/// the real rod: both are right.
 fn parameters(bench: &Bench, effect: &Effect, with: &[f64]) -> Vec<Parameter> {
     let nominal = || Bench { actual: actual::Actual::default(), ..bench.clone() }.readings(&[]);
     let of_all = match effect {
@@ -277,6 +283,10 @@ fn parameters(bench: &Bench, effect: &Effect, with: &[f64]) -> Vec<Parameter> {
             let shear = |drawing: &drawing::Drawing| drawing.tubes[0].shear_modulus;
             Some(factor * shear(&bench.actual.rod(&bench.drawing)) / shear(&bench.drawing))
         }
+        Effect::Bend(factor) => {
+            let bends = |drawing: &drawing::Drawing| drawing.tubes[0].flexibility(1.0, 1.0).bending;
+            Some(factor * bends(&bench.actual.rod(&bench.drawing)) / bends(&bench.drawing))
+        }
         _ => None,
     };
     let of = |(name, value): (&str, f64)| Parameter { name: name.into(), value, with_numbers: of_all };
@@ -286,8 +296,7 @@ fn parameters(bench: &Bench, effect: &Effect, with: &[f64]) -> Vec<Parameter> {
 /// A mistake as it is concealed: files that do not fit each other leave nothing to detect.
 fn mistaken(drawn: &Drawn, mistake: &Mistake) -> Concealed {
     let place = mistake.place(&drawn.right);
-    let parameter =
-        |(name, value): (&str, f64)| Parameter { name: name.into(), value, with_numbers: None };
+    let parameter = |(name, value): (&str, f64)| Parameter { name: name.into(), value, with_numbers: None };
     Concealed {
         effect: mistake.name().into(),
         location: place.to_string(),

@@ -18,9 +18,7 @@ use std::path::Path;
 use rodcal_base::error::{Error, Place, Result};
 
 pub use self::counterfactual::{Counterfactual, Predictions, Worst};
-pub use self::data::{
-    Below, Clean, Coverage, Mistakes, Pairs, Part, Score, Singles, Suspects, Unknown,
-};
+pub use self::data::{Below, Clean, Coverage, Mistakes, Pairs, Part, Score, Singles, Suspects, Unknown};
 use self::judged::{Finding, Judged};
 pub use self::next::{Due, Files, NextMeasurement, Open, Outcome, Said};
 pub use self::rate::Rate;

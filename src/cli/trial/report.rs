@@ -61,9 +61,10 @@ fn targets(half: &str, part: &Part) -> Table {
     };
     Table {
         name: format!("{half}-targets"),
-        caption: "Targets with Wilson's 95 % intervals, missed ones first. A share meets its target by itself, \
+        caption:
+            "Targets with Wilson's 95 % intervals, missed ones first. A share meets its target by itself, \
                   not by its interval."
-            .into(),
+                .into(),
         columns: [rate_columns(), vec![Column::text("wanted"), Column::text("")]].concat(),
         rows: part.targets.iter().map(row).collect(),
         notes: Vec::new(),
@@ -118,7 +119,10 @@ fn rates(half: &str, part: &Part) -> Table {
         ("right, or not distinguishable from it, when it names", part.right_or_inseparable),
         ("right, or in its class, when it names", part.class_right_when_named),
         ("95 % intervals that hold the truth", part.coverage.all),
-        ("ambiguous, truth in its class: settled by the proposed measurement", part.next_measurement_ok.settled),
+        (
+            "ambiguous, truth in its class: settled by the proposed measurement",
+            part.next_measurement_ok.settled,
+        ),
     ];
     let mut rows: Vec<Vec<String>> =
         rates.iter().filter(|(_, rate)| rate.of > 0).map(|(what, rate)| cells(what, *rate)).collect();

@@ -153,7 +153,8 @@ impl<'a> Oracle<'a> {
                     turn(j, &|row| (cycles * angle(row, j)).cos()),
                 ]
             };
-            (1..=76).for_each(|k| add("transmission_error", joint.clone(), wave(0.5 * f64::from(k)).to_vec()));
+            (1..=76)
+                .for_each(|k| add("transmission_error", joint.clone(), wave(0.5 * f64::from(k)).to_vec()));
             add("transmission_error", joint.clone(), (1..=5).flat_map(|k| wave(f64::from(k))).collect());
             add("encoder_scale", joint.clone(), vec![turn(j, &|row| angle(row, j))]);
             add("readback_lag", joint.clone(), vec![turn(j, &|row| step(row, j))]);

@@ -38,12 +38,9 @@ impl Uncertainty {
         };
         match (POISSON.0..=POISSON.1).contains(&poisson) {
             true => lengths,
-            false => Uncertainty {
-                youngs_modulus: 0.05,
-                shear_modulus: 0.1,
-                shear_coefficient: 0.15,
-                ..lengths
-            },
+            false => {
+                Uncertainty { youngs_modulus: 0.05, shear_modulus: 0.1, shear_coefficient: 0.15, ..lengths }
+            }
         }
     }
 }

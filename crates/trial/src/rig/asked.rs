@@ -76,11 +76,13 @@ pub fn csv(asked: &Bench) -> String {
 /// What would be read, and what the oracle says: `oracle` knows the effects and where they are, and finds their sizes out from
 /// `shown`.
 pub fn truth(asked: &Bench, effects: &[Effect], oracle: &Oracle, shown: &[f64]) -> Asked {
-    let happen_again: Vec<Effect> = effects.iter().filter(|effect| !effect.is_of_one_run()).cloned().collect();
+    let happen_again: Vec<Effect> =
+        effects.iter().filter(|effect| !effect.is_of_one_run()).cloned().collect();
     // as far as anybody reads them, m → µm
     let um = |readings: Vec<f64>| -> Vec<f64> { readings.into_iter().map(|m| rounded(m / UM, 5)).collect() };
-    let is_known =
-        !effects.is_empty() && happen_again.len() == effects.len() && effects.iter().all(|effect| !effect.sizes(asked).is_empty());
+    let is_known = !effects.is_empty()
+        && happen_again.len() == effects.len()
+        && effects.iter().all(|effect| !effect.sizes(asked).is_empty());
     Asked {
         true_um: um(asked.readings(&happen_again)),
         oracle_um: is_known.then(|| oracle.predicted(effects, shown, asked)).flatten().map(um),

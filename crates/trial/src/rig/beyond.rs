@@ -26,12 +26,12 @@ const LARGEST: (f64, f64) = (0.5, 1.0);
 
 /// What a protocol must have to carry it.
 pub fn needs(effect: usize) -> Needs {
-    let needs = Needs::default();
+    let needs = Needs { two_channels: true, ..Needs::default() };
     match effect {
         2 => Needs { tip: true, ..needs },
         4 => Needs { both_signs: true, ..needs },
         5 => Needs { time: true, trials: true, ..needs },
-        6 => Needs { stations: true, two_channels: true, ..needs },
+        6 => Needs { stations: true, two_axes: true, ..needs },
         7 => Needs { shuffled: true, ..needs },
         8 => Needs { time: true, varied_waits: true, unloading: true, ..needs },
         _ => needs,

@@ -1,6 +1,6 @@
 //! Which effect of the library, where, and how large at most. How much of that a case holds is drawn
-//! afterwards (`rig.rs`): of a single effect on a logarithmic scale from a tenth of what could just be
-//! detected, of two effects in one case from three times that.
+//! afterwards (`rig.rs`), on a logarithmic scale: three of ten single effects from a tenth of what could
+//! just be detected up to that, the others from there on; of two effects in one case from three times that.
 //!
 //! | effect | size | at most |
 //! |---|---|---|
@@ -50,6 +50,17 @@ pub fn needs(effect: usize, random: &mut Random) -> Needs {
         _ => {}
     }
     needs
+}
+
+/// What a careful laboratory records so that an effect of this number can be distinguished from the
+/// others: more axes and channels, other stations, the way down.
+pub fn careful(effect: usize, random: &mut Random) -> Needs {
+    let needs = Needs { two_axes: true, two_channels: true, ..needs(effect, random) };
+    match effect {
+        0..=4 => Needs { stations: happens(random, 0.4), ..needs },
+        5 | 6 | 8 => Needs { unloading: true, ..needs },
+        _ => needs,
+    }
 }
 
 /// Log-uniform.
@@ -241,7 +252,8 @@ pub(super) fn all(bench: &Bench, share: f64) -> Vec<Vec<Effect>> {
     });
     if channels.len() > 1 {
         all.push(turns.map(Effect::SensorBlock).to_vec());
-        let (by_time, unit) = (!protocol.columns.temperature, if protocol.columns.temperature { 1.0 } else { 3600.0 });
+        let (by_time, unit) =
+            (!protocol.columns.temperature, if protocol.columns.temperature { 1.0 } else { 3600.0 });
         if protocol.columns.temperature || protocol.columns.time {
             let rate = |&channel: &usize| {
                 let mut rates = [0.0; 3];

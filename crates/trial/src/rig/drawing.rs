@@ -3,8 +3,8 @@
 use std::f64::consts::PI;
 use std::fmt::Write;
 
-use super::cosserat::{Body, Hinge, Piece};
 use super::actual::Uncertainty;
+use super::cosserat::{Body, Hinge, Piece};
 use super::tube::Tube;
 use rodcal_base::units::{GPA, GRAM, MM};
 

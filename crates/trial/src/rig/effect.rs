@@ -120,9 +120,7 @@ impl Effect {
         let of_channel = |of: usize| Place { channel: channel(of), ..Place::default() };
         match self {
             Effect::Joint { name: Some(name), .. } => Place::named(name),
-            Effect::Joint { station, .. } => {
-                Place { station_mm: Some(station / MM), ..Place::default() }
-            }
+            Effect::Joint { station, .. } => Place { station_mm: Some(station / MM), ..Place::default() },
             Effect::Root { .. } => Place::part("root"),
             Effect::Bend(_) => Place::part("bend"),
             Effect::Friction { axis, .. } => of_axis("slide", axis),

@@ -71,7 +71,8 @@ pub fn needs(number: usize) -> Needs {
     let needs = Needs::default();
     match number {
         5 | 6 => Needs { two_channels: true, two_axes: true, ..needs },
-        0 => Needs { two_axes: true, ..needs },
+        // along one axis another unit of the loads, or another rod, is a rod of another stiffness
+        0 | 12 => Needs { two_axes: true, ..needs },
         10 => Needs { trials: true, ..needs },
         _ => needs,
     }
@@ -112,7 +113,8 @@ fn of_kind(
     // a channel along a load: the others may have nothing to show
     let along = |random: &mut Random| one_of(random, &axes, 0);
     let largest = |channel: usize| {
-        let of_channel = protocol.cells().into_iter().zip(&written.shown).filter(|(c, _)| c.channel == channel);
+        let of_channel =
+            protocol.cells().into_iter().zip(&written.shown).filter(|(c, _)| c.channel == channel);
         of_channel.fold(0.0, |most: f64, (_, shown)| most.max(shown.abs()))
     };
     let sign = |random: &mut Random| if happens(random, 0.5) { -1.0 } else { 1.0 };
@@ -177,9 +179,7 @@ impl Mistake {
         Place::key(&match self {
             Mistake::Loads { .. } if written.protocol.columns.kilograms => "load_kg".into(),
             Mistake::Loads { .. } => "load_n".into(),
-            Mistake::Readings { channels, .. } => {
-                channels.iter().map(column).collect::<Vec<_>>().join(", ")
-            }
+            Mistake::Readings { channels, .. } => channels.iter().map(column).collect::<Vec<_>>().join(", "),
             Mistake::Flip(channel)
             | Mistake::Stuck { channel, .. }
             | Mistake::Saturated { channel, .. }

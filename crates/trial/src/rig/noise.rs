@@ -94,9 +94,8 @@ impl Noise {
         let runs = protocol.loadings.iter().map(|l| l.run + 1).max().unwrap_or(0);
         let zeros: Vec<[f64; 3]> = (0..runs)
             .map(|_| {
-                [0; 3].map(|_| {
-                    self.zero * self.sd * source.draw(random) + random.uniform(-0.5, 0.5) * quantum
-                })
+                [0; 3]
+                    .map(|_| self.zero * self.sd * source.draw(random) + random.uniform(-0.5, 0.5) * quantum)
             })
             .collect();
         // noise of the last reading of each channel, and its run

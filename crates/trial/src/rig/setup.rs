@@ -229,7 +229,13 @@ fn protocol(drawing: &Drawing, needs: Needs, largest: f64, random: &mut Random) 
     let both_ways = needs.both_signs || (!is_shuffled && happens(random, 0.15));
     let signs: Vec<f64> = axes.iter().map(|_| if happens(random, 0.2) { -1.0 } else { 1.0 }).collect();
     let per_run = loads.len() * if has_unloading { 2 } else { 1 } * if both_ways { 2 } else { 1 };
-    let fewest = if needs.stations { 2 } else if needs.trials { 3 } else { 1 };
+    let fewest = if needs.stations {
+        2
+    } else if needs.trials {
+        3
+    } else {
+        1
+    };
     let trials = trials.min(MOST_LOADINGS / (per_run * axes.len())).max(fewest);
     let zeroed_once = needs.zeroed_once || happens(random, 0.08);
     let dwell = log_uniform(random, 10.0, 120.0);

@@ -68,7 +68,9 @@ impl Effect {
             | Effect::SensorMisalignment { angle: size, .. }
             | Effect::LoadMisalignment { angle: size, .. }
             | Effect::Drift { rate: size, .. } => *size += by,
-            Effect::SensorBlock(sizes) | Effect::LoadFrame(sizes) | Effect::DriftOfAll { rates: sizes, .. } => {
+            Effect::SensorBlock(sizes)
+            | Effect::LoadFrame(sizes)
+            | Effect::DriftOfAll { rates: sizes, .. } => {
                 sizes[which] += by;
             }
             _ => {}
@@ -111,7 +113,9 @@ impl Effect {
             Effect::SensorBlock(sizes)
             | Effect::LoadFrame(sizes)
             | Effect::DriftOfAll { rates: sizes, .. }
-            | Effect::Oscillation { amplitude: sizes, .. } => sizes.iter_mut().for_each(|size| *size *= share),
+            | Effect::Oscillation { amplitude: sizes, .. } => {
+                sizes.iter_mut().for_each(|size| *size *= share)
+            }
             Effect::Outlier(cells) => cells.iter_mut().for_each(|(_, size)| *size *= share),
             // a limit has no size of its own
             Effect::Saturation { .. } => {}
@@ -152,7 +156,8 @@ mod tests {
         let of_library = library.map(|number| draw::library(number, &bench, &mut random).scaled(0.1));
         let mut effects: Vec<Effect> = of_library.collect();
         let mut random = Random::seeded(5, 0);
-        effects.extend((0..beyond::BEYOND).map(|number| beyond::draw(number, &bench, &mut random).scaled(0.1)));
+        effects
+            .extend((0..beyond::BEYOND).map(|number| beyond::draw(number, &bench, &mut random).scaled(0.1)));
         for effect in effects {
             let added = |share: f64| -> Vec<f64> {
                 let with = bench.readings(&[effect.scaled(share)]);

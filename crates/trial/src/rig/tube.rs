@@ -92,7 +92,15 @@ mod tests {
 
     fn tube(inner: f64) -> Tube {
         let (youngs_modulus, shear_modulus) = (200e9, 80e9);
-        Tube { material: "steel", youngs_modulus, shear_modulus, density: 7900.0, outer: 8e-3, inner, coefficient: 1.0 }
+        Tube {
+            material: "steel",
+            youngs_modulus,
+            shear_modulus,
+            density: 7900.0,
+            outer: 8e-3,
+            inner,
+            coefficient: 1.0,
+        }
     }
 
     #[test]

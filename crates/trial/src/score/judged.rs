@@ -53,7 +53,10 @@ pub struct Rival {
 impl Finding {
     /// Other places of the same effect.
     pub fn other_places(&self) -> impl Iterator<Item = &Place> {
-        self.rivals.iter().filter(|rival| rival.effect == self.effect).filter_map(|rival| rival.place.as_ref())
+        self.rivals
+            .iter()
+            .filter(|rival| rival.effect == self.effect)
+            .filter_map(|rival| rival.place.as_ref())
     }
 
     /// A mistake in the files.
@@ -183,7 +186,8 @@ impl<'a> Judged<'a> {
         let Some(first) = self.findings.first() else { return false };
         let class = self.class();
         let is_inseparable = |concealed: &Concealed| {
-            class.contains(&concealed.effect.as_str()) && concealed.detectability.class.contains(&first.effect)
+            class.contains(&concealed.effect.as_str())
+                && concealed.detectability.class.contains(&first.effect)
         };
         self.is_concealed(&first.effect) || self.truth.effects.iter().any(is_inseparable)
     }

@@ -127,8 +127,7 @@ fn is_settled(truth: &Truth, before: &Finding, concealed: &Concealed, after: &Ju
         let others = finding.indistinguishable_from.iter().map(|name| first_word(name));
         let is_apart = others.filter(|name| *name != concealed.effect).all(|name| !was_rival(name));
         // places matter where they were what was ambiguous
-        let was_wrong =
-            |place: &Place| before.other_places().any(|known| known == place) && !is_right(place);
+        let was_wrong = |place: &Place| before.other_places().any(|known| known == place) && !is_right(place);
         let is_there = before.effect != concealed.effect
             || (finding.place.as_ref().is_some_and(is_right) && !finding.other_places().any(was_wrong));
         finding.effect == concealed.effect && is_apart && is_there

@@ -215,8 +215,7 @@ fn misread_readings_are_remarks_and_never_findings() {
         place: Place { row: Some(row), channel: Some("dy".into()), ..Place::default() },
         ..concealed("outlier", "row", ("um", 50.0), 20.0)
     };
-    let truths: Vec<Truth> =
-        (1..=3).map(|case| truth(case, Kind::Suspect, vec![at(4), at(9)])).collect();
+    let truths: Vec<Truth> = (1..=3).map(|case| truth(case, Kind::Suspect, vec![at(4), at(9)])).collect();
     let with = |case: usize, rows: &[usize], findings: &[(&str, &str, Value)]| {
         let mut answer = answer(case, findings, false);
         let suspects: Vec<Value> =
@@ -225,8 +224,7 @@ fn misread_readings_are_remarks_and_never_findings() {
         answer
     };
     let none = json!({"name": "um", "value": 0.0, "lo": 0.0, "hi": 0.0});
-    let answers =
-        vec![with(1, &[9, 4], &[]), with(2, &[4], &[]), with(3, &[4, 9], &[("slip", "y", none)])];
+    let answers = vec![with(1, &[9, 4], &[]), with(2, &[4], &[]), with(3, &[4, 9], &[("slip", "y", none)])];
     let suspects = score(&truths, &answers, &[]).whole.suspects;
     assert_eq!(suspects.remarked, Rate { count: 2, of: 3 });
     assert_eq!(suspects.named, Rate { count: 1, of: 3 });
@@ -327,7 +325,8 @@ fn what_was_measured_once_more_settles_or_does_not() {
     let due: Vec<String> = sealed.due().into_iter().map(|due| due.case).collect();
     assert_eq!(due, [3, 4, 5, 7].map(|case| format!("rig/case-{case:04}")));
     let diagnosed = |effect: &str, place: &str, others: &[&str]| {
-        let finding = json!({"effect": effect, "place": self::place(place), "indistinguishable_from": others});
+        let finding =
+            json!({"effect": effect, "place": self::place(place), "indistinguishable_from": others});
         Outcome::Diagnosed(json!({"verdict": "mismatch", "findings": [finding]}))
     };
     let outcomes = [

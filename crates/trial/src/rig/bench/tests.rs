@@ -32,7 +32,16 @@ pub(in crate::rig) fn bench() -> Bench {
     let channels = vec![[true; 3]; loadings.len()];
     let room = [20.0, 1e-3, 0.0, 3600.0];
     let sticking = vec![0.0; loadings.len()];
-    let protocol = Protocol { loadings, channels, tip, room, quantum: 0.0, zeroed_once: false, is_shuffled: false, columns };
+    let protocol = Protocol {
+        loadings,
+        channels,
+        tip,
+        room,
+        quantum: 0.0,
+        zeroed_once: false,
+        is_shuffled: false,
+        columns,
+    };
     Bench { drawing, actual: Actual::default(), protocol, sticking, full_scale: 6.0 }
 }
 

@@ -28,7 +28,7 @@ fn a_trial_is_made_answered_in_pieces_and_scored() {
 fn other_readings_are_predicted_and_what_is_proposed_is_measured() {
     let sandbox = Sandbox::empty();
     for (directory, cases) in [("a", "1..24"), ("b", "1..8")] {
-        sandbox.run(&format!("trial make {directory} --seed 7 --cases 24 --rig")).succeeded();
+        sandbox.run(&format!("trial make {directory} --seed 8 --cases 24 --rig")).succeeded();
         sandbox.run(&format!("trial answer {directory} --case-range {cases}")).succeeded();
     }
     let score = sandbox.run("trial score a --json").json();
@@ -67,26 +67,36 @@ fn a_small_trial_is_answered_as_well_as_ever() {
     sandbox.run("trial answer t").succeeded();
     let score = sandbox.run("trial score t --json").json();
     let count = |of: &str, key: &str| score[of][key].as_u64().unwrap();
-    assert_eq!((count("clean", "n"), score["failed"].as_u64()), (20, Some(0)));
+    assert_eq!((count("clean", "n"), score["failed"].as_u64()), (18, Some(0)));
     assert!(count("clean", "false_names") + count("clean", "false_unexplained") <= 1, "{}", score["clean"]);
     let single = &score["single"];
-    assert!(count("single", "identifiable") == 8 && count("single", "name_ok") >= 7, "{single}");
-    assert!(count("single", "location_ok") >= 7, "{single}");
-    // in the class wherever something is named; where nothing is, the numbers of the rod's file are
-    // uncertain by as much
-    let class = &single["in_class_rate"];
-    assert!(class["of"].as_u64().unwrap() >= 9 && class["share"].as_f64().unwrap() >= 0.9, "{single}");
-    assert!(count("pairs", "identifiable") == 4 && count("pairs", "both_found") >= 3, "{}", score["pairs"]);
-    assert!(count("unknown", "wrongly_named") == 0, "{}", score["unknown"]);
+    assert!(count("single", "identifiable") == 6 && count("single", "name_ok") >= 5, "{single}");
+    assert!(count("single", "location_ok") >= 5, "{single}");
+    // in the class wherever something is named
+    let rate = |of: &str, rate: &str| {
+        let rate = &score[of][rate];
+        (rate["count"].as_u64().unwrap(), rate["of"].as_u64().unwrap())
+    };
+    let (in_class, named) = rate("single", "in_class_rate");
+    assert!(named >= 9 && in_class + 1 >= named, "{single}");
+    // what nobody could detect is passed over in silence, or right
+    let (right, faint) = rate("below", "silent_or_right");
+    assert!(faint == 6 && right >= 5, "{}", score["below"]);
+    assert!(count("pairs", "identifiable") == 1 && count("pairs", "both_found") == 1, "{}", score["pairs"]);
+    let unknown = &score["unknown"];
+    assert!(count("unknown", "identifiable") == 5 && count("unknown", "called_unknown") >= 3, "{unknown}");
+    assert!(count("unknown", "wrongly_named") <= 1, "{unknown}");
+    assert_eq!((rate("mistakes", "named"), rate("mistakes", "silent")), ((3, 3), (0, 3)));
+    assert_eq!(rate("mistakes", "invented").0, 0, "{}", score["mistakes"]);
+    assert_eq!((rate("suspects", "remarked"), rate("suspects", "named")), ((2, 2), (0, 2)));
     for (key, least) in [("coverage", 0.75), ("gain_over_oracle", 0.9)] {
         assert!(score[key].as_f64().unwrap() > least, "{key}: {}", score[key]);
     }
-    // what is asked for is foretold about as well as by an oracle; that of a rod knows its file's
-    // numbers exactly, which nobody does, so that its cases are compared with their noise
-    for (half, key, most) in [("rig", "answer_over_noise_median", 1.0), ("calibration", "median", 1.5)] {
+    // what is asked for is predicted about as well as by an oracle
+    for (half, least) in [("rig", 1), ("calibration", 3)] {
         let asked = &score[half]["counterfactual"];
-        assert!(asked["n"] == asked["answered"] && asked["n"].as_u64().unwrap() >= 3, "{half}: {asked}");
-        assert!(asked[key].as_f64().unwrap() < most, "{half}: {asked}");
+        assert!(asked["n"] == asked["answered"] && asked["n"].as_u64().unwrap() >= least, "{half}: {asked}");
+        assert!(asked["median"].as_f64().unwrap() < 1.5, "{half}: {asked}");
     }
 }
 

@@ -65,7 +65,7 @@ pub use lack_of_fit::LackOfFit;
 pub use limit::Limit;
 pub use locate::Structure;
 pub use location::{Location, Part, Run, RunName};
-pub use nominal::{NominalEstimate, NominalNumber};
+pub use nominal::{NominalEstimate, NominalParameter};
 pub use proposal::{LoadPlan, Plan, PlannedPose, PosePlan, Proposal};
 pub use quantity::Quantity;
 pub use ranking::{Rank, Ranked, ranking};

@@ -1,4 +1,4 @@
-//! The calibration itself: rough start, fit, compensation recomputed until it stands still (Eqs
+//! The calibration itself: rough start, fit, compensation recomputed until it no longer changes (Eqs
 //! 7–14).
 
 use super::campaign::{Campaign, Recording, Targets};

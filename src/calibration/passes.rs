@@ -162,7 +162,7 @@ impl<'a, 'c> Run<'a, 'c> {
         let problem = self.problem();
         let p = problem.start();
         let mut corner = problem.information_root(&p);
-        // before the first fit it is the nominal robot's misfit that parameters have to be told
+        // before the first fit it is the nominal robot's misfit that parameters have to be judged by
         // from, not the noise
         if self.passes.is_empty() {
             let squares = problem.residuals(&p).norm_squared();

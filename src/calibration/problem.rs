@@ -8,7 +8,7 @@
 //! ```
 //!
 //! f is the rigid tip in {W}, R·Δxᵢ the rod's deflection. Δxᵢ is held fixed in {T}: it turns with
-//! the robot, so that how the rod bends does not seem to tell which way the robot stands. wᵢ is one
+//! the robot, so that how the rod bends does not seem to say which way the robot stands. wᵢ is one
 //! over the standard deviation of a coordinate. The unknowns are the free parameters, then the
 //! three coordinates of every socket.
 

@@ -52,7 +52,7 @@ pub struct Calibration<'c> {
     pub is_converged: bool,
     /// How well the poses show the parameters.
     pub observability: Observability,
-    /// How well the calibrated robot predicts, where the campaign can tell.
+    /// How well the calibrated robot predicts, where the campaign can say it.
     pub validation: Option<Validation>,
     /// What the user should know.
     pub warnings: Vec<Warning>,

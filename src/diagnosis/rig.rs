@@ -40,7 +40,7 @@ use self::structure::Structure;
 use crate::error::Result;
 use crate::inference::{
     Candidate, Description, Diagnosed, Effect, Estimate, Evidence, Finding, FindingPart, ForwardModel,
-    Hypothesis, Location, NotTestable, Term, diagnose as infer,
+    Hypothesis, Location, NotTestable, Proposal, Term, diagnose as infer, rms,
 };
 use crate::rig::readings::Readings;
 use crate::rod::Rod;
@@ -86,7 +86,14 @@ pub fn diagnose_among(
     if mended.has_data {
         for k in 0..diagnosis.findings.len() {
             let next = next::next_measurement(&model, &evidence, &diagnosis, &diagnosis.findings[k])?;
-            diagnosis.findings[k].next = next;
+            let finding = &mut diagnosis.findings[k];
+            finding.next = next;
+            let units = mistakes::lookalikes(&model, finding);
+            if !units.is_empty() {
+                // a unit is looked up, which is sooner done than any measurement
+                finding.next = Proposal::direct_check(finding, &units.iter().collect::<Vec<_>>());
+                finding.rivals.splice(0..0, units);
+            }
         }
     } else {
         // nothing is left that physics could be seen in
@@ -95,7 +102,7 @@ pub fn diagnose_among(
     }
     if !mended.found.is_empty() {
         diagnosis.findings.splice(0..0, mended.found);
-        model.as_recorded = Some(Box::new((readings.clone(), rod.cloned())));
+        model.as_recorded = Some(Box::new(AsRecorded::new(readings, rod)));
     }
     let limits = limits::limits(&model, &evidence);
     Ok(Diagnosed { absorbed: Vec::new(), not_testable, limits, diagnosis, evidence, model })
@@ -106,8 +113,7 @@ pub fn diagnose_among(
 pub struct RigModel {
     readings: Readings,
     rod: Option<Rod>,
-    /// Readings and rod before mistakes were undone, where there were any.
-    as_recorded: Option<Box<(Readings, Option<Rod>)>>,
+    as_recorded: Option<Box<AsRecorded>>,
     data: Vec<Datum>,
     body: Body,
     /// For each datum the pair of stations (with a rod) or the line (without).
@@ -115,6 +121,23 @@ pub struct RigModel {
     candidates: Vec<Candidate>,
     /// For each candidate what its parameters do.
     actions: Vec<Vec<Action>>,
+}
+
+/// Readings and rod before mistakes were undone, where there were any.
+#[derive(Debug, Clone)]
+struct AsRecorded {
+    readings: Readings,
+    rod: Option<Rod>,
+    /// Root mean square of what the rod's model leaves, m; `None` where the two cannot be compared.
+    error: Option<f64>,
+}
+
+impl AsRecorded {
+    fn new(readings: &Readings, rod: Option<&Rod>) -> Self {
+        let error = RigModel::with_effects(readings, rod, &|_| false);
+        let error = error.ok().map(|(_, evidence, _)| rms(&evidence.residual));
+        AsRecorded { readings: readings.clone(), rod: rod.cloned(), error }
+    }
 }
 
 /// What turns a force into a displacement.
@@ -224,12 +247,18 @@ impl RigModel {
 
     /// The readings as they were given, mistakes included.
     pub fn recorded(&self) -> &Readings {
-        self.as_recorded.as_ref().map_or(&self.readings, |given| &given.0)
+        self.as_recorded.as_ref().map_or(&self.readings, |given| &given.readings)
     }
 
     /// The rod as its file gives it, mistakes included.
     pub fn rod_of_file(&self) -> Option<&Rod> {
-        self.as_recorded.as_ref().map_or(self.rod.as_ref(), |given| given.1.as_ref())
+        self.as_recorded.as_ref().map_or(self.rod.as_ref(), |given| given.rod.as_ref())
+    }
+
+    /// Root mean square of what the model of the file leaves of the readings as they were given, m;
+    /// `None` where no mistake was found, or where the two cannot be compared.
+    pub fn recorded_error(&self) -> Option<f64> {
+        self.as_recorded.as_ref()?.error
     }
 
     /// Fills in the effects and their nonparametric rivals, without what can do nothing to these
@@ -381,7 +410,7 @@ impl ForwardModel for RigModel {
     }
 
     /// Of a joint that nobody declared the interval also holds what the joint would be at the other
-    /// stations that the readings do not tell from its own.
+    /// stations that the readings cannot separate from its own.
     fn estimates(&self, parts: &[FindingPart], _: &Hypothesis) -> Vec<Estimate> {
         parts.iter().flat_map(|part| self.widened(part)).collect()
     }

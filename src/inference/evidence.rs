@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::{NominalNumber, Variable};
+use super::{NominalParameter, Variable};
 
 /// A recording as the engine sees it, n data.
 #[derive(Debug, Clone)]
@@ -15,7 +15,7 @@ pub struct Evidence {
     /// is the standard normal. Part of every hypothesis.
     pub background: DMatrix<f64>,
     /// The numbers of the model's file and of the set-up that are known to a standard uncertainty.
-    pub nominal_numbers: Vec<NominalNumber>,
+    pub nominal_numbers: Vec<NominalParameter>,
     /// For each of them a column of n: ∂predicted/∂number times its standard uncertainty.
     pub nominal: DMatrix<f64>,
     /// Offsets that data share for good, such as a zero that is taken once: a column of ones and

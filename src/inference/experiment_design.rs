@@ -1,18 +1,18 @@
 //! Which of several measurements to propose: the one that leaves least of a finding's rivals.
 //!
-//! A measurement tells a finding from a rival by the ln of the odds that are expected of it, its separation. With so much left of
+//! A measurement separates a finding from a rival by the ln of the odds that are expected of it, its separation. With so much left of
 //! rivals that are now 1 to o,
 //!
 //! Σ exp(−separation)/o,
 //!
 //! the measurement is proposed that leaves least (separations as of T-optimal designs: A. C. Atkinson, V. V. Fedorov, Biometrika 62
-//! (1975) 57–70). The closest rival counts most; but where nothing tells one of them, the others are told nevertheless.
+//! (1975) 57–70). The closest rival counts most; but where nothing separates one of them, the others are nevertheless.
 
 /// A more laborious measurement has to leave so much less of the rivals,
 const BETTER: f64 = 1.3;
 /// unless the simpler one leaves no more than this.
 const DECISIVE: f64 = 1e-3;
-/// ln odds of 3 : 1: less tells nothing.
+/// ln odds of 3 : 1: less separates nothing.
 const TOLD: f64 = 1.0;
 
 /// The best so far of measurements that are offered in the order of the labour they take.
@@ -38,13 +38,13 @@ impl<M> ExperimentDesign<M> {
         }
     }
 
-    /// The measurement to propose, with its separations; `None` where nothing tells any of the rivals.
+    /// The measurement to propose, with its separations; `None` where nothing separates any of the rivals.
     pub fn best(self) -> Option<(M, Vec<f64>)> {
         self.best
     }
 }
 
-/// True for a separation that tells something.
+/// True for a separation that counts.
 pub fn separates(separation: f64) -> bool {
     separation > TOLD
 }
@@ -69,7 +69,7 @@ mod tests {
     }
 
     #[test]
-    fn what_tells_one_of_two_rivals_is_proposed_and_what_tells_none_is_not() {
+    fn what_separates_one_of_two_rivals_is_proposed_and_what_separates_none_is_not() {
         assert_eq!(chosen(&[("one", &[0.0, 4.0])], &[1.0, 1.0]), Some("one"));
         assert_eq!(chosen(&[("none", &[0.9, 0.9])], &[1.0, 1.0]), None);
     }

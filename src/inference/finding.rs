@@ -26,7 +26,7 @@ pub struct Finding {
     /// Share of the squares of the held-out errors before that comes back where it is left out of
     /// what the others hold; negative where it does harm. `None` without folds.
     pub held_out_loss: Option<f64>,
-    /// The measurement that would tell it from its rivals.
+    /// The measurement that would separate it from its rivals.
     pub next: Option<Proposal>,
     /// Its terms, the strongest first.
     pub parts: Vec<FindingPart>,

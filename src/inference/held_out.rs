@@ -77,7 +77,7 @@ impl HeldOut {
 pub(super) struct Trained {
     /// What the base model, fitted to them, leaves of all data.
     pub before: DVector<f64>,
-    /// And what the hypothesis that they tell by themselves leaves.
+    /// And what the hypothesis that they support by themselves leaves.
     pub after: DVector<f64>,
     /// Its terms.
     pub terms: Vec<Term>,
@@ -88,7 +88,7 @@ pub(super) struct Trained {
     pub without: Vec<(Theme, DVector<f64>)>,
 }
 
-/// Selects with the data `kept` only; `whole` are the terms that all data tell.
+/// Selects with the data `kept` only; `whole` are the terms that all data support.
 pub(super) fn trained_on(
     model: &Linearised<'_>,
     evidence: &Evidence,
@@ -120,7 +120,7 @@ pub(super) fn trained_on(
     }
 }
 
-/// Selects without each fold in turn, and predicts it; `whole` are the terms that all data tell.
+/// Selects without each fold in turn, and predicts it; `whole` are the terms that all data support.
 /// `None` with fewer than two folds. Data that hardly count for the fit hardly count here.
 pub fn hold_out(model: &Linearised<'_>, evidence: &Evidence, whole: &[Term]) -> Option<HeldOut> {
     let mut folds: Vec<usize> = evidence.fold.clone();

@@ -154,7 +154,7 @@ pub struct Run {
     pub name: Option<RunName>,
 }
 
-/// How a run is told from others.
+/// What names a run.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum RunName {
     /// By the file's own name.

@@ -2,7 +2,7 @@
 
 /// A number of the model's file, or of the rig's set-up.
 #[derive(Debug, Clone, PartialEq)]
-pub struct NominalNumber {
+pub struct NominalParameter {
     /// For people: `E of steel`.
     pub name: String,
     /// Unit for people.
@@ -19,7 +19,7 @@ pub struct NominalNumber {
 #[derive(Debug, Clone, PartialEq)]
 pub struct NominalEstimate {
     /// The number.
-    pub number: NominalNumber,
+    pub number: NominalParameter,
     /// Estimate and 95 % interval, SI.
     pub estimate: f64,
     /// Lower end.

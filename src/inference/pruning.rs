@@ -68,7 +68,7 @@ pub fn settled(model: &Linearised<'_>, evidence: &Evidence) -> Evidence {
     evidence
 }
 
-/// The hypothesis that a recording tells, what it leaves unexplained, and the search that found them,
+/// The hypothesis that a recording supports, what it leaves unexplained, and the search that found them,
 /// with the scatter that [`settled`] has found.
 pub fn infer<'a>(
     model: &'a Linearised<'a>,
@@ -149,8 +149,8 @@ fn beyond_the_tails(search: &Search, hypothesis: Hypothesis) -> Hypothesis {
 impl Search<'_> {
     /// Root mean square of what a hypothesis leaves.
     pub fn left_rms(&self, hypothesis: &Hypothesis) -> f64 {
-        let told = self.predicted(hypothesis, self.evidence, &self.model.response(&hypothesis.terms));
-        rms(&(&self.evidence.residual - told))
+        let predicted = self.predicted(hypothesis, self.evidence, &self.model.response(&hypothesis.terms));
+        rms(&(&self.evidence.residual - predicted))
     }
 
     /// Can an effect say anything of the few data that it concerns?
@@ -161,8 +161,8 @@ impl Search<'_> {
 
     /// Standardised residuals, whitened, that a hypothesis leaves.
     pub fn standardised(&self, hypothesis: &Hypothesis) -> DVector<f64> {
-        let told = self.predicted(hypothesis, self.evidence, &self.model.response(&hypothesis.terms));
-        self.whitening.whitened(&(&self.evidence.residual - told)) / hypothesis.sigma
+        let predicted = self.predicted(hypothesis, self.evidence, &self.model.response(&hypothesis.terms));
+        self.whitening.whitened(&(&self.evidence.residual - predicted)) / hypothesis.sigma
     }
 
     /// What a hypothesis leaves of each datum, errors that data share taken out, not weighted.
@@ -174,8 +174,8 @@ impl Search<'_> {
 
     /// Root mean square of what repeats agree on that a hypothesis leaves; 0 where they do not.
     pub fn cells_rms(&self, hypothesis: &Hypothesis) -> f64 {
-        let told = self.predicted(hypothesis, self.evidence, &self.model.response(&hypothesis.terms));
-        let share = self.lack_of_fit(hypothesis, &told).map_or(0.0, |test| {
+        let predicted = self.predicted(hypothesis, self.evidence, &self.model.response(&hypothesis.terms));
+        let share = self.lack_of_fit(hypothesis, &predicted).map_or(0.0, |test| {
             // the squares of the replicates beyond what their degrees of freedom have of the noise
             let (a, b) = (test.dof_fit as f64, test.dof_repeats as f64);
             (a * (test.f - 1.0) / (a * test.f + b)).max(0.0)
@@ -194,7 +194,7 @@ mod tests {
 
     const COUNT: usize = 200;
 
-    /// A slope; one datum, three of them, and three that are told two numbers.
+    /// A slope; one datum, three of them, and three that stand for two numbers.
     fn events() -> Columns {
         let mut model = Columns::new(COUNT);
         let at = |from: usize, columns: usize, rows: usize| {
@@ -287,8 +287,8 @@ mod tests {
         let of_curve = |row: usize, k: usize| if k == 0 { other(law(row)) } else { ripple(row) };
         model.add("curve", "", DMatrix::from_fn(COUNT, 2, of_curve), true);
         let mut random = Random::seeded(9, 0);
-        let told = |row: usize| law_size * law(row) + ripple_size * ripple(row);
-        let residual = (0..COUNT).map(|row| told(row) + noise * random.normal()).collect();
+        let predicted = |row: usize| law_size * law(row) + ripple_size * ripple(row);
+        let residual = (0..COUNT).map(|row| predicted(row) + noise * random.normal()).collect();
         let replicate_group = (0..COUNT).map(|row| row % CONDITIONS).collect();
         let evidence = Evidence { replicate_group, ..independent(residual) };
         let linear = Linearised::new(&model);

@@ -50,9 +50,9 @@ pub struct Search<'a> {
 type CrossProducts<'a> = dyn Fn(usize) -> (DMatrix<f64>, DVector<f64>) + 'a;
 
 impl<'a> Search<'a> {
-    /// On an evidence, with the scatter of what `told` leaves.
-    pub fn new(model: &'a Linearised<'a>, evidence: &'a Evidence, told: &[Term]) -> Self {
-        let left = &evidence.residual - model.response(told);
+    /// On an evidence, with the scatter of what `adopted` leaves.
+    pub fn new(model: &'a Linearised<'a>, evidence: &'a Evidence, adopted: &[Term]) -> Self {
+        let left = &evidence.residual - model.response(adopted);
         let whitening = Whitening::new(evidence, &left);
         let of_candidate = |columns: &DMatrix<f64>| {
             let whitened = whitening.whitened_columns(columns);
@@ -199,11 +199,11 @@ impl<'a> Search<'a> {
         self.whitening.apply(residual).norm()
     }
 
-    /// Do the averages of repeats leave a hypothesis that says `told`?
-    pub fn lack_of_fit(&self, hypothesis: &Hypothesis, told: &DVector<f64>) -> Option<LackOfFit> {
+    /// Do the averages of repeats leave a hypothesis that predicts `predicted`?
+    pub fn lack_of_fit(&self, hypothesis: &Hypothesis, predicted: &DVector<f64>) -> Option<LackOfFit> {
         let parameters: usize = hypothesis.terms.iter().map(|term| term.values.len()).sum();
         let absorbed = self.evidence.residual.len() - self.whitening.degrees_of_freedom;
-        let left = &self.evidence.residual - told;
+        let left = &self.evidence.residual - predicted;
         self.replicates.as_ref()?.test(&self.whitening.whitened(&left), parameters + absorbed)
     }
 
@@ -245,7 +245,7 @@ impl<'a> Search<'a> {
             columns.columns_mut(next, own.ncols()).copy_from(&own);
             next += own.ncols();
         }
-        // recorded less told, plus what the columns tell of it
+        // recorded less predicted, plus what the columns make of it
         let left = &self.evidence.residual - self.model.response(terms) + &columns * self.offsets(terms);
         let background = self.background.ncols();
         let mut all = DMatrix::zeros(columns.nrows(), background + count);
@@ -258,11 +258,11 @@ impl<'a> Search<'a> {
     /// is fitted to.
     fn crossed(&self, terms: &[Term]) -> (Moments, Box<CrossProducts<'_>>) {
         let Some(kept) = &self.kept else {
-            let (r, told) = self.linear(terms);
-            let moments = self.moments_of(&r, &told, terms);
+            let (r, predicted) = self.linear(terms);
+            let moments = self.moments_of(&r, &predicted, terms);
             let products = move |index: usize| {
                 let columns = &self.columns[index].0;
-                (columns.tr_mul_into(&told), columns.tr_mul(&r))
+                (columns.tr_mul_into(&predicted), columns.tr_mul(&r))
             };
             return (moments, Box::new(products));
         };

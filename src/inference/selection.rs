@@ -1,4 +1,4 @@
-//! Which hypothesis a recording tells: effects are added, exchanged and taken away while that makes it more probable.
+//! Which hypothesis a recording supports: effects are added, exchanged and taken away while that makes it more probable.
 
 use super::ForwardModel;
 use super::Hypothesis;
@@ -24,7 +24,7 @@ const MOST_SHARED: f64 = 10.0;
 pub enum Pairs {
     /// They are.
     Screened,
-    /// Not where all data have told a single effect at most: a part of them tells no more.
+    /// Not where all data supported a single effect at most: a part of them supports no more.
     LeftOut,
 }
 
@@ -178,8 +178,8 @@ impl Search<'_> {
     fn remainder(&self, hypothesis: &Hypothesis, additions: &[f64]) -> Option<(f64, DiscrepancyModel)> {
         let least = hypothesis.log_probability + NAMED.ln();
         let curve = self.longer(hypothesis, additions, true).filter(|longer| longer.log_probability > least);
-        let told = self.predicted(hypothesis, self.evidence, &self.model.response(&hypothesis.terms));
-        let replicates = self.lack_of_fit(hypothesis, &told).map_or(f64::NEG_INFINITY, |test| {
+        let predicted = self.predicted(hypothesis, self.evidence, &self.model.response(&hypothesis.terms));
+        let replicates = self.lack_of_fit(hypothesis, &predicted).map_or(f64::NEG_INFINITY, |test| {
             hypothesis.log_probability + test.log_odds() + (PRIOR.2 / PRIOR.0).ln()
         });
         match curve {

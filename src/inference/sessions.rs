@@ -129,10 +129,10 @@ mod tests {
     #[test]
     fn a_level_that_nobody_knows_is_no_error() {
         let level = |row: usize| row / (POINTS / 2);
-        let told = evidence(|row| 8.0 * x(row) + 50.0 * (level(row) as f64 + 1.0));
+        let known = evidence(|row| 8.0 * x(row) + 50.0 * (level(row) as f64 + 1.0));
         let levels = 2 * SESSIONS;
         let nuisance = DMatrix::from_fn(COUNT, levels, |row, k| f64::from(u8::from(level(row) == k)));
-        let unknown = Evidence { intercept: (0..COUNT).map(level).collect(), nuisance, ..told };
+        let unknown = Evidence { intercept: (0..COUNT).map(level).collect(), nuisance, ..known };
         for replica in replicas(&unknown) {
             // 8·x in two halves, each about its mean, is 1.2 rms
             assert!((1.2..2.0).contains(&replica.before), "{replica:?}");

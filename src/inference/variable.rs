@@ -84,7 +84,7 @@ impl Variable {
         }
     }
 
-    /// True for a number that only tells groups apart.
+    /// True for a number that only names groups.
     pub fn is_group(self) -> bool {
         matches!(self, Variable::Channel | Variable::LoadAxis | Variable::Phase)
     }

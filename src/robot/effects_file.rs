@@ -130,7 +130,7 @@ pub(super) fn written(effect: &Effect) -> String {
 /// `angles` (rad) by joint.
 pub fn corrections_csv(robot: &Robot, angles: &[Vec<f64>]) -> String {
     let mut text =
-        "# add correction_urad to the angle that the joint tells; straight between the rows\n".to_owned();
+        "# add correction_urad to the angle that the joint shows; straight between the rows\n".to_owned();
     text += &format!("{}\n", COLUMNS.join(","));
     for (joint, angles) in angles.iter().enumerate() {
         let own = |effect: &&Effect| {

@@ -25,10 +25,15 @@ pub(super) struct Configuration {
     pub torque: Vec<f64>,
     /// Their moment about the point on the axis, N·m.
     pub moment: Vec<Vector3<f64>>,
+    /// First moment of all masses beyond a joint about the point on its axis, kg·m: what g × has to
+    /// be multiplied by for their moment.
+    pub first_moment: Vec<Vector3<f64>>,
     /// Angle or way by which each joint yields per torque, rad/(N·m).
     pub compliance: Vec<f64>,
     /// The frame of the link that each joint moves.
     pub link: Vec<Pose>,
+    /// {0}.
+    pub base: Pose,
     /// {T}.
     pub flange: Pose,
     /// The ball: the deflected tip, m.
@@ -47,6 +52,16 @@ impl Configuration {
     pub fn yielding(&self, point: &Vector3<f64>, force: &Vector3<f64>) -> Vector3<f64> {
         let of_joint =
             |j: usize| self.tip_jacobian[j] * (self.compliance[j] * self.torque_of(j, point, force));
+        (0..self.tip_jacobian.len()).map(of_joint).sum()
+    }
+
+    /// Displacement of the tip by joints that yield to one more acceleration of all masses (m/s²):
+    /// Σ J·c·z·(S × acceleration).
+    pub fn yielding_to_weight(&self, acceleration: &Vector3<f64>) -> Vector3<f64> {
+        let of_joint = |j: usize| {
+            let torque = self.axis[j].dot(&self.first_moment[j].cross(acceleration));
+            self.tip_jacobian[j] * (self.compliance[j] * torque)
+        };
         (0..self.tip_jacobian.len()).map(of_joint).sum()
     }
 
@@ -84,7 +99,7 @@ pub(super) fn all(
                 kinematics.torques(&loads, &mut torque);
             }
             kinematics.update(recording.joints(row), &torque);
-            let moment = moments(&kinematics, &loads, &bodies);
+            let (moment, first_moment) = moments(&kinematics, &loads, &bodies);
             kinematics.tip += deflections[row];
             let step = step(recording, row);
             for (approach, step) in approach.iter_mut().zip(&step).filter(|(_, s)| s.abs() > STANDSTILL) {
@@ -97,8 +112,10 @@ pub(super) fn all(
                 origin: kinematics.joints.iter().map(|joint| joint.origin).collect(),
                 torque,
                 moment,
+                first_moment,
                 compliance: setup.compliance.clone(),
                 link: kinematics.joints.iter().map(|joint| joint.distal).collect(),
+                base: setup.base(),
                 flange: kinematics.flange,
                 tip: kinematics.tip,
                 gravity,
@@ -114,27 +131,35 @@ fn step(recording: &Recording, row: usize) -> Vec<f64> {
     recording.joints(row).iter().zip(before).map(|(now, before)| now - before).collect()
 }
 
-/// Moment of all that hangs beyond each joint about the point on its axis, N·m; zero for a
-/// prismatic joint.
-fn moments(kinematics: &Kinematics, loads: &Loads, bodies: &[Option<Body>]) -> Vec<Vector3<f64>> {
-    let mut force = loads.tip_force;
-    let mut moment = kinematics.tip.cross(&force);
-    let mut add = |point: Vector3<f64>, mass: f64| {
-        let weight = loads.gravity * mass;
-        force += weight;
-        moment += point.cross(&weight);
-        (force, moment)
+/// Moment M of all that pulls beyond each joint about the point o on its axis, N·m, and the first
+/// moment S of the masses among it, kg·m; zeros for a prismatic joint.
+///
+/// M = S × g + (tip − o) × F,   S = Σ m·(p − o)
+fn moments(
+    kinematics: &Kinematics,
+    loads: &Loads,
+    bodies: &[Option<Body>],
+) -> (Vec<Vector3<f64>>, Vec<Vector3<f64>>) {
+    let (mut mass, mut about_world) = (0.0, Vector3::zeros());
+    let mut add = |point: Vector3<f64>, own: f64| {
+        mass += own;
+        about_world += point * own;
+        (mass, about_world)
     };
     if let Some(payload) = &loads.payload {
         add(kinematics.flange.point(&payload.centre), payload.mass);
     }
     let mut moments = vec![Vector3::zeros(); bodies.len()];
+    let mut first_moments = moments.clone();
     for (j, frames) in kinematics.joints.iter().enumerate().rev() {
         let body = bodies[j].unwrap_or(Body { mass: 0.0, centre: Vector3::zeros() });
-        let (force, moment) = add(frames.distal.point(&body.centre), body.mass);
+        let (mass, about_world) = add(frames.distal.point(&body.centre), body.mass);
         if frames.motion == Motion::Revolute {
-            moments[j] = moment - frames.origin.cross(&force);
+            let first = about_world - frames.origin * mass;
+            first_moments[j] = first;
+            moments[j] =
+                first.cross(&loads.gravity) + (kinematics.tip - frames.origin).cross(&loads.tip_force);
         }
     }
-    moments
+    (moments, first_moments)
 }

@@ -29,6 +29,8 @@ pub(super) struct Context<'a> {
     pub has_masses: bool,
     /// C^F of the rod in {T}, m/N; zero for a rigid one.
     pub force_compliance: Matrix3<f64>,
+    /// Deflection of the rod by its own weight in {T} per acceleration of gravity, m/(m/s²).
+    pub weight_compliance: Matrix3<f64>,
     /// Deflections in {W} by the rod's model, m, by contact force and by gravity; empty without a
     /// rod.
     pub deflection: Vec<[Vector3<f64>; 2]>,
@@ -58,7 +60,7 @@ impl<'a> Context<'a> {
         Ok(Context { since: &campaign.measurements, ..Context::still(asked, mode, setup, &deflections)? })
     }
 
-    /// Without what only measured points tell.
+    /// Without what only measured points show.
     fn still(
         campaign: &'a Campaign,
         mode: Mode,
@@ -90,6 +92,9 @@ impl<'a> Context<'a> {
             has_masses: campaign.robot.has_masses(),
             motions: campaign.robot.joints.iter().map(|joint| joint.motion).collect(),
             force_compliance: rod.as_ref().map_or_else(Matrix3::zeros, |rod| rod.force),
+            weight_compliance: rod
+                .as_ref()
+                .map_or_else(Matrix3::zeros, |rod| rod.gravity / crate::units::STANDARD_GRAVITY),
             deflection: configurations.iter().enumerate().filter_map(deflection).collect(),
             accounted,
             configurations,

@@ -53,7 +53,7 @@ impl Entry {
 
     /// Without parameters that do nothing; `None` where none is left.
     pub fn felt(self) -> Option<Entry> {
-        // the terms of a gear's error are told by their number
+        // the terms of a gear's error are distinguished by their number
         let keeps_all = self.law.gear().is_some() && self.columns.iter().any(|column| !column.is_zero());
         let parameters = self.candidate.parameters.into_iter().zip(self.columns);
         let (parameters, columns): (Vec<_>, Vec<_>) =

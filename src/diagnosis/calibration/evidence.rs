@@ -1,4 +1,4 @@
-//! What the engine is told about a calibrated campaign: what is left, what the calibration can
+//! What the engine knows about a calibrated campaign: what is left, what the calibration can
 //! absorb, what to hold out.
 //!
 //! ```text

@@ -1,4 +1,4 @@
-//! The measurement that would tell a finding from its rivals.
+//! The measurement that would separate a finding from its rivals.
 //!
 //! With poses added to those of the campaign, hypothesis A predicts ηA of all of them. What
 //! hypothesis B, fitted to that together with all that the calibration absorbs, cannot follow is
@@ -26,10 +26,8 @@ use crate::inference::{
 
 /// Rivals that poses have to separate the finding from: the likeliest ones.
 const MOST_RIVALS: usize = 3;
-/// Ln odds that leave no doubt: as of what is weighed or gauged.
-const DECISIVE: f64 = 30.0;
 
-/// The poses that best tell `finding` from its rivals; `None` where it has none, or where no
+/// The poses that best separate `finding` from its rivals; `None` where it has none, or where no
 /// feasible poses can.
 pub(super) fn next_poses(
     model: &CalibrationModel,
@@ -42,8 +40,8 @@ pub(super) fn next_poses(
     if rivals.is_empty() {
         return Ok(None);
     }
-    if let Some(checked) = direct_check(finding, &rivals) {
-        return Ok(Some(checked));
+    if let Some(check) = Proposal::direct_check(finding, &rivals) {
+        return Ok(Some(check));
     }
     let (campaign, calibration) = (model.campaign, &model.calibration);
     let own = Named::new(&model.terms, &diagnosis.hypothesis.terms);
@@ -82,39 +80,22 @@ pub(super) fn next_poses(
     Ok(design.best().map(|(poses, gained)| proposal(poses, &gained, &rivals)))
 }
 
-/// The likeliest rivals that are told as something else than the finding.
+/// The likeliest rivals that are called something else than the finding.
 fn apart(finding: &Finding) -> Vec<&Rival> {
     let is_other =
         |rival: &&Rival| rival.effect != finding.effect || rival.location.place() != finding.location;
     finding.rivals.iter().filter(is_other).take(MOST_RIVALS).collect()
 }
 
-/// What can be weighed or gauged without the robot: the finding, or else the likeliest such rival.
-fn direct_check(finding: &Finding, rivals: &[&Rival]) -> Option<Proposal> {
-    let effects = std::iter::once(finding.effect).chain(rivals.iter().map(|rival| rival.effect));
-    let checked = effects.into_iter().find(|effect| effect.direct_check.is_some())?;
-    // a finding that is gauged is told from all others; a rival that is gauged only from itself
-    let is_told = |rival: &&&Rival| match checked == finding.effect {
-        true => rival.effect != checked,
-        false => rival.effect == checked,
-    };
-    Some(Proposal {
-        words: checked.direct_check?.to_owned(),
-        plan: None,
-        log_odds: DECISIVE,
-        separates_from: rivals.iter().filter(is_told).map(|rival| place(rival)).collect(),
-    })
-}
-
 /// Poses to measure, by what they gain against each rival.
 fn proposal(poses: FeasiblePoses, gained: &[f64], rivals: &[&Rival]) -> Proposal {
-    let told = || gained.iter().zip(rivals).filter(|(gained, _)| separates(**gained));
+    let separated = || gained.iter().zip(rivals).filter(|(gained, _)| separates(**gained));
     let FeasiblePoses { words, plan } = poses;
     Proposal {
         words,
         plan: Some(Plan::Poses(plan)),
-        log_odds: told().map(|(gained, _)| *gained).fold(DECISIVE, f64::min),
-        separates_from: told().map(|(_, rival)| place(rival)).collect(),
+        log_odds: separated().map(|(gained, _)| *gained).fold(f64::INFINITY, f64::min),
+        separates_from: separated().map(|(_, rival)| place(rival)).collect(),
     }
 }
 

@@ -52,7 +52,7 @@ impl Datum {
         format!("row {} d{}", self.row, self.channel)
     }
 
-    /// How its run is told from the others of its axis; nothing where the file has no names.
+    /// What names its run among those of its axis; nothing where the file has no names.
     pub(super) fn run_name(&self) -> Option<RunName> {
         self.trial.clone().map(RunName::Trial)
     }
@@ -112,7 +112,7 @@ pub(super) fn numbered<K: Eq + Hash>(keys: impl IntoIterator<Item = K>) -> Vec<u
     keys.into_iter().map(number).collect()
 }
 
-/// A load as it is told from others: direction, size, phase, places.
+/// What distinguishes a load from others: direction, size, phase, places.
 type Condition = (i8, u64, Option<Phase>, [Option<u64>; 2]);
 
 /// What a run without a name has seen so far.

@@ -19,6 +19,8 @@ pub(super) enum History {
     Creep(Clock, f64),
     /// Hysteresis of a shape.
     Loop(Loop),
+    /// Softening with temperature.
+    Temperature,
 }
 
 /// Since when a reading has crept.
@@ -80,6 +82,15 @@ pub(super) fn creep(data: &[Datum], clock: Clock, t0: f64) -> Option<Memory> {
         }
     }
     Some(memory)
+}
+
+/// Softening with temperature: displacement × (1 + k·(T − T̄)), T̄ the mean of the recording, K. Nothing where a
+/// reading has no temperature, or where all have the same.
+pub(super) fn warmth(data: &[Datum]) -> Option<Memory> {
+    let temperatures: Vec<f64> = data.iter().map(|d| d.temperature).collect::<Option<_>>()?;
+    temperatures.iter().any(|one| *one != temperatures[0]).then_some(())?;
+    let mean = temperatures.iter().sum::<f64>() / temperatures.len() as f64;
+    Some(Memory { relative: temperatures.into_iter().map(|one| one - mean).collect(), ..none(data) })
 }
 
 /// Shape of a hysteresis loop. All are independent of rate and closed at the largest load of the run, F_max, and at half of it

@@ -3,7 +3,7 @@
 //! They are discrete, few and of enormous evidence, so they are undone before there is a model. Three steps:
 //!
 //! 1. readings that no load could give: channels that are stuck or cut off, runs whose sign is the other way (`sensors.rs`,
-//!    `groups.rs`); a line of readings tells these by itself;
+//!    `groups.rs`); a line of readings shows these by itself;
 //! 2. the slopes of all lines against the rod (`lines.rs`, `physics.rs`): where what is left is more than ordinary physics
 //!    leaves, some hundred hypotheses (`moves.rs`, `rods.rs`), each a [`change::Change`] of readings and rod, compete with
 //!    each other and with all that physics may add (`search.rs`);
@@ -15,6 +15,7 @@
 mod change;
 mod groups;
 mod lines;
+mod lookalikes;
 mod moves;
 mod part;
 mod physics;
@@ -28,6 +29,7 @@ use nalgebra::{DMatrix, DVector};
 
 use self::change::Move;
 use self::lines::{Line, lines};
+pub(super) use self::lookalikes::lookalikes;
 use self::moves::Labels;
 use self::part::Part;
 use self::physics::Physics;
@@ -37,7 +39,7 @@ use self::sensors::Expected;
 use super::datum;
 use super::structure::check_stations;
 use crate::error::Result;
-use crate::inference::{Description, Effect, Estimate, Finding, Hypothesis, Location, Rival, Term};
+use crate::inference::{Description, Effect, Estimate, Finding, Hypothesis, Location, Proposal, Rival, Term};
 use crate::rig::readings::Readings;
 use crate::rod::Rod;
 use crate::units::significant;
@@ -273,11 +275,12 @@ fn finding(
     p_value: f64,
     explains: f64,
 ) -> Finding {
-    Finding {
+    let mut finding = Finding {
         effect,
         location: Location::Key(location),
         estimates,
-        description: Description { observed, cause: effect.cause.to_owned() },
+        // the correction says what it is
+        description: Description { observed, cause: String::new() },
         rivals,
         p_value,
         explains,
@@ -285,7 +288,10 @@ fn finding(
         held_out_loss: None,
         next: None,
         parts: Vec::new(),
-    }
+    };
+    let rivals: Vec<&Rival> = finding.rivals.iter().collect();
+    finding.next = Proposal::direct_check(&finding, &rivals);
+    finding
 }
 
 /// What explains as much; it has no term either.

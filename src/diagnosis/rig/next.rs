@@ -1,7 +1,7 @@
-//! The measurement that would tell a finding from its rivals.
+//! The measurement that would separate a finding from its rivals.
 //!
 //! Two hypotheses predict new readings η₁ and η₂, each with the uncertainty that its parameters have by now. New readings of noise
-//! σ tell them apart by the expected ln of the odds
+//! σ separate them by the expected ln of the odds
 //!
 //! ½·dᵀ·(σ²(1 + ρJ) + S₁Σ₁S₁ᵀ + S₂Σ₂S₂ᵀ)⁻¹·d,   d = η₁ − η₂
 //!
@@ -23,8 +23,8 @@ use crate::inference::{
 const MOST_RIVALS: usize = 6;
 const MOST_PLACES: usize = 10;
 
-/// The feasible measurement that best tells `finding` from its rivals; `None` where it has none, or where no measurement tells
-/// it from any of them.
+/// The feasible measurement that best separates `finding` from its rivals; `None` where it has
+/// none, or where no measurement separates it from any of them.
 pub(super) fn next_measurement(
     model: &RigModel,
     evidence: &Evidence,
@@ -53,17 +53,17 @@ pub(super) fn next_measurement(
         design.offer(measurement, separations, &odds);
     }
     Ok(design.best().map(|(measurement, separations)| {
-        let told = || rivals.iter().zip(&separations).filter(|(_, apart)| separates(**apart));
+        let separated = || rivals.iter().zip(&separations).filter(|(_, apart)| separates(**apart));
         Proposal {
             words: measurement.words,
             plan: Some(Plan::Loads(measurement.plan)),
-            log_odds: told().map(|(_, apart)| *apart).fold(f64::INFINITY, f64::min),
-            separates_from: told().map(|(rival, _)| (rival.effect, rival.location.clone())).collect(),
+            log_odds: separated().map(|(_, apart)| *apart).fold(f64::INFINITY, f64::min),
+            separates_from: separated().map(|(rival, _)| (rival.effect, rival.location.clone())).collect(),
         }
     }))
 }
 
-/// The rivals to be told apart: the likeliest of every other effect, with the other places where it
+/// The rivals to be separated: the likeliest of every other effect, with the other places where it
 /// may sit; without any, those of the same effect at the farthest places.
 fn apart(finding: &Finding) -> Vec<&Rival> {
     let mut apart: Vec<&Rival> = Vec::new();
@@ -134,7 +134,7 @@ impl Future {
             let columns = self.sensitivities(&transferred.terms);
             covariance += &columns * self.covariance(hypothesis, &transferred) * columns.transpose();
         }
-        // what the base model absorbs by itself tells nothing
+        // what the base model absorbs by itself separates nothing
         let scale = difference.amax().max(noise);
         for column in self.nuisance.column_iter() {
             let unit = column.amax();

@@ -14,7 +14,7 @@ use nalgebra::{DMatrix, Matrix3};
 use super::datum::Datum;
 use super::structure::responses;
 use crate::error::Result;
-use crate::inference::NominalNumber;
+use crate::inference::NominalParameter;
 use crate::rig::readings::RigHeader;
 use crate::rod::Rod;
 use crate::spatial::Axis;
@@ -28,10 +28,10 @@ pub(super) fn all(
     rod: &Rod,
     header: &RigHeader,
     stations: &dyn Fn(&Rod, &Datum) -> (f64, f64),
-) -> Result<(Vec<NominalNumber>, DMatrix<f64>)> {
+) -> Result<(Vec<NominalParameter>, DMatrix<f64>)> {
     let mut numbers = Vec::new();
     let mut columns: Vec<Vec<f64>> = Vec::new();
-    let mut add = |number: NominalNumber, column: Vec<f64>| {
+    let mut add = |number: NominalParameter, column: Vec<f64>| {
         if column.iter().any(|value| *value != 0.0) && column.iter().all(|value| value.is_finite()) {
             numbers.push(number);
             columns.push(column);
@@ -54,11 +54,11 @@ pub(super) fn all(
         let si = 1.0 / per_unit;
         let value = if unit == "%" { 100.0 * si } else { nominal.value };
         add(
-            NominalNumber { name: nominal.number.to_string(), unit, si, value, standard_uncertainty: u },
+            NominalParameter { name: nominal.number.to_string(), unit, si, value, standard_uncertainty: u },
             column.collect(),
         );
     }
-    let scale = |name: String, standard_uncertainty: f64| NominalNumber {
+    let scale = |name: String, standard_uncertainty: f64| NominalParameter {
         name,
         unit: "%",
         si: PERCENT,
@@ -78,7 +78,7 @@ pub(super) fn all(
         let Some(column) = pairs.moved(data, rod, station, length) else { continue };
         let name = format!("station {:.1} mm", station / MM);
         let (unit, si) = ("mm", MM);
-        add(NominalNumber { name, unit, si, value: station, standard_uncertainty: length }, column);
+        add(NominalParameter { name, unit, si, value: station, standard_uncertainty: length }, column);
     }
     let matrix = DMatrix::from_fn(data.len(), columns.len(), |i, k| columns[k][i]);
     Ok((numbers, matrix))

@@ -414,3 +414,31 @@ fn a_step_at_one_load_and_a_bend_in_the_line_are_within_the_unknown() {
         assert!((&basis * fit - target).amax() < 1e-12);
     }
 }
+
+/// Ten kelvins between the runs: each deflects by its own temperature, about the mean of all.
+#[test]
+fn a_warm_rod_is_softer_and_is_found_so() {
+    let file = rod("");
+    let (per_kelvin, slope) = (2e-3, compliance(&file)[(1, 1)]);
+    let mut text = "axis,load_n,trial,temperature_c,dy_um\n".to_owned();
+    let mut random = crate::statistics::Random::seeded(5, 0);
+    for trial in 0..8 {
+        let temperature = 20.0 + 10.0 * f64::from(trial % 2);
+        for load in [5.0, 10.0, 15.0, 20.0] {
+            let softer = 1.0 + per_kelvin * (temperature - 25.0);
+            let shown = slope * load * softer / UM + random.normal();
+            text += &format!("y,{load},{trial},{temperature},{shown:.1}\n");
+        }
+    }
+    let (made, evidence) = RigModel::new(&readings(&text), Some(&file)).unwrap();
+    let change = one(&made, "thermal_softening", "rod", per_kelvin, Axis::Y);
+    for (datum, change) in made.data().iter().zip(&change) {
+        let kelvins = if datum.temperature == Some(30.0) { 5.0 } else { -5.0 };
+        assert_relative_eq!(*change, per_kelvin * kelvins * datum.predicted, max_relative = 1e-12);
+    }
+    let found = infer(&made, &evidence).findings;
+    assert_eq!(found.len(), 1, "{found:#?}");
+    assert_eq!(found[0].effect.name, "thermal_softening");
+    let found = found[0].quantity("per_k").unwrap();
+    assert!(found.low < per_kelvin && per_kelvin < found.high && found.high - found.low < 1e-3, "{found:?}");
+}

@@ -82,6 +82,7 @@ fn subject<'a>(found: &'a CalibrationDiagnosis<'_>) -> Subject<'a> {
         per: " per coordinate",
         agrees: "The calibrated robot explains the poses",
         errors: Errors { averaged: " on average", before, after, held_out: distances.held_out_means() },
+        before_correction: None,
         nominal: None,
         suspect: Box::new(|datum| {
             let row = &campaign.measurements.rows[datum / 3];

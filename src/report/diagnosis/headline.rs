@@ -76,10 +76,25 @@ fn capital(words: &str) -> String {
 
 /// What the findings do to the errors.
 fn worth(subject: &Subject) -> String {
-    let (findings, errors) = (&subject.diagnosis.findings, subject.errors);
-    let scatter = scatter(subject);
-    let it = if findings.len() > 1 { "them" } else { "it" };
+    let errors = subject.errors;
     let averaged = errors.averaged;
+    let scatter = scatter(subject);
+    let (mistakes, findings): (Vec<_>, Vec<_>) =
+        subject.diagnosis.findings.iter().partition(|finding| finding.kind() == Kind::Mistake);
+    if findings.is_empty() {
+        let it = if mistakes.len() > 1 { "they are" } else { "it is" };
+        let (before, after) = (um(errors.before), um(errors.after));
+        return format!(
+            " Once {it} corrected, the residual falls from {before} to {after} µm{averaged}; {scatter}"
+        );
+    }
+    // with mistakes, what was held out is that of the corrected recording
+    let it = match (mistakes.is_empty(), findings.len()) {
+        (true, 1) => "it",
+        (true, _) => "them",
+        (false, 1) => "the other finding",
+        (false, _) => "the other findings",
+    };
     let fitted = |why: &str| {
         let (before, after) = (um(errors.before), um(errors.after));
         format!(" With {it}, the error falls from {before} to {after} µm{averaged}{why}; {scatter}")
@@ -103,7 +118,7 @@ fn worth(subject: &Subject) -> String {
     }
 }
 
-/// A finding with what cannot be told from it.
+/// A finding with what these data cannot distinguish from it.
 pub fn sentence(subject: &Subject, finding: &Finding) -> String {
     let description = &finding.description;
     let others = finding.other_effects();

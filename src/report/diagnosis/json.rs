@@ -17,7 +17,7 @@ use crate::units::{MM, UM};
 /// Numbers in µm are root mean squares of a datum. `heldout_gain` is the share of the squares of
 /// held-out errors that vanishes with all findings together; `heldout_loss` of a finding is the
 /// share that comes back without it. The intervals of a joint that nobody declared hold all
-/// stations that these readings do not tell from its own, and what it would be there.
+/// stations that these readings do not distinguish from its own, and what it would be there.
 pub fn json(subject: &Subject) -> Value {
     let diagnosis = subject.diagnosis;
     let held_out = diagnosis.held_out.as_ref();
@@ -63,7 +63,7 @@ pub fn json(subject: &Subject) -> Value {
         "suspects": suspects.collect::<Vec<_>>(),
         "noise_shared_ratio": diagnosis.shared_ratio,
         "residual_sd_um": um(diagnosis.hypothesis.sigma),
-        "rms_before_um": um(rms(&diagnosis.before)),
+        "rms_before_um": um(subject.before_correction.unwrap_or_else(|| rms(&diagnosis.before))),
         "rms_after_um": um(rms(&diagnosis.after)),
         "heldout_before_um": held_out.map(|held_out| um(held_out.before)),
         "heldout_after_um": held_out.map(|held_out| um(held_out.after)),

@@ -6,7 +6,7 @@ use crate::inference::Variable;
 use crate::report::table::{Column, Table};
 use crate::units::{UM, significant};
 
-/// The remainder as it is told.
+/// The remainder as it is reported.
 #[derive(Debug, Clone)]
 pub struct Remainder {
     /// Where: the place of its curve, or the condition that is worst.

@@ -54,10 +54,11 @@ fn subject<'a>(found: &'a RigDiagnosis, correction: Option<&Correction>) -> Subj
         agrees: "The readings agree with the model",
         errors: Errors {
             averaged: "",
-            before: rms(&diagnosis.before),
+            before: model.recorded_error().unwrap_or_else(|| rms(&diagnosis.before)),
             after: rms(&diagnosis.after),
             held_out: diagnosis.held_out.as_ref().map(|errors| (errors.before, errors.after)),
         },
+        before_correction: model.recorded_error(),
         nominal: nominal(found),
         suspect: Box::new(|datum| {
             let datum = &model.data()[datum];
@@ -165,7 +166,7 @@ fn of_curve(
     }
 }
 
-/// Where no curve describes it, the averages of the repeats tell.
+/// Where no curve describes it, the averages of the repeats say it.
 fn of_conditions(found: &RigDiagnosis, left: &Discrepancy) -> Remainder {
     let data = found.model.data();
     let loads: Vec<f64> = data.iter().map(|datum| datum.load).collect();

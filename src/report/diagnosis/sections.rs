@@ -36,7 +36,8 @@ fn findings(subject: &Subject) -> Section {
     }
     let points = findings.iter().enumerate().map(|(k, finding)| {
         let next = finding.next.as_ref();
-        let next = next.map_or_else(String::new, |next| format!(" To distinguish them: {}", next.words));
+        let purpose = if finding.rivals.is_empty() { "check it" } else { "distinguish them" };
+        let next = next.map_or_else(String::new, |next| format!(" To {purpose}: {}", next.words));
         format!("{} {}{next}", sentence(subject, finding), details(subject, k, finding))
     });
     blocks.push(Block::List(points.collect()));

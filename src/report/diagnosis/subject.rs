@@ -31,6 +31,8 @@ pub struct Subject<'a> {
     pub agrees: &'static str,
     /// Whose errors are compared before and after.
     pub errors: Errors,
+    /// Root mean square before mistakes were corrected, m, where there were any.
+    pub before_correction: Option<f64>,
     /// What the nominal numbers explain, in a sentence.
     pub nominal: Option<String>,
     /// A suspect datum as JSON: its row or pose, its channel.

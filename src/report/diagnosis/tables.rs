@@ -38,6 +38,13 @@ pub fn parameters(findings: &[Finding]) -> Table {
         "Parameters with 95 % intervals. p: the probability that noise alone looks as much like the effect.";
     let mut table = Table::new("findings", caption, columns);
     for finding in findings {
+        if finding.estimates.is_empty() {
+            // a wrong sign has a place and no number
+            let (effect, place) = (finding.effect.spoken(), finding.location.to_string());
+            let none = String::new;
+            let p = chance(finding.p_value);
+            table.row([effect, place, none(), none(), none(), none(), none(), p]);
+        }
         for (k, estimate) in finding.estimates.iter().enumerate() {
             let first = |text: String| if k == 0 { text } else { String::new() };
             let numbers = [estimate.value, estimate.low, estimate.high];
@@ -115,7 +122,7 @@ pub fn alternatives(causes: &[String], places: &[Location]) -> String {
     words
 }
 
-/// Covariates that are told: one that has the values of another is that other one.
+/// Covariates that are reported: one that has the values of another is that other one.
 pub fn covariates(evidence: &Evidence) -> Vec<usize> {
     let all = &evidence.covariates;
     let is_new = |k: &usize| all[..*k].iter().all(|other| other.values != all[*k].values);

@@ -11,8 +11,8 @@ use crate::units::{MM, UM};
 
 /// A pose that was read wrongly, m.
 const MISREAD: f64 = 0.5 * MM;
-/// Most outliers that are told one by one.
-const TOLD: usize = 3;
+/// Most outliers that are reported one by one.
+const REPORTED: usize = 3;
 
 /// A pose that is wrong.
 pub static OUTLIER: CalibrationEffect = CalibrationEffect {
@@ -63,10 +63,10 @@ fn misread(finding: &Finding, _: &CalibrationModel) -> String {
         let pose = if k == 0 { capital(&part.location) } else { part.location.to_string() };
         format!("{pose} is off by {}", vector::size(part, UM).say("µm"))
     };
-    let told: Vec<String> = finding.parts.iter().take(TOLD).enumerate().map(one).collect();
-    let more = match finding.parts.len().saturating_sub(TOLD) {
+    let reported: Vec<String> = finding.parts.iter().take(REPORTED).enumerate().map(one).collect();
+    let more = match finding.parts.len().saturating_sub(REPORTED) {
         0 => String::new(),
         more => format!(" and {more} more {} off", if more == 1 { "is" } else { "are" }),
     };
-    told.join(", ") + &more
+    reported.join(", ") + &more
 }

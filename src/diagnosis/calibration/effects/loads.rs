@@ -17,7 +17,7 @@ use crate::diagnosis::calibration::model::CalibrationModel;
 use crate::inference::{
     Effect, Estimate, Finding, FindingPart, Kind, Location, NotTestable, Part, Reported, WrittenTo,
 };
-use crate::units::GRAM;
+use crate::units::{DEG, GRAM};
 
 /// Share by which a rod is softer than its model.
 const SOFTNESS: f64 = 0.27;
@@ -25,6 +25,8 @@ const SOFTNESS: f64 = 0.27;
 const FORGOTTEN_AT_TIP: f64 = 0.05;
 /// Mass at the flange that was forgotten, kg.
 const FORGOTTEN_AT_FLANGE: f64 = 0.5;
+/// How far from level a robot stands that nobody has levelled, rad.
+const LEVEL: f64 = 0.5 * DEG;
 /// Error of a contact force, N.
 const CONTACT: f64 = 0.3;
 
@@ -199,6 +201,57 @@ fn payload_masses(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry>
     let column = context.column(|_, there| there.yielding(&there.flange.origin, &there.gravity));
     let mass = linear("mass_kg", 1.0, FORGOTTEN_AT_FLANGE);
     vec![single(&PAYLOAD_MASS, Location::Part(Part::Flange), mass, column)]
+}
+
+/// A robot that does not stand level.
+pub static GRAVITY_DIRECTION: CalibrationEffect = CalibrationEffect {
+    effect: Effect {
+        name: "gravity_direction",
+        kind: Kind::Physics,
+        summary: "the robot does not stand level: gravity acts along another direction",
+        formula: "R·C^g·Rᵀ·δg + Σ_j Jⱼ·cⱼ·zⱼ·(Sⱼ × δg): δg = φ × g, φ about x and y of {0}; Sⱼ the first \
+                  moment of all that hangs beyond joint j",
+        prior: "0.5°: a foot that was set up without a level",
+        parameters: &[
+            ("roll_deg", "rotation of gravity about x of the base"),
+            ("pitch_deg", "rotation of gravity about y of the base"),
+        ],
+        needs: "a rod, or masses in the robot file and joints of known compliance",
+        cause: "a base that does not stand level",
+        cause_at: |_| "a base that does not stand level".into(),
+        written_to: WrittenTo::Nowhere,
+        reported: Reported::Alone,
+        seen_along: |_| Vec::new(),
+        direct_check: Some("Put a level on the robot's foot."),
+    },
+    candidates: levels,
+    estimates: own_parameters,
+    observed: |finding, _| {
+        let angle = size(finding, DEG).say("°");
+        format!("Gravity is inclined by {angle} to where the base says it acts")
+    },
+    write: nowhere,
+    transfer: Transfer::Candidate,
+    event: no_event,
+};
+
+fn levels(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
+    let pulls = |there: &Configuration| there.first_moment.iter().any(|moment| moment.amax() > 0.0);
+    let has_arm = joints_give_way(context) && context.configurations.iter().any(pulls);
+    if context.weight_compliance.amax() == 0.0 && !has_arm {
+        let reason = "there is neither a rod nor a joint of known compliance that carries a known mass";
+        lacks.push(lack(&GRAVITY_DIRECTION, reason));
+        return Vec::new();
+    }
+    let about = |(axis, name): (usize, &str)| {
+        let column = context.column(|_, there| {
+            let turned = there.base.rotation.column(axis).cross(&there.gravity);
+            there.in_world(&context.weight_compliance) * turned + there.yielding_to_weight(&turned)
+        });
+        (linear(name, DEG, LEVEL), column)
+    };
+    let parameters = ["roll_deg", "pitch_deg"].into_iter().enumerate().map(about).collect();
+    vec![Entry::new(&GRAVITY_DIRECTION.effect, Location::Part(Part::Base), parameters)]
 }
 
 /// A ball that is pushed harder or softer than stated.

@@ -7,18 +7,19 @@ use super::joints::{
     BACKLASH, ENCODER_SCALE, GRAVITY_TILT, JOINT_COMPLIANCE, JOINT_NONLINEAR_STIFFNESS, LINK_FLEXIBILITY,
     WRIST_COUPLING,
 };
-use super::loads::{CONTACT_FORCE_VARIATION, PAYLOAD_MASS, ROD_STIFFNESS, TIP_MASS};
+use super::loads::{CONTACT_FORCE_VARIATION, GRAVITY_DIRECTION, PAYLOAD_MASS, ROD_STIFFNESS, TIP_MASS};
 use super::procedure::{READBACK_LAG, THERMAL_DRIFT};
 use super::{CalibrationEffect, Context, Entry};
 use crate::diagnosis::calibration::law::{Law, TakenUp};
 use crate::inference::{Effect, NotTestable};
 
 /// All of them, as they are listed wherever they are.
-pub static ALL: [&CalibrationEffect; 19] = [
+pub static ALL: [&CalibrationEffect; 20] = [
     &ROD_STIFFNESS,
     &TIP_MASS,
     &PAYLOAD_MASS,
     &CONTACT_FORCE_VARIATION,
+    &GRAVITY_DIRECTION,
     &JOINT_COMPLIANCE,
     &JOINT_NONLINEAR_STIFFNESS,
     &LINK_FLEXIBILITY,
@@ -37,8 +38,8 @@ pub static ALL: [&CalibrationEffect; 19] = [
 ];
 
 /// What pulls on the arm as a whole: preferred to what a single joint does.
-static OF_LOADS: [&CalibrationEffect; 5] =
-    [&ROD_STIFFNESS, &TIP_MASS, &PAYLOAD_MASS, &CONTACT_FORCE_VARIATION, &GRAVITY_TILT];
+static OF_LOADS: [&CalibrationEffect; 6] =
+    [&ROD_STIFFNESS, &TIP_MASS, &PAYLOAD_MASS, &CONTACT_FORCE_VARIATION, &GRAVITY_DIRECTION, &GRAVITY_TILT];
 /// What follows the torque of a joint.
 static OF_TORQUE: [&CalibrationEffect; 4] =
     [&JOINT_COMPLIANCE, &JOINT_NONLINEAR_STIFFNESS, &BACKLASH, &LINK_FLEXIBILITY];

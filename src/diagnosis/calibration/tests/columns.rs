@@ -16,6 +16,7 @@ fn columns_are_what_a_changed_robot_does() {
     let compensation = Compensation::new(&campaign, Mode::Fea).unwrap();
     let (model, _) = CalibrationModel::new(&campaign, calibration.clone()).unwrap();
     let force = compensation.compliance.as_ref().unwrap().force;
+    let weight = compensation.compliance.as_ref().unwrap().gravity / crate::units::STANDARD_GRAVITY;
     let recording = &campaign.measurements;
     let step = |row: usize, j: usize| recording.joints(row)[j] - recording.joints(row.saturating_sub(1))[j];
     let bend = move |row: &mut Row, pull: Vector3<f64>| {
@@ -71,6 +72,18 @@ fn columns_are_what_a_changed_robot_does() {
                 let rod = r.loads.payload.unwrap();
                 let mass = rod.mass + v;
                 r.loads.payload = Some(Body { mass, centre: rod.centre * (rod.mass / mass) });
+            }),
+        ),
+        (
+            "gravity_direction",
+            "base",
+            Box::new(move |r, _, v| {
+                let roll = Rotation3::new(r.setup.base().rotation.column(0) * v);
+                let change = roll * r.loads.gravity - r.loads.gravity;
+                let mut kinematics = Kinematics::new(&r.setup);
+                kinematics.update(&r.q, &r.torque());
+                r.deflection += weight * kinematics.flange.rotation.tr_mul(&change);
+                r.loads.gravity += change;
             }),
         ),
         ("rod_stiffness", "rod", Box::new(|r, _, v| r.deflection *= 1.0 + v)),

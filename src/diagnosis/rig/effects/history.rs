@@ -2,7 +2,7 @@
 
 use super::{Context, Entry, RigEffect, along_the_load, alternative, entry, of, parameter};
 use crate::diagnosis::rig::action::Action;
-use crate::diagnosis::rig::load_history::{Clock, History, Loop, Memory, creep, hysteresis};
+use crate::diagnosis::rig::load_history::{Clock, History, Loop, Memory, creep, hysteresis, warmth};
 use crate::diagnosis::rig::{Body, RigModel};
 use crate::inference::{Effect, Finding, Kind, Location, Part, Reported, Variable, WrittenTo};
 use crate::units::significant;
@@ -13,6 +13,8 @@ const CURVATURE: f64 = 0.05;
 const PER_DECADE: f64 = 0.03;
 /// t₀ of creep, s: what a reading after so long is said to be without.
 const CREEP_STARTS: [f64; 4] = [1.0, 10.0, 60.0, 600.0];
+/// Growth of the deflection per kelvin.
+const PER_KELVIN: f64 = 5e-4;
 /// Width of a hysteresis loop as a share of full scale.
 const LOOP: f64 = 0.02;
 
@@ -66,6 +68,40 @@ pub static CREEP: RigEffect = RigEffect {
         };
         let growth = of(finding, "per_decade").map(|share| 100.0 * share).say("%");
         format!("The deflections grow by {growth} per decade of time {since}")
+    },
+};
+
+/// A rod that is softer when it is warm.
+pub static THERMAL_SOFTENING: RigEffect = RigEffect {
+    effect: Effect {
+        name: "thermal_softening",
+        kind: Kind::Physics,
+        summary: "the rod is softer when it is warmer",
+        formula: "u = C·F·(1 + k·(T − T̄)), T̄ the mean temperature of the recording",
+        prior: "0.05 % per kelvin: stainless steels lose 0.04 % (Ledbetter, J. Appl. Phys. 52, 1981, 1587)",
+        parameters: &[("per_k", "k, growth of the deflection per kelvin")],
+        needs: "temperatures that differ (column `temperature_c`)",
+        cause: "moduli that fall with temperature",
+        cause_at: |_| "moduli that fall with temperature".into(),
+        written_to: WrittenTo::Nowhere,
+        reported: Reported::Alone,
+        seen_along: |_| vec![Variable::Temperature],
+        direct_check: None,
+    },
+    needs_rod: false,
+    candidates: |context| {
+        // a laminate may stiffen: ten times the usual either way
+        let per_kelvin = parameter("per_k", 1.0, 0.0, PER_KELVIN, (-10.0 * PER_KELVIN, 10.0 * PER_KELVIN));
+        let softening = |memory| {
+            let action = Action::Memory(memory, History::Temperature);
+            entry(&THERMAL_SOFTENING, Location::Part(Part::Rod), per_kelvin, action)
+        };
+        warmth(context.data).map(softening).into_iter().collect()
+    },
+    missing: |_| "no temperatures were recorded (column `temperature_c`), or they do not differ",
+    observed: |finding, _| {
+        let growth = of(finding, "per_k").map(|share| 100.0 * share).say("%");
+        format!("The deflections grow by {growth} per kelvin")
     },
 };
 

@@ -4,7 +4,7 @@ use super::{RigEffect, events, history, load, mistakes, sensor, structure};
 use crate::inference::Effect;
 
 /// Every effect that the diagnosis of a rig knows.
-pub static ALL: [&RigEffect; 16] = [
+pub static ALL: [&RigEffect; 17] = [
     &load::FRICTION,
     &load::LOAD_OFFSET,
     &load::BACKLASH,
@@ -19,6 +19,7 @@ pub static ALL: [&RigEffect; 16] = [
     &history::NONLINEAR_STIFFNESS,
     &history::CREEP,
     &history::HYSTERESIS,
+    &history::THERMAL_SOFTENING,
     &sensor::THERMAL_DRIFT,
     &events::SLIP,
 ];

@@ -1,6 +1,7 @@
 //! Mistakes in whole runs or directions: a sign that was lost, a zero that was not taken.
 
 use super::super::datum::Datum;
+use super::super::effects::events::SLIP;
 use super::super::effects::mistakes::{OFFSET_MISTAKE, SIGN_MISTAKE};
 use super::lines::{Fit, Line, fit};
 use super::moves::column;
@@ -240,7 +241,8 @@ fn part(location: String, zero: f64, error: f64, data: Vec<usize>) -> Part {
     }
 }
 
-/// Runs that start elsewhere than most runs of their line; what stays until the end has slipped.
+/// Runs that start elsewhere than most runs of their line; what stays until the end has slipped. Of
+/// the last run alone nobody can say which.
 fn of_run(data: &[Datum], line: &Line, moved: f64) -> Vec<Part> {
     let runs = split(data, line, |d| d.run as i64);
     if runs.len() < 3 {
@@ -281,7 +283,12 @@ fn of_run(data: &[Datum], line: &Line, moved: f64) -> Vec<Part> {
             Some(trial) => format!("{name}, axis {}, trial {trial}", line.axis),
             None => format!("{name}, axis {}, rows {} to {}", line.axis, rows.0, rows.1),
         };
-        found.push(part(location, distance, scatter / (group.data.len() as f64).sqrt(), group.data.clone()));
+        let error = scatter / (group.data.len() as f64).sqrt();
+        let mut part = part(location, distance, error, group.data.clone());
+        if k + 1 == runs.len() {
+            part.rivals.push((&SLIP.effect, part.location.clone()));
+        }
+        found.push(part);
     }
     found
 }

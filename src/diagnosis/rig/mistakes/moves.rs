@@ -3,6 +3,7 @@
 use super::super::effects::mistakes::{SIGN_MISTAKE, SWAP_MISTAKE, UNIT_MISTAKE};
 use super::change::{Change, Move, exact};
 use super::lines::Line;
+use crate::inference::Effect;
 use crate::rig::readings::LoadColumn;
 use crate::spatial::Axis;
 use crate::units::STANDARD_GRAVITY;
@@ -23,7 +24,7 @@ struct Unit {
 pub(super) const BESIDE: f64 = 1.25;
 /// Where a rod that is softer or stiffer comes near the factor itself, less may.
 const BESIDE_PHYSICS: f64 = 1.2;
-const HARDLY_BESIDE: f64 = 1.1;
+pub(super) const HARDLY_BESIDE: f64 = 1.1;
 const VERY_NEAR: f64 = 1.05;
 
 const fn unit(name: &'static str, factor: f64, log_prior: f64, cure: &'static str) -> Unit {
@@ -64,6 +65,20 @@ const FOR_MICROMETRES: [Unit; 7] = [
     unit("centimetres", 1e4, -2.0, "multiply by 10000"),
     unit("hundredths of a millimetre", 10.0, -1.5, "multiply by 10"),
 ];
+
+/// Pounds for kilograms are within what a rod does: joints alone make some twice as soft as their pipes.
+const LIKE_A_ROD: [(&str, f64); 1] = [("pounds (lb)", 0.453_592_37)];
+
+/// The load's column, and the units of it, with their factors, that softer or stiffer rods look like.
+pub(super) fn like_physics(column: LoadColumn) -> (&'static str, Vec<(&'static str, f64)>) {
+    match column {
+        LoadColumn::Newtons => {
+            let near = FOR_NEWTONS.iter().filter(|unit| unit.within < BESIDE);
+            ("load_n", near.map(|unit| (unit.name, unit.factor)).collect())
+        }
+        LoadColumn::Kilograms => ("load_kg", LIKE_A_ROD.to_vec()),
+    }
+}
 
 /// Only in the rows of one axis.
 const ONE_AXIS: f64 = -1.0;
@@ -130,8 +145,8 @@ fn load_units(labels: &Labels) -> Vec<Move> {
     };
     let mut moves = Vec::new();
     for unit in units {
-        // loads along one axis do not tell a pound from a joint that yields, nor do sensors along the loads
-        // only, unless it comes very near
+        // loads along one axis cannot separate a pound from a joint that yields, nor can sensors along the
+        // loads only, unless it comes very near
         let is_near_physics = unit.within < BESIDE;
         let within = if is_near_physics && !labels.has_cross { VERY_NEAR } else { unit.within };
         let mut add = |axes: [bool; 3], location: String, whose: String, log_prior: f64, rows: &str| {
@@ -200,19 +215,31 @@ fn reading_units(labels: &Labels) -> Vec<Move> {
     moves
 }
 
+/// A sign or a name: there is no number in it, so that nothing has to come near to one.
+fn relabelled(
+    effect: &'static Effect,
+    location: String,
+    observed: String,
+    looks_like: String,
+    change: Change,
+    log_prior: f64,
+) -> Move {
+    Move {
+        effect,
+        location,
+        change,
+        log_prior,
+        estimates: Vec::new(),
+        observed,
+        looks_like,
+        within: f64::INFINITY,
+    }
+}
+
 fn signs(labels: &Labels) -> Vec<Move> {
     let mut moves = Vec::new();
-    let mut add = |location: String, observed: String, looks_like: String, change: Change, log_prior: f64| {
-        moves.push(Move {
-            effect: &SIGN_MISTAKE,
-            location,
-            change,
-            log_prior,
-            estimates: Vec::new(),
-            observed,
-            looks_like,
-            within: f64::INFINITY,
-        });
+    let mut add = |location, observed, looks_like, change, log_prior| {
+        moves.push(relabelled(&SIGN_MISTAKE, location, observed, looks_like, change, log_prior));
     };
     for &channel in &labels.channels {
         let name = column(channel);
@@ -274,19 +301,9 @@ fn swaps(labels: &Labels) -> Vec<Move> {
         swapped.swap(a.index(), b.index());
         let (is_channel, is_axis) =
             (|of: Axis| labels.channels.contains(&of), |of: Axis| labels.axes.contains(&of));
-        let mut add =
-            |location: String, observed: String, looks_like: String, change: Change, log_prior: f64| {
-                moves.push(Move {
-                    effect: &SWAP_MISTAKE,
-                    location,
-                    change,
-                    log_prior,
-                    estimates: Vec::new(),
-                    observed,
-                    looks_like,
-                    within: f64::INFINITY,
-                });
-            };
+        let mut add = |location, observed, looks_like, change, log_prior| {
+            moves.push(relabelled(&SWAP_MISTAKE, location, observed, looks_like, change, log_prior));
+        };
         let (first, second) = (column(a), column(b));
         if is_channel(a) || is_channel(b) {
             let observed = match (is_channel(a), is_channel(b)) {
@@ -332,21 +349,19 @@ fn swaps(labels: &Labels) -> Vec<Move> {
             continue;
         }
         let name = |k: usize| column(Axis::ALL[turned[k]]);
-        moves.push(Move {
-            effect: &SWAP_MISTAKE,
-            location: labels.all_channels(),
-            change: Change { channel: turned, ..Change::default() },
-            log_prior: UNUSUAL,
-            estimates: Vec::new(),
-            observed: format!(
+        moves.push(relabelled(
+            &SWAP_MISTAKE,
+            labels.all_channels(),
+            format!(
                 "The columns dx_um, dy_um and dz_um are mixed up: they hold {}, {} and {}",
                 name(0),
                 name(1),
                 name(2)
             ),
-            looks_like: "dx_um, dy_um and dz_um look mixed up".into(),
-            within: f64::INFINITY,
-        });
+            "dx_um, dy_um and dz_um look mixed up".into(),
+            Change { channel: turned, ..Change::default() },
+            UNUSUAL,
+        ));
     }
     moves
 }

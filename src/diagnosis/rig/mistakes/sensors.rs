@@ -198,7 +198,7 @@ pub(super) fn frozen(data: &[Datum]) -> Vec<Part> {
                 location: format!("{name}, rows {} to {}", rows.0, rows.1),
                 estimates: vec![Estimate { name: "um".into(), unit: UM, value, low: value, high: value }],
                 observed: format!(
-                    "{name} stands still at {shown} µm in the rows {} to {} while the loads change: leave these readings out",
+                    "{name} stays at {shown} µm in the rows {} to {} while the loads change: leave these readings out",
                     rows.0, rows.1
                 ),
                 looks_like: format!("{name} looks stuck in the rows {} to {}", rows.0, rows.1),
@@ -222,7 +222,7 @@ fn expected(data: &[Datum], at: &[usize], without: &[usize]) -> Option<Vec<(f64,
                 == (d.direction.axis, d.channel, [d.load_station, d.read_station])
         };
         let line = rest.iter().find(is_it).filter(|line| line.has_slope && line.data.len() >= 3)?;
-        // loads beyond those of the others are foretold no better than the slope is known
+        // loads beyond those of the others are predicted no better than the slope is known
         let scatter = line.fit.scatter.hypot(line.fit.error * d.load);
         Some((line.fit.at(d.signed_load()), scatter))
     };

@@ -394,7 +394,7 @@ fn no_physics_is_a_mistake_however_large() {
     recordings(&BENCHES, 1, |what, file, clean| {
         let model = RigModel::new(&clean, Some(file)).unwrap().0;
         for (index, candidate) in model.candidates().iter().enumerate() {
-            let is_one_of_many = candidate.effect.name == "slip" && index % 4 > 0;
+            let is_one_of_many = candidate.effect.name == "slip" && index % 3 > 0;
             if candidate.is_nonparametric || candidate.effect.name == "outlier" || is_one_of_many {
                 continue;
             }
@@ -418,10 +418,15 @@ fn no_physics_is_a_mistake_however_large() {
                     *offset = offset.map(|offset| offset + change);
                 }
                 let case = format!("{what}: {} {} × {times}", candidate.effect, candidate.location);
+                // what a slip before the last run does, a zero that was not taken there does too: both are said
+                let is_said = |found: &Finding| {
+                    let others = found.others();
+                    candidate.effect.name == "slip" && others.iter().any(|(e, _)| *e == candidate.effect)
+                };
                 for rod in [Some(file), None] {
-                    let found = found(&readings, rod);
-                    if !found.is_empty() {
-                        wrong.push(format!("{case}: {found:?}"));
+                    let mended = mended(&readings, rod, &[]).unwrap();
+                    if !mended.found.iter().all(is_said) {
+                        wrong.push(format!("{case}: {:?}", names(&mended)));
                     }
                 }
             }
@@ -459,6 +464,29 @@ fn a_diagnosis_names_the_mistake_first_and_writes_the_corrected_file() {
     assert!(found.diagnosis.discrepancy.is_none());
     let lines = suspected(&wrong, Some(&file)).unwrap();
     assert!(lines[0].starts_with("load_n looks like kilograms: the rod seems 9."), "{lines:?}");
+}
+
+/// Pounds for kilograms, and pounds of force where sensors along the loads see one factor only, are
+/// what a stiffer rod would read: named as a rival, and looked up before anything is measured.
+#[test]
+fn a_unit_that_looks_like_physics_is_its_rival() {
+    let file = rod(ROD_5);
+    let clean = recorded(&file, Bench::Full, 5);
+    let mut in_pounds = with_loads(&clean, 1.0 / 0.453_592_37);
+    in_pounds.load_column = crate::rig::readings::LoadColumn::Kilograms;
+    let found = crate::diagnosis::rig::diagnose(&in_pounds, Some(&file)).unwrap();
+    let first = &found.diagnosis.findings[0];
+    assert_eq!(first.effect.name, "stiffness_scale");
+    let location = Location::Key("load_kg in pounds (lb)".into());
+    assert!(first.others().iter().any(|(_, place)| *place == location), "{:?}", first.others());
+    let next = first.next.as_ref().unwrap();
+    assert!(next.plan.is_none() && next.separates_from.iter().any(|(_, place)| *place == location));
+    // a rod that is as much stiffer as no unit is
+    let stiffer = all_scaled(&clean, 0.7);
+    let found = crate::diagnosis::rig::diagnose(&stiffer, Some(&file)).unwrap();
+    let others: Vec<_> = found.diagnosis.findings.iter().flat_map(Finding::others).collect();
+    assert!(!found.diagnosis.findings.is_empty());
+    assert!(others.iter().all(|(effect, _)| effect.kind != crate::inference::Kind::Mistake), "{others:?}");
 }
 
 #[test]

@@ -35,8 +35,8 @@ pub fn most_structured(found: &RigDiagnosis) -> Option<usize> {
 /// What follows sensor, axis, or way up or down is seen over the load: there these are series.
 fn seen_along(found: &RigDiagnosis) -> Covariate {
     let all = &found.evidence.covariates;
-    let told = covariates(&found.evidence);
-    let of_variable = |variable: Variable| told.iter().map(|&k| &all[k]).find(|c| c.variable == variable);
+    let reported = covariates(&found.evidence);
+    let of_variable = |variable: Variable| reported.iter().map(|&k| &all[k]).find(|c| c.variable == variable);
     let best = match found.diagnosis.findings.first() {
         Some(finding) => (finding.effect.seen_along)(&finding.location).into_iter().find_map(of_variable),
         None => most_structured(found).map(|k| &all[k]).filter(|c| !c.variable.is_group()),

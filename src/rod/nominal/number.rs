@@ -1,0 +1,196 @@
+//! Which numbers a rod has, and what they are called: in words, as keys and tables of its file.
+
+use std::fmt;
+
+use crate::units::{GRAM, MM};
+
+/// A number of the rod file that is known within a standard uncertainty.
+///
+/// ```
+/// use rodcal::prelude::*;
+/// use rodcal::rod::NominalNumber;
+///
+/// let rod = Rod::read("rods/5.toml".as_ref())?;
+/// let number = NominalNumber::YoungsModulus("steel".into());
+/// let compliance = |rod: &Rod| Compliance::of_model(rod, &Physics::default(), 10);
+/// // the tip gives way by 1/E, but for torsion and shear
+/// let softer = compliance(&rod.with(&number, 0.99 * 193e9))?;
+/// let ratio = softer.force[(2, 2)] / compliance(&rod)?.force[(2, 2)];
+/// assert!((ratio - 1.0 / 0.99).abs() < 1e-4);
+/// assert_eq!((number.to_string(), number.key()), ("E of steel".into(), "youngs_modulus_percent"));
+/// # Ok::<(), rodcal::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[non_exhaustive]
+pub enum NominalNumber {
+    /// E of the material of this name, Pa, in every pipe made of it.
+    YoungsModulus(String),
+    /// G of the material of this name, Pa, in every pipe made of it.
+    ShearModulus(String),
+    /// ρ of the material of this name, kg/m³, in every pipe made of it.
+    Density(String),
+    /// What multiplies κ of every section of the material of this name, dimensionless, nominally 1.
+    ShearCoefficient(String),
+    /// Outer diameter of a tube or a round, m.
+    OuterDiameter(Part),
+    /// Inner diameter of a tube, m.
+    InnerDiameter(Part),
+    /// Width of a rectangle, m.
+    Width(Part),
+    /// Height of a rectangle, m.
+    Height(Part),
+    /// Wall thickness of a box, m.
+    Wall(Part),
+    /// A constant of a general section, m² or m⁴.
+    Section(Part, SectionConstant),
+    /// Flange to corner, L1, m.
+    LengthL1,
+    /// Corner to ball centre, L2, m.
+    LengthL2,
+    /// Radius of the bend, m.
+    BendRadius,
+    /// Where a sleeve, a holder or a joint sits, m from the flange.
+    Station(Feature),
+    /// Ball and ball holder, kg.
+    TipMass,
+}
+
+/// One of the three parts that have a section of their own.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Part {
+    /// Flange to bend. The bend goes with it where it is the same tube.
+    Pipe1,
+    /// The bend, where it is another tube than pipe 1.
+    Bend,
+    /// Bend to tip.
+    Pipe2,
+}
+
+/// A constant of a [`crate::section::General`] section.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum SectionConstant {
+    /// A.
+    Area,
+    /// I_y.
+    Iy,
+    /// I_z.
+    Iz,
+    /// J.
+    TorsionConstant,
+}
+
+/// Something that sits at a station.
+#[derive(Debug, Clone, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Feature {
+    /// The joint of this name.
+    Joint(String),
+    /// The mass of this name; masses of one name go together.
+    Mass(String),
+}
+
+impl NominalNumber {
+    /// The key under which reports and JSON name it: the one of `[standard_uncertainty]` for what
+    /// is stated in per cent, else that of the rod file, with its unit.
+    pub fn key(&self) -> &'static str {
+        match self {
+            NominalNumber::YoungsModulus(_) => "youngs_modulus_percent",
+            NominalNumber::ShearModulus(_) => "shear_modulus_percent",
+            NominalNumber::Density(_) => "density_percent",
+            NominalNumber::ShearCoefficient(_) => "shear_coefficient_percent",
+            NominalNumber::OuterDiameter(_) => "outer_diameter_mm",
+            NominalNumber::InnerDiameter(_) => "inner_diameter_mm",
+            NominalNumber::Width(_) => "width_mm",
+            NominalNumber::Height(_) => "height_mm",
+            NominalNumber::Wall(_) => "wall_mm",
+            NominalNumber::Section(_, SectionConstant::Area) => "area_percent",
+            NominalNumber::Section(_, SectionConstant::Iy) => "iy_percent",
+            NominalNumber::Section(_, SectionConstant::Iz) => "iz_percent",
+            NominalNumber::Section(_, SectionConstant::TorsionConstant) => "j_percent",
+            NominalNumber::LengthL1 => "l1_mm",
+            NominalNumber::LengthL2 => "l2_mm",
+            NominalNumber::BendRadius => "bend_radius_mm",
+            NominalNumber::Station(_) => "station_mm",
+            NominalNumber::TipMass => "mass_g",
+        }
+    }
+
+    /// The table of the rod file it stands in, with the name where there is one: `material.steel`,
+    /// `pipe1`, `geometry`, `joint.sleeve-a`, `tip`.
+    pub fn place(&self) -> String {
+        match self {
+            NominalNumber::YoungsModulus(material)
+            | NominalNumber::ShearModulus(material)
+            | NominalNumber::Density(material)
+            | NominalNumber::ShearCoefficient(material) => format!("material.{material}"),
+            NominalNumber::OuterDiameter(part)
+            | NominalNumber::InnerDiameter(part)
+            | NominalNumber::Width(part)
+            | NominalNumber::Height(part)
+            | NominalNumber::Wall(part)
+            | NominalNumber::Section(part, _) => part.key().to_owned(),
+            NominalNumber::LengthL1 | NominalNumber::LengthL2 | NominalNumber::BendRadius => {
+                "geometry".to_owned()
+            }
+            NominalNumber::Station(Feature::Joint(name)) => format!("joint.{name}"),
+            NominalNumber::Station(Feature::Mass(name)) => format!("mass.{name}"),
+            NominalNumber::TipMass => "tip".to_owned(),
+        }
+    }
+
+    /// A change (SI) of this number from its `nominal` value (SI) in the unit of
+    /// [`NominalNumber::key`]: per cent, mm or g.
+    pub fn in_unit(&self, change: f64, nominal: f64) -> f64 {
+        match self.key() {
+            "mass_g" => change / GRAM,
+            key if key.ends_with("_mm") => change / MM,
+            _ => change / nominal * 100.0,
+        }
+    }
+}
+
+impl Part {
+    /// Its table in the rod file.
+    pub fn key(&self) -> &'static str {
+        match self {
+            Part::Pipe1 => "pipe1",
+            Part::Bend => "bend",
+            Part::Pipe2 => "pipe2",
+        }
+    }
+}
+
+impl fmt::Display for Part {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Part::Pipe1 => "pipe 1",
+            Part::Bend => "the bend",
+            Part::Pipe2 => "pipe 2",
+        })
+    }
+}
+
+impl fmt::Display for NominalNumber {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            NominalNumber::YoungsModulus(material) => write!(f, "E of {material}"),
+            NominalNumber::ShearModulus(material) => write!(f, "G of {material}"),
+            NominalNumber::Density(material) => write!(f, "density of {material}"),
+            NominalNumber::ShearCoefficient(material) => write!(f, "shear coefficient of {material}"),
+            NominalNumber::OuterDiameter(part) => write!(f, "outer diameter of {part}"),
+            NominalNumber::InnerDiameter(part) => write!(f, "inner diameter of {part}"),
+            NominalNumber::Width(part) => write!(f, "width of {part}"),
+            NominalNumber::Height(part) => write!(f, "height of {part}"),
+            NominalNumber::Wall(part) => write!(f, "wall of {part}"),
+            NominalNumber::Section(part, SectionConstant::Area) => write!(f, "area of {part}"),
+            NominalNumber::Section(part, SectionConstant::Iy) => write!(f, "I_y of {part}"),
+            NominalNumber::Section(part, SectionConstant::Iz) => write!(f, "I_z of {part}"),
+            NominalNumber::Section(part, SectionConstant::TorsionConstant) => write!(f, "J of {part}"),
+            NominalNumber::LengthL1 => f.write_str("l1"),
+            NominalNumber::LengthL2 => f.write_str("l2"),
+            NominalNumber::BendRadius => f.write_str("bend radius"),
+            NominalNumber::Station(Feature::Joint(name)) => write!(f, "station of joint {name}"),
+            NominalNumber::Station(Feature::Mass(name)) => write!(f, "station of mass {name}"),
+            NominalNumber::TipMass => f.write_str("tip mass"),
+        }
+    }
+}

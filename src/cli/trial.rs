@@ -51,7 +51,8 @@ pub struct Make {
     /// Only the cases from A up to B, B included.
     #[arg(long, value_name = "A..B", value_parser = case_range)]
     case_range: Option<Range<usize>>,
-    /// Noise at the rig from a real recording: a CSV with a column `residual` in any unit, from which it is drawn in stretches.
+    /// Noise at the rig from a real recording: a CSV with a column `residual` in any unit, from
+    /// which it is drawn in stretches.
     #[arg(long, value_name = "FILE", conflicts_with = "calibration")]
     residuals: Option<PathBuf>,
     /// File for the key [default: DIR.key.jsonl]

@@ -40,7 +40,8 @@ pub struct Source {
     pub seed: u64,
     /// What is tried.
     pub half: Half,
-    /// Residuals of a real recording that are the noise at the rig, in standard deviations; none: the noise is computed.
+    /// Residuals of a real recording that are the noise at the rig, in standard deviations; none:
+    /// the noise is computed.
     pub residuals: Vec<f64>,
 }
 

@@ -1,9 +1,10 @@
 //! Trials at a stiffness rig: rods, protocols and what may be wrong with them.
 //!
-//! The numbers of every rod file are off by what it states, or by twice that; noise, zeros and display
-//! differ from case to case. What else there is: nothing (20 % of the cases), one effect of the library
-//! (34 %), two of them (12 %), physics that no library has (13 %), a mistake in the files (15 %), or
-//! single readings that were misread (6 %). Friction accompanies some of the effects.
+//! The numbers of every rod file are off by what it states, or by twice that; noise, zeros and
+//! display differ from case to case. What else there is: nothing (20 % of the cases), one effect of
+//! the library (34 %), two of them (12 %), physics that no library has (13 %), a mistake in the
+//! files (15 %), or single readings that were misread (6 %). Friction accompanies some of the
+//! effects.
 
 mod actual;
 mod again;
@@ -93,8 +94,8 @@ impl Drawn {
     }
 }
 
-/// Case number `number` of the trial that belongs to `seed`, with noise from `residuals` where there
-/// are any.
+/// Case number `number` of the trial that belongs to `seed`, with noise from `residuals` where
+/// there are any.
 pub fn case(seed: u64, number: usize, residuals: &[f64]) -> Case {
     let drawn = drawn(seed, number, residuals);
     let asked = asked::draw(&drawn.bench, &mut Random::seeded(seed, ASKED + number as u64));
@@ -269,8 +270,8 @@ fn truth(case: String, mut drawn: Drawn, asked: &Bench) -> Truth {
     }
 }
 
-/// The numbers of an effect. A factor of a stiffness may refer to the numbers of the file or to those of
-/// the real rod: both are right.
+/// The numbers of an effect. A factor of a stiffness may refer to the numbers of the file or to
+/// those of the real rod: both are right.
 fn parameters(bench: &Bench, effect: &Effect, with: &[f64]) -> Vec<Parameter> {
     let nominal = || Bench { actual: actual::Actual::default(), ..bench.clone() }.readings(&[]);
     let of_all = match effect {

@@ -122,7 +122,8 @@ pub struct Parameter {
     pub name: String,
     /// Its value.
     pub value: f64,
-    /// What it is together with the errors of the files' numbers, which nobody can separate from it.
+    /// What it is together with the errors of the files' numbers, which nobody can separate from
+    /// it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub with_numbers: Option<f64>,
 }

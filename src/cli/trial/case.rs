@@ -43,8 +43,9 @@ impl CaseFiles {
         Readings::from_text(&self.directory.join(name).display().to_string(), &self.text(name)?)
     }
 
-    /// The diagnosis of a case as its JSON, and what it says of the readings or of the poses that are
-    /// asked for, µm. What cannot be predicted is no reason to keep back what was found: the score counts it.
+    /// The diagnosis of a case as its JSON, and what it says of the readings or of the poses that
+    /// are asked for, µm. What cannot be predicted is no reason to keep back what was found: the
+    /// score counts it.
     pub fn diagnosed(&self) -> Result<(Value, Option<Vec<f64>>)> {
         if self.has("campaign.toml") {
             let campaign = self.campaign("campaign.toml")?;

@@ -11,8 +11,8 @@ const RELATIVE_STEP: f64 = 1e-4;
 /// Something that is wrong, SI; joints and rows from 0.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Effect {
-    /// An error of a gear over its own angle: cycles per revolution, amplitude rad, phase; the whole swells and fades by `beat`
-    /// with so many cycles per revolution.
+    /// An error of a gear over its own angle: cycles per revolution, amplitude rad, phase; the
+    /// whole swells and fades by `beat` with so many cycles per revolution.
     Transmission { joint: usize, waves: Vec<[f64; 3]>, beat: Option<[f64; 2]> },
     /// Play, rad: the joint lies against its load, or where it came from.
     Backlash { joint: usize, play: f64, by_approach: bool },

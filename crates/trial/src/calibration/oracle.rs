@@ -19,8 +19,8 @@ use crate::truth::Detectability;
 use rodcal_base::linalg::thin_svd;
 use rodcal_base::units::UM;
 
-/// Effects of other names closer than this cannot be distinguished; places of one effect closer than
-/// that.
+/// Effects of other names closer than this cannot be distinguished; places of one effect closer
+/// than that.
 const SAME_EFFECT: f64 = 5.0;
 const SAME_PLACE: f64 = 3.0;
 /// Size of what turns a joint, rad, and of what moves a fixture, m and rad.

@@ -1,8 +1,8 @@
 //! The numbers of the files as they really are: each is off by about its standard uncertainty.
 //!
 //! A rod file states how well its numbers are known, or says nothing and means the defaults of
-//! `[standard_uncertainty]`: E 1 %, G 2 %, κ 3 % (5, 10 and 15 % of an anisotropic wall), 0.03 mm on
-//! each diameter, 0.3 mm on every length and station; loads and sensors are off by 0.1 %.
+//! `[standard_uncertainty]`: E 1 %, G 2 %, κ 3 % (5, 10 and 15 % of an anisotropic wall), 0.03 mm
+//! on each diameter, 0.3 mm on every length and station; loads and sensors are off by 0.1 %.
 
 use super::drawing::Drawing;
 use super::tube::Tube;
@@ -66,7 +66,8 @@ enum Number {
 /// How far every number of a rig is from what the files state.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Actual {
-    /// Each number with its standard uncertainty, relative or m, and its error in multiples of that.
+    /// Each number with its standard uncertainty, relative or m, and its error in multiples of
+    /// that.
     numbers: Vec<(Number, f64, f64)>,
 }
 

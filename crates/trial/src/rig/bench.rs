@@ -335,8 +335,8 @@ fn body(rod: &Drawing, effects: &[Effect]) -> Body {
     rod.body(&deviation)
 }
 
-/// What creep adds at each reading, by Boltzmann's superposition over everything that ever hung there since the
-/// first zero, less what had crept already when the run was zeroed.
+/// What creep adds at each reading, by Boltzmann's superposition over everything that ever hung
+/// there since the first zero, less what had crept already when the run was zeroed.
 fn crept(
     loadings: &[Loading],
     solver: &mut Solver,

@@ -9,8 +9,9 @@
 //!
 //! (S. S. Antman, *Nonlinear Problems of Elasticity*, ch. 8; b, t, s, a of [`Flexibility`]). A joint turns the frame at
 //! once by diag(β, β, τ)·Rᵀm. Nothing is unknown but where the load ends up: p_L is put in, the rod is integrated from the
-//! flange by Runge and Kutta's fourth order, and p_L is what came out, until it converges. Deflections are differences
-//! of two runs of the same integrator, so that its error cancels to first order.
+//! flange by Runge and Kutta's fourth order, and p_L is what came out, until it converges.
+//! Deflections are differences of two runs of the same integrator, so that its error cancels to
+//! first order.
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 

@@ -5,7 +5,8 @@
 //! Σ₀ = s²·φ^|i − j| + z² + δᵢⱼ·q²/12     in a run and channel; z² also between runs that share a zero
 //! ```
 //!
-//! Σ^(−1/2) is Σ₀'s Cholesky factor, then I − U·(1 − 1/√(1 + S²))·Uᵀ with U·S·Vᵀ what it makes of N.
+//! Σ^(−1/2) is Σ₀'s Cholesky factor, then I − U·(1 − 1/√(1 + S²))·Uᵀ with U·S·Vᵀ what it makes of
+//! N.
 
 use std::collections::BTreeMap;
 
@@ -76,8 +77,8 @@ impl Covariance {
         v
     }
 
-    /// What is left of a change of the readings, m, once the numbers of the files have taken up what
-    /// they are likely to.
+    /// What is left of a change of the readings, m, once the numbers of the files have taken up
+    /// what they are likely to.
     pub fn left(&self, change: Vec<f64>) -> Vec<f64> {
         let change = DVector::from_vec(change);
         let n = self.whitened.ncols();

@@ -1,6 +1,7 @@
-//! Which effect of the library, where, and how large at most. How much of that a case holds is drawn
-//! afterwards (`rig.rs`), on a logarithmic scale: three of ten single effects from a tenth of what could
-//! just be detected up to that, the others from there on; of two effects in one case from three times that.
+//! Which effect of the library, where, and how large at most. How much of that a case holds is
+//! drawn afterwards (`rig.rs`), on a logarithmic scale: three of ten single effects from a tenth of
+//! what could just be detected up to that, the others from there on; of two effects in one case
+//! from three times that.
 //!
 //! | effect | size | at most |
 //! |---|---|---|
@@ -202,7 +203,8 @@ pub(super) fn direction(random: &mut Random) -> [f64; 3] {
 }
 
 /// Every effect of the library that has a meaning at a bench, wherever it may sit, at `share` of the upper end of its range;
-/// those with two numbers in two parts. Joints along the rod and slips are the oracle's own business.
+/// those with two numbers in two parts. Joints along the rod and slips are the oracle's own
+/// business.
 pub(super) fn all(bench: &Bench, share: f64) -> Vec<Vec<Effect>> {
     let protocol = &bench.protocol;
     let (axes, channels, largest) = (protocol.axes(), protocol.read_channels(), protocol.largest_load());

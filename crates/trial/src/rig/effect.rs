@@ -49,7 +49,8 @@ pub enum Effect {
     DriftOfAll { rates: [f64; 3], by_time: bool },
     /// From this loading on, to the end of its run, a channel is displaced, m.
     Slip { loading: usize, channel: usize, by: f64 },
-    /// From this loading on, the first of a run, a channel is displaced for good, m: no later zero is read.
+    /// From this loading on, the first of a run, a channel is displaced for good, m: no later zero
+    /// is read.
     Shift { loading: usize, channel: usize, by: f64 },
     /// Single readings that are wrong: index of the cell, by how much, m.
     Outlier(Vec<(usize, f64)>),
@@ -68,9 +69,11 @@ pub enum Effect {
     LooseClamp(f64),
     /// Floor or clamp swing: amplitude m in {T}, period s, phase rad.
     Oscillation { amplitude: [f64; 3], period: f64, phase: f64 },
-    /// A wall that is thicker and thinner along the rod: bending × (1 + a·sin(2πs/period + phase)), period m.
+    /// A wall that is thicker and thinner along the rod: bending × (1 + a·sin(2πs/period + phase)),
+    /// period m.
     Waviness { amplitude: f64, period: f64, phase: f64 },
-    /// What the load before leaves behind: displacement × (1 + k·F_before/F_largest), a product of two loads.
+    /// What the load before leaves behind: displacement × (1 + k·F_before/F_largest), a product of
+    /// two loads.
     LoadBefore(f64),
     /// A damped slide: this share of a change of the load comes late, with this time constant, s.
     Damping { share: f64, time: f64 },

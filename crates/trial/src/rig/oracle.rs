@@ -1,15 +1,16 @@
-//! What could have been known at best: the oracle sees every reading without its noise, and knows how
-//! well the numbers of the files are known.
+//! What could have been known at best: the oracle sees every reading without its noise, and knows
+//! how well the numbers of the files are known.
 //!
-//! With δ what an effect adds, Σ the covariance of readings without one (`covariance.rs`), p the number
-//! of its parameters and C what a rival can add, at the upper end of its range,
+//! With δ what an effect adds, Σ the covariance of readings without one (`covariance.rs`), p the
+//! number of its parameters and C what a rival can add, at the upper end of its range,
 //!
 //! ```text
 //! log BF = ½·d² − (p/2)·ln(1 + d²)        d² = min over β of (δ − Cβ)ᵀΣ⁻¹(δ − Cβ) + βᵀβ;   against nothing C is empty
 //! ```
 //!
-//! Rivals that may not be below zero are not. A rival is all that goes by one name, wherever it sits:
-//! the best place counts. Physics that no library has must also differ from every two effects of it.
+//! Rivals that may not be below zero are not. A rival is all that goes by one name, wherever it
+//! sits: the best place counts. Physics that no library has must also differ from every two effects
+//! of it.
 
 use std::collections::BTreeMap;
 
@@ -24,8 +25,8 @@ use crate::place::Place;
 use crate::truth::Detectability;
 use rodcal_base::units::MM;
 
-/// Effects of other names closer than this cannot be distinguished; places of one effect closer than
-/// that.
+/// Effects of other names closer than this cannot be distinguished; places of one effect closer
+/// than that.
 const SAME_EFFECT: f64 = 5.0;
 const SAME_PLACE: f64 = 3.0;
 /// Share of the upper end of its range at which a rival is linearised.
@@ -70,8 +71,8 @@ impl Oracle {
         self.rivals = self.all_rivals(noise);
     }
 
-    /// The share of an effect's size at which it would just be detectable: expected log Bayes factor
-    /// against nothing of [`Detectability::IDENTIFIABLE`].
+    /// The share of an effect's size at which it would just be detectable: expected log Bayes
+    /// factor against nothing of [`Detectability::IDENTIFIABLE`].
     pub fn limit(&self, effect: &Effect) -> f64 {
         let square = self.added(std::slice::from_ref(effect), &[]).norm_squared();
         let half = 0.5 * effect.parameters().len() as f64;
@@ -169,7 +170,8 @@ impl Oracle {
 
     /// What it says of other readings, m, after it has found the sizes of the effects out from what was `shown`: least squares
     /// about the truth, as Gauss and Newton's last step would be, with the upper end of its range as the standard deviation of
-    /// every size, and the numbers of the files beside them. `None` where there is no size to be found.
+    /// every size, and the numbers of the files beside them. `None` where there is no size to be
+    /// found.
     pub fn predicted(&self, effects: &[Effect], shown: &[f64], asked: &Bench) -> Option<Vec<f64>> {
         let here = self.bench.readings(effects);
         let whitened = |v: Vec<f64>| self.covariance.over_noise(DVector::from_vec(v));
@@ -253,7 +255,8 @@ impl Oracle {
                 Effect::Joint { name, station, bending: 0.0, torsion },
             ])
         }));
-        // slips need no mechanics: a step to the end of the run, or of the file where no zero follows
+        // slips need no mechanics: a step to the end of the run, or of the file where no zero
+        // follows
         let size = (SLIP * largest).max(10.0 * least);
         let mut add = |effect: Effect, of_cell: &dyn Fn(usize) -> bool| {
             let step = (0..cells.len()).map(|row| if of_cell(row) { size } else { 0.0 }).collect();

@@ -152,8 +152,8 @@ impl Protocol {
         stations
     }
 
-    /// The run of a loading: its axis and its trial, its number where trials have no name, or nothing
-    /// more where there is only one.
+    /// The run of a loading: its axis and its trial, its number where trials have no name, or
+    /// nothing more where there is only one.
     pub fn run_place(&self, loading: usize) -> Place {
         let Some(of) = self.loadings.get(loading) else { return Place::default() };
         let is_only = self.loadings.iter().all(|l| l.axis != of.axis || l.run == of.run);

@@ -14,8 +14,8 @@ const FEWEST: usize = 10;
 /// The column `residual` of a table, in any unit, less its mean and over its standard deviation.
 ///
 /// # Errors
-/// [`Error::File`]; [`Error::Input`] without such a column, with fewer than ten numbers, or where all
-/// are equal.
+/// [`Error::File`]; [`Error::Input`] without such a column, with fewer than ten numbers, or where
+/// all are equal.
 pub fn read(path: &Path) -> Result<Vec<f64>> {
     let name = path.display().to_string();
     let table = Table::parse(&name, &files::read_text(path)?, |column| column == COLUMN)?;

@@ -149,7 +149,8 @@ impl<'a> Judged<'a> {
         }
     }
 
-    /// The findings but for what accompanies the effects that are sought: those are right, and nobody asked.
+    /// The findings but for what accompanies the effects that are sought: those are right, and
+    /// nobody asked.
     pub fn sought(&self) -> impl Iterator<Item = &Finding> {
         self.findings.iter().filter(|finding| !self.is_companion(&finding.effect))
     }
@@ -180,8 +181,8 @@ impl<'a> Judged<'a> {
         self.truth.effects.iter().any(|concealed| concealed.effect == name) || self.is_companion(name)
     }
 
-    /// The strongest finding is concealed, or its class holds an effect that is, and the oracle cannot
-    /// distinguish the two.
+    /// The strongest finding is concealed, or its class holds an effect that is, and the oracle
+    /// cannot distinguish the two.
     pub fn is_right(&self) -> bool {
         let Some(first) = self.findings.first() else { return false };
         let class = self.class();

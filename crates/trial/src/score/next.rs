@@ -1,5 +1,5 @@
-//! Whether the measurement that an answer proposes settles what it could not distinguish: it is made with the concealed
-//! effects, put below the recording, and diagnosed once more.
+//! Whether the measurement that an answer proposes settles what it could not distinguish: it is
+//! made with the concealed effects, put below the recording, and diagnosed once more.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -53,8 +53,8 @@ impl Due {
         })
     }
 
-    /// The case's files that change when what is proposed is measured and put below the recording, name
-    /// and text; `Err` is what the proposal led to where there are none.
+    /// The case's files that change when what is proposed is measured and put below the recording,
+    /// name and text; `Err` is what the proposal led to where there are none.
     ///
     /// # Errors
     /// [`rodcal_base::Error::File`] where a sealed file cannot be read.

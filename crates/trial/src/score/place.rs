@@ -3,15 +3,16 @@
 use crate::place::Place;
 use crate::truth::{Concealed, Truth};
 
-/// Scans for joints are not finer than this, mm: an answer so far beyond the stations that cannot be
-/// distinguished counts.
+/// Scans for joints are not finer than this, mm: an answer so far beyond the stations that cannot
+/// be distinguished counts.
 const SCAN_MM: f64 = 10.0;
 
-/// True where a finding of the right name, at `place`, is at the right place; without a place it is not.
+/// True where a finding of the right name, at `place`, is at the right place; without a place it is
+/// not.
 ///
-/// Of joints of a rod the station counts, by name or by number; of a slip its run; of what is several
-/// things at once any of them; of a key also what is said more closely (`dy_um, axis y`); of all others
-/// the place itself or one that nobody could distinguish from it.
+/// Of joints of a rod the station counts, by name or by number; of a slip its run; of what is
+/// several things at once any of them; of a key also what is said more closely (`dy_um, axis y`);
+/// of all others the place itself or one that nobody could distinguish from it.
 pub fn is_same(truth: &Truth, concealed: &Concealed, place: Option<&Place>) -> bool {
     let Some(place) = place.filter(|place| !place.is_nowhere()) else { return false };
     let of = &concealed.detectability;

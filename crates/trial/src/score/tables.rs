@@ -104,8 +104,8 @@ pub fn power(cases: &[Judged<'_>]) -> BTreeMap<String, Vec<PowerBin>> {
     rates.into_iter().map(of_effect).collect()
 }
 
-/// Truth → answer → number of cases: clean ones, and identifiable ones with a single effect, an unknown
-/// one or a mistake.
+/// Truth → answer → number of cases: clean ones, and identifiable ones with a single effect, an
+/// unknown one or a mistake.
 pub type Confusion = BTreeMap<String, BTreeMap<String, usize>>;
 
 /// For each truth how often which answer came.

@@ -1,4 +1,5 @@
-//! What a diagnosis must reach, and where it does not: met by the share itself, not by its interval.
+//! What a diagnosis must reach, and where it does not: met by the share itself, not by its
+//! interval.
 
 use std::fmt;
 

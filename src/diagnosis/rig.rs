@@ -40,7 +40,7 @@ use self::structure::Structure;
 use crate::error::Result;
 use crate::inference::{
     Candidate, Description, Diagnosed, Effect, Estimate, Evidence, Finding, FindingPart, ForwardModel,
-    Hypothesis, Location, NotTestable, Proposal, Term, diagnose as infer, rms,
+    Hypothesis, Location, NotTestable, Term, diagnose as infer, rms,
 };
 use crate::rig::readings::Readings;
 use crate::rod::Rod;
@@ -91,7 +91,7 @@ pub fn diagnose_among(
             let units = mistakes::lookalikes(&model, finding);
             if !units.is_empty() {
                 // a unit is looked up, which is sooner done than any measurement
-                finding.next = Proposal::direct_check(finding, &units.iter().collect::<Vec<_>>());
+                finding.next = finding.direct_check(&units.iter().collect::<Vec<_>>());
                 finding.rivals.splice(0..0, units);
             }
         }

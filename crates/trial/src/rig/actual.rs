@@ -79,14 +79,14 @@ impl Actual {
         let length = of[0].length;
         let is_one_material = drawing.tubes[0].material == drawing.tubes[1].material;
         let mut numbers = Vec::new();
-        for k in 0..2 {
+        for (k, of) in of.iter().enumerate() {
             if k == 0 || !is_one_material {
-                numbers.push((Number::Youngs(k), of[k].youngs_modulus));
-                numbers.push((Number::Shear(k), of[k].shear_modulus));
-                numbers.push((Number::Coefficient(k), of[k].shear_coefficient));
+                numbers.push((Number::Youngs(k), of.youngs_modulus));
+                numbers.push((Number::Shear(k), of.shear_modulus));
+                numbers.push((Number::Coefficient(k), of.shear_coefficient));
             }
-            numbers.push((Number::Outer(k), of[k].diameter));
-            numbers.push((Number::Inner(k), of[k].diameter));
+            numbers.push((Number::Outer(k), of.diameter));
+            numbers.push((Number::Inner(k), of.diameter));
             numbers.push((Number::Leg(k), length));
             numbers.push((Number::Sensor(k), SCALE));
         }

@@ -291,10 +291,8 @@ impl Bench {
                     let swing = |t: f64| (std::f64::consts::TAU / period * t + phase).sin();
                     reading += amplitude[channel] * (swing(at.time) - swing(at.zeroed));
                 }
-                Effect::Shift { loading: first, channel: of, by } => {
-                    if *of == channel && loading >= *first {
-                        reading += by;
-                    }
+                Effect::Shift { loading: first, channel: of, by } if *of == channel => {
+                    reading += if loading >= *first { *by } else { 0.0 };
                 }
                 Effect::Slip { loading: first, channel: of, by } => {
                     let run = self.protocol.loadings[*first].run;

@@ -20,9 +20,8 @@ const NOTHING: f64 = 1e-6;
 /// Standard deviation of an offset that data share for good, over that of a datum: a zero is one
 /// reading or a few, taken a while ago.
 const OFFSET: f64 = 1.5;
-/// A number has moved if it is off by so many of its standard uncertainties, and by so many of what
-/// is then left of them.
-const MOVED: (f64, f64) = (0.3, 1.5);
+/// A number has moved if it is off by so many of its standard uncertainties.
+const MOVED: f64 = 0.2;
 
 /// An evidence whose nominal numbers stand among its background, and how to get them back.
 pub(super) struct Folded {
@@ -89,7 +88,7 @@ impl Folded {
         let mut moved: Vec<NominalEstimate> = Vec::new();
         for (k, number) in self.evidence.nominal_numbers.iter().enumerate() {
             let (factor, sd) = (factors[k], covariance[(k, k)].max(0.0).sqrt());
-            if factor.abs() < MOVED.0 || factor.abs() < MOVED.1 * (1.0 - sd * sd).max(0.0).sqrt() {
+            if factor.abs() < MOVED {
                 continue;
             }
             let at = |factor: f64| number.value + factor * number.standard_uncertainty;

@@ -7,9 +7,9 @@ use super::{Body, RigDiagnosis, RigModel};
 use crate::beam::Physics;
 use crate::compliance::{Compliance, DEFAULT_ELEMENTS};
 use crate::error::Result;
-use crate::inference::{Finding, ForwardModel, Kind, Location, Term, WrittenTo};
+use crate::inference::{Finding, ForwardModel, Kind, Location, NominalParameter, Term, WrittenTo};
 use crate::rig::{self, readings::Readings};
-use crate::rod::{BendFlexibility, Joint, Rod};
+use crate::rod::{BendFlexibility, Joint, NominalNumber, Rod};
 use crate::units::UM;
 
 const NM: f64 = 1e-3 * UM;
@@ -43,21 +43,48 @@ pub struct Correction {
 
 impl RigDiagnosis {
     /// What becomes of the rod and of the readings; `None` without a rod, or where nothing was
-    /// found.
+    /// found and no number of the rod's file moved.
     ///
     /// # Errors
     /// What the beam model refuses of the corrected rod.
     pub fn correction(&self) -> Result<Option<Correction>> {
         match self.model.rod() {
-            Some(rod) if !self.diagnosis.findings.is_empty() => {
-                corrected(&self.model, rod, &self.diagnosis.findings).map(Some)
+            Some(rod) => {
+                // several numbers share what they explain: together they are as stiff as the readings
+                let moved = match self.diagnosis.nominal.is_empty() {
+                    true => Vec::new(),
+                    false => self.moved(rod),
+                };
+                match self.diagnosis.findings.is_empty() && moved.is_empty() {
+                    true => Ok(None),
+                    false => corrected(&self.model, rod, &self.diagnosis.findings, &moved).map(Some),
+                }
             }
-            _ => Ok(None),
+            None => Ok(None),
         }
+    }
+
+    /// Those of the nominal numbers that stand in the file of `rod` and are off by more than a trace;
+    /// the others are the rig's.
+    fn moved(&self, rod: &Rod) -> Vec<Moved> {
+        let (factors, _) = &self.diagnosis.nominal_factors;
+        let numbers = rod.nominal_numbers();
+        let known = self.evidence.nominal_numbers.iter().zip(factors.iter());
+        let of = |(own, factor): (&NominalParameter, &f64)| {
+            let number = numbers.iter().find(|number| number.number.to_string() == own.name)?;
+            (factor.abs() > TRACE).then(|| (number.number.clone(), factor * own.standard_uncertainty))
+        };
+        known.filter_map(of).collect()
     }
 }
 
-fn corrected(model: &RigModel, rod: &Rod, findings: &[Finding]) -> Result<Correction> {
+/// A number of the rod's file that moved within its standard uncertainty, and by how much, SI.
+type Moved = (NominalNumber, f64);
+
+/// Standard uncertainties below which a nominal number has not moved.
+const TRACE: f64 = 0.05;
+
+fn corrected(model: &RigModel, rod: &Rod, findings: &[Finding], moved: &[Moved]) -> Result<Correction> {
     let readings = model.readings();
     let mut corrected = rod.clone();
     let is_mistake = |finding: &&Finding| finding.kind() == Kind::Mistake;
@@ -78,6 +105,13 @@ fn corrected(model: &RigModel, rod: &Rod, findings: &[Finding]) -> Result<Correc
             WrittenTo::Recording => removed.push(words),
             WrittenTo::Nowhere => left_out.push(words),
         }
+    }
+    for (number, change) in moved {
+        // a finding may have scaled it already
+        let (Some(nominal), Some(now)) = (rod.value_of(number), corrected.value_of(number)) else { continue };
+        let relative = if nominal == 0.0 { now + change } else { now * (1.0 + change / nominal) };
+        corrected = corrected.with(number, relative);
+        entered.push(format!("{number}, within its standard uncertainty"));
     }
     let provenance = format!("Rod {} with what its rig readings ({}) show", rod.name, readings.file);
     let mut above = vec![provenance + ":"];

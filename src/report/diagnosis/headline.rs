@@ -23,7 +23,8 @@ pub fn headline(subject: &Subject) -> String {
             None => format!(
                 "{}:{} the residual, {} µm{}, is {}.",
                 subject.agrees,
-                nominal.trim_end_matches('.').to_owned() + if nominal.is_empty() { "" } else { ";" },
+                beginning_lower(nominal.trim_start()).trim_end_matches('.').to_owned()
+                    + if nominal.is_empty() { "" } else { ";" },
                 um(diagnosis.error_after()),
                 subject.per,
                 scatter_of(subject)
@@ -67,6 +68,12 @@ fn scatter_of(subject: &Subject) -> String {
         (None, Some(_)) => format!("as large as the scatter of the repeats ({noise} µm)"),
         (None, None) => "unexplained scatter (nothing was repeated)".to_owned(),
     }
+}
+
+/// What follows a colon.
+fn beginning_lower(words: &str) -> String {
+    let mut letters = words.chars();
+    letters.next().map_or_else(String::new, |first| first.to_lowercase().chain(letters).collect())
 }
 
 fn capital(words: &str) -> String {

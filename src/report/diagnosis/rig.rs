@@ -83,7 +83,7 @@ fn subject<'a>(found: &'a RigDiagnosis, correction: Option<&Correction>) -> Subj
     }
 }
 
-/// `Stiffness is 0.4 ± 0.1 % above the file's: within what the file says of E of steel (1 %).`
+/// `The stiffness is 0.4 ± 0.1 % above that of the rod file, within the stated uncertainty of E of steel (1 %).`
 fn nominal(found: &RigDiagnosis) -> Option<String> {
     let moved = found.diagnosis.nominal.first()?;
     let (factors, covariance) = &found.diagnosis.nominal_factors;
@@ -101,9 +101,10 @@ fn nominal(found: &RigDiagnosis) -> Option<String> {
         true => format!("{} %", significant(percent, 2)),
         false => format!("{} {}", significant(number.standard_uncertainty / number.si, 2), number.unit),
     };
+    let others = if found.diagnosis.nominal.len() > 1 { " and of other numbers" } else { "" };
     Some(format!(
         "The stiffness is {share} {word} that of the rod file, within the stated uncertainty of {} \
-         ({known}).",
+         ({known}){others}.",
         number.name
     ))
 }

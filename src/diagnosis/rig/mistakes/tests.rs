@@ -489,6 +489,36 @@ fn a_unit_that_looks_like_physics_is_its_rival() {
     assert!(others.iter().all(|(effect, _)| effect.kind != crate::inference::Kind::Mistake), "{others:?}");
 }
 
+/// A rod that is 1 % softer than its file is within what the file knows: consistent, and --apply writes the better modulus.
+#[test]
+fn a_nominal_number_that_moved_is_written() {
+    let file = rod(ROD_5);
+    let readings = Readings::from_rows(rows(Bench::Full)).unwrap();
+    let mut actual = file.clone();
+    for pipe in [&mut actual.pipe1, &mut actual.bend, &mut actual.pipe2] {
+        pipe.material.youngs_modulus *= 0.99;
+    }
+    let model = RigModel::with_effects(&readings, Some(&actual), &|_| false).unwrap().0;
+    let mut random = Random::seeded(8, 0);
+    let mut readings = readings;
+    for datum in model.data() {
+        let value = datum.predicted + UM * random.normal();
+        readings.rows[datum.row - 1].offset[datum.channel.index()] = Some(value);
+    }
+    let found = crate::diagnosis::rig::diagnose(&readings, Some(&file)).unwrap();
+    assert!(!found.diagnosis.is_mismatch() && !found.diagnosis.nominal.is_empty());
+    let correction = found.correction().unwrap().unwrap();
+    assert!(correction.entered[0].ends_with("within its standard uncertainty"), "{:?}", correction.entered);
+    // as soft as the readings say, along the axes that bend the rod by more than the noise
+    let soft =
+        crate::compliance::Compliance::of_model(&actual, &crate::beam::Physics::default(), 20).unwrap();
+    for axis in [1, 2] {
+        let [before, after, truth] =
+            [&correction.before, &correction.after, &soft].map(|c| c.force[(axis, axis)]);
+        assert!((after / truth - 1.0).abs() < 0.3 * (before / truth - 1.0).abs(), "{before} {after} {truth}");
+    }
+}
+
 #[test]
 fn every_record_of_a_mistake_is_complete() {
     use crate::diagnosis::rig::effects::registry;

@@ -30,8 +30,8 @@ pub fn json(correction: &Correction) -> Value {
 
 pub fn section(correction: &Correction) -> Section {
     let mut blocks = vec![Block::Paragraph(
-        "With --apply the findings are written into files: effects of the rod into its rod file; \
-         effects of the rig are removed from the readings. The compliance under gravity, C^g, then \
+        "With --apply the findings are written into files: effects of the rod, and better values of its \
+         numbers, into its rod file; effects of the rig are removed from the readings. The compliance under gravity, C^g, then \
          follows from these effects and not from one factor r_rod."
             .into(),
     )];

@@ -7,6 +7,7 @@ mod beyond;
 mod clean;
 mod confused;
 mod effects;
+mod labs;
 mod poor;
 mod same;
 

@@ -114,7 +114,7 @@ impl Rig {
 }
 
 /// The rods whose files stand beside `file`, by their file names: one of them may have been on the rig.
-fn neighbours(file: &Path) -> Vec<(String, Rod)> {
+pub fn neighbours(file: &Path) -> Vec<(String, Rod)> {
     let named = |path: PathBuf| {
         let name = path.file_name()?.to_string_lossy().into_owned();
         Some((name, Rod::read(&path).ok()?))

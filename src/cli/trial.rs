@@ -11,7 +11,8 @@ use rodcal::parallel::in_parallel;
 use rodcal::{Error, Result};
 use rodcal_trial::answers::{self, Answer};
 use rodcal_trial::envelope::{self, Manifest};
-use rodcal_trial::{Half, score};
+use rodcal_trial::rig::residuals;
+use rodcal_trial::{Half, Source, score};
 use serde_json::{Value, json};
 
 use self::case::CaseFiles;
@@ -50,6 +51,10 @@ pub struct Make {
     /// Only the cases from A up to B, B included.
     #[arg(long, value_name = "A..B", value_parser = case_range)]
     case_range: Option<Range<usize>>,
+    /// Noise at the rig from a real recording: a CSV with a column `residual` in any unit, from
+    /// which it is drawn in stretches.
+    #[arg(long, value_name = "FILE", conflicts_with = "calibration")]
+    residuals: Option<PathBuf>,
     /// File for the key [default: DIR.key.jsonl]
     #[arg(long, value_name = "FILE")]
     key: Option<PathBuf>,
@@ -106,8 +111,10 @@ impl Make {
             (_, true) => Half::Calibration,
             _ => Half::Both,
         };
+        let residuals = self.residuals.as_deref().map(residuals::read).transpose()?.unwrap_or_default();
+        let source = Source { seed: self.seed, half, residuals };
         let progress = Progress::new("cases", range.len());
-        let made = envelope::make(&self.directory, &key, self.seed, half, range, || progress.one_more());
+        let made = envelope::make(&self.directory, &key, &source, range, || progress.one_more());
         progress.finish();
         let manifest = made?;
         let directory = self.directory.display();

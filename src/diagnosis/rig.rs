@@ -2,7 +2,8 @@
 //!
 //! Three stages act one after another, so that effects combine as they would on the bench (friction on a rod whose modulus
 //! is off too): a nominal load becomes a force, a force becomes a displacement, a displacement becomes a reading. Formulae:
-//! `action.rs` (stages), `structure.rs` (compliance), `load_history.rs` (creep, hysteresis). Which effects there are and how
+//! `action.rs` (stages), `slide.rs` (friction and play along a course), `structure.rs` (compliance), `load_history.rs` (creep,
+//! hysteresis). What was recorded when, in which session and run, and which way the load went: `chronicle.rs`. Which effects there are and how
 //! large they usually are: `effects/`. The rivals that stand for physics nobody has named: `nonparametric.rs`.
 //!
 //! Without a rod (`linear`) each line of readings has a slope c that nobody knows. The evidence leaves it to the engine as
@@ -14,9 +15,14 @@
 //! ```
 //!
 //! which is exact once the engine has fitted its own multiple of F.
+//!
+//! Where the displacement is imposed and the load is measured (`driven = "displacement"`), the loads are what is compared: the
+//! same chain, solved for the load, of which each newton counts as c₀ = max|u|/max|F| metres, so that loads and the readings
+//! of other sensors stand in one unit.
 
 mod action;
 mod as_measured;
+mod chronicle;
 mod correction;
 mod datum;
 pub mod effects;
@@ -28,6 +34,7 @@ mod mistakes;
 mod next;
 mod nominal;
 mod nonparametric;
+mod slide;
 mod structure;
 #[cfg(test)]
 mod tests;
@@ -37,11 +44,12 @@ use nalgebra::{DMatrix, DVector};
 
 use self::action::{Action, State};
 use self::effects::{Context, registry};
-use self::structure::Structure;
+use self::slide::Course;
+use self::structure::{Parts, Structure};
 use crate::error::Result;
 use crate::inference::{
     Candidate, Description, Diagnosed, Effect, Estimate, Evidence, Finding, FindingPart, ForwardModel,
-    Hypothesis, Location, NotTestable, Term, diagnose as infer, rms,
+    Hypothesis, Location, NotTestable, Parameter, Term, diagnose as infer, rms,
 };
 use crate::rig::readings::Readings;
 use crate::rod::Rod;
@@ -120,6 +128,9 @@ pub struct RigModel {
     body: Body,
     /// For each datum the pair of stations (with a rod) or the line (without).
     place: Vec<usize>,
+    /// Which data follow which, and the usual step of an imposed displacement (m).
+    course: Course,
+    step: f64,
     candidates: Vec<Candidate>,
     /// For each candidate what its parameters do.
     actions: Vec<Vec<Action>>,
@@ -140,6 +151,11 @@ impl AsRecorded {
         let error = error.ok().map(|(_, evidence, _)| rms(&evidence.residual));
         AsRecorded { readings: readings.clone(), rod: rod.cloned(), error }
     }
+}
+
+/// True for a parameter that does nothing where the first of its effect does nothing.
+fn is_dependent(action: &Action) -> bool {
+    matches!(action, Action::Onset(_) | Action::Presliding | Action::SliderPlay)
 }
 
 /// What turns a force into a displacement.
@@ -167,7 +183,7 @@ impl RigModel {
         rod: Option<&Rod>,
         is_wanted: &dyn Fn(&Candidate) -> bool,
     ) -> Result<(RigModel, Evidence, Vec<NotTestable>)> {
-        let data = datum::all(&readings.rows);
+        let data = datum::recorded(readings);
         let (body, place) = match rod {
             Some(rod) => {
                 structure::check_stations(readings, rod)?;
@@ -189,7 +205,10 @@ impl RigModel {
                 (Body::Lines(line.iter().max().map_or(0, |last| last + 1)), line)
             }
         };
+        let course = Course::of(&data);
         let mut model = RigModel {
+            step: slide::usual_step(&data, &course),
+            course,
             readings: readings.clone(),
             rod: rod.cloned(),
             as_recorded: None,
@@ -211,14 +230,21 @@ impl RigModel {
             Body::Rod(structure) => {
                 let second = structure.second_order()?;
                 let of = |(d, &place): (&Datum, &usize)| {
-                    second[place][(d.channel.index(), d.direction.axis.index())] * d.load.powi(2)
+                    let more = second[place][(d.channel.index(), d.direction.axis.index())] * d.load.powi(2);
+                    // an imposed displacement needs so much less load
+                    match d.imposed {
+                        Some(imposed) if imposed.displacement != 0.0 => {
+                            -more * d.predicted / imposed.displacement
+                        }
+                        _ => more,
+                    }
                 };
                 Some(DVector::from_iterator(model.data.len(), model.data.iter().zip(&model.place).map(of)))
             }
             Body::Lines(_) => None,
         };
         let mut evidence = evidence::of(&model.data, nuisance, large);
-        evidence.stated_noise = readings.header.noise;
+        evidence.stated_noise = model.stated_noise();
         if let Some(rod) = rod {
             let stations = |rod: &Rod, d: &Datum| {
                 let tip = rod.length();
@@ -232,7 +258,13 @@ impl RigModel {
         Ok((model, evidence, not_testable))
     }
 
-    /// The data, in the order of the evidence.
+    /// Name of a session, by its number in [`Evidence::session`].
+    pub fn session(&self, number: usize) -> &str {
+        let of_session = self.data.iter().find(|datum| datum.session_number == number);
+        of_session.and_then(|datum| datum.session.as_deref()).unwrap_or("without a name")
+    }
+
+    /// The data in the order of recording, which is that of the evidence.
     pub fn data(&self) -> &[Datum] {
         &self.data
     }
@@ -263,6 +295,21 @@ impl RigModel {
         self.as_recorded.as_ref()?.error
     }
 
+    /// What a newton of a measured load counts, m/N; `None` where loads were set.
+    pub fn per_newton(&self) -> Option<f64> {
+        self.data.iter().find_map(|datum| datum.imposed).map(|imposed| imposed.per_newton)
+    }
+
+    /// Stated noise of a datum, m: where the load was measured, that of load and displacement together.
+    fn stated_noise(&self) -> Option<f64> {
+        let header = &self.readings.header;
+        let of_load = self.per_newton().zip(header.load_noise).map(|(per_newton, noise)| per_newton * noise);
+        match (header.noise, of_load) {
+            (Some(a), Some(b)) => Some(a.hypot(b)),
+            (a, b) => a.or(b),
+        }
+    }
+
     /// Fills in the effects and their nonparametric rivals, without what can do nothing to these
     /// readings; the effects that then have no candidate.
     fn add_candidates(&mut self, is_wanted: &dyn Fn(&Candidate) -> bool) -> Vec<NotTestable> {
@@ -278,6 +325,7 @@ impl RigModel {
             false => "it needs a rod file",
         });
         entries.extend(nonparametric::all(&self.data, &deflections, has_rod));
+        nonparametric::retain_predictive(&mut entries, &self.data, &deflections);
         entries.retain(|(candidate, _)| is_wanted(candidate));
         for (candidate, actions) in entries {
             let (parameters, actions): (Vec<_>, Vec<_>) = candidate
@@ -285,12 +333,14 @@ impl RigModel {
                 .into_iter()
                 .zip(actions)
                 .filter(|(parameter, action)| {
-                    // where a joint is matters as soon as it yields
+                    // where a joint is matters as soon as it gives way, when a load was hung as soon as there is creep
                     matches!(action, Action::Station(_))
+                        || is_dependent(action)
                         || self.is_felt(action, parameter.neutral, parameter.size, parameter.bounds)
                 })
                 .unzip();
-            if actions.iter().any(|action| !matches!(action, Action::Station(_))) {
+            let is_second = |action: &Action| matches!(action, Action::Station(_)) || is_dependent(action);
+            if actions.iter().any(|action| !is_second(action)) {
                 self.candidates.push(Candidate { parameters, ..candidate });
                 self.actions.push(actions);
             }
@@ -325,7 +375,7 @@ impl RigModel {
             Body::Rod(_) => self.data.iter().map(|d| d.predicted).collect(),
             Body::Lines(count) => {
                 let measured: Vec<f64> = self.data.iter().map(|d| d.measured).collect();
-                let loads: Vec<f64> = self.data.iter().map(Datum::signed_load).collect();
+                let loads: Vec<f64> = self.data.iter().map(Datum::drive).collect();
                 let slopes = self.slopes(count, &loads, &measured);
                 loads.iter().zip(&self.place).map(|(load, &line)| load * slopes[line]).collect()
             }
@@ -344,13 +394,41 @@ impl RigModel {
 
     /// The readings of a rod, without shifts, m.
     fn displaced(&self, structure: &Structure, state: &State<'_>) -> Vec<f64> {
-        let compliance = structure.softened(&state.softening);
+        let common = structure.softened(&state.softening);
+        let mut of_session: Vec<Option<Parts>> = Vec::new();
+        for &(session, _, _) in &state.of_sessions {
+            of_session.resize(of_session.len().max(session + 1), None);
+            let joints = state.of_sessions.iter().filter(|(of, _, _)| *of == session);
+            let mut softening = state.softening.clone();
+            softening.joints.extend(joints.map(|&(_, joint, by)| (joint, by)));
+            of_session[session] = Some(structure.softened(&softening));
+        }
+        let pulls = state.pulls(&self.data, &self.course);
+        let compliance = |i: usize| {
+            let own = of_session.get(self.data[i].session_number).and_then(Option::as_ref);
+            own.unwrap_or(&common)[self.place[i]]
+        };
         let reading = |(i, datum): (usize, &Datum)| {
-            let pull = state.pull(i, datum);
-            let bent = compliance[self.place[i]] * (pull.direction * pull.load);
+            let pull = &pulls[i];
+            let bent = compliance(i) * (pull.direction * pull.load);
             state.read(datum.channel, &(bent + pull.direction * pull.play))
         };
-        self.data.iter().enumerate().map(reading).collect()
+        let mut readings: Vec<f64> = self.data.iter().enumerate().map(reading).collect();
+        // what a sensor along the load shows per newton
+        let along = |i: usize| {
+            let datum = &self.data[i];
+            let direction = pulls[i].direction * f64::from(datum.direction.sign);
+            state.read(datum.channel, &(compliance(i) * direction))
+        };
+        for (i, met) in state.met(&self.data, &self.course, self.step, &along) {
+            let (datum, along) = (&self.data[i], along(i));
+            let per_newton = datum.imposed.map_or(along, |imposed| imposed.per_newton);
+            readings[i] = match along == 0.0 {
+                true => 0.0,
+                false => per_newton * state.measured_load(i, datum, &met, along),
+            };
+        }
+        readings
     }
 
     fn changed(&self, state: &State<'_>) -> DVector<f64> {
@@ -369,17 +447,31 @@ impl RigModel {
                 }
             }
             Body::Lines(count) => {
-                let mut felt = Vec::with_capacity(self.data.len());
-                let mut left = Vec::with_capacity(self.data.len());
-                for (i, datum) in self.data.iter().enumerate() {
-                    let pull = state.pull(i, datum);
+                let pulls = state.pulls(&self.data, &self.course);
+                let mut felt: Vec<f64> = Vec::with_capacity(self.data.len());
+                for (i, (datum, pull)) in self.data.iter().zip(&pulls).enumerate() {
                     felt.push(pull.load * f64::from(datum.direction.sign));
                     change[i] += pull.direction[datum.channel.index()] * pull.play;
-                    left.push(datum.measured - change[i]);
                 }
+                // of an imposed displacement a line is the load per displacement: c₀ the compliance that its unit is
+                let unit = |i: usize| self.data[i].imposed.map_or(1.0, |imposed| imposed.per_newton);
+                let measured: Vec<f64> = self.data.iter().map(|d| d.measured).collect();
+                let drives: Vec<f64> = self.data.iter().map(Datum::drive).collect();
+                let stiffness = self.slopes(*count, &drives, &measured);
+                let compliance =
+                    |i: usize| unit(i) / stiffness[self.place[i]].abs().max(f64::MIN_POSITIVE.sqrt());
+                for (i, met) in state.met(&self.data, &self.course, self.step, &compliance) {
+                    let datum = &self.data[i];
+                    let load = state.measured_load(i, datum, &met, unit(i));
+                    let besides = state.measured_load(i, datum, &met.unbent(), unit(i));
+                    felt[i] = unit(i) * (load - besides);
+                    change[i] += unit(i) * besides;
+                }
+                let left: Vec<f64> =
+                    self.data.iter().zip(change.iter()).map(|(d, c)| d.measured - c).collect();
                 let slopes = self.slopes(*count, &felt, &left);
                 for (i, datum) in self.data.iter().enumerate() {
-                    change[i] += slopes[self.place[i]] * (felt[i] - datum.signed_load());
+                    change[i] += slopes[self.place[i]] * (felt[i] - datum.drive());
                 }
             }
         }
@@ -401,6 +493,37 @@ impl ForwardModel for RigModel {
             }
         }
         self.changed(&state)
+    }
+
+    /// Play that an imposed displacement crosses acts in steps: it is moved by half its usual size. What does nothing without
+    /// its effect's first parameter is seen beside the usual size of that.
+    fn columns(&self, terms: &[Term], position: usize) -> DMatrix<f64> {
+        let term = &terms[position];
+        let (parameters, actions) =
+            (&self.candidates[term.candidate].parameters, &self.actions[term.candidate]);
+        let is_imposed = !self.course.imposed.is_empty();
+        let column = |(k, (parameter, action)): (usize, (&Parameter, &Action))| {
+            let mut moved = terms.to_vec();
+            let first = &parameters[0];
+            if is_dependent(action) && term.values[0] == first.neutral {
+                moved[position].values[0] += first.size;
+            }
+            let (step, (low, high)) = match action {
+                Action::Play(_) | Action::SliderPlay | Action::Presliding if is_imposed => {
+                    (0.5, parameter.bounds)
+                }
+                _ => (1e-4, (f64::NEG_INFINITY, f64::INFINITY)),
+            };
+            let h = step * parameter.size;
+            let (more, less) = ((term.values[k] + h).min(high), (term.values[k] - h).max(low));
+            moved[position].values[k] = more;
+            let with_more = self.response(&moved);
+            moved[position].values[k] = less;
+            let with_less = self.response(&moved);
+            (with_more - with_less) * (parameter.size / (more - less))
+        };
+        let columns: Vec<DVector<f64>> = parameters.iter().zip(actions).enumerate().map(column).collect();
+        DMatrix::from_columns(&columns)
     }
 
     fn location(&self, term: &Term) -> Location {
@@ -432,6 +555,13 @@ impl RigModel {
         let parameters = |candidate: usize| &self.candidates[candidate].parameters;
         let is_scanned = |candidate: usize| parameters(candidate).iter().any(|p| p.name == STATION);
         let mut estimates = part.estimates.clone();
+        // where between two readings a slider meets the end of its play nobody sees
+        for (own, action) in estimates.iter_mut().zip(&self.actions[part.term.candidate]) {
+            if matches!(action, Action::SliderPlay) {
+                own.low = own.low.min(own.value - 0.5 * self.step).max(0.0);
+                own.high = own.high.max(own.value + 0.5 * self.step);
+            }
+        }
         if !is_scanned(part.term.candidate) {
             return estimates;
         }

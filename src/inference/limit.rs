@@ -17,6 +17,8 @@ pub enum Limit {
     OneLoad,
     /// So few readings that a part held out leaves too little to learn from.
     FewReadings(usize),
+    /// The loads jump where the displacement turns, as where it is the displacement that is set.
+    JumpsAtTurns,
     /// The readings have no folds that could be held out.
     NoFoldsOfReadings,
     /// The calibration did not come to rest.
@@ -52,6 +54,11 @@ impl fmt::Display for Limit {
                 f,
                 "Only {count} readings: few are left to fit when some are held out, and small effects \
                  cannot be detected.",
+            ),
+            Limit::JumpsAtTurns => f.write_str(
+                "The displacement goes in even steps and the load jumps: was the displacement imposed and \
+                 the load measured? Then write # driven = \"displacement\" above the table: the loads \
+                 are compared with the model instead.",
             ),
             Limit::NoFoldsOfReadings => f.write_str(
                 "The readings are too few to hold any out: no finding is confirmed by \

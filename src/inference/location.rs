@@ -23,6 +23,13 @@ pub enum Location {
         /// Axis of the loads.
         axis: Axis,
     },
+    /// A part in one session, for which it was set up anew.
+    InSession {
+        /// The part.
+        part: Part,
+        /// The session, as the file names it.
+        session: String,
+    },
     /// A part, by one of several forms of a law: `rod, since each load, t0 10 s`.
     Form {
         /// The part.
@@ -197,6 +204,7 @@ impl fmt::Display for Location {
         match self {
             Location::Part(part) => write!(f, "{part}"),
             Location::UnderLoads { part, axis } => write!(f, "{part}, loads along {axis}"),
+            Location::InSession { part, session } => write!(f, "{part}, session {session}"),
             Location::Form { part, form } => write!(f, "{part}, {form}"),
             Location::Named(name) | Location::Key(name) => f.write_str(name),
             Location::Station(station) => write!(f, "station {:.1} mm", station / MM),

@@ -12,9 +12,12 @@ const AS_WELL: (f64, f64) = (20.0, 1.01);
 /// Most effects in one hypothesis.
 const MOST: usize = 8;
 /// Of how many candidates, the likeliest by their columns at neutral values, the values are fitted.
-const REFITTED: usize = 5;
-/// And how many of them may be of one effect.
+const REFITTED: usize = 6;
+/// And how many of them may be of one effect, with as many parameters.
 const OF_ONE_EFFECT: usize = 2;
+
+/// Odds against chance that make an effect, or a second one beside it, worth a try.
+const HOPELESS: f64 = 1.0 / 400.0;
 
 /// By how much the odds of a name may be shared among effects that explain the same.
 const MOST_SHARED: f64 = 10.0;
@@ -145,8 +148,6 @@ impl Search<'_> {
     /// chance. Where one alone is not, another one may be needed with it: two outliers hide each other in the noise that they
     /// make.
     fn accepted(&self, hypothesis: &Hypothesis, longer: Hypothesis, shared: f64) -> Option<Hypothesis> {
-        /// Odds against chance that make a second effect worth a try.
-        const HOPELESS: f64 = 1.0 / 400.0;
         let mut longer = longer;
         let mut least = hypothesis.log_probability + NAMED.ln() - shared;
         if longer.log_probability < least
@@ -193,7 +194,15 @@ impl Search<'_> {
         // a scan over places must not crowd out what is at one place only
         let mut tried: Vec<usize> = Vec::new();
         for index in self.likeliest(additions, unknown) {
-            let effect = |candidate: usize| &self.model.candidates()[candidate].effect;
+            // the likeliest may be hopeless too, but nothing behind it needs a fit
+            if !tried.is_empty() && additions[index] < HOPELESS.ln() {
+                break;
+            }
+            // nor a form of a law with fewer numbers one with more
+            let effect = |candidate: usize| {
+                let candidate = &self.model.candidates()[candidate];
+                (candidate.effect, candidate.parameters.len())
+            };
             let same = tried.iter().filter(|&&other| effect(other) == effect(index)).count();
             if unknown || same < OF_ONE_EFFECT {
                 tried.push(index);

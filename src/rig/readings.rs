@@ -22,6 +22,7 @@ use reading::{loads_of, newtons, only_load};
 pub use columns::{KNOWN_COLUMNS, LoadColumn};
 pub use header::{Driven, RigHeader};
 pub use instant::Instant;
+pub(crate) use instant::instants;
 pub use reading::{Axis, Direction, Phase, Reading};
 pub use warning::Warning;
 

@@ -16,17 +16,19 @@ fn a_trial_is_made_answered_in_pieces_and_scored() {
     assert_eq!(sandbox.read("t/answers.jsonl").lines().count(), 5);
     let score = sandbox.run("trial score t t.key.jsonl --json").json();
     let of = |kind: &str| score[kind]["n"].as_u64().unwrap();
-    assert_eq!(of("clean") + of("single") + of("pairs") + of("unknown"), 5);
+    let rate = |of: &str, rate: &str| score[of][rate]["of"].as_u64().unwrap();
+    let files = rate("mistakes", "named") + rate("suspects", "remarked");
+    assert_eq!(of("clean") + of("single") + of("pairs") + of("unknown") + files, 5);
     for key in ["coverage", "gain_over_oracle", "counterfactual_over_oracle", "next_measurement_ok"] {
         assert!(score.get(key).is_some(), "{key}");
     }
 }
 
 #[test]
-fn other_readings_are_foretold_and_what_is_proposed_is_measured() {
+fn other_readings_are_predicted_and_what_is_proposed_is_measured() {
     let sandbox = Sandbox::empty();
     for (directory, cases) in [("a", "1..24"), ("b", "1..8")] {
-        sandbox.run(&format!("trial make {directory} --seed 7 --cases 24 --rig")).succeeded();
+        sandbox.run(&format!("trial make {directory} --seed 8 --cases 24 --rig")).succeeded();
         sandbox.run(&format!("trial answer {directory} --case-range {cases}")).succeeded();
     }
     let score = sandbox.run("trial score a --json").json();
@@ -48,7 +50,7 @@ fn other_readings_are_foretold_and_what_is_proposed_is_measured() {
     // whoever answers sees the question and nothing of what belongs there
     let key = sandbox.read("a.key.jsonl");
     assert!(key.contains("true_um") && !sandbox.read("a/manifest.json").contains("true_um"));
-    sandbox.write("a/rig/case-0003/asked.csv", &asked.replacen("x,", "y,", 1));
+    sandbox.write("a/rig/case-0003/asked.csv", &format!("{asked}y,1,0\n"));
     for line in ["trial score a", "trial answer a --answers again.jsonl --case-range 3..3"] {
         let refused = sandbox.run(line);
         assert_eq!(refused.status, Some(2), "{line}");
@@ -65,26 +67,36 @@ fn a_small_trial_is_answered_as_well_as_ever() {
     sandbox.run("trial answer t").succeeded();
     let score = sandbox.run("trial score t --json").json();
     let count = |of: &str, key: &str| score[of][key].as_u64().unwrap();
-    assert_eq!((count("clean", "n"), score["failed"].as_u64()), (20, Some(0)));
+    assert_eq!((count("clean", "n"), score["failed"].as_u64()), (18, Some(0)));
     assert!(count("clean", "false_names") + count("clean", "false_unexplained") <= 1, "{}", score["clean"]);
     let single = &score["single"];
-    assert!(count("single", "identifiable") == 8 && count("single", "name_ok") >= 7, "{single}");
-    assert!(count("single", "location_ok") >= 7, "{single}");
-    // in the class wherever something is named; where nothing is, the numbers of the rod's file are
-    // uncertain by as much
-    let class = &single["in_class_rate"];
-    assert!(class["of"].as_u64().unwrap() >= 9 && class["share"].as_f64().unwrap() >= 0.9, "{single}");
-    assert!(count("pairs", "identifiable") == 4 && count("pairs", "both_found") >= 3, "{}", score["pairs"]);
-    assert!(count("unknown", "wrongly_named") == 0, "{}", score["unknown"]);
+    assert!(count("single", "identifiable") == 6 && count("single", "name_ok") >= 5, "{single}");
+    assert!(count("single", "location_ok") >= 5, "{single}");
+    // in the class wherever something is named
+    let rate = |of: &str, rate: &str| {
+        let rate = &score[of][rate];
+        (rate["count"].as_u64().unwrap(), rate["of"].as_u64().unwrap())
+    };
+    let (in_class, named) = rate("single", "in_class_rate");
+    assert!(named >= 9 && in_class + 1 >= named, "{single}");
+    // what nobody could detect is passed over in silence, or right
+    let (right, faint) = rate("below", "silent_or_right");
+    assert!(faint == 6 && right >= 5, "{}", score["below"]);
+    assert!(count("pairs", "identifiable") == 1 && count("pairs", "both_found") == 1, "{}", score["pairs"]);
+    let unknown = &score["unknown"];
+    assert!(count("unknown", "identifiable") == 5 && count("unknown", "called_unknown") >= 3, "{unknown}");
+    assert!(count("unknown", "wrongly_named") <= 1, "{unknown}");
+    assert_eq!((rate("mistakes", "named"), rate("mistakes", "silent")), ((3, 3), (0, 3)));
+    assert_eq!(rate("mistakes", "invented").0, 0, "{}", score["mistakes"]);
+    assert_eq!((rate("suspects", "remarked"), rate("suspects", "named")), ((2, 2), (0, 2)));
     for (key, least) in [("coverage", 0.75), ("gain_over_oracle", 0.9)] {
         assert!(score[key].as_f64().unwrap() > least, "{key}: {}", score[key]);
     }
-    // what is asked for is foretold about as well as by an oracle; that of a rod knows its file's
-    // numbers exactly, which nobody does, so that its cases are compared with their noise
-    for (half, key, most) in [("rig", "answer_over_noise_median", 1.0), ("calibration", "median", 1.5)] {
-        let told = &score[half]["counterfactual"];
-        assert!(told["n"] == told["answered"] && told["n"].as_u64().unwrap() >= 3, "{half}: {told}");
-        assert!(told[key].as_f64().unwrap() < most, "{half}: {told}");
+    // what is asked for is predicted about as well as by an oracle
+    for (half, least) in [("rig", 1), ("calibration", 3)] {
+        let asked = &score[half]["counterfactual"];
+        assert!(asked["n"] == asked["answered"] && asked["n"].as_u64().unwrap() >= least, "{half}: {asked}");
+        assert!(asked["median"].as_f64().unwrap() < 1.5, "{half}: {asked}");
     }
 }
 
@@ -129,4 +141,22 @@ fn another_key_and_changed_recordings_are_refused() {
     refuses("trial score t", "t/rig/case-0002/rod.toml");
     assert_eq!(sandbox.run("trial make t --seed 4").status, Some(2));
     assert_eq!(sandbox.run("trial make u --seed 4 --key u/key.jsonl").status, Some(2));
+}
+
+#[test]
+fn noise_can_be_that_of_a_real_recording() {
+    let sandbox = Sandbox::empty();
+    let rows: String = (0..16).map(|k| format!("{}\n", 1e-4 * f64::from(k % 5))).collect();
+    sandbox.write("residuals.csv", &format!("residual\n{rows}"));
+    sandbox.run("trial make t --seed 3 --cases 3 --rig --residuals residuals.csv").succeeded();
+    sandbox.run("trial make u --seed 3 --cases 3 --rig").succeeded();
+    let key = sandbox.read("t.key.jsonl");
+    assert_eq!(key.matches("16 residuals of a recording").count(), 3, "{key}");
+    // rod and loads are the same, what is read is not
+    let [rod, other] = ["t", "u"].map(|trial| sandbox.read(&format!("{trial}/rig/case-0002/rod.toml")));
+    assert!(rod == other && key != sandbox.read("u.key.jsonl"));
+    sandbox.write("residuals.csv", "rest\n1\n2\n");
+    let refused = sandbox.run("trial make v --seed 3 --cases 3 --rig --residuals residuals.csv");
+    assert_eq!(refused.status, Some(2));
+    assert!(refused.stderr.contains("residuals.csv") && refused.stderr.contains("residual"));
 }

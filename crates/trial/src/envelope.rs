@@ -5,6 +5,7 @@
 //! DIR/rig/case-0001/rod.toml     the rod as its file has it
 //! DIR/rig/case-0001/readings.csv what was read
 //! DIR/rig/case-0001/asked.csv    what would have been read here?
+//! DIR/rig/case-0001/rod-2.toml   other rods, beside some of the cases
 //! DIR/calibration/case-0003/     a campaign: campaign.toml, robot.toml, measurements.csv, and rod.toml where there is a rod;
 //!                                asked.toml, asked.csv, asked_rod.toml: where would the ball be there?
 //! DIR.key.jsonl                  the key: one line for each case
@@ -20,7 +21,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-use super::Half;
+use super::Source;
 use super::truth::Truth;
 use rodcal_base::error::{Error, Place, Result};
 use rodcal_base::files;
@@ -73,8 +74,7 @@ pub fn default_key(directory: &Path) -> Result<PathBuf> {
 pub fn make(
     directory: &Path,
     key: &Path,
-    seed: u64,
-    half: Half,
+    source: &Source,
     range: Range<usize>,
     made: impl Fn() + Sync + Send,
 ) -> Result<Manifest> {
@@ -97,7 +97,7 @@ pub fn make(
     while next < range.end {
         let block = BLOCK.min(range.end - next);
         let cases = in_parallel(block, |k| {
-            let case = super::case(seed, next + k, half);
+            let case = source.case(next + k);
             made();
             case
         });
@@ -208,10 +208,15 @@ fn compare(path: &Path, bytes: &[u8], sealed: &str) -> Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Half;
+
+    fn source(seed: u64) -> Source {
+        Source { seed, half: Half::Rig, residuals: Vec::new() }
+    }
 
     fn trial(directory: &Path) -> (PathBuf, PathBuf) {
         let (trial, key) = (directory.join("t"), directory.join("t.key.jsonl"));
-        make(&trial, &key, 5, Half::Rig, 1..4, || {}).unwrap();
+        make(&trial, &key, &source(5), 1..4, || {}).unwrap();
         (trial, key)
     }
 
@@ -233,8 +238,8 @@ mod tests {
         assert_eq!(manifest.case_names(), ["rig/case-0001", "rig/case-0002", "rig/case-0003"]);
         assert!(!files::read_text(&a.join(MANIFEST)).unwrap().contains("seed"));
         assert_eq!(manifest.read_key(&key_a).unwrap().len(), 3);
-        assert!(make(&a, &key_a, 6, Half::Rig, 1..2, || {}).is_err());
-        assert!(make(&b.join("new"), &b.join("new/key"), 6, Half::Rig, 1..2, || {}).is_err());
+        assert!(make(&a, &key_a, &source(6), 1..2, || {}).is_err());
+        assert!(make(&b.join("new"), &b.join("new/key"), &source(6), 1..2, || {}).is_err());
         assert!(default_key(Path::new(".")).is_err());
     }
 

@@ -8,6 +8,7 @@
 pub mod answers;
 mod calibration;
 pub mod envelope;
+mod place;
 pub mod rig;
 pub mod score;
 pub mod truth;
@@ -32,8 +33,56 @@ pub enum Half {
     Both,
 }
 
-/// Case number `number` of the trial that belongs to `seed`.
-fn case(seed: u64, number: usize, half: Half) -> Case {
-    let is_calibration = half == Half::Calibration || (half == Half::Both && number.is_multiple_of(3));
-    if is_calibration { calibration::case(seed, number) } else { rig::case(seed, number) }
+/// What the cases of a trial are drawn from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Source {
+    /// Every random number comes from it.
+    pub seed: u64,
+    /// What is tried.
+    pub half: Half,
+    /// Residuals of a real recording that are the noise at the rig, in standard deviations; none:
+    /// the noise is computed.
+    pub residuals: Vec<f64>,
+}
+
+impl Source {
+    /// Case number `number`.
+    fn case(&self, number: usize) -> Case {
+        let is_third = self.half == Half::Both && number.is_multiple_of(3);
+        match self.half == Half::Calibration || is_third {
+            true => calibration::case(self.seed, number),
+            false => rig::case(self.seed, number, &self.residuals),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn case(seed: u64, half: Half, number: usize) -> Case {
+        Source { seed, half, residuals: Vec::new() }.case(number)
+    }
+
+    #[test]
+    fn a_seed_and_a_number_make_the_same_case() {
+        for half in [Half::Rig, Half::Calibration] {
+            assert_eq!(case(7, half, 3), case(7, half, 3));
+            let other = [case(7, half, 4), case(8, half, 3)];
+            assert!(other.iter().all(|other| other.files != case(7, half, 3).files));
+        }
+    }
+
+    #[test]
+    fn files_say_that_they_are_simulated_and_nothing_of_the_effect() {
+        for (half, cases) in [(Half::Rig, 40), (Half::Calibration, 12)] {
+            for number in 0..cases {
+                let case = case(1, half, number);
+                for (name, text) in &case.files {
+                    assert!(text.starts_with("# SIMULATED"), "{name}");
+                    assert!(case.truth.effects.iter().all(|e| !text.contains(&e.effect)), "{name}");
+                }
+            }
+        }
+    }
 }

@@ -1,19 +1,28 @@
 //! Trials at a stiffness rig: rods, protocols and what may be wrong with them.
 //!
-//! A quarter of the cases is clean, 45 % hold one effect of the library, 15 % two of them, 15 % one that no library has.
+//! The numbers of every rod file are off by what it states, or by twice that; noise, zeros and
+//! display differ from case to case. What else there is: nothing (20 % of the cases), one effect of
+//! the library (34 %), two of them (12 %), physics that no library has (13 %), a mistake in the
+//! files (15 %), or single readings that were misread (6 %). Friction accompanies some of the
+//! effects.
 
+mod actual;
 mod again;
 mod asked;
 mod bench;
+mod beyond;
 pub(crate) mod cosserat;
+mod covariance;
 pub(crate) mod draw;
 pub(crate) mod drawing;
 mod effect;
 mod made;
 mod memory;
+mod mistake;
 mod noise;
 mod oracle;
 mod protocol;
+pub mod residuals;
 mod setup;
 mod sizes;
 pub(crate) mod tube;
@@ -22,11 +31,12 @@ pub use self::again::{Again, Proposed, again};
 use self::bench::Bench;
 pub use self::effect::Effect;
 pub use self::made::{Made, Order};
-use self::noise::{Noise, Shape};
+use self::mistake::{Mistake, Written};
+use self::noise::Noise;
 use self::oracle::Oracle;
 pub use self::protocol::Columns;
 use super::Case;
-use crate::truth::{Concealed, Kind, Parameter, Truth};
+use crate::truth::{Concealed, Detectability, Kind, Parameter, Truth};
 use rodcal_base::statistics::Random;
 use rodcal_base::units::{MM, UM};
 
@@ -38,116 +48,272 @@ const SMALL: f64 = 1e-3;
 const ASKED: u64 = 2 << 32;
 const AGAIN: u64 = 3 << 32;
 
+/// Shares of clean, single, paired, unknown and mistaken cases; in the rest readings are misread.
+const SHARES: [(Kind, f64); 5] = [
+    (Kind::Clean, 0.2),
+    (Kind::Single, 0.34),
+    (Kind::Pair, 0.12),
+    (Kind::Unknown, 0.13),
+    (Kind::Mistake, 0.15),
+];
+/// How often friction accompanies an effect, and its force as a share of the largest load.
+const COMPANION: (f64, [f64; 2]) = (0.2, [0.01, 0.05]);
+/// How often a single effect is below its detection limit, and how far at most.
+const BELOW: (f64, f64) = (0.3, 0.1);
+/// Multiples of its detection limit from which an effect of a pair is drawn, and unknown physics.
+const FAINTEST: [f64; 2] = [3.0, 2.0];
+/// How often a single effect is recorded with care.
+const CAREFUL: f64 = 0.75;
+/// Noises by which a reading is misread.
+const MISREAD: [f64; 2] = [10.0, 60.0];
+/// How often files of other rods stand beside that of a case.
+const BESIDE: f64 = 0.25;
+
 /// A case as it was drawn.
 struct Drawn {
     kind: Kind,
     bench: Bench,
     noise: Noise,
+    /// How many times as far off as stated the numbers of the files are.
+    times: f64,
+    /// What is sought, then friction that accompanies it.
     effects: Vec<Effect>,
+    /// How many of them are only companions.
+    companions: usize,
+    mistake: Option<Mistake>,
+    oracle: Oracle,
     /// Without noise, m.
     readings: Vec<f64>,
-    /// What the display showed, m.
-    shown: Vec<f64>,
+    /// As it should have been written down.
+    right: Written,
 }
 
-/// Case number `number` of the trial that belongs to `seed`.
-pub fn case(seed: u64, number: usize) -> Case {
-    let drawn = drawn(seed, number);
-    let asked = asked::draw(&drawn.bench, &mut Random::seeded(seed, ASKED + number as u64));
-    let name = format!("case-{number:04}");
-    Case {
-        files: vec![
-            ("rod.toml".into(), drawn.bench.drawing.toml(&name)),
-            ("readings.csv".into(), drawn.bench.protocol.csv(&drawn.shown)),
-            ("asked.csv".into(), asked::csv(&asked)),
-        ],
-        truth: Truth { seed: Some(seed), ..truth(format!("rig/{name}"), &drawn, &asked) },
+impl Drawn {
+    fn written(&self) -> Written {
+        self.mistake.as_ref().map_or_else(|| self.right.clone(), |mistake| mistake.made(&self.right))
     }
 }
 
-fn drawn(seed: u64, number: usize) -> Drawn {
-    let mut random = Random::seeded(seed, number as u64);
-    let kind = Kind::drawn(&mut random);
-    let numbers: Vec<usize> = match kind {
-        Kind::Clean => Vec::new(),
-        Kind::Single => vec![random.index(draw::LIBRARY)],
-        Kind::Pair => {
-            let first = random.index(draw::LIBRARY);
-            vec![first, (first + 1 + random.index(draw::LIBRARY - 1)) % draw::LIBRARY]
-        }
-        Kind::Unknown => vec![random.index(draw::BEYOND)],
+/// Case number `number` of the trial that belongs to `seed`, with noise from `residuals` where
+/// there are any.
+pub fn case(seed: u64, number: usize, residuals: &[f64]) -> Case {
+    let drawn = drawn(seed, number, residuals);
+    let asked = asked::draw(&drawn.bench, &mut Random::seeded(seed, ASKED + number as u64));
+    let name = format!("case-{number:04}");
+    let written = drawn.written();
+    let mut files = vec![
+        ("rod.toml".into(), written.drawing.toml(&name)),
+        ("readings.csv".into(), written.protocol.csv(&written.shown)),
+        ("asked.csv".into(), asked::csv(&asked)),
+    ];
+    let beside = |(k, (file, drawing)): (usize, &(String, drawing::Drawing))| {
+        (file.clone(), drawing.toml(&format!("{name}, rod {}", k + 2)))
     };
-    let needs_of = |number: &usize| match kind {
-        Kind::Unknown => draw::needs_beyond(*number),
-        _ => draw::needs(*number),
-    };
-    let needs = numbers.iter().map(needs_of).fold(setup::Needs::default(), setup::Needs::and);
-    let (bench, noise) = setup::draw(needs, &mut random);
-    let sd = noise.variance(bench.protocol.quantum).sqrt();
-    let faintest = if kind == Kind::Pair { 0.5 } else { 0.0 };
-    let effects: Vec<Effect> = numbers
-        .iter()
-        .map(|&number| match kind {
-            Kind::Unknown => draw::beyond(number, &bench, &mut random),
-            _ => draw::library(number, &bench, sd, faintest, &mut random),
-        })
-        .collect();
-    let readings = bench.readings(&effects);
-    let shown = noise.shown(&bench, &readings, &mut random);
-    Drawn { kind, bench, noise, effects, readings, shown }
+    files.extend(written.others.iter().enumerate().map(beside));
+    let truth = truth(format!("rig/{name}"), drawn, &asked);
+    Case { files, truth: Truth { seed: Some(seed), residuals: residuals.to_vec(), ..truth } }
 }
 
-fn truth(case: String, drawn: &Drawn, asked: &Bench) -> Truth {
-    let Drawn { kind, bench, noise, effects, readings, shown } = drawn;
+fn drawn(seed: u64, number: usize, residuals: &[f64]) -> Drawn {
+    let mut random = Random::seeded(seed, number as u64);
+    let random = &mut random;
+    let kind = kind(random);
+    let library = |random: &mut Random| random.index(draw::LIBRARY);
+    let (numbers, mut needs): (Vec<usize>, setup::Needs) = match kind {
+        Kind::Clean | Kind::Suspect => (Vec::new(), setup::Needs::default()),
+        Kind::Single => {
+            let number = library(random);
+            let needs = if draw::happens(random, CAREFUL) { draw::careful } else { draw::needs };
+            (vec![number], needs(number, random))
+        }
+        Kind::Pair => {
+            let first = library(random);
+            let second = (first + 1 + random.index(draw::LIBRARY - 1)) % draw::LIBRARY;
+            (vec![first, second], draw::careful(first, random).and(draw::careful(second, random)))
+        }
+        Kind::Unknown => {
+            let number = random.index(beyond::BEYOND);
+            (vec![number], beyond::needs(number))
+        }
+        Kind::Mistake => {
+            let number = random.index(mistake::MISTAKES);
+            (vec![number], mistake::needs(number))
+        }
+    };
+    // friction and what looks like it are sought by themselves
+    let has_companion = match kind {
+        Kind::Single => !(5..=7).contains(&numbers[0]) && numbers[0] != 9,
+        Kind::Unknown => !needs.shuffled,
+        _ => false,
+    } && draw::happens(random, COMPANION.0);
+    needs.unloading |= has_companion;
+    let (bench, noise, times) = setup::draw(needs, residuals, random);
+    let oracle = Oracle::new(&bench, &noise);
+    let mut effects: Vec<Effect> = match kind {
+        Kind::Clean | Kind::Mistake => Vec::new(),
+        Kind::Suspect => misread(&bench, &noise, random),
+        Kind::Single | Kind::Pair | Kind::Unknown => {
+            let of = |&number: &usize| {
+                let largest = match kind {
+                    Kind::Unknown => beyond::draw(number, &bench, random),
+                    _ => draw::library(number, &bench, random),
+                };
+                let limit = oracle.limit(&largest).clamp(1e-4, 1.0);
+                let (least, most) = match kind {
+                    Kind::Single if draw::happens(random, BELOW.0) => (BELOW.1 * limit, limit),
+                    Kind::Single => (limit, 1.0),
+                    Kind::Pair => ((FAINTEST[0] * limit).min(0.5), 1.0),
+                    _ => ((FAINTEST[1] * limit).min(0.5), 1.0),
+                };
+                largest.scaled(draw::log_uniform(random, least, most))
+            };
+            numbers.iter().map(of).collect()
+        }
+    };
+    if has_companion {
+        let share = random.uniform(COMPANION.1[0], COMPANION.1[1]);
+        let force = (share * bench.full_scale).min(0.5 * bench.protocol.smallest_load());
+        effects.push(draw::friction(None, force, random));
+    }
+    let readings = bench.readings(&effects);
+    let shown = noise.shown(&bench, &readings, random);
+    let (drawing, protocol) = (bench.drawing.clone(), bench.protocol.clone());
+    let mut right = Written { drawing, others: Vec::new(), protocol, shown };
+    if draw::happens(random, BESIDE) || kind == Kind::Mistake {
+        right.others = ["rod-2.toml", "rod-3.toml"]
+            .map(|file| (file.to_owned(), setup::drawing(setup::Needs::default(), random)))
+            .to_vec();
+    }
+    let other = |random: &mut Random| setup::drawing(setup::Needs::default(), random);
+    let mistake = (kind == Kind::Mistake).then(|| mistake::draw(numbers[0], &right, other, random));
+    let companions = usize::from(has_companion);
+    Drawn { kind, bench, noise, times, effects, companions, mistake, oracle, readings, right }
+}
+
+fn kind(random: &mut Random) -> Kind {
+    let mut drawn = random.uniform(0.0, 1.0);
+    for (kind, share) in SHARES {
+        if drawn < share {
+            return kind;
+        }
+        drawn -= share;
+    }
+    Kind::Suspect
+}
+
+/// One to three readings of different rows that are far off.
+fn misread(bench: &Bench, noise: &Noise, random: &mut Random) -> Vec<Effect> {
+    let cells = bench.protocol.cells();
+    let sd = noise.variance(bench.protocol.quantum).sqrt();
+    let mut chosen: Vec<usize> = Vec::new();
+    for _ in 0..1 + random.index(3) {
+        let cell = random.index(cells.len());
+        if chosen.iter().all(|&other| cells[other].loading != cells[cell].loading) {
+            chosen.push(cell);
+        }
+    }
+    let of = |cell: usize| {
+        let sign = if draw::happens(random, 0.5) { -1.0 } else { 1.0 };
+        Effect::Outlier(vec![(cell, sign * draw::log_uniform(random, MISREAD[0], MISREAD[1]) * sd)])
+    };
+    chosen.into_iter().map(of).collect()
+}
+
+fn truth(case: String, mut drawn: Drawn, asked: &Bench) -> Truth {
+    if !drawn.effects.is_empty() {
+        drawn.oracle.compare(&drawn.noise);
+    }
+    let Drawn { kind, bench, noise, effects, oracle, .. } = &drawn;
     let protocol = &bench.protocol;
     let variance = noise.variance(protocol.quantum);
     let clean = bench.readings(&[]);
-    let added = mean_square(readings, &clean);
-    let oracle = (!effects.is_empty()).then(|| Oracle::new(bench, noise));
-    let mut concealed: Vec<Concealed> = effects
-        .iter()
-        .enumerate()
-        .filter_map(|(which, effect)| {
-            let run = |loading: usize| oracle::run_name(bench, loading);
-            let alone = bench.readings(std::slice::from_ref(effect));
-            let parameter = |(name, value): (&str, f64)| Parameter { name: name.into(), value };
-            Some(Concealed {
-                effect: effect.name().into(),
-                location: effect.location(run, |index| oracle::cell_name(bench, index)),
-                parameters: effect.parameters().into_iter().map(parameter).collect(),
-                size_over_noise: (mean_square(&alone, &clean) / variance).sqrt(),
-                detectability: oracle.as_ref()?.detectability(effects, which),
-            })
-        })
-        .collect();
+    let of = |(which, effect): (usize, &Effect)| {
+        let alone = bench.readings(std::slice::from_ref(effect));
+        let mut detectability = oracle.detectability(effects, which);
+        if *kind == Kind::Unknown {
+            detectability.against_pair = Some(oracle.against_pairs(effects, which));
+        }
+        let place = effect.place(protocol);
+        Concealed {
+            effect: effect.name().into(),
+            location: place.to_string(),
+            place,
+            parameters: parameters(bench, effect, &alone),
+            size_over_noise: (mean_square(&alone, &clean) / variance).sqrt(),
+            detectability,
+        }
+    };
+    let mut concealed: Vec<Concealed> = effects.iter().enumerate().map(of).collect();
+    let companions = concealed.split_off(concealed.len() - drawn.companions);
     concealed.sort_by(|a, b| b.size_over_noise.total_cmp(&a.size_over_noise));
-    // each reading has its own error and that of its zero
-    let held_out = 2.0 * variance;
+    concealed.extend(drawn.mistake.as_ref().map(|mistake| mistaken(&drawn, mistake)));
+    let held_out = variance + noise.zero_variance(protocol.quantum);
+    let has_gain = !effects.is_empty() && !effects.iter().any(Effect::is_of_one_run);
+    let left = has_gain.then(|| oracle.mean_square_left(effects));
     Truth {
         case,
         kind: *kind,
         effects: concealed,
+        companions,
+        numbers_off: drawn.times,
         noise_um: variance.sqrt() / UM,
-        noise_shape: match noise.shape {
-            Shape::Normal => "normal".into(),
-            Shape::StudentT(dof) => format!("student-t ({dof})"),
-            Shape::Contaminated => "contaminated".into(),
-        },
+        noise_shape: noise.words(),
         quantum_um: protocol.quantum / UM,
-        readings: readings.len(),
+        readings: drawn.readings.len(),
         protocol: description(bench),
         joints: bench.drawing.joints.iter().map(|(name, station)| (name.clone(), station / MM)).collect(),
         geometric_um: geometric(bench, &clean) / UM,
-        oracle_gain: (!effects.is_empty() && !effects.iter().any(is_of_one_run))
-            .then(|| added / (added + held_out)),
+        oracle_gain: left.map(|left| left / (left + held_out)),
         seed: None,
-        asked: Some(asked::truth(asked, effects, oracle.as_ref(), shown)),
+        residuals: Vec::new(),
+        asked: Some(asked::truth(asked, effects, oracle, &drawn.right.shown)),
     }
 }
 
-/// What no other run tells of: it cannot be predicted.
-fn is_of_one_run(effect: &Effect) -> bool {
-    matches!(effect, Effect::Slip { .. } | Effect::Outlier(_))
+/// The numbers of an effect. A factor of a stiffness may refer to the numbers of the file or to
+/// those of the real rod: both are right.
+fn parameters(bench: &Bench, effect: &Effect, with: &[f64]) -> Vec<Parameter> {
+    let nominal = || Bench { actual: actual::Actual::default(), ..bench.clone() }.readings(&[]);
+    let of_all = match effect {
+        Effect::StiffnessScale(_) => {
+            let nominal = nominal();
+            let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+            Some(dot(&nominal, &nominal) / dot(&nominal, with))
+        }
+        Effect::ShearModulus(factor) => {
+            let shear = |drawing: &drawing::Drawing| drawing.tubes[0].shear_modulus;
+            Some(factor * shear(&bench.actual.rod(&bench.drawing)) / shear(&bench.drawing))
+        }
+        Effect::Bend(factor) => {
+            let bends = |drawing: &drawing::Drawing| drawing.tubes[0].flexibility(1.0, 1.0).bending;
+            Some(factor * bends(&bench.actual.rod(&bench.drawing)) / bends(&bench.drawing))
+        }
+        _ => None,
+    };
+    let of = |(name, value): (&str, f64)| Parameter { name: name.into(), value, with_numbers: of_all };
+    effect.parameters().into_iter().map(of).collect()
+}
+
+/// A mistake as it is concealed: files that do not fit each other leave nothing to detect.
+fn mistaken(drawn: &Drawn, mistake: &Mistake) -> Concealed {
+    let place = mistake.place(&drawn.right);
+    let parameter = |(name, value): (&str, f64)| Parameter { name: name.into(), value, with_numbers: None };
+    Concealed {
+        effect: mistake.name().into(),
+        location: place.to_string(),
+        parameters: mistake.parameters().into_iter().map(parameter).collect(),
+        size_over_noise: f64::MAX,
+        detectability: Detectability {
+            against_none: f64::MAX,
+            against_rival: f64::MAX,
+            against_pair: None,
+            best_rival: String::new(),
+            class: Vec::new(),
+            places: vec![place.clone()],
+            stations_mm: None,
+        },
+        place,
+    }
 }
 
 /// Root mean square of what the clean rod departs from a linear one, m.
@@ -175,26 +341,43 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_seed_and_a_number_make_the_same_case() {
-        let (a, b) = (case(7, 3), case(7, 3));
-        assert_eq!(a, b);
-        assert!(a.files != case(7, 4).files && a.files != case(8, 3).files);
+    fn a_case_is_what_its_kind_says() {
+        let mut kinds = std::collections::BTreeSet::new();
+        for number in 0..60 {
+            let case = case(1, number, &[]);
+            let (rod, truth) = (&case.files[0].1, &case.truth);
+            let is_stiff = |line: &str| !line.contains("urad_per_nm") || line.ends_with(" = 0.0");
+            assert!(rod.lines().all(is_stiff));
+            assert!(truth.geometric_um < 20.0, "{truth:?}");
+            let expected = match truth.kind {
+                Kind::Clean => 0..=0,
+                Kind::Single | Kind::Unknown | Kind::Mistake => 1..=1,
+                Kind::Pair => 2..=2,
+                Kind::Suspect => 1..=3,
+            };
+            assert!(expected.contains(&truth.effects.len()), "{truth:?}");
+            assert!([1.0, 2.0].contains(&truth.numbers_off));
+            assert!(truth.companions.iter().all(|companion| companion.effect == "friction"));
+            kinds.insert(format!("{:?}", truth.kind));
+        }
+        assert_eq!(kinds.len(), 6);
     }
 
     #[test]
-    fn files_say_that_they_are_simulated_and_nothing_of_the_effect() {
-        for number in 0..40 {
-            let case = case(1, number);
-            let [rod, readings, asked] = [0, 1, 2].map(|k| &case.files[k].1);
-            assert!([rod, readings, asked].iter().all(|text| text.starts_with("# SIMULATED")));
-            for concealed in &case.truth.effects {
-                assert!(!readings.contains(&concealed.effect), "{}", case.truth.case);
-            }
-            let is_stiff = |line: &str| !line.contains("urad_per_nm") || line.ends_with(" = 0.0");
-            assert!(rod.lines().all(is_stiff));
-            assert!(case.truth.geometric_um < 20.0, "{:?}", case.truth);
-            let is_clean = case.truth.kind == Kind::Clean;
-            assert_eq!(is_clean, case.truth.effects.is_empty());
-        }
+    fn residuals_of_a_recording_are_its_noise_and_the_key_has_them() {
+        let residuals: Vec<f64> = (0..20).map(|k| f64::from(k % 4) - 1.5).collect();
+        let with = case(1, 3, &residuals);
+        assert!(with.files != case(1, 3, &[]).files);
+        assert_eq!(with, case(1, 3, &residuals));
+        assert_eq!(with.truth.residuals, residuals);
+        assert!(with.truth.noise_shape.starts_with("20 residuals of a recording"));
+    }
+
+    #[test]
+    fn single_effects_begin_below_what_can_be_detected() {
+        let singles = (0..60).map(|number| case(2, number, &[]).truth).filter(|t| t.kind == Kind::Single);
+        let is_seen: Vec<bool> = singles.map(|t| t.effects[0].detectability.is_detectable()).collect();
+        let seen = is_seen.iter().filter(|is_seen| **is_seen).count();
+        assert!(seen > is_seen.len() / 3 && seen < is_seen.len() * 9 / 10, "{seen} of {}", is_seen.len());
     }
 }

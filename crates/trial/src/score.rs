@@ -17,16 +17,16 @@ use std::path::Path;
 
 use rodcal_base::error::{Error, Place, Result};
 
-pub use self::counterfactual::{Counterfactual, Foretold, Worst};
-pub use self::data::{Clean, Coverage, Pairs, Part, Score, Singles, Unknown};
-use self::judged::Judged;
+pub use self::counterfactual::{Counterfactual, Predictions, Worst};
+pub use self::data::{Below, Clean, Coverage, Mistakes, Pairs, Part, Score, Singles, Suspects, Unknown};
+use self::judged::{Finding, Judged};
 pub use self::next::{Due, Files, NextMeasurement, Open, Outcome, Said};
 pub use self::rate::Rate;
 pub use self::tables::{Bin, Confusion, Failure, PowerBin};
-pub use self::targets::{Missed, Target};
+pub use self::targets::{Measured, Missed, Reached, Target};
 use super::answers::{self, Answer};
 use super::envelope::Manifest;
-use super::truth::{Detectability, Kind, Truth};
+use super::truth::{Kind, Truth};
 
 /// A key and answers that belong to one trial.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,7 +41,7 @@ impl Sealed {
         judged(&self.truths, &self.given).iter().filter_map(Due::of).collect()
     }
 
-    /// The score; `outcomes` says what became of the proposals, by case.
+    /// The score; `outcomes` are what the proposals led to, by case.
     pub fn score(&self, outcomes: &[(String, Outcome)]) -> Score {
         score(&self.truths, &self.given, outcomes)
     }
@@ -105,21 +105,38 @@ fn part(cases: &[Judged<'_>], outcomes: &BTreeMap<&str, &Outcome>) -> Part {
     let first = |case: &&Judged<'_>| case.truth.effects.first().map(|e| e.detectability.clone());
     let is_identifiable =
         |case: &&Judged<'_>| case.truth.effects.iter().all(|e| e.detectability.is_identifiable());
-    let is_detectable =
-        |case: &&Judged<'_>| first(case).is_some_and(|d| d.against_none >= Detectability::IDENTIFIABLE);
+    let is_detectable = |case: &&Judged<'_>| first(case).is_some_and(|d| d.is_detectable());
+    let is_named = |case: &Judged<'_>| case.sought().next().is_some();
 
-    let false_names = Rate::of(of_kind(Kind::Clean), |case| !case.findings.is_empty());
-    let false_unexplained = Rate::of(of_kind(Kind::Clean), |case| case.is_unexplained);
+    let of_clean = |times: fn(f64) -> bool| {
+        let clean = of_kind(Kind::Clean).filter(move |case| times(case.truth.numbers_off));
+        Rate::of(clean, |case| !is_named(case) && !case.is_unexplained && !case.failed)
+    };
+    let clean = Clean {
+        false_names: Rate::of(of_kind(Kind::Clean), is_named),
+        false_unexplained: Rate::of(of_kind(Kind::Clean), |case| case.is_unexplained),
+        silent: of_clean(|times| times <= 1.0),
+        silent_twice: of_clean(|times| times > 1.0),
+    };
 
     let identifiable: Vec<&Judged<'_>> = of_kind(Kind::Single).filter(is_identifiable).collect();
     let of_identifiable = |is_so: &dyn Fn(&Judged<'_>) -> bool| Rate::of(identifiable.iter(), |c| is_so(c));
     let (name_ok, location_ok) = (of_identifiable(&|c| c.name_ok()), of_identifiable(&|c| c.location_ok()));
-    let missed = of_identifiable(&|case| case.findings.is_empty());
+    let missed = of_identifiable(&|case| !is_named(case));
     let named: Vec<&Judged<'_>> =
-        of_kind(Kind::Single).filter(is_detectable).filter(|case| !case.findings.is_empty()).collect();
+        of_kind(Kind::Single).filter(is_detectable).filter(|case| is_named(case)).collect();
     let in_class = Rate::of(named.iter(), |case| case.in_class());
     let class_size =
         named.iter().map(|case| case.class().len() as f64).sum::<f64>() / named.len().max(1) as f64;
+
+    let faint: Vec<&Judged<'_>> = of_kind(Kind::Single).filter(|case| !is_detectable(case)).collect();
+    let below = Below {
+        silent: Rate::of(&faint, |case| !is_named(case) && !case.is_unexplained),
+        silent_or_right: Rate::of(&faint, |case| {
+            case.in_class() || (!is_named(case) && !case.is_unexplained)
+        }),
+        wrongly_named: Rate::of(&faint, |case| is_named(case) && !case.in_class()),
+    };
 
     let pairs: Vec<&Judged<'_>> = of_kind(Kind::Pair).filter(is_identifiable).collect();
     let found = |case: &Judged<'_>| case.truth.effects.iter().filter(|e| case.found(e).is_some()).count();
@@ -127,16 +144,21 @@ fn part(cases: &[Judged<'_>], outcomes: &BTreeMap<&str, &Outcome>) -> Part {
     let one_found = Rate::of(pairs.iter(), |case| found(case) >= 1);
 
     let unknown: Vec<&Judged<'_>> = of_kind(Kind::Unknown).filter(is_identifiable).collect();
-    let called_unknown = Rate::of(unknown.iter(), |case| case.is_unexplained && case.findings.is_empty());
-    let wrongly_named = Rate::of(unknown.iter(), |case| !case.findings.is_empty());
+    let called_unknown = Rate::of(unknown.iter(), |case| case.is_unexplained && !is_named(case));
+    let wrongly_named = Rate::of(unknown.iter(), |case| is_named(case));
 
-    let speaking = || cases.iter().filter(|case| !case.findings.is_empty());
-    let right_when_named = Rate::of(speaking(), |case| case.is_concealed(case.said()));
+    let is_mistaken = |case: &&Judged<'_>| case.truth.kind == Kind::Mistake;
+    // mistakes have a score of their own
+    let speaking = || cases.iter().filter(|case| !is_mistaken(case) && !case.findings.is_empty());
+    let right_when_named =
+        Rate::of(speaking(), |case| case.findings.first().is_some_and(|f| case.is_concealed(&f.effect)));
+    let right_or_inseparable = Rate::of(speaking(), |case| case.is_right());
     let class_right_when_named =
         Rate::of(speaking(), |case| case.class().into_iter().any(|name| case.is_concealed(name)));
 
     let mut coverage = Coverage::default();
-    for case in cases.iter().filter(|case| case.truth.kind != Kind::Unknown) {
+    let of_library = |case: &&Judged<'_>| matches!(case.truth.kind, Kind::Single | Kind::Pair);
+    for case in cases.iter().filter(of_library) {
         for concealed in &case.truth.effects {
             for (name, is_in) in case.covered(concealed) {
                 coverage.all.add(is_in);
@@ -147,11 +169,11 @@ fn part(cases: &[Judged<'_>], outcomes: &BTreeMap<&str, &Outcome>) -> Part {
     let gains =
         identifiable.iter().chain(&pairs).filter_map(|case| Some((case.gain?, case.truth.oracle_gain?)));
     let (gained, possible) = gains.fold((0.0, 0.0), |sum, (gain, oracle)| (sum.0 + gain, sum.1 + oracle));
-    let counterfactual = counterfactual::foretold(cases);
+    let counterfactual = counterfactual::predictions(cases);
     let mut part = Part {
         cases: cases.len(),
         failed: cases.iter().filter(|case| case.failed).count(),
-        clean: Clean { false_names, false_unexplained },
+        clean,
         single: Singles {
             n: of_kind(Kind::Single).count(),
             name_ok,
@@ -162,7 +184,14 @@ fn part(cases: &[Judged<'_>], outcomes: &BTreeMap<&str, &Outcome>) -> Part {
         },
         pairs: Pairs { n: of_kind(Kind::Pair).count(), both_found, one_found },
         unknown: Unknown { n: of_kind(Kind::Unknown).count(), called_unknown, wrongly_named },
+        below,
+        mistakes: mistakes(cases),
+        suspects: Suspects {
+            remarked: Rate::of(of_kind(Kind::Suspect), Judged::all_remarked),
+            named: Rate::of(of_kind(Kind::Suspect), is_named),
+        },
         right_when_named,
+        right_or_inseparable,
         class_right_when_named,
         coverage,
         gain_over_oracle: (possible > 0.0).then(|| gained / possible),
@@ -174,10 +203,31 @@ fn part(cases: &[Judged<'_>], outcomes: &BTreeMap<&str, &Outcome>) -> Part {
         outside: tables::outside(cases),
         power: tables::power(cases),
         failures: tables::failures(cases),
+        targets: Vec::new(),
         missed_targets: Vec::new(),
     };
-    part.missed_targets = targets::missed(&part);
+    part.targets = targets::reached(&part);
+    part.missed_targets = part.targets.iter().filter_map(Reached::missed).collect();
     part
+}
+
+/// Mistakes that were made, and that were not.
+fn mistakes(cases: &[Judged<'_>]) -> Mistakes {
+    let (made, others): (Vec<_>, Vec<_>) = cases.iter().partition(|case| case.truth.kind == Kind::Mistake);
+    let is_named = |case: &Judged<'_>| case.mistake_named().is_some();
+    let mut by_mistake: BTreeMap<String, Rate> = BTreeMap::new();
+    for case in &made {
+        let name = case.truth.effects.first().map_or_else(String::new, |e| e.effect.clone());
+        by_mistake.entry(name).or_default().add(is_named(case));
+    }
+    Mistakes {
+        named: Rate::of(&made, |case| is_named(case)),
+        placed: Rate::of(&made, |case| case.mistake_placed()),
+        as_other: Rate::of(&made, |case| !is_named(case) && !case.is_silent()),
+        silent: Rate::of(&made, |case| case.is_silent()),
+        invented: Rate::of(&others, |case| case.findings.iter().any(Finding::is_mistake)),
+        by_mistake,
+    }
 }
 
 #[cfg(test)]

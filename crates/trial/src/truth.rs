@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use crate::place::Place;
 use rodcal_base::statistics::Random;
 
 /// One case of the key. Units are those of the names.
@@ -11,13 +12,19 @@ use rodcal_base::statistics::Random;
 pub struct Truth {
     /// `rig/case-0001`.
     pub case: String,
-    /// Clean, single, pair or unknown.
+    /// What sort of case.
     pub kind: Kind,
     /// What is wrong, strongest first; of an unknown case physics that no library has.
     pub effects: Vec<Concealed>,
+    /// What accompanies it and is right to be named, but not sought.
+    #[serde(default)]
+    pub companions: Vec<Concealed>,
+    /// How many times as far off as the files state their numbers are; 0: exact.
+    #[serde(default)]
+    pub numbers_off: f64,
     /// Standard deviation of a reading, µm, its shape, and the step of the display, µm.
     pub noise_um: f64,
-    /// `normal`, `student-t (5)`, `contaminated`.
+    /// `normal`, `student-t (5)`, `student-t (4), correlated 0.35`.
     pub noise_shape: String,
     /// Step of the display, µm.
     pub quantum_um: f64,
@@ -35,6 +42,9 @@ pub struct Truth {
     /// Seed of the trial, from which whoever scores makes the case once more. A key of before has none.
     #[serde(default)]
     pub seed: Option<u64>,
+    /// Residuals of a real recording from which the noise was drawn; empty where it was computed.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub residuals: Vec<f64>,
     /// What belongs into the readings that are asked for.
     #[serde(default)]
     pub asked: Option<Asked>,
@@ -56,19 +66,26 @@ pub struct Asked {
 /// What sort of case.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-#[allow(missing_docs)]
 pub enum Kind {
+    /// Nothing.
     Clean,
+    /// One effect of the library.
     Single,
+    /// Two of them.
     Pair,
+    /// Physics that no library has.
     Unknown,
+    /// Something that was written wrongly.
+    Mistake,
+    /// Single readings that were misread.
+    Suspect,
 }
 
-/// Shares of clean, single and paired cases; the rest is unknown.
+/// Of calibrations: shares of clean, single and paired cases; the rest is unknown.
 const SHARES: [f64; 3] = [0.25, 0.45, 0.15];
 
 impl Kind {
-    /// One by chance.
+    /// That of a calibration, by chance.
     pub fn drawn(random: &mut Random) -> Kind {
         let drawn = random.uniform(0.0, 1.0);
         let [clean, single, pair] = SHARES;
@@ -86,8 +103,10 @@ impl Kind {
 pub struct Concealed {
     /// Its name.
     pub effect: String,
-    /// Where.
+    /// Where, for people.
     pub location: String,
+    /// Where.
+    pub place: Place,
     /// Its numbers, by name.
     pub parameters: Vec<Parameter>,
     /// Root mean square of what it does to the readings over the noise.
@@ -103,6 +122,10 @@ pub struct Parameter {
     pub name: String,
     /// Its value.
     pub value: f64,
+    /// What it is together with the errors of the files' numbers, which nobody can separate from
+    /// it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub with_numbers: Option<f64>,
 }
 
 /// Expected log Bayes factors of an oracle that knows the readings without noise, natural logarithms.
@@ -112,13 +135,16 @@ pub struct Detectability {
     pub against_none: f64,
     /// Against the best effect of another name.
     pub against_rival: f64,
-    /// That effect.
+    /// Of physics that no library has: against the best two effects of it.
+    #[serde(default)]
+    pub against_pair: Option<f64>,
+    /// The best effect of another name.
     pub best_rival: String,
-    /// Effects of other names less than 5 away: nobody could tell them apart.
+    /// Effects of other names less than 5 away: nobody could distinguish them.
     pub class: Vec<String>,
-    /// Locations of the same effect less than 3 away.
-    pub places: Vec<String>,
-    /// For joints: the stations that cannot be told apart, mm.
+    /// Places of the same effect less than 3 away.
+    pub places: Vec<Place>,
+    /// For joints: the stations that cannot be distinguished, mm.
     pub stations_mm: Option<[f64; 2]>,
 }
 
@@ -126,12 +152,17 @@ impl Detectability {
     /// Expected log Bayes factor from which on an effect counts as identifiable.
     pub const IDENTIFIABLE: f64 = 5.0;
 
-    /// The smaller of both separations.
+    /// The smallest separation.
     pub fn separation(&self) -> f64 {
-        self.against_none.min(self.against_rival)
+        self.against_none.min(self.against_rival).min(self.against_pair.unwrap_or(f64::MAX))
     }
 
-    /// True where the recording tells it from nothing and from every other effect.
+    /// True where the recording shows that something is wrong.
+    pub fn is_detectable(&self) -> bool {
+        self.against_none >= Self::IDENTIFIABLE
+    }
+
+    /// True where the recording distinguishes it from nothing and from every other effect.
     pub fn is_identifiable(&self) -> bool {
         self.separation() >= Self::IDENTIFIABLE
     }

@@ -12,6 +12,8 @@ use rodcal::{Result, files, report};
 use rodcal_trial::score;
 use serde_json::Value;
 
+use super::super::diagnose::neighbours;
+
 /// The files of a case, some of them in another form than in its directory.
 pub struct CaseFiles {
     /// Where they are.
@@ -41,8 +43,9 @@ impl CaseFiles {
         Readings::from_text(&self.directory.join(name).display().to_string(), &self.text(name)?)
     }
 
-    /// The diagnosis of a case as its JSON, and what it says of the readings or of the poses that are asked for, µm. What cannot be
-    /// predicted is no reason to keep back what was found: the score counts it.
+    /// The diagnosis of a case as its JSON, and what it says of the readings or of the poses that
+    /// are asked for, µm. What cannot be predicted is no reason to keep back what was found: the
+    /// score counts it.
     pub fn diagnosed(&self) -> Result<(Value, Option<Vec<f64>>)> {
         if self.has("campaign.toml") {
             let campaign = self.campaign("campaign.toml")?;
@@ -53,9 +56,10 @@ impl CaseFiles {
                 predicted.map(|tips| tips.iter().flat_map(|tip| micrometres(tip.as_slice())).collect());
             return Ok((report::diagnosis::calibration::json(&found), coordinates));
         }
-        let rod = Rod::read(&self.directory.join("rod.toml"))?;
+        let file = self.directory.join("rod.toml");
+        let rod = Rod::read(&file)?;
         let readings = self.readings("readings.csv")?;
-        let found = rig::diagnose(&readings, Some(&rod))?;
+        let found = rig::diagnose_among(&readings, Some(&rod), &neighbours(&file))?;
         let asked = self.has("asked.csv").then(|| self.readings("asked.csv")).transpose()?;
         let predicted = asked.and_then(|asked| found.predicted(&asked).ok());
         let readings_um = predicted.map(|readings| micrometres(&readings));

@@ -8,21 +8,34 @@
 //! ```
 //!
 //! A load of zero is an unloaded rod: nothing hangs there, so there is no offset, no play and, on the way up, no friction.
+//! Where the direction of motion stands for a phase, friction and play follow the course of the run (`slide.rs`).
+//!
+//! Under an imposed displacement the same chain is solved for the load that was measured:
+//!
+//! ```text
+//! F = φ(x/C)·Π(1 − v·w) − Σ v·W·(c₀/C) + friction·z − offset     φ(1 + k₂φ²)(1 + k₁|φ|) = x/C
+//! 1 − v·w of creep, which is relaxation here; 1/(1 + v·w) of all else
+//! ```
 
 use nalgebra::{Rotation3, Unit, Vector3};
 
 use super::datum::Datum;
-use super::load_history::{History, Memory};
+use super::load_history::{Clock, History, Memory, Onset};
+use super::slide::{Course, Hung, Met, Slide};
 use super::structure::{Nodes, Softening};
 use crate::spatial::Axis;
 
 /// What one parameter does. The number in brackets is its value where nothing happens.
 #[derive(Debug, Clone)]
 pub(super) enum Action {
-    /// Friction of the slide under loads along these axes, N \[0\].
-    Friction([bool; 3]),
-    /// Added to every load along these axes, N \[0\].
-    LoadOffset([bool; 3]),
+    /// Friction of the slide under these loads, N \[0\].
+    Friction(Scope),
+    /// Travel over which friction turns round, m \[0\].
+    Presliding,
+    /// Play of the slider that rubs, on either side, m \[that of the form\].
+    SliderPlay,
+    /// Added to each of these loads, N \[0\].
+    LoadOffset(Scope),
     /// Loads along the axes of the mask turn from the first axis towards the second, rad \[0\].
     TurnLoad([bool; 3], Axis, Axis),
     /// Factor on E and G \[1\].
@@ -33,6 +46,8 @@ pub(super) enum Action {
     Bend(f64),
     /// Compliance of the joint of this number, rad/(N·m) \[that of the rod file\].
     Joint(usize, f64),
+    /// The same in one session only \[0\].
+    JointIn(usize, usize),
     /// Where the joint of these numbers is, m \[its station\]; see [`Nodes`].
     Station(Nodes),
     /// k₂, 1/N² \[0\].
@@ -41,32 +56,64 @@ pub(super) enum Action {
     PerLoad,
     /// Displacement grows with the history of loads \[0\].
     Memory(Memory, History),
+    /// How long before the first reading of a run its load was hung, s \[that of the form\]; of creep alone.
+    Onset(Onset),
     /// Factor on a channel \[1\].
     SensorScale(Axis),
     /// The channel turns from its own axis towards another one, rad \[0\].
     TurnSensor(Axis, Axis),
     /// All channels turn, as one block, from the first axis towards the second, rad \[0\].
     TurnSensors(Axis, Axis),
-    /// Play of the clamp under loads along these axes, m \[0\].
-    Play([bool; 3]),
+    /// Play of the clamp under these loads, m \[0\].
+    Play(Scope),
     /// Adds to readings: index of the datum, weight \[0\].
     Shift(Vec<(usize, f64)>),
 }
 
+/// Which loads something acts under: those along some axes, in one session or in all.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Scope {
+    pub axes: [bool; 3],
+    pub session: Option<usize>,
+}
+
+impl Scope {
+    fn holds(&self, datum: &Datum) -> bool {
+        self.axes[datum.direction.axis.index()]
+            && self.session.is_none_or(|session| session == datum.session_number)
+    }
+}
+
+/// A number that is added up of all that act on a datum.
+#[derive(Default)]
+struct Scoped(Vec<(Scope, f64)>);
+
+impl Scoped {
+    fn of(&self, datum: &Datum) -> f64 {
+        self.0.iter().filter(|(scope, _)| scope.holds(datum)).map(|(_, value)| value).sum()
+    }
+}
+
 /// A rig with all that is wrong with it.
 pub(super) struct State<'a> {
-    friction: [f64; 3],
-    load_offset: [f64; 3],
+    friction: Scoped,
+    presliding: f64,
+    slider_play: f64,
+    load_offset: Scoped,
     /// By axis: what a load along its positive direction is directed to.
     load_direction: [Vector3<f64>; 3],
     pub softening: Softening,
     per_load_squared: f64,
     per_load: f64,
-    memories: Vec<(&'a Memory, f64)>,
+    /// With which law they follow.
+    memories: Vec<(&'a Memory, History, f64)>,
+    onsets: Vec<(&'a Onset, f64)>,
     /// By channel.
     sensor: [Vector3<f64>; 3],
     scale: [f64; 3],
-    play: [f64; 3],
+    play: Scoped,
+    /// Joints that are compliant in one session: session, number of the joint, rad/(N·m).
+    pub of_sessions: Vec<(usize, usize, f64)>,
     pub shifts: Vec<(&'a [(usize, f64)], f64)>,
     /// False while nothing but shifts is there.
     pub is_changed: bool,
@@ -86,16 +133,20 @@ impl Default for State<'_> {
     fn default() -> Self {
         let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
         State {
-            friction: [0.0; 3],
-            load_offset: [0.0; 3],
+            friction: Scoped::default(),
+            presliding: 0.0,
+            slider_play: 0.0,
+            load_offset: Scoped::default(),
             load_direction: axes,
             softening: Softening::default(),
             per_load_squared: 0.0,
             per_load: 0.0,
             memories: Vec::new(),
+            onsets: Vec::new(),
             sensor: axes,
             scale: [1.0; 3],
-            play: [0.0; 3],
+            play: Scoped::default(),
+            of_sessions: Vec::new(),
             shifts: Vec::new(),
             is_changed: false,
         }
@@ -107,8 +158,10 @@ impl<'a> State<'a> {
     pub(super) fn act(&mut self, action: &'a Action, value: f64) {
         self.is_changed |= !matches!(action, Action::Shift(_));
         match action {
-            Action::Friction(axes) => add(&mut self.friction, axes, value),
-            Action::LoadOffset(axes) => add(&mut self.load_offset, axes, value),
+            Action::Friction(scope) => self.friction.0.push((*scope, value)),
+            Action::Presliding => self.presliding += value,
+            Action::SliderPlay => self.slider_play += value,
+            Action::LoadOffset(scope) => self.load_offset.0.push((*scope, value)),
             Action::TurnLoad(axes, from, towards) => {
                 let turn = turn(*from, *towards, value);
                 for (direction, _) in self.load_direction.iter_mut().zip(axes).filter(|(_, is_of)| **is_of) {
@@ -119,10 +172,12 @@ impl<'a> State<'a> {
             Action::ShearModulus => self.softening.shear *= value,
             Action::Bend(of_file) => self.softening.bend += value - of_file,
             Action::Joint(joint, of_file) => self.softening.joints.push((*joint, value - of_file)),
+            Action::JointIn(session, joint) => self.of_sessions.push((*session, *joint, value)),
             Action::Station(nodes) => nodes.move_joint(&mut self.softening, value),
             Action::PerLoadSquared => self.per_load_squared += value,
             Action::PerLoad => self.per_load += value,
-            Action::Memory(memory, _) => self.memories.push((memory, value)),
+            Action::Memory(memory, history) => self.memories.push((memory, *history, value)),
+            Action::Onset(onset) => self.onsets.push((onset, value)),
             Action::SensorScale(channel) => self.scale[channel.index()] *= value,
             Action::TurnSensor(channel, towards) => {
                 let sensor = &mut self.sensor[channel.index()];
@@ -132,41 +187,139 @@ impl<'a> State<'a> {
                 let turn = turn(*from, *towards, value);
                 self.sensor.iter_mut().for_each(|sensor| *sensor = turn * *sensor);
             }
-            Action::Play(axes) => add(&mut self.play, axes, value),
+            Action::Play(scope) => self.play.0.push((*scope, value)),
             Action::Shift(weights) => self.shifts.push((weights, value)),
         }
     }
 
-    /// What the load of datum number `index` does, as far as it is the same for every structure.
-    pub(super) fn pull(&self, index: usize, datum: &Datum) -> Pull {
-        let (axis, is_unloading) = (datum.direction.axis.index(), datum.is_unloading());
-        let is_loaded = datum.load > 0.0;
-        let hanging = if is_loaded { datum.load + self.load_offset[axis] } else { 0.0 };
-        let friction = self.friction[axis];
-        let acting = match is_unloading {
-            true => hanging + friction,
+    /// What the load of each datum does, as far as it is the same for every structure.
+    pub(super) fn pulls(&self, data: &[Datum], course: &Course) -> Vec<Pull> {
+        let mut pulls: Vec<Pull> =
+            data.iter().enumerate().map(|(i, datum)| self.pull(i, datum, None)).collect();
+        for run in &course.hung {
+            let mut hung = Hung::default();
+            for instant in run {
+                let first = &data[instant[0]];
+                let sign = f64::from(first.direction.sign);
+                hung = hung.next(sign * self.hanging(first), self.friction.of(first));
+                for &i in instant {
+                    pulls[i] = self.pull(i, &data[i], Some(hung));
+                }
+            }
+        }
+        pulls
+    }
+
+    fn hanging(&self, datum: &Datum) -> f64 {
+        if datum.load > 0.0 { datum.load + self.load_offset.of(datum) } else { 0.0 }
+    }
+
+    /// Of one datum; `hung` where its course is known.
+    fn pull(&self, index: usize, datum: &Datum, hung: Option<Hung>) -> Pull {
+        let (axis, sign) = (datum.direction.axis.index(), f64::from(datum.direction.sign));
+        let (hanging, friction) = (self.hanging(datum), self.friction.of(datum));
+        let acting = match hung {
+            Some(hung) => sign * hung.force,
+            None if datum.is_unloading() => hanging + friction,
             // a slide that holds the whole load leaves nothing, and turns nothing round
-            false => hanging.signum() * (hanging.abs() - friction).max(0.0),
+            None => hanging.signum() * (hanging.abs() - friction).max(0.0),
         };
         let mut load = acting * (1.0 + self.per_load_squared * acting * acting);
         load *= 1.0 + self.per_load * acting.abs();
-        for (memory, value) in &self.memories {
-            load *= 1.0 + value * memory.relative[index];
+        load *= self.remembered(index);
+        load += self.lingering(index);
+        let side = hung.map_or(if datum.load > 0.0 { 1.0 } else { 0.0 }, |hung| sign * hung.side);
+        Pull { direction: self.load_direction[axis] * sign, load, play: side * self.play.of(datum) }
+    }
+
+    /// Π(1 + v·w).
+    fn remembered(&self, index: usize) -> f64 {
+        self.memories.iter().map(|memory| 1.0 + self.growth(index, memory)).product()
+    }
+
+    /// The share of the load that is left under a held displacement: 1 − v·w of what relaxes, 1/(1 + v·w) of all else.
+    fn relaxed(&self, index: usize) -> f64 {
+        let factor = |memory: &(&Memory, History, f64)| match memory.1 {
+            History::Creep(..) => 1.0 - self.growth(index, memory),
+            _ => 1.0 / (1.0 + self.growth(index, memory)),
+        };
+        self.memories.iter().map(factor).product()
+    }
+
+    /// v·w.
+    fn growth(&self, index: usize, (memory, history, value): &(&Memory, History, f64)) -> f64 {
+        let earlier: f64 = match history {
+            History::Creep(Clock::UnknownOnset, _) => {
+                self.onsets.iter().map(|(onset, before)| onset.adds(index, *before)).sum()
+            }
+            _ => 0.0,
+        };
+        value * (memory.relative[index] + earlier)
+    }
+
+    /// Σ v·W, N.
+    fn lingering(&self, index: usize) -> f64 {
+        self.memories.iter().map(|(memory, _, value)| value * memory.lingering[index]).sum()
+    }
+
+    /// What each imposed displacement meets, by its datum; `compliance` of a datum (m/N) is that along its load.
+    pub(super) fn met(
+        &self,
+        data: &[Datum],
+        course: &Course,
+        step: f64,
+        compliance: &dyn Fn(usize) -> f64,
+    ) -> Vec<(usize, Met)> {
+        let mut all = Vec::new();
+        for line in &course.imposed {
+            let mut met = Met::default();
+            for &i in line {
+                let datum = &data[i];
+                let play = self.play.of(datum).max(0.0);
+                let held = (self.friction.of(datum) * compliance(i)).abs();
+                let (slider_play, presliding) = (self.slider_play.max(0.0), self.presliding.max(0.0));
+                let slide = Slide { play, slider_play, presliding, held, step };
+                let direction = datum.motion.map_or(0.0, |motion| motion.direction);
+                met = slide.next(met, datum.drive(), direction);
+                all.push((i, met));
+            }
         }
-        load += self.memories.iter().map(|(memory, value)| value * memory.lingering[index]).sum::<f64>();
-        let direction = self.load_direction[axis] * f64::from(datum.direction.sign);
-        Pull { direction, load, play: if is_loaded { self.play[axis] } else { 0.0 } }
+        all
+    }
+
+    /// The load (N, along the positive axis) that is measured where the rod is bent by `x` (m) of this compliance (m/N).
+    pub(super) fn measured_load(&self, index: usize, datum: &Datum, met: &Met, compliance: f64) -> f64 {
+        let per_newton = datum.imposed.map_or(compliance, |imposed| imposed.per_newton);
+        let linear = met.rod / compliance;
+        let lingering = self.lingering(index) * f64::from(datum.direction.sign) * per_newton / compliance;
+        let elastic = self.without_curvature(linear) * self.relaxed(index) - lingering;
+        // a load cell's zero does not know which way the load pulls
+        let tare = self.load_offset.of(datum);
+        met.contact * (elastic + self.friction.of(datum) * met.friction) - tare
+    }
+
+    /// The load φ with φ(1 + k₂φ²)(1 + k₁|φ|) = F, by Newton's method from F.
+    fn without_curvature(&self, load: f64) -> f64 {
+        let (k1, k2) = (self.per_load, self.per_load_squared);
+        if k1 == 0.0 && k2 == 0.0 {
+            return load;
+        }
+        let mut size = load.abs();
+        for _ in 0..8 {
+            let value = size * (1.0 + k2 * size * size) * (1.0 + k1 * size) - load.abs();
+            let slope =
+                (1.0 + 3.0 * k2 * size * size) * (1.0 + k1 * size) + size * (1.0 + k2 * size * size) * k1;
+            if slope <= 0.1 {
+                break;
+            }
+            size = (size - value / slope).max(0.0);
+        }
+        size * load.signum()
     }
 
     /// What the channel shows when its point is displaced, m.
     pub(super) fn read(&self, channel: Axis, displacement: &Vector3<f64>) -> f64 {
         self.scale[channel.index()] * self.sensor[channel.index()].dot(displacement)
-    }
-}
-
-fn add(numbers: &mut [f64; 3], axes: &[bool; 3], value: f64) {
-    for (number, _) in numbers.iter_mut().zip(axes).filter(|(_, is_of)| **is_of) {
-        *number += value;
     }
 }
 

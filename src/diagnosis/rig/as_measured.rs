@@ -65,18 +65,22 @@ impl RigModel {
     fn is_of_compliance(&self, term: &Term) -> bool {
         self.actions[term.candidate].iter().all(|action| match action {
             Action::Friction(_)
+            | Action::Presliding
+            | Action::SliderPlay
             | Action::LoadOffset(_)
             | Action::TurnLoad(..)
             | Action::Bend(_)
             | Action::PerLoadSquared
             | Action::PerLoad
             | Action::Memory(..)
+            | Action::Onset(_)
             | Action::TurnSensor(..)
             | Action::TurnSensors(..) => true,
             Action::Stiffness
             | Action::ShearModulus
             | Action::SensorScale(_)
             | Action::Joint(..)
+            | Action::JointIn(..)
             | Action::Station(_)
             | Action::Play(_)
             | Action::Shift(_) => false,

@@ -10,8 +10,11 @@ use crate::error::Result;
 use crate::inference::{Finding, ForwardModel, Kind, Location, NominalParameter, Term, WrittenTo};
 use crate::rig::{self, readings::Readings};
 use crate::rod::{BendFlexibility, Joint, NominalNumber, Rod};
+use crate::spatial::Direction;
 use crate::units::UM;
 
+/// Nobody weighs less, N.
+const SMALLEST_LOAD: f64 = 1e-6;
 const NM: f64 = 1e-3 * UM;
 
 /// What a diagnosis makes of a rod.
@@ -96,7 +99,10 @@ fn corrected(model: &RigModel, rod: &Rod, findings: &[Finding], moved: &[Moved])
         let effect = model.candidates()[part.term.candidate].effect;
         let words = format!("{effect}, {}", part.location);
         all.push(part.term.clone());
+        // a rod file has no sessions
+        let is_of_session = matches!(part.location, Location::InSession { .. });
         match effect.written_to {
+            WrittenTo::Model if is_of_session => removed.push(words),
             WrittenTo::Model => {
                 enter(&mut corrected, model, &part.term);
                 of_rod.push(part.term.clone());
@@ -203,6 +209,15 @@ fn without(
 ) -> String {
     let mut readings = readings.clone();
     for (datum, change) in model.data().iter().zip(of_rig.iter()) {
+        if let Some(imposed) = datum.imposed {
+            // the load that the rod alone would need; it may have turned round
+            let row = &mut readings.rows[datum.row - 1];
+            let load = datum.signed_load() - change / imposed.per_newton;
+            let sign = if load < 0.0 { -1 } else { 1 };
+            row.direction = Direction { sign, ..row.direction };
+            row.load = (load.abs() / SMALLEST_LOAD).round() * SMALLEST_LOAD;
+            continue;
+        }
         if let Some(offset) = &mut readings.rows[datum.row - 1].offset[datum.channel.index()] {
             // a nanometre is less than any sensor reads
             *offset = ((*offset - change) / NM).round() * NM;

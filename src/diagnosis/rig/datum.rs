@@ -1,10 +1,14 @@
 //! The data of a recording: one for each offset that was measured, with the run through the loads that it belongs to.
+//!
+//! Data stand in the order in which they were recorded, those of one instant by station and channel, so that rows in another
+//! order, one row per station and one row per channel are the same recording: see [`chronicle`](super::chronicle).
 
 use std::collections::HashMap;
 use std::hash::Hash;
 
+use super::chronicle::{Chronicle, Motion};
 use crate::inference::RunName;
-use crate::rig::readings::{Axis, Direction, Phase, Reading};
+use crate::rig::readings::{Axis, Direction, Driven, Phase, Reading, Readings};
 
 /// One measured offset.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,32 +23,70 @@ pub struct Datum {
     pub channel: Axis,
     /// Nominal magnitude of the load, N.
     pub load: f64,
-    /// Whether the load was reached by loading or by unloading.
+    /// Whether the load was reached by loading or by unloading; where no row says so and the loads go up and down, by the
+    /// direction of motion.
     pub phase: Option<Phase>,
+    /// Which way the load or the displacement went, where that is known without a phase.
+    pub(super) motion: Option<Motion>,
+    /// Name of the session, where the file has one.
+    pub session: Option<String>,
+    /// Number of the session, from 0.
+    pub session_number: usize,
     /// Name of the trial, where the file has one.
     pub trial: Option<String>,
     /// Number of the trial, from 0, across axes: the runs of one name, else the k-th run of each axis.
     pub trial_number: usize,
-    /// Number of the run, from 0: one trial along one axis, from one zeroing to the next.
+    /// Number of the run, from 0: one trial of a session along one axis, from one zeroing to the next.
     pub run: usize,
+    /// Number of the instant in the recording, from 0: data of one instant share it.
+    pub order: usize,
     /// Time of the reading, s.
     pub time: Option<f64>,
+    /// When this load was hung, s, on the clock of `time`.
+    pub loaded_at: Option<f64>,
     /// Temperature, °C.
     pub temperature: Option<f64>,
     /// Arc length from the flange to the load, m; `None`: the tip.
     pub load_station: Option<f64>,
     /// Arc length from the flange to the sensor, m; `None`: the tip.
     pub read_station: Option<f64>,
-    /// The offset that was read, m.
+    /// What is compared with the model, m: the offset that was read, or, of a load that was measured under an imposed
+    /// displacement, the load times [`Imposed::per_newton`].
     pub measured: f64,
-    /// The offset that the base model predicts, m; 0 without a rod.
+    /// The same as the base model predicts it, m; 0 without a rod.
     pub predicted: f64,
+    /// The displacement that was imposed, where the load is what was measured.
+    pub imposed: Option<Imposed>,
+}
+
+/// A displacement that was imposed along the axis of the load.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Imposed {
+    /// Along the positive axis, m.
+    pub displacement: f64,
+    /// What a newton of the measured load counts, m/N: one number for all loads of a recording, its largest displacement over
+    /// its largest load.
+    pub per_newton: f64,
 }
 
 impl Datum {
     /// The nominal load along the positive axis, N.
     pub fn signed_load(&self) -> f64 {
         f64::from(self.direction.sign) * self.load
+    }
+
+    /// What was set: the load along the positive axis (N), or the displacement that was imposed (m).
+    pub fn drive(&self) -> f64 {
+        self.imposed.map_or(self.signed_load(), |imposed| imposed.displacement)
+    }
+
+    /// What a linear rod of this compliance (m/N) shows: the offset C·F, or the load u/C as [`Datum::measured`] counts it.
+    pub(super) fn elastic(&self, compliance: f64) -> f64 {
+        match self.imposed {
+            None => compliance * self.signed_load(),
+            Some(imposed) if compliance != 0.0 => imposed.per_newton * imposed.displacement / compliance,
+            Some(_) => 0.0,
+        }
     }
 
     /// `row 17 dy`.
@@ -54,7 +96,12 @@ impl Datum {
 
     /// What names its run among those of its axis; nothing where the file has no names.
     pub(super) fn run_name(&self) -> Option<RunName> {
-        self.trial.clone().map(RunName::Trial)
+        let session = self.session.as_ref().map(|session| format!("session {session}"));
+        let name = match (self.trial.clone(), session) {
+            (Some(trial), Some(session)) => Some(format!("{trial}, {session}")),
+            (trial, session) => trial.or(session),
+        };
+        name.map(RunName::Trial)
     }
 
     /// A phase that is not stated counts as loading.
@@ -67,18 +114,58 @@ impl Datum {
         [self.load_station, self.read_station].map(|station| station.unwrap_or(f64::NAN).to_bits())
     }
 
+    /// The sensor: its channel and its place.
+    pub(super) fn sensor(&self) -> (Axis, u64) {
+        (self.channel, self.stations()[1])
+    }
+
     /// What is one straight line of an ideal rod: axis, channel and places.
     pub(super) fn line_key(&self) -> (Axis, Axis, [u64; 2]) {
         (self.direction.axis, self.channel, self.stations())
     }
 }
 
-/// One datum for each offset of the rows, in their order; nothing predicted yet.
+/// One datum for each offset of the rows of weights that were hung, in the order of recording; nothing predicted yet.
 pub(super) fn all(rows: &[Reading]) -> Vec<Datum> {
-    let runs = runs(rows);
+    of_rows(rows, Driven::Load)
+}
+
+/// The data of a recording, in the order of recording; nothing predicted yet.
+pub(super) fn recorded(readings: &Readings) -> Vec<Datum> {
+    let mut data = of_rows(&readings.rows, readings.header.driven);
+    if readings.header.driven == Driven::Displacement {
+        impose(&mut data);
+    }
+    data
+}
+
+/// Makes the load what was measured of all data along their loads, and the offset what was imposed.
+fn impose(data: &mut [Datum]) {
+    let is_along = |datum: &Datum| datum.channel == datum.direction.axis;
+    let largest = |of: &dyn Fn(&Datum) -> f64| {
+        data.iter().filter(|d| is_along(d)).fold(0.0, |most: f64, datum| most.max(of(datum)))
+    };
+    let (load, displacement) = (largest(&|d| d.load), largest(&|d| d.measured.abs()));
+    if load == 0.0 || displacement == 0.0 {
+        return;
+    }
+    let per_newton = displacement / load;
+    for datum in data.iter_mut().filter(|datum| is_along(datum)) {
+        datum.imposed = Some(Imposed { displacement: datum.measured, per_newton });
+        datum.measured = per_newton * datum.signed_load();
+        if datum.motion.is_none() {
+            let away = if datum.is_unloading() { -1.0 } else { 1.0 };
+            let direction = away * if datum.drive() == 0.0 { 0.0 } else { datum.drive().signum() };
+            let phase = datum.phase.unwrap_or(Phase::Load);
+            datum.motion = Some(Motion { direction, cycle: 0, phase });
+        }
+    }
+}
+
+fn of_rows(rows: &[Reading], driven: Driven) -> Vec<Datum> {
+    let chronicle = Chronicle::of(rows, driven);
     let of_row = |(index, row): (usize, &Reading)| {
-        let (run, trial_number) = runs[index];
-        let row = row.clone();
+        let (row, own) = (row.clone(), chronicle.rows[index]);
         Axis::ALL.into_iter().filter_map(move |channel| {
             Some(Datum {
                 row: index + 1,
@@ -86,20 +173,37 @@ pub(super) fn all(rows: &[Reading]) -> Vec<Datum> {
                 direction: row.direction,
                 channel,
                 load: row.load,
-                phase: row.phase,
+                phase: row.phase.or(own.motion.map(|motion| motion.phase)),
+                motion: own.motion,
+                session: row.session.clone(),
+                session_number: own.session,
                 trial: row.trial.clone(),
-                trial_number,
-                run,
+                trial_number: own.trial,
+                run: own.run,
+                order: own.place,
                 time: row.time,
+                loaded_at: row.loaded_at,
                 temperature: row.temperature,
                 load_station: row.load_station,
                 read_station: row.read_station,
                 measured: row.offset[channel.index()]?,
                 predicted: 0.0,
+                imposed: None,
             })
         })
     };
-    rows.iter().enumerate().flat_map(of_row).collect()
+    let mut data: Vec<Datum> = rows.iter().enumerate().flat_map(of_row).collect();
+    let along = |station: Option<f64>| station.map_or(u64::MAX, f64::to_bits);
+    data.sort_by_key(|datum| {
+        let stations = (along(datum.load_station), along(datum.read_station));
+        (datum.order, datum.run, stations, datum.channel.index(), datum.row)
+    });
+    let runs = numbered(data.iter().map(|datum| datum.run));
+    let orders = numbered(data.iter().map(|datum| datum.order));
+    for ((datum, run), order) in data.iter_mut().zip(runs).zip(orders) {
+        (datum.run, datum.order) = (run, order);
+    }
+    data
 }
 
 /// Number of each value among the different ones, in order of appearance.
@@ -112,54 +216,9 @@ pub(super) fn numbered<K: Eq + Hash>(keys: impl IntoIterator<Item = K>) -> Vec<u
     keys.into_iter().map(number).collect()
 }
 
-/// What distinguishes a load from others: direction, size, phase, places.
-type Condition = (i8, u64, Option<Phase>, [Option<u64>; 2]);
-
-/// What a run without a name has seen so far.
-#[derive(Default)]
-struct OpenRun {
-    /// How many runs the axis had before this one.
-    ordinal: usize,
-    seen: Vec<(Condition, [bool; 3])>,
-}
-
-/// For each row the number of its run and of its trial.
-///
-/// A trial with a name is one run along each axis. Without names, a run along an axis goes on until something is read
-/// again that it has read before; reading the display once more at the same load is no new run.
-fn runs(rows: &[Reading]) -> Vec<(usize, usize)> {
-    let names = numbered(rows.iter().filter_map(|row| row.trial.as_deref()));
-    let count = names.iter().max().map_or(0, |last| last + 1);
-    let (mut names, mut open) = (names.into_iter(), [const { None::<OpenRun> }; 3]);
-    let mut trial_of = |row: &Reading| match row.trial {
-        Some(_) => names.next().unwrap_or_default(),
-        None => count + unnamed(&mut open[row.direction.axis.index()], row),
-    };
-    let trials: Vec<usize> = rows.iter().map(&mut trial_of).collect();
-    let runs = numbered(rows.iter().zip(&trials).map(|(row, trial)| (row.direction.axis, *trial)));
-    runs.into_iter().zip(trials).collect()
-}
-
-/// Number of the run that a row without a trial continues or begins.
-fn unnamed(open: &mut Option<OpenRun>, row: &Reading) -> usize {
-    let stations = [row.load_station, row.read_station].map(|s| s.map(f64::to_bits));
-    let condition = (row.direction.sign, row.load.to_bits(), row.phase, stations);
-    let channels = row.offset.map(|offset| offset.is_some());
-    let overlaps = |other: &[bool; 3]| channels.iter().zip(other).any(|(a, b)| *a && *b);
-    let run = open.get_or_insert_default();
-    let is_same_load = run.seen.last().is_some_and(|(last, _)| *last == condition);
-    let is_repeat = run.seen.iter().any(|(seen, read)| *seen == condition && overlaps(read));
-    if is_repeat && !is_same_load {
-        *run = OpenRun { ordinal: run.ordinal + 1, seen: Vec::new() };
-    }
-    run.seen.push((condition, channels));
-    run.ordinal
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rig::readings::Readings;
 
     fn runs_of(text: &str) -> Vec<(usize, usize)> {
         let data = all(&Readings::from_text("f", text).unwrap().rows);

@@ -31,11 +31,13 @@ pub(super) fn of(data: &[Datum], nuisance: DMatrix<f64>, large: Option<DVector<f
         least_offset,
         is_robust: true,
         most_scatter: most_scatter(data),
-        replicate_group: numbered(
-            data.iter().map(|d| (d.line_key(), d.direction.sign, d.load.to_bits(), d.phase)),
-        ),
+        replicate_group: numbered(data.iter().map(|d| {
+            let sign = d.imposed.map_or(d.direction.sign, |_| 0);
+            (d.session_number, d.line_key(), sign, d.drive().abs().to_bits(), d.drive() < 0.0, d.phase)
+        })),
         // the zero of a run is that of one sensor at one place
-        shared: numbered(data.iter().map(|d| (d.run, d.channel, d.stations()[1]))),
+        shared: numbered(data.iter().map(|d| (d.run, d.sensor()))),
+        session: sessions(data),
         fold: folds(data),
         resolution: resolution(data),
         covariates: covariates(data),
@@ -59,9 +61,17 @@ fn background(data: &[Datum], large: Option<DVector<f64>>) -> DMatrix<f64> {
     }
 }
 
-/// The zero of each channel at each place where it reads, with its least size.
+/// The session of each datum, where there are several.
+fn sessions(data: &[Datum]) -> Vec<usize> {
+    match data.iter().any(|d| d.session_number > 0) {
+        true => data.iter().map(|d| d.session_number).collect(),
+        false => vec![Evidence::NONE; data.len()],
+    }
+}
+
+/// The zero of each channel at each place where it reads, in each session, with its least size.
 fn zeros(data: &[Datum]) -> (DMatrix<f64>, Vec<f64>) {
-    let sensors = numbered(data.iter().map(|d| (d.channel, d.stations()[1])));
+    let sensors = numbered(data.iter().map(|d| (d.session_number, d.sensor())));
     let count = count(&sensors);
     let offsets = DMatrix::from_fn(data.len(), count, |i, k| f64::from(u8::from(sensors[i] == k)));
     let mut largest = vec![0.0f64; count];
@@ -71,18 +81,22 @@ fn zeros(data: &[Datum]) -> (DMatrix<f64>, Vec<f64>) {
     (offsets, largest.into_iter().map(|largest| ZERO * largest).collect())
 }
 
-/// One column for each straight line through the origin: the signed load, N. For readings without a rod.
+/// One column for each straight line through the origin: the load or the imposed displacement. For readings without a rod.
 pub(super) fn slopes(data: &[Datum], line: &[usize]) -> DMatrix<f64> {
     let count = line.iter().max().map_or(0, |last| last + 1);
-    DMatrix::from_fn(data.len(), count, |i, j| if line[i] == j { data[i].signed_load() } else { 0.0 })
+    DMatrix::from_fn(data.len(), count, |i, j| if line[i] == j { data[i].drive() } else { 0.0 })
 }
 
-/// Three to five folds of whole trials. Of one or two trials whole loads are held out, so that repeats stay together; of
-/// one or two loads every third datum of a line.
+/// Three to five folds of whole trials. Of one or two trials whole cycles are held out where the load goes up and down again
+/// and again; else whole loads, so that repeats stay together; of one or two loads every third datum of a line.
 fn folds(data: &[Datum]) -> Vec<usize> {
     let trials: Vec<usize> = numbered(data.iter().map(|d| d.trial_number));
     if count(&trials) >= FEWEST_FOLDS {
         return trials.iter().map(|trial| trial % MOST_FOLDS).collect();
+    }
+    let cycles = numbered(data.iter().map(|d| (d.run, d.motion.map(|motion| motion.cycle))));
+    if data.iter().any(|d| d.motion.is_some_and(|motion| motion.cycle > 0)) {
+        return cycles.iter().map(|cycle| cycle % MOST_FOLDS).collect();
     }
     let levels: Vec<usize> = data.iter().map(|d| level(data, d)).collect();
     if count(&levels) >= FEWEST_FOLDS {
@@ -140,7 +154,7 @@ fn covariates(data: &[Datum]) -> Vec<Covariate> {
         (Variable::Load, &|d| Some(d.load)),
         (Variable::SignedLoad, &|d| Some(d.signed_load())),
         (Variable::Phase, &phase),
-        (Variable::Order, &|d| Some(d.row as f64)),
+        (Variable::Order, &|d| Some(d.order as f64)),
         (Variable::Time, &|d| d.time),
         (Variable::TimeInRun, &since),
         (Variable::Temperature, &|d| d.temperature),

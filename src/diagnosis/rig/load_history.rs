@@ -26,59 +26,182 @@ pub(super) enum History {
 /// Since when a reading has crept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Clock {
+    /// t counts from when this load was hung, as the file says, or else right after the last reading of another load.
+    ThisLoad,
+    /// t counts from a moment before the first reading of each run that nobody knows.
+    UnknownOnset,
     /// t counts from the first reading of the run.
     FirstReading,
     /// t counts from one reading before that: the first load too had hung for a while when it was read.
     FirstLoad,
     /// Every change of the load creeps by itself and the changes add up (Boltzmann's superposition); a load is taken
-    /// to change right after the reading before.
-    EachLoad,
+    /// to change right after the reading before, half way to the reading at it, or when it was first read, unless the file
+    /// says when it was hung.
+    EachLoad(Changed),
     /// t is the file's own time.
     File,
 }
 
+/// When a load was changed between two readings.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Changed {
+    /// Right after the one.
+    Early,
+    /// Half way.
+    Midway,
+    /// Right before the other.
+    Late,
+}
+
+impl Changed {
+    /// The time of the change between readings at two times, s.
+    fn between(self, before: f64, after: f64) -> f64 {
+        match self {
+            Changed::Early => before,
+            Changed::Midway => 0.5 * (before + after),
+            Changed::Late => after,
+        }
+    }
+}
+
 impl Clock {
-    pub(super) const ALL: [Clock; 4] = [Clock::FirstReading, Clock::FirstLoad, Clock::EachLoad, Clock::File];
+    pub(super) const ALL: [Clock; 8] = [
+        Clock::FirstReading,
+        Clock::FirstLoad,
+        Clock::EachLoad(Changed::Early),
+        Clock::EachLoad(Changed::Midway),
+        Clock::EachLoad(Changed::Late),
+        Clock::ThisLoad,
+        Clock::File,
+        Clock::UnknownOnset,
+    ];
+    /// Where the file says when each load was hung.
+    pub(super) const STATED: [Clock; 3] =
+        [Clock::ThisLoad, Clock::EachLoad(Changed::Early), Clock::FirstLoad];
 
     /// For people.
     pub(super) fn name(self) -> &'static str {
         match self {
+            Clock::ThisLoad => "since this load was hung",
+            Clock::UnknownOnset => "since a moment before each run",
             Clock::FirstReading => "since the first reading",
             Clock::FirstLoad => "since the first load",
-            Clock::EachLoad => "since each load",
+            Clock::EachLoad(Changed::Early) => "since each load",
+            Clock::EachLoad(Changed::Midway) => "since each load, hung between two readings",
+            Clock::EachLoad(Changed::Late) => "since each load, hung as it was read",
             Clock::File => "since time 0",
         }
     }
 }
 
+/// When the load of a run was hung: so long before the first reading, which nobody knows.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Onset {
+    /// For each datum of the run: its index and the time since the first reading, s.
+    since: Vec<(usize, f64)>,
+    /// What the memory takes it for, s.
+    pub usual: f64,
+    t0: f64,
+}
+
+impl Onset {
+    /// What an onset so long before the first reading adds to w.
+    pub(super) fn adds(&self, index: usize, before: f64) -> f64 {
+        let Ok(at) = self.since.binary_search_by_key(&index, |(datum, _)| *datum) else { return 0.0 };
+        let grown = |before: f64| (1.0 + (self.since[at].1 + before.max(0.0)) / self.t0).log10();
+        grown(before) - grown(self.usual)
+    }
+}
+
+/// The onsets of all runs that creep may have begun before; none where there are more than `most`.
+pub(super) fn onsets(data: &[Datum], t0: f64, most: usize) -> Vec<Onset> {
+    let Some(times) = data.iter().map(|d| d.time).collect::<Option<Vec<f64>>>() else { return Vec::new() };
+    let (usual, runs) = (dwell(data, &times), runs(data));
+    let of_run = |run: &Vec<usize>| Onset {
+        since: run.iter().map(|&i| (i, times[i] - times[run[0]])).collect(),
+        usual,
+        t0,
+    };
+    if runs.len() > most || usual <= 0.0 { Vec::new() } else { runs.iter().map(of_run).collect() }
+}
+
+/// True where the file says of every load when it was hung.
+pub(super) fn is_stated(data: &[Datum]) -> bool {
+    data.iter().any(|d| d.loaded_at.is_some()) && data.iter().all(|d| d.load == 0.0 || d.loaded_at.is_some())
+}
+
+/// An instant of a run: its load along the positive axis (N), its time and when that load was hung (s).
+struct Moment {
+    load: f64,
+    time: f64,
+    hung: f64,
+    data: Vec<usize>,
+}
+
+fn moments(data: &[Datum], run: &[usize], times: &[f64]) -> Vec<Moment> {
+    let of_instant = |instant: Vec<usize>| {
+        // of an imposed displacement the one that is largest counts, as the load that it would need
+        let load =
+            |i: &usize| data[*i].imposed.map_or(data[*i].signed_load(), |u| u.displacement / u.per_newton);
+        let is_imposed = |i: &&usize| data[**i].imposed.is_some();
+        let imposed = instant.iter().filter(is_imposed).map(load).max_by(|a, b| a.abs().total_cmp(&b.abs()));
+        let (first, time) = (instant[0], times[instant[0]]);
+        let hung = data[first].loaded_at.unwrap_or(f64::NAN);
+        Moment { load: imposed.unwrap_or_else(|| load(&first)), time, hung, data: instant }
+    };
+    instants(data, run).into_iter().map(of_instant).collect()
+}
+
 /// Logarithmic creep: displacement × (1 + k·log₁₀(1 + t/t₀)), t₀ in s. Nothing where a reading has no time, or where all have the
 /// same.
 pub(super) fn creep(data: &[Datum], clock: Clock, t0: f64) -> Option<Memory> {
+    /// Of more changes of a load the first ones creep like the others.
+    const MOST_CHANGES: usize = 400;
     let times: Vec<f64> = data.iter().map(|d| d.time).collect::<Option<_>>()?;
     times.iter().any(|time| *time != times[0]).then_some(())?;
     let dwell = dwell(data, &times);
     let zero = times.iter().fold(0.0, |zero: f64, t| zero.min(*t));
     let mut memory = none(data);
     for run in runs(data) {
-        let start = times[run[0]] - if clock == Clock::FirstReading { 0.0 } else { dwell };
+        let moments = moments(data, &run, &times);
+        let known = |hung: f64| if hung.is_nan() { None } else { Some(hung) };
+        let stated = moments.iter().find(|moment| moment.load != 0.0).and_then(|first| known(first.hung));
+        let start = match clock {
+            Clock::FirstReading => times[run[0]],
+            _ => stated.unwrap_or(times[run[0]] - dwell),
+        };
         let grown = |now: f64, since: f64| (1.0 + (now - since).max(0.0) / t0).log10();
-        for (place, &i) in run.iter().enumerate() {
-            let now = times[i];
-            match clock {
-                Clock::FirstReading | Clock::FirstLoad => memory.relative[i] = grown(now, start),
-                Clock::File => memory.relative[i] = grown(now, zero),
-                Clock::EachLoad => {
-                    let (mut load, mut changed, mut crept) = (0.0, start, 0.0);
-                    for &j in &run[..=place] {
-                        crept += (data[j].signed_load() - load) * grown(now, changed);
-                        (load, changed) = (data[j].signed_load(), times[j]);
+        let mut this_load = start;
+        for (place, moment) in moments.iter().enumerate() {
+            let relative = match clock {
+                Clock::FirstReading | Clock::FirstLoad | Clock::UnknownOnset => grown(moment.time, start),
+                Clock::ThisLoad => {
+                    if place > 0 && moments[place - 1].load != moment.load {
+                        this_load = moments[place - 1].time;
                     }
-                    match load == 0.0 {
-                        true => memory.lingering[i] = crept * f64::from(data[i].direction.sign),
-                        false => memory.relative[i] = crept / load,
-                    }
+                    grown(moment.time, known(moment.hung).unwrap_or(this_load))
                 }
-            }
+                Clock::File => grown(moment.time, zero),
+                Clock::EachLoad(when) => {
+                    if moments.len() > MOST_CHANGES {
+                        return None;
+                    }
+                    let (mut load, mut changed, mut crept) = (0.0, start, 0.0);
+                    for earlier in &moments[..=place] {
+                        let since = known(earlier.hung).unwrap_or(when.between(changed, earlier.time));
+                        crept += (earlier.load - load) * grown(moment.time, since);
+                        (load, changed) = (earlier.load, earlier.time);
+                    }
+                    if load == 0.0 {
+                        for &i in &moment.data {
+                            memory.lingering[i] = crept * f64::from(data[i].direction.sign);
+                        }
+                        continue;
+                    }
+                    crept / load
+                }
+            };
+            moment.data.iter().for_each(|&i| memory.relative[i] = relative);
         }
     }
     Some(memory)
@@ -113,11 +236,21 @@ pub(super) enum Loop {
     /// The same by plays that are spread evenly up to half of the largest load (Visintin, ch. III): beyond half of it the first
     /// way up is straight, F·(1 + 2h) − h·F_max.
     NewByPlays,
+    /// A load that goes up and down across zero: half of h of its whole range above the straight line between its turns while
+    /// falling, below it while rising, by parabolas (Lord Rayleigh's branches, Masing's rule).
+    Turning,
 }
 
 impl Loop {
-    pub(super) const ALL: [Loop; 6] =
-        [Loop::Closed, Loop::Symmetric, Loop::Remanent, Loop::Virgin, Loop::NewByRayleigh, Loop::NewByPlays];
+    pub(super) const ALL: [Loop; 7] = [
+        Loop::Closed,
+        Loop::Symmetric,
+        Loop::Remanent,
+        Loop::Virgin,
+        Loop::NewByRayleigh,
+        Loop::NewByPlays,
+        Loop::Turning,
+    ];
 
     /// For people; nothing for the plainest.
     pub(super) fn name(self) -> &'static str {
@@ -126,6 +259,7 @@ impl Loop {
             Loop::Symmetric => "loaded before",
             Loop::Remanent => "open at zero",
             Loop::Virgin => "loaded for the first time",
+            Loop::Turning => "at each turn",
             Loop::NewByRayleigh => "new before these readings",
             Loop::NewByPlays => "new before these readings, by plays",
         }
@@ -135,17 +269,21 @@ impl Loop {
 /// Hysteresis; nothing where nothing was read on the way down.
 pub(super) fn hysteresis(data: &[Datum], shape: Loop) -> Option<Memory> {
     data.iter().any(Datum::is_unloading).then_some(())?;
+    if shape == Loop::Turning {
+        return turning(data);
+    }
     let mut memory = none(data);
     let mut known: Vec<(Direction, f64)> = Vec::new();
     let remembers = matches!(shape, Loop::NewByRayleigh | Loop::NewByPlays);
     for run in runs(data) {
-        let largest = run.iter().fold(0.0, |max: f64, &i| max.max(data[i].load));
+        let size = |d: &Datum| d.imposed.map_or(d.load, |u| u.displacement.abs() / u.per_newton);
+        let largest = run.iter().fold(0.0, |max: f64, &i| max.max(size(&data[i])));
         let direction = data[run[0]].direction;
         let is_new = known.iter().all(|(other, load)| *other != direction || largest > *load);
         known.push((direction, largest));
         let shape = if remembers && !is_new { Loop::Symmetric } else { shape };
         for i in run.into_iter().filter(|_| largest > 0.0) {
-            let (load, is_unloading) = (data[i].load, data[i].is_unloading());
+            let (load, is_unloading) = (size(&data[i]), data[i].is_unloading());
             let parabola = 4.0 * (1.0 - load / largest);
             match (shape, is_unloading) {
                 (Loop::Closed, true) => memory.relative[i] = parabola,
@@ -167,18 +305,40 @@ pub(super) fn hysteresis(data: &[Datum], shape: Loop) -> Option<Memory> {
                     memory.lingering[i] = 0.5 * parabola * load + 2.0 * largest;
                 }
                 (Loop::NewByPlays, true) => memory.lingering[i] = 0.5 * parabola * load + largest,
-                (Loop::Closed | Loop::Remanent, false) => {}
+                (Loop::Closed | Loop::Remanent, false) | (Loop::Turning, _) => {}
             }
         }
     }
     Some(memory)
 }
 
+/// Loops between the turns of a load across zero.
+fn turning(data: &[Datum]) -> Option<Memory> {
+    let mut memory = none(data);
+    let mut is_any = false;
+    for run in runs(data) {
+        let load =
+            |i: usize| data[i].imposed.map_or(data[i].signed_load(), |u| u.displacement / u.per_newton);
+        let (least, most) = run.iter().fold((0.0f64, 0.0f64), |(a, b), &i| (a.min(load(i)), b.max(load(i))));
+        if least >= 0.0 || most <= 0.0 {
+            continue;
+        }
+        is_any = true;
+        let (middle, half) = (0.5 * (least + most), 0.5 * (most - least));
+        for i in run {
+            let Some(motion) = data[i].motion else { continue };
+            let share = 1.0 - ((load(i) - middle) / half).powi(2);
+            memory.lingering[i] = -motion.direction * f64::from(data[i].direction.sign) * half * share;
+        }
+    }
+    is_any.then_some(memory)
+}
+
 fn none(data: &[Datum]) -> Memory {
     Memory { relative: vec![0.0; data.len()], lingering: vec![0.0; data.len()] }
 }
 
-/// Indices of the data of each run, in the order of the file.
+/// Indices of the data of each run, in the order of recording.
 pub(super) fn runs(data: &[Datum]) -> Vec<Vec<usize>> {
     let count = data.iter().map(|d| d.run + 1).max().unwrap_or_default();
     let mut runs = vec![Vec::new(); count];
@@ -187,6 +347,11 @@ pub(super) fn runs(data: &[Datum]) -> Vec<Vec<usize>> {
     }
     runs.retain(|run| !run.is_empty());
     runs
+}
+
+/// Data of a run by instant.
+pub(super) fn instants(data: &[Datum], run: &[usize]) -> Vec<Vec<usize>> {
+    run.chunk_by(|&a, &b| data[a].order == data[b].order).map(<[usize]>::to_vec).collect()
 }
 
 /// Usual time between two readings of a run, s: the median; 0 where no run has two times.
@@ -225,12 +390,12 @@ mod tests {
         assert_eq!(second(Clock::File), 201f64.log10());
         // 5 N for 200 s, 5 N more for 100 s
         let each = (5.0 * 201f64.log10() + 5.0 * 101f64.log10()) / 10.0;
-        assert!((second(Clock::EachLoad) - each).abs() < 1e-15);
+        assert!((second(Clock::EachLoad(Changed::Early)) - each).abs() < 1e-15);
     }
 
     #[test]
     fn an_unloaded_rod_still_recovers() {
-        let memory = creep(&data(TEXT), Clock::EachLoad, 1.0).unwrap();
+        let memory = creep(&data(TEXT), Clock::EachLoad(Changed::Early), 1.0).unwrap();
         let left = 5.0 * (401f64.log10() + 301f64.log10() - 201f64.log10() - 101f64.log10());
         assert!((memory.lingering[3] - left).abs() < 1e-12 && left > 0.0);
         assert_eq!(memory.relative[3], 0.0);

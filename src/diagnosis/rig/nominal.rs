@@ -121,7 +121,7 @@ impl<'a> Pairs<'a> {
 
     fn read(&self, data: &[Datum], parts: &[Matrix3<f64>]) -> Vec<f64> {
         let entry = |(d, &pair): (&Datum, &usize)| {
-            parts[pair][(d.channel.index(), d.direction.axis.index())] * d.signed_load()
+            d.elastic(parts[pair][(d.channel.index(), d.direction.axis.index())])
         };
         data.iter().zip(&self.of_datum).map(entry).collect()
     }

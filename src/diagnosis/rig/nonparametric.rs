@@ -14,6 +14,10 @@
 
 use std::f64::consts::PI;
 
+use std::collections::HashMap;
+
+use nalgebra::{DMatrix, DVector};
+
 use super::action::Action;
 use super::datum::{Datum, numbered};
 use super::effects::Entry;
@@ -23,6 +27,8 @@ use crate::spatial::Axis;
 use crate::units::UM;
 
 const MOST_COLUMNS: usize = 6;
+/// Loads that are hung are at most so many different ones.
+const MOST_LEVELS: usize = 30;
 /// Size of a curve as a share of the largest reading, or of the deflection.
 const SHARE: f64 = 0.05;
 /// The same, as a share of the largest of all readings: a sensor and its holder are a little wrong
@@ -50,6 +56,11 @@ const POSITION: Along = Along {
     name: "position in the run",
     follows: "follows the position in the run",
     variable: Variable::Order,
+};
+const FALLING: Along = Along {
+    name: "signed load, falling",
+    follows: "follows the signed load while it falls",
+    variable: Variable::SignedLoad,
 };
 const ORDER: Along =
     Along { name: "order", follows: "follows the order of the readings", variable: Variable::Order };
@@ -115,52 +126,117 @@ fn largest_reading(data: &[Datum]) -> f64 {
 
 /// What a reading may follow: name, coordinate, and whether it acts by line (loads) or by channel (drifts).
 fn coordinates(data: &[Datum]) -> Vec<(Along, Coordinate, bool)> {
-    let levels = by_axis(data, |d| d.load, |_| true);
-    let unloading = by_axis(data, |d| d.load, Datum::is_unloading);
+    let levels = by_axis(data, |d| d.drive().abs(), |_| true);
+    let unloading = by_axis(data, |d| d.drive().abs(), Datum::is_unloading);
     let mut position: Coordinate = vec![None; data.len()];
     let of_runs = runs(data);
     for run in &of_runs {
-        let rows = numbered(run.iter().map(|&i| data[i].row));
+        let rows = numbered(run.iter().map(|&i| data[i].order));
         for (&i, row) in run.iter().zip(rows) {
             position[i] = Some(row as f64);
         }
     }
     let mut found = vec![(LOAD, levels, true), (UNLOADING, unloading, true)];
     // a clamp that is loose one way, a contact that opens
-    let pushes = |axis: Axis| data.iter().any(|d| d.direction.axis == axis && d.signed_load() < 0.0);
-    let pulls = |axis: Axis| data.iter().any(|d| d.direction.axis == axis && d.signed_load() > 0.0);
+    let pushes = |axis: Axis| data.iter().any(|d| d.direction.axis == axis && d.drive() < 0.0);
+    let pulls = |axis: Axis| data.iter().any(|d| d.direction.axis == axis && d.drive() > 0.0);
     if Axis::ALL.into_iter().any(|axis| pushes(axis) && pulls(axis)) {
-        found.push((SIGNED_LOAD, by_axis(data, Datum::signed_load, |_| true), true));
+        found.push((SIGNED_LOAD, by_axis(data, Datum::drive, |_| true), true));
+        let falls = |d: &Datum| d.motion.is_some_and(|motion| motion.direction < 0.0);
+        if data.iter().any(falls) {
+            found.push((FALLING, by_axis(data, Datum::drive, falls), true));
+        }
     }
     // loads that always come in the same order are told from it by nothing
-    let conditions = numbered(data.iter().map(|d| (d.direction, d.load.to_bits(), d.phase)));
-    let first_of = |condition: usize| conditions.iter().position(|&c| c == condition);
-    let follows_load =
-        (0..data.len()).all(|i| first_of(conditions[i]).is_none_or(|k| position[k] == position[i]));
+    let conditions = numbered(data.iter().map(|d| (d.direction, d.drive().to_bits(), d.phase)));
+    let mut first_of: Vec<usize> = Vec::new();
+    for (i, &condition) in conditions.iter().enumerate() {
+        if condition == first_of.len() {
+            first_of.push(i);
+        }
+    }
+    let follows_load = (0..data.len()).all(|i| position[first_of[conditions[i]]] == position[i]);
     if !follows_load {
         found.push((POSITION, scaled(&position), true));
     }
     let of = |value: &dyn Fn(&Datum) -> Option<f64>| scaled(&data.iter().map(value).collect::<Coordinate>());
     if of_runs.len() > 1 {
-        found.push((ORDER, of(&|d| Some(d.row as f64)), false));
+        found.push((ORDER, of(&|d| Some(d.order as f64)), false));
     }
     found.push((TIME, of(&|d| d.time), false));
     found.push((TEMPERATURE, of(&|d| d.temperature), false));
     found
 }
 
-/// Rank of the load, as `of` counts it, among those along its axis, for the data that `is_of` admits.
+/// Rank of the load, as `of` counts it, among those along its axis, for the data that `is_of` admits. Of more than
+/// [`MOST_LEVELS`] loads the size instead: where a measured load trembles about its levels, its rank is a better load.
 fn by_axis(data: &[Datum], of: impl Fn(&Datum) -> f64, is_of: impl Fn(&Datum) -> bool) -> Coordinate {
+    let levels = Axis::ALL.map(|axis| {
+        let along = data.iter().filter(|d| is_of(d) && d.direction.axis == axis);
+        let mut levels: Vec<f64> = along.map(&of).collect();
+        levels.sort_by(f64::total_cmp);
+        levels.dedup();
+        levels
+    });
     let rank = |datum: &Datum| {
         is_of(datum).then_some(())?;
-        let rivals = data.iter().filter(|d| is_of(d) && d.direction.axis == datum.direction.axis);
-        let mut loads: Vec<f64> = rivals.map(&of).collect();
-        loads.sort_by(f64::total_cmp);
-        loads.dedup();
-        let rank = loads.iter().position(|&load| load == of(datum))?;
-        Some((rank as f64 + 0.5) / loads.len() as f64)
+        let levels = &levels[datum.direction.axis.index()];
+        if levels.len() > MOST_LEVELS {
+            let (least, most) = (levels[0], levels[levels.len() - 1]);
+            return Some((of(datum) - least) / (most - least));
+        }
+        let rank = levels.partition_point(|&level| level < of(datum));
+        Some((rank as f64 + 0.5) / levels.len() as f64)
     };
     data.iter().map(rank).collect()
+}
+
+/// Takes away, of a load that goes up and down again and again, curves along the recording that do not predict the next cycle: a
+/// curve through neighbours follows anything that a law repeats.
+///
+/// Each cycle in turn is predicted from the others, by the curve with its prior; a curve stays if it lowers the squares.
+pub(super) fn retain_predictive(entries: &mut Vec<Entry>, data: &[Datum], deflections: &[f64]) {
+    let is_cyclic = data.iter().any(|d| d.motion.is_some_and(|motion| motion.cycle > 0));
+    if !is_cyclic {
+        return;
+    }
+    let cycle = numbered(data.iter().map(|d| (d.run, d.motion.map(|motion| motion.cycle))));
+    let left = DVector::from_iterator(data.len(), data.iter().zip(deflections).map(|(d, u)| d.measured - u));
+    let is_along_recording = |candidate: &Candidate| {
+        matches!(&candidate.location, Location::Curve { label, .. }
+            if [POSITION, ORDER, TIME].iter().any(|along| label.starts_with(&format!("{}, ", along.name))))
+    };
+    entries.retain(|(candidate, actions)| {
+        !is_along_recording(candidate) || predicts(candidate, actions, &left, &cycle)
+    });
+}
+
+/// True where a curve that is fitted to all other cycles lowers the squares of each cycle, all of them together.
+fn predicts(candidate: &Candidate, actions: &[Action], left: &DVector<f64>, cycle: &[usize]) -> bool {
+    let mut columns = DMatrix::zeros(left.len(), actions.len());
+    for (k, (action, parameter)) in actions.iter().zip(&candidate.parameters).enumerate() {
+        let Action::Shift(weights) = action else { continue };
+        weights.iter().for_each(|&(i, weight)| columns[(i, k)] = weight * parameter.size);
+    }
+    let mut rows: HashMap<usize, Vec<usize>> = HashMap::new();
+    for (i, &cycle) in cycle.iter().enumerate() {
+        rows.entry(cycle).or_default().push(i);
+    }
+    let all = (columns.tr_mul(&columns), columns.tr_mul(left));
+    let noise = left.norm_squared() / left.len().max(1) as f64;
+    let (mut before, mut after) = (0.0, 0.0);
+    let mut numbers: Vec<&usize> = rows.keys().collect();
+    numbers.sort_unstable();
+    for number in numbers {
+        let of_cycle = &rows[number];
+        let (own, own_left) = (columns.select_rows(of_cycle), left.select_rows(of_cycle));
+        let gram = &all.0 - own.tr_mul(&own) + DMatrix::identity(actions.len(), actions.len()) * noise;
+        let Some(root) = gram.cholesky() else { return false };
+        let values = root.solve(&(&all.1 - own.tr_mul(&own_left)));
+        before += own_left.norm_squared();
+        after += (own_left - own * values).norm_squared();
+    }
+    after < before
 }
 
 /// From 0 to 1; nothing where the values do not differ.
@@ -208,19 +284,20 @@ fn curve(
 /// of its line is the same.
 fn along_the_load(data: &[Datum]) -> Option<Entry> {
     let along: Vec<usize> = (0..data.len())
-        .filter(|&i| data[i].channel == data[i].direction.axis && data[i].load > 0.0)
+        .filter(|&i| data[i].channel == data[i].direction.axis && data[i].drive() != 0.0)
         .collect();
     let axes = numbered(along.iter().map(|&i| data[i].channel)).into_iter().max()? + 1;
-    let coordinate: Coordinate = scaled(&data.iter().map(|d| Some(d.load)).collect::<Vec<_>>());
+    let coordinate: Coordinate = scaled(&data.iter().map(|d| Some(d.drive().abs())).collect::<Vec<_>>());
     let largest = along.iter().fold(0.0, |max: f64, &i| max.max(data[i].measured.abs()));
     let size = (SHARE * largest).max(LEAST_SHIFT * largest_reading(data));
-    let sign = |i: usize| f64::from(data[i].direction.sign);
+    let sign = |i: usize| if data[i].drive() < 0.0 { -1.0 } else { 1.0 };
     (axes > 1).then(|| curve(LOAD, "readings along the load", &coordinate, &along, UM, size, sign)).flatten()
 }
 
 /// A slope of its own for every line: a rod whose compliance differs from the model in a way that no part of it explains.
 fn slopes(data: &[Datum], deflections: &[f64], lines: &[(String, Vec<usize>)]) -> Option<Entry> {
-    let slope = |&i: &usize| if data[i].load > 0.0 { (deflections[i] / data[i].load).abs() } else { 0.0 };
+    let slope =
+        |&i: &usize| if data[i].drive() != 0.0 { (deflections[i] / data[i].drive()).abs() } else { 0.0 };
     let steepest = (0..data.len()).map(|i| slope(&i)).fold(0.0, f64::max);
     let of_line = |(place, line): &(String, Vec<usize>)| {
         let size = SLOPE.0 * line.iter().map(slope).fold(0.0, f64::max) + SLOPE.1 * steepest;
@@ -231,7 +308,7 @@ fn slopes(data: &[Datum], deflections: &[f64], lines: &[(String, Vec<usize>)]) -
             size,
             bounds: (f64::NEG_INFINITY, f64::INFINITY),
         };
-        (parameter, Action::Shift(line.iter().map(|&i| (i, data[i].signed_load())).collect()))
+        (parameter, Action::Shift(line.iter().map(|&i| (i, data[i].drive())).collect()))
     };
     let (parameters, actions) = lines.iter().map(of_line).unzip();
     let location = Location::Curve {

@@ -87,7 +87,10 @@ impl RigDiagnosis {
         let large = evidence.background.column(0);
         let nominal = &evidence.nominal * self.nominal_factors(&evidence);
         let of_datum = |(i, datum): (usize, &Datum)| datum.predicted + large[i] + nominal[i] + change[i];
-        Ok(model.data.iter().enumerate().map(of_datum).collect())
+        // in the order of the file that asks
+        let mut rows: Vec<(usize, Datum)> = model.data.iter().cloned().enumerate().collect();
+        rows.sort_by_key(|(_, datum)| (datum.row, datum.channel));
+        Ok(rows.iter().map(|(i, datum)| of_datum((*i, datum))).collect())
     }
 
     /// Factors of the nominal numbers of `asked` as these readings gave them, in standard

@@ -108,6 +108,11 @@ fn subject<'a>(found: &'a CalibrationDiagnosis<'_>) -> Subject<'a> {
         ],
         of_findings: diagnosis.findings.iter().map(|finding| more_of(found, finding)).collect(),
         details: diagnosis.findings.iter().map(|finding| details(found, finding)).collect(),
+        sessions: (
+            "Each clamp or placement predicted from the others, the search for effects included; rms of a coordinate, \
+             about the socket's fitted position where that is unknown.",
+            "calibration as it is",
+        ),
         session_name: Box::new(|session| model.session(session).to_owned()),
         plan: Box::new(|plan| match plan {
             Plan::Poses(plan) => pose_plan(found, plan),

@@ -12,6 +12,9 @@ pub fn place(location: &Location) -> Value {
         Location::UnderLoads { part, axis } => {
             json!({ "part": part.to_string(), "loads_along": axis.to_string() })
         }
+        Location::InSession { part, session } => {
+            json!({ "part": part.to_string(), "session": session })
+        }
         Location::Form { part, form } => json!({ "part": part.to_string(), "form": form }),
         Location::Named(name) => json!({ "name": name }),
         Location::Key(key) => json!({ "key": key }),

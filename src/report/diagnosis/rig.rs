@@ -11,10 +11,10 @@ use super::remainder::{Remainder, Sample};
 use super::subject::{Errors, Subject};
 use super::{json as whole_json, report as whole_report};
 use crate::diagnosis::rig::{Correction, Datum, RigDiagnosis};
-use crate::inference::{Discrepancy, ForwardModel, Location, Plan, Quantity, Variable};
+use crate::inference::{Discrepancy, ForwardModel, Location, Plan, Quantity, Variable, rms};
 use crate::report::{Block, Report};
 use crate::rig::readings::Phase;
-use crate::units::{MM, significant};
+use crate::units::{MM, UM, significant};
 
 /// Most samples of the shape along one line.
 const SAMPLES: usize = 12;
@@ -67,17 +67,25 @@ fn subject<'a>(found: &'a RigDiagnosis, correction: Option<&Correction>) -> Subj
         remainder: remainder(found),
         warnings: of_rod.chain(of_readings).collect(),
         head: vec![("rod", json!(rod.map(|rod| &rod.name))), ("readings", json!(readings.file))],
-        more: vec![("correction", json!(correction.map(correction::json)))],
+        more: vec![
+            ("correction", json!(correction.map(correction::json))),
+            ("measured_load", json!(measured_load(found))),
+        ],
         of_findings: Vec::new(),
         details: Vec::new(),
-        session_name: Box::new(|session| session.to_string()),
+        sessions: (
+            "Each session predicted from the others, the search for effects included; rms of a reading. What belongs to \
+             one session is no part of it.",
+            "model as it is",
+        ),
+        session_name: Box::new(|session| model.session(session).to_owned()),
         plan: Box::new(|plan| match plan {
             Plan::Loads(plan) => super::json::load_plan(plan),
             Plan::Poses(_) => Value::Null,
         }),
         source: readings.source.clone(),
         places: std::iter::once(Block::Figure(figures::residuals(found))).chain(places).collect(),
-        proof: Vec::new(),
+        proof: loads_in_newtons(found).map(Block::Paragraph).into_iter().collect(),
         consequences: correction.map(correction::section),
         count: model.data().len(),
     }
@@ -109,13 +117,41 @@ fn nominal(found: &RigDiagnosis) -> Option<String> {
     ))
 }
 
+/// Where the displacement was imposed: what a newton counts, and the errors of the loads in newtons.
+fn measured_load(found: &RigDiagnosis) -> Option<Value> {
+    let per_newton = found.model.per_newton()?;
+    let (diagnosis, newtons) = (&found.diagnosis, |error: f64| error / per_newton);
+    Some(json!({
+        "um_per_n": per_newton / UM,
+        "rms_before_n": newtons(rms(&diagnosis.before)),
+        "rms_after_n": newtons(rms(&diagnosis.after)),
+        "noise_n": newtons(diagnosis.noise),
+    }))
+}
+
+/// The same as sentences.
+fn loads_in_newtons(found: &RigDiagnosis) -> Option<String> {
+    let per_newton = found.model.per_newton()?;
+    let newtons = |error: f64| significant(error / per_newton, 2);
+    Some(format!(
+        "The displacement was imposed: the measured loads are compared with the model. One newton counts as {} µm, \
+         the largest displacement over the largest load. In newtons: {} rms as it is, {} with the findings; the \
+         scatter is {}.",
+        significant(per_newton / UM, 3),
+        newtons(rms(&found.diagnosis.before)),
+        newtons(rms(&found.diagnosis.after)),
+        newtons(found.diagnosis.noise),
+    ))
+}
+
 /// What is one line of readings, for example `dy under loads along y`.
 fn line_name(datum: &Datum) -> String {
     let at = |what: &str, station: Option<f64>| {
         station.map_or_else(String::new, |s| format!(", {what} at {:.1} mm", s / MM))
     };
+    let session = datum.session.as_ref().map_or_else(String::new, |session| format!(", session {session}"));
     format!(
-        "d{} under loads along {}{}{}",
+        "d{} under loads along {}{}{}{session}",
         datum.channel,
         datum.direction.axis,
         at("loaded", datum.load_station),

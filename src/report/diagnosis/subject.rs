@@ -49,6 +49,8 @@ pub struct Subject<'a> {
     pub of_findings: Vec<Vec<(&'static str, Value)>>,
     /// For each finding more words.
     pub details: Vec<String>,
+    /// Of the table of sessions: what it says, and the head of its first numbers.
+    pub sessions: (&'static str, &'static str),
     /// For each session its name.
     pub session_name: Box<dyn Fn(usize) -> String + 'a>,
     /// A proposed measurement as JSON.

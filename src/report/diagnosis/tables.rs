@@ -298,13 +298,12 @@ fn candidates(ranked: &[Ranked]) -> Figure {
 
 /// How well each session is predicted from the others.
 pub fn replication(subject: &Subject) -> Table {
+    let (caption, as_it_is) = subject.sessions;
     let columns = vec![
         Column::text("left out"),
-        Column::number("calibration as it is", "µm"),
+        Column::number(as_it_is, "µm"),
         Column::number("with the findings of the others", "µm"),
     ];
-    let caption = "Each clamp or placement predicted from the others, the search for effects included; \
-                   rms of a coordinate, about the socket's fitted position where that is unknown.";
     let mut table = Table::new("replication", caption, columns);
     for session in &subject.diagnosis.sessions {
         let name = (subject.session_name)(session.session);

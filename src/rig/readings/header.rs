@@ -25,6 +25,8 @@ pub struct RigHeader {
     pub driven: Driven,
     /// Stated noise of one reading, one standard deviation, m; `None`: not stated.
     pub noise: Option<f64>,
+    /// Stated noise of a measured load, one standard deviation, N; `None`: not stated. Of displacement-driven recordings.
+    pub load_noise: Option<f64>,
     /// Relative standard uncertainty of the scale of all loads, dimensionless; 0 is exact.
     pub load_scale: f64,
     /// Relative standard uncertainty of the scale of each sensor, dimensionless; 0 is exact.
@@ -44,17 +46,24 @@ pub enum Driven {
 impl Default for RigHeader {
     /// Hung weights, noise not stated, scales of 0.1 %.
     fn default() -> Self {
-        RigHeader { driven: Driven::Load, noise: None, load_scale: 0.001, sensor_scale: 0.001 }
+        RigHeader {
+            driven: Driven::Load,
+            noise: None,
+            load_noise: None,
+            load_scale: 0.001,
+            sensor_scale: 0.001,
+        }
     }
 }
 
-const KEYS: [&str; 4] = ["driven", "noise_um", "load_scale_percent", "sensor_scale_percent"];
+const KEYS: [&str; 5] = ["driven", "noise_um", "noise_n", "load_scale_percent", "sensor_scale_percent"];
 const PERCENT: f64 = 0.01;
 
 impl RigHeader {
     pub(super) fn check(&self) -> Result<()> {
         let values = [
             ("noise", self.noise.unwrap_or(0.0)),
+            ("load_noise", self.load_noise.unwrap_or(0.0)),
             ("load_scale", self.load_scale),
             ("sensor_scale", self.sensor_scale),
         ];
@@ -77,6 +86,9 @@ impl RigHeader {
         }
         if let Some(noise) = self.noise {
             lines.push(format!("noise_um = {}", in_unit(noise, UM)));
+        }
+        if let Some(noise) = self.load_noise {
+            lines.push(format!("noise_n = {noise}"));
         }
         if self.load_scale != usual.load_scale {
             lines.push(format!("load_scale_percent = {}", in_unit(self.load_scale, PERCENT)));
@@ -107,6 +119,12 @@ impl RigHeader {
                     _ => return Err("one standard deviation of a reading > 0"),
                 }
             }
+            "noise_n" => {
+                self.load_noise = match number()? {
+                    noise if noise > 0.0 => Some(noise),
+                    _ => return Err("one standard deviation of a measured load > 0"),
+                }
+            }
             "load_scale_percent" => self.load_scale = number()? * PERCENT,
             _ => self.sensor_scale = number()? * PERCENT,
         }
@@ -121,6 +139,7 @@ pub(super) fn read(
     text: &str,
     dialect: Dialect,
 ) -> Result<(RigHeader, Option<String>, Vec<Warning>)> {
+    let mut load_noise_at = None;
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let (mut header, mut seen, mut words, mut warnings) =
         (RigHeader::default(), Vec::new(), Vec::new(), Vec::new());
@@ -166,6 +185,17 @@ pub(super) fn read(
                 hint: None,
             });
         }
+        if key == "noise_n" {
+            load_noise_at = Some(at(comment));
+        }
+    }
+    if let Some(at) = load_noise_at.filter(|_| header.driven == Driven::Load) {
+        return Err(Error::Input {
+            at,
+            found: "noise_n, the noise of a measured load, where loads are set".into(),
+            expected: "driven = \"displacement\" beside it, or no noise_n".into(),
+            hint: None,
+        });
     }
     let words = words.join(" ");
     Ok((header, (!words.is_empty()).then_some(words), warnings))
@@ -189,7 +219,8 @@ mod tests {
              # load_scale_percent = 0\n# sensor_scale_percent = 0.25\n# rod = 5#, x = y\n",
         )
         .unwrap();
-        let RigHeader { driven, noise, load_scale, sensor_scale } = readings.header;
+        let RigHeader { driven, noise, load_noise, load_scale, sensor_scale } = readings.header;
+        assert_eq!(load_noise, None);
         assert_eq!((driven, load_scale, sensor_scale), (Driven::Displacement, 0.0, 0.0025));
         assert_eq!(noise, Some(1.5 * UM));
         assert_eq!(readings.source.as_deref(), Some("cell 3, 4 May rod = 5#, x = y"));
@@ -226,6 +257,11 @@ mod tests {
                 "# load_scale_percent = \n",
                 "f:1:3: load_scale_percent is \"\", expected one standard deviation, a number >= 0",
             ),
+            (
+                "# noise_n = 0.1\n",
+                "f:1:3: noise_n, the noise of a measured load, where loads are set, expected driven = \
+                 \"displacement\" beside it, or no noise_n",
+            ),
             ("# noise_um = 1\n# noise_um = 1\n", "f:2:3: a second noise_um, expected every key once"),
         ] {
             assert_eq!(header_of(lines).unwrap_err().to_string(), expected);
@@ -245,6 +281,7 @@ mod tests {
         let header = RigHeader {
             driven: Driven::Displacement,
             noise: Some(1.37e-6),
+            load_noise: Some(0.02),
             load_scale: 0.0,
             sensor_scale: 0.35 * PERCENT,
         };

@@ -44,34 +44,39 @@ impl Readings {
     /// # Ok::<(), rodcal::Error>(())
     /// ```
     pub fn instants(&self) -> Vec<Instant> {
-        let mut instants: Vec<Instant> = Vec::new();
-        let mut timed: HashMap<Key<'_>, usize> = HashMap::new();
-        // the instant that the row above belongs to, where neither has a time
-        let mut open: Option<(Key<'_>, usize)> = None;
-        for (index, row) in self.rows.iter().enumerate() {
-            let key = key(row);
-            let known = match row.time {
-                Some(_) => timed.get(&key).copied(),
-                None => open.as_ref().filter(|(above, _)| *above == key).map(|&(_, instant)| instant),
-            };
-            let is_new = |instant: usize| -> bool {
-                let of_instant: &Vec<usize> = &instants[instant].rows;
-                of_instant.iter().all(|&other| !repeats(&self.rows[other], row))
-            };
-            let found = known.filter(|&instant| row.time.is_some() || is_new(instant));
-            let instant = found.unwrap_or_else(|| {
-                instants.push(Instant { rows: Vec::new() });
-                instants.len() - 1
-            });
-            instants[instant].rows.push(index);
-            open = None;
-            match row.time {
-                Some(_) => drop(timed.insert(key, instant)),
-                None => open = Some((key, instant)),
-            }
-        }
-        instants
+        instants(&self.rows)
     }
+}
+
+/// See [`Readings::instants`].
+pub(crate) fn instants(rows: &[Reading]) -> Vec<Instant> {
+    let mut instants: Vec<Instant> = Vec::new();
+    let mut timed: HashMap<Key<'_>, usize> = HashMap::new();
+    // the instant that the row above belongs to, where neither has a time
+    let mut open: Option<(Key<'_>, usize)> = None;
+    for (index, row) in rows.iter().enumerate() {
+        let key = key(row);
+        let known = match row.time {
+            Some(_) => timed.get(&key).copied(),
+            None => open.as_ref().filter(|(above, _)| *above == key).map(|&(_, instant)| instant),
+        };
+        let is_new = |instant: usize| -> bool {
+            let of_instant: &Vec<usize> = &instants[instant].rows;
+            of_instant.iter().all(|&other| !repeats(&rows[other], row))
+        };
+        let found = known.filter(|&instant| row.time.is_some() || is_new(instant));
+        let instant = found.unwrap_or_else(|| {
+            instants.push(Instant { rows: Vec::new() });
+            instants.len() - 1
+        });
+        instants[instant].rows.push(index);
+        open = None;
+        match row.time {
+            Some(_) => drop(timed.insert(key, instant)),
+            None => open = Some((key, instant)),
+        }
+    }
+    instants
 }
 
 fn key(row: &Reading) -> Key<'_> {

@@ -15,7 +15,7 @@ pub struct Link {
     /// Mass, kg, and its centre in the frame behind the link, m.
     pub mass: f64,
     pub centre: Vector3<f64>,
-    /// Angle by which the drive yields, rad/(N·m).
+    /// Compliance of the drive, rad/(N·m).
     pub compliance: f64,
 }
 

@@ -3,7 +3,7 @@
 //!
 //! A campaign of its own beside the recorded one, without points. Its clock goes on after the recording, in a room that may
 //! have become warmer. It begins with the first recorded pose, so that the move that led there is known, and what it asks
-//! depends on the protocol alone: it tells nothing of the effect.
+//! depends on the protocol alone: it says nothing of the effect.
 
 use nalgebra::{DMatrix, DVector, Vector3};
 
@@ -223,14 +223,14 @@ mod tests {
         };
         let noise: Vec<Vector3<f64>> =
             (0..site.rows.len()).map(|row| ball(&other, row, &larger) - ball(&site, row, &effect)).collect();
-        let told = question.truth(&site, &[effect], &noise);
+        let truth = question.truth(&site, &[effect], &noise);
         let asked = Question {
             site: Site { real: other.real, tool: other.tool, ..question.site.clone() },
             force: question.force,
         };
         let others = asked.truth(&site, &[larger], &noise).true_um;
-        let moved = norm(&told.true_um, &others);
-        let left = norm(&told.oracle_um.unwrap(), &others);
+        let moved = norm(&truth.true_um, &others);
+        let left = norm(&truth.oracle_um.unwrap(), &others);
         assert!(moved > 100.0 && left < 0.01 * moved, "{left} of {moved}");
     }
 }

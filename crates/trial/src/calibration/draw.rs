@@ -27,6 +27,7 @@ use nalgebra::Vector3;
 use super::effect::Effect;
 use super::setup::Needs;
 use super::site::Site;
+use crate::place::Place;
 use crate::rig::draw::{happens, log_uniform};
 use rodcal_base::statistics::Random;
 use rodcal_base::units::{DEG, GRAM, UM, URAD};
@@ -201,40 +202,39 @@ pub fn beyond(effect: usize, site: &Site, random: &mut Random) -> Effect {
     }
 }
 
-/// Where, in the words of a diagnosis.
-pub fn location(effect: &Effect, site: &Site) -> String {
-    let joint = |j: &usize| format!("joint {}", j + 1);
+/// Where an effect is.
+pub fn place(effect: &Effect, site: &Site) -> Place {
     match effect {
-        Effect::Transmission { joint: j, .. }
-        | Effect::Backlash { joint: j, .. }
-        | Effect::Compliance { joint: j, .. }
-        | Effect::Nonlinear { joint: j, .. }
-        | Effect::EncoderScale { joint: j, .. }
-        | Effect::Wear { joint: j, .. } => joint(j),
-        Effect::Coupling { from, to, .. } => format!("joint {} to {}", from + 1, to + 1),
-        Effect::ClampPose { group, .. } => site.group_name(*group),
-        Effect::Shift { group, from, .. } => shift_location(site, *group, *from),
-        Effect::Drift { .. } => "base".into(),
-        Effect::Payload(_) => "flange".into(),
-        Effect::TipMass(_) => "tip".into(),
-        Effect::Lag { joint: Some(j), .. } => joint(j),
-        Effect::Lag { .. } => "all joints".into(),
-        Effect::Rod(_) => "rod".into(),
+        Effect::Transmission { joint, .. }
+        | Effect::Backlash { joint, .. }
+        | Effect::Compliance { joint, .. }
+        | Effect::Nonlinear { joint, .. }
+        | Effect::EncoderScale { joint, .. }
+        | Effect::Lag { joint: Some(joint), .. }
+        | Effect::Wear { joint, .. } => Place::joint(*joint),
+        Effect::Coupling { from, to, .. } => Place { driven_by: Some(from + 1), ..Place::joint(*to) },
+        Effect::ClampPose { group, .. } => Place::named(&site.group_name(*group)),
+        Effect::Shift { group, from, .. } => shift_place(site, *group, *from),
+        Effect::Drift { .. } => Place::part("base"),
+        Effect::Payload(_) => Place::part("flange"),
+        Effect::TipMass(_) => Place::part("tip"),
+        Effect::Lag { .. } => Place { joint: Some("all".into()), ..Place::default() },
+        Effect::Rod(_) => Place::part("rod"),
         Effect::Outlier(rows) => {
-            rows.iter().map(|(row, _)| format!("pose {}", row + 1)).collect::<Vec<_>>().join("; ")
+            let of = |(row, _): &(usize, _)| Place { row: Some(row + 1), ..Place::default() };
+            Place { all: rows.iter().map(of).collect(), ..Place::default() }
         }
         Effect::LinkTorsion { link, joints: [a, b], .. } => {
-            format!("link {}, joints {} and {}", link + 1, a + 1, b + 1)
+            Place::part(&format!("link {}, joints {} and {}", link + 1, a + 1, b + 1))
         }
-        Effect::Ball(_) => "ball".into(),
-        Effect::Disturbance { .. } => "world".into(),
-        Effect::Refraction(_) => "tracker".into(),
+        Effect::Ball(_) => Place::part("ball"),
+        Effect::Disturbance { .. } => Place::part("world"),
+        Effect::Refraction(_) => Place::part("tracker"),
     }
 }
 
 /// After the last row of the fixture before it moved.
-pub fn shift_location(site: &Site, group: usize, from: usize) -> String {
+pub fn shift_place(site: &Site, group: usize, from: usize) -> Place {
     let last = (0..from).rev().find(|&row| site.rows[row].group == group).unwrap_or(0);
-    let what = if site.has_sockets() { "row" } else { "pose" };
-    format!("{}, after {what} {}", site.group_name(group), last + 1)
+    Place { after_row: Some(last + 1), ..Place::named(&site.group_name(group)) }
 }

@@ -11,14 +11,14 @@ const RELATIVE_STEP: f64 = 1e-4;
 /// Something that is wrong, SI; joints and rows from 0.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Effect {
-    /// A gear errs with its own angle: cycles per revolution, amplitude rad, phase; the whole swells and fades by `beat`
-    /// with so many cycles per revolution.
+    /// An error of a gear over its own angle: cycles per revolution, amplitude rad, phase; the
+    /// whole swells and fades by `beat` with so many cycles per revolution.
     Transmission { joint: usize, waves: Vec<[f64; 3]>, beat: Option<[f64; 2]> },
     /// Play, rad: the joint lies against its load, or where it came from.
     Backlash { joint: usize, play: f64, by_approach: bool },
-    /// A drive that yields although the file knows no masses, rad/(N·m).
+    /// A drive that is compliant although the file knows no masses, rad/(N·m).
     Compliance { joint: usize, compliance: f64 },
-    /// A drive that yields by k·τ·|τ| or k·τ³.
+    /// A drive that turns by k·τ·|τ| or k·τ³.
     Nonlinear { joint: usize, cubic: bool, per: f64 },
     /// Factor on a joint's angle.
     EncoderScale { joint: usize, factor: f64 },
@@ -28,7 +28,7 @@ pub enum Effect {
     ClampPose { group: usize, by: Vector3<f64>, turn: Vector3<f64> },
     /// A clamp or a socket that is displaced from a row on, m.
     Shift { group: usize, from: usize, by: Vector3<f64> },
-    /// The base wanders: m/K, or m/s without a thermometer.
+    /// The base drifts: m/K, or m/s without a thermometer.
     Drift { by: Vector3<f64>, by_time: bool },
     /// A mass at the flange, kg.
     Payload(f64),
@@ -103,7 +103,7 @@ impl Effect {
             Effect::Nonlinear { cubic: true, per, .. } => vec![("urad_per_nm3", per / URAD)],
             Effect::Nonlinear { per, .. } => vec![("urad_per_nm2", per / URAD)],
             Effect::EncoderScale { factor, .. } => vec![("factor", *factor)],
-            // told as a stiffness, as on a rig
+            // stated as a stiffness, as on a rig
             Effect::Rod(factor) => vec![("factor", 1.0 / factor)],
             Effect::Coupling { share, .. } | Effect::Lag { share, .. } => vec![("fraction", *share)],
             Effect::ClampPose { by, turn, .. } => {
@@ -141,7 +141,7 @@ impl Effect {
         }
     }
 
-    /// What no other recording tells of: it cannot be predicted.
+    /// What no other recording shows: it cannot be predicted.
     pub fn is_of_one_run(&self) -> bool {
         matches!(self, Effect::Shift { .. } | Effect::Outlier(_))
     }

@@ -10,15 +10,17 @@ use std::collections::BTreeMap;
 
 use nalgebra::{DMatrix, DVector, Vector3};
 
-use super::draw::{location, shift_location};
+use super::draw::{place, shift_place};
 use super::effect::Effect;
 use super::site::{Devices, Site, gravity};
 use super::taken_up;
+use crate::place::Place;
 use crate::truth::Detectability;
 use rodcal_base::linalg::thin_svd;
 use rodcal_base::units::UM;
 
-/// Effects of other names closer than this cannot be told apart; places of one effect closer than that.
+/// Effects of other names closer than this cannot be distinguished; places of one effect closer
+/// than that.
 const SAME_EFFECT: f64 = 5.0;
 const SAME_PLACE: f64 = 3.0;
 /// Size of what turns a joint, rad, and of what moves a fixture, m and rad.
@@ -30,7 +32,7 @@ const URAD_STEP: f64 = 1e-5;
 
 struct Rival {
     name: &'static str,
-    location: String,
+    place: Place,
     columns: Vec<DVector<f64>>,
 }
 
@@ -91,20 +93,21 @@ impl<'a> Oracle<'a> {
         };
         let own = effect.name(self.site.has_sockets());
         let mut best: BTreeMap<&str, f64> = BTreeMap::new();
-        let mut places = vec![location(effect, self.site)];
+        let mut places = vec![place(effect, self.site)];
         for rival in &self.rivals {
             let apart = separation(&rival.columns);
             if rival.name != own {
                 let least = best.entry(rival.name).or_insert(f64::INFINITY);
                 *least = least.min(apart);
-            } else if apart < SAME_PLACE && !places.contains(&rival.location) {
-                places.push(rival.location.clone());
+            } else if apart < SAME_PLACE && !places.contains(&rival.place) {
+                places.push(rival.place.clone());
             }
         }
         let nearest = best.iter().min_by(|a, b| a.1.total_cmp(b.1));
         Detectability {
             against_none: separation(&[]),
             against_rival: nearest.map_or(f64::MAX, |(_, apart)| *apart),
+            against_pair: None,
             best_rival: nearest.map_or_else(String::new, |(name, _)| (*name).to_owned()),
             class: best.iter().filter(|(_, a)| **a < SAME_EFFECT).map(|(n, _)| (*n).to_owned()).collect(),
             places,
@@ -136,63 +139,64 @@ impl<'a> Oracle<'a> {
         let column = |of: &dyn Fn(usize) -> Vector3<f64>| self.left(site.each(|row, _| of(row)));
         let turn = |j: usize, of: &dyn Fn(usize) -> f64| column(&|row| levers[row][j] * (TURN * of(row)));
         let mut rivals: Vec<Rival> = Vec::new();
-        let mut add = |name: &'static str, location: String, columns: Vec<DVector<f64>>| {
+        let mut add = |name: &'static str, place: Place, columns: Vec<DVector<f64>>| {
             let columns: Vec<_> = columns.into_iter().filter(|c| c.norm() > 1e-3).collect();
             if !columns.is_empty() {
-                rivals.push(Rival { name, location, columns });
+                rivals.push(Rival { name, place, columns });
             }
         };
         for j in 0..n {
-            let name = format!("joint {}", j + 1);
+            let joint = Place::joint(j);
             let wave = |cycles: f64| {
                 [
                     turn(j, &|row| (cycles * angle(row, j)).sin()),
                     turn(j, &|row| (cycles * angle(row, j)).cos()),
                 ]
             };
-            (1..=76).for_each(|k| add("transmission_error", name.clone(), wave(0.5 * f64::from(k)).to_vec()));
-            add("transmission_error", name.clone(), (1..=5).flat_map(|k| wave(f64::from(k))).collect());
-            add("encoder_scale", name.clone(), vec![turn(j, &|row| angle(row, j))]);
-            add("readback_lag", name.clone(), vec![turn(j, &|row| step(row, j))]);
-            add("backlash", name.clone(), vec![turn(j, &|row| site.approach(row, j))]);
+            (1..=76)
+                .for_each(|k| add("transmission_error", joint.clone(), wave(0.5 * f64::from(k)).to_vec()));
+            add("transmission_error", joint.clone(), (1..=5).flat_map(|k| wave(f64::from(k))).collect());
+            add("encoder_scale", joint.clone(), vec![turn(j, &|row| angle(row, j))]);
+            add("readback_lag", joint.clone(), vec![turn(j, &|row| step(row, j))]);
+            add("backlash", joint.clone(), vec![turn(j, &|row| site.approach(row, j))]);
             let largest = (0..rows).map(|row| torque(row, j).abs()).fold(0.0, f64::max);
             if largest > 0.1 {
                 let of = |f: fn(f64) -> f64| vec![turn(j, &|row| f(torque(row, j) / largest))];
-                add("joint_compliance", name.clone(), of(|t| t));
+                add("joint_compliance", joint.clone(), of(|t| t));
                 if site.has_masses {
-                    add("backlash", name.clone(), of(f64::signum));
-                    add("joint_nonlinear_stiffness", name.clone(), of(|t| t * t.abs()));
-                    add("joint_nonlinear_stiffness", name.clone(), of(|t| t.powi(3)));
+                    add("backlash", joint.clone(), of(f64::signum));
+                    add("joint_nonlinear_stiffness", joint.clone(), of(|t| t * t.abs()));
+                    add("joint_nonlinear_stiffness", joint.clone(), of(|t| t.powi(3)));
                 }
             }
             for to in [j.wrapping_sub(1), j + 1] {
                 if j.min(to) >= n - 3 && to < n {
                     add(
                         "wrist_coupling",
-                        format!("joint {} to {}", j + 1, to + 1),
+                        Place { driven_by: Some(j + 1), ..Place::joint(to) },
                         vec![turn(to, &|row| angle(row, j))],
                     );
                 }
             }
         }
         let all = column(&|row| (0..n).map(|j| levers[row][j] * (TURN * step(row, j))).sum());
-        add("readback_lag", "all joints".into(), vec![all]);
+        add("readback_lag", Place { joint: Some("all".into()), ..Place::default() }, vec![all]);
         let changed = |effect: Effect, times: f64| self.left(self.site.added(&[effect], &[])) * times;
         if site.has_masses {
-            add("payload_mass", "flange".into(), vec![changed(Effect::Payload(0.1), 50.0)]);
+            add("payload_mass", Place::part("flange"), vec![changed(Effect::Payload(0.1), 50.0)]);
         }
         if site.has_masses || site.rod.is_some() {
-            add("tip_mass", "tip".into(), vec![changed(Effect::TipMass(0.01), 30.0)]);
+            add("tip_mass", Place::part("tip"), vec![changed(Effect::TipMass(0.01), 30.0)]);
         }
         if site.rod.is_some() {
-            add("rod_stiffness", "rod".into(), vec![changed(Effect::Rod(1.01), 60.0)]);
+            add("rod_stiffness", Place::part("rod"), vec![changed(Effect::Rod(1.01), 60.0)]);
             let own = |row: usize| {
                 let flange = loads[row].1[n].fixed_view::<3, 3>(0, 0).into_owned();
                 site.rod.as_ref().map_or_else(Vector3::zeros, |rod| {
                     flange * rod.per_gravity * flange.transpose() * gravity()
                 })
             };
-            add("rod_stiffness", "rod, under its weight".into(), vec![column(&|row| own(row) * 0.6)]);
+            add("rod_stiffness", Place::part("rod"), vec![column(&|row| own(row) * 0.6)]);
         }
         let courses: [(&dyn Fn(usize) -> f64, f64); 3] = [
             (&|row| site.rows[row].temperature - site.rows[0].temperature, 300.0 * UM),
@@ -202,11 +206,11 @@ impl<'a> Oracle<'a> {
         for (k, (course, size)) in courses.into_iter().enumerate() {
             if k > 0 || site.has_temperature {
                 let along = |axis: usize| column(&|row| Vector3::ith(axis, size * course(row)));
-                add("thermal_drift", "base".into(), (0..3).map(along).collect());
+                add("thermal_drift", Place::part("base"), (0..3).map(along).collect());
                 let own = |axis: usize| {
                     column(&|row| loads[row].1[n].fixed_view::<3, 1>(0, axis) * (size * course(row)))
                 };
-                add("thermal_drift", "tool".into(), (0..3).map(own).collect());
+                add("thermal_drift", Place::part("tool"), (0..3).map(own).collect());
             }
         }
         if !matches!(site.devices, Devices::Tracker(_)) {
@@ -218,7 +222,7 @@ impl<'a> Oracle<'a> {
                     let along = |axis: usize| {
                         column(&|row| if is_after(row) { Vector3::ith(axis, MOVE) } else { Vector3::zeros() })
                     };
-                    add(shift, shift_location(site, group, from), (0..3).map(along).collect());
+                    add(shift, shift_place(site, group, from), (0..3).map(along).collect());
                 }
                 if !site.has_sockets() {
                     let at = |of: &dyn Fn(usize) -> Vector3<f64>| {
@@ -230,7 +234,7 @@ impl<'a> Oracle<'a> {
                         };
                         [at(&|_| Vector3::ith(axis, MOVE)), at(&turned)]
                     });
-                    add("clamp_pose", site.group_name(group), six.collect());
+                    add("clamp_pose", Place::named(&site.group_name(group)), six.collect());
                 }
             }
         }
@@ -238,7 +242,8 @@ impl<'a> Oracle<'a> {
             let along = |axis: usize| {
                 column(&|r| Vector3::ith(axis, if r == row { 100.0 * site.noise } else { 0.0 }))
             };
-            add("outlier", format!("pose {}", row + 1), (0..3).map(along).collect());
+            let at = Place { row: Some(row + 1), ..Place::default() };
+            add("outlier", at, (0..3).map(along).collect());
         }
         rivals
     }

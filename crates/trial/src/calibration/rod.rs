@@ -33,6 +33,7 @@ impl Rod {
             density: 7900.0,
             outer: outer / 2.0 * MM,
             inner: (outer - 4.0) / 2.0 * MM,
+            coefficient: 1.0,
         };
         Rod::of(Drawing {
             legs: [random.uniform(100.0, 200.0).round() * MM, random.uniform(200.0, 500.0).round() * MM],
@@ -42,6 +43,7 @@ impl Rod {
             tubes: [tube.clone(), tube],
             joints: Vec::new(),
             tip_mass: (random.uniform(20.0, 80.0)).round() * 1e-3,
+            stated: None,
         })
     }
 

@@ -175,7 +175,7 @@ impl Site {
             let frames = arm::frames(arm, &self.base, &turned);
             torque = arm::torques(arm, &frames, &gravity(), &self.pulls(&frames[arm.len()], row, effects));
             for (j, tau) in torque.iter().enumerate() {
-                // a file without masses goes with an arm that hardly yields
+                // a file without masses goes with an arm that is hardly compliant
                 let own = if self.has_masses { arm[j].compliance } else { 0.0 };
                 turned[j] =
                     joints[j] + own * tau + effects.iter().map(|effect| more(effect, j, *tau)).sum::<f64>();
@@ -312,7 +312,7 @@ impl Site {
     }
 }
 
-/// How much more a joint yields.
+/// How much further a joint turns under load.
 fn more(effect: &Effect, at: usize, tau: f64) -> f64 {
     match *effect {
         Effect::Compliance { joint, compliance } if joint == at => compliance * tau,

@@ -2,13 +2,12 @@
 //!
 //! Another protocol in the place of the recorded one: every recorded axis with the load, or else the sensors, at a station
 //! where they never were; then an axis along which nothing was pulled, or, of three, one of them the other way. Which it is
-//! depends on the protocol alone, so that the question tells nothing of the effect.
+//! depends on the protocol alone, so that the question says nothing of the effect.
 
 use super::bench::Bench;
 use super::draw::happens;
 use super::drawing::rounded;
 use super::effect::Effect;
-use super::is_of_one_run;
 use super::oracle::Oracle;
 use super::protocol::{Columns, Protocol, Run, steps};
 use crate::truth::Asked;
@@ -44,6 +43,8 @@ pub fn draw(bench: &Bench, random: &mut Random) -> Bench {
         loadings: Vec::new(),
         channels: Vec::new(),
         quantum: 0.0,
+        zeroed_once: false,
+        is_shuffled: false,
         // a trial for each run, so that every run has a zero of its own
         columns: Columns { trial: true, phase: recorded.columns.phase || has_unloading, ..recorded.columns },
         ..recorded.clone()
@@ -64,7 +65,7 @@ pub fn draw(bench: &Bench, random: &mut Random) -> Bench {
     }
     // how a slide happens to stick nobody can foresee
     let sticking = vec![0.0; protocol.loadings.len()];
-    Bench { drawing: bench.drawing.clone(), protocol, sticking, full_scale: bench.full_scale }
+    Bench { protocol, sticking, ..bench.clone() }
 }
 
 /// The file that asks.
@@ -74,18 +75,17 @@ pub fn csv(asked: &Bench) -> String {
 
 /// What would be read, and what the oracle says: `oracle` knows the effects and where they are, and finds their sizes out from
 /// `shown`.
-pub fn truth(asked: &Bench, effects: &[Effect], oracle: Option<&Oracle<'_>>, shown: &[f64]) -> Asked {
-    let happen_again: Vec<Effect> = effects.iter().filter(|effect| !is_of_one_run(effect)).cloned().collect();
+pub fn truth(asked: &Bench, effects: &[Effect], oracle: &Oracle, shown: &[f64]) -> Asked {
+    let happen_again: Vec<Effect> =
+        effects.iter().filter(|effect| !effect.is_of_one_run()).cloned().collect();
     // as far as anybody reads them, m → µm
     let um = |readings: Vec<f64>| -> Vec<f64> { readings.into_iter().map(|m| rounded(m / UM, 5)).collect() };
-    let is_known =
-        happen_again.len() == effects.len() && effects.iter().all(|effect| !effect.sizes(asked).is_empty());
+    let is_known = !effects.is_empty()
+        && happen_again.len() == effects.len()
+        && effects.iter().all(|effect| !effect.sizes(asked).is_empty());
     Asked {
         true_um: um(asked.readings(&happen_again)),
-        oracle_um: oracle
-            .filter(|_| is_known)
-            .and_then(|oracle| oracle.predicted(effects, shown, asked))
-            .map(um),
+        oracle_um: is_known.then(|| oracle.predicted(effects, shown, asked)).flatten().map(um),
         is_any_frame: false,
     }
 }
@@ -105,7 +105,7 @@ fn load(force: f64, kilograms: bool) -> f64 {
 mod tests {
     use super::*;
     use crate::rig::bench::tests::bench;
-    use crate::rig::noise::{Noise, Shape};
+    use crate::rig::noise::Noise;
     use crate::rig::protocol::Loading;
 
     #[test]
@@ -124,13 +124,13 @@ mod tests {
     #[test]
     fn the_oracle_is_as_good_as_the_noise_lets_it_be() {
         let bench = bench();
-        let noise = Noise { sd: 1e-6, shape: Shape::Normal };
+        let noise = Noise::normal(1e-6);
         let oracle = Oracle::new(&bench, &noise);
         let effects = [Effect::Friction { axis: None, force: 0.5, presliding: 1e-6, scatter: 0.0 }];
         let asked = draw(&bench, &mut Random::seeded(1, 0));
         let exact = bench.readings(&effects);
         let rms = |shown: &[f64]| {
-            let truth = truth(&asked, &effects, Some(&oracle), shown);
+            let truth = truth(&asked, &effects, &oracle, shown);
             let oracle = truth.oracle_um.unwrap();
             let squares = truth.true_um.iter().zip(&oracle).map(|(a, b)| (a - b).powi(2));
             (squares.sum::<f64>() / oracle.len() as f64).sqrt()
@@ -139,7 +139,7 @@ mod tests {
         let (silent, noisy) = (rms(&exact), rms(&shown));
         assert!(silent < 0.05 && silent < noisy && noisy < 1.0, "{silent} {noisy}");
         let outlier = [Effect::Outlier(vec![(0, 1e-4)])];
-        assert_eq!(truth(&asked, &outlier, Some(&oracle), &exact).oracle_um, None);
-        assert_eq!(truth(&asked, &outlier, None, &exact), truth(&asked, &[], None, &exact));
+        assert_eq!(truth(&asked, &outlier, &oracle, &exact).oracle_um, None);
+        assert_eq!(truth(&asked, &outlier, &oracle, &exact), truth(&asked, &[], &oracle, &exact));
     }
 }

@@ -9,15 +9,16 @@
 //!
 //! (S. S. Antman, *Nonlinear Problems of Elasticity*, ch. 8; b, t, s, a of [`Flexibility`]). A joint turns the frame at
 //! once by diag(β, β, τ)·Rᵀm. Nothing is unknown but where the load ends up: p_L is put in, the rod is integrated from the
-//! flange by Runge and Kutta's fourth order, and p_L is what came out, until it stands still. Deflections are differences
-//! of two runs of the same integrator, so that its error cancels to first order.
+//! flange by Runge and Kutta's fourth order, and p_L is what came out, until it converges.
+//! Deflections are differences of two runs of the same integrator, so that its error cancels to
+//! first order.
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 use super::tube::Flexibility;
 
-/// Movement of the loaded point from one iteration to the next at which it stands still, m.
-const STILL: f64 = 1e-12;
+/// Movement of the loaded point from one iteration to the next at which it has converged, m.
+const CONVERGED: f64 = 1e-12;
 /// Iterations after which a rod is taken as it is: a buckling one does not come to rest.
 const MOST_ITERATIONS: usize = 200;
 /// Steps of a piece between two stations, and largest turn of the undeformed frame in a step, rad.
@@ -77,7 +78,7 @@ impl Body {
             let [next, point] = self.integrate(&stops, force, &loaded, load, read);
             let moved = (next - loaded).norm();
             (loaded, deflection) = (next, point - read_at_rest);
-            if moved < STILL {
+            if moved < CONVERGED {
                 break;
             }
         }

@@ -1,28 +1,25 @@
-//! Which effect, how large, where. Sizes are log-uniform over the range in which a rig may meet them; of two effects in one
-//! case over the upper half of it, for two that are too faint to be seen tell nothing about telling two apart:
+//! Which effect of the library, where, and how large at most. How much of that a case holds is
+//! drawn afterwards (`rig.rs`), on a logarithmic scale: three of ten single effects from a tenth of
+//! what could just be detected up to that, the others from there on; of two effects in one case
+//! from three times that.
 //!
-//! | effect | size | from | to |
-//! |---|---|---|---|
-//! | `stiffness_scale` | departure of the factor from 1, three of four softer | 0.5 % | 40 % |
-//! | `shear_modulus` | the same | 2 % | 60 % |
-//! | `joint_compliance`, `root_compliance` | of the rod's own ∫ds/EI; torsion 0.3 to 3 times that share of ∫ds/GJ, or none | 0.5 % | 100 % |
-//! | `bend_flexibility` | of what the series for an oval section gives | 0.3 | 2 |
-//! | `friction`, `load_offset` | force, N; friction at most 0.7 of the smallest load | 0.02 | 2 |
-//! | `backlash` | play, µm | 1 | 100 |
-//! | `creep` | per decade | 0.2 % | 10 % |
-//! | `hysteresis` | loop width at half load | 0.2 % | 10 % |
-//! | `nonlinear_stiffness` | share at the largest load, either sign | 0.2 % | 20 % |
-//! | `sensor_scale` | departure of the factor from 1 | 0.2 % | 20 % |
-//! | `sensor_misalignment`, `load_misalignment` | degrees | 0.1 | 10 |
-//! | `thermal_drift` | µm/K, or µm/h without a thermometer | 0.5 | 50 |
-//! | `slip` | µm | 2 | 500 |
-//! | `outlier` | standard deviations of one or two readings | 5 | 50 |
-//! | a gap that closes | stiffening beyond it | 2 % | 70 % |
-//! | sensor ripple | amplitude µm; period 20 to 200 µm | 1 | 20 |
-//! | Hertzian seat | µm at the largest load | 2 | 100 |
-//! | running in | share of the first displacement; over 3 to 30 loadings | 0.5 % | 20 % |
-//! | sensor saturation | of the channel's largest reading that is missing | 2 % | 50 % |
-//! | clamp loose one way | more displacement one way | 2 % | 50 % |
+//! | effect | size | at most |
+//! |---|---|---|
+//! | `stiffness_scale` | departure of the factor from 1, three of four softer | 40 % |
+//! | `shear_modulus` | the same | 60 % |
+//! | `joint_compliance`, `root_compliance` | of the rod's own ∫ds/EI; torsion 0.3 to 3 times that share of ∫ds/GJ, or none | 100 % |
+//! | `bend_flexibility` | of what the series for an oval section gives | 2 |
+//! | `friction`, `load_offset` | force, N, and of the smallest load | 2, 0.7 |
+//! | `backlash` | play, µm | 100 |
+//! | `creep` | per decade | 10 % |
+//! | `hysteresis` | loop width at half load | 10 % |
+//! | `nonlinear_stiffness` | share at the largest load, either sign | 20 % |
+//! | `sensor_scale` | departure of the factor from 1 | 20 % |
+//! | `sensor_misalignment`, `load_misalignment` | degrees; one sensor or axis, or the whole frame | 10 |
+//! | `thermal_drift` | µm/K, or µm/h without a thermometer; one channel, or all | 50 |
+//! | `slip` | µm; within a run, or between runs that share a zero | 500 |
+//!
+//! The largest size is 0.5 to 1 times that.
 
 use super::bench::Bench;
 use super::effect::Effect;
@@ -31,14 +28,19 @@ use rodcal_base::statistics::Random;
 use rodcal_base::units::{DEG, UM};
 
 /// Effects that a library may have, by number for [`library`].
-pub const LIBRARY: usize = 17;
-/// Effects that none has, by number for [`beyond`].
-pub const BEYOND: usize = 6;
+pub const LIBRARY: usize = 16;
+/// Range of the largest size, of the end in the table.
+const LARGEST: (f64, f64) = (0.5, 1.0);
+/// Runs on either side of a slip between runs.
+const RUNS_BESIDE: usize = 2;
 
 /// What a protocol must have to carry the effect of the library of this number.
-pub fn needs(effect: usize) -> Needs {
+pub fn needs(effect: usize, random: &mut Random) -> Needs {
     let mut needs = Needs::default();
     match effect {
+        15 if happens(random, 0.4) => {
+            needs = Needs { zeroed_once: true, trials: true, two_channels: true, long_runs: true, ..needs };
+        }
         4 => needs.arc = true,
         8 => needs.time = true,
         9 => needs.unloading = true,
@@ -51,9 +53,15 @@ pub fn needs(effect: usize) -> Needs {
     needs
 }
 
-/// The same for what is beyond the library.
-pub fn needs_beyond(effect: usize) -> Needs {
-    Needs { both_signs: effect == 5, tip: effect == 2, ..Needs::default() }
+/// What a careful laboratory records so that an effect of this number can be distinguished from the
+/// others: more axes and channels, other stations, the way down.
+pub fn careful(effect: usize, random: &mut Random) -> Needs {
+    let needs = Needs { two_axes: true, two_channels: true, ..needs(effect, random) };
+    match effect {
+        0..=4 => Needs { stations: happens(random, 0.4), ..needs },
+        5 | 6 | 8 => Needs { unloading: true, ..needs },
+        _ => needs,
+    }
 }
 
 /// Log-uniform.
@@ -69,71 +77,70 @@ pub(super) fn one_of<T: Copy>(random: &mut Random, of: &[T], otherwise: T) -> T 
     of.get(random.index(of.len())).copied().unwrap_or(otherwise)
 }
 
-/// An effect of the library at a bench that can carry it. `sd` is the noise, m; of its range in the table the part above
-/// the share `faintest` (on the logarithm) is drawn from.
-pub fn library(effect: usize, bench: &Bench, sd: f64, faintest: f64, random: &mut Random) -> Effect {
-    let log_uniform = |random: &mut Random, low: f64, high: f64| {
-        log_uniform(random, low * (high / low).powf(faintest), high)
-    };
+/// An effect of the library at a bench that can carry it, as large as it may be.
+pub fn library(effect: usize, bench: &Bench, random: &mut Random) -> Effect {
+    let large = |random: &mut Random, most: f64| most * random.uniform(LARGEST.0, LARGEST.1);
     let protocol = &bench.protocol;
     let (axes, channels, largest) = (protocol.axes(), protocol.read_channels(), protocol.largest_load());
     let sign = |random: &mut Random, negative: f64| if happens(random, negative) { -1.0 } else { 1.0 };
     match effect {
-        0 => Effect::StiffnessScale(1.0 + sign(random, 0.75) * log_uniform(random, 0.005, 0.4)),
-        1 => Effect::ShearModulus(1.0 + sign(random, 0.75) * log_uniform(random, 0.02, 0.6)),
+        0 => Effect::StiffnessScale(1.0 + sign(random, 0.75) * large(random, 0.4)),
+        1 => Effect::ShearModulus(1.0 + sign(random, 0.75) * large(random, 0.6)),
         2 => {
             let (name, station) = place(bench, random);
-            let share = log_uniform(random, 0.005, 1.0);
+            let share = large(random, 1.0);
             let [bending, torsion] = compliance(bench, share, random);
             Effect::Joint { name, station, bending, torsion }
         }
         3 => {
-            let share = log_uniform(random, 0.005, 1.0);
+            let share = large(random, 1.0);
             let [bending, torsion] = compliance(bench, share, random);
             Effect::Root { bending, torsion }
         }
         4 => {
             let oval = bench.drawing.tubes[0].ovalisation(bench.drawing.bend_radius);
-            Effect::Bend(1.0 + (oval - 1.0) * log_uniform(random, 0.3, 2.0))
+            Effect::Bend(1.0 + (oval - 1.0) * large(random, 2.0))
         }
         5 => {
-            let force = log_uniform(random, 0.02, 2.0).min(0.7 * protocol.smallest_load());
-            let axis = some_axis(&axes, random);
-            let presliding = self::log_uniform(random, 0.5, 20.0) * UM;
-            Effect::Friction { axis, force, presliding, scatter: random.uniform(0.0, 0.15) }
+            let force = large(random, 2.0).min(0.7 * protocol.smallest_load());
+            friction(some_axis(&axes, random), force, random)
         }
         6 => {
-            let force = sign(random, 0.5) * log_uniform(random, 0.02, 2.0);
+            let force = sign(random, 0.5) * large(random, 2.0);
             let force = force.max(-0.7 * protocol.smallest_load());
             Effect::LoadOffset { axis: some_axis(&axes, random), force }
         }
         7 => {
-            let play = log_uniform(random, 1.0, 100.0) * UM;
+            let play = large(random, 100.0) * UM;
             Effect::Backlash { axis: some_axis(&axes, random), play }
         }
         8 => {
-            let shortest = self::log_uniform(random, 1.0, 60.0);
-            Effect::Creep { per_decade: log_uniform(random, 0.002, 0.1), shortest }
+            let shortest = log_uniform(random, 1.0, 60.0);
+            Effect::Creep { per_decade: large(random, 0.1), shortest }
         }
-        9 => {
-            let fraction = log_uniform(random, 0.002, 0.1);
-            Effect::Hysteresis { fraction, is_exercised: happens(random, 0.5) }
-        }
+        9 => Effect::Hysteresis { fraction: large(random, 0.1), is_exercised: happens(random, 0.5) },
         10 => {
-            let share = sign(random, 0.5) * log_uniform(random, 0.002, 0.2);
+            let share = sign(random, 0.5) * large(random, 0.2);
             match happens(random, 0.5) {
                 true => Effect::Cubic(share / (largest * largest)),
                 false => Effect::Quadratic(share / largest),
             }
         }
         11 => {
-            let factor = 1.0 + sign(random, 0.5) * log_uniform(random, 0.002, 0.2);
+            let factor = 1.0 + sign(random, 0.5) * large(random, 0.2);
             Effect::SensorScale { channel: one_of(random, &channels, 0), factor }
+        }
+        12 if channels.len() > 1 && happens(random, 0.4) => {
+            Effect::SensorBlock(direction(random).map(|part| part * large(random, 10.0) * DEG))
         }
         12 => {
             let channel = one_of(random, &channels, 0);
             let towards = another(channel, random);
-            Effect::SensorMisalignment { channel, towards, angle: angle(random, faintest) }
+            let angle = sign(random, 0.5) * large(random, 10.0) * DEG;
+            Effect::SensorMisalignment { channel, towards, angle }
+        }
+        13 if axes.len() > 1 && happens(random, 0.4) => {
+            Effect::LoadFrame(direction(random).map(|part| part * large(random, 10.0) * DEG))
         }
         13 => {
             let axis = one_of(random, &axes, 0);
@@ -142,70 +149,62 @@ pub fn library(effect: usize, bench: &Bench, sd: f64, faintest: f64, random: &mu
             let towards = if frame { one_of(random, &others, 0) } else { another(axis, random) };
             let (axis, towards) =
                 if frame { (axis.min(towards), axis.max(towards)) } else { (axis, towards) };
-            Effect::LoadMisalignment { axis, towards, angle: angle(random, faintest), frame }
+            let angle = sign(random, 0.5) * large(random, 10.0) * DEG;
+            Effect::LoadMisalignment { axis, towards, angle, frame }
         }
         14 => {
             let by_time = !protocol.columns.temperature;
-            let rate = sign(random, 0.3) * log_uniform(random, 0.5, 50.0) * UM;
-            let rate = if by_time { rate / 3600.0 } else { rate };
-            Effect::Drift { channel: one_of(random, &channels, 0), rate, by_time }
+            let rate = sign(random, 0.3) * large(random, 50.0) * UM / if by_time { 3600.0 } else { 1.0 };
+            match channels.len() > 1 && happens(random, 0.4) {
+                true => Effect::DriftOfAll { rates: direction(random).map(|part| part * rate), by_time },
+                false => Effect::Drift { channel: one_of(random, &channels, 0), rate, by_time },
+            }
         }
-        15 => {
-            let inner: Vec<usize> = (2..protocol.loadings.len())
-                .filter(|&k| {
-                    let run = |k: usize| protocol.loadings.get(k).map(|l| l.run);
-                    run(k) == run(k - 2) && run(k) == run(k + 1)
-                })
-                .collect();
-            let loading = one_of(random, &inner, 1);
-            let channel = protocol.loadings.get(loading).map_or(0, |l| l.axis);
-            Effect::Slip { loading, channel, by: sign(random, 0.5) * log_uniform(random, 2.0, 500.0) * UM }
-        }
-        _ => {
-            let cells = protocol.cells().len();
-            let count = if happens(random, 0.7) { 1 } else { 2 };
-            let first = random.index(cells);
-            let second = (first + 1 + random.index(cells.saturating_sub(1))) % cells.max(1);
-            let mut size = || sign(random, 0.5) * log_uniform(random, 5.0, 50.0) * sd;
-            let of = [(first, size()), (second, size())];
-            Effect::Outlier(of[..count].to_vec())
-        }
+        _ => slip(bench, sign(random, 0.5) * large(random, 500.0) * UM, random),
     }
 }
 
-/// Physics that no library has.
-pub fn beyond(effect: usize, bench: &Bench, random: &mut Random) -> Effect {
+/// Friction of a slide that needs some way to turn round and does not stick the same each time.
+pub fn friction(axis: Option<usize>, force: f64, random: &mut Random) -> Effect {
+    let presliding = log_uniform(random, 0.5, 20.0) * UM;
+    Effect::Friction { axis, force, presliding, scatter: random.uniform(0.0, 0.15) }
+}
+
+/// A slip between two runs where their sensors are not zeroed in between, with two runs on either
+/// side; else within a run, with two readings on either side.
+fn slip(bench: &Bench, by: f64, random: &mut Random) -> Effect {
     let protocol = &bench.protocol;
-    let largest = protocol.largest_load();
-    match effect {
-        0 => {
-            let load = random.uniform(0.3, 0.7) * largest;
-            Effect::GapCloses { load, share: 1.0 - log_uniform(random, 0.02, 0.7) }
+    let loadings = &protocol.loadings;
+    let run = |k: usize| loadings.get(k).map(|l| l.run);
+    let last = loadings.last().map_or(0, |l| l.run);
+    if protocol.zeroed_once {
+        let is_between = |k: &usize| {
+            run(*k) != run(k.wrapping_sub(1))
+                && run(*k).is_some_and(|run| run >= RUNS_BESIDE && run + RUNS_BESIDE <= last + 1)
+        };
+        let first: Vec<usize> = (1..loadings.len()).filter(is_between).collect();
+        if let Some(&loading) = first.get(random.index(first.len())) {
+            let channels = protocol.read_channels();
+            return Effect::Shift { loading, channel: one_of(random, &channels, 0), by };
         }
-        1 => Effect::Ripple {
-            channel: one_of(random, &protocol.axes(), 0),
-            amplitude: log_uniform(random, 1.0, 20.0) * UM,
-            period: log_uniform(random, 20.0, 200.0) * UM,
-            phase: random.uniform(0.0, std::f64::consts::TAU),
-        },
-        2 => Effect::Seat(log_uniform(random, 2.0, 100.0) * UM),
-        3 => {
-            let share = log_uniform(random, 0.005, 0.2);
-            Effect::RunningIn { share, loadings: log_uniform(random, 3.0, 30.0) }
-        }
-        4 => {
-            let channel = one_of(random, &protocol.axes(), 0);
-            let readings = bench.readings(&[]);
-            let of = protocol.cells().into_iter().zip(readings).filter(|(cell, _)| cell.channel == channel);
-            let most = of.fold(0.0, |most: f64, (_, reading)| most.max(reading.abs()));
-            Effect::Saturation { channel, limit: most * (1.0 - log_uniform(random, 0.02, 0.5)) }
-        }
-        _ => Effect::LooseClamp(log_uniform(random, 0.02, 0.5)),
     }
+    let is_inner = |k: &usize| run(*k) == run(k - 2) && run(*k) == run(k + 1);
+    let inner: Vec<usize> = (2..loadings.len()).filter(is_inner).collect();
+    let loading = one_of(random, &inner, 1);
+    let channel = loadings.get(loading).map_or(0, |l| l.axis);
+    Effect::Slip { loading, channel, by }
+}
+
+/// A direction in space.
+pub(super) fn direction(random: &mut Random) -> [f64; 3] {
+    let drawn = [0; 3].map(|_| random.normal());
+    let norm = drawn.iter().map(|part| part * part).sum::<f64>().sqrt().max(f64::MIN_POSITIVE);
+    drawn.map(|part| part / norm)
 }
 
 /// Every effect of the library that has a meaning at a bench, wherever it may sit, at `share` of the upper end of its range;
-/// those with two numbers in two parts. Joints along the rod, slips and outliers are the oracle's own business.
+/// those with two numbers in two parts. Joints along the rod and slips are the oracle's own
+/// business.
 pub(super) fn all(bench: &Bench, share: f64) -> Vec<Vec<Effect>> {
     let protocol = &bench.protocol;
     let (axes, channels, largest) = (protocol.axes(), protocol.read_channels(), protocol.largest_load());
@@ -248,6 +247,27 @@ pub(super) fn all(bench: &Bench, share: f64) -> Vec<Vec<Effect>> {
             all.push(vec![Effect::Drift { channel, rate: 50.0 * share * UM / 3600.0, by_time: true }]);
         }
     }
+    let turns = [0, 1, 2].map(|about| {
+        let mut turn = [0.0; 3];
+        turn[about] = 10.0 * share * DEG;
+        turn
+    });
+    if channels.len() > 1 {
+        all.push(turns.map(Effect::SensorBlock).to_vec());
+        let (by_time, unit) =
+            (!protocol.columns.temperature, if protocol.columns.temperature { 1.0 } else { 3600.0 });
+        if protocol.columns.temperature || protocol.columns.time {
+            let rate = |&channel: &usize| {
+                let mut rates = [0.0; 3];
+                rates[channel] = 50.0 * share * UM / unit;
+                Effect::DriftOfAll { rates, by_time }
+            };
+            all.push(channels.iter().map(rate).collect());
+        }
+    }
+    if axes.len() > 1 {
+        all.push(turns.map(Effect::LoadFrame).to_vec());
+    }
     for &axis in &axes {
         for towards in (0..3).filter(|towards| *towards != axis) {
             let angle = 10.0 * share * DEG;
@@ -265,7 +285,13 @@ fn place(bench: &Bench, random: &mut Random) -> (Option<String>, f64) {
     let joints = &bench.drawing.joints;
     let declared = joints.get(random.index(joints.len())).filter(|_| happens(random, 0.7));
     match declared {
-        Some((name, station)) => (Some(name.clone()), *station),
+        Some((name, _)) => {
+            // where it really is
+            let rod = bench.actual.rod(&bench.drawing);
+            let is_it = |(known, _): &&(String, f64)| known == name;
+            let station = rod.joints.iter().find(is_it).map_or(0.0, |(_, station)| *station);
+            (Some(name.clone()), station)
+        }
         None => (None, random.uniform(0.1, 0.9) * bench.drawing.length()),
     }
 }
@@ -282,9 +308,4 @@ fn some_axis(axes: &[usize], random: &mut Random) -> Option<usize> {
 
 fn another(axis: usize, random: &mut Random) -> usize {
     (axis + 1 + random.index(2)) % 3
-}
-
-fn angle(random: &mut Random, faintest: f64) -> f64 {
-    let angle = log_uniform(random, 0.1 * 100f64.powf(faintest), 10.0) * DEG;
-    if happens(random, 0.5) { -angle } else { angle }
 }

@@ -3,9 +3,13 @@
 use std::f64::consts::PI;
 use std::fmt::Write;
 
+use super::actual::Uncertainty;
 use super::cosserat::{Body, Hinge, Piece};
 use super::tube::Tube;
 use rodcal_base::units::{GPA, GRAM, MM};
+
+/// Pieces to a wave along the rod.
+const CUTS: f64 = 12.0;
 
 /// A bent rod of two pipes as in the rod file, SI.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,6 +28,8 @@ pub struct Drawing {
     pub joints: Vec<(String, f64)>,
     /// Mass at the tip, kg.
     pub tip_mass: f64,
+    /// How well its numbers are known; `None`: the file leaves that to the defaults.
+    pub stated: Option<Uncertainty>,
 }
 
 /// What is different from the drawing.
@@ -37,11 +43,13 @@ pub struct Deviation {
     pub bend: Option<f64>,
     /// Joints that give way.
     pub hinges: Vec<Hinge>,
+    /// Bending × (1 + a·sin(2πs/λ + φ)) along the rod: a, λ m, φ.
+    pub wave: Option<[f64; 3]>,
 }
 
 impl Default for Deviation {
     fn default() -> Self {
-        Deviation { stiffness: 1.0, shear: 1.0, bend: None, hinges: Vec::new() }
+        Deviation { stiffness: 1.0, shear: 1.0, bend: None, hinges: Vec::new(), wave: None }
     }
 }
 
@@ -92,7 +100,22 @@ impl Drawing {
             }
             false => pieces.push(Piece { corner: self.turn(), ..second }),
         }
+        if let Some(wave) = deviation.wave {
+            pieces = wavy(&pieces, wave);
+        }
         Body { pieces, hinges: deviation.hinges.clone() }
+    }
+
+    /// True where the bend ends before its legs do and no tube is thicker than it is long.
+    pub fn is_possible(&self) -> bool {
+        let shortest = self.legs[0].min(self.legs[1]);
+        let thickest = self.tubes[0].outer.max(self.tubes[1].outer);
+        self.tangent() < 0.95 * shortest && 2.0 * thickest < self.length()
+    }
+
+    /// How well the numbers of one of its tubes are known.
+    pub fn uncertainty_of(&self, tube: &Tube) -> Uncertainty {
+        self.stated.unwrap_or_else(|| Uncertainty::default_of(tube))
     }
 
     /// The rod file; `name` is its name.
@@ -139,8 +162,40 @@ impl Drawing {
                 rounded(station / MM, 4)
             );
         }
+        if let Some(known) = &self.stated {
+            let percent = |share: f64| rounded(100.0 * share, 3);
+            let _ = write!(
+                text,
+                "[standard_uncertainty]\nyoungs_modulus_percent = {}\nshear_modulus_percent = {}\nshear_coefficient_percent = {}\ndiameter_mm = {}\nlength_mm = {}\n",
+                percent(known.youngs_modulus),
+                percent(known.shear_modulus),
+                percent(known.shear_coefficient),
+                rounded(known.diameter / MM, 4),
+                rounded(known.length / MM, 4)
+            );
+        }
         text
     }
+}
+
+/// Pieces cut into short ones, whose bending follows a wave along the rod.
+fn wavy(pieces: &[Piece], [amplitude, period, phase]: [f64; 3]) -> Vec<Piece> {
+    let mut cut = Vec::new();
+    let mut start = 0.0;
+    for piece in pieces {
+        let count = (piece.length / (period / CUTS)).ceil().max(1.0);
+        let length = piece.length / count;
+        for k in 0..count as usize {
+            let middle = start + (k as f64 + 0.5) * length;
+            let mut short = Piece { length, ..piece.clone() };
+            short.corner = if k == 0 { piece.corner } else { 0.0 };
+            short.flexibility.bending *=
+                1.0 + amplitude * (std::f64::consts::TAU * middle / period + phase).sin();
+            cut.push(short);
+        }
+        start += piece.length;
+    }
+    cut
 }
 
 /// To so many decimals, without the rounding of a change of units.
@@ -161,6 +216,7 @@ pub(super) mod tests {
             density: 7930.0,
             outer: 8e-3,
             inner: 6e-3,
+            coefficient: 1.0,
         };
         Drawing {
             legs: [0.15, 0.525],
@@ -170,6 +226,7 @@ pub(super) mod tests {
             tubes: [tube.clone(), tube],
             joints: vec![("sleeve".into(), 0.205)],
             tip_mass: 0.055,
+            stated: None,
         }
     }
 
@@ -191,6 +248,19 @@ pub(super) mod tests {
             let found = micrometres(bend, axis);
             assert!((found / expected - 1.0).abs() < 3e-4, "{axis} {found} {expected}");
         }
+    }
+
+    #[test]
+    fn a_wall_that_varies_is_as_flexible_on_average() {
+        let rod = l_shape(0.0);
+        let bends = |wave: Option<[f64; 3]>| -> f64 {
+            let body = rod.body(&Deviation { wave, ..Deviation::default() });
+            body.pieces.iter().map(|piece| piece.length * piece.flexibility.bending).sum()
+        };
+        // whole periods on either pipe
+        let wavy = bends(Some([0.2, 0.075, 0.3]));
+        assert!((wavy / bends(None) - 1.0).abs() < 1e-9, "{wavy}");
+        assert!(bends(Some([0.2, 1.35, 0.0])) > 1.1 * bends(None));
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! What may be wrong with a rig, with its names and numbers as a diagnosis states them.
 
-use super::protocol::AXES;
+use super::protocol::{AXES, Protocol};
+use crate::place::Place;
 use rodcal_base::units::{DEG, MM, UM, URAD_PER_NM};
 
 /// Something that is wrong, SI.
@@ -38,10 +39,19 @@ pub enum Effect {
     SensorMisalignment { channel: usize, towards: usize, angle: f64 },
     /// Loads along `axis` turned towards another one, rad; with `frame` loads along both turn together.
     LoadMisalignment { axis: usize, towards: usize, angle: f64, frame: bool },
+    /// The block that holds all sensors, turned by this vector, rad.
+    SensorBlock([f64; 3]),
+    /// The frame of the loads, turned by this vector, rad.
+    LoadFrame([f64; 3]),
     /// A channel drifts by so much, m/K; without a thermometer m/s of its own clock.
     Drift { channel: usize, rate: f64, by_time: bool },
+    /// All channels drift, each by its own rate, as [`Effect::Drift`].
+    DriftOfAll { rates: [f64; 3], by_time: bool },
     /// From this loading on, to the end of its run, a channel is displaced, m.
     Slip { loading: usize, channel: usize, by: f64 },
+    /// From this loading on, the first of a run, a channel is displaced for good, m: no later zero
+    /// is read.
+    Shift { loading: usize, channel: usize, by: f64 },
     /// Single readings that are wrong: index of the cell, by how much, m.
     Outlier(Vec<(usize, f64)>),
     // ---- physics that no library has ----
@@ -57,6 +67,16 @@ pub enum Effect {
     Saturation { channel: usize, limit: f64 },
     /// A clamp that is loose for loads against the axes: so much more displacement there.
     LooseClamp(f64),
+    /// Floor or clamp swing: amplitude m in {T}, period s, phase rad.
+    Oscillation { amplitude: [f64; 3], period: f64, phase: f64 },
+    /// A wall that is thicker and thinner along the rod: bending × (1 + a·sin(2πs/period + phase)),
+    /// period m.
+    Waviness { amplitude: f64, period: f64, phase: f64 },
+    /// What the load before leaves behind: displacement × (1 + k·F_before/F_largest), a product of
+    /// two loads.
+    LoadBefore(f64),
+    /// A damped slide: this share of a change of the load comes late, with this time constant, s.
+    Damping { share: f64, time: f64 },
 }
 
 impl Effect {
@@ -75,10 +95,10 @@ impl Effect {
             Effect::Hysteresis { .. } => "hysteresis",
             Effect::Cubic(_) | Effect::Quadratic(_) => "nonlinear_stiffness",
             Effect::SensorScale { .. } => "sensor_scale",
-            Effect::SensorMisalignment { .. } => "sensor_misalignment",
-            Effect::LoadMisalignment { .. } => "load_misalignment",
-            Effect::Drift { .. } => "thermal_drift",
-            Effect::Slip { .. } => "slip",
+            Effect::SensorMisalignment { .. } | Effect::SensorBlock(_) => "sensor_misalignment",
+            Effect::LoadMisalignment { .. } | Effect::LoadFrame(_) => "load_misalignment",
+            Effect::Drift { .. } | Effect::DriftOfAll { .. } => "thermal_drift",
+            Effect::Slip { .. } | Effect::Shift { .. } => "slip",
             Effect::Outlier(_) => "outlier",
             Effect::GapCloses { .. } => "a gap that closes",
             Effect::Ripple { .. } => "sensor ripple",
@@ -86,42 +106,73 @@ impl Effect {
             Effect::RunningIn { .. } => "running in",
             Effect::Saturation { .. } => "sensor saturation",
             Effect::LooseClamp(_) => "clamp loose one way",
+            Effect::Oscillation { .. } => "oscillation in time",
+            Effect::Waviness { .. } => "wall that varies along the rod",
+            Effect::LoadBefore(_) => "memory of the load before",
+            Effect::Damping { .. } => "damped slide",
         }
     }
 
-    /// Where, in the words of a diagnosis; `run` names a loading's run, `cell` a reading.
-    pub fn location(&self, run: impl Fn(usize) -> String, cell: impl Fn(usize) -> String) -> String {
-        let of_axis = |place: &str, axis: &Option<usize>| match axis {
-            Some(axis) => format!("{place}, loads along {}", AXES[*axis]),
-            None => place.to_owned(),
+    /// Where it is.
+    pub fn place(&self, protocol: &Protocol) -> Place {
+        let of_axis = |part: &str, axis: &Option<usize>| match axis {
+            Some(axis) => Place::part(part).loads_along(AXES[*axis]),
+            None => Place::part(part),
         };
+        let channel = |channel: usize| Some(format!("d{}", AXES[channel]));
+        let of_channel = |of: usize| Place { channel: channel(of), ..Place::default() };
         match self {
-            Effect::Joint { name: Some(name), .. } => name.clone(),
-            Effect::Joint { station, .. } => format!("station {:.1} mm", station / MM),
-            Effect::Root { .. } => "root".into(),
-            Effect::Bend(_) => "bend".into(),
+            Effect::Joint { name: Some(name), .. } => Place::named(name),
+            Effect::Joint { station, .. } => Place { station_mm: Some(station / MM), ..Place::default() },
+            Effect::Root { .. } => Place::part("root"),
+            Effect::Bend(_) => Place::part("bend"),
             Effect::Friction { axis, .. } => of_axis("slide", axis),
             Effect::LoadOffset { axis, .. } => of_axis("hanger", axis),
             Effect::Backlash { axis, .. } => of_axis("clamp", axis),
             Effect::SensorScale { channel, .. }
             | Effect::Drift { channel, .. }
             | Effect::Ripple { channel, .. }
-            | Effect::Saturation { channel, .. } => format!("d{}", AXES[*channel]),
+            | Effect::Saturation { channel, .. } => of_channel(*channel),
+            Effect::SensorBlock(_) | Effect::DriftOfAll { .. } => Place::part("sensors"),
+            Effect::LoadFrame(_) => Place::part("load frame"),
             Effect::SensorMisalignment { channel, towards, .. } => {
-                format!("d{} towards d{}", AXES[*channel], AXES[*towards])
+                Place { towards: Some(format!("d{}", AXES[*towards])), ..of_channel(*channel) }
             }
             Effect::LoadMisalignment { axis, towards, frame: true, .. } => {
                 let (a, b) = (axis.min(towards), axis.max(towards));
-                format!("{} and {} about {}", AXES[*a], AXES[*b], AXES[3 - a - b])
+                let axes = vec![AXES[*a], AXES[*b]];
+                Place {
+                    loads_along: Some(axes.into()),
+                    about: Some(AXES[3 - a - b].into()),
+                    ..Place::default()
+                }
             }
             Effect::LoadMisalignment { axis, towards, .. } => {
-                format!("{} towards {}", AXES[*axis], AXES[*towards])
+                let place = Place::default().loads_along(AXES[*axis]);
+                Place { towards: Some(AXES[*towards].into()), ..place }
             }
-            Effect::Slip { loading, .. } => format!("{}, after row {loading}", run(*loading)),
-            Effect::Outlier(cells) => {
-                cells.iter().map(|(index, _)| cell(*index)).collect::<Vec<_>>().join("; ")
+            Effect::Slip { loading, channel: of, .. } => {
+                let is_along = protocol.loadings.get(*loading).is_none_or(|l| l.axis == *of);
+                Place {
+                    after_row: Some(*loading),
+                    channel: channel(*of).filter(|_| !is_along),
+                    ..protocol.run_place(*loading)
+                }
             }
-            _ => "rod".into(),
+            Effect::Shift { loading, channel: of, .. } => {
+                // the last row before in which the channel was read
+                let was_read = |row: &usize| protocol.channels.get(*row).is_some_and(|read| read[*of]);
+                let last = (0..*loading).rev().find(was_read).unwrap_or(0);
+                Place { after_row: Some(last + 1), channel: channel(*of), ..protocol.run_place(last) }
+            }
+            Effect::Outlier(cells) => match cells.as_slice() {
+                [(cell, _)] => protocol.cell_place(*cell),
+                cells => {
+                    let all = cells.iter().map(|(cell, _)| protocol.cell_place(*cell)).collect();
+                    Place { all, ..Place::default() }
+                }
+            },
+            _ => Place::part("rod"),
         }
     }
 
@@ -147,7 +198,17 @@ impl Effect {
             }
             Effect::Drift { rate, by_time: true, .. } => vec![("um_per_h", rate / UM * 3600.0)],
             Effect::Drift { rate, .. } => vec![("um_per_k", rate / UM)],
-            Effect::Slip { by, .. } => vec![("um", by / UM)],
+            Effect::SensorBlock(turn) | Effect::LoadFrame(turn) => {
+                ["about_x_deg", "about_y_deg", "about_z_deg"].into_iter().zip(turn.map(|t| t / DEG)).collect()
+            }
+            Effect::DriftOfAll { rates, by_time: true } => ["dx_um_per_h", "dy_um_per_h", "dz_um_per_h"]
+                .into_iter()
+                .zip(rates.map(|rate| rate / UM * 3600.0))
+                .collect(),
+            Effect::DriftOfAll { rates, .. } => {
+                ["dx_um_per_k", "dy_um_per_k", "dz_um_per_k"].into_iter().zip(rates.map(|r| r / UM)).collect()
+            }
+            Effect::Slip { by, .. } | Effect::Shift { by, .. } => vec![("um", by / UM)],
             Effect::Outlier(cells) => cells.iter().map(|(_, by)| ("um", by / UM)).collect(),
             Effect::GapCloses { load, share } => vec![("load_n", *load), ("share", *share)],
             Effect::Ripple { amplitude, period, .. } => {
@@ -156,8 +217,20 @@ impl Effect {
             Effect::Seat(depth) => vec![("um", depth / UM)],
             Effect::RunningIn { share, loadings } => vec![("share", *share), ("loadings", *loadings)],
             Effect::Saturation { limit, .. } => vec![("limit_um", limit / UM)],
-            Effect::LooseClamp(share) => vec![("share", *share)],
+            Effect::LooseClamp(share) | Effect::LoadBefore(share) => vec![("share", *share)],
+            Effect::Oscillation { amplitude, period, .. } => {
+                vec![("um", amplitude.iter().map(|a| a * a).sum::<f64>().sqrt() / UM), ("period_s", *period)]
+            }
+            Effect::Waviness { amplitude, period, .. } => {
+                vec![("share", *amplitude), ("period_mm", period / MM)]
+            }
+            Effect::Damping { share, time } => vec![("share", *share), ("time_s", *time)],
         }
+    }
+
+    /// What belongs to one run or to one reading: no other run shows it.
+    pub fn is_of_one_run(&self) -> bool {
+        matches!(self, Effect::Slip { .. } | Effect::Shift { .. } | Effect::Outlier(_))
     }
 
     /// What may not be below zero: its opposite is no rival explanation.

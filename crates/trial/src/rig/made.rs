@@ -2,11 +2,11 @@
 
 use std::f64::consts::FRAC_PI_2;
 
+use super::actual::Actual;
 use super::bench::Bench;
 use super::drawing::Drawing;
 use super::effect::Effect;
-use super::noise::{Noise, Shape};
-use super::oracle;
+use super::noise::Noise;
 use super::protocol::{Columns, Protocol, Run, steps};
 use super::tube::Tube;
 use rodcal_base::statistics::Random;
@@ -76,16 +76,13 @@ impl Order {
         let protocol = self.protocol(drawing.length());
         let sticking = protocol.loadings.iter().map(|_| random.uniform(-1.0, 1.0)).collect();
         let full_scale = protocol.largest_load();
-        let bench = Bench { drawing, protocol, sticking, full_scale };
-        let noise = Noise { sd: self.noise, shape: Shape::Normal };
+        let bench = Bench { drawing, actual: Actual::default(), protocol, sticking, full_scale };
+        let noise = Noise::normal(self.noise);
         let shown = noise.shown(&bench, &bench.readings(effects), &mut random);
-        let place = |effect: &Effect| {
-            effect.location(|k| oracle::run_name(&bench, k), |k| oracle::cell_name(&bench, k))
-        };
         Made {
             rod: bench.drawing.toml("made"),
             readings: bench.protocol.csv(&shown),
-            places: effects.iter().map(place).collect(),
+            places: effects.iter().map(|effect| effect.place(&bench.protocol).to_string()).collect(),
         }
     }
 
@@ -102,6 +99,7 @@ impl Order {
             density: 7930.0,
             outer: 8.0 * MM,
             inner: 6.0 * MM,
+            coefficient: 1.0,
         };
         Drawing {
             legs: [200.0 * MM, 300.0 * MM],
@@ -111,6 +109,7 @@ impl Order {
             tubes: [tube.clone(), tube],
             joints: vec![("sleeve".into(), 120.0 * MM)],
             tip_mass: 0.055,
+            stated: None,
         }
     }
 
@@ -143,6 +142,8 @@ impl Order {
             // warms by 2 K per hour, with a swing
             room: [20.0, 2.0 / 3600.0, 0.3, 2400.0],
             quantum: self.quantum,
+            zeroed_once: false,
+            is_shuffled: false,
             columns: self.columns,
         }
     }

@@ -1,40 +1,49 @@
-//! What could have been known at best: the oracle sees every reading without its noise.
+//! What could have been known at best: the oracle sees every reading without its noise, and knows
+//! how well the numbers of the files are known.
 //!
-//! With δ what an effect adds, Σ the covariance of the noise, p the number of its parameters and C what a rival can add, at
-//! the upper end of its range,
+//! With δ what an effect adds, Σ the covariance of readings without one (`covariance.rs`), p the
+//! number of its parameters and C what a rival can add, at the upper end of its range,
 //!
 //! ```text
 //! log BF = ½·d² − (p/2)·ln(1 + d²)        d² = min over β of (δ − Cβ)ᵀΣ⁻¹(δ − Cβ) + βᵀβ;   against nothing C is empty
 //! ```
 //!
-//! Rivals that may not be below zero are not. A rival is all that goes by one name, wherever it sits: the best place counts.
-//! Every run's zero is a reading like any other, taken off all of its channel: Σ = s²·(1 + J) in a run and channel.
+//! Rivals that may not be below zero are not. A rival is all that goes by one name, wherever it
+//! sits: the best place counts. Physics that no library has must also differ from every two effects
+//! of it.
 
 use std::collections::BTreeMap;
 
 use nalgebra::{DMatrix, DVector};
 
 use super::bench::Bench;
+use super::covariance::{Covariance, nominal};
 use super::draw;
 use super::effect::Effect;
 use super::noise::Noise;
+use crate::place::Place;
 use crate::truth::Detectability;
 use rodcal_base::units::MM;
 
-/// Effects of other names closer than this cannot be told apart; places of one effect closer than that.
+/// Effects of other names closer than this cannot be distinguished; places of one effect closer
+/// than that.
 const SAME_EFFECT: f64 = 5.0;
 const SAME_PLACE: f64 = 3.0;
 /// Share of the upper end of its range at which a rival is linearised.
 const TYPICAL: f64 = 0.05;
 /// Half the step of a derivative, of the upper end of the range.
 const STEP: f64 = 1e-3;
+/// Size of a slip, of the largest reading.
+const SLIP: f64 = 0.5;
 /// Stations of a scan for joints.
 const STATIONS: usize = 40;
+/// So many of the best rivals are paired with so many of the best.
+const PAIRED: [usize; 2] = [4, 80];
 
 /// An effect that might be in the place of another one.
 struct Rival {
     name: &'static str,
-    location: String,
+    place: Place,
     station: Option<f64>,
     /// Whitened.
     columns: Vec<DVector<f64>>,
@@ -42,26 +51,53 @@ struct Rival {
 }
 
 /// Knows a bench and its noise.
-pub struct Oracle<'a> {
+pub struct Oracle {
     /// With a slide that always sticks the same: how it happens to stick nobody can know.
     bench: Bench,
-    noise: &'a Noise,
+    covariance: Covariance,
     rivals: Vec<Rival>,
 }
 
-impl<'a> Oracle<'a> {
-    /// With every effect of the library that has a meaning for the bench.
-    pub fn new(bench: &Bench, noise: &'a Noise) -> Self {
+impl Oracle {
+    /// One that compares with nothing being wrong only.
+    pub fn new(bench: &Bench, noise: &Noise) -> Self {
         let bench = Bench { sticking: vec![0.0; bench.sticking.len()], ..bench.clone() };
-        let mut oracle = Oracle { bench, noise, rivals: Vec::new() };
-        oracle.rivals = oracle.all_rivals();
-        oracle
+        let covariance = Covariance::new(&bench, noise);
+        Oracle { bench, covariance, rivals: Vec::new() }
+    }
+
+    /// Compares with every effect of the library that has a meaning for the bench too.
+    pub fn compare(&mut self, noise: &Noise) {
+        self.rivals = self.all_rivals(noise);
+    }
+
+    /// The share of an effect's size at which it would just be detectable: expected log Bayes
+    /// factor against nothing of [`Detectability::IDENTIFIABLE`].
+    pub fn limit(&self, effect: &Effect) -> f64 {
+        let square = self.added(std::slice::from_ref(effect), &[]).norm_squared();
+        let half = 0.5 * effect.parameters().len() as f64;
+        let evidence = |share: f64| {
+            let square = share * share * square;
+            0.5 * square - half * square.ln_1p()
+        };
+        let (mut low, mut high) = (1e-6f64, 1e6f64);
+        for _ in 0..60 {
+            let middle = (low * high).sqrt();
+            if evidence(middle) < Detectability::IDENTIFIABLE { low = middle } else { high = middle }
+        }
+        high
+    }
+
+    /// Mean square of what effects add and the numbers of the files do not take up, m².
+    pub fn mean_square_left(&self, effects: &[Effect]) -> f64 {
+        let (with, without) = (self.bench.readings(effects), self.bench.readings(&[]));
+        let left = self.covariance.left(with.iter().zip(&without).map(|(a, b)| a - b).collect());
+        left.iter().map(|x| x * x).sum::<f64>() / left.len().max(1) as f64
     }
 
     /// What of `effects` can be known of number `which`, given all others.
     pub fn detectability(&self, effects: &[Effect], which: usize) -> Detectability {
-        let without: Vec<Effect> =
-            effects.iter().enumerate().filter(|(k, _)| *k != which).map(|(_, e)| e.clone()).collect();
+        let without = others(effects, which);
         let delta = self.added(effects, &without);
         // the size of the others is not known either
         let given: Vec<DVector<f64>> =
@@ -73,20 +109,17 @@ impl<'a> Oracle<'a> {
             0.5 * square - 0.5 * parameters * square.ln_1p()
         };
         let mut best: BTreeMap<&str, f64> = BTreeMap::new();
-        let (mut places, mut stations) = (Vec::new(), Vec::new());
+        let (mut places, mut stations) = (vec![effect.place(&self.bench.protocol)], Vec::new());
         for rival in &self.rivals {
             let apart = separation(&rival.columns, rival.is_one_sided);
             if rival.name != effect.name() {
                 let least = best.entry(rival.name).or_insert(f64::INFINITY);
                 *least = least.min(apart);
             } else if apart < SAME_PLACE {
-                places.push(rival.location.clone());
+                places.push(rival.place.clone());
                 stations.extend(rival.station);
             }
         }
-        places.push(
-            effect.location(|loading| run_name(&self.bench, loading), |index| cell_name(&self.bench, index)),
-        );
         if let Effect::Joint { station, .. } = effect {
             stations.push(*station);
         }
@@ -94,6 +127,7 @@ impl<'a> Oracle<'a> {
         Detectability {
             against_none: separation(&[], false),
             against_rival: nearest.map_or(f64::MAX, |(_, apart)| *apart),
+            against_pair: None,
             best_rival: nearest.map_or_else(String::new, |(name, _)| (*name).to_owned()),
             class: best
                 .iter()
@@ -108,12 +142,40 @@ impl<'a> Oracle<'a> {
         }
     }
 
+    /// Expected log Bayes factor of an effect against every two effects of the library together.
+    pub fn against_pairs(&self, effects: &[Effect], which: usize) -> f64 {
+        let without = others(effects, which);
+        let delta = self.added(effects, &without);
+        let given: Vec<DVector<f64>> =
+            (0..without.len()).map(|k| self.added(&without, &others(&without, k))).collect();
+        let half = 0.5 * effects[which].parameters().len() as f64;
+        let separation = |columns: &[DVector<f64>], is_one_sided: bool| {
+            let square = remainder(&delta, &given, columns, is_one_sided);
+            0.5 * square - half * square.ln_1p()
+        };
+        let mut alone: Vec<(f64, &Rival)> =
+            self.rivals.iter().map(|rival| (separation(&rival.columns, rival.is_one_sided), rival)).collect();
+        alone.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut best = f64::MAX;
+        for (_, first) in alone.iter().take(PAIRED[0]) {
+            for (_, second) in alone.iter().take(PAIRED[1]) {
+                let both = [first.columns.as_slice(), second.columns.as_slice()].concat();
+                if both.len() <= 4 {
+                    best = best.min(separation(&both, first.is_one_sided && second.is_one_sided));
+                }
+            }
+        }
+        best
+    }
+
     /// What it says of other readings, m, after it has found the sizes of the effects out from what was `shown`: least squares
     /// about the truth, as Gauss and Newton's last step would be, with the upper end of its range as the standard deviation of
-    /// every size. `None` where there is no size to be found.
+    /// every size, and the numbers of the files beside them. `None` where there is no size to be
+    /// found.
     pub fn predicted(&self, effects: &[Effect], shown: &[f64], asked: &Bench) -> Option<Vec<f64>> {
         let here = self.bench.readings(effects);
-        let error = self.whitened(shown.iter().zip(&here).map(|(a, b)| a - b).collect());
+        let whitened = |v: Vec<f64>| self.covariance.over_noise(DVector::from_vec(v));
+        let error = whitened(shown.iter().zip(&here).map(|(a, b)| a - b).collect());
         let (mut columns, mut there, mut sizes) = (Vec::new(), Vec::new(), Vec::new());
         for (which, effect) in effects.iter().enumerate() {
             for (k, (size, most)) in effect.sizes(&self.bench).into_iter().enumerate() {
@@ -126,15 +188,25 @@ impl<'a> Oracle<'a> {
                     let (more, less) = (moved(STEP), moved(-STEP));
                     more.iter().zip(less).map(|(a, b)| (a - b) / (2.0 * STEP)).collect()
                 };
-                columns.push(self.whitened(slope(&self.bench)));
+                columns.push(whitened(slope(&self.bench)));
                 there.push(DVector::from_vec(slope(asked)));
                 sizes.push(size / most);
             }
         }
+        if columns.is_empty() {
+            return None;
+        }
+        for (which, (column, other)) in
+            self.covariance.nominal.column_iter().zip(nominal(asked).column_iter()).enumerate()
+        {
+            columns.push(self.covariance.over_noise(column.into_owned()));
+            there.push(other.into_owned());
+            sizes.push(self.bench.actual.error(which));
+        }
         let n = columns.len();
         let normal = DMatrix::from_fn(n, n, |i, j| columns[i].dot(&columns[j]) + f64::from(u8::from(i == j)));
         let right = DVector::from_fn(n, |i, _| columns[i].dot(&error) - sizes[i]);
-        let off = normal.cholesky().filter(|_| n > 0)?.solve(&right);
+        let off = normal.cholesky()?.solve(&right);
         let exact = DVector::from_vec(asked.readings(effects));
         let said = there.iter().zip(off.iter()).fold(exact, |said, (column, off)| said + column * *off);
         Some(said.iter().copied().collect())
@@ -143,34 +215,16 @@ impl<'a> Oracle<'a> {
     /// Whitened difference of the readings with some effects and with others.
     fn added(&self, with: &[Effect], without: &[Effect]) -> DVector<f64> {
         let difference = self.bench.readings(with).into_iter().zip(self.bench.readings(without));
-        self.whitened(difference.map(|(a, b)| a - b).collect())
+        self.covariance.whitened(difference.map(|(a, b)| a - b).collect())
     }
 
-    /// Σ^(−1/2)·v: in a group of m with one shared error, (1 + J)^(−1/2) = 1 − (1 − 1/√(1 + m))/m·J.
-    fn whitened(&self, mut v: Vec<f64>) -> DVector<f64> {
-        let protocol = &self.bench.protocol;
-        let sd = self.noise.variance(protocol.quantum).sqrt();
-        let mut groups: BTreeMap<(usize, usize), Vec<usize>> = BTreeMap::new();
-        for (index, cell) in protocol.cells().iter().enumerate() {
-            groups.entry((protocol.loadings[cell.loading].run, cell.channel)).or_default().push(index);
-        }
-        for rows in groups.values() {
-            let m = rows.len() as f64;
-            let sum: f64 = rows.iter().map(|&row| v[row]).sum();
-            let off = (1.0 - 1.0 / (1.0 + m).sqrt()) / m * sum;
-            rows.iter().for_each(|&row| v[row] -= off);
-        }
-        DVector::from_vec(v) / sd
-    }
-
-    fn all_rivals(&self) -> Vec<Rival> {
+    fn all_rivals(&self, noise: &Noise) -> Vec<Rival> {
         let bench = &self.bench;
         let protocol = &bench.protocol;
         let clean = bench.readings(&[]);
-        let sd = self.noise.variance(protocol.quantum).sqrt();
-        let run_of = |loading: usize| run_name(bench, loading);
+        let largest = clean.iter().fold(0.0, |most: f64, reading| most.max(reading.abs()));
+        let least = noise.variance(protocol.quantum).sqrt();
         let cells = protocol.cells();
-        let cell_of = |index: usize| cell_name(bench, index);
         let rival = |parts: Vec<Effect>| -> Option<Rival> {
             let first = parts.first()?.clone();
             let columns: Vec<DVector<f64>> = parts
@@ -178,16 +232,16 @@ impl<'a> Oracle<'a> {
                 .map(|part| {
                     bench.readings(&[part]).iter().zip(&clean).map(|(a, b)| (a - b) / TYPICAL).collect()
                 })
-                .map(|difference| self.whitened(difference))
+                .map(|difference| self.covariance.whitened(difference))
                 .filter(|column| column.norm() > 1e-6)
                 .collect();
             let station = match &first {
                 Effect::Joint { station, .. } => Some(*station),
                 _ => None,
             };
-            let location = first.location(run_of, cell_of);
+            let place = first.place(protocol);
             let (name, is_one_sided) = (first.name(), first.is_one_sided());
-            (!columns.is_empty()).then_some(Rival { name, location, station, columns, is_one_sided })
+            (!columns.is_empty()).then_some(Rival { name, place, station, columns, is_one_sided })
         };
         let mut rivals: Vec<Rival> = draw::all(bench, TYPICAL).into_iter().filter_map(rival).collect();
         let rotation = bench.drawing.rotation();
@@ -201,49 +255,35 @@ impl<'a> Oracle<'a> {
                 Effect::Joint { name, station, bending: 0.0, torsion },
             ])
         }));
-        // slips and outliers need no mechanics: a step, and a single reading
-        let unit = |rows: &dyn Fn(usize) -> bool, size: f64| {
-            self.whitened((0..cells.len()).map(|row| if rows(row) { size } else { 0.0 }).collect())
-        };
-        for (index, cell) in cells.iter().enumerate() {
-            let at = &protocol.loadings[cell.loading];
-            if cell.channel == at.axis {
-                let is_after = |row: usize| {
-                    let other = cells[row];
-                    let is_run = protocol.loadings[other.loading].run == at.run;
-                    other.channel == cell.channel && is_run && other.loading >= cell.loading
-                };
-                rivals.push(Rival {
-                    name: "slip",
-                    location: format!("{}, after row {}", run_of(cell.loading), cell.loading),
-                    station: None,
-                    columns: vec![unit(&is_after, 500e-6)],
-                    is_one_sided: false,
-                });
-            }
+        // slips need no mechanics: a step to the end of the run, or of the file where no zero
+        // follows
+        let size = (SLIP * largest).max(10.0 * least);
+        let mut add = |effect: Effect, of_cell: &dyn Fn(usize) -> bool| {
+            let step = (0..cells.len()).map(|row| if of_cell(row) { size } else { 0.0 }).collect();
             rivals.push(Rival {
-                name: "outlier",
-                location: cell_of(index),
+                name: effect.name(),
+                place: effect.place(protocol),
                 station: None,
-                columns: vec![unit(&|row| row == index, 50.0 * sd)],
+                columns: vec![self.covariance.whitened(step)],
                 is_one_sided: false,
             });
+        };
+        for cell in &cells {
+            let (loading, channel) = (cell.loading, cell.channel);
+            let at = &protocol.loadings[loading];
+            let is_later = |row: usize| cells[row].channel == channel && cells[row].loading >= loading;
+            if channel == at.axis {
+                add(Effect::Slip { loading, channel, by: size }, &|row| {
+                    is_later(row) && protocol.loadings[cells[row].loading].run == at.run
+                });
+            }
+            let is_first = loading > 0 && protocol.loadings[loading - 1].run != at.run;
+            if protocol.zeroed_once && is_first {
+                add(Effect::Shift { loading, channel, by: size }, &is_later);
+            }
         }
         rivals
     }
-}
-
-/// `y, trial 2`.
-pub fn run_name(bench: &Bench, loading: usize) -> String {
-    let protocol = &bench.protocol;
-    protocol.loadings.get(loading).map_or_else(String::new, |l| protocol.run_name(l.run))
-}
-
-/// `row 17 dy`.
-pub fn cell_name(bench: &Bench, index: usize) -> String {
-    bench.protocol.cells().get(index).map_or_else(String::new, |cell| {
-        format!("row {} d{}", cell.loading + 1, super::protocol::AXES[cell.channel])
-    })
 }
 
 fn others(effects: &[Effect], which: usize) -> Vec<Effect> {
@@ -278,7 +318,6 @@ fn remainder(
 mod tests {
     use super::*;
     use crate::rig::bench::tests::bench;
-    use crate::rig::noise::Shape;
 
     #[test]
     fn a_remainder_is_a_ridge_regression_that_may_be_one_sided() {
@@ -292,13 +331,14 @@ mod tests {
     }
 
     #[test]
-    fn friction_up_and_down_is_told_from_a_tare_and_a_scale_from_its_size() {
-        let (bench, noise) = (bench(), Noise { sd: 1e-6, shape: Shape::Normal });
-        let oracle = Oracle::new(&bench, &noise);
+    fn friction_up_and_down_differs_from_a_tare_and_a_faint_scale_from_nothing() {
+        let (bench, noise) = (bench(), Noise::normal(1e-6));
+        let mut oracle = Oracle::new(&bench, &noise);
+        oracle.compare(&noise);
         let friction = Effect::Friction { axis: None, force: 0.5, presliding: 1e-6, scatter: 0.0 };
         let seen = oracle.detectability(&[friction], 0);
         assert!(seen.is_identifiable() && !seen.class.contains(&"load_offset".into()), "{seen:?}");
-        assert!(seen.places.contains(&"slide".into()), "{seen:?}");
+        assert!(seen.places.contains(&Place::part("slide")), "{seen:?}");
         let faint = Effect::StiffnessScale(0.9999);
         let unseen = oracle.detectability(&[faint], 0);
         assert!(!unseen.is_identifiable() && unseen.class.len() > 5, "{unseen:?}");

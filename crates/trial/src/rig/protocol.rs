@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use super::drawing::rounded;
+use crate::place::Place;
 use rodcal_base::units::{MM, STANDARD_GRAVITY, UM};
 
 /// Names of the axes of {T}, and of the channels along them.
@@ -76,6 +77,10 @@ pub struct Protocol {
     pub room: [f64; 4],
     /// Step of the display, m.
     pub quantum: f64,
+    /// The sensors are zeroed once, before the first run, instead of before each.
+    pub zeroed_once: bool,
+    /// The loads of a run hang in any order, each on an empty hanger.
+    pub is_shuffled: bool,
     /// Which optional columns the file has.
     pub columns: Columns,
 }
@@ -138,16 +143,35 @@ impl Protocol {
         (0..3).filter(|&channel| self.channels.iter().any(|read| read[channel])).collect()
     }
 
-    /// For people: `y, trial 2`, `y, run 2` where trials have no name, `y` where there is only one.
-    pub fn run_name(&self, run: usize) -> String {
-        let Some(of) = self.loadings.iter().find(|l| l.run == run) else { return String::new() };
-        let axis = AXES[of.axis];
-        let is_only = self.loadings.iter().all(|l| l.axis != of.axis || l.run == run);
+    /// Stations that the file states, m: all but the tip, each once.
+    pub fn stations(&self) -> Vec<f64> {
+        let mut stations: Vec<f64> = self.loadings.iter().flat_map(|l| l.stations).collect();
+        stations.retain(|station| *station != self.tip);
+        stations.sort_by(f64::total_cmp);
+        stations.dedup();
+        stations
+    }
+
+    /// The run of a loading: its axis and its trial, its number where trials have no name, or
+    /// nothing more where there is only one.
+    pub fn run_place(&self, loading: usize) -> Place {
+        let Some(of) = self.loadings.get(loading) else { return Place::default() };
+        let is_only = self.loadings.iter().all(|l| l.axis != of.axis || l.run == of.run);
+        let place = Place::default().loads_along(AXES[of.axis]);
         match (self.columns.trial, is_only) {
-            (true, _) => format!("{axis}, trial {}", of.trial + 1),
-            (false, true) => axis.to_owned(),
-            (false, false) => format!("{axis}, run {}", of.trial + 1),
+            (true, _) => Place { trial: Some((of.trial + 1).to_string()), ..place },
+            (false, true) => place,
+            (false, false) => Place { run: Some(of.trial + 1), ..place },
         }
+    }
+
+    /// One number of the file.
+    pub fn cell_place(&self, index: usize) -> Place {
+        self.cells().get(index).map_or_else(Place::default, |cell| Place {
+            row: Some(cell.loading + 1),
+            channel: Some(format!("d{}", AXES[cell.channel])),
+            ..Place::default()
+        })
     }
 
     /// As in the file: blank at the tip.

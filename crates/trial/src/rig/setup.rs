@@ -2,6 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
+use super::actual::{Actual, Uncertainty};
 use super::bench::Bench;
 use super::draw::{happens, log_uniform, one_of};
 use super::drawing::{Drawing, rounded};
@@ -26,10 +27,22 @@ pub struct Needs {
     pub both_signs: bool,
     /// Every channel at every loading.
     pub two_channels: bool,
+    /// Loads along two axes at least.
+    pub two_axes: bool,
     /// Everything read and loaded at the tip.
     pub tip: bool,
     /// Two readings before and two after something that happens within a run: next to a single one it is an outlier.
     pub long_runs: bool,
+    /// Readings at another station than the tip.
+    pub stations: bool,
+    /// At least three trials.
+    pub trials: bool,
+    /// Loads in any order, each on an empty hanger.
+    pub shuffled: bool,
+    /// Waits that differ from load to load.
+    pub varied_waits: bool,
+    /// Sensors that are zeroed before the first run only.
+    pub zeroed_once: bool,
 }
 
 impl Needs {
@@ -42,8 +55,14 @@ impl Needs {
             unloading: self.unloading || other.unloading,
             both_signs: self.both_signs || other.both_signs,
             two_channels: self.two_channels || other.two_channels,
+            two_axes: self.two_axes || other.two_axes,
             tip: self.tip || other.tip,
             long_runs: self.long_runs || other.long_runs,
+            stations: self.stations || other.stations,
+            trials: self.trials || other.trials,
+            shuffled: self.shuffled || other.shuffled,
+            varied_waits: self.varied_waits || other.varied_waits,
+            zeroed_once: self.zeroed_once || other.zeroed_once,
         }
     }
 }
@@ -55,8 +74,12 @@ const TRIES: usize = 200;
 /// Loadings beyond which a laboratory drops trials.
 const MOST_LOADINGS: usize = 240;
 
-/// A bench that can carry an effect, and its noise.
-pub fn draw(needs: Needs, random: &mut Random) -> (Bench, Noise) {
+/// How many times as far off as stated the numbers of some cases are, and how often.
+const TWICE: (f64, f64) = (2.0, 0.15);
+
+/// A bench that can carry an effect, and its noise; `residuals` of a real recording are its shape
+/// where there are any.
+pub fn draw(needs: Needs, residuals: &[f64], random: &mut Random) -> (Bench, Noise, f64) {
     let largest = random.uniform(5.0, 30.0);
     let mut bench = bench(needs, largest, random);
     for _ in 0..TRIES {
@@ -69,19 +92,27 @@ pub fn draw(needs: Needs, random: &mut Random) -> (Bench, Noise) {
         }
         bench = self::bench(needs, largest, random);
     }
-    let sd = log_uniform(random, 0.5, 5.0) * UM;
-    let shape = match random.index(10) {
-        0..6 => Shape::Normal,
-        6 | 7 => Shape::StudentT(4 + random.index(7) as u32),
-        _ => Shape::Contaminated,
-    };
+    let times = if happens(random, TWICE.1) { TWICE.0 } else { 1.0 };
+    bench.actual = Actual::drawn(&bench.drawing, &bench.protocol.stations(), times, random);
+    let noise = noise(residuals, random);
     let steps: Vec<f64> = [0.1, 1.0, 2.0, 5.0, 10.0]
         .into_iter()
         .map(|step| step * UM)
-        .filter(|step| *step < 3.0 * sd)
+        .filter(|step| *step < 3.0 * noise.sd)
         .collect();
     bench.protocol.quantum = one_of(random, &steps, 0.1 * UM);
-    (bench, Noise { sd, shape })
+    (bench, noise, times)
+}
+
+/// Normal as often as heavy-tailed, some of it correlated along the run.
+fn noise(residuals: &[f64], random: &mut Random) -> Noise {
+    let shape = match residuals {
+        [] if happens(random, 0.5) => Shape::Normal,
+        [] => Shape::StudentT(3 + random.index(6) as u32),
+        residuals => Shape::Bootstrap(residuals.to_vec()),
+    };
+    let correlation = if happens(random, 0.25) { random.uniform(0.2, 0.6) } else { 0.0 };
+    Noise { sd: log_uniform(random, 0.5, 5.0) * UM, shape, correlation, zero: random.uniform(0.3, 2.0) }
 }
 
 fn bench(needs: Needs, largest: f64, random: &mut Random) -> Bench {
@@ -89,7 +120,25 @@ fn bench(needs: Needs, largest: f64, random: &mut Random) -> Bench {
     let protocol = protocol(&drawing, needs, largest, random);
     let sticking = protocol.loadings.iter().map(|_| random.uniform(-1.0, 1.0)).collect();
     let full_scale = protocol.largest_load();
-    Bench { drawing, protocol, sticking, full_scale }
+    Bench { drawing, actual: Actual::default(), protocol, sticking, full_scale }
+}
+
+/// What a careful file states of its numbers, which need not be the defaults.
+fn stated(tubes: &[Tube; 2], random: &mut Random) -> Option<Uncertainty> {
+    if happens(random, 0.6) {
+        return None;
+    }
+    // one table for all materials: that of the less well known
+    let vague = tubes.each_ref().map(Uncertainty::default_of);
+    let most = |of: fn(&Uncertainty) -> f64| of(&vague[0]).max(of(&vague[1]));
+    let share = random.uniform(0.3, 1.0);
+    Some(Uncertainty {
+        youngs_modulus: rounded(share * most(|u| u.youngs_modulus), 4),
+        shear_modulus: rounded(share * most(|u| u.shear_modulus), 4),
+        shear_coefficient: rounded(share * most(|u| u.shear_coefficient), 4),
+        diameter: one_of(random, &[0.01, 0.02, 0.05], 0.03) * MM,
+        length: one_of(random, &[0.1, 0.2, 0.5], 0.3) * MM,
+    })
 }
 
 fn tube(random: &mut Random) -> Tube {
@@ -110,10 +159,12 @@ fn tube(random: &mut Random) -> Tube {
         density,
         outer: outer / 2.0 * MM,
         inner: (outer - 2.0 * wall) / 2.0 * MM,
+        coefficient: 1.0,
     }
 }
 
-fn drawing(needs: Needs, random: &mut Random) -> Drawing {
+/// A rod that a workshop might have made.
+pub fn drawing(needs: Needs, random: &mut Random) -> Drawing {
     let length = random.uniform(100.0, 700.0);
     let share = random.uniform(0.2, 0.8);
     let legs = [share, 1.0 - share].map(|share| rounded(length * share, 1) * MM);
@@ -143,7 +194,9 @@ fn drawing(needs: Needs, random: &mut Random) -> Drawing {
         tubes: if second.material == first.material { [first.clone(), first] } else { [first, second] },
         joints: Vec::new(),
         tip_mass: rounded(random.uniform(20.0, 120.0), 0) * 1e-3,
+        stated: None,
     };
+    drawing.stated = stated(&drawing.tubes, random);
     if has_arc && !needs.arc {
         // a careful file states what the bend really is
         drawing.bend_factor = rounded(drawing.tubes[0].ovalisation(bend_radius), 4);
@@ -158,7 +211,7 @@ fn drawing(needs: Needs, random: &mut Random) -> Drawing {
 }
 
 fn protocol(drawing: &Drawing, needs: Needs, largest: f64, random: &mut Random) -> Protocol {
-    let axes: &[usize] = match random.index(10) {
+    let axes: &[usize] = match random.index(if needs.two_axes { 8 } else { 10 }) {
         0..5 => &[1, 2],
         5..8 => &[0, 1, 2],
         8 => &[1],
@@ -166,25 +219,37 @@ fn protocol(drawing: &Drawing, needs: Needs, largest: f64, random: &mut Random) 
     };
     let kilograms = happens(random, 0.4);
     let loads = loads(largest, kilograms, if needs.long_runs { 4 } else { 3 }, random);
-    let trials = 1 + random.index(6);
-    let has_unloading = needs.unloading || happens(random, 0.5);
+    let trials = if needs.trials { 3 + random.index(4) } else { 1 + random.index(6) };
+    let trials = if needs.stations { trials.max(2) } else { trials };
+    let is_shuffled = needs.shuffled || (!needs.unloading && !needs.both_signs && happens(random, 0.06));
+    let has_unloading = !is_shuffled && (needs.unloading || happens(random, 0.5));
+    let varies = needs.varied_waits || happens(random, 0.2);
     let ends_at_zero = has_unloading && happens(random, 0.3);
     // against the axis by accident of the setup, or both ways in one run
-    let both_ways = needs.both_signs || happens(random, 0.15);
+    let both_ways = needs.both_signs || (!is_shuffled && happens(random, 0.15));
     let signs: Vec<f64> = axes.iter().map(|_| if happens(random, 0.2) { -1.0 } else { 1.0 }).collect();
     let per_run = loads.len() * if has_unloading { 2 } else { 1 } * if both_ways { 2 } else { 1 };
-    let trials = trials.min(MOST_LOADINGS / (per_run * axes.len())).max(1);
+    let fewest = if needs.stations {
+        2
+    } else if needs.trials {
+        3
+    } else {
+        1
+    };
+    let trials = trials.min(MOST_LOADINGS / (per_run * axes.len())).max(fewest);
+    let zeroed_once = needs.zeroed_once || happens(random, 0.08);
     let dwell = log_uniform(random, 10.0, 120.0);
     let rest = log_uniform(random, 60.0, 1200.0);
     let tip = drawing.length();
     let elsewhere = rounded(random.uniform(0.3, 0.8) * tip / MM, 0) * MM;
-    let has_station = !needs.tip && happens(random, 0.15);
-    let (moves_load, moves_sensor) = (has_station && happens(random, 0.5), has_station);
+    let has_station = needs.stations || (!needs.tip && happens(random, 0.15));
+    let moves_load = has_station && !needs.stations && happens(random, 0.5);
+    let moves_sensor = has_station;
     let (mut loadings, mut time, mut run) = (Vec::new(), 0.0, 0);
     for trial in 0..trials {
         for (&axis, &first_sign) in axes.iter().zip(&signs) {
-            let zeroed = time;
-            // every second trial at the other station, so that the file tells them apart
+            let zeroed = if zeroed_once { 0.0 } else { time };
+            // every second trial at the other station, so that the file distinguishes them
             let stations = match (has_station && trial % 2 == 1, moves_load) {
                 (true, true) => [elsewhere, tip],
                 (true, false) if moves_sensor => [tip, elsewhere],
@@ -194,9 +259,14 @@ fn protocol(drawing: &Drawing, needs: Needs, largest: f64, random: &mut Random) 
             for sign in ways {
                 let run = Run { axis, sign, trial, run, zeroed, stations };
                 let to_zero = ends_at_zero.then_some((0.0, true));
-                for step in steps(&loads, has_unloading).into_iter().chain(to_zero) {
+                let mut steps = steps(&loads, has_unloading);
+                if is_shuffled {
+                    shuffle(&mut steps, random);
+                }
+                for step in steps.into_iter().chain(to_zero) {
                     let changed = time;
-                    time = rounded(changed + dwell * random.uniform(0.8, 1.2), 1);
+                    let wait = if varies { log_uniform(random, 0.3, 4.0) } else { random.uniform(0.8, 1.2) };
+                    time = rounded(changed + dwell * wait, 1);
                     loadings.push(run.loading(step, changed, time));
                 }
             }
@@ -218,7 +288,14 @@ fn protocol(drawing: &Drawing, needs: Needs, largest: f64, random: &mut Random) 
     let drift = random.uniform(-2.0, 2.0) / 3600.0;
     let room = [20.0, drift, random.uniform(0.0, 0.5), random.uniform(1800.0, 7200.0)];
     let channels = loadings.iter().map(|l| read(l.axis)).collect();
-    Protocol { loadings, channels, tip, room, quantum: 0.0, columns }
+    Protocol { loadings, channels, tip, room, quantum: 0.0, zeroed_once, is_shuffled, columns }
+}
+
+/// By R. A. Fisher and F. Yates.
+fn shuffle<T>(all: &mut [T], random: &mut Random) {
+    for k in (1..all.len()).rev() {
+        all.swap(k, random.index(k + 1));
+    }
 }
 
 /// So many to ten loads up to the largest, at even steps or as the weights happen to be.

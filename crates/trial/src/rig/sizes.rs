@@ -34,8 +34,14 @@ impl Effect {
             Effect::SensorMisalignment { angle, .. } | Effect::LoadMisalignment { angle, .. } => {
                 vec![(angle, 10.0 * DEG)]
             }
+            Effect::SensorBlock(turn) | Effect::LoadFrame(turn) => {
+                turn.map(|angle| (angle, 10.0 * DEG)).to_vec()
+            }
             Effect::Drift { rate, by_time, .. } => {
                 vec![(rate, 50.0 * UM / if by_time { 3600.0 } else { 1.0 })]
+            }
+            Effect::DriftOfAll { rates, by_time } => {
+                rates.map(|rate| (rate, 50.0 * UM / if by_time { 3600.0 } else { 1.0 })).to_vec()
             }
             _ => Vec::new(),
         }
@@ -62,7 +68,57 @@ impl Effect {
             | Effect::SensorMisalignment { angle: size, .. }
             | Effect::LoadMisalignment { angle: size, .. }
             | Effect::Drift { rate: size, .. } => *size += by,
+            Effect::SensorBlock(sizes)
+            | Effect::LoadFrame(sizes)
+            | Effect::DriftOfAll { rates: sizes, .. } => {
+                sizes[which] += by;
+            }
             _ => {}
+        }
+        effect
+    }
+
+    /// The same effect with this share of its size.
+    pub(super) fn scaled(&self, share: f64) -> Effect {
+        let mut effect = self.clone();
+        match &mut effect {
+            Effect::StiffnessScale(factor)
+            | Effect::ShearModulus(factor)
+            | Effect::Bend(factor)
+            | Effect::SensorScale { factor, .. } => *factor = 1.0 + share * (*factor - 1.0),
+            Effect::GapCloses { share: stiff, .. } => *stiff = 1.0 + share * (*stiff - 1.0),
+            Effect::Joint { bending, torsion, .. } | Effect::Root { bending, torsion } => {
+                *bending *= share;
+                *torsion *= share;
+            }
+            Effect::Friction { force: size, .. }
+            | Effect::LoadOffset { force: size, .. }
+            | Effect::Backlash { play: size, .. }
+            | Effect::Creep { per_decade: size, .. }
+            | Effect::Hysteresis { fraction: size, .. }
+            | Effect::Cubic(size)
+            | Effect::Quadratic(size)
+            | Effect::SensorMisalignment { angle: size, .. }
+            | Effect::LoadMisalignment { angle: size, .. }
+            | Effect::Drift { rate: size, .. }
+            | Effect::Slip { by: size, .. }
+            | Effect::Shift { by: size, .. }
+            | Effect::Ripple { amplitude: size, .. }
+            | Effect::Seat(size)
+            | Effect::RunningIn { share: size, .. }
+            | Effect::LooseClamp(size)
+            | Effect::Waviness { amplitude: size, .. }
+            | Effect::LoadBefore(size)
+            | Effect::Damping { share: size, .. } => *size *= share,
+            Effect::SensorBlock(sizes)
+            | Effect::LoadFrame(sizes)
+            | Effect::DriftOfAll { rates: sizes, .. }
+            | Effect::Oscillation { amplitude: sizes, .. } => {
+                sizes.iter_mut().for_each(|size| *size *= share)
+            }
+            Effect::Outlier(cells) => cells.iter_mut().for_each(|(_, size)| *size *= share),
+            // a limit has no size of its own
+            Effect::Saturation { .. } => {}
         }
         effect
     }
@@ -72,14 +128,14 @@ impl Effect {
 mod tests {
     use super::*;
     use crate::rig::bench::tests::bench;
-    use crate::rig::draw;
+    use crate::rig::{beyond, draw};
     use rodcal_base::statistics::Random;
 
     #[test]
     fn every_effect_of_the_library_has_its_sizes_within_the_range() {
         let (bench, mut random) = (bench(), Random::seeded(3, 0));
-        for number in (0..draw::LIBRARY - 2).filter(|number| *number != 4) {
-            let effect = draw::library(number, &bench, UM, 0.0, &mut random);
+        for number in (0..draw::LIBRARY - 1).filter(|number| *number != 4) {
+            let effect = draw::library(number, &bench, &mut random);
             let sizes = effect.sizes(&bench);
             assert!(!sizes.is_empty(), "{effect:?}");
             for (k, (size, most)) in sizes.into_iter().enumerate() {
@@ -90,5 +146,29 @@ mod tests {
             }
         }
         assert!(Effect::Outlier(vec![(0, 1.0)]).sizes(&bench).is_empty());
+    }
+
+    #[test]
+    fn half_an_effect_does_half_as_much() {
+        let (bench, mut random) = (bench(), Random::seeded(4, 0));
+        let clean = bench.readings(&[]);
+        let library = (0..draw::LIBRARY).filter(|number| *number != 4);
+        let of_library = library.map(|number| draw::library(number, &bench, &mut random).scaled(0.1));
+        let mut effects: Vec<Effect> = of_library.collect();
+        let mut random = Random::seeded(5, 0);
+        effects
+            .extend((0..beyond::BEYOND).map(|number| beyond::draw(number, &bench, &mut random).scaled(0.1)));
+        for effect in effects {
+            let added = |share: f64| -> Vec<f64> {
+                let with = bench.readings(&[effect.scaled(share)]);
+                with.iter().zip(&clean).map(|(a, b)| a - b).collect()
+            };
+            let (whole, half) = (added(1.0), added(0.5));
+            let norm = |v: &[f64]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
+            let off: Vec<f64> = half.iter().zip(&whole).map(|(half, whole)| half - 0.5 * whole).collect();
+            // a slide turns round within its presliding: more than half
+            let within = if effect.name() == "friction" { 0.2 } else { 0.05 };
+            assert!(norm(&off) <= within * norm(&whole), "{effect:?} {} {}", norm(&off), norm(&whole));
+        }
     }
 }

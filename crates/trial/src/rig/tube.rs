@@ -17,6 +17,8 @@ pub struct Tube {
     pub outer: f64,
     /// Inner radius a, m.
     pub inner: f64,
+    /// The section's shear coefficient over that of the formula.
+    pub coefficient: f64,
 }
 
 /// What a cross-section gives way per unit of length.
@@ -63,7 +65,7 @@ impl Tube {
         let (e, g) = (self.youngs_modulus * youngs_factor, self.shear_modulus * shear_factor);
         Flexibility {
             axial: 1.0 / (e * self.area()),
-            shear: 1.0 / (self.shear_coefficient() * g * self.area()),
+            shear: 1.0 / (self.coefficient * self.shear_coefficient() * g * self.area()),
             bending: 1.0 / (e * self.second_moment()),
             torsion: 1.0 / (2.0 * g * self.second_moment()),
         }
@@ -90,7 +92,15 @@ mod tests {
 
     fn tube(inner: f64) -> Tube {
         let (youngs_modulus, shear_modulus) = (200e9, 80e9);
-        Tube { material: "steel", youngs_modulus, shear_modulus, density: 7900.0, outer: 8e-3, inner }
+        Tube {
+            material: "steel",
+            youngs_modulus,
+            shear_modulus,
+            density: 7900.0,
+            outer: 8e-3,
+            inner,
+            coefficient: 1.0,
+        }
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! How well readings are foretold that were asked for and not given.
+//! How well readings are predicted that were asked for and not given.
 
 use std::fmt;
 
@@ -25,7 +25,7 @@ pub struct Counterfactual {
 const MOST_WORST: usize = 10;
 
 impl Counterfactual {
-    /// Of a case with an oracle; `None` where nothing was foretold, or not each reading.
+    /// Of a case with an oracle; `None` where nothing was predicted, or not each reading.
     pub fn new(truth: &Truth, answer: &Answer) -> Option<Self> {
         let asked = truth.asked.as_ref()?;
         let error = |said: &[f64]| -> Option<f64> {
@@ -57,7 +57,7 @@ fn moved_onto(said: &[f64], goal: &[f64]) -> Option<Vec<f64>> {
 
 /// Errors of what was asked over the oracle's, of the identifiable cases with an oracle.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
-pub struct Foretold {
+pub struct Predictions {
     /// Such cases.
     pub n: usize,
     /// Those that were answered.
@@ -86,29 +86,29 @@ pub struct Worst {
     pub errors: Counterfactual,
 }
 
-/// How well identifiable cases with an oracle are foretold.
-pub fn foretold(cases: &[Judged<'_>]) -> Foretold {
+/// How well identifiable cases with an oracle are predicted.
+pub fn predictions(cases: &[Judged<'_>]) -> Predictions {
     let is_asked = |case: &&Judged<'_>| {
         let has_oracle = case.truth.asked.as_ref().is_some_and(|asked| asked.oracle_um.is_some());
         let is_identifiable = case.truth.effects.iter().all(|e| e.detectability.is_identifiable());
         has_oracle && is_identifiable && matches!(case.truth.kind, Kind::Single | Kind::Pair)
     };
     let asked: Vec<&Judged<'_>> = cases.iter().filter(is_asked).collect();
-    let mut told: Vec<(f64, Counterfactual, &Judged<'_>)> = asked
+    let mut predicted: Vec<(f64, Counterfactual, &Judged<'_>)> = asked
         .iter()
         .filter_map(|case| Some((case.counterfactual?.ratio()?, case.counterfactual?, *case)))
         .collect();
-    told.sort_by(|a, b| a.0.total_cmp(&b.0));
+    predicted.sort_by(|a, b| a.0.total_cmp(&b.0));
     let sorted = |of: &dyn Fn(&Counterfactual) -> f64| -> Vec<f64> {
-        let mut all: Vec<f64> = told.iter().map(|(_, errors, _)| of(errors)).collect();
+        let mut all: Vec<f64> = predicted.iter().map(|(_, errors, _)| of(errors)).collect();
         all.sort_by(f64::total_cmp);
         all
     };
-    let ratios: Vec<f64> = told.iter().map(|(ratio, ..)| *ratio).collect();
-    let worst = told.iter().rev().take(MOST_WORST);
-    Foretold {
+    let ratios: Vec<f64> = predicted.iter().map(|(ratio, ..)| *ratio).collect();
+    let worst = predicted.iter().rev().take(MOST_WORST);
+    Predictions {
         n: asked.len(),
-        answered: told.len(),
+        answered: predicted.len(),
         median: quantile(&ratios, 0.5),
         quartiles: [0.25, 0.75].map(|share| quantile(&ratios, share)),
         answer_over_noise_median: quantile(&sorted(&|e| e.answer_um / e.noise_um), 0.5),
@@ -124,7 +124,7 @@ pub fn foretold(cases: &[Judged<'_>]) -> Foretold {
 }
 
 /// `1.31 (median of 40 of 41 cases; half of them 1.02 to 2.50)`.
-impl fmt::Display for Foretold {
+impl fmt::Display for Predictions {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (Some(median), [Some(low), Some(high)]) = (self.median, self.quartiles) else {
             return f.write_str("no case");

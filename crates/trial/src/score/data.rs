@@ -8,7 +8,8 @@ use serde::{Serialize, Serializer};
 use serde_json::{Value, json};
 
 use super::{
-    Bin, Confusion, Failure, Foretold, Missed, NextMeasurement, PowerBin, Rate, tables::confusion_text,
+    Bin, Confusion, Failure, Missed, NextMeasurement, PowerBin, Predictions, Rate, Reached,
+    tables::confusion_text,
 };
 use crate::envelope::unwritable;
 
@@ -43,8 +44,16 @@ pub struct Part {
     pub pairs: Pairs,
     /// Physics that no library has.
     pub unknown: Unknown,
+    /// One effect is concealed that is too small for anybody to detect.
+    pub below: Below,
+    /// Something was written wrongly.
+    pub mistakes: Mistakes,
+    /// Single readings were misread.
+    pub suspects: Suspects,
     /// The strongest finding is concealed, of the cases with a finding.
     pub right_when_named: Rate,
+    /// It is, or something of its class is that the oracle cannot distinguish from it.
+    pub right_or_inseparable: Rate,
     /// Something of its class is.
     pub class_right_when_named: Rate,
     /// 95 % intervals that hold the truth.
@@ -55,8 +64,8 @@ pub struct Part {
     /// Readings that were asked for and not given: the median of `counterfactual`, and all of it.
     pub counterfactual_over_oracle: Option<f64>,
     #[allow(missing_docs)]
-    pub counterfactual: Foretold,
-    /// What became of the proposals of ambiguous answers.
+    pub counterfactual: Predictions,
+    /// What the proposals of ambiguous answers led to.
     pub next_measurement_ok: NextMeasurement,
     /// Cases with one effect by what the oracle could know.
     pub bins: Vec<Bin>,
@@ -68,6 +77,8 @@ pub struct Part {
     pub power: BTreeMap<String, Vec<PowerBin>>,
     /// Cases that somebody should look at.
     pub failures: Vec<Failure>,
+    /// What was to be reached, missed targets first.
+    pub targets: Vec<Reached>,
     /// What was to be reached and was not.
     pub missed_targets: Vec<Missed>,
 }
@@ -79,6 +90,10 @@ pub struct Clean {
     pub false_names: Rate,
     /// A remainder was called unexplained.
     pub false_unexplained: Rate,
+    /// Neither, of the recordings whose files state their numbers' uncertainty rightly,
+    pub silent: Rate,
+    /// and of those whose numbers are off by twice that.
+    pub silent_twice: Rate,
 }
 
 /// Of cases with one effect.
@@ -120,6 +135,43 @@ pub struct Unknown {
     pub wrongly_named: Rate,
 }
 
+/// Of cases whose effect is below the detection limit.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct Below {
+    /// Nothing was found, as is right,
+    pub silent: Rate,
+    /// or its class holds the truth,
+    pub silent_or_right: Rate,
+    /// or something else was named.
+    pub wrongly_named: Rate,
+}
+
+/// Of cases with a mistake in their files, but for `invented`.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct Mistakes {
+    /// Its name was said, with its factor where it has one,
+    pub named: Rate,
+    /// and its place.
+    pub placed: Rate,
+    /// Something else was said, or something that has no name.
+    pub as_other: Rate,
+    /// Nothing was found.
+    pub silent: Rate,
+    /// A mistake was named in a case without one.
+    pub invented: Rate,
+    /// Those that were named, by the mistake.
+    pub by_mistake: BTreeMap<String, Rate>,
+}
+
+/// Of cases with misread readings.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct Suspects {
+    /// Every misread reading was called suspect.
+    pub remarked: Rate,
+    /// Something was reported as a finding.
+    pub named: Rate,
+}
+
 /// Intervals that hold the truth.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Coverage {
@@ -131,11 +183,12 @@ pub struct Coverage {
 
 impl Serialize for Clean {
     fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
-        let Clean { false_names, false_unexplained } = self;
+        let Clean { false_names, false_unexplained, silent, silent_twice } = self;
         json!({
             "n": false_names.of,
             "false_names": false_names.count, "false_unexplained": false_unexplained.count,
             "false_names_rate": false_names, "false_unexplained_rate": false_unexplained,
+            "silent_rate": silent, "silent_twice_rate": silent_twice,
         })
         .serialize(serializer)
     }
@@ -221,9 +274,12 @@ impl Score {
 
 impl Part {
     fn text(&self) -> String {
-        let Part { clean, single, pairs, unknown, .. } = self;
-        let mut text = String::new();
+        let Part { clean, single, pairs, unknown, below, mistakes, suspects, .. } = self;
+        let mut text: String = self.targets.iter().map(|reached| format!("{reached}\n")).collect();
+        text += "\n";
         let mut say = |what: &str, words: &dyn Display| text += &format!("{what:44} {words}\n");
+        say("clean: silent", &clean.silent);
+        say("clean, numbers twice as far off: silent", &clean.silent_twice);
         say("clean: false names", &clean.false_names);
         say("clean: called unexplained", &clean.false_unexplained);
         say("single, identifiable: name right", &single.name_ok);
@@ -233,11 +289,25 @@ impl Part {
             "single, detectable, named: truth in class",
             &format!("{}; class of {:.1}", single.in_class, single.class_size),
         );
+        say("single, below the limit: silent", &below.silent);
+        say("single, below the limit: silent or right", &below.silent_or_right);
+        say("single, below the limit: wrongly named", &below.wrongly_named);
         say("pairs, identifiable: both found", &pairs.both_found);
         say("pairs, identifiable: one found", &pairs.one_found);
         say("unknown, identifiable: called unexplained", &unknown.called_unknown);
         say("unknown, identifiable: wrongly named", &unknown.wrongly_named);
+        say("mistakes: named", &mistakes.named);
+        say("mistakes: named and placed", &mistakes.placed);
+        say("mistakes: named as something else", &mistakes.as_other);
+        say("mistakes: silent", &mistakes.silent);
+        say("no mistake: a mistake named", &mistakes.invented);
+        for (mistake, rate) in &mistakes.by_mistake {
+            say(&format!("  {mistake}: named"), rate);
+        }
+        say("misread readings: all remarked", &suspects.remarked);
+        say("misread readings: something named", &suspects.named);
         say("right when it names", &self.right_when_named);
+        say("right, or not distinguishable, when it names", &self.right_or_inseparable);
         say("right, or in its class, when it names", &self.class_right_when_named);
         say("95 % intervals that hold the truth", &self.coverage.all);
         let gain = self.gain_over_oracle.map_or("no case".into(), |gain| format!("{gain:.3}"));

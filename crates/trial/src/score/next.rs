@@ -1,5 +1,5 @@
-//! Whether the measurement that an answer proposes settles what it could not tell apart: it is made with the concealed
-//! effects, put below the recording, and diagnosed once more.
+//! Whether the measurement that an answer proposes settles what it could not distinguish: it is
+//! made with the concealed effects, put below the recording, and diagnosed once more.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -11,6 +11,7 @@ use serde_json::{Value, json};
 use super::judged::{Finding, Judged, first_word};
 use super::place;
 use super::rate::Rate;
+use crate::place::Place;
 use crate::truth::{Concealed, Kind, Truth};
 use crate::{calibration, rig};
 use rodcal_base::error::Result;
@@ -22,12 +23,13 @@ pub struct Due {
     /// `rig/case-0001`.
     pub case: String,
     seed: Option<u64>,
+    residuals: Vec<f64>,
     /// What the answer proposes, in words and as numbers; `None` where it proposes nothing.
     words: Option<String>,
     proposed: Option<Value>,
 }
 
-/// What became of a proposal.
+/// What a proposal led to.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Outcome {
     /// The answer proposed nothing.
@@ -45,13 +47,14 @@ impl Due {
         Some(Due {
             case: case.truth.case.clone(),
             seed: case.truth.seed,
+            residuals: case.truth.residuals.clone(),
             words: finding.next_measurement.clone(),
             proposed: finding.next_measurement_plan.clone().filter(|plan| !plan.is_null()),
         })
     }
 
-    /// The case's files that change when what is proposed is measured and put below the recording, name and text; `Err` is what
-    /// became of the proposal where there are none.
+    /// The case's files that change when what is proposed is measured and put below the recording,
+    /// name and text; `Err` is what the proposal led to where there are none.
     ///
     /// # Errors
     /// [`rodcal_base::Error::File`] where a sealed file cannot be read.
@@ -64,7 +67,7 @@ impl Due {
         };
         let (half, number) = self.case.split_once("/case-").unwrap_or_default();
         let (Some(seed), Ok(number)) = (self.seed, number.parse()) else { return not("the key has no seed") };
-        let [before, after] = match once_more(half, seed, number, proposed) {
+        let [before, after] = match once_more(half, seed, number, &self.residuals, proposed) {
             Ok(files) => files,
             Err(why) => return not(why),
         };
@@ -86,6 +89,7 @@ fn once_more(
     half: &str,
     seed: u64,
     number: usize,
+    residuals: &[f64],
     proposed: &Value,
 ) -> std::result::Result<[Files; 2], &'static str> {
     const NONE: &str = "not a measurement";
@@ -95,15 +99,15 @@ fn once_more(
         return Ok([again.before, again.after]);
     }
     let proposed = rig::Proposed::deserialize(proposed).map_err(|_| NONE)?;
-    let again = rig::again(seed, number, &proposed)?;
+    let again = rig::again(seed, number, residuals, &proposed)?;
     Ok([again.before, again.after].map(|text| vec![("readings.csv".to_owned(), text)]))
 }
 
 /// The strongest finding, where it is ambiguous and its class holds the truth, with that truth.
 fn ambiguous<'a>(case: &'a Judged<'_>) -> Option<(&'a Finding, &'a Concealed)> {
     let is_of_library = matches!(case.truth.kind, Kind::Single | Kind::Pair);
-    let finding = case.findings.first().filter(|_| is_of_library)?;
-    let is_ambiguous = !finding.indistinguishable_from.is_empty() || !finding.places.is_empty();
+    let finding = case.sought().next().filter(|_| is_of_library)?;
+    let is_ambiguous = !finding.indistinguishable_from.is_empty() || finding.other_places().next().is_some();
     let class = case.class();
     let concealed = case.truth.effects.iter().find(|e| class.contains(&e.effect.as_str()))?;
     is_ambiguous.then_some((finding, concealed))
@@ -112,10 +116,10 @@ fn ambiguous<'a>(case: &'a Judged<'_>) -> Option<(&'a Finding, &'a Concealed)> {
 /// True where the truth is now a finding, at its place, that none of its former rivals can stand for.
 fn is_settled(truth: &Truth, before: &Finding, concealed: &Concealed, after: &Judged<'_>) -> bool {
     let named: Vec<&Finding> = match truth.kind {
-        Kind::Single => after.findings.iter().take(1).collect(),
-        _ => after.findings.iter().collect(),
+        Kind::Single => after.sought().take(1).collect(),
+        _ => after.sought().collect(),
     };
-    let is_right = |place: &str| place::is_same(truth, concealed, place);
+    let is_right = |place: &Place| place::is_same(truth, concealed, Some(place));
     let was_rival = |name: &str| {
         name == before.effect || before.indistinguishable_from.iter().any(|known| first_word(known) == name)
     };
@@ -123,14 +127,14 @@ fn is_settled(truth: &Truth, before: &Finding, concealed: &Concealed, after: &Ju
         let others = finding.indistinguishable_from.iter().map(|name| first_word(name));
         let is_apart = others.filter(|name| *name != concealed.effect).all(|name| !was_rival(name));
         // places matter where they were what was ambiguous
-        let was_wrong = |place: &&String| before.places.contains(place) && !is_right(place);
+        let was_wrong = |place: &Place| before.other_places().any(|known| known == place) && !is_right(place);
         let is_there = before.effect != concealed.effect
-            || (is_right(&finding.location) && !finding.places.iter().any(|place| was_wrong(&place)));
+            || (finding.place.as_ref().is_some_and(is_right) && !finding.other_places().any(was_wrong));
         finding.effect == concealed.effect && is_apart && is_there
     })
 }
 
-/// What became of the proposals.
+/// What the proposals led to.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct NextMeasurement {
     /// Proposals that settled what was ambiguous.
@@ -180,12 +184,12 @@ impl Said {
             effect: finding.effect.clone(),
             location: finding.location.clone(),
             indistinguishable_from: finding.indistinguishable_from.clone(),
-            places: finding.places.clone(),
+            places: finding.other_places().map(Place::to_string).collect(),
         }
     }
 }
 
-/// Counts what became of the proposals.
+/// Counts what the proposals led to.
 pub fn next_measurement(cases: &[Judged<'_>], outcomes: &BTreeMap<&str, &Outcome>) -> NextMeasurement {
     let mut next = NextMeasurement::default();
     for case in cases {

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde::Serialize;
 
-use super::judged::Judged;
+use super::judged::{Finding, Judged};
 use super::rate::Rate;
 use crate::truth::Kind;
 
@@ -52,7 +52,7 @@ pub fn bins(cases: &[Judged<'_>]) -> Vec<Bin> {
         name.add(case.name_ok());
         place.add(case.location_ok());
         class.add(case.in_class());
-        missed.add(case.findings.is_empty());
+        missed.add(case.sought().next().is_none());
     }
     let of_bin = |(k, [name, place, class, missed]): (usize, &[Rate; 4])| {
         let [from, to] = limits(&DETECTABILITY, k);
@@ -104,7 +104,8 @@ pub fn power(cases: &[Judged<'_>]) -> BTreeMap<String, Vec<PowerBin>> {
     rates.into_iter().map(of_effect).collect()
 }
 
-/// Truth → answer → number of cases: clean ones, and identifiable ones with a single effect or an unknown one.
+/// Truth → answer → number of cases: clean ones, and identifiable ones with a single effect, an
+/// unknown one or a mistake.
 pub type Confusion = BTreeMap<String, BTreeMap<String, usize>>;
 
 /// For each truth how often which answer came.
@@ -113,7 +114,9 @@ pub fn confusion(cases: &[Judged<'_>]) -> Confusion {
     for case in cases {
         let truth = match (case.truth.kind, case.truth.effects.first()) {
             (Kind::Clean, _) => "nothing",
-            (Kind::Single | Kind::Unknown, Some(e)) if e.detectability.is_identifiable() => &e.effect,
+            (Kind::Single | Kind::Unknown | Kind::Mistake, Some(e)) if e.detectability.is_identifiable() => {
+                &e.effect
+            }
             _ => continue,
         };
         *counts.entry(truth.to_owned()).or_default().entry(case.said().to_owned()).or_default() += 1;
@@ -167,18 +170,30 @@ pub struct Failure {
 pub fn failures(cases: &[Judged<'_>]) -> Vec<Failure> {
     let what = |case: &Judged<'_>| -> Option<&'static str> {
         let is_identifiable = case.truth.effects.iter().all(|e| e.detectability.is_identifiable());
+        let is_below = case.truth.effects.iter().all(|e| !e.detectability.is_detectable());
+        let has_mistake = case.findings.iter().any(Finding::is_mistake);
+        let is_named = case.sought().next().is_some();
         Some(match case.truth.kind {
             _ if case.failed => "failed",
-            Kind::Clean if !case.findings.is_empty() => "clean, named",
+            Kind::Mistake if case.is_silent() => "mistake, silent",
+            Kind::Mistake if case.mistake_named().is_none() => "mistake, something else",
+            Kind::Mistake if !case.mistake_placed() => "mistake, wrong place",
+            Kind::Mistake => return None,
+            _ if has_mistake => "a mistake that nobody made",
+            Kind::Clean if is_named => "clean, named",
             Kind::Clean if case.is_unexplained => "clean, called unexplained",
+            Kind::Suspect if is_named => "misread readings, named",
+            Kind::Suspect if !case.all_remarked() => "misread readings, not remarked",
+            Kind::Suspect => return None,
+            Kind::Single if is_below && is_named && !case.in_class() => "below the limit, named",
             _ if !is_identifiable => return None,
-            Kind::Single if case.findings.is_empty() && case.is_unexplained => "single, called unexplained",
-            Kind::Single if case.findings.is_empty() => "single, missed",
+            Kind::Single if !is_named && case.is_unexplained => "single, called unexplained",
+            Kind::Single if !is_named => "single, missed",
             Kind::Single if !case.name_ok() => "single, wrong name",
             Kind::Single if !case.location_ok() => "single, wrong place",
             Kind::Single if case.has_more() => "single, more named",
             Kind::Pair if case.truth.effects.iter().any(|e| case.found(e).is_none()) => "pair, not both",
-            Kind::Unknown if !case.findings.is_empty() => "unknown, named",
+            Kind::Unknown if is_named => "unknown, named",
             Kind::Unknown if !case.is_unexplained => "unknown, missed",
             _ => return None,
         })
@@ -188,6 +203,7 @@ pub fn failures(cases: &[Judged<'_>]) -> Vec<Failure> {
             .truth
             .effects
             .iter()
+            .chain(&case.truth.companions)
             .map(|e| {
                 let numbers: Vec<String> =
                     e.parameters.iter().map(|p| format!("{} {:.3e}", p.name, p.value)).collect();

@@ -1,6 +1,6 @@
 //! What happened once: slips and misread values.
 
-use super::places::{measured_channels, runs_by_channel};
+use super::places::runs_by_sensor;
 use super::{Context, Datum, Entry, RigEffect, UNBOUNDED, entry, of, parameter};
 use crate::diagnosis::rig::action::Action;
 use crate::inference::{Effect, Kind, Location, Reported, Run, Variable, WrittenTo};
@@ -8,6 +8,9 @@ use crate::units::UM;
 
 /// Slip of a bond or a clamp as a share of the largest reading.
 const STEP: f64 = 0.05;
+
+/// Most places in a run that are tried; of a longer run every second one, or fewer.
+const MOST_SLIPS: usize = 200;
 
 /// Everything after one row of a run is shifted.
 pub static SLIP: RigEffect = RigEffect {
@@ -41,7 +44,8 @@ fn slips(context: &mut Context) -> Vec<Entry> {
     let data = context.data;
     let size = STEP * context.largest_reading();
     let of_run = |(run, rows): (Run, Vec<usize>)| {
-        (2..rows.len().saturating_sub(1)).map(move |first| {
+        let step = rows.len().div_ceil(MOST_SLIPS).max(1);
+        (2..rows.len().saturating_sub(1)).step_by(step).map(move |first| {
             let before = &data[rows[first - 1]];
             let is_other = before.channel != before.direction.axis;
             let channel = is_other.then_some(before.channel);
@@ -51,28 +55,32 @@ fn slips(context: &mut Context) -> Vec<Entry> {
             entry(&SLIP, location, um, Action::Shift(weights))
         })
     };
-    let within: Vec<Entry> = runs_by_channel(data).into_iter().flat_map(of_run).collect();
+    let within: Vec<Entry> = runs_by_sensor(data).into_iter().flat_map(of_run).collect();
     within.into_iter().chain(between_runs(data, size)).collect()
 }
 
-/// Everything after a run is shifted: of each channel, between any two runs with runs on either side.
+/// Everything after a run is shifted: of each sensor, between any two runs with runs on either side.
 fn between_runs(data: &[Datum], size: f64) -> Vec<Entry> {
     let mut entries = Vec::new();
-    for channel in measured_channels(data) {
+    let mut sensors: Vec<_> = data.iter().map(Datum::sensor).collect();
+    sensors.sort_unstable();
+    sensors.dedup();
+    for sensor in sensors {
+        let channel = sensor.0;
         let mut last_of_run: Vec<(usize, usize)> = Vec::new();
-        for (i, datum) in data.iter().enumerate().filter(|(_, datum)| datum.channel == channel) {
+        for (i, datum) in data.iter().enumerate().filter(|(_, datum)| datum.sensor() == sensor) {
             match last_of_run.iter_mut().find(|(run, _)| *run == datum.run) {
                 Some((_, last)) => *last = i,
                 None => last_of_run.push((datum.run, i)),
             }
         }
-        last_of_run.sort_by_key(|(_, last)| data[*last].row);
+        last_of_run.sort_by_key(|(_, last)| data[*last].order);
         for &(_, last) in last_of_run.iter().skip(1).rev().skip(2) {
             let before = &data[last];
             let weights: Vec<(usize, f64)> = data
                 .iter()
                 .enumerate()
-                .filter(|(_, later)| later.channel == channel && later.row > before.row)
+                .filter(|(_, later)| later.sensor() == sensor && later.order > before.order)
                 .map(|(i, _)| (i, 1.0))
                 .collect();
             let run = Run { axis: before.direction.axis, name: before.run_name() };

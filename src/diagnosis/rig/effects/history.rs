@@ -2,7 +2,9 @@
 
 use super::{Context, Entry, RigEffect, along_the_load, alternative, entry, of, parameter};
 use crate::diagnosis::rig::action::Action;
-use crate::diagnosis::rig::load_history::{Clock, History, Loop, Memory, creep, hysteresis, warmth};
+use crate::diagnosis::rig::load_history::{
+    Clock, History, Loop, Memory, Onset, creep, hysteresis, is_stated, onsets, warmth,
+};
 use crate::diagnosis::rig::{Body, RigModel};
 use crate::inference::{Effect, Finding, Kind, Location, Part, Reported, Variable, WrittenTo};
 use crate::units::significant;
@@ -15,6 +17,10 @@ const PER_DECADE: f64 = 0.03;
 const CREEP_STARTS: [f64; 4] = [1.0, 10.0, 60.0, 600.0];
 /// Growth of the deflection per kelvin.
 const PER_KELVIN: f64 = 5e-4;
+/// Most runs whose onset of creep is found, each for itself; and how long before its first reading, in usual steps of time.
+const MOST_ONSETS: usize = 12;
+const ONSET_START: f64 = CREEP_STARTS[1];
+const LATEST: f64 = 100.0;
 /// Width of a hysteresis loop as a share of full scale.
 const LOOP: f64 = 0.02;
 
@@ -47,10 +53,13 @@ pub static CREEP: RigEffect = RigEffect {
         name: "creep",
         kind: Kind::Physics,
         summary: "the deflection grows with the logarithm of time",
-        formula: "u = C·F·(1 + k·log₁₀(1 + t/t₀)), t₀ 1, 10, 60 or 600 s, by four clocks",
+        formula: "u = C·F·(1 + k·log₁₀(1 + t/t₀)), t₀ 1, 10, 60 or 600 s, by several clocks",
         prior: "3 % per decade of time: bondlines and laminates",
-        parameters: &[("per_decade", "k, growth per decade of time")],
-        needs: "times that differ (column `time_s`)",
+        parameters: &[
+            ("per_decade", "k, growth per decade of time"),
+            ("onset_s", "how long before the first reading of a run its load was hung, by that clock"),
+        ],
+        needs: "times that differ (column `time_s`); `loaded_at_s` says when each load was hung",
         cause: "creep",
         cause_at: |_| "creep".into(),
         written_to: WrittenTo::Nowhere,
@@ -67,7 +76,12 @@ pub static CREEP: RigEffect = RigEffect {
             _ => "under load",
         };
         let growth = of(finding, "per_decade").map(|share| 100.0 * share).say("%");
-        format!("The deflections grow by {growth} per decade of time {since}")
+        match model.data().iter().any(|d| d.imposed.is_some()) {
+            true => {
+                format!("Under a held displacement the load falls by {growth} per decade of time {since}")
+            }
+            false => format!("The deflections grow by {growth} per decade of time {since}"),
+        }
     },
 };
 
@@ -111,7 +125,7 @@ pub static HYSTERESIS: RigEffect = RigEffect {
         name: "hysteresis",
         kind: Kind::Physics,
         summary: "unloading differs from loading, and not by friction",
-        formula: "a loop h of full scale wide at half load, in six forms",
+        formula: "a loop h of full scale wide at half load, in seven forms",
         prior: "2 % of full scale: 0.1 % of a load cell, some per cent of bonds and clamps",
         parameters: &[("fraction", "h, width of the loop over full scale")],
         needs: "unloading (column `phase`)",
@@ -166,13 +180,16 @@ fn observed_curvature(finding: &Finding, model: &RigModel) -> String {
 
 /// Creep by each clock that may be meant.
 fn creeping(context: &mut Context) -> Vec<Entry> {
+    let clocks = if is_stated(context.data) { &Clock::STATED[..] } else { &Clock::ALL[..] };
     let mut known: Vec<Memory> = Vec::new();
     let mut entries = Vec::new();
     for t0 in CREEP_STARTS {
-        for clock in Clock::ALL {
+        // with an onset of its own for each run t₀ is a part of that
+        for &clock in clocks.iter().filter(|clock| **clock != Clock::UnknownOnset || t0 == ONSET_START) {
             let Some(memory) = creep(context.data, clock, t0) else { continue };
             // two clocks that show the same time are one
-            if known.contains(&memory) {
+            let is_free = clock == Clock::UnknownOnset;
+            if known.contains(&memory) && !is_free {
                 continue;
             }
             known.push(memory.clone());
@@ -180,7 +197,22 @@ fn creeping(context: &mut Context) -> Vec<Entry> {
             let location = Location::Form { part: Part::Rod, form };
             let per_decade = parameter("per_decade", 1.0, 0.0, PER_DECADE, (0.0, 1.0));
             let action = Action::Memory(memory, History::Creep(clock, t0));
-            entries.push(alternative(entry(&CREEP, location, per_decade, action)));
+            let (mut creep, mut actions) = alternative(entry(&CREEP, location, per_decade, action));
+            if is_free {
+                let onsets = onsets(context.data, t0, MOST_ONSETS);
+                if onsets.is_empty() {
+                    continue;
+                }
+                let onset = |onset: Onset| {
+                    let usual = onset.usual;
+                    let before = parameter("onset_s", 1.0, usual, usual, (0.0, LATEST * usual));
+                    (before, Action::Onset(onset))
+                };
+                let (parameters, more): (Vec<_>, Vec<_>) = onsets.into_iter().map(onset).unzip();
+                creep.parameters.extend(parameters);
+                actions.extend(more);
+            }
+            entries.push((creep, actions));
         }
     }
     entries

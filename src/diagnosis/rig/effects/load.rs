@@ -1,20 +1,26 @@
 //! What happens to a load before the rod feels it: friction, offset, play, direction.
 
-use super::places::loaded_axes;
-use super::{
-    Context, Entry, NOT_NEGATIVE, RigEffect, along_the_load, candidate, entry, of, parameter, preferring,
-    said,
-};
-use crate::diagnosis::rig::action::Action;
+use super::places::{loaded_axes, sessions};
+use super::{Context, Entry, RigEffect, along_the_load, candidate, entry, of, parameter, preferring, said};
+use crate::diagnosis::rig::action::{Action, Scope};
 use crate::diagnosis::rig::datum::Datum;
-use crate::inference::{Effect, Finding, Kind, Location, Parameter, Part, Reported, WrittenTo};
+use crate::inference::{Candidate, Effect, Finding, Kind, Location, Parameter, Part, Reported, WrittenTo};
 use crate::spatial::Axis;
-use crate::units::{DEG, UM};
+use crate::units::{DEG, UM, significant};
 
 /// Friction of a slide as a share of the largest load.
 const SLIDE: f64 = 0.05;
 /// Weight of a hanger that was forgotten, or error of a tare, as a share of the largest load.
 const TARE: f64 = 0.05;
+/// Travel over which friction turns round as a share of the largest displacement.
+const PRESLIDING: f64 = 0.05;
+/// Plays of friction that are tried, as shares of the largest displacement, and how far from one of them another one begins.
+const PLAYS: [f64; 10] = [0.01, 0.015, 0.025, 0.04, 0.06, 0.09, 0.13, 0.2, 0.3, 0.45];
+const SPAN: f64 = 1.35;
+/// Play as a share of the largest displacement at most.
+const MOST_PLAY: f64 = 0.9;
+/// How often friction that turns round over a travel is met for one that turns round at once.
+const RARE: f64 = 0.2;
 /// Play of a clamp or of a threaded holder as a share of the largest reading.
 const PLAY: f64 = 0.025;
 /// What the eye allows when a load or a sensor is set up, rad.
@@ -31,8 +37,12 @@ pub static FRICTION: RigEffect = RigEffect {
         summary: "friction in the slide holds back part of each load",
         formula: "F = load − f while loading (not below zero), load + f while unloading",
         prior: "5 % of the largest load: the paper's lines cross the load axis at 0.9 to 1.1 of 20 N",
-        parameters: &[("force_n", "friction force")],
-        needs: "loads; unloading (column `phase`) distinguishes it from an offset",
+        parameters: &[
+            ("force_n", "friction force"),
+            ("presliding_um", "travel over which friction turns round, where the displacement is imposed"),
+            ("play_um", "play on either side that the motion crosses at every turn, likewise"),
+        ],
+        needs: "loads; unloading distinguishes it from an offset",
         cause: "friction in the slide",
         cause_at: |location| "friction in the slide".to_owned() + &under(location),
         written_to: WrittenTo::Recording,
@@ -43,14 +53,27 @@ pub static FRICTION: RigEffect = RigEffect {
     needs_rod: false,
     candidates: |context| {
         let largest = context.largest_load();
-        of_axes(context.data, Part::Slide, &|location, axes| {
-            let force = parameter("force_n", 1.0, 0.0, SLIDE * largest, (0.0, largest));
-            entry(&FRICTION, location, force, Action::Friction(axes))
-        })
+        let force = || parameter("force_n", 1.0, 0.0, SLIDE * largest, (0.0, largest));
+        let mut entries = of_axes(context.data, Part::Slide, &|location, scope| {
+            entry(&FRICTION, location, force(), Action::Friction(scope))
+        });
+        let at_turns = at_turns(context, &force());
+        entries[0].0.is_alternative = !at_turns.is_empty();
+        entries.extend(at_turns);
+        entries
     },
     missing: |_| "no load was applied",
     observed: |finding, model| {
         let (load, force) = (each_load(finding), said(finding, "force_n", "N"));
+        if model.data().iter().any(|d| d.imposed.is_some()) {
+            let over = finding
+                .quantity("presliding_um")
+                .map_or_else(String::new, |travel| format!(" over {} of travel", travel.size().say("µm")));
+            let play = finding.quantity("play_um").map_or_else(String::new, |play| {
+                format!(", behind a play of {} on either side", play.size().say("µm"))
+            });
+            return format!("Friction of {force} resists the motion and turns round with it{over}{play}");
+        }
         match model.data().iter().any(Datum::is_unloading) {
             true => format!(
                 "About {force} of {load} does not reach the rod while loading, and as much remains on it \
@@ -82,13 +105,17 @@ pub static LOAD_OFFSET: RigEffect = RigEffect {
     needs_rod: false,
     candidates: |context| {
         let largest = context.largest_load();
-        of_axes(context.data, Part::Hanger, &|location, axes| {
+        of_axes(context.data, Part::Hanger, &|location, scope| {
             let force = parameter("force_n", 1.0, 0.0, TARE * largest, (-largest, largest));
-            entry(&LOAD_OFFSET, location, force, Action::LoadOffset(axes))
+            entry(&LOAD_OFFSET, location, force, Action::LoadOffset(scope))
         })
     },
     missing: |_| "no load was applied",
-    observed: |finding, _| {
+    observed: |finding, model| {
+        if model.data().iter().any(|d| d.imposed.is_some()) {
+            let error = of(finding, "force_n").map(|force| -force).say("N");
+            return format!("The load cell shows {error} too much{}", under(&finding.location));
+        }
         let word = if of(finding, "force_n").value >= 0.0 { "larger" } else { "smaller" };
         let force = said(finding, "force_n", "N");
         format!("The true value of {} is {force} {word} than stated", each_load(finding))
@@ -115,9 +142,10 @@ pub static BACKLASH: RigEffect = RigEffect {
     needs_rod: false,
     candidates: |context| {
         let largest = context.largest_reading();
-        of_axes(context.data, Part::Clamp, &|location, axes| {
-            let play = parameter("play_um", UM, 0.0, PLAY * largest, NOT_NEGATIVE);
-            entry(&BACKLASH, location, play, Action::Play(axes))
+        let most = most_play(context.data);
+        of_axes(context.data, Part::Clamp, &|location, scope| {
+            let play = parameter("play_um", UM, 0.0, PLAY * largest, (0.0, most));
+            entry(&BACKLASH, location, play, Action::Play(scope))
         })
     },
     missing: |_| "no channel was read along a load",
@@ -167,16 +195,60 @@ pub static LOAD_MISALIGNMENT: RigEffect = RigEffect {
     },
 };
 
-/// A part as a whole, and under the loads of each axis: a rig is set up anew for each direction.
-fn of_axes(data: &[Datum], part: Part, make: &dyn Fn(Location, [bool; 3]) -> Entry) -> Vec<Entry> {
-    let axes = loaded_axes(data);
-    let mut entries = vec![make(Location::Part(part), [true; 3])];
-    if axes.len() > 1 {
-        entries.extend(
-            axes.into_iter()
-                .map(|axis| make(Location::UnderLoads { part, axis }, Axis::ALL.map(|other| other == axis))),
-        );
+/// Friction of loads that are measured while the displacement goes to and fro: one that turns round over some travel, and one
+/// behind a play that the motion crosses at every turn.
+fn at_turns(context: &Context, force: &Parameter) -> Vec<Entry> {
+    let largest = largest_imposed(context.data);
+    let is_moving = context.data.iter().any(|d| d.imposed.is_some() && d.is_unloading());
+    if largest == 0.0 || !is_moving {
+        return Vec::new();
     }
+    let scope = Scope { axes: [true; 3], session: None };
+    let of_form = |form: String, weight: f64, travel: Parameter, action: Action| {
+        let location = Location::Form { part: Part::Slide, form };
+        let candidate = candidate(&FRICTION.effect, location, vec![force.clone(), travel]);
+        let candidate = Candidate { is_alternative: true, weight, ..candidate };
+        (candidate, vec![Action::Friction(scope), action])
+    };
+    let presliding = parameter("presliding_um", UM, 0.0, PRESLIDING * largest, (0.0, largest));
+    let mut entries = vec![of_form("with presliding".into(), RARE, presliding, Action::Presliding)];
+    for share in PLAYS {
+        let play = share * largest;
+        // a reading is in the gap or beyond it: no step from here leads to a play of another size
+        let travel = parameter("play_um", UM, play, 0.25 * play, (play / SPAN, play * SPAN));
+        let form = format!("with a play of about {} µm at every turn", significant(play / UM, 2));
+        entries.push(of_form(form, RARE / PLAYS.len() as f64, travel, Action::SliderPlay));
+    }
+    entries
+}
+
+/// The largest displacement that was imposed, m.
+fn largest_imposed(data: &[Datum]) -> f64 {
+    data.iter().filter_map(|d| d.imposed).fold(0.0, |most: f64, u| most.max(u.displacement.abs()))
+}
+
+/// The largest play, m: what an imposed displacement never crosses is no play.
+fn most_play(data: &[Datum]) -> f64 {
+    match largest_imposed(data) {
+        0.0 => f64::INFINITY,
+        largest => MOST_PLAY * largest,
+    }
+}
+
+/// A part as a whole, under the loads of each axis and in each session: a rig is set up anew for each.
+fn of_axes(data: &[Datum], part: Part, make: &dyn Fn(Location, Scope) -> Entry) -> Vec<Entry> {
+    let axes = loaded_axes(data);
+    let everywhere = Scope { axes: [true; 3], session: None };
+    let mut entries = vec![make(Location::Part(part), everywhere)];
+    if axes.len() > 1 {
+        entries.extend(axes.into_iter().map(|axis| {
+            let scope = Scope { axes: Axis::ALL.map(|other| other == axis), ..everywhere };
+            make(Location::UnderLoads { part, axis }, scope)
+        }));
+    }
+    entries.extend(sessions(data).into_iter().map(|(number, session)| {
+        make(Location::InSession { part, session }, Scope { session: Some(number), ..everywhere })
+    }));
     preferring(entries, |candidate| matches!(candidate.location, Location::Part(_)))
 }
 
@@ -240,8 +312,9 @@ pub(super) fn whole_turn(finding: &Finding) -> String {
 
 /// `each load`, or `each load along y` where it is those of one axis only.
 fn each_load(finding: &Finding) -> String {
-    match finding.location {
+    match &finding.location {
         Location::UnderLoads { axis, .. } => format!("each load along {axis}"),
+        Location::InSession { session, .. } => format!("each load of session {session}"),
         _ => "each load".to_owned(),
     }
 }
@@ -250,6 +323,7 @@ fn each_load(finding: &Finding) -> String {
 fn under(location: &Location) -> String {
     match location {
         Location::UnderLoads { axis, .. } => format!(" under loads along {axis}"),
+        Location::InSession { session, .. } => format!(" in session {session}"),
         _ => String::new(),
     }
 }

@@ -1,6 +1,6 @@
 //! Where effects may sit: axes, channels, runs, and stations along the rod.
 
-use crate::diagnosis::rig::datum::Datum;
+use crate::diagnosis::rig::datum::{Datum, numbered};
 use crate::diagnosis::rig::load_history::runs;
 use crate::inference::{Run, RunName};
 use crate::rod::Rod;
@@ -26,21 +26,33 @@ pub(super) fn measured_channels(data: &[Datum]) -> Vec<Axis> {
     Axis::ALL.into_iter().filter(|channel| data.iter().any(|d| d.channel == *channel)).collect()
 }
 
-/// The data of each run and channel.
-pub(super) fn runs_by_channel(data: &[Datum]) -> Vec<(Run, Vec<usize>)> {
+/// Most sessions that are told apart.
+const MOST_SESSIONS: usize = 12;
+
+/// Number and name of each session, where there are several.
+pub(super) fn sessions(data: &[Datum]) -> Vec<(usize, String)> {
+    let mut sessions: Vec<(usize, String)> = Vec::new();
+    for datum in data {
+        if sessions.iter().all(|(number, _)| *number != datum.session_number) {
+            let name = datum.session.clone().unwrap_or_else(|| "without a name".into());
+            sessions.push((datum.session_number, name));
+        }
+    }
+    if (2..=MOST_SESSIONS).contains(&sessions.len()) { sessions } else { Vec::new() }
+}
+
+/// The data of each run and sensor: of each channel at each place where it was read.
+pub(super) fn runs_by_sensor(data: &[Datum]) -> Vec<(Run, Vec<usize>)> {
     let mut groups = Vec::new();
     for run in runs(data) {
         let first = &data[run[0]];
         let axis = first.direction.axis;
         let has_others = data.iter().any(|d| d.direction.axis == axis && d.run != first.run);
-        let name = match &first.trial {
-            Some(trial) => Some(RunName::Trial(trial.clone())),
-            None => has_others.then_some(RunName::Number(first.trial_number + 1)),
-        };
-        for channel in Axis::ALL {
-            let of_channel: Vec<usize> =
-                run.iter().copied().filter(|&i| data[i].channel == channel).collect();
-            groups.push((Run { axis, name: name.clone() }, of_channel));
+        let name = first.run_name().or(has_others.then_some(RunName::Number(first.trial_number + 1)));
+        let sensors = numbered(run.iter().map(|&i| data[i].sensor()));
+        for sensor in 0..sensors.iter().max().map_or(0, |last| last + 1) {
+            let of_sensor = run.iter().zip(&sensors).filter(|(_, own)| **own == sensor).map(|(&i, _)| i);
+            groups.push((Run { axis, name: name.clone() }, of_sensor.collect()));
         }
     }
     groups

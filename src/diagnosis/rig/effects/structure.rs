@@ -1,6 +1,6 @@
 //! What the rod is: moduli, joints, root, bend.
 
-use super::places::stations;
+use super::places::{sessions, stations};
 use super::{
     Context, Entry, NOT_NEGATIVE, RigEffect, along_the_load, candidate, entry, of, parameter, preferring,
     said,
@@ -8,7 +8,9 @@ use super::{
 use crate::diagnosis::rig::action::Action;
 use crate::diagnosis::rig::structure::Structure;
 use crate::diagnosis::rig::{Body, RigModel, STATION};
-use crate::inference::{Effect, Finding, ForwardModel, Kind, Location, Part, Quantity, Reported, WrittenTo};
+use crate::inference::{
+    Candidate, Effect, Finding, ForwardModel, Kind, Location, Part, Quantity, Reported, WrittenTo,
+};
 use crate::rod::BendFlexibility;
 use crate::units::{MM, URAD_PER_NM, significant};
 
@@ -147,14 +149,14 @@ pub static ROOT_COMPLIANCE: RigEffect = RigEffect {
         direct_check: None,
     },
     needs_rod: true,
-    candidates: |context| {
-        let Body::Rod(structure) = &mut *context.body else { return Vec::new() };
-        joint(structure, &ROOT_COMPLIANCE, Location::Part(Part::Root), 0.0, [0.0; 2], None)
-            .into_iter()
-            .collect()
-    },
+    candidates: roots,
     missing: |_| NOT_YIELDING,
-    observed: |finding, model| format!("The rod's root gives way by {}", amount(finding, model)),
+    observed: |finding, model| match &finding.location {
+        Location::InSession { session, .. } => {
+            format!("In session {session} the rod's root gives way by {} more", amount(finding, model))
+        }
+        _ => format!("The rod's root gives way by {}", amount(finding, model)),
+    },
 };
 
 /// The pipe of the bend becomes oval.
@@ -195,6 +197,27 @@ pub static BEND_FLEXIBILITY: RigEffect = RigEffect {
     },
     observed: |finding, _| format!("The bend is {} times as flexible as a beam", said(finding, "factor", "")),
 };
+
+/// The root, and that of each session, in which the rod was mounted anew.
+fn roots(context: &mut Context) -> Vec<Entry> {
+    let sessions = sessions(context.data);
+    let Body::Rod(structure) = &mut *context.body else { return Vec::new() };
+    let root = Location::Part(Part::Root);
+    let Some((everywhere, actions)) = joint(structure, &ROOT_COMPLIANCE, root, 0.0, [0.0; 2], None) else {
+        return Vec::new();
+    };
+    let of_session = |(number, session): (usize, String)| {
+        let location = Location::InSession { part: Part::Root, session };
+        let in_session = |action: &Action| match action {
+            Action::Joint(joint, _) => Action::JointIn(number, *joint),
+            other => other.clone(),
+        };
+        (Candidate { location, ..everywhere.clone() }, actions.iter().map(in_session).collect())
+    };
+    let mut entries: Vec<Entry> = sessions.into_iter().map(of_session).collect();
+    entries.insert(0, (everywhere, actions));
+    preferring(entries, |candidate| candidate.location == Location::Part(Part::Root))
+}
 
 /// Declared joints, then joints that nobody declared along the rod. A value is a joint's whole
 /// compliance, to be written into the rod file. A joint that nobody declared may be anywhere up to

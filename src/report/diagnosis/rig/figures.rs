@@ -191,7 +191,7 @@ struct Located {
 fn located(finding: &Finding, rod: &Rod) -> Option<Located> {
     let label = finding.location.to_string();
     let (at, between) = match &finding.location {
-        Location::Part(Part::Root) => (0.0, None),
+        Location::Part(Part::Root) | Location::InSession { part: Part::Root, .. } => (0.0, None),
         Location::Part(Part::Bend) => (0.5 * (rod.bend_start() + rod.bend_end()), None),
         Location::Station(at) => {
             let station = finding.estimates.iter().find(|estimate| estimate.name == "station_mm");

@@ -32,8 +32,17 @@ pub(in crate::rig) fn bench() -> Bench {
     let channels = vec![[true; 3]; loadings.len()];
     let room = [20.0, 1e-3, 0.0, 3600.0];
     let sticking = vec![0.0; loadings.len()];
-    let protocol = Protocol { loadings, channels, tip, room, quantum: 0.0, columns };
-    Bench { drawing, protocol, sticking, full_scale: 6.0 }
+    let protocol = Protocol {
+        loadings,
+        channels,
+        tip,
+        room,
+        quantum: 0.0,
+        zeroed_once: false,
+        is_shuffled: false,
+        columns,
+    };
+    Bench { drawing, actual: Actual::default(), protocol, sticking, full_scale: 6.0 }
 }
 
 /// What an effect adds to a channel at the loadings of the first run: three up, two down, zero.

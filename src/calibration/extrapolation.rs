@@ -29,6 +29,9 @@ pub struct Extrapolation {
     pub beyond: Vec<f64>,
 }
 
+/// A joint beyond its calibrated range: number from 0, range asked for, range calibrated, rad or m.
+pub type JointBeyond = (usize, (f64, f64), (f64, f64));
+
 /// A calibrated robot as far as it is asked here.
 pub(super) struct Known<'a> {
     pub setup: &'a Setup<'a>,
@@ -67,7 +70,7 @@ impl Extrapolation {
 
     /// Joints of which more than a tenth of the poses asked for lie beyond the calibration's range,
     /// by more than a tenth of that range: number from 0, range asked for, range calibrated.
-    pub fn joints_beyond(&self) -> Vec<(usize, (f64, f64), (f64, f64))> {
+    pub fn joints_beyond(&self) -> Vec<JointBeyond> {
         let is_beyond = |(joint, [asked, own]): &(usize, &[(f64, f64); 2])| {
             let margin = 0.1 * (own.1 - own.0);
             self.beyond[*joint] > 0.1 && (asked.0 < own.0 - margin || asked.1 > own.1 + margin)

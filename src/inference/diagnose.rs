@@ -15,7 +15,7 @@ use super::selection::{DiscrepancyModel, Pairs};
 use super::sessions::leave_one_session_out;
 use super::{
     Diagnosis, Discrepancy, Estimate, Evidence, Finding, FindingPart, ForwardModel, HeldOut, Hypothesis,
-    Kind, Parameter, Rival, Term,
+    Kind, Parameter, Rival, ShownBy, Term,
 };
 use crate::statistics::{chi_squared_survival, student_t_quantile};
 
@@ -25,6 +25,8 @@ const APART: f64 = 20.0;
 /// A form of a law that leaves at most so much more, as a factor, may be the right one.
 const HARDLY_MORE: f64 = 1.1;
 
+/// So many times what a recording may scatter it may, where repeats show that it does.
+const SHOWN_BY_REPEATS: f64 = 3.0;
 /// A stated noise is contradicted below this probability.
 const CONTRADICTED: f64 = 1e-3;
 /// Ln odds from which on it is said what the nominal numbers explain.
@@ -63,12 +65,14 @@ pub fn diagnose(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
         discrepancy = Some(Discrepancy {
             candidate: curve.map(|curve| curve.candidate),
             location: curve.map(|curve| model.location(curve)),
+            shown_by: ShownBy::Curve,
             rms: rms(&shape),
             shape,
         });
     } else if let Some(DiscrepancyModel::Replicates) = left_over {
         let (rms, shape) = (rms(&after), after.clone());
-        discrepancy = Some(Discrepancy { candidate: None, location: None, rms, shape });
+        let shown_by = ShownBy::Repeats;
+        discrepancy = Some(Discrepancy { candidate: None, location: None, shown_by, rms, shape });
     }
     let left = &evidence.residual - search.predicted(longest, evidence, &model.response(&longest.terms));
     let degrees_of_freedom = (search.degrees_of_freedom() as f64 - longest.determined).max(1.0);
@@ -81,10 +85,13 @@ pub fn diagnose(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
     };
     let noise_test = noise_test(evidence.stated_noise, longest.sigma, degrees_of_freedom);
     let is_contradicted = noise_test.p_value.is_some_and(|p| p < CONTRADICTED);
-    let is_too_much = evidence.most_scatter.is_some_and(|most| noise > most);
+    // repeats that scatter as much show that it is scatter, up to a point
+    let times = if lack_of_fit_after.is_some() { SHOWN_BY_REPEATS } else { 1.0 };
+    let is_too_much = evidence.most_scatter.is_some_and(|most| noise > times * most);
     if discrepancy.is_none() && (is_contradicted || is_too_much) {
         let (rms, shape) = (rms(&after), after.clone());
-        discrepancy = Some(Discrepancy { candidate: None, location: None, rms, shape });
+        let shown_by = if is_contradicted { ShownBy::StatedNoise } else { ShownBy::Size };
+        discrepancy = Some(Discrepancy { candidate: None, location: None, shown_by, rms, shape });
     }
     let coverage_factor = student_t_quantile(0.975, degrees_of_freedom).unwrap_or(1.96);
     let worth = longest.background_worth();

@@ -61,10 +61,25 @@ pub struct Discrepancy {
     pub candidate: Option<usize>,
     /// The curve's place.
     pub location: Option<Location>,
+    /// What shows it.
+    pub shown_by: ShownBy,
     /// Root mean square of what the curve describes, or of what is left.
     pub rms: f64,
     /// What the curve says; what is left where there is none.
     pub shape: DVector<f64>,
+}
+
+/// What shows that something is left.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ShownBy {
+    /// A smooth curve describes it.
+    Curve,
+    /// Averages of repeats differ from the model by more than the repeats scatter.
+    Repeats,
+    /// It is more than the noise that was stated.
+    StatedNoise,
+    /// It is more than any scatter of such a recording.
+    Size,
 }
 
 /// A recording with its forward model and everything that was found: all that a report needs.

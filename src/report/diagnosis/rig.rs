@@ -11,7 +11,7 @@ use super::remainder::{Remainder, Sample};
 use super::subject::{Errors, Subject};
 use super::{json as whole_json, report as whole_report};
 use crate::diagnosis::rig::{Correction, Datum, RigDiagnosis};
-use crate::inference::{Discrepancy, ForwardModel, Location, Plan, Quantity, Variable, rms};
+use crate::inference::{Discrepancy, ForwardModel, Location, Plan, Quantity, ShownBy, Variable, rms};
 use crate::report::{Block, Report};
 use crate::rig::readings::Phase;
 use crate::units::{MM, UM, significant};
@@ -213,14 +213,22 @@ fn of_conditions(found: &RigDiagnosis, left: &Discrepancy) -> Remainder {
         let place = format!("{:.4} N, {}", worst.value, worst.name).replace(".0000 N", " N");
         (place, worst.left[0])
     });
-    Remainder {
-        sentence: format!(
-            "Averages of repeated readings differ from the model by more than their scatter, in a \
-             shape that neither a smooth curve nor an effect of the library describes: {} µm rms, most \
-             at {location} ({} µm).",
-            um(left.rms),
-            um(average)
+    let rms = um(left.rms);
+    let stated = found.diagnosis.noise_test.stated.map_or_else(String::new, um);
+    let said = match left.shown_by {
+        ShownBy::StatedNoise => format!(
+            "The readings differ from the model by more than the stated noise of {stated} µm, in a \
+             shape that neither a smooth curve nor an effect of the library describes"
         ),
+        ShownBy::Size => "The readings differ from the model by more than such readings scatter, in a \
+             shape that neither a smooth curve nor an effect of the library describes"
+            .to_owned(),
+        ShownBy::Repeats | ShownBy::Curve => "Averages of repeated readings differ from the model by more \
+             than their scatter, in a shape that neither a smooth curve nor an effect of the library describes"
+            .to_owned(),
+    };
+    Remainder {
+        sentence: format!("{said}: {rms} µm rms, most at {location} ({} µm).", um(average)),
         location,
         rms: left.rms,
         along: Variable::Load,

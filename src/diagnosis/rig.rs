@@ -32,15 +32,17 @@ mod structure;
 mod tests;
 mod transfer;
 
+use std::sync::Arc;
+
 use nalgebra::{DMatrix, DVector};
 
-use self::action::{Action, State};
+use self::action::{Action, Pull, State};
 use self::effects::{Context, registry};
 use self::structure::Structure;
 use crate::error::Result;
 use crate::inference::{
     Candidate, Description, Diagnosed, Effect, Estimate, Evidence, Finding, FindingPart, ForwardModel,
-    Hypothesis, Location, NotTestable, Proposal, Term, diagnose as infer, rms,
+    DERIVATIVE_STEP, Hypothesis, Location, NotTestable, Proposal, Step, Term, diagnose as infer, rms,
 };
 use crate::rig::readings::Readings;
 use crate::rod::Rod;
@@ -118,6 +120,7 @@ pub struct RigModel {
     body: Body,
     /// For each datum the pair of stations (with a rod) or the line (without).
     place: Vec<usize>,
+    cases: Cases,
     candidates: Vec<Candidate>,
     /// For each candidate what its parameters do.
     actions: Vec<Vec<Action>>,
@@ -137,6 +140,47 @@ impl AsRecorded {
         let error = RigModel::with_effects(readings, rod, &|_| false);
         let error = error.ok().map(|(_, evidence, _)| rms(&evidence.residual));
         AsRecorded { readings: readings.clone(), rod: rod.cloned(), error }
+    }
+}
+
+/// Data that differ in nothing but their place in the history of loads: load, phase, place and channel are the same.
+#[derive(Debug, Clone)]
+struct Cases {
+    of_datum: Vec<usize>,
+    /// The first datum of each.
+    first: Vec<usize>,
+}
+
+impl Cases {
+    fn of(data: &[Datum], place: &[usize]) -> Cases {
+        let key = |(d, place): (&Datum, &usize)| {
+            (d.direction, d.load.to_bits(), d.is_unloading(), d.channel, *place)
+        };
+        let of_datum = datum::numbered(data.iter().zip(place).map(key));
+        let mut first = Vec::new();
+        for (i, &case) in of_datum.iter().enumerate() {
+            if case == first.len() {
+                first.push(i);
+            }
+        }
+        Cases { of_datum, first }
+    }
+}
+
+/// What the data of a case show.
+struct Shown {
+    /// m/N.
+    slope: f64,
+    /// N, but for what is remembered.
+    load: f64,
+    /// m.
+    play: f64,
+}
+
+impl Shown {
+    /// Under a load that is felt.
+    fn reading(&self, load: f64) -> f64 {
+        self.slope * load + self.play
     }
 }
 
@@ -191,6 +235,7 @@ impl RigModel {
             readings: readings.clone(),
             rod: rod.cloned(),
             as_recorded: None,
+            cases: Cases::of(&data, &place),
             data,
             body,
             place,
@@ -306,14 +351,17 @@ impl RigModel {
     /// False for what changes nothing to first order: a twist under loads that do not twist.
     fn is_felt(&self, action: &Action, neutral: f64, size: f64, bounds: (f64, f64)) -> bool {
         const NOTHING: f64 = 1e-9;
+        // a parameter at its bound can only go one way, and a second-order effect goes the same way twice
+        let step = if neutral + size <= bounds.1 { size } else { bounds.1 - neutral };
+        let scale = self.data.iter().fold(0.0, |s: f64, d| s.max(d.measured.abs()).max(d.predicted.abs()));
+        if let Some(largest) = action.largest_addition() {
+            return 2.0 * step * largest > NOTHING * scale;
+        }
         let at = |value: f64| {
             let mut state = State::default();
             state.act(action, value);
             self.changed(&state)
         };
-        // a parameter at its bound can only go one way, and a second-order effect goes the same way twice
-        let step = if neutral + size <= bounds.1 { size } else { bounds.1 - neutral };
-        let scale = self.data.iter().fold(0.0, |s: f64, d| s.max(d.measured.abs()).max(d.predicted.abs()));
         (at(neutral + step) - at(neutral - step)).amax() > NOTHING * scale
     }
 
@@ -340,23 +388,40 @@ impl RigModel {
         sums.into_iter().map(|(xy, xx)| if xx > 0.0 { xy / xx } else { 0.0 }).collect()
     }
 
+    /// What each case of a rod shows, without shifts.
+    fn shown(&self, structure: &Structure, state: &State<'_>) -> Vec<Shown> {
+        let compliance = structure.softened(&state.softening);
+        let of_case = |&first: &usize| {
+            let datum = &self.data[first];
+            let pull = state.pull(datum);
+            let along = |displacement| state.read(datum.channel, &displacement);
+            Shown {
+                slope: along(compliance[self.place[first]] * pull.direction),
+                load: pull.load,
+                play: along(pull.direction * pull.play),
+            }
+        };
+        self.cases.first.iter().map(of_case).collect()
+    }
+
     /// The readings of a rod, without shifts, m.
     fn displaced(&self, structure: &Structure, state: &State<'_>) -> Vec<f64> {
-        let compliance = structure.softened(&state.softening);
-        let reading = |(i, datum): (usize, &Datum)| {
-            let pull = state.pull(i, datum);
-            let bent = compliance[self.place[i]] * (pull.direction * pull.load);
-            state.read(datum.channel, &(bent + pull.direction * pull.play))
+        let shown = self.shown(structure, state);
+        if !state.remembers() {
+            let readings: Vec<f64> = shown.iter().map(|of| of.reading(of.load)).collect();
+            return self.cases.of_datum.iter().map(|&case| readings[case]).collect();
+        }
+        let reading = |(i, &case): (usize, &usize)| {
+            let of = &shown[case];
+            of.reading(state.remembered(of.load, i))
         };
-        self.data.iter().enumerate().map(reading).collect()
+        self.cases.of_datum.iter().enumerate().map(reading).collect()
     }
 
     fn changed(&self, state: &State<'_>) -> DVector<f64> {
         let mut change = DVector::zeros(self.data.len());
-        for (weights, value) in &state.shifts {
-            for &(index, weight) in *weights {
-                change[index] += weight * value;
-            }
+        for (action, value) in &state.additions {
+            action.add_to(change.as_mut_slice(), *value);
         }
         match &self.body {
             _ if !state.is_changed => {}
@@ -367,11 +432,13 @@ impl RigModel {
                 }
             }
             Body::Lines(count) => {
+                let pulls: Vec<Pull> =
+                    self.cases.first.iter().map(|&first| state.pull(&self.data[first])).collect();
                 let mut felt = Vec::with_capacity(self.data.len());
                 let mut left = Vec::with_capacity(self.data.len());
                 for (i, datum) in self.data.iter().enumerate() {
-                    let pull = state.pull(i, datum);
-                    felt.push(pull.load * f64::from(datum.direction.sign));
+                    let pull = &pulls[self.cases.of_datum[i]];
+                    felt.push(state.remembered(pull.load, i) * f64::from(datum.direction.sign));
                     change[i] += pull.direction[datum.channel.index()] * pull.play;
                     left.push(datum.measured - change[i]);
                 }
@@ -391,14 +458,55 @@ impl ForwardModel for RigModel {
     }
 
     fn response(&self, terms: &[Term]) -> DVector<f64> {
-        let mut state = State::default();
-        for term in terms {
-            let actions = self.actions.get(term.candidate).map_or(&[][..], Vec::as_slice);
-            for (action, value) in actions.iter().zip(&term.values) {
-                state.act(action, *value);
-            }
+        self.changed(&self.state(terms))
+    }
+
+    fn cases(&self) -> &[usize] {
+        &self.cases.of_datum
+    }
+
+    fn step(&self, candidate: usize) -> Option<Step> {
+        match &self.actions[candidate][..] {
+            [Action::Step(data, from)] => Some(Step { data: Arc::clone(data), from: *from }),
+            _ => None,
         }
-        self.changed(&state)
+    }
+
+    fn is_linear_in(&self, terms: &[Term]) -> bool {
+        terms.iter().all(|term| self.actions[term.candidate].iter().all(Action::only_adds))
+    }
+
+    /// Without memories by what the cases show, and of what only adds to the readings itself.
+    fn columns(&self, terms: &[Term], position: usize) -> DMatrix<f64> {
+        let term = &terms[position];
+        let parameters = &self.candidates[term.candidate].parameters;
+        let mut columns = DMatrix::zeros(self.data.len(), parameters.len());
+        // beside what acts on the load an addition changes the slope of a straight line
+        let is_sum = matches!(self.body, Body::Rod(_)) || self.is_linear_in(terms);
+        let mut moved = terms.to_vec();
+        for ((k, parameter), action) in parameters.iter().enumerate().zip(&self.actions[term.candidate]) {
+            let mut column = columns.column_mut(k);
+            if is_sum && action.only_adds() {
+                action.add_to(column.as_mut_slice(), parameter.size);
+                continue;
+            }
+            let h = DERIVATIVE_STEP * parameter.size;
+            let mut readings = vec![0.0; self.cases.first.len()];
+            for (change, sign) in [(h, 1.0), (-h, -1.0)] {
+                moved[position].values[k] = term.values[k] + change;
+                let (state, share) = (self.state(&moved), sign * 0.5 / DERIVATIVE_STEP);
+                match &self.body {
+                    Body::Rod(structure) if !state.remembers() => {
+                        let shown = self.shown(structure, &state);
+                        readings.iter_mut().zip(shown).for_each(|(r, of)| *r += share * of.reading(of.load));
+                    }
+                    _ => column.axpy(share, &self.changed(&state), 1.0),
+                }
+            }
+            moved[position].values[k] = term.values[k];
+            column.iter_mut().zip(&self.cases.of_datum).for_each(|(c, &case)| *c += readings[case]);
+        }
+        columns
     }
 
     fn location(&self, term: &Term) -> Location {
@@ -426,6 +534,18 @@ impl ForwardModel for RigModel {
 }
 
 impl RigModel {
+    /// The rig with all of these terms.
+    fn state(&self, terms: &[Term]) -> State<'_> {
+        let mut state = State::default();
+        for term in terms {
+            let actions = self.actions.get(term.candidate).map_or(&[][..], Vec::as_slice);
+            for (action, value) in actions.iter().zip(&term.values) {
+                state.act(action, *value);
+            }
+        }
+        state
+    }
+
     fn widened(&self, part: &FindingPart) -> Vec<Estimate> {
         let parameters = |candidate: usize| &self.candidates[candidate].parameters;
         let is_scanned = |candidate: usize| parameters(candidate).iter().any(|p| p.name == STATION);

@@ -155,7 +155,7 @@ impl Search<'_> {
 
     /// Can an effect say anything of the few data that it concerns?
     pub fn is_event(&self, term: &Term) -> bool {
-        let columns = &self.model.neutral[term.candidate];
+        let columns = self.model.neutral(term.candidate);
         columns.row_iter().filter(|row| row.amax() > 0.0).count() <= columns.ncols()
     }
 

@@ -9,6 +9,8 @@
 //!
 //! A load of zero is an unloaded rod: nothing hangs there, so there is no offset, no play and, on the way up, no friction.
 
+use std::sync::Arc;
+
 use nalgebra::{Rotation3, Unit, Vector3};
 
 use super::datum::Datum;
@@ -51,6 +53,33 @@ pub(super) enum Action {
     Play([bool; 3]),
     /// Adds to readings: index of the datum, weight \[0\].
     Shift(Vec<(usize, f64)>),
+    /// Adds to the readings of this sequence of data, from one of them on \[0\].
+    Step(Arc<[usize]>, usize),
+}
+
+impl Action {
+    /// True for what adds to the readings whatever else there is.
+    pub(super) fn only_adds(&self) -> bool {
+        matches!(self, Action::Shift(_) | Action::Step(..))
+    }
+
+    /// Adds what it does at `value` to readings, m.
+    pub(super) fn add_to(&self, readings: &mut [f64], value: f64) {
+        match self {
+            Action::Shift(weights) => weights.iter().for_each(|&(i, weight)| readings[i] += weight * value),
+            Action::Step(data, from) => data[*from..].iter().for_each(|&i| readings[i] += value),
+            _ => {}
+        }
+    }
+
+    /// The largest that it adds to a reading per unit of its parameter.
+    pub(super) fn largest_addition(&self) -> Option<f64> {
+        match self {
+            Action::Shift(weights) => Some(weights.iter().fold(0.0, |most: f64, (_, w)| most.max(w.abs()))),
+            Action::Step(data, from) => Some(if *from < data.len() { 1.0 } else { 0.0 }),
+            _ => None,
+        }
+    }
 }
 
 /// A rig with all that is wrong with it.
@@ -67,8 +96,9 @@ pub(super) struct State<'a> {
     sensor: [Vector3<f64>; 3],
     scale: [f64; 3],
     play: [f64; 3],
-    pub shifts: Vec<(&'a [(usize, f64)], f64)>,
-    /// False while nothing but shifts is there.
+    /// What only adds to readings, with its values.
+    pub additions: Vec<(&'a Action, f64)>,
+    /// False while nothing else is there.
     pub is_changed: bool,
 }
 
@@ -76,7 +106,7 @@ pub(super) struct State<'a> {
 pub(super) struct Pull {
     /// Where the load and the play point to.
     pub direction: Vector3<f64>,
-    /// The load that explains the displacement, N.
+    /// The load that explains the displacement, but for what is remembered, N.
     pub load: f64,
     /// Displacement along the direction that has nothing to do with the structure, m.
     pub play: f64,
@@ -96,7 +126,7 @@ impl Default for State<'_> {
             sensor: axes,
             scale: [1.0; 3],
             play: [0.0; 3],
-            shifts: Vec::new(),
+            additions: Vec::new(),
             is_changed: false,
         }
     }
@@ -105,7 +135,7 @@ impl Default for State<'_> {
 impl<'a> State<'a> {
     /// Adds what `action` does at `value`. Turns are done in the order in which they are added.
     pub(super) fn act(&mut self, action: &'a Action, value: f64) {
-        self.is_changed |= !matches!(action, Action::Shift(_));
+        self.is_changed |= !action.only_adds();
         match action {
             Action::Friction(axes) => add(&mut self.friction, axes, value),
             Action::LoadOffset(axes) => add(&mut self.load_offset, axes, value),
@@ -133,12 +163,12 @@ impl<'a> State<'a> {
                 self.sensor.iter_mut().for_each(|sensor| *sensor = turn * *sensor);
             }
             Action::Play(axes) => add(&mut self.play, axes, value),
-            Action::Shift(weights) => self.shifts.push((weights, value)),
+            Action::Shift(_) | Action::Step(..) => self.additions.push((action, value)),
         }
     }
 
-    /// What the load of datum number `index` does, as far as it is the same for every structure.
-    pub(super) fn pull(&self, index: usize, datum: &Datum) -> Pull {
+    /// What the load of a datum does, as far as it is the same for every structure, and but for what is remembered.
+    pub(super) fn pull(&self, datum: &Datum) -> Pull {
         let (axis, is_unloading) = (datum.direction.axis.index(), datum.is_unloading());
         let is_loaded = datum.load > 0.0;
         let hanging = if is_loaded { datum.load + self.load_offset[axis] } else { 0.0 };
@@ -150,12 +180,20 @@ impl<'a> State<'a> {
         };
         let mut load = acting * (1.0 + self.per_load_squared * acting * acting);
         load *= 1.0 + self.per_load * acting.abs();
-        for (memory, value) in &self.memories {
-            load *= 1.0 + value * memory.relative[index];
-        }
-        load += self.memories.iter().map(|(memory, value)| value * memory.lingering[index]).sum::<f64>();
         let direction = self.load_direction[axis] * f64::from(datum.direction.sign);
         Pull { direction, load, play: if is_loaded { self.play[axis] } else { 0.0 } }
+    }
+
+    /// True where the history of loads matters: then data of one case differ.
+    pub(super) fn remembers(&self) -> bool {
+        !self.memories.is_empty()
+    }
+
+    /// The load that explains the displacement of datum number `index`, N, history included; `load` is that without.
+    pub(super) fn remembered(&self, load: f64, index: usize) -> f64 {
+        let relative = |load: f64, (memory, value): &(&Memory, f64)| load * (1.0 + value * memory.relative[index]);
+        let lingering = |(memory, value): &(&Memory, f64)| value * memory.lingering[index];
+        self.memories.iter().fold(load, relative) + self.memories.iter().map(lingering).sum::<f64>()
     }
 
     /// What the channel shows when its point is displaced, m.

@@ -134,9 +134,13 @@ fn coordinates(data: &[Datum]) -> Vec<(Along, Coordinate, bool)> {
     }
     // loads that always come in the same order are told from it by nothing
     let conditions = numbered(data.iter().map(|d| (d.direction, d.load.to_bits(), d.phase)));
-    let first_of = |condition: usize| conditions.iter().position(|&c| c == condition);
-    let follows_load =
-        (0..data.len()).all(|i| first_of(conditions[i]).is_none_or(|k| position[k] == position[i]));
+    let mut first_of: Vec<usize> = Vec::new();
+    for (i, &condition) in conditions.iter().enumerate() {
+        if condition == first_of.len() {
+            first_of.push(i);
+        }
+    }
+    let follows_load = (0..data.len()).all(|i| position[first_of[conditions[i]]] == position[i]);
     if !follows_load {
         found.push((POSITION, scaled(&position), true));
     }
@@ -151,14 +155,18 @@ fn coordinates(data: &[Datum]) -> Vec<(Along, Coordinate, bool)> {
 
 /// Rank of the load, as `of` counts it, among those along its axis, for the data that `is_of` admits.
 fn by_axis(data: &[Datum], of: impl Fn(&Datum) -> f64, is_of: impl Fn(&Datum) -> bool) -> Coordinate {
+    let levels = Axis::ALL.map(|axis| {
+        let along = data.iter().filter(|d| is_of(d) && d.direction.axis == axis);
+        let mut levels: Vec<f64> = along.map(&of).collect();
+        levels.sort_by(f64::total_cmp);
+        levels.dedup();
+        levels
+    });
     let rank = |datum: &Datum| {
         is_of(datum).then_some(())?;
-        let rivals = data.iter().filter(|d| is_of(d) && d.direction.axis == datum.direction.axis);
-        let mut loads: Vec<f64> = rivals.map(&of).collect();
-        loads.sort_by(f64::total_cmp);
-        loads.dedup();
-        let rank = loads.iter().position(|&load| load == of(datum))?;
-        Some((rank as f64 + 0.5) / loads.len() as f64)
+        let levels = &levels[datum.direction.axis.index()];
+        let rank = levels.partition_point(|&level| level < of(datum));
+        Some((rank as f64 + 0.5) / levels.len() as f64)
     };
     data.iter().map(rank).collect()
 }

@@ -29,10 +29,13 @@ pub(super) fn measured_channels(data: &[Datum]) -> Vec<Axis> {
 /// The data of each run and channel.
 pub(super) fn runs_by_channel(data: &[Datum]) -> Vec<(Run, Vec<usize>)> {
     let mut groups = Vec::new();
-    for run in runs(data) {
+    let runs = runs(data);
+    let of_axis = |axis: Axis| runs.iter().filter(|run| data[run[0]].direction.axis == axis).count();
+    let runs_of_axis = Axis::ALL.map(of_axis);
+    for run in &runs {
         let first = &data[run[0]];
         let axis = first.direction.axis;
-        let has_others = data.iter().any(|d| d.direction.axis == axis && d.run != first.run);
+        let has_others = runs_of_axis[axis.index()] > 1;
         let name = match &first.trial {
             Some(trial) => Some(RunName::Trial(trial.clone())),
             None => has_others.then_some(RunName::Number(first.trial_number + 1)),

@@ -39,10 +39,10 @@ use nalgebra::{DMatrix, DVector};
 use self::action::{Action, Pull, State};
 use self::effects::{Context, registry};
 use self::structure::Structure;
-use crate::error::Result;
+use crate::error::{Error, Place, Result};
 use crate::inference::{
     Candidate, Description, Diagnosed, Effect, Estimate, Evidence, Finding, FindingPart, ForwardModel,
-    DERIVATIVE_STEP, Hypothesis, Location, NotTestable, Proposal, Step, Term, diagnose as infer, rms,
+    DERIVATIVE_STEP, Hypothesis, Location, NotTestable, Parameter, Proposal, Step, Term, UNKNOWN, diagnose as infer, rms,
 };
 use crate::rig::readings::Readings;
 use crate::rod::Rod;
@@ -50,6 +50,10 @@ pub use correction::Correction;
 pub use datum::Datum;
 pub use mistakes::suspected;
 
+/// Most rows of readings that are diagnosed.
+const MOST_ROWS: usize = 100_000;
+/// What changes no reading by more than this share of the largest changes nothing.
+const NOTHING: f64 = 1e-9;
 /// The parameter of a joint that may be anywhere.
 const STATION: &str = "station_mm";
 
@@ -72,18 +76,19 @@ pub fn diagnose(readings: &Readings, rod: Option<&Rod>) -> Result<RigDiagnosis> 
 /// corrected rod.
 ///
 /// # Errors
-/// See [`RigModel::new`].
+/// [`Error::Input`] for more than 100 000 rows; see also [`RigModel::new`].
 pub fn diagnose_among(
     readings: &Readings,
     rod: Option<&Rod>,
     others: &[(String, Rod)],
 ) -> Result<RigDiagnosis> {
+    check_size(readings)?;
     let mended = mistakes::mended(readings, rod, others)?;
     let (mended_readings, mended_rod) = match mended.has_data {
         true => (&mended.readings, mended.rod.as_ref()),
         false => (readings, rod),
     };
-    let (mut model, evidence, not_testable) = RigModel::with_effects(mended_readings, mended_rod, &|_| true)?;
+    let (mut model, evidence, not_testable) = RigModel::with_effects(mended_readings, mended_rod, &Wanted::All)?;
     let mut diagnosis = infer(&model, &evidence);
     if mended.has_data {
         for k in 0..diagnosis.findings.len() {
@@ -110,6 +115,19 @@ pub fn diagnose_among(
     Ok(Diagnosed { absorbed: Vec::new(), not_testable, limits, diagnosis, evidence, model })
 }
 
+/// Refuses what would take more memory or time than anybody has.
+fn check_size(readings: &Readings) -> Result<()> {
+    match readings.rows.get(MOST_ROWS) {
+        None => Ok(()),
+        Some(row) => Err(Error::Input {
+            at: Place { file: readings.file.clone(), line: row.line, column: 0 },
+            found: format!("{} rows of readings", readings.rows.len()),
+            expected: format!("at most {MOST_ROWS} for a diagnosis"),
+            hint: Some("diagnose some of the trials at a time".into()),
+        }),
+    }
+}
+
 /// Readings of a rig with all the physics that might be in them.
 #[derive(Debug, Clone)]
 pub struct RigModel {
@@ -126,6 +144,30 @@ pub struct RigModel {
     actions: Vec<Vec<Action>>,
 }
 
+/// Which candidates a model shall have.
+enum Wanted<'a> {
+    All,
+    /// Those that are the same things at the same places as these.
+    Like(&'a [&'a Candidate]),
+}
+
+impl Wanted<'_> {
+    /// False where no candidate of an effect is wanted.
+    fn includes(&self, effect: &Effect) -> bool {
+        match self {
+            Wanted::All => true,
+            Wanted::Like(these) => these.iter().any(|candidate| candidate.effect == effect),
+        }
+    }
+
+    fn has(&self, candidate: &Candidate) -> bool {
+        match self {
+            Wanted::All => true,
+            Wanted::Like(these) => these.iter().any(|known| transfer::is_same(candidate, known)),
+        }
+    }
+}
+
 /// Readings and rod before mistakes were undone, where there were any.
 #[derive(Debug, Clone)]
 struct AsRecorded {
@@ -137,7 +179,7 @@ struct AsRecorded {
 
 impl AsRecorded {
     fn new(readings: &Readings, rod: Option<&Rod>) -> Self {
-        let error = RigModel::with_effects(readings, rod, &|_| false);
+        let error = RigModel::with_effects(readings, rod, &Wanted::Like(&[]));
         let error = error.ok().map(|(_, evidence, _)| rms(&evidence.residual));
         AsRecorded { readings: readings.clone(), rod: rod.cloned(), error }
     }
@@ -199,7 +241,7 @@ impl RigModel {
     /// # Errors
     /// [`crate::Error::Input`] for a station that is not on the rod; what the beam model refuses.
     pub fn new(readings: &Readings, rod: Option<&Rod>) -> Result<(RigModel, Evidence)> {
-        let (model, evidence, _) = RigModel::with_effects(readings, rod, &|_| true)?;
+        let (model, evidence, _) = RigModel::with_effects(readings, rod, &Wanted::All)?;
         Ok((model, evidence))
     }
 
@@ -207,7 +249,7 @@ impl RigModel {
     fn with_effects(
         readings: &Readings,
         rod: Option<&Rod>,
-        is_wanted: &dyn Fn(&Candidate) -> bool,
+        wanted: &Wanted<'_>,
     ) -> Result<(RigModel, Evidence, Vec<NotTestable>)> {
         let data = datum::all(&readings.rows);
         let (body, place) = match rod {
@@ -271,7 +313,7 @@ impl RigModel {
             let (numbers, columns) = nominal::all(&model.data, rod, &readings.header, &stations)?;
             (evidence.nominal_numbers, evidence.nominal) = (numbers, columns);
         }
-        let not_testable = model.add_candidates(is_wanted);
+        let not_testable = model.add_candidates(wanted);
         Ok((model, evidence, not_testable))
     }
 
@@ -308,20 +350,26 @@ impl RigModel {
 
     /// Fills in the effects and their nonparametric rivals, without what can do nothing to these
     /// readings; the effects that then have no candidate.
-    fn add_candidates(&mut self, is_wanted: &dyn Fn(&Candidate) -> bool) -> Vec<NotTestable> {
+    fn add_candidates(&mut self, wanted: &Wanted<'_>) -> Vec<NotTestable> {
         let deflections = self.deflections();
         let mut context = Context { data: &self.data, body: &mut self.body, rod: self.rod.as_ref() };
         let has_rod = context.rod.is_some();
         let mut entries = Vec::new();
         for effect in registry::ALL.into_iter().filter(|effect| has_rod || !effect.needs_rod) {
-            entries.extend((effect.candidates)(&mut context));
+            if wanted.includes(&effect.effect) {
+                entries.extend((effect.candidates)(&mut context));
+            }
         }
         let missing = registry::ALL.map(|effect| match has_rod || !effect.needs_rod {
             true => (effect.missing)(&context),
             false => "it needs a rod file",
         });
-        entries.extend(nonparametric::all(&self.data, &deflections, has_rod));
-        entries.retain(|(candidate, _)| is_wanted(candidate));
+        if wanted.includes(&UNKNOWN) {
+            entries.extend(nonparametric::all(&self.data, &deflections, has_rod));
+        }
+        entries.retain(|(candidate, _)| wanted.has(candidate));
+        let scale = self.data.iter().fold(0.0, |s: f64, d| s.max(d.measured.abs()).max(d.predicted.abs()));
+        let nothing = NOTHING * scale;
         for (candidate, actions) in entries {
             let (parameters, actions): (Vec<_>, Vec<_>) = candidate
                 .parameters
@@ -330,7 +378,7 @@ impl RigModel {
                 .filter(|(parameter, action)| {
                     // where a joint is matters as soon as it yields
                     matches!(action, Action::Station(_))
-                        || self.is_felt(action, parameter.neutral, parameter.size, parameter.bounds)
+                        || self.is_felt(action, parameter, nothing)
                 })
                 .unzip();
             if actions.iter().any(|action| !matches!(action, Action::Station(_))) {
@@ -348,21 +396,20 @@ impl RigModel {
             .collect()
     }
 
-    /// False for what changes nothing to first order: a twist under loads that do not twist.
-    fn is_felt(&self, action: &Action, neutral: f64, size: f64, bounds: (f64, f64)) -> bool {
-        const NOTHING: f64 = 1e-9;
+    /// False for what changes nothing (m) to first order: a twist under loads that do not twist.
+    fn is_felt(&self, action: &Action, parameter: &Parameter, nothing: f64) -> bool {
+        let Parameter { neutral, size, bounds, .. } = *parameter;
         // a parameter at its bound can only go one way, and a second-order effect goes the same way twice
         let step = if neutral + size <= bounds.1 { size } else { bounds.1 - neutral };
-        let scale = self.data.iter().fold(0.0, |s: f64, d| s.max(d.measured.abs()).max(d.predicted.abs()));
         if let Some(largest) = action.largest_addition() {
-            return 2.0 * step * largest > NOTHING * scale;
+            return 2.0 * step * largest > nothing;
         }
         let at = |value: f64| {
             let mut state = State::default();
             state.act(action, value);
             self.changed(&state)
         };
-        (at(neutral + step) - at(neutral - step)).amax() > NOTHING * scale
+        (at(neutral + step) - at(neutral - step)).amax() > nothing
     }
 
     /// How far the rod yields at each datum, m: the prediction, or the reading's share in a line through the origin.
@@ -476,12 +523,12 @@ impl ForwardModel for RigModel {
         terms.iter().all(|term| self.actions[term.candidate].iter().all(Action::only_adds))
     }
 
-    /// Without memories by what the cases show, and of what only adds to the readings itself.
+    /// By what the cases show, and what only adds to the readings itself: both are sooner done than whole responses.
     fn columns(&self, terms: &[Term], position: usize) -> DMatrix<f64> {
         let term = &terms[position];
         let parameters = &self.candidates[term.candidate].parameters;
         let mut columns = DMatrix::zeros(self.data.len(), parameters.len());
-        // beside what acts on the load an addition changes the slope of a straight line
+        // without a rod an addition changes the slope of its line if anything but additions stands beside it
         let is_sum = matches!(self.body, Body::Rod(_)) || self.is_linear_in(terms);
         let mut moved = terms.to_vec();
         for ((k, parameter), action) in parameters.iter().enumerate().zip(&self.actions[term.candidate]) {
@@ -491,20 +538,31 @@ impl ForwardModel for RigModel {
                 continue;
             }
             let h = DERIVATIVE_STEP * parameter.size;
-            let mut readings = vec![0.0; self.cases.first.len()];
-            for (change, sign) in [(h, 1.0), (-h, -1.0)] {
+            let [more, less] = [h, -h].map(|change| {
                 moved[position].values[k] = term.values[k] + change;
-                let (state, share) = (self.state(&moved), sign * 0.5 / DERIVATIVE_STEP);
-                match &self.body {
-                    Body::Rod(structure) if !state.remembers() => {
-                        let shown = self.shown(structure, &state);
-                        readings.iter_mut().zip(shown).for_each(|(r, of)| *r += share * of.reading(of.load));
-                    }
-                    _ => column.axpy(share, &self.changed(&state), 1.0),
-                }
-            }
+                self.state(&moved)
+            });
             moved[position].values[k] = term.values[k];
-            column.iter_mut().zip(&self.cases.of_datum).for_each(|(c, &case)| *c += readings[case]);
+            let half = 0.5 / DERIVATIVE_STEP;
+            let Body::Rod(structure) = &self.body else {
+                column.copy_from(&((self.changed(&more) - self.changed(&less)) * half));
+                continue;
+            };
+            let shown = [&more, &less].map(|state| self.shown(structure, state));
+            let of_case = |case: usize, loads: [f64; 2]| {
+                half * (shown[0][case].reading(loads[0]) - shown[1][case].reading(loads[1]))
+            };
+            let plain = |case: usize| [shown[0][case].load, shown[1][case].load];
+            let cases = column.iter_mut().zip(&self.cases.of_datum);
+            if more.remembers() {
+                for (i, (value, &case)) in cases.enumerate() {
+                    let [with_more, with_less] = plain(case);
+                    *value = of_case(case, [more.remembered(with_more, i), less.remembered(with_less, i)]);
+                }
+            } else {
+                let changes: Vec<f64> = (0..shown[0].len()).map(|case| of_case(case, plain(case))).collect();
+                cases.for_each(|(value, &case)| *value = changes[case]);
+            }
         }
         columns
     }

@@ -19,7 +19,9 @@ mod tests;
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::linalg::{positive_definite_inverse, transposed_product};
+use crate::linalg::positive_definite_inverse;
+#[cfg(test)]
+use crate::linalg::transposed_product;
 use crate::statistics::ln_normal_mass;
 
 /// Least noise variance relative to that of the residual.
@@ -94,6 +96,7 @@ pub struct Score {
 
 impl Moments {
     /// Of the residual `r` and `columns`, with bounds of their factors and the sizes of the effects, the last of the columns.
+    #[cfg(test)]
     pub fn new(
         r: &DVector<f64>,
         columns: &DMatrix<f64>,
@@ -240,8 +243,14 @@ impl Moments {
     /// Inner products of `more` columns with each other and with r, the hypothesis's columns out of them.
     fn reduced(&self, score: &Score, more: &ColumnBlock) -> (DMatrix<f64>, DVector<f64>) {
         // (G + σ²)⁻¹ is the posterior covariance over σ²
-        let reduced = transposed_product(&score.covariance, &more.cross) / score.sigma.powi(2);
-        let gram = more.gram - transposed_product(&more.cross, &reduced);
+        let mut reduced = DMatrix::zeros(more.cross.nrows(), more.cross.ncols());
+        // so few columns are sooner multiplied one by one
+        for (mut reduced, cross) in reduced.column_iter_mut().zip(more.cross.column_iter()) {
+            for (covariance, cross) in score.covariance.column_iter().zip(cross.iter()) {
+                reduced.axpy(cross / score.sigma.powi(2), &covariance, 1.0);
+            }
+        }
+        let gram = more.gram - more.cross.tr_mul(&reduced);
         (gram, &more.product - reduced.tr_mul(&self.product))
     }
 

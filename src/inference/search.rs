@@ -6,6 +6,7 @@
 //! places finds nothing a hundred times as often as a single place does.
 
 use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use nalgebra::{DMatrix, DVector};
 
@@ -47,7 +48,13 @@ pub struct Search<'a> {
     prior: Vec<f64>,
     /// What repeats have in common; `None` without repeats.
     replicates: Option<Replicates>,
+    /// What was fitted and asked before: a search comes to the same hypothesis by several ways.
+    fitted: Memory<Hypothesis>,
+    added: Memory<Arc<Vec<f64>>>,
 }
+
+/// Answers by the terms that they are of, values to the last bit.
+type Memory<T> = Mutex<BTreeMap<Vec<(usize, Vec<u64>)>, T>>;
 
 /// For a candidate, the inner products of its columns with those of a hypothesis (rows), and with a residual.
 type CrossProducts<'a> = dyn Fn(usize) -> (DMatrix<f64>, DVector<f64>) + 'a;
@@ -77,6 +84,8 @@ impl<'a> Search<'a> {
             beside_background,
             prior: priors(model.candidates()),
             replicates: Replicates::new(&whitening, &evidence.replicate_group),
+            fitted: Memory::default(),
+            added: Memory::default(),
             model,
             evidence,
             whitening,
@@ -85,6 +94,10 @@ impl<'a> Search<'a> {
 
     /// Fits the values of `terms` together, by Gauss–Newton steps from where they are, and scores them.
     pub fn fit(&self, terms: &[Term]) -> Hypothesis {
+        remembered(&self.fitted, terms, || self.fit_anew(terms))
+    }
+
+    fn fit_anew(&self, terms: &[Term]) -> Hypothesis {
         let background = self.background.0.ncols();
         let mut terms = terms.to_vec();
         let mut scored = self.moments(&terms).score();
@@ -115,7 +128,11 @@ impl<'a> Search<'a> {
     /// About the ln of what adding each candidate to `hypothesis` does to its probability, by the candidate's columns at its
     /// neutral values, exact for the likeliest known and unknown ones and for the likeliest place of every effect, lest
     /// one effect with many places leaves the others out; −∞ for those that are in it already.
-    pub fn additions(&self, hypothesis: &Hypothesis) -> Vec<f64> {
+    pub fn additions(&self, hypothesis: &Hypothesis) -> Arc<Vec<f64>> {
+        remembered(&self.added, &hypothesis.terms, || Arc::new(self.additions_anew(hypothesis)))
+    }
+
+    fn additions_anew(&self, hypothesis: &Hypothesis) -> Vec<f64> {
         let (present, products) = self.crossed(&hypothesis.terms);
         let before = present.score();
         let more = |index: usize| {
@@ -220,11 +237,14 @@ impl<'a> Search<'a> {
         evidence: &Evidence,
         change: &DVector<f64>,
     ) -> DVector<f64> {
+        let predicted = change + &evidence.background * &hypothesis.background;
+        if evidence.nuisance.ncols() == 0 {
+            return predicted;
+        }
         let left = &self.evidence.residual
             - self.model.response(&hypothesis.terms)
             - &self.evidence.background * &hypothesis.background;
-        change
-            + &evidence.background * &hypothesis.background
+        predicted
             + &evidence.nuisance * self.whitening.nuisance(&self.evidence.nuisance, &left)
     }
 
@@ -424,6 +444,18 @@ fn grams(model: &Linearised<'_>, whitening: &Whitening) -> Vec<DMatrix<f64>> {
         None => whitening.projected_gram(&whitening.whitened_columns(&model.neutral(candidate))),
     };
     (0..model.candidates().len()).map(gram).collect()
+}
+
+/// What is known of these terms, or else is found out.
+fn remembered<T: Clone>(memory: &Memory<T>, terms: &[Term], find: impl FnOnce() -> T) -> T {
+    let bits = |term: &Term| (term.candidate, term.values.iter().map(|value| value.to_bits()).collect());
+    let key: Vec<(usize, Vec<u64>)> = terms.iter().map(bits).collect();
+    let known = memory.lock().unwrap_or_else(PoisonError::into_inner).get(&key).cloned();
+    known.unwrap_or_else(|| {
+        let found = find();
+        memory.lock().unwrap_or_else(PoisonError::into_inner).insert(key, found.clone());
+        found
+    })
 }
 
 fn flat(terms: &[Term]) -> DVector<f64> {

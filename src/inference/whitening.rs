@@ -100,10 +100,11 @@ impl Whitening {
 
     /// Column by column.
     pub fn apply_columns(&self, columns: &DMatrix<f64>) -> DMatrix<f64> {
-        let mut result = columns.clone();
+        let mut result = self.whitened_columns(columns);
         for mut column in result.column_iter_mut() {
-            let v = self.apply(&column.clone_owned());
-            column.copy_from(&v);
+            for b in &self.basis {
+                column.axpy(-b.dot(&column), b, 1.0);
+            }
         }
         result
     }

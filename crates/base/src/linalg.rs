@@ -120,6 +120,9 @@ pub fn transposed_product(a: &DMatrix<f64>, b: &DMatrix<f64>) -> DMatrix<f64> {
 pub fn positive_definite_inverse(a: &DMatrix<f64>) -> Option<(DMatrix<f64>, f64)> {
     /// From here on faer's blocks are faster.
     const LARGE: usize = 12;
+    if let [only] = a.as_slice() {
+        return (*only > 0.0).then(|| (DMatrix::from_element(1, 1, 1.0 / only), only.ln()));
+    }
     if a.ncols() < LARGE {
         let cholesky = nalgebra::Cholesky::new(a.clone())?;
         return Some((cholesky.inverse(), cholesky.ln_determinant()));

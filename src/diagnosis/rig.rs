@@ -191,6 +191,10 @@ struct Cases {
     of_datum: Vec<usize>,
     /// The first datum of each.
     first: Vec<usize>,
+    /// The line of each: cases that differ in nothing but the size of the load and the phase.
+    line: Vec<usize>,
+    /// The first datum of each line.
+    first_of_line: Vec<usize>,
 }
 
 impl Cases {
@@ -199,14 +203,22 @@ impl Cases {
             (d.direction, d.load.to_bits(), d.is_unloading(), d.channel, *place)
         };
         let of_datum = datum::numbered(data.iter().zip(place).map(key));
-        let mut first = Vec::new();
-        for (i, &case) in of_datum.iter().enumerate() {
-            if case == first.len() {
-                first.push(i);
-            }
-        }
-        Cases { of_datum, first }
+        let first = firsts(&of_datum);
+        let line = datum::numbered(first.iter().map(|&i| (data[i].direction, data[i].channel, place[i])));
+        let first_of_line = firsts(&line).into_iter().map(|case| first[case]).collect();
+        Cases { of_datum, first, line, first_of_line }
     }
+}
+
+/// Where each number is met first.
+fn firsts(numbers: &[usize]) -> Vec<usize> {
+    let mut first = Vec::new();
+    for (i, &number) in numbers.iter().enumerate() {
+        if number == first.len() {
+            first.push(i);
+        }
+    }
+    first
 }
 
 /// What the data of a case show.
@@ -438,17 +450,18 @@ impl RigModel {
     /// What each case of a rod shows, without shifts.
     fn shown(&self, structure: &Structure, state: &State<'_>) -> Vec<Shown> {
         let compliance = structure.softened(&state.softening);
-        let of_case = |&first: &usize| {
+        let of_line = |&first: &usize| {
             let datum = &self.data[first];
-            let pull = state.pull(datum);
+            let direction = state.direction(datum);
             let along = |displacement| state.read(datum.channel, &displacement);
-            Shown {
-                slope: along(compliance[self.place[first]] * pull.direction),
-                load: pull.load,
-                play: along(pull.direction * pull.play),
-            }
+            [along(compliance[self.place[first]] * direction), along(direction)]
         };
-        self.cases.first.iter().map(of_case).collect()
+        let lines: Vec<[f64; 2]> = self.cases.first_of_line.iter().map(of_line).collect();
+        let of_case = |(&first, &line): (&usize, &usize)| {
+            let (pull, [slope, along]) = (state.pull(&self.data[first]), lines[line]);
+            Shown { slope, load: pull.load, play: along * pull.play }
+        };
+        self.cases.first.iter().zip(&self.cases.line).map(of_case).collect()
     }
 
     /// The readings of a rod, without shifts, m.
@@ -486,7 +499,7 @@ impl RigModel {
                 for (i, datum) in self.data.iter().enumerate() {
                     let pull = &pulls[self.cases.of_datum[i]];
                     felt.push(state.remembered(pull.load, i) * f64::from(datum.direction.sign));
-                    change[i] += pull.direction[datum.channel.index()] * pull.play;
+                    change[i] += state.direction(datum)[datum.channel.index()] * pull.play;
                     left.push(datum.measured - change[i]);
                 }
                 let slopes = self.slopes(*count, &felt, &left);

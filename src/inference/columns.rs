@@ -11,15 +11,17 @@
 //! so that all products with v take one pass over u, and nothing is whitened but v.
 
 use std::collections::HashMap;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 
 use super::{Candidate, ForwardModel};
 use crate::linalg::transposed_product;
 
 /// Share of a column that is not zero from which on it is stored whole.
 const DENSE: f64 = 0.5;
+/// Numbers of the vectors that products are computed for at once.
+const AT_ONCE: usize = 1 << 20;
 
 /// Columns ∂response/∂parameter times the size of the parameter, of n data.
 pub(super) struct Columns {
@@ -53,12 +55,14 @@ enum Column {
 /// Inner products of all columns with some vectors.
 pub(super) struct Products<'a> {
     columns: &'a Columns,
+    vectors: DMatrix<f64>,
     /// Vectors × columns, as these are stored.
     whole: DMatrix<f64>,
     by_case: DMatrix<f64>,
-    listed: DMatrix<f64>,
+    /// Computed when they are first asked for, as are `sums`.
+    listed: OnceLock<DMatrix<f64>>,
     /// Of each sequence: vectors × its data, the sums from a datum on.
-    sums: Vec<DMatrix<f64>>,
+    sums: OnceLock<Vec<DMatrix<f64>>>,
 }
 
 impl Columns {
@@ -129,43 +133,44 @@ impl Columns {
     }
 
     /// cᵀu of every column with every column u of `vectors`, which have the data `rows` only, or all.
-    pub fn products(&self, vectors: &DMatrix<f64>, rows: Option<&[usize]>) -> Products<'_> {
-        let scattered = rows.map(|rows| {
-            let mut all = DMatrix::zeros(self.data, vectors.ncols());
-            for (mut all, own) in all.column_iter_mut().zip(vectors.column_iter()) {
-                rows.iter().zip(own.iter()).for_each(|(&row, value)| all[row] = *value);
-            }
-            all
-        });
-        let vectors = scattered.as_ref().unwrap_or(vectors);
-        let count = vectors.ncols();
-        let mut by_case = DMatrix::zeros(self.by_case.nrows(), count);
-        let mut listed = DMatrix::zeros(count, self.listed.len());
-        for (j, vector) in vectors.column_iter().enumerate() {
-            let mut sums = by_case.column_mut(j);
-            vector.iter().zip(&self.cases).for_each(|(value, &case)| sums[case] += value);
-            for (k, column) in self.listed.iter().enumerate() {
-                listed[(j, k)] = column.iter().map(|&(row, x)| x * vector[row]).sum();
-            }
-        }
-        let sums = |sequence: &Arc<[usize]>| {
-            let mut sums = DMatrix::zeros(count, sequence.len());
-            for (j, vector) in vectors.column_iter().enumerate() {
-                let mut sum = 0.0;
-                for (k, &row) in sequence.iter().enumerate().rev() {
-                    sum += vector[row];
-                    sums[(j, k)] = sum;
+    pub fn products(&self, vectors: DMatrix<f64>, rows: Option<&[usize]>) -> Products<'_> {
+        let vectors = match rows {
+            None => vectors,
+            Some(rows) => {
+                let mut all = DMatrix::zeros(self.data, vectors.ncols());
+                for (mut all, own) in all.column_iter_mut().zip(vectors.column_iter()) {
+                    rows.iter().zip(own.iter()).for_each(|(&row, value)| all[row] = *value);
                 }
+                all
             }
-            sums
         };
+        let mut by_case = DMatrix::zeros(self.by_case.nrows(), vectors.ncols());
+        for (vector, mut sums) in vectors.column_iter().zip(by_case.column_iter_mut()) {
+            vector.iter().zip(&self.cases).for_each(|(value, &case)| sums[case] += value);
+        }
         Products {
             columns: self,
-            whole: transposed_product(vectors, &self.whole),
+            whole: transposed_product(&vectors, &self.whole),
             by_case: transposed_product(&by_case, &self.by_case),
-            listed,
-            sums: self.sequences.iter().map(sums).collect(),
+            listed: OnceLock::new(),
+            sums: OnceLock::new(),
+            vectors,
         }
+    }
+
+    /// The same for many vectors, some at a time, lest all that is computed for them stands in memory.
+    pub fn table(&self, vectors: &DMatrix<f64>, rows: Option<&[usize]>) -> Table<'_> {
+        let at_once = (AT_ONCE / self.data.max(1)).max(1);
+        let mut all = DMatrix::zeros(vectors.ncols(), self.columns.len());
+        for first in (0..vectors.ncols()).step_by(at_once) {
+            let count = at_once.min(vectors.ncols() - first);
+            let products = self.products(vectors.columns(first, count).into_owned(), rows);
+            for candidate in 0..self.first.len() - 1 {
+                let own = products.of(candidate);
+                all.view_mut((first, self.first[candidate]), own.shape()).copy_from(&own);
+            }
+        }
+        Table { columns: self, all }
     }
 
     /// The square of a candidate that is a step, by the `squares` of steps of size 1 at each datum of each sequence.
@@ -189,6 +194,31 @@ impl Columns {
 }
 
 impl Products<'_> {
+    fn listed(&self) -> DMatrix<f64> {
+        let mut listed = DMatrix::zeros(self.vectors.ncols(), self.columns.listed.len());
+        for (j, vector) in self.vectors.column_iter().enumerate() {
+            for (k, column) in self.columns.listed.iter().enumerate() {
+                listed[(j, k)] = column.iter().map(|&(row, x)| x * vector[row]).sum();
+            }
+        }
+        listed
+    }
+
+    fn sums(&self) -> Vec<DMatrix<f64>> {
+        let of_sequence = |sequence: &Arc<[usize]>| {
+            let mut sums = DMatrix::zeros(self.vectors.ncols(), sequence.len());
+            for (j, vector) in self.vectors.column_iter().enumerate() {
+                let mut sum = 0.0;
+                for (k, &row) in sequence.iter().enumerate().rev() {
+                    sum += vector[row];
+                    sums[(j, k)] = sum;
+                }
+            }
+            sums
+        };
+        self.columns.sequences.iter().map(of_sequence).collect()
+    }
+
     /// Vectors × columns of a candidate.
     pub fn of(&self, candidate: usize) -> DMatrix<f64> {
         let own = self.columns.own(candidate);
@@ -197,9 +227,9 @@ impl Products<'_> {
             match *column {
                 Column::Whole(k) => product.copy_from(&self.whole.column(k)),
                 Column::ByCase(k) => product.copy_from(&self.by_case.column(k)),
-                Column::Listed(k) => product.copy_from(&self.listed.column(k)),
+                Column::Listed(k) => product.copy_from(&self.listed.get_or_init(|| self.listed()).column(k)),
                 Column::Step { sequence, from, size } => {
-                    let sums = &self.sums[sequence];
+                    let sums = &self.sums.get_or_init(|| self.sums())[sequence];
                     if from < sums.ncols() {
                         product.copy_from(&(sums.column(from) * size));
                     }
@@ -209,9 +239,20 @@ impl Products<'_> {
         products
     }
 
-    /// Those with the first vector only.
-    pub fn of_first(&self, candidate: usize) -> DVector<f64> {
-        self.of(candidate).row(0).transpose()
+}
+
+/// The same, kept: without the vectors.
+pub(super) struct Table<'a> {
+    columns: &'a Columns,
+    /// Vectors × all columns.
+    all: DMatrix<f64>,
+}
+
+impl Table<'_> {
+    /// Vectors × columns of a candidate.
+    pub fn of(&self, candidate: usize) -> DMatrix<f64> {
+        let (first, next) = (self.columns.first[candidate], self.columns.first[candidate + 1]);
+        self.all.columns(first, next - first).into_owned()
     }
 }
 
@@ -270,6 +311,8 @@ fn firsts(cases: &[usize]) -> Vec<usize> {
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::DVector;
+
     use super::super::{DERIVATIVE_STEP, Location, Parameter, Step, Term, UNKNOWN};
     use super::*;
 
@@ -358,7 +401,7 @@ mod tests {
         let vectors = DMatrix::from_fn(43, 3, |i, j| (i * 3 + j) as f64 % 5.0 - 2.0);
         let some: Vec<usize> = (0..43).filter(|i| i % 4 != 1).collect();
         let part = vectors.select_rows(&some);
-        let (of_all, of_some) = (columns.products(&vectors, None), columns.products(&part, Some(&some)));
+        let (of_all, of_some) = (columns.products(vectors.clone(), None), columns.products(part.clone(), Some(&some)));
         for candidate in 0..model.candidates.len() {
             let plain = plain(&model, candidate);
             assert!((columns.dense(candidate, None) - &plain).amax() < 1e-9, "{candidate}");
@@ -367,8 +410,8 @@ mod tests {
             assert!((columns.dense(candidate, Some(&some)) - &plain).amax() < 1e-9, "{candidate}");
             assert!((of_some.of(candidate) - part.tr_mul(&plain)).amax() < 1e-9, "{candidate}");
         }
-        let first = (of_all.of_first(0), vectors.column(0).tr_mul(&plain(&model, 0)).transpose());
-        assert!((first.0 - first.1).amax() < 1e-9);
+        let table = columns.table(&part, Some(&some));
+        assert!((0..model.candidates.len()).all(|k| table.of(k) == of_some.of(k)));
     }
 
     #[test]

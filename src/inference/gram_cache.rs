@@ -8,7 +8,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use nalgebra::{DMatrix, DVector};
 
-use super::columns::Products;
+use super::columns::Table;
 
 /// For each candidate the products of some columns (rows) with its own (columns).
 type Kept = Arc<Vec<DMatrix<f64>>>;
@@ -22,9 +22,9 @@ pub struct GramCache {
 
 impl GramCache {
     /// Of `count` candidates, by their products with residual and background.
-    pub(super) fn new(count: usize, residual: &Products<'_>, background: &Products<'_>) -> Self {
+    pub(super) fn new(count: usize, residual: &Table<'_>, background: &Table<'_>) -> Self {
         GramCache {
-            residual: (0..count).map(|candidate| residual.of_first(candidate)).collect(),
+            residual: (0..count).map(|candidate| residual.of(candidate).row(0).transpose()).collect(),
             background: (0..count).map(|candidate| background.of(candidate)).collect(),
             effects: Mutex::default(),
         }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::columns::{Columns, Products};
+use super::columns::{Columns, Products, Table};
 use super::{
     Candidate, Description, Estimate, Finding, FindingPart, ForwardModel, Hypothesis, Location, Term,
 };
@@ -35,8 +35,13 @@ impl<'a> Linearised<'a> {
     }
 
     /// Inner products of all candidates' columns at neutral values with some vectors.
-    pub(super) fn products(&self, vectors: &DMatrix<f64>) -> Products<'_> {
+    pub(super) fn products(&self, vectors: DMatrix<f64>) -> Products<'_> {
         self.columns.products(vectors, self.rows)
+    }
+
+    /// The same for many vectors, to be kept.
+    pub(super) fn table(&self, vectors: &DMatrix<f64>) -> Table<'_> {
+        self.columns.table(vectors, self.rows)
     }
 
     /// All of these columns.

@@ -71,7 +71,7 @@ impl Search<'_> {
                 let whitened = self.whitening.apply_columns(&self.model.neutral(paired[k]));
                 columns.columns_mut(starts[k] - starts[next], counts[k]).copy_from(&whitened);
             }
-            let products = self.model.products(&self.whitening.transposed(&columns));
+            let products = self.model.products(self.whitening.transposed(&columns));
             for (k, &index) in paired.iter().enumerate() {
                 gram.view_mut((starts[next], starts[k]), (own, counts[k])).copy_from(&products.of(index));
             }

@@ -208,6 +208,9 @@ impl Moments {
     /// gain ≈ −½·ν·ln(1 − Δ/νσ²) − ½·ln|1 + κ²G'/s'| + ln(room)
     pub fn about(&self, score: &Score, more: &ColumnBlock) -> f64 {
         let (nu, s) = ((self.degrees_of_freedom as f64 + self.believed().0).max(1.0), score.sigma.powi(2));
+        if more.gram.len() == 1 {
+            return self.about_one(score, more, nu);
+        }
         let (gram, product) = self.reduced(score, more);
         let k = gram.ncols();
         // what a hypothesis holds already leaves rounding: it is no smaller a prior
@@ -233,6 +236,42 @@ impl Moments {
                         room((low / scale, high / scale), solved.solution[i] / scale, sd)
                     })
                     .sum();
+                return -0.5 * (nu * (-explained).ln_1p() + determinant + scale.log10().powi(2)) + room;
+            }
+            (scale, left) = (next, less);
+            step += 1;
+        }
+    }
+
+    /// The same of one column, which a slip at any place is, in plain numbers.
+    fn about_one(&self, score: &Score, more: &ColumnBlock, nu: f64) -> f64 {
+        let s = score.sigma.powi(2);
+        let (mut gram, mut product) = (more.gram[0], more.product[0]);
+        for ((covariance, cross), estimate) in
+            score.covariance.column_iter().zip(more.cross.iter()).zip(score.estimate.iter())
+        {
+            let along: f64 = covariance.iter().zip(more.cross.iter()).map(|(c, x)| c * x).sum();
+            gram -= cross * along / s;
+            product -= cross * estimate;
+        }
+        let rounding = ROUNDING * more.gram[0].abs();
+        let moment = (product * product - s * gram) / (gram * gram).max(f64::MIN_POSITIVE);
+        let (mut scale, mut left) = (moment.max(0.0).sqrt().clamp(SCALES.0, SCALES.1), s);
+        let mut step = 0;
+        loop {
+            let ridge = left / scale.powi(2) + rounding;
+            // rounding may leave less than nothing of the column
+            let inverse = 1.0 / (gram.max(0.0) + ridge);
+            let solution = inverse * product;
+            let next = (solution * solution + left * inverse).sqrt().clamp(SCALES.0, SCALES.1);
+            let explained = (product * solution / (nu * s)).clamp(0.0, 1.0 - 1e-12);
+            let less = (s * (1.0 - explained)).max(self.floor.powi(2)).max(f64::MIN_POSITIVE.sqrt());
+            let moved = (next / scale).ln().abs().max((less / left).ln().abs());
+            if step == SCALE_STEPS || moved < ROUGHLY {
+                let determinant = -(inverse * ridge).ln();
+                let (low, high) = more.bounds[0];
+                let bounds = (low / scale, high / scale);
+                let room = room(bounds, solution / scale, (left * inverse).sqrt() / scale);
                 return -0.5 * (nu * (-explained).ln_1p() + determinant + scale.log10().powi(2)) + room;
             }
             (scale, left) = (next, less);

@@ -10,7 +10,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use nalgebra::{DMatrix, DVector};
 
-use super::columns::Products;
+use super::columns::Table;
 use super::gram_cache::{GramCache, stacked};
 use super::lack_of_fit::{LackOfFit, Replicates};
 use super::linearised::Linearised;
@@ -36,7 +36,7 @@ pub struct Search<'a> {
     /// Background, whitened and projected, and its inner products.
     background: (DMatrix<f64>, DMatrix<f64>),
     /// Those of the background with each candidate's columns at neutral values.
-    beside_background: Products<'a>,
+    beside_background: Table<'a>,
     /// Inner products of each candidate's columns, whitened and projected, with each other. Those with what is projected
     /// need no projection of theirs.
     grams: Vec<DMatrix<f64>>,
@@ -67,10 +67,10 @@ impl<'a> Search<'a> {
         let grams = grams(model, &whitening);
         let residual = whitening.apply(&evidence.residual);
         let background = whitening.apply_columns(&evidence.background);
-        let beside_background = model.products(&whitening.transposed(&background));
+        let beside_background = model.table(&whitening.transposed(&background));
         let kept = model.is_linear().then(|| {
             let of_residual = DMatrix::from_column_slice(residual.len(), 1, residual.as_slice());
-            let of_residual = model.products(&whitening.transposed(&of_residual));
+            let of_residual = model.table(&whitening.transposed(&of_residual));
             GramCache::new(grams.len(), &of_residual, &beside_background)
         });
         Search {
@@ -288,7 +288,7 @@ impl<'a> Search<'a> {
             let count = own.ncols();
             let mut with_residual = own.resize_horizontally(count + 1, 0.0);
             with_residual.set_column(count, &r);
-            let products = self.model.products(&self.whitening.transposed(&with_residual));
+            let products = self.model.products(self.whitening.transposed(&with_residual));
             let of = move |index: usize| {
                 let all = products.of(index);
                 let effects = all.rows(0, count).into_owned();
@@ -300,7 +300,7 @@ impl<'a> Search<'a> {
         let effects: Vec<usize> = terms.iter().map(|c| c.candidate).collect();
         let cross = kept.hypothesis(&effects, &|effect| {
             let own = self.whitening.apply_columns(&self.model.neutral(effect));
-            let products = self.model.products(&self.whitening.transposed(&own));
+            let products = self.model.table(&self.whitening.transposed(&own));
             (0..self.grams.len()).map(|index| products.of(index)).collect()
         });
         let first = self.background.0.ncols();
@@ -435,7 +435,7 @@ fn one_sided((low, high): (f64, f64)) -> (f64, f64) {
 fn grams(model: &Linearised<'_>, whitening: &Whitening) -> Vec<DMatrix<f64>> {
     let squares = whitening.squares_of_steps(&model.sequences());
     let basis = whitening.basis();
-    let absorbed = (basis.ncols() > 0).then(|| model.products(&whitening.transposed(&basis)));
+    let absorbed = (basis.ncols() > 0).then(|| model.table(&whitening.transposed(&basis)));
     let gram = |candidate: usize| match model.stored().square_of_step(candidate, &squares) {
         Some(square) => {
             let lost = absorbed.as_ref().map_or(0.0, |absorbed| absorbed.of(candidate).norm_squared());

@@ -104,8 +104,6 @@ pub(super) struct State<'a> {
 
 /// What a datum feels.
 pub(super) struct Pull {
-    /// Where the load and the play point to.
-    pub direction: Vector3<f64>,
     /// The load that explains the displacement, but for what is remembered, N.
     pub load: f64,
     /// Displacement along the direction that has nothing to do with the structure, m.
@@ -180,8 +178,12 @@ impl<'a> State<'a> {
         };
         let mut load = acting * (1.0 + self.per_load_squared * acting * acting);
         load *= 1.0 + self.per_load * acting.abs();
-        let direction = self.load_direction[axis] * f64::from(datum.direction.sign);
-        Pull { direction, load, play: if is_loaded { self.play[axis] } else { 0.0 } }
+        Pull { load, play: if is_loaded { self.play[axis] } else { 0.0 } }
+    }
+
+    /// Where a datum's load and its play point to.
+    pub(super) fn direction(&self, datum: &Datum) -> Vector3<f64> {
+        self.load_direction[datum.direction.axis.index()] * f64::from(datum.direction.sign)
     }
 
     /// True where the history of loads matters: then data of one case differ.

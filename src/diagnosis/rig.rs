@@ -41,8 +41,9 @@ use self::effects::{Context, registry};
 use self::structure::Structure;
 use crate::error::{Error, Place, Result};
 use crate::inference::{
-    Candidate, Description, Diagnosed, Effect, Estimate, Evidence, Finding, FindingPart, ForwardModel,
-    DERIVATIVE_STEP, Hypothesis, Location, NotTestable, Parameter, Proposal, Step, Term, UNKNOWN, diagnose as infer, rms,
+    Candidate, DERIVATIVE_STEP, Description, Diagnosed, Effect, Estimate, Evidence, Finding, FindingPart,
+    ForwardModel, Hypothesis, Location, NotTestable, Parameter, Proposal, Step, Term, UNKNOWN,
+    diagnose as infer, rms,
 };
 use crate::rig::readings::Readings;
 use crate::rod::Rod;
@@ -88,7 +89,8 @@ pub fn diagnose_among(
         true => (&mended.readings, mended.rod.as_ref()),
         false => (readings, rod),
     };
-    let (mut model, evidence, not_testable) = RigModel::with_effects(mended_readings, mended_rod, &Wanted::All)?;
+    let (mut model, evidence, not_testable) =
+        RigModel::with_effects(mended_readings, mended_rod, &Wanted::All)?;
     let mut diagnosis = infer(&model, &evidence);
     if mended.has_data {
         for k in 0..diagnosis.findings.len() {
@@ -389,8 +391,7 @@ impl RigModel {
                 .zip(actions)
                 .filter(|(parameter, action)| {
                     // where a joint is matters as soon as it yields
-                    matches!(action, Action::Station(_))
-                        || self.is_felt(action, parameter, nothing)
+                    matches!(action, Action::Station(_)) || self.is_felt(action, parameter, nothing)
                 })
                 .unzip();
             if actions.iter().any(|action| !matches!(action, Action::Station(_))) {

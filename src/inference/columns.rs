@@ -59,9 +59,7 @@ pub(super) struct Products<'a> {
     /// Vectors × columns, as these are stored.
     whole: DMatrix<f64>,
     by_case: DMatrix<f64>,
-    /// Computed when they are first asked for, as are `sums`.
-    listed: OnceLock<DMatrix<f64>>,
-    /// Of each sequence: vectors × its data, the sums from a datum on.
+    /// Of each sequence: vectors × its data, the sums from a datum on; computed when they are first asked for.
     sums: OnceLock<Vec<DMatrix<f64>>>,
 }
 
@@ -152,7 +150,6 @@ impl Columns {
             columns: self,
             whole: transposed_product(&vectors, &self.whole),
             by_case: transposed_product(&by_case, &self.by_case),
-            listed: OnceLock::new(),
             sums: OnceLock::new(),
             vectors,
         }
@@ -194,16 +191,6 @@ impl Columns {
 }
 
 impl Products<'_> {
-    fn listed(&self) -> DMatrix<f64> {
-        let mut listed = DMatrix::zeros(self.vectors.ncols(), self.columns.listed.len());
-        for (j, vector) in self.vectors.column_iter().enumerate() {
-            for (k, column) in self.columns.listed.iter().enumerate() {
-                listed[(j, k)] = column.iter().map(|&(row, x)| x * vector[row]).sum();
-            }
-        }
-        listed
-    }
-
     fn sums(&self) -> Vec<DMatrix<f64>> {
         let of_sequence = |sequence: &Arc<[usize]>| {
             let mut sums = DMatrix::zeros(self.vectors.ncols(), sequence.len());
@@ -227,7 +214,11 @@ impl Products<'_> {
             match *column {
                 Column::Whole(k) => product.copy_from(&self.whole.column(k)),
                 Column::ByCase(k) => product.copy_from(&self.by_case.column(k)),
-                Column::Listed(k) => product.copy_from(&self.listed.get_or_init(|| self.listed()).column(k)),
+                Column::Listed(k) => {
+                    for (product, vector) in product.iter_mut().zip(self.vectors.column_iter()) {
+                        *product = self.columns.listed[k].iter().map(|&(row, x)| x * vector[row]).sum();
+                    }
+                }
                 Column::Step { sequence, from, size } => {
                     let sums = &self.sums.get_or_init(|| self.sums())[sequence];
                     if from < sums.ncols() {
@@ -238,7 +229,6 @@ impl Products<'_> {
         }
         products
     }
-
 }
 
 /// The same, kept: without the vectors.
@@ -326,7 +316,8 @@ mod tests {
     const OTHERS: usize = 3;
 
     fn recording(count: usize) -> Recording {
-        let sequences = (0..count).step_by(8).map(|first| (first..(first + 8).min(count)).collect::<Vec<_>>());
+        let sequences =
+            (0..count).step_by(8).map(|first| (first..(first + 8).min(count)).collect::<Vec<_>>());
         let sequences: Vec<Arc<[usize]>> = sequences.map(Arc::from).collect();
         let of = |sequence: &Arc<[usize]>| {
             let data = Arc::clone(sequence);
@@ -401,7 +392,8 @@ mod tests {
         let vectors = DMatrix::from_fn(43, 3, |i, j| (i * 3 + j) as f64 % 5.0 - 2.0);
         let some: Vec<usize> = (0..43).filter(|i| i % 4 != 1).collect();
         let part = vectors.select_rows(&some);
-        let (of_all, of_some) = (columns.products(vectors.clone(), None), columns.products(part.clone(), Some(&some)));
+        let (of_all, of_some) =
+            (columns.products(vectors.clone(), None), columns.products(part.clone(), Some(&some)));
         for candidate in 0..model.candidates.len() {
             let plain = plain(&model, candidate);
             assert!((columns.dense(candidate, None) - &plain).amax() < 1e-9, "{candidate}");

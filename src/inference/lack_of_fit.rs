@@ -150,9 +150,8 @@ mod tests {
         for ratio in [0.0, 1.0, 900.0] {
             let evidence = Evidence { shared_ratio: Some(ratio), ..evidence.clone() };
             let whitening = Whitening::new(&evidence, &residual);
-            let indicators = DMatrix::from_fn(COUNT, 24, |i, k| {
-                f64::from(u8::from(evidence.replicate_group[i] == k))
-            });
+            let indicators =
+                DMatrix::from_fn(COUNT, 24, |i, k| f64::from(u8::from(evidence.replicate_group[i] == k)));
             let expected = whitening.whitened_columns(&indicators).qr().q().tr_mul(&residual).norm_squared();
             let found = replicates(&evidence).along(&residual);
             assert!((found - expected).abs() < 1e-9 * expected, "{ratio}: {found} instead of {expected}");

@@ -43,8 +43,7 @@ impl Search<'_> {
         }
         paired.truncate(MOST);
         let (residual, base) = self.linear_part(&hypothesis.terms);
-        let counts: Vec<usize> =
-            paired.iter().map(|&index| candidates[index].parameters.len()).collect();
+        let counts: Vec<usize> = paired.iter().map(|&index| candidates[index].parameters.len()).collect();
         let starts: Vec<usize> = counts
             .iter()
             .scan(0, |next, count| {

@@ -247,12 +247,12 @@ impl Moments {
     fn about_one(&self, score: &Score, more: &ColumnBlock, nu: f64) -> f64 {
         let s = score.sigma.powi(2);
         let (mut gram, mut product) = (more.gram[0], more.product[0]);
-        for ((covariance, cross), estimate) in
-            score.covariance.column_iter().zip(more.cross.iter()).zip(score.estimate.iter())
-        {
-            let along: f64 = covariance.iter().zip(more.cross.iter()).map(|(c, x)| c * x).sum();
-            gram -= cross * along / s;
-            product -= cross * estimate;
+        let cross = more.cross.as_slice();
+        let columns = score.covariance.as_slice().chunks_exact(cross.len().max(1));
+        for ((covariance, x), estimate) in columns.zip(cross).zip(score.estimate.as_slice()) {
+            let along: f64 = covariance.iter().zip(cross).map(|(c, x)| c * x).sum();
+            gram -= x * along / s;
+            product -= x * estimate;
         }
         let rounding = ROUNDING * more.gram[0].abs();
         let moment = (product * product - s * gram) / (gram * gram).max(f64::MIN_POSITIVE);

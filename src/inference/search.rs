@@ -16,8 +16,8 @@ use super::lack_of_fit::{LackOfFit, Replicates};
 use super::linearised::Linearised;
 use super::score::{ColumnBlock, Moments, Score};
 use super::whitening::Whitening;
-use crate::linalg::transposed_product;
 use super::{Candidate, Effect, Evidence, ForwardModel, Hypothesis, Term};
+use crate::linalg::transposed_product;
 
 /// Prior probability that the next effect is none, one of the library, or one that nobody has named.
 pub(super) const PRIOR: (f64, f64, f64) = (0.5, 0.4, 0.1);
@@ -244,8 +244,7 @@ impl<'a> Search<'a> {
         let left = &self.evidence.residual
             - self.model.response(&hypothesis.terms)
             - &self.evidence.background * &hypothesis.background;
-        predicted
-            + &evidence.nuisance * self.whitening.nuisance(&self.evidence.nuisance, &left)
+        predicted + &evidence.nuisance * self.whitening.nuisance(&self.evidence.nuisance, &left)
     }
 
     /// Residual and columns of a hypothesis, background first, whitened; the residual without what its values explain.

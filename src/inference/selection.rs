@@ -66,10 +66,7 @@ impl Search<'_> {
 
     /// The best hypothesis on the way on from the last of `path`, what it leaves, and the ln of the
     /// probability of both.
-    fn along(
-        &self,
-        mut path: Vec<Hypothesis>,
-    ) -> (Hypothesis, Option<DiscrepancyModel>, f64) {
+    fn along(&self, mut path: Vec<Hypothesis>) -> (Hypothesis, Option<DiscrepancyModel>, f64) {
         let mut remainders: Vec<Option<(f64, DiscrepancyModel)>> = Vec::new();
         for hypothesis in &path[..path.len() - 1] {
             remainders.push(self.remainder(hypothesis, &self.additions(hypothesis)));

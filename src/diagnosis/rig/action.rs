@@ -51,10 +51,33 @@ pub(super) enum Action {
     TurnSensors(Axis, Axis),
     /// Play of the clamp under loads along these axes, m \[0\].
     Play([bool; 3]),
-    /// Adds to readings: index of the datum, weight \[0\].
-    Shift(Vec<(usize, f64)>),
+    /// Adds to readings \[0\].
+    Shift(Weights),
     /// Adds to the readings of this sequence of data, from one of them on \[0\].
     Step(Arc<[usize]>, usize),
+}
+
+/// What is added to readings per unit of a parameter.
+#[derive(Debug, Clone)]
+pub(super) struct Weights {
+    /// Indices of the data, which several of them may share: recordings are long, and curves many.
+    pub data: Arc<[usize]>,
+    /// For each of these its weight.
+    pub values: Vec<f64>,
+}
+
+impl Weights {
+    /// Index and weight of each datum.
+    pub(super) fn iter(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
+        self.data.iter().copied().zip(self.values.iter().copied())
+    }
+}
+
+impl FromIterator<(usize, f64)> for Weights {
+    fn from_iter<T: IntoIterator<Item = (usize, f64)>>(weights: T) -> Self {
+        let (data, values): (Vec<usize>, Vec<f64>) = weights.into_iter().unzip();
+        Weights { data: data.into(), values }
+    }
 }
 
 impl Action {
@@ -66,7 +89,7 @@ impl Action {
     /// Adds what it does at `value` to readings, m.
     pub(super) fn add_to(&self, readings: &mut [f64], value: f64) {
         match self {
-            Action::Shift(weights) => weights.iter().for_each(|&(i, weight)| readings[i] += weight * value),
+            Action::Shift(weights) => weights.iter().for_each(|(i, weight)| readings[i] += weight * value),
             Action::Step(data, from) => data[*from..].iter().for_each(|&i| readings[i] += value),
             _ => {}
         }
@@ -75,7 +98,9 @@ impl Action {
     /// The largest that it adds to a reading per unit of its parameter.
     pub(super) fn largest_addition(&self) -> Option<f64> {
         match self {
-            Action::Shift(weights) => Some(weights.iter().fold(0.0, |most: f64, (_, w)| most.max(w.abs()))),
+            Action::Shift(weights) => {
+                Some(weights.values.iter().fold(0.0, |most: f64, weight| most.max(weight.abs())))
+            }
             Action::Step(data, from) => Some(if *from < data.len() { 1.0 } else { 0.0 }),
             _ => None,
         }
@@ -193,7 +218,8 @@ impl<'a> State<'a> {
 
     /// The load that explains the displacement of datum number `index`, N, history included; `load` is that without.
     pub(super) fn remembered(&self, load: f64, index: usize) -> f64 {
-        let relative = |load: f64, (memory, value): &(&Memory, f64)| load * (1.0 + value * memory.relative[index]);
+        let relative =
+            |load: f64, (memory, value): &(&Memory, f64)| load * (1.0 + value * memory.relative[index]);
         let lingering = |(memory, value): &(&Memory, f64)| value * memory.lingering[index];
         self.memories.iter().fold(load, relative) + self.memories.iter().map(lingering).sum::<f64>()
     }

@@ -187,7 +187,10 @@ pub(super) fn frozen(data: &[Datum]) -> Vec<Part> {
                 own[first..].iter().take_while(|&&i| data[i].measured == data[own[first]].measured).count();
             let at = &own[first..first + same];
             first += same;
-            if same < FROZEN || same == own.len() || is_surely_flat(data, &all, at, HARDLY * CHANGES * largest) {
+            if same < FROZEN
+                || same == own.len()
+                || is_surely_flat(data, &all, at, HARDLY * CHANGES * largest)
+            {
                 continue;
             }
             let Some(expected) = expected(data, at, at) else { continue };
@@ -241,7 +244,8 @@ fn expected(data: &[Datum], at: &[usize], without: &[usize]) -> Option<Vec<(f64,
     let rest = lines(data, |i| !without.contains(&i));
     let of = |&i: &usize| {
         let d = &data[i];
-        let line = rest.iter().find(|line| line.is_of(d)).filter(|line| line.has_slope && line.data.len() >= 3)?;
+        let line =
+            rest.iter().find(|line| line.is_of(d)).filter(|line| line.has_slope && line.data.len() >= 3)?;
         // loads beyond those of the others are predicted no better than the slope is known
         let scatter = line.fit.scatter.hypot(line.fit.error * d.load);
         Some((line.fit.at(d.signed_load()), scatter))

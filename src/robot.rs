@@ -22,6 +22,7 @@ mod minimal;
 mod parameter;
 mod predict;
 mod setup;
+mod standard_uncertainty;
 mod statics;
 mod uncertainty;
 mod urdf;
@@ -35,6 +36,7 @@ pub use minimal::minimal_parameters;
 pub use parameter::{Parameter, Unit};
 pub use predict::PredictionQuery;
 pub use setup::Setup;
+pub use standard_uncertainty::StandardUncertainty;
 pub use statics::Loads;
 pub use uncertainty::Uncertainty;
 pub use urdf::Written;
@@ -64,7 +66,9 @@ pub struct Robot {
     pub effects: Vec<Effect>,
     /// The tip that it was calibrated with, where its file states it.
     pub tip: Option<Tip>,
-    /// How sure its numbers are, where its file states it.
+    /// How well its numbers are known before anybody measures it.
+    pub standard_uncertainty: StandardUncertainty,
+    /// How sure its numbers are after a calibration, where its file states it.
     pub uncertainty: Option<Uncertainty>,
 }
 
@@ -161,6 +165,7 @@ impl Robot {
             flange: Pose::IDENTITY,
             effects: Vec::new(),
             tip: None,
+            standard_uncertainty: StandardUncertainty::default(),
             uncertainty: None,
         }
     }

@@ -10,6 +10,7 @@ mod held_out;
 mod identifiability;
 mod lab;
 mod modes;
+mod narrow;
 mod rank;
 mod recorded;
 mod recovery;

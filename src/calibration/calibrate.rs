@@ -1,18 +1,18 @@
 //! The calibration itself: rough start, fit, compensation recomputed until it no longer changes (Eqs
 //! 7–14).
 
-use super::campaign::{Campaign, Recording, Targets};
+use super::before::before;
+use super::calibrate_from::calibrate_from;
+use super::campaign::{Campaign, Targets};
 use super::compensation::{Compensation, Mode};
-use super::identifiability;
-use super::observability::Observability;
+use super::extrapolation::{Extrapolation, Known};
 use super::options::Options;
-use super::passes::Run;
-use super::problem::Residuals;
-use super::result::{Calibration, Estimated};
+use super::prune::pruned;
+use super::result::Calibration;
 use super::start::{first_guess, rough_start};
 use super::validation::validate;
-use crate::error::{Error, Place, Result};
-use crate::robot::{Kinematics, Parameter, Setup, minimal_parameters};
+use crate::error::Result;
+use crate::robot::{Parameter, Setup, minimal_parameters};
 
 /// Calibrates the robot of a campaign.
 ///
@@ -45,87 +45,19 @@ pub fn calibrate<'c>(campaign: &'c Campaign, mode: Mode, options: &Options) -> R
     }
     let recording = &campaign.measurements;
     let mut calibration = calibrate_from(campaign, recording, start, &free, &compensation, options)?;
+    if options.prune {
+        calibration = pruned(campaign, calibration, &compensation, options)?;
+    }
     if let Some(recording) = &campaign.validation {
         calibration.validation = Some(validate(&calibration.setup, recording, campaign.refit)?);
+        let free: Vec<Parameter> = calibration.parameters.iter().map(|p| p.parameter).collect();
+        let covariance = &calibration.fit.covariance.matrix;
+        let known = Known { setup: &calibration.setup, free: &free, covariance };
+        let extrapolation = Extrapolation::new(&known, &campaign.measurements, recording);
+        calibration.warnings.extend(super::checks::extrapolation(&extrapolation));
+        calibration.extrapolation = Some(extrapolation);
     }
-    Ok(calibration)
-}
-
-/// Calibrates `free` parameters on a recording, from a given start, without validation: for folds
-/// and bootstrap samples.
-///
-/// # Errors
-/// As [`calibrate`].
-pub fn calibrate_from<'c>(
-    campaign: &'c Campaign,
-    recording: &Recording,
-    start: Setup<'c>,
-    free: &[Parameter],
-    compensation: &Compensation,
-    options: &Options,
-) -> Result<Calibration<'c>> {
-    check_count(recording, free)?;
-    let nominal = start.clone();
-    let mut run = Run::new(campaign, recording, start, free, compensation);
-    run.fit_base_and_tool()?;
-    let fit = run.compensate(options)?;
-    let Run { setup, pass, noise, held, passes, is_converged, .. } = run;
-
-    let problem = Residuals { setup: setup.clone(), free, recording, pass: &pass, held: &held };
-    let deviations = problem.deviations(&fit.parameters);
-    let errors = fit.standard_errors();
-    let identified = identifiability::identified(&held, free.len());
-    let parameters = free
-        .iter()
-        .enumerate()
-        .map(|(k, &parameter)| Estimated {
-            parameter,
-            nominal: nominal.get(parameter),
-            value: setup.get(parameter),
-            std_error: errors[k]
-                .filter(|_| identified[k])
-                .map(|e| e.hypot(identifiability::unidentified_range(&held, k))),
-            identifiable: identified[k] && errors[k].is_some(),
-        })
-        .collect();
-    let sockets = (0..problem.socket_count())
-        .map(|socket| {
-            [0, 1, 2].map(|axis| {
-                let k = free.len() + 3 * socket + axis;
-                (fit.parameters[k], errors[k])
-            })
-        })
-        .collect();
-    let mut kinematics = Kinematics::new(&setup);
-    let (tips, deflections) = (0..recording.len())
-        .map(|row| {
-            kinematics.update(recording.joints(row), pass.torque(recording, row));
-            (kinematics.tip, kinematics.flange.rotation * pass.deflection[row])
-        })
-        .unzip();
-    let observability = Observability::new(&problem, &fit.parameters)?;
-    let outliers = noise.outliers(recording, &deviations)?;
-    let mut calibration = Calibration {
-        mode: compensation.mode,
-        options: *options,
-        parameters,
-        sockets,
-        held,
-        deviations,
-        deflections,
-        tips,
-        noise,
-        outliers,
-        fit,
-        passes,
-        is_converged,
-        observability,
-        validation: None,
-        warnings: Vec::new(),
-        start: nominal,
-        setup,
-    };
-    calibration.warnings = super::checks::all(campaign, recording, &calibration);
+    calibration.before = Some(before(campaign, &calibration, &compensation, options)?);
     Ok(calibration)
 }
 
@@ -156,25 +88,7 @@ pub fn free_parameters(campaign: &Campaign, start: &Setup, compensation: &Compen
         .into_iter()
         .filter(|p| (minimal.contains(p) && (has_world || !is_base(p))) || constraints.freed.contains(p))
         .filter(|p| !constraints.fixed.contains(p))
+        // what is known exactly is no unknown
+        .filter(|p| campaign.robot.standard_uncertainty.of(*p) != Some(0.0))
         .collect()
-}
-
-fn check_count(recording: &Recording, free: &[Parameter]) -> Result<()> {
-    let unknown = match &recording.targets {
-        Targets::Points(_) => free.len(),
-        Targets::Sockets(distances) => {
-            (free.len() + 3 * recording.groups.len()).saturating_sub(distances.len())
-        }
-    };
-    // one pose more than it takes, for without a surplus nothing is known about the noise
-    let needed = unknown / 3 + 1;
-    if recording.len() >= needed {
-        return Ok(());
-    }
-    Err(Error::Input {
-        at: Place::whole_file(&recording.file),
-        found: format!("{} poses for {unknown} unknown numbers", recording.len()),
-        expected: format!("at least {needed}, better {}", 3 * needed),
-        hint: Some("measure more poses, or fix parameters in the campaign's [parameters]".into()),
-    })
 }

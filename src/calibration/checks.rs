@@ -1,6 +1,7 @@
 //! What the user of a calibration should know: which warnings apply.
 
 use super::campaign::{Campaign, Recording};
+use super::extrapolation::{Extrapolation, said};
 use super::identifiability::{UnidentifiedDirection, plausible_range};
 use super::result::Calibration;
 use super::warning::Warning;
@@ -44,6 +45,22 @@ pub(super) fn all(campaign: &Campaign, recording: &Recording, calibration: &Cali
             .then_some(Warning::Implausible { parameter: estimate.parameter, correction })
     }));
     warnings
+}
+
+/// Poses that make the robot so many times more uncertain than those of the calibration are worth a
+/// word; where joints go beyond their range, so many.
+const MORE_UNCERTAIN: f64 = 2.0;
+const MORE_UNCERTAIN_BEYOND: f64 = 1.5;
+
+/// Where poses are asked for that the calibration has not seen.
+pub(super) fn extrapolation(extrapolation: &Extrapolation) -> Option<Warning> {
+    let joints = extrapolation.joints_beyond();
+    let most = if joints.is_empty() { MORE_UNCERTAIN } else { MORE_UNCERTAIN_BEYOND };
+    let ratio = extrapolation.ratio();
+    let said = |(joint, asked, own): (usize, (f64, f64), (f64, f64))| {
+        (joint, said(asked, own, extrapolation.motions[joint]))
+    };
+    (ratio > most).then(|| Warning::Extrapolation { ratio, joints: joints.into_iter().map(said).collect() })
 }
 
 fn not_identified(calibration: &Calibration) -> Vec<Warning> {

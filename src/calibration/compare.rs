@@ -6,7 +6,8 @@
 //! included (B. Efron, R. Tibshirani, *An Introduction to the Bootstrap*, 1993, ch. 13). Without a
 //! validation file the held-out errors of a cross-validation are compared.
 
-use super::calibrate::{calibrate, calibrate_from};
+use super::calibrate::calibrate;
+use super::calibrate_from::calibrate_from;
 use super::campaign::Campaign;
 use super::compensation::{Compensation, Mode, modes};
 use super::cross_validation::{CrossValidation, cross_validate};

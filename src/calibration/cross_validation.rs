@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::calibrate::calibrate_from;
+use super::calibrate_from::calibrate_from;
 use super::campaign::{Campaign, Targets};
 use super::compensation::Compensation;
 use super::options::Options;

@@ -10,7 +10,7 @@ use nalgebra::Vector3;
 const UNEQUAL: f64 = 0.01;
 /// Least noise that is believed, m: where deviations are smaller still, they are rounding, and
 /// weights made of them would outweigh other knowledge, such as the distances of sockets.
-const LEAST: f64 = 1e-9;
+const LEAST: f64 = 1e-8;
 /// Fewest degrees of freedom for a noise of its own.
 const FEWEST: f64 = 10.0;
 

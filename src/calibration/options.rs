@@ -7,4 +7,6 @@ use super::noise::Robust;
 pub struct Options {
     /// What an outlier counts.
     pub robust: Robust,
+    /// Hold numbers of the robot that the data do not support at their nominal values.
+    pub prune: bool,
 }

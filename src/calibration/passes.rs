@@ -7,8 +7,9 @@ use super::identifiability::{self, UnidentifiedDirection};
 use super::noise::{Noise, Robust};
 use super::options::Options;
 use super::problem::{Pass, Residuals};
+use super::shrinkage::Drawing;
 use crate::error::Result;
-use crate::least_squares::{self, Fit, Problem as _};
+use crate::least_squares::{self, Fit, Prior, Problem as _};
 use crate::robot::{Parameter, Setup};
 
 /// Noise of a coordinate that is assumed until there are residuals, m.
@@ -18,6 +19,10 @@ const SETTLED: f64 = 1e-9;
 /// Relative change of noise and weights below which the loop has converged: far below their own
 /// uncertainty.
 const SETTLED_RELATIVE: f64 = 1e-3;
+/// Change of the logarithm of the drawing's scale below which the loop has converged: far below how well it is known.
+const RESCALED: f64 = 0.06;
+/// So many passes choose the drawing's scale.
+const RESCALING_PASSES: usize = 6;
 /// Most passes of the compensation loop.
 const MOST_PASSES: usize = 60;
 
@@ -45,6 +50,7 @@ pub(super) struct Run<'a, 'c> {
     pub pass: Pass,
     pub noise: Noise,
     pub held: Vec<UnidentifiedDirection>,
+    pub drawing: Drawing,
     pub passes: Vec<PassRecord>,
     pub is_converged: bool,
 }
@@ -62,6 +68,9 @@ impl<'a, 'c> Run<'a, 'c> {
             None => Noise::assumed(ASSUMED_NOISE, recording, false),
         };
         let pass = Pass { weight: noise.row_weights(recording), ..Pass::at_rest(recording) };
+        let stated: Vec<Parameter> =
+            campaign.wishes.priors.iter().map(|&(parameter, ..)| parameter).collect();
+        let drawing = Drawing::new(&setup, free, &stated);
         Run {
             campaign,
             recording,
@@ -72,6 +81,7 @@ impl<'a, 'c> Run<'a, 'c> {
             pass,
             noise,
             held: Vec::new(),
+            drawing,
             passes: Vec::new(),
             is_converged: false,
         }
@@ -114,7 +124,8 @@ impl<'a, 'c> Run<'a, 'c> {
             }
             let problem = self.problem();
             let deviations = problem.deviations(&fit.parameters);
-            let rank = fit.covariance.rank.saturating_sub(self.held.len());
+            let parameters = fit.covariance.rank.saturating_sub(self.held.len());
+            let rank = parameters.saturating_sub(self.drawing.undetermined() as usize);
             // one weighting as least squares first, so that the robust ones start from a fit
             let robust = if self.passes.is_empty() { Robust::None } else { options.robust };
             let noise = self.noise.estimate(self.recording, &deviations, rank, robust)?;
@@ -122,11 +133,21 @@ impl<'a, 'c> Run<'a, 'c> {
             let rms = (squares / self.recording.len() as f64).sqrt();
             self.passes.push(PassRecord { change, rms, noise: noise.pooled });
             let weight = noise.row_weights(self.recording);
+            // then the scale stays, lest it and the weights go on chasing each other
+            let rescaled = match self.passes.len() < RESCALING_PASSES {
+                true => {
+                    let root = self.problem().information_root(&fit.parameters);
+                    self.drawing.rescale(&root, &fit.parameters)?
+                }
+                false => 0.0,
+            };
             let scale = largest(weight.iter().copied());
             let weight_change = largest(weight.iter().zip(&self.pass.weight).map(|(a, b)| a - b));
             self.noise = noise;
-            let has_settled =
-                change < SETTLED && weight_change <= SETTLED_RELATIVE * scale && self.passes.len() > 1;
+            let has_settled = change < SETTLED
+                && weight_change <= SETTLED_RELATIVE * scale
+                && rescaled < RESCALED
+                && self.passes.len() > 1;
             self.is_converged = has_settled && fit.is_converged();
             if has_settled || self.passes.len() >= MOST_PASSES || !fit.is_converged() {
                 return Ok(fit);
@@ -145,14 +166,20 @@ impl<'a, 'c> Run<'a, 'c> {
         }
     }
 
-    fn fit(&self) -> Result<Fit> {
-        let problem = self.problem();
-        let mut options = known_noise();
+    /// What the drawing and the user know of the free parameters.
+    pub fn priors(&self) -> Vec<Prior> {
+        let mut priors: Vec<Prior> = self.drawing.priors().collect();
         for &(parameter, value, sd) in &self.campaign.wishes.priors {
             if let Some(index) = self.free.iter().position(|&p| p == parameter) {
-                options.priors.push(least_squares::Prior { parameter: index, value, sd });
+                priors.push(Prior { parameter: index, value, sd });
             }
         }
+        priors
+    }
+
+    fn fit(&self) -> Result<Fit> {
+        let problem = self.problem();
+        let options = least_squares::Options { priors: self.priors(), ..known_noise() };
         least_squares::fit(&problem, &problem.start(), &options)
     }
 

@@ -3,14 +3,15 @@
 use nalgebra::Vector3;
 
 use super::compensation::Mode;
+use super::extrapolation::Extrapolation;
 use super::identifiability::UnidentifiedDirection;
 use super::noise::Noise;
 use super::observability::Observability;
 use super::options::Options;
 use super::passes::PassRecord;
-use super::validation::Validation;
+use super::validation::{Before, Validation};
 use super::warning::Warning;
-use crate::least_squares::Fit;
+use crate::least_squares::{Fit, Prior};
 use crate::robot::{Parameter, Setup};
 
 /// A calibrated robot and how well it is known.
@@ -34,6 +35,12 @@ pub struct Calibration<'c> {
     /// Combinations of the free parameters that the data do not identify: held where the
     /// nominal robot has them.
     pub held: Vec<UnidentifiedDirection>,
+    /// What was known of the free parameters before the data: by the robot file, times
+    /// `drawing_scale`, and by the user.
+    pub priors: Vec<Prior>,
+    /// How many times farther from its drawing the robot is, by the data, than its file's standard
+    /// uncertainties say.
+    pub drawing_scale: f64,
     /// Deflected tip less measured point or socket, in {W}, m: one per row.
     pub deviations: Vec<Vector3<f64>>,
     /// What the rod's deflection added to each row, in {W}, m.
@@ -52,6 +59,10 @@ pub struct Calibration<'c> {
     pub is_converged: bool,
     /// How well the poses show the parameters.
     pub observability: Observability,
+    /// How accurate the nominal robot is at the same poses; `None` for folds and bootstrap samples.
+    pub before: Option<Before>,
+    /// The validation's poses against those of the calibration.
+    pub extrapolation: Option<Extrapolation>,
     /// How well the calibrated robot predicts, where the campaign can say it.
     pub validation: Option<Validation>,
     /// What the user should know.
@@ -73,6 +84,14 @@ pub struct Estimated {
     pub std_error: Option<f64>,
     /// False where the data do not determine it.
     pub identifiable: bool,
+}
+
+impl Estimated {
+    /// True where the data support that the number differs from its nominal value: by more than its
+    /// standard error.
+    pub fn is_supported(&self) -> bool {
+        self.std_error.is_some_and(|error| (self.value - self.nominal).abs() > error)
+    }
 }
 
 impl Calibration<'_> {

@@ -48,6 +48,17 @@ pub struct Summary {
     pub rms: f64,
 }
 
+/// Errors of the nominal robot at the poses of a campaign.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct Before {
+    /// Of the calibration's poses: only where the robot stands and where its tip is (or where the
+    /// sockets are) was fitted to them.
+    pub residual: Summary,
+    /// Of the validation's poses; `None` without a validation.
+    pub validation: Option<Summary>,
+}
+
 impl Summary {
     /// Of lengths, m; zeros for none.
     ///

@@ -56,6 +56,13 @@ pub enum Warning {
         /// Its correction, SI.
         correction: f64,
     },
+    /// The validation asks for poses that the calibration has not seen.
+    Extrapolation {
+        /// How many times more uncertain the robot's own numbers make it there.
+        ratio: f64,
+        /// Joints that go beyond the calibration's range: number from 0, and both ranges in words.
+        joints: Vec<(usize, String)>,
+    },
     /// The fit of base and tool to the validation did not converge.
     ValidationNotConverged,
 }
@@ -122,6 +129,19 @@ impl fmt::Display for Warning {
                 significant(correction / parameter.unit().si, 3),
                 parameter.unit().symbol
             ),
+            Warning::Extrapolation { ratio, joints } => {
+                f.write_str("the validation asks for poses that the calibration has not seen")?;
+                let named: Vec<String> =
+                    joints.iter().map(|(joint, ranges)| format!("joint {} {ranges}", joint + 1)).collect();
+                if !named.is_empty() {
+                    write!(f, " ({})", named.join(", "))?;
+                }
+                write!(
+                    f,
+                    ": there the robot's own numbers make a tip {} times as uncertain as at the calibrated poses",
+                    significant(*ratio, 2)
+                )
+            }
             Warning::ValidationNotConverged => {
                 f.write_str("the fit of base and tool to the validation poses did not converge")
             }

@@ -20,6 +20,10 @@ pub struct Calibrate {
     /// What an outlier counts.
     #[arg(long, value_enum, default_value_t = Weights::None)]
     robust: Weights,
+    /// Hold numbers of the robot whose correction is smaller than its standard error at their
+    /// nominal values, and calibrate again.
+    #[arg(long)]
+    prune: bool,
     /// Also predict every pose from a calibration without it, in so many folds of consecutive
     /// poses.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(2..=1000))]
@@ -73,7 +77,7 @@ impl Calibrate {
     pub fn run(&self) -> Result<Outcome> {
         let campaign = Campaign::read(&self.campaign)?;
         let mode = self.mode.map_or_else(|| calibration::default_mode(&campaign), ModeName::mode);
-        let options = Options { robust: self.robust.robust() };
+        let options = Options { robust: self.robust.robust(), prune: self.prune };
         let calibrated = calibration::calibrate(&campaign, mode, &options)?;
         let cross_validation = match self.folds {
             Some(folds) => {

@@ -36,7 +36,7 @@ impl Compare {
     pub fn run(&self) -> Result<Outcome> {
         let campaign = Campaign::read(&self.campaign)?;
         let options = CompareOptions {
-            calibration: Options { robust: self.robust.robust() },
+            calibration: Options { robust: self.robust.robust(), ..Options::default() },
             draws: self.draws,
             seed: self.seed,
             ..CompareOptions::default()

@@ -42,8 +42,7 @@ use self::structure::Structure;
 use crate::error::{Error, Place, Result};
 use crate::inference::{
     Candidate, DERIVATIVE_STEP, Description, Diagnosed, Effect, Estimate, Evidence, Finding, FindingPart,
-    ForwardModel, Hypothesis, Location, NotTestable, Parameter, Proposal, Step, Term, UNKNOWN,
-    diagnose as infer, rms,
+    ForwardModel, Hypothesis, Location, NotTestable, Parameter, Step, Term, UNKNOWN, diagnose as infer, rms,
 };
 use crate::rig::readings::Readings;
 use crate::rod::Rod;
@@ -100,7 +99,7 @@ pub fn diagnose_among(
             let units = mistakes::lookalikes(&model, finding);
             if !units.is_empty() {
                 // a unit is looked up, which is sooner done than any measurement
-                finding.next = Proposal::direct_check(finding, &units.iter().collect::<Vec<_>>());
+                finding.next = finding.direct_check(&units.iter().collect::<Vec<_>>());
                 finding.rivals.splice(0..0, units);
             }
         }

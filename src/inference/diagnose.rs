@@ -111,6 +111,7 @@ pub fn diagnose(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
             true => Vec::new(),
             false => leave_one_session_out(model, evidence),
         },
+        recorded: evidence.recorded,
         before,
         after,
         hypothesis,

@@ -2,6 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::evidence::rms;
 use super::{
     Absorbed, Finding, HeldOut, Hypothesis, LackOfFit, LeftOutSession, Location, NoiseTest, NominalEstimate,
     NotTestable, Structure, Suspect,
@@ -27,6 +28,8 @@ pub struct Diagnosis {
     pub nominal_factors: (DVector<f64>, DMatrix<f64>),
     /// Variance of the errors that data share, over that of their own.
     pub shared_ratio: f64,
+    /// How many data, from the first, were recorded.
+    pub recorded: usize,
     /// What the base model leaves, once it has absorbed what it can.
     pub before: DVector<f64>,
     /// And what the hypothesis leaves.
@@ -83,6 +86,16 @@ pub struct Diagnosed<M> {
 }
 
 impl Diagnosis {
+    /// Root mean square of what the base model leaves of what was recorded.
+    pub fn error_before(&self) -> f64 {
+        rms(&self.before.rows(0, self.recorded).into_owned())
+    }
+
+    /// And of what the hypothesis leaves.
+    pub fn error_after(&self) -> f64 {
+        rms(&self.after.rows(0, self.recorded).into_owned())
+    }
+
     /// True where something is left out of the model.
     pub fn is_mismatch(&self) -> bool {
         !self.findings.is_empty() || self.discrepancy.is_some()

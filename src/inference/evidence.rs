@@ -9,6 +9,8 @@ use super::{NominalParameter, Variable};
 pub struct Evidence {
     /// Recorded less predicted by the base model, n, in one unit for all (m).
     pub residual: DVector<f64>,
+    /// How many of them, from the first, were recorded; the others are known besides.
+    pub recorded: usize,
     /// What the base model can absorb by itself: n × k, any columns, none for a model that is not fitted.
     pub nuisance: DMatrix<f64>,
     /// What the base model is always a little wrong by: n × b, each column times the size of its unknown factor, whose prior
@@ -60,6 +62,7 @@ impl Evidence {
     pub fn new(residual: DVector<f64>) -> Evidence {
         let count = residual.len();
         Evidence {
+            recorded: count,
             residual,
             nuisance: DMatrix::zeros(count, 0),
             background: DMatrix::zeros(count, 0),
@@ -86,6 +89,7 @@ impl Evidence {
     pub fn part(&self, rows: &[usize]) -> Evidence {
         let pick = |of: &[usize]| rows.iter().map(|&row| of[row]).collect();
         Evidence {
+            recorded: rows.iter().filter(|&&row| row < self.recorded).count(),
             residual: self.residual.select_rows(rows),
             nuisance: self.nuisance.select_rows(rows),
             background: self.background.select_rows(rows),

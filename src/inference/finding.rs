@@ -116,6 +116,27 @@ impl Finding {
         }
     }
 
+    /// What can be weighed, gauged or looked up without any recording, and separates it from some of
+    /// `rivals`: the finding, or else the likeliest such rival.
+    pub fn direct_check(&self, rivals: &[&Rival]) -> Option<Proposal> {
+        /// Ln odds that leave no doubt.
+        const DECISIVE: f64 = 30.0;
+        let effects = std::iter::once(self.effect).chain(rivals.iter().map(|rival| rival.effect));
+        let checked = effects.into_iter().find(|effect| effect.direct_check.is_some())?;
+        // a check of the finding separates it from all others; one of a rival only from that rival
+        let is_separated = |rival: &&&Rival| match checked == self.effect {
+            true => rival.effect != checked,
+            false => rival.effect == checked,
+        };
+        let separated = rivals.iter().filter(is_separated);
+        Some(Proposal {
+            words: checked.direct_check?.to_owned(),
+            plan: None,
+            log_odds: DECISIVE,
+            separates_from: separated.map(|rival| (rival.effect, rival.location.place())).collect(),
+        })
+    }
+
     /// What sort of thing it is.
     pub fn kind(&self) -> Kind {
         self.effect.kind

@@ -1,6 +1,6 @@
 //! What to measure next, in words and as numbers.
 
-use super::{Effect, Finding, Location, Rival};
+use super::{Effect, Location};
 use crate::spatial::{Axis, Direction, Pose};
 
 /// A measurement that would separate a finding from its rivals.
@@ -15,30 +15,6 @@ pub struct Proposal {
     pub log_odds: f64,
     /// What it separates the finding from.
     pub separates_from: Vec<(&'static Effect, Location)>,
-}
-
-/// Ln odds that leave no doubt: as of what is weighed or gauged.
-const DECISIVE: f64 = 30.0;
-
-impl Proposal {
-    /// What can be weighed, gauged or looked up without any recording: the finding, or else the
-    /// likeliest such rival.
-    pub fn direct_check(finding: &Finding, rivals: &[&Rival]) -> Option<Proposal> {
-        let effects = std::iter::once(finding.effect).chain(rivals.iter().map(|rival| rival.effect));
-        let checked = effects.into_iter().find(|effect| effect.direct_check.is_some())?;
-        // a check of the finding separates it from all others; one of a rival only from that rival
-        let is_separated = |rival: &&&Rival| match checked == finding.effect {
-            true => rival.effect != checked,
-            false => rival.effect == checked,
-        };
-        let separated = rivals.iter().filter(is_separated);
-        Some(Proposal {
-            words: checked.direct_check?.to_owned(),
-            plan: None,
-            log_odds: DECISIVE,
-            separates_from: separated.map(|rival| (rival.effect, rival.location.place())).collect(),
-        })
-    }
 }
 
 /// A measurement as numbers, SI.

@@ -37,6 +37,7 @@ pub fn json(
                 "identifiable": estimate.identifiable,
                 "nominal": estimate.nominal / unit.si,
                 "correction": (estimate.value - estimate.nominal) / unit.si,
+                "supported": estimate.is_supported(),
             })
         })
         .collect();
@@ -59,11 +60,22 @@ pub fn json(
             Targets::Sockets(_) => Value::Null,
         },
         "tool_mm": (calibration.setup.tool / MM).as_slice(),
+        "before": calibration.before.as_ref().map(|before| json!({
+            "residual": summary_json(&before.residual),
+            "validation": before.validation.as_ref().map(summary_json),
+        })),
         "residual": summary_json(&Summary::of(&calibration.residuals())),
+        "drawing_scale": calibration.drawing_scale,
         "noise_um": calibration.noise.pooled / UM,
         "noise_is_stated": calibration.noise.is_stated,
         "groups": groups_json(recording, calibration),
         "validation": calibration.validation.as_ref().map(validation_json),
+        "extrapolation": calibration.extrapolation.as_ref().map(|there| json!({
+            "sd_um": there.sd / UM,
+            "sd_calibrated_um": there.sd_calibrated / UM,
+            "ratio": finite(there.ratio()),
+            "joints_beyond": there.joints_beyond().iter().map(|(joint, ..)| joint + 1).collect::<Vec<_>>(),
+        })),
         "cross_validation": cross_validation.map(|cv| {
             let mut object = summary_json(&cv.summary);
             object["folds"] = cv.folds.into();
@@ -189,8 +201,12 @@ pub fn headline(
         (Some(rod), mode) => format!(", rod {} compensated ({})", rod.name, mode.name()),
         (None, _) => String::new(),
     };
+    let before = calibration.before.as_ref();
+    let was =
+        before.map_or_else(String::new, |before| format!("{} rms before, ", length(before.residual.rms)));
+    let now = if before.is_some() { " after" } else { "" };
     let mut words = format!(
-        "{}{rod}: {count} parameters fitted to {poses} poses, residual {} rms",
+        "{}{rod}: {count} parameters fitted to {poses} poses, residual {was}{} rms{now}",
         campaign.robot.name,
         length(residual.rms)
     );
@@ -198,20 +214,24 @@ pub fn headline(
         |summary: &Summary| format!("{} on average, {} at most", length(summary.mean), length(summary.max));
     if let Some(validation) = &calibration.validation {
         let count = validation.errors.len();
+        let summary = &validation.summary;
+        let errors = match before.and_then(|before| before.validation.as_ref()) {
+            Some(was) => format!(
+                "{} on average before, {} after ({} at most)",
+                length(was.mean),
+                length(summary.mean),
+                length(summary.max)
+            ),
+            None => described(summary),
+        };
         words += &match (&campaign.measurements.targets, validation.refit) {
             (Targets::Sockets(_), _) => {
-                format!(
-                    "; the scatter of {count} validation poses in their sockets is {}",
-                    described(&validation.summary)
-                )
+                format!("; the scatter of {count} validation poses in their sockets is {errors}")
             }
-            (_, Refit::BaseTool) => format!(
-                "; error at {count} validation poses {} (base and tool fitted again)",
-                described(&validation.summary)
-            ),
-            (_, Refit::Nothing) => {
-                format!("; error at {count} validation poses {}", described(&validation.summary))
+            (_, Refit::BaseTool) => {
+                format!("; error at {count} validation poses {errors}, base and tool fitted again")
             }
+            (_, Refit::Nothing) => format!("; error at {count} validation poses {errors}"),
         };
     }
     if let Some(cv) = cross_validation {

@@ -7,6 +7,7 @@ use toml::Spanned;
 
 use super::defaults::{DOWN, default_name, file_stem};
 use super::effects_file::{self, RawEffect};
+use super::standard_uncertainty::{self, RawStandardUncertainty};
 use super::uncertainty::{self, RawUncertainty};
 use super::{Body, Effect, Hayati, Joint, Motion, Robot, Tip, urdf};
 use crate::error::Result;
@@ -93,6 +94,8 @@ struct RawRobot {
     gravity_m_s2: Option<Spanned<Vec<Number>>>,
     joint: Spanned<Vec<Spanned<RawJoint>>>,
     tip: Option<RawTip>,
+    #[serde(default)]
+    standard_uncertainty: RawStandardUncertainty,
     uncertainty: Option<RawUncertainty>,
     #[serde(default)]
     effect: Vec<Spanned<RawEffect>>,
@@ -176,6 +179,7 @@ fn read_table(file: &str, text: &str) -> Result<Robot> {
         flange: Pose::IDENTITY,
         effects,
         tip,
+        standard_uncertainty: standard_uncertainty::read(&table.0, &raw.standard_uncertainty)?,
         uncertainty,
     })
 }

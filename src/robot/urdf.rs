@@ -21,7 +21,7 @@ use nalgebra::Vector3;
 use self::tree::{Kind, Tree};
 use self::xml::Source;
 use super::defaults::{DOWN, file_stem};
-use super::{Body, Hayati, Joint, Motion, Robot, hayati};
+use super::{Body, Hayati, Joint, Motion, Robot, StandardUncertainty, hayati};
 use crate::error::Result;
 use crate::spatial::Pose;
 
@@ -61,6 +61,7 @@ pub(super) fn read(file: &str, text: &str, base_link: Option<&str>, tip_link: Op
         flange: distal.inverse().then(&zero.tip),
         effects: Vec::new(),
         tip: None,
+        standard_uncertainty: StandardUncertainty::default(),
         uncertainty: None,
     })
 }

@@ -53,6 +53,7 @@ impl Robot {
             // writing to a String cannot fail
             let _ = write_joint(&mut text, index, joint);
         }
+        text += &self.standard_uncertainty.written();
         text += &self.uncertainty.as_ref().map_or_else(String::new, Uncertainty::written);
         text += &self.effects.iter().map(effects_file::written).collect::<String>();
         Ok(text)

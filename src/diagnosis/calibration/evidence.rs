@@ -9,19 +9,28 @@
 //! ```
 //!
 //! so that one noise σ holds for all data. Directions of ρ that the calibration holds are no
-//! columns. What is known besides (socket distances, the user's priors) are further data with no
-//! row, in units of σ; no fold holds them out.
+//! columns. Socket distances are further data with no row, in units of σ; no fold holds them out.
+//!
+//! What the drawing or the user knows of ρ, ρ₀ ± s, is a background: the residual is that at ρ₀ and
+//! the columns of those parameters, times s, have factors that are standard normal,
+//!
+//! ```text
+//! residual      recorded − predicted(ρ̂) + J·(ρ̂ − ρ₀)
+//! background    J·s
+//! ```
+//!
+//! so that what is known counts the same whatever noise a hypothesis leaves.
 
 use std::collections::BTreeMap;
 
-use nalgebra::{DMatrix, DVector, SymmetricEigen, Vector3};
+use nalgebra::{DMatrix, DVector, Vector3};
 
 use super::configuration::Configuration;
 use super::context::Context;
 use crate::calibration::Calibration;
 use crate::calibration::campaign::{Campaign, Recording, Targets};
 use crate::inference::{Covariate, Evidence, JointVariable, Variable};
-use crate::robot::{Kinematics, Parameter};
+use crate::robot::Kinematics;
 use crate::spatial::Axis;
 use crate::units::MM;
 
@@ -69,8 +78,19 @@ pub(super) fn evidence_of(campaign: &Campaign, calibration: &Calibration, contex
         of_rows.chain((3 * rows..data).map(further)).collect()
     };
     let groups = replicate_groups(recording);
+    let jacobian = without_held(jacobian, calibration);
+    let priors = &calibration.priors;
+    let mut background = DMatrix::zeros(data, priors.len());
+    for (mut column, prior) in background.column_iter_mut().zip(priors) {
+        let own = jacobian.column(prior.parameter);
+        residual.axpy(calibration.parameters[prior.parameter].value - prior.value, &own, 1.0);
+        column.axpy(prior.sd, &own, 0.0);
+    }
+    let is_known = |k: &usize| priors.iter().any(|prior| prior.parameter == *k);
+    let unknown: Vec<usize> = (0..jacobian.ncols()).filter(|k| !is_known(k)).collect();
     Evidence {
-        nuisance: without_held(jacobian, calibration),
+        nuisance: jacobian.select_columns(&unknown),
+        background,
         most_scatter: most_scatter(context),
         replicate_group: groups
             .iter()
@@ -83,8 +103,20 @@ pub(super) fn evidence_of(campaign: &Campaign, calibration: &Calibration, contex
         intercept: intercepts(recording, data),
         resolution: resolution(recording),
         covariates: covariates(context, data),
+        recorded: 3 * rows,
         ..Evidence::new(residual)
     }
+}
+
+/// The evidence of a calibration of which nothing is known beforehand: all that it is free to change
+/// takes up what it can, however far from the drawing.
+pub(super) fn unknown_beforehand(evidence: &Evidence) -> Evidence {
+    let (nuisance, background) = (&evidence.nuisance, &evidence.background);
+    let mut columns = DMatrix::zeros(nuisance.nrows(), nuisance.ncols() + background.ncols());
+    columns.columns_mut(0, nuisance.ncols()).copy_from(nuisance);
+    columns.columns_mut(nuisance.ncols(), background.ncols()).copy_from(background);
+    let background = DMatrix::zeros(nuisance.nrows(), 0);
+    Evidence { nuisance: columns, background, ..evidence.clone() }
 }
 
 /// The largest scatter of a coordinate that an arm may have, m; `None` where it does not reach
@@ -99,7 +131,6 @@ fn most_scatter(context: &Context) -> Option<f64> {
 }
 
 fn known(campaign: &Campaign, calibration: &Calibration) -> Vec<Known> {
-    let free: Vec<Parameter> = calibration.parameters.iter().map(|p| p.parameter).collect();
     let place = |group: usize| Vector3::from(calibration.sockets[group].map(|(value, _)| value));
     let distances = match &campaign.measurements.targets {
         Targets::Points(_) => &[][..],
@@ -116,11 +147,7 @@ fn known(campaign: &Campaign, calibration: &Calibration) -> Vec<Known> {
             slopes: slopes(distance.between[0], 1.0).chain(slopes(distance.between[1], -1.0)).collect(),
         }
     });
-    let of_priors = campaign.wishes.priors.iter().filter_map(|&(parameter, mean, sd)| {
-        let k = free.iter().position(|&p| p == parameter)?;
-        Some(Known { residual: (mean - calibration.parameters[k].value) / sd, slopes: vec![(k, 1.0 / sd)] })
-    });
-    of_distances.chain(of_priors).collect()
+    of_distances.collect()
 }
 
 fn free_count(calibration: &Calibration) -> usize {
@@ -145,26 +172,21 @@ fn fill(jacobian: &mut DMatrix<f64>, calibration: &Calibration, context: &Contex
     }
 }
 
-/// Columns of the free parameters, combined to an orthonormal basis (in plausible ranges) of all
-/// that is not held.
-fn without_held(jacobian: DMatrix<f64>, calibration: &Calibration) -> DMatrix<f64> {
+/// Columns of the free parameters without what they have of directions that are held (in plausible
+/// ranges): J·D·(1 − V·Vᵀ)·D⁻¹.
+fn without_held(mut jacobian: DMatrix<f64>, calibration: &Calibration) -> DMatrix<f64> {
     let Some(first) = calibration.held.first() else { return jacobian };
     let free = free_count(calibration);
+    let ranges = DVector::from_column_slice(&first.ranges);
     let mut moves = DMatrix::identity(free, free);
     for held in &calibration.held {
         let direction = DVector::from_column_slice(&held.direction);
         moves -= &direction * direction.transpose();
     }
-    // a projection: eigenvalues are 0 or 1
-    let eigen = SymmetricEigen::new(moves);
-    let kept: Vec<usize> = (0..free).filter(|&k| eigen.eigenvalues[k] > 0.5).collect();
-    let ranges = DMatrix::from_diagonal(&DVector::from_column_slice(&first.ranges));
-    let basis = ranges * eigen.eigenvectors.select_columns(&kept);
-    let sockets = jacobian.ncols() - free;
-    let mut columns = DMatrix::zeros(jacobian.nrows(), kept.len() + sockets);
-    columns.columns_mut(0, kept.len()).copy_from(&(jacobian.columns(0, free) * basis));
-    columns.columns_mut(kept.len(), sockets).copy_from(&jacobian.columns(free, sockets));
-    columns
+    let moves = DMatrix::from_fn(free, free, |i, k| moves[(i, k)] * ranges[i] / ranges[k]);
+    let moved = jacobian.columns(0, free) * moves;
+    jacobian.columns_mut(0, free).copy_from(&moved);
+    jacobian
 }
 
 /// Rows of the same joint values in the same clamp or socket have one number.

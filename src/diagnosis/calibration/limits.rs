@@ -18,7 +18,8 @@ pub(super) fn limits(context: &Context, calibration: &Calibration, evidence: &Ev
     if !calibration.is_converged {
         limits.push(Limit::NotConverged);
     }
-    let (rows, parameters) = (context.configurations.len(), evidence.nuisance.ncols());
+    let (rows, parameters) =
+        (context.configurations.len(), evidence.nuisance.ncols() + evidence.background.ncols());
     if (rows as f64) < FEW * parameters as f64 {
         limits.push(Limit::FewPoses(rows, parameters));
     }

@@ -3,6 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::entry::{Column, Entry};
+use super::evidence::unknown_beforehand;
 use super::law::Law;
 use crate::inference::{Absorbed, Candidate, Evidence, Term, Whitening};
 use crate::parallel::in_parallel;
@@ -35,7 +36,9 @@ impl LinearTerms {
             data,
         };
         let mut absorbed = Vec::new();
-        let whitening = Whitening::new(evidence, &evidence.residual);
+        // what a parameter of the robot does as well is no effect of its own, however unlikely its size
+        let all = unknown_beforehand(evidence);
+        let whitening = Whitening::new(&all, &all.residual);
         let entries: Vec<Entry> = entries.into_iter().filter_map(Entry::felt).collect();
         let shares = in_parallel(entries.len(), |k| unabsorbed(&entries[k], &whitening, data));
         for (entry, unabsorbed) in entries.into_iter().zip(shares) {

@@ -40,7 +40,7 @@ pub(super) fn next_poses(
     if rivals.is_empty() {
         return Ok(None);
     }
-    if let Some(check) = Proposal::direct_check(finding, &rivals) {
+    if let Some(check) = finding.direct_check(&rivals) {
         return Ok(Some(check));
     }
     let (campaign, calibration) = (model.campaign, &model.calibration);
@@ -58,6 +58,7 @@ pub(super) fn next_poses(
         };
         Some(others.iter().map(apart).collect())
     };
+    let present = &evidence::unknown_beforehand(present);
     let Some(now) = distances(&model.terms, present) else { return Ok(None) };
     let odds: Vec<f64> = rivals.iter().map(|rival| rival.odds).collect();
     let mut design = ExperimentDesign::default();
@@ -66,6 +67,7 @@ pub(super) fn next_poses(
         let (campaign, calibration) = poses.measured(campaign, calibration);
         let context = Context::new(&campaign, &calibration)?;
         let evidence = evidence::evidence_of(&campaign, &calibration, &context);
+        let evidence = evidence::unknown_beforehand(&evidence);
         let (mut entries, _) = registry::candidates(&context);
         entries.retain(|entry| hypotheses.iter().any(|hypothesis| hypothesis.holds(&entry.candidate)));
         let (terms, _) = LinearTerms::new(entries, &evidence);

@@ -39,7 +39,7 @@ use self::sensors::Expected;
 use super::datum;
 use super::structure::check_stations;
 use crate::error::Result;
-use crate::inference::{Description, Effect, Estimate, Finding, Hypothesis, Location, Proposal, Rival, Term};
+use crate::inference::{Description, Effect, Estimate, Finding, Hypothesis, Location, Rival, Term};
 use crate::rig::readings::Readings;
 use crate::rod::Rod;
 use crate::units::significant;
@@ -290,7 +290,7 @@ fn finding(
         parts: Vec::new(),
     };
     let rivals: Vec<&Rival> = finding.rivals.iter().collect();
-    finding.next = Proposal::direct_check(&finding, &rivals);
+    finding.next = finding.direct_check(&rivals);
     finding
 }
 

@@ -2,7 +2,7 @@
 
 use super::groups::group_summaries;
 use crate::calibration::campaign::{Campaign, Recording, Targets};
-use crate::calibration::{Calibration, CrossValidation, Summary};
+use crate::calibration::{Calibration, CrossValidation, Estimated, Summary};
 use crate::report::Block;
 use crate::report::table::{Column, Table};
 use crate::units::{DEG, MM, UM, significant};
@@ -10,7 +10,9 @@ use crate::units::{DEG, MM, UM, significant};
 pub(super) const PARAMETERS_NOTE: &str = "Names are those of the Hayati table: theta, d, a, alpha, \
      beta of each link; c is a joint's compliance, base_* the position of {0} in {W}, base_r* the \
      correction to the base rotation, about the world axes, tool_* the undeflected tip in {T}. \
-     Standard errors follow from the scatter of the residuals, unless the campaign states the noise.";
+     Standard errors follow from the scatter of the residuals, unless the campaign states the noise. \
+     \"Not supported\": the correction is smaller than its standard error, so that these poses do not \
+     show that the number differs from its nominal value.";
 
 /// A number of micrometres for a table.
 fn um(metres: f64) -> String {
@@ -29,8 +31,14 @@ pub(super) fn errors(calibration: &Calibration, cross_validation: Option<&CrossV
         table.row([vec![name.to_owned(), count.to_string()], numbers.to_vec()].concat());
     };
     let residuals = calibration.residuals();
+    if let Some(before) = &calibration.before {
+        row("nominal robot, placed at the calibration's poses", residuals.len(), &before.residual);
+    }
     row("residuals of the calibration", residuals.len(), &Summary::of(&residuals));
     if let Some(validation) = &calibration.validation {
+        if let Some(before) = calibration.before.and_then(|before| before.validation) {
+            row("nominal robot, validation", validation.errors.len(), &before);
+        }
         row("validation", validation.errors.len(), &validation.summary);
     }
     if let Some(cv) = cross_validation {
@@ -90,10 +98,20 @@ pub(super) fn parameters(calibration: &Calibration) -> Table {
             show(estimate.value),
             show(estimate.value - estimate.nominal),
             error.map_or("–".into(), |e| format!("{e:.decimals$}")),
-            if estimate.identifiable { "" } else { "not identified" }.to_owned(),
+            match (estimate.identifiable, is_drawn(estimate) && !estimate.is_supported()) {
+                (false, _) => "not identified",
+                (true, true) => "not supported",
+                (true, false) => "",
+            }
+            .to_owned(),
         ]);
     }
     table
+}
+
+/// True for a number that a drawing has: a correction of it asks for data.
+fn is_drawn(estimate: &Estimated) -> bool {
+    !estimate.parameter.is_placement()
 }
 
 /// "-0.00" is 0.00.

@@ -1,7 +1,7 @@
 //! The first lines of a diagnosis: what was found, and what it is worth.
 
 use super::subject::Subject;
-use crate::inference::{Finding, Kind, rms};
+use crate::inference::{Finding, Kind};
 use crate::units::{UM, significant};
 
 /// So many findings are said in full; more are named.
@@ -24,7 +24,7 @@ pub fn headline(subject: &Subject) -> String {
                 "{}:{} the residual, {} µm{}, is {}.",
                 subject.agrees,
                 nominal.trim_end_matches('.').to_owned() + if nominal.is_empty() { "" } else { ";" },
-                um(rms(&diagnosis.after)),
+                um(diagnosis.error_after()),
                 subject.per,
                 scatter_of(subject)
             ),

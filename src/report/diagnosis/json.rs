@@ -8,7 +8,7 @@ use super::subject::Subject;
 use super::{hidden, warnings};
 use crate::inference::{
     Covariate, Estimate, Finding, FindingPart, LackOfFit, LoadPlan, NominalEstimate, Rank, Rival, Structure,
-    ranking, rms,
+    ranking,
 };
 use crate::units::{MM, UM};
 
@@ -63,8 +63,8 @@ pub fn json(subject: &Subject) -> Value {
         "suspects": suspects.collect::<Vec<_>>(),
         "noise_shared_ratio": diagnosis.shared_ratio,
         "residual_sd_um": um(diagnosis.hypothesis.sigma),
-        "rms_before_um": um(subject.before_correction.unwrap_or_else(|| rms(&diagnosis.before))),
-        "rms_after_um": um(rms(&diagnosis.after)),
+        "rms_before_um": um(subject.before_correction.unwrap_or_else(|| diagnosis.error_before())),
+        "rms_after_um": um(diagnosis.error_after()),
         "heldout_before_um": held_out.map(|held_out| um(held_out.before)),
         "heldout_after_um": held_out.map(|held_out| um(held_out.after)),
         "heldout_gain": held_out.map(|held_out| held_out.gain),

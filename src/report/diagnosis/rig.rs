@@ -11,7 +11,7 @@ use super::remainder::{Remainder, Sample};
 use super::subject::{Errors, Subject};
 use super::{json as whole_json, report as whole_report};
 use crate::diagnosis::rig::{Correction, Datum, RigDiagnosis};
-use crate::inference::{Discrepancy, ForwardModel, Location, Plan, Quantity, Variable, rms};
+use crate::inference::{Discrepancy, ForwardModel, Location, Plan, Quantity, Variable};
 use crate::report::{Block, Report};
 use crate::rig::readings::Phase;
 use crate::units::{MM, significant};
@@ -54,8 +54,8 @@ fn subject<'a>(found: &'a RigDiagnosis, correction: Option<&Correction>) -> Subj
         agrees: "The readings agree with the model",
         errors: Errors {
             averaged: "",
-            before: model.recorded_error().unwrap_or_else(|| rms(&diagnosis.before)),
-            after: rms(&diagnosis.after),
+            before: model.recorded_error().unwrap_or_else(|| diagnosis.error_before()),
+            after: diagnosis.error_after(),
             held_out: diagnosis.held_out.as_ref().map(|errors| (errors.before, errors.after)),
         },
         before_correction: model.recorded_error(),

@@ -4,7 +4,7 @@ use super::headline::{RIVALS_SAID, sentence, um};
 use super::hidden;
 use super::subject::Subject;
 use super::tables::{alternatives, evidence, locate, parameters, proof, replication};
-use crate::inference::{Finding, rms};
+use crate::inference::{Finding, Kind};
 use crate::report::{Block, Section};
 
 pub fn all(subject: &mut Subject) -> Vec<Section> {
@@ -66,7 +66,10 @@ fn details(subject: &Subject, index: usize, finding: &Finding) -> String {
 }
 
 fn location(subject: &mut Subject) -> Section {
-    let mut blocks = vec![locate(subject)];
+    let has_mistake = subject.diagnosis.findings.iter().any(|finding| finding.kind() == Kind::Mistake);
+    let said = "All that follows is of the recording without the mistakes above.";
+    let mut blocks: Vec<Block> = has_mistake.then(|| Block::Paragraph(said.into())).into_iter().collect();
+    blocks.push(locate(subject));
     blocks.append(&mut subject.places);
     Section::new("Where the mismatch appears", blocks)
 }
@@ -77,7 +80,7 @@ fn remains(subject: &Subject) -> Section {
         let of = if subject.per.is_empty() { format!(" of the {}", subject.noun) } else { String::new() };
         let words = format!(
             "The residual{of} is {} µm rms{}; the scatter is {} µm.",
-            um(rms(&diagnosis.after)),
+            um(diagnosis.error_after()),
             subject.per,
             um(diagnosis.noise)
         );

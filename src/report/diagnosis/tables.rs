@@ -5,7 +5,7 @@ use super::headline::um;
 use super::subject::Subject;
 use crate::inference::{
     Evidence, Finding, HeldOut as HeldOutErrors, LackOfFit, Location, NAMED, Rank, Ranked, Structure,
-    UNKNOWN, ranking, rms,
+    UNKNOWN, ranking,
 };
 use crate::report::chart::Figure;
 use crate::report::pictures::diagnosis::{Candidate, Class, HeldOut, held_out, ranking as bars, to_one};
@@ -218,14 +218,14 @@ pub fn proof(subject: &Subject) -> Section {
     };
     row(
         "as it is",
-        rms(&diagnosis.before),
+        diagnosis.error_before(),
         held_out(|p| p.before),
         String::new(),
         test(&diagnosis.lack_of_fit_before),
     );
     row(
         "with the findings",
-        rms(&diagnosis.after),
+        diagnosis.error_after(),
         held_out(|p| p.after),
         um(diagnosis.noise),
         test(&diagnosis.lack_of_fit_after),

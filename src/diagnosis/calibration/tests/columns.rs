@@ -179,7 +179,7 @@ fn a_link_bends_about_its_joint_and_clamps_move_the_other_way() {
 fn columns_are_the_derivatives_of_the_change() {
     let campaign = clamps(8);
     let (model, evidence) = modelled(&campaign, Mode::Fea);
-    assert_eq!(evidence.residual.len(), 3 * campaign.measurements.len());
+    assert_eq!(evidence.recorded, 3 * campaign.measurements.len());
     for (index, candidate) in model.candidates().iter().enumerate().step_by(7) {
         let neutral = candidate.neutral(index);
         assert_eq!(model.response(std::slice::from_ref(&neutral)).norm(), 0.0);

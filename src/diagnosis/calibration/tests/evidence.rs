@@ -4,6 +4,7 @@ use super::happened::sockets;
 use super::*;
 use crate::calibration::campaign::Distance;
 use crate::robot::Parameter;
+use nalgebra::DMatrix;
 
 /// Cosine of the angle between a direction in which the calibration is free and what it left, at
 /// its optimum.
@@ -18,9 +19,23 @@ fn noisy(campaign: &Campaign, of_group: impl Fn(usize) -> f64, seed: u64) -> Cam
     recorded(campaign, &|row| off[row], 0.0, seed)
 }
 
-/// At the optimum nothing that the calibration can do takes more out of what is left: Jᵀr = 0, once
-/// rows and what is known besides count as they did in the calibration, which has other noises than
-/// the evidence (`Context::noise`).
+/// What the calibration leaves: the residual at what is known beforehand, moved to what was found.
+fn left(calibration: &Calibration, evidence: &Evidence) -> DVector<f64> {
+    &evidence.residual - &evidence.background * found(calibration)
+}
+
+/// What was found of the parameters with a prior, in its standard deviations.
+fn found(calibration: &Calibration) -> DVector<f64> {
+    let found = |prior: &crate::least_squares::Prior| {
+        (calibration.parameters[prior.parameter].value - prior.value) / prior.sd
+    };
+    DVector::from_iterator(calibration.priors.len(), calibration.priors.iter().map(found))
+}
+
+/// At the optimum nothing that the calibration can do takes more out of what is left: Jᵀr = 0, and
+/// what the data pull at a parameter with a prior that prior holds, once rows and what is known
+/// besides count as they did in the calibration, which has other noises than the evidence
+/// (`Context::noise`).
 fn assert_nothing_more_is_absorbed(campaign: &Campaign, calibration: &Calibration, evidence: &Evidence) {
     let context = Context::new(campaign, calibration).unwrap();
     let (rows, noise) = (&campaign.measurements.rows, &calibration.noise);
@@ -29,7 +44,14 @@ fn assert_nothing_more_is_absorbed(campaign: &Campaign, calibration: &Calibratio
         None => noise.pooled / context.noise,
     };
     let weighted = |v: DVector<f64>| DVector::from_fn(v.len(), |datum, _| v[datum] * counted(datum));
-    let left = weighted(evidence.residual.clone());
+    let left = weighted(left(calibration, evidence));
+    let off = found(calibration);
+    for (k, column) in evidence.background.column_iter().enumerate() {
+        let column = weighted(column.into_owned());
+        let pull = column.dot(&left) / noise.pooled.powi(2);
+        let scale = column.norm() * left.norm() / noise.pooled.powi(2);
+        assert!((pull - off[k]).abs() < RIGHT_ANGLE * scale, "prior {k}: {pull} {}", off[k]);
+    }
     for (k, column) in evidence.nuisance.column_iter().enumerate() {
         let column = weighted(column.into_owned());
         let cosine = column.dot(&left) / (column.norm() * left.norm());
@@ -53,18 +75,19 @@ fn a_clamp_of_five_times_the_noise_counts_a_twenty_fifth() {
     let ratio = mean(true) / mean(false);
     assert!((15.0..40.0).contains(&ratio), "{ratio}");
     // one noise holds for all data
+    let residual = left(&calibration, &evidence);
     let rms = |is_noisy: bool| {
         let (mut square, mut count) = (0.0, 0.0);
         for row in rows_where(is_noisy) {
-            square += evidence.residual.fixed_rows::<3>(3 * row).norm_squared();
+            square += residual.fixed_rows::<3>(3 * row).norm_squared();
             count += 3.0;
         }
         (square / count).sqrt()
     };
     assert!((rms(true) / rms(false) - 1.0).abs() < 0.2, "{} {}", rms(true), rms(false));
     for row in [loud, quiet] {
-        let told: Vector3<f64> = evidence.residual.fixed_rows::<3>(3 * row).into();
-        assert!((told + calibration.deviations[row] * model.scale(row)).norm() < 1e-12);
+        let own: Vector3<f64> = residual.fixed_rows::<3>(3 * row).into();
+        assert!((own + calibration.deviations[row] * model.scale(row)).norm() < 1e-12);
     }
     // effects are felt with the same weight
     let index = find(&model, "thermal_drift", "base, with order");
@@ -79,37 +102,29 @@ fn a_clamp_of_five_times_the_noise_counts_a_twenty_fifth() {
 }
 
 #[test]
-fn what_a_user_knows_is_a_datum_without_a_row() {
+fn what_is_known_beforehand_is_a_background() {
     let mut campaign = noisy(&clamps(12), |_| 20.0 * UM, 5);
     let free = calibrate(&campaign, Mode::Fea, &Options::default()).unwrap();
     let parameter = Parameter::A(1);
-    let found = free.parameters.iter().find(|p| p.parameter == parameter).unwrap();
+    let own = free.parameters.iter().find(|p| p.parameter == parameter).unwrap();
     // five standard errors off, and as firm as the data
-    let sd = found.std_error.unwrap();
-    let mean = found.value + 5.0 * sd;
+    let sd = own.std_error.unwrap();
+    let mean = own.value + 5.0 * sd;
     campaign.wishes.priors.push((parameter, mean, sd));
     let calibration = calibrate(&campaign, Mode::Fea, &Options::default()).unwrap();
-    let (model, evidence) = CalibrationModel::new(&campaign, calibration.clone()).unwrap();
-    let (last, rows) = (evidence.residual.len() - 1, campaign.measurements.len());
-    assert_eq!(last, 3 * rows);
-    let sigma = Context::new(&campaign, &calibration).unwrap().noise;
-    let value = calibration.setup.links[1].a;
-    assert!((evidence.residual[last] - (mean - value) / sd * sigma).abs() < 1e-6 * sigma);
-    assert!(evidence.residual[last] > sigma, "the data pull");
+    let (_, evidence) = CalibrationModel::new(&campaign, calibration.clone()).unwrap();
+    assert_eq!(evidence.residual.len(), 3 * campaign.measurements.len());
+    // the user's stands after those of the drawing, which says nothing of that parameter then
+    let last = calibration.priors.len() - 1;
+    let of_it = calibration
+        .priors
+        .iter()
+        .filter(|prior| calibration.parameters[prior.parameter].parameter == parameter);
+    assert_eq!((of_it.count(), calibration.priors[last].sd), (1, sd));
+    assert_eq!(evidence.background.ncols(), last + 1);
+    assert!(found(&calibration)[last] < -1.0, "the data pull");
     assert_nothing_more_is_absorbed(&campaign, &calibration, &evidence);
-    assert_eq!(
-        evidence.replicate_group.iter().filter(|&&group| group == evidence.replicate_group[last]).count(),
-        1
-    );
-    for of in [&evidence.fold, &evidence.session, &evidence.intercept] {
-        assert_eq!(of[last], Evidence::NONE);
-    }
-    assert!(evidence.fold[..last].iter().all(|&fold| fold != Evidence::NONE));
-    // no effect changes what is known
-    for (index, candidate) in model.candidates().iter().enumerate().step_by(11) {
-        let columns = model.columns(&[candidate.neutral(index)], 0);
-        assert_eq!(columns.row(last).amax(), 0.0);
-    }
+    assert!(evidence.fold.iter().all(|&fold| fold != Evidence::NONE));
 }
 
 #[test]
@@ -157,8 +172,12 @@ fn what_the_calibration_holds_it_does_not_absorb() {
     let context = Context::new(&campaign, &calibration).unwrap();
     let evidence = super::super::evidence::evidence_of(&campaign, &calibration, &context);
     let (free, held) = (calibration.parameters.len(), calibration.held.len());
-    assert!(held > 0);
-    assert_eq!(evidence.nuisance.ncols(), free - held + 3 * calibration.sockets.len());
+    assert!(held > 0 && free > held);
+    let known = calibration.priors.len();
+    assert_eq!(evidence.nuisance.ncols(), free - known + 3 * calibration.sockets.len());
+    // all that the drawing draws is taken out as well
+    let columns: Vec<_> = evidence.nuisance.column_iter().chain(evidence.background.column_iter()).collect();
+    let evidence = Evidence { nuisance: DMatrix::from_columns(&columns), ..evidence };
     let whitening = Whitening::new(&evidence, &evidence.residual);
     let left = |direction: &[f64]| {
         let mut kinematics = crate::robot::Kinematics::new(&calibration.setup);

@@ -105,7 +105,7 @@ impl RigDiagnosis {
 
 #[cfg(test)]
 mod tests {
-    use crate::diagnosis::rig::{RigModel, diagnose};
+    use crate::diagnosis::rig::{RigModel, Wanted, diagnose};
     use crate::error::Error;
     use crate::inference::Finding;
     use crate::inference::{ForwardModel, Kind};

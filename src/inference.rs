@@ -10,6 +10,7 @@
 //! ```
 
 mod background;
+mod columns;
 mod description;
 mod diagnose;
 mod diagnosis;
@@ -37,7 +38,6 @@ mod score;
 mod search;
 mod selection;
 mod sessions;
-mod sparse;
 mod untested;
 mod variable;
 mod whitening;
@@ -58,7 +58,7 @@ pub use effect::{Effect, Kind, Reported, UNKNOWN, WrittenTo};
 pub use evidence::{Covariate, Evidence, rms};
 pub use experiment_design::{ExperimentDesign, separates};
 pub use finding::{Estimate, Finding, FindingPart, Rival};
-pub use forward_model::{Candidate, ForwardModel, Parameter};
+pub use forward_model::{Candidate, DERIVATIVE_STEP, ForwardModel, Parameter, Step};
 pub use held_out::HeldOut;
 pub use hypothesis::{Hypothesis, Term};
 pub use lack_of_fit::LackOfFit;

@@ -40,16 +40,18 @@ mod structure;
 mod tests;
 mod transfer;
 
+use std::sync::Arc;
+
 use nalgebra::{DMatrix, DVector};
 
 use self::action::{Action, State};
 use self::effects::{Context, registry};
 use self::slide::Course;
 use self::structure::{Parts, Structure};
-use crate::error::Result;
+use crate::error::{Error, Place, Result};
 use crate::inference::{
-    Candidate, Description, Diagnosed, Effect, Estimate, Evidence, Finding, FindingPart, ForwardModel,
-    Hypothesis, Location, NotTestable, Parameter, Term, diagnose as infer, rms,
+    Candidate, DERIVATIVE_STEP, Description, Diagnosed, Effect, Estimate, Evidence, Finding, FindingPart,
+    ForwardModel, Hypothesis, Location, NotTestable, Parameter, Step, Term, UNKNOWN, diagnose as infer, rms,
 };
 use crate::rig::readings::Readings;
 use crate::rod::Rod;
@@ -57,6 +59,10 @@ pub use correction::Correction;
 pub use datum::Datum;
 pub use mistakes::suspected;
 
+/// Most rows of readings that are diagnosed.
+const MOST_ROWS: usize = 100_000;
+/// What changes no reading by more than this share of the largest changes nothing.
+const NOTHING: f64 = 1e-9;
 /// The parameter of a joint that may be anywhere.
 const STATION: &str = "station_mm";
 
@@ -79,18 +85,20 @@ pub fn diagnose(readings: &Readings, rod: Option<&Rod>) -> Result<RigDiagnosis> 
 /// corrected rod.
 ///
 /// # Errors
-/// See [`RigModel::new`].
+/// [`Error::Input`] for more than 100 000 rows; see also [`RigModel::new`].
 pub fn diagnose_among(
     readings: &Readings,
     rod: Option<&Rod>,
     others: &[(String, Rod)],
 ) -> Result<RigDiagnosis> {
+    check_size(readings)?;
     let mended = mistakes::mended(readings, rod, others)?;
     let (mended_readings, mended_rod) = match mended.has_data {
         true => (&mended.readings, mended.rod.as_ref()),
         false => (readings, rod),
     };
-    let (mut model, evidence, not_testable) = RigModel::with_effects(mended_readings, mended_rod, &|_| true)?;
+    let (mut model, evidence, not_testable) =
+        RigModel::with_effects(mended_readings, mended_rod, &Wanted::All)?;
     let mut diagnosis = infer(&model, &evidence);
     as_measured::resize(&model, &evidence, &mut diagnosis);
     if mended.has_data {
@@ -118,6 +126,19 @@ pub fn diagnose_among(
     Ok(Diagnosed { absorbed: Vec::new(), not_testable, limits, diagnosis, evidence, model })
 }
 
+/// Refuses what would take more memory or time than anybody has.
+fn check_size(readings: &Readings) -> Result<()> {
+    match readings.rows.get(MOST_ROWS) {
+        None => Ok(()),
+        Some(row) => Err(Error::Input {
+            at: Place { file: readings.file.clone(), line: row.line, column: 0 },
+            found: format!("{} rows of readings", readings.rows.len()),
+            expected: format!("at most {MOST_ROWS} for a diagnosis"),
+            hint: Some("diagnose some of the trials at a time".into()),
+        }),
+    }
+}
+
 /// Readings of a rig with all the physics that might be in them.
 #[derive(Debug, Clone)]
 pub struct RigModel {
@@ -131,9 +152,34 @@ pub struct RigModel {
     /// Which data follow which, and the usual step of an imposed displacement (m).
     course: Course,
     step: f64,
+    cases: Cases,
     candidates: Vec<Candidate>,
     /// For each candidate what its parameters do.
     actions: Vec<Vec<Action>>,
+}
+
+/// Which candidates a model shall have.
+enum Wanted<'a> {
+    All,
+    /// Those that are the same things at the same places as these.
+    Like(&'a [&'a Candidate]),
+}
+
+impl Wanted<'_> {
+    /// False where no candidate of an effect is wanted.
+    fn includes(&self, effect: &Effect) -> bool {
+        match self {
+            Wanted::All => true,
+            Wanted::Like(these) => these.iter().any(|candidate| candidate.effect == effect),
+        }
+    }
+
+    fn has(&self, candidate: &Candidate) -> bool {
+        match self {
+            Wanted::All => true,
+            Wanted::Like(these) => these.iter().any(|known| transfer::is_same(candidate, known)),
+        }
+    }
 }
 
 /// Readings and rod before mistakes were undone, where there were any.
@@ -147,7 +193,7 @@ struct AsRecorded {
 
 impl AsRecorded {
     fn new(readings: &Readings, rod: Option<&Rod>) -> Self {
-        let error = RigModel::with_effects(readings, rod, &|_| false);
+        let error = RigModel::with_effects(readings, rod, &Wanted::Like(&[]));
         let error = error.ok().map(|(_, evidence, _)| rms(&evidence.residual));
         AsRecorded { readings: readings.clone(), rod: rod.cloned(), error }
     }
@@ -156,6 +202,53 @@ impl AsRecorded {
 /// True for a parameter that does nothing where the first of its effect does nothing.
 fn is_dependent(action: &Action) -> bool {
     matches!(action, Action::Onset(_) | Action::Presliding | Action::SliderPlay)
+}
+
+/// Data that differ in nothing but their place in the history of loads: load, phase, place and channel are the same.
+#[derive(Debug, Clone)]
+struct Cases {
+    of_datum: Vec<usize>,
+    /// The first datum of each.
+    first: Vec<usize>,
+}
+
+impl Cases {
+    fn of(data: &[Datum], place: &[usize]) -> Cases {
+        let key = |(d, place): (&Datum, &usize)| {
+            (d.direction, d.load.to_bits(), d.is_unloading(), d.channel, *place, d.session_number)
+        };
+        let of_datum = datum::numbered(data.iter().zip(place).map(key));
+        let first = firsts(&of_datum);
+        Cases { of_datum, first }
+    }
+}
+
+/// Where each number is met first.
+fn firsts(numbers: &[usize]) -> Vec<usize> {
+    let mut first = Vec::new();
+    for (i, &number) in numbers.iter().enumerate() {
+        if number == first.len() {
+            first.push(i);
+        }
+    }
+    first
+}
+
+/// What the data of a case show.
+struct Shown {
+    /// m/N.
+    slope: f64,
+    /// N, but for what is remembered.
+    load: f64,
+    /// m.
+    play: f64,
+}
+
+impl Shown {
+    /// Under a load that is felt.
+    fn reading(&self, load: f64) -> f64 {
+        self.slope * load + self.play
+    }
 }
 
 /// What turns a force into a displacement.
@@ -173,7 +266,7 @@ impl RigModel {
     /// # Errors
     /// [`crate::Error::Input`] for a station that is not on the rod; what the beam model refuses.
     pub fn new(readings: &Readings, rod: Option<&Rod>) -> Result<(RigModel, Evidence)> {
-        let (model, evidence, _) = RigModel::with_effects(readings, rod, &|_| true)?;
+        let (model, evidence, _) = RigModel::with_effects(readings, rod, &Wanted::All)?;
         Ok((model, evidence))
     }
 
@@ -181,7 +274,7 @@ impl RigModel {
     fn with_effects(
         readings: &Readings,
         rod: Option<&Rod>,
-        is_wanted: &dyn Fn(&Candidate) -> bool,
+        wanted: &Wanted<'_>,
     ) -> Result<(RigModel, Evidence, Vec<NotTestable>)> {
         let data = datum::recorded(readings);
         let (body, place) = match rod {
@@ -212,6 +305,7 @@ impl RigModel {
             readings: readings.clone(),
             rod: rod.cloned(),
             as_recorded: None,
+            cases: Cases::of(&data, &place),
             data,
             body,
             place,
@@ -254,7 +348,7 @@ impl RigModel {
             let (numbers, columns) = nominal::all(&model.data, rod, &readings.header, &stations)?;
             (evidence.nominal_numbers, evidence.nominal) = (numbers, columns);
         }
-        let not_testable = model.add_candidates(is_wanted);
+        let not_testable = model.add_candidates(wanted);
         Ok((model, evidence, not_testable))
     }
 
@@ -312,21 +406,27 @@ impl RigModel {
 
     /// Fills in the effects and their nonparametric rivals, without what can do nothing to these
     /// readings; the effects that then have no candidate.
-    fn add_candidates(&mut self, is_wanted: &dyn Fn(&Candidate) -> bool) -> Vec<NotTestable> {
+    fn add_candidates(&mut self, wanted: &Wanted<'_>) -> Vec<NotTestable> {
         let deflections = self.deflections();
         let mut context = Context { data: &self.data, body: &mut self.body, rod: self.rod.as_ref() };
         let has_rod = context.rod.is_some();
         let mut entries = Vec::new();
         for effect in registry::ALL.into_iter().filter(|effect| has_rod || !effect.needs_rod) {
-            entries.extend((effect.candidates)(&mut context));
+            if wanted.includes(&effect.effect) {
+                entries.extend((effect.candidates)(&mut context));
+            }
         }
         let missing = registry::ALL.map(|effect| match has_rod || !effect.needs_rod {
             true => (effect.missing)(&context),
             false => "it needs a rod file",
         });
-        entries.extend(nonparametric::all(&self.data, &deflections, has_rod));
-        nonparametric::retain_predictive(&mut entries, &self.data, &deflections);
-        entries.retain(|(candidate, _)| is_wanted(candidate));
+        if wanted.includes(&UNKNOWN) {
+            entries.extend(nonparametric::all(&self.data, &deflections, has_rod));
+            nonparametric::retain_predictive(&mut entries, &self.data, &deflections);
+        }
+        entries.retain(|(candidate, _)| wanted.has(candidate));
+        let scale = self.data.iter().fold(0.0, |s: f64, d| s.max(d.measured.abs()).max(d.predicted.abs()));
+        let nothing = NOTHING * scale;
         for (candidate, actions) in entries {
             let (parameters, actions): (Vec<_>, Vec<_>) = candidate
                 .parameters
@@ -336,7 +436,7 @@ impl RigModel {
                     // where a joint is matters as soon as it gives way, when a load was hung as soon as there is creep
                     matches!(action, Action::Station(_))
                         || is_dependent(action)
-                        || self.is_felt(action, parameter.neutral, parameter.size, parameter.bounds)
+                        || self.is_felt(action, parameter, nothing)
                 })
                 .unzip();
             let is_second = |action: &Action| matches!(action, Action::Station(_)) || is_dependent(action);
@@ -355,18 +455,20 @@ impl RigModel {
             .collect()
     }
 
-    /// False for what changes nothing to first order: a twist under loads that do not twist.
-    fn is_felt(&self, action: &Action, neutral: f64, size: f64, bounds: (f64, f64)) -> bool {
-        const NOTHING: f64 = 1e-9;
+    /// False for what changes nothing (m) to first order: a twist under loads that do not twist.
+    fn is_felt(&self, action: &Action, parameter: &Parameter, nothing: f64) -> bool {
+        let Parameter { neutral, size, bounds, .. } = *parameter;
+        // a parameter at its bound can only go one way, and a second-order effect goes the same way twice
+        let step = if neutral + size <= bounds.1 { size } else { bounds.1 - neutral };
+        if let Some(largest) = action.largest_addition() {
+            return 2.0 * step * largest > nothing;
+        }
         let at = |value: f64| {
             let mut state = State::default();
             state.act(action, value);
             self.changed(&state)
         };
-        // a parameter at its bound can only go one way, and a second-order effect goes the same way twice
-        let step = if neutral + size <= bounds.1 { size } else { bounds.1 - neutral };
-        let scale = self.data.iter().fold(0.0, |s: f64, d| s.max(d.measured.abs()).max(d.predicted.abs()));
-        (at(neutral + step) - at(neutral - step)).amax() > NOTHING * scale
+        (at(neutral + step) - at(neutral - step)).amax() > nothing
     }
 
     /// How far the rod yields at each datum, m: the prediction, or the reading's share in a line through the origin.
@@ -392,8 +494,44 @@ impl RigModel {
         sums.into_iter().map(|(xy, xx)| if xx > 0.0 { xy / xx } else { 0.0 }).collect()
     }
 
+    /// True where data of one case show the same but for their history: no load that was hung or imposed one after
+    /// another, and no joint of one session.
+    fn is_by_case(&self, state: &State<'_>) -> bool {
+        self.course.hung.is_empty() && self.course.imposed.is_empty() && state.of_sessions.is_empty()
+    }
+
+    /// What each case of a rod shows, without shifts.
+    fn shown(&self, structure: &Structure, state: &State<'_>) -> Vec<Shown> {
+        let compliance = structure.softened(&state.softening);
+        let of_case = |&first: &usize| {
+            let datum = &self.data[first];
+            let pull = state.bare(datum, None);
+            let along = |displacement| state.read(datum.channel, &displacement);
+            let slope = along(compliance[self.place[first]] * pull.direction);
+            Shown { slope, load: pull.load, play: along(pull.direction) * pull.play }
+        };
+        self.cases.first.iter().map(of_case).collect()
+    }
+
+    /// The readings of a rod by its cases, without shifts, m.
+    fn displaced_by_case(&self, structure: &Structure, state: &State<'_>) -> Vec<f64> {
+        let shown = self.shown(structure, state);
+        if !state.remembers() {
+            let readings: Vec<f64> = shown.iter().map(|of| of.reading(of.load)).collect();
+            return self.cases.of_datum.iter().map(|&case| readings[case]).collect();
+        }
+        let reading = |(i, &case): (usize, &usize)| {
+            let of = &shown[case];
+            of.reading(state.with_history(of.load, i))
+        };
+        self.cases.of_datum.iter().enumerate().map(reading).collect()
+    }
+
     /// The readings of a rod, without shifts, m.
     fn displaced(&self, structure: &Structure, state: &State<'_>) -> Vec<f64> {
+        if self.is_by_case(state) {
+            return self.displaced_by_case(structure, state);
+        }
         let common = structure.softened(&state.softening);
         let mut of_session: Vec<Option<Parts>> = Vec::new();
         for &(session, _, _) in &state.of_sessions {
@@ -433,10 +571,8 @@ impl RigModel {
 
     fn changed(&self, state: &State<'_>) -> DVector<f64> {
         let mut change = DVector::zeros(self.data.len());
-        for (weights, value) in &state.shifts {
-            for &(index, weight) in *weights {
-                change[index] += weight * value;
-            }
+        for (action, value) in &state.additions {
+            action.add_to(change.as_mut_slice(), *value);
         }
         match &self.body {
             _ if !state.is_changed => {}
@@ -485,45 +621,83 @@ impl ForwardModel for RigModel {
     }
 
     fn response(&self, terms: &[Term]) -> DVector<f64> {
-        let mut state = State::default();
-        for term in terms {
-            let actions = self.actions.get(term.candidate).map_or(&[][..], Vec::as_slice);
-            for (action, value) in actions.iter().zip(&term.values) {
-                state.act(action, *value);
-            }
-        }
-        self.changed(&state)
+        self.changed(&self.state(terms))
     }
 
+    fn cases(&self) -> &[usize] {
+        &self.cases.of_datum
+    }
+
+    fn step(&self, candidate: usize) -> Option<Step> {
+        match &self.actions[candidate][..] {
+            [Action::Step(data, from)] => Some(Step { data: Arc::clone(data), from: *from }),
+            _ => None,
+        }
+    }
+
+    fn is_linear_in(&self, terms: &[Term]) -> bool {
+        terms.iter().all(|term| self.actions[term.candidate].iter().all(Action::only_adds))
+    }
+
+    /// By what the cases show, and what only adds to the readings itself: both are sooner done than whole responses.
+    ///
     /// Play that an imposed displacement crosses acts in steps: it is moved by half its usual size. What does nothing without
     /// its effect's first parameter is seen beside the usual size of that.
     fn columns(&self, terms: &[Term], position: usize) -> DMatrix<f64> {
         let term = &terms[position];
-        let (parameters, actions) =
-            (&self.candidates[term.candidate].parameters, &self.actions[term.candidate]);
+        let parameters = &self.candidates[term.candidate].parameters;
+        let mut columns = DMatrix::zeros(self.data.len(), parameters.len());
+        // without a rod an addition changes the slope of its line if anything but additions stands beside it
+        let is_sum = matches!(self.body, Body::Rod(_)) || self.is_linear_in(terms);
         let is_imposed = !self.course.imposed.is_empty();
-        let column = |(k, (parameter, action)): (usize, (&Parameter, &Action))| {
+        for ((k, parameter), action) in parameters.iter().enumerate().zip(&self.actions[term.candidate]) {
+            let mut column = columns.column_mut(k);
+            if is_sum && action.only_adds() {
+                action.add_to(column.as_mut_slice(), parameter.size);
+                continue;
+            }
             let mut moved = terms.to_vec();
-            let first = &parameters[0];
-            if is_dependent(action) && term.values[0] == first.neutral {
-                moved[position].values[0] += first.size;
+            if is_dependent(action) && term.values[0] == parameters[0].neutral {
+                moved[position].values[0] += parameters[0].size;
             }
             let (step, (low, high)) = match action {
                 Action::Play(_) | Action::SliderPlay | Action::Presliding if is_imposed => {
                     (0.5, parameter.bounds)
                 }
-                _ => (1e-4, (f64::NEG_INFINITY, f64::INFINITY)),
+                _ => (DERIVATIVE_STEP, (f64::NEG_INFINITY, f64::INFINITY)),
             };
             let h = step * parameter.size;
-            let (more, less) = ((term.values[k] + h).min(high), (term.values[k] - h).max(low));
-            moved[position].values[k] = more;
-            let with_more = self.response(&moved);
-            moved[position].values[k] = less;
-            let with_less = self.response(&moved);
-            (with_more - with_less) * (parameter.size / (more - less))
-        };
-        let columns: Vec<DVector<f64>> = parameters.iter().zip(actions).enumerate().map(column).collect();
-        DMatrix::from_columns(&columns)
+            let values = [(term.values[k] + h).min(high), (term.values[k] - h).max(low)];
+            let [more, less] = values.map(|value| {
+                moved[position].values[k] = value;
+                self.state(&moved)
+            });
+            let scale = parameter.size / (values[0] - values[1]);
+            let structure = match &self.body {
+                Body::Rod(structure) if self.is_by_case(&more) && self.is_by_case(&less) => structure,
+                _ => {
+                    column.copy_from(&((self.changed(&more) - self.changed(&less)) * scale));
+                    continue;
+                }
+            };
+            let shown = [&more, &less].map(|state| self.shown(structure, state));
+            let of_case = |case: usize, loads: [f64; 2]| {
+                scale * (shown[0][case].reading(loads[0]) - shown[1][case].reading(loads[1]))
+            };
+            let plain = |case: usize| [shown[0][case].load, shown[1][case].load];
+            let cases = column.iter_mut().zip(&self.cases.of_datum);
+            if more.remembers() {
+                for (i, (value, &case)) in cases.enumerate() {
+                    let [with_more, with_less] = plain(case);
+                    *value =
+                        of_case(case, [more.with_history(with_more, i), less.with_history(with_less, i)]);
+                }
+            } else {
+                let changes: Vec<f64> = (0..shown[0].len()).map(|case| of_case(case, plain(case))).collect();
+                cases.for_each(|(value, &case)| *value = changes[case]);
+            }
+        }
+        columns
     }
 
     fn location(&self, term: &Term) -> Location {
@@ -551,6 +725,18 @@ impl ForwardModel for RigModel {
 }
 
 impl RigModel {
+    /// The rig with all of these terms.
+    fn state(&self, terms: &[Term]) -> State<'_> {
+        let mut state = State::default();
+        for term in terms {
+            let actions = self.actions.get(term.candidate).map_or(&[][..], Vec::as_slice);
+            for (action, value) in actions.iter().zip(&term.values) {
+                state.act(action, *value);
+            }
+        }
+        state
+    }
+
     fn widened(&self, part: &FindingPart) -> Vec<Estimate> {
         let parameters = |candidate: usize| &self.candidates[candidate].parameters;
         let is_scanned = |candidate: usize| parameters(candidate).iter().any(|p| p.name == STATION);

@@ -41,7 +41,9 @@ pub(super) fn folded(evidence: &Evidence) -> Folded {
     let mut background = DMatrix::zeros(evidence.residual.len(), first + count + offsets);
     background.columns_mut(0, first).copy_from(&evidence.background);
     background.columns_mut(first, count).copy_from(&own);
-    let mut evidence = Evidence { background, ..evidence.clone() };
+    // the columns of the nominal numbers stand in the background from here on
+    let nominal = DMatrix::zeros(evidence.residual.len(), 0);
+    let mut evidence = Evidence { background, nominal, ..evidence.clone() };
     size_offsets(&mut evidence, 0.0);
     Folded { evidence, basis, first }
 }

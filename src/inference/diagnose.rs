@@ -112,7 +112,7 @@ pub fn diagnose(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
         lack_of_fit_after,
         structure_before: locate(evidence, &before),
         structure_after: locate(evidence, &after),
-        odds: search.additions(&none),
+        odds: search.additions(&none).to_vec(),
         held_out,
         sessions: match hypothesis.terms.is_empty() {
             true => Vec::new(),

@@ -1,11 +1,13 @@
 //! The physics as the engine sees it: candidates with parameters, and what they would do to a recording.
 
+use std::sync::Arc;
+
 use nalgebra::{DMatrix, DVector};
 
 use super::{Description, Effect, Estimate, Finding, FindingPart, Hypothesis, Location, Term};
 
 /// Step of a derivative, relative to the size of a parameter.
-const STEP: f64 = 1e-4;
+pub const DERIVATIVE_STEP: f64 = 1e-4;
 
 /// One effect at one place.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,6 +43,15 @@ pub struct Parameter {
     pub bounds: (f64, f64),
 }
 
+/// A parameter that adds its value to all data of a sequence from one of them on.
+#[derive(Debug, Clone)]
+pub struct Step {
+    /// The sequence, which other steps share.
+    pub data: Arc<[usize]>,
+    /// Where in it the step is.
+    pub from: usize,
+}
+
 /// What would have been recorded.
 pub trait ForwardModel: Sync {
     /// All that might be real. The order is that of preference among equals.
@@ -54,6 +65,22 @@ pub trait ForwardModel: Sync {
     /// then computed once.
     fn is_linear(&self) -> bool {
         false
+    }
+
+    /// True where the response to these terms is linear in all their values.
+    fn is_linear_in(&self, _: &[Term]) -> bool {
+        self.is_linear()
+    }
+
+    /// Number of the case of each datum, counted from 0, where data of one case respond alike to many of the candidates;
+    /// nothing where no two do. It saves time and memory only.
+    fn cases(&self) -> &[usize] {
+        &[]
+    }
+
+    /// The step that a candidate is, where it is one and nothing else. It saves time and memory only.
+    fn step(&self, _candidate: usize) -> Option<Step> {
+        None
     }
 
     /// Where a term is once its values are known; the candidate's location unless they say more.
@@ -79,13 +106,13 @@ pub trait ForwardModel: Sync {
         let mut moved = terms.to_vec();
         let parameters = &self.candidates()[term.candidate].parameters;
         let mut column = |(k, parameter): (usize, &Parameter)| {
-            let h = STEP * parameter.size;
+            let h = DERIVATIVE_STEP * parameter.size;
             moved[position].values[k] = term.values[k] + h;
             let more = self.response(&moved);
             moved[position].values[k] = term.values[k] - h;
             let less = self.response(&moved);
             moved[position].values[k] = term.values[k];
-            (more - less) / (2.0 * STEP)
+            (more - less) / (2.0 * DERIVATIVE_STEP)
         };
         let columns: Vec<DVector<f64>> = parameters.iter().enumerate().map(&mut column).collect();
         DMatrix::from_columns(&columns)

@@ -8,28 +8,24 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use nalgebra::{DMatrix, DVector};
 
-use super::sparse::Sparse;
+use super::columns::Table;
 
 /// For each candidate the products of some columns (rows) with its own (columns).
-type Products = Arc<Vec<DMatrix<f64>>>;
+type Kept = Arc<Vec<DMatrix<f64>>>;
 
 /// Products of the candidates' columns with the residual, with the background and with each other.
 pub struct GramCache {
     residual: Vec<DVector<f64>>,
     background: Vec<DMatrix<f64>>,
-    effects: Mutex<BTreeMap<usize, Products>>,
+    effects: Mutex<BTreeMap<usize, Kept>>,
 }
 
 impl GramCache {
-    /// Of whitened `columns`; residual and background are whitened and projected.
-    pub fn new(
-        columns: &[(Sparse, DMatrix<f64>)],
-        residual: &DVector<f64>,
-        background: &DMatrix<f64>,
-    ) -> Self {
+    /// Of `count` candidates, by their products with residual and background.
+    pub(super) fn new(count: usize, residual: &Table<'_>, background: &Table<'_>) -> Self {
         GramCache {
-            residual: columns.iter().map(|(own, _)| own.tr_mul(residual)).collect(),
-            background: columns.iter().map(|(own, _)| own.tr_mul_into(background)).collect(),
+            residual: (0..count).map(|candidate| residual.of(candidate).row(0).transpose()).collect(),
+            background: (0..count).map(|candidate| background.of(candidate)).collect(),
             effects: Mutex::default(),
         }
     }
@@ -48,17 +44,25 @@ impl GramCache {
     ) -> impl Fn(usize) -> DMatrix<f64> + use<'a> {
         let mut kept = self.effects.lock().unwrap_or_else(PoisonError::into_inner);
         let of = |&effect: &usize| kept.entry(effect).or_insert_with(|| Arc::new(compute(effect))).clone();
-        let parts: Vec<Products> = effects.iter().map(of).collect();
+        let parts: Vec<Kept> = effects.iter().map(of).collect();
         move |candidate| {
-            let background = &self.background[candidate];
-            let rows = background.nrows() + parts.iter().map(|part| part[candidate].nrows()).sum::<usize>();
-            let mut all = DMatrix::zeros(rows, background.ncols());
-            let mut next = 0;
-            for part in std::iter::once(background).chain(parts.iter().map(|part| &part[candidate])) {
-                all.rows_mut(next, part.nrows()).copy_from(part);
-                next += part.nrows();
-            }
-            all
+            let parts = parts.iter().map(|part| &part[candidate]);
+            stacked(&self.background[candidate], parts)
         }
     }
+}
+
+/// Blocks of as many columns, one below the other.
+pub(super) fn stacked<'a>(
+    first: &'a DMatrix<f64>,
+    others: impl Iterator<Item = &'a DMatrix<f64>> + Clone,
+) -> DMatrix<f64> {
+    let all = || std::iter::once(first).chain(others.clone());
+    let mut stacked = DMatrix::zeros(all().map(DMatrix::nrows).sum(), first.ncols());
+    let mut next = 0;
+    for part in all() {
+        stacked.rows_mut(next, part.nrows()).copy_from(part);
+        next += part.nrows();
+    }
+    stacked
 }

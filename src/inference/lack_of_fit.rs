@@ -7,8 +7,9 @@
 //! (N. R. Draper, H. Smith, *Applied Regression Analysis*, 3rd ed., ch. 2: lack of fit and pure error). A shape that no
 //! smooth curve describes is seen here.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 
+use super::whitening::Whitening;
 use crate::statistics::f_survival;
 
 /// The test.
@@ -40,19 +41,19 @@ impl LackOfFit {
     }
 }
 
-/// The space of what is the same in all repeats.
+/// The space of what is the same in all repeats: A the indicators of the replicates, W what whitens.
 #[derive(Debug, Clone)]
 pub(super) struct Replicates {
-    /// Orthonormal basis of the whitened indicators of the replicates.
-    basis: DMatrix<f64>,
+    whitening: Whitening,
+    /// Number of the replicate group of each datum.
+    group: Vec<usize>,
+    /// Diagonal of AᵀWᵀWA without the errors that data share: it preconditions.
+    diagonal: DVector<f64>,
 }
 
 impl Replicates {
     /// `None` without repeats.
-    pub(super) fn new(
-        whitened: impl Fn(&DMatrix<f64>) -> DMatrix<f64>,
-        replicate_group: &[usize],
-    ) -> Option<Replicates> {
+    pub(super) fn new(whitening: &Whitening, replicate_group: &[usize]) -> Option<Replicates> {
         // a recording of some conditions may lack others
         let mut numbers: Vec<usize> = replicate_group.to_vec();
         numbers.sort_unstable();
@@ -60,21 +61,57 @@ impl Replicates {
         if numbers.len() >= replicate_group.len() {
             return None;
         }
-        let indicators = DMatrix::from_fn(replicate_group.len(), numbers.len(), |i, k| {
-            f64::from(u8::from(replicate_group[i] == numbers[k]))
-        });
-        Some(Replicates { basis: whitened(&indicators).qr().q() })
+        let number = |group: &usize| numbers.binary_search(group).unwrap_or_default();
+        let group: Vec<usize> = replicate_group.iter().map(number).collect();
+        let mut diagonal = DVector::zeros(numbers.len());
+        group.iter().zip(whitening.weights()).for_each(|(&group, weight)| diagonal[group] += weight);
+        Some(Replicates { whitening: whitening.clone(), group, diagonal })
+    }
+
+    /// Aᵀv.
+    fn gathered(&self, v: &DVector<f64>) -> DVector<f64> {
+        let mut sums = DVector::zeros(self.diagonal.len());
+        self.group.iter().zip(v.iter()).for_each(|(&group, v)| sums[group] += v);
+        sums
+    }
+
+    /// |Q·w|², Q the projection on the columns of W·A: bᵀ(AᵀWᵀWA)⁻¹b with b = AᵀWᵀw, by conjugate gradients (M. R. Hestenes,
+    /// E. Stiefel, J. Res. NBS 49 (1952) 409–436), which take one pass over the data for a step.
+    fn along(&self, w: &DVector<f64>) -> f64 {
+        const ENOUGH: f64 = 1e-11;
+        const STEPS: usize = 500;
+        let mut left = self.gathered(&self.whitening.transposed_vector(w));
+        let mut preconditioned = left.component_div(&self.diagonal);
+        let mut direction = preconditioned.clone();
+        let mut square = left.dot(&preconditioned);
+        let (all, mut found) = (square, 0.0);
+        for _ in 0..STEPS {
+            if square <= ENOUGH * ENOUGH * all {
+                break;
+            }
+            let spread = DVector::from_iterator(self.group.len(), self.group.iter().map(|&g| direction[g]));
+            let image = self.gathered(&self.whitening.transposed_vector(&self.whitening.whitened(&spread)));
+            let step = square / direction.dot(&image);
+            // every step is orthogonal to those before it
+            found += step * square;
+            left.axpy(-step, &image, 1.0);
+            preconditioned = left.component_div(&self.diagonal);
+            let next = left.dot(&preconditioned);
+            direction = &preconditioned + direction * (next / square);
+            square = next;
+        }
+        found
     }
 
     /// Tests the whitened residual `w` that a hypothesis of `parameters` leaves.
     pub(super) fn test(&self, w: &DVector<f64>, parameters: usize) -> Option<LackOfFit> {
-        let (n, replicates) = self.basis.shape();
+        let (n, replicates) = (self.group.len(), self.diagonal.len());
         let (dof_fit, dof_repeats) = (replicates.checked_sub(parameters)?, n.checked_sub(replicates)?);
         if dof_fit == 0 || dof_repeats == 0 {
             return None;
         }
         let all = w.norm_squared();
-        let means = self.basis.tr_mul(w).norm_squared();
+        let means = self.along(w);
         // repeats that never differ say nothing about noise
         let repeats = all - means;
         if repeats <= f64::EPSILON * all {
@@ -88,14 +125,45 @@ impl Replicates {
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::DMatrix;
+
     use super::*;
+    use crate::inference::Evidence;
     use crate::statistics::Random;
+
+    fn replicates(evidence: &Evidence) -> Replicates {
+        Replicates::new(&Whitening::new(evidence, &evidence.residual), &evidence.replicate_group).unwrap()
+    }
+
+    /// The same by an orthonormal basis of the whitened indicators.
+    #[test]
+    fn the_share_of_repeats_is_the_projection_on_their_whitened_indicators() {
+        const COUNT: usize = 240;
+        let mut random = Random::seeded(4, 0);
+        let residual = DVector::from_fn(COUNT, |_, _| random.normal());
+        let evidence = Evidence {
+            replicate_group: (0..COUNT).map(|i| (7 * i + i / 40) % 24).collect(),
+            shared: (0..COUNT).map(|i| i / 15).collect(),
+            weight: (0..COUNT).map(|i| 1.0 - 0.6 * (i as f64).sin().powi(2)).collect(),
+            ..Evidence::new(residual.clone())
+        };
+        for ratio in [0.0, 1.0, 900.0] {
+            let evidence = Evidence { shared_ratio: Some(ratio), ..evidence.clone() };
+            let whitening = Whitening::new(&evidence, &residual);
+            let indicators =
+                DMatrix::from_fn(COUNT, 24, |i, k| f64::from(u8::from(evidence.replicate_group[i] == k)));
+            let expected = whitening.whitened_columns(&indicators).qr().q().tr_mul(&residual).norm_squared();
+            let found = replicates(&evidence).along(&residual);
+            assert!((found - expected).abs() < 1e-9 * expected, "{ratio}: {found} instead of {expected}");
+        }
+    }
 
     fn test(seed: u64, shift: f64) -> LackOfFit {
         let mut random = Random::seeded(seed, 0);
         let replicate_group: Vec<usize> = (0..80).map(|i| i % 16).collect();
         let residual = DVector::from_fn(80, |i, _| random.normal() + if i % 16 == 3 { shift } else { 0.0 });
-        Replicates::new(Clone::clone, &replicate_group).unwrap().test(&residual, 0).unwrap()
+        let evidence = Evidence { replicate_group, ..Evidence::new(residual.clone()) };
+        replicates(&evidence).test(&residual, 0).unwrap()
     }
 
     #[test]

@@ -22,6 +22,8 @@ const REFITTED: usize = 16;
 const MOST: usize = 120;
 /// Of more candidates no pairs are screened.
 const TOO_MANY: usize = 400;
+/// Numbers of the columns that are whitened at once.
+const AT_ONCE: usize = 1 << 22;
 /// A pair must be worth so much more than the better of the two alone.
 const TOGETHER: f64 = 3.0;
 
@@ -41,28 +43,46 @@ impl Search<'_> {
         }
         paired.truncate(MOST);
         let (residual, base) = self.linear_part(&hypothesis.terms);
-        let blocks: Vec<DMatrix<f64>> =
-            paired.iter().map(|&index| self.whitening.apply_columns(&self.model.neutral[index])).collect();
-        let starts: Vec<usize> = blocks
+        let counts: Vec<usize> = paired.iter().map(|&index| candidates[index].parameters.len()).collect();
+        let starts: Vec<usize> = counts
             .iter()
-            .scan(0, |next, block| {
+            .scan(0, |next, count| {
                 let start = *next;
-                *next += block.ncols();
+                *next += count;
                 Some(start)
             })
             .collect();
-        let total: usize = blocks.iter().map(DMatrix::ncols).sum();
-        let mut all = DMatrix::zeros(residual.len(), total);
-        for (block, &start) in blocks.iter().zip(&starts) {
-            all.columns_mut(start, block.ncols()).copy_from(block);
+        let total: usize = counts.iter().sum();
+        let mut gram = DMatrix::zeros(total, total);
+        let mut product = DVector::zeros(total);
+        let mut cross = DMatrix::zeros(base.ncols(), total);
+        // some at a time, lest all columns of a long recording stand in memory
+        let at_once = (AT_ONCE / residual.len().max(1)).max(1);
+        let mut next = 0;
+        while next < paired.len() {
+            let mut end = next + 1;
+            while end < paired.len() && starts[end] + counts[end] - starts[next] <= at_once {
+                end += 1;
+            }
+            let own: usize = counts[next..end].iter().sum();
+            let mut columns = DMatrix::zeros(residual.len(), own);
+            for k in next..end {
+                let whitened = self.whitening.apply_columns(&self.model.neutral(paired[k]));
+                columns.columns_mut(starts[k] - starts[next], counts[k]).copy_from(&whitened);
+            }
+            let products = self.model.products(self.whitening.transposed(&columns));
+            for (k, &index) in paired.iter().enumerate() {
+                gram.view_mut((starts[next], starts[k]), (own, counts[k])).copy_from(&products.of(index));
+            }
+            product.rows_mut(starts[next], own).copy_from(&columns.tr_mul(&residual));
+            cross.columns_mut(starts[next], own).copy_from(&transposed_product(&base, &columns));
+            next = end;
         }
         let s = hypothesis.sigma.powi(2);
-        let (mut gram, mut product) = (transposed_product(&all, &all), all.tr_mul(&residual));
         if base.ncols() > 0 {
             let mut ridge = transposed_product(&base, &base);
             (0..ridge.ncols()).for_each(|k| ridge[(k, k)] += s);
             if let Some(root) = Cholesky::new(ridge) {
-                let cross = transposed_product(&base, &all);
                 let solved = root.solve(&cross);
                 gram -= transposed_product(&cross, &solved);
                 product -= solved.tr_mul(&base.tr_mul(&residual));
@@ -70,7 +90,7 @@ impl Search<'_> {
         }
         let nu = (self.degrees_of_freedom() as f64).max(1.0);
         let gain = |columns: &[usize]| gain(&gram, &product, columns, s, nu);
-        let own = |k: usize| -> Vec<usize> { (starts[k]..starts[k] + blocks[k].ncols()).collect() };
+        let own = |k: usize| -> Vec<usize> { (starts[k]..starts[k] + counts[k]).collect() };
         let alone: Vec<f64> = (0..paired.len()).map(|k| gain(&own(k))).collect();
         let mut gains: Vec<(f64, usize, usize)> = Vec::new();
         for i in 0..paired.len() {

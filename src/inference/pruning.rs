@@ -9,6 +9,7 @@ use super::linearised::Linearised;
 use super::scatter::Tails;
 use super::search::Search;
 use super::selection::{DiscrepancyModel, Pairs};
+use super::whitening::Whitening;
 use super::{Evidence, ForwardModel, Term};
 
 /// What is left is little: as a share of what an effect explains, and of the noise.
@@ -25,10 +26,10 @@ const SAME_WEIGHT: f64 = 0.05;
 pub fn settled(model: &Linearised<'_>, evidence: &Evidence) -> Evidence {
     let mut evidence = evidence.clone();
     let mut known: Vec<Term> = Vec::new();
-    let search = Search::new(model, &evidence, &[]);
+    let whitening = Whitening::new(&evidence, &evidence.residual);
     let is_plain = !evidence.is_robust && evidence.offsets.ncols() == 0;
-    if is_plain && !search.whitening.is_of_shared_errors() {
-        evidence.shared_ratio = Some(search.shared_ratio());
+    if is_plain && !whitening.is_of_shared_errors() {
+        evidence.shared_ratio = Some(whitening.ratio);
         return evidence;
     }
     for pass in 0..PASSES {
@@ -60,7 +61,10 @@ pub fn settled(model: &Linearised<'_>, evidence: &Evidence) -> Evidence {
         if is_settled || pass + 1 == PASSES {
             evidence.shared_ratio = Some(match is_settled {
                 true => ratio,
-                false => Search::new(model, &evidence, &known).shared_ratio(),
+                false => {
+                    let left = &evidence.residual - model.response(&known);
+                    Whitening::new(&evidence, &left).ratio
+                }
             });
             break;
         }
@@ -155,7 +159,7 @@ impl Search<'_> {
 
     /// Can an effect say anything of the few data that it concerns?
     pub fn is_event(&self, term: &Term) -> bool {
-        let columns = &self.model.neutral[term.candidate];
+        let columns = self.model.neutral(term.candidate);
         columns.row_iter().filter(|row| row.amax() > 0.0).count() <= columns.ncols()
     }
 

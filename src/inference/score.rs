@@ -19,7 +19,9 @@ mod tests;
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::linalg::{positive_definite_inverse, transposed_product};
+use crate::linalg::positive_definite_inverse;
+#[cfg(test)]
+use crate::linalg::transposed_product;
 use crate::statistics::ln_normal_mass;
 
 /// Least noise variance relative to that of the residual.
@@ -94,6 +96,7 @@ pub struct Score {
 
 impl Moments {
     /// Of the residual `r` and `columns`, with bounds of their factors and the sizes of the effects, the last of the columns.
+    #[cfg(test)]
     pub fn new(
         r: &DVector<f64>,
         columns: &DMatrix<f64>,
@@ -205,6 +208,9 @@ impl Moments {
     /// gain ≈ −½·ν·ln(1 − Δ/νσ²) − ½·ln|1 + κ²G'/s'| + ln(room)
     pub fn about(&self, score: &Score, more: &ColumnBlock) -> f64 {
         let (nu, s) = ((self.degrees_of_freedom as f64 + self.believed().0).max(1.0), score.sigma.powi(2));
+        if more.gram.len() == 1 {
+            return self.about_one(score, more, nu);
+        }
         let (gram, product) = self.reduced(score, more);
         let k = gram.ncols();
         // what a hypothesis holds already leaves rounding: it is no smaller a prior
@@ -237,11 +243,53 @@ impl Moments {
         }
     }
 
+    /// The same of one column, which a slip at any place is, in plain numbers.
+    fn about_one(&self, score: &Score, more: &ColumnBlock, nu: f64) -> f64 {
+        let s = score.sigma.powi(2);
+        let (mut gram, mut product) = (more.gram[0], more.product[0]);
+        let cross = more.cross.as_slice();
+        let columns = score.covariance.as_slice().chunks_exact(cross.len().max(1));
+        for ((covariance, x), estimate) in columns.zip(cross).zip(score.estimate.as_slice()) {
+            let along: f64 = covariance.iter().zip(cross).map(|(c, x)| c * x).sum();
+            gram -= x * along / s;
+            product -= x * estimate;
+        }
+        let rounding = ROUNDING * more.gram[0].abs();
+        let moment = (product * product - s * gram) / (gram * gram).max(f64::MIN_POSITIVE);
+        let (mut scale, mut left) = (moment.max(0.0).sqrt().clamp(SCALES.0, SCALES.1), s);
+        let mut step = 0;
+        loop {
+            let ridge = left / scale.powi(2) + rounding;
+            // rounding may leave less than nothing of the column
+            let inverse = 1.0 / (gram.max(0.0) + ridge);
+            let solution = inverse * product;
+            let next = (solution * solution + left * inverse).sqrt().clamp(SCALES.0, SCALES.1);
+            let explained = (product * solution / (nu * s)).clamp(0.0, 1.0 - 1e-12);
+            let less = (s * (1.0 - explained)).max(self.floor.powi(2)).max(f64::MIN_POSITIVE.sqrt());
+            let moved = (next / scale).ln().abs().max((less / left).ln().abs());
+            if step == SCALE_STEPS || moved < ROUGHLY {
+                let determinant = -(inverse * ridge).ln();
+                let (low, high) = more.bounds[0];
+                let bounds = (low / scale, high / scale);
+                let room = room(bounds, solution / scale, (left * inverse).sqrt() / scale);
+                return -0.5 * (nu * (-explained).ln_1p() + determinant + scale.log10().powi(2)) + room;
+            }
+            (scale, left) = (next, less);
+            step += 1;
+        }
+    }
+
     /// Inner products of `more` columns with each other and with r, the hypothesis's columns out of them.
     fn reduced(&self, score: &Score, more: &ColumnBlock) -> (DMatrix<f64>, DVector<f64>) {
         // (G + σ²)⁻¹ is the posterior covariance over σ²
-        let reduced = transposed_product(&score.covariance, &more.cross) / score.sigma.powi(2);
-        let gram = more.gram - transposed_product(&more.cross, &reduced);
+        let mut reduced = DMatrix::zeros(more.cross.nrows(), more.cross.ncols());
+        // so few columns are sooner multiplied one by one
+        for (mut reduced, cross) in reduced.column_iter_mut().zip(more.cross.column_iter()) {
+            for (covariance, cross) in score.covariance.column_iter().zip(cross.iter()) {
+                reduced.axpy(cross / score.sigma.powi(2), &covariance, 1.0);
+            }
+        }
+        let gram = more.gram - more.cross.tr_mul(&reduced);
         (gram, &more.product - reduced.tr_mul(&self.product))
     }
 

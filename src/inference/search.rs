@@ -6,16 +6,18 @@
 //! places finds nothing a hundred times as often as a single place does.
 
 use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use nalgebra::{DMatrix, DVector};
 
-use super::gram_cache::GramCache;
+use super::columns::Table;
+use super::gram_cache::{GramCache, stacked};
 use super::lack_of_fit::{LackOfFit, Replicates};
 use super::linearised::Linearised;
 use super::score::{ColumnBlock, Moments, Score};
-use super::sparse::Sparse;
 use super::whitening::Whitening;
 use super::{Candidate, Effect, Evidence, ForwardModel, Hypothesis, Term};
+use crate::linalg::transposed_product;
 
 /// Prior probability that the next effect is none, one of the library, or one that nobody has named.
 pub(super) const PRIOR: (f64, f64, f64) = (0.5, 0.4, 0.1);
@@ -31,11 +33,13 @@ pub struct Search<'a> {
     pub(super) model: &'a Linearised<'a>,
     pub(super) evidence: &'a Evidence,
     pub(super) whitening: Whitening,
-    /// Background, whitened and projected.
-    background: DMatrix<f64>,
-    /// Each candidate's columns at neutral values, whitened, with their inner products once they are projected too. Inner
-    /// products with what is projected need no projection of theirs.
-    columns: Vec<(Sparse, DMatrix<f64>)>,
+    /// Background, whitened and projected, and its inner products.
+    background: (DMatrix<f64>, DMatrix<f64>),
+    /// Those of the background with each candidate's columns at neutral values.
+    beside_background: Table<'a>,
+    /// Inner products of each candidate's columns, whitened and projected, with each other. Those with what is projected
+    /// need no projection of theirs.
+    grams: Vec<DMatrix<f64>>,
     /// The residual, whitened and projected.
     residual: DVector<f64>,
     /// Of a linear model.
@@ -44,7 +48,13 @@ pub struct Search<'a> {
     prior: Vec<f64>,
     /// What repeats have in common; `None` without repeats.
     replicates: Option<Replicates>,
+    /// What was fitted and asked before: a search comes to the same hypothesis by several ways.
+    fitted: Memory<Hypothesis>,
+    added: Memory<Arc<Vec<f64>>>,
 }
+
+/// Answers by the terms that they are of, values to the last bit.
+type Memory<T> = Mutex<BTreeMap<Vec<(usize, Vec<u64>)>, T>>;
 
 /// For a candidate, the inner products of its columns with those of a hypothesis (rows), and with a residual.
 type CrossProducts<'a> = dyn Fn(usize) -> (DMatrix<f64>, DVector<f64>) + 'a;
@@ -54,24 +64,28 @@ impl<'a> Search<'a> {
     pub fn new(model: &'a Linearised<'a>, evidence: &'a Evidence, adopted: &[Term]) -> Self {
         let left = &evidence.residual - model.response(adopted);
         let whitening = Whitening::new(evidence, &left);
-        let of_candidate = |columns: &DMatrix<f64>| {
-            let whitened = whitening.whitened_columns(columns);
-            let gram = whitening.projected_gram(&whitened);
-            (Sparse::new(&whitened), gram)
-        };
-        let columns: Vec<(Sparse, DMatrix<f64>)> = model.neutral.iter().map(of_candidate).collect();
+        let grams = grams(model, &whitening);
         let residual = whitening.apply(&evidence.residual);
         let background = whitening.apply_columns(&evidence.background);
+        let beside_background = model.table(&whitening.transposed(&background));
+        let kept = model.is_linear().then(|| {
+            let of_residual = DMatrix::from_column_slice(residual.len(), 1, residual.as_slice());
+            let of_residual = model.table(&whitening.transposed(&of_residual));
+            GramCache::new(grams.len(), &of_residual, &beside_background)
+        });
         Search {
-            kept: model.is_linear().then(|| GramCache::new(&columns, &residual, &background)),
-            columns,
+            kept,
+            grams,
             residual,
-            background,
+            background: {
+                let gram = transposed_product(&background, &background);
+                (background, gram)
+            },
+            beside_background,
             prior: priors(model.candidates()),
-            replicates: Replicates::new(
-                |columns| whitening.whitened_columns(columns),
-                &evidence.replicate_group,
-            ),
+            replicates: Replicates::new(&whitening, &evidence.replicate_group),
+            fitted: Memory::default(),
+            added: Memory::default(),
             model,
             evidence,
             whitening,
@@ -80,7 +94,11 @@ impl<'a> Search<'a> {
 
     /// Fits the values of `terms` together, by Gauss–Newton steps from where they are, and scores them.
     pub fn fit(&self, terms: &[Term]) -> Hypothesis {
-        let background = self.background.ncols();
+        remembered(&self.fitted, terms, || self.fit_anew(terms))
+    }
+
+    fn fit_anew(&self, terms: &[Term]) -> Hypothesis {
+        let background = self.background.0.ncols();
         let mut terms = terms.to_vec();
         let mut scored = self.moments(&terms).score();
         for _ in 0..STEPS {
@@ -88,7 +106,7 @@ impl<'a> Search<'a> {
             self.put(&mut terms, &scored);
             let moved = flat(&terms) - before;
             // where effects are linear the first step arrives
-            if self.model.is_linear() || moved.component_div(&self.sizes(&terms)).amax() < ARRIVED {
+            if self.model.is_linear_in(&terms) || moved.component_div(&self.sizes(&terms)).amax() < ARRIVED {
                 break;
             }
             scored = self.moments(&terms).score();
@@ -110,20 +128,24 @@ impl<'a> Search<'a> {
     /// About the ln of what adding each candidate to `hypothesis` does to its probability, by the candidate's columns at its
     /// neutral values, exact for the likeliest known and unknown ones and for the likeliest place of every effect, lest
     /// one effect with many places leaves the others out; −∞ for those that are in it already.
-    pub fn additions(&self, hypothesis: &Hypothesis) -> Vec<f64> {
+    pub fn additions(&self, hypothesis: &Hypothesis) -> Arc<Vec<f64>> {
+        remembered(&self.added, &hypothesis.terms, || Arc::new(self.additions_anew(hypothesis)))
+    }
+
+    fn additions_anew(&self, hypothesis: &Hypothesis) -> Vec<f64> {
         let (present, products) = self.crossed(&hypothesis.terms);
         let before = present.score();
         let more = |index: usize| {
             let (cross, product) = products(index);
             let bounds = self.model.candidates()[index].scaled_bounds().map(one_sided).collect();
-            ColumnBlock { gram: &self.columns[index].1, cross, product, bounds }
+            ColumnBlock { gram: &self.grams[index], cross, product, bounds }
         };
         let alone = present.rest(&before).score().log_evidence;
         let about = |index: usize| match hypothesis.terms.iter().any(|term| self.excludes(term, index)) {
             true => f64::NEG_INFINITY,
             false => present.about(&before, &more(index)) + self.prior[index],
         };
-        let mut additions: Vec<f64> = (0..self.columns.len()).map(about).collect();
+        let mut additions: Vec<f64> = (0..self.grams.len()).map(about).collect();
         for unknown in [false, true] {
             let mut effects: Vec<&Effect> = Vec::new();
             for (rank, index) in self.likeliest(&additions, unknown).into_iter().enumerate() {
@@ -215,17 +237,23 @@ impl<'a> Search<'a> {
         evidence: &Evidence,
         change: &DVector<f64>,
     ) -> DVector<f64> {
+        let predicted = change + &evidence.background * &hypothesis.background;
+        if evidence.nuisance.ncols() == 0 {
+            return predicted;
+        }
         let left = &self.evidence.residual
             - self.model.response(&hypothesis.terms)
             - &self.evidence.background * &hypothesis.background;
-        change
-            + &evidence.background * &hypothesis.background
-            + &evidence.nuisance * self.whitening.nuisance(&self.evidence.nuisance, &left)
+        predicted + &evidence.nuisance * self.whitening.nuisance(&self.evidence.nuisance, &left)
     }
 
-    /// Residual and columns of a hypothesis, whitened, the residual without what its values explain.
+    /// Residual and columns of a hypothesis, background first, whitened; the residual without what its values explain.
     pub(super) fn linear_part(&self, terms: &[Term]) -> (DVector<f64>, DMatrix<f64>) {
-        self.linear(terms)
+        let (r, own) = self.linear(terms);
+        let background = self.background.0.ncols();
+        let mut all = self.background.0.clone().resize_horizontally(background + own.ncols(), 0.0);
+        all.columns_mut(background, own.ncols()).copy_from(&own);
+        (r, all)
     }
 
     /// Ln of the prior of a candidate over that of none.
@@ -233,8 +261,8 @@ impl<'a> Search<'a> {
         self.prior[index]
     }
 
-    /// Residual and columns of a hypothesis, linear about the neutral values and whitened: the background, then its effects at
-    /// their values. Estimates are in sizes from the neutral values.
+    /// Residual and columns of the effects of a hypothesis at their values, linear about the neutral ones and whitened.
+    /// Estimates are in sizes from the neutral values.
     fn linear(&self, terms: &[Term]) -> (DVector<f64>, DMatrix<f64>) {
         let own: Vec<DMatrix<f64>> =
             (0..terms.len()).map(|position| self.model.columns(terms, position)).collect();
@@ -247,36 +275,39 @@ impl<'a> Search<'a> {
         }
         // recorded less predicted, plus what the columns make of it
         let left = &self.evidence.residual - self.model.response(terms) + &columns * self.offsets(terms);
-        let background = self.background.ncols();
-        let mut all = DMatrix::zeros(columns.nrows(), background + count);
-        all.columns_mut(0, background).copy_from(&self.background);
-        all.columns_mut(background, count).copy_from(&self.whitening.apply_columns(&columns));
-        (self.whitening.apply(&left), all)
+        (self.whitening.apply(&left), self.whitening.apply_columns(&columns))
     }
 
     /// The moments of a hypothesis, and the inner products of each candidate's columns with the hypothesis's and with the residual that it
     /// is fitted to.
     fn crossed(&self, terms: &[Term]) -> (Moments, Box<CrossProducts<'_>>) {
         let Some(kept) = &self.kept else {
-            let (r, predicted) = self.linear(terms);
-            let moments = self.moments_of(&r, &predicted, terms);
-            let products = move |index: usize| {
-                let columns = &self.columns[index].0;
-                (columns.tr_mul_into(&predicted), columns.tr_mul(&r))
+            let (r, own) = self.linear(terms);
+            let moments = self.moments_of(&r, &own, terms);
+            let count = own.ncols();
+            let mut with_residual = own.resize_horizontally(count + 1, 0.0);
+            with_residual.set_column(count, &r);
+            let products = self.model.products(self.whitening.transposed(&with_residual));
+            let of = move |index: usize| {
+                let all = products.of(index);
+                let effects = all.rows(0, count).into_owned();
+                let cross = stacked(&self.beside_background.of(index), std::iter::once(&effects));
+                (cross, all.row(count).transpose())
             };
-            return (moments, Box::new(products));
+            return (moments, Box::new(of));
         };
         let effects: Vec<usize> = terms.iter().map(|c| c.candidate).collect();
         let cross = kept.hypothesis(&effects, &|effect| {
-            let own = self.whitening.apply_columns(&self.model.neutral[effect]);
-            self.columns.iter().map(|(columns, _)| columns.tr_mul_into(&own)).collect()
+            let own = self.whitening.apply_columns(&self.model.neutral(effect));
+            let products = self.model.table(&self.whitening.transposed(&own));
+            (0..self.grams.len()).map(|index| products.of(index)).collect()
         });
-        let first = self.background.ncols();
+        let first = self.background.0.ncols();
         let blocks: Vec<DMatrix<f64>> = effects.iter().map(|&effect| cross(effect)).collect();
         let count = first + blocks.iter().map(DMatrix::ncols).sum::<usize>();
         let (mut gram, mut product) = (DMatrix::zeros(count, count), DVector::zeros(count));
-        gram.view_mut((0, 0), (first, first)).copy_from(&self.background.tr_mul(&self.background));
-        product.rows_mut(0, first).copy_from(&self.background.tr_mul(&self.residual));
+        gram.view_mut((0, 0), (first, first)).copy_from(&self.background.1);
+        product.rows_mut(0, first).copy_from(&self.background.0.tr_mul(&self.residual));
         let mut next = first;
         for (block, &effect) in blocks.iter().zip(&effects) {
             gram.columns_mut(next, block.ncols()).copy_from(block);
@@ -298,23 +329,37 @@ impl<'a> Search<'a> {
         if self.kept.is_some() {
             return self.crossed(terms).0;
         }
-        let (r, columns) = self.linear(terms);
-        self.moments_of(&r, &columns, terms)
+        let (r, own) = self.linear(terms);
+        self.moments_of(&r, &own, terms)
     }
 
-    fn moments_of(&self, r: &DVector<f64>, columns: &DMatrix<f64>, terms: &[Term]) -> Moments {
-        let bounds = self.bounds(terms);
-        let effects = terms.iter().map(|c| c.values.len()).collect();
-        let degrees_of_freedom = self.whitening.degrees_of_freedom;
+    /// Of a residual and the columns of the effects, the background before them.
+    fn moments_of(&self, r: &DVector<f64>, own: &DMatrix<f64>, terms: &[Term]) -> Moments {
+        let (background, of_background) = &self.background;
+        let (first, count) = (background.ncols(), own.ncols());
+        let cross = transposed_product(background, own);
+        let mut gram = of_background.clone().resize(first + count, first + count, 0.0);
+        gram.view_mut((0, first), (first, count)).copy_from(&cross);
+        gram.view_mut((first, 0), (count, first)).copy_from(&cross.transpose());
+        gram.view_mut((first, first), (count, count)).copy_from(&transposed_product(own, own));
+        let mut product = DVector::zeros(first + count);
+        product.rows_mut(0, first).copy_from(&background.tr_mul(r));
+        product.rows_mut(first, count).copy_from(&own.tr_mul(r));
         Moments {
+            square: r.norm_squared(),
+            gram,
+            product,
+            bounds: self.bounds(terms),
+            effects: terms.iter().map(|c| c.values.len()).collect(),
+            degrees_of_freedom: self.whitening.degrees_of_freedom,
+            floor: self.floor(),
             stated: self.evidence.stated_noise,
-            ..Moments::new(r, columns, bounds, effects, degrees_of_freedom, self.floor())
         }
     }
 
     /// Bounds of a hypothesis's parameters, background first.
     fn bounds(&self, terms: &[Term]) -> Vec<(f64, f64)> {
-        let mut bounds = vec![(f64::NEG_INFINITY, f64::INFINITY); self.background.ncols()];
+        let mut bounds = vec![(f64::NEG_INFINITY, f64::INFINITY); self.background.0.ncols()];
         for c in terms {
             bounds.extend(self.model.candidates()[c.candidate].scaled_bounds());
         }
@@ -345,7 +390,7 @@ impl<'a> Search<'a> {
     /// Puts the estimates of a score, in sizes from the neutral values, into a hypothesis, within the physical bounds: what
     /// would be beyond its bound is held there, and the others are what they are given that.
     fn put(&self, terms: &mut [Term], scored: &Score) {
-        let background = self.background.ncols();
+        let background = self.background.0.ncols();
         let bounds: Vec<(f64, f64)> =
             terms.iter().flat_map(|c| self.model.candidates()[c.candidate].scaled_bounds()).collect();
         let (mut mean, mut covariance) = (scored.estimate.clone(), scored.covariance.clone());
@@ -383,6 +428,33 @@ impl<'a> Search<'a> {
 /// from linear.
 fn one_sided((low, high): (f64, f64)) -> (f64, f64) {
     (if low == 0.0 { 0.0 } else { f64::NEG_INFINITY }, if high == 0.0 { 0.0 } else { f64::INFINITY })
+}
+
+/// Inner products of each candidate's columns, whitened and projected, with each other.
+fn grams(model: &Linearised<'_>, whitening: &Whitening) -> Vec<DMatrix<f64>> {
+    let squares = whitening.squares_of_steps(&model.sequences());
+    let basis = whitening.basis();
+    let absorbed = (basis.ncols() > 0).then(|| model.table(&whitening.transposed(&basis)));
+    let gram = |candidate: usize| match model.stored().square_of_step(candidate, &squares) {
+        Some(square) => {
+            let lost = absorbed.as_ref().map_or(0.0, |absorbed| absorbed.of(candidate).norm_squared());
+            DMatrix::from_element(1, 1, square - lost)
+        }
+        None => whitening.projected_gram(&whitening.whitened_columns(&model.neutral(candidate))),
+    };
+    (0..model.candidates().len()).map(gram).collect()
+}
+
+/// What is known of these terms, or else is found out.
+fn remembered<T: Clone>(memory: &Memory<T>, terms: &[Term], find: impl FnOnce() -> T) -> T {
+    let bits = |term: &Term| (term.candidate, term.values.iter().map(|value| value.to_bits()).collect());
+    let key: Vec<(usize, Vec<u64>)> = terms.iter().map(bits).collect();
+    let known = memory.lock().unwrap_or_else(PoisonError::into_inner).get(&key).cloned();
+    known.unwrap_or_else(|| {
+        let found = find();
+        memory.lock().unwrap_or_else(PoisonError::into_inner).insert(key, found.clone());
+        found
+    })
 }
 
 fn flat(terms: &[Term]) -> DVector<f64> {

@@ -50,7 +50,7 @@ impl Search<'_> {
     pub fn best(&self, pairs: Pairs) -> (Hypothesis, Option<DiscrepancyModel>) {
         let none = self.fit(&[]);
         let additions = self.additions(&none);
-        let by_steps = self.along(vec![none.clone()], Some(&additions));
+        let by_steps = self.along(vec![none.clone()]);
         let pair = match pairs {
             Pairs::Screened => self.best_pair(&none, &additions),
             Pairs::LeftOut => None,
@@ -60,7 +60,7 @@ impl Search<'_> {
             by_steps.0.log_probability + 1e-6 < pair.log_probability || by_steps.1.is_some()
         };
         let Some(pair) = pair.filter(is_new) else { return (by_steps.0, by_steps.1) };
-        let by_pair = self.along(vec![none, pair], None);
+        let by_pair = self.along(vec![none, pair]);
         match by_pair.2 > by_steps.2 + 1e-6 {
             true => (by_pair.0, by_pair.1),
             false => (by_steps.0, by_steps.1),
@@ -69,19 +69,14 @@ impl Search<'_> {
 
     /// The best hypothesis on the way on from the last of `path`, what it leaves, and the ln of the
     /// probability of both.
-    fn along(
-        &self,
-        mut path: Vec<Hypothesis>,
-        first: Option<&[f64]>,
-    ) -> (Hypothesis, Option<DiscrepancyModel>, f64) {
+    fn along(&self, mut path: Vec<Hypothesis>) -> (Hypothesis, Option<DiscrepancyModel>, f64) {
         let mut remainders: Vec<Option<(f64, DiscrepancyModel)>> = Vec::new();
         for hypothesis in &path[..path.len() - 1] {
             remainders.push(self.remainder(hypothesis, &self.additions(hypothesis)));
         }
         loop {
             let hypothesis = &path[path.len() - 1];
-            let known = first.filter(|_| path.len() == 1);
-            let additions = known.map_or_else(|| self.additions(hypothesis), <[f64]>::to_vec);
+            let additions = self.additions(hypothesis);
             remainders.push(self.remainder(hypothesis, &additions));
             if hypothesis.terms.len() >= MOST {
                 break;

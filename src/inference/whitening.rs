@@ -7,7 +7,7 @@
 //!
 //! makes them independent. What is left is projected on the complement of the whitened nuisance columns, M = 1 − Q·Qᵀ.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 
 use nalgebra::{DMatrix, DVector};
 
@@ -28,6 +28,7 @@ const DEPENDENT: f64 = 1e-9;
 /// Whitens and projects vectors of n data.
 #[derive(Debug, Clone)]
 pub struct Whitening {
+    data: usize,
     /// Root of how much each datum counts; nothing where all count alike.
     roots: Vec<f64>,
     /// Rows of every group with more than one datum, and what is taken off times their mean.
@@ -62,6 +63,7 @@ impl Whitening {
             })
             .collect();
         let mut whitening = Whitening {
+            data: evidence.residual.len(),
             roots,
             groups,
             basis: Vec::new(),
@@ -98,12 +100,72 @@ impl Whitening {
 
     /// Column by column.
     pub fn apply_columns(&self, columns: &DMatrix<f64>) -> DMatrix<f64> {
-        let mut result = columns.clone();
+        let mut result = self.whitened_columns(columns);
         for mut column in result.column_iter_mut() {
-            let v = self.apply(&column.clone_owned());
-            column.copy_from(&v);
+            for b in &self.basis {
+                column.axpy(-b.dot(&column), b, 1.0);
+            }
         }
         result
+    }
+
+    /// Wᵀv of every column v, W what whitens without projecting: (W·c)ᵀv = cᵀ(Wᵀv).
+    pub fn transposed(&self, vectors: &DMatrix<f64>) -> DMatrix<f64> {
+        let mut result = vectors.clone();
+        for mut column in result.column_iter_mut() {
+            self.transpose(column.as_mut_slice());
+        }
+        result
+    }
+
+    /// The same of one vector.
+    pub fn transposed_vector(&self, v: &DVector<f64>) -> DVector<f64> {
+        let mut result = v.clone();
+        self.transpose(result.as_mut_slice());
+        result
+    }
+
+    /// How much each datum counts.
+    pub fn weights(&self) -> impl Iterator<Item = f64> + '_ {
+        (0..self.data).map(|row| self.roots.get(row).map_or(1.0, |root| root * root))
+    }
+
+    /// |W·s|² of each step s that is 1 from one datum of a sequence on: with t the sum of the roots w of its data in a
+    /// group, Σ w² − Σ (1 − 1/(1 + ρ·m))/m·t² over the groups. `None` are data that are not there.
+    pub fn squares_of_steps(&self, sequences: &[Vec<Option<usize>>]) -> Vec<Vec<f64>> {
+        let mut group_of: Vec<Option<usize>> = vec![None; self.data];
+        for (group, (rows, _)) in self.groups.iter().enumerate() {
+            rows.iter().for_each(|&row| group_of[row] = Some(group));
+        }
+        let of_sequence = |sequence: &Vec<Option<usize>>| {
+            let mut total: HashMap<usize, f64> = HashMap::new();
+            let (mut square, mut squares) = (0.0, vec![0.0; sequence.len()]);
+            for (place, row) in sequence.iter().enumerate().rev() {
+                if let Some(row) = *row {
+                    let root = self.roots.get(row).copied().unwrap_or(1.0);
+                    square += root * root;
+                    if let Some(group) = group_of[row] {
+                        let (rows, share) = &self.groups[group];
+                        let before = total.entry(group).or_default();
+                        let after = *before + root;
+                        let per_square = share * (2.0 - share) / rows.len() as f64;
+                        square -= per_square * (after * after - *before * *before);
+                        *before = after;
+                    }
+                }
+                squares[place] = square;
+            }
+            squares
+        };
+        sequences.iter().map(of_sequence).collect()
+    }
+
+    /// Orthonormal basis of the whitened nuisance.
+    pub fn basis(&self) -> DMatrix<f64> {
+        match self.basis.is_empty() {
+            true => DMatrix::zeros(self.data, 0),
+            false => DMatrix::from_columns(&self.basis),
+        }
     }
 
     /// Column by column, not projected.
@@ -167,6 +229,15 @@ impl Whitening {
 
     fn whiten(&self, v: &mut [f64]) {
         v.iter_mut().zip(&self.roots).for_each(|(v, root)| *v *= root);
+        self.take_shared(v);
+    }
+
+    fn transpose(&self, v: &mut [f64]) {
+        self.take_shared(v);
+        v.iter_mut().zip(&self.roots).for_each(|(v, root)| *v *= root);
+    }
+
+    fn take_shared(&self, v: &mut [f64]) {
         for (rows, share) in &self.groups {
             let mean = rows.iter().map(|&row| v[row]).sum::<f64>() / rows.len() as f64;
             for &row in rows {
@@ -281,6 +352,35 @@ mod tests {
         let e = DVector::from_fn(480, |i, _| f64::from(u8::from(i == 5)));
         let whitened = whitening.whitened(&covariance(&whitening.whitened(&e)));
         assert!((whitened - &e).norm() < 1e-9 * n);
+    }
+
+    #[test]
+    fn steps_are_as_long_as_their_whitened_columns() {
+        let weight = (0..480).map(|i| 0.2 + 0.8 * (0.3 * i as f64).sin().powi(2)).collect();
+        let evidence = Evidence { weight, ..evidence(1.0) };
+        let whitening = Whitening::new(&evidence, &evidence.residual);
+        let all: Vec<Option<usize>> = (0..480).map(Some).collect();
+        // every third one, the first hundred of them left out
+        let some: Vec<Option<usize>> = (0..160).map(|k| (k >= 100).then_some(3 * k)).collect();
+        let squares = whitening.squares_of_steps(&[all.clone(), some.clone()]);
+        for (sequence, squares) in [all, some].iter().zip(squares) {
+            for from in [0, 1, 7, 8, 101, 159] {
+                let mut step = DVector::zeros(480);
+                sequence[from..].iter().flatten().for_each(|&row| step[row] = 1.0);
+                let expected = whitening.whitened(&step).norm_squared();
+                assert!((squares[from] - expected).abs() < 1e-10 * (1.0 + expected), "{from}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_transposed_moves_whitening_to_the_other_side_of_a_product() {
+        let weight = (0..480).map(|i| 0.2 + 0.8 * (0.3 * i as f64).sin().powi(2)).collect();
+        let evidence = Evidence { weight, ..evidence(1.0) };
+        let whitening = Whitening::new(&evidence, &evidence.residual);
+        let (a, b) = (DVector::from_fn(480, |i, _| (0.1 * i as f64).cos()), &evidence.residual);
+        let (left, right) = (whitening.whitened(&a).dot(b), a.dot(&whitening.transposed_vector(b)));
+        assert!((left - right).abs() < 1e-10 * left.abs());
     }
 
     #[test]

@@ -1,6 +1,8 @@
 //! Repeats of a reading: their averages, their scatter, and whether whole trials differ.
 
-use nalgebra::{DMatrix, DVector};
+use std::collections::BTreeMap;
+
+use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 use super::sample::{Point, Sample};
 use crate::error::Result;
@@ -79,6 +81,10 @@ impl Repeats {
         trials.dedup();
         let mut repeats = Repeats { all, within_trials: all, trials: trials.len() };
         if trials.len() > 1 && 2 * (trials.len() - 1) < all.dof {
+            if 2 * trials.len() > points.len() {
+                repeats.within_trials = within_trials(samples, &place, points.len(), &deviations);
+                return Ok(repeats);
+            }
             let largest = samples.iter().fold(0.0, |max: f64, s| s.load.max(max));
             let columns: Vec<DVector<f64>> = trials
                 .iter()
@@ -110,6 +116,60 @@ impl Repeats {
         };
         Ok(p_value < TRIALS_DIFFER)
     }
+}
+
+/// What is left of the deviations once each of `points` averages and each trial's offset and slope are fitted to them.
+///
+/// Of many trials: offset and slope concern one of them only, so that they are eliminated trial by trial, which leaves normal
+/// equations for the averages. Time and memory grow with the readings, however many trials they are in.
+fn within_trials(samples: &[Sample], place: &[usize], points: usize, deviations: &DVector<f64>) -> Squares {
+    /// Length, relative to what it was, below which nothing but rounding is left of a direction.
+    const ROUNDING: f64 = 1e-9;
+    let largest = samples.iter().fold(0.0, |max: f64, s| s.load.max(max)).max(f64::MIN_POSITIVE);
+    let mut of_trial: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    for (i, sample) in samples.iter().enumerate() {
+        of_trial.entry(sample.trial).or_default().push(i);
+    }
+    let (mut gram, mut product) = (DMatrix::<f64>::zeros(points, points), DVector::<f64>::zeros(points));
+    let (mut square, mut fitted) = (0.0, 0);
+    for (&k, deviation) in place.iter().zip(deviations.iter()) {
+        gram[(k, k)] += 1.0;
+        product[k] += deviation;
+        square += deviation * deviation;
+    }
+    for own in of_trial.values() {
+        let count = own.len() as f64;
+        let mean = own.iter().map(|&i| samples[i].load / largest).sum::<f64>() / count;
+        let about: Vec<f64> = own.iter().map(|&i| samples[i].load / largest - mean).collect();
+        let length = about.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let mut directions = vec![vec![1.0 / count.sqrt(); own.len()]];
+        if length > ROUNDING * count.sqrt() {
+            directions.push(about.iter().map(|x| x / length).collect());
+        }
+        for direction in directions {
+            let mut along: BTreeMap<usize, f64> = BTreeMap::new();
+            let mut share = 0.0;
+            for (&i, x) in own.iter().zip(&direction) {
+                *along.entry(place[i]).or_default() += x;
+                share += x * deviations[i];
+            }
+            for (&k, x) in &along {
+                product[k] -= x * share;
+                along.iter().for_each(|(&l, y)| gram[(k, l)] -= x * y);
+            }
+            square -= share * share;
+            fitted += 1;
+        }
+    }
+    let eigen = SymmetricEigen::new(gram);
+    let most = eigen.eigenvalues.amax();
+    for (value, vector) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
+        if *value > ROUNDING * most {
+            square -= vector.dot(&product).powi(2) / value;
+            fitted += 1;
+        }
+    }
+    Squares { sum: square.max(0.0), dof: samples.len().saturating_sub(fitted) }
 }
 
 /// The decimal place of a micrometre that the offsets are rounded to, m; 0 where they show none.

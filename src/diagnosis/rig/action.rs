@@ -17,6 +17,8 @@
 //! 1 − v·w of creep, which is relaxation here; 1/(1 + v·w) of all else
 //! ```
 
+use std::sync::Arc;
+
 use nalgebra::{Rotation3, Unit, Vector3};
 
 use super::datum::Datum;
@@ -66,8 +68,60 @@ pub(super) enum Action {
     TurnSensors(Axis, Axis),
     /// Play of the clamp under these loads, m \[0\].
     Play(Scope),
-    /// Adds to readings: index of the datum, weight \[0\].
-    Shift(Vec<(usize, f64)>),
+    /// Adds to readings \[0\].
+    Shift(Weights),
+    /// Adds to the readings of this sequence of data, from one of them on \[0\].
+    Step(Arc<[usize]>, usize),
+}
+
+/// What is added to readings per unit of a parameter.
+#[derive(Debug, Clone)]
+pub(super) struct Weights {
+    /// Indices of the data, which several of them may share: recordings are long, and curves many.
+    pub data: Arc<[usize]>,
+    /// For each of these its weight.
+    pub values: Vec<f64>,
+}
+
+impl Weights {
+    /// Index and weight of each datum.
+    pub(super) fn iter(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
+        self.data.iter().copied().zip(self.values.iter().copied())
+    }
+}
+
+impl FromIterator<(usize, f64)> for Weights {
+    fn from_iter<T: IntoIterator<Item = (usize, f64)>>(weights: T) -> Self {
+        let (data, values): (Vec<usize>, Vec<f64>) = weights.into_iter().unzip();
+        Weights { data: data.into(), values }
+    }
+}
+
+impl Action {
+    /// True for what adds to the readings whatever else there is.
+    pub(super) fn only_adds(&self) -> bool {
+        matches!(self, Action::Shift(_) | Action::Step(..))
+    }
+
+    /// Adds what it does at `value` to readings, m.
+    pub(super) fn add_to(&self, readings: &mut [f64], value: f64) {
+        match self {
+            Action::Shift(weights) => weights.iter().for_each(|(i, weight)| readings[i] += weight * value),
+            Action::Step(data, from) => data[*from..].iter().for_each(|&i| readings[i] += value),
+            _ => {}
+        }
+    }
+
+    /// The largest that it adds to a reading per unit of its parameter.
+    pub(super) fn largest_addition(&self) -> Option<f64> {
+        match self {
+            Action::Shift(weights) => {
+                Some(weights.values.iter().fold(0.0, |most: f64, weight| most.max(weight.abs())))
+            }
+            Action::Step(data, from) => Some(if *from < data.len() { 1.0 } else { 0.0 }),
+            _ => None,
+        }
+    }
 }
 
 /// Which loads something acts under: those along some axes, in one session or in all.
@@ -114,8 +168,9 @@ pub(super) struct State<'a> {
     play: Scoped,
     /// Joints that are compliant in one session: session, number of the joint, rad/(N·m).
     pub of_sessions: Vec<(usize, usize, f64)>,
-    pub shifts: Vec<(&'a [(usize, f64)], f64)>,
-    /// False while nothing but shifts is there.
+    /// What only adds to readings, with its values.
+    pub additions: Vec<(&'a Action, f64)>,
+    /// False while nothing else is there.
     pub is_changed: bool,
 }
 
@@ -147,7 +202,7 @@ impl Default for State<'_> {
             scale: [1.0; 3],
             play: Scoped::default(),
             of_sessions: Vec::new(),
-            shifts: Vec::new(),
+            additions: Vec::new(),
             is_changed: false,
         }
     }
@@ -156,7 +211,7 @@ impl Default for State<'_> {
 impl<'a> State<'a> {
     /// Adds what `action` does at `value`. Turns are done in the order in which they are added.
     pub(super) fn act(&mut self, action: &'a Action, value: f64) {
-        self.is_changed |= !matches!(action, Action::Shift(_));
+        self.is_changed |= !action.only_adds();
         match action {
             Action::Friction(scope) => self.friction.0.push((*scope, value)),
             Action::Presliding => self.presliding += value,
@@ -188,7 +243,7 @@ impl<'a> State<'a> {
                 self.sensor.iter_mut().for_each(|sensor| *sensor = turn * *sensor);
             }
             Action::Play(scope) => self.play.0.push((*scope, value)),
-            Action::Shift(weights) => self.shifts.push((weights, value)),
+            Action::Shift(_) | Action::Step(..) => self.additions.push((action, value)),
         }
     }
 
@@ -216,6 +271,22 @@ impl<'a> State<'a> {
 
     /// Of one datum; `hung` where its course is known.
     fn pull(&self, index: usize, datum: &Datum, hung: Option<Hung>) -> Pull {
+        let bare = self.bare(datum, hung);
+        Pull { load: self.with_history(bare.load, index), ..bare }
+    }
+
+    /// True where the history of loads matters.
+    pub(super) fn remembers(&self) -> bool {
+        !self.memories.is_empty()
+    }
+
+    /// The load that explains the displacement of datum number `index`, N, history included; `load` is that without.
+    pub(super) fn with_history(&self, load: f64, index: usize) -> f64 {
+        load * self.remembered(index) + self.lingering(index)
+    }
+
+    /// Of one datum, without history.
+    pub(super) fn bare(&self, datum: &Datum, hung: Option<Hung>) -> Pull {
         let (axis, sign) = (datum.direction.axis.index(), f64::from(datum.direction.sign));
         let (hanging, friction) = (self.hanging(datum), self.friction.of(datum));
         let acting = match hung {
@@ -226,8 +297,6 @@ impl<'a> State<'a> {
         };
         let mut load = acting * (1.0 + self.per_load_squared * acting * acting);
         load *= 1.0 + self.per_load * acting.abs();
-        load *= self.remembered(index);
-        load += self.lingering(index);
         let side = hung.map_or(if datum.load > 0.0 { 1.0 } else { 0.0 }, |hung| sign * hung.side);
         Pull { direction: self.load_direction[axis] * sign, load, play: side * self.play.of(datum) }
     }

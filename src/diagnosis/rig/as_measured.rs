@@ -83,7 +83,8 @@ impl RigModel {
             | Action::JointIn(..)
             | Action::Station(_)
             | Action::Play(_)
-            | Action::Shift(_) => false,
+            | Action::Shift(_)
+            | Action::Step(..) => false,
         })
     }
 }

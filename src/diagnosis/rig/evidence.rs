@@ -98,26 +98,34 @@ fn folds(data: &[Datum]) -> Vec<usize> {
     if data.iter().any(|d| d.motion.is_some_and(|motion| motion.cycle > 0)) {
         return cycles.iter().map(|cycle| cycle % MOST_FOLDS).collect();
     }
-    let levels: Vec<usize> = data.iter().map(|d| level(data, d)).collect();
+    let levels = levels(data);
     if count(&levels) >= FEWEST_FOLDS {
         return levels.iter().map(|level| level % MOST_FOLDS).collect();
     }
     let lines = numbered(data.iter().map(Datum::line_key));
-    let before = |i: usize| lines[..i].iter().filter(|&&line| line == lines[i]).count();
-    (0..data.len()).map(|i| before(i) % FEWEST_FOLDS).collect()
+    let mut met = vec![0; count(&lines)];
+    let place_in_line = |&line: &usize| {
+        met[line] += 1;
+        (met[line] - 1) % FEWEST_FOLDS
+    };
+    lines.iter().map(place_in_line).collect()
 }
 
 fn count(numbers: &[usize]) -> usize {
     numbers.iter().max().map_or(0, |last| last + 1)
 }
 
-/// How many smaller loads there are along the datum's axis.
-fn level(data: &[Datum], datum: &Datum) -> usize {
-    let along = data.iter().filter(|d| d.direction.axis == datum.direction.axis && d.load < datum.load);
-    let mut smaller: Vec<f64> = along.map(|d| d.load).collect();
-    smaller.sort_by(f64::total_cmp);
-    smaller.dedup();
-    smaller.len()
+/// For each datum how many smaller loads there are along its axis.
+fn levels(data: &[Datum]) -> Vec<usize> {
+    let loads = Axis::ALL.map(|axis| {
+        let along = data.iter().filter(|d| d.direction.axis == axis);
+        let mut loads: Vec<f64> = along.map(|d| d.load).collect();
+        loads.sort_by(f64::total_cmp);
+        loads.dedup();
+        loads
+    });
+    let level = |d: &Datum| loads[d.direction.axis.index()].partition_point(|&load| load < d.load);
+    data.iter().map(level).collect()
 }
 
 /// The step that all offsets are multiples of, m: 10, 5, 2, 1, 0.5 µm and so on; 0 where they show none.

@@ -1,5 +1,7 @@
 //! What a rod remembers of its loads: creep and hysteresis.
 
+use std::collections::HashMap;
+
 use super::datum::Datum;
 use crate::spatial::Direction;
 
@@ -273,14 +275,15 @@ pub(super) fn hysteresis(data: &[Datum], shape: Loop) -> Option<Memory> {
         return turning(data);
     }
     let mut memory = none(data);
-    let mut known: Vec<(Direction, f64)> = Vec::new();
+    let mut known: HashMap<Direction, f64> = HashMap::new();
     let remembers = matches!(shape, Loop::NewByRayleigh | Loop::NewByPlays);
     for run in runs(data) {
         let size = |d: &Datum| d.imposed.map_or(d.load, |u| u.displacement.abs() / u.per_newton);
         let largest = run.iter().fold(0.0, |max: f64, &i| max.max(size(&data[i])));
         let direction = data[run[0]].direction;
-        let is_new = known.iter().all(|(other, load)| *other != direction || largest > *load);
-        known.push((direction, largest));
+        let before = known.entry(direction).or_insert(f64::NEG_INFINITY);
+        let is_new = largest > *before;
+        *before = before.max(largest);
         let shape = if remembers && !is_new { Loop::Symmetric } else { shape };
         for i in run.into_iter().filter(|_| largest > 0.0) {
             let (load, is_unloading) = (size(&data[i]), data[i].is_unloading());

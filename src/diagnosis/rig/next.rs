@@ -11,8 +11,8 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::feasible::{Measurement, feasible};
-use super::transfer::{Transferred, is_same};
-use super::{Body, RigModel};
+use super::transfer::Transferred;
+use super::{Body, RigModel, Wanted};
 use crate::error::Result;
 use crate::inference::{
     Candidate, Diagnosis, Evidence, ExperimentDesign, Finding, ForwardModel, Hypothesis, Plan, Proposal,
@@ -99,9 +99,8 @@ struct Future {
 impl Future {
     /// `None` where the measurement is none for this model.
     fn new(measurement: &Measurement, present: &RigModel, involved: &[&Candidate]) -> Result<Option<Future>> {
-        let is_involved = |candidate: &Candidate| involved.iter().any(|known| is_same(candidate, known));
         let (model, evidence, _) =
-            RigModel::with_effects(&measurement.readings, present.rod(), &is_involved)?;
+            RigModel::with_effects(&measurement.readings, present.rod(), &Wanted::Like(involved))?;
         let rows: Vec<usize> =
             (0..model.data.len()).filter(|&i| model.data[i].row > measurement.known_rows).collect();
         let is_none = rows.is_empty()

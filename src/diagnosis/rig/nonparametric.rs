@@ -13,12 +13,13 @@
 //! as relaxation with one time constant or a seat that gives way, is one rival and not many.
 
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 use std::collections::HashMap;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::action::Action;
+use super::action::{Action, Weights};
 use super::datum::{Datum, numbered};
 use super::effects::Entry;
 use super::load_history::runs;
@@ -216,7 +217,7 @@ fn predicts(candidate: &Candidate, actions: &[Action], left: &DVector<f64>, cycl
     let mut columns = DMatrix::zeros(left.len(), actions.len());
     for (k, (action, parameter)) in actions.iter().zip(&candidate.parameters).enumerate() {
         let Action::Shift(weights) = action else { continue };
-        weights.iter().for_each(|&(i, weight)| columns[(i, k)] = weight * parameter.size);
+        weights.iter().for_each(|(i, weight)| columns[(i, k)] = weight * parameter.size);
     }
     let mut rows: HashMap<usize, Vec<usize>> = HashMap::new();
     for (i, &cycle) in cycle.iter().enumerate() {
@@ -261,6 +262,7 @@ fn curve(
     let known: Vec<(usize, f64)> = group.iter().filter_map(|&i| Some((i, coordinate[i]?))).collect();
     let different = numbered(known.iter().map(|(_, x)| x.to_bits())).into_iter().max()? + 1;
     let columns = different.min(MOST_COLUMNS);
+    let own: Arc<[usize]> = known.iter().map(|(i, _)| *i).collect();
     let (parameters, actions) = (0..columns)
         .map(|j| {
             let suffix = if unit == PERCENT { "percent" } else { "um" };
@@ -271,8 +273,9 @@ fn curve(
                 size: size / (1 + j) as f64,
                 bounds: (f64::NEG_INFINITY, f64::INFINITY),
             };
-            let weights = known.iter().map(|&(i, x)| (i, amplitude(i) * (PI * j as f64 * x).cos())).collect();
-            (parameter, Action::Shift(weights))
+            let weight = |&(i, x): &(usize, f64)| amplitude(i) * (PI * j as f64 * x).cos();
+            let values = known.iter().map(weight).collect();
+            (parameter, Action::Shift(Weights { data: Arc::clone(&own), values }))
         })
         .unzip();
     let label = format!("{}, {place}", along.name);
@@ -355,7 +358,7 @@ mod tests {
             along("axis,load_n,dy_um,dz_um\n-y,0,0,0\n-y,5,-9,1\n-y,10,-18,2\nz,10,3,30\n").unwrap();
         assert_eq!(candidate.location.to_string(), "load, readings along the load");
         let weights = |action: &Action| match action {
-            Action::Shift(weights) => weights.clone(),
+            Action::Shift(weights) => weights.iter().collect::<Vec<_>>(),
             _ => panic!("a shift"),
         };
         // by datum: dy and dz of every row; a constant, and one half of a cosine from no load to the largest

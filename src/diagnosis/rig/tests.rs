@@ -272,6 +272,50 @@ fn neutral_values_change_nothing_and_typical_ones_something() {
     }
 }
 
+/// The engine's derivatives beside friction, a memory and a shift, evaluated by cases, against differences of whole responses.
+#[test]
+fn derivatives_are_those_of_the_responses() {
+    let rod = rod("");
+    for rod in [Some(&rod), None] {
+        let model = RigModel::new(&readings(&full(3)), rod).unwrap().0;
+        let first = |effect: &str| {
+            let candidate = model.candidates().iter().position(|c| c.effect.name == effect).unwrap();
+            let parameters = &model.candidates()[candidate].parameters;
+            Term { candidate, values: parameters.iter().map(|p| p.neutral + 0.5 * p.size).collect() }
+        };
+        let beside = [vec![], vec![first("friction")], vec![first("friction"), first("slip")]];
+        let with_memory = [vec![first("creep")], vec![first("creep"), first("slip")]];
+        for others in beside.into_iter().chain(with_memory) {
+            for (candidate, own) in model.candidates().iter().enumerate() {
+                let values: Vec<f64> = own.parameters.iter().map(|p| p.neutral + 0.3 * p.size).collect();
+                let mut terms = others.clone();
+                terms.push(Term { candidate, values });
+                let position = others.len();
+                let columns = model.columns(&terms, position);
+                for (k, parameter) in own.parameters.iter().enumerate() {
+                    let at = |change: f64| {
+                        let mut moved = terms.clone();
+                        moved[position].values[k] += change * parameter.size;
+                        model.response(&moved)
+                    };
+                    let expected = (at(DERIVATIVE_STEP) - at(-DERIVATIVE_STEP)) / (2.0 * DERIVATIVE_STEP);
+                    let off = (columns.column(k) - &expected).amax();
+                    assert!(off <= 1e-7 * (expected.amax() + 1e-6), "{off} of {}: {own:?}", expected.amax());
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn too_many_rows_are_refused_with_a_reason() {
+    let mut many = readings(UP_AND_DOWN);
+    let row = many.rows[1].clone();
+    many.rows.resize(MOST_ROWS + 1, row);
+    let refusal = diagnose(&many, Some(&rod(""))).unwrap_err().to_string();
+    assert!(refusal.contains("100001 rows of readings") && refusal.contains("at most 100000"), "{refusal}");
+}
+
 #[test]
 fn effects_and_places_are_named_once() {
     let model = model(&full(2), &rod(""));

@@ -2,7 +2,7 @@
 
 use nalgebra::DVector;
 
-use super::{Datum, RigDiagnosis, RigModel};
+use super::{Datum, RigDiagnosis, RigModel, Wanted};
 use crate::error::Result;
 use crate::inference::{Candidate, Evidence, ForwardModel, Kind, Term};
 use crate::rig::readings::Readings;
@@ -78,9 +78,9 @@ impl RigDiagnosis {
         };
         let parts = self.diagnosis.findings.iter().flat_map(|finding| &finding.parts);
         let found: Vec<Term> = parts.map(|part| part.term.clone()).collect();
-        let is_found =
-            |new: &Candidate| found.iter().any(|term| is_same(new, &self.model.candidates[term.candidate]));
-        let (model, evidence, _) = RigModel::with_effects(asked, Some(rod), &is_found)?;
+        let found_ones: Vec<&Candidate> =
+            found.iter().map(|term| &self.model.candidates[term.candidate]).collect();
+        let (model, evidence, _) = RigModel::with_effects(asked, Some(rod), &Wanted::Like(&found_ones))?;
         let change = model.response(&model.transferred(&self.model, &found).terms);
         // what large deflections add, the first column of what every hypothesis holds, is known of
         // the rod: nobody fits it
@@ -108,7 +108,7 @@ impl RigDiagnosis {
 
 #[cfg(test)]
 mod tests {
-    use crate::diagnosis::rig::{RigModel, diagnose};
+    use crate::diagnosis::rig::{RigModel, Wanted, diagnose};
     use crate::error::Error;
     use crate::inference::Finding;
     use crate::inference::{ForwardModel, Kind};
@@ -127,7 +127,7 @@ mod tests {
             }
         }
         let mut readings = Readings::from_text("f", &text).unwrap();
-        let (model, _, _) = RigModel::with_effects(&readings, Some(rod), &|_| false).unwrap();
+        let (model, _, _) = RigModel::with_effects(&readings, Some(rod), &Wanted::Like(&[])).unwrap();
         for (k, (row, datum)) in readings.rows.iter_mut().zip(model.data()).enumerate() {
             let taken = if datum.is_unloading() { 0.5 } else { -0.5 };
             let noise = [0.3, -0.4, 0.1, 0.2, -0.3, 0.15, -0.05][k % 7] * UM;
@@ -145,7 +145,7 @@ mod tests {
         assert_eq!(found.diagnosis.findings.iter().map(name).collect::<Vec<_>>(), ["friction"]);
         let said = found.predicted(&asked).unwrap();
         assert_eq!(said.len(), 5);
-        let (model, _, _) = RigModel::with_effects(&asked, Some(&rod), &|_| false).unwrap();
+        let (model, _, _) = RigModel::with_effects(&asked, Some(&rod), &Wanted::Like(&[])).unwrap();
         let share = |k: usize| said[k] / model.data()[k].predicted;
         // of 8 N half a newton does not arrive; friction of all loads takes its share along x too
         assert!((share(4) - 7.5 / 8.0).abs() < 2e-3 && (share(0) - 2.5 / 3.0).abs() < 5e-3, "{said:?}");

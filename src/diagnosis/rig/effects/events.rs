@@ -1,5 +1,8 @@
 //! What happened once: slips and misread values.
 
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
 use super::places::runs_by_sensor;
 use super::{Context, Datum, Entry, RigEffect, UNBOUNDED, entry, of, parameter};
 use crate::diagnosis::rig::action::Action;
@@ -44,15 +47,15 @@ fn slips(context: &mut Context) -> Vec<Entry> {
     let data = context.data;
     let size = STEP * context.largest_reading();
     let of_run = |(run, rows): (Run, Vec<usize>)| {
+        let sequence: Arc<[usize]> = rows.as_slice().into();
         let step = rows.len().div_ceil(MOST_SLIPS).max(1);
         (2..rows.len().saturating_sub(1)).step_by(step).map(move |first| {
             let before = &data[rows[first - 1]];
             let is_other = before.channel != before.direction.axis;
             let channel = is_other.then_some(before.channel);
             let location = Location::AfterRow { run: run.clone(), row: before.row, channel };
-            let weights = rows[first..].iter().map(|&i| (i, 1.0)).collect();
             let um = parameter("um", UM, 0.0, size, UNBOUNDED);
-            entry(&SLIP, location, um, Action::Shift(weights))
+            entry(&SLIP, location, um, Action::Step(Arc::clone(&sequence), first))
         })
     };
     let within: Vec<Entry> = runs_by_sensor(data).into_iter().flat_map(of_run).collect();
@@ -67,26 +70,19 @@ fn between_runs(data: &[Datum], size: f64) -> Vec<Entry> {
     sensors.dedup();
     for sensor in sensors {
         let channel = sensor.0;
-        let mut last_of_run: Vec<(usize, usize)> = Vec::new();
-        for (i, datum) in data.iter().enumerate().filter(|(_, datum)| datum.sensor() == sensor) {
-            match last_of_run.iter_mut().find(|(run, _)| *run == datum.run) {
-                Some((_, last)) => *last = i,
-                None => last_of_run.push((datum.run, i)),
-            }
-        }
-        last_of_run.sort_by_key(|(_, last)| data[*last].order);
-        for &(_, last) in last_of_run.iter().skip(1).rev().skip(2) {
+        let mut sequence: Vec<usize> = (0..data.len()).filter(|&i| data[i].sensor() == sensor).collect();
+        sequence.sort_by_key(|&i| data[i].order);
+        let last_of_run: BTreeMap<usize, usize> = sequence.iter().map(|&i| (data[i].run, i)).collect();
+        let mut last_of_run: Vec<usize> = last_of_run.into_values().collect();
+        last_of_run.sort_by_key(|&last| data[last].order);
+        let sequence: Arc<[usize]> = sequence.into();
+        for &last in last_of_run.iter().skip(1).rev().skip(2) {
             let before = &data[last];
-            let weights: Vec<(usize, f64)> = data
-                .iter()
-                .enumerate()
-                .filter(|(_, later)| later.sensor() == sensor && later.order > before.order)
-                .map(|(i, _)| (i, 1.0))
-                .collect();
+            let from = sequence.partition_point(|&i| data[i].order <= before.order);
             let run = Run { axis: before.direction.axis, name: before.run_name() };
             let location = Location::AfterRow { run, row: before.row, channel: Some(channel) };
             let um = parameter("um", UM, 0.0, size, UNBOUNDED);
-            entries.push(entry(&SLIP, location, um, Action::Shift(weights)));
+            entries.push(entry(&SLIP, location, um, Action::Step(Arc::clone(&sequence), from)));
         }
     }
     entries

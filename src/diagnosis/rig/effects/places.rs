@@ -44,10 +44,13 @@ pub(super) fn sessions(data: &[Datum]) -> Vec<(usize, String)> {
 /// The data of each run and sensor: of each channel at each place where it was read.
 pub(super) fn runs_by_sensor(data: &[Datum]) -> Vec<(Run, Vec<usize>)> {
     let mut groups = Vec::new();
-    for run in runs(data) {
+    let runs = runs(data);
+    let of_axis = |axis: Axis| runs.iter().filter(|run| data[run[0]].direction.axis == axis).count();
+    let runs_of_axis = Axis::ALL.map(of_axis);
+    for run in &runs {
         let first = &data[run[0]];
         let axis = first.direction.axis;
-        let has_others = data.iter().any(|d| d.direction.axis == axis && d.run != first.run);
+        let has_others = runs_of_axis[axis.index()] > 1;
         let name = first.run_name().or(has_others.then_some(RunName::Number(first.trial_number + 1)));
         let sensors = numbered(run.iter().map(|&i| data[i].sensor()));
         for sensor in 0..sensors.iter().max().map_or(0, |last| last + 1) {

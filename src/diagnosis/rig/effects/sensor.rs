@@ -1,5 +1,7 @@
 //! What a displacement sensor shows of a displacement: scale, direction, drift.
 
+use std::collections::HashMap;
+
 use super::load::{ALIGNMENT, TURNS, WIDEST, misalignment, pairs, whole_turn};
 use super::places::measured_channels;
 use super::{Context, Entry, RigEffect, UNBOUNDED, along_the_load, candidate, entry, of, parameter};
@@ -178,7 +180,10 @@ fn drifts(context: &mut Context) -> Vec<Entry> {
         return Vec::new();
     }
     let size = DRIFT * context.largest_reading() / (most - least);
-    let first_of_run = |run: usize| data.iter().position(|d| d.run == run).unwrap_or_default();
+    let mut first_of_run: HashMap<usize, usize> = HashMap::new();
+    for (i, datum) in data.iter().enumerate() {
+        first_of_run.entry(datum.run).or_insert(i);
+    }
     let course = |channel: Axis, zero: &dyn Fn(&Datum) -> usize| {
         let own = data.iter().enumerate().filter(|(_, d)| d.channel == channel);
         Action::Shift(own.map(|(i, d)| (i, values[i] - values[zero(d)])).collect())
@@ -207,7 +212,7 @@ fn drifts(context: &mut Context) -> Vec<Entry> {
     };
     add(None, &|_| 0);
     if data.iter().any(|d| d.run != data[0].run) {
-        add(Some("since the zero of each run"), &|d| first_of_run(d.run));
+        add(Some("since the zero of each run"), &|d| first_of_run[&d.run]);
     }
     entries
 }

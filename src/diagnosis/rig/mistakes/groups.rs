@@ -1,5 +1,7 @@
 //! Mistakes in whole runs or directions: a sign that was lost, a zero that was not taken.
 
+use std::collections::BTreeMap;
+
 use super::super::datum::Datum;
 use super::super::effects::events::SLIP;
 use super::super::effects::mistakes::{OFFSET_MISTAKE, SIGN_MISTAKE};
@@ -41,13 +43,11 @@ fn group(data: &[Datum], of: Vec<usize>) -> Group {
 }
 
 fn split(data: &[Datum], line: &Line, key: impl Fn(&Datum) -> i64) -> Vec<(i64, Group)> {
-    let mut keys: Vec<i64> = line.data.iter().map(|&i| key(&data[i])).collect();
-    keys.sort_unstable();
-    keys.dedup();
-    let of = |&own: &i64| {
-        (own, group(data, line.data.iter().copied().filter(|&i| key(&data[i]) == own).collect()))
-    };
-    keys.iter().map(of).collect()
+    let mut of_key: BTreeMap<i64, Vec<usize>> = BTreeMap::new();
+    for &i in &line.data {
+        of_key.entry(key(&data[i])).or_default().push(i);
+    }
+    of_key.into_iter().map(|(own, of)| (own, group(data, of))).collect()
 }
 
 /// True where the data of a group follow −`slope` instead of `slope`.

@@ -62,6 +62,12 @@ impl Fit {
 }
 
 impl Line {
+    /// True where a datum is on the line.
+    pub fn is_of(&self, datum: &Datum) -> bool {
+        let stations = [datum.load_station, datum.read_station];
+        (self.axis, self.channel, self.stations) == (datum.direction.axis, datum.channel, stations)
+    }
+
     /// True where load and sensor are at one place: the rod gives way towards the load there.
     pub fn is_collocated(&self) -> bool {
         self.stations[0] == self.stations[1]
@@ -73,10 +79,7 @@ pub(super) fn lines(data: &[Datum], is_wanted: impl Fn(usize) -> bool) -> Vec<Li
     let mut found: Vec<Line> = Vec::new();
     for (index, datum) in data.iter().enumerate().filter(|(index, _)| is_wanted(*index)) {
         let stations = [datum.load_station, datum.read_station];
-        let is_it = |line: &&mut Line| {
-            (line.axis, line.channel, line.stations) == (datum.direction.axis, datum.channel, stations)
-        };
-        match found.iter_mut().find(is_it) {
+        match found.iter_mut().find(|line| line.is_of(datum)) {
             Some(line) => line.data.push(index),
             None => found.push(Line {
                 axis: datum.direction.axis,

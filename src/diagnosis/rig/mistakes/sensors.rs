@@ -1,5 +1,7 @@
 //! Sensors that are stuck or at the end of their range: the same value, whatever the load.
 
+use std::collections::HashSet;
+
 use super::super::datum::Datum;
 use super::super::effects::mistakes::{SATURATED_SENSOR, STUCK_SENSOR};
 use super::lines::{Line, lines};
@@ -22,6 +24,11 @@ const RIGHT: f64 = 0.3;
 /// Readings at a limit, at least; and a frozen display.
 const AT_LIMIT: usize = 3;
 const FROZEN: usize = 4;
+/// The loads change while it is frozen: so much of the largest reading is expected at least.
+const CHANGES: f64 = 0.2;
+/// Of a line of more than so many times the data, a few that do not belong to it change what it says by less than half.
+const MANY: usize = 100;
+const HARDLY: f64 = 0.5;
 /// How far beyond a limit the readings would lie, as a share of it.
 const BEYOND: f64 = 0.05;
 
@@ -170,15 +177,20 @@ pub(super) fn saturated(data: &[Datum]) -> Vec<Part> {
 /// Displays that stood still for some rows in which the loads changed.
 pub(super) fn frozen(data: &[Datum]) -> Vec<Part> {
     let mut found = Vec::new();
+    let all = lines(data, |_| true);
     for channel in Axis::ALL {
         let own: Vec<usize> = (0..data.len()).filter(|&i| data[i].channel == channel).collect();
+        let largest = own.iter().fold(0.0, |most: f64, &i| most.max(data[i].measured.abs()));
         let mut first = 0;
         while first < own.len() {
             let same =
                 own[first..].iter().take_while(|&&i| data[i].measured == data[own[first]].measured).count();
             let at = &own[first..first + same];
             first += same;
-            if same < FROZEN || same == own.len() {
+            if same < FROZEN
+                || same == own.len()
+                || is_surely_flat(data, &all, at, HARDLY * CHANGES * largest)
+            {
                 continue;
             }
             let Some(expected) = expected(data, at, at) else { continue };
@@ -187,8 +199,7 @@ pub(super) fn frozen(data: &[Datum]) -> Vec<Part> {
                 .iter()
                 .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), (v, _)| (l.min(*v), h.max(*v)));
             let scatter = expected.iter().fold(0.0, |most: f64, (_, scatter)| most.max(*scatter));
-            let largest = own.iter().fold(0.0, |most: f64, &i| most.max(data[i].measured.abs()));
-            if range.1 - range.0 < (0.2 * largest).max(TIMES_SCATTER * scatter) {
+            if range.1 - range.0 < (CHANGES * largest).max(TIMES_SCATTER * scatter) {
                 continue;
             }
             let (name, rows) = (column(channel), (data[at[0]].row, data[at[same - 1]].row));
@@ -211,17 +222,30 @@ pub(super) fn frozen(data: &[Datum]) -> Vec<Part> {
     found
 }
 
+/// True where lines that `at` is hardly a part of say that its readings are the same within `change`: no need to fit the
+/// lines without it.
+fn is_surely_flat(data: &[Datum], lines: &[Line], at: &[usize], change: f64) -> bool {
+    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+    for &i in at {
+        let Some(line) = lines.iter().find(|line| line.is_of(&data[i])) else { return false };
+        if line.data.len() < MANY * at.len() {
+            return false;
+        }
+        let value = line.fit.at(data[i].signed_load());
+        (low, high) = (low.min(value), high.max(value));
+    }
+    high - low < change
+}
+
 /// What the other readings of their lines say of some data, with the scatter about those; `None`
 /// where they say nothing of one.
 fn expected(data: &[Datum], at: &[usize], without: &[usize]) -> Option<Vec<(f64, f64)>> {
+    let without: HashSet<usize> = without.iter().copied().collect();
     let rest = lines(data, |i| !without.contains(&i));
     let of = |&i: &usize| {
         let d = &data[i];
-        let is_it = |line: &&Line| {
-            (line.axis, line.channel, line.stations)
-                == (d.direction.axis, d.channel, [d.load_station, d.read_station])
-        };
-        let line = rest.iter().find(is_it).filter(|line| line.has_slope && line.data.len() >= 3)?;
+        let line =
+            rest.iter().find(|line| line.is_of(d)).filter(|line| line.has_slope && line.data.len() >= 3)?;
         // loads beyond those of the others are predicted no better than the slope is known
         let scatter = line.fit.scatter.hypot(line.fit.error * d.load);
         Some((line.fit.at(d.signed_load()), scatter))

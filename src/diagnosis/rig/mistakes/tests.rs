@@ -1,7 +1,7 @@
 //! Every mistake on recordings as labs make them, and none on what only physics did.
 
 use super::*;
-use crate::diagnosis::rig::RigModel;
+use crate::diagnosis::rig::{RigModel, Wanted};
 use crate::inference::{ForwardModel, Term};
 use crate::rig::readings::{Axis, Direction, Phase, Reading};
 use crate::section::Round;
@@ -71,7 +71,7 @@ fn recorded(file: &Rod, bench: Bench, seed: u64) -> Readings {
     }
     actual.l2 += 0.3e-3 * random.normal();
     let readings = Readings::from_rows(rows(bench)).unwrap();
-    let model = RigModel::with_effects(&readings, Some(&actual), &|_| false).unwrap().0;
+    let model = RigModel::with_effects(&readings, Some(&actual), &Wanted::Like(&[])).unwrap().0;
     let mut readings = readings;
     let zeros: Vec<f64> = (0..100).map(|_| UM * random.normal()).collect();
     for datum in model.data() {
@@ -498,7 +498,7 @@ fn a_nominal_number_that_moved_is_written() {
     for pipe in [&mut actual.pipe1, &mut actual.bend, &mut actual.pipe2] {
         pipe.material.youngs_modulus *= 0.99;
     }
-    let model = RigModel::with_effects(&readings, Some(&actual), &|_| false).unwrap().0;
+    let model = RigModel::with_effects(&readings, Some(&actual), &Wanted::Like(&[])).unwrap().0;
     let mut random = Random::seeded(8, 0);
     let mut readings = readings;
     for datum in model.data() {

@@ -1,0 +1,430 @@
+//! The columns of all candidates at their neutral values, each stored as small as it is.
+//!
+//! A recording of n data has a column for each of some hundred parameters, and a step may be anywhere. Most columns are the
+//! same for all data of a case (one load, one channel), however often it was recorded; a step is two numbers. With W what
+//! whitens, the inner product of a column c with a whitened vector v is
+//!
+//! ```text
+//! (W·c)ᵀv = cᵀu,   u = Wᵀv      of a case: Σ over its data of u      of a step: Σ of u from its place on
+//! ```
+//!
+//! so that all products with v take one pass over u, and nothing is whitened but v.
+
+use std::collections::HashMap;
+use std::sync::{Arc, OnceLock};
+
+use nalgebra::DMatrix;
+
+use super::{Candidate, ForwardModel};
+use crate::linalg::transposed_product;
+
+/// Share of a column that is not zero from which on it is stored whole.
+const DENSE: f64 = 0.5;
+/// Numbers of the vectors that products are computed for at once.
+const AT_ONCE: usize = 1 << 20;
+
+/// Columns ∂response/∂parameter times the size of the parameter, of n data.
+pub(super) struct Columns {
+    data: usize,
+    /// Case of each datum; nothing where no two data are alike.
+    cases: Vec<usize>,
+    /// n × those that are stored whole.
+    whole: DMatrix<f64>,
+    /// Cases × those that are the same for all data of a case.
+    by_case: DMatrix<f64>,
+    listed: Vec<Vec<(usize, f64)>>,
+    sequences: Vec<Arc<[usize]>>,
+    columns: Vec<Column>,
+    /// The first column of each candidate, and the number of all.
+    first: Vec<usize>,
+}
+
+#[derive(Debug, Clone, Copy)]
+enum Column {
+    Whole(usize),
+    ByCase(usize),
+    Listed(usize),
+    /// From this datum of a sequence on.
+    Step {
+        sequence: usize,
+        from: usize,
+        size: f64,
+    },
+}
+
+/// Inner products of all columns with some vectors.
+pub(super) struct Products<'a> {
+    columns: &'a Columns,
+    vectors: DMatrix<f64>,
+    /// Vectors × columns, as these are stored.
+    whole: DMatrix<f64>,
+    by_case: DMatrix<f64>,
+    /// Of each sequence: vectors × its data, the sums from a datum on; computed when they are first asked for.
+    sums: OnceLock<Vec<DMatrix<f64>>>,
+}
+
+impl Columns {
+    /// Of all candidates of a model.
+    pub fn new(model: &dyn ForwardModel) -> Columns {
+        let cases = model.cases();
+        let mut building = Building {
+            first_of_case: firsts(cases),
+            cases,
+            whole: Vec::new(),
+            by_case: Vec::new(),
+            listed: Vec::new(),
+            sequences: Vec::new(),
+            known: HashMap::new(),
+            columns: Vec::new(),
+        };
+        let (mut first, data) = (vec![0], model.response(&[]).len());
+        for (index, candidate) in model.candidates().iter().enumerate() {
+            match model.step(index) {
+                Some(step) => building.add_step(candidate, &step),
+                None => {
+                    let columns = model.columns(&[candidate.neutral(index)], 0);
+                    columns.column_iter().for_each(|column| building.add(column.as_slice()));
+                }
+            }
+            first.push(building.columns.len());
+        }
+        let cases_count = building.first_of_case.len();
+        let (whole, by_case) = (building.whole.len(), building.by_case.len());
+        Columns {
+            data,
+            cases: cases.to_vec(),
+            whole: DMatrix::from_vec(data, whole / data.max(1), building.whole),
+            by_case: DMatrix::from_vec(cases_count, by_case / cases_count.max(1), building.by_case),
+            listed: building.listed,
+            sequences: building.sequences,
+            columns: building.columns,
+            first,
+        }
+    }
+
+    /// How many data there are.
+    pub fn data(&self) -> usize {
+        self.data
+    }
+
+    /// Of one candidate, `rows` of the data or all of them.
+    pub fn dense(&self, candidate: usize, rows: Option<&[usize]>) -> DMatrix<f64> {
+        let own = self.own(candidate);
+        let mut dense = DMatrix::zeros(self.data, own.len());
+        for (column, mut dense) in own.iter().zip(dense.column_iter_mut()) {
+            match *column {
+                Column::Whole(k) => dense.copy_from(&self.whole.column(k)),
+                Column::ByCase(k) => {
+                    let of_case = self.by_case.column(k);
+                    dense.iter_mut().zip(&self.cases).for_each(|(value, &case)| *value = of_case[case]);
+                }
+                Column::Listed(k) => self.listed[k].iter().for_each(|&(row, value)| dense[row] = value),
+                Column::Step { sequence, from, size } => {
+                    self.sequences[sequence][from..].iter().for_each(|&row| dense[row] = size);
+                }
+            }
+        }
+        match rows {
+            Some(rows) => dense.select_rows(rows),
+            None => dense,
+        }
+    }
+
+    /// cᵀu of every column with every column u of `vectors`, which have the data `rows` only, or all.
+    pub fn products(&self, vectors: DMatrix<f64>, rows: Option<&[usize]>) -> Products<'_> {
+        let vectors = match rows {
+            None => vectors,
+            Some(rows) => {
+                let mut all = DMatrix::zeros(self.data, vectors.ncols());
+                for (mut all, own) in all.column_iter_mut().zip(vectors.column_iter()) {
+                    rows.iter().zip(own.iter()).for_each(|(&row, value)| all[row] = *value);
+                }
+                all
+            }
+        };
+        let mut by_case = DMatrix::zeros(self.by_case.nrows(), vectors.ncols());
+        for (vector, mut sums) in vectors.column_iter().zip(by_case.column_iter_mut()) {
+            vector.iter().zip(&self.cases).for_each(|(value, &case)| sums[case] += value);
+        }
+        Products {
+            columns: self,
+            whole: transposed_product(&vectors, &self.whole),
+            by_case: transposed_product(&by_case, &self.by_case),
+            sums: OnceLock::new(),
+            vectors,
+        }
+    }
+
+    /// The same for many vectors, some at a time, lest all that is computed for them stands in memory.
+    pub fn table(&self, vectors: &DMatrix<f64>, rows: Option<&[usize]>) -> Table<'_> {
+        let at_once = (AT_ONCE / self.data.max(1)).max(1);
+        let mut all = DMatrix::zeros(vectors.ncols(), self.columns.len());
+        for first in (0..vectors.ncols()).step_by(at_once) {
+            let count = at_once.min(vectors.ncols() - first);
+            let products = self.products(vectors.columns(first, count).into_owned(), rows);
+            for candidate in 0..self.first.len() - 1 {
+                let own = products.of(candidate);
+                all.view_mut((first, self.first[candidate]), own.shape()).copy_from(&own);
+            }
+        }
+        Table { columns: self, all }
+    }
+
+    /// The square of a candidate that is a step, by the `squares` of steps of size 1 at each datum of each sequence.
+    pub fn square_of_step(&self, candidate: usize, squares: &[Vec<f64>]) -> Option<f64> {
+        match *self.own(candidate) {
+            [Column::Step { sequence, from, size }] => {
+                Some(size * size * squares[sequence].get(from).copied().unwrap_or(0.0))
+            }
+            _ => None,
+        }
+    }
+
+    /// The sequences that steps may be in.
+    pub fn sequences(&self) -> &[Arc<[usize]>] {
+        &self.sequences
+    }
+
+    fn own(&self, candidate: usize) -> &[Column] {
+        &self.columns[self.first[candidate]..self.first[candidate + 1]]
+    }
+}
+
+impl Products<'_> {
+    fn sums(&self) -> Vec<DMatrix<f64>> {
+        let of_sequence = |sequence: &Arc<[usize]>| {
+            let mut sums = DMatrix::zeros(self.vectors.ncols(), sequence.len());
+            for (j, vector) in self.vectors.column_iter().enumerate() {
+                let mut sum = 0.0;
+                for (k, &row) in sequence.iter().enumerate().rev() {
+                    sum += vector[row];
+                    sums[(j, k)] = sum;
+                }
+            }
+            sums
+        };
+        self.columns.sequences.iter().map(of_sequence).collect()
+    }
+
+    /// Vectors × columns of a candidate.
+    pub fn of(&self, candidate: usize) -> DMatrix<f64> {
+        let own = self.columns.own(candidate);
+        let mut products = DMatrix::zeros(self.whole.nrows(), own.len());
+        for (column, mut product) in own.iter().zip(products.column_iter_mut()) {
+            match *column {
+                Column::Whole(k) => product.copy_from(&self.whole.column(k)),
+                Column::ByCase(k) => product.copy_from(&self.by_case.column(k)),
+                Column::Listed(k) => {
+                    for (product, vector) in product.iter_mut().zip(self.vectors.column_iter()) {
+                        *product = self.columns.listed[k].iter().map(|&(row, x)| x * vector[row]).sum();
+                    }
+                }
+                Column::Step { sequence, from, size } => {
+                    let sums = &self.sums.get_or_init(|| self.sums())[sequence];
+                    if from < sums.ncols() {
+                        product.copy_from(&(sums.column(from) * size));
+                    }
+                }
+            }
+        }
+        products
+    }
+}
+
+/// The same, kept: without the vectors.
+pub(super) struct Table<'a> {
+    columns: &'a Columns,
+    /// Vectors × all columns.
+    all: DMatrix<f64>,
+}
+
+impl Table<'_> {
+    /// Vectors × columns of a candidate.
+    pub fn of(&self, candidate: usize) -> DMatrix<f64> {
+        let (first, next) = (self.columns.first[candidate], self.columns.first[candidate + 1]);
+        self.all.columns(first, next - first).into_owned()
+    }
+}
+
+/// Columns while they are sorted by how they are stored.
+struct Building<'a> {
+    cases: &'a [usize],
+    first_of_case: Vec<usize>,
+    whole: Vec<f64>,
+    by_case: Vec<f64>,
+    listed: Vec<Vec<(usize, f64)>>,
+    sequences: Vec<Arc<[usize]>>,
+    /// Number of each sequence by where it is in memory.
+    known: HashMap<*const usize, usize>,
+    columns: Vec<Column>,
+}
+
+impl Building<'_> {
+    fn add_step(&mut self, candidate: &Candidate, step: &super::Step) {
+        let next = self.sequences.len();
+        let sequence = *self.known.entry(step.data.as_ptr()).or_insert(next);
+        if sequence == next {
+            self.sequences.push(Arc::clone(&step.data));
+        }
+        let size = candidate.parameters.first().map_or(0.0, |parameter| parameter.size);
+        self.columns.push(Column::Step { sequence, from: step.from, size });
+    }
+
+    fn add(&mut self, column: &[f64]) {
+        let is_by_case = !self.cases.is_empty()
+            && column.iter().zip(self.cases).all(|(x, &case)| *x == column[self.first_of_case[case]]);
+        let count = column.iter().filter(|x| **x != 0.0).count();
+        let own = if is_by_case {
+            self.by_case.extend(self.first_of_case.iter().map(|&row| column[row]));
+            Column::ByCase(self.by_case.len() / self.first_of_case.len() - 1)
+        } else if count as f64 > DENSE * column.len() as f64 {
+            self.whole.extend(column);
+            Column::Whole(self.whole.len() / column.len() - 1)
+        } else {
+            self.listed.push(column.iter().copied().enumerate().filter(|(_, x)| *x != 0.0).collect());
+            Column::Listed(self.listed.len() - 1)
+        };
+        self.columns.push(own);
+    }
+}
+
+/// The first datum of each case.
+fn firsts(cases: &[usize]) -> Vec<usize> {
+    let mut first = Vec::new();
+    for (row, &case) in cases.iter().enumerate() {
+        if case == first.len() {
+            first.push(row);
+        }
+    }
+    first
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::DVector;
+
+    use super::super::{DERIVATIVE_STEP, Location, Parameter, Step, Term, UNKNOWN};
+    use super::*;
+
+    /// `count` data of 5 cases in sequences of 8; a candidate of each sort of column, and a step before every datum.
+    struct Recording {
+        candidates: Vec<Candidate>,
+        cases: Vec<usize>,
+        steps: Vec<Step>,
+    }
+
+    const OTHERS: usize = 3;
+
+    fn recording(count: usize) -> Recording {
+        let sequences =
+            (0..count).step_by(8).map(|first| (first..(first + 8).min(count)).collect::<Vec<_>>());
+        let sequences: Vec<Arc<[usize]>> = sequences.map(Arc::from).collect();
+        let of = |sequence: &Arc<[usize]>| {
+            let data = Arc::clone(sequence);
+            (0..sequence.len()).map(move |from| Step { data: Arc::clone(&data), from })
+        };
+        let steps: Vec<Step> = sequences.iter().flat_map(of).collect();
+        let parameter = Parameter {
+            name: "size".into(),
+            unit: 1.0,
+            neutral: 0.0,
+            size: 3.0,
+            bounds: (f64::NEG_INFINITY, f64::INFINITY),
+        };
+        let candidate = |parameters: usize| Candidate {
+            effect: &UNKNOWN,
+            location: Location::Named(String::new()),
+            parameters: vec![parameter.clone(); parameters],
+            weight: 1.0,
+            is_alternative: false,
+            is_nonparametric: false,
+        };
+        let mut candidates = vec![candidate(2), candidate(1), candidate(1)];
+        candidates.extend(steps.iter().map(|_| candidate(1)));
+        Recording { candidates, cases: (0..count).map(|i| i % 5).collect(), steps }
+    }
+
+    impl ForwardModel for Recording {
+        fn candidates(&self) -> &[Candidate] {
+            &self.candidates
+        }
+
+        fn response(&self, terms: &[Term]) -> DVector<f64> {
+            let mut response = DVector::zeros(self.cases.len());
+            for term in terms {
+                for (i, value) in response.iter_mut().enumerate() {
+                    let x = i as f64;
+                    *value += match term.candidate {
+                        // the same for a case; different everywhere
+                        0 => term.values[0] * self.cases[i] as f64 + term.values[1] * (0.1 * x).sin(),
+                        // a few of the data
+                        1 if i % 11 == 4 => term.values[0] * x.cos(),
+                        2 => term.values[0] * (1.0 + x),
+                        k if k >= OTHERS => {
+                            let step = &self.steps[k - OTHERS];
+                            f64::from(u8::from(step.data[step.from..].contains(&i))) * term.values[0]
+                        }
+                        _ => 0.0,
+                    };
+                }
+            }
+            response
+        }
+
+        fn cases(&self) -> &[usize] {
+            &self.cases
+        }
+
+        fn step(&self, candidate: usize) -> Option<Step> {
+            candidate.checked_sub(OTHERS).map(|k| self.steps[k].clone())
+        }
+    }
+
+    /// A candidate's columns as its response gives them.
+    fn plain(model: &Recording, candidate: usize) -> DMatrix<f64> {
+        model.columns(&[model.candidates[candidate].neutral(candidate)], 0)
+    }
+
+    #[test]
+    fn products_are_those_of_the_whole_columns() {
+        let model = recording(43);
+        let columns = Columns::new(&model);
+        let vectors = DMatrix::from_fn(43, 3, |i, j| (i * 3 + j) as f64 % 5.0 - 2.0);
+        let some: Vec<usize> = (0..43).filter(|i| i % 4 != 1).collect();
+        let part = vectors.select_rows(&some);
+        let (of_all, of_some) =
+            (columns.products(vectors.clone(), None), columns.products(part.clone(), Some(&some)));
+        for candidate in 0..model.candidates.len() {
+            let plain = plain(&model, candidate);
+            assert!((columns.dense(candidate, None) - &plain).amax() < 1e-9, "{candidate}");
+            assert!((of_all.of(candidate) - vectors.tr_mul(&plain)).amax() < 1e-9, "{candidate}");
+            let plain = plain.select_rows(&some);
+            assert!((columns.dense(candidate, Some(&some)) - &plain).amax() < 1e-9, "{candidate}");
+            assert!((of_some.of(candidate) - part.tr_mul(&plain)).amax() < 1e-9, "{candidate}");
+        }
+        let table = columns.table(&part, Some(&some));
+        assert!((0..model.candidates.len()).all(|k| table.of(k) == of_some.of(k)));
+    }
+
+    #[test]
+    fn each_column_is_stored_as_small_as_it_is() {
+        let columns = Columns::new(&recording(80));
+        assert!(matches!(columns.own(0), [Column::ByCase(0), Column::Whole(0)]));
+        assert!(matches!(columns.own(1), [Column::Listed(0)]));
+        assert!(matches!(columns.own(2), [Column::Whole(1)]));
+        assert!(matches!(columns.own(OTHERS + 9), [Column::Step { sequence: 1, from: 1, .. }]));
+        assert!((columns.dense(2, None)[7] - 24.0).abs() < 1e-12 / DERIVATIVE_STEP);
+    }
+
+    #[test]
+    fn what_is_stored_grows_with_the_recording_and_no_faster() {
+        let stored = |count: usize| {
+            let columns = Columns::new(&recording(count));
+            let listed: usize = columns.listed.iter().map(Vec::len).sum();
+            let sequences: usize = columns.sequences.iter().map(|sequence| sequence.len()).sum();
+            columns.whole.len() + columns.by_case.len() + 2 * listed + sequences + 4 * columns.columns.len()
+        };
+        let (small, large) = (stored(440), stored(880));
+        assert!(large <= 2 * small, "{small} and {large}");
+    }
+}

@@ -13,7 +13,7 @@ const AS_WELL: (f64, f64) = (20.0, 1.01);
 const MOST: usize = 8;
 /// Of how many candidates, the likeliest by their columns at neutral values, the values are fitted.
 const REFITTED: usize = 6;
-/// And how many of them may be of one effect, with as many parameters.
+/// And how many of them may be of one effect, of the forms of a law with as many parameters.
 const OF_ONE_EFFECT: usize = 2;
 
 /// Odds against chance that make an effect, or a second one beside it, worth a try.
@@ -196,7 +196,7 @@ impl Search<'_> {
             // nor a form of a law with fewer numbers one with more
             let effect = |candidate: usize| {
                 let candidate = &self.model.candidates()[candidate];
-                (candidate.effect, candidate.parameters.len())
+                (candidate.effect, if candidate.is_alternative { candidate.parameters.len() } else { 0 })
             };
             let same = tried.iter().filter(|&&other| effect(other) == effect(index)).count();
             if unknown || same < OF_ONE_EFFECT {

@@ -62,6 +62,9 @@ pub(super) struct Repeats {
     pub trials: usize,
 }
 
+/// So many trials are eliminated one by one: their columns would fill the memory.
+const MANY_TRIALS: usize = 50;
+
 impl Repeats {
     pub(super) fn new(samples: &[Sample], points: &[Point]) -> Result<Repeats> {
         let place: Vec<usize> = samples.iter().filter_map(|s| points.iter().position(|p| p.has(s))).collect();
@@ -81,7 +84,7 @@ impl Repeats {
         trials.dedup();
         let mut repeats = Repeats { all, within_trials: all, trials: trials.len() };
         if trials.len() > 1 && 2 * (trials.len() - 1) < all.dof {
-            if 2 * trials.len() > points.len() {
+            if trials.len() > MANY_TRIALS {
                 repeats.within_trials = within_trials(samples, &place, points.len(), &deviations);
                 return Ok(repeats);
             }

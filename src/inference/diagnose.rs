@@ -93,6 +93,12 @@ pub fn diagnose(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
         let shown_by = if is_contradicted { ShownBy::StatedNoise } else { ShownBy::Size };
         discrepancy = Some(Discrepancy { candidate: None, location: None, shown_by, rms, shape });
     }
+    // many that are far off are no single ones
+    if discrepancy.is_none() && suspects.len() > suspects_at_most(evidence.recorded) {
+        let (rms, shape) = (rms(&after), after.clone());
+        let shown_by = ShownBy::Suspects;
+        discrepancy = Some(Discrepancy { candidate: None, location: None, shown_by, rms, shape });
+    }
     let coverage_factor = student_t_quantile(0.975, degrees_of_freedom).unwrap_or(1.96);
     let worth = longest.background_worth();
     let nominal = match worth > WORTH_SAYING {
@@ -123,6 +129,11 @@ pub fn diagnose(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
         after,
         hypothesis,
     }
+}
+
+/// Of so many data that many may be far off by themselves: a tenth, three at least.
+fn suspects_at_most(count: usize) -> usize {
+    (count / 10).max(3)
 }
 
 /// A hypothesis without physics that held-out data do not confirm: where they are predicted no worse

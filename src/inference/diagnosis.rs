@@ -76,6 +76,8 @@ pub enum ShownBy {
     Curve,
     /// Averages of repeats differ from the model by more than the repeats scatter.
     Repeats,
+    /// So many data are far off that they are no single ones.
+    Suspects,
     /// It is more than the noise that was stated.
     StatedNoise,
     /// It is more than any scatter of such a recording.

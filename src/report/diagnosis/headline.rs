@@ -63,9 +63,14 @@ fn scatter(subject: &Subject) -> String {
 /// The same of what is left: `the scatter of the repeats`.
 fn scatter_of(subject: &Subject) -> String {
     let (test, noise) = (&subject.diagnosis.noise_test, um(subject.diagnosis.noise));
+    let without = match subject.diagnosis.suspects.len() {
+        0 => String::new(),
+        1 => " without the suspect reading".to_owned(),
+        count => format!(" without {count} suspect {}", subject.noun),
+    };
     match (test.stated, &subject.diagnosis.lack_of_fit_after) {
-        (Some(stated), _) => format!("noise ({noise} µm; stated: {} µm)", um(stated)),
-        (None, Some(_)) => format!("as large as the scatter of the repeats ({noise} µm)"),
+        (Some(stated), _) => format!("noise ({noise} µm{without}; stated: {} µm)", um(stated)),
+        (None, Some(_)) => format!("as large as the scatter of the repeats ({noise} µm){without}"),
         (None, None) => "unexplained scatter (nothing was repeated)".to_owned(),
     }
 }

@@ -220,6 +220,12 @@ fn of_conditions(found: &RigDiagnosis, left: &Discrepancy) -> Remainder {
             "The readings differ from the model by more than the stated noise of {stated} µm, in a \
              shape that neither a smooth curve nor an effect of the library describes"
         ),
+        ShownBy::Suspects => format!(
+            "{} of {} readings are far off, too many for single mistakes, in a shape that neither a smooth \
+             curve nor an effect of the library describes",
+            found.diagnosis.suspects.len(),
+            data.len()
+        ),
         ShownBy::Size => "The readings differ from the model by more than such readings scatter, in a \
              shape that neither a smooth curve nor an effect of the library describes"
             .to_owned(),

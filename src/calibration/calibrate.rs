@@ -34,7 +34,7 @@ use crate::spatial::best_motion;
 /// ```
 ///
 /// # Errors
-/// What [`Compensation::new`] refuses; [`Error::Input`] for fewer measurements than parameters;
+/// What [`Compensation::new`] refuses; [`crate::Error::Input`] for fewer measurements than parameters;
 /// what the fits refuse. A fit that does not converge is no error: see
 /// [`Calibration::is_converged`].
 pub fn calibrate<'c>(campaign: &'c Campaign, mode: Mode, options: &Options) -> Result<Calibration<'c>> {

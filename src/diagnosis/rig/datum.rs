@@ -51,7 +51,7 @@ pub struct Datum {
     /// Arc length from the flange to the sensor, m; `None`: the tip.
     pub read_station: Option<f64>,
     /// What is compared with the model, m: the offset that was read, or, of a load that was measured under an imposed
-    /// displacement, the load times [`Imposed::per_newton`].
+    /// displacement, the load times `Imposed::per_newton`.
     pub measured: f64,
     /// The same as the base model predicts it, m; 0 without a rod.
     pub predicted: f64,

@@ -22,36 +22,37 @@
 
 mod action;
 mod as_measured;
+mod cases;
 mod chronicle;
 mod correction;
 mod datum;
 pub mod effects;
 mod evidence;
 mod feasible;
+mod forward_model;
 mod limits;
 mod load_history;
 mod mistakes;
 mod next;
 mod nominal;
 mod nonparametric;
+mod response;
 mod slide;
 mod structure;
 #[cfg(test)]
 mod tests;
 mod transfer;
 
-use std::sync::Arc;
-
 use nalgebra::{DMatrix, DVector};
 
 use self::action::{Action, State};
+use self::cases::Cases;
 use self::effects::{Context, registry};
 use self::slide::Course;
-use self::structure::{Parts, Structure};
+use self::structure::Structure;
 use crate::error::{Error, Place, Result};
 use crate::inference::{
-    Candidate, DERIVATIVE_STEP, Description, Diagnosed, Effect, Estimate, Evidence, Finding, FindingPart,
-    ForwardModel, Hypothesis, Location, NotTestable, Parameter, Step, Term, UNKNOWN, diagnose as infer, rms,
+    Candidate, Diagnosed, Effect, Evidence, NotTestable, Parameter, UNKNOWN, diagnose as infer, rms,
 };
 use crate::rig::readings::Readings;
 use crate::rod::Rod;
@@ -202,53 +203,6 @@ impl AsRecorded {
 /// True for a parameter that does nothing where the first of its effect does nothing.
 fn is_dependent(action: &Action) -> bool {
     matches!(action, Action::Onset(_) | Action::Presliding | Action::SliderPlay)
-}
-
-/// Data that differ in nothing but their place in the history of loads: load, phase, place and channel are the same.
-#[derive(Debug, Clone)]
-struct Cases {
-    of_datum: Vec<usize>,
-    /// The first datum of each.
-    first: Vec<usize>,
-}
-
-impl Cases {
-    fn of(data: &[Datum], place: &[usize]) -> Cases {
-        let key = |(d, place): (&Datum, &usize)| {
-            (d.direction, d.load.to_bits(), d.is_unloading(), d.channel, *place, d.session_number)
-        };
-        let of_datum = datum::numbered(data.iter().zip(place).map(key));
-        let first = firsts(&of_datum);
-        Cases { of_datum, first }
-    }
-}
-
-/// Where each number is met first.
-fn firsts(numbers: &[usize]) -> Vec<usize> {
-    let mut first = Vec::new();
-    for (i, &number) in numbers.iter().enumerate() {
-        if number == first.len() {
-            first.push(i);
-        }
-    }
-    first
-}
-
-/// What the data of a case show.
-struct Shown {
-    /// m/N.
-    slope: f64,
-    /// N, but for what is remembered.
-    load: f64,
-    /// m.
-    play: f64,
-}
-
-impl Shown {
-    /// Under a load that is felt.
-    fn reading(&self, load: f64) -> f64 {
-        self.slope * load + self.play
-    }
 }
 
 /// What turns a force into a displacement.
@@ -469,301 +423,5 @@ impl RigModel {
             self.changed(&state)
         };
         (at(neutral + step) - at(neutral - step)).amax() > nothing
-    }
-
-    /// How far the rod yields at each datum, m: the prediction, or the reading's share in a line through the origin.
-    fn deflections(&self) -> Vec<f64> {
-        match self.body {
-            Body::Rod(_) => self.data.iter().map(|d| d.predicted).collect(),
-            Body::Lines(count) => {
-                let measured: Vec<f64> = self.data.iter().map(|d| d.measured).collect();
-                let loads: Vec<f64> = self.data.iter().map(Datum::drive).collect();
-                let slopes = self.slopes(count, &loads, &measured);
-                loads.iter().zip(&self.place).map(|(load, &line)| load * slopes[line]).collect()
-            }
-        }
-    }
-
-    /// Slope of each line through the origin, m/N; 0 where nothing pulls.
-    fn slopes(&self, count: usize, loads: &[f64], readings: &[f64]) -> Vec<f64> {
-        let mut sums = vec![(0.0, 0.0); count];
-        for ((&load, reading), &line) in loads.iter().zip(readings).zip(&self.place) {
-            sums[line].0 += load * reading;
-            sums[line].1 += load * load;
-        }
-        sums.into_iter().map(|(xy, xx)| if xx > 0.0 { xy / xx } else { 0.0 }).collect()
-    }
-
-    /// True where data of one case show the same but for their history: no load that was hung or imposed one after
-    /// another, and no joint of one session.
-    fn is_by_case(&self, state: &State<'_>) -> bool {
-        self.course.hung.is_empty() && self.course.imposed.is_empty() && state.of_sessions.is_empty()
-    }
-
-    /// What each case of a rod shows, without shifts.
-    fn shown(&self, structure: &Structure, state: &State<'_>) -> Vec<Shown> {
-        let compliance = structure.softened(&state.softening);
-        let of_case = |&first: &usize| {
-            let datum = &self.data[first];
-            let pull = state.bare(datum, None);
-            let along = |displacement| state.read(datum.channel, &displacement);
-            let slope = along(compliance[self.place[first]] * pull.direction);
-            Shown { slope, load: pull.load, play: along(pull.direction) * pull.play }
-        };
-        self.cases.first.iter().map(of_case).collect()
-    }
-
-    /// The readings of a rod by its cases, without shifts, m.
-    fn displaced_by_case(&self, structure: &Structure, state: &State<'_>) -> Vec<f64> {
-        let shown = self.shown(structure, state);
-        if !state.remembers() {
-            let readings: Vec<f64> = shown.iter().map(|of| of.reading(of.load)).collect();
-            return self.cases.of_datum.iter().map(|&case| readings[case]).collect();
-        }
-        let reading = |(i, &case): (usize, &usize)| {
-            let of = &shown[case];
-            of.reading(state.with_history(of.load, i))
-        };
-        self.cases.of_datum.iter().enumerate().map(reading).collect()
-    }
-
-    /// The readings of a rod, without shifts, m.
-    fn displaced(&self, structure: &Structure, state: &State<'_>) -> Vec<f64> {
-        if self.is_by_case(state) {
-            return self.displaced_by_case(structure, state);
-        }
-        let common = structure.softened(&state.softening);
-        let mut of_session: Vec<Option<Parts>> = Vec::new();
-        for &(session, _, _) in &state.of_sessions {
-            of_session.resize(of_session.len().max(session + 1), None);
-            let joints = state.of_sessions.iter().filter(|(of, _, _)| *of == session);
-            let mut softening = state.softening.clone();
-            softening.joints.extend(joints.map(|&(_, joint, by)| (joint, by)));
-            of_session[session] = Some(structure.softened(&softening));
-        }
-        let pulls = state.pulls(&self.data, &self.course);
-        let compliance = |i: usize| {
-            let own = of_session.get(self.data[i].session_number).and_then(Option::as_ref);
-            own.unwrap_or(&common)[self.place[i]]
-        };
-        let reading = |(i, datum): (usize, &Datum)| {
-            let pull = &pulls[i];
-            let bent = compliance(i) * (pull.direction * pull.load);
-            state.read(datum.channel, &(bent + pull.direction * pull.play))
-        };
-        let mut readings: Vec<f64> = self.data.iter().enumerate().map(reading).collect();
-        // what a sensor along the load shows per newton
-        let along = |i: usize| {
-            let datum = &self.data[i];
-            let direction = pulls[i].direction * f64::from(datum.direction.sign);
-            state.read(datum.channel, &(compliance(i) * direction))
-        };
-        for (i, met) in state.met(&self.data, &self.course, self.step, &along) {
-            let (datum, along) = (&self.data[i], along(i));
-            let per_newton = datum.imposed.map_or(along, |imposed| imposed.per_newton);
-            readings[i] = match along == 0.0 {
-                true => 0.0,
-                false => per_newton * state.measured_load(i, datum, &met, along),
-            };
-        }
-        readings
-    }
-
-    fn changed(&self, state: &State<'_>) -> DVector<f64> {
-        let mut change = DVector::zeros(self.data.len());
-        for (action, value) in &state.additions {
-            action.add_to(change.as_mut_slice(), *value);
-        }
-        match &self.body {
-            _ if !state.is_changed => {}
-            Body::Rod(structure) => {
-                let readings = self.displaced(structure, state);
-                for ((change, reading), datum) in change.iter_mut().zip(readings).zip(&self.data) {
-                    *change += reading - datum.predicted;
-                }
-            }
-            Body::Lines(count) => {
-                let pulls = state.pulls(&self.data, &self.course);
-                let mut felt: Vec<f64> = Vec::with_capacity(self.data.len());
-                for (i, (datum, pull)) in self.data.iter().zip(&pulls).enumerate() {
-                    felt.push(pull.load * f64::from(datum.direction.sign));
-                    change[i] += pull.direction[datum.channel.index()] * pull.play;
-                }
-                // of an imposed displacement a line is the load per displacement: c₀ the compliance that its unit is
-                let unit = |i: usize| self.data[i].imposed.map_or(1.0, |imposed| imposed.per_newton);
-                let measured: Vec<f64> = self.data.iter().map(|d| d.measured).collect();
-                let drives: Vec<f64> = self.data.iter().map(Datum::drive).collect();
-                let stiffness = self.slopes(*count, &drives, &measured);
-                let compliance =
-                    |i: usize| unit(i) / stiffness[self.place[i]].abs().max(f64::MIN_POSITIVE.sqrt());
-                for (i, met) in state.met(&self.data, &self.course, self.step, &compliance) {
-                    let datum = &self.data[i];
-                    let load = state.measured_load(i, datum, &met, unit(i));
-                    let besides = state.measured_load(i, datum, &met.unbent(), unit(i));
-                    felt[i] = unit(i) * (load - besides);
-                    change[i] += unit(i) * besides;
-                }
-                let left: Vec<f64> =
-                    self.data.iter().zip(change.iter()).map(|(d, c)| d.measured - c).collect();
-                let slopes = self.slopes(*count, &felt, &left);
-                for (i, datum) in self.data.iter().enumerate() {
-                    change[i] += slopes[self.place[i]] * (felt[i] - datum.drive());
-                }
-            }
-        }
-        change
-    }
-}
-
-impl ForwardModel for RigModel {
-    fn candidates(&self) -> &[Candidate] {
-        &self.candidates
-    }
-
-    fn response(&self, terms: &[Term]) -> DVector<f64> {
-        self.changed(&self.state(terms))
-    }
-
-    fn cases(&self) -> &[usize] {
-        &self.cases.of_datum
-    }
-
-    fn step(&self, candidate: usize) -> Option<Step> {
-        match &self.actions[candidate][..] {
-            [Action::Step(data, from)] => Some(Step { data: Arc::clone(data), from: *from }),
-            _ => None,
-        }
-    }
-
-    fn is_linear_in(&self, terms: &[Term]) -> bool {
-        terms.iter().all(|term| self.actions[term.candidate].iter().all(Action::only_adds))
-    }
-
-    /// By what the cases show, and what only adds to the readings itself: both are sooner done than whole responses.
-    ///
-    /// Play that an imposed displacement crosses acts in steps: it is moved by half its usual size. What does nothing without
-    /// its effect's first parameter is seen beside the usual size of that.
-    fn columns(&self, terms: &[Term], position: usize) -> DMatrix<f64> {
-        let term = &terms[position];
-        let parameters = &self.candidates[term.candidate].parameters;
-        let mut columns = DMatrix::zeros(self.data.len(), parameters.len());
-        // without a rod an addition changes the slope of its line if anything but additions stands beside it
-        let is_sum = matches!(self.body, Body::Rod(_)) || self.is_linear_in(terms);
-        let is_imposed = !self.course.imposed.is_empty();
-        for ((k, parameter), action) in parameters.iter().enumerate().zip(&self.actions[term.candidate]) {
-            let mut column = columns.column_mut(k);
-            if is_sum && action.only_adds() {
-                action.add_to(column.as_mut_slice(), parameter.size);
-                continue;
-            }
-            let mut moved = terms.to_vec();
-            if is_dependent(action) && term.values[0] == parameters[0].neutral {
-                moved[position].values[0] += parameters[0].size;
-            }
-            let (step, (low, high)) = match action {
-                Action::Play(_) | Action::SliderPlay | Action::Presliding if is_imposed => {
-                    (0.5, parameter.bounds)
-                }
-                _ => (DERIVATIVE_STEP, (f64::NEG_INFINITY, f64::INFINITY)),
-            };
-            let h = step * parameter.size;
-            let values = [(term.values[k] + h).min(high), (term.values[k] - h).max(low)];
-            let [more, less] = values.map(|value| {
-                moved[position].values[k] = value;
-                self.state(&moved)
-            });
-            let scale = parameter.size / (values[0] - values[1]);
-            let structure = match &self.body {
-                Body::Rod(structure) if self.is_by_case(&more) && self.is_by_case(&less) => structure,
-                _ => {
-                    column.copy_from(&((self.changed(&more) - self.changed(&less)) * scale));
-                    continue;
-                }
-            };
-            let shown = [&more, &less].map(|state| self.shown(structure, state));
-            let of_case = |case: usize, loads: [f64; 2]| {
-                scale * (shown[0][case].reading(loads[0]) - shown[1][case].reading(loads[1]))
-            };
-            let plain = |case: usize| [shown[0][case].load, shown[1][case].load];
-            let cases = column.iter_mut().zip(&self.cases.of_datum);
-            if more.remembers() {
-                for (i, (value, &case)) in cases.enumerate() {
-                    let [with_more, with_less] = plain(case);
-                    *value =
-                        of_case(case, [more.with_history(with_more, i), less.with_history(with_less, i)]);
-                }
-            } else {
-                let changes: Vec<f64> = (0..shown[0].len()).map(|case| of_case(case, plain(case))).collect();
-                cases.for_each(|(value, &case)| *value = changes[case]);
-            }
-        }
-        columns
-    }
-
-    fn location(&self, term: &Term) -> Location {
-        let at_value = |(action, value): (&Action, &f64)| {
-            matches!(action, Action::Station(_)).then_some(Location::Station(*value))
-        };
-        let moved = self.actions[term.candidate].iter().zip(&term.values).find_map(at_value);
-        moved.unwrap_or_else(|| self.candidates[term.candidate].location.clone())
-    }
-
-    /// Of a joint that nobody declared the interval also holds what the joint would be at the other
-    /// stations that the readings cannot separate from its own.
-    fn estimates(&self, parts: &[FindingPart], _: &Hypothesis) -> Vec<Estimate> {
-        parts.iter().flat_map(|part| self.widened(part)).collect()
-    }
-
-    fn describe(&self, finding: &Finding) -> Description {
-        let own = registry::ALL.into_iter().find(|known| &known.effect == finding.effect);
-        let observed = own.map_or_else(
-            || format!("{} at {}", finding.effect.spoken(), finding.location),
-            |effect| (effect.observed)(finding, self),
-        );
-        Description { observed, cause: finding.effect.cause.to_owned() }
-    }
-}
-
-impl RigModel {
-    /// The rig with all of these terms.
-    fn state(&self, terms: &[Term]) -> State<'_> {
-        let mut state = State::default();
-        for term in terms {
-            let actions = self.actions.get(term.candidate).map_or(&[][..], Vec::as_slice);
-            for (action, value) in actions.iter().zip(&term.values) {
-                state.act(action, *value);
-            }
-        }
-        state
-    }
-
-    fn widened(&self, part: &FindingPart) -> Vec<Estimate> {
-        let parameters = |candidate: usize| &self.candidates[candidate].parameters;
-        let is_scanned = |candidate: usize| parameters(candidate).iter().any(|p| p.name == STATION);
-        let mut estimates = part.estimates.clone();
-        // where between two readings a slider meets the end of its play nobody sees
-        for (own, action) in estimates.iter_mut().zip(&self.actions[part.term.candidate]) {
-            if matches!(action, Action::SliderPlay) {
-                own.low = own.low.min(own.value - 0.5 * self.step).max(0.0);
-                own.high = own.high.max(own.value + 0.5 * self.step);
-            }
-        }
-        if !is_scanned(part.term.candidate) {
-            return estimates;
-        }
-        for (k, own) in estimates.iter_mut().enumerate() {
-            let is_station = own.name == STATION;
-            let half = if is_station { 0.0 } else { (own.high - own.low) / 2.0 };
-            let least = parameters(part.term.candidate)[k].bounds.0;
-            let least = if is_station { f64::NEG_INFINITY } else { least };
-            let others = part.rivals.iter().filter(|rival| is_scanned(rival.term.candidate));
-            for rival in others {
-                let own_name = parameters(rival.term.candidate).iter().position(|p| p.name == own.name);
-                let Some(other) = own_name.and_then(|k| rival.term.values.get(k)) else { continue };
-                own.low = own.low.min(other - half).max(least);
-                own.high = own.high.max(other + half);
-            }
-        }
-        estimates
     }
 }

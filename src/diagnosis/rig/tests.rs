@@ -4,6 +4,7 @@ use approx::assert_relative_eq;
 
 use super::*;
 use crate::beam::{Physics, RodModel};
+use crate::inference::{DERIVATIVE_STEP, ForwardModel, Term};
 use crate::rig::readings::Axis;
 use crate::rod::Joint;
 use crate::units::{DEG, UM, URAD_PER_NM};

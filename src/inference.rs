@@ -54,6 +54,7 @@ pub(crate) use self::{
 pub use description::Description;
 pub use diagnose::diagnose;
 pub use diagnosis::{Diagnosed, Diagnosis, Discrepancy, ShownBy};
+pub(crate) use effect::at;
 pub use effect::{Effect, Kind, Reported, UNKNOWN, WrittenTo};
 pub use evidence::{Covariate, Evidence, rms};
 pub use experiment_design::{ExperimentDesign, separates};

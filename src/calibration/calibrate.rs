@@ -68,6 +68,7 @@ pub fn calibrate<'c>(campaign: &'c Campaign, mode: Mode, options: &Options) -> R
         calibration.extrapolation = Some(extrapolation);
     }
     calibration.before = Some(before(campaign, &calibration, &compensation, options)?);
+    calibration.warnings.extend(super::checks::worse_than_nominal(&calibration));
     Ok(calibration)
 }
 

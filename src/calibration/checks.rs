@@ -51,6 +51,16 @@ pub(super) fn all(campaign: &Campaign, recording: &Recording, calibration: &Cali
     warnings
 }
 
+/// A validation whose mean error is larger by this factor is worse, and not by chance.
+const WORSE: f64 = 1.2;
+
+/// Where the nominal robot predicts the validation better than the calibrated one.
+pub(super) fn worse_than_nominal(calibration: &Calibration) -> Option<Warning> {
+    let before = calibration.before?.validation?.mean;
+    let after = calibration.validation.as_ref()?.summary.mean;
+    (after > WORSE * before).then_some(Warning::WorseThanNominal { before, after })
+}
+
 /// Poses that make the robot so many times more uncertain than those of the calibration are worth a
 /// word; where joints go beyond their range, so many.
 const MORE_UNCERTAIN: f64 = 2.0;

@@ -78,6 +78,13 @@ pub enum Warning {
         /// Joints that go beyond the calibration's range: number from 0, and both ranges in words.
         joints: Vec<(usize, String)>,
     },
+    /// The calibrated robot predicts the validation worse than the nominal one does.
+    WorseThanNominal {
+        /// Mean error of the nominal robot, base and tool fitted, m.
+        before: f64,
+        /// Mean error of the calibrated one, m.
+        after: f64,
+    },
     /// The fit of base and tool to the validation did not converge.
     ValidationNotConverged,
 }
@@ -174,6 +181,14 @@ impl fmt::Display for Warning {
                     significant(*ratio, 2)
                 )
             }
+            Warning::WorseThanNominal { before, after } => write!(
+                f,
+                "the calibrated robot predicts the validation worse than the nominal one: {} mm on average \
+                 after, {} mm before: do not use it before it is known why; were the joints' zeros the same in \
+                 both recordings?",
+                significant(after / MM, 3),
+                significant(before / MM, 3)
+            ),
             Warning::ValidationNotConverged => {
                 f.write_str("the fit of base and tool to the validation poses did not converge")
             }

@@ -48,7 +48,7 @@ pub fn diagnose(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
     let mut parts: Vec<(Theme, FindingPart)> = (0..hypothesis.terms.len())
         .map(|position| {
             let candidate = &model.candidates()[hypothesis.terms[position].candidate];
-            (Theme::new(candidate), part(model, evidence, &search, &hypothesis, position))
+            (Theme::new(candidate), part(model, &search, &hypothesis, position))
         })
         .collect();
     parts.sort_by(|(_, a), (_, b)| b.explains.total_cmp(&a.explains));
@@ -226,13 +226,7 @@ fn findings(
 }
 
 /// One term with its interval and its rivals.
-fn part(
-    model: &Linearised<'_>,
-    evidence: &Evidence,
-    search: &Search,
-    hypothesis: &Hypothesis,
-    position: usize,
-) -> FindingPart {
+fn part(model: &Linearised<'_>, search: &Search, hypothesis: &Hypothesis, position: usize) -> FindingPart {
     let term = &hypothesis.terms[position];
     let candidates = model.candidates();
     let rest = search.without(hypothesis, position);
@@ -273,9 +267,7 @@ fn part(
         .filter(|rival| rival.odds < APART)
         .collect();
     rivals.sort_by(|a, b| a.odds.total_cmp(&b.odds));
-    let without = &evidence.residual - model.response(&rest.terms);
-    let with = &evidence.residual - model.response(&hypothesis.terms);
-    let gained = (search.length(&without).powi(2) - search.length(&with).powi(2)) / hypothesis.sigma.powi(2);
+    let gained = search.deviance(&rest, hypothesis.sigma) - search.deviance(hypothesis, hypothesis.sigma);
     // a curve has more parameters than the data determine of it
     let determined = (hypothesis.determined - rest.determined).clamp(1.0, term.values.len().max(1) as f64);
     FindingPart {

@@ -102,7 +102,30 @@ pub static UNKNOWN: Effect = Effect {
     direct_check: None,
 };
 
+/// `a wrong sign (q4_deg)`: what it is called at a place.
+pub(crate) fn at(what: &str, location: &Location) -> String {
+    format!("{what} ({location})")
+}
+
 impl Effect {
+    /// What all mistakes have in common, to be filled in by their records: they are corrections of
+    /// the recording, each reported by itself.
+    pub(crate) const MISTAKE: Effect = Effect {
+        name: "",
+        kind: Kind::Mistake,
+        summary: "",
+        formula: "",
+        prior: "",
+        parameters: &[],
+        needs: "",
+        cause: "",
+        cause_at: |location| location.to_string(),
+        written_to: WrittenTo::Recording,
+        reported: Reported::Alone,
+        seen_along: |_| Vec::new(),
+        direct_check: None,
+    };
+
     /// Its name as words: `load offset`.
     pub fn spoken(&self) -> String {
         self.name.replace('_', " ")

@@ -216,9 +216,13 @@ impl<'a> Search<'a> {
         self.whitening.ratio
     }
 
-    /// Length of a residual once shared errors and nuisance are taken out of it.
-    pub fn length(&self, residual: &DVector<f64>) -> f64 {
-        self.whitening.apply(residual).norm()
+    /// ‖y − effects − background·b‖²/σ² + ‖b‖² of a hypothesis, shared errors and nuisance taken out: what two
+    /// hypotheses differ by has about the χ² distribution where the longer one is chance.
+    pub fn deviance(&self, hypothesis: &Hypothesis, sigma: f64) -> f64 {
+        let left = &self.evidence.residual
+            - self.model.response(&hypothesis.terms)
+            - &self.evidence.background * &hypothesis.background;
+        (self.whitening.apply(&left).norm() / sigma).powi(2) + hypothesis.background.norm_squared()
     }
 
     /// Do the averages of repeats leave a hypothesis that predicts `predicted`?

@@ -243,3 +243,15 @@ fn an_interval_holds_what_another_form_of_the_law_says() {
     assert_eq!(widened("other names", |x| 2.0 * x + 0.02 * x * x).1, alone);
     assert_eq!(widened("square", |x| 2.0 * x * x * x).1, alone);
 }
+
+/// What the base model is wrong by anyhow, twice as large as the effect and the other way, says nothing against the effect.
+#[test]
+fn chance_is_that_of_the_effect_beside_a_large_background() {
+    let model = model();
+    for seed in 0..10 {
+        let plain = evidence(seed, |x| 30.0 * x * x - 60.0 * x);
+        let found = diagnose(&model, &Evidence { background: column(|x| 60.0 * x), ..plain });
+        assert_eq!(effects(&found), ["curvature"], "seed {seed}");
+        assert!(found.findings[0].p_value < 1e-3, "seed {seed}: {}", found.findings[0].p_value);
+    }
+}

@@ -140,3 +140,35 @@ fn what_the_data_do_not_support_is_held() {
     assert!(before.validation.unwrap().mean > 10.0 * error(&pruned), "{before:?}");
     assert!(pruned.extrapolation.unwrap().ratio() < 2.0);
 }
+
+/// The zero of joint 5 was 5 degrees elsewhere while the calibration was recorded: the fit takes it up, and the validation,
+/// recorded with the right zero, says that the result is worse than the nominal robot.
+#[test]
+fn a_robot_that_is_worse_than_the_nominal_one_is_said_to_be() {
+    let mut draw = Draw(5);
+    let actual = built(0.3, &mut draw);
+    let mut displaced = actual.clone();
+    displaced.joints[4].link.theta += 5.0 * DEG;
+    let files = |measured: &Robot, draw: &mut Draw| {
+        (recorded(measured, 40, 90.0, draw), recorded(&actual, 40, 90.0, draw))
+    };
+    for (measured, is_worse) in [(&displaced, true), (&actual, false)] {
+        let (measurements, validation) = files(measured, &mut draw);
+        let campaign = read(&[
+            (
+                "campaign.toml",
+                "robot = \"builtin:tx90\"\nmeasurements = \"m.csv\"\nvalidation = \"v.csv\"\n\
+                 [tool]\nxyz_mm = [50, 20, 150]\n",
+            ),
+            ("m.csv", &measurements),
+            ("v.csv", &validation),
+        ]);
+        let found = calibrate(&campaign, Mode::None, &Options::default()).unwrap();
+        let said = found
+            .warnings
+            .iter()
+            .map(ToString::to_string)
+            .find(|words| words.contains("worse than the nominal"));
+        assert_eq!(said.is_some(), is_worse, "{said:?}");
+    }
+}

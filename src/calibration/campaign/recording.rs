@@ -159,7 +159,7 @@ impl Reader<'_> {
             Seen::Sockets(_) => {
                 let placement = name(cells, "placement", "a name for where the sockets stood")?;
                 let socket = name(cells, "socket", "the number of the socket")?;
-                // seen from another place, sockets that stand still are others
+                // seen from another place, sockets that do not move are others
                 let placement = match station {
                     0 => placement.to_owned(),
                     _ => format!("{placement}, station {}", self.stations[station]),

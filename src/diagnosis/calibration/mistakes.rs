@@ -7,7 +7,7 @@
 //! 2. each is tried on a draft of the campaign (`draft.rs`) with a quick robust fit (`quick.rs`); what
 //!    turns poses that fit nothing into poses that fit is kept, one after another (`search.rs`).
 //!    That tracker or base stood elsewhere from some row on competes with the mistakes;
-//! 3. columns that say nothing (`columns.rs`) cannot be undone: with them there is no physics to see.
+//! 3. columns without information (`columns.rs`) cannot be undone: with them there is no physics to see.
 //!
 //! A mistake that these poses cannot tell from another one names it as a rival; one that they hide
 //! altogether (the zero of the first joint without a stated base) is not named.
@@ -73,7 +73,7 @@ pub struct Mended {
     pub suspicions: Vec<Suspicion>,
     /// True where `campaign` is not what was recorded.
     pub is_changed: bool,
-    /// False where columns say nothing, so that physics cannot be seen.
+    /// False where columns hold no information, so that physics cannot be seen.
     pub has_data: bool,
     /// Errors of a calibration on what was recorded; `None` where nothing was found.
     recorded: Option<Summary>,

@@ -307,7 +307,7 @@ fn turns(values: &[f64]) -> Vec<(f64, usize)> {
     (0..values.len()).map(count).collect()
 }
 
-/// A load as it is told from others: direction, what was set, phase, places.
+/// What distinguishes a load from others: direction, what was set, phase, places.
 type Condition = (i8, u64, Option<Phase>, [Option<u64>; 2]);
 
 /// What a run without a name has seen so far.

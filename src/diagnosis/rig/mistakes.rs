@@ -25,8 +25,6 @@ mod sensors;
 #[cfg(test)]
 mod tests;
 
-use nalgebra::{DMatrix, DVector};
-
 use self::change::Move;
 use self::lines::{Line, lines};
 pub(super) use self::lookalikes::lookalikes;
@@ -39,7 +37,7 @@ use self::sensors::Expected;
 use super::datum;
 use super::structure::check_stations;
 use crate::error::Result;
-use crate::inference::{Description, Effect, Estimate, Finding, Hypothesis, Location, Rival, Term};
+use crate::inference::{Description, Effect, Estimate, Finding, Location, Rival};
 use crate::rig::readings::Readings;
 use crate::rod::Rod;
 use crate::units::significant;
@@ -208,16 +206,15 @@ impl Mended {
 
     fn add_part(&mut self, part: Part) {
         self.suspicions.push(format!("{}; `rodcal diagnose rig` says more.", part.looks_like));
-        let rivals = part.rivals.into_iter().map(|(effect, at)| rival(effect, at, 1.0)).collect();
-        self.found.push(finding(
-            part.effect,
-            part.location,
-            part.estimates,
-            part.observed,
-            rivals,
-            0.0,
-            part.explains,
-        ));
+        let rivals = part
+            .rivals
+            .into_iter()
+            .map(|(effect, at)| Rival::without_term(effect, Location::Key(at), 1.0))
+            .collect();
+        self.found.push(Finding {
+            explains: part.explains,
+            ..finding(part.effect, part.location, part.estimates, part.observed, rivals)
+        });
     }
 
     fn add_move(&mut self, moves: &[Move], found: &Found) {
@@ -236,19 +233,15 @@ impl Mended {
             let is_known =
                 rivals.iter().any(|known| known.effect == other.effect && known.location == location);
             if !is_known && (other.effect, &other.location) != (own.effect, &own.location) {
-                rivals.push(rival(other.effect, other.location.clone(), odds.max(1.0)));
+                rivals.push(Rival::without_term(other.effect, location, odds.max(1.0)));
             }
         }
-        let p_value = (-found.log_odds).exp();
-        self.found.push(finding(
-            own.effect,
-            own.location.clone(),
-            own.estimates.clone(),
-            own.observed.clone(),
-            rivals,
-            p_value,
-            found.explains,
-        ));
+        let (estimates, observed) = (own.estimates.clone(), own.observed.clone());
+        self.found.push(Finding {
+            explains: found.explains,
+            p_value: (-found.log_odds).exp(),
+            ..finding(own.effect, own.location.clone(), estimates, observed, rivals)
+        });
     }
 }
 
@@ -265,50 +258,17 @@ fn pairs(lines: &[Line]) -> (Vec<[Option<f64>; 2]>, Vec<usize>) {
     (pairs, pair)
 }
 
-/// A finding without terms: nothing of it is left in the model.
+/// A mistake with what checks it: nothing of it is left in the model.
 fn finding(
     effect: &'static Effect,
     location: String,
     estimates: Vec<Estimate>,
     observed: String,
     rivals: Vec<Rival>,
-    p_value: f64,
-    explains: f64,
 ) -> Finding {
-    let mut finding = Finding {
-        effect,
-        location: Location::Key(location),
-        estimates,
-        // the correction says what it is
-        description: Description { observed, cause: String::new() },
-        rivals,
-        p_value,
-        explains,
-        found_in_folds: None,
-        held_out_loss: None,
-        next: None,
-        parts: Vec::new(),
-    };
-    let rivals: Vec<&Rival> = finding.rivals.iter().collect();
-    finding.next = finding.direct_check(&rivals);
-    finding
-}
-
-/// What explains as much; it has no term either.
-fn rival(effect: &'static Effect, location: String, odds: f64) -> Rival {
-    Rival {
-        effect,
-        location: Location::Key(location),
-        term: Term { candidate: usize::MAX, values: Vec::new() },
-        hypothesis: Hypothesis {
-            terms: Vec::new(),
-            log_probability: -odds.ln(),
-            sigma: 0.0,
-            covariance: DMatrix::zeros(0, 0),
-            background: DVector::zeros(0),
-            background_covariance: DMatrix::zeros(0, 0),
-            determined: 0.0,
-        },
-        odds,
-    }
+    // the correction says what it is
+    let description = Description { observed, cause: String::new() };
+    let mut finding = Finding::without_terms(effect, Location::Key(location), estimates, description);
+    finding.next = finding.direct_check(&rivals.iter().collect::<Vec<_>>());
+    Finding { rivals, ..finding }
 }

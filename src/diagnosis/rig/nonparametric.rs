@@ -148,7 +148,7 @@ fn coordinates(data: &[Datum]) -> Vec<(Along, Coordinate, bool)> {
             found.push((FALLING, by_axis(data, Datum::drive, falls), true));
         }
     }
-    // loads that always come in the same order are told from it by nothing
+    // loads that always come in the same order cannot be distinguished from it
     let conditions = numbered(data.iter().map(|d| (d.direction, d.drive().to_bits(), d.phase)));
     let mut first_of: Vec<usize> = Vec::new();
     for (i, &condition) in conditions.iter().enumerate() {

@@ -4,27 +4,13 @@
 //! These are records only: a mistake is no term of a model but something that is undone before
 //! there is one. How they are found: `diagnosis/calibration/mistakes`.
 
-use crate::inference::{Effect, Kind, Location, Reported, WrittenTo};
+use crate::inference::{Effect, WrittenTo, at};
 
 const NONE: Effect = Effect {
-    name: "",
-    kind: Kind::Mistake,
-    summary: "",
-    formula: "",
     prior: "one of some hundred, at odds of 1000, where what it acts on is then three times nearer",
-    parameters: &[],
     needs: "",
-    cause: "",
-    cause_at: |location| location.to_string(),
-    written_to: WrittenTo::Recording,
-    reported: Reported::Alone,
-    seen_along: |_| Vec::new(),
-    direct_check: None,
+    ..Effect::MISTAKE
 };
-
-fn at(what: &str, location: &Location) -> String {
-    format!("{what} ({location})")
-}
 
 /// A joint, or an axis of the device, the wrong way round.
 pub static SIGN_MISTAKE: Effect = Effect {
@@ -131,7 +117,7 @@ pub static STUCK_SENSOR: Effect = Effect {
     parameters: &[("mm", "what a position shows"), ("deg", "what a joint shows")],
     needs: "five rows; of a joint a fit that fails",
     cause: "a value that was not recorded",
-    cause_at: |location| at("a column that stands still", location),
+    cause_at: |location| at("a column that does not change", location),
     written_to: WrittenTo::Nowhere,
     ..NONE
 };

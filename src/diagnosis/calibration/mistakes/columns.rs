@@ -1,4 +1,4 @@
-//! Columns that say nothing: the same value in all rows, or the values of another column.
+//! Columns without information: the same value in all rows, or the values of another column.
 
 use super::super::effects::mistakes::{COPIED_COLUMN, STUCK_SENSOR};
 use super::draft::Draft;
@@ -19,11 +19,11 @@ pub(super) struct Silent {
     pub estimates: Vec<Estimate>,
     pub cure: String,
     pub why: String,
-    /// A joint that stands still may be meant to: it counts where the fit fails.
+    /// A joint that does not move may be meant not to: it counts where the fit fails.
     pub only_if_failed: bool,
 }
 
-/// All columns that stand still, or twice.
+/// All columns that do not change, or stand twice.
 pub(super) fn silent(campaign: &Campaign, draft: &Draft) -> Vec<Silent> {
     if draft.len() < FEWEST {
         return Vec::new();

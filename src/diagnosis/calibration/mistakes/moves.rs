@@ -194,7 +194,7 @@ impl List<'_> {
     }
 
     /// Radians are small, and degrees that were converted once more are huge: an arm that hardly
-    /// moves would fit anything that stands still.
+    /// moves would fit anything that does not move.
     fn angle_units(&mut self, turns: &[usize], every: &str) {
         let count = self.draft.joint_count;
         let largest = |j: usize| {

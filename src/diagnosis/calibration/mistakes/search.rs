@@ -45,7 +45,7 @@ const BASE: (f64, f64, f64) = (0.03, 2.0 * DEG, 24.0);
 const TOOL: (f64, f64, f64) = (5.0 * MM, 0.03, 12.0);
 /// Width of the points of a station, as a share of the reach; see [`width`].
 const WIDTH: f64 = 0.02;
-/// The least that is called a move of the base: less is found, and told from drift, by the effects.
+/// The least that is called a move of the base: smaller ones are left to the effects, which distinguish them from drift.
 const LEAST_MOVE: (f64, f64) = (2.0 * MM, 2e-3);
 
 /// One of the changes that make a state.

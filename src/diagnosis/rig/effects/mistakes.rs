@@ -3,27 +3,13 @@
 //! These are records only: a mistake is no term of a model but something that is undone before
 //! there is one. How they are found: `diagnosis/rig/mistakes`.
 
-use crate::inference::{Effect, Kind, Location, Reported, WrittenTo};
+use crate::inference::{Effect, WrittenTo, at};
 
 const NONE: Effect = Effect {
-    name: "",
-    kind: Kind::Mistake,
-    summary: "",
-    formula: "",
     prior: "one of some hundred, tried where nothing ordinary fits; odds of 1000 at least",
-    parameters: &[],
     needs: "a rod file",
-    cause: "",
-    cause_at: |location| location.to_string(),
-    written_to: WrittenTo::Recording,
-    reported: Reported::Alone,
-    seen_along: |_| Vec::new(),
-    direct_check: None,
+    ..Effect::MISTAKE
 };
-
-fn at(what: &str, location: &Location) -> String {
-    format!("{what} ({location})")
-}
 
 /// Kilograms for newtons, millimetres for micrometres, a radius for a diameter.
 pub static UNIT_MISTAKE: Effect = Effect {

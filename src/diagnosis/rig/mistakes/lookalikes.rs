@@ -14,8 +14,7 @@ use nalgebra::DVector;
 use super::super::RigModel;
 use super::super::effects::mistakes::UNIT_MISTAKE;
 use super::moves::{HARDLY_BESIDE, like_physics};
-use super::rival;
-use crate::inference::{Finding, ForwardModel, Rival, Term};
+use crate::inference::{Finding, ForwardModel, Location, Rival, Term};
 
 /// What is left of a factor's response beside that factor, as a share of it (rms).
 const ONE_FACTOR: f64 = 0.1;
@@ -38,5 +37,8 @@ pub fn lookalikes(model: &RigModel, finding: &Finding) -> Vec<Rival> {
     let (column, units) = like_physics(model.readings.load_column);
     let is_near = |factor: f64| (scale / factor).ln().abs() < HARDLY_BESIDE.ln();
     let near = units.into_iter().filter(|(_, factor)| is_near(*factor));
-    near.map(|(unit, _)| rival(&UNIT_MISTAKE, format!("{column} in {unit}"), 1.0)).collect()
+    near.map(|(unit, _)| {
+        Rival::without_term(&UNIT_MISTAKE, Location::Key(format!("{column} in {unit}")), 1.0)
+    })
+    .collect()
 }

@@ -6,7 +6,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::action::{Action, State};
 use super::effects::registry;
-use super::{Body, RigModel, STATION, is_dependent};
+use super::model::{Body, RigModel, STATION, is_dependent};
 use crate::inference::{
     Candidate, DERIVATIVE_STEP, Description, Estimate, Finding, FindingPart, ForwardModel, Hypothesis,
     Location, Step, Term,

@@ -161,7 +161,8 @@ pub(super) struct State<'a> {
     per_load: f64,
     /// With which law they follow.
     memories: Vec<(&'a Memory, History, f64)>,
-    onsets: Vec<(&'a Onset, f64)>,
+    /// What the onsets of creep add to w: for each datum up to the last that one of them changes.
+    earlier: Vec<f64>,
     /// By channel.
     sensor: [Vector3<f64>; 3],
     scale: [f64; 3],
@@ -197,7 +198,7 @@ impl Default for State<'_> {
             per_load_squared: 0.0,
             per_load: 0.0,
             memories: Vec::new(),
-            onsets: Vec::new(),
+            earlier: Vec::new(),
             sensor: axes,
             scale: [1.0; 3],
             play: Scoped::default(),
@@ -232,7 +233,7 @@ impl<'a> State<'a> {
             Action::PerLoadSquared => self.per_load_squared += value,
             Action::PerLoad => self.per_load += value,
             Action::Memory(memory, history) => self.memories.push((memory, *history, value)),
-            Action::Onset(onset) => self.onsets.push((onset, value)),
+            Action::Onset(onset) => onset.add_to(&mut self.earlier, value),
             Action::SensorScale(channel) => self.scale[channel.index()] *= value,
             Action::TurnSensor(channel, towards) => {
                 let sensor = &mut self.sensor[channel.index()];
@@ -318,9 +319,7 @@ impl<'a> State<'a> {
     /// v·w.
     fn growth(&self, index: usize, (memory, history, value): &(&Memory, History, f64)) -> f64 {
         let earlier: f64 = match history {
-            History::Creep(Clock::UnknownOnset, _) => {
-                self.onsets.iter().map(|(onset, before)| onset.adds(index, *before)).sum()
-            }
+            History::Creep(Clock::UnknownOnset, _) => self.earlier.get(index).copied().unwrap_or(0.0),
             _ => 0.0,
         };
         value * (memory.relative[index] + earlier)

@@ -136,9 +136,9 @@ impl Actual {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::rig::drawing::tests::l_shape;
     use crate::rig::tube::Tube;
     use crate::rig::uncertainty::Uncertainty;
-    use crate::rig::drawing::tests::l_shape;
 
     #[test]
     fn numbers_are_off_by_what_the_file_states_and_both_pipes_by_one_modulus() {

@@ -17,6 +17,7 @@
 //! 1 − v·w of creep, which is relaxation here; 1/(1 + v·w) of all else
 //! ```
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use nalgebra::{Rotation3, Unit, Vector3};
@@ -162,7 +163,7 @@ pub(super) struct State<'a> {
     /// With which law they follow.
     memories: Vec<(&'a Memory, History, f64)>,
     /// What the onsets of creep add to w: for each datum up to the last that one of them changes.
-    earlier: Vec<f64>,
+    earlier: Cow<'a, [f64]>,
     /// By channel.
     sensor: [Vector3<f64>; 3],
     scale: [f64; 3],
@@ -198,7 +199,7 @@ impl Default for State<'_> {
             per_load_squared: 0.0,
             per_load: 0.0,
             memories: Vec::new(),
-            earlier: Vec::new(),
+            earlier: Cow::default(),
             sensor: axes,
             scale: [1.0; 3],
             play: Scoped::default(),
@@ -210,6 +211,16 @@ impl Default for State<'_> {
 }
 
 impl<'a> State<'a> {
+    /// What onsets of creep add to w, to be borrowed by states that differ in something else.
+    pub(super) fn earlier(&self) -> &[f64] {
+        &self.earlier
+    }
+
+    /// The same state with what onsets add to w.
+    pub(super) fn with_earlier(self, earlier: Cow<'a, [f64]>) -> Self {
+        State { earlier, ..self }
+    }
+
     /// Adds what `action` does at `value`. Turns are done in the order in which they are added.
     pub(super) fn act(&mut self, action: &'a Action, value: f64) {
         self.is_changed |= !action.only_adds();
@@ -233,7 +244,7 @@ impl<'a> State<'a> {
             Action::PerLoadSquared => self.per_load_squared += value,
             Action::PerLoad => self.per_load += value,
             Action::Memory(memory, history) => self.memories.push((memory, *history, value)),
-            Action::Onset(onset) => onset.add_to(&mut self.earlier, value),
+            Action::Onset(onset) => onset.add_to(self.earlier.to_mut(), value),
             Action::SensorScale(channel) => self.scale[channel.index()] *= value,
             Action::TurnSensor(channel, towards) => {
                 let sensor = &mut self.sensor[channel.index()];

@@ -99,43 +99,42 @@ impl Clock {
 /// When the load of a run was hung: so long before the first reading, which nobody knows.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Onset {
-    /// For each datum of the run: its index, the time since the first reading (s), and the w that the memory has.
-    since: Vec<(usize, f64, f64)>,
+    /// For each datum of the run: its index and the time since the first reading, s.
+    since: Vec<(usize, f64)>,
     /// What the memory takes it for, s.
     pub usual: f64,
     t0: f64,
 }
 
 impl Onset {
-    fn new(since: impl Iterator<Item = (usize, f64)>, usual: f64, t0: f64) -> Onset {
-        let since = since.map(|(datum, since)| (datum, since, grown(since + usual, t0))).collect();
-        Onset { since, usual, t0 }
-    }
-
     /// Adds to w what it is more for an onset so long before the first reading.
     pub(super) fn add_to(&self, w: &mut Vec<f64>, before: f64) {
-        if before == self.usual {
-            return;
-        }
-        if let Some(last) = self.since.iter().map(|(datum, ..)| datum + 1).max() {
-            w.resize(w.len().max(last), 0.0);
-        }
-        for &(datum, since, usual) in &self.since {
-            w[datum] += grown(since + before.max(0.0), self.t0) - usual;
+        if before != self.usual {
+            self.move_in(w, self.usual, before);
         }
     }
-}
 
-/// w = log₁₀(1 + t/t₀), t in s since the load was hung.
-fn grown(t: f64, t0: f64) -> f64 {
-    (1.0 + t / t0).log10()
+    /// Adds to w what it is more for an onset `to` instead of `from` seconds before the first reading.
+    pub(super) fn move_in(&self, w: &mut Vec<f64>, from: f64, to: f64) {
+        let end = self.since.iter().map(|(datum, _)| datum + 1).max().unwrap_or(0);
+        w.resize(w.len().max(end), 0.0);
+        for &(datum, since) in &self.since {
+            // log₁₀(1 + (s + to)/t₀) − log₁₀(1 + (s + from)/t₀)
+            let [from, to] = [from, to].map(|before| self.t0 + since + before.max(0.0));
+            w[datum] += (to / from).log10();
+        }
+    }
 }
 
 /// The onsets of all runs that creep may have begun before; none where there are more than `most`.
 pub(super) fn onsets(data: &[Datum], t0: f64, most: usize) -> Vec<Onset> {
     let Some(times) = data.iter().map(|d| d.time).collect::<Option<Vec<f64>>>() else { return Vec::new() };
     let (usual, runs) = (dwell(data, &times), runs(data));
-    let of_run = |run: &Vec<usize>| Onset::new(run.iter().map(|&i| (i, times[i] - times[run[0]])), usual, t0);
+    let of_run = |run: &Vec<usize>| Onset {
+        since: run.iter().map(|&i| (i, times[i] - times[run[0]])).collect(),
+        usual,
+        t0,
+    };
     if runs.len() > most || usual <= 0.0 { Vec::new() } else { runs.iter().map(of_run).collect() }
 }
 
@@ -184,7 +183,7 @@ pub(super) fn creep(data: &[Datum], clock: Clock, t0: f64) -> Option<Memory> {
             Clock::FirstReading => times[run[0]],
             _ => stated.unwrap_or(times[run[0]] - dwell),
         };
-        let grown = |now: f64, since: f64| grown((now - since).max(0.0), t0);
+        let grown = |now: f64, since: f64| (1.0 + (now - since).max(0.0) / t0).log10();
         let mut this_load = start;
         for (place, moment) in moments.iter().enumerate() {
             let relative = match clock {

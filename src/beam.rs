@@ -12,6 +12,8 @@
 //! - [`Chain`]: nodes and elements, built piece by piece in any direction in space.
 //! - [`Response`]: displacement and rotation of every node, from [`Chain::solve`], which checks
 //!   itself.
+//! - [`TipSolver`]: the tip of very many rods, without a mesh.
+//! - [`NaturalMode`]: how fast a rod swings, and in which shape.
 //! - [`RodModel`]: a [`crate::rod::Rod`] as a chain, with nodes wherever something sits or is read.
 
 mod chain;
@@ -19,10 +21,14 @@ mod check;
 mod element;
 mod large;
 mod model;
+mod natural;
 mod response;
 mod solve;
+mod tip;
 
 pub use chain::Chain;
 pub use element::Profile;
 pub use model::{Physics, RodModel};
+pub use natural::{NaturalMode, settling_time};
 pub use response::{Load, Motion, Response, Resultant};
+pub use tip::TipSolver;

@@ -26,7 +26,14 @@ enum Piece {
 
 fn profile() -> Profile {
     // principal axes differ, so that a section turned the wrong way shows
-    Profile { axial: 2e-7, shear: [5e-7, 6e-7], bending: [2e-3, 5e-3], torsion: 4e-3, mass_per_length: 0.7 }
+    Profile {
+        axial: 2e-7,
+        shear: [5e-7, 6e-7],
+        bending: [2e-3, 5e-3],
+        torsion: 4e-3,
+        mass_per_length: 0.7,
+        rotary_inertia: [0.0; 2],
+    }
 }
 
 fn rotation() -> impl Strategy<Value = Rotation3<f64>> {

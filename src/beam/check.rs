@@ -183,6 +183,7 @@ mod tests {
             bending: [2e-3; 2],
             torsion: 4e-3,
             mass_per_length: 0.7,
+            rotary_inertia: [0.0; 2],
         };
         let mut chain = Chain::clamped_at(Vector3::zeros(), Rotation3::identity());
         chain.straight(&profile, 0.3, 3);

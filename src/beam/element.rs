@@ -33,6 +33,8 @@ pub struct Profile {
     pub torsion: f64,
     /// Mass per length, kg/m.
     pub mass_per_length: f64,
+    /// Moments of inertia per length about x and y, ρI, kg·m: what turns with the section resists.
+    pub rotary_inertia: [f64; 2],
 }
 
 impl Profile {
@@ -206,6 +208,7 @@ mod tests {
         bending: [2e-3, 3e-3],
         torsion: 5e-3,
         mass_per_length: 0.7,
+        rotary_inertia: [0.0; 2],
     };
 
     #[test]

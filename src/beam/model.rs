@@ -205,7 +205,7 @@ impl Physics {
     }
 
     /// Flexibilities of a pipe under this physics, its bending flexibility times `bend_factor`.
-    fn profile(&self, pipe: &Pipe, bend_factor: f64) -> Profile {
+    pub(super) fn profile(&self, pipe: &Pipe, bend_factor: f64) -> Profile {
         let (section, material) = (&pipe.section, &pipe.material);
         let (e, g, area) = (material.youngs_modulus, material.shear_modulus, section.area());
         // local axes: x in the rod's plane, y = Y of {T} normal to it; a force in the plane shears
@@ -221,6 +221,7 @@ impl Physics {
             bending: [iz, iy].map(|about| bend_factor / (e * about)),
             torsion: 1.0 / (g * section.torsion_constant()),
             mass_per_length: pipe.mass_per_length(),
+            rotary_inertia: [iz, iy].map(|about| material.density * about),
         }
     }
 }

@@ -89,8 +89,14 @@ fn castigliano_inside_angle_120() {
 /// δ = qL⁴/8EI + qL²/2κGA, θ = qL³/6EI, and along its axis qL²/2EA.
 #[test]
 fn a_cantilever_under_its_own_weight() {
-    let profile =
-        Profile { axial: 2e-7, shear: [5e-6; 2], bending: [2e-3; 2], torsion: 4e-3, mass_per_length: 0.7 };
+    let profile = Profile {
+        axial: 2e-7,
+        shear: [5e-6; 2],
+        bending: [2e-3; 2],
+        torsion: 4e-3,
+        mass_per_length: 0.7,
+        rotary_inertia: [0.0; 2],
+    };
     let (length, q) = (0.8f64, 0.7);
     for count in [1, 7, 200] {
         let mut chain = Chain::clamped_at(Vector3::zeros(), Rotation3::identity());
@@ -119,6 +125,7 @@ fn rectangle(b: f64, h: f64, e: f64, nu: f64) -> Profile {
         bending: [12.0 / (e * b * h.powi(3)), 12.0 / (e * h * b.powi(3))],
         torsion: 1.0 / (g * j),
         mass_per_length: 0.0,
+        rotary_inertia: [0.0; 2],
     }
 }
 
@@ -184,6 +191,7 @@ fn vpcs_tube() -> Profile {
         bending: [1.0 / (e * tube.second_moment()); 2],
         torsion: 1.0 / (g * tube.torsion_constant()),
         mass_per_length: 0.0,
+        rotary_inertia: [0.0; 2],
     }
 }
 

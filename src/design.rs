@@ -1,0 +1,30 @@
+//! Rods that do not exist yet: every combination of lengths, angles, bends and tubes that a designer asks for, and those
+//! of them that nobody can better in one respect without losing in another.
+//!
+//! - [`Wish`]: what may vary, what must hold, what counts; read from a design file
+//! - [`Figure`]: the numbers that rods are judged by
+//! - [`search`]: all combinations, or a sample of them, to a Pareto [`Front`]
+//! - [`Intervals`]: how well a design's numbers are known, and which designs cannot be told apart
+//!
+//! A combination has a number, from 0; lengths vary fastest. Nothing is kept of a rod but its number and its figures, and
+//! nothing of one that is bettered: memory is that of the front.
+
+mod catalogue;
+mod figure;
+mod front;
+mod intervals;
+mod limits;
+mod nearest;
+mod search;
+mod values;
+mod wish;
+
+pub use catalogue::{BUILT_IN, Tube, built_in, built_in_materials};
+pub use figure::{Figure, Figures, Goal};
+pub use front::{Design, Front};
+pub use intervals::{Intervals, indistinguishable};
+pub use limits::{Impossible, Limit};
+pub use nearest::{Nearest, Relaxed};
+pub use search::{Found, Searched, search};
+pub use values::MOST_VALUES;
+pub use wish::{MOST_RODS, Wish};

@@ -1,0 +1,191 @@
+//! The numbers that a rod is judged by.
+
+use nalgebra::{Matrix3, Vector3};
+
+use crate::beam::TipSolver;
+use crate::compliance::{Compliance, paper_contact_force};
+use crate::error::Result;
+use crate::rod::Rod;
+use crate::units::{GRAM, MM, STANDARD_GRAVITY, UM};
+
+/// A number of a rod. Its value is in the unit of its key.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Figure {
+    /// Compliance index c_rod under the paper's contact force, µm ([`Compliance::index`]).
+    CRod,
+    /// Largest entry of |C^F|, µm/N.
+    CfMax,
+    /// Largest entry of |C^g|, µm/g: how far the tip sags under its own weight.
+    CgMax,
+    /// Mass of pipes, bend, tip and sleeves, g.
+    Mass,
+    /// Largest moment of the rod's weight about the flange's origin, N·m: m·g·|r|, r the centre of mass.
+    Moment,
+    /// First natural frequency, Hz ([`Rod::natural_modes`]).
+    FirstFrequency,
+    /// Distance of the tip from the flange's origin, mm.
+    Reach,
+    /// Price of the pipes' centrelines, in the catalogue's currency.
+    Price,
+}
+
+impl Figure {
+    /// All of them, in the order of [`Figures`].
+    pub const ALL: [Figure; 8] = [
+        Figure::CRod,
+        Figure::CfMax,
+        Figure::CgMax,
+        Figure::Mass,
+        Figure::Moment,
+        Figure::FirstFrequency,
+        Figure::Reach,
+        Figure::Price,
+    ];
+
+    /// Its name in design files and in the JSON.
+    pub fn key(self) -> &'static str {
+        match self {
+            Figure::CRod => "c_rod_um",
+            Figure::CfMax => "cf_max_um_per_n",
+            Figure::CgMax => "cg_max_um_per_g",
+            Figure::Mass => "mass_g",
+            Figure::Moment => "moment_nm",
+            Figure::FirstFrequency => "first_frequency_hz",
+            Figure::Reach => "reach_mm",
+            Figure::Price => "price",
+        }
+    }
+
+    /// What it is, and its unit.
+    pub fn words(self) -> (&'static str, &'static str) {
+        match self {
+            Figure::CRod => ("c_rod", "µm"),
+            Figure::CfMax => ("largest C^F", "µm/N"),
+            Figure::CgMax => ("largest C^g", "µm/g"),
+            Figure::Mass => ("mass", "g"),
+            Figure::Moment => ("flange moment", "N·m"),
+            Figure::FirstFrequency => ("first frequency", "Hz"),
+            Figure::Reach => ("reach", "mm"),
+            Figure::Price => ("price", ""),
+        }
+    }
+}
+
+/// Figures of a rod in the order of [`Figure::ALL`]; NaN where one was not asked for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Figures(pub(super) [f64; 8]);
+
+impl Figures {
+    /// The value in the unit of its key; `None` where it was not asked for.
+    pub fn get(&self, figure: Figure) -> Option<f64> {
+        let value = self.0[figure as usize];
+        (!value.is_nan()).then_some(value)
+    }
+
+    pub(super) fn set(&mut self, figure: Figure, value: f64) {
+        self.0[figure as usize] = value;
+    }
+
+    /// Everything of `rod` but its frequency and price: those cost more than all others, or need a catalogue.
+    ///
+    /// # Errors
+    /// As [`TipSolver::solve`].
+    pub fn of(rod: &Rod, solver: &mut TipSolver) -> Result<Figures> {
+        let [force, weight] = solver.solve(rod)?;
+        let compliance = Compliance { force, gravity: weight * STANDARD_GRAVITY };
+        let largest = |matrix: &Matrix3<f64>| matrix.amax() / UM;
+        let (mass, centre) = mass_and_centre(rod);
+        let mut figures = Figures([f64::NAN; 8]);
+        figures.set(Figure::CRod, compliance.index(paper_contact_force()) / UM);
+        figures.set(Figure::CfMax, largest(&compliance.force));
+        figures.set(Figure::CgMax, largest(&compliance.gravity));
+        figures.set(Figure::Mass, mass / GRAM);
+        figures.set(Figure::Moment, mass * STANDARD_GRAVITY * centre.norm());
+        figures.set(Figure::Reach, rod.tip().norm() / MM);
+        Ok(figures)
+    }
+
+    /// [`Figures::of`] and the first natural frequency.
+    ///
+    /// # Errors
+    /// As [`TipSolver::solve`] and [`Rod::natural_modes`].
+    pub fn with_frequency(mut self, rod: &Rod) -> Result<Figures> {
+        let first = rod.natural_modes(1)?;
+        // nothing that has mass: nothing that swings
+        self.set(Figure::FirstFrequency, first.first().map_or(f64::INFINITY, |mode| mode.frequency));
+        Ok(self)
+    }
+}
+
+/// Mass (kg) and centre of mass in {T} (m).
+fn mass_and_centre(rod: &Rod) -> (f64, Vector3<f64>) {
+    let (start, end, length) = (rod.bend_start(), rod.bend_end(), rod.length());
+    let [pipe1, pipe2] = [&rod.pipe1, &rod.pipe2].map(|pipe| pipe.mass_per_length());
+    let middle = |from: f64, to: f64| rod.position(0.5 * (from + to));
+    let mut all = vec![
+        (pipe1 * start, middle(0.0, start)),
+        (pipe2 * (length - end), middle(end, length)),
+        (rod.tip_mass, rod.tip()),
+    ];
+    if end > start {
+        // the centre of an arc is at R·sin(φ/2)/(φ/2) from its centre of curvature
+        let half = rod.turn() / 2.0;
+        let apex = rod.position(0.5 * (start + end));
+        let chord = 0.5 * (rod.position(start) + rod.position(end));
+        // from the chord's middle (R cos φ/2 from the centre of curvature) to the apex (R)
+        let along = (half.sin() / half - half.cos()) / (1.0 - half.cos());
+        all.push((rod.bend.mass_per_length() * (end - start), chord + (apex - chord) * along));
+    }
+    all.extend(rod.masses.iter().map(|mass| (mass.mass, rod.position(mass.station))));
+    let mass: f64 = all.iter().map(|(mass, _)| mass).sum();
+    let moment: Vector3<f64> = all.iter().map(|(mass, at)| at * *mass).sum();
+    (mass, if mass > 0.0 { moment / mass } else { Vector3::zeros() })
+}
+
+/// A figure that is to be small, or large.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Goal {
+    /// Which.
+    pub figure: Figure,
+    /// True where more is better.
+    pub is_maximised: bool,
+}
+
+impl Goal {
+    /// The figure such that less is better.
+    pub(super) fn cost(&self, figures: &Figures) -> f64 {
+        let value = figures.0[self.figure as usize];
+        if self.is_maximised { -value } else { value }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::beam::{Load, Physics, RodModel};
+    use crate::rod::BendFlexibility;
+
+    #[test]
+    fn the_moment_is_what_the_model_carries_at_the_flange() {
+        let plain = Rod::read("rods/2.toml".as_ref()).unwrap();
+        let bent = plain.clone().with_bend(0.08, BendFlexibility::Beam).with_angle(2.0);
+        for rod in [plain, bent] {
+            let model = RodModel::new(&rod, &Physics::WHOLE, 4, &[]).unwrap();
+            let root = model.chain.resultant(Load::SelfWeight, 0);
+            let (mass, centre) = mass_and_centre(&rod);
+            assert!((root.force[(0, 0)] / mass - 1.0).abs() < 1e-12);
+            assert!((mass / rod.mass() - 1.0).abs() < 1e-12);
+            // M = [m r]ₓ
+            let moment = crate::spatial::skew(&(centre * mass));
+            assert!((root.moment - moment).norm() < 1e-12 * moment.norm(), "{} {moment}", root.moment);
+        }
+    }
+
+    #[test]
+    fn keys_are_told_apart_and_stand_at_their_places() {
+        for (place, figure) in Figure::ALL.into_iter().enumerate() {
+            assert_eq!(figure as usize, place);
+            assert_eq!(Figure::ALL.iter().filter(|other| other.key() == figure.key()).count(), 1);
+        }
+    }
+}

@@ -1,0 +1,133 @@
+//! What a number may be: itself, one of a list, or one of a range.
+
+use serde::Deserialize;
+use toml::Spanned;
+
+use crate::error::Result;
+use crate::toml_text::{Number, TomlText};
+
+/// Most values of one key.
+pub const MOST_VALUES: usize = 100_000;
+/// Share of a step by which rounding may miss the end of a range.
+const SLACK: f64 = 1e-9;
+
+/// Values of a key as the file has them.
+#[derive(Debug, Deserialize)]
+#[serde(untagged, expecting = "a number, a list of numbers, or a range {from, to, step}")]
+pub(super) enum Raw {
+    One(f64),
+    List(Vec<f64>),
+    Range(Range),
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Range {
+    from: f64,
+    to: f64,
+    step: f64,
+}
+
+/// What a key's values must be.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Bounds {
+    pub least: f64,
+    pub most: f64,
+    pub expected: &'static str,
+}
+
+impl Bounds {
+    pub const LENGTH: Bounds = Bounds { least: f64::MIN_POSITIVE, most: 1e6, expected: "lengths > 0 in mm" };
+    pub const RADIUS: Bounds = Bounds { least: 0.0, most: 1e6, expected: "radii of 0 or more in mm" };
+    pub const ANGLE: Bounds =
+        Bounds { least: f64::MIN_POSITIVE, most: 180.0, expected: "angles in degrees, 0 < γ <= 180" };
+    pub const MASS: Bounds = Bounds { least: 0.0, most: 1e9, expected: "masses of 0 or more in g" };
+}
+
+/// The values of `key` in the unit of its name, in the order of the file; those of a list that stand there twice once.
+///
+/// # Errors
+/// Those of the file: an empty list or range, a step that does not lead from one end to the other, a value out of `bounds`,
+/// more than [`MOST_VALUES`].
+pub(super) fn values(toml: &TomlText, key: &str, raw: &Spanned<Raw>, bounds: Bounds) -> Result<Vec<f64>> {
+    let mut all = match raw.get_ref() {
+        Raw::One(value) => vec![*value],
+        Raw::List(values) => values.clone(),
+        Raw::Range(Range { from, to, step }) => {
+            let is_finite = [from, to, step].into_iter().all(|number| number.is_finite());
+            if !is_finite || *step <= 0.0 {
+                return Err(toml.is(key, raw, "a range whose step is > 0"));
+            }
+            if to < from {
+                return Err(toml.is(key, raw, "a range whose `to` is not below its `from`"));
+            }
+            let steps = (to - from) / step + SLACK;
+            if steps >= MOST_VALUES as f64 {
+                return Err(toml.is(key, raw, &format!("at most {MOST_VALUES} values: take larger steps")));
+            }
+            (0..=steps as usize).map(|k| from + k as f64 * step).collect()
+        }
+    };
+    if all.is_empty() {
+        return Err(toml.is(key, raw, "at least one value"));
+    }
+    if all.len() > MOST_VALUES {
+        return Err(toml.is(key, raw, &format!("at most {MOST_VALUES} values")));
+    }
+    if all.iter().any(|value| !(bounds.least..=bounds.most).contains(value)) {
+        return Err(toml.is(key, raw, bounds.expected));
+    }
+    let mut seen: Vec<f64> = Vec::new();
+    if matches!(raw.get_ref(), Raw::List(_)) {
+        all.retain(|value| !seen.contains(value) && { seen.push(*value); true });
+    }
+    Ok(all)
+}
+
+/// A limit in the unit of its name.
+pub(super) fn limit(toml: &TomlText, key: &str, number: &Number) -> Result<f64> {
+    toml.positive(&format!("constraints.{key}"), number)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[derive(Deserialize)]
+    struct One {
+        x: Spanned<Raw>,
+    }
+
+    fn read(text: &str) -> Result<Vec<f64>> {
+        let text = format!("x = {text}\n");
+        let toml = TomlText::new("d.toml", &text);
+        let one: One = toml.parse(&[])?;
+        values(&toml, "x", &one.x, Bounds::LENGTH)
+    }
+
+    #[test]
+    fn numbers_lists_and_ranges_are_values() {
+        assert_eq!(read("150").unwrap(), [150.0]);
+        assert_eq!(read("[1, 2.5, 1]").unwrap(), [1.0, 2.5]);
+        assert_eq!(read("{ from = 0.1, to = 0.4, step = 0.1 }").unwrap().len(), 4);
+        assert_eq!(read("{ from = 10, to = 25, step = 10 }").unwrap(), [10.0, 20.0]);
+        assert_eq!(read("{ from = 10, to = 10, step = 5 }").unwrap(), [10.0]);
+    }
+
+    #[test]
+    fn what_is_no_set_of_values_is_refused_where_it_stands() {
+        for (text, expected) in [
+            ("[]", "expected at least one value"),
+            ("0", "expected lengths > 0 in mm"),
+            ("[150, -1]", "expected lengths > 0 in mm"),
+            ("{ from = 2, to = 1, step = 1 }", "expected a range whose `to` is not below its `from`"),
+            ("{ from = 1, to = 2, step = 0 }", "expected a range whose step is > 0"),
+            ("{ from = 1, to = 2, step = nan }", "expected a range whose step is > 0"),
+            ("{ from = 1, to = 2e6, step = 1 }", "expected at most 100000 values"),
+            ("\"long\"", "a number, a list of numbers, or a range {from, to, step}"),
+        ] {
+            let error = read(text).unwrap_err().to_string();
+            assert!(error.starts_with("d.toml:1:5: ") && error.contains(expected), "{error}");
+        }
+    }
+}

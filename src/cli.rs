@@ -5,6 +5,7 @@ mod compare;
 mod completions;
 mod compliance;
 mod demo;
+mod design;
 mod diagnose;
 mod embedded;
 mod neighbours;
@@ -77,6 +78,9 @@ enum Command {
     Demo,
     /// How much a rod bends under its weight and the contact force, from its drawing.
     Compliance(compliance::Compliance),
+    /// Which rods none betters, from a catalogue of tubes and ranges of lengths.
+    #[command(subcommand)]
+    Design(design::Design),
     /// How much a rod really bends, from readings of its tip under known loads.
     #[command(subcommand)]
     Rig(rig::Rig),
@@ -104,6 +108,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome> {
     match &arguments.command {
         None | Some(Command::Demo) => demo::run(),
         Some(Command::Compliance(command)) => command.run(),
+        Some(Command::Design(command)) => command.run(),
         Some(Command::Rig(command)) => command.run(),
         Some(Command::Calibrate(command)) => command.run(),
         Some(Command::Compare(command)) => command.run(),

@@ -5,6 +5,7 @@
 //! - [`Figure`]: the numbers that rods are judged by
 //! - [`search`]: all combinations, or a sample of them, to a Pareto [`Front`]
 //! - [`Intervals`]: how well a design's numbers are known, and which designs cannot be told apart
+//! - [`Study`]: a search with all of this
 //!
 //! A combination has a number, from 0; lengths vary fastest. Nothing is kept of a rod but its number and its figures, and
 //! nothing of one that is bettered: memory is that of the front.
@@ -16,6 +17,7 @@ mod intervals;
 mod limits;
 mod nearest;
 mod search;
+mod study;
 mod values;
 mod wish;
 
@@ -26,5 +28,6 @@ pub use intervals::{Intervals, indistinguishable};
 pub use limits::{Impossible, Limit};
 pub use nearest::{Nearest, Relaxed};
 pub use search::{Found, Searched, search};
+pub use study::{Base, Shown, Study};
 pub use values::MOST_VALUES;
 pub use wish::{MOST_RODS, Wish};

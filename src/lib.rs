@@ -81,6 +81,7 @@
 pub mod beam;
 pub mod calibration;
 pub mod compliance;
+pub mod design;
 pub mod diagnosis;
 pub mod inference;
 pub mod material;

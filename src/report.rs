@@ -6,7 +6,7 @@
 //!
 //! - [`chart`]: charts as data, drawn by [`chart::Figure::svg`]
 //! - [`pictures`]: the pictures of a rod and of a calibration, from numbers to charts
-//! - [`compliance`] · [`rig`] · [`diagnosis`]: results of the library as reports and as JSON
+//! - [`compliance`] · [`rig`] · [`design`] · [`diagnosis`]: results of the library as reports and as JSON
 //! - [`text`]: a report for the terminal · [`table`]: tables to text, HTML, Markdown, CSV ·
 //!   [`html`]: the page
 
@@ -15,6 +15,7 @@ pub mod calibration;
 pub mod chart;
 pub mod comparison;
 pub mod compliance;
+pub mod design;
 pub mod diagnosis;
 mod document;
 mod draw;

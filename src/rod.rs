@@ -10,6 +10,7 @@ mod uncertainty;
 mod warnings;
 mod write;
 
+pub(crate) use file::MaterialTable;
 pub use nominal::{Feature, Nominal, NominalNumber, Part, SectionConstant};
 pub use uncertainty::StandardUncertainty;
 pub use warnings::Warning;

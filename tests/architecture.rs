@@ -28,6 +28,7 @@ const FLOORS: &[&[&str]] = &[
     &["section", "material", "rod"],
     &["beam"],
     &["compliance"],
+    &["design"],
     &["rig"],
     &["robot"],
     &["calibration"],

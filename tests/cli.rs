@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod calibrate;
+mod design;
 mod diagnose;
 mod diagnose_calibration;
 mod files;
@@ -37,6 +38,9 @@ impl Sandbox {
         for directory in ["rods", "stiffness_data", "robots", "campaigns"] {
             copy(&project.join(directory), &sandbox.path().join(directory));
         }
+        std::fs::create_dir(sandbox.path().join("examples")).unwrap();
+        let design = "examples/design.toml";
+        std::fs::copy(project.join(design), sandbox.path().join(design)).unwrap();
         sandbox
     }
 

@@ -24,6 +24,10 @@ use crate::rod::Rod;
 const ELEMENTS: usize = 60;
 /// Vectors beyond those that are asked for: the iteration's error shrinks by (ω_asked/ω_next)² each time.
 const GUARD: usize = 8;
+/// Elements, vectors beyond the one that is asked for, and where ω² stands still, for [`Rod::first_frequency`].
+const FEW: usize = 16;
+const FEW_GUARD: usize = 5;
+const ROUGHLY: f64 = 1e-8;
 /// Where ω² stands still.
 const SETTLED: f64 = 1e-12;
 const MOST_ITERATIONS: usize = 200;
@@ -70,6 +74,16 @@ impl Rod {
     pub fn natural_modes(&self, count: usize) -> Result<Vec<NaturalMode>> {
         RodModel::new(self, &Physics::WHOLE, ELEMENTS, &[])?.chain.natural_modes(count)
     }
+
+    /// The first natural frequency, Hz, within some millionths of [`Rod::natural_modes`] and in a tenth of the time;
+    /// `None` where nothing has mass.
+    ///
+    /// # Errors
+    /// As [`Rod::natural_modes`].
+    pub fn first_frequency(&self) -> Result<Option<f64>> {
+        let modes = RodModel::new(self, &Physics::WHOLE, FEW, &[])?.chain.modes(1, FEW_GUARD, ROUGHLY)?;
+        Ok(modes.first().map(|mode| mode.frequency))
+    }
 }
 
 impl Chain {
@@ -78,10 +92,14 @@ impl Chain {
     /// # Errors
     /// [`Error::Numerical`] where the iteration does not settle.
     pub fn natural_modes(&self, count: usize) -> Result<Vec<NaturalMode>> {
+        self.modes(count, GUARD, SETTLED)
+    }
+
+    fn modes(&self, count: usize, guard: usize, settled: f64) -> Result<Vec<NaturalMode>> {
         let inertia = self.inertia();
         let (length, nodes) = (self.station(self.end()).max(f64::MIN_POSITIVE), self.nodes.len());
         // bodies that sway along and turn about each axis: uniformly, in proportion to the station …
-        let mut x = DMatrix::from_fn(6 * nodes, count + GUARD, |row, k| {
+        let mut x = DMatrix::from_fn(6 * nodes, count + guard, |row, k| {
             let is_own = row % 6 == k % 6;
             if is_own { (self.station(row / 6) / length).powi((k / 6) as i32) } else { 0.0 }
         });
@@ -96,7 +114,7 @@ impl Chain {
             x = moved * turned;
             let asked = count.min(squares.len());
             let is_settled = known.len() == squares.len()
-                && squares[..asked].iter().zip(&known).all(|(new, old)| (new - old).abs() <= SETTLED * new);
+                && squares[..asked].iter().zip(&known).all(|(new, old)| (new - old).abs() <= settled * new);
             if is_settled {
                 let mode = |k: usize| self.mode(squares[k], &x, k);
                 return Ok((0..asked).map(mode).collect());
@@ -441,6 +459,8 @@ mod tests {
         for (coarse, fine) in coarse.iter().zip(&fine) {
             assert!((coarse / fine - 1.0).abs() < 1e-4, "{coarse} {fine}");
         }
+        let first = rod.first_frequency().unwrap().unwrap();
+        assert!((first / fine[0] - 1.0).abs() < 1e-4, "{first} {}", fine[0]);
     }
 
     #[test]

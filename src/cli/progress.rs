@@ -21,11 +21,16 @@ impl Progress {
 
     /// One task is done.
     pub fn one_more(&self) {
+        self.more(1);
+    }
+
+    /// So many tasks more are done.
+    pub fn more(&self, count: u64) {
         // a bar that flashes up for work of a blink only startles
         if self.0.elapsed() > Duration::from_secs(1) {
-            self.0.inc(1);
+            self.0.inc(count);
         } else {
-            self.0.update(|state| state.set_pos(state.pos() + 1));
+            self.0.update(|state| state.set_pos(state.pos() + count));
         }
     }
 

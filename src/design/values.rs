@@ -79,7 +79,12 @@ pub(super) fn values(toml: &TomlText, key: &str, raw: &Spanned<Raw>, bounds: Bou
     }
     let mut seen: Vec<f64> = Vec::new();
     if matches!(raw.get_ref(), Raw::List(_)) {
-        all.retain(|value| !seen.contains(value) && { seen.push(*value); true });
+        all.retain(|value| {
+            !seen.contains(value) && {
+                seen.push(*value);
+                true
+            }
+        });
     }
     Ok(all)
 }

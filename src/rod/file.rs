@@ -16,7 +16,7 @@ use toml::Spanned;
 
 use self::check::Check;
 use self::geometry::RawGeometry;
-use self::materials::RawMaterial;
+pub use self::materials::MaterialTable;
 use self::parts::{RawJoint, RawMass, RawPipe, RawTip};
 use self::uncertainty::RawUncertainty;
 use super::{Rod, Warning};
@@ -79,7 +79,7 @@ struct RawRod {
     source: Option<String>,
     linear_range_n: Option<Number>,
     geometry: RawGeometry,
-    material: BTreeMap<String, Spanned<RawMaterial>>,
+    material: MaterialTable,
     pipe1: Spanned<RawPipe>,
     pipe2: Spanned<RawPipe>,
     bend: Option<Spanned<RawPipe>>,
@@ -113,7 +113,7 @@ impl Check<'_> {
         let geometry = self.geometry(&raw.geometry)?;
         let standard_uncertainty = self.standard_uncertainty(&raw.standard_uncertainty)?;
         let mut materials = BTreeMap::new();
-        for (name, material) in &raw.material {
+        for (name, material) in &raw.material.0 {
             let material = self.material(name, material, &raw.standard_uncertainty)?;
             materials.insert(name.as_str(), material);
         }

@@ -1,5 +1,7 @@
 //! Materials of a rod file: isotropic ones, two independent moduli, or a laminate of plies.
 
+use std::collections::BTreeMap;
+
 use serde::Deserialize;
 use toml::Spanned;
 
@@ -8,7 +10,7 @@ use super::uncertainty::{RawUncertainty, of_table};
 use crate::error::{Error, Result};
 use crate::material::{Material, MaterialUncertainty, isotropic_poisson_ratio, laminate};
 use crate::rod::Warning;
-use crate::toml_text::Number;
+use crate::toml_text::{Number, TomlText};
 use crate::units::{GPA, MM, significant};
 
 #[derive(Deserialize)]
@@ -29,6 +31,26 @@ pub(super) struct RawMaterial {
     shear_modulus_percent: Option<Number>,
     density_percent: Option<Number>,
     shear_coefficient_percent: Option<Number>,
+}
+
+/// The sections `[material.NAME]` of a file.
+#[derive(Default, Deserialize)]
+#[serde(transparent)]
+pub struct MaterialTable(pub(super) BTreeMap<String, Spanned<RawMaterial>>);
+
+impl MaterialTable {
+    /// The materials by name, with the standard uncertainties of their tables, else of their kinds.
+    ///
+    /// # Errors
+    /// As [`Rod::from_toml`](crate::rod::Rod::from_toml).
+    pub fn checked(&self, toml: &TomlText) -> Result<BTreeMap<String, Material>> {
+        let mut check = Check { toml: *toml, warnings: Vec::new() };
+        let usual = RawUncertainty::default();
+        let of = |(name, raw): (&String, &Spanned<RawMaterial>)| {
+            Ok((name.clone(), check.material(name, raw, &usual)?.material))
+        };
+        self.0.iter().map(of).collect()
+    }
 }
 
 /// A material as checked, with what its laminate has to say to the pipes that use it.

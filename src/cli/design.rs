@@ -1,0 +1,96 @@
+//! `rodcal design rod DESIGN`.
+
+use std::path::PathBuf;
+
+use clap::{Args, Subcommand};
+use rodcal::design::{MOST_RODS, Searched, Study, Wish};
+use rodcal::rod::Rod;
+use rodcal::{Error, Result, report};
+
+use super::output::Outcome;
+use super::progress::Progress;
+
+#[derive(Debug, Subcommand)]
+pub enum Design {
+    /// The rods that none betters: lengths, angles, bends and tubes to choose from, limits to keep.
+    Rod(DesignRod),
+}
+
+#[derive(Debug, Args)]
+#[command(after_long_help = NOTES)]
+pub struct DesignRod {
+    /// Design file (TOML): what may vary, what must hold, what counts.
+    design: PathBuf,
+    /// A rod that the designs are compared with.
+    #[arg(long, value_name = "ROD")]
+    base: Option<PathBuf>,
+    /// Look at so many combinations only, spread evenly at random.
+    #[arg(long, value_name = "N")]
+    samples: Option<u64>,
+    /// Every random number comes from this seed.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+}
+
+const NOTES: &str = "\
+A design file holds at least this:
+
+  [geometry]                     # a number, a list, or a range
+  l1_mm = { from = 150, to = 450, step = 10 }
+  l2_mm = [400, 525, 600]
+  [catalogue]
+  file = \"builtin\"               # or a table: name, material,
+                                 # outer_diameter_mm, inner_diameter_mm
+  [objectives]
+  minimise = [\"c_rod_um\", \"mass_g\"]
+
+and may hold gamma_deg, bend_radius_mm, [tip] mass_g, [[mass]], [[joint]],
+[material.NAME], same_tube, and limits:
+
+  [constraints]
+  max_mass_g = 800
+  max_flange_moment_nm = 6
+  min_first_frequency_hz = 15
+  max_tip_sag_um = 300           # largest entry of C^g times 1 g
+
+also max_c_rod_um and min_reach_mm. Goals are c_rod_um, cf_max_um_per_n,
+cg_max_um_per_g, mass_g, moment_nm, price, first_frequency_hz, reach_mm, in
+minimise or in maximise. With --out the designs are written as rod files.";
+
+impl Design {
+    pub fn run(&self) -> Result<Outcome> {
+        match self {
+            Design::Rod(rod) => rod.run(),
+        }
+    }
+}
+
+impl DesignRod {
+    fn run(&self) -> Result<Outcome> {
+        let wish = Wish::read(&self.design)?;
+        let base = self.base.as_deref().map(Rod::read).transpose()?;
+        let all = wish.combinations();
+        let searched = match self.samples {
+            Some(samples) => Searched::Samples(samples, self.seed),
+            None => Searched::All,
+        };
+        if let (None, Some(much)) = (self.samples, wish.is_too_much()) {
+            return Err(Error::Argument {
+                name: "ranges",
+                found: much,
+                expected: format!("at most {MOST_RODS} rods: take larger steps, or --samples N"),
+            });
+        }
+        let count = self.samples.map_or(all, |samples| samples.min(all));
+        let progress = Progress::new("looking at rods", usize::try_from(count).unwrap_or(usize::MAX));
+        let study = Study::new(wish, searched, base, &|more| progress.more(more))?;
+        progress.finish();
+        let mut report = report::design::report(&study);
+        report.provenance = vec![
+            ("design file".into(), self.design.display().to_string()),
+            ("program".into(), concat!("rodcal ", env!("CARGO_PKG_VERSION")).into()),
+        ];
+        let files = report::design::files(&study)?;
+        Ok(Outcome { files, ..Outcome::new(report::design::json(&study), report) })
+    }
+}

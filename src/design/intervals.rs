@@ -1,0 +1,136 @@
+//! How well the figures of a design are known, and which designs cannot be told apart.
+//!
+//! Every nominal number of the rod (E, G, ρ, diameters, lengths, …) has a standard uncertainty u; a figure y moves with it
+//! by s = u·∂y/∂x, by a central difference of one u. The standard uncertainty of y is √Σ s² (GUM, JCGM 100:2008, 5.1.2).
+//! Two designs of one material share its moduli and its density, and with them what these do: of their difference only
+//! the rest counts. Lengths and diameters are made anew for each.
+
+use super::figure::{Figure, Figures, Goal};
+use super::front::Design;
+use super::wish::Wish;
+use crate::beam::TipSolver;
+use crate::error::Result;
+use crate::rod::{NominalNumber, Rod};
+
+/// Half of a 95 % interval of a normal number, in standard deviations.
+const HALF: f64 = 1.959964;
+
+/// How well the figures of one design are known.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Intervals {
+    /// For each nominal number how far it moves each figure, in the order of [`Figure::ALL`].
+    shifts: Vec<(NominalNumber, [f64; 8])>,
+    /// Half of each figure's 95 % interval, in the unit of its key; 0 of a price.
+    pub half: Figures,
+}
+
+impl Intervals {
+    /// Of one design.
+    ///
+    /// # Errors
+    /// What the beam model refuses.
+    pub fn of(wish: &Wish, design: &Design) -> Result<Intervals> {
+        let mut solver = TipSolver::default();
+        let mut shifts = Vec::new();
+        if let Ok(rod) = wish.rod(design.index) {
+            let mut figures = |rod: &Rod| Figures::of(rod, &mut solver)?.with_frequency(rod);
+            for nominal in rod.nominal_numbers() {
+                let u = nominal.standard_uncertainty;
+                let [more, less] = [u, -u].map(|by| rod.with(&nominal.number, nominal.value + by));
+                let (more, less) = (figures(&more)?, figures(&less)?);
+                let mut shift = [0.0; 8];
+                for (k, shift) in shift.iter_mut().enumerate() {
+                    let by = 0.5 * (more.0[k] - less.0[k]);
+                    *shift = if by.is_finite() { by } else { 0.0 };
+                }
+                shifts.push((nominal.number, shift));
+            }
+        }
+        let half = |k: usize| HALF * shifts.iter().map(|(_, shift)| shift[k].powi(2)).sum::<f64>().sqrt();
+        Ok(Intervals { half: Figures(std::array::from_fn(half)), shifts })
+    }
+
+    /// Half of the 95 % interval of the difference of two designs in one figure.
+    fn half_of_difference(&self, other: &Intervals, figure: Figure) -> f64 {
+        let k = figure as usize;
+        let is_shared = |number: &NominalNumber| {
+            matches!(
+                number,
+                NominalNumber::YoungsModulus(_)
+                    | NominalNumber::ShearModulus(_)
+                    | NominalNumber::Density(_)
+                    | NominalNumber::ShearCoefficient(_)
+                    | NominalNumber::TipMass
+            )
+        };
+        let of_other = |number: &NominalNumber| {
+            let same = other.shifts.iter().find(|(known, _)| known == number && is_shared(number));
+            same.map(|(_, shift)| shift[k])
+        };
+        let own =
+            self.shifts.iter().map(|(number, shift)| (shift[k] - of_other(number).unwrap_or(0.0)).powi(2));
+        let has = |number: &NominalNumber| self.shifts.iter().any(|(known, _)| known == number);
+        let others = other.shifts.iter().filter(|(number, _)| !(is_shared(number) && has(number)));
+        HALF * (own.sum::<f64>() + others.map(|(_, shift)| shift[k].powi(2)).sum::<f64>()).sqrt()
+    }
+}
+
+/// For each design the other ones (by place) that differ from it in no goal by more than what is known of the difference.
+pub fn indistinguishable(designs: &[Design], intervals: &[Intervals], goals: &[Goal]) -> Vec<Vec<usize>> {
+    let is_same = |a: usize, b: usize| {
+        goals.iter().all(|goal| {
+            let [x, y] = [a, b].map(|k| designs[k].figures.get(goal.figure).unwrap_or(f64::NAN));
+            (x - y).abs() <= intervals[a].half_of_difference(&intervals[b], goal.figure)
+        })
+    };
+    let count = designs.len().min(intervals.len());
+    let of = |a: usize| (0..count).filter(|&b| b != a && is_same(a, b)).collect();
+    (0..count).map(of).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::design::{Searched, search};
+
+    fn wish(l2: &str) -> Wish {
+        let text = format!(
+            "[geometry]\nl1_mm = 150\nl2_mm = {l2}\n[catalogue]\nfile = \"t.csv\"\n[tip]\nmass_g = 60\n\
+             [objectives]\nminimise = [\"c_rod_um\"]\nmaximise = [\"reach_mm\"]\n"
+        );
+        let tubes = "name,material,outer_diameter_mm,inner_diameter_mm\na,steel,32,30\n";
+        Wish::from_toml("d.toml", &text, &|name| Ok((name.to_owned(), tubes.to_owned()))).unwrap()
+    }
+
+    fn of(wish: &Wish) -> (Vec<Design>, Vec<Intervals>) {
+        let designs = search(wish, Searched::All, &|_| {}).unwrap().front;
+        let intervals = designs.iter().map(|design| Intervals::of(wish, design).unwrap()).collect();
+        (designs, intervals)
+    }
+
+    #[test]
+    fn a_tip_is_as_far_as_its_two_lengths_say() {
+        let (designs, intervals) = of(&wish("525"));
+        // an L: reach² = L1² + L2², each known to 0.3 mm
+        let (l1, l2) = (150.0f64, 525.0f64);
+        let reach = l1.hypot(l2);
+        let half = 1.959964 * ((l1 * 0.3 / reach).powi(2) + (l2 * 0.3 / reach).powi(2)).sqrt();
+        assert!((designs[0].figures.get(Figure::Reach).unwrap() - reach).abs() < 1e-9);
+        assert!((intervals[0].half.get(Figure::Reach).unwrap() - half).abs() < 1e-5);
+        // 30 µm of 1 mm of wall, and 1 % of E: some percent
+        let share =
+            intervals[0].half.get(Figure::CRod).unwrap() / designs[0].figures.get(Figure::CRod).unwrap();
+        assert!((0.02..0.12).contains(&share), "{share}");
+    }
+
+    #[test]
+    fn designs_of_one_material_differ_by_what_each_is_made_to() {
+        let wish = wish("[525, 525.1, 600]");
+        let (designs, intervals) = of(&wish);
+        assert_eq!(indistinguishable(&designs, &intervals, &wish.goals), [vec![1], vec![0], vec![]]);
+        // E is one and the same: the difference is better known than each by itself would let it
+        let apart = intervals[0].half.get(Figure::CRod).unwrap() * 2f64.sqrt();
+        assert!(intervals[0].half_of_difference(&intervals[1], Figure::CRod) < apart);
+    }
+}

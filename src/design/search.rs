@@ -1,0 +1,352 @@
+//! All combinations, or a sample of them, on all processors.
+
+use super::figure::{Figure, Figures};
+use super::front::{Design, Front};
+use super::limits::Limit;
+use super::nearest::Nearest;
+use super::wish::Wish;
+use crate::beam::TipSolver;
+use crate::error::{Error, Result};
+use crate::parallel::in_parallel;
+use crate::rod::Rod;
+use crate::statistics::Random;
+
+/// Rods of one task, and tasks that are waited for together: memory is that of so many fronts.
+const TASK: u64 = 4096;
+const TASKS_AT_ONCE: u64 = 256;
+/// Most designs of a front: beyond, too many goals pull in too many directions to choose from.
+const MOST_DESIGNS: usize = 200_000;
+/// The stream of random numbers of the first task.
+const STREAM: u64 = 15 << 32;
+
+/// Which rods are looked at.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Searched {
+    /// All combinations.
+    All,
+    /// So many of them, one at random of each of as many equal parts, from a seed.
+    Samples(u64, u64),
+}
+
+/// What a search found.
+#[derive(Debug, Clone)]
+#[non_exhaustive]
+pub struct Found {
+    /// Rods that were looked at.
+    pub evaluated: u64,
+    /// Those that keep all limits.
+    pub feasible: u64,
+    /// The front, best in the first goal first. All figures but the price are known of each.
+    pub front: Vec<Design>,
+    /// For each limit of the wish the number of rods that break it. A rod counts for every limit that it breaks; its
+    /// frequency is looked at only where it keeps all others.
+    pub broken: Vec<u64>,
+    /// Combinations that are no rods, in the order of [`Impossible::ALL`](super::Impossible::ALL).
+    pub impossible: [u64; 3],
+    /// What comes nearest, where nothing keeps all limits.
+    pub nearest: Option<Nearest>,
+}
+
+/// What a task adds up.
+struct Sum {
+    front: Front,
+    feasible: u64,
+    broken: Vec<u64>,
+    impossible: [u64; 3],
+    nearest: Nearest,
+}
+
+/// Looks at the rods of `wish` and keeps those that nobody betters. `progress` is told how many more were looked at. The
+/// result does not depend on the number of threads.
+///
+/// # Errors
+/// [`Error::Argument`] for more than [`MOST_RODS`](super::MOST_RODS) rods, no samples, or a front of more than 200 000
+/// designs; what the beam model refuses.
+pub fn search(wish: &Wish, searched: Searched, progress: &(dyn Fn(u64) + Sync)) -> Result<Found> {
+    let all = wish.combinations();
+    let (count, seed) = match searched {
+        Searched::Samples(samples, seed) if samples < all => (samples, Some(seed)),
+        _ => (all, None),
+    };
+    if count == 0 {
+        return Err(Error::Argument {
+            name: "samples",
+            found: "0".into(),
+            expected: "at least one rod to look at".into(),
+        });
+    }
+    if count > super::MOST_RODS {
+        return Err(Error::Argument {
+            name: "ranges",
+            found: wish.is_too_much().unwrap_or_default(),
+            expected: format!("at most {} rods: take larger steps, or a sample", super::MOST_RODS),
+        });
+    }
+    let mut total = Sum::new(wish);
+    let mut done = 0;
+    while done < count {
+        let end = count.min(done + TASK * TASKS_AT_ONCE);
+        let tasks = (end - done).div_ceil(TASK);
+        let sums = in_parallel(tasks as usize, |task| {
+            let from = done + task as u64 * TASK;
+            let to = end.min(from + TASK);
+            let mut random = seed.map(|seed| Random::seeded(seed, STREAM + from / TASK));
+            let numbers = (from..to).map(|k| match &mut random {
+                // one of the k-th of `count` equal parts
+                Some(random) => {
+                    let at = (k as f64 + random.uniform(0.0, 1.0)) / count as f64 * all as f64;
+                    (at as u64).min(all - 1)
+                }
+                None => k,
+            });
+            let sum = Task::new(wish).run(numbers);
+            progress(to - from);
+            sum
+        });
+        for sum in sums {
+            total.merge(sum?);
+        }
+        if total.front.len() > MOST_DESIGNS {
+            return Err(Error::Argument {
+                name: "objectives",
+                found: format!("a front of more than {MOST_DESIGNS} designs"),
+                expected: "fewer goals, or some of them as limits".into(),
+            });
+        }
+        done = end;
+    }
+    let designs = total.front.sorted();
+    let whole = in_parallel(designs.len(), |k| {
+        let design = designs[k];
+        match (design.figures.get(Figure::FirstFrequency), wish.rod(design.index)) {
+            (None, Ok(rod)) => Ok(Design { figures: design.figures.with_frequency(&rod)?, ..design }),
+            _ => Ok(design),
+        }
+    });
+    Ok(Found {
+        evaluated: count,
+        feasible: total.feasible,
+        front: whole.into_iter().collect::<Result<_>>()?,
+        broken: total.broken,
+        impossible: total.impossible,
+        nearest: (total.feasible == 0).then_some(total.nearest),
+    })
+}
+
+/// What a task reuses from rod to rod.
+struct Task<'w> {
+    wish: &'w Wish,
+    solver: TipSolver,
+    rod: Option<(Rod, [usize; 2])>,
+    /// The frequency is a goal, is a limit.
+    swings: [bool; 2],
+}
+
+impl<'w> Task<'w> {
+    fn new(wish: &'w Wish) -> Self {
+        let is_frequency = |figure: Figure| figure == Figure::FirstFrequency;
+        let swings = [
+            wish.goals.iter().any(|goal| is_frequency(goal.figure)),
+            wish.limits.iter().any(|limit| is_frequency(limit.figure)),
+        ];
+        Task { wish, solver: TipSolver::default(), rod: None, swings }
+    }
+
+    fn run(&mut self, numbers: impl Iterator<Item = u64>) -> Result<Sum> {
+        let mut sum = Sum::new(self.wish);
+        for index in numbers {
+            self.look_at(index, &mut sum)?;
+        }
+        Ok(sum)
+    }
+
+    fn look_at(&mut self, index: u64, sum: &mut Sum) -> Result<()> {
+        let (wish, choice) = (self.wish, self.wish.choice(index));
+        let of_tubes = |tubes: [usize; 2]| {
+            let [first, second] = tubes.map(|tube| wish.tubes[tube].pipe.clone());
+            let mut rod = Rod::new("", choice.l1, choice.l2, first).with_pipe2(second);
+            rod.masses.clone_from(&wish.masses);
+            rod.joints.clone_from(&wish.joints);
+            rod
+        };
+        let known = self.rod.take().filter(|(_, tubes)| *tubes == choice.tubes);
+        let (mut rod, tubes) = known.unwrap_or_else(|| (of_tubes(choice.tubes), choice.tubes));
+        wish.shape(&choice, &mut rod);
+        let judged = match wish.possible(&rod) {
+            Ok(()) => self.judge(index, &rod, sum),
+            Err(why) => {
+                sum.impossible[why as usize] += 1;
+                Ok(())
+            }
+        };
+        self.rod = Some((rod, tubes));
+        judged
+    }
+
+    fn judge(&mut self, index: u64, rod: &Rod, sum: &mut Sum) -> Result<()> {
+        let mut figures = Figures::of(rod, &mut self.solver)?;
+        if self.wish.goals.iter().any(|goal| goal.figure == Figure::Price) {
+            figures.set(Figure::Price, self.wish.price(&self.wish.choice(index)));
+        }
+        let [is_goal, is_limit] = self.swings;
+        let limits = &self.wish.limits;
+        let of_tip = |limit: &&Limit| limit.figure != Figure::FirstFrequency;
+        let mut broken: Vec<&Limit> =
+            limits.iter().filter(of_tip).filter(|limit| !limit.is_kept(&figures)).collect();
+        let is_near = match broken[..] {
+            [] => true,
+            // to say which one limit is in the way, if the frequency is not
+            [only] => sum.feasible == 0 && sum.nearest.would_relax(only, &figures),
+            _ => false,
+        };
+        let mut is_whole = !is_limit;
+        if (is_limit && is_near) || (is_goal && broken.is_empty()) {
+            figures = figures.with_frequency(rod)?;
+            is_whole = true;
+            let of_swing = limits.iter().filter(|limit| !of_tip(limit) && !limit.is_kept(&figures));
+            broken.extend(of_swing);
+        }
+        let design = Design { index, figures };
+        if broken.is_empty() {
+            sum.feasible += 1;
+            sum.front.offer(design);
+            return Ok(());
+        }
+        for (limit, count) in limits.iter().zip(&mut sum.broken) {
+            let is_counted = of_tip(&limit) || broken.len() == 1;
+            *count += u64::from(is_counted && broken.iter().any(|one| one.key == limit.key));
+        }
+        if sum.feasible == 0 {
+            sum.nearest.offer(design, &broken, is_whole);
+        }
+        Ok(())
+    }
+}
+
+impl Sum {
+    fn new(wish: &Wish) -> Sum {
+        Sum {
+            front: Front::new(&wish.goals),
+            feasible: 0,
+            broken: vec![0; wish.limits.len()],
+            impossible: [0; 3],
+            nearest: Nearest::default(),
+        }
+    }
+
+    fn merge(&mut self, other: Sum) {
+        self.front.merge(other.front);
+        self.feasible += other.feasible;
+        self.broken.iter_mut().zip(other.broken).for_each(|(all, more)| *all += more);
+        self.impossible.iter_mut().zip(other.impossible).for_each(|(all, more)| *all += more);
+        self.nearest.merge(other.nearest);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::design::Goal;
+
+    const TEXT: &str = "
+[geometry]
+l1_mm = [100, 200, 300]
+l2_mm = { from = 300, to = 600, step = 50 }
+gamma_deg = [90, 120]
+bend_radius_mm = [0, 10, 40, 120]
+[catalogue]
+file = \"tubes.csv\"
+same_tube = false
+[tip]
+mass_g = [0, 60]
+[constraints]
+max_mass_g = 700
+min_first_frequency_hz = 25
+max_flange_moment_nm = 2.5
+[objectives]
+minimise = [\"c_rod_um\", \"price\"]
+maximise = [\"reach_mm\"]
+";
+    const TUBES: &str = "name,material,outer_diameter_mm,inner_diameter_mm,price_per_m
+a,steel,25,22,10
+b,aluminium,40,36,14
+c,carbon-wrapped,30,28,60
+";
+
+    fn wish(text: &str) -> Wish {
+        Wish::from_toml("design.toml", text, &|name| Ok((name.to_owned(), TUBES.to_owned()))).unwrap()
+    }
+
+    /// All combinations one by one, without anything that saves time.
+    #[test]
+    fn the_search_is_that_of_looking_at_every_rod() {
+        let wish = wish(TEXT);
+        let count = wish.combinations();
+        assert_eq!(count, 3 * 7 * 2 * 4 * 2 * 9);
+        let mut solver = TipSolver::default();
+        let (mut front, mut feasible, mut impossible) = (Front::new(&wish.goals), 0, [0; 3]);
+        for index in 0..count {
+            match wish.rod(index) {
+                Err(why) => impossible[why as usize] += 1,
+                Ok(rod) => {
+                    let figures = Figures::of(&rod, &mut solver).unwrap().with_frequency(&rod).unwrap();
+                    let mut figures = figures;
+                    figures.set(Figure::Price, wish.price(&wish.choice(index)));
+                    if wish.limits.iter().all(|limit| limit.is_kept(&figures)) {
+                        feasible += 1;
+                        front.offer(Design { index, figures });
+                    }
+                }
+            }
+        }
+        let found = search(&wish, Searched::All, &|_| {}).unwrap();
+        assert_eq!((found.evaluated, found.feasible, found.impossible), (count, feasible, impossible));
+        assert!(feasible > 100 && impossible[0] > 0 && impossible[1] > 0);
+        assert_eq!(found.front, front.sorted());
+        assert!(found.broken.iter().all(|count| *count > 0) && found.nearest.is_none());
+    }
+
+    #[test]
+    fn where_nothing_fits_the_limit_that_would_do_is_named() {
+        let text = TEXT.replace("max_mass_g = 700", "max_mass_g = 40");
+        let tight = wish(&text);
+        let found = search(&tight, Searched::All, &|_| {}).unwrap();
+        assert_eq!((found.feasible, found.front.len()), (0, 0));
+        let nearest = found.nearest.unwrap();
+        let relaxed = nearest.one_limit.iter().find(|one| one.limit.key == "max_mass_g").unwrap();
+        // just below what is needed there is still nothing, just above there is
+        for (limit, count) in [(relaxed.to * 0.999, 0), (relaxed.to * 1.001, 1)] {
+            let text = TEXT.replace("max_mass_g = 700", &format!("max_mass_g = {limit}"));
+            let found = search(&wish(&text), Searched::All, &|_| {}).unwrap();
+            assert_eq!(found.feasible.min(1), count, "{limit}");
+        }
+    }
+
+    #[test]
+    fn a_sample_is_spread_evenly_and_always_the_same() {
+        let mut wish = wish(TEXT);
+        wish.goals.truncate(1);
+        let of = |samples, seed| search(&wish, Searched::Samples(samples, seed), &|_| {}).unwrap();
+        let (one, two) = (of(200, 1), of(200, 1));
+        assert_eq!((one.evaluated, &one.front), (200, &two.front));
+        assert!(one.feasible != of(200, 2).feasible || one.front != of(200, 2).front);
+        assert_eq!(of(1_000_000, 1).evaluated, wish.combinations());
+        assert!(search(&wish, Searched::Samples(0, 1), &|_| {}).is_err());
+    }
+
+    #[test]
+    fn one_goal_gives_the_best_rod_and_its_equals() {
+        let mut wish = wish(TEXT);
+        wish.goals = vec![Goal { figure: Figure::Reach, is_maximised: true }];
+        wish.limits.clear();
+        let found = search(&wish, Searched::All, &|_| {}).unwrap();
+        // L1 300, L2 600 at 120°: with every tube, tip and bend that fits
+        let reach = |design: &Design| design.figures.get(Figure::Reach).unwrap();
+        assert!(found.front.len() > 10);
+        assert!(
+            found.front.iter().all(|design| (reach(design) - 793.725).abs() < 1e-3),
+            "{}",
+            reach(&found.front[0])
+        );
+    }
+}

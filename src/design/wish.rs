@@ -1,0 +1,508 @@
+//! What a designer asks for: a design file, checked.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use serde::Deserialize;
+use toml::Spanned;
+
+use super::catalogue::{self, BUILT_IN, Tube, built_in_materials};
+use super::figure::{Figure, Goal};
+use super::limits::{self, Impossible, Limit};
+use super::values::{Bounds, Raw, limit, values};
+use crate::error::Result;
+use crate::files;
+use crate::material::Material;
+use crate::rod::{BendFlexibility, Joint, LumpedMass, MaterialTable, Rod};
+use crate::toml_text::{Number, Required, TomlText};
+use crate::units::{DEG, GRAM, MM, URAD_PER_NM};
+
+/// Most combinations of one search.
+pub const MOST_RODS: u64 = 2_000_000_000;
+/// Combinations in a second, for an estimate of the time.
+const USUAL_SPEED: f64 = 1e6;
+
+/// What may vary, what must hold, what counts.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Wish {
+    /// Name of the file.
+    pub file: String,
+    /// L1, L2 and bend radius, m; γ, rad; mass at the tip, kg.
+    pub l1: Vec<f64>,
+    #[allow(missing_docs)]
+    pub l2: Vec<f64>,
+    #[allow(missing_docs)]
+    pub gamma: Vec<f64>,
+    #[allow(missing_docs)]
+    pub bend_radius: Vec<f64>,
+    #[allow(missing_docs)]
+    pub tip_mass: Vec<f64>,
+    /// How much more flexible bends are than beams.
+    pub bend_flexibility: BendFlexibility,
+    /// Tubes to choose from.
+    pub tubes: Vec<Tube>,
+    /// Both pipes from one tube.
+    pub is_one_tube: bool,
+    /// What sits on every rod.
+    pub masses: Vec<LumpedMass>,
+    #[allow(missing_docs)]
+    pub joints: Vec<Joint>,
+    /// What must hold.
+    pub limits: Vec<Limit>,
+    /// What counts.
+    pub goals: Vec<Goal>,
+}
+
+/// One combination.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Choice {
+    pub tubes: [usize; 2],
+    pub gamma: f64,
+    pub bend_radius: f64,
+    pub tip_mass: f64,
+    pub l1: f64,
+    pub l2: f64,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawWish {
+    geometry: RawGeometry,
+    #[serde(default)]
+    material: MaterialTable,
+    catalogue: RawCatalogue,
+    tip: Option<RawTip>,
+    #[serde(default)]
+    mass: Vec<RawMass>,
+    #[serde(default)]
+    joint: Vec<RawJoint>,
+    #[serde(default)]
+    constraints: RawLimits,
+    objectives: Spanned<RawGoals>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawGeometry {
+    l1_mm: Spanned<Raw>,
+    l2_mm: Spanned<Raw>,
+    gamma_deg: Option<Spanned<Raw>>,
+    bend_radius_mm: Option<Spanned<Raw>>,
+    bend_flexibility: Option<Spanned<String>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawCatalogue {
+    file: Spanned<String>,
+    same_tube: Option<bool>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawTip {
+    mass_g: Spanned<Raw>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawMass {
+    name: String,
+    station_mm: Number,
+    mass_g: Number,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawJoint {
+    name: String,
+    station_mm: Number,
+    bending_urad_per_nm: Option<Number>,
+    torsion_urad_per_nm: Option<Number>,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawLimits {
+    max_mass_g: Option<Number>,
+    max_flange_moment_nm: Option<Number>,
+    max_tip_sag_um: Option<Number>,
+    max_c_rod_um: Option<Number>,
+    min_reach_mm: Option<Number>,
+    min_first_frequency_hz: Option<Number>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawGoals {
+    #[serde(default)]
+    minimise: Vec<Spanned<String>>,
+    #[serde(default)]
+    maximise: Vec<Spanned<String>>,
+}
+
+const REQUIRED: &Required = &[
+    ("[geometry]", "a section [geometry] with l1_mm and l2_mm: numbers, lists or ranges {from, to, step}"),
+    ("[catalogue]", "a section [catalogue] with file, a table of tubes or \"builtin\""),
+    ("[objectives]", "a section [objectives] with minimise or maximise"),
+    ("l1_mm", "the length from the flange to the corner in mm: a number, a list or a range {from, to, step}"),
+    ("l2_mm", "the length from the corner to the ball centre in mm, likewise"),
+    ("file", "a table of tubes, or \"builtin\""),
+    ("mass_g", "the mass in g"),
+    ("name", "a name in quotes"),
+    ("station_mm", "the distance from the flange along the centreline in mm"),
+];
+
+impl Wish {
+    /// Reads and checks a design file and the catalogue that it names, whose path is seen from the file's folder.
+    ///
+    /// # Errors
+    /// [`crate::Error::File`] where one of them cannot be read; else as [`Wish::from_toml`].
+    pub fn read(path: &Path) -> Result<Wish> {
+        let file = path.display().to_string();
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let catalogue = |name: &str| {
+            let path = folder.join(name);
+            Ok((path.display().to_string(), files::read_text(&path)?))
+        };
+        Wish::from_toml(&file, &files::read_text(path)?, &catalogue)
+    }
+
+    /// Reads and checks the text of a design file; `catalogue` finds the name and the text of a catalogue by what the
+    /// file calls it.
+    ///
+    /// ```
+    /// use rodcal::design::Wish;
+    ///
+    /// let text = "
+    ///     [geometry]
+    ///     l1_mm = { from = 150, to = 450, step = 10 }
+    ///     l2_mm = [400, 525, 600]
+    ///     [catalogue]
+    ///     file = \"builtin\"
+    ///     [constraints]
+    ///     max_mass_g = 800
+    ///     [objectives]
+    ///     minimise = [\"c_rod_um\", \"mass_g\"]
+    /// ";
+    /// let wish = Wish::from_toml("design.toml", text, &|_| unreachable!())?;
+    /// assert_eq!(wish.combinations(), 31 * 3 * wish.tubes.len() as u64);
+    /// # Ok::<(), rodcal::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`crate::Error::Syntax`] or [`crate::Error::Input`] with line and column: keys and values that are none, limits
+    /// that contradict one another, more than [`MOST_RODS`] combinations, no goal, prices that the catalogue does not
+    /// have, what is wrong with the catalogue.
+    pub fn from_toml(
+        file: &str,
+        text: &str,
+        catalogue: &dyn Fn(&str) -> Result<(String, String)>,
+    ) -> Result<Wish> {
+        let toml = TomlText::new(file, text);
+        let raw: RawWish = toml.parse(REQUIRED)?;
+        let geometry = &raw.geometry;
+        let of = |key: &str, raw: &Spanned<Raw>, unit: f64, bounds| -> Result<Vec<f64>> {
+            Ok(values(&toml, key, raw, bounds)?.into_iter().map(|value| value * unit).collect())
+        };
+        let or = |key: &str, raw: &Option<Spanned<Raw>>, unit: f64, bounds, otherwise: f64| match raw {
+            Some(raw) => of(key, raw, unit, bounds),
+            None => Ok(vec![otherwise * unit]),
+        };
+        let mut materials = built_in_materials();
+        materials.extend(raw.material.checked(&toml)?);
+        let tubes = tubes(&toml, &raw.catalogue, &materials, catalogue)?;
+        let wish = Wish {
+            file: file.to_owned(),
+            l1: of("geometry.l1_mm", &geometry.l1_mm, MM, Bounds::LENGTH)?,
+            l2: of("geometry.l2_mm", &geometry.l2_mm, MM, Bounds::LENGTH)?,
+            gamma: or("geometry.gamma_deg", &geometry.gamma_deg, DEG, Bounds::ANGLE, 90.0)?,
+            bend_radius: or("geometry.bend_radius_mm", &geometry.bend_radius_mm, MM, Bounds::RADIUS, 0.0)?,
+            bend_flexibility: bend_flexibility(&toml, &geometry.bend_flexibility)?,
+            tip_mass: match &raw.tip {
+                Some(tip) => of("tip.mass_g", &tip.mass_g, GRAM, Bounds::MASS)?,
+                None => vec![0.0],
+            },
+            tubes,
+            is_one_tube: raw.catalogue.same_tube.unwrap_or(true),
+            masses: raw.mass.iter().map(|mass| lumped_mass(&toml, mass)).collect::<Result<_>>()?,
+            joints: raw.joint.iter().map(|raw| joint(&toml, raw)).collect::<Result<_>>()?,
+            limits: limits(&toml, &raw.constraints)?,
+            goals: goals(&toml, &raw.objectives)?,
+        };
+        let price = wish.goals.iter().any(|goal| goal.figure == Figure::Price);
+        if let (true, Some(tube)) = (price, catalogue::without_price(&wish.tubes)) {
+            let found = format!("\"price\" is a goal, but tube {tube} has no price_per_m");
+            return Err(toml.wrong(
+                &raw.objectives,
+                found,
+                "a catalogue with a column price_per_m, filled in",
+            ));
+        }
+        Ok(wish)
+    }
+
+    /// Number of combinations.
+    pub fn combinations(&self) -> u64 {
+        let tubes = self.tubes.len() as u128;
+        let others = [&self.gamma, &self.bend_radius, &self.tip_mass, &self.l1, &self.l2];
+        let all = others.iter().map(|values| values.len() as u128).product::<u128>()
+            * if self.is_one_tube { tubes } else { tubes * tubes };
+        u64::try_from(all).unwrap_or(u64::MAX)
+    }
+
+    /// How many rods that would be and how long they would take, where they are more than a search takes.
+    pub fn is_too_much(&self) -> Option<String> {
+        let all = self.combinations();
+        (all > MOST_RODS).then(|| {
+            let hours = all as f64 / USUAL_SPEED / 3600.0;
+            format!(
+                "{all} rods, about {} of computing",
+                if hours > 48.0 { format!("{:.0} days", hours / 24.0) } else { format!("{hours:.0} hours") }
+            )
+        })
+    }
+
+    /// The combination of a number below [`Wish::combinations`].
+    pub(super) fn choice(&self, index: u64) -> Choice {
+        let mut rest = index;
+        let mut next = |count: usize| {
+            let digit = rest % count as u64;
+            rest /= count as u64;
+            digit as usize
+        };
+        let l2 = self.l2[next(self.l2.len())];
+        let l1 = self.l1[next(self.l1.len())];
+        let tip_mass = self.tip_mass[next(self.tip_mass.len())];
+        let bend_radius = self.bend_radius[next(self.bend_radius.len())];
+        let gamma = self.gamma[next(self.gamma.len())];
+        let second = next(self.tubes.len());
+        let first = if self.is_one_tube { second } else { next(self.tubes.len()) };
+        Choice { tubes: [first, second], gamma, bend_radius, tip_mass, l1, l2 }
+    }
+
+    /// The rod of a combination, or why it is none.
+    ///
+    /// # Errors
+    /// Why it is none.
+    pub fn rod(&self, index: u64) -> std::result::Result<Rod, Impossible> {
+        let choice = self.choice(index);
+        let [first, second] = choice.tubes.map(|tube| self.tubes[tube].pipe.clone());
+        let mut rod = Rod::new(format!("design {index}"), choice.l1, choice.l2, first).with_pipe2(second);
+        self.shape(&choice, &mut rod);
+        rod.masses.clone_from(&self.masses);
+        rod.joints.clone_from(&self.joints);
+        self.possible(&rod)?;
+        Ok(rod)
+    }
+
+    /// Names of a combination's tubes, one where they are the same.
+    pub fn tubes_of(&self, index: u64) -> Vec<String> {
+        let [first, second] = self.choice(index).tubes;
+        let name = |tube: usize| self.tubes[tube].name.clone();
+        if first == second { vec![name(first)] } else { vec![name(first), name(second)] }
+    }
+
+    /// Gives `rod` the shape of a choice; its tubes stay.
+    pub(super) fn shape(&self, choice: &Choice, rod: &mut Rod) {
+        rod.l1 = choice.l1;
+        rod.l2 = choice.l2;
+        rod.gamma = choice.gamma;
+        rod.bend_radius = choice.bend_radius;
+        rod.bend_flexibility = self.bend_flexibility;
+        rod.tip_mass = choice.tip_mass;
+    }
+
+    pub(super) fn possible(&self, rod: &Rod) -> std::result::Result<(), Impossible> {
+        if rod.bend_radius > 0.0 && rod.tangent_length() > rod.l1.min(rod.l2) {
+            return Err(Impossible::BendDoesNotFit);
+        }
+        if rod.bend_radius > 0.0 && rod.turn() > 0.0 && rod.bend_radius < rod.bend.section.height() / 2.0 {
+            return Err(Impossible::BendTighterThanTube);
+        }
+        let mut stations =
+            self.masses.iter().map(|mass| mass.station).chain(self.joints.iter().map(|joint| joint.station));
+        let length = if self.masses.len() + self.joints.len() > 0 { rod.length() } else { 0.0 };
+        match stations.any(|station| station > length) {
+            true => Err(Impossible::StationBeyondTip),
+            false => Ok(()),
+        }
+    }
+
+    /// Price of the pipes of a combination: each to the corner, along its centreline.
+    pub(super) fn price(&self, choice: &Choice) -> f64 {
+        let [first, second] = choice.tubes.map(|tube| self.tubes[tube].price_per_m.unwrap_or(f64::NAN));
+        first * choice.l1 + second * choice.l2
+    }
+}
+
+fn tubes(
+    toml: &TomlText,
+    raw: &RawCatalogue,
+    materials: &BTreeMap<String, Material>,
+    find: &dyn Fn(&str) -> Result<(String, String)>,
+) -> Result<Vec<Tube>> {
+    let name = raw.file.get_ref();
+    if name == BUILT_IN {
+        return catalogue::built_in(materials);
+    }
+    if name.is_empty() {
+        return Err(toml.is("catalogue.file", &raw.file, "a table of tubes, or \"builtin\""));
+    }
+    let (file, text) = find(name).map_err(|error| catalogue::unreadable(error, "[catalogue] file"))?;
+    catalogue::read(&file, &text, materials)
+}
+
+fn bend_flexibility(toml: &TomlText, raw: &Option<Spanned<String>>) -> Result<BendFlexibility> {
+    let Some(name) = raw else { return Ok(BendFlexibility::Beam) };
+    match name.get_ref().as_str() {
+        "beam" => Ok(BendFlexibility::Beam),
+        "von-karman" => Ok(BendFlexibility::VonKarman),
+        "asme-b31.3" => Ok(BendFlexibility::AsmeB313),
+        _ => Err(toml.is("geometry.bend_flexibility", name, "\"beam\", \"von-karman\" or \"asme-b31.3\"")),
+    }
+}
+
+fn lumped_mass(toml: &TomlText, raw: &RawMass) -> Result<LumpedMass> {
+    Ok(LumpedMass {
+        name: raw.name.clone(),
+        station: toml.not_negative("mass.station_mm", &raw.station_mm)? * MM,
+        mass: toml.not_negative("mass.mass_g", &raw.mass_g)? * GRAM,
+    })
+}
+
+fn joint(toml: &TomlText, raw: &RawJoint) -> Result<Joint> {
+    let compliance = |key: &str, number: &Option<Number>| match number {
+        Some(number) => Ok(toml.not_negative(key, number)? * URAD_PER_NM),
+        None => Ok(0.0),
+    };
+    Ok(Joint {
+        name: raw.name.clone(),
+        station: toml.not_negative("joint.station_mm", &raw.station_mm)? * MM,
+        bending: compliance("joint.bending_urad_per_nm", &raw.bending_urad_per_nm)?,
+        torsion: compliance("joint.torsion_urad_per_nm", &raw.torsion_urad_per_nm)?,
+    })
+}
+
+fn limits(toml: &TomlText, raw: &RawLimits) -> Result<Vec<Limit>> {
+    let RawLimits {
+        max_mass_g,
+        max_flange_moment_nm,
+        max_tip_sag_um,
+        max_c_rod_um,
+        min_reach_mm,
+        min_first_frequency_hz,
+    } = raw;
+    let numbers = [
+        max_mass_g,
+        max_flange_moment_nm,
+        max_tip_sag_um,
+        max_c_rod_um,
+        min_reach_mm,
+        min_first_frequency_hz,
+    ];
+    let mut all = Vec::new();
+    for ((key, figure, is_least), number) in limits::KEYS.into_iter().zip(numbers) {
+        if let Some(number) = number {
+            all.push(Limit { key, figure, value: limit(toml, key, number)?, is_least });
+        }
+    }
+    Ok(all)
+}
+
+fn goals(toml: &TomlText, raw: &Spanned<RawGoals>) -> Result<Vec<Goal>> {
+    let RawGoals { minimise, maximise } = raw.get_ref();
+    let mut goals: Vec<Goal> = Vec::new();
+    let both = [(minimise, false), (maximise, true)];
+    for (name, is_maximised) in both.iter().flat_map(|(names, is)| names.iter().map(move |name| (name, *is)))
+    {
+        let known = Figure::ALL.into_iter().find(|figure| figure.key() == name.get_ref());
+        let Some(figure) = known else {
+            let keys: Vec<&str> = Figure::ALL.iter().map(|figure| figure.key()).collect();
+            return Err(toml.is("objectives", name, &format!("one of {}", keys.join(", "))));
+        };
+        if goals.iter().any(|goal| goal.figure == figure) {
+            return Err(toml.is("objectives", name, "every figure once, to be small or to be large"));
+        }
+        goals.push(Goal { figure, is_maximised });
+    }
+    if goals.is_empty() {
+        return Err(toml.wrong(
+            raw,
+            "there is no goal".into(),
+            "minimise or maximise with at least one figure",
+        ));
+    }
+    Ok(goals)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TEXT: &str = "[geometry]
+l1_mm = 150
+l2_mm = [400, 500]
+[catalogue]
+file = \"builtin\"
+[constraints]
+max_mass_g = 500
+[objectives]
+minimise = [\"c_rod_um\"]
+";
+
+    fn read(text: &str) -> Result<Wish> {
+        Wish::from_toml("d.toml", text, &|name| {
+            Ok((
+                name.to_owned(),
+                "name,material,outer_diameter_mm,inner_diameter_mm\na,own,30,28\n".to_owned(),
+            ))
+        })
+    }
+
+    #[test]
+    fn what_is_no_wish_is_refused_where_it_stands() {
+        for (from, to, expected) in [
+            ("c_rod_um", "c_rod", "d.toml:9:13: `objectives` is \"c_rod\", expected one of c_rod_um,"),
+            ("minimise = [\"c_rod_um\"]", "", "d.toml:8:1: there is no goal"),
+            ("\"c_rod_um\"", "\"mass_g\", \"mass_g\"", "d.toml:9:23: `objectives` is \"mass_g\""),
+            ("c_rod_um", "price", "d.toml:8:1: \"price\" is a goal, but tube"),
+            ("max_mass_g = 500", "max_mass_g = 0", "d.toml:7:14: `constraints.max_mass_g` is 0"),
+            ("max_mass_g", "max_mas_g", "d.toml:7:1: unknown key `max_mas_g`"),
+            ("[catalogue]", "[catalog]", "d.toml:4:2: unknown section [catalog]"),
+            ("builtin", "", "d.toml:5:8: `catalogue.file` is \"\""),
+            ("builtin", "t.csv", "t.csv:2:3: material is \"own\""),
+            ("l1_mm = 150\n", "", "d.toml:1:1: there is no l1_mm in [geometry]"),
+        ] {
+            let error = read(&TEXT.replace(from, to)).unwrap_err().to_string();
+            assert!(error.starts_with(expected), "{error}");
+        }
+        let own = "[material.own]\nyoungs_modulus_gpa = 100\npoisson_ratio = 0.3\ndensity_kg_m3 = 2000\n";
+        let wish = read(&(TEXT.replace("builtin", "t.csv") + own)).unwrap();
+        assert_eq!((wish.combinations(), wish.rod(1).unwrap().pipe2.material.youngs_modulus), (2, 100e9));
+    }
+
+    #[test]
+    fn what_would_take_days_says_how_many() {
+        let range = "{ from = 100, to = 1000, step = 0.01 }";
+        let wish =
+            read(&TEXT.replace("l1_mm = 150", &format!("l1_mm = {range}")).replace("[400, 500]", range));
+        let much = wish.unwrap().is_too_much().unwrap();
+        assert!(much.ends_with("days of computing"), "{much}");
+        assert_eq!(read(TEXT).unwrap().is_too_much(), None);
+    }
+
+    #[test]
+    fn every_combination_has_its_number() {
+        let text =
+            TEXT.replace("150", "[100, 150]").replace("[constraints]", "same_tube = false\n[constraints]");
+        let wish = read(&text).unwrap();
+        let mut all: Vec<String> =
+            (0..wish.combinations()).map(|k| format!("{:?}", wish.choice(k))).collect();
+        all.sort();
+        all.dedup();
+        assert_eq!(all.len() as u64, wish.combinations());
+        assert_eq!(wish.choice(1).l2, 0.5); // L2 varies fastest
+    }
+}

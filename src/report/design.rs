@@ -1,0 +1,386 @@
+//! What `design rod` says: JSON, tables and pictures of a [`Study`].
+
+mod figures;
+
+use serde_json::{Map, Value, json};
+
+use super::table::{Column, Table};
+use super::{Block, Report, Section};
+use crate::design::{Design, Figure, Goal, Impossible, Limit, Shown, Study};
+use crate::error::Result;
+use crate::rod::Rod;
+use crate::units::{DEG, GRAM, MM, significant};
+
+/// Digits of a figure in a table.
+const DIGITS: usize = 4;
+
+/// The JSON of `rodcal design rod --json`.
+pub fn json(study: &Study) -> Value {
+    let found = &study.found;
+    let front: Vec<Value> =
+        found.front.iter().enumerate().map(|(place, design)| front_json(study, place, design)).collect();
+    let mut because = Map::new();
+    for (limit, count) in study.wish.limits.iter().zip(&found.broken) {
+        because.insert(limit.key.into(), (*count).into());
+    }
+    for (why, count) in Impossible::ALL.iter().zip(found.impossible).filter(|(_, count)| *count > 0) {
+        because.insert(why.key().into(), count.into());
+    }
+    let relaxed = found.nearest.iter().flat_map(|nearest| &nearest.one_limit).map(|relaxed| {
+        json!({
+            "constraint": relaxed.limit.key,
+            "stated": relaxed.limit.value,
+            "needed": relaxed.to,
+            "rod": rod_json(study, relaxed.design.index),
+        })
+    });
+    json!({
+        "design": study.wish.file,
+        "combinations": study.wish.combinations(),
+        "evaluated": found.evaluated,
+        "feasible": found.feasible,
+        "objectives": study.wish.goals.iter().map(goal_json).collect::<Vec<_>>(),
+        "front": front,
+        "infeasible_because": because,
+        "relax": relaxed.collect::<Vec<_>>(),
+        "base": study.base.as_ref().map(|base| {
+            let mut object = figures_json(&Design { index: 0, figures: base.figures });
+            object.insert("rod".into(), base.rod.name.clone().into());
+            object.insert("bettered_by".into(), base.bettered_by.into());
+            object.insert("breaks".into(), base.broken.clone().into());
+            object
+        }),
+    })
+}
+
+fn goal_json(goal: &Goal) -> Value {
+    json!({ if goal.is_maximised { "maximise" } else { "minimise" }: goal.figure.key() })
+}
+
+fn front_json(study: &Study, place: usize, design: &Design) -> Value {
+    let mut object = Map::new();
+    object.insert("rod".into(), rod_json(study, design.index));
+    object.append(&mut figures_json(design));
+    if let Some(shown) = study.shown.iter().find(|shown| shown.place == place) {
+        object.insert("tubes".into(), shown.tubes.clone().into());
+        let interval = |figure: Figure| {
+            let (value, half) = (design.figures.get(figure)?, shown.intervals.half.get(figure)?);
+            (figure != Figure::Price).then(|| (figure.key().to_owned(), json!([value - half, value + half])))
+        };
+        object.insert(
+            "intervals".into(),
+            Figure::ALL.into_iter().filter_map(interval).collect::<Map<_, _>>().into(),
+        );
+        object.insert("indistinguishable_from".into(), shown.indistinguishable.clone().into());
+    }
+    object.into()
+}
+
+fn figures_json(design: &Design) -> Map<String, Value> {
+    let known = |figure: Figure| Some((figure.key().to_owned(), json!(design.figures.get(figure)?)));
+    Figure::ALL.into_iter().filter_map(known).collect()
+}
+
+/// The keys of a rod file.
+fn rod_json(study: &Study, index: u64) -> Value {
+    let text = study.wish.rod(index).ok().map(|rod| rod.to_toml(&[]));
+    text.and_then(|text| toml::from_str(&text).ok()).unwrap_or(Value::Null)
+}
+
+/// The report of `rodcal design rod`.
+pub fn report(study: &Study) -> Report {
+    let mut sections = Vec::new();
+    if study.found.front.is_empty() {
+        sections.push(Section::new("What stands in the way", nearest(study)));
+    } else {
+        sections.push(Section::new("The front", front(study)));
+        sections.push(Section::new("To scale", vec![Block::Figure(figures::to_scale(study))]));
+    }
+    sections.push(Section::new("What was looked at", looked_at(study)));
+    Report {
+        title: format!("Rods for {}", study.wish.file),
+        headline: headline(study),
+        warnings: warnings(study),
+        sections,
+        provenance: Vec::new(),
+    }
+}
+
+/// How many rods there are to choose from, and what they come to.
+pub fn headline(study: &Study) -> String {
+    let found = &study.found;
+    let all = count(found.evaluated, "rod");
+    if found.front.is_empty() {
+        let relax = found.nearest.iter().flat_map(|nearest| &nearest.one_limit);
+        let relax: Vec<String> =
+            relax.map(|one| format!("{} to {}", one.limit.key, needed(&one.limit, one.to))).collect();
+        return match relax.is_empty() {
+            true => format!("None of {all} keeps all limits, and none would with only one of them given up."),
+            false => format!("None of {all} keeps all limits. One would do: relax {}.", relax.join(", or ")),
+        };
+    }
+    let spans = study.wish.goals.iter().map(|goal| {
+        let values = || found.front.iter().filter_map(|design| design.figures.get(goal.figure));
+        let (low, high) = values().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)));
+        let (name, unit) = goal.figure.words();
+        let number = |value: f64| significant(value, 3);
+        let span = if low == high { number(low) } else { format!("{} to {}", number(low), number(high)) };
+        format!("{name} {span} {unit}").trim_end().to_owned()
+    });
+    let spans: Vec<String> = spans.collect();
+    let front = match found.front.len() {
+        1 => "one of them is bettered by none".to_owned(),
+        count => format!("{count} of them are bettered by none"),
+    };
+    format!("Of {all} {} all limits, and {front}: {}.", verb(found.feasible), spans.join(", "))
+}
+
+fn verb(feasible: u64) -> String {
+    if feasible == 1 { "1 keeps".into() } else { format!("{feasible} keep") }
+}
+
+fn count(number: u64, noun: &str) -> String {
+    format!("{number} {noun}{}", if number == 1 { "" } else { "s" })
+}
+
+/// A limit that would do, rounded to the safe side.
+fn needed(limit: &Limit, to: f64) -> String {
+    let step = 10f64.powf(to.abs().log10().floor() - 3.0);
+    let safe = if limit.is_least { (to / step).floor() } else { (to / step).ceil() } * step;
+    significant(safe, DIGITS)
+}
+
+fn warnings(study: &Study) -> Vec<String> {
+    let mut warnings = Vec::new();
+    if study.found.evaluated < study.wish.combinations() {
+        warnings.push(format!(
+            "{} of {} combinations were looked at: better rods may be among the others",
+            study.found.evaluated,
+            study.wish.combinations()
+        ));
+    }
+    if study.shown.len() < study.found.front.len() {
+        warnings.push(format!(
+            "{} of {} designs are shown, evenly from end to end; designs.csv and the JSON have all",
+            study.shown.len(),
+            study.found.front.len()
+        ));
+    }
+    warnings
+}
+
+fn front(study: &Study) -> Vec<Block> {
+    let goals = study.wish.goals.iter().map(|goal| {
+        let (name, _) = goal.figure.words();
+        format!("{} {name}", if goal.is_maximised { "larger" } else { "smaller" })
+    });
+    let goals: Vec<String> = goals.collect();
+    let mut blocks = vec![Block::Paragraph(format!(
+        "No other rod that was looked at is as good in every goal ({} is better) and better in one.",
+        goals.join(", ")
+    ))];
+    blocks.extend(figures::front(study).map(Block::Figure));
+    blocks.push(Block::Table(front_table(study)));
+    if let Some(base) = &study.base {
+        let breaks = match base.broken.is_empty() {
+            true => "It keeps all limits.".to_owned(),
+            false => format!("It breaks {}.", base.broken.join(" and ")),
+        };
+        let better = match base.bettered_by {
+            0 => "no design of the front is better in every goal".to_owned(),
+            1 => "one design of the front is at least as good in every goal".to_owned(),
+            count => format!("{count} designs of the front are at least as good in every goal"),
+        };
+        blocks.push(Block::Paragraph(format!("Beside rod {}: {better}. {breaks}", base.rod.name)));
+    }
+    blocks
+}
+
+/// The figures of a table: the goals first, then the others that every design has.
+fn columns(study: &Study) -> Vec<Figure> {
+    let mut figures: Vec<Figure> = study.wish.goals.iter().map(|goal| goal.figure).collect();
+    let more = [Figure::CRod, Figure::Mass, Figure::FirstFrequency, Figure::Reach];
+    figures
+        .extend(more.into_iter().filter(|figure| study.wish.goals.iter().all(|goal| goal.figure != *figure)));
+    figures
+}
+
+fn shape_columns() -> Vec<Column> {
+    vec![
+        Column::number("L1", "mm"),
+        Column::number("L2", "mm"),
+        Column::number("γ", "°"),
+        Column::number("R", "mm"),
+        Column::number("tip", "g"),
+    ]
+}
+
+fn shape_cells(rod: &Rod) -> Vec<String> {
+    [rod.l1 / MM, rod.l2 / MM, rod.gamma / DEG, rod.bend_radius / MM, rod.tip_mass / GRAM]
+        .map(|value| significant(value, 5))
+        .to_vec()
+}
+
+fn front_table(study: &Study) -> Table {
+    let figures = columns(study);
+    let mut heads = vec![Column::text("design"), Column::text("tube")];
+    heads.extend(shape_columns());
+    heads.extend(figures.iter().map(|figure| {
+        let (name, unit) = figure.words();
+        Column::number(name, unit)
+    }));
+    heads.push(Column::text("not to be told from"));
+    let caption = "Designs of the front, best in the first goal first; ± is half of the 95 % interval from the standard \
+         uncertainties of the rod's numbers. Designs that differ in no goal by more than is known of their difference \
+         cannot be told apart.";
+    let mut table = Table::new("front", caption, heads);
+    for shown in &study.shown {
+        let mut cells = vec![(shown.place + 1).to_string(), shown.tubes.join(" + ")];
+        cells.extend(shape_cells(&shown.rod));
+        cells.extend(figures.iter().map(|figure| known(shown, *figure)));
+        cells.push(places(&shown.indistinguishable));
+        table.row(cells);
+    }
+    if let Some(base) = &study.base {
+        let mut cells = vec![format!("rod {}", base.rod.name), String::new()];
+        cells.extend(shape_cells(&base.rod));
+        let value =
+            |figure: &Figure| base.figures.get(*figure).map_or("–".to_owned(), |v| significant(v, DIGITS));
+        cells.extend(figures.iter().map(value));
+        cells.push(String::new());
+        table.row(cells);
+    }
+    table
+}
+
+fn known(shown: &Shown, figure: Figure) -> String {
+    let Some(value) = shown.design.figures.get(figure) else { return "–".into() };
+    let half = shown.intervals.half.get(figure).unwrap_or(0.0);
+    match half > 0.0 {
+        true => format!("{} ± {}", significant(value, DIGITS), significant(half, 2)),
+        false => significant(value, DIGITS),
+    }
+}
+
+/// `2, 3, 5 and 4 more`.
+fn places(all: &[usize]) -> String {
+    const NAMED: usize = 4;
+    let named: Vec<String> = all.iter().take(NAMED).map(|place| (place + 1).to_string()).collect();
+    match all.len().saturating_sub(NAMED) {
+        0 => named.join(", "),
+        more => format!("{} and {more} more", named.join(", ")),
+    }
+}
+
+fn nearest(study: &Study) -> Vec<Block> {
+    let Some(nearest) = &study.found.nearest else { return Vec::new() };
+    let mut heads = vec![Column::text("limit"), Column::number("stated", ""), Column::number("needed", "")];
+    heads.extend(shape_columns());
+    let caption =
+        "Limits that stand in the way alone: with what is needed here, the rod beside it keeps all others.";
+    let mut table = Table::new("relax", caption, heads);
+    for relaxed in &nearest.one_limit {
+        let mut cells = vec![
+            relaxed.limit.key.to_owned(),
+            significant(relaxed.limit.value, DIGITS),
+            needed(&relaxed.limit, relaxed.to),
+        ];
+        if let Ok(rod) = study.wish.rod(relaxed.design.index) {
+            cells.extend(shape_cells(&rod));
+        }
+        table.row(cells);
+    }
+    let mut blocks = Vec::new();
+    if !nearest.one_limit.is_empty() {
+        blocks.push(Block::Table(table));
+    }
+    if let Some((design, worst)) = &nearest.all_limits {
+        let shape = study.wish.rod(design.index).map_or_else(
+            |_| String::new(),
+            |rod| {
+                format!(
+                    " (L1 {} mm, L2 {} mm, tube {})",
+                    significant(rod.l1 / MM, 4),
+                    significant(rod.l2 / MM, 4),
+                    tube_of(study, design)
+                )
+            },
+        );
+        blocks.push(Block::Paragraph(format!(
+            "The design that breaks its worst limit by the smallest share{shape} is {} % beyond it.",
+            significant(100.0 * worst, 2)
+        )));
+    }
+    if blocks.is_empty() {
+        blocks.push(Block::Paragraph("No combination is a rod.".into()));
+    }
+    blocks
+}
+
+fn tube_of(study: &Study, design: &Design) -> String {
+    study.wish.tubes_of(design.index).join(" + ")
+}
+
+fn looked_at(study: &Study) -> Vec<Block> {
+    let found = &study.found;
+    let caption = "Rods by what they break. A rod counts for every limit that it breaks; its frequency is looked at only \
+         where it keeps all others.";
+    let mut table =
+        Table::new("infeasible", caption, vec![Column::text("because of"), Column::number("rods", "")]);
+    for (limit, count) in study.wish.limits.iter().zip(&found.broken) {
+        table.row(vec![format!("{} = {}", limit.key, significant(limit.value, DIGITS)), count.to_string()]);
+    }
+    for (why, count) in Impossible::ALL.iter().zip(found.impossible).filter(|(_, count)| *count > 0) {
+        table.row(vec![why.words().to_owned(), count.to_string()]);
+    }
+    let mut blocks = vec![Block::Paragraph(format!(
+        "{} of {} were looked at, with tubes from a catalogue of {}; {} all limits.",
+        found.evaluated,
+        count(study.wish.combinations(), "combination"),
+        study.wish.tubes.len(),
+        verb(found.feasible)
+    ))];
+    if !study.wish.limits.is_empty() || found.impossible.iter().any(|count| *count > 0) {
+        blocks.push(Block::Table(table));
+    }
+    blocks
+}
+
+/// `designs.csv`: every design of the front, and the shown rods as rod files.
+///
+/// # Errors
+/// What the writer of tables refuses.
+pub fn files(study: &Study) -> Result<Vec<(String, Vec<u8>)>> {
+    let mut heads = vec![Column::text("tube")];
+    heads.extend(
+        ["l1_mm", "l2_mm", "gamma_deg", "bend_radius_mm", "tip_mass_g"].map(|key| Column::number(key, "")),
+    );
+    let figures: Vec<Figure> = Figure::ALL
+        .into_iter()
+        .filter(|figure| study.found.front.iter().any(|design| design.figures.get(*figure).is_some()))
+        .collect();
+    heads.extend(figures.iter().map(|figure| Column::number(figure.key(), "")));
+    let mut table = Table::new("front", "", heads);
+    for design in &study.found.front {
+        let Ok(rod) = study.wish.rod(design.index) else { continue };
+        let mut cells = vec![tube_of(study, design)];
+        let shape = [rod.l1 / MM, rod.l2 / MM, rod.gamma / DEG, rod.bend_radius / MM, rod.tip_mass / GRAM];
+        cells.extend(shape.map(|value| significant(value, 9)));
+        cells.extend(
+            figures.iter().map(|figure| {
+                design.figures.get(*figure).map_or(String::new(), |value| significant(value, 9))
+            }),
+        );
+        table.row(cells);
+    }
+    let mut files = vec![("designs.csv".to_owned(), table.csv()?.into_bytes())];
+    let above = [format!(
+        "A design for {}; its numbers are those of the design file and its catalogue.",
+        study.wish.file
+    )];
+    let of_rod = |shown: &Shown| {
+        (format!("design-{:03}.toml", shown.place + 1), shown.rod.to_toml(&above).into_bytes())
+    };
+    files.extend(study.shown.iter().map(of_rod));
+    Ok(files)
+}

@@ -47,7 +47,7 @@ use nalgebra::{DMatrix, DVector};
 
 use self::action::{Action, State};
 use self::cases::Cases;
-use self::effects::{Context, registry};
+use self::effects::{Context, registry, zeros::ZERO_NOT_TAKEN};
 use self::slide::Course;
 use self::structure::Structure;
 use crate::error::{Error, Place, Result};
@@ -365,7 +365,8 @@ impl RigModel {
         let mut context = Context { data: &self.data, body: &mut self.body, rod: self.rod.as_ref() };
         let has_rod = context.rod.is_some();
         let mut entries = Vec::new();
-        for effect in registry::ALL.into_iter().filter(|effect| has_rod || !effect.needs_rod) {
+        let all = registry::ALL.into_iter().chain([&ZERO_NOT_TAKEN]);
+        for effect in all.filter(|effect| has_rod || !effect.needs_rod) {
             if wanted.includes(&effect.effect) {
                 entries.extend((effect.candidates)(&mut context));
             }

@@ -48,7 +48,7 @@ pub fn diagnose(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
     let mut parts: Vec<(Theme, FindingPart)> = (0..hypothesis.terms.len())
         .map(|position| {
             let candidate = &model.candidates()[hypothesis.terms[position].candidate];
-            (Theme::new(candidate), part(model, &search, &hypothesis, position))
+            (Theme::new(candidate), part(model, &search, &hypothesis, position, beside(&left_over)))
         })
         .collect();
     parts.sort_by(|(_, a), (_, b)| b.explains.total_cmp(&a.explains));
@@ -221,12 +221,29 @@ fn findings(
             Kind::Physics | Kind::Mistake => finding.held_out_loss.unwrap_or(explained),
         }
     };
-    findings.sort_by(|a, b| strength(b).total_cmp(&strength(a)));
+    // a mistake is undone before anything else is believed
+    let is_physics = |finding: &Finding| finding.kind() != Kind::Mistake;
+    findings.sort_by(|a, b| is_physics(a).cmp(&is_physics(b)).then(strength(b).total_cmp(&strength(a))));
     findings
 }
 
-/// One term with its interval and its rivals.
-fn part(model: &Linearised<'_>, search: &Search, hypothesis: &Hypothesis, position: usize) -> FindingPart {
+/// The hypothesis with what it leaves unexplained beside it.
+fn beside(left_over: &Option<DiscrepancyModel>) -> Option<&Hypothesis> {
+    match left_over {
+        Some(DiscrepancyModel::Curve(longer)) => Some(longer),
+        _ => None,
+    }
+}
+
+/// One term with its interval and its rivals. What is left unexplained, a curve of the hypothesis `beside`, may be a part of it
+/// or not: the interval holds both.
+fn part(
+    model: &Linearised<'_>,
+    search: &Search,
+    hypothesis: &Hypothesis,
+    position: usize,
+    beside: Option<&Hypothesis>,
+) -> FindingPart {
     let term = &hypothesis.terms[position];
     let candidates = model.candidates();
     let rest = search.without(hypothesis, position);
@@ -234,6 +251,11 @@ fn part(model: &Linearised<'_>, search: &Search, hypothesis: &Hypothesis, positi
     let degrees_of_freedom = (search.degrees_of_freedom() as f64 - hypothesis.determined).max(1.0);
     let coverage_factor = student_t_quantile(0.975, degrees_of_freedom).unwrap_or(1.96);
     let mut estimates = intervals(model, hypothesis, term, first, coverage_factor);
+    let own =
+        |other: &Hypothesis| other.terms.get(position).filter(|own| own.candidate == term.candidate).cloned();
+    if let Some((longer, own)) = beside.and_then(|longer| Some((longer, own(longer)?))) {
+        widen(&mut estimates, intervals(model, longer, &own, first, coverage_factor));
+    }
     // which form of a law is the right one is not known where another one leaves hardly more
     for form in search.other_forms(term.candidate) {
         let other = search.with(&rest, form);
@@ -242,10 +264,7 @@ fn part(model: &Linearised<'_>, search: &Search, hypothesis: &Hypothesis, positi
         }
         let Some(own) = other.terms.last() else { continue };
         let at = other.covariance.nrows() - own.values.len();
-        let of_other = intervals(model, &other, own, at, coverage_factor);
-        for (known, other) in estimates.iter_mut().zip(of_other) {
-            (known.low, known.high) = (known.low.min(other.low), known.high.max(other.high));
-        }
+        widen(&mut estimates, intervals(model, &other, own, at, coverage_factor));
     }
     // candidates that would do in its place
     let additions = search.additions(&rest);
@@ -283,6 +302,13 @@ fn part(model: &Linearised<'_>, search: &Search, hypothesis: &Hypothesis, positi
         p_value: chi_squared_survival(gained.max(0.0), determined).unwrap_or(1.0),
         explains: rms(&model.response(std::slice::from_ref(term))),
         rivals,
+    }
+}
+
+/// Makes intervals hold those of another hypothesis.
+fn widen(estimates: &mut [Estimate], others: Vec<Estimate>) {
+    for (known, other) in estimates.iter_mut().zip(others) {
+        (known.low, known.high) = (known.low.min(other.low), known.high.max(other.high));
     }
 }
 

@@ -1,12 +1,14 @@
 //! Which of the effects that make a hypothesis most probable are worth a name.
 
+use std::collections::BTreeSet;
+
 use nalgebra::DVector;
 
 use super::Hypothesis;
 use super::background::size_offsets;
 use super::evidence::rms;
 use super::linearised::Linearised;
-use super::scatter::Tails;
+use super::scatter::{OFF, SUSPECT, weighted};
 use super::search::Search;
 use super::selection::{DiscrepancyModel, Pairs};
 use super::whitening::Whitening;
@@ -29,9 +31,10 @@ pub fn settled(model: &Linearised<'_>, evidence: &Evidence) -> Evidence {
     let whitening = Whitening::new(&evidence, &evidence.residual);
     let is_plain = !evidence.is_robust && evidence.offsets.ncols() == 0;
     if is_plain && !whitening.is_of_shared_errors() {
-        evidence.shared_ratio = Some(whitening.ratio);
+        (evidence.shared_ratio, evidence.correlation) = (Some(whitening.ratio), Some(whitening.correlation));
         return evidence;
     }
+    let mut off: BTreeSet<usize> = BTreeSet::new();
     for pass in 0..PASSES {
         let search = Search::new(model, &evidence, &known);
         let (hypothesis, left_over) = search.best(Pairs::Screened);
@@ -41,31 +44,40 @@ pub fn settled(model: &Linearised<'_>, evidence: &Evidence) -> Evidence {
             _ => &hypothesis,
         };
         let residual = search.plain_residual(longest);
-        let weight = match evidence.is_robust {
-            true => Tails::of(&residual).weights(&residual),
-            false => evidence.weight.clone(),
+        let (mut weight, information) = match evidence.is_robust {
+            true => weighted(&residual),
+            false => (evidence.weight.clone(), 1.0),
         };
+        if evidence.is_robust {
+            // what was found far off stays so while it is
+            off.retain(|&datum| residual[datum].abs() > SUSPECT * longest.sigma);
+            off.extend(search.misread(&hypothesis));
+            off.iter().for_each(|&datum| weight[datum] = OFF);
+        }
         let is_same_weight = weight
             .iter()
             .zip(&evidence.weight)
             .all(|(new, old)| (new.sqrt() - old.sqrt()).abs() < SAME_WEIGHT);
         let candidates = |terms: &[Term]| terms.iter().map(|t| t.candidate).collect::<Vec<_>>();
-        let is_same = candidates(&known) == candidates(&hypothesis.terms);
-        let ratio = search.shared_ratio();
+        let is_same = candidates(&known) == candidates(&longest.terms);
+        let (ratio, correlation) = (search.shared_ratio(), search.correlation());
         let noise = longest.sigma;
-        known = hypothesis.terms;
+        known = longest.terms.clone();
         let has_shared = search.whitening.is_of_shared_errors();
         evidence.weight = if is_same_weight { evidence.weight } else { weight };
+        evidence.information = information;
         let is_settled = pass > 0 && is_same_weight && (is_same || !has_shared);
         size_offsets(&mut evidence, noise);
         if is_settled || pass + 1 == PASSES {
-            evidence.shared_ratio = Some(match is_settled {
-                true => ratio,
+            let (ratio, correlation) = match is_settled {
+                true => (ratio, correlation),
                 false => {
                     let left = &evidence.residual - model.response(&known);
-                    Whitening::new(&evidence, &left).ratio
+                    let whitening = Whitening::new(&evidence, &left);
+                    (whitening.ratio, whitening.correlation)
                 }
-            });
+            };
+            (evidence.shared_ratio, evidence.correlation) = (Some(ratio), Some(correlation));
             break;
         }
     }

@@ -19,6 +19,7 @@ pub(super) mod sensor;
 pub(super) mod structure;
 #[cfg(test)]
 mod tests;
+pub(super) mod zeros;
 
 use super::action::Action;
 use super::datum::Datum;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use nalgebra::{DMatrix, DVector};
 
 use super::action::{Action, State};
-use super::effects::registry;
+use super::effects::{registry, zeros::ZERO_NOT_TAKEN};
 use super::{Body, RigModel, STATION, is_dependent};
 use crate::inference::{
     Candidate, DERIVATIVE_STEP, Description, Estimate, Finding, FindingPart, ForwardModel, Hypothesis,
@@ -112,7 +112,8 @@ impl ForwardModel for RigModel {
     }
 
     fn describe(&self, finding: &Finding) -> Description {
-        let own = registry::ALL.into_iter().find(|known| &known.effect == finding.effect);
+        let mut all = registry::ALL.into_iter().chain([&ZERO_NOT_TAKEN]);
+        let own = all.find(|known| &known.effect == finding.effect);
         let observed = own.map_or_else(
             || format!("{} at {}", finding.effect.spoken(), finding.location),
             |effect| (effect.observed)(finding, self),

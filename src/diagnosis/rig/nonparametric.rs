@@ -11,6 +11,10 @@
 //! of one line or channel (s a share of what was read there), or it multiplies the deflections of all lines at once (s a share of
 //! them), or, over the load, it adds to what is read along the load on all lines: then physics that acts on all lines alike, such
 //! as relaxation with one time constant or a seat that gives way, is one rival and not many.
+//!
+//! What comes and goes in time has finer curves besides, of [`FINE`] columns of which the first half are of one size.
+
+mod before;
 
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -19,6 +23,7 @@ use std::collections::HashMap;
 
 use nalgebra::{DMatrix, DVector};
 
+use self::before::Before;
 use super::action::{Action, Weights};
 use super::datum::{Datum, numbered};
 use super::effects::Entry;
@@ -28,6 +33,8 @@ use crate::spatial::Axis;
 use crate::units::UM;
 
 const MOST_COLUMNS: usize = 6;
+/// Columns of a curve in time that swings: six periods in a recording.
+const FINE: usize = 14;
 /// Loads that are hung are at most so many different ones.
 const MOST_LEVELS: usize = 30;
 /// Size of a curve as a share of the largest reading, or of the deflection.
@@ -66,11 +73,20 @@ const FALLING: Along = Along {
 const ORDER: Along =
     Along { name: "order", follows: "follows the order of the readings", variable: Variable::Order };
 const TIME: Along = Along { name: "time", follows: "follows the time", variable: Variable::Time };
+const SINCE_CHANGE: Along = Along {
+    name: "time since the load was changed",
+    follows: "follows the time since the load was changed",
+    variable: Variable::TimeInRun,
+};
+const LOAD_BEFORE: Along =
+    Along { name: "load before", follows: "follows the load that hung before", variable: Variable::Order };
 const TEMPERATURE: Along =
     Along { name: "temperature", follows: "follows the temperature", variable: Variable::Temperature };
 
 /// The place of a curve that multiplies all deflections.
 const ALL_DEFLECTIONS: &str = "all deflections";
+/// The same of what all deflections change by from one reading to the next.
+const CHANGES: &str = "all changes of deflections";
 
 impl Along {
     /// `follows the load (all readings alike)`.
@@ -102,6 +118,7 @@ pub(super) fn all(data: &[Datum], deflections: &[f64], has_rod: bool) -> Vec<Ent
         format!("d{} under loads along {}{}", d.channel, d.direction.axis, places(d))
     });
     let channels = groups(data, &numbered(data.iter().map(|d| d.channel)), &|d| format!("d{}", d.channel));
+    let clock = if data.iter().any(|d| d.time.is_some()) { Variable::Time } else { Variable::Order };
     let mut entries = Vec::new();
     for (along, coordinate, is_of_line) in coordinates(data) {
         entries.extend(curve(along, ALL_DEFLECTIONS, &coordinate, &everything, PERCENT, SHARE, |i| {
@@ -111,7 +128,28 @@ pub(super) fn all(data: &[Datum], deflections: &[f64], has_rod: bool) -> Vec<Ent
             let largest = group.iter().fold(0.0, |max: f64, &i| max.max(data[i].measured.abs()));
             let size = (SHARE * largest).max(LEAST_SHIFT * largest_reading(data));
             entries.extend(curve(along, place, &coordinate, group, UM, size, |_| 1.0));
+            if along.variable == clock && !is_of_line {
+                entries.extend(fine(along, place, &coordinate, group, size));
+            }
         }
+    }
+    let before = Before::of(data);
+    if let Some(waits) = before.waits() {
+        let changes = before.changes(data, deflections);
+        entries.extend(curve(SINCE_CHANGE, CHANGES, &scaled(&waits), &everything, PERCENT, SHARE, |i| {
+            changes[i]
+        }));
+    }
+    if let Some(loads) = before.loads(data) {
+        entries.extend(curve(
+            LOAD_BEFORE,
+            ALL_DEFLECTIONS,
+            &scaled(&loads),
+            &everything,
+            PERCENT,
+            SHARE,
+            |i| deflections[i],
+        ));
     }
     entries.extend(along_the_load(data));
     if has_rod {
@@ -259,18 +297,40 @@ fn curve(
     size: f64,
     amplitude: impl Fn(usize) -> f64,
 ) -> Option<Entry> {
+    let sizes: Vec<f64> = (0..MOST_COLUMNS).map(|j| size / (1 + j) as f64).collect();
+    cosines(&format!("{}, {place}", along.name), (along, place), (coordinate, group), unit, &sizes, amplitude)
+}
+
+/// A curve in time that swings; nothing where too few times are known to see that.
+fn fine(along: Along, place: &str, coordinate: &Coordinate, group: &[usize], size: f64) -> Option<Entry> {
+    let times = numbered(group.iter().filter_map(|&i| coordinate[i]).map(f64::to_bits));
+    (times.into_iter().max()? >= 2 * FINE).then_some(())?;
+    let even = (FINE / 2) as f64;
+    let sizes: Vec<f64> = (0..FINE).map(|j| size / (1.0 + j as f64 / even).powi(2)).collect();
+    let label = format!("{}, in swings, {place}", along.name);
+    cosines(&label, (along, place), (coordinate, group), UM, &sizes, |_| 1.0)
+}
+
+/// Σ_j a_j·cos(π j x), a_j of these sizes; of fewer values than columns as many columns.
+fn cosines(
+    label: &str,
+    (along, place): (Along, &str),
+    (coordinate, group): (&Coordinate, &[usize]),
+    unit: f64,
+    sizes: &[f64],
+    amplitude: impl Fn(usize) -> f64,
+) -> Option<Entry> {
     let known: Vec<(usize, f64)> = group.iter().filter_map(|&i| Some((i, coordinate[i]?))).collect();
     let different = numbered(known.iter().map(|(_, x)| x.to_bits())).into_iter().max()? + 1;
-    let columns = different.min(MOST_COLUMNS);
     let own: Arc<[usize]> = known.iter().map(|(i, _)| *i).collect();
-    let (parameters, actions) = (0..columns)
+    let suffix = if unit == PERCENT { "percent" } else { "um" };
+    let (parameters, actions) = (0..different.min(sizes.len()))
         .map(|j| {
-            let suffix = if unit == PERCENT { "percent" } else { "um" };
             let parameter = Parameter {
                 name: format!("cosine_{j}_{suffix}"),
                 unit,
                 neutral: 0.0,
-                size: size / (1 + j) as f64,
+                size: sizes[j],
                 bounds: (f64::NEG_INFINITY, f64::INFINITY),
             };
             let weight = |&(i, x): &(usize, f64)| amplitude(i) * (PI * j as f64 * x).cos();
@@ -278,8 +338,11 @@ fn curve(
             (parameter, Action::Shift(Weights { data: Arc::clone(&own), values }))
         })
         .unzip();
-    let label = format!("{}, {place}", along.name);
-    let location = Location::Curve { label, follows: along.follows(place), along: Some(along.variable) };
+    let location = Location::Curve {
+        label: label.to_owned(),
+        follows: along.follows(place),
+        along: Some(along.variable),
+    };
     Some((rival(location, parameters), actions))
 }
 

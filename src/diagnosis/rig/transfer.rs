@@ -17,7 +17,7 @@ pub(super) struct Transferred {
 }
 
 impl RigModel {
-    /// Terms of `from` in this model. What belongs to single rows (slips, outliers) does not happen again.
+    /// Terms of `from` in this model. What happened once (a slip, a zero that was not taken) does not happen again.
     pub(super) fn transferred(&self, from: &RigModel, terms: &[Term]) -> Transferred {
         let (mut transferred, mut known, mut first) = (Vec::new(), Vec::new(), 0);
         for effect in terms {
@@ -43,7 +43,7 @@ impl RigModel {
 pub(super) fn is_same(new: &Candidate, old: &Candidate) -> bool {
     (&new.effect, &new.location) == (&old.effect, &old.location)
         && !new.is_nonparametric
-        && old.effect.kind != Kind::Event
+        && old.effect.kind == Kind::Physics
         && new.parameters.iter().any(|p| old.parameters.iter().any(|q| q.name == p.name))
 }
 

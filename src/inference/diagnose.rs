@@ -1,5 +1,7 @@
 //! The diagnosis: is there a mismatch, what is it, what could it be as well, and what remains.
 
+use std::collections::BTreeMap;
+
 use nalgebra::DVector;
 
 use super::background;
@@ -9,7 +11,7 @@ use super::held_out::{Theme, hold_out};
 use super::linearised::Linearised;
 use super::locate::locate;
 use super::pruning::{infer, settled};
-use super::scatter::{NoiseTest, Tails};
+use super::scatter::{NoiseTest, Suspect, Tails};
 use super::search::Search;
 use super::selection::{DiscrepancyModel, Pairs};
 use super::sessions::leave_one_session_out;
@@ -94,7 +96,9 @@ pub fn diagnose(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
         discrepancy = Some(Discrepancy { candidate: None, location: None, shown_by, rms, shape });
     }
     // many that are far off are no single ones
-    if discrepancy.is_none() && suspects.len() > suspects_at_most(evidence.recorded) {
+    if discrepancy.is_none()
+        && (suspects.len() > suspects_at_most(evidence.recorded) || are_together(evidence, &suspects))
+    {
         let (rms, shape) = (rms(&after), after.clone());
         let shown_by = ShownBy::Suspects;
         discrepancy = Some(Discrepancy { candidate: None, location: None, shown_by, rms, shape });
@@ -129,6 +133,20 @@ pub fn diagnose(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
         after,
         hypothesis,
     }
+}
+
+/// True where neighbours of a run are far off to one side: so many that they are no single ones, or the run as a whole.
+fn are_together(evidence: &Evidence, suspects: &[Suspect]) -> bool {
+    const TOGETHER: usize = 3;
+    let side: BTreeMap<usize, bool> = suspects.iter().map(|s| (s.datum, s.sigma > 0.0)).collect();
+    let mut runs: BTreeMap<usize, Vec<Option<bool>>> = BTreeMap::new();
+    for (datum, &run) in evidence.shared.iter().enumerate().take(evidence.recorded) {
+        runs.entry(run).or_default().push(side.get(&datum).copied());
+    }
+    runs.values().any(|run| {
+        let mut of_one_side = run.chunk_by(|a, b| a == b).filter(|part| part[0].is_some());
+        of_one_side.any(|part| part.len() >= TOGETHER || (part.len() > 1 && part.len() == run.len()))
+    })
 }
 
 /// Of so many data that many may be far off by themselves: a tenth, three at least.

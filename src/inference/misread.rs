@@ -8,17 +8,52 @@
 //! ln p(rest, data off) = ln p(r | rest, e₁ … eₖ) + ln prior(rest) + k·ln(library/none/n)
 //! ```
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::{DMatrix, DVector};
 
-use super::Hypothesis;
+use super::scatter::{MOST_ALONE, SUSPECT};
 use super::search::{PRIOR, Search};
+use super::{Evidence, Hypothesis};
+use crate::statistics::median;
 
 /// Most data that may stand for one effect.
 const MOST: usize = 3;
+/// Standard deviation of a datum, over the median size of what repeats are off their median: twice that of a normal
+/// distribution, for medians of a few are near to their data.
+const FAR: f64 = 3.0;
 /// Size of such an error, in the hypothesis's noise: what is far off is usually so.
 const USUAL: f64 = 10.0;
+
+/// Fewer repeats do not show which one of them is off.
+const FEWEST: usize = 3;
+
+/// Single data far off the median of their repeats, as long as they are few and no two of a run are neighbours: until something
+/// explains them they are misread. What every repeat shows stays.
+pub(super) fn unlike_repeats(evidence: &Evidence) -> BTreeSet<usize> {
+    let mut repeats: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    for (datum, &group) in evidence.replicate_group.iter().enumerate().take(evidence.recorded) {
+        repeats.entry(group).or_default().push(datum);
+    }
+    let mut deviations: Vec<(usize, f64)> = Vec::new();
+    for data in repeats.into_values().filter(|data| data.len() >= FEWEST) {
+        let values: Vec<f64> = data.iter().map(|&datum| evidence.residual[datum]).collect();
+        let Some(middle) = median(&values) else { continue };
+        deviations.extend(data.iter().zip(values).map(|(&datum, value)| (datum, value - middle)));
+    }
+    let sizes: Vec<f64> = deviations.iter().map(|(_, deviation)| deviation.abs()).collect();
+    let Some(usual) = median(&sizes) else { return BTreeSet::new() };
+    let is_far = |deviation: f64| usual > 0.0 && deviation.abs() > FAR * SUSPECT * usual;
+    let far: BTreeSet<usize> =
+        deviations.into_iter().filter(|(_, deviation)| is_far(*deviation)).map(|(datum, _)| datum).collect();
+    let mut last: BTreeMap<usize, usize> = BTreeMap::new();
+    let mut are_neighbours = false;
+    for (datum, group) in evidence.shared.iter().enumerate() {
+        let before = last.insert(*group, datum);
+        are_neighbours |= far.contains(&datum) && before.is_some_and(|before| far.contains(&before));
+    }
+    if far.len() > MOST_ALONE || are_neighbours { BTreeSet::new() } else { far }
+}
 
 impl Search<'_> {
     /// Data that, off each by itself, explain at least as much as an effect of a hypothesis does.

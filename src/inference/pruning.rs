@@ -8,6 +8,7 @@ use super::Hypothesis;
 use super::background::size_offsets;
 use super::evidence::rms;
 use super::linearised::Linearised;
+use super::misread::unlike_repeats;
 use super::scatter::{OFF, SUSPECT, weighted};
 use super::search::Search;
 use super::selection::{DiscrepancyModel, Pairs};
@@ -34,7 +35,11 @@ pub fn settled(model: &Linearised<'_>, evidence: &Evidence) -> Evidence {
         (evidence.shared_ratio, evidence.correlation) = (Some(whitening.ratio), Some(whitening.correlation));
         return evidence;
     }
-    let mut off: BTreeSet<usize> = BTreeSet::new();
+    let mut off: BTreeSet<usize> = match evidence.is_robust {
+        true => unlike_repeats(&evidence),
+        false => BTreeSet::new(),
+    };
+    off.iter().for_each(|&datum| evidence.weight[datum] = OFF);
     for pass in 0..PASSES {
         let search = Search::new(model, &evidence, &known);
         let (hypothesis, left_over) = search.best(Pairs::Screened);
@@ -51,7 +56,7 @@ pub fn settled(model: &Linearised<'_>, evidence: &Evidence) -> Evidence {
         if evidence.is_robust {
             // what was found far off stays so while it is
             off.retain(|&datum| residual[datum].abs() > SUSPECT * longest.sigma);
-            off.extend(search.misread(&hypothesis));
+            off.extend(search.misread(longest));
             off.iter().for_each(|&datum| weight[datum] = OFF);
         }
         let is_same_weight = weight

@@ -25,7 +25,7 @@ const FEWEST: usize = 10;
 pub(super) const OFF: f64 = 1e-6;
 /// Data far off are single ones up to this share of all, or this number.
 const FEW: usize = 30;
-const MOST_ALONE: usize = 3;
+pub(super) const MOST_ALONE: usize = 3;
 /// A single datum so many scales out is a suspect.
 pub(super) const SUSPECT: f64 = 5.0;
 

@@ -16,11 +16,15 @@ use super::lack_of_fit::{LackOfFit, Replicates};
 use super::linearised::Linearised;
 use super::score::{ColumnBlock, Moments, Score};
 use super::whitening::Whitening;
-use super::{Candidate, Effect, Evidence, ForwardModel, Hypothesis, Term};
+use super::{Candidate, Effect, Evidence, ForwardModel, Hypothesis, Kind, Term};
 use crate::linalg::transposed_product;
 
 /// Prior probability that the next effect is none, one of the library, or one that nobody has named.
 pub(super) const PRIOR: (f64, f64, f64) = (0.5, 0.4, 0.1);
+/// Share of it that a mistake has: it is named at odds of 1000, where an effect is at 50.
+const MISTAKE: f64 = 0.05;
+/// A mistake is so many times as large as what readings scatter by.
+const MISTAKEN: f64 = 10.0;
 /// Of how many candidates, the likeliest, and the likeliest of each effect besides, the evidence is computed exactly.
 const SCORED: usize = 6;
 /// Steps of one sequence are so many data apart at least.
@@ -113,7 +117,10 @@ impl<'a> Search<'a> {
             }
             scored = self.moments(&terms).score();
         }
-        let prior: f64 = terms.iter().map(|c| self.prior[c.candidate]).sum();
+        let mut prior: f64 = terms.iter().map(|c| self.prior[c.candidate]).sum();
+        if terms.iter().any(|term| self.is_lost_in_noise(term, scored.sigma)) {
+            prior = f64::NEG_INFINITY;
+        }
         let sizes = DMatrix::from_diagonal(&self.sizes(&terms));
         let own = scored.covariance.view((background, background), (sizes.nrows(), sizes.ncols()));
         Hypothesis {
@@ -125,6 +132,17 @@ impl<'a> Search<'a> {
             determined: scored.determined,
             terms,
         }
+    }
+
+    /// True for a mistake that is no larger than readings and their zeros scatter anyway: nobody made it.
+    fn is_lost_in_noise(&self, term: &Term, sigma: f64) -> bool {
+        if self.model.candidates()[term.candidate].effect.kind != Kind::Mistake {
+            return false;
+        }
+        let response = self.model.response(std::slice::from_ref(term));
+        let concerned = response.iter().filter(|change| **change != 0.0).count();
+        let rms = response.norm() / (concerned.max(1) as f64).sqrt();
+        rms < MISTAKEN * sigma * (1.0 + self.whitening.ratio).sqrt()
     }
 
     /// About the ln of what adding each candidate to `hypothesis` does to its probability, by the candidate's columns at its
@@ -518,7 +536,11 @@ fn priors(candidates: &[Candidate]) -> Vec<f64> {
         .iter()
         .map(|candidate| {
             let places = places[&(candidate.effect.name, candidate.is_nonparametric)];
-            let share = if candidate.is_nonparametric { unknown / unnamed } else { library / known };
+            let share = match candidate.is_nonparametric {
+                true => unknown / unnamed,
+                false if candidate.effect.kind == Kind::Mistake => MISTAKE * library / known,
+                false => library / known,
+            };
             (share * candidate.weight / places / none).ln()
         })
         .collect()

@@ -8,7 +8,7 @@ use super::action::{Action, State};
 use super::effects::{registry, zeros::ZERO_NOT_TAKEN};
 use super::{Body, RigModel, STATION, is_dependent};
 use crate::inference::{
-    Candidate, DERIVATIVE_STEP, Description, Estimate, Finding, FindingPart, ForwardModel, Hypothesis,
+    Candidate, DERIVATIVE_STEP, Description, Estimate, Finding, FindingPart, ForwardModel, Hypothesis, Kind,
     Location, Step, Term,
 };
 
@@ -118,7 +118,9 @@ impl ForwardModel for RigModel {
             || format!("{} at {}", finding.effect.spoken(), finding.location),
             |effect| (effect.observed)(finding, self),
         );
-        Description { observed, cause: finding.effect.cause.to_owned() }
+        // the correction of a mistake says what it is
+        let cause = if finding.kind() == Kind::Mistake { "" } else { finding.effect.cause };
+        Description { observed, cause: cause.to_owned() }
     }
 }
 

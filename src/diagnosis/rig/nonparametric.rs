@@ -15,6 +15,7 @@
 //! What comes and goes in time has finer curves besides, of [`FINE`] columns of which the first half are of one size.
 
 mod before;
+mod swing;
 
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -124,6 +125,9 @@ pub(super) fn all(data: &[Datum], deflections: &[f64], has_rod: bool) -> Vec<Ent
         entries.extend(curve(along, ALL_DEFLECTIONS, &coordinate, &everything, PERCENT, SHARE, |i| {
             deflections[i]
         }));
+        if along.variable == clock && !is_of_line {
+            entries.extend(swing::all(along, &coordinate, data));
+        }
         for (place, group) in if is_of_line { &lines } else { &channels } {
             let largest = group.iter().fold(0.0, |max: f64, &i| max.max(data[i].measured.abs()));
             let size = (SHARE * largest).max(LEAST_SHIFT * largest_reading(data));

@@ -168,7 +168,7 @@ impl Trial<'_> {
         let Verdict { log_evidence, log_scale } = self.search.seen(self.physics(&change)?, &change).verdict();
         let is_within = moves.iter().all(|&number| log_scale.abs() <= self.moves[number].within.ln());
         let prior: f64 = moves.iter().map(|&number| RARE + self.moves[number].log_prior).sum();
-        let score = log_evidence + prior;
+        let score = log_evidence + prior - self.search.bent_too_far(&change);
         (is_within || moves.is_empty()).then_some(State { moves, change, log_scale, score })
     }
 

@@ -22,35 +22,35 @@ const CORRELATIONS: [f64; 7] = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7];
 const RATIOS: [f64; 10] = [0.0, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 30.0, 100.0];
 /// Ln of the likelihood ratio from which on neighbours resemble each other.
 const WORTH: f64 = 3.0;
+/// What a datum far off counts at most.
+const HARDLY: f64 = 1e-3;
 /// Fewer repeated data say nothing.
 const FEWEST: usize = 20;
 
-/// What each datum is off the mean of its repeats, scaled to the variance of a datum: r repeats leave (r − 1)/r of it. Nothing
-/// for what was not repeated.
+/// What each datum is off the mean of its repeats, as much as it counts, scaled to the variance of a datum: r repeats leave
+/// (r − 1)/r of it. Nothing for what was not repeated, or hardly counts: what is far off says nothing of the others.
 pub(super) fn deviations(evidence: &Evidence, left: &DVector<f64>) -> Vec<Option<f64>> {
+    let counts = |row: usize| evidence.weight[row] > HARDLY;
     let mut replicates: BTreeMap<usize, (f64, f64)> = BTreeMap::new();
-    for (row, &group) in evidence.replicate_group.iter().enumerate() {
+    for (row, &group) in evidence.replicate_group.iter().enumerate().filter(|(row, _)| counts(*row)) {
         let (sum, count) = replicates.entry(group).or_default();
         (*sum, *count) = (*sum + left[row], *count + 1.0);
     }
     let off = |(row, group): (usize, &usize)| {
-        let (sum, repeats) = replicates[group];
-        (repeats > 1.0).then(|| (left[row] - sum / repeats) * (repeats / (repeats - 1.0)).sqrt())
+        let (sum, repeats) = *replicates.get(group)?;
+        let scale = (evidence.weight[row] * repeats / (repeats - 1.0)).sqrt();
+        (counts(row) && repeats > 1.0).then(|| (left[row] - sum / repeats) * scale)
     };
     evidence.replicate_group.iter().enumerate().map(off).collect()
 }
 
-/// Those of each run that was repeated as a whole, with how much they count.
+/// Those of each run.
 pub(super) fn by_group(evidence: &Evidence, deviations: &[Option<f64>]) -> Vec<Vec<f64>> {
-    let mut groups: BTreeMap<usize, Option<Vec<f64>>> = BTreeMap::new();
-    for (row, deviation) in deviations.iter().enumerate() {
-        let own = groups.entry(evidence.shared[row]).or_insert_with(|| Some(Vec::new()));
-        match (own.as_mut(), deviation) {
-            (Some(known), Some(deviation)) => known.push(deviation * evidence.weight[row].sqrt()),
-            _ => *own = None,
-        }
+    let mut groups: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
+    for (deviation, &run) in deviations.iter().zip(&evidence.shared) {
+        groups.entry(run).or_default().extend(deviation);
     }
-    groups.into_values().flatten().filter(|group| group.len() > 1).collect()
+    groups.into_values().filter(|group| group.len() > 1).collect()
 }
 
 /// φ; 0 where the repeats do not show one.

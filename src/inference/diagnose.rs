@@ -38,9 +38,9 @@ const WORTH_SAYING: f64 = 3.0;
 pub fn diagnose(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
     let model = &Linearised::new(model);
     let folded = background::folded(evidence);
-    let settled = settled(model, &folded.evidence);
+    let (settled, known) = settled(model, &folded.evidence);
     let evidence = &settled;
-    let (search, hypothesis, left_over) = infer(model, evidence, Pairs::Screened);
+    let (search, hypothesis, left_over) = infer(model, evidence, Pairs::Screened, known);
     let held_out = hold_out(model, evidence, &hypothesis.terms);
     let (hypothesis, left_over) = confirmed(model, &search, hypothesis, left_over, held_out.as_ref());
     let none = search.fit(&[]);

@@ -26,14 +26,16 @@ const SAME_WEIGHT: f64 = 0.05;
 /// A recording with the scatter that its hypothesis leaves: weights of the data, and the ratio of
 /// shared to own errors. What is found first changes how the rest scatters, so that both are found in
 /// turns. `evidence` may fix the ratio beforehand; then its weights count too.
-pub fn settled(model: &Linearised<'_>, evidence: &Evidence) -> Evidence {
+///
+/// Where nothing of it moved any more, what the last search has found comes with it.
+pub fn settled(model: &Linearised<'_>, evidence: &Evidence) -> (Evidence, Option<Best>) {
     let mut evidence = evidence.clone();
     let mut known: Vec<Term> = Vec::new();
     let whitening = Whitening::new(&evidence, &evidence.residual);
     let is_plain = !evidence.is_robust && evidence.offsets.ncols() == 0;
     if is_plain && !whitening.is_of_shared_errors() {
         (evidence.shared_ratio, evidence.correlation) = (Some(whitening.ratio), Some(whitening.correlation));
-        return evidence;
+        return (evidence, None);
     }
     let mut off: BTreeSet<usize> = match evidence.is_robust {
         true => unlike_repeats(&evidence),
@@ -70,34 +72,33 @@ pub fn settled(model: &Linearised<'_>, evidence: &Evidence) -> Evidence {
         known = longest.terms.clone();
         let has_shared = search.whitening.is_of_shared_errors();
         evidence.weight = if is_same_weight { evidence.weight } else { weight };
+        let is_same_information = evidence.information == information;
         evidence.information = information;
         let is_settled = pass > 0 && is_same_weight && (is_same || !has_shared);
-        size_offsets(&mut evidence, noise);
-        if is_settled || pass + 1 == PASSES {
-            let (ratio, correlation) = match is_settled {
-                true => (ratio, correlation),
-                false => {
-                    let left = &evidence.residual - model.response(&known);
-                    let whitening = Whitening::new(&evidence, &left);
-                    (whitening.ratio, whitening.correlation)
-                }
-            };
+        if is_settled {
             (evidence.shared_ratio, evidence.correlation) = (Some(ratio), Some(correlation));
-            break;
+            return (evidence, is_same_information.then_some((hypothesis, left_over)));
         }
+        size_offsets(&mut evidence, noise);
     }
-    evidence
+    let whitening = Whitening::new(&evidence, &(&evidence.residual - model.response(&known)));
+    (evidence.shared_ratio, evidence.correlation) = (Some(whitening.ratio), Some(whitening.correlation));
+    (evidence, None)
 }
 
+/// The most probable hypothesis, and what it leaves.
+pub type Best = (Hypothesis, Option<DiscrepancyModel>);
+
 /// The hypothesis that a recording supports, what it leaves unexplained, and the search that found them,
-/// with the scatter that [`settled`] has found.
+/// with the scatter that [`settled`] has found; `known` is the best where that has found it.
 pub fn infer<'a>(
     model: &'a Linearised<'a>,
     evidence: &'a Evidence,
     pairs: Pairs,
+    known: Option<Best>,
 ) -> (Search<'a>, Hypothesis, Option<DiscrepancyModel>) {
     let search = Search::new(model, evidence, &[]);
-    let (hypothesis, left_over) = search.best(pairs);
+    let (hypothesis, left_over) = known.unwrap_or_else(|| search.best(pairs));
     let hypothesis = beyond_the_tails(&search, hypothesis);
     let (hypothesis, left_over) = convincing(&search, hypothesis, left_over);
     (search, hypothesis, left_over)

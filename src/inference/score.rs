@@ -228,8 +228,7 @@ impl Moments {
             let next = (square / k as f64).sqrt().clamp(SCALES.0, SCALES.1);
             let explained = (product.dot(&solved.solution) / squares).clamp(0.0, 1.0 - 1e-12);
             let less = (s * (1.0 - explained)).max(self.floor.powi(2)).max(f64::MIN_POSITIVE.sqrt());
-            let moved = (next / scale).ln().abs().max((less / left).ln().abs());
-            if step == SCALE_STEPS || moved < ROUGHLY {
+            if step == SCALE_STEPS || (is_about(next, scale) && is_about(less, left)) {
                 let determinant = solved.ln_determinant - k as f64 * ridge.ln();
                 let room: f64 = (0..k)
                     .map(|i| {
@@ -275,8 +274,7 @@ impl Moments {
             let next = (solution * solution + left * inverse).sqrt().clamp(SCALES.0, SCALES.1);
             let explained = (product * solution / squares).clamp(0.0, 1.0 - 1e-12);
             let less = (s * (1.0 - explained)).max(self.floor.powi(2)).max(f64::MIN_POSITIVE.sqrt());
-            let moved = (next / scale).ln().abs().max((less / left).ln().abs());
-            if step == SCALE_STEPS || moved < ROUGHLY {
+            if step == SCALE_STEPS || (is_about(next, scale) && is_about(less, left)) {
                 let determinant = -(inverse * ridge).ln();
                 let (low, high) = more.bounds[0];
                 let bounds = (low / scale, high / scale);
@@ -363,6 +361,11 @@ impl Ridge {
         let shares = sizes.iter().enumerate().map(|(k, size)| s * self.inverse[(k, k)] / size.powi(2));
         sizes.len() as f64 - shares.sum::<f64>()
     }
+}
+
+/// True where a number is another one but for a step at which it has arrived for a first look.
+fn is_about(new: f64, old: f64) -> bool {
+    (new - old).abs() < ROUGHLY * old
 }
 
 /// Ln of the posterior mass within the bounds over the prior mass there.

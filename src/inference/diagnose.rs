@@ -24,6 +24,9 @@ use crate::statistics::{chi_squared_survival, student_t_quantile};
 /// Odds within which another explanation counts as indistinguishable: 20 to 1.
 const APART: f64 = 20.0;
 
+/// So many of the effects that may be there besides count for an interval.
+const AVERAGED: usize = 8;
+
 /// A form of a law that leaves at most so much more, as a factor, may be the right one.
 const HARDLY_MORE: f64 = 1.1;
 
@@ -268,7 +271,7 @@ fn part(
     let first: usize = hypothesis.terms[..position].iter().map(|term| term.values.len()).sum();
     let degrees_of_freedom = (search.degrees_of_freedom() as f64 - hypothesis.determined).max(1.0);
     let coverage_factor = student_t_quantile(0.975, degrees_of_freedom).unwrap_or(1.96);
-    let mut estimates = intervals(model, hypothesis, term, first, coverage_factor);
+    let mut estimates = averaged(model, search, hypothesis, position, first, coverage_factor);
     let own =
         |other: &Hypothesis| other.terms.get(position).filter(|own| own.candidate == term.candidate).cloned();
     if let Some((longer, own)) = beside.and_then(|longer| Some((longer, own(longer)?))) {
@@ -321,6 +324,45 @@ fn part(
         explains: rms(&model.response(std::slice::from_ref(term))),
         rivals,
     }
+}
+
+/// Value and 95 % interval of the parameters of a term, whatever else may be there besides: the hypotheses with one effect or
+/// curve more, Y, have their share p in it (J. A. Hoeting et al., *Statistical Science* 14 (1999) 382–417, Eq 3),
+///
+/// ```text
+/// var x = Σ p_Y·(s_Y² + (x_Y − x)²)
+/// ```
+fn averaged(
+    model: &Linearised<'_>,
+    search: &Search,
+    hypothesis: &Hypothesis,
+    position: usize,
+    first: usize,
+    coverage_factor: f64,
+) -> Vec<Estimate> {
+    let term = &hypothesis.terms[position];
+    let additions = search.additions(hypothesis);
+    let is_possible = |index: &usize| additions[*index] > -APART.ln();
+    let mut likeliest: Vec<usize> = (0..additions.len()).filter(is_possible).collect();
+    likeliest.sort_by(|&a, &b| additions[b].total_cmp(&additions[a]));
+    likeliest.truncate(AVERAGED);
+    let others: Vec<Hypothesis> = likeliest.into_iter().map(|index| search.with(hypothesis, index)).collect();
+    let share = |other: &Hypothesis| (other.log_probability - hypothesis.log_probability).min(0.0).exp();
+    let mut estimates = intervals(model, hypothesis, term, first, coverage_factor);
+    let parameters = &model.candidates()[term.candidate].parameters;
+    for (k, (estimate, parameter)) in estimates.iter_mut().zip(parameters).enumerate() {
+        let variance = |hypothesis: &Hypothesis| hypothesis.covariance[(first + k, first + k)].max(0.0);
+        let (mut total, mut weight) = (variance(hypothesis), 1.0);
+        for other in &others {
+            let off = other.terms[position].values[k] - term.values[k];
+            total += share(other) * (variance(other) + off * off);
+            weight += share(other);
+        }
+        let half = coverage_factor * (total / weight).sqrt();
+        let (low, high) = parameter.bounds;
+        (estimate.low, estimate.high) = ((term.values[k] - half).max(low), (term.values[k] + half).min(high));
+    }
+    estimates
 }
 
 /// Makes intervals hold those of another hypothesis.

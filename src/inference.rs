@@ -11,6 +11,7 @@
 
 mod background;
 mod columns;
+mod correlation;
 mod description;
 mod diagnose;
 mod diagnosis;
@@ -27,6 +28,7 @@ mod limit;
 mod linearised;
 mod locate;
 mod location;
+mod misread;
 mod nominal;
 mod pairs;
 mod proposal;

@@ -180,6 +180,17 @@ impl Columns {
         }
     }
 
+    /// How many data two candidates are apart that are steps of one sequence.
+    pub fn steps_apart(&self, one: usize, other: usize) -> Option<usize> {
+        match (self.own(one), self.own(other)) {
+            (
+                [Column::Step { sequence: a, from: first, .. }],
+                [Column::Step { sequence: b, from: second, .. }],
+            ) if a == b => Some(first.abs_diff(*second)),
+            _ => None,
+        }
+    }
+
     /// The sequences that steps may be in.
     pub fn sequences(&self) -> &[Arc<[usize]>] {
         &self.sequences

@@ -1,5 +1,7 @@
 //! The diagnosis: is there a mismatch, what is it, what could it be as well, and what remains.
 
+use std::collections::BTreeMap;
+
 use nalgebra::DVector;
 
 use super::background;
@@ -9,7 +11,7 @@ use super::held_out::{Theme, hold_out};
 use super::linearised::Linearised;
 use super::locate::locate;
 use super::pruning::{infer, settled};
-use super::scatter::{NoiseTest, Tails};
+use super::scatter::{NoiseTest, Suspect, Tails};
 use super::search::Search;
 use super::selection::{DiscrepancyModel, Pairs};
 use super::sessions::leave_one_session_out;
@@ -21,6 +23,9 @@ use crate::statistics::{chi_squared_survival, student_t_quantile};
 
 /// Odds within which another explanation counts as indistinguishable: 20 to 1.
 const APART: f64 = 20.0;
+
+/// So many of the effects that may be there besides count for an interval.
+const AVERAGED: usize = 8;
 
 /// A form of a law that leaves at most so much more, as a factor, may be the right one.
 const HARDLY_MORE: f64 = 1.1;
@@ -36,9 +41,9 @@ const WORTH_SAYING: f64 = 3.0;
 pub fn diagnose(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
     let model = &Linearised::new(model);
     let folded = background::folded(evidence);
-    let settled = settled(model, &folded.evidence);
+    let (settled, known) = settled(model, &folded.evidence);
     let evidence = &settled;
-    let (search, hypothesis, left_over) = infer(model, evidence, Pairs::Screened);
+    let (search, hypothesis, left_over) = infer(model, evidence, Pairs::Screened, known);
     let held_out = hold_out(model, evidence, &hypothesis.terms);
     let (hypothesis, left_over) = confirmed(model, &search, hypothesis, left_over, held_out.as_ref());
     let none = search.fit(&[]);
@@ -48,7 +53,7 @@ pub fn diagnose(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
     let mut parts: Vec<(Theme, FindingPart)> = (0..hypothesis.terms.len())
         .map(|position| {
             let candidate = &model.candidates()[hypothesis.terms[position].candidate];
-            (Theme::new(candidate), part(model, &search, &hypothesis, position))
+            (Theme::new(candidate), part(model, &search, &hypothesis, position, beside(&left_over)))
         })
         .collect();
     parts.sort_by(|(_, a), (_, b)| b.explains.total_cmp(&a.explains));
@@ -94,7 +99,9 @@ pub fn diagnose(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
         discrepancy = Some(Discrepancy { candidate: None, location: None, shown_by, rms, shape });
     }
     // many that are far off are no single ones
-    if discrepancy.is_none() && suspects.len() > suspects_at_most(evidence.recorded) {
+    if discrepancy.is_none()
+        && (suspects.len() > suspects_at_most(evidence.recorded) || are_together(evidence, &suspects))
+    {
         let (rms, shape) = (rms(&after), after.clone());
         let shown_by = ShownBy::Suspects;
         discrepancy = Some(Discrepancy { candidate: None, location: None, shown_by, rms, shape });
@@ -129,6 +136,20 @@ pub fn diagnose(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
         after,
         hypothesis,
     }
+}
+
+/// True where neighbours of a run are far off to one side: so many that they are no single ones, or the run as a whole.
+fn are_together(evidence: &Evidence, suspects: &[Suspect]) -> bool {
+    const TOGETHER: usize = 3;
+    let side: BTreeMap<usize, bool> = suspects.iter().map(|s| (s.datum, s.sigma > 0.0)).collect();
+    let mut runs: BTreeMap<usize, Vec<Option<bool>>> = BTreeMap::new();
+    for (datum, &run) in evidence.shared.iter().enumerate().take(evidence.recorded) {
+        runs.entry(run).or_default().push(side.get(&datum).copied());
+    }
+    runs.values().any(|run| {
+        let mut of_one_side = run.chunk_by(|a, b| a == b).filter(|part| part[0].is_some());
+        of_one_side.any(|part| part.len() >= TOGETHER || (part.len() > 1 && part.len() == run.len()))
+    })
 }
 
 /// Of so many data that many may be far off by themselves: a tenth, three at least.
@@ -221,19 +242,41 @@ fn findings(
             Kind::Physics | Kind::Mistake => finding.held_out_loss.unwrap_or(explained),
         }
     };
-    findings.sort_by(|a, b| strength(b).total_cmp(&strength(a)));
+    // a mistake is undone before anything else is believed
+    let is_physics = |finding: &Finding| finding.kind() != Kind::Mistake;
+    findings.sort_by(|a, b| is_physics(a).cmp(&is_physics(b)).then(strength(b).total_cmp(&strength(a))));
     findings
 }
 
-/// One term with its interval and its rivals.
-fn part(model: &Linearised<'_>, search: &Search, hypothesis: &Hypothesis, position: usize) -> FindingPart {
+/// The hypothesis with what it leaves unexplained beside it.
+fn beside(left_over: &Option<DiscrepancyModel>) -> Option<&Hypothesis> {
+    match left_over {
+        Some(DiscrepancyModel::Curve(longer)) => Some(longer),
+        _ => None,
+    }
+}
+
+/// One term with its interval and its rivals. What is left unexplained, a curve of the hypothesis `beside`, may be a part of it
+/// or not: the interval holds both.
+fn part(
+    model: &Linearised<'_>,
+    search: &Search,
+    hypothesis: &Hypothesis,
+    position: usize,
+    beside: Option<&Hypothesis>,
+) -> FindingPart {
     let term = &hypothesis.terms[position];
     let candidates = model.candidates();
     let rest = search.without(hypothesis, position);
     let first: usize = hypothesis.terms[..position].iter().map(|term| term.values.len()).sum();
     let degrees_of_freedom = (search.degrees_of_freedom() as f64 - hypothesis.determined).max(1.0);
     let coverage_factor = student_t_quantile(0.975, degrees_of_freedom).unwrap_or(1.96);
-    let mut estimates = intervals(model, hypothesis, term, first, coverage_factor);
+    let mut estimates = averaged(model, search, hypothesis, position, first, coverage_factor);
+    let own =
+        |other: &Hypothesis| other.terms.get(position).filter(|own| own.candidate == term.candidate).cloned();
+    if let Some((longer, own)) = beside.and_then(|longer| Some((longer, own(longer)?))) {
+        widen(&mut estimates, intervals(model, longer, &own, first, coverage_factor));
+    }
     // which form of a law is the right one is not known where another one leaves hardly more
     for form in search.other_forms(term.candidate) {
         let other = search.with(&rest, form);
@@ -242,10 +285,7 @@ fn part(model: &Linearised<'_>, search: &Search, hypothesis: &Hypothesis, positi
         }
         let Some(own) = other.terms.last() else { continue };
         let at = other.covariance.nrows() - own.values.len();
-        let of_other = intervals(model, &other, own, at, coverage_factor);
-        for (known, other) in estimates.iter_mut().zip(of_other) {
-            (known.low, known.high) = (known.low.min(other.low), known.high.max(other.high));
-        }
+        widen(&mut estimates, intervals(model, &other, own, at, coverage_factor));
     }
     // candidates that would do in its place
     let additions = search.additions(&rest);
@@ -283,6 +323,52 @@ fn part(model: &Linearised<'_>, search: &Search, hypothesis: &Hypothesis, positi
         p_value: chi_squared_survival(gained.max(0.0), determined).unwrap_or(1.0),
         explains: rms(&model.response(std::slice::from_ref(term))),
         rivals,
+    }
+}
+
+/// Value and 95 % interval of the parameters of a term, whatever else may be there besides: the hypotheses with one effect or
+/// curve more, Y, have their share p in it (J. A. Hoeting et al., *Statistical Science* 14 (1999) 382–417, Eq 3),
+///
+/// ```text
+/// var x = Σ p_Y·(s_Y² + (x_Y − x)²)
+/// ```
+fn averaged(
+    model: &Linearised<'_>,
+    search: &Search,
+    hypothesis: &Hypothesis,
+    position: usize,
+    first: usize,
+    coverage_factor: f64,
+) -> Vec<Estimate> {
+    let term = &hypothesis.terms[position];
+    let additions = search.additions(hypothesis);
+    let is_possible = |index: &usize| additions[*index] > -APART.ln();
+    let mut likeliest: Vec<usize> = (0..additions.len()).filter(is_possible).collect();
+    likeliest.sort_by(|&a, &b| additions[b].total_cmp(&additions[a]));
+    likeliest.truncate(AVERAGED);
+    let others: Vec<Hypothesis> = likeliest.into_iter().map(|index| search.with(hypothesis, index)).collect();
+    let share = |other: &Hypothesis| (other.log_probability - hypothesis.log_probability).min(0.0).exp();
+    let mut estimates = intervals(model, hypothesis, term, first, coverage_factor);
+    let parameters = &model.candidates()[term.candidate].parameters;
+    for (k, (estimate, parameter)) in estimates.iter_mut().zip(parameters).enumerate() {
+        let variance = |hypothesis: &Hypothesis| hypothesis.covariance[(first + k, first + k)].max(0.0);
+        let (mut total, mut weight) = (variance(hypothesis), 1.0);
+        for other in &others {
+            let off = other.terms[position].values[k] - term.values[k];
+            total += share(other) * (variance(other) + off * off);
+            weight += share(other);
+        }
+        let half = coverage_factor * (total / weight).sqrt();
+        let (low, high) = parameter.bounds;
+        (estimate.low, estimate.high) = ((term.values[k] - half).max(low), (term.values[k] + half).min(high));
+    }
+    estimates
+}
+
+/// Makes intervals hold those of another hypothesis.
+fn widen(estimates: &mut [Estimate], others: Vec<Estimate>) {
+    for (known, other) in estimates.iter_mut().zip(others) {
+        (known.low, known.high) = (known.low.min(other.low), known.high.max(other.high));
     }
 }
 

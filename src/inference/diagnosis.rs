@@ -113,6 +113,13 @@ impl Diagnosis {
         rms(&self.after.rows(0, self.recorded).into_owned())
     }
 
+    /// The same without suspects.
+    pub fn error_of_others(&self) -> f64 {
+        let is_suspect = |datum: usize| self.suspects.iter().any(|suspect| suspect.datum == datum);
+        let others = (0..self.recorded).filter(|&datum| !is_suspect(datum)).map(|datum| self.after[datum]);
+        rms(&DVector::from_vec(others.collect()))
+    }
+
     /// True where something is left out of the model.
     pub fn is_mismatch(&self) -> bool {
         !self.findings.is_empty() || self.discrepancy.is_some()

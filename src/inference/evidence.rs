@@ -37,6 +37,10 @@ pub struct Evidence {
     /// Variance of the errors that data share, over that of their own; `None` where it is to be
     /// found out.
     pub shared_ratio: Option<f64>,
+    /// Correlation of neighbours that share an error, beyond that; `None` where it is to be found out.
+    pub correlation: Option<f64>,
+    /// What a datum says, over what it would say of a normal distribution: (ν + 1)/(ν + 3) of Student's t.
+    pub information: f64,
     /// Repeats: data of the same number were recorded under the same conditions.
     pub replicate_group: Vec<usize>,
     /// Data of the same number share an error, such as the zero that their readings are offsets from.
@@ -75,6 +79,8 @@ impl Evidence {
             is_robust: false,
             weight: vec![1.0; count],
             shared_ratio: None,
+            correlation: None,
+            information: 1.0,
             replicate_group: (0..count).collect(),
             shared: (0..count).collect(),
             fold: vec![Evidence::NONE; count],
@@ -102,6 +108,8 @@ impl Evidence {
             is_robust: self.is_robust,
             weight: rows.iter().map(|&row| self.weight[row]).collect(),
             shared_ratio: self.shared_ratio,
+            correlation: self.correlation,
+            information: self.information,
             replicate_group: pick(&self.replicate_group),
             shared: pick(&self.shared),
             fold: pick(&self.fold),

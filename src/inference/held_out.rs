@@ -97,7 +97,7 @@ pub(super) fn trained_on(
 ) -> Trained {
     let (part, training) = (model.part(kept), evidence.part(kept));
     let pairs = if whole.len() > 1 { Pairs::Screened } else { Pairs::LeftOut };
-    let (search, hypothesis, _) = infer(&part, &training, pairs);
+    let (search, hypothesis, _) = infer(&part, &training, pairs, None);
     let left = |hypothesis: &Hypothesis| {
         let response = model.response(&hypothesis.terms);
         &evidence.residual - search.predicted(hypothesis, evidence, &response)

@@ -148,7 +148,7 @@ mod tests {
             ..Evidence::new(residual.clone())
         };
         for ratio in [0.0, 1.0, 900.0] {
-            let evidence = Evidence { shared_ratio: Some(ratio), ..evidence.clone() };
+            let evidence = Evidence { shared_ratio: Some(ratio), correlation: Some(0.0), ..evidence.clone() };
             let whitening = Whitening::new(&evidence, &residual);
             let indicators =
                 DMatrix::from_fn(COUNT, 24, |i, k| f64::from(u8::from(evidence.replicate_group[i] == k)));

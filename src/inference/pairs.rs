@@ -88,7 +88,7 @@ impl Search<'_> {
                 product -= solved.tr_mul(&base.tr_mul(&residual));
             }
         }
-        let nu = (self.degrees_of_freedom() as f64).max(1.0);
+        let nu = (self.informative() as f64).max(1.0);
         let gain = |columns: &[usize]| gain(&gram, &product, columns, s, nu);
         let own = |k: usize| -> Vec<usize> { (starts[k]..starts[k] + counts[k]).collect() };
         let alone: Vec<f64> = (0..paired.len()).map(|k| gain(&own(k))).collect();

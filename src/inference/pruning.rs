@@ -1,12 +1,15 @@
 //! Which of the effects that make a hypothesis most probable are worth a name.
 
+use std::collections::BTreeSet;
+
 use nalgebra::DVector;
 
 use super::Hypothesis;
 use super::background::size_offsets;
 use super::evidence::rms;
 use super::linearised::Linearised;
-use super::scatter::Tails;
+use super::misread::unlike_repeats;
+use super::scatter::{OFF, SUSPECT, weighted};
 use super::search::Search;
 use super::selection::{DiscrepancyModel, Pairs};
 use super::whitening::Whitening;
@@ -23,15 +26,22 @@ const SAME_WEIGHT: f64 = 0.05;
 /// A recording with the scatter that its hypothesis leaves: weights of the data, and the ratio of
 /// shared to own errors. What is found first changes how the rest scatters, so that both are found in
 /// turns. `evidence` may fix the ratio beforehand; then its weights count too.
-pub fn settled(model: &Linearised<'_>, evidence: &Evidence) -> Evidence {
+///
+/// Where nothing of it moved any more, what the last search has found comes with it.
+pub fn settled(model: &Linearised<'_>, evidence: &Evidence) -> (Evidence, Option<Best>) {
     let mut evidence = evidence.clone();
     let mut known: Vec<Term> = Vec::new();
     let whitening = Whitening::new(&evidence, &evidence.residual);
     let is_plain = !evidence.is_robust && evidence.offsets.ncols() == 0;
     if is_plain && !whitening.is_of_shared_errors() {
-        evidence.shared_ratio = Some(whitening.ratio);
-        return evidence;
+        (evidence.shared_ratio, evidence.correlation) = (Some(whitening.ratio), Some(whitening.correlation));
+        return (evidence, None);
     }
+    let mut off: BTreeSet<usize> = match evidence.is_robust {
+        true => unlike_repeats(&evidence),
+        false => BTreeSet::new(),
+    };
+    off.iter().for_each(|&datum| evidence.weight[datum] = OFF);
     for pass in 0..PASSES {
         let search = Search::new(model, &evidence, &known);
         let (hypothesis, left_over) = search.best(Pairs::Screened);
@@ -41,46 +51,54 @@ pub fn settled(model: &Linearised<'_>, evidence: &Evidence) -> Evidence {
             _ => &hypothesis,
         };
         let residual = search.plain_residual(longest);
-        let weight = match evidence.is_robust {
-            true => Tails::of(&residual).weights(&residual),
-            false => evidence.weight.clone(),
+        let (mut weight, information) = match evidence.is_robust {
+            true => weighted(&residual),
+            false => (evidence.weight.clone(), 1.0),
         };
+        if evidence.is_robust {
+            // what was found far off stays so while it is
+            off.retain(|&datum| residual[datum].abs() > SUSPECT * longest.sigma);
+            off.extend(search.misread(longest));
+            off.iter().for_each(|&datum| weight[datum] = OFF);
+        }
         let is_same_weight = weight
             .iter()
             .zip(&evidence.weight)
             .all(|(new, old)| (new.sqrt() - old.sqrt()).abs() < SAME_WEIGHT);
         let candidates = |terms: &[Term]| terms.iter().map(|t| t.candidate).collect::<Vec<_>>();
-        let is_same = candidates(&known) == candidates(&hypothesis.terms);
-        let ratio = search.shared_ratio();
+        let is_same = candidates(&known) == candidates(&longest.terms);
+        let (ratio, correlation) = (search.shared_ratio(), search.correlation());
         let noise = longest.sigma;
-        known = hypothesis.terms;
+        known = longest.terms.clone();
         let has_shared = search.whitening.is_of_shared_errors();
         evidence.weight = if is_same_weight { evidence.weight } else { weight };
+        let is_same_information = evidence.information == information;
+        evidence.information = information;
         let is_settled = pass > 0 && is_same_weight && (is_same || !has_shared);
-        size_offsets(&mut evidence, noise);
-        if is_settled || pass + 1 == PASSES {
-            evidence.shared_ratio = Some(match is_settled {
-                true => ratio,
-                false => {
-                    let left = &evidence.residual - model.response(&known);
-                    Whitening::new(&evidence, &left).ratio
-                }
-            });
-            break;
+        if is_settled {
+            (evidence.shared_ratio, evidence.correlation) = (Some(ratio), Some(correlation));
+            return (evidence, is_same_information.then_some((hypothesis, left_over)));
         }
+        size_offsets(&mut evidence, noise);
     }
-    evidence
+    let whitening = Whitening::new(&evidence, &(&evidence.residual - model.response(&known)));
+    (evidence.shared_ratio, evidence.correlation) = (Some(whitening.ratio), Some(whitening.correlation));
+    (evidence, None)
 }
 
+/// The most probable hypothesis, and what it leaves.
+pub type Best = (Hypothesis, Option<DiscrepancyModel>);
+
 /// The hypothesis that a recording supports, what it leaves unexplained, and the search that found them,
-/// with the scatter that [`settled`] has found.
+/// with the scatter that [`settled`] has found; `known` is the best where that has found it.
 pub fn infer<'a>(
     model: &'a Linearised<'a>,
     evidence: &'a Evidence,
     pairs: Pairs,
+    known: Option<Best>,
 ) -> (Search<'a>, Hypothesis, Option<DiscrepancyModel>) {
     let search = Search::new(model, evidence, &[]);
-    let (hypothesis, left_over) = search.best(pairs);
+    let (hypothesis, left_over) = known.unwrap_or_else(|| search.best(pairs));
     let hypothesis = beyond_the_tails(&search, hypothesis);
     let (hypothesis, left_over) = convincing(&search, hypothesis, left_over);
     (search, hypothesis, left_over)

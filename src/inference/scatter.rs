@@ -21,8 +21,13 @@ const TAILS: [f64; 8] = [1.5, 2.0, 3.0, 4.0, 5.0, 7.0, 10.0, 20.0];
 const HEAVY: f64 = 3.0;
 /// Fewer data say nothing of tails.
 const FEWEST: usize = 10;
+/// What a datum counts that is far off.
+pub(super) const OFF: f64 = 1e-6;
+/// Data far off are single ones up to this share of all, or this number.
+const FEW: usize = 30;
+pub(super) const MOST_ALONE: usize = 3;
 /// A single datum so many scales out is a suspect.
-const SUSPECT: f64 = 5.0;
+pub(super) const SUSPECT: f64 = 5.0;
 
 /// A single datum far off.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -90,12 +95,18 @@ impl Tails {
     }
 
     /// How much each datum counts.
-    pub fn weights(&self, residual: &DVector<f64>) -> Vec<f64> {
+    fn weights(&self, residual: &DVector<f64>) -> Vec<f64> {
         let weight = |r: &f64| match self.freedom.is_infinite() {
             true => 1.0,
             false => (self.freedom + 1.0) / (self.freedom + (r / self.scale).powi(2)),
         };
         residual.iter().map(weight).collect()
+    }
+
+    /// What a datum says of a place, over what it would say were the distribution normal with this scale: (ν + 1)/(ν + 3)
+    /// (Lange, Little & Taylor, §2). Weights alone make data that agree too sure.
+    fn information(&self) -> f64 {
+        if self.freedom.is_infinite() { 1.0 } else { (self.freedom + 1.0) / (self.freedom + 3.0) }
     }
 
     /// Single data that are far off. Beside a few of them the others are normal.
@@ -111,6 +122,26 @@ impl Tails {
         };
         residual.iter().enumerate().filter_map(far).collect()
     }
+}
+
+/// How much each datum counts, and what it then says over what a normal one does. A few data far off beside normal ones are
+/// no heavy tails: they hardly count, and the others all alike.
+pub(super) fn weighted(residual: &DVector<f64>) -> (Vec<f64>, f64) {
+    let tails = Tails::of(residual);
+    if tails.freedom.is_infinite() {
+        return (vec![1.0; residual.len()], 1.0);
+    }
+    let far: Vec<usize> = tails.suspects(residual).iter().map(|suspect| suspect.datum).collect();
+    let few = (residual.len() / FEW).max(MOST_ALONE);
+    if far.len() <= few {
+        let kept: Vec<usize> = (0..residual.len()).filter(|i| !far.contains(i)).collect();
+        if Tails::of(&residual.select_rows(&kept)).freedom.is_infinite() {
+            let mut weights = vec![1.0; residual.len()];
+            far.iter().for_each(|&i| weights[i] = OFF);
+            return (weights, 1.0);
+        }
+    }
+    (tails.weights(residual), tails.information())
 }
 
 /// The scale of the t distribution that is likeliest, by its fixed point σ² = Σ w·r²/n.
@@ -146,7 +177,34 @@ mod tests {
         let tails = Tails::of(&noise(&[]));
         assert!(tails.freedom.is_infinite() && (tails.scale - 1.0).abs() < 0.1, "{tails:?}");
         assert!(tails.suspects(&noise(&[])).is_empty());
-        assert!(tails.weights(&noise(&[])).iter().all(|weight| *weight == 1.0));
+        assert!(weighted(&noise(&[])) == (vec![1.0; 200], 1.0));
+    }
+
+    #[test]
+    fn the_mean_of_heavy_tails_is_as_sure_as_its_information_says() {
+        // the estimate that the weights make of 0, over its error by weights and information
+        let mut random = Random::seeded(12, 0);
+        let (mut squares, count, n) = (0.0, 300, 100);
+        for _ in 0..count {
+            let mut t3 =
+                || random.normal() / ((0..3).map(|_| random.normal().powi(2)).sum::<f64>() / 3.0).sqrt();
+            let sample = DVector::from_fn(n, |_, _| t3());
+            // the likeliest mean, by weights about it
+            let (mut mean, mut total, mut tails) = (0.0, 0.0, Tails { freedom: 3.0, scale: 1.0 });
+            for _ in 0..50 {
+                let left = sample.add_scalar(-mean);
+                tails.scale = scale(&left, 3.0);
+                let weights = tails.weights(&left);
+                total = weights.iter().sum();
+                mean = weights.iter().zip(sample.iter()).map(|(w, x)| w * x).sum::<f64>() / total;
+            }
+            squares += mean * mean * total * tails.information() / tails.scale.powi(2);
+        }
+        // χ² of 300 degrees of freedom, three standard deviations
+        assert!(
+            (squares / f64::from(count) - 1.0).abs() < 3.0 * (2.0 / f64::from(count)).sqrt(),
+            "{squares}"
+        );
     }
 
     #[test]
@@ -155,7 +213,8 @@ mod tests {
         let tails = Tails::of(&with);
         let suspects = tails.suspects(&with);
         assert_eq!(suspects.iter().map(|s| s.datum).collect::<Vec<_>>(), [7, 90]);
-        assert!(tails.weights(&with)[7] < 0.02, "{:?}", tails.weights(&with)[7]);
+        let (weights, information) = weighted(&with);
+        assert!(weights[7] < 0.02 && weights[8] == 1.0 && information == 1.0, "{:?}", weights[7]);
         assert!((tails.scale - 1.0).abs() < 0.15, "{tails:?}");
     }
 }

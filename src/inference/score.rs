@@ -203,15 +203,17 @@ impl Moments {
     /// About the log evidence that `more` columns add to a hypothesis of this score: the noise follows what they explain.
     ///
     /// With the hypothesis's columns out of them (G' = Gₘ − X(G + σ²)⁻¹Xᵀ, b' = bₘ − X(G + σ²)⁻¹b, X the cross products) they explain
-    /// Δ = b'ᵀ(G' + σ²/κ²)⁻¹b', which leaves s' = σ²·(1 − Δ/νσ²), and
+    /// Δ = b'ᵀ(G' + σ²/κ²)⁻¹b' of the squares Q = rᵀr − bᵀx, priors of the hypothesis's own numbers included, which leaves
+    /// s' = σ²·(1 − Δ/Q), and
     ///
-    /// gain ≈ −½·ν·ln(1 − Δ/νσ²) − ½·ln|1 + κ²G'/s'| + ln(room)
+    /// gain ≈ −½·ν·ln(1 − Δ/Q) − ½·ln|1 + κ²G'/s'| + ln(room)
     pub fn about(&self, score: &Score, more: &ColumnBlock) -> f64 {
         let (nu, s) = ((self.degrees_of_freedom as f64 + self.believed().0).max(1.0), score.sigma.powi(2));
         if more.gram.len() == 1 {
             return self.about_one(score, more, nu);
         }
         let (gram, product) = self.reduced(score, more);
+        let squares = self.squares(score, nu);
         let k = gram.ncols();
         // what a hypothesis holds already leaves rounding: it is no smaller a prior
         let rounding = ROUNDING * more.gram.diagonal().amax();
@@ -224,10 +226,9 @@ impl Moments {
             let solved = Ridge::new(&gram, &product, |_| ridge);
             let square = solved.solution.norm_squared() + left * solved.inverse.trace();
             let next = (square / k as f64).sqrt().clamp(SCALES.0, SCALES.1);
-            let explained = (product.dot(&solved.solution) / (nu * s)).clamp(0.0, 1.0 - 1e-12);
+            let explained = (product.dot(&solved.solution) / squares).clamp(0.0, 1.0 - 1e-12);
             let less = (s * (1.0 - explained)).max(self.floor.powi(2)).max(f64::MIN_POSITIVE.sqrt());
-            let moved = (next / scale).ln().abs().max((less / left).ln().abs());
-            if step == SCALE_STEPS || moved < ROUGHLY {
+            if step == SCALE_STEPS || (is_about(next, scale) && is_about(less, left)) {
                 let determinant = solved.ln_determinant - k as f64 * ridge.ln();
                 let room: f64 = (0..k)
                     .map(|i| {
@@ -243,9 +244,16 @@ impl Moments {
         }
     }
 
+    /// Q: what a hypothesis of this score leaves, what its own numbers cost besides.
+    fn squares(&self, score: &Score, nu: f64) -> f64 {
+        let quadratic = self.square - self.product.dot(&score.estimate) + self.believed().1;
+        quadratic.max(nu * score.sigma.powi(2))
+    }
+
     /// The same of one column, which a slip at any place is, in plain numbers.
     fn about_one(&self, score: &Score, more: &ColumnBlock, nu: f64) -> f64 {
         let s = score.sigma.powi(2);
+        let squares = self.squares(score, nu);
         let (mut gram, mut product) = (more.gram[0], more.product[0]);
         let cross = more.cross.as_slice();
         let columns = score.covariance.as_slice().chunks_exact(cross.len().max(1));
@@ -264,10 +272,9 @@ impl Moments {
             let inverse = 1.0 / (gram.max(0.0) + ridge);
             let solution = inverse * product;
             let next = (solution * solution + left * inverse).sqrt().clamp(SCALES.0, SCALES.1);
-            let explained = (product * solution / (nu * s)).clamp(0.0, 1.0 - 1e-12);
+            let explained = (product * solution / squares).clamp(0.0, 1.0 - 1e-12);
             let less = (s * (1.0 - explained)).max(self.floor.powi(2)).max(f64::MIN_POSITIVE.sqrt());
-            let moved = (next / scale).ln().abs().max((less / left).ln().abs());
-            if step == SCALE_STEPS || moved < ROUGHLY {
+            if step == SCALE_STEPS || (is_about(next, scale) && is_about(less, left)) {
                 let determinant = -(inverse * ridge).ln();
                 let (low, high) = more.bounds[0];
                 let bounds = (low / scale, high / scale);
@@ -354,6 +361,11 @@ impl Ridge {
         let shares = sizes.iter().enumerate().map(|(k, size)| s * self.inverse[(k, k)] / size.powi(2));
         sizes.len() as f64 - shares.sum::<f64>()
     }
+}
+
+/// True where a number is another one but for a step at which it has arrived for a first look.
+fn is_about(new: f64, old: f64) -> bool {
+    (new - old).abs() < ROUGHLY * old
 }
 
 /// Ln of the posterior mass within the bounds over the prior mass there.

@@ -16,13 +16,19 @@ use super::lack_of_fit::{LackOfFit, Replicates};
 use super::linearised::Linearised;
 use super::score::{ColumnBlock, Moments, Score};
 use super::whitening::Whitening;
-use super::{Candidate, Effect, Evidence, ForwardModel, Hypothesis, Term};
+use super::{Candidate, Effect, Evidence, ForwardModel, Hypothesis, Kind, Term};
 use crate::linalg::transposed_product;
 
 /// Prior probability that the next effect is none, one of the library, or one that nobody has named.
 pub(super) const PRIOR: (f64, f64, f64) = (0.5, 0.4, 0.1);
+/// Share of it that a mistake has: it is named at odds of 1000, where an effect is at 50.
+const MISTAKE: f64 = 0.05;
+/// A mistake is so many times as large as what readings scatter by.
+const MISTAKEN: f64 = 10.0;
 /// Of how many candidates, the likeliest, and the likeliest of each effect besides, the evidence is computed exactly.
 const SCORED: usize = 6;
+/// Steps of one sequence are so many data apart at least.
+const NO_STEP: usize = 3;
 /// Most Gauss–Newton steps to the values of a hypothesis.
 const STEPS: usize = 20;
 /// Step, in sizes, below which they have arrived: the noise of a value is hardly ever a ten-thousandth of its size.
@@ -111,7 +117,10 @@ impl<'a> Search<'a> {
             }
             scored = self.moments(&terms).score();
         }
-        let prior: f64 = terms.iter().map(|c| self.prior[c.candidate]).sum();
+        let mut prior: f64 = terms.iter().map(|c| self.prior[c.candidate]).sum();
+        if terms.iter().any(|term| self.is_lost_in_noise(term, scored.sigma)) {
+            prior = f64::NEG_INFINITY;
+        }
         let sizes = DMatrix::from_diagonal(&self.sizes(&terms));
         let own = scored.covariance.view((background, background), (sizes.nrows(), sizes.ncols()));
         Hypothesis {
@@ -123,6 +132,17 @@ impl<'a> Search<'a> {
             determined: scored.determined,
             terms,
         }
+    }
+
+    /// True for a mistake that is no larger than readings and their zeros scatter anyway: nobody made it.
+    fn is_lost_in_noise(&self, term: &Term, sigma: f64) -> bool {
+        if self.model.candidates()[term.candidate].effect.kind != Kind::Mistake {
+            return false;
+        }
+        let response = self.model.response(std::slice::from_ref(term));
+        let concerned = response.iter().filter(|change| **change != 0.0).count();
+        let rms = response.norm() / (concerned.max(1) as f64).sqrt();
+        rms < MISTAKEN * sigma * (1.0 + self.whitening.ratio).sqrt()
     }
 
     /// About the ln of what adding each candidate to `hypothesis` does to its probability, by the candidate's columns at its
@@ -164,10 +184,14 @@ impl<'a> Search<'a> {
         additions
     }
 
-    /// True where a candidate can not be added to a hypothesis that holds `term`.
+    /// True where a candidate can not be added to a hypothesis that holds `term`: what returns within two data is no step,
+    /// those data are off.
     fn excludes(&self, term: &Term, index: usize) -> bool {
         let (old, new) = (&self.model.candidates()[term.candidate], &self.model.candidates()[index]);
-        term.candidate == index || (old.is_alternative && new.is_alternative && old.effect == new.effect)
+        let are_near = || self.model.stored().steps_apart(term.candidate, index).is_some_and(|n| n < NO_STEP);
+        term.candidate == index
+            || (old.is_alternative && new.is_alternative && old.effect == new.effect)
+            || are_near()
     }
 
     /// Other forms of the law that a candidate is one of, with the same parameters.
@@ -211,9 +235,19 @@ impl<'a> Search<'a> {
         self.whitening.degrees_of_freedom
     }
 
+    /// The same where tails are heavy, as so many data of a normal distribution.
+    pub(super) fn informative(&self) -> usize {
+        (self.whitening.degrees_of_freedom as f64 * self.evidence.information).round() as usize
+    }
+
     /// Variance of the errors that data share, over that of their own.
     pub fn shared_ratio(&self) -> f64 {
         self.whitening.ratio
+    }
+
+    /// Correlation of neighbours beyond that.
+    pub(super) fn correlation(&self) -> f64 {
+        self.whitening.correlation
     }
 
     /// ‖y − effects − background·b‖²/σ² + ‖b‖² of a hypothesis, shared errors and nuisance taken out: what two
@@ -258,6 +292,28 @@ impl<'a> Search<'a> {
         let mut all = self.background.0.clone().resize_horizontally(background + own.ncols(), 0.0);
         all.columns_mut(background, own.ncols()).copy_from(&own);
         (r, all)
+    }
+
+    /// Ln of the probability of a hypothesis, of this [`Search::linear_part`], with `more` columns beside its own, each an effect of
+    /// no prior by itself; and what it leaves, whitened.
+    pub(super) fn beside(
+        &self,
+        hypothesis: &Hypothesis,
+        (r, columns): &(DVector<f64>, DMatrix<f64>),
+        more: &DMatrix<f64>,
+    ) -> (f64, DVector<f64>) {
+        let first = self.background.0.ncols();
+        let own = columns.columns(first, columns.ncols() - first);
+        let mut effects = own.clone_owned().resize_horizontally(own.ncols() + more.ncols(), 0.0);
+        effects.columns_mut(own.ncols(), more.ncols()).copy_from(more);
+        let mut moments = self.moments_of(r, &effects, &hypothesis.terms);
+        moments.bounds.resize(first + effects.ncols(), (f64::NEG_INFINITY, f64::INFINITY));
+        moments.effects.extend(std::iter::repeat_n(1, more.ncols()));
+        let scored = moments.score();
+        let estimate = &scored.estimate;
+        let left = r - &self.background.0 * estimate.rows(0, first) - effects * estimate.rows_range(first..);
+        let prior: f64 = hypothesis.terms.iter().map(|term| self.prior[term.candidate]).sum();
+        (scored.log_evidence + prior, left)
     }
 
     /// Ln of the prior of a candidate over that of none.
@@ -323,7 +379,7 @@ impl<'a> Search<'a> {
         let (bounds, floor) = (self.bounds(terms), self.floor());
         let stated = self.evidence.stated_noise;
         let square = self.residual.norm_squared();
-        let degrees_of_freedom = self.whitening.degrees_of_freedom;
+        let degrees_of_freedom = self.informative();
         let effects = terms.iter().map(|c| c.values.len()).collect();
         let moments = Moments { square, gram, product, bounds, effects, degrees_of_freedom, floor, stated };
         (moments, Box::new(move |index| (cross(index), kept.residual(index).clone())))
@@ -355,7 +411,7 @@ impl<'a> Search<'a> {
             product,
             bounds: self.bounds(terms),
             effects: terms.iter().map(|c| c.values.len()).collect(),
-            degrees_of_freedom: self.whitening.degrees_of_freedom,
+            degrees_of_freedom: self.informative(),
             floor: self.floor(),
             stated: self.evidence.stated_noise,
         }
@@ -480,7 +536,11 @@ fn priors(candidates: &[Candidate]) -> Vec<f64> {
         .iter()
         .map(|candidate| {
             let places = places[&(candidate.effect.name, candidate.is_nonparametric)];
-            let share = if candidate.is_nonparametric { unknown / unnamed } else { library / known };
+            let share = match candidate.is_nonparametric {
+                true => unknown / unnamed,
+                false if candidate.effect.kind == Kind::Mistake => MISTAKE * library / known,
+                false => library / known,
+            };
             (share * candidate.weight / places / none).ln()
         })
         .collect()

@@ -176,7 +176,8 @@ impl Search<'_> {
         let curve = self.longer(hypothesis, additions, true).filter(|longer| longer.log_probability > least);
         let predicted = self.predicted(hypothesis, self.evidence, &self.model.response(&hypothesis.terms));
         let replicates = self.lack_of_fit(hypothesis, &predicted).map_or(f64::NEG_INFINITY, |test| {
-            hypothesis.log_probability + test.log_odds() + (PRIOR.2 / PRIOR.0).ln()
+            let odds = self.evidence.information * test.log_odds();
+            hypothesis.log_probability + odds + (PRIOR.2 / PRIOR.0).ln()
         });
         match curve {
             Some(longer) => Some((longer.log_probability.max(replicates), DiscrepancyModel::Curve(longer))),

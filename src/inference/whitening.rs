@@ -5,13 +5,19 @@
 //!
 //! (1 + ρ·J)^(−1/2) = 1 − (1 − 1/√(1 + ρ·m))/m · J
 //!
-//! makes them independent. What is left is projected on the complement of the whitened nuisance columns, M = 1 − Q·Qᵀ.
+//! makes them independent. Where neighbours in a group resemble each other, with the correlation φ, its covariance is
+//! σ²·(R + ρ·J), R the φ^|i − j| of a first-order autoregression. With A·R·Aᵀ = 1,
+//!
+//! (A·v)₁ = v₁   (A·v)ₜ = (vₜ − φ·vₜ₋₁)/√(1 − φ²)   and a = A·1,
+//!
+//! (1 − (1 − 1/√(1 + ρ·|a|²))/|a|² · a·aᵀ)·A takes its place. What is left is projected on the complement of the whitened nuisance columns, M = 1 − Q·Qᵀ.
 
 use std::collections::{BTreeMap, HashMap};
 
 use nalgebra::{DMatrix, DVector};
 
 use super::Evidence;
+use super::correlation::{by_group, correlation, deviations, length, likeliest};
 use crate::linalg::{least_squares, thin_svd, transposed_product};
 
 /// ρ that is believed before the data: a zero that was read once is as good as any other reading.
@@ -31,8 +37,10 @@ pub struct Whitening {
     data: usize,
     /// Root of how much each datum counts; nothing where all count alike.
     roots: Vec<f64>,
-    /// Rows of every group with more than one datum, and what is taken off times their mean.
+    /// Rows of every group with more than one datum, and what is taken off along a.
     groups: Vec<(Vec<usize>, f64)>,
+    /// φ.
+    pub correlation: f64,
     /// Orthonormal basis of the whitened nuisance columns.
     basis: Vec<DVector<f64>>,
     /// ρ.
@@ -44,7 +52,8 @@ pub struct Whitening {
 impl Whitening {
     /// For an evidence whose residuals, without what is explained already, are `left`: ρ is estimated from them.
     pub fn new(evidence: &Evidence, left: &DVector<f64>) -> Self {
-        let ratio = evidence.shared_ratio.unwrap_or_else(|| shared_ratio(evidence, left));
+        let correlation = evidence.correlation.unwrap_or_else(|| correlation(evidence, left));
+        let ratio = evidence.shared_ratio.unwrap_or_else(|| shared_ratio(evidence, left, correlation));
         let is_even = evidence.weight.iter().all(|weight| *weight == 1.0);
         let roots = match is_even {
             true => Vec::new(),
@@ -58,14 +67,15 @@ impl Whitening {
             .into_values()
             .filter(|rows| rows.len() > 1)
             .map(|rows| {
-                let m = rows.len() as f64;
-                (rows, 1.0 - 1.0 / (1.0 + ratio * m).sqrt())
+                let share = 1.0 - 1.0 / (1.0 + ratio * length(rows.len(), correlation)).sqrt();
+                (rows, share)
             })
             .collect();
         let mut whitening = Whitening {
             data: evidence.residual.len(),
             roots,
             groups,
+            correlation,
             basis: Vec::new(),
             ratio,
             degrees_of_freedom: evidence.residual.len(),
@@ -130,34 +140,50 @@ impl Whitening {
         (0..self.data).map(|row| self.roots.get(row).map_or(1.0, |root| root * root))
     }
 
-    /// |W·s|² of each step s that is 1 from one datum of a sequence on: with t the sum of the roots w of its data in a
-    /// group, Σ w² − Σ (1 − 1/(1 + ρ·m))/m·t² over the groups. `None` are data that are not there.
+    /// |W·s|² of each step s that is 1 from one datum of a sequence on, whose data of a group are the last of it: with e = A·w,
+    /// w the roots of these data, Σ e² − (2 − s)·s·(a·e)²/|a|² over the groups, s what is taken off. `None` are data that are
+    /// not there.
     pub fn squares_of_steps(&self, sequences: &[Vec<Option<usize>>]) -> Vec<Vec<f64>> {
-        let mut group_of: Vec<Option<usize>> = vec![None; self.data];
+        let mut place: Vec<Option<(usize, usize)>> = vec![None; self.data];
         for (group, (rows, _)) in self.groups.iter().enumerate() {
-            rows.iter().for_each(|&row| group_of[row] = Some(group));
+            rows.iter().enumerate().for_each(|(k, &row)| place[row] = Some((group, k)));
         }
+        let root = |row: usize| self.roots.get(row).copied().unwrap_or(1.0);
+        let (slow, quick) = self.along();
         let of_sequence = |sequence: &Vec<Option<usize>>| {
-            let mut total: HashMap<usize, f64> = HashMap::new();
+            // of each group what its data have without the first one: Σ e², a·e; and what all have
+            let mut known: HashMap<usize, Tail> = HashMap::new();
             let (mut square, mut squares) = (0.0, vec![0.0; sequence.len()]);
-            for (place, row) in sequence.iter().enumerate().rev() {
-                if let Some(row) = *row {
-                    let root = self.roots.get(row).copied().unwrap_or(1.0);
-                    square += root * root;
-                    if let Some(group) = group_of[row] {
+            for (at, row) in sequence.iter().enumerate().rev() {
+                match row.map(|row| (row, place[row])) {
+                    None => {}
+                    Some((row, None)) => square += root(row).powi(2),
+                    Some((row, Some((group, k)))) => {
                         let (rows, share) = &self.groups[group];
-                        let before = total.entry(group).or_default();
-                        let after = *before + root;
-                        let per_square = share * (2.0 - share) / rows.len() as f64;
-                        square -= per_square * (after * after - *before * *before);
-                        *before = after;
+                        let tail = known.entry(group).or_default();
+                        square -= tail.whole;
+                        if let Some(next) = tail.first.replace(row) {
+                            let e = (root(next) - self.correlation * root(row)) / quick;
+                            (tail.square, tail.along) = (tail.square + e * e, tail.along + slow * e);
+                        }
+                        let e = if k == 0 { root(row) } else { root(row) / quick };
+                        let along = tail.along + if k == 0 { e } else { slow * e };
+                        let taken = share * (2.0 - share) / length(rows.len(), self.correlation);
+                        tail.whole = tail.square + e * e - taken * along * along;
+                        square += tail.whole;
                     }
                 }
-                squares[place] = square;
+                squares[at] = square;
             }
             squares
         };
         sequences.iter().map(of_sequence).collect()
+    }
+
+    /// aₜ of all data of a group but the first, where it is 1; and √(1 − φ²).
+    fn along(&self) -> (f64, f64) {
+        let phi = self.correlation;
+        (((1.0 - phi) / (1.0 + phi)).sqrt(), (1.0 - phi * phi).sqrt())
     }
 
     /// Orthonormal basis of the whitened nuisance.
@@ -229,19 +255,46 @@ impl Whitening {
 
     fn whiten(&self, v: &mut [f64]) {
         v.iter_mut().zip(&self.roots).for_each(|(v, root)| *v *= root);
+        if self.correlation > 0.0 {
+            let (phi, (_, quick)) = (self.correlation, self.along());
+            for (rows, _) in &self.groups {
+                for pair in rows.windows(2).rev() {
+                    v[pair[1]] = (v[pair[1]] - phi * v[pair[0]]) / quick;
+                }
+            }
+        }
         self.take_shared(v);
     }
 
     fn transpose(&self, v: &mut [f64]) {
         self.take_shared(v);
+        if self.correlation > 0.0 {
+            let (phi, (_, quick)) = (self.correlation, self.along());
+            for (rows, _) in &self.groups {
+                let mut is_first = true;
+                for pair in rows.windows(2) {
+                    let own = if is_first { 1.0 } else { 1.0 / quick };
+                    v[pair[0]] = own * v[pair[0]] - phi / quick * v[pair[1]];
+                    is_first = false;
+                }
+                if let Some(&last) = rows.last() {
+                    v[last] /= quick;
+                }
+            }
+        }
         v.iter_mut().zip(&self.roots).for_each(|(v, root)| *v *= root);
     }
 
+    /// Takes s·(a·v)/|a|²·a off.
     fn take_shared(&self, v: &mut [f64]) {
+        let (slow, _) = self.along();
         for (rows, share) in &self.groups {
-            let mean = rows.iter().map(|&row| v[row]).sum::<f64>() / rows.len() as f64;
-            for &row in rows {
-                v[row] -= share * mean;
+            let sum = rows.iter().map(|&row| v[row]).sum::<f64>();
+            let first = v[rows[0]];
+            let along = share * (first + slow * (sum - first)) / length(rows.len(), self.correlation);
+            v[rows[0]] -= along;
+            for &row in &rows[1..] {
+                v[row] -= slow * along;
             }
         }
     }
@@ -253,25 +306,34 @@ impl Whitening {
     }
 }
 
+/// What a group's data have along a, those from some datum on.
+#[derive(Default)]
+struct Tail {
+    /// The first of them.
+    first: Option<usize>,
+    /// Σ e² and a·e of the others.
+    square: f64,
+    along: f64,
+    /// |W·s|².
+    whole: f64,
+}
+
 /// ρ from repeats: the mean product of two deviations of one group, over what the mean square has beyond it.
 ///
 /// Deviations are from the mean of the replicate group, so that nothing that repeats itself counts.
-fn shared_ratio(evidence: &Evidence, left: &DVector<f64>) -> f64 {
-    let mut replicates: BTreeMap<usize, (f64, f64)> = BTreeMap::new();
-    for (row, &replicate_group) in evidence.replicate_group.iter().enumerate() {
-        let (sum, count) = replicates.entry(replicate_group).or_default();
-        *sum += left[row];
-        *count += 1.0;
+///
+/// Beside a correlation the likeliest, drawn towards the same belief.
+fn shared_ratio(evidence: &Evidence, left: &DVector<f64>, correlation: f64) -> f64 {
+    let deviations = deviations(evidence, left);
+    if correlation > 0.0 {
+        let count = deviations.iter().flatten().count() as f64;
+        let (ratio, _) = likeliest(&by_group(evidence, &deviations), correlation);
+        return (ratio * count + RATIO_BEFORE * BELIEF) / (count + BELIEF);
     }
     let (mut square, mut count) = (0.0, 0.0);
     let mut groups: BTreeMap<usize, (f64, f64, f64)> = BTreeMap::new();
-    for (row, replicate_group) in evidence.replicate_group.iter().enumerate() {
-        let (sum, repeats) = replicates[replicate_group];
-        if repeats < 2.0 {
-            continue;
-        }
-        // a deviation from a mean of r repeats has (r − 1)/r of the variance
-        let deviation = (left[row] - sum / repeats) * (repeats / (repeats - 1.0)).sqrt();
+    for (row, deviation) in deviations.iter().enumerate() {
+        let Some(deviation) = deviation else { continue };
         square += deviation * deviation;
         count += 1.0;
         let (total, squares, members) = groups.entry(evidence.shared[row]).or_default();
@@ -374,9 +436,39 @@ mod tests {
     }
 
     #[test]
+    fn steps_among_neighbours_that_resemble_each_other_are_too() {
+        let weight = (0..480).map(|i| 0.2 + 0.8 * (0.3 * i as f64).sin().powi(2)).collect();
+        let evidence = Evidence { weight, correlation: Some(0.4), ..evidence(1.0) };
+        let whitening = Whitening::new(&evidence, &evidence.residual);
+        // of a run, and of all from the middle of one on
+        let (run, rest) = ((8..16).map(Some).collect::<Vec<_>>(), (100..480).map(Some).collect());
+        let squares = whitening.squares_of_steps(&[run.clone(), rest]);
+        for (first, from, squares) in [(8, 0, &squares[0]), (8, 3, &squares[0]), (100, 77, &squares[1])] {
+            let last = if first == 8 { 16 } else { 480 };
+            let step = DVector::from_fn(480, |i, _| f64::from(u8::from((first + from..last).contains(&i))));
+            let expected = whitening.whitened(&step).norm_squared();
+            assert!((squares[from] - expected).abs() < 1e-10 * (1.0 + expected), "{first} {from}");
+        }
+    }
+
+    #[test]
+    fn whitening_is_the_inverse_root_of_an_autoregression_too() {
+        let evidence = Evidence { correlation: Some(0.4), ..evidence(1.0) };
+        let whitening = Whitening::new(&evidence, &evidence.residual);
+        // W·(R + ρJ)·Wᵀ = 1 in each run of 8
+        let covariance = DMatrix::from_fn(480, 480, |i, j| {
+            let of_run = if i / 8 == j / 8 { 1.0 } else { 0.0 };
+            of_run * (0.4f64.powi(i.abs_diff(j) as i32) + whitening.ratio)
+        });
+        let e = DVector::from_fn(480, |i, _| f64::from(u8::from(i == 5)));
+        let back = whitening.whitened(&(covariance * whitening.transposed_vector(&e)));
+        assert!((back - e).amax() < 1e-10);
+    }
+
+    #[test]
     fn the_transposed_moves_whitening_to_the_other_side_of_a_product() {
         let weight = (0..480).map(|i| 0.2 + 0.8 * (0.3 * i as f64).sin().powi(2)).collect();
-        let evidence = Evidence { weight, ..evidence(1.0) };
+        let evidence = Evidence { weight, correlation: Some(0.4), ..evidence(1.0) };
         let whitening = Whitening::new(&evidence, &evidence.residual);
         let (a, b) = (DVector::from_fn(480, |i, _| (0.1 * i as f64).cos()), &evidence.residual);
         let (left, right) = (whitening.whitened(&a).dot(b), a.dot(&whitening.transposed_vector(b)));

@@ -7,6 +7,7 @@ use super::cases::Cases;
 use super::datum::Datum;
 use super::effects::entry::Context;
 use super::effects::registry;
+use super::effects::zeros::ZERO_NOT_TAKEN;
 use super::model::{Body, RigModel, is_dependent};
 use super::numbering::numbered;
 use super::slide::Course;
@@ -121,7 +122,8 @@ impl RigModel {
         let mut context = Context { data: &self.data, body: &mut self.body, rod: self.rod.as_ref() };
         let has_rod = context.rod.is_some();
         let mut entries = Vec::new();
-        for effect in registry::ALL.into_iter().filter(|effect| has_rod || !effect.needs_rod) {
+        let all = registry::ALL.into_iter().chain([&ZERO_NOT_TAKEN]);
+        for effect in all.filter(|effect| has_rod || !effect.needs_rod) {
             if wanted.includes(&effect.effect) {
                 entries.extend((effect.candidates)(&mut context));
             }

@@ -102,6 +102,8 @@ fn corrected(model: &RigModel, rod: &Rod, findings: &[Finding], moved: &[Moved])
         // a rod file has no sessions
         let is_of_session = matches!(part.location, Location::InSession { .. });
         match effect.written_to {
+            // said as such
+            _ if effect.kind == Kind::Mistake => {}
             WrittenTo::Model if is_of_session => removed.push(words),
             WrittenTo::Model => {
                 enter(&mut corrected, model, &part.term);

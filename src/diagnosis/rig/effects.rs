@@ -20,3 +20,4 @@ pub(super) mod sensor;
 pub(super) mod structure;
 #[cfg(test)]
 mod tests;
+pub(super) mod zeros;

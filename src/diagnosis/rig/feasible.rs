@@ -1,7 +1,7 @@
 //! Measurements that a rig can make: other axes, loads, stations, unloading, waiting.
 
 use crate::inference::LoadPlan;
-use crate::rig::readings::{Axis, Direction, Phase, Reading, Readings};
+use crate::rig::readings::{Axis, Direction, Driven, Phase, Reading, Readings};
 use crate::rod::Rod;
 use crate::units::MM;
 
@@ -43,37 +43,44 @@ pub(super) fn feasible(readings: &Readings, rod: Option<&Rod>) -> Vec<Measuremen
         let levels = rig.levels(axis);
         let (list, largest) = (newtons(&levels), levels.last().copied().unwrap_or_default());
         let up = |loads: &[f64]| rig.at_tip(axis, loads);
-        all.push((format!("Load the tip along {axis} with {list} N"), up(&levels)));
+        let tip = |axis: &str, list: &str| rig.loading("the tip", axis, list);
+        let along = axis.to_string();
+        all.push((tip(&along, &list), up(&levels)));
         all.push((
-            format!(
-                "Load the tip along {axis} with {list} N, and read again at the same loads while unloading"
-            ),
+            format!("{}, and read again at the same loads while unloading", tip(&along, &list)),
             LoadPlan { unloading: true, ..up(&levels) },
         ));
         all.push((
-            format!("Load the tip against {axis}, along -{axis}, with {list} N"),
+            format!("{}, against the direction of the others", tip(&format!("-{axis}"), &list)),
             LoadPlan { direction: Direction { axis, sign: -1 }, ..up(&levels) },
         ));
         let small = [0.05, 0.1, 0.2].map(|share| share * largest);
-        all.push((format!("Load the tip along {axis} with small loads, {} N", newtons(&small)), up(&small)));
+        all.push((format!("{}, small loads", tip(&along, &newtons(&small))), up(&small)));
         let double = [largest, 1.5 * largest, 2.0 * largest];
         all.push((
-            format!("Load the tip along {axis} with {} N, if the rod and the rig bear it", newtons(&double)),
+            format!("{}, if the rod and the rig bear it", tip(&along, &newtons(&double))),
             up(&double),
         ));
         all.push((
-            format!("Hang {} N along {axis} and read at once and after 1, 10 and 60 minutes, without touching anything", newton(largest)),
+            format!(
+                "{} and read at once and after 1, 10 and 60 minutes, {}",
+                tip(&along, &newton(largest)),
+                rig.untouched()
+            ),
             // waiting takes long enough once
             LoadPlan { waits: WAITS.to_vec(), repeats: 1, ..up(&[largest]) },
         ));
         for &station in &rig.stations {
             let mm = format!("{:.0}", station / MM);
             all.push((
-                format!("Hang {list} N along {axis} at station {mm} mm instead of the tip"),
+                format!(
+                    "{} instead of the tip",
+                    rig.loading(&format!("the rod at station {mm} mm"), &along, &list)
+                ),
                 LoadPlan { load_station: Some(station), ..up(&levels) },
             ));
             all.push((
-                format!("Load the tip along {axis} with {list} N, with the sensors at station {mm} mm"),
+                format!("{}, with the sensors at station {mm} mm", tip(&along, &list)),
                 LoadPlan { read_station: Some(station), ..up(&levels) },
             ));
         }
@@ -117,6 +124,23 @@ impl<'a> Rig<'a> {
             }
         }
         Rig { readings, has_rod: rod.is_some(), stations: rod.map(stations).unwrap_or_default(), known }
+    }
+
+    /// `Load the tip along z with 5, 10 and 15 N`, or, where the displacement is what is set,
+    /// `Move the tip along z until the load is 5, 10 and 15 N`.
+    fn loading(&self, what: &str, axis: &str, loads: &str) -> String {
+        match self.readings.header.driven {
+            Driven::Load => format!("Load {what} along {axis} with {loads} N"),
+            Driven::Displacement => format!("Move {what} along {axis} until the load is {loads} N"),
+        }
+    }
+
+    /// What is left alone while something is waited for.
+    fn untouched(&self) -> &'static str {
+        match self.readings.header.driven {
+            Driven::Load => "without touching anything",
+            Driven::Displacement => "the displacement held",
+        }
     }
 
     /// Axes that could be loaded: all of a rod, the present ones of a line.

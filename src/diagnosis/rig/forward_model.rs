@@ -7,9 +7,10 @@ use nalgebra::{DMatrix, DVector};
 
 use super::action::{Action, State};
 use super::effects::registry;
+use super::effects::zeros::ZERO_NOT_TAKEN;
 use super::model::{Body, RigModel, STATION, is_dependent};
 use crate::inference::{
-    Candidate, DERIVATIVE_STEP, Description, Estimate, Finding, FindingPart, ForwardModel, Hypothesis,
+    Candidate, DERIVATIVE_STEP, Description, Estimate, Finding, FindingPart, ForwardModel, Hypothesis, Kind,
     Location, Step, Term,
 };
 
@@ -119,12 +120,15 @@ impl ForwardModel for RigModel {
     }
 
     fn describe(&self, finding: &Finding) -> Description {
-        let own = registry::ALL.into_iter().find(|known| &known.effect == finding.effect);
+        let mut all = registry::ALL.into_iter().chain([&ZERO_NOT_TAKEN]);
+        let own = all.find(|known| &known.effect == finding.effect);
         let observed = own.map_or_else(
             || format!("{} at {}", finding.effect.spoken(), finding.location),
             |effect| (effect.observed)(finding, self),
         );
-        Description { observed, cause: finding.effect.cause.to_owned() }
+        // the correction of a mistake says what it is
+        let cause = if finding.kind() == Kind::Mistake { "" } else { finding.effect.cause };
+        Description { observed, cause: cause.to_owned() }
     }
 }
 

@@ -369,7 +369,7 @@ pub(super) fn instants(data: &[Datum], run: &[usize]) -> Vec<Vec<usize>> {
 }
 
 /// Usual time between two readings of a run, s: the median; 0 where no run has two times.
-fn dwell(data: &[Datum], times: &[f64]) -> f64 {
+pub(super) fn dwell(data: &[Datum], times: &[f64]) -> f64 {
     let steps = runs(data)
         .into_iter()
         .flat_map(|run| run.windows(2).map(|pair| times[pair[1]] - times[pair[0]]).collect::<Vec<_>>());

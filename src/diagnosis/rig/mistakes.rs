@@ -161,7 +161,8 @@ impl Mended {
         let (pairs, pair) = pairs(&all);
         let base = Physics::new(&rod, &pairs)?;
         let is_possible = check_stations(&self.readings, &rod).is_ok();
-        let search = Search { lines: &all, pair: &pair, pairs: &pairs, base: &base, is_possible };
+        let length = rod.length();
+        let search = Search { lines: &all, pair: &pair, pairs: &pairs, base: &base, length, is_possible };
         if all.is_empty() || !search.is_implausible() {
             return Ok(());
         }

@@ -11,6 +11,12 @@
 //! of one line or channel (s a share of what was read there), or it multiplies the deflections of all lines at once (s a share of
 //! them), or, over the load, it adds to what is read along the load on all lines: then physics that acts on all lines alike, such
 //! as relaxation with one time constant or a seat that gives way, is one rival and not many.
+//!
+//! What comes and goes in time has finer curves besides, of [`FINE`] columns of which the first half are of one size.
+
+mod along;
+mod before;
+mod swing;
 
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -19,82 +25,26 @@ use std::collections::HashMap;
 
 use nalgebra::{DMatrix, DVector};
 
+use self::along::*;
+use self::before::Before;
 use super::action::{Action, Weights};
 use super::datum::Datum;
 use super::effects::entry::Entry;
 use super::load_history::runs;
 use super::numbering::numbered;
-use crate::inference::{Candidate, Location, Parameter, UNKNOWN, Variable};
+use crate::inference::{Candidate, Location, Parameter, Variable};
 use crate::spatial::Axis;
 use crate::units::UM;
 
 const MOST_COLUMNS: usize = 6;
+/// Columns of a curve in time that swings: six periods in a recording.
+const FINE: usize = 14;
 /// Loads that are hung are at most so many different ones.
 const MOST_LEVELS: usize = 30;
-/// Size of a curve as a share of the largest reading, or of the deflection.
-const SHARE: f64 = 0.05;
-/// The same, as a share of the largest of all readings: a sensor and its holder are a little wrong
-/// even where hardly anything is to be read.
-const LEAST_SHIFT: f64 = 0.01;
 /// Share by which the slope of a line may be off, and share of the steepest line's slope that a flat one may have: as large as
 /// the known effects on a rod.
 const SLOPE: (f64, f64) = (0.27, 0.02);
 const PERCENT: f64 = 0.01;
-
-/// What a curve is a function of: its name in labels, how it is said, the number it is seen along.
-#[derive(Clone, Copy)]
-struct Along {
-    name: &'static str,
-    follows: &'static str,
-    variable: Variable,
-}
-
-const LOAD: Along = Along { name: "load", follows: "follows the load", variable: Variable::Load };
-const UNLOADING: Along =
-    Along { name: "unloading", follows: "follows the load while unloading", variable: Variable::Load };
-const SIGNED_LOAD: Along =
-    Along { name: "signed load", follows: "follows the signed load", variable: Variable::Load };
-const POSITION: Along = Along {
-    name: "position in the run",
-    follows: "follows the position in the run",
-    variable: Variable::Order,
-};
-const FALLING: Along = Along {
-    name: "signed load, falling",
-    follows: "follows the signed load while it falls",
-    variable: Variable::SignedLoad,
-};
-const ORDER: Along =
-    Along { name: "order", follows: "follows the order of the readings", variable: Variable::Order };
-const TIME: Along = Along { name: "time", follows: "follows the time", variable: Variable::Time };
-const TEMPERATURE: Along =
-    Along { name: "temperature", follows: "follows the temperature", variable: Variable::Temperature };
-
-/// The place of a curve that multiplies all deflections.
-const ALL_DEFLECTIONS: &str = "all deflections";
-
-impl Along {
-    /// `follows the load (all readings alike)`.
-    fn follows(self, place: &str) -> String {
-        let readings = if place == ALL_DEFLECTIONS { "all readings alike" } else { place };
-        format!("{} ({readings})", self.follows)
-    }
-}
-
-/// A rival for physics that nobody has named.
-fn rival(location: Location, parameters: Vec<Parameter>) -> Candidate {
-    Candidate {
-        effect: &UNKNOWN,
-        location,
-        parameters,
-        weight: 1.0,
-        is_alternative: false,
-        is_nonparametric: true,
-    }
-}
-
-/// A coordinate from 0 to 1 for each datum; `None` where it has no meaning.
-type Coordinate = Vec<Option<f64>>;
 
 /// All curves for these readings. `deflections`: how far the rod yields at each datum by the base model, m.
 pub(super) fn all(data: &[Datum], deflections: &[f64], has_rod: bool) -> Vec<Entry> {
@@ -103,27 +53,47 @@ pub(super) fn all(data: &[Datum], deflections: &[f64], has_rod: bool) -> Vec<Ent
         format!("d{} under loads along {}{}", d.channel, d.direction.axis, places(d))
     });
     let channels = groups(data, &numbered(data.iter().map(|d| d.channel)), &|d| format!("d{}", d.channel));
+    let clock = if data.iter().any(|d| d.time.is_some()) { Variable::Time } else { Variable::Order };
     let mut entries = Vec::new();
     for (along, coordinate, is_of_line) in coordinates(data) {
         entries.extend(curve(along, ALL_DEFLECTIONS, &coordinate, &everything, PERCENT, SHARE, |i| {
             deflections[i]
         }));
+        if along.variable == clock && !is_of_line {
+            entries.extend(swing::all(along, &coordinate, data));
+        }
         for (place, group) in if is_of_line { &lines } else { &channels } {
             let largest = group.iter().fold(0.0, |max: f64, &i| max.max(data[i].measured.abs()));
             let size = (SHARE * largest).max(LEAST_SHIFT * largest_reading(data));
             entries.extend(curve(along, place, &coordinate, group, UM, size, |_| 1.0));
+            if along.variable == clock && !is_of_line {
+                entries.extend(fine(along, place, &coordinate, group, size));
+            }
         }
+    }
+    let before = Before::of(data);
+    if let Some(waits) = before.waits() {
+        let changes = before.changes(data, deflections);
+        entries.extend(curve(SINCE_CHANGE, CHANGES, &scaled(&waits), &everything, PERCENT, SHARE, |i| {
+            changes[i]
+        }));
+    }
+    if let Some(loads) = before.loads(data) {
+        entries.extend(curve(
+            LOAD_BEFORE,
+            ALL_DEFLECTIONS,
+            &scaled(&loads),
+            &everything,
+            PERCENT,
+            SHARE,
+            |i| deflections[i],
+        ));
     }
     entries.extend(along_the_load(data));
     if has_rod {
         entries.extend(slopes(data, deflections, &lines));
     }
     entries
-}
-
-/// The largest reading, m.
-fn largest_reading(data: &[Datum]) -> f64 {
-    data.iter().fold(0.0, |most: f64, datum| most.max(datum.measured.abs()))
 }
 
 /// What a reading may follow: name, coordinate, and whether it acts by line (loads) or by channel (drifts).
@@ -260,18 +230,40 @@ fn curve(
     size: f64,
     amplitude: impl Fn(usize) -> f64,
 ) -> Option<Entry> {
+    let sizes: Vec<f64> = (0..MOST_COLUMNS).map(|j| size / (1 + j) as f64).collect();
+    cosines(&format!("{}, {place}", along.name), (along, place), (coordinate, group), unit, &sizes, amplitude)
+}
+
+/// A curve in time that swings; nothing where too few times are known to see that.
+fn fine(along: Along, place: &str, coordinate: &Coordinate, group: &[usize], size: f64) -> Option<Entry> {
+    let times = numbered(group.iter().filter_map(|&i| coordinate[i]).map(f64::to_bits));
+    (times.into_iter().max()? >= 2 * FINE).then_some(())?;
+    let even = (FINE / 2) as f64;
+    let sizes: Vec<f64> = (0..FINE).map(|j| size / (1.0 + j as f64 / even).powi(2)).collect();
+    let label = format!("{}, in swings, {place}", along.name);
+    cosines(&label, (along, place), (coordinate, group), UM, &sizes, |_| 1.0)
+}
+
+/// Σ_j a_j·cos(π j x), a_j of these sizes; of fewer values than columns as many columns.
+fn cosines(
+    label: &str,
+    (along, place): (Along, &str),
+    (coordinate, group): (&Coordinate, &[usize]),
+    unit: f64,
+    sizes: &[f64],
+    amplitude: impl Fn(usize) -> f64,
+) -> Option<Entry> {
     let known: Vec<(usize, f64)> = group.iter().filter_map(|&i| Some((i, coordinate[i]?))).collect();
     let different = numbered(known.iter().map(|(_, x)| x.to_bits())).into_iter().max()? + 1;
-    let columns = different.min(MOST_COLUMNS);
     let own: Arc<[usize]> = known.iter().map(|(i, _)| *i).collect();
-    let (parameters, actions) = (0..columns)
+    let suffix = if unit == PERCENT { "percent" } else { "um" };
+    let (parameters, actions) = (0..different.min(sizes.len()))
         .map(|j| {
-            let suffix = if unit == PERCENT { "percent" } else { "um" };
             let parameter = Parameter {
                 name: format!("cosine_{j}_{suffix}"),
                 unit,
                 neutral: 0.0,
-                size: size / (1 + j) as f64,
+                size: sizes[j],
                 bounds: (f64::NEG_INFINITY, f64::INFINITY),
             };
             let weight = |&(i, x): &(usize, f64)| amplitude(i) * (PI * j as f64 * x).cos();
@@ -279,8 +271,11 @@ fn curve(
             (parameter, Action::Shift(Weights { data: Arc::clone(&own), values }))
         })
         .unzip();
-    let label = format!("{}, {place}", along.name);
-    let location = Location::Curve { label, follows: along.follows(place), along: Some(along.variable) };
+    let location = Location::Curve {
+        label: label.to_owned(),
+        follows: along.follows(place),
+        along: Some(along.variable),
+    };
     Some((rival(location, parameters), actions))
 }
 

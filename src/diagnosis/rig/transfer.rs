@@ -19,7 +19,7 @@ pub(super) struct Transferred {
 }
 
 impl RigModel {
-    /// Terms of `from` in this model. What belongs to single rows (slips, outliers) does not happen again.
+    /// Terms of `from` in this model. What happened once (a slip, a zero that was not taken) does not happen again.
     pub(super) fn transferred(&self, from: &RigModel, terms: &[Term]) -> Transferred {
         let (mut transferred, mut known, mut first) = (Vec::new(), Vec::new(), 0);
         for effect in terms {
@@ -149,14 +149,13 @@ mod tests {
     }
 
     #[test]
-    fn every_effect_is_transferred_to_itself_and_what_happened_to_a_row_is_not() {
+    fn every_effect_is_transferred_to_itself_and_what_happened_once_is_not() {
         let rod = Rod::from_toml("rod", include_str!("../../../rods/5.toml")).unwrap();
         let (model, _) = RigModel::new(&recorded(&rod), Some(&rod)).unwrap();
         for (index, candidate) in model.candidates().iter().enumerate() {
             let own = candidate.neutral(index);
             let transferred = model.transferred(&model, std::slice::from_ref(&own));
-            let is_event = candidate.effect.kind == Kind::Event;
-            let is_left = is_event || candidate.is_nonparametric;
+            let is_left = candidate.effect.kind != Kind::Physics || candidate.is_nonparametric;
             let expected = if is_left { vec![] } else { vec![own] };
             assert_eq!(transferred.terms, expected, "{candidate:?}");
             assert!(transferred.known.iter().all(Option::is_some));

@@ -31,6 +31,6 @@ impl Wanted<'_> {
 pub(super) fn is_same(new: &Candidate, old: &Candidate) -> bool {
     (&new.effect, &new.location) == (&old.effect, &old.location)
         && !new.is_nonparametric
-        && old.effect.kind != Kind::Event
+        && old.effect.kind == Kind::Physics
         && new.parameters.iter().any(|p| old.parameters.iter().any(|q| q.name == p.name))
 }

@@ -21,11 +21,13 @@ pub fn headline(subject: &Subject) -> String {
         return match remains {
             Some(remains) => format!("{remains}{nominal} {}", capital(&scatter(subject))),
             None => format!(
-                "{}:{} the residual, {} µm{}, is {}.",
+                "{}: {}the residual, {} µm{}, is {}.",
                 subject.agrees,
-                beginning_lower(nominal.trim_start()).trim_end_matches('.').to_owned()
-                    + if nominal.is_empty() { "" } else { ";" },
-                um(diagnosis.error_after()),
+                match nominal.trim() {
+                    "" => String::new(),
+                    words => beginning_lower(words).trim_end_matches('.').to_owned() + "; ",
+                },
+                um(diagnosis.error_of_others()),
                 subject.per,
                 scatter_of(subject)
             ),

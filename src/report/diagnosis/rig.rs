@@ -92,6 +92,9 @@ fn subject<'a>(found: &'a RigDiagnosis, correction: Option<&Correction>) -> Subj
     }
 }
 
+/// So many standard uncertainties of the stiffness are still within what the file says.
+const FAR: f64 = 2.0;
+
 /// `The stiffness is 0.4 ± 0.1 % above that of the rod file, within the stated uncertainty of E of steel (1 %).`
 fn nominal(found: &RigDiagnosis) -> Option<String> {
     let moved = found.diagnosis.nominal.first()?;
@@ -101,6 +104,8 @@ fn nominal(found: &RigDiagnosis) -> Option<String> {
     // share of the deflections that the numbers add, and its gradient to their factors
     let gradient = found.evidence.nominal.tr_mul(&predicted) / predicted.norm_squared();
     let value = -100.0 * gradient.dot(factors);
+    // what the file says of it, in the same numbers
+    let stated = 100.0 * gradient.norm();
     let half = 196.0 * gradient.dot(&(covariance * &gradient)).max(0.0).sqrt();
     let word = if value >= 0.0 { "above" } else { "below" };
     let share = Quantity { value, low: value - half, high: value + half }.size().say("%");
@@ -111,6 +116,15 @@ fn nominal(found: &RigDiagnosis) -> Option<String> {
         false => format!("{} {}", significant(number.standard_uncertainty / number.si, 2), number.unit),
     };
     let others = if found.diagnosis.nominal.len() > 1 { " and of other numbers" } else { "" };
+    if value.abs() > FAR * stated {
+        return Some(format!(
+            "The stiffness is {share} {word} that of the rod file, {} times as far off as the file's numbers make likely \
+             ({} %): check {}.",
+            significant(value.abs() / stated, 2),
+            significant(stated, 2),
+            number.name
+        ));
+    }
     Some(format!(
         "The stiffness is {share} {word} that of the rod file, within the stated uncertainty of {} \
          ({known}){others}.",
@@ -201,7 +215,7 @@ fn of_conditions(found: &RigDiagnosis, left: &Discrepancy) -> Remainder {
              shape that neither a smooth curve nor an effect of the library describes"
         ),
         ShownBy::Suspects => format!(
-            "{} of {} readings are far off, too many for single mistakes, in a shape that neither a smooth \
+            "{} of {} readings are far off, too many or too close together for single mistakes, in a shape that neither a smooth \
              curve nor an effect of the library describes",
             found.diagnosis.suspects.len(),
             data.len()

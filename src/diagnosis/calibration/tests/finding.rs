@@ -14,7 +14,7 @@ fn found(campaign: &Campaign) -> (Vec<String>, Option<String>) {
     let mode = crate::calibration::default_mode(campaign);
     let (model, evidence) = modelled(campaign, mode);
     let linear = Linearised::new(&model);
-    let (_, hypothesis, unknown) = infer(&linear, &evidence, crate::inference::Pairs::Screened);
+    let (_, hypothesis, unknown) = infer(&linear, &evidence, crate::inference::Pairs::Screened, None);
     let name = |term: &Term| {
         let candidate = &model.candidates()[term.candidate];
         format!("{}: {}", candidate.effect, candidate.location)

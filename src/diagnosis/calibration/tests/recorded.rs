@@ -30,7 +30,7 @@ fn the_gears_of_a_ur5_predict_poses_that_they_were_not_fitted_to() {
     let by_fold = in_parallel(2, |fold| {
         let kept: Vec<usize> = (0..data).filter(|&row| evidence.fold[row] != fold).collect();
         let (part, training) = (linear.part(&kept), evidence.part(&kept));
-        let (search, hypothesis, _) = infer(&part, &training, crate::inference::Pairs::Screened);
+        let (search, hypothesis, _) = infer(&part, &training, crate::inference::Pairs::Screened, None);
         let none = search.predicted(&search.fit(&[]), &evidence, &DVector::zeros(data));
         let all = search.predicted(&hypothesis, &evidence, &model.response(&hypothesis.terms));
         let miss = |told: &DVector<f64>| -> f64 {
@@ -92,7 +92,7 @@ fn a_placebo_is_refused() {
     let (terms, _) = LinearTerms::new(entries, &evidence);
     let model = CalibrationModel { terms, ..model };
     let linear = Linearised::new(&model);
-    let (search, hypothesis, _) = infer(&linear, &evidence, crate::inference::Pairs::Screened);
+    let (search, hypothesis, _) = infer(&linear, &evidence, crate::inference::Pairs::Screened, None);
     let effect = |term: &Term| model.candidates()[term.candidate].effect;
     let found: Vec<&Effect> = hypothesis.terms.iter().map(effect).collect();
     let gears = &effects::gear::TRANSMISSION_ERROR.effect;

@@ -47,7 +47,7 @@ pub static SWAP_MISTAKE: Effect = Effect {
 };
 
 /// A zero that was not taken.
-pub static OFFSET_MISTAKE: Effect = Effect {
+pub const OFFSET_MISTAKE: Effect = Effect {
     name: "offset_mistake",
     summary: "a zero was not taken: a constant on all readings of a channel or of a run",
     formula: "true = recorded − constant, beyond the rod's own deflection",

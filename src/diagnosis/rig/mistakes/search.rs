@@ -14,6 +14,9 @@ use crate::spatial::Axis;
 pub(super) const ODDS: f64 = 6.907_755;
 /// Another mistake within these odds explains alike: ln 20.
 const ALIKE: f64 = 2.995_732;
+/// A rod is never bent by more than this share of its length, and what it costs to say so: ln.
+const BENT: f64 = 0.05;
+const BENT_TOO_FAR: f64 = 15.0;
 /// How rare any mistake is against none: ln.
 const RARE: f64 = -0.5;
 const MOST_MISTAKES: usize = 3;
@@ -37,6 +40,8 @@ pub(super) struct Search<'a> {
     pub pair: &'a [usize],
     pub pairs: &'a [[Option<f64>; 2]],
     pub base: &'a Physics,
+    /// Length of the rod, m.
+    pub length: f64,
     /// False where the readings are not on the rod at all.
     pub is_possible: bool,
 }
@@ -112,6 +117,15 @@ impl Search<'_> {
         if all > 0.0 { scatter / all } else { 0.0 }
     }
 
+    /// What it costs that the readings, once they are corrected, are larger than any that a rod survives.
+    fn bent_too_far(&self, change: &Change) -> f64 {
+        let is_too_far = |line: &Line| {
+            let reading = change.reading[line.axis.index()][line.channel.index()];
+            (line.fit.slope * reading).abs() * line.largest_load > BENT * self.length
+        };
+        if change.body == 0 && self.lines.iter().any(is_too_far) { BENT_TOO_FAR } else { 0.0 }
+    }
+
     fn seen<'s>(&'s self, physics: &'s Physics, change: &Change) -> Seen<'s> {
         let view = |line: &Line| {
             let (axis, channel) = (line.axis.index(), line.channel.index());
@@ -154,7 +168,7 @@ impl Trial<'_> {
         let Verdict { log_evidence, log_scale } = self.search.seen(self.physics(&change)?, &change).verdict();
         let is_within = moves.iter().all(|&number| log_scale.abs() <= self.moves[number].within.ln());
         let prior: f64 = moves.iter().map(|&number| RARE + self.moves[number].log_prior).sum();
-        let score = log_evidence + prior;
+        let score = log_evidence + prior - self.search.bent_too_far(&change);
         (is_within || moves.is_empty()).then_some(State { moves, change, log_scale, score })
     }
 
@@ -262,7 +276,8 @@ impl Trial<'_> {
         }
         let Verdict { log_evidence, log_scale } = self.search.seen(self.physics(&change)?, &change).verdict();
         let prior: f64 = moves.iter().map(|&number| RARE + self.moves[number].log_prior).sum();
-        Some(State { moves: moves.to_vec(), change, log_scale, score: log_evidence + prior })
+        let score = log_evidence + prior - self.search.bent_too_far(&change);
+        Some(State { moves: moves.to_vec(), change, log_scale, score })
     }
 }
 

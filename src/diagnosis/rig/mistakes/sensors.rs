@@ -244,11 +244,24 @@ fn expected(data: &[Datum], at: &[usize], without: &[usize]) -> Option<Vec<(f64,
     let rest = lines(data, |i| !without.contains(&i));
     let of = |&i: &usize| {
         let d = &data[i];
-        let line =
-            rest.iter().find(|line| line.is_of(d)).filter(|line| line.has_slope && line.data.len() >= 3)?;
+        let line = rest.iter().find(|line| line.is_of(d) && line.data.len() >= 2)?;
+        if !line.has_slope {
+            return through_origin(data, line, d);
+        }
         // loads beyond those of the others are predicted no better than the slope is known
         let scatter = line.fit.scatter.hypot(line.fit.error * d.load);
-        Some((line.fit.at(d.signed_load()), scatter))
+        (line.data.len() >= 3).then(|| (line.fit.at(d.signed_load()), scatter))
     };
     at.iter().map(of).collect()
+}
+
+/// What readings at a single load say of another one: a line through the origin, which play and friction leave by some.
+fn through_origin(data: &[Datum], line: &Line, d: &Datum) -> Option<(f64, f64)> {
+    const PLAY: f64 = 0.1;
+    let sums = line.data.iter().fold((0.0, 0.0), |(xy, xx), &i| {
+        let load = data[i].signed_load();
+        (xy + load * data[i].measured, xx + load * load)
+    });
+    let value = d.signed_load() * sums.0 / sums.1;
+    (sums.1 > 0.0).then(|| (value, line.fit.scatter.max(0.0).hypot(PLAY * value)))
 }

@@ -1,0 +1,65 @@
+//! A zero that was not taken, as a term beside physics: what is as small as play, drift or a slip competes with them.
+//!
+//! What is larger than the rod's own deflection is undone before there is a model: `diagnosis/rig/mistakes`.
+
+use super::entry::{Context, Entry, RigEffect, UNBOUNDED, entry, of, parameter};
+use super::mistakes::OFFSET_MISTAKE;
+use super::places::{measured_channels, runs_by_sensor};
+use crate::diagnosis::rig::action::{Action, Weights};
+use crate::inference::Location;
+use crate::units::UM;
+
+/// Usual size as a share of the largest reading.
+const ZERO: f64 = 0.1;
+/// Of so many runs each may have a zero of its own that was not taken; of more nobody looks.
+const MOST_RUNS: usize = 200;
+/// Of fewer runs along an axis nobody knows which of them is off.
+const FEWEST_RUNS: usize = 3;
+
+/// A constant on all readings of a channel, or of a channel in a run.
+pub static ZERO_NOT_TAKEN: RigEffect = RigEffect {
+    effect: OFFSET_MISTAKE,
+    needs_rod: true,
+    candidates: offsets,
+    missing: |_| "nothing was read",
+    observed: |finding, _| {
+        let zero = of(finding, "um").say("µm");
+        format!("A zero was not taken ({}): subtract {zero} from these readings", finding.location)
+    },
+};
+
+fn offsets(context: &mut Context) -> Vec<Entry> {
+    let size = ZERO * context.largest_reading();
+    let data = context.data;
+    let zero = |place: String, of: Vec<usize>| {
+        let readings: Weights = of.into_iter().map(|i| (i, 1.0)).collect();
+        let um = parameter("um", UM, 0.0, size, UNBOUNDED);
+        entry(&ZERO_NOT_TAKEN, Location::Key(place), um, Action::Shift(readings))
+    };
+    let of_channel = |channel| {
+        let of = (0..data.len()).filter(|&i| data[i].channel == channel).collect();
+        zero(format!("d{channel}_um"), of)
+    };
+    let mut entries: Vec<Entry> = measured_channels(data).into_iter().map(of_channel).collect();
+    let runs = runs_by_sensor(data);
+    if runs.len() > MOST_RUNS {
+        return entries;
+    }
+    for (run, rows) in &runs {
+        let channel = data[rows[0]].channel;
+        let is_alike = |rows: &[usize]| data[rows[0]].channel == channel;
+        let alike = runs.iter().filter(|(other, rows)| other.axis == run.axis && is_alike(rows)).count();
+        if alike < FEWEST_RUNS || rows.len() < 2 {
+            continue;
+        }
+        let name = match &data[rows[0]].trial {
+            Some(trial) => format!("d{channel}_um, axis {}, trial {trial}", run.axis),
+            None => {
+                let (first, last) = (data[rows[0]].row, data[rows[rows.len() - 1]].row);
+                format!("d{channel}_um, axis {}, rows {first} to {last}", run.axis)
+            }
+        };
+        entries.push(zero(name, rows.clone()));
+    }
+    entries
+}

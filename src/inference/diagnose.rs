@@ -52,7 +52,7 @@ pub fn diagnose(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
         })
         .collect();
     parts.sort_by(|(_, a), (_, b)| b.explains.total_cmp(&a.explains));
-    let findings = findings(model, &hypothesis, held_out.as_ref(), rms(&before), parts);
+    let findings = findings(model, &search, &hypothesis, held_out.as_ref(), rms(&before), parts);
     let lack_of_fit_after = search.lack_of_fit(&hypothesis, &predicted);
     let mut longest = &hypothesis;
     let mut discrepancy = None;
@@ -172,6 +172,7 @@ fn noise_test(stated: Option<f64>, estimated: f64, degrees_of_freedom: f64) -> N
 /// finding. `base` is the root mean square that the base model leaves.
 fn findings(
     model: &Linearised<'_>,
+    search: &Search,
     hypothesis: &Hypothesis,
     held_out: Option<&HeldOut>,
     base: f64,
@@ -203,8 +204,14 @@ fn findings(
         }
     }
     for (theme, finding) in &mut findings {
-        let terms: Vec<Term> = finding.parts.iter().map(|part| part.term.clone()).collect();
-        finding.explains = rms(&model.response(&terms));
+        finding.explains = match &finding.parts[..] {
+            [part] => part.explains,
+            parts => {
+                let is_other = |term: &&Term| !parts.iter().any(|part| part.term.candidate == term.candidate);
+                let others: Vec<Term> = hypothesis.terms.iter().filter(is_other).cloned().collect();
+                explained(search, &search.fit(&others), hypothesis)
+            }
+        };
         finding.estimates = model.estimates(&finding.parts, hypothesis);
         finding.rivals = finding.parts.iter().flat_map(|part| part.rivals.clone()).collect();
         finding.rivals.sort_by(|a, b| a.odds.total_cmp(&b.odds));
@@ -281,9 +288,16 @@ fn part(model: &Linearised<'_>, search: &Search, hypothesis: &Hypothesis, positi
         },
         coverage_factor,
         p_value: chi_squared_survival(gained.max(0.0), determined).unwrap_or(1.0),
-        explains: rms(&model.response(std::slice::from_ref(term))),
+        explains: explained(search, &rest, hypothesis),
         rivals,
     }
+}
+
+/// By how much the residual of a hypothesis is less than that of a shorter one, root of the difference of their mean
+/// squares: what the base model would take up is explained by nothing else.
+fn explained(search: &Search, shorter: &Hypothesis, hypothesis: &Hypothesis) -> f64 {
+    let squares = search.left_rms(shorter).powi(2) - search.left_rms(hypothesis).powi(2);
+    squares.max(0.0).sqrt()
 }
 
 /// Value and 95 % interval of the parameters of a term, which begin at `first` in the covariance of

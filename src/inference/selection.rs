@@ -50,9 +50,26 @@ impl Search<'_> {
     pub fn best(&self, pairs: Pairs) -> (Hypothesis, Option<DiscrepancyModel>) {
         let none = self.fit(&[]);
         let additions = self.additions(&none);
+        let (hypothesis, left_over) = self.by_names(none, &additions, pairs);
+        match left_over {
+            Some(DiscrepancyModel::Curve(longer)) => {
+                let (hypothesis, longer) = self.beside(hypothesis, longer);
+                (hypothesis, Some(DiscrepancyModel::Curve(longer)))
+            }
+            other => (hypothesis, other),
+        }
+    }
+
+    /// The same, where nothing is named once a curve is in.
+    fn by_names(
+        &self,
+        none: Hypothesis,
+        additions: &[f64],
+        pairs: Pairs,
+    ) -> (Hypothesis, Option<DiscrepancyModel>) {
         let by_steps = self.along(vec![none.clone()]);
         let pair = match pairs {
-            Pairs::Screened => self.best_pair(&none, &additions),
+            Pairs::Screened => self.best_pair(&none, additions),
             Pairs::LeftOut => None,
         };
         // a pair that the steps have found is theirs
@@ -65,6 +82,30 @@ impl Search<'_> {
             true => (by_pair.0, by_pair.1),
             false => (by_steps.0, by_steps.1),
         }
+    }
+
+    /// Effects that are named beside a curve, the last of `longer`: what is hidden by something unknown
+    /// is seen once that is described. The curve may be another one then.
+    fn beside(&self, mut hypothesis: Hypothesis, mut longer: Hypothesis) -> (Hypothesis, Hypothesis) {
+        while longer.terms.len() <= MOST {
+            let additions = self.additions(&longer);
+            let Some(more) = self.longer(&longer, &additions, false) else { break };
+            let shared = self.shared(&additions, &more, &longer);
+            if more.log_probability < longer.log_probability + NAMED.ln() - shared {
+                break;
+            }
+            let mut terms = more.terms;
+            let curve = terms.len() - 2;
+            let last = terms.len() - 1;
+            terms.swap(curve, last);
+            let own = self.fit(&terms);
+            hypothesis = self.fit(&terms[..last]);
+            longer = match self.longer(&hypothesis, &self.additions(&hypothesis), true) {
+                Some(other) if other.log_probability > own.log_probability => other,
+                _ => own,
+            };
+        }
+        (hypothesis, longer)
     }
 
     /// The best hypothesis on the way on from the last of `path`, what it leaves, and the ln of the

@@ -1,16 +1,17 @@
 //! What a campaign says about its calibration.
 
+use super::beside::{calibrated_beside, unequal};
 use super::context::Context;
 use super::effects::registry;
 use super::evidence;
 use super::gear::Curve;
-use super::limits::limits;
+use super::limits::{limits, noisy};
 use super::linear_terms::LinearTerms;
 use super::model::CalibrationModel;
 use super::next::next_poses;
 use super::nonparametric;
 use crate::calibration::campaign::Campaign;
-use crate::calibration::{Calibration, Mode, Options, calibrate};
+use crate::calibration::{Calibration, Mode, Noise, Options, calibrate};
 use crate::error::Result;
 use crate::inference::{Absorbed, Diagnosed, Evidence, Finding, Location, NotTestable, diagnose as infer};
 use crate::parallel::in_parallel;
@@ -51,20 +52,41 @@ pub fn diagnose_calibrated<'c>(
     campaign: &'c Campaign,
     calibration: Calibration<'c>,
 ) -> Result<CalibrationDiagnosis<'c>> {
-    let Prepared { model, evidence, absorbed, not_testable, context } = Prepared::new(campaign, calibration)?;
-    let mut diagnosis = infer(&model, &evidence);
+    let mut prepared = Prepared::new(campaign, calibration)?;
+    let mut diagnosis = infer(&prepared.model, &prepared.evidence);
+    let mut scatter = None;
+    for _ in 0..ROUNDS {
+        let about = calibrated_beside(&prepared, &diagnosis)?;
+        let noise = unequal(&prepared, &diagnosis)?;
+        let is_equal = noise.is_none() == scatter.is_none();
+        if about.is_none() && is_equal {
+            break;
+        }
+        scatter = noise;
+        let about = about.unwrap_or(prepared.about);
+        prepared = Prepared::about(campaign, prepared.model.calibration, about, scatter.as_ref())?;
+        diagnosis = infer(&prepared.model, &prepared.evidence);
+    }
+    let Prepared { model, evidence, absorbed, not_testable, context, .. } = prepared;
     let next = in_parallel(diagnosis.findings.len(), |k| {
         next_poses(&model, &context, &evidence, &diagnosis, &diagnosis.findings[k])
     });
     for (finding, next) in diagnosis.findings.iter_mut().zip(next) {
         finding.next = next?;
     }
-    let limits = limits(&context, &model.calibration, &evidence);
+    let mut limits = limits(&context, &model.calibration, &evidence);
+    limits.extend(scatter.iter().flat_map(|noise| noisy(campaign, noise)));
     Ok(Diagnosed { model, evidence, diagnosis, not_testable, absorbed, limits })
 }
 
+/// So many times a search begins anew about the robot that is left beside what was found, and with the scatter that its
+/// clamps show then.
+const ROUNDS: usize = 2;
+
 /// A calibration as it is given to the engine.
 pub(super) struct Prepared<'c> {
+    /// The calibration about which effects are linear.
+    pub about: Calibration<'c>,
     pub model: CalibrationModel<'c>,
     pub evidence: Evidence,
     /// Effects that the calibration hides.
@@ -77,8 +99,22 @@ pub(super) struct Prepared<'c> {
 impl<'c> Prepared<'c> {
     /// Data are rows × (x, y, z), in {W}, then what is known besides; see `evidence.rs`.
     pub fn new(campaign: &'c Campaign, calibration: Calibration<'c>) -> Result<Prepared<'c>> {
-        let context = Context::new(campaign, &calibration)?;
-        let evidence = evidence::evidence_of(campaign, &calibration, &context);
+        Prepared::about(campaign, calibration.clone(), calibration, None)
+    }
+
+    /// The same of effects that are linear about another robot, of groups that scatter unequally.
+    pub fn about(
+        campaign: &'c Campaign,
+        calibration: Calibration<'c>,
+        about: Calibration<'c>,
+        noise: Option<&Noise>,
+    ) -> Result<Prepared<'c>> {
+        let context = Context::new(campaign, &about)?;
+        let context = match noise {
+            Some(noise) => context.scattered(&noise.of_group),
+            None => context,
+        };
+        let evidence = evidence::evidence_of(campaign, &about, &context);
         let (mut entries, not_testable) = registry::candidates(&context);
         entries.extend(nonparametric::all(&context));
         let (terms, absorbed) = LinearTerms::new(entries, &evidence);
@@ -94,7 +130,7 @@ impl<'c> Prepared<'c> {
             scale: context.scale.clone(),
             terms,
         };
-        Ok(Prepared { model, evidence, absorbed, not_testable, context })
+        Ok(Prepared { about, model, evidence, absorbed, not_testable, context })
     }
 }
 

@@ -8,14 +8,14 @@ use super::headline::um;
 use super::remainder::{Remainder, Sample};
 use super::subject::{Errors, Subject};
 use super::{json as whole_json, report as whole_report};
-use crate::calibration::{MOST_SCATTER, Summary};
+use crate::calibration::{MOST_SCATTER, Summary, Warning};
 use crate::diagnosis::calibration::{Applied, CalibrationDiagnosis, Gear};
 use crate::inference::{Finding, ForwardModel, JointVariable, Location, Plan, PosePlan, Variable};
 use crate::report::calibration::warnings as of_calibration;
 use crate::report::table::{Column, Table};
 use crate::report::{Block, Report, Section};
 use crate::robot::Motion;
-use crate::units::{DEG, MM, UM, URAD};
+use crate::units::{DEG, MM, UM, URAD, significant};
 
 /// Coordinates of a pose.
 const AXES: [&str; 3] = ["x", "y", "z"];
@@ -90,7 +90,7 @@ fn subject<'a>(found: &'a CalibrationDiagnosis<'_>) -> Subject<'a> {
             held_out: distances.held_out_means(),
         },
         before_correction: model.recorded.map(|recorded| recorded.rms / 3.0f64.sqrt()),
-        nominal: None,
+        nominal: far_from_file(found),
         suspect: Box::new(|datum| {
             let row = &campaign.measurements.rows[datum / 3];
             json!({ "pose": row.pose, "channel": AXES[datum % 3] })
@@ -130,10 +130,32 @@ fn subject<'a>(found: &'a CalibrationDiagnosis<'_>) -> Subject<'a> {
     }
 }
 
+/// A number of the robot that the calibration has put far from its file: no error of the poses, but hardly what the
+/// file means.
+fn far_from_file(found: &CalibrationDiagnosis) -> Option<String> {
+    let calibration = &found.model.calibration;
+    let known = &calibration.setup.robot.standard_uncertainty;
+    let far = calibration.warnings.iter().filter_map(|warning| match warning {
+        Warning::FarFromDrawing { parameter, correction, .. }
+        | Warning::Implausible { parameter, correction } => {
+            let times = correction.abs() / known.of(*parameter)?;
+            Some((times, *parameter, *correction))
+        }
+        _ => None,
+    });
+    let (times, parameter, correction) = far.max_by(|a, b| a.0.total_cmp(&b.0))?;
+    let (unit, times) = (parameter.unit(), significant(times, 2));
+    let correction = significant(correction / unit.si, 3);
+    Some(format!(
+        "{parameter} is {correction} {} from the robot file, {times} of its standard uncertainties.",
+        unit.symbol
+    ))
+}
+
 /// A gear's shape takes several terms.
 fn details(found: &CalibrationDiagnosis, finding: &Finding) -> String {
     match gear_of(found, finding).is_some() && finding.parts.len() > 1 {
-        true => format!(" Its shape has {} terms; the strongest is given.", finding.parts.len()),
+        true => format!(" Its shape has {} terms.", finding.parts.len()),
         false => String::new(),
     }
 }
@@ -159,6 +181,7 @@ fn more_of(found: &CalibrationDiagnosis, finding: &Finding) -> Vec<(&'static str
             Some(gear @ (Gear::Harmonic { .. } | Gear::Wave { .. })) => {
                 json!(gear.frequency(&part.term.values).0)
             }
+            Some(Gear::Harmonics { cycles_per_rev, .. }) => json!(cycles_per_rev),
             _ => Value::Null,
         })
         .collect();

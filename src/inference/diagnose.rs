@@ -27,13 +27,30 @@ const HARDLY_MORE: f64 = 1.1;
 
 /// So many times what a recording may scatter it may, where repeats show that it does.
 const SHOWN_BY_REPEATS: f64 = 3.0;
-/// A stated noise is contradicted below this probability.
-const CONTRADICTED: f64 = 1e-3;
 /// Ln odds from which on it is said what the nominal numbers explain.
 const WORTH_SAYING: f64 = 3.0;
 
 /// Diagnoses a recording.
+///
+/// A stated noise that the best hypothesis contradicts tells no shape from chance: what is left is searched again with the scatter
+/// that it has, and said to be more than was stated.
 pub fn diagnose(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
+    let diagnosis = diagnose_with(model, evidence);
+    let Some(stated) = evidence.stated_noise.filter(|_| diagnosis.noise_test.is_contradicted()) else {
+        return diagnosis;
+    };
+    let mut diagnosis = diagnose_with(model, &Evidence { stated_noise: None, ..evidence.clone() });
+    let degrees_of_freedom = evidence.residual.len() as f64 - diagnosis.taken;
+    diagnosis.noise_test = noise_test(Some(stated), diagnosis.noise, degrees_of_freedom.max(1.0));
+    if diagnosis.discrepancy.is_none() && diagnosis.noise_test.is_contradicted() {
+        let (rms, shape) = (rms(&diagnosis.after), diagnosis.after.clone());
+        let shown_by = ShownBy::StatedNoise;
+        diagnosis.discrepancy = Some(Discrepancy { candidate: None, location: None, shown_by, rms, shape });
+    }
+    diagnosis
+}
+
+fn diagnose_with(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
     let model = &Linearised::new(model);
     let folded = background::folded(evidence);
     let settled = settled(model, &folded.evidence);
@@ -84,7 +101,7 @@ pub fn diagnose(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
         false => Vec::new(),
     };
     let noise_test = noise_test(evidence.stated_noise, longest.sigma, degrees_of_freedom);
-    let is_contradicted = noise_test.p_value.is_some_and(|p| p < CONTRADICTED);
+    let is_contradicted = noise_test.is_contradicted();
     // repeats that scatter as much show that it is scatter, up to a point
     let times = if lack_of_fit_after.is_some() { SHOWN_BY_REPEATS } else { 1.0 };
     let is_too_much = evidence.most_scatter.is_some_and(|most| noise > times * most);
@@ -125,6 +142,7 @@ pub fn diagnose(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
             false => leave_one_session_out(model, evidence),
         },
         recorded: evidence.recorded,
+        taken: evidence.residual.len() as f64 - degrees_of_freedom,
         before,
         after,
         hypothesis,

@@ -30,6 +30,8 @@ pub struct Diagnosis {
     pub shared_ratio: f64,
     /// How many data, from the first, were recorded.
     pub recorded: usize,
+    /// How many numbers of all data base model and hypothesis have taken.
+    pub taken: f64,
     /// What the base model leaves, once it has absorbed what it can.
     pub before: DVector<f64>,
     /// And what the hypothesis leaves.

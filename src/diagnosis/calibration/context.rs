@@ -9,6 +9,9 @@ use crate::calibration::{Calibration, Compensation, Mode, Robust, usual_complian
 use crate::error::Result;
 use crate::robot::{Motion, Setup};
 
+/// How many times more compliant than usual a drive may be.
+const SOFTEST: f64 = 3.0;
+
 /// All that effects need to know of a campaign and its calibration.
 pub(super) struct Context<'a> {
     pub recording: &'a Recording,
@@ -188,7 +191,8 @@ fn modelled_mass(campaign: &Campaign) -> (f64, f64) {
 /// Compliances as effects use them: a drive that a calibration has made softer than drives of its class are, in
 /// place of something else, would spoil them.
 pub(super) fn plausible(setup: &Setup, usual: &[f64]) -> Vec<f64> {
-    setup.compliance.iter().zip(usual).map(|(own, usual)| own.clamp(0.0, usual.max(0.0))).collect()
+    let most = |usual: &f64| (SOFTEST * usual).max(0.0);
+    setup.compliance.iter().zip(usual).map(|(own, usual)| own.clamp(0.0, most(usual))).collect()
 }
 
 /// Differences of neighbours in each clamp or socket, over √2: as large as noise alone, whatever

@@ -10,7 +10,7 @@ use super::subject::{Errors, Subject};
 use super::{json as whole_json, report as whole_report};
 use crate::calibration::{MOST_SCATTER, Summary, Warning};
 use crate::diagnosis::calibration::{Applied, CalibrationDiagnosis, Gear};
-use crate::inference::{Finding, ForwardModel, JointVariable, Location, Plan, PosePlan, Variable};
+use crate::inference::{Finding, ForwardModel, JointVariable, Location, Plan, PosePlan, ShownBy, Variable};
 use crate::report::calibration::warnings as of_calibration;
 use crate::report::table::{Column, Table};
 use crate::report::{Block, Report, Section};
@@ -145,10 +145,11 @@ fn far_from_file(found: &CalibrationDiagnosis) -> Option<String> {
     });
     let (times, parameter, correction) = far.max_by(|a, b| a.0.total_cmp(&b.0))?;
     let (unit, times) = (parameter.unit(), significant(times, 2));
-    let correction = significant(correction / unit.si, 3);
+    let space = if unit.symbol == "°" { "" } else { " " };
+    let correction = format!("{}{space}{}", significant(correction / unit.si, 3), unit.symbol);
     Some(format!(
-        "{parameter} is {correction} {} from the robot file, {times} of its standard uncertainties.",
-        unit.symbol
+        "Parameter {parameter} is {correction} from the robot file, {times} of its standard uncertainties: is its zero or \
+         its length another one?"
     ))
 }
 
@@ -225,6 +226,18 @@ fn remainder(found: &CalibrationDiagnosis) -> Option<Remainder> {
         }
         _ => ("repeated poses".to_owned(), "Repeated poses share an unexplained error".to_owned(), None),
     };
+    let test = &found.diagnosis.noise_test;
+    let (location, words) = match (left.shown_by, test.stated) {
+        (ShownBy::StatedNoise, Some(stated)) => {
+            let (own, stated) = (um(test.estimated), um(stated));
+            let words = format!(
+                "The poses scatter by {own} µm, more than the stated noise of {stated} µm, and follow nothing that was \
+                 recorded; does that noise hold for the robot's repeatability too"
+            );
+            ("all poses".to_owned(), words)
+        }
+        _ => (location, words),
+    };
     let rows = found.model.by_row(&left.shape);
     let is_no_scatter = found.evidence.most_scatter.is_some_and(|most| found.diagnosis.noise > most);
     let (location, words) = match left.location.is_none() && is_no_scatter {
@@ -258,6 +271,7 @@ fn remainder(found: &CalibrationDiagnosis) -> Option<Remainder> {
                 um(largest),
                 100.0 * MOST_SCATTER
             ),
+            false if left.shown_by == ShownBy::StatedNoise => format!("{words}?"),
             false => format!("{words}: {rms} µm rms per coordinate, up to {} µm.", um(largest)),
         },
         rms: left.rms,

@@ -23,8 +23,10 @@ pub fn headline(subject: &Subject) -> String {
             None => format!(
                 "{}:{} the residual, {} µm{}, is {}.",
                 subject.agrees,
-                beginning_lower(nominal.trim_start()).trim_end_matches('.').to_owned()
-                    + if nominal.is_empty() { "" } else { ";" },
+                match beginning_lower(nominal.trim()).trim_end_matches('.') {
+                    "" => String::new(),
+                    words => format!(" {words};"),
+                },
                 um(diagnosis.error_after()),
                 subject.per,
                 scatter_of(subject)

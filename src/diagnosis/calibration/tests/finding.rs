@@ -89,6 +89,21 @@ fn a_clamp_that_moved_is_found_with_its_row() {
 }
 
 #[test]
+fn a_tool_that_slipped_is_no_drift() {
+    let campaign = clamps(30);
+    let calibration = calibrate(&campaign, Mode::Fea, &Options::default()).unwrap();
+    let context = Context::new(&campaign, &calibration).unwrap();
+    let slip = Vector3::new(60.0, -150.0, 80.0) * UM;
+    let moved = |row: usize| {
+        if row < 75 { Vector3::zeros() } else { context.configurations[row].flange.rotation * slip }
+    };
+    for seed in 0..2 {
+        let (effects, _) = found(&recorded(&campaign, &moved, NOISE, seed));
+        assert_eq!(effects, ["tool_shift: tool, after pose 75"]);
+    }
+}
+
+#[test]
 fn a_readback_lag_is_no_backlash() {
     let campaign = clamps(30);
     let recording = &campaign.measurements;

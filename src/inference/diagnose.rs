@@ -7,15 +7,15 @@ use super::effect::Reported;
 use super::evidence::rms;
 use super::held_out::{Theme, hold_out};
 use super::linearised::Linearised;
-use super::locate::locate;
+use super::locate::{Structure, along, locate};
 use super::pruning::{infer, settled};
 use super::scatter::{NoiseTest, Tails};
 use super::search::Search;
 use super::selection::{DiscrepancyModel, Pairs};
 use super::sessions::leave_one_session_out;
 use super::{
-    Diagnosis, Discrepancy, Estimate, Evidence, Finding, FindingPart, ForwardModel, HeldOut, Hypothesis,
-    Kind, Parameter, Rival, ShownBy, Term,
+    Covariate, Diagnosis, Discrepancy, Estimate, Evidence, Finding, FindingPart, ForwardModel, HeldOut,
+    Hypothesis, Kind, Parameter, Rival, ShownBy, Term,
 };
 use crate::statistics::{chi_squared_survival, student_t_quantile};
 
@@ -135,6 +135,7 @@ fn diagnose_with(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
         lack_of_fit_after,
         structure_before: locate(evidence, &before),
         structure_after: locate(evidence, &after),
+        structure_given_others: given_others(model, &search, evidence, &hypothesis),
         odds: search.additions(&none).to_vec(),
         held_out,
         sessions: match hypothesis.terms.is_empty() {
@@ -175,6 +176,29 @@ fn confirmed(
     let shorter = search.fit(&kept);
     let left_over = search.remains(&shorter);
     (shorter, left_over)
+}
+
+/// What each covariate shows of the findings that are seen along it, beside all others.
+fn given_others(
+    model: &Linearised<'_>,
+    search: &Search,
+    evidence: &Evidence,
+    hypothesis: &Hypothesis,
+) -> Vec<Option<Structure>> {
+    let of = |(index, covariate): (usize, &Covariate)| {
+        let is_other = |term: &&Term| {
+            let effect = model.candidates()[term.candidate].effect;
+            !(effect.seen_along)(&model.location(term)).contains(&covariate.variable)
+        };
+        let others: Vec<Term> = hypothesis.terms.iter().filter(is_other).cloned().collect();
+        if others.is_empty() || others.len() == hypothesis.terms.len() {
+            return None;
+        }
+        let rest = search.fit(&others);
+        let left = &evidence.residual - search.predicted(&rest, evidence, &model.response(&rest.terms));
+        Some(along(covariate, &left, index as u64))
+    };
+    evidence.covariates.iter().enumerate().map(of).collect()
 }
 
 /// χ² of what is left against the noise that was stated.

@@ -32,6 +32,7 @@ mod model;
 mod next;
 mod nominal;
 mod nonparametric;
+mod prepared;
 #[cfg(test)]
 mod tests;
 mod transfer;

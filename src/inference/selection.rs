@@ -7,7 +7,7 @@ use super::search::{PRIOR, Search};
 /// Odds against chance from which on an effect is named.
 pub const NAMED: f64 = 50.0;
 /// A hypothesis of known effects explains as well as one that leaves something unknown within these odds, if it leaves at most so
-/// much more, as a factor.
+/// much more, as a factor, per degree of freedom.
 const AS_WELL: (f64, f64) = (20.0, 1.01);
 /// Most effects in one hypothesis.
 const MOST: usize = 8;
@@ -139,12 +139,19 @@ impl Search<'_> {
         let last = path.len() - 1;
         if let Some((_, DiscrepancyModel::Curve(longer))) = &remainders[named]
             && path[last].log_probability + AS_WELL.0.ln() > most
-            && self.left_rms(&path[last]) < AS_WELL.1 * self.left_rms(longer)
+            && self.left_per_freedom(&path[last]) < AS_WELL.1 * self.left_per_freedom(longer)
         {
             return (path.swap_remove(last), None, most);
         }
         let remainder = remainders.swap_remove(named).map(|(_, remainder)| remainder);
         (path.swap_remove(named), remainder, most)
+    }
+
+    /// Root mean square of what a hypothesis leaves, per degree of freedom: a curve that goes after the noise leaves less
+    /// of it for that alone.
+    fn left_per_freedom(&self, hypothesis: &Hypothesis) -> f64 {
+        let freedom = 1.0 - hypothesis.determined / self.degrees_of_freedom().max(1) as f64;
+        self.left_rms(hypothesis) / freedom.max(f64::EPSILON).sqrt()
     }
 
     /// Ln of how much likelier it is that any effect is there than the likeliest one: several that

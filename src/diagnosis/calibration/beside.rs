@@ -8,7 +8,7 @@
 use nalgebra::DVector;
 
 use super::context::{Context, plausible};
-use super::diagnose::Prepared;
+use super::prepared::Prepared;
 use crate::calibration::{Calibration, Compensation, Noise, Robust, calibrate_from};
 use crate::error::Result;
 use crate::inference::{Diagnosis, rms};
@@ -17,7 +17,7 @@ use crate::units::URAD;
 /// A turn of a joint under its largest torque that changes columns, rad.
 const TURNED: f64 = 20.0 * URAD;
 /// Share by which the residual of a robot that is calibrated again may differ from what the linear model says of it.
-const LINEAR: f64 = 0.03;
+const LINEAR: f64 = 0.1;
 
 /// That robot, the rows as if nothing had been found; `None` where it is the same for all that its columns show.
 pub(super) fn calibrated_beside<'c>(

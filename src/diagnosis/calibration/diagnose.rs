@@ -1,19 +1,16 @@
 //! What a campaign says about its calibration.
 
 use super::beside::{calibrated_beside, unequal};
-use super::context::Context;
 use super::effects::registry;
-use super::evidence;
 use super::gear::Curve;
 use super::limits::{limits, noisy};
-use super::linear_terms::LinearTerms;
 use super::model::CalibrationModel;
 use super::next::next_poses;
-use super::nonparametric;
+use super::prepared::Prepared;
 use crate::calibration::campaign::Campaign;
-use crate::calibration::{Calibration, Mode, Noise, Options, calibrate};
+use crate::calibration::{Calibration, Mode, Options, calibrate};
 use crate::error::Result;
-use crate::inference::{Absorbed, Diagnosed, Evidence, Finding, Location, NotTestable, diagnose as infer};
+use crate::inference::{Diagnosed, Finding, Location, diagnose as infer};
 use crate::parallel::in_parallel;
 
 /// A campaign's diagnosis.
@@ -82,71 +79,6 @@ pub fn diagnose_calibrated<'c>(
 /// So many times a search begins anew about the robot that is left beside what was found, and with the scatter that its
 /// clamps show then.
 const ROUNDS: usize = 2;
-
-/// A calibration as it is given to the engine.
-pub(super) struct Prepared<'c> {
-    /// The calibration about which effects are linear.
-    pub about: Calibration<'c>,
-    pub model: CalibrationModel<'c>,
-    pub evidence: Evidence,
-    /// Effects that the calibration hides.
-    pub absorbed: Vec<Absorbed>,
-    /// Effects that the campaign's files have no data for.
-    pub not_testable: Vec<NotTestable>,
-    pub context: Context<'c>,
-}
-
-impl<'c> Prepared<'c> {
-    /// Data are rows × (x, y, z), in {W}, then what is known besides; see `evidence.rs`.
-    pub fn new(campaign: &'c Campaign, calibration: Calibration<'c>) -> Result<Prepared<'c>> {
-        Prepared::about(campaign, calibration.clone(), calibration, None)
-    }
-
-    /// The same of effects that are linear about another robot, of groups that scatter unequally.
-    pub fn about(
-        campaign: &'c Campaign,
-        calibration: Calibration<'c>,
-        about: Calibration<'c>,
-        noise: Option<&Noise>,
-    ) -> Result<Prepared<'c>> {
-        let context = Context::new(campaign, &about)?;
-        let context = match noise {
-            Some(noise) => context.scattered(&noise.of_group),
-            None => context,
-        };
-        let evidence = evidence::evidence_of(campaign, &about, &context);
-        let (mut entries, not_testable) = registry::candidates(&context);
-        entries.extend(nonparametric::all(&context));
-        let (terms, absorbed) = LinearTerms::new(entries, &evidence);
-        let jacobians = context.configurations.iter().map(|there| there.tip_jacobian.clone());
-        let recording = &campaign.measurements;
-        let name = |group: usize| recording.groups[group].name.clone();
-        let model = CalibrationModel {
-            campaign,
-            calibration,
-            tip_jacobians: jacobians.collect(),
-            recorded: None,
-            groups: recording.rows.iter().map(|row| name(row.group)).collect(),
-            scale: context.scale.clone(),
-            terms,
-        };
-        Ok(Prepared { about, model, evidence, absorbed, not_testable, context })
-    }
-}
-
-impl<'c> CalibrationModel<'c> {
-    /// The model of a finished calibration, with what it leaves as numbers.
-    ///
-    /// # Errors
-    /// As [`crate::calibration::Compensation::new`].
-    pub fn new(
-        campaign: &'c Campaign,
-        calibration: Calibration<'c>,
-    ) -> Result<(CalibrationModel<'c>, Evidence)> {
-        let prepared = Prepared::new(campaign, calibration)?;
-        Ok((prepared.model, prepared.evidence))
-    }
-}
 
 /// Something that happened while the poses were recorded.
 #[derive(Debug, Clone, PartialEq)]

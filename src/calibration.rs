@@ -34,7 +34,7 @@ pub use campaign::Campaign;
 pub use compare::{CompareOptions, Comparison, Difference, compare};
 pub use compensation::{Compensation, Mode, TORQUE_ROUNDS, default_mode, modes};
 pub use cross_validation::{CrossValidation, cross_validate};
-pub(crate) use drives::usual_compliances;
+pub(crate) use drives::plausible_compliances;
 pub use extrapolation::Extrapolation;
 pub use identifiability::{MOST_SCATTER, UnidentifiedDirection, plausible_range};
 pub use noise::{Noise, Robust};

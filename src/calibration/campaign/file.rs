@@ -128,7 +128,7 @@ struct RawSockets {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a section [noise] with position_um, clamp_um")]
 struct RawNoise {
-    position_um: Option<Number>,
+    position_um: Number,
     clamp_um: Option<Number>,
 }
 
@@ -198,7 +198,7 @@ impl Reader<'_> {
             number.map(|number| Ok(self.toml.positive(&format!("noise.{key}"), number)? * UM)).transpose()
         };
         let of_noise = raw.noise.as_ref();
-        let noise = stated("position_um", of_noise.and_then(|noise| noise.position_um.as_ref()))?;
+        let noise = stated("position_um", of_noise.map(|noise| &noise.position_um))?;
         let clamp_uncertainty = stated("clamp_um", of_noise.and_then(|noise| noise.clamp_um.as_ref()))?;
         if let (Some(rig), None) = (&raw.rig, &raw.rod) {
             let expected = "a rod (`rod = \"FILE\"`) whose readings these are";

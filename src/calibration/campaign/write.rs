@@ -52,11 +52,10 @@ impl Campaign {
             text += &format!("\n[base]\nxyz_mm = {}\nrpy_deg = {}\n", three(&xyz, MM), three(&rpy, DEG));
         }
         text += &self.groups();
-        if self.noise.or(self.clamp_uncertainty).is_some() {
-            text += "\n[noise]\n";
-        }
-        for (key, stated) in [("position_um", self.noise), ("clamp_um", self.clamp_uncertainty)] {
-            text += &stated.map_or_else(String::new, |sd| format!("{key} = {}\n", number(sd / UM)));
+        if let Some(noise) = self.noise {
+            text += &format!("\n[noise]\nposition_um = {}\n", number(noise / UM));
+            let of_clamps = self.clamp_uncertainty.map(|sd| format!("clamp_um = {}\n", number(sd / UM)));
+            text += &of_clamps.unwrap_or_default();
         }
         text + &self.constraints()
     }

@@ -52,8 +52,7 @@ pub(super) fn calibrated_beside<'c>(
 /// Do its drives yield otherwise than those that the columns were made with?
 fn turns(context: &Context, beside: &Calibration) -> bool {
     let Some(there) = context.configurations.first() else { return false };
-    let usual = &context.usual_compliance;
-    let own: Vec<f64> = plausible(&beside.setup, usual);
+    let own = plausible(&beside.setup, &context.softest);
     own.iter()
         .zip(&there.compliance)
         .enumerate()

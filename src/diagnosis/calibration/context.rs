@@ -5,12 +5,9 @@ use nalgebra::{Matrix3, Vector3};
 use super::configuration::{self, Configuration};
 use super::entry::Column;
 use crate::calibration::campaign::{Campaign, Recording, Targets};
-use crate::calibration::{Calibration, Compensation, Mode, Robust, usual_compliances};
+use crate::calibration::{Calibration, Compensation, Mode, Robust, plausible_compliances};
 use crate::error::Result;
 use crate::robot::{Motion, Setup};
-
-/// How many times more compliant than usual a drive may be.
-const SOFTEST: f64 = 3.0;
 
 /// All that effects need to know of a campaign and its calibration.
 pub(super) struct Context<'a> {
@@ -40,7 +37,7 @@ pub(super) struct Context<'a> {
     /// Masses that are modelled at the tip, and at the flange with what hangs on it, kg.
     pub modelled_mass: (f64, f64),
     /// Compliance beyond which the drive of each joint is not of its class, rad/(N·m).
-    pub usual_compliance: Vec<f64>,
+    pub softest: Vec<f64>,
     /// Share of `deflection` that the calibration took into account: 1, or 0 where it took the rod
     /// for rigid.
     pub accounted: f64,
@@ -82,8 +79,8 @@ impl<'a> Context<'a> {
     ) -> Result<Self> {
         let used = Compensation::new(campaign, mode)?;
         let recording = &campaign.measurements;
-        let usual_compliance = usual_compliances(setup, used.payload);
-        let compliance = plausible(setup, &usual_compliance);
+        let softest = plausible_compliances(setup, used.payload);
+        let compliance = plausible(setup, &softest);
         let configurations = configuration::all(recording, setup, &compliance, deflections, &used);
         // a rod that was taken for rigid bends as its beam model says
         let (rod, accounted) = match (mode, &campaign.rod) {
@@ -111,7 +108,7 @@ impl<'a> Context<'a> {
                 .map_or_else(Matrix3::zeros, |rod| rod.gravity / crate::units::STANDARD_GRAVITY),
             deflection: configurations.iter().enumerate().filter_map(deflection).collect(),
             accounted,
-            usual_compliance,
+            softest,
             modelled_mass: modelled_mass(campaign),
             configurations,
         })
@@ -190,9 +187,8 @@ fn modelled_mass(campaign: &Campaign) -> (f64, f64) {
 
 /// Compliances as effects use them: a drive that a calibration has made softer than drives of its class are, in
 /// place of something else, would spoil them.
-pub(super) fn plausible(setup: &Setup, usual: &[f64]) -> Vec<f64> {
-    let most = |usual: &f64| (SOFTEST * usual).max(0.0);
-    setup.compliance.iter().zip(usual).map(|(own, usual)| own.clamp(0.0, most(usual))).collect()
+pub(super) fn plausible(setup: &Setup, softest: &[f64]) -> Vec<f64> {
+    setup.compliance.iter().zip(softest).map(|(own, softest)| own.clamp(0.0, softest.max(0.0))).collect()
 }
 
 /// Differences of neighbours in each clamp or socket, over √2: as large as noise alone, whatever

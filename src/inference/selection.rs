@@ -9,6 +9,8 @@ pub const NAMED: f64 = 50.0;
 /// A hypothesis of known effects explains as well as one that leaves something unknown within these odds, if it leaves at most so
 /// much more, as a factor, per degree of freedom.
 const AS_WELL: (f64, f64) = (20.0, 1.01);
+/// Standard deviations of what more degrees of freedom take by chance that count as chance.
+const CHANCE: f64 = 3.0;
 /// Most effects in one hypothesis.
 const MOST: usize = 8;
 /// Of how many candidates, the likeliest by their columns at neutral values, the values are fitted.
@@ -139,7 +141,7 @@ impl Search<'_> {
         let last = path.len() - 1;
         if let Some((_, DiscrepancyModel::Curve(longer))) = &remainders[named]
             && path[last].log_probability + AS_WELL.0.ln() > most
-            && self.left_per_freedom(&path[last]) < AS_WELL.1 * self.left_per_freedom(longer)
+            && self.leaves_as_little(&path[last], longer)
         {
             return (path.swap_remove(last), None, most);
         }
@@ -147,11 +149,15 @@ impl Search<'_> {
         (path.swap_remove(named), remainder, most)
     }
 
-    /// Root mean square of what a hypothesis leaves, per degree of freedom: a curve that goes after the noise leaves less
-    /// of it for that alone.
-    fn left_per_freedom(&self, hypothesis: &Hypothesis) -> f64 {
-        let freedom = 1.0 - hypothesis.determined / self.degrees_of_freedom().max(1) as f64;
-        self.left_rms(hypothesis) / freedom.max(f64::EPSILON).sqrt()
+    /// Does a hypothesis leave as little, per degree of freedom, as a curve with more of them does? By chance that leaves
+    /// less by √(2·more)/2ν, one standard deviation.
+    fn leaves_as_little(&self, hypothesis: &Hypothesis, longer: &Hypothesis) -> bool {
+        let all = self.degrees_of_freedom().max(1) as f64;
+        let per_freedom =
+            |of: &Hypothesis| self.left_rms(of) / (1.0 - of.determined / all).max(f64::EPSILON).sqrt();
+        let more = (longer.determined - hypothesis.determined).max(1.0);
+        let by_chance = 1.0 + CHANCE * (2.0 * more).sqrt() / (2.0 * all);
+        per_freedom(hypothesis) < AS_WELL.1.max(by_chance) * per_freedom(longer)
     }
 
     /// Ln of how much likelier it is that any effect is there than the likeliest one: several that

@@ -43,7 +43,7 @@ fn every_bad_key_is_named_with_its_place() {
         (
             "[noise]",
             "[noise]\nvalidation = \"b.csv\"",
-            "campaign.toml:18:1: unknown key `validation`, expected one of position_um -> write validation above the first [section]",
+            "campaign.toml:18:1: unknown key `validation`, expected one of position_um, clamp_um -> write validation above the first [section]",
         ),
         (
             "id = \"2\"\n",

@@ -64,6 +64,8 @@ pub struct Campaign {
     pub refit: Refit,
     /// Standard deviation of one measured coordinate, m, where the file states it.
     pub noise: Option<f64>,
+    /// Standard uncertainty of a coordinate of each clamp's place, m, where the file states it.
+    pub clamp_uncertainty: Option<f64>,
     /// What the user states about single parameters.
     pub wishes: ParameterConstraints,
     /// What a user should know about the files although they can be read.

@@ -48,7 +48,28 @@ pub(super) fn all(campaign: &Campaign, recording: &Recording, calibration: &Cali
         (is_link && estimate.identifiable && correction.abs() > range)
             .then_some(Warning::Implausible { parameter: estimate.parameter, correction })
     }));
+    warnings.extend(far_from_drawing(calibration));
     warnings
+}
+
+/// So many standard uncertainties of the robot file are worth a word.
+const FAR: f64 = 10.0;
+
+/// Numbers that the data put far from where the robot file has them, but not farther than a robot can be.
+fn far_from_drawing(calibration: &Calibration) -> impl Iterator<Item = Warning> {
+    let known = &calibration.setup.robot.standard_uncertainty;
+    calibration.parameters.iter().filter_map(|estimate| {
+        let parameter = estimate.parameter;
+        let standard_uncertainty = known.of(parameter).filter(|sd| *sd > 0.0)?;
+        let correction = estimate.value - estimate.nominal;
+        let is_far = correction.abs() > FAR * standard_uncertainty
+            && correction.abs() <= plausible_range(parameter, 0.0);
+        (is_far && estimate.identifiable).then_some(Warning::FarFromDrawing {
+            parameter,
+            correction,
+            standard_uncertainty,
+        })
+    })
 }
 
 /// A validation whose mean error is larger by this factor is worse, and not by chance.

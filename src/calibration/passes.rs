@@ -3,6 +3,7 @@
 
 use super::campaign::{Campaign, Recording, Targets};
 use super::compensation::Compensation;
+use super::drives;
 use super::identifiability::{self, UnidentifiedDirection};
 use super::noise::{Noise, Robust};
 use super::options::Options;
@@ -51,6 +52,8 @@ pub(super) struct Run<'a, 'c> {
     pub noise: Noise,
     pub held: Vec<UnidentifiedDirection>,
     pub drawing: Drawing,
+    /// What is known of the drives' compliances.
+    drives: Vec<Prior>,
     pub passes: Vec<PassRecord>,
     pub is_converged: bool,
 }
@@ -71,6 +74,7 @@ impl<'a, 'c> Run<'a, 'c> {
         let stated: Vec<Parameter> =
             campaign.wishes.priors.iter().map(|&(parameter, ..)| parameter).collect();
         let drawing = Drawing::new(&setup, free, &stated);
+        let drives = drives::priors(&setup, free, &stated, compensation.payload);
         Run {
             campaign,
             recording,
@@ -82,6 +86,7 @@ impl<'a, 'c> Run<'a, 'c> {
             noise,
             held: Vec::new(),
             drawing,
+            drives,
             passes: Vec::new(),
             is_converged: false,
         }
@@ -166,9 +171,9 @@ impl<'a, 'c> Run<'a, 'c> {
         }
     }
 
-    /// What the drawing and the user know of the free parameters.
+    /// What the drawing, the class of the drives and the user know of the free parameters.
     pub fn priors(&self) -> Vec<Prior> {
-        let mut priors: Vec<Prior> = self.drawing.priors().collect();
+        let mut priors: Vec<Prior> = self.drawing.priors().chain(self.drives.iter().copied()).collect();
         for &(parameter, value, sd) in &self.campaign.wishes.priors {
             if let Some(index) = self.free.iter().position(|&p| p == parameter) {
                 priors.push(Prior { parameter: index, value, sd });
@@ -179,8 +184,13 @@ impl<'a, 'c> Run<'a, 'c> {
 
     fn fit(&self) -> Result<Fit> {
         let problem = self.problem();
-        let options = least_squares::Options { priors: self.priors(), ..known_noise() };
-        least_squares::fit(&problem, &problem.start(), &options)
+        let start = problem.start();
+        let mut bounds = vec![(f64::NEG_INFINITY, f64::INFINITY); start.len()];
+        for (bound, &parameter) in bounds.iter_mut().zip(self.free) {
+            bound.0 = drives::least(&self.start, parameter);
+        }
+        let options = least_squares::Options { priors: self.priors(), bounds, ..known_noise() };
+        least_squares::fit(&problem, &start, &options)
     }
 
     /// Finds the directions that the data do not identify where the robot stands now.

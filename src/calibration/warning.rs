@@ -64,6 +64,15 @@ pub enum Warning {
         /// Its correction, SI.
         correction: f64,
     },
+    /// A parameter is many standard uncertainties from the robot file.
+    FarFromDrawing {
+        /// Which.
+        parameter: Parameter,
+        /// Its correction, SI.
+        correction: f64,
+        /// Its standard uncertainty by the file, SI.
+        standard_uncertainty: f64,
+    },
     /// A rigid motion of all validation points cures most of their errors.
     ValidationMoved {
         /// Root mean square of the errors, m.
@@ -160,6 +169,17 @@ impl fmt::Display for Warning {
                 significant(correction / parameter.unit().si, 3),
                 parameter.unit().symbol
             ),
+            Warning::FarFromDrawing { parameter, correction, standard_uncertainty } => {
+                let unit = parameter.unit();
+                write!(
+                    f,
+                    "{parameter} is {} {} from the robot file, {} times the standard uncertainty that the file has for it: \
+                     is a zero, a length or the file itself another one?",
+                    significant(correction / unit.si, 3),
+                    unit.symbol,
+                    significant((correction / standard_uncertainty).abs(), 2)
+                )
+            }
             Warning::ValidationMoved { before, after } => write!(
                 f,
                 "the validation poses are {} µm rms off, but {} µm after one rigid motion of all of them: \

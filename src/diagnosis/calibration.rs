@@ -12,6 +12,7 @@
 //! [`absorbed`](crate::inference::Diagnosed::absorbed) says which they are.
 
 mod apply;
+mod beside;
 mod configuration;
 mod context;
 mod correction_table;
@@ -29,7 +30,9 @@ mod linear_terms;
 mod mistakes;
 mod model;
 mod next;
+mod nominal;
 mod nonparametric;
+mod prepared;
 #[cfg(test)]
 mod tests;
 mod transfer;

@@ -9,15 +9,15 @@ use super::effect::Reported;
 use super::evidence::rms;
 use super::held_out::{Theme, hold_out};
 use super::linearised::Linearised;
-use super::locate::locate;
+use super::locate::{Structure, along, locate};
 use super::pruning::{infer, settled};
 use super::scatter::{NoiseTest, Suspect, Tails};
 use super::search::Search;
 use super::selection::{DiscrepancyModel, Pairs};
 use super::sessions::leave_one_session_out;
 use super::{
-    Diagnosis, Discrepancy, Estimate, Evidence, Finding, FindingPart, ForwardModel, HeldOut, Hypothesis,
-    Kind, Parameter, Rival, ShownBy, Term,
+    Covariate, Diagnosis, Discrepancy, Estimate, Evidence, Finding, FindingPart, ForwardModel, HeldOut,
+    Hypothesis, Kind, Parameter, Rival, ShownBy, Term,
 };
 use crate::statistics::{chi_squared_survival, student_t_quantile};
 
@@ -32,13 +32,30 @@ const HARDLY_MORE: f64 = 1.1;
 
 /// So many times what a recording may scatter it may, where repeats show that it does.
 const SHOWN_BY_REPEATS: f64 = 3.0;
-/// A stated noise is contradicted below this probability.
-const CONTRADICTED: f64 = 1e-3;
 /// Ln odds from which on it is said what the nominal numbers explain.
 const WORTH_SAYING: f64 = 3.0;
 
 /// Diagnoses a recording.
+///
+/// A stated noise that the best hypothesis contradicts tells no shape from chance: what is left is searched again with the scatter
+/// that it has, and said to be more than was stated.
 pub fn diagnose(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
+    let diagnosis = diagnose_with(model, evidence);
+    let Some(stated) = evidence.stated_noise.filter(|_| diagnosis.noise_test.is_contradicted()) else {
+        return diagnosis;
+    };
+    let mut diagnosis = diagnose_with(model, &Evidence { stated_noise: None, ..evidence.clone() });
+    let degrees_of_freedom = evidence.residual.len() as f64 - diagnosis.taken;
+    diagnosis.noise_test = noise_test(Some(stated), diagnosis.noise, degrees_of_freedom.max(1.0));
+    if diagnosis.discrepancy.is_none() && diagnosis.noise_test.is_contradicted() {
+        let (rms, shape) = (rms(&diagnosis.after), diagnosis.after.clone());
+        let shown_by = ShownBy::StatedNoise;
+        diagnosis.discrepancy = Some(Discrepancy { candidate: None, location: None, shown_by, rms, shape });
+    }
+    diagnosis
+}
+
+fn diagnose_with(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
     let model = &Linearised::new(model);
     let folded = background::folded(evidence);
     let (settled, known) = settled(model, &folded.evidence);
@@ -57,7 +74,7 @@ pub fn diagnose(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
         })
         .collect();
     parts.sort_by(|(_, a), (_, b)| b.explains.total_cmp(&a.explains));
-    let findings = findings(model, &hypothesis, held_out.as_ref(), rms(&before), parts);
+    let findings = findings(model, &search, &hypothesis, held_out.as_ref(), rms(&before), parts);
     let lack_of_fit_after = search.lack_of_fit(&hypothesis, &predicted);
     let mut longest = &hypothesis;
     let mut discrepancy = None;
@@ -89,7 +106,7 @@ pub fn diagnose(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
         false => Vec::new(),
     };
     let noise_test = noise_test(evidence.stated_noise, longest.sigma, degrees_of_freedom);
-    let is_contradicted = noise_test.p_value.is_some_and(|p| p < CONTRADICTED);
+    let is_contradicted = noise_test.is_contradicted();
     // repeats that scatter as much show that it is scatter, up to a point
     let times = if lack_of_fit_after.is_some() { SHOWN_BY_REPEATS } else { 1.0 };
     let is_too_much = evidence.most_scatter.is_some_and(|most| noise > times * most);
@@ -125,6 +142,7 @@ pub fn diagnose(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
         lack_of_fit_after,
         structure_before: locate(evidence, &before),
         structure_after: locate(evidence, &after),
+        structure_given_others: given_others(model, &search, evidence, &hypothesis),
         odds: search.additions(&none).to_vec(),
         held_out,
         sessions: match hypothesis.terms.is_empty() {
@@ -132,6 +150,7 @@ pub fn diagnose(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
             false => leave_one_session_out(model, evidence),
         },
         recorded: evidence.recorded,
+        taken: evidence.residual.len() as f64 - degrees_of_freedom,
         before,
         after,
         hypothesis,
@@ -180,6 +199,29 @@ fn confirmed(
     (shorter, left_over)
 }
 
+/// What each covariate shows of the findings that are seen along it, beside all others.
+fn given_others(
+    model: &Linearised<'_>,
+    search: &Search,
+    evidence: &Evidence,
+    hypothesis: &Hypothesis,
+) -> Vec<Option<Structure>> {
+    let of = |(index, covariate): (usize, &Covariate)| {
+        let is_other = |term: &&Term| {
+            let effect = model.candidates()[term.candidate].effect;
+            !(effect.seen_along)(&model.location(term)).contains(&covariate.variable)
+        };
+        let others: Vec<Term> = hypothesis.terms.iter().filter(is_other).cloned().collect();
+        if others.is_empty() || others.len() == hypothesis.terms.len() {
+            return None;
+        }
+        let rest = search.fit(&others);
+        let left = &evidence.residual - search.predicted(&rest, evidence, &model.response(&rest.terms));
+        Some(along(covariate, &left, index as u64))
+    };
+    evidence.covariates.iter().enumerate().map(of).collect()
+}
+
 /// χ² of what is left against the noise that was stated.
 fn noise_test(stated: Option<f64>, estimated: f64, degrees_of_freedom: f64) -> NoiseTest {
     let p_value = stated.and_then(|stated| {
@@ -193,6 +235,7 @@ fn noise_test(stated: Option<f64>, estimated: f64, degrees_of_freedom: f64) -> N
 /// finding. `base` is the root mean square that the base model leaves.
 fn findings(
     model: &Linearised<'_>,
+    search: &Search,
     hypothesis: &Hypothesis,
     held_out: Option<&HeldOut>,
     base: f64,
@@ -224,8 +267,14 @@ fn findings(
         }
     }
     for (theme, finding) in &mut findings {
-        let terms: Vec<Term> = finding.parts.iter().map(|part| part.term.clone()).collect();
-        finding.explains = rms(&model.response(&terms));
+        finding.explains = match &finding.parts[..] {
+            [part] => part.explains,
+            parts => {
+                let is_other = |term: &&Term| !parts.iter().any(|part| part.term.candidate == term.candidate);
+                let others: Vec<Term> = hypothesis.terms.iter().filter(is_other).cloned().collect();
+                explained(search, &search.fit(&others), hypothesis)
+            }
+        };
         finding.estimates = model.estimates(&finding.parts, hypothesis);
         finding.rivals = finding.parts.iter().flat_map(|part| part.rivals.clone()).collect();
         finding.rivals.sort_by(|a, b| a.odds.total_cmp(&b.odds));
@@ -321,7 +370,7 @@ fn part(
         },
         coverage_factor,
         p_value: chi_squared_survival(gained.max(0.0), determined).unwrap_or(1.0),
-        explains: rms(&model.response(std::slice::from_ref(term))),
+        explains: explained(search, &rest, hypothesis),
         rivals,
     }
 }
@@ -370,6 +419,13 @@ fn widen(estimates: &mut [Estimate], others: Vec<Estimate>) {
     for (known, other) in estimates.iter_mut().zip(others) {
         (known.low, known.high) = (known.low.min(other.low), known.high.max(other.high));
     }
+}
+
+/// By how much the residual of a hypothesis is less than that of a shorter one, root of the difference of their mean
+/// squares: what the base model would take up is explained by nothing else.
+fn explained(search: &Search, shorter: &Hypothesis, hypothesis: &Hypothesis) -> f64 {
+    let squares = search.left_rms(shorter).powi(2) - search.left_rms(hypothesis).powi(2);
+    squares.max(0.0).sqrt()
 }
 
 /// Value and 95 % interval of the parameters of a term, which begin at `first` in the covariance of

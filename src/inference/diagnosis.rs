@@ -30,6 +30,8 @@ pub struct Diagnosis {
     pub shared_ratio: f64,
     /// How many data, from the first, were recorded.
     pub recorded: usize,
+    /// How many numbers of all data base model and hypothesis have taken.
+    pub taken: f64,
     /// What the base model leaves, once it has absorbed what it can.
     pub before: DVector<f64>,
     /// And what the hypothesis leaves.
@@ -42,6 +44,9 @@ pub struct Diagnosis {
     pub structure_before: Vec<Structure>,
     /// And of `after`.
     pub structure_after: Vec<Structure>,
+    /// The same of what is left without the findings that are seen along a covariate, all others known; `None` where
+    /// none of several is.
+    pub structure_given_others: Vec<Option<Structure>>,
     /// Every candidate alone against none: ln of the odds, prior included.
     pub odds: Vec<f64>,
     /// Held-out errors, where the recording has folds.

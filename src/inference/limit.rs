@@ -3,10 +3,10 @@
 use std::fmt;
 
 use crate::spatial::Axis;
-use crate::units::MM;
+use crate::units::{MM, UM, significant};
 
 /// A weakness of the recording or of its base model; its `Display` is the advice.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Limit {
     /// Nothing was read twice under the same conditions.
@@ -29,6 +29,9 @@ pub enum Limit {
     NarrowJoint(usize, f64),
     /// A joint, from 0, whose axis the target lies on: so far beside it at most, m.
     OnAxis(usize, f64),
+    /// A clamp or placement that scatters far more than the others: its name, its scatter of a coordinate and that of
+    /// the others in the middle, m.
+    NoisyGroup(String, f64, f64),
     /// The poses are too few to hold any out.
     NoFoldsOfPoses,
 }
@@ -85,6 +88,14 @@ impl fmt::Display for Limit {
                  Offset the tool.",
                 joint + 1,
                 lever / MM
+            ),
+            Limit::NoisyGroup(name, own, others) => write!(
+                f,
+                "The poses of {name} scatter by {} µm per coordinate, {} times as much as the others ({} µm): look for what \
+                 is loose, dirty or worn there. They count less.",
+                significant(own / UM, 3),
+                significant(own / others, 2),
+                significant(others / UM, 3)
             ),
             Limit::NoFoldsOfPoses => f.write_str(
                 "The poses are too few to hold any out: no finding is confirmed by \

@@ -30,7 +30,8 @@ pub fn locate(evidence: &Evidence, residual: &DVector<f64>) -> Vec<Structure> {
     evidence.covariates.iter().enumerate().map(of).collect()
 }
 
-fn along(covariate: &Covariate, residual: &DVector<f64>, stream: u64) -> Structure {
+/// The same along one covariate; `stream` numbers it, so that its random orders are its own.
+pub(super) fn along(covariate: &Covariate, residual: &DVector<f64>, stream: u64) -> Structure {
     let mut known: Vec<usize> = (0..residual.len()).filter(|&i| !covariate.values[i].is_nan()).collect();
     known.sort_by(|&a, &b| covariate.values[a].total_cmp(&covariate.values[b]));
     let mut values: Vec<f64> = known.iter().map(|&i| residual[i]).collect();

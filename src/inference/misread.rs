@@ -79,7 +79,8 @@ impl Search<'_> {
             let mut column = DVector::zeros(self.evidence.residual.len());
             column[farthest] = USUAL * hypothesis.sigma;
             columns.push(self.whitening.apply(&column));
-            let (log_probability, rest_left) = self.beside(&rest, &linear, &DMatrix::from_columns(&columns));
+            let (log_probability, rest_left) =
+                self.with_columns(&rest, &linear, &DMatrix::from_columns(&columns));
             if log_probability + off.len() as f64 * price > hypothesis.log_probability {
                 return off;
             }

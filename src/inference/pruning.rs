@@ -18,6 +18,9 @@ use super::{Evidence, ForwardModel, Term};
 /// What is left is little: as a share of what an effect explains, and of the noise.
 const LITTLE: (f64, f64) = (0.1, 0.5);
 
+/// An effect that a curve cannot draw has a name beside one that explains at most so many times as much.
+const BESIDE: f64 = 0.5;
+
 /// Most times that weights and scatter are found anew.
 const PASSES: usize = 3;
 /// A change of a weight's root that changes nothing else.
@@ -106,8 +109,8 @@ pub fn infer<'a>(
 
 /// A hypothesis without the effects that may as well be a part of what is left unexplained, and what is left then.
 ///
-/// An effect stays if it explains more than is left even where the unexplained curve is there to take its place (an outlier,
-/// which no smooth curve draws), or if what is left is little beside it or beside the noise (a law of creep that is not quite
+/// An effect stays if it explains half as much as the unexplained curve, or more, even where that is there to take its place
+/// (an outlier, which no smooth curve draws), or if what is left is little beside it or beside the noise (a law of creep that is not quite
 /// the right one).
 fn convincing(
     search: &Search,
@@ -128,7 +131,8 @@ fn convincing(
             DiscrepancyModel::Curve(longer) => own(longer, position),
             DiscrepancyModel::Replicates => own(&hypothesis, position),
         };
-        beside_curve > left || left < (LITTLE.0 * own(&hypothesis, position)).max(LITTLE.1 * hypothesis.sigma)
+        beside_curve > BESIDE * left
+            || left < (LITTLE.0 * own(&hypothesis, position)).max(LITTLE.1 * hypothesis.sigma)
     };
     let kept: Vec<Term> =
         (0..hypothesis.terms.len()).filter(|&k| is_kept(k)).map(|k| hypothesis.terms[k].clone()).collect();

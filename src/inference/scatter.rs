@@ -49,6 +49,16 @@ pub struct NoiseTest {
     pub p_value: Option<f64>,
 }
 
+/// A stated noise is contradicted below this probability.
+const CONTRADICTED: f64 = 1e-3;
+
+impl NoiseTest {
+    /// True where the stated noise does not explain what is left.
+    pub fn is_contradicted(&self) -> bool {
+        self.p_value.is_some_and(|p| p < CONTRADICTED)
+    }
+}
+
 /// Scale and tails of residuals.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Tails {

@@ -296,7 +296,7 @@ impl<'a> Search<'a> {
 
     /// Ln of the probability of a hypothesis, of this [`Search::linear_part`], with `more` columns beside its own, each an effect of
     /// no prior by itself; and what it leaves, whitened.
-    pub(super) fn beside(
+    pub(super) fn with_columns(
         &self,
         hypothesis: &Hypothesis,
         (r, columns): &(DVector<f64>, DMatrix<f64>),

@@ -7,8 +7,10 @@ use super::search::{PRIOR, Search};
 /// Odds against chance from which on an effect is named.
 pub const NAMED: f64 = 50.0;
 /// A hypothesis of known effects explains as well as one that leaves something unknown within these odds, if it leaves at most so
-/// much more, as a factor.
+/// much more, as a factor, per degree of freedom.
 const AS_WELL: (f64, f64) = (20.0, 1.01);
+/// Standard deviations of what more degrees of freedom take by chance that count as chance.
+const CHANCE: f64 = 3.0;
 /// Most effects in one hypothesis.
 const MOST: usize = 8;
 /// Of how many candidates, the likeliest by their columns at neutral values, the values are fitted.
@@ -50,9 +52,26 @@ impl Search<'_> {
     pub fn best(&self, pairs: Pairs) -> (Hypothesis, Option<DiscrepancyModel>) {
         let none = self.fit(&[]);
         let additions = self.additions(&none);
+        let (hypothesis, left_over) = self.by_names(none, &additions, pairs);
+        match left_over {
+            Some(DiscrepancyModel::Curve(longer)) => {
+                let (hypothesis, longer) = self.beside(hypothesis, longer);
+                (hypothesis, Some(DiscrepancyModel::Curve(longer)))
+            }
+            other => (hypothesis, other),
+        }
+    }
+
+    /// The same, where nothing is named once a curve is in.
+    fn by_names(
+        &self,
+        none: Hypothesis,
+        additions: &[f64],
+        pairs: Pairs,
+    ) -> (Hypothesis, Option<DiscrepancyModel>) {
         let by_steps = self.along(vec![none.clone()]);
         let pair = match pairs {
-            Pairs::Screened => self.best_pair(&none, &additions),
+            Pairs::Screened => self.best_pair(&none, additions),
             Pairs::LeftOut => None,
         };
         // a pair that the steps have found is theirs
@@ -65,6 +84,30 @@ impl Search<'_> {
             true => (by_pair.0, by_pair.1),
             false => (by_steps.0, by_steps.1),
         }
+    }
+
+    /// Effects that are named beside a curve, the last of `longer`: what is hidden by something unknown
+    /// is seen once that is described. The curve may be another one then.
+    fn beside(&self, mut hypothesis: Hypothesis, mut longer: Hypothesis) -> (Hypothesis, Hypothesis) {
+        while longer.terms.len() <= MOST {
+            let additions = self.additions(&longer);
+            let Some(more) = self.longer(&longer, &additions, false) else { break };
+            let shared = self.shared(&additions, &more, &longer);
+            if more.log_probability < longer.log_probability + NAMED.ln() - shared {
+                break;
+            }
+            let mut terms = more.terms;
+            let curve = terms.len() - 2;
+            let last = terms.len() - 1;
+            terms.swap(curve, last);
+            let own = self.fit(&terms);
+            hypothesis = self.fit(&terms[..last]);
+            longer = match self.longer(&hypothesis, &self.additions(&hypothesis), true) {
+                Some(other) if other.log_probability > own.log_probability => other,
+                _ => own,
+            };
+        }
+        (hypothesis, longer)
     }
 
     /// The best hypothesis on the way on from the last of `path`, what it leaves, and the ln of the
@@ -98,12 +141,23 @@ impl Search<'_> {
         let last = path.len() - 1;
         if let Some((_, DiscrepancyModel::Curve(longer))) = &remainders[named]
             && path[last].log_probability + AS_WELL.0.ln() > most
-            && self.left_rms(&path[last]) < AS_WELL.1 * self.left_rms(longer)
+            && self.leaves_as_little(&path[last], longer)
         {
             return (path.swap_remove(last), None, most);
         }
         let remainder = remainders.swap_remove(named).map(|(_, remainder)| remainder);
         (path.swap_remove(named), remainder, most)
+    }
+
+    /// Does a hypothesis leave as little, per degree of freedom, as a curve with more of them does? By chance that leaves
+    /// less by √(2·more)/2ν, one standard deviation.
+    fn leaves_as_little(&self, hypothesis: &Hypothesis, longer: &Hypothesis) -> bool {
+        let all = self.degrees_of_freedom().max(1) as f64;
+        let per_freedom =
+            |of: &Hypothesis| self.left_rms(of) / (1.0 - of.determined / all).max(f64::EPSILON).sqrt();
+        let more = (longer.determined - hypothesis.determined).max(1.0);
+        let by_chance = 1.0 + CHANCE * (2.0 * more).sqrt() / (2.0 * all);
+        per_freedom(hypothesis) < AS_WELL.1.max(by_chance) * per_freedom(longer)
     }
 
     /// Ln of how much likelier it is that any effect is there than the likeliest one: several that

@@ -255,3 +255,50 @@ fn chance_is_that_of_the_effect_beside_a_large_background() {
         assert!(found.findings[0].p_value < 1e-3, "seed {seed}: {}", found.findings[0].p_value);
     }
 }
+
+/// A slope that the base model has, and a column that is nearly the same: what it explains is what the base model could not.
+#[test]
+fn nothing_explains_more_than_is_left() {
+    let mut model = Columns::new(COUNT);
+    model.add("bent", "here", column(|x| 30.0 * x + x * x), false);
+    let evidence = evidence(3, |x| 20.0 * (30.0 * x + x * x));
+    let evidence = Evidence { nuisance: column(|x| x), ..evidence };
+    let diagnosis = diagnose(&model, &evidence);
+    assert_eq!(effects(&diagnosis), ["bent"]);
+    let finding = &diagnosis.findings[0];
+    let before = rms(&diagnosis.before);
+    assert!(finding.explains <= before && finding.explains > 0.5 * before, "{} {before}", finding.explains);
+    // by itself it draws a hundred times as much
+    assert!(rms(&model.response(&[finding.parts[0].term.clone()])) > 20.0 * before);
+}
+
+/// A large curve hides an effect that no curve draws, until it is in.
+#[test]
+fn an_effect_is_named_beside_what_nobody_has_named() {
+    let parity = |row: usize| if row.is_multiple_of(2) { 1.0 } else { -1.0 };
+    let mut model = model();
+    model.add("parity", "here", DMatrix::from_fn(COUNT, 1, |row, _| parity(row)), false);
+    let wave = |x: f64| (3.0 * std::f64::consts::PI * x).cos();
+    let mut with = evidence(5, |x| 12.0 * wave(x));
+    let alone = with.clone();
+    (0..COUNT).for_each(|row| with.residual[row] += 7.0 * parity(row));
+    let (both, curve) = (diagnose(&model, &with), diagnose(&model, &alone));
+    assert_eq!((effects(&both), effects(&curve)), (vec!["parity"], vec![]));
+    assert!(both.discrepancy.is_some() && curve.discrepancy.is_some());
+}
+
+/// Noise of more than twice the stated size is no shape.
+#[test]
+fn a_stated_noise_that_is_too_small_is_said_and_draws_nothing() {
+    let model = model();
+    for seed in 0..5 {
+        let mut random = Random::seeded(seed, 7);
+        let noise: Vec<f64> = (0..COUNT).map(|_| random.normal()).collect();
+        let stated = |sd: f64| Evidence { stated_noise: Some(sd), ..independent(noise.clone()) };
+        let diagnosis = diagnose(&model, &stated(0.4));
+        let left = diagnosis.discrepancy.as_ref().map(|left| left.shown_by);
+        assert_eq!((effects(&diagnosis), left), (vec![], Some(ShownBy::StatedNoise)), "seed {seed}");
+        assert_eq!(diagnosis.noise_test.stated, Some(0.4));
+        assert!(diagnose(&model, &stated(1.0)).discrepancy.is_none(), "seed {seed}");
+    }
+}

@@ -28,6 +28,20 @@ pub struct Nominal {
 /// What sits within this distance of the flange, an end of the bend or the tip belongs to it, m.
 const SAME_PLACE: f64 = 1e-6;
 
+impl Nominal {
+    /// Unit of the number for people, what one of it is in SI, and its value in SI; of what is known to a share the
+    /// unit is a percent of the value.
+    pub fn for_people(&self) -> (&'static str, f64, f64) {
+        let key = self.number.key();
+        let si = 1.0 / self.number.in_unit(1.0, self.value);
+        match (key.ends_with("_percent"), key.ends_with("_g")) {
+            (true, _) => ("%", si, 100.0 * si),
+            (_, true) => ("g", si, self.value),
+            _ => ("mm", si, self.value),
+        }
+    }
+}
+
 impl Rod {
     /// The numbers of this rod that have a standard uncertainty above 0, in the order of the rod
     /// file.

@@ -64,6 +64,7 @@ impl Campaign {
             validation: None,
             refit: Refit::BaseTool,
             noise: None,
+            clamp_uncertainty: None,
             wishes: ParameterConstraints::default(),
             warnings: Vec::new(),
         })

@@ -126,9 +126,10 @@ struct RawSockets {
 }
 
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields, expecting = "a section [noise] with position_um")]
+#[serde(deny_unknown_fields, expecting = "a section [noise] with position_um, clamp_um")]
 struct RawNoise {
     position_um: Number,
+    clamp_um: Option<Number>,
 }
 
 /// What a campaign file cannot do without, in words.
@@ -193,10 +194,12 @@ impl Reader<'_> {
         let clamps = self.clamps(&raw.clamp)?;
         let sockets = self.sockets(raw)?;
         let refit = self.refit(raw)?;
-        let noise = match &raw.noise {
-            Some(noise) => Some(self.toml.positive("noise.position_um", &noise.position_um)? * UM),
-            None => None,
+        let stated = |key: &str, number: Option<&Number>| {
+            number.map(|number| Ok(self.toml.positive(&format!("noise.{key}"), number)? * UM)).transpose()
         };
+        let of_noise = raw.noise.as_ref();
+        let noise = stated("position_um", of_noise.map(|noise| &noise.position_um))?;
+        let clamp_uncertainty = stated("clamp_um", of_noise.and_then(|noise| noise.clamp_um.as_ref()))?;
         if let (Some(rig), None) = (&raw.rig, &raw.rod) {
             let expected = "a rod (`rod = \"FILE\"`) whose readings these are";
             return Err(self.toml.is("rig", rig, expected));
@@ -247,6 +250,7 @@ impl Reader<'_> {
             validation,
             refit,
             noise,
+            clamp_uncertainty,
             wishes,
             warnings: Vec::new(),
         };

@@ -54,6 +54,8 @@ impl Campaign {
         text += &self.groups();
         if let Some(noise) = self.noise {
             text += &format!("\n[noise]\nposition_um = {}\n", number(noise / UM));
+            let of_clamps = self.clamp_uncertainty.map(|sd| format!("clamp_um = {}\n", number(sd / UM)));
+            text += &of_clamps.unwrap_or_default();
         }
         text + &self.constraints()
     }

@@ -55,6 +55,21 @@ impl Configuration {
         (0..self.tip_jacobian.len()).map(of_joint).sum()
     }
 
+    /// Displacement of the tip by joints up to `last` that yield to a force (N) at a point of the link
+    /// that joint moves: Σ J·c·z·(lever × force), the levers as each joint sees them, m.
+    pub fn yielding_below(
+        &self,
+        last: usize,
+        lever: impl Fn(usize) -> Vector3<f64>,
+        force: &Vector3<f64>,
+    ) -> Vector3<f64> {
+        let of_joint = |j: usize| {
+            let torque = self.axis[j].dot(&lever(j).cross(force));
+            self.tip_jacobian[j] * (self.compliance[j] * torque)
+        };
+        (0..=last).map(of_joint).sum()
+    }
+
     /// Displacement of the tip by joints that yield to one more acceleration of all masses (m/s²):
     /// Σ J·c·z·(S × acceleration).
     pub fn yielding_to_weight(&self, acceleration: &Vector3<f64>) -> Vector3<f64> {
@@ -76,10 +91,11 @@ impl Configuration {
     }
 }
 
-/// One for every row of a recording; `deflections` are what deflects the tip there, in {W}, m.
+/// One for every row of a recording; the joints yield by `compliance`, `deflections` are what deflects the tip there, in {W}, m.
 pub(super) fn all(
     recording: &Recording,
     setup: &Setup,
+    compliance: &[f64],
     deflections: &[Vector3<f64>],
     compensation: &Compensation,
 ) -> Vec<Configuration> {
@@ -112,7 +128,7 @@ pub(super) fn all(
                 torque,
                 moment,
                 first_moment,
-                compliance: setup.compliance.clone(),
+                compliance: compliance.to_vec(),
                 link: kinematics.joints.iter().map(|joint| joint.distal).collect(),
                 base: setup.base(),
                 flange: kinematics.flange,

@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::configuration::{self, Configuration};
 use super::entry::Column;
 use crate::calibration::campaign::{Campaign, Recording, Targets};
-use crate::calibration::{Calibration, Compensation, Mode, Robust};
+use crate::calibration::{Calibration, Compensation, Mode, Robust, plausible_compliances};
 use crate::error::Result;
 use crate::robot::{Motion, Setup};
 
@@ -34,24 +34,34 @@ pub(super) struct Context<'a> {
     /// Deflections in {W} by the rod's model, m, by contact force and by gravity; empty without a
     /// rod.
     pub deflection: Vec<[Vector3<f64>; 2]>,
+    /// Masses that are modelled at the tip, and at the flange with what hangs on it, kg.
+    pub modelled_mass: (f64, f64),
+    /// Compliance beyond which the drive of each joint is not of its class, rad/(N·m).
+    pub softest: Vec<f64>,
     /// Share of `deflection` that the calibration took into account: 1, or 0 where it took the rod
     /// for rigid.
     pub accounted: f64,
 }
 
 impl<'a> Context<'a> {
+    /// All rows count alike.
     pub fn new(campaign: &'a Campaign, calibration: &Calibration) -> Result<Self> {
         let recording = &campaign.measurements;
         let steps = steps(recording, &calibration.deviations);
         let determined = calibration.fit.covariance.rank;
-        let noise = calibration.noise.estimate(recording, &steps, determined, Robust::Huber)?;
-        let off = recording.rows.iter().zip(&calibration.deviations);
+        let noise = calibration.noise.estimate(recording, &steps, determined, Robust::Huber)?.pooled;
         Ok(Context {
-            noise: noise.pooled,
-            scale: recording.rows.iter().map(|row| noise.pooled / noise.of_group[row.group]).collect(),
-            off: off.map(|(row, deviation)| deviation.norm() / noise.of_group[row.group]).collect(),
+            noise,
+            off: calibration.deviations.iter().map(|deviation| deviation.norm() / noise).collect(),
             ..Context::still(campaign, calibration.mode, &calibration.setup, &calibration.deflections)?
         })
+    }
+
+    /// The same where groups scatter by so much, m.
+    pub fn scattered(mut self, of_group: &[f64]) -> Self {
+        self.scale = self.recording.rows.iter().map(|row| self.noise / of_group[row.group]).collect();
+        self.off.iter_mut().zip(&self.scale).for_each(|(off, scale)| *off *= scale);
+        self
     }
 
     /// Of poses that nobody measured, in a recording that came after that of `campaign`.
@@ -69,7 +79,9 @@ impl<'a> Context<'a> {
     ) -> Result<Self> {
         let used = Compensation::new(campaign, mode)?;
         let recording = &campaign.measurements;
-        let configurations = configuration::all(recording, setup, deflections, &used);
+        let softest = plausible_compliances(setup, used.payload);
+        let compliance = plausible(setup, &softest);
+        let configurations = configuration::all(recording, setup, &compliance, deflections, &used);
         // a rod that was taken for rigid bends as its beam model says
         let (rod, accounted) = match (mode, &campaign.rod) {
             (Mode::None, Some(_)) => (Compensation::new(campaign, Mode::Fea)?.compliance, 0.0),
@@ -96,6 +108,8 @@ impl<'a> Context<'a> {
                 .map_or_else(Matrix3::zeros, |rod| rod.gravity / crate::units::STANDARD_GRAVITY),
             deflection: configurations.iter().enumerate().filter_map(deflection).collect(),
             accounted,
+            softest,
+            modelled_mass: modelled_mass(campaign),
             configurations,
         })
     }
@@ -163,6 +177,18 @@ impl<'a> Context<'a> {
             false => format!("pose {}", self.recording.pose_name(row)),
         }
     }
+}
+
+fn modelled_mass(campaign: &Campaign) -> (f64, f64) {
+    let last = campaign.robot.joints.last().and_then(|joint| joint.body).map_or(0.0, |body| body.mass);
+    let rod = campaign.rod.as_ref();
+    (rod.map_or(0.0, |rod| rod.tip_mass), last + rod.map_or(0.0, |rod| rod.mass()))
+}
+
+/// Compliances as effects use them: a drive that a calibration has made softer than drives of its class are, in
+/// place of something else, would spoil them.
+pub(super) fn plausible(setup: &Setup, softest: &[f64]) -> Vec<f64> {
+    setup.compliance.iter().zip(softest).map(|(own, softest)| own.clamp(0.0, softest.max(0.0))).collect()
 }
 
 /// Differences of neighbours in each clamp or socket, over √2: as large as noise alone, whatever

@@ -1,18 +1,16 @@
 //! What a campaign says about its calibration.
 
-use super::context::Context;
+use super::beside::{calibrated_beside, unequal};
 use super::effects::registry;
-use super::evidence;
 use super::gear::Curve;
-use super::limits::limits;
-use super::linear_terms::LinearTerms;
+use super::limits::{limits, noisy};
 use super::model::CalibrationModel;
 use super::next::next_poses;
-use super::nonparametric;
+use super::prepared::Prepared;
 use crate::calibration::campaign::Campaign;
 use crate::calibration::{Calibration, Mode, Options, calibrate};
 use crate::error::Result;
-use crate::inference::{Absorbed, Diagnosed, Evidence, Finding, Location, NotTestable, diagnose as infer};
+use crate::inference::{Diagnosed, Finding, Location, diagnose as infer};
 use crate::parallel::in_parallel;
 
 /// A campaign's diagnosis.
@@ -51,66 +49,36 @@ pub fn diagnose_calibrated<'c>(
     campaign: &'c Campaign,
     calibration: Calibration<'c>,
 ) -> Result<CalibrationDiagnosis<'c>> {
-    let Prepared { model, evidence, absorbed, not_testable, context } = Prepared::new(campaign, calibration)?;
-    let mut diagnosis = infer(&model, &evidence);
+    let mut prepared = Prepared::new(campaign, calibration)?;
+    let mut diagnosis = infer(&prepared.model, &prepared.evidence);
+    let mut scatter = None;
+    for _ in 0..ROUNDS {
+        let about = calibrated_beside(&prepared, &diagnosis)?;
+        let noise = unequal(&prepared, &diagnosis)?;
+        let is_equal = noise.is_none() == scatter.is_none();
+        if about.is_none() && is_equal {
+            break;
+        }
+        scatter = noise;
+        let about = about.unwrap_or(prepared.about);
+        prepared = Prepared::about(campaign, prepared.model.calibration, about, scatter.as_ref())?;
+        diagnosis = infer(&prepared.model, &prepared.evidence);
+    }
+    let Prepared { model, evidence, absorbed, not_testable, context, .. } = prepared;
     let next = in_parallel(diagnosis.findings.len(), |k| {
         next_poses(&model, &context, &evidence, &diagnosis, &diagnosis.findings[k])
     });
     for (finding, next) in diagnosis.findings.iter_mut().zip(next) {
         finding.next = next?;
     }
-    let limits = limits(&context, &model.calibration, &evidence);
+    let mut limits = limits(&context, &model.calibration, &evidence);
+    limits.extend(scatter.iter().flat_map(|noise| noisy(campaign, noise)));
     Ok(Diagnosed { model, evidence, diagnosis, not_testable, absorbed, limits })
 }
 
-/// A calibration as it is given to the engine.
-pub(super) struct Prepared<'c> {
-    pub model: CalibrationModel<'c>,
-    pub evidence: Evidence,
-    /// Effects that the calibration hides.
-    pub absorbed: Vec<Absorbed>,
-    /// Effects that the campaign's files have no data for.
-    pub not_testable: Vec<NotTestable>,
-    pub context: Context<'c>,
-}
-
-impl<'c> Prepared<'c> {
-    /// Data are rows × (x, y, z), in {W}, then what is known besides; see `evidence.rs`.
-    pub fn new(campaign: &'c Campaign, calibration: Calibration<'c>) -> Result<Prepared<'c>> {
-        let context = Context::new(campaign, &calibration)?;
-        let evidence = evidence::evidence_of(campaign, &calibration, &context);
-        let (mut entries, not_testable) = registry::candidates(&context);
-        entries.extend(nonparametric::all(&context));
-        let (terms, absorbed) = LinearTerms::new(entries, &evidence);
-        let jacobians = context.configurations.iter().map(|there| there.tip_jacobian.clone());
-        let recording = &campaign.measurements;
-        let name = |group: usize| recording.groups[group].name.clone();
-        let model = CalibrationModel {
-            campaign,
-            calibration,
-            tip_jacobians: jacobians.collect(),
-            recorded: None,
-            groups: recording.rows.iter().map(|row| name(row.group)).collect(),
-            scale: context.scale.clone(),
-            terms,
-        };
-        Ok(Prepared { model, evidence, absorbed, not_testable, context })
-    }
-}
-
-impl<'c> CalibrationModel<'c> {
-    /// The model of a finished calibration, with what it leaves as numbers.
-    ///
-    /// # Errors
-    /// As [`crate::calibration::Compensation::new`].
-    pub fn new(
-        campaign: &'c Campaign,
-        calibration: Calibration<'c>,
-    ) -> Result<(CalibrationModel<'c>, Evidence)> {
-        let prepared = Prepared::new(campaign, calibration)?;
-        Ok((prepared.model, prepared.evidence))
-    }
-}
+/// So many times a search begins anew about the robot that is left beside what was found, and with the scatter that its
+/// clamps show then.
+const ROUNDS: usize = 2;
 
 /// Something that happened while the poses were recorded.
 #[derive(Debug, Clone, PartialEq)]

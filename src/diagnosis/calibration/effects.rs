@@ -10,12 +10,14 @@
 //! ∂tip/∂parameter through the calibrated kinematics. In the formulae Jⱼ is the tip Jacobian of
 //! joint j, ∂tip/∂qⱼ in {W}, τⱼ the torque of all loads beyond it about its axis.
 
+pub(super) mod contact;
 pub(super) mod events;
 pub(super) mod fixture;
 pub(super) mod gear;
 pub(super) mod joints;
 pub(super) mod loads;
 pub(super) mod mistakes;
+pub(super) mod play;
 pub(super) mod procedure;
 pub mod registry;
 

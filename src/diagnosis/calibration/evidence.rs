@@ -27,6 +27,7 @@ use nalgebra::{DMatrix, DVector, Vector3};
 
 use super::configuration::Configuration;
 use super::context::Context;
+use super::nominal;
 use crate::calibration::campaign::{Campaign, Recording, Targets};
 use crate::calibration::{Calibration, MOST_SCATTER};
 use crate::inference::{Covariate, Evidence, JointVariable, Variable};
@@ -86,9 +87,10 @@ pub(super) fn evidence_of(campaign: &Campaign, calibration: &Calibration, contex
     }
     let is_known = |k: &usize| priors.iter().any(|prior| prior.parameter == *k);
     let unknown: Vec<usize> = (0..jacobian.ncols()).filter(|k| !is_known(k)).collect();
-    Evidence {
+    let evidence = Evidence {
         nuisance: jacobian.select_columns(&unknown),
         background,
+        stated_noise: campaign.noise,
         most_scatter: most_scatter(calibration),
         replicate_group: groups
             .iter()
@@ -103,7 +105,8 @@ pub(super) fn evidence_of(campaign: &Campaign, calibration: &Calibration, contex
         covariates: covariates(context, data),
         recorded: 3 * rows,
         ..Evidence::new(residual)
-    }
+    };
+    nominal::with_numbers(evidence, campaign, calibration.mode, context)
 }
 
 /// The evidence of a calibration of which nothing is known beforehand: all that it is free to change

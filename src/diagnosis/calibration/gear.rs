@@ -33,6 +33,13 @@ pub enum Gear {
         /// n.
         cycles_per_rev: f64,
     },
+    /// Two harmonics: a·sin(n·q) + b·cos(n·q) + c·sin(m·q) + d·cos(m·q).
+    Harmonics {
+        /// The joint, from 0.
+        joint: usize,
+        /// n and m.
+        cycles_per_rev: [f64; 2],
+    },
     /// (a + c·u)·sin(n·q) + (b + d·u)·cos(n·q), u = (q − q̄)·h: to first order a wave of
     /// n + h·(a·d − b·c)/(a² + b²) cycles per revolution, whose amplitude may grow along the range.
     Wave {
@@ -58,7 +65,10 @@ impl Gear {
     /// The joint, from 0.
     pub fn joint(&self) -> usize {
         match self {
-            Gear::Harmonic { joint, .. } | Gear::Wave { joint, .. } | Gear::Curve { joint, .. } => *joint,
+            Gear::Harmonic { joint, .. }
+            | Gear::Harmonics { joint, .. }
+            | Gear::Wave { joint, .. }
+            | Gear::Curve { joint, .. } => *joint,
         }
     }
 
@@ -67,6 +77,10 @@ impl Gear {
         match self {
             Gear::Harmonic { cycles_per_rev, .. } if k == 0 => (cycles_per_rev * q).sin(),
             Gear::Harmonic { cycles_per_rev, .. } => (cycles_per_rev * q).cos(),
+            Gear::Harmonics { cycles_per_rev, .. } => {
+                let (sine, cosine) = (cycles_per_rev[(k / 2).min(1)] * q).sin_cos();
+                [sine, cosine][k % 2]
+            }
             Gear::Wave { cycles_per_rev, middle, half_step, .. } => {
                 let (sine, cosine) = (cycles_per_rev * q).sin_cos();
                 [sine, cosine][k % 2] * if k < 2 { 1.0 } else { (q - middle) * half_step }
@@ -94,12 +108,31 @@ impl Gear {
         (cycles_per_rev + half_step * shift.clamp(-2.0, 2.0), DVector::from_column_slice(&gradient))
     }
 
-    /// Frequency and amplitude of the error that a part of a finding is, over the recorded
-    /// `angles`.
+    /// Frequencies and amplitudes of the error that a part of a finding is, over the recorded
+    /// `angles`, the largest first.
     pub(super) fn estimates(&self, part: &FindingPart, angles: &[f64]) -> Vec<Estimate> {
         let values = &part.term.values;
         let resolved = |cycles: f64| (cycles, 0.5 / turns(angles));
-        let ((cycles, half_cycles), amplitude) = match self {
+        let one = |((cycles, half_cycles), amplitude): ((f64, f64), Length)| {
+            let estimate = |name: &str, unit: f64, value: f64, half: f64| {
+                let (low, high) = ((value - half).max(0.0), value + half);
+                Estimate { name: name.into(), unit, value, low, high }
+            };
+            let half = amplitude.half_interval(part);
+            vec![
+                estimate("cycles_per_rev", 1.0, cycles, half_cycles),
+                estimate("amplitude_urad", URAD, amplitude.value, half),
+            ]
+        };
+        let wave = match self {
+            Gear::Harmonics { cycles_per_rev: [n, m], .. } => {
+                let mut waves = [
+                    (resolved(*n), weighted_length(values, &[1.0, 1.0, 0.0, 0.0])),
+                    (resolved(*m), weighted_length(values, &[0.0, 0.0, 1.0, 1.0])),
+                ];
+                waves.sort_by(|(_, a), (_, b)| b.value.total_cmp(&a.value));
+                return waves.into_iter().flat_map(one).collect();
+            }
             Gear::Harmonic { cycles_per_rev, .. } => (resolved(*cycles_per_rev), length(values)),
             Gear::Wave { middle, half_step, .. } => {
                 let (cycles, gradient) = self.frequency(values);
@@ -113,21 +146,14 @@ impl Gear {
                 (resolved(cycles), amplitude)
             }
         };
-        let estimate = |name: &str, unit: f64, value: f64, half: f64| {
-            let (low, high) = ((value - half).max(0.0), value + half);
-            Estimate { name: name.into(), unit, value, low, high }
-        };
-        let half = amplitude.half_interval(part);
-        vec![
-            estimate("cycles_per_rev", 1.0, cycles, half_cycles),
-            estimate("amplitude_urad", URAD, amplitude.value, half),
-        ]
+        one(wave)
     }
 
     /// Highest frequency of so many terms, cycles per revolution.
     pub fn highest(&self, terms: usize) -> f64 {
         match self {
             Gear::Harmonic { cycles_per_rev, .. } => *cycles_per_rev,
+            Gear::Harmonics { cycles_per_rev: [n, m], .. } => n.max(*m),
             Gear::Wave { cycles_per_rev, half_step, .. } => cycles_per_rev + half_step,
             Gear::Curve { cosines, .. } => cosines.frequency(terms),
         }

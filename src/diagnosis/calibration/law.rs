@@ -6,7 +6,7 @@ use std::fmt;
 
 use super::gear::Gear;
 use crate::inference::Part;
-use crate::units::UM;
+use crate::units::{UM, URAD};
 
 /// Seconds in an hour.
 const HOUR: f64 = 3600.0;
@@ -28,6 +28,8 @@ pub enum Law {
     Rod(RodLoad),
     /// Drift.
     Drift(Course, Frame),
+    /// Drift of a joint or its link.
+    Warms(Course, Warmed),
 }
 
 /// What takes up the play of a joint.
@@ -81,6 +83,15 @@ pub enum Frame {
     Tool,
 }
 
+/// What of a joint drifts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Warmed {
+    /// Its zero.
+    Zero,
+    /// The length of the link that it moves.
+    Length,
+}
+
 impl Law {
     /// What a transmission error is a function of; `None` for any other law.
     pub fn gear(&self) -> Option<&Gear> {
@@ -91,7 +102,8 @@ impl Law {
             | Law::Nonlinear(_)
             | Law::MassesUnknown
             | Law::Rod(_)
-            | Law::Drift(..) => None,
+            | Law::Drift(..)
+            | Law::Warms(..) => None,
         }
     }
 }
@@ -124,6 +136,15 @@ impl Course {
             Course::Time => ("um_per_h", "µm per hour", UM / HOUR),
         }
     }
+
+    /// The same of an angle.
+    pub fn angle_unit(self) -> (&'static str, &'static str, f64) {
+        match self {
+            Course::Order | Course::WarmUp(_) => ("urad", "µrad", URAD),
+            Course::Temperature => ("urad_per_k", "µrad per kelvin", URAD),
+            Course::Time => ("urad_per_h", "µrad per hour", URAD / HOUR),
+        }
+    }
 }
 
 impl fmt::Display for Course {
@@ -145,6 +166,16 @@ impl Frame {
         match self {
             Frame::World => Part::Base,
             Frame::Tool => Part::Tool,
+        }
+    }
+}
+
+impl Warmed {
+    /// For people: `zero, with temperature`.
+    pub fn form(self, course: Course) -> String {
+        match self {
+            Warmed::Zero => format!("zero, with {course}"),
+            Warmed::Length => format!("length of its link, with {course}"),
         }
     }
 }

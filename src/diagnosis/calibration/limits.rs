@@ -2,8 +2,10 @@
 
 use super::context::Context;
 use super::effects::JOINT_ANGLE;
-use crate::calibration::Calibration;
+use crate::calibration::campaign::{Campaign, Group};
+use crate::calibration::{Calibration, Noise};
 use crate::inference::{Evidence, Limit};
+use crate::statistics::median;
 
 /// Rows per parameter below which they are few.
 const FEW: f64 = 2.0;
@@ -12,6 +14,11 @@ const NARROW: f64 = 0.35;
 
 /// Tip's motion by a usual error of a joint, in noises, below which the joint is not seen.
 const UNSEEN: f64 = 0.1;
+/// Distance from an axis, as a share of the arm's reach, beyond which a target is not on it, whatever the noise.
+const ON_AXIS: f64 = 0.02;
+
+/// A clamp that scatters so many times as much as the others is worth a look.
+const NOISY: f64 = 3.0;
 
 pub(super) fn limits(context: &Context, calibration: &Calibration, evidence: &Evidence) -> Vec<Limit> {
     let mut limits = Vec::new();
@@ -31,7 +38,8 @@ pub(super) fn limits(context: &Context, calibration: &Calibration, evidence: &Ev
     let seen = calibration.noise.pooled / JOINT_ANGLE;
     // where the fit fails, everything drowns in what is left
     let is_judged = calibration.is_plausible();
-    for (j, lever) in levers.enumerate().filter(|(_, lever)| is_judged && *lever < UNSEEN * seen) {
+    let beside = (UNSEEN * seen).min(ON_AXIS * calibration.reach);
+    for (j, lever) in levers.enumerate().filter(|(_, lever)| is_judged && *lever < beside) {
         limits.push(Limit::OnAxis(j, lever));
     }
     let folds = evidence.fold.iter().filter(|fold| **fold != Evidence::NONE).max();
@@ -39,4 +47,17 @@ pub(super) fn limits(context: &Context, calibration: &Calibration, evidence: &Ev
         limits.push(Limit::NoFoldsOfPoses);
     }
     limits
+}
+
+/// Clamps that scatter so many times as much as the others do in the middle.
+pub(super) fn noisy(campaign: &Campaign, noise: &Noise) -> Vec<Limit> {
+    let groups = &campaign.measurements.groups;
+    let of_group = |(k, group): (usize, &Group)| {
+        let others: Vec<f64> =
+            (0..groups.len()).filter(|&other| other != k).map(|k| noise.of_group[k]).collect();
+        let usual = median(&others)?;
+        let own = noise.of_group[k];
+        (own > NOISY * usual).then(|| Limit::NoisyGroup(group.name.clone(), own, usual))
+    };
+    groups.iter().enumerate().filter_map(of_group).collect()
 }

@@ -16,7 +16,7 @@
 //!                       of its own angle
 //! of a link             all beyond a joint turns about any axis of its link by products of two
 //!                       joints' angles
-//! of each clamp         a vector in {W}
+//! of each clamp         a vector in {W}, or in {T}
 //! ```
 //!
 //! for every shape is more likely to be smooth than not.
@@ -385,13 +385,26 @@ fn pairs(context: &Context) -> Vec<Entry> {
     entries
 }
 
-fn clamps(context: &Context) -> Option<Entry> {
+/// In fixed directions (of sockets nobody knows the places), and in such that turn with the tool: what an arm does
+/// otherwise in another region, where each clamp or placement is one, looks like a tool that slipped between them.
+fn clamps(context: &Context) -> Vec<Entry> {
     let groups = &context.recording.groups;
-    (groups.len() > 1 && !context.has_sockets()).then_some(())?;
-    let parameters = (0..groups.len()).flat_map(|k| {
-        let is_there = |row: usize| if context.recording.rows[row].group == k { 1.0 } else { 0.0 };
-        vectors(context, &format!("group_{k}"), SIZE, Frame::World, &is_there)
-    });
-    let follows = "shifts whole clamps against one another";
-    Some(curve("each clamp by itself", follows, None, parameters.collect()))
+    if groups.len() < 2 {
+        return Vec::new();
+    }
+    let by_itself = |frame: Frame, label: &str, follows: &str| {
+        let parameters = (0..groups.len()).flat_map(|k| {
+            let is_there = |row: usize| if context.recording.rows[row].group == k { 1.0 } else { 0.0 };
+            vectors(context, &format!("group_{k}"), SIZE, frame, &is_there)
+        });
+        curve(label, follows, None, parameters.collect())
+    };
+    let in_world = (Frame::World, "each clamp by itself", "shifts whole clamps against one another");
+    let in_tool = (
+        Frame::Tool,
+        "each clamp by itself, in the tool",
+        "differs from clamp to clamp in directions that turn with the tool",
+    );
+    let both = [(!context.has_sockets()).then_some(in_world), Some(in_tool)];
+    both.into_iter().flatten().map(|(frame, label, follows)| by_itself(frame, label, follows)).collect()
 }

@@ -18,10 +18,10 @@ use nalgebra::Vector3;
 use nalgebra::DVector;
 
 use super::context::Context;
-use super::diagnose::Prepared;
 use super::effects::registry;
 use super::entry::Entry;
 use super::linear_terms::LinearTerms;
+use super::prepared::Prepared;
 use super::*;
 use crate::calibration::Calibration;
 use crate::calibration::Campaign;

@@ -48,11 +48,7 @@ pub(super) fn all(
             continue;
         };
         let column = changed[0].iter().zip(&changed[1]).map(|(more, less)| 0.5 * (more - less));
-        let per_unit = nominal.number.in_unit(1.0, nominal.value);
-        let unit = if nominal.number.key().ends_with("_percent") { "%" } else { "mm" };
-        let unit = if nominal.number.key().ends_with("_g") { "g" } else { unit };
-        let si = 1.0 / per_unit;
-        let value = if unit == "%" { 100.0 * si } else { nominal.value };
+        let (unit, si, value) = nominal.for_people();
         add(
             NominalParameter { name: nominal.number.to_string(), unit, si, value, standard_uncertainty: u },
             column.collect(),

@@ -12,13 +12,13 @@ use super::headline::um;
 use super::remainder::{Remainder, Sample};
 use super::subject::{Errors, Subject};
 use super::{json as whole_json, report as whole_report};
-use crate::calibration::MOST_SCATTER;
+use crate::calibration::{MOST_SCATTER, Warning};
 use crate::diagnosis::calibration::{Applied, CalibrationDiagnosis, Gear};
-use crate::inference::{Finding, ForwardModel, Location, Plan, PosePlan, Variable};
+use crate::inference::{Finding, ForwardModel, Location, Plan, PosePlan, ShownBy, Variable};
 use crate::report::calibration::warnings as of_calibration;
 use crate::report::{Block, Report, Section};
 use crate::robot::Motion;
-use crate::units::{DEG, MM, UM, URAD};
+use crate::units::{DEG, MM, UM, URAD, significant};
 
 /// Coordinates of a pose.
 const AXES: [&str; 3] = ["x", "y", "z"];
@@ -93,7 +93,7 @@ fn subject<'a>(found: &'a CalibrationDiagnosis<'_>) -> Subject<'a> {
             held_out: distances.held_out_means(),
         },
         before_correction: model.recorded.map(|recorded| recorded.rms / 3.0f64.sqrt()),
-        nominal: None,
+        nominal: far_from_file(found),
         suspect: Box::new(|datum| {
             let row = &campaign.measurements.rows[datum / 3];
             json!({ "pose": row.pose, "channel": AXES[datum % 3] })
@@ -133,10 +133,33 @@ fn subject<'a>(found: &'a CalibrationDiagnosis<'_>) -> Subject<'a> {
     }
 }
 
+/// A number of the robot that the calibration has put far from its file: no error of the poses, but hardly what the
+/// file means.
+fn far_from_file(found: &CalibrationDiagnosis) -> Option<String> {
+    let calibration = &found.model.calibration;
+    let known = &calibration.setup.robot.standard_uncertainty;
+    let far = calibration.warnings.iter().filter_map(|warning| match warning {
+        Warning::FarFromDrawing { parameter, correction, .. }
+        | Warning::Implausible { parameter, correction } => {
+            let times = correction.abs() / known.of(*parameter)?;
+            Some((times, *parameter, *correction))
+        }
+        _ => None,
+    });
+    let (times, parameter, correction) = far.max_by(|a, b| a.0.total_cmp(&b.0))?;
+    let (unit, times) = (parameter.unit(), significant(times, 2));
+    let space = if unit.symbol == "°" { "" } else { " " };
+    let correction = format!("{}{space}{}", significant(correction / unit.si, 3), unit.symbol);
+    Some(format!(
+        "Parameter {parameter} is {correction} from the robot file, {times} of its standard uncertainties: is its zero or \
+         its length another one?"
+    ))
+}
+
 /// A gear's shape takes several terms.
 fn details(found: &CalibrationDiagnosis, finding: &Finding) -> String {
     match gear_of(found, finding).is_some() && finding.parts.len() > 1 {
-        true => format!(" Its shape has {} terms; the strongest is given.", finding.parts.len()),
+        true => format!(" Its shape has {} terms.", finding.parts.len()),
         false => String::new(),
     }
 }
@@ -157,6 +180,7 @@ fn more_of(found: &CalibrationDiagnosis, finding: &Finding) -> Vec<(&'static str
             Some(gear @ (Gear::Harmonic { .. } | Gear::Wave { .. })) => {
                 json!(gear.frequency(&part.term.values).0)
             }
+            Some(Gear::Harmonics { cycles_per_rev, .. }) => json!(cycles_per_rev),
             _ => Value::Null,
         })
         .collect();
@@ -200,6 +224,18 @@ fn remainder(found: &CalibrationDiagnosis) -> Option<Remainder> {
         }
         _ => ("repeated poses".to_owned(), "Repeated poses share an unexplained error".to_owned(), None),
     };
+    let test = &found.diagnosis.noise_test;
+    let (location, words) = match (left.shown_by, test.stated) {
+        (ShownBy::StatedNoise, Some(stated)) => {
+            let (own, stated) = (um(test.estimated), um(stated));
+            let words = format!(
+                "The poses scatter by {own} µm, more than the stated noise of {stated} µm, and follow nothing that was \
+                 recorded; does that noise hold for the robot's repeatability too"
+            );
+            ("all poses".to_owned(), words)
+        }
+        _ => (location, words),
+    };
     let rows = found.model.by_row(&left.shape);
     let is_no_scatter = found.evidence.most_scatter.is_some_and(|most| found.diagnosis.noise > most);
     let (location, words) = match left.location.is_none() && is_no_scatter {
@@ -233,6 +269,7 @@ fn remainder(found: &CalibrationDiagnosis) -> Option<Remainder> {
                 um(largest),
                 100.0 * MOST_SCATTER
             ),
+            false if left.shown_by == ShownBy::StatedNoise => format!("{words}?"),
             false => format!("{words}: {rms} µm rms per coordinate, up to {} µm.", um(largest)),
         },
         rms: left.rms,

@@ -186,12 +186,15 @@ fn locate(subject: &Subject) -> Vec<Value> {
     let structure = |structure: &Structure| json!({ "strength": structure.strength, "z": structure.z });
     let diagnosis = subject.diagnosis;
     let structures = diagnosis.structure_before.iter().zip(&diagnosis.structure_after);
-    let of_covariate = |(covariate, (before, after)): (&Covariate, (&Structure, &Structure))| {
+    let structures = structures.zip(&diagnosis.structure_given_others);
+    type Known<'a> = ((&'a Structure, &'a Structure), &'a Option<Structure>);
+    let of_covariate = |(covariate, ((before, after), given_others)): (&Covariate, Known)| {
         json!({
             "covariate": covariate.variable.to_string(),
             "unit": covariate.variable.unit(),
             "before": structure(before),
             "after": structure(after),
+            "given_others": given_others.as_ref().map(structure),
         })
     };
     subject.evidence.covariates.iter().zip(structures).map(of_covariate).collect()

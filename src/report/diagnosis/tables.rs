@@ -135,22 +135,36 @@ const MANY: usize = 12;
 /// How much what is left follows each number of the recording.
 pub fn locate(subject: &Subject) -> Block {
     let (noun, diagnosis) = (subject.noun, subject.diagnosis);
+    let given_others = &diagnosis.structure_given_others;
+    let has_others = given_others.iter().any(Option::is_some);
+    let said = match has_others {
+        true => " Given the others: before what is seen along that variable, all other findings known.",
+        false => "",
+    };
+    let mut columns = vec![
+        Column::text("along"),
+        Column::text("before"),
+        Column::number("strength", ""),
+        Column::number("z", ""),
+        Column::text("after"),
+        Column::number("strength", ""),
+        Column::number("z", ""),
+    ];
+    if has_others {
+        columns.extend([
+            Column::text("given the others"),
+            Column::number("strength", ""),
+            Column::number("z", ""),
+        ]);
+    }
     let mut table = Table::new(
         "locate",
         format!(
             "How clearly the residuals of the {noun} follow each variable of the recording. Strength: \
              0 not at all, 1 completely; z: distance from the value expected by chance, in standard \
-             deviations."
+             deviations.{said}"
         ),
-        vec![
-            Column::text("along"),
-            Column::text("before"),
-            Column::number("strength", ""),
-            Column::number("z", ""),
-            Column::text("after"),
-            Column::number("strength", ""),
-            Column::number("z", ""),
-        ],
+        columns,
     );
     for k in covariates(subject.evidence) {
         let variable = subject.evidence.covariates[k].variable;
@@ -159,6 +173,9 @@ pub fn locate(subject: &Subject) -> Block {
             |s: &Structure| [word(s.z).to_owned(), format!("{:.2}", s.strength), format!("{:.1}", s.z)];
         let mut row = vec![variable.title(noun)];
         row.extend(cells(before).into_iter().chain(cells(after)));
+        if has_others {
+            row.extend(given_others[k].as_ref().map_or_else(|| [const { String::new() }; 3], &cells));
+        }
         table.row(row);
     }
     let all = table.rows.len();

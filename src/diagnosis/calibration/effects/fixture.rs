@@ -12,8 +12,12 @@ use super::{
 };
 use crate::diagnosis::calibration::configuration::Configuration;
 use crate::diagnosis::calibration::law::Law;
-use crate::inference::{Candidate, Effect, Finding, Kind, Location, NotTestable, Reported, WrittenTo};
-use crate::units::{UM, URAD};
+use crate::diagnosis::calibration::model::CalibrationModel;
+use crate::diagnosis::calibration::vector::{self, Length};
+use crate::inference::{
+    Candidate, Effect, Estimate, Finding, FindingPart, Kind, Location, NotTestable, Reported, WrittenTo,
+};
+use crate::units::{DEG, MM, UM, URAD};
 
 /// Error of a clamp's place, m and rad.
 const MISPLACED: (f64, f64) = (100.0 * UM, 0.5e-3);
@@ -21,6 +25,8 @@ const MISPLACED: (f64, f64) = (100.0 * UM, 0.5e-3);
 const MOST_OF_BASE: usize = 100;
 /// Angle by which a knock turns a plate of sockets, rad: 0.5 mm over its width.
 const PLATE: f64 = 3e-3;
+/// Distance of the ball from the flange below which no rotation moves it, m.
+const LEAST_LEVER: f64 = 10.0 * MM;
 
 /// A clamp that is not where the campaign says.
 pub static CLAMP_POSE: CalibrationEffect = CalibrationEffect {
@@ -285,4 +291,94 @@ fn base_moved(context: &Context, rows: Range<usize>, location: Location) -> Entr
 /// that one's name.
 fn stays_moved(context: &Context, candidate: &Candidate, _: &Law) -> Entry {
     base_moved(context, 0..context.configurations.len(), candidate.location.clone())
+}
+
+/// A tool that slipped in its mount.
+pub static TOOL_SHIFT: CalibrationEffect = CalibrationEffect {
+    effect: Effect {
+        name: "tool_shift",
+        kind: Kind::Event,
+        summary: "the rod or tool slipped in its mount after one pose",
+        formula: "R·d from some row on: d = t + φ × ball in {T}, by how much the ball moved in {T}; a ball \
+                  alone does not show how much of it was a rotation φ",
+        prior: "0.5 mm: millimetres when one sees a knock, tenths when one does not",
+        parameters: &[
+            ("dx_um, dy_um, dz_um", "displacement of the ball in {T}"),
+            ("rotation_deg", "the least rotation about the flange that moves the ball so"),
+        ],
+        needs: "poses in the order of recording that hold the tool in different directions",
+        cause: "a slip of the rod or tool in its mount",
+        cause_at: |location| format!("a slip of the tool ({location})"),
+        written_to: WrittenTo::Recording,
+        reported: Reported::Alone,
+        seen_along: |_| Vec::new(),
+        direct_check: Some("Look whether the rod is tight in its mount."),
+    },
+    candidates: tools,
+    estimates: slipped,
+    observed: slip_observed,
+    write: out_of_the_points,
+    transfer: Transfer::Made(stays_slipped),
+    event: moved_event,
+};
+
+fn tools(context: &Context, _: &mut Vec<NotTestable>) -> Vec<Entry> {
+    let count = context.configurations.len();
+    let after = |before: usize| {
+        let row = before - 1;
+        let location = Location::Shift { what: Some("tool".into()), row, after: context.pose_name(row) };
+        tool_moved(context, before..count, location)
+    };
+    places(count, MOST_PLACES).map(after).collect()
+}
+
+/// The ball elsewhere in {T} at some rows.
+fn tool_moved(context: &Context, rows: Range<usize>, location: Location) -> Entry {
+    let along =
+        |axis: usize| context.part(rows.clone(), |_, there| there.flange.rotation.column(axis).into_owned());
+    Entry::new(&TOOL_SHIFT.effect, location, three(&SHIFT, UM, KNOCK.0, along))
+}
+
+/// The tool stays where it slipped to.
+fn stays_slipped(context: &Context, candidate: &Candidate, _: &Law) -> Entry {
+    tool_moved(context, 0..context.configurations.len(), candidate.location.clone())
+}
+
+/// The displacement, and the least rotation about the flange that does it: what of it is across the
+/// lever, over the lever.
+fn slipped(model: &CalibrationModel, parts: &[FindingPart]) -> Vec<Estimate> {
+    let mut estimates = own_parameters(model, parts);
+    let lever = model.calibration.setup.tool;
+    let (Some(part), Some(along)) = (parts.first(), lever.try_normalize(LEAST_LEVER)) else {
+        return estimates;
+    };
+    let &[x, y, z] = &part.term.values[..] else { return estimates };
+    let moved = Vector3::new(x, y, z);
+    let across = (moved - along * along.dot(&moved)) / lever.norm();
+    let angle = vector::length(across.as_slice());
+    // the gradient of its length has nothing along the lever
+    let turned = Length { gradient: angle.gradient / lever.norm(), ..angle };
+    let half = turned.half_interval(part);
+    estimates.push(Estimate {
+        name: "rotation_deg".into(),
+        unit: DEG,
+        value: turned.value,
+        low: (turned.value - half).max(0.0),
+        high: turned.value + half,
+    });
+    estimates
+}
+
+fn slip_observed(finding: &Finding, _: &CalibrationModel) -> String {
+    let by = size(finding, UM).say("µm");
+    let as_turn = match finding.estimates.get(3) {
+        Some(turn) => format!(", as by a rotation of {} in its mount", turn.quantity().say("°")),
+        None => String::new(),
+    };
+    match &finding.location {
+        Location::Shift { after, .. } => {
+            format!("The ball moved in the tool frame by {by} after {after}{as_turn}")
+        }
+        other => format!("The ball moved in the tool frame by {by}, {other}{as_turn}"),
+    }
 }

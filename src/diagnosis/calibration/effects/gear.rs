@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! harmonic   Jⱼ·(a·sin(n·qⱼ) + b·cos(n·qⱼ))     n cycles per revolution, whole numbers
+//! harmonics  the same with n and 2·n together    one gear, one cause
 //! wave       Jⱼ·((a + c·u)·sin(n·qⱼ) + (b + d·u)·cos(n·qⱼ))     u ∝ qⱼ − q̄ⱼ, n scanned: gear.rs
 //! curve      Jⱼ·f(qⱼ)                            f a smooth curve: cosines.rs
 //! ```
@@ -14,8 +15,7 @@
 use std::f64::consts::TAU;
 
 use super::{
-    CalibrationEffect, Context, Entry, JOINT_ANGLE, Transfer, along, capital, first, joint_by, law, no_event,
-    nth,
+    CalibrationEffect, Context, Entry, JOINT_ANGLE, Transfer, along, capital, joint_by, law, no_event, nth,
 };
 use crate::calibration::campaign::Campaign;
 use crate::diagnosis::calibration::correction_table::table;
@@ -34,6 +34,10 @@ use crate::units::{URAD, significant};
 const SCAN: (f64, f64) = (40.0, 0.5);
 /// Ratios of strain-wave gears that arms are built with.
 const RATIOS: [f64; 8] = [50.0, 51.0, 80.0, 100.0, 101.0, 120.0, 121.0, 160.0];
+/// Up to so many cycles per revolution the first overtone is looked for with a harmonic.
+const MOST_DOUBLED: u32 = 6;
+/// How many times as usual as any other one an error of one and two cycles per revolution is.
+const ECCENTRIC: f64 = 5.0;
 /// Length scales ℓ of curves, rad, as 1/ℓ: their spectrum falls to 1/√e of its amplitude at √2/ℓ
 /// cycles per revolution.
 const CURVES: [f64; 5] = [2.0, 4.0, 8.0, 16.0, 32.0];
@@ -47,12 +51,13 @@ pub static TRANSMISSION_ERROR: CalibrationEffect = CalibrationEffect {
         name: "transmission_error",
         kind: Kind::Physics,
         summary: "an error of gear or encoder over the joint's angle",
-        formula: "Jⱼ·f(qⱼ): f is a wave of a gear's whole harmonics and ratios, a wave scanned up to \
+        formula: "Jⱼ·f(qⱼ): f is a wave of a gear's whole harmonics and ratios, or one with its first overtone, a wave scanned up to \
                   40 cycles per revolution, or a smooth curve of one of five length scales",
         prior: "150 µrad rms: a UR5 shows 60 to 110 µrad, a UR10 220 to 400",
         parameters: &[
-            ("cycles_per_rev", "frequency of the strongest part"),
-            ("amplitude_urad", "amplitude of the strongest part; of a curve, of a wave of the same rms"),
+            ("cycles_per_rev", "frequency of the strongest wave"),
+            ("amplitude_urad", "its amplitude; of a curve, of a wave of the same rms"),
+            ("cycles_per_rev_2, amplitude_urad_2, …", "the same of the next waves of that gear"),
         ],
         needs: "a joint that turns",
         cause: "an error of its gear or encoder",
@@ -74,10 +79,12 @@ pub(in crate::diagnosis::calibration) fn all(context: &Context, _: &mut Vec<NotT
     let of_joint = |j: usize| {
         let (steps, half_step) = scan(context, j);
         let whole = (1..=SCAN.0 as usize).map(|n| n as f64).chain(ratios());
-        let harmonics = whole.map(move |n| harmonic(context, j, n));
+        let single = whole.map(move |n| harmonic(context, j, n));
+        let doubles = (1..=MOST_DOUBLED).map(f64::from).chain(RATIOS);
+        let both = doubles.map(move |n| harmonics(context, j, [n, 2.0 * n]));
         let waves = steps.into_iter().map(move |n| wave(context, j, n, half_step));
         let curves = CURVES.into_iter().filter_map(move |cycles| curve(context, j, cycles));
-        harmonics.chain(waves).chain(curves)
+        single.chain(both).chain(waves).chain(curves)
     };
     context.revolute().into_iter().flat_map(of_joint).collect()
 }
@@ -103,6 +110,19 @@ fn ratios() -> Vec<f64> {
 fn harmonic(context: &Context, j: usize, cycles: f64) -> Entry {
     let gear = Gear::Harmonic { joint: j, cycles_per_rev: cycles };
     terms(context, gear, format!("{cycles} cycles/rev"), &["sin_urad", "cos_urad"])
+}
+
+/// An error and its first overtone: an eccentric disc that is read at one place errs with one and two
+/// cycles per revolution, a strain-wave gear with i and 2·i.
+fn harmonics(context: &Context, j: usize, cycles_per_rev: [f64; 2]) -> Entry {
+    let gear = Gear::Harmonics { joint: j, cycles_per_rev };
+    let [n, m] = cycles_per_rev;
+    let names = ["sin_urad", "cos_urad", "sin_2_urad", "cos_2_urad"];
+    let mut entry = terms(context, gear, format!("{n} and {m} cycles/rev"), &names);
+    if n == 1.0 {
+        entry.candidate.weight = ECCENTRIC;
+    }
+    entry
 }
 
 fn wave(context: &Context, j: usize, cycles: f64, half_step: f64) -> Entry {
@@ -157,30 +177,32 @@ fn elsewhere(context: &Context, candidate: &Candidate, law: &Law) -> Entry {
     Entry::new(candidate.effect, candidate.location.clone(), parameters).by(law.clone())
 }
 
-/// Of the strongest part.
+/// Of all waves, the strongest part first; from the second on with their number.
 fn frequency_and_amplitude(model: &CalibrationModel, parts: &[FindingPart]) -> Vec<Estimate> {
-    let Some(part) = parts.first() else { return Vec::new() };
-    let estimates = |gear: &Gear| gear.estimates(part, &model.angles(gear.joint()));
-    model.gear_of(part).map_or_else(Vec::new, estimates)
+    let of_part = |part: &FindingPart| {
+        let estimates = |gear: &Gear| gear.estimates(part, &model.angles(gear.joint()));
+        model.gear_of(part).map_or_else(Vec::new, estimates)
+    };
+    let numbered = |(k, estimate): (usize, Estimate)| match k / 2 {
+        0 => estimate,
+        wave => Estimate { name: format!("{}_{}", estimate.name, wave + 1), ..estimate },
+    };
+    parts.iter().flat_map(of_part).enumerate().map(numbered).collect()
 }
 
 fn observed(finding: &Finding, model: &CalibrationModel) -> String {
     let named = capital(&finding.location);
-    let (cycles, amplitude) = (cycles(first(finding).value), nth(finding, 1).say("µrad"));
-    match law(finding, model) {
-        Law::Gear(Gear::Curve { .. }) => {
-            format!("{named} has an angle error of up to about {amplitude}, mostly {cycles}")
+    let up_to = if let Law::Gear(Gear::Curve { .. }) = law(finding, model) { "up to about" } else { "up to" };
+    let wave = |k: usize| {
+        let (cycles, amplitude) = (cycles(nth(finding, 2 * k).value), nth(finding, 2 * k + 1).say("µrad"));
+        match law(finding, model) {
+            Law::Gear(Gear::Curve { .. }) if k == 0 => format!("{amplitude}, mostly {cycles}"),
+            _ if k == 0 => format!("{amplitude}, {cycles}"),
+            _ => format!("of {amplitude}, {cycles}"),
         }
-        Law::Gear(Gear::Harmonic { .. } | Gear::Wave { .. })
-        | Law::Only
-        | Law::Play(_)
-        | Law::Nonlinear(_)
-        | Law::MassesUnknown
-        | Law::Rod(_)
-        | Law::Drift(..) => {
-            format!("{named} has an angle error of up to {amplitude}, {cycles}")
-        }
-    }
+    };
+    let waves: Vec<String> = (0..finding.estimates.len() / 2).map(wave).collect();
+    format!("{named} has an angle error of {up_to} {}", waves.join(", and "))
 }
 
 /// `once per revolution`, `18.5 times per revolution`.
@@ -205,18 +227,23 @@ fn three_digits(cycles: f64) -> String {
 fn write(finding: &Finding, model: &CalibrationModel, extended: &mut Campaign) -> WrittenTo {
     let of_part = |part: &FindingPart| {
         let values = &part.term.values;
-        match (model.gear_of(part)?, &values[..]) {
+        let Some(gear) = model.gear_of(part) else { return Vec::new() };
+        match (gear, &values[..]) {
             (&Gear::Harmonic { joint, cycles_per_rev }, &[sine, cosine]) => {
-                Some(robot::Effect::Harmonic { joint, cycles_per_rev, sine, cosine })
+                vec![robot::Effect::Harmonic { joint, cycles_per_rev, sine, cosine }]
             }
-            (Gear::Harmonic { .. }, _) => None,
+            (&Gear::Harmonics { joint, cycles_per_rev: [n, m] }, &[a, b, c, d]) => vec![
+                robot::Effect::Harmonic { joint, cycles_per_rev: n, sine: a, cosine: b },
+                robot::Effect::Harmonic { joint, cycles_per_rev: m, sine: c, cosine: d },
+            ],
+            (Gear::Harmonic { .. } | Gear::Harmonics { .. }, _) => Vec::new(),
             (gear @ (Gear::Wave { joint, .. } | Gear::Curve { joint, .. }), values) => {
                 let highest = gear.highest(values.len());
                 let rows = table(&model.angles(*joint), highest, |q| gear.turn(values, q));
-                Some(robot::Effect::Table { joint: *joint, rows })
+                vec![robot::Effect::Table { joint: *joint, rows }]
             }
         }
     };
-    extended.robot.effects.extend(finding.parts.iter().filter_map(of_part));
+    extended.robot.effects.extend(finding.parts.iter().flat_map(of_part));
     WrittenTo::Model
 }

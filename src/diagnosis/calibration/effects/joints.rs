@@ -7,13 +7,13 @@
 use nalgebra::Vector3;
 
 use super::{
-    CalibrationEffect, Context, Entry, JOINT_ANGLE, Transfer, along, capital, first, first_value, joint,
-    joint_by, lack, law, no_event, nowhere, own_parameters, single,
+    CalibrationEffect, Context, Entry, Transfer, along, capital, first, first_value, joint, joint_by, lack,
+    law, no_event, nowhere, own_parameters, single,
 };
 use crate::calibration::campaign::Campaign;
 use crate::diagnosis::calibration::configuration::Configuration;
 use crate::diagnosis::calibration::entry::{Column, linear};
-use crate::diagnosis::calibration::law::{Law, Power, TakenUp};
+use crate::diagnosis::calibration::law::{Law, Power};
 use crate::diagnosis::calibration::model::CalibrationModel;
 use crate::inference::{
     Effect, Finding, JointVariable, Kind, Location, NotTestable, Parameter, Part, Reported, WrittenTo,
@@ -35,10 +35,10 @@ const ONE_POINT: f64 = 0.01;
 /// Joints of a wrist.
 const WRIST: usize = 3;
 /// What is said where torques are unknown.
-const NO_MASSES: &str = "the robot file has no masses, so that no torque is known";
+pub(super) const NO_MASSES: &str = "the robot file has no masses, so that no torque is known";
 
 /// Joints that turn and are loaded, with their largest torque, N·m; none without masses.
-fn loaded(context: &Context) -> Vec<(usize, f64)> {
+pub(super) fn loaded(context: &Context) -> Vec<(usize, f64)> {
     let largest = |j: usize| context.largest(|there| there.torque[j]);
     let most = (0..context.joint_count()).map(largest).fold(0.0, f64::max);
     let is_loaded =
@@ -133,7 +133,13 @@ fn compliance_observed(finding: &Finding, model: &CalibrationModel) -> String {
         Law::MassesUnknown => {
             format!("{named} gives way to the weight beyond it (the robot file has no masses)")
         }
-        Law::Only | Law::Gear(_) | Law::Play(_) | Law::Nonlinear(_) | Law::Rod(_) | Law::Drift(..) => {
+        Law::Only
+        | Law::Gear(_)
+        | Law::Play(_)
+        | Law::Nonlinear(_)
+        | Law::Rod(_)
+        | Law::Drift(..)
+        | Law::Warms(..) => {
             let by = first(finding);
             let word = if by.value >= 0.0 { "more" } else { "less" };
             format!("{named} gives way by {} {word} than modelled", by.size().say("µrad/(N·m)"))
@@ -210,7 +216,8 @@ fn nonlinear_observed(finding: &Finding, model: &CalibrationModel) -> String {
         | Law::Play(_)
         | Law::MassesUnknown
         | Law::Rod(_)
-        | Law::Drift(..) => ("µrad/(N·m)²", "the square of"),
+        | Law::Drift(..)
+        | Law::Warms(..) => ("µrad/(N·m)²", "the square of"),
     };
     format!("{} gives way with {power} its load, by {}", capital(&finding.location), first(finding).say(unit))
 }
@@ -308,81 +315,6 @@ fn tilt(context: &Context) -> Option<Entry> {
     let size = YIELDING / largest.max(f64::MIN_POSITIVE);
     let tilting = linear("tilt_urad_per_nm", URAD_PER_NM, size);
     (largest > 0.0).then(|| single(&GRAVITY_TILT, Location::Part(Part::Base), tilting, column))
-}
-
-/// Play of a gear.
-pub static BACKLASH: CalibrationEffect = CalibrationEffect {
-    effect: Effect {
-        name: "backlash",
-        kind: Kind::Physics,
-        summary: "play in a gear",
-        formula: "Jⱼ·½b·sign(τⱼ) or, where friction holds the joint, Jⱼ·½b·(direction of approach)",
-        prior: "150 µrad: the error of a joint angle that a UR5 shows (60 to 110 µrad), and half of \
-                a UR10's",
-        parameters: &[("play_urad", "the whole gap")],
-        needs: "masses in the robot file and a joint whose torque changes sign; for play by approach, \
-                rows in the order of recording",
-        cause: "play in its gear",
-        cause_at: |location| format!("play in {}", location.place()),
-        written_to: WrittenTo::Model,
-        reported: Reported::Alone,
-        seen_along: |location| {
-            let numbers = [JointVariable::Approach, JointVariable::Torque];
-            numbers.into_iter().flat_map(|number| along(location, number)).collect()
-        },
-        direct_check: None,
-    },
-    candidates: plays,
-    estimates: own_parameters,
-    observed: play_observed,
-    write: write_play,
-    transfer: Transfer::Candidate,
-    event: no_event,
-};
-
-fn plays(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
-    let play = || linear("play_urad", URAD, JOINT_ANGLE);
-    let loaded = loaded(context);
-    if loaded.is_empty() {
-        lacks.push(lack(&BACKLASH, NO_MASSES));
-    }
-    let sign = |torque: f64| if torque == 0.0 { 0.0 } else { 0.5 * torque.signum() };
-    let by_torque = loaded.into_iter().map(|(j, _)| {
-        let hangs = context.turn(j, |_, there| sign(there.torque[j]));
-        single(&BACKLASH, joint(j), play(), hangs).by(Law::Play(TakenUp::ByTorque))
-    });
-    let by_approach = context.revolute().into_iter().map(|j| {
-        let came_from = context.turn(j, |_, there| 0.5 * there.approach[j]);
-        single(&BACKLASH, joint_by(j, "by approach"), play(), came_from).by(Law::Play(TakenUp::ByApproach))
-    });
-    by_torque.chain(by_approach).collect()
-}
-
-fn play_observed(finding: &Finding, model: &CalibrationModel) -> String {
-    let by = match law(finding, model) {
-        Law::Play(TakenUp::ByApproach) => "taken up according to the direction of approach",
-        Law::Play(TakenUp::ByTorque)
-        | Law::Only
-        | Law::Gear(_)
-        | Law::Nonlinear(_)
-        | Law::MassesUnknown
-        | Law::Rod(_)
-        | Law::Drift(..) => "taken up on the side that its load pulls to",
-    };
-    let play = first(finding).size().say("µrad");
-    format!("{} has {play} of play, {by}", capital(&finding.location))
-}
-
-/// A robot file knows torques, and not where a joint came from.
-fn write_play(finding: &Finding, model: &CalibrationModel, extended: &mut Campaign) -> WrittenTo {
-    match (finding.location.joint(), law(finding, model)) {
-        (Some(joint), Law::Play(TakenUp::ByTorque)) => {
-            let play = first_value(finding);
-            extended.robot.effects.push(robot::Effect::Backlash { joint, play });
-            WrittenTo::Model
-        }
-        _ => WrittenTo::Nowhere,
-    }
 }
 
 /// A joint that turns more or less than its encoder says.

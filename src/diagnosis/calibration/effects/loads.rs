@@ -27,8 +27,6 @@ const FORGOTTEN_AT_TIP: f64 = 0.05;
 const FORGOTTEN_AT_FLANGE: f64 = 0.5;
 /// How far from level a robot stands that nobody has levelled, rad.
 const LEVEL: f64 = 0.5 * DEG;
-/// Error of a contact force, N.
-const CONTACT: f64 = 0.3;
 
 /// A rod that is softer or stiffer than its model.
 pub static ROD_STIFFNESS: CalibrationEffect = CalibrationEffect {
@@ -104,9 +102,13 @@ fn stiffness(_: &CalibrationModel, parts: &[FindingPart]) -> Vec<Estimate> {
 fn rod_observed(finding: &Finding, model: &CalibrationModel) -> String {
     let under = match law(finding, model) {
         Law::Rod(load) => load.words(),
-        Law::Only | Law::Gear(_) | Law::Play(_) | Law::Nonlinear(_) | Law::MassesUnknown | Law::Drift(..) => {
-            None
-        }
+        Law::Only
+        | Law::Gear(_)
+        | Law::Play(_)
+        | Law::Nonlinear(_)
+        | Law::MassesUnknown
+        | Law::Drift(..)
+        | Law::Warms(..) => None,
     };
     let under = under.map_or_else(String::new, |under| format!(" {under}"));
     let softer = first(finding).map(|stiffness| 1.0 / stiffness).compared("softer", "stiffer");
@@ -120,12 +122,12 @@ fn heavier(finding: &Finding, unit: &str) -> String {
 }
 
 /// Displacement of the tip by one more force on it, m: the rod bends and the joints give way.
-fn pulled(context: &Context, there: &Configuration, force: &Vector3<f64>) -> Vector3<f64> {
+pub(super) fn pulled(context: &Context, there: &Configuration, force: &Vector3<f64>) -> Vector3<f64> {
     there.in_world(&context.force_compliance) * force + there.yielding(&there.tip, force)
 }
 
 /// True where something is known to give way to a force on the tip.
-fn gives_way(context: &Context) -> bool {
+pub(super) fn gives_way(context: &Context) -> bool {
     context.force_compliance.amax() > 0.0 || joints_give_way(context)
 }
 
@@ -164,7 +166,9 @@ fn tip_masses(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
         return Vec::new();
     }
     let column = context.column(|_, there| pulled(context, there, &there.gravity));
-    let mass = linear("mass_g", GRAM, FORGOTTEN_AT_TIP);
+    let mut mass = linear("mass_g", GRAM, FORGOTTEN_AT_TIP);
+    // no less can hang there than nothing
+    mass.bounds.0 = -context.modelled_mass.0;
     vec![single(&TIP_MASS, Location::Part(Part::Tip), mass, column)]
 }
 
@@ -199,7 +203,8 @@ fn payload_masses(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry>
         return Vec::new();
     }
     let column = context.column(|_, there| there.yielding(&there.flange.origin, &there.gravity));
-    let mass = linear("mass_kg", 1.0, FORGOTTEN_AT_FLANGE);
+    let mut mass = linear("mass_kg", 1.0, FORGOTTEN_AT_FLANGE);
+    mass.bounds.0 = -context.modelled_mass.1;
     vec![single(&PAYLOAD_MASS, Location::Part(Part::Flange), mass, column)]
 }
 
@@ -252,74 +257,4 @@ fn levels(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
     };
     let parameters = ["roll_deg", "pitch_deg"].into_iter().enumerate().map(about).collect();
     vec![Entry::new(&GRAVITY_DIRECTION.effect, Location::Part(Part::Base), parameters)]
-}
-
-/// A ball that is pushed harder or softer than stated.
-pub static CONTACT_FORCE_VARIATION: CalibrationEffect = CalibrationEffect {
-    effect: Effect {
-        name: "contact_force_variation",
-        kind: Kind::Physics,
-        summary: "the contact force is not the stated one",
-        formula: "R·C^F·Rᵀ·F + yield(tip, F): F in the device frame of the clamp",
-        prior: "0.3 N: sensor springs are stated to 10 or 20 % of 2 N",
-        parameters: &[
-            ("x_n", "force beyond the stated one along x of the device frame"),
-            ("y_n", "force beyond the stated one along y of the device frame"),
-            ("z_n", "force beyond the stated one along z of the device frame"),
-        ],
-        needs: "clamps, and a rod or joints of known compliance",
-        cause: "a contact force that differs from the stated one",
-        cause_at: |location| format!("a contact force that differs from the stated one ({location})"),
-        written_to: WrittenTo::Nowhere,
-        reported: Reported::Alone,
-        seen_along: |_| Vec::new(),
-        direct_check: Some("Measure the contact force with a spring balance."),
-    },
-    candidates: contacts,
-    estimates: own_parameters,
-    observed: contact_observed,
-    write: nowhere,
-    transfer: Transfer::Nothing,
-    event: no_event,
-};
-
-fn contacts(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
-    let groups = &context.recording.groups;
-    let is_of_clamps = !context.has_sockets() && groups.iter().any(|group| !group.name.is_empty());
-    if !is_of_clamps || !gives_way(context) {
-        let reason = "there are no clamps, or neither a rod nor a joint of known compliance";
-        lacks.push(lack(&CONTACT_FORCE_VARIATION, reason));
-        return Vec::new();
-    }
-    let at = |location: Location, is_there: &dyn Fn(usize) -> bool| {
-        let along = |(axis, name): (usize, &str)| {
-            let column = context.column(|row, there| {
-                let group = context.recording.rows[row].group;
-                match is_there(group) {
-                    true => {
-                        let push = groups[group].device.rotation.column(axis).into();
-                        pulled(context, there, &push)
-                    }
-                    false => Vector3::zeros(),
-                }
-            });
-            (linear(name, 1.0, CONTACT), column)
-        };
-        let parameters = ["x_n", "y_n", "z_n"].into_iter().enumerate().map(along).collect();
-        Entry::new(&CONTACT_FORCE_VARIATION.effect, location, parameters)
-    };
-    let mut entries = vec![at(Location::AllClamps, &|_| true)];
-    if groups.len() > 1 {
-        let named = |k: usize| at(Location::Named(groups[k].name.clone()), &|group| group == k);
-        entries.extend((0..groups.len()).map(named));
-    }
-    entries
-}
-
-fn contact_observed(finding: &Finding, _: &CalibrationModel) -> String {
-    let at = match &finding.location {
-        Location::AllClamps => "In all clamps".to_owned(),
-        clamp => format!("At {clamp}"),
-    };
-    format!("{at} the contact force differs by {} from the stated one", size(finding, 1.0).say("N"))
 }

@@ -3,18 +3,18 @@
 use nalgebra::Vector3;
 
 use super::{
-    CalibrationEffect, Context, Entry, Transfer, along, first, joint, lack, law, no_event, out_of_the_points,
-    own_parameters, single, size, three, unit,
+    CalibrationEffect, Context, Entry, Transfer, along, first, joint, joint_by, lack, law, no_event,
+    out_of_the_points, own_parameters, single, size, three, unit,
 };
 use crate::calibration::campaign::Row;
 use crate::diagnosis::calibration::configuration::Configuration;
-use crate::diagnosis::calibration::entry::linear;
-use crate::diagnosis::calibration::law::{Course, Frame, Law};
+use crate::diagnosis::calibration::entry::{Column, linear};
+use crate::diagnosis::calibration::law::{Course, Frame, Law, Warmed};
 use crate::diagnosis::calibration::model::CalibrationModel;
 use crate::inference::{
     Effect, Finding, JointVariable, Kind, Location, NotTestable, Reported, Variable, WrittenTo,
 };
-use crate::units::UM;
+use crate::units::{MM, UM};
 
 /// Share of a move that is not made yet when an angle is read.
 const LAG: f64 = 3e-4;
@@ -24,6 +24,8 @@ const PER_KELVIN: f64 = 10.0 * UM;
 const PER_HOUR: f64 = 20.0 * UM;
 /// What a cold robot is off by, m.
 const WARM_UP: f64 = 50.0 * UM;
+/// Distance from one joint to the next below which there is no link to grow, m.
+const LEAST_LINK: f64 = 20.0 * MM;
 /// Seconds in an hour.
 const HOUR: f64 = 3600.0;
 /// Time constants of a robot that warms up, as parts of the recording.
@@ -85,14 +87,17 @@ pub static THERMAL_DRIFT: CalibrationEffect = CalibrationEffect {
         name: "thermal_drift",
         kind: Kind::Physics,
         summary: "the arm drifts with temperature, time or order",
-        formula: "d·(T − T̄), d·(t − t̄) or d·e^(−t/t₁), of the robot in {W} or of its tool in {T}",
+        formula: "d·(T − T̄), d·(t − t̄) or d·e^(−t/t₁), of the robot in {W} or of its tool in {T}; the same of \
+                  a joint's zero, Jⱼ·d, or of the length of its link",
         prior: "10 µm/K (an arm of steel of 1 m grows by 12); 20 µm/h, as in a room that warms by \
                 2 K in an hour, or over a recording without a clock; 50 µm for a cold robot (a UR5 \
-                starts a recording some 60 µm off)",
+                starts a recording some 60 µm off); of a joint as many µrad, of a link as many µm",
         parameters: &[
             ("x_um_per_k, y_um_per_k, z_um_per_k", "displacement per kelvin"),
             ("x_um_per_h, y_um_per_h, z_um_per_h", "displacement per hour"),
             ("x_um, y_um, z_um", "displacement over the recording, or of the cold robot"),
+            ("zero_urad_per_k, zero_urad_per_h, zero_urad", "the same of a joint's zero"),
+            ("length_um_per_k, length_um_per_h, length_um", "the same of a link's length"),
         ],
         needs: "temperatures or times of the rows; without them only the order of the rows",
         cause: "thermal drift",
@@ -129,12 +134,44 @@ fn drifts(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
             let location = Location::Form { part: frame.part(), form: format!("with {course}") };
             Entry::new(&THERMAL_DRIFT.effect, location, parameters).by(Law::Drift(course, frame))
         };
-        [
+        let mut entries = vec![
             drifting(Frame::World, &|_, axis| unit(axis)),
             drifting(Frame::Tool, &|there, axis| there.flange.rotation.column(axis).into()),
-        ]
+        ];
+        entries.extend(of_joints(context, course, &values));
+        entries
     };
     courses.into_iter().flat_map(of_course).collect()
+}
+
+/// A joint's zero, or the length of its link, that follows what a drift follows.
+fn of_joints(context: &Context, course: Course, values: &[f64]) -> Vec<Entry> {
+    let joints = context.revolute();
+    let weight = 1.0 / joints.len().max(1) as f64;
+    let entry = |j: usize, warmed: Warmed, name: String, unit_si: f64, column: Column| {
+        let location = joint_by(j, warmed.form(course));
+        let parameter = linear(name, unit_si, usual(course));
+        let mut entry = single(&THERMAL_DRIFT, location, parameter, column).by(Law::Warms(course, warmed));
+        // all joints together are as likely as the whole robot
+        entry.candidate.weight = weight;
+        entry
+    };
+    let zero = |j: usize| {
+        let (suffix, _, unit_si) = course.angle_unit();
+        let column = context.turn(j, |row, _| values[row]);
+        entry(j, Warmed::Zero, format!("zero_{suffix}"), unit_si, column)
+    };
+    let length = |j: usize| {
+        let (suffix, _, unit_si) = course.unit();
+        let next = |there: &Configuration| there.origin.get(j + 1).copied().unwrap_or(there.flange.origin);
+        let is_long = context.largest(|there| (next(there) - there.origin[j]).norm()) > LEAST_LINK;
+        let column = context.column(|row, there| {
+            let along = (next(there) - there.origin[j]).try_normalize(0.0).unwrap_or_default();
+            along * values[row]
+        });
+        is_long.then(|| entry(j, Warmed::Length, format!("length_{suffix}"), unit_si, column))
+    };
+    joints.iter().flat_map(|&j| [Some(zero(j)), length(j)]).flatten().collect()
 }
 
 /// Usual size of a drift's parameters, SI.
@@ -185,6 +222,14 @@ fn drift_observed(finding: &Finding, model: &CalibrationModel) -> String {
         Law::Drift(course, frame) => {
             let (_, unit, _) = course.unit();
             format!("The {} drifts by {} with {course}", frame.part(), size.say(unit))
+        }
+        Law::Warms(course, Warmed::Zero) => {
+            let by = first(finding).say(course.angle_unit().1);
+            format!("The zero of {} drifts by {by} with {course}", finding.location)
+        }
+        Law::Warms(course, Warmed::Length) => {
+            let by = first(finding).say(course.unit().1);
+            format!("The link of {} grows by {by} with {course}", finding.location)
         }
         Law::Only | Law::Gear(_) | Law::Play(_) | Law::Nonlinear(_) | Law::MassesUnknown | Law::Rod(_) => {
             format!("Drift by {} at {}", size.say("µm"), finding.location)

@@ -1,30 +1,34 @@
 //! The list of all effects of a calibration: the only source of their names.
 
+use super::contact::{CONTACT_FORCE_VARIATION, CONTACT_SPRING};
 use super::events::OUTLIER;
-use super::fixture::{BASE_SHIFT, CLAMP_POSE, CLAMP_SHIFT, SOCKET_SHIFT};
+use super::fixture::{BASE_SHIFT, CLAMP_POSE, CLAMP_SHIFT, SOCKET_SHIFT, TOOL_SHIFT};
 use super::gear::TRANSMISSION_ERROR;
 use super::joints::{
-    BACKLASH, ENCODER_SCALE, GRAVITY_TILT, JOINT_COMPLIANCE, JOINT_NONLINEAR_STIFFNESS, LINK_FLEXIBILITY,
+    ENCODER_SCALE, GRAVITY_TILT, JOINT_COMPLIANCE, JOINT_NONLINEAR_STIFFNESS, LINK_FLEXIBILITY,
     WRIST_COUPLING,
 };
-use super::loads::{CONTACT_FORCE_VARIATION, GRAVITY_DIRECTION, PAYLOAD_MASS, ROD_STIFFNESS, TIP_MASS};
+use super::loads::{GRAVITY_DIRECTION, PAYLOAD_MASS, ROD_STIFFNESS, TIP_MASS};
+use super::play::{BACKLASH, JOINT_FRICTION};
 use super::procedure::{READBACK_LAG, THERMAL_DRIFT};
 use super::{CalibrationEffect, Context, Entry, mistakes};
 use crate::diagnosis::calibration::law::{Law, TakenUp};
 use crate::inference::{Effect, NotTestable};
 
 /// All of them, as they are listed wherever they are.
-pub static ALL: [&CalibrationEffect; 20] = [
+pub static ALL: [&CalibrationEffect; 23] = [
     &ROD_STIFFNESS,
     &TIP_MASS,
     &PAYLOAD_MASS,
     &CONTACT_FORCE_VARIATION,
+    &CONTACT_SPRING,
     &GRAVITY_DIRECTION,
     &JOINT_COMPLIANCE,
     &JOINT_NONLINEAR_STIFFNESS,
     &LINK_FLEXIBILITY,
     &GRAVITY_TILT,
     &BACKLASH,
+    &JOINT_FRICTION,
     &ENCODER_SCALE,
     &WRIST_COUPLING,
     &TRANSMISSION_ERROR,
@@ -33,6 +37,7 @@ pub static ALL: [&CalibrationEffect; 20] = [
     &CLAMP_SHIFT,
     &SOCKET_SHIFT,
     &BASE_SHIFT,
+    &TOOL_SHIFT,
     &THERMAL_DRIFT,
     &OUTLIER,
 ];
@@ -59,7 +64,7 @@ static OF_LOADS: [&CalibrationEffect; 6] =
 static OF_TORQUE: [&CalibrationEffect; 4] =
     [&JOINT_COMPLIANCE, &JOINT_NONLINEAR_STIFFNESS, &BACKLASH, &LINK_FLEXIBILITY];
 /// What follows the motion of a joint.
-static OF_MOTION: [&CalibrationEffect; 2] = [&BACKLASH, &ENCODER_SCALE];
+static OF_MOTION: [&CalibrationEffect; 3] = [&BACKLASH, &JOINT_FRICTION, &ENCODER_SCALE];
 
 /// The record of an effect; `None` for what nobody has named.
 pub(in crate::diagnosis::calibration) fn record(effect: &Effect) -> Option<&'static CalibrationEffect> {

@@ -98,6 +98,47 @@ fn columns_are_what_a_changed_robot_does() {
             }),
         ),
         (
+            "contact_spring",
+            "all clamps",
+            Box::new(move |r, row, v| {
+                let device = &recording.groups[recording.rows[row].group].device;
+                let Targets::Points(points) = &recording.targets else { panic!("no points") };
+                let pull = device.rotation * device.inverse().point(&points[row]) * v;
+                bend(r, pull);
+                r.loads.tip_force += pull;
+            }),
+        ),
+        (
+            "joint_friction",
+            "joint 2",
+            Box::new(move |r, row, v| {
+                let torque = r.torque()[1];
+                let approach = if row == 0 { 0.0 } else { step(row, 1).signum() };
+                r.q[1] += 0.5 * v * torque.abs() * approach;
+            }),
+        ),
+        (
+            "thermal_drift",
+            "joint 2, zero, with order",
+            Box::new(|r, row, v| r.q[1] += v * (row as f64 / 59.0 - 0.5)),
+        ),
+        (
+            "thermal_drift",
+            "joint 2, length of its link, with order",
+            Box::new(|r, row, v| {
+                let both = [Parameter::A(1), Parameter::D(1)].map(|p| (p, r.setup.get(p)));
+                let length = both[0].1.hypot(both[1].1);
+                for (parameter, value) in both {
+                    r.setup.set(parameter, value * (1.0 + v * (row as f64 / 59.0 - 0.5) / length));
+                }
+            }),
+        ),
+        (
+            "tool_shift",
+            "tool, after pose 3",
+            Box::new(|r, row, v| r.setup.tool.x += if row >= 3 { v } else { 0.0 }),
+        ),
+        (
             "base_shift",
             "after pose 3",
             Box::new(|r, row, v| {

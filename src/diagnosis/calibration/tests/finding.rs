@@ -89,6 +89,21 @@ fn a_clamp_that_moved_is_found_with_its_row() {
 }
 
 #[test]
+fn a_tool_that_slipped_is_no_drift() {
+    let campaign = clamps(30);
+    let calibration = calibrate(&campaign, Mode::Fea, &Options::default()).unwrap();
+    let context = Context::new(&campaign, &calibration).unwrap();
+    let slip = Vector3::new(60.0, -150.0, 80.0) * UM;
+    let moved = |row: usize| {
+        if row < 75 { Vector3::zeros() } else { context.configurations[row].flange.rotation * slip }
+    };
+    for seed in 0..2 {
+        let (effects, _) = found(&recorded(&campaign, &moved, NOISE, seed));
+        assert_eq!(effects, ["tool_shift: tool, after pose 75"]);
+    }
+}
+
+#[test]
 fn a_readback_lag_is_no_backlash() {
     let campaign = clamps(30);
     let recording = &campaign.measurements;
@@ -116,4 +131,27 @@ fn what_the_calibration_absorbs_is_said() {
     assert!(model.candidates().iter().all(|c| !is_it(c.effect, &c.location)));
     let untested: Vec<&str> = not_testable.iter().map(|not| not.effect.name).collect();
     assert_eq!(untested, ["thermal_drift"]);
+}
+
+/// What no physics does, a tip that is lighter by three times what is modelled, does not make one of its numbers absurd.
+#[test]
+fn no_mass_is_negative_and_no_drive_turns_against_its_load() {
+    let campaign = clamps(30);
+    let calibration = calibrate(&campaign, Mode::Fea, &Options::default()).unwrap();
+    let context = Context::new(&campaign, &calibration).unwrap();
+    let entries = entries(&context);
+    let tip = entries.iter().find(|entry| entry.candidate.effect.name == "tip_mass").unwrap();
+    let modelled = campaign.rod.as_ref().unwrap().tip_mass;
+    assert_eq!(tip.candidate.parameters[0].bounds.0, -modelled);
+    let mut moved = DVector::zeros(3 * campaign.measurements.len());
+    tip.columns[0].add_to(&mut moved, -3.0 * modelled);
+    let lighter = |row: usize| moved.fixed_rows::<3>(3 * row).into_owned();
+    let campaign = recorded(&campaign, &lighter, NOISE, 1);
+    let found = diagnose(&campaign, Mode::Fea, &Options::default()).unwrap();
+    let compliance = &found.model.calibration.setup.compliance;
+    assert!(compliance.iter().all(|c| *c >= 0.0), "{compliance:?}");
+    for finding in &found.diagnosis.findings {
+        let masses = finding.estimates.iter().filter(|estimate| estimate.name.starts_with("mass_"));
+        assert!(masses.clone().all(|mass| mass.value >= -modelled && mass.low >= -modelled), "{finding:?}");
+    }
 }

@@ -1,0 +1,150 @@
+//! What the device pushes the ball with.
+
+use nalgebra::Vector3;
+
+use super::loads::{gives_way, pulled};
+use super::{
+    CalibrationEffect, Context, Entry, Transfer, first, lack, no_event, nowhere, out_of_the_points,
+    own_parameters, single, size,
+};
+use crate::calibration::campaign::Targets;
+use crate::diagnosis::calibration::configuration::Configuration;
+use crate::diagnosis::calibration::entry::linear;
+use crate::diagnosis::calibration::model::CalibrationModel;
+use crate::inference::{Effect, Finding, Kind, Location, NotTestable, Reported, WrittenTo};
+use crate::units::MM;
+
+/// Error of a contact force, N.
+const CONTACT: f64 = 0.3;
+/// Rate of a sensor's spring, N/m.
+const RATE: f64 = 100.0;
+
+/// A ball that is pushed harder or softer than stated.
+pub static CONTACT_FORCE_VARIATION: CalibrationEffect = CalibrationEffect {
+    effect: Effect {
+        name: "contact_force_variation",
+        kind: Kind::Physics,
+        summary: "the contact force is not the stated one",
+        formula: "R·C^F·Rᵀ·F + yield(tip, F): F in the device frame of the clamp",
+        prior: "0.3 N: sensor springs are stated to 10 or 20 % of 2 N",
+        parameters: &[
+            ("x_n", "force beyond the stated one along x of the device frame"),
+            ("y_n", "force beyond the stated one along y of the device frame"),
+            ("z_n", "force beyond the stated one along z of the device frame"),
+        ],
+        needs: "clamps, and a rod or joints of known compliance",
+        cause: "a contact force that differs from the stated one",
+        cause_at: |location| format!("a contact force that differs from the stated one ({location})"),
+        written_to: WrittenTo::Nowhere,
+        reported: Reported::Alone,
+        seen_along: |_| Vec::new(),
+        direct_check: Some("Measure the contact force with a spring balance."),
+    },
+    candidates: contacts,
+    estimates: own_parameters,
+    observed: contact_observed,
+    write: nowhere,
+    transfer: Transfer::Nothing,
+    event: no_event,
+};
+
+fn contacts(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
+    let groups = &context.recording.groups;
+    if !is_of_clamps(context) || !gives_way(context) {
+        let reason = "there are no clamps, or neither a rod nor a joint of known compliance";
+        lacks.push(lack(&CONTACT_FORCE_VARIATION, reason));
+        return Vec::new();
+    }
+    let at = |location: Location, is_there: &dyn Fn(usize) -> bool| {
+        let along = |(axis, name): (usize, &str)| {
+            let push = |row: usize| {
+                let group = context.recording.rows[row].group;
+                is_there(group).then(|| groups[group].device.rotation.column(axis).into())
+            };
+            (linear(name, 1.0, CONTACT), context.column(|row, there| pushed(context, there, push(row))))
+        };
+        let parameters = ["x_n", "y_n", "z_n"].into_iter().enumerate().map(along).collect();
+        Entry::new(&CONTACT_FORCE_VARIATION.effect, location, parameters)
+    };
+    at_clamps(context, at)
+}
+
+/// What one more force on the ball, N in {W}, does to it.
+fn pushed(context: &Context, there: &Configuration, force: Option<Vector3<f64>>) -> Vector3<f64> {
+    force.map_or_else(Vector3::zeros, |force| pulled(context, there, &force))
+}
+
+/// The same at all clamps, and at each where there are several.
+fn at_clamps(context: &Context, at: impl Fn(Location, &dyn Fn(usize) -> bool) -> Entry) -> Vec<Entry> {
+    let groups = &context.recording.groups;
+    let mut entries = vec![at(Location::AllClamps, &|_| true)];
+    if groups.len() > 1 {
+        let named = |k: usize| at(Location::Named(groups[k].name.clone()), &|group| group == k);
+        entries.extend((0..groups.len()).map(named));
+    }
+    entries
+}
+
+fn contact_observed(finding: &Finding, _: &CalibrationModel) -> String {
+    let at = match &finding.location {
+        Location::AllClamps => "In all clamps".to_owned(),
+        clamp => format!("At {clamp}"),
+    };
+    format!("{at} the contact force differs by {} from the stated one", size(finding, 1.0).say("N"))
+}
+
+/// A device whose springs push harder the farther they are pressed.
+pub static CONTACT_SPRING: CalibrationEffect = CalibrationEffect {
+    effect: Effect {
+        name: "contact_spring",
+        kind: Kind::Physics,
+        summary: "the contact force changes with the ball's displacement",
+        formula: "R·C^F·Rᵀ·k·u + yield(tip, k·u): u the recorded displacement in the device frame, so that \
+                  the force is F₀ + k·u; k < 0 pushes back",
+        prior: "0.1 N/mm: springs of plunger gauges have 0.05 to 0.3",
+        parameters: &[("n_per_mm", "k: change of the force per displacement")],
+        needs: "clamps, displacements that differ by more than a tenth of a millimetre, and a rod or joints \
+                of known compliance",
+        cause: "springs of the device, whose force changes with the displacement",
+        cause_at: |location| format!("springs of the device ({location})"),
+        written_to: WrittenTo::Recording,
+        reported: Reported::Alone,
+        seen_along: |_| Vec::new(),
+        direct_check: Some("Measure the contact force at two displacements with a spring balance."),
+    },
+    candidates: springs,
+    estimates: own_parameters,
+    observed: spring_observed,
+    write: out_of_the_points,
+    transfer: Transfer::Nothing,
+    event: no_event,
+};
+
+fn springs(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
+    let Targets::Points(points) = &context.recording.targets else { return Vec::new() };
+    if !is_of_clamps(context) || !gives_way(context) {
+        let reason = "there are no clamps, or neither a rod nor a joint of known compliance";
+        lacks.push(lack(&CONTACT_SPRING, reason));
+        return Vec::new();
+    }
+    // poses that nobody measured have no displacement
+    let displacement = |row: usize| {
+        let device = context.recording.device(row);
+        points.get(row).map(|point| point - device.origin).unwrap_or_default()
+    };
+    at_clamps(context, |location, is_there| {
+        let push = |row: usize| is_there(context.recording.rows[row].group).then(|| displacement(row));
+        let column = context.column(|row, there| pushed(context, there, push(row)));
+        single(&CONTACT_SPRING, location, linear("n_per_mm", 1.0 / MM, RATE), column)
+    })
+}
+
+fn is_of_clamps(context: &Context) -> bool {
+    !context.has_sockets() && context.recording.groups.iter().any(|group| !group.name.is_empty())
+}
+
+fn spring_observed(finding: &Finding, _: &CalibrationModel) -> String {
+    let rate = first(finding);
+    let (size, way) = (rate.size().say("N per mm"), if rate.value < 0.0 { "against" } else { "along" });
+    format!("The contact force of {} changes by {size} of displacement, {way} it", finding.location)
+}

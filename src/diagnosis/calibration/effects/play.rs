@@ -1,0 +1,134 @@
+//! What a joint keeps of the way that it came: play and friction.
+
+use super::joints::{NO_MASSES, loaded};
+use super::{
+    CalibrationEffect, Context, Entry, JOINT_ANGLE, Transfer, along, capital, first, first_value, joint,
+    joint_by, lack, law, no_event, own_parameters, single,
+};
+use crate::calibration::campaign::Campaign;
+use crate::diagnosis::calibration::entry::linear;
+use crate::diagnosis::calibration::law::{Law, TakenUp};
+use crate::diagnosis::calibration::model::CalibrationModel;
+use crate::inference::{Effect, Finding, JointVariable, Kind, NotTestable, Reported, WrittenTo};
+use crate::robot;
+use crate::units::{URAD, URAD_PER_NM};
+
+/// Play of a gear.
+pub static BACKLASH: CalibrationEffect = CalibrationEffect {
+    effect: Effect {
+        name: "backlash",
+        kind: Kind::Physics,
+        summary: "play in a gear",
+        formula: "Jⱼ·½b·sign(τⱼ) or, where friction holds the joint, Jⱼ·½b·(direction of approach)",
+        prior: "150 µrad: the error of a joint angle that a UR5 shows (60 to 110 µrad), and half of \
+                a UR10's",
+        parameters: &[("play_urad", "the whole gap")],
+        needs: "masses in the robot file and a joint whose torque changes sign; for play by approach, \
+                rows in the order of recording",
+        cause: "play in its gear",
+        cause_at: |location| format!("play in {}", location.place()),
+        written_to: WrittenTo::Model,
+        reported: Reported::Alone,
+        seen_along: |location| {
+            let numbers = [JointVariable::Approach, JointVariable::Torque];
+            numbers.into_iter().flat_map(|number| along(location, number)).collect()
+        },
+        direct_check: None,
+    },
+    candidates: plays,
+    estimates: own_parameters,
+    observed: play_observed,
+    write: write_play,
+    transfer: Transfer::Candidate,
+    event: no_event,
+};
+
+fn plays(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
+    let play = || linear("play_urad", URAD, JOINT_ANGLE);
+    let loaded = loaded(context);
+    if loaded.is_empty() {
+        lacks.push(lack(&BACKLASH, NO_MASSES));
+    }
+    let sign = |torque: f64| if torque == 0.0 { 0.0 } else { 0.5 * torque.signum() };
+    let by_torque = loaded.into_iter().map(|(j, _)| {
+        let hangs = context.turn(j, |_, there| sign(there.torque[j]));
+        single(&BACKLASH, joint(j), play(), hangs).by(Law::Play(TakenUp::ByTorque))
+    });
+    let by_approach = context.revolute().into_iter().map(|j| {
+        let came_from = context.turn(j, |_, there| 0.5 * there.approach[j]);
+        single(&BACKLASH, joint_by(j, "by approach"), play(), came_from).by(Law::Play(TakenUp::ByApproach))
+    });
+    by_torque.chain(by_approach).collect()
+}
+
+fn play_observed(finding: &Finding, model: &CalibrationModel) -> String {
+    let by = match law(finding, model) {
+        Law::Play(TakenUp::ByApproach) => "taken up according to the direction of approach",
+        Law::Play(TakenUp::ByTorque)
+        | Law::Only
+        | Law::Gear(_)
+        | Law::Nonlinear(_)
+        | Law::MassesUnknown
+        | Law::Rod(_)
+        | Law::Drift(..)
+        | Law::Warms(..) => "taken up on the side that its load pulls to",
+    };
+    let play = first(finding).size().say("µrad");
+    format!("{} has {play} of play, {by}", capital(&finding.location))
+}
+
+/// A robot file knows torques, and not where a joint came from.
+fn write_play(finding: &Finding, model: &CalibrationModel, extended: &mut Campaign) -> WrittenTo {
+    match (finding.location.joint(), law(finding, model)) {
+        (Some(joint), Law::Play(TakenUp::ByTorque)) => {
+            let play = first_value(finding);
+            extended.robot.effects.push(robot::Effect::Backlash { joint, play });
+            WrittenTo::Model
+        }
+        _ => WrittenTo::Nowhere,
+    }
+}
+
+/// A drive that friction keeps wound up.
+pub static JOINT_FRICTION: CalibrationEffect = CalibrationEffect {
+    effect: Effect {
+        name: "joint_friction",
+        kind: Kind::Physics,
+        summary: "friction that grows with a joint's load keeps its drive wound up",
+        formula: "Jⱼ·½h·|τⱼ|·(direction of approach): what play by approach does, but as large as the load \
+                  is; friction that does not grow with it is the same as play",
+        prior: "150 µrad at the largest torque, as backlash",
+        parameters: &[("urad_per_nm", "h: angle between the two directions of approach, per torque")],
+        needs: "masses in the robot file, a joint that they load, rows in the order of recording",
+        cause: "friction in its drive",
+        cause_at: |location| format!("friction in the drive of {}", location.place()),
+        written_to: WrittenTo::Recording,
+        reported: Reported::Alone,
+        seen_along: |location| along(location, JointVariable::Approach),
+        direct_check: None,
+    },
+    candidates: frictions,
+    estimates: own_parameters,
+    observed: friction_observed,
+    write: super::out_of_the_points,
+    transfer: Transfer::Candidate,
+    event: no_event,
+};
+
+fn frictions(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
+    let loaded = loaded(context);
+    if loaded.is_empty() {
+        lacks.push(lack(&JOINT_FRICTION, NO_MASSES));
+    }
+    let of_joint = |(j, largest): (usize, f64)| {
+        let wound = linear("urad_per_nm", URAD_PER_NM, JOINT_ANGLE / largest);
+        let column = context.turn(j, |_, there| 0.5 * there.torque[j].abs() * there.approach[j]);
+        single(&JOINT_FRICTION, joint(j), wound, column)
+    };
+    loaded.into_iter().map(of_joint).collect()
+}
+
+fn friction_observed(finding: &Finding, _: &CalibrationModel) -> String {
+    let per = first(finding).size().say("µrad/(N·m)");
+    format!("{} stops by {per} of its load apart when it comes from either side", capital(&finding.location))
+}

@@ -1,0 +1,77 @@
+//! A calibration as the engine gets it: the model with all its effects, and the evidence.
+
+use super::context::Context;
+use super::effects::registry;
+use super::evidence;
+use super::linear_terms::LinearTerms;
+use super::model::CalibrationModel;
+use super::nonparametric;
+use crate::calibration::campaign::Campaign;
+use crate::calibration::{Calibration, Noise};
+use crate::error::Result;
+use crate::inference::{Absorbed, Evidence, NotTestable};
+
+/// A calibration as it is given to the engine.
+pub(super) struct Prepared<'c> {
+    /// The calibration about which effects are linear.
+    pub about: Calibration<'c>,
+    pub model: CalibrationModel<'c>,
+    pub evidence: Evidence,
+    /// Effects that the calibration hides.
+    pub absorbed: Vec<Absorbed>,
+    /// Effects that the campaign's files have no data for.
+    pub not_testable: Vec<NotTestable>,
+    pub context: Context<'c>,
+}
+
+impl<'c> Prepared<'c> {
+    /// Data are rows × (x, y, z), in {W}, then what is known besides; see `evidence.rs`.
+    pub fn new(campaign: &'c Campaign, calibration: Calibration<'c>) -> Result<Prepared<'c>> {
+        Prepared::about(campaign, calibration.clone(), calibration, None)
+    }
+
+    /// The same of effects that are linear about another robot, of groups that scatter unequally.
+    pub fn about(
+        campaign: &'c Campaign,
+        calibration: Calibration<'c>,
+        about: Calibration<'c>,
+        noise: Option<&Noise>,
+    ) -> Result<Prepared<'c>> {
+        let context = Context::new(campaign, &about)?;
+        let context = match noise {
+            Some(noise) => context.scattered(&noise.of_group),
+            None => context,
+        };
+        let evidence = evidence::evidence_of(campaign, &about, &context);
+        let (mut entries, not_testable) = registry::candidates(&context);
+        entries.extend(nonparametric::all(&context));
+        let (terms, absorbed) = LinearTerms::new(entries, &evidence);
+        let jacobians = context.configurations.iter().map(|there| there.tip_jacobian.clone());
+        let recording = &campaign.measurements;
+        let name = |group: usize| recording.groups[group].name.clone();
+        let model = CalibrationModel {
+            campaign,
+            calibration,
+            tip_jacobians: jacobians.collect(),
+            recorded: None,
+            groups: recording.rows.iter().map(|row| name(row.group)).collect(),
+            scale: context.scale.clone(),
+            terms,
+        };
+        Ok(Prepared { about, model, evidence, absorbed, not_testable, context })
+    }
+}
+
+impl<'c> CalibrationModel<'c> {
+    /// The model of a finished calibration, with what it leaves as numbers.
+    ///
+    /// # Errors
+    /// As [`crate::calibration::Compensation::new`].
+    pub fn new(
+        campaign: &'c Campaign,
+        calibration: Calibration<'c>,
+    ) -> Result<(CalibrationModel<'c>, Evidence)> {
+        let prepared = Prepared::new(campaign, calibration)?;
+        Ok((prepared.model, prepared.evidence))
+    }
+}

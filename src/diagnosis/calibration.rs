@@ -30,6 +30,7 @@ mod mistakes;
 mod model;
 mod next;
 mod nonparametric;
+mod patterns;
 #[cfg(test)]
 mod tests;
 mod transfer;

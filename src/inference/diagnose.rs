@@ -38,6 +38,7 @@ pub fn diagnose(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
     let folded = background::folded(evidence);
     let settled = settled(model, &folded.evidence);
     let evidence = &settled;
+    let model = &model.in_parts(evidence, &evidence.fold);
     let (search, hypothesis, left_over) = infer(model, evidence, Pairs::Screened);
     let held_out = hold_out(model, evidence, &hypothesis.terms);
     let (hypothesis, left_over) = confirmed(model, &search, hypothesis, left_over, held_out.as_ref());

@@ -20,6 +20,9 @@ pub struct GramCache {
     effects: Mutex<BTreeMap<usize, Kept>>,
 }
 
+/// Numbers of the products between effects that a search keeps: 32 MB.
+const MOST: usize = 1 << 22;
+
 impl GramCache {
     /// Of `count` candidates, by their products with residual and background.
     pub(super) fn new(count: usize, residual: &Table<'_>, background: &Table<'_>) -> Self {
@@ -28,6 +31,11 @@ impl GramCache {
             background: (0..count).map(|candidate| background.of(candidate)).collect(),
             effects: Mutex::default(),
         }
+    }
+
+    /// Of the products of each candidate with residual and background.
+    pub(super) fn of_products(residual: Vec<DVector<f64>>, background: Vec<DMatrix<f64>>) -> Self {
+        GramCache { residual, background, effects: Mutex::default() }
     }
 
     /// Products of a candidate's columns with the residual.
@@ -42,8 +50,21 @@ impl GramCache {
         effects: &[usize],
         compute: &dyn Fn(usize) -> Vec<DMatrix<f64>>,
     ) -> impl Fn(usize) -> DMatrix<f64> + use<'a> {
-        let mut kept = self.effects.lock().unwrap_or_else(PoisonError::into_inner);
-        let of = |&effect: &usize| kept.entry(effect).or_insert_with(|| Arc::new(compute(effect))).clone();
+        let kept = || self.effects.lock().unwrap_or_else(PoisonError::into_inner);
+        let size = |kept: &Kept| kept.iter().map(DMatrix::len).sum::<usize>();
+        let of = |&effect: &usize| {
+            let known = kept().get(&effect).cloned();
+            known.unwrap_or_else(|| {
+                // not while others wait
+                let found: Kept = Arc::new(compute(effect));
+                let mut kept = kept();
+                if kept.values().map(size).sum::<usize>() > MOST {
+                    kept.clear();
+                }
+                kept.insert(effect, Arc::clone(&found));
+                found
+            })
+        };
         let parts: Vec<Kept> = effects.iter().map(of).collect();
         move |candidate| {
             let parts = parts.iter().map(|part| &part[candidate]);

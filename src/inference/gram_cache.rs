@@ -3,7 +3,7 @@
 //! A search adds, takes away and exchanges effects, and each time asks how every candidate goes with those that are there.
 //! Where effects are linear the products of a candidate's columns with all others are the same each time, and are kept.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, VecDeque};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use nalgebra::{DMatrix, DVector};
@@ -17,11 +17,19 @@ type Kept = Arc<Vec<DMatrix<f64>>>;
 pub struct GramCache {
     residual: Vec<DVector<f64>>,
     background: Vec<DMatrix<f64>>,
-    effects: Mutex<BTreeMap<usize, Kept>>,
+    effects: Mutex<Effects>,
 }
 
-/// Numbers of the products between effects that a search keeps: 32 MB.
-const MOST: usize = 1 << 22;
+/// Of effects, the oldest first in the order.
+#[derive(Default)]
+struct Effects {
+    of: BTreeMap<usize, Kept>,
+    order: VecDeque<usize>,
+    size: usize,
+}
+
+/// Numbers of the products between effects that a search keeps: 16 MB.
+const MOST: usize = 1 << 21;
 
 impl GramCache {
     /// Of `count` candidates, by their products with residual and background.
@@ -53,15 +61,22 @@ impl GramCache {
         let kept = || self.effects.lock().unwrap_or_else(PoisonError::into_inner);
         let size = |kept: &Kept| kept.iter().map(DMatrix::len).sum::<usize>();
         let of = |&effect: &usize| {
-            let known = kept().get(&effect).cloned();
+            let known = kept().of.get(&effect).cloned();
             known.unwrap_or_else(|| {
                 // not while others wait
                 let found: Kept = Arc::new(compute(effect));
                 let mut kept = kept();
-                if kept.values().map(size).sum::<usize>() > MOST {
-                    kept.clear();
+                kept.size += size(&found);
+                kept.order.push_back(effect);
+                if let Some(same) = kept.of.insert(effect, Arc::clone(&found)) {
+                    kept.size -= size(&same);
+                    kept.order.pop_back();
                 }
-                kept.insert(effect, Arc::clone(&found));
+                // what is asked for again is computed again
+                while kept.size > MOST && kept.order.len() > 1 {
+                    let oldest = kept.order.pop_front().and_then(|oldest| kept.of.remove(&oldest));
+                    kept.size -= oldest.map_or(0, |oldest| size(&oldest));
+                }
                 found
             })
         };

@@ -19,8 +19,8 @@ use super::whitening::Whitening;
 use super::{Evidence, ForwardModel};
 use crate::parallel::in_parallel;
 
-/// Numbers of the products between candidates that are kept: 96 MB.
-const KEPT: usize = 3 << 22;
+/// Numbers of the products between candidates that are kept: 64 MB.
+const KEPT: usize = 1 << 23;
 
 /// Of all candidates over all parts of a recording.
 pub(super) struct PartProducts<'a> {

@@ -6,6 +6,7 @@ use super::evidence;
 use super::gear::Curve;
 use super::limits::limits;
 use super::linear_terms::LinearTerms;
+use super::memory::check_memory;
 use super::model::CalibrationModel;
 use super::next::next_poses;
 use super::nonparametric;
@@ -51,6 +52,7 @@ pub fn diagnose_calibrated<'c>(
     campaign: &'c Campaign,
     calibration: Calibration<'c>,
 ) -> Result<CalibrationDiagnosis<'c>> {
+    check_memory(campaign)?;
     let Prepared { model, evidence, absorbed, not_testable, context } = Prepared::new(campaign, calibration)?;
     let mut diagnosis = infer(&model, &evidence);
     let next = in_parallel(diagnosis.findings.len(), |k| {

@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! variance of a tip         sd² + diag J·Σ·Jᵀ             sd: error of held-out poses, Σ: covariance of the parameters
+//!                           and, where a joint is beyond its calibrated range, (∂tip/∂q·rms of its effects)²
 //! after an alignment        J′ = (1 − B·B⁺)·J             B: base and tool over all poses asked for, fitted anew
 //! ratio                     √tr(J·Σ·Jᵀ) here over its root mean square at the calibration's poses, J of the robot's own
 //!                           parameters
@@ -12,12 +13,15 @@ use serde_json::{Value, json};
 
 use super::table::{Column, Table};
 use super::{Block, Report, Section};
+use crate::error::Error;
 use crate::linalg::{thin_svd, transposed_product};
 use crate::robot::{Motion, PredictionQuery, Robot};
 use crate::units::{DEG, MM, significant};
 
 /// A pose whose own parameters make it so many times more uncertain than the calibration's poses extrapolates.
 const FAR: f64 = 2.0;
+/// Fewer poses are fitted by nine numbers alone.
+const FEWEST: usize = 6;
 /// A joint beyond its calibrated range by this share of it extrapolates.
 const BEYOND: f64 = 0.1;
 
@@ -42,13 +46,22 @@ impl Prediction {
     /// Of poses.
     ///
     /// # Errors
-    /// As [`thin_svd`]; none in practice.
+    /// [`Error::NotApplicable`] for an alignment to fewer than six poses.
     pub fn new(
         robot: &Robot,
         tool: Vector3<f64>,
         poses: Vec<PredictionQuery>,
         is_aligned: bool,
     ) -> crate::Result<Self> {
+        if is_aligned && poses.len() < FEWEST {
+            return Err(Error::NotApplicable {
+                what: "an alignment".into(),
+                why: format!("there are {} poses for the nine numbers of base and tool", poses.len()),
+                hint: format!(
+                    "give the poses that are aligned to, {FEWEST} at least, or leave out --aligned"
+                ),
+            });
+        }
         let predicted: Vec<_> = poses.iter().map(|query| robot.predicted_at(tool, &query.joints)).collect();
         let slopes: Option<Vec<&Matrix3xX<f64>>> =
             predicted.iter().map(|predicted| predicted.slopes.as_ref()).collect();
@@ -77,6 +90,15 @@ impl Prediction {
                 jacobian -= &basis * transposed_product(&basis, &jacobian);
             }
             variance = variances(&jacobian, &known.covariance);
+        }
+        // a gear is known where it was seen turn
+        let sizes = robot.effect_sizes();
+        for ((query, predicted), variance) in poses.iter().zip(&predicted).zip(&mut variance) {
+            for (joint, range) in robot.calibrated.iter().flat_map(|known| known.joints.iter().enumerate()) {
+                if !(range.0..=range.1).contains(&query.joints[joint]) {
+                    *variance += predicted.joints.column(joint).map(|lever| (lever * sizes[joint]).powi(2));
+                }
+            }
         }
         let sd = robot.tip.and_then(|tip| tip.sd);
         let of = |own: &Vector3<f64>| sd.map(|sd| own.map(|own| (sd * sd + own).sqrt()));

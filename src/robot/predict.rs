@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3xX, Vector3};
 
-use super::{Kinematics, Loads, Motion, Parameter, Robot, Setup};
+use super::{Effect, Kinematics, Loads, Motion, Parameter, Robot, Setup};
 use crate::delimited::Table;
 use crate::error::{Error, Place, Result};
 use crate::spatial::Pose;
@@ -29,6 +29,8 @@ pub struct PredictedTip {
     pub slopes: Option<Matrix3xX<f64>>,
     /// ∂tip/∂(base and tool), which a user may align anew.
     pub placement: Matrix3xX<f64>,
+    /// ∂tip/∂q, m/rad or m/m.
+    pub joints: Matrix3xX<f64>,
 }
 
 impl Robot {
@@ -80,7 +82,30 @@ impl Robot {
         let placement: Vec<Parameter> =
             Parameter::all(self.joints.len()).into_iter().filter(Parameter::is_placement).collect();
         let placement = Matrix3xX::from_columns(&placement.iter().map(column).collect::<Vec<_>>());
-        PredictedTip { tip: kinematics.tip, slopes, placement }
+        let jacobian: Vec<_> = (0..self.joints.len()).map(|j| kinematics.joint_jacobian(j)).collect();
+        let joints = Matrix3xX::from_columns(&jacobian);
+        PredictedTip { tip: kinematics.tip, slopes, placement, joints }
+    }
+
+    /// Root mean square of what the effects of each joint's own angle add over its calibrated range, rad: what they add
+    /// beyond it nobody has seen. Zeros where no range is known.
+    pub fn effect_sizes(&self) -> Vec<f64> {
+        const STEPS: usize = 400;
+        let Some(calibrated) = &self.calibrated else { return vec![0.0; self.joints.len()] };
+        let size = |(joint, &(low, high)): (usize, &(f64, f64))| {
+            let own: Vec<&Effect> = self
+                .effects
+                .iter()
+                .filter(|effect| effect.joint() == Some(joint) && effect.is_of_own_angle())
+                .collect();
+            let mut q = vec![0.0; self.joints.len()];
+            let mut square = |k: usize| {
+                q[joint] = low + (high - low) * k as f64 / STEPS as f64;
+                own.iter().map(|effect| effect.turn(&q, &[])).sum::<f64>().powi(2)
+            };
+            ((0..=STEPS).map(&mut square).sum::<f64>() / (STEPS + 1) as f64).sqrt()
+        };
+        calibrated.joints.iter().enumerate().map(size).collect()
     }
 
     /// Poses of a table (CSV) with the columns `pose`, `q1_deg` … (`q1_mm` of a prismatic joint).

@@ -5,6 +5,7 @@
 
 pub mod calibration;
 mod headline;
+mod hidden;
 mod json;
 mod place;
 mod remainder;
@@ -17,13 +18,12 @@ use serde_json::Value;
 
 use self::subject::Subject;
 use super::Report;
-use crate::inference::Effect;
 
 fn report(mut subject: Subject) -> Report {
     Report {
         title: subject.title.clone(),
         headline: headline::headline(&subject),
-        warnings: warnings(&subject),
+        warnings: subject.all_warnings(),
         sections: sections::all(&mut subject),
         provenance: Vec::new(),
     }
@@ -31,31 +31,4 @@ fn report(mut subject: Subject) -> Report {
 
 fn json(subject: &Subject) -> Value {
     json::json(subject)
-}
-
-fn warnings(subject: &Subject) -> Vec<String> {
-    let limits = subject.limits.iter().map(ToString::to_string);
-    subject.warnings.iter().cloned().chain(limits).collect()
-}
-
-/// What the base model hides, by effect: the places, without those that are seen in another form.
-fn hidden(subject: &Subject) -> Vec<(&'static Effect, Vec<String>)> {
-    let mut hidden: Vec<(&'static Effect, Vec<String>)> = Vec::new();
-    for absorbed in subject.absorbed {
-        let place = absorbed.location.place();
-        let is_seen = subject
-            .candidates
-            .iter()
-            .any(|candidate| candidate.effect == absorbed.effect && candidate.location.place() == place);
-        if is_seen {
-            continue;
-        }
-        let place = place.to_string();
-        match hidden.iter_mut().find(|(effect, _)| *effect == absorbed.effect) {
-            Some((_, places)) if places.contains(&place) => {}
-            Some((_, places)) => places.push(place),
-            None => hidden.push((absorbed.effect, vec![place])),
-        }
-    }
-    hidden
 }

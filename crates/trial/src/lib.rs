@@ -7,6 +7,7 @@
 
 pub mod answers;
 mod calibration;
+mod chance;
 pub mod envelope;
 mod place;
 pub mod rig;

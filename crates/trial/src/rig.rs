@@ -26,6 +26,7 @@ pub mod residuals;
 mod setup;
 mod sizes;
 pub(crate) mod tube;
+mod uncertainty;
 
 pub use self::again::{Again, Proposed, again};
 use self::bench::Bench;
@@ -36,6 +37,7 @@ use self::noise::Noise;
 use self::oracle::Oracle;
 pub use self::protocol::Columns;
 use super::Case;
+use crate::chance::{happens, log_uniform};
 use crate::truth::{Concealed, Detectability, Kind, Parameter, Truth};
 use rodcal_base::statistics::Random;
 use rodcal_base::units::{MM, UM};
@@ -123,7 +125,7 @@ fn drawn(seed: u64, number: usize, residuals: &[f64]) -> Drawn {
         Kind::Clean | Kind::Suspect => (Vec::new(), setup::Needs::default()),
         Kind::Single => {
             let number = library(random);
-            let needs = if draw::happens(random, CAREFUL) { draw::careful } else { draw::needs };
+            let needs = if happens(random, CAREFUL) { draw::careful } else { draw::needs };
             (vec![number], needs(number, random))
         }
         Kind::Pair => {
@@ -145,7 +147,7 @@ fn drawn(seed: u64, number: usize, residuals: &[f64]) -> Drawn {
         Kind::Single => !(5..=7).contains(&numbers[0]) && numbers[0] != 9,
         Kind::Unknown => !needs.shuffled,
         _ => false,
-    } && draw::happens(random, COMPANION.0);
+    } && happens(random, COMPANION.0);
     needs.unloading |= has_companion;
     let (bench, noise, times) = setup::draw(needs, residuals, random);
     let oracle = Oracle::new(&bench, &noise);
@@ -160,12 +162,12 @@ fn drawn(seed: u64, number: usize, residuals: &[f64]) -> Drawn {
                 };
                 let limit = oracle.limit(&largest).clamp(1e-4, 1.0);
                 let (least, most) = match kind {
-                    Kind::Single if draw::happens(random, BELOW.0) => (BELOW.1 * limit, limit),
+                    Kind::Single if happens(random, BELOW.0) => (BELOW.1 * limit, limit),
                     Kind::Single => (limit, 1.0),
                     Kind::Pair => ((FAINTEST[0] * limit).min(0.5), 1.0),
                     _ => ((FAINTEST[1] * limit).min(0.5), 1.0),
                 };
-                largest.scaled(draw::log_uniform(random, least, most))
+                largest.scaled(log_uniform(random, least, most))
             };
             numbers.iter().map(of).collect()
         }
@@ -179,7 +181,7 @@ fn drawn(seed: u64, number: usize, residuals: &[f64]) -> Drawn {
     let shown = noise.shown(&bench, &readings, random);
     let (drawing, protocol) = (bench.drawing.clone(), bench.protocol.clone());
     let mut right = Written { drawing, others: Vec::new(), protocol, shown };
-    if draw::happens(random, BESIDE) || kind == Kind::Mistake {
+    if happens(random, BESIDE) || kind == Kind::Mistake {
         right.others = ["rod-2.toml", "rod-3.toml"]
             .map(|file| (file.to_owned(), setup::drawing(setup::Needs::default(), random)))
             .to_vec();
@@ -213,8 +215,8 @@ fn misread(bench: &Bench, noise: &Noise, random: &mut Random) -> Vec<Effect> {
         }
     }
     let of = |cell: usize| {
-        let sign = if draw::happens(random, 0.5) { -1.0 } else { 1.0 };
-        Effect::Outlier(vec![(cell, sign * draw::log_uniform(random, MISREAD[0], MISREAD[1]) * sd)])
+        let sign = if happens(random, 0.5) { -1.0 } else { 1.0 };
+        Effect::Outlier(vec![(cell, sign * log_uniform(random, MISREAD[0], MISREAD[1]) * sd)])
     };
     chosen.into_iter().map(of).collect()
 }

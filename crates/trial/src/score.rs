@@ -8,8 +8,10 @@ mod data;
 mod judged;
 mod next;
 mod place;
+mod predictions;
 mod rate;
 mod tables;
+mod target;
 mod targets;
 
 use std::collections::BTreeMap;
@@ -17,13 +19,14 @@ use std::path::Path;
 
 use rodcal_base::error::{Error, Place, Result};
 
-pub use self::counterfactual::{Counterfactual, Predictions, Worst};
+pub use self::counterfactual::Counterfactual;
 pub use self::data::{Below, Clean, Coverage, Mistakes, Pairs, Part, Score, Singles, Suspects, Unknown};
 use self::judged::{Finding, Judged};
 pub use self::next::{Due, Files, NextMeasurement, Open, Outcome, Said};
+pub use self::predictions::{Predictions, Worst};
 pub use self::rate::Rate;
 pub use self::tables::{Bin, Confusion, Failure, PowerBin};
-pub use self::targets::{Measured, Missed, Reached, Target};
+pub use self::target::{Measured, Missed, Reached, Target};
 use super::answers::{self, Answer};
 use super::envelope::Manifest;
 use super::truth::{Kind, Truth};
@@ -169,7 +172,7 @@ fn part(cases: &[Judged<'_>], outcomes: &BTreeMap<&str, &Outcome>) -> Part {
     let gains =
         identifiable.iter().chain(&pairs).filter_map(|case| Some((case.gain?, case.truth.oracle_gain?)));
     let (gained, possible) = gains.fold((0.0, 0.0), |sum, (gain, oracle)| (sum.0 + gain, sum.1 + oracle));
-    let counterfactual = counterfactual::predictions(cases);
+    let counterfactual = predictions::predictions(cases);
     let mut part = Part {
         cases: cases.len(),
         failed: cases.iter().filter(|case| case.failed).count(),

@@ -17,6 +17,7 @@
 //! 1 − v·w of creep, which is relaxation here; 1/(1 + v·w) of all else
 //! ```
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use nalgebra::{Rotation3, Unit, Vector3};
@@ -161,7 +162,8 @@ pub(super) struct State<'a> {
     per_load: f64,
     /// With which law they follow.
     memories: Vec<(&'a Memory, History, f64)>,
-    onsets: Vec<(&'a Onset, f64)>,
+    /// What the onsets of creep add to w: for each datum up to the last that one of them changes.
+    earlier: Cow<'a, [f64]>,
     /// By channel.
     sensor: [Vector3<f64>; 3],
     scale: [f64; 3],
@@ -197,7 +199,7 @@ impl Default for State<'_> {
             per_load_squared: 0.0,
             per_load: 0.0,
             memories: Vec::new(),
-            onsets: Vec::new(),
+            earlier: Cow::default(),
             sensor: axes,
             scale: [1.0; 3],
             play: Scoped::default(),
@@ -209,6 +211,16 @@ impl Default for State<'_> {
 }
 
 impl<'a> State<'a> {
+    /// What onsets of creep add to w, to be borrowed by states that differ in something else.
+    pub(super) fn earlier(&self) -> &[f64] {
+        &self.earlier
+    }
+
+    /// The same state with what onsets add to w.
+    pub(super) fn with_earlier(self, earlier: Cow<'a, [f64]>) -> Self {
+        State { earlier, ..self }
+    }
+
     /// Adds what `action` does at `value`. Turns are done in the order in which they are added.
     pub(super) fn act(&mut self, action: &'a Action, value: f64) {
         self.is_changed |= !action.only_adds();
@@ -232,7 +244,7 @@ impl<'a> State<'a> {
             Action::PerLoadSquared => self.per_load_squared += value,
             Action::PerLoad => self.per_load += value,
             Action::Memory(memory, history) => self.memories.push((memory, *history, value)),
-            Action::Onset(onset) => self.onsets.push((onset, value)),
+            Action::Onset(onset) => onset.add_to(self.earlier.to_mut(), value),
             Action::SensorScale(channel) => self.scale[channel.index()] *= value,
             Action::TurnSensor(channel, towards) => {
                 let sensor = &mut self.sensor[channel.index()];
@@ -318,9 +330,7 @@ impl<'a> State<'a> {
     /// v·w.
     fn growth(&self, index: usize, (memory, history, value): &(&Memory, History, f64)) -> f64 {
         let earlier: f64 = match history {
-            History::Creep(Clock::UnknownOnset, _) => {
-                self.onsets.iter().map(|(onset, before)| onset.adds(index, *before)).sum()
-            }
+            History::Creep(Clock::UnknownOnset, _) => self.earlier.get(index).copied().unwrap_or(0.0),
             _ => 0.0,
         };
         value * (memory.relative[index] + earlier)

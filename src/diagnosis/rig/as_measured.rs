@@ -15,8 +15,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::RigModel;
 use super::action::Action;
+use super::model::RigModel;
 use crate::inference::{Diagnosis, Estimate, Evidence, Finding, ForwardModel, Term};
 
 /// Share of the largest deflection below which a datum's own δ is that of all: a cross channel.

@@ -1,6 +1,7 @@
 //! Data that show the same, and what they show: evaluated once for all of them.
 
-use super::datum::{self, Datum};
+use super::datum::Datum;
+use super::numbering::numbered;
 
 /// Data that differ in nothing but their place in the history of loads: load, phase, place and channel are the same.
 #[derive(Debug, Clone)]
@@ -15,7 +16,7 @@ impl Cases {
         let key = |(d, place): (&Datum, &usize)| {
             (d.direction, d.load.to_bits(), d.is_unloading(), d.channel, *place, d.session_number)
         };
-        let of_datum = datum::numbered(data.iter().zip(place).map(key));
+        let of_datum = numbered(data.iter().zip(place).map(key));
         let first = firsts(&of_datum);
         Cases { of_datum, first }
     }

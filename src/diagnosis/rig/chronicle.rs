@@ -9,7 +9,7 @@
 
 use std::collections::HashMap;
 
-use super::datum::numbered;
+use super::numbering::numbered;
 use crate::rig::readings::{Direction, Driven, Phase, Reading, instants};
 
 /// Share of the largest load by which a load has to go back for a turn.

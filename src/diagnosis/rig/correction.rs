@@ -3,7 +3,7 @@
 use nalgebra::DVector;
 
 use super::action::Action;
-use super::{Body, RigDiagnosis, RigModel};
+use super::model::{Body, RigDiagnosis, RigModel};
 use crate::beam::Physics;
 use crate::compliance::{Compliance, DEFAULT_ELEMENTS};
 use crate::error::Result;

@@ -3,10 +3,8 @@
 //! Data stand in the order in which they were recorded, those of one instant by station and channel, so that rows in another
 //! order, one row per station and one row per channel are the same recording: see [`chronicle`](super::chronicle).
 
-use std::collections::HashMap;
-use std::hash::Hash;
-
 use super::chronicle::{Chronicle, Motion};
+use super::numbering::numbered;
 use crate::inference::RunName;
 use crate::rig::readings::{Axis, Direction, Driven, Phase, Reading, Readings};
 
@@ -204,16 +202,6 @@ fn of_rows(rows: &[Reading], driven: Driven) -> Vec<Datum> {
         (datum.run, datum.order) = (run, order);
     }
     data
-}
-
-/// Number of each value among the different ones, in order of appearance.
-pub(super) fn numbered<K: Eq + Hash>(keys: impl IntoIterator<Item = K>) -> Vec<usize> {
-    let mut known: HashMap<K, usize> = HashMap::new();
-    let number = |key: K| {
-        let next = known.len();
-        *known.entry(key).or_insert(next)
-    };
-    keys.into_iter().map(number).collect()
 }
 
 #[cfg(test)]

@@ -3,7 +3,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::datum::{Datum, numbered};
+use super::datum::Datum;
+use super::numbering::numbered;
 use crate::inference::{Covariate, Evidence, Variable};
 use crate::spatial::Axis;
 use crate::units::UM;

@@ -1,12 +1,13 @@
 //! A rig as the engine sees it: responses, derivatives, places, words.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
 
 use super::action::{Action, State};
 use super::effects::registry;
-use super::{Body, RigModel, STATION, is_dependent};
+use super::model::{Body, RigModel, STATION, is_dependent};
 use crate::inference::{
     Candidate, DERIVATIVE_STEP, Description, Estimate, Finding, FindingPart, ForwardModel, Hypothesis,
     Location, Step, Term,
@@ -47,6 +48,7 @@ impl ForwardModel for RigModel {
         // without a rod an addition changes the slope of its line if anything but additions stands beside it
         let is_sum = matches!(self.body, Body::Rod(_)) || self.is_linear_in(terms);
         let is_imposed = !self.course.imposed.is_empty();
+        let as_it_is = self.state(terms);
         for ((k, parameter), action) in parameters.iter().enumerate().zip(&self.actions[term.candidate]) {
             let mut column = columns.column_mut(k);
             if is_sum && action.only_adds() {
@@ -65,9 +67,14 @@ impl ForwardModel for RigModel {
             };
             let h = step * parameter.size;
             let values = [(term.values[k] + h).min(high), (term.values[k] - h).max(low)];
+            // onsets are many, and one of them changes its own run only
             let [more, less] = values.map(|value| {
                 moved[position].values[k] = value;
-                self.state(&moved)
+                let mut earlier = Cow::Borrowed(as_it_is.earlier());
+                if let Action::Onset(onset) = action {
+                    onset.move_in(earlier.to_mut(), term.values[k], value);
+                }
+                self.state_but_onsets(&moved).with_earlier(earlier)
             });
             let scale = parameter.size / (values[0] - values[1]);
             let structure = match &self.body {
@@ -124,10 +131,18 @@ impl ForwardModel for RigModel {
 impl RigModel {
     /// The rig with all of these terms.
     pub(super) fn state(&self, terms: &[Term]) -> State<'_> {
+        self.state_of(terms, |_| true)
+    }
+
+    fn state_but_onsets(&self, terms: &[Term]) -> State<'_> {
+        self.state_of(terms, |action| !matches!(action, Action::Onset(_)))
+    }
+
+    fn state_of(&self, terms: &[Term], is_wanted: impl Fn(&Action) -> bool) -> State<'_> {
         let mut state = State::default();
         for term in terms {
             let actions = self.actions.get(term.candidate).map_or(&[][..], Vec::as_slice);
-            for (action, value) in actions.iter().zip(&term.values) {
+            for (action, value) in actions.iter().zip(&term.values).filter(|(action, _)| is_wanted(action)) {
                 state.act(action, *value);
             }
         }

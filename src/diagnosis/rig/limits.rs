@@ -1,7 +1,7 @@
 //! What makes every claim about these readings weaker.
 
 use super::datum::Datum;
-use super::{Body, RigModel};
+use super::model::{Body, RigModel};
 use crate::inference::{Evidence, Limit};
 use crate::rig::readings::Driven;
 use crate::spatial::Axis;

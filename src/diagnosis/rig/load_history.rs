@@ -107,11 +107,22 @@ pub(super) struct Onset {
 }
 
 impl Onset {
-    /// What an onset so long before the first reading adds to w.
-    pub(super) fn adds(&self, index: usize, before: f64) -> f64 {
-        let Ok(at) = self.since.binary_search_by_key(&index, |(datum, _)| *datum) else { return 0.0 };
-        let grown = |before: f64| (1.0 + (self.since[at].1 + before.max(0.0)) / self.t0).log10();
-        grown(before) - grown(self.usual)
+    /// Adds to w what it is more for an onset so long before the first reading.
+    pub(super) fn add_to(&self, w: &mut Vec<f64>, before: f64) {
+        if before != self.usual {
+            self.move_in(w, self.usual, before);
+        }
+    }
+
+    /// Adds to w what it is more for an onset `to` instead of `from` seconds before the first reading.
+    pub(super) fn move_in(&self, w: &mut Vec<f64>, from: f64, to: f64) {
+        let end = self.since.iter().map(|(datum, _)| datum + 1).max().unwrap_or(0);
+        w.resize(w.len().max(end), 0.0);
+        for &(datum, since) in &self.since {
+            // log₁₀(1 + (s + to)/t₀) − log₁₀(1 + (s + from)/t₀)
+            let [from, to] = [from, to].map(|before| self.t0 + since + before.max(0.0));
+            w[datum] += (to / from).log10();
+        }
     }
 }
 

@@ -247,8 +247,9 @@ impl Mended {
 
 /// The pairs of stations of lines, and for each line its own.
 fn pairs(lines: &[Line]) -> (Vec<[Option<f64>; 2]>, Vec<usize>) {
-    let pair =
-        datum::numbered(lines.iter().map(|line| line.stations.map(|station| station.map(f64::to_bits))));
+    let pair = super::numbering::numbered(
+        lines.iter().map(|line| line.stations.map(|station| station.map(f64::to_bits))),
+    );
     let mut pairs = Vec::new();
     for (line, &number) in lines.iter().zip(&pair) {
         if number == pairs.len() {

@@ -11,8 +11,9 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::feasible::{Measurement, feasible};
+use super::model::{Body, RigModel};
 use super::transfer::Transferred;
-use super::{Body, RigModel, Wanted};
+use super::wanted::Wanted;
 use crate::error::Result;
 use crate::inference::{
     Candidate, Diagnosis, Evidence, ExperimentDesign, Finding, ForwardModel, Hypothesis, Plan, Proposal,

@@ -98,7 +98,7 @@ impl<'a> Pairs<'a> {
             let (load, read) = stations(rod, d);
             (load.to_bits(), read.to_bits())
         };
-        let of_datum = super::datum::numbered(data.iter().map(bits));
+        let of_datum = super::numbering::numbered(data.iter().map(bits));
         let mut first = Vec::new();
         for (i, &number) in of_datum.iter().enumerate() {
             if number == first.len() {

@@ -20,9 +20,10 @@ use std::collections::HashMap;
 use nalgebra::{DMatrix, DVector};
 
 use super::action::{Action, Weights};
-use super::datum::{Datum, numbered};
-use super::effects::Entry;
+use super::datum::Datum;
+use super::effects::entry::Entry;
 use super::load_history::runs;
+use super::numbering::numbered;
 use crate::inference::{Candidate, Location, Parameter, UNKNOWN, Variable};
 use crate::spatial::Axis;
 use crate::units::UM;

@@ -5,8 +5,8 @@ use nalgebra::DVector;
 use super::action::State;
 use super::cases::Shown;
 use super::datum::Datum;
+use super::model::{Body, RigModel};
 use super::structure::{Parts, Structure};
-use super::{Body, RigModel};
 
 impl RigModel {
     /// How far the rod yields at each datum, m: the prediction, or the reading's share in a line through the origin.

@@ -12,8 +12,9 @@
 //! far as that by itself. Without presliding z is the direction of motion. Sources: A. Visintin, *Differential Models of
 //! Hysteresis*, 1994, ch. III; J. Awrejcewicz, P. Olejnik, *Appl. Mech. Rev.* 58 (2005) 389–411 (dry friction).
 
-use super::datum::{Datum, numbered};
+use super::datum::Datum;
 use super::load_history::{instants, runs};
+use super::numbering::numbered;
 
 /// Share of a play over which a contact is made, at most.
 const RAMP: f64 = 0.3;

@@ -1,12 +1,14 @@
 //! Sign and size of every effect against a hand computation on rod 5#, and files of all kinds.
 
 use approx::assert_relative_eq;
+use nalgebra::{DMatrix, DVector};
 
+use super::diagnose::MOST_ROWS;
 use super::*;
 use crate::beam::{Physics, RodModel};
-use crate::inference::{DERIVATIVE_STEP, ForwardModel, Term};
-use crate::rig::readings::Axis;
-use crate::rod::Joint;
+use crate::inference::{Candidate, DERIVATIVE_STEP, ForwardModel, Term, diagnose as infer};
+use crate::rig::readings::{Axis, Readings};
+use crate::rod::{Joint, Rod};
 use crate::units::{DEG, UM, URAD_PER_NM};
 
 const ROD: &str = include_str!("../../../rods/5.toml");

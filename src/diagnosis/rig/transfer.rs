@@ -2,9 +2,11 @@
 
 use nalgebra::DVector;
 
-use super::{Datum, RigDiagnosis, RigModel, Wanted};
+use super::datum::Datum;
+use super::model::{RigDiagnosis, RigModel};
+use super::wanted::{Wanted, is_same};
 use crate::error::Result;
-use crate::inference::{Candidate, Evidence, ForwardModel, Kind, Term};
+use crate::inference::{Candidate, Evidence, ForwardModel, Term};
 use crate::rig::readings::Readings;
 
 /// Terms in a model that is not their own.
@@ -36,15 +38,6 @@ impl RigModel {
         }
         Transferred { terms: transferred, known }
     }
-}
-
-/// The candidate of another recording that stands for the same. Laws of one effect at one place differ in their parameters;
-/// of one law either recording may show some only.
-pub(super) fn is_same(new: &Candidate, old: &Candidate) -> bool {
-    (&new.effect, &new.location) == (&old.effect, &old.location)
-        && !new.is_nonparametric
-        && old.effect.kind != Kind::Event
-        && new.parameters.iter().any(|p| old.parameters.iter().any(|q| q.name == p.name))
 }
 
 impl RigDiagnosis {
@@ -108,10 +101,11 @@ impl RigDiagnosis {
 
 #[cfg(test)]
 mod tests {
-    use crate::diagnosis::rig::{RigModel, Wanted, diagnose};
+    use crate::diagnosis::rig::diagnose;
+    use crate::diagnosis::rig::model::RigModel;
+    use crate::diagnosis::rig::wanted::Wanted;
     use crate::error::Error;
-    use crate::inference::Finding;
-    use crate::inference::{ForwardModel, Kind};
+    use crate::inference::{Finding, ForwardModel, Kind};
     use crate::rig::readings::Readings;
     use crate::rod::Rod;
     use crate::units::UM;

@@ -1,20 +1,21 @@
 //! What is a calibration's own in the report of its diagnosis.
 
+mod distances;
 mod figures;
+mod joints;
 
 use serde_json::{Value, json};
 
+use self::distances::{Distances, distances_json, mean};
+use self::joints::gear_of;
 use super::headline::um;
 use super::remainder::{Remainder, Sample};
 use super::subject::{Errors, Subject};
 use super::{json as whole_json, report as whole_report};
-use crate::calibration::{MOST_SCATTER, Summary};
+use crate::calibration::MOST_SCATTER;
 use crate::diagnosis::calibration::{Applied, CalibrationDiagnosis, Gear, destination as written_to};
-use crate::inference::{
-    Finding, ForwardModel, JointVariable, Kind, Location, Plan, PosePlan, Variable, WrittenTo,
-};
+use crate::inference::{Finding, ForwardModel, Kind, Location, Plan, PosePlan, Variable, WrittenTo};
 use crate::report::calibration::warnings as of_calibration;
-use crate::report::table::{Column, Table};
 use crate::report::{Block, Report, Section};
 use crate::robot::Motion;
 use crate::units::{DEG, MM, UM, URAD};
@@ -172,11 +173,6 @@ fn details(found: &CalibrationDiagnosis, finding: &Finding) -> String {
     }
 }
 
-/// The joint, from 0, whose gear a finding is about.
-fn gear_of(found: &CalibrationDiagnosis, finding: &Finding) -> Option<usize> {
-    finding.parts.first().and_then(|part| found.model.gear_of(part)).map(Gear::joint)
-}
-
 /// Of a gear the size of its whole error.
 fn more_of(found: &CalibrationDiagnosis, finding: &Finding) -> Vec<(&'static str, Value)> {
     let written = ("written_to", destination(found, finding).map_or(Value::Null, Value::from));
@@ -279,83 +275,4 @@ fn remainder(found: &CalibrationDiagnosis) -> Option<Remainder> {
         coordinates: &["x", "y", "z"],
         samples: samples.collect(),
     })
-}
-
-fn distances_json(summary: &Summary) -> Value {
-    json!({
-        "mean_um": summary.mean / UM,
-        "rms_um": summary.rms / UM,
-        "max_um": summary.max / UM,
-    })
-}
-
-/// Distances of the poses from where they were measured, m.
-struct Distances {
-    before: Vec<f64>,
-    after: Vec<f64>,
-    /// Of poses while they were held out.
-    held_out: Option<(Vec<f64>, Vec<f64>)>,
-}
-
-fn mean(lengths: &[f64]) -> f64 {
-    Summary::of(lengths).mean
-}
-
-impl Distances {
-    fn of(found: &CalibrationDiagnosis) -> Distances {
-        let lengths = |data| found.model.by_row(data).iter().map(|row| row.norm()).collect();
-        let known = |data| {
-            let all: Vec<f64> = lengths(data);
-            all.into_iter().filter(|length| length.is_finite()).collect()
-        };
-        let held_out = found.diagnosis.held_out.as_ref();
-        Distances {
-            before: lengths(&found.diagnosis.before),
-            after: lengths(&found.diagnosis.after),
-            held_out: held_out
-                .map(|held_out| (known(&held_out.errors_before), known(&held_out.errors_after))),
-        }
-    }
-
-    /// Means of held-out poses, before and after, m.
-    fn held_out_means(&self) -> Option<(f64, f64)> {
-        self.held_out.as_ref().map(|(before, after)| (mean(before), mean(after)))
-    }
-
-    fn json(&self) -> Value {
-        let summary = |lengths: &[f64]| distances_json(&Summary::of(lengths));
-        json!({
-            "before": summary(&self.before),
-            "after": summary(&self.after),
-            "heldout_before": self.held_out.as_ref().map(|(before, _)| summary(before)),
-            "heldout_after": self.held_out.as_ref().map(|(_, after)| summary(after)),
-        })
-    }
-
-    fn table(&self) -> Table {
-        let columns = ["mean", "max", "median", "rms"].map(|name| Column::number(name, "µm"));
-        let columns = [vec![Column::text("of"), Column::number("poses", "")], columns.to_vec()].concat();
-        let caption = "Distances of the tip from its measured position.";
-        let mut table = Table::new("distances", caption, columns);
-        let mut row = |name: &str, lengths: &[f64]| {
-            let summary = Summary::of(lengths);
-            let numbers = [summary.mean, summary.max, summary.median, summary.rms].map(um);
-            table.row([vec![name.to_owned(), lengths.len().to_string()], numbers.to_vec()].concat());
-        };
-        row("calibration as it is", &self.before);
-        row("with the findings", &self.after);
-        if let Some((before, after)) = &self.held_out {
-            row("held out, calibration as it is", before);
-            row("held out, with the findings", after);
-        }
-        table
-    }
-}
-
-/// The joint, from 0, and its number that a covariate is.
-fn joint_of(variable: Variable) -> Option<(usize, JointVariable)> {
-    match variable {
-        Variable::Joint(joint, what) => Some((joint, what)),
-        _ => None,
-    }
 }

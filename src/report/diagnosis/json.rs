@@ -3,9 +3,9 @@
 use serde_json::{Map, Value, json};
 
 use super::headline::{headline, sentence};
+use super::hidden::hidden;
 use super::place::place;
 use super::subject::Subject;
-use super::{hidden, warnings};
 use crate::inference::{
     Covariate, Estimate, Finding, FindingPart, LackOfFit, LoadPlan, NominalEstimate, Rank, Rival, Structure,
     ranking,
@@ -81,7 +81,7 @@ pub fn json(subject: &Subject) -> Value {
         "absorbed": absorbed.collect::<Vec<_>>(),
         "not_testable": not_testable.collect::<Vec<_>>(),
         "n": subject.count,
-        "warnings": warnings(subject),
+        "warnings": subject.all_warnings(),
     });
     if let Value::Object(main) = main {
         all.extend(main);

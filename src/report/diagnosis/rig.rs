@@ -2,10 +2,12 @@
 
 mod correction;
 mod figures;
+mod lines;
 
 use nalgebra::DVector;
 use serde_json::{Value, json};
 
+use self::lines::{branch_name, line_name};
 use super::headline::um;
 use super::remainder::{Remainder, Sample};
 use super::subject::{Errors, Subject};
@@ -13,8 +15,7 @@ use super::{json as whole_json, report as whole_report};
 use crate::diagnosis::rig::{Correction, Datum, RigDiagnosis};
 use crate::inference::{Discrepancy, ForwardModel, Location, Plan, Quantity, ShownBy, Variable, rms};
 use crate::report::{Block, Report};
-use crate::rig::readings::Phase;
-use crate::units::{MM, UM, significant};
+use crate::units::{UM, significant};
 
 /// Most samples of the shape along one line.
 const SAMPLES: usize = 12;
@@ -142,27 +143,6 @@ fn loads_in_newtons(found: &RigDiagnosis) -> Option<String> {
         newtons(rms(&found.diagnosis.after)),
         newtons(found.diagnosis.noise),
     ))
-}
-
-/// What is one line of readings, for example `dy under loads along y`.
-fn line_name(datum: &Datum) -> String {
-    let at = |what: &str, station: Option<f64>| {
-        station.map_or_else(String::new, |s| format!(", {what} at {:.1} mm", s / MM))
-    };
-    let session = datum.session.as_ref().map_or_else(String::new, |session| format!(", session {session}"));
-    format!(
-        "d{} under loads along {}{}{}{session}",
-        datum.channel,
-        datum.direction.axis,
-        at("loaded", datum.load_station),
-        at("read", datum.read_station)
-    )
-}
-
-/// A line, and its way down by itself.
-fn branch_name(datum: &Datum) -> String {
-    let down = if datum.phase == Some(Phase::Unload) { ", unloading" } else { "" };
-    line_name(datum) + down
 }
 
 /// What remains, if anything does.

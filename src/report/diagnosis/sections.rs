@@ -1,7 +1,7 @@
 //! The body of a diagnosis' report, of a rig or of a calibration.
 
 use super::headline::{RIVALS_SAID, sentence, um};
-use super::hidden;
+use super::hidden::hidden;
 use super::subject::Subject;
 use super::tables::{alternatives, evidence, locate, parameters, proof, replication};
 use crate::inference::{Finding, Kind};

@@ -67,6 +67,14 @@ pub struct Subject<'a> {
     pub count: usize,
 }
 
+impl Subject<'_> {
+    /// Its own warnings, and the limits of the search.
+    pub fn all_warnings(&self) -> Vec<String> {
+        let limits = self.limits.iter().map(ToString::to_string);
+        self.warnings.iter().cloned().chain(limits).collect()
+    }
+}
+
 /// Errors that a headline compares, m.
 #[derive(Debug, Clone, Copy)]
 pub struct Errors {

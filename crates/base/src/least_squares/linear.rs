@@ -2,7 +2,9 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::{Fit, Options, Problem, fit};
+use super::fit::{Fit, fit};
+use super::options::Options;
+use super::problem::Problem;
 use crate::error::{Error, Result};
 
 /// Fits y ≈ X·β, minimising Σ wᵢ·(yᵢ − (X·β)ᵢ)².

@@ -2,8 +2,9 @@
 
 use nalgebra::DVector;
 
+use super::options::{Noise, Options, Prior};
+use super::problem::Problem;
 use super::reduced::Reduced;
-use super::{Noise, Options, Prior, Problem};
 use crate::error::{Error, Result};
 use crate::linalg::RowReduction;
 

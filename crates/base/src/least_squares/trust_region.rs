@@ -8,10 +8,11 @@
 use nalgebra::DVector;
 
 use super::gauss_newton::GaussNewton;
+use super::options::Options;
 use super::reduced::Reduced;
 use super::stacked::Stacked;
 use super::tangent::{CLOSE_ENOUGH, Tangent};
-use super::{Options, TerminationReason};
+use super::termination::TerminationReason;
 use crate::error::Result;
 use crate::linalg::RowReduction;
 

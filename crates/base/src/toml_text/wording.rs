@@ -5,7 +5,7 @@
 
 use std::ops::Range;
 
-use super::{Required, TomlText};
+use super::text::{Required, TomlText, cut};
 use crate::delimited::nearest_name;
 use crate::error::{Error, Place};
 
@@ -214,17 +214,4 @@ fn number_hint(value: &str) -> Option<String> {
 
 fn begins_as_number(text: &str) -> bool {
     text.trim_start_matches(['+', '-', '.', ',']).starts_with(|c: char| c.is_ascii_digit())
-}
-
-/// One line of printable text, of a length that fits a message.
-pub(super) fn cut(text: &str) -> String {
-    const LONGEST: usize = 40;
-    let line = text.trim().lines().next().unwrap_or_default();
-    let mut characters = line.chars();
-    let mut short: String =
-        characters.by_ref().take(LONGEST).map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect();
-    if characters.next().is_some() {
-        short.push_str(" …");
-    }
-    short
 }

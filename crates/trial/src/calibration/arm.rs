@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use nalgebra::{Matrix4, Vector3, Vector4};
 
-use crate::rig::draw::happens;
+use crate::chance::{happens, log_uniform};
 use rodcal_base::statistics::Random;
 
 /// A joint and its link: Rz(θ + q)·Tz(d)·Tx(a)·Rx(α)·Ry(β).
@@ -113,7 +113,7 @@ pub fn draw(random: &mut Random) -> (Arm, &'static str) {
             numbers: [theta, rounded(d * scale), rounded(a * scale), alpha, 0.0],
             mass: rounded(mass * random.uniform(0.8, 1.2)),
             centre: Vector3::from(centre) * scale,
-            compliance: crate::rig::draw::log_uniform(random, from, to),
+            compliance: log_uniform(random, from, to),
         }
     });
     (links.collect(), if spherical { "spherical wrist" } else { "offset wrist" })

@@ -27,8 +27,8 @@ use nalgebra::Vector3;
 use super::effect::Effect;
 use super::setup::Needs;
 use super::site::Site;
+use crate::chance::{happens, log_uniform};
 use crate::place::Place;
-use crate::rig::draw::{happens, log_uniform};
 use rodcal_base::statistics::Random;
 use rodcal_base::units::{DEG, GRAM, UM, URAD};
 

@@ -6,7 +6,7 @@ use super::arm;
 use super::effect::Effect;
 use super::rod::Rod;
 use super::site::{Devices, Row, Site};
-use crate::rig::draw::{happens, log_uniform};
+use crate::chance::{happens, log_uniform};
 use rodcal_base::statistics::Random;
 use rodcal_base::units::{DEG, MM, UM};
 

@@ -5,45 +5,10 @@
 //! on each diameter, 0.3 mm on every length and station; loads and sensors are off by 0.1 %.
 
 use super::drawing::Drawing;
-use super::tube::Tube;
 use rodcal_base::statistics::Random;
-use rodcal_base::units::MM;
 
 /// Scale of the loads and of each sensor, 1 σ.
 const SCALE: f64 = 1e-3;
-/// E/G over 2(1 + ν) beyond which a wall is anisotropic: ν = E/2G − 1 may be 0 to 0.5.
-const POISSON: (f64, f64) = (0.0, 0.5);
-
-/// How well the numbers of a rod file are known, 1 σ: relative, or m.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[allow(missing_docs)]
-pub struct Uncertainty {
-    pub youngs_modulus: f64,
-    pub shear_modulus: f64,
-    pub shear_coefficient: f64,
-    pub diameter: f64,
-    pub length: f64,
-}
-
-impl Uncertainty {
-    /// What a file without `[standard_uncertainty]` means for a tube.
-    pub fn default_of(tube: &Tube) -> Uncertainty {
-        let poisson = tube.youngs_modulus / (2.0 * tube.shear_modulus) - 1.0;
-        let lengths = Uncertainty {
-            youngs_modulus: 0.01,
-            shear_modulus: 0.02,
-            shear_coefficient: 0.03,
-            diameter: 0.03 * MM,
-            length: 0.3 * MM,
-        };
-        match (POISSON.0..=POISSON.1).contains(&poisson) {
-            true => lengths,
-            false => {
-                Uncertainty { youngs_modulus: 0.05, shear_modulus: 0.1, shear_coefficient: 0.15, ..lengths }
-            }
-        }
-    }
-}
 
 /// A number that is known to a standard uncertainty. Tubes by their index; of one material both
 /// have the same moduli.
@@ -172,6 +137,8 @@ impl Actual {
 mod tests {
     use super::*;
     use crate::rig::drawing::tests::l_shape;
+    use crate::rig::tube::Tube;
+    use crate::rig::uncertainty::Uncertainty;
 
     #[test]
     fn numbers_are_off_by_what_the_file_states_and_both_pipes_by_one_modulus() {

@@ -5,11 +5,11 @@
 //! depends on the protocol alone, so that the question says nothing of the effect.
 
 use super::bench::Bench;
-use super::draw::happens;
 use super::drawing::rounded;
 use super::effect::Effect;
 use super::oracle::Oracle;
 use super::protocol::{Columns, Protocol, Run, steps};
+use crate::chance::happens;
 use crate::truth::Asked;
 use rodcal_base::statistics::Random;
 use rodcal_base::units::{MM, STANDARD_GRAVITY, UM};

@@ -13,9 +13,10 @@
 //! | damped slide | share of a change of the load that is still to come | 100 % |
 
 use super::bench::Bench;
-use super::draw::{direction, happens, log_uniform, one_of};
+use super::draw::direction;
 use super::effect::Effect;
 use super::setup::Needs;
+use crate::chance::{happens, log_uniform, one_of};
 use rodcal_base::statistics::Random;
 use rodcal_base::units::UM;
 

@@ -24,6 +24,7 @@
 use super::bench::Bench;
 use super::effect::Effect;
 use super::setup::Needs;
+use crate::chance::{happens, log_uniform, one_of};
 use rodcal_base::statistics::Random;
 use rodcal_base::units::{DEG, UM};
 
@@ -62,19 +63,6 @@ pub fn careful(effect: usize, random: &mut Random) -> Needs {
         5 | 6 | 8 => Needs { unloading: true, ..needs },
         _ => needs,
     }
-}
-
-/// Log-uniform.
-pub fn log_uniform(random: &mut Random, low: f64, high: f64) -> f64 {
-    random.uniform(low.ln(), high.ln()).exp()
-}
-
-pub(crate) fn happens(random: &mut Random, probability: f64) -> bool {
-    random.uniform(0.0, 1.0) < probability
-}
-
-pub(super) fn one_of<T: Copy>(random: &mut Random, of: &[T], otherwise: T) -> T {
-    of.get(random.index(of.len())).copied().unwrap_or(otherwise)
 }
 
 /// An effect of the library at a bench that can carry it, as large as it may be.

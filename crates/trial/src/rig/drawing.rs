@@ -3,9 +3,9 @@
 use std::f64::consts::PI;
 use std::fmt::Write;
 
-use super::actual::Uncertainty;
 use super::cosserat::{Body, Hinge, Piece};
 use super::tube::Tube;
+use super::uncertainty::Uncertainty;
 use rodcal_base::units::{GPA, GRAM, MM};
 
 /// Pieces to a wave along the rod.

@@ -3,10 +3,10 @@
 
 use super::actual::Actual;
 use super::bench::Bench;
-use super::draw::{happens, one_of};
 use super::drawing::{Drawing, rounded};
 use super::protocol::{AXES, Cell, Protocol};
 use super::setup::Needs;
+use crate::chance::{happens, one_of};
 use crate::place::Place;
 use rodcal_base::statistics::Random;
 use rodcal_base::units::{STANDARD_GRAVITY, UM};

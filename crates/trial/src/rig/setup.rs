@@ -2,13 +2,14 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use super::actual::{Actual, Uncertainty};
+use super::actual::Actual;
 use super::bench::Bench;
-use super::draw::{happens, log_uniform, one_of};
 use super::drawing::{Drawing, rounded};
 use super::noise::{Noise, Shape};
 use super::protocol::{Columns, Protocol, Run, steps};
 use super::tube::Tube;
+use super::uncertainty::Uncertainty;
+use crate::chance::{happens, log_uniform, one_of};
 use rodcal_base::statistics::Random;
 use rodcal_base::units::{DEG, MM, STANDARD_GRAVITY, UM};
 

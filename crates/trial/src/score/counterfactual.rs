@@ -1,13 +1,10 @@
 //! How well readings are predicted that were asked for and not given.
 
-use std::fmt;
-
 use nalgebra::Vector3;
 use serde::Serialize;
 
-use super::judged::Judged;
 use crate::answers::Answer;
-use crate::truth::{Kind, Truth};
+use crate::truth::Truth;
 use rodcal_base::spatial::best_motion;
 
 /// Errors of the readings that were asked for, root mean squares, µm.
@@ -20,9 +17,6 @@ pub struct Counterfactual {
     /// Standard deviation of a reading, µm.
     pub noise_um: f64,
 }
-
-/// Worst cases that are listed.
-const MOST_WORST: usize = 10;
 
 impl Counterfactual {
     /// Of a case with an oracle; `None` where nothing was predicted, or not each reading.
@@ -42,7 +36,7 @@ impl Counterfactual {
     }
 
     /// Error of the answer over the oracle's.
-    fn ratio(&self) -> Option<f64> {
+    pub fn ratio(&self) -> Option<f64> {
         (self.oracle_um > 0.0).then(|| self.answer_um / self.oracle_um)
     }
 }
@@ -53,92 +47,6 @@ fn moved_onto(said: &[f64], goal: &[f64]) -> Option<Vec<f64>> {
         .map(|all| -> Vec<Vector3<f64>> { all.chunks_exact(3).map(Vector3::from_column_slice).collect() });
     let motion = best_motion(&points, &goal).ok()?;
     Some(points.iter().flat_map(|point| <[f64; 3]>::from(motion.point(point))).collect())
-}
-
-/// Errors of what was asked over the oracle's, of the identifiable cases with an oracle.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
-pub struct Predictions {
-    /// Such cases.
-    pub n: usize,
-    /// Those that were answered.
-    pub answered: usize,
-    /// Of the ratios of errors; `None` of no case.
-    pub median: Option<f64>,
-    #[allow(missing_docs)]
-    pub quartiles: [Option<f64>; 2],
-    /// Median of the answers' errors over the noise.
-    pub answer_over_noise_median: Option<f64>,
-    /// And of the oracle's.
-    pub oracle_over_noise_median: Option<f64>,
-    /// The largest ratios.
-    pub worst: Vec<Worst>,
-}
-
-/// A case whose answer is far from the oracle's.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Worst {
-    /// `rig/case-0001`.
-    pub case: String,
-    /// Error of the answer over the oracle's.
-    pub ratio: f64,
-    /// Root mean squares.
-    #[serde(flatten)]
-    pub errors: Counterfactual,
-}
-
-/// How well identifiable cases with an oracle are predicted.
-pub fn predictions(cases: &[Judged<'_>]) -> Predictions {
-    let is_asked = |case: &&Judged<'_>| {
-        let has_oracle = case.truth.asked.as_ref().is_some_and(|asked| asked.oracle_um.is_some());
-        let is_identifiable = case.truth.effects.iter().all(|e| e.detectability.is_identifiable());
-        has_oracle && is_identifiable && matches!(case.truth.kind, Kind::Single | Kind::Pair)
-    };
-    let asked: Vec<&Judged<'_>> = cases.iter().filter(is_asked).collect();
-    let mut predicted: Vec<(f64, Counterfactual, &Judged<'_>)> = asked
-        .iter()
-        .filter_map(|case| Some((case.counterfactual?.ratio()?, case.counterfactual?, *case)))
-        .collect();
-    predicted.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let sorted = |of: &dyn Fn(&Counterfactual) -> f64| -> Vec<f64> {
-        let mut all: Vec<f64> = predicted.iter().map(|(_, errors, _)| of(errors)).collect();
-        all.sort_by(f64::total_cmp);
-        all
-    };
-    let ratios: Vec<f64> = predicted.iter().map(|(ratio, ..)| *ratio).collect();
-    let worst = predicted.iter().rev().take(MOST_WORST);
-    Predictions {
-        n: asked.len(),
-        answered: predicted.len(),
-        median: quantile(&ratios, 0.5),
-        quartiles: [0.25, 0.75].map(|share| quantile(&ratios, share)),
-        answer_over_noise_median: quantile(&sorted(&|e| e.answer_um / e.noise_um), 0.5),
-        oracle_over_noise_median: quantile(&sorted(&|e| e.oracle_um / e.noise_um), 0.5),
-        worst: worst
-            .map(|(ratio, errors, case)| Worst {
-                case: case.truth.case.clone(),
-                ratio: *ratio,
-                errors: *errors,
-            })
-            .collect(),
-    }
-}
-
-/// `1.31 (median of 40 of 41 cases; half of them 1.02 to 2.50)`.
-impl fmt::Display for Predictions {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (Some(median), [Some(low), Some(high)]) = (self.median, self.quartiles) else {
-            return f.write_str("no case");
-        };
-        let (answered, n) = (self.answered, self.n);
-        write!(f, "{median:.2} (median of {answered} of {n} cases; half of them {low:.2} to {high:.2})")
-    }
-}
-
-/// Of sorted numbers, between neighbours by a straight line.
-fn quantile(sorted: &[f64], share: f64) -> Option<f64> {
-    let at = share * sorted.len().checked_sub(1)? as f64;
-    let (low, high) = (sorted.get(at.floor() as usize)?, sorted.get(at.ceil() as usize)?);
-    Some(low + (high - low) * at.fract())
 }
 
 #[cfg(test)]
@@ -157,12 +65,5 @@ mod tests {
         let left = moved_onto(&larger, &goal).unwrap();
         assert!(left.iter().zip(&goal).any(|(a, b)| (a - b).abs() > 300.0), "{left:?}");
         assert_eq!(moved_onto(&[f64::NAN; 12], &goal), None);
-    }
-
-    #[test]
-    fn quantiles_lie_between_their_neighbours() {
-        assert_eq!(quantile(&[], 0.5), None);
-        assert_eq!(quantile(&[3.0], 0.25), Some(3.0));
-        assert_eq!(quantile(&[1.0, 2.0, 4.0, 8.0], 0.5), Some(3.0));
     }
 }

@@ -3,9 +3,10 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use super::entry::{Context, Entry, RigEffect, UNBOUNDED, entry, of, parameter};
 use super::places::runs_by_sensor;
-use super::{Context, Datum, Entry, RigEffect, UNBOUNDED, entry, of, parameter};
 use crate::diagnosis::rig::action::Action;
+use crate::diagnosis::rig::datum::Datum;
 use crate::inference::{Effect, Kind, Location, Reported, Run, Variable, WrittenTo};
 use crate::units::UM;
 

@@ -1,11 +1,11 @@
 //! What the rod makes of its loads and of their history: curvature, creep, hysteresis.
 
-use super::{Context, Entry, RigEffect, along_the_load, alternative, entry, of, parameter};
+use super::entry::{Context, Entry, RigEffect, along_the_load, alternative, entry, of, parameter};
 use crate::diagnosis::rig::action::Action;
 use crate::diagnosis::rig::load_history::{
     Clock, History, Loop, Memory, Onset, creep, hysteresis, is_stated, onsets, warmth,
 };
-use crate::diagnosis::rig::{Body, RigModel};
+use crate::diagnosis::rig::model::{Body, RigModel};
 use crate::inference::{Effect, Finding, Kind, Location, Part, Reported, Variable, WrittenTo};
 use crate::units::significant;
 
@@ -165,7 +165,7 @@ fn curvature(context: &mut Context) -> Vec<Entry> {
 
 /// By how much the stiffness has changed at the largest load.
 fn observed_curvature(finding: &Finding, model: &RigModel) -> String {
-    let largest = super::largest_load(model.data());
+    let largest = super::entry::largest_load(model.data());
     // deflection over that of the linear rod
     let quadratic = finding.quantity("per_n2").map(|k| k.map(|k| 1.0 + k * largest * largest));
     let linear = finding.quantity("per_n").map(|k| k.map(|k| 1.0 + k * largest));

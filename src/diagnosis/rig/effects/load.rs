@@ -1,7 +1,9 @@
 //! What happens to a load before the rod feels it: friction, offset, play, direction.
 
+use super::entry::{
+    Context, Entry, RigEffect, along_the_load, candidate, entry, of, parameter, preferring, said,
+};
 use super::places::{loaded_axes, sessions};
-use super::{Context, Entry, RigEffect, along_the_load, candidate, entry, of, parameter, preferring, said};
 use crate::diagnosis::rig::action::{Action, Scope};
 use crate::diagnosis::rig::datum::Datum;
 use crate::inference::{Candidate, Effect, Finding, Kind, Location, Parameter, Part, Reported, WrittenTo};

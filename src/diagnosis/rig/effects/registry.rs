@@ -1,6 +1,7 @@
 //! All effects of a rig, in the order of preference among equals: the single source of names.
 
-use super::{RigEffect, events, history, load, mistakes, sensor, structure};
+use super::entry::RigEffect;
+use super::{events, history, load, mistakes, sensor, structure};
 use crate::inference::Effect;
 
 /// Every effect that the diagnosis of a rig knows.

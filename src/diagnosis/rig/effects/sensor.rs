@@ -2,9 +2,9 @@
 
 use std::collections::HashMap;
 
+use super::entry::{Context, Entry, RigEffect, UNBOUNDED, along_the_load, candidate, entry, of, parameter};
 use super::load::{ALIGNMENT, TURNS, WIDEST, misalignment, pairs, whole_turn};
 use super::places::measured_channels;
-use super::{Context, Entry, RigEffect, UNBOUNDED, along_the_load, candidate, entry, of, parameter};
 use crate::diagnosis::rig::action::Action;
 use crate::diagnosis::rig::datum::Datum;
 use crate::inference::{Effect, Finding, Kind, Location, Part, Reported, Variable, WrittenTo};

@@ -1,13 +1,13 @@
 //! What the rod is: moduli, joints, root, bend.
 
-use super::places::{sessions, stations};
-use super::{
+use super::entry::{
     Context, Entry, NOT_NEGATIVE, RigEffect, along_the_load, candidate, entry, of, parameter, preferring,
     said,
 };
+use super::places::{sessions, stations};
 use crate::diagnosis::rig::action::Action;
+use crate::diagnosis::rig::model::{Body, RigModel, STATION};
 use crate::diagnosis::rig::structure::Structure;
-use crate::diagnosis::rig::{Body, RigModel, STATION};
 use crate::inference::{
     Candidate, Effect, Finding, ForwardModel, Kind, Location, Part, Quantity, Reported, WrittenTo,
 };

@@ -11,8 +11,8 @@
 
 use nalgebra::DVector;
 
-use super::super::RigModel;
 use super::super::effects::mistakes::UNIT_MISTAKE;
+use super::super::model::RigModel;
 use super::moves::{HARDLY_BESIDE, like_physics};
 use crate::inference::{Finding, ForwardModel, Location, Rival, Term};
 

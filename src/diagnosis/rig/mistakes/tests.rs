@@ -1,7 +1,8 @@
 //! Every mistake on recordings as labs make them, and none on what only physics did.
 
 use super::*;
-use crate::diagnosis::rig::{RigModel, Wanted};
+use crate::diagnosis::rig::model::RigModel;
+use crate::diagnosis::rig::wanted::Wanted;
 use crate::inference::{ForwardModel, Term};
 use crate::rig::readings::{Axis, Direction, Phase, Reading};
 use crate::section::Round;

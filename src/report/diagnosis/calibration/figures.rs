@@ -5,7 +5,8 @@ mod events;
 
 use nalgebra::Vector3;
 
-use super::{Distances, gear_of, joint_of};
+use super::distances::Distances;
+use super::joints::{gear_of, joint_of};
 use crate::diagnosis::calibration::CalibrationDiagnosis;
 use crate::inference::{Covariate, Finding, JointVariable, Location, Variable};
 use crate::report::chart::Figure;

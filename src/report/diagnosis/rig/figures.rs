@@ -2,7 +2,7 @@
 
 use nalgebra::DVector;
 
-use super::branch_name;
+use super::lines::branch_name;
 use crate::diagnosis::rig::{Datum, RigDiagnosis};
 use crate::inference::{Covariate, Finding, Location, Part, Variable, rms};
 use crate::report::chart::Figure;

@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use crate::diagnosis::calibration::{CalibrationDiagnosis, Curve};
 use crate::inference::Limit;
 use crate::report::chart::Figure;
-use crate::report::diagnosis::calibration::gear_of;
+use crate::report::diagnosis::calibration::joints::gear_of;
 use crate::report::pictures::diagnosis::{AngleError, angle_errors};
 use crate::robot::Motion;
 use crate::units::URAD;

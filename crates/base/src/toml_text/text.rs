@@ -1,0 +1,102 @@
+//! The text of a TOML file, in which every value knows its place.
+
+use serde::de::DeserializeOwned;
+use toml::Spanned;
+
+use crate::error::{Error, Place, Result};
+
+/// A number that knows where it stands.
+pub type Number = Spanned<f64>;
+
+/// What a missing key or `[section]` should have been: pairs of its name and words for a message.
+pub type Required = [(&'static str, &'static str)];
+
+/// No quantity of this world is larger, and its fourth power times another still fits a double.
+const LARGEST: f64 = 1e30;
+
+/// The text of a file, to find the line of whatever is wrong.
+#[derive(Debug, Clone, Copy)]
+pub struct TomlText<'a> {
+    pub(super) file: &'a str,
+    pub(super) text: &'a str,
+}
+
+impl<'a> TomlText<'a> {
+    /// The `text` of `file`, which only names it in errors.
+    pub fn new(file: &'a str, text: &'a str) -> Self {
+        TomlText { file, text }
+    }
+
+    /// Reads the whole text; `required` has the words for keys that `T` cannot do without.
+    ///
+    /// # Errors
+    /// [`Error::Input`] or [`Error::Syntax`] with line and column.
+    pub fn parse<T: DeserializeOwned>(&self, required: &Required) -> Result<T> {
+        toml::from_str(self.text).map_err(|error| self.reworded(&error, required))
+    }
+
+    /// The number, if it is finite and of a size to reckon with.
+    ///
+    /// # Errors
+    /// [`Error::Input`] otherwise; likewise of the next two.
+    pub fn finite(&self, key: &str, number: &Number) -> Result<f64> {
+        let value = *number.get_ref();
+        if !value.is_finite() {
+            return Err(self.is(key, number, "a finite number"));
+        }
+        if value.abs() > LARGEST {
+            return Err(self.is(key, number, &format!("a number of at most {LARGEST:e} in size")));
+        }
+        Ok(value)
+    }
+
+    /// The number, if it is above 0.
+    pub fn positive(&self, key: &str, number: &Number) -> Result<f64> {
+        let value = self.finite(key, number)?;
+        if value > 0.0 { Ok(value) } else { Err(self.is(key, number, "a number > 0")) }
+    }
+
+    /// The number, if it is 0 or above.
+    pub fn not_negative(&self, key: &str, number: &Number) -> Result<f64> {
+        let value = self.finite(key, number)?;
+        if value >= 0.0 { Ok(value) } else { Err(self.is(key, number, "a number >= 0")) }
+    }
+
+    /// The error that `key` has the value it has.
+    pub fn is<T>(&self, key: &str, value: &Spanned<T>, expected: &str) -> Error {
+        self.wrong(value, format!("`{key}` is {}", self.source(value)), expected)
+    }
+
+    /// The error that something is wrong where `place` stands.
+    pub fn wrong<T>(&self, place: &Spanned<T>, found: String, expected: &str) -> Error {
+        self.input(place.span().start, found, expected.to_owned(), None)
+    }
+
+    /// A value as the file has it, cut where it gets long.
+    pub fn source<T>(&self, value: &Spanned<T>) -> String {
+        cut(self.text.get(value.span()).unwrap_or_default())
+    }
+
+    pub(super) fn input(
+        &self,
+        offset: usize,
+        found: String,
+        expected: String,
+        hint: Option<String>,
+    ) -> Error {
+        Error::Input { at: Place::of_offset(self.file, self.text, offset), found, expected, hint }
+    }
+}
+
+/// One line of printable text, of a length that fits a message.
+pub(super) fn cut(text: &str) -> String {
+    const LONGEST: usize = 40;
+    let line = text.trim().lines().next().unwrap_or_default();
+    let mut characters = line.chars();
+    let mut short: String =
+        characters.by_ref().take(LONGEST).map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect();
+    if characters.next().is_some() {
+        short.push_str(" …");
+    }
+    short
+}

@@ -1,0 +1,183 @@
+//! A model is built: its data, its ideal rod or lines, and the candidates that these readings can show.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::action::{Action, State};
+use super::cases::Cases;
+use super::datum::Datum;
+use super::effects::entry::Context;
+use super::effects::registry;
+use super::model::{Body, RigModel, is_dependent};
+use super::numbering::numbered;
+use super::slide::Course;
+use super::structure::Structure;
+use super::wanted::Wanted;
+use super::{datum, evidence, nominal, nonparametric, slide, structure};
+use crate::error::Result;
+use crate::inference::{Candidate, Effect, Evidence, NotTestable, Parameter, UNKNOWN};
+use crate::rig::readings::Readings;
+use crate::rod::Rod;
+
+/// What changes no reading by more than this share of the largest changes nothing.
+const NOTHING: f64 = 1e-9;
+
+impl RigModel {
+    /// The model of `readings`: against the FEA model of `rod` as its file gives it, or against straight lines through the
+    /// origin where there is none.
+    ///
+    /// # Errors
+    /// [`crate::Error::Input`] for a station that is not on the rod; what the beam model refuses.
+    pub fn new(readings: &Readings, rod: Option<&Rod>) -> Result<(RigModel, Evidence)> {
+        let (model, evidence, _) = RigModel::with_effects(readings, rod, &Wanted::All)?;
+        Ok((model, evidence))
+    }
+
+    /// The model with some of its candidates only; and the effects that have none.
+    pub(super) fn with_effects(
+        readings: &Readings,
+        rod: Option<&Rod>,
+        wanted: &Wanted<'_>,
+    ) -> Result<(RigModel, Evidence, Vec<NotTestable>)> {
+        let data = datum::recorded(readings);
+        let (body, place) = match rod {
+            Some(rod) => {
+                structure::check_stations(readings, rod)?;
+                let tip = rod.length();
+                let at = |station: Option<f64>| station.unwrap_or(tip).min(tip);
+                let pair = |d: &Datum| (at(d.load_station), at(d.read_station));
+                let bits = |(load, read): (f64, f64)| (load.to_bits(), read.to_bits());
+                let place = numbered(data.iter().map(pair).map(bits));
+                let mut pairs = Vec::new();
+                for (datum, &number) in data.iter().zip(&place) {
+                    if number == pairs.len() {
+                        pairs.push(pair(datum));
+                    }
+                }
+                (Body::Rod(Box::new(Structure::new(rod, pairs)?)), place)
+            }
+            None => {
+                let line = numbered(data.iter().map(Datum::line_key));
+                (Body::Lines(line.iter().max().map_or(0, |last| last + 1)), line)
+            }
+        };
+        let course = Course::of(&data);
+        let mut model = RigModel {
+            step: slide::usual_step(&data, &course),
+            course,
+            readings: readings.clone(),
+            rod: rod.cloned(),
+            as_recorded: None,
+            cases: Cases::of(&data, &place),
+            data,
+            body,
+            place,
+            candidates: Vec::new(),
+            actions: Vec::new(),
+        };
+        let nuisance = match &model.body {
+            Body::Rod(structure) => {
+                let ideal = model.displaced(structure, &State::default());
+                model.data.iter_mut().zip(&ideal).for_each(|(datum, y)| datum.predicted = *y);
+                DMatrix::zeros(model.data.len(), 0)
+            }
+            Body::Lines(_) => evidence::slopes(&model.data, &model.place),
+        };
+        let large = match &model.body {
+            Body::Rod(structure) => {
+                let second = structure.second_order()?;
+                let of = |(d, &place): (&Datum, &usize)| {
+                    let more = second[place][(d.channel.index(), d.direction.axis.index())] * d.load.powi(2);
+                    // an imposed displacement needs so much less load
+                    match d.imposed {
+                        Some(imposed) if imposed.displacement != 0.0 => {
+                            -more * d.predicted / imposed.displacement
+                        }
+                        _ => more,
+                    }
+                };
+                Some(DVector::from_iterator(model.data.len(), model.data.iter().zip(&model.place).map(of)))
+            }
+            Body::Lines(_) => None,
+        };
+        let mut evidence = evidence::of(&model.data, nuisance, large);
+        evidence.stated_noise = model.stated_noise();
+        if let Some(rod) = rod {
+            let stations = |rod: &Rod, d: &Datum| {
+                let tip = rod.length();
+                let at = |station: Option<f64>| station.unwrap_or(tip).min(tip);
+                (at(d.load_station), at(d.read_station))
+            };
+            let (numbers, columns) = nominal::all(&model.data, rod, &readings.header, &stations)?;
+            (evidence.nominal_numbers, evidence.nominal) = (numbers, columns);
+        }
+        let not_testable = model.add_candidates(wanted);
+        Ok((model, evidence, not_testable))
+    }
+
+    /// Fills in the effects and their nonparametric rivals, without what can do nothing to these
+    /// readings; the effects that then have no candidate.
+    fn add_candidates(&mut self, wanted: &Wanted<'_>) -> Vec<NotTestable> {
+        let deflections = self.deflections();
+        let mut context = Context { data: &self.data, body: &mut self.body, rod: self.rod.as_ref() };
+        let has_rod = context.rod.is_some();
+        let mut entries = Vec::new();
+        for effect in registry::ALL.into_iter().filter(|effect| has_rod || !effect.needs_rod) {
+            if wanted.includes(&effect.effect) {
+                entries.extend((effect.candidates)(&mut context));
+            }
+        }
+        let missing = registry::ALL.map(|effect| match has_rod || !effect.needs_rod {
+            true => (effect.missing)(&context),
+            false => "it needs a rod file",
+        });
+        if wanted.includes(&UNKNOWN) {
+            entries.extend(nonparametric::all(&self.data, &deflections, has_rod));
+            nonparametric::retain_predictive(&mut entries, &self.data, &deflections);
+        }
+        entries.retain(|(candidate, _)| wanted.has(candidate));
+        let scale = self.data.iter().fold(0.0, |s: f64, d| s.max(d.measured.abs()).max(d.predicted.abs()));
+        let nothing = NOTHING * scale;
+        for (candidate, actions) in entries {
+            let (parameters, actions): (Vec<_>, Vec<_>) = candidate
+                .parameters
+                .into_iter()
+                .zip(actions)
+                .filter(|(parameter, action)| {
+                    // where a joint is matters as soon as it gives way, when a load was hung as soon as there is creep
+                    matches!(action, Action::Station(_))
+                        || is_dependent(action)
+                        || self.is_felt(action, parameter, nothing)
+                })
+                .unzip();
+            let is_second = |action: &Action| matches!(action, Action::Station(_)) || is_dependent(action);
+            if actions.iter().any(|action| !is_second(action)) {
+                self.candidates.push(Candidate { parameters, ..candidate });
+                self.actions.push(actions);
+            }
+        }
+        let is_candidate = |effect: &Effect| self.candidates.iter().any(|known| known.effect == effect);
+        registry::ALL
+            .into_iter()
+            .zip(missing)
+            .map(|(effect, reason)| (&effect.effect, reason))
+            .filter(|(effect, _)| !is_candidate(effect))
+            .map(|(effect, reason)| NotTestable { effect, reason: reason.into() })
+            .collect()
+    }
+
+    /// False for what changes nothing (m) to first order: a twist under loads that do not twist.
+    fn is_felt(&self, action: &Action, parameter: &Parameter, nothing: f64) -> bool {
+        let Parameter { neutral, size, bounds, .. } = *parameter;
+        // a parameter at its bound can only go one way, and a second-order effect goes the same way twice
+        let step = if neutral + size <= bounds.1 { size } else { bounds.1 - neutral };
+        if let Some(largest) = action.largest_addition() {
+            return 2.0 * step * largest > nothing;
+        }
+        let at = |value: f64| {
+            let mut state = State::default();
+            state.act(action, value);
+            self.changed(&state)
+        };
+        (at(neutral + step) - at(neutral - step)).amax() > nothing
+    }
+}

@@ -1,0 +1,88 @@
+//! From readings to findings: mistakes first, then the physics of what is left.
+
+use super::model::{AsRecorded, RigDiagnosis, RigModel};
+use super::wanted::Wanted;
+use super::{as_measured, limits, mistakes, next};
+use crate::error::{Error, Place, Result};
+use crate::inference::{Diagnosed, diagnose as infer, rms};
+use crate::rig::readings::Readings;
+use crate::rod::Rod;
+
+/// Most rows of readings that are diagnosed.
+pub(super) const MOST_ROWS: usize = 100_000;
+
+/// Diagnoses `readings` against the FEA model of `rod` as its file gives it, or, without a rod,
+/// against straight lines through the origin.
+///
+/// # Errors
+/// See [`RigModel::new`].
+pub fn diagnose(readings: &Readings, rod: Option<&Rod>) -> Result<RigDiagnosis> {
+    diagnose_among(readings, rod, &[])
+}
+
+/// Diagnoses `readings` as [`diagnose`] does, where they may also be those of one of `others`: rods
+/// with the names of their files, such as all that stand beside the given one.
+///
+/// Mistakes are looked for first. They stand before all other findings, which are those of the corrected readings and the
+/// corrected rod.
+///
+/// # Errors
+/// [`Error::Input`] for more than 100 000 rows; see also [`RigModel::new`].
+pub fn diagnose_among(
+    readings: &Readings,
+    rod: Option<&Rod>,
+    others: &[(String, Rod)],
+) -> Result<RigDiagnosis> {
+    check_size(readings)?;
+    let mended = mistakes::mended(readings, rod, others)?;
+    let (mended_readings, mended_rod) = match mended.has_data {
+        true => (&mended.readings, mended.rod.as_ref()),
+        false => (readings, rod),
+    };
+    let (mut model, evidence, not_testable) =
+        RigModel::with_effects(mended_readings, mended_rod, &Wanted::All)?;
+    let mut diagnosis = infer(&model, &evidence);
+    as_measured::resize(&model, &evidence, &mut diagnosis);
+    if mended.has_data {
+        for k in 0..diagnosis.findings.len() {
+            let next = next::next_measurement(&model, &evidence, &diagnosis, &diagnosis.findings[k])?;
+            let finding = &mut diagnosis.findings[k];
+            finding.next = next;
+            let units = mistakes::lookalikes(&model, finding);
+            if !units.is_empty() {
+                // a unit is looked up, which is sooner done than any measurement
+                finding.next = finding.direct_check(&units.iter().collect::<Vec<_>>());
+                finding.rivals.splice(0..0, units);
+            }
+        }
+    } else {
+        // nothing is left that physics could be seen in
+        diagnosis.findings.clear();
+        diagnosis.discrepancy = None;
+    }
+    if !mended.found.is_empty() {
+        diagnosis.findings.splice(0..0, mended.found);
+        model.as_recorded = Some(Box::new(as_recorded(readings, rod)));
+    }
+    let limits = limits::limits(&model, &evidence);
+    Ok(Diagnosed { absorbed: Vec::new(), not_testable, limits, diagnosis, evidence, model })
+}
+
+/// Refuses what would take more memory or time than anybody has.
+fn check_size(readings: &Readings) -> Result<()> {
+    match readings.rows.get(MOST_ROWS) {
+        None => Ok(()),
+        Some(row) => Err(Error::Input {
+            at: Place { file: readings.file.clone(), line: row.line, column: 0 },
+            found: format!("{} rows of readings", readings.rows.len()),
+            expected: format!("at most {MOST_ROWS} for a diagnosis"),
+            hint: Some("diagnose some of the trials at a time".into()),
+        }),
+    }
+}
+
+fn as_recorded(readings: &Readings, rod: Option<&Rod>) -> AsRecorded {
+    let error = RigModel::with_effects(readings, rod, &Wanted::Like(&[]));
+    let error = error.ok().map(|(_, evidence, _)| rms(&evidence.residual));
+    AsRecorded { readings: readings.clone(), rod: rod.cloned(), error }
+}

@@ -1,0 +1,112 @@
+//! The record of an effect, what it sees of readings, and what candidates are made with.
+
+use crate::diagnosis::rig::action::Action;
+use crate::diagnosis::rig::datum::Datum;
+use crate::diagnosis::rig::model::{Body, RigModel};
+use crate::inference::{Candidate, Effect, Finding, Location, Parameter, Quantity, Variable};
+use crate::rod::Rod;
+
+/// An effect with what it does on a rig.
+pub struct RigEffect {
+    /// Everything that is said of it.
+    pub effect: Effect,
+    /// True for what is the rod's: straight lines have no parts.
+    pub(in crate::diagnosis::rig) needs_rod: bool,
+    /// Its candidates for these readings, in the order of preference among equals.
+    pub(in crate::diagnosis::rig) candidates: fn(&mut Context) -> Vec<Entry>,
+    /// Why it cannot be tested, where it has no candidate.
+    pub(in crate::diagnosis::rig) missing: fn(&Context) -> &'static str,
+    /// What the readings show, with numbers: `Loads are felt 1.02 ± 0.04 N too small`.
+    pub(in crate::diagnosis::rig) observed: fn(&Finding, &RigModel) -> String,
+}
+
+/// What effects see of readings.
+pub(in crate::diagnosis::rig) struct Context<'a> {
+    pub data: &'a [Datum],
+    pub body: &'a mut Body,
+    pub rod: Option<&'a Rod>,
+}
+
+/// A candidate with what its parameters do.
+pub(in crate::diagnosis::rig) type Entry = (Candidate, Vec<Action>);
+
+pub(in crate::diagnosis::rig) const UNBOUNDED: (f64, f64) = (f64::NEG_INFINITY, f64::INFINITY);
+pub(in crate::diagnosis::rig) const NOT_NEGATIVE: (f64, f64) = (0.0, f64::INFINITY);
+
+impl Context<'_> {
+    /// The largest load, N.
+    pub fn largest_load(&self) -> f64 {
+        largest_load(self.data)
+    }
+
+    /// The largest reading, m.
+    pub fn largest_reading(&self) -> f64 {
+        self.data.iter().fold(0.0, |most: f64, d| most.max(d.measured.abs()))
+    }
+}
+
+/// The largest load, N.
+pub(in crate::diagnosis::rig) fn largest_load(data: &[Datum]) -> f64 {
+    data.iter().fold(0.0, |max: f64, d| max.max(d.load))
+}
+
+pub(in crate::diagnosis::rig) fn parameter(
+    name: &str,
+    unit: f64,
+    neutral: f64,
+    size: f64,
+    bounds: (f64, f64),
+) -> Parameter {
+    Parameter { name: name.into(), unit, neutral, size, bounds }
+}
+
+/// A candidate of one parameter.
+pub(super) fn entry(
+    effect: &'static RigEffect,
+    location: Location,
+    parameter: Parameter,
+    action: Action,
+) -> Entry {
+    (candidate(&effect.effect, location, vec![parameter]), vec![action])
+}
+
+/// A candidate as likely as its effect's others.
+pub(in crate::diagnosis::rig) fn candidate(
+    effect: &'static Effect,
+    location: Location,
+    parameters: Vec<Parameter>,
+) -> Candidate {
+    Candidate { effect, location, parameters, weight: 1.0, is_alternative: false, is_nonparametric: false }
+}
+
+/// Gives those entries that are `main` as much weight together as all others together: the place
+/// that a rod's file names, the rig as a whole.
+pub(super) fn preferring(mut entries: Vec<Entry>, is_main: impl Fn(&Candidate) -> bool) -> Vec<Entry> {
+    let main = entries.iter().filter(|(candidate, _)| is_main(candidate)).count();
+    let others = entries.len() - main;
+    for (candidate, _) in &mut entries {
+        candidate.weight = 1.0 / if is_main(candidate) { main } else { others } as f64;
+    }
+    entries
+}
+
+/// Marks one of several forms of the same thing.
+pub(super) fn alternative((candidate, actions): Entry) -> Entry {
+    (Candidate { is_alternative: true, ..candidate }, actions)
+}
+
+/// What follows a load is best seen along it.
+pub(super) fn along_the_load(_: &Location) -> Vec<Variable> {
+    vec![Variable::SignedLoad, Variable::Load]
+}
+
+/// A number of a finding in the unit of its name; NaN where it has none of that name.
+pub(super) fn of(finding: &Finding, name: &str) -> Quantity {
+    let nothing = Quantity { value: f64::NAN, low: f64::NAN, high: f64::NAN };
+    finding.quantity(name).unwrap_or(nothing)
+}
+
+/// Its size as people write it.
+pub(super) fn said(finding: &Finding, name: &str, unit: &str) -> String {
+    of(finding, name).size().say(unit)
+}

@@ -1,0 +1,111 @@
+//! Readings of a rig as the engine sees them: data, what turns forces into displacements, candidates.
+
+use super::action::Action;
+use super::cases::Cases;
+use super::datum::Datum;
+use super::slide::Course;
+use super::structure::Structure;
+use crate::inference::{Candidate, Diagnosed};
+use crate::rig::readings::Readings;
+use crate::rod::Rod;
+
+/// The parameter of a joint that may be anywhere.
+pub(super) const STATION: &str = "station_mm";
+
+/// A rig's diagnosis.
+pub type RigDiagnosis = Diagnosed<RigModel>;
+
+/// Readings of a rig with all the physics that might be in them.
+#[derive(Debug, Clone)]
+pub struct RigModel {
+    pub(super) readings: Readings,
+    pub(super) rod: Option<Rod>,
+    pub(super) as_recorded: Option<Box<AsRecorded>>,
+    pub(super) data: Vec<Datum>,
+    pub(super) body: Body,
+    /// For each datum the pair of stations (with a rod) or the line (without).
+    pub(super) place: Vec<usize>,
+    /// Which data follow which, and the usual step of an imposed displacement (m).
+    pub(super) course: Course,
+    pub(super) step: f64,
+    pub(super) cases: Cases,
+    pub(super) candidates: Vec<Candidate>,
+    /// For each candidate what its parameters do.
+    pub(super) actions: Vec<Vec<Action>>,
+}
+
+/// Readings and rod before mistakes were undone, where there were any.
+#[derive(Debug, Clone)]
+pub(super) struct AsRecorded {
+    pub(super) readings: Readings,
+    pub(super) rod: Option<Rod>,
+    /// Root mean square of what the rod's model leaves, m; `None` where the two cannot be compared.
+    pub(super) error: Option<f64>,
+}
+
+/// What turns a force into a displacement.
+#[derive(Debug, Clone)]
+pub(super) enum Body {
+    Rod(Box<Structure>),
+    /// So many lines of unknown slopes.
+    Lines(usize),
+}
+
+impl RigModel {
+    /// Name of a session, by its number in [`Evidence::session`].
+    pub fn session(&self, number: usize) -> &str {
+        let of_session = self.data.iter().find(|datum| datum.session_number == number);
+        of_session.and_then(|datum| datum.session.as_deref()).unwrap_or("without a name")
+    }
+
+    /// The data in the order of recording, which is that of the evidence.
+    pub fn data(&self) -> &[Datum] {
+        &self.data
+    }
+
+    /// The readings, without the mistakes that were found.
+    pub fn readings(&self) -> &Readings {
+        &self.readings
+    }
+
+    /// The rod, where there is one, without the mistakes that were found.
+    pub fn rod(&self) -> Option<&Rod> {
+        self.rod.as_ref()
+    }
+
+    /// The readings as they were given, mistakes included.
+    pub fn recorded(&self) -> &Readings {
+        self.as_recorded.as_ref().map_or(&self.readings, |given| &given.readings)
+    }
+
+    /// The rod as its file gives it, mistakes included.
+    pub fn rod_of_file(&self) -> Option<&Rod> {
+        self.as_recorded.as_ref().map_or(self.rod.as_ref(), |given| given.rod.as_ref())
+    }
+
+    /// Root mean square of what the model of the file leaves of the readings as they were given, m;
+    /// `None` where no mistake was found, or where the two cannot be compared.
+    pub fn recorded_error(&self) -> Option<f64> {
+        self.as_recorded.as_ref()?.error
+    }
+
+    /// What a newton of a measured load counts, m/N; `None` where loads were set.
+    pub fn per_newton(&self) -> Option<f64> {
+        self.data.iter().find_map(|datum| datum.imposed).map(|imposed| imposed.per_newton)
+    }
+
+    /// Stated noise of a datum, m: where the load was measured, that of load and displacement together.
+    pub(super) fn stated_noise(&self) -> Option<f64> {
+        let header = &self.readings.header;
+        let of_load = self.per_newton().zip(header.load_noise).map(|(per_newton, noise)| per_newton * noise);
+        match (header.noise, of_load) {
+            (Some(a), Some(b)) => Some(a.hypot(b)),
+            (a, b) => a.or(b),
+        }
+    }
+}
+
+/// True for a parameter that does nothing where the first of its effect does nothing.
+pub(super) fn is_dependent(action: &Action) -> bool {
+    matches!(action, Action::Onset(_) | Action::Presliding | Action::SliderPlay)
+}

@@ -1,0 +1,36 @@
+//! Which candidates a model has: all that its readings allow, or those of another model.
+
+use crate::inference::{Candidate, Effect, Kind};
+
+/// Which candidates a model shall have.
+pub(super) enum Wanted<'a> {
+    All,
+    /// Those that are the same things at the same places as these.
+    Like(&'a [&'a Candidate]),
+}
+
+impl Wanted<'_> {
+    /// False where no candidate of an effect is wanted.
+    pub(super) fn includes(&self, effect: &Effect) -> bool {
+        match self {
+            Wanted::All => true,
+            Wanted::Like(these) => these.iter().any(|candidate| candidate.effect == effect),
+        }
+    }
+
+    pub(super) fn has(&self, candidate: &Candidate) -> bool {
+        match self {
+            Wanted::All => true,
+            Wanted::Like(these) => these.iter().any(|known| is_same(candidate, known)),
+        }
+    }
+}
+
+/// The candidate of another recording that stands for the same. Laws of one effect at one place differ in their parameters;
+/// of one law either recording may show some only.
+pub(super) fn is_same(new: &Candidate, old: &Candidate) -> bool {
+    (&new.effect, &new.location) == (&old.effect, &old.location)
+        && !new.is_nonparametric
+        && old.effect.kind != Kind::Event
+        && new.parameters.iter().any(|p| old.parameters.iter().any(|q| q.name == p.name))
+}

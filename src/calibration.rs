@@ -44,4 +44,4 @@ pub use passes::PassRecord;
 pub use result::{Calibration, Estimated};
 pub use validation::{Before, Summary, Validation, validate};
 pub use warning::Warning;
-pub use write_back::{write_back, write_back_with};
+pub use write_back::{write_back, write_back_with, write_beside};

@@ -12,6 +12,8 @@
 //! consecutive axes are nearly parallel: there Denavit and Hartenberg's common normal jumps with
 //! the smallest tilt, and Hayati's β does not (S. Hayati, *IEEE CDC* 22 (1983) 1477–1483).
 
+mod beside;
+mod calibrated;
 mod defaults;
 mod effect;
 mod effects_file;
@@ -19,6 +21,7 @@ mod file;
 mod hayati;
 mod kinematics;
 mod minimal;
+mod moves;
 mod parameter;
 mod predict;
 mod setup;
@@ -28,13 +31,14 @@ mod uncertainty;
 mod urdf;
 mod write;
 
+pub use calibrated::CalibratedRange;
 pub use effect::Effect;
 pub use effects_file::{corrections_csv, corrections_from_csv};
 pub use file::is_urdf;
 pub use kinematics::{JointFrames, Kinematics};
 pub use minimal::minimal_parameters;
 pub use parameter::{Parameter, Unit};
-pub use predict::PredictionQuery;
+pub use predict::{PredictedTip, PredictionQuery};
 pub use setup::Setup;
 pub use standard_uncertainty::StandardUncertainty;
 pub use statics::Loads;
@@ -70,6 +74,8 @@ pub struct Robot {
     pub standard_uncertainty: StandardUncertainty,
     /// How sure its numbers are after a calibration, where its file states it.
     pub uncertainty: Option<Uncertainty>,
+    /// Where it was calibrated, where its file states it.
+    pub calibrated: Option<CalibratedRange>,
 }
 
 /// Where the tip is, and how well the robot is known there.
@@ -167,6 +173,7 @@ impl Robot {
             tip: None,
             standard_uncertainty: StandardUncertainty::default(),
             uncertainty: None,
+            calibrated: None,
         }
     }
 

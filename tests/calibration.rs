@@ -3,6 +3,7 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod applied;
 mod arms;
 mod frames;
 mod groups;

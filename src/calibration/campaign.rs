@@ -10,6 +10,7 @@ mod constraints;
 mod file;
 mod layout;
 mod recording;
+mod regroup;
 mod warning;
 mod write;
 
@@ -36,6 +37,8 @@ pub struct Campaign {
     pub robot_file: String,
     /// Its text.
     pub robot_text: String,
+    /// What stands beside a URDF, as the campaign names the file.
+    pub effects_file: Option<String>,
     /// Link of a URDF that is {0}, where the campaign names it.
     pub base_link: Option<String>,
     /// Link of a URDF that is {T}, where the campaign names it.
@@ -105,6 +108,8 @@ pub struct Recording {
     pub joint_count: usize,
     /// Joint values, rad or m, n per row, one row after the other.
     pub joint_values: Vec<f64>,
+    /// The same as they were read, where the robot's file says what the moves between the poses add.
+    pub joints_read: Option<Vec<f64>>,
     /// One per row of the file.
     pub rows: Vec<Row>,
     /// Clamps or sockets that rows belong to; one of name "" for a tracker.
@@ -199,6 +204,19 @@ impl Recording {
             0 => self.groups[group].device,
             station => self.stations[station].frame.then(&self.groups[group].device),
         }
+    }
+
+    /// Adds to the joint values as they were read what the moves between the poses add, by the robot's file.
+    pub fn take_up_moves(&mut self, robot: &Robot) {
+        let read = self.joints_read.take().unwrap_or_else(|| self.joint_values.clone());
+        self.joint_values = robot.after_moves(&read);
+        self.joints_read = robot.has_moves().then_some(read);
+    }
+
+    /// Joint values of a row as they were read, rad or m.
+    pub fn read_joints(&self, row: usize) -> &[f64] {
+        let read = self.joints_read.as_ref().unwrap_or(&self.joint_values);
+        &read[row * self.joint_count..][..self.joint_count]
     }
 
     /// Joint values of a row, rad or m.

@@ -44,6 +44,10 @@ impl Recording {
             source: self.source.clone(),
             joint_count: self.joint_count,
             joint_values: rows.iter().flat_map(|&row| self.joints(row).iter().copied()).collect(),
+            joints_read: self
+                .joints_read
+                .as_ref()
+                .map(|_| rows.iter().flat_map(|&row| self.read_joints(row).iter().copied()).collect()),
             rows: kept,
             groups,
             stations,

@@ -1,9 +1,10 @@
 //! The calibrated robot as a file of the format that it came in.
 
 use super::campaign::{Campaign, Targets};
+use super::extrapolation::calibrated_range;
 use super::result::Calibration;
 use crate::error::Result;
-use crate::robot::{Parameter, Tip, Uncertainty, is_urdf};
+use crate::robot::{Effect, Joint, Parameter, Robot, Tip, Uncertainty, is_urdf};
 use crate::units::{DEG, MM};
 
 /// Name and text of the calibrated robot: a table with compliances, or the URDF with new origins,
@@ -27,8 +28,8 @@ pub fn write_back(campaign: &Campaign, calibration: &Calibration) -> Result<(Str
     write_back_with(campaign, calibration, None, &[])
 }
 
-/// The same with more comments and, in a table, the tip; `sd` is how well the robot is known there,
-/// m.
+/// The same with more comments; `sd` is how well the robot predicts poses that were held out, m, in place of the scatter that
+/// the calibration leaves.
 ///
 /// # Errors
 /// As [`write_back`].
@@ -39,17 +40,10 @@ pub fn write_back_with(
     more: &[String],
 ) -> Result<(String, String)> {
     let setup = &calibration.setup;
-    let mut robot = setup.calibrated();
-    robot.tip = sd.map(|sd| Tip { at: setup.tool, sd: Some(sd) });
-    robot.uncertainty = sd.and_then(|_| uncertainty(calibration));
+    let robot = with_what_is_known(campaign, calibration, sd);
     let tool = setup.tool / MM;
     let mut comments = vec![
-        format!(
-            "{}, calibrated by rodcal from {}, mode {}.",
-            robot.name,
-            campaign.file,
-            calibration.mode.name()
-        ),
+        first_line(campaign, calibration),
         format!("Tip in {{T}}: xyz_mm = [{:.4}, {:.4}, {:.4}]", tool.x, tool.y, tool.z),
     ];
     if matches!(campaign.measurements.targets, Targets::Points(_)) {
@@ -75,6 +69,46 @@ pub fn write_back_with(
         robot.to_urdf(&campaign.robot_file, &campaign.robot_text, base, tip, Some(setup.tool), &comments)?;
     Ok(("calibrated.urdf".into(), written.text))
 }
+
+/// What a URDF has no place for, in a file beside it: tip, uncertainty, calibrated ranges, effects and compliances. `None` for
+/// a table, which holds them itself.
+pub fn write_beside(
+    campaign: &Campaign,
+    calibration: &Calibration,
+    sd: Option<f64>,
+) -> Option<(String, String)> {
+    if !is_urdf(&campaign.robot_text) {
+        return None;
+    }
+    let mut robot = with_what_is_known(campaign, calibration, sd);
+    let compliant = robot.joints.iter().enumerate().filter(|(_, joint)| joint.compliance != 0.0);
+    let of_joint = |(joint, own): (usize, &Joint)| Effect::Compliance { joint, per_nm: own.compliance };
+    let compliances: Vec<Effect> = compliant.map(of_joint).collect();
+    robot.effects.extend(compliances);
+    // the file has no key for the uncertainty of what is written as an effect
+    let comments = [
+        first_line(campaign, calibration),
+        "Beside calibrated.urdf: rodcal predict calibrated.urdf POSES --effects calibrated-effects.toml"
+            .into(),
+    ];
+    Some(("calibrated-effects.toml".into(), robot.beside_to_toml(&comments)))
+}
+
+fn first_line(campaign: &Campaign, calibration: &Calibration) -> String {
+    let (name, mode) = (&campaign.robot.name, calibration.mode.name());
+    format!("{name}, calibrated by rodcal from {}, mode {mode}.", campaign.file)
+}
+
+/// The calibrated robot with its tip and with how sure all that is.
+fn with_what_is_known(campaign: &Campaign, calibration: &Calibration, sd: Option<f64>) -> Robot {
+    let setup = &calibration.setup;
+    let mut robot = setup.calibrated();
+    robot.tip = Some(Tip { at: setup.tool, sd: Some(sd.unwrap_or(calibration.noise.pooled)) });
+    robot.uncertainty = uncertainty(calibration);
+    robot.calibrated = Some(calibrated_range(calibration, &campaign.measurements));
+    robot
+}
+
 /// Covariance of what the data determine of the robot and its tool; `None` where the noise is
 /// unknown.
 fn uncertainty(calibration: &Calibration) -> Option<Uncertainty> {

@@ -139,5 +139,7 @@ pub fn provenance(campaign: &Campaign) -> Vec<(String, String)> {
 /// The calibrated robot in the format of its file.
 pub fn calibrated_robot(campaign: &Campaign, calibrated: &Calibration) -> Result<Vec<(String, Vec<u8>)>> {
     let (name, text) = calibration::write_back(campaign, calibrated)?;
-    Ok(vec![(name, text.into_bytes())])
+    let beside = calibration::write_beside(campaign, calibrated, None);
+    let files = std::iter::once((name, text)).chain(beside);
+    Ok(files.map(|(name, text)| (name, text.into_bytes())).collect())
 }

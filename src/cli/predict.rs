@@ -21,6 +21,13 @@ pub struct Predict {
     /// the flange].
     #[arg(long, value_name = "X,Y,Z", value_parser = three_numbers, allow_hyphen_values = true)]
     tool: Option<[f64; 3]>,
+    /// What stands beside a URDF, as `calibrate --out` and `--apply` write it (TOML): tip, uncertainty,
+    /// calibrated ranges and effects.
+    #[arg(long, value_name = "FILE", conflicts_with = "corrections")]
+    effects: Option<PathBuf>,
+    /// State the uncertainty that is left after base and tool were aligned anew to these poses.
+    #[arg(long)]
+    aligned: bool,
     /// Table of corrections beside a URDF (CSV).
     #[arg(long, value_name = "FILE")]
     corrections: Option<PathBuf>,
@@ -37,6 +44,9 @@ impl Predict {
         let name = self.model.display().to_string();
         let text = files::read_text(&self.model)?;
         let mut robot = Robot::from_text(&name, &text, self.base_link.as_deref(), self.tip_link.as_deref())?;
+        if let Some(path) = &self.effects {
+            robot.add_beside(&path.display().to_string(), &files::read_text(path)?)?;
+        }
         if let Some(path) = &self.corrections {
             let text = files::read_text(path)?;
             let more = corrections_from_csv(&path.display().to_string(), &text, robot.joints.len())?;
@@ -48,7 +58,7 @@ impl Predict {
             Some(xyz) => xyz.map(|x| x * MM).into(),
             None => robot.tip.map(|tip| tip.at).unwrap_or_default(),
         };
-        let prediction = Prediction::new(&robot, tool, poses);
+        let prediction = Prediction::new(&robot, tool, poses, self.aligned)?;
         let mut report = report(&robot, &prediction);
         report.provenance = vec![
             ("model".into(), name),

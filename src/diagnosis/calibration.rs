@@ -27,21 +27,24 @@ mod gear;
 mod law;
 mod limits;
 mod linear_terms;
+mod memory;
 mod mistakes;
 mod model;
 mod next;
 mod nominal;
 mod nonparametric;
+mod patterns;
 mod prepared;
 #[cfg(test)]
 mod tests;
 mod transfer;
 mod vector;
 
-pub use apply::{Applied, apply};
+pub use apply::{Applied, apply, destination};
 pub use diagnose::{CalibrationDiagnosis, Happened, diagnose, diagnose_calibrated};
 pub use effects::CalibrationEffect;
 pub use gear::{Curve, Gear};
 pub use law::{Course, Frame, Law, Power, RodLoad, TakenUp};
+pub use memory::{MEMORY_LIMIT, check_memory, memory_needed};
 pub use mistakes::{Mended, Neighbours, Suspicion, mend, suspected};
 pub use model::CalibrationModel;

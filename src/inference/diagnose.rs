@@ -60,6 +60,7 @@ fn diagnose_with(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
     let folded = background::folded(evidence);
     let (settled, known) = settled(model, &folded.evidence);
     let evidence = &settled;
+    let model = &model.in_parts(evidence, &evidence.fold);
     let (search, hypothesis, left_over) = infer(model, evidence, Pairs::Screened, known);
     let held_out = hold_out(model, evidence, &hypothesis.terms);
     let (hypothesis, left_over) = confirmed(model, &search, hypothesis, left_over, held_out.as_ref());

@@ -120,6 +120,14 @@ impl Evidence {
         }
     }
 
+    /// True where all data count alike and none share an error.
+    pub fn is_plain(&self) -> bool {
+        let mut shared = self.shared.clone();
+        shared.sort_unstable();
+        shared.dedup();
+        shared.len() == self.residual.len() && self.weight.iter().all(|weight| *weight == 1.0)
+    }
+
     /// The covariate of a variable, where the recording has it.
     pub fn covariate(&self, variable: Variable) -> Option<&Covariate> {
         self.covariates.iter().find(|covariate| covariate.variable == variable)

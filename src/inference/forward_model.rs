@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
 
+use super::stored_column::StoredColumn;
 use super::{Description, Effect, Estimate, Finding, FindingPart, Hypothesis, Location, Term};
 
 /// Step of a derivative, relative to the size of a parameter.
@@ -70,6 +71,18 @@ pub trait ForwardModel: Sync {
     /// True where the response to these terms is linear in all their values.
     fn is_linear_in(&self, _: &[Term]) -> bool {
         self.is_linear()
+    }
+
+    /// A candidate's [`ForwardModel::columns`] at neutral values as a linear model stores them.
+    fn stored(&self, candidate: usize) -> Vec<StoredColumn<'_>> {
+        let columns = self.columns(&[self.candidates()[candidate].neutral(candidate)], 0);
+        let plain = |column: &[f64]| StoredColumn {
+            factor: 1.0,
+            first: 0,
+            values: column.to_vec().into(),
+            pattern: None,
+        };
+        columns.column_iter().map(|column| plain(column.as_slice())).collect()
     }
 
     /// Number of the case of each datum, counted from 0, where data of one case respond alike to many of the candidates;

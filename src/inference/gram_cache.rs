@@ -3,7 +3,7 @@
 //! A search adds, takes away and exchanges effects, and each time asks how every candidate goes with those that are there.
 //! Where effects are linear the products of a candidate's columns with all others are the same each time, and are kept.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, VecDeque};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use nalgebra::{DMatrix, DVector};
@@ -17,8 +17,19 @@ type Kept = Arc<Vec<DMatrix<f64>>>;
 pub struct GramCache {
     residual: Vec<DVector<f64>>,
     background: Vec<DMatrix<f64>>,
-    effects: Mutex<BTreeMap<usize, Kept>>,
+    effects: Mutex<Effects>,
 }
+
+/// Of effects, the oldest first in the order.
+#[derive(Default)]
+struct Effects {
+    of: BTreeMap<usize, Kept>,
+    order: VecDeque<usize>,
+    size: usize,
+}
+
+/// Numbers of the products between effects that a search keeps: 16 MB.
+const MOST: usize = 1 << 21;
 
 impl GramCache {
     /// Of `count` candidates, by their products with residual and background.
@@ -28,6 +39,11 @@ impl GramCache {
             background: (0..count).map(|candidate| background.of(candidate)).collect(),
             effects: Mutex::default(),
         }
+    }
+
+    /// Of the products of each candidate with residual and background.
+    pub(super) fn of_products(residual: Vec<DVector<f64>>, background: Vec<DMatrix<f64>>) -> Self {
+        GramCache { residual, background, effects: Mutex::default() }
     }
 
     /// Products of a candidate's columns with the residual.
@@ -42,8 +58,28 @@ impl GramCache {
         effects: &[usize],
         compute: &dyn Fn(usize) -> Vec<DMatrix<f64>>,
     ) -> impl Fn(usize) -> DMatrix<f64> + use<'a> {
-        let mut kept = self.effects.lock().unwrap_or_else(PoisonError::into_inner);
-        let of = |&effect: &usize| kept.entry(effect).or_insert_with(|| Arc::new(compute(effect))).clone();
+        let kept = || self.effects.lock().unwrap_or_else(PoisonError::into_inner);
+        let size = |kept: &Kept| kept.iter().map(DMatrix::len).sum::<usize>();
+        let of = |&effect: &usize| {
+            let known = kept().of.get(&effect).cloned();
+            known.unwrap_or_else(|| {
+                // not while others wait
+                let found: Kept = Arc::new(compute(effect));
+                let mut kept = kept();
+                kept.size += size(&found);
+                kept.order.push_back(effect);
+                if let Some(same) = kept.of.insert(effect, Arc::clone(&found)) {
+                    kept.size -= size(&same);
+                    kept.order.pop_back();
+                }
+                // what is asked for again is computed again
+                while kept.size > MOST && kept.order.len() > 1 {
+                    let oldest = kept.order.pop_front().and_then(|oldest| kept.of.remove(&oldest));
+                    kept.size -= oldest.map_or(0, |oldest| size(&oldest));
+                }
+                found
+            })
+        };
         let parts: Vec<Kept> = effects.iter().map(of).collect();
         move |candidate| {
             let parts = parts.iter().map(|part| &part[candidate]);

@@ -88,14 +88,15 @@ pub(super) struct Trained {
     pub without: Vec<(Theme, DVector<f64>)>,
 }
 
-/// Selects with the data `kept` only; `whole` are the terms that all data support.
+/// Selects with the data `kept` only, which are all but those of the part `left_out` of the model; `whole` are the terms that all data support.
 pub(super) fn trained_on(
     model: &Linearised<'_>,
     evidence: &Evidence,
     kept: &[usize],
+    left_out: usize,
     whole: &[Term],
 ) -> Trained {
-    let (part, training) = (model.part(kept), evidence.part(kept));
+    let (part, training) = (model.part(kept, left_out), evidence.part(kept));
     let pairs = if whole.len() > 1 { Pairs::Screened } else { Pairs::LeftOut };
     let (search, hypothesis, _) = infer(&part, &training, pairs, None);
     let left = |hypothesis: &Hypothesis| {
@@ -134,7 +135,7 @@ pub fn hold_out(model: &Linearised<'_>, evidence: &Evidence, whole: &[Term]) -> 
     let by_fold = in_parallel(folds.len(), |k| {
         let (held_out, kept): (Vec<usize>, Vec<usize>) =
             (0..n).partition(|&row| evidence.fold[row] == folds[k]);
-        let trained = trained_on(model, evidence, &kept, whole);
+        let trained = trained_on(model, evidence, &kept, folds[k], whole);
         (held_out, trained)
     });
     let (mut errors_before, mut errors_after) = (DVector::repeat(n, f64::NAN), DVector::repeat(n, f64::NAN));

@@ -70,9 +70,23 @@ impl Search<'_> {
                 let whitened = self.whitening.apply_columns(&self.model.neutral(paired[k]));
                 columns.columns_mut(starts[k] - starts[next], counts[k]).copy_from(&whitened);
             }
-            let products = self.model.products(self.whitening.transposed(&columns));
-            for (k, &index) in paired.iter().enumerate() {
-                gram.view_mut((starts[next], starts[k]), (own, counts[k])).copy_from(&products.of(index));
+            match &self.training {
+                Some(training) => {
+                    for k in next..end {
+                        let products = training.between(paired[k]);
+                        for (other, &index) in paired.iter().enumerate() {
+                            let (at, size) = ((starts[k], starts[other]), (counts[k], counts[other]));
+                            gram.view_mut(at, size).copy_from(&products[index]);
+                        }
+                    }
+                }
+                None => {
+                    let products = self.model.products(self.whitening.transposed(&columns));
+                    for (k, &index) in paired.iter().enumerate() {
+                        let (at, size) = ((starts[next], starts[k]), (own, counts[k]));
+                        gram.view_mut(at, size).copy_from(&products.of(index));
+                    }
+                }
             }
             product.rows_mut(starts[next], own).copy_from(&columns.tr_mul(&residual));
             cross.columns_mut(starts[next], own).copy_from(&transposed_product(&base, &columns));

@@ -19,9 +19,7 @@ mod tests;
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::linalg::positive_definite_inverse;
-#[cfg(test)]
-use crate::linalg::transposed_product;
+use crate::linalg::{positive_definite_inverse, transposed_product};
 use crate::statistics::ln_normal_mass;
 
 /// Least noise variance relative to that of the residual.
@@ -42,6 +40,8 @@ const SETTLED: (f64, f64) = (1e-6, 0.02);
 const ROUGHLY: f64 = 0.05;
 /// Size, relative to what a column was, of what rounding leaves of one that a hypothesis holds already.
 const ROUNDING: f64 = 1e-9;
+/// Numbers of cross products below which they are few.
+const FEW: usize = 96;
 /// Times that a diagonal is made ten times larger.
 const TRIES: usize = 12;
 
@@ -289,13 +289,20 @@ impl Moments {
     /// Inner products of `more` columns with each other and with r, the hypothesis's columns out of them.
     fn reduced(&self, score: &Score, more: &ColumnBlock) -> (DMatrix<f64>, DVector<f64>) {
         // (G + σ²)⁻¹ is the posterior covariance over σ²
-        let mut reduced = DMatrix::zeros(more.cross.nrows(), more.cross.ncols());
-        // so few columns are sooner multiplied one by one
-        for (mut reduced, cross) in reduced.column_iter_mut().zip(more.cross.column_iter()) {
-            for (covariance, cross) in score.covariance.column_iter().zip(cross.iter()) {
-                reduced.axpy(cross / score.sigma.powi(2), &covariance, 1.0);
+        let per_square = score.sigma.powi(2).recip();
+        let reduced = match more.cross.len() < FEW {
+            // so few columns are sooner multiplied one by one
+            true => {
+                let mut reduced = DMatrix::zeros(more.cross.nrows(), more.cross.ncols());
+                for (mut reduced, cross) in reduced.column_iter_mut().zip(more.cross.column_iter()) {
+                    for (covariance, cross) in score.covariance.column_iter().zip(cross.iter()) {
+                        reduced.axpy(cross * per_square, &covariance, 1.0);
+                    }
+                }
+                reduced
             }
-        }
+            false => transposed_product(&score.covariance, &more.cross) * per_square,
+        };
         let gram = more.gram - more.cross.tr_mul(&reduced);
         (gram, &more.product - reduced.tr_mul(&self.product))
     }

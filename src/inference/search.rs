@@ -14,6 +14,7 @@ use super::columns::Table;
 use super::gram_cache::{GramCache, stacked};
 use super::lack_of_fit::{LackOfFit, Replicates};
 use super::linearised::Linearised;
+use super::part_products::Training;
 use super::score::{ColumnBlock, Moments, Score};
 use super::whitening::Whitening;
 use super::{Candidate, Effect, Evidence, ForwardModel, Hypothesis, Kind, Term};
@@ -41,8 +42,10 @@ pub struct Search<'a> {
     pub(super) whitening: Whitening,
     /// Background, whitened and projected, and its inner products.
     background: (DMatrix<f64>, DMatrix<f64>),
-    /// Those of the background with each candidate's columns at neutral values.
-    beside_background: Table<'a>,
+    /// Those of the background with each candidate's columns at neutral values; not of a linear model in parts.
+    beside_background: Option<Table<'a>>,
+    /// Of a linear model in parts.
+    pub(super) training: Option<Training<'a>>,
     /// Inner products of each candidate's columns, whitened and projected, with each other. Those with what is projected
     /// need no projection of theirs.
     grams: Vec<DMatrix<f64>>,
@@ -70,17 +73,31 @@ impl<'a> Search<'a> {
     pub fn new(model: &'a Linearised<'a>, evidence: &'a Evidence, adopted: &[Term]) -> Self {
         let left = &evidence.residual - model.response(adopted);
         let whitening = Whitening::new(evidence, &left);
-        let grams = grams(model, &whitening);
         let residual = whitening.apply(&evidence.residual);
         let background = whitening.apply_columns(&evidence.background);
-        let beside_background = model.table(&whitening.transposed(&background));
-        let kept = model.is_linear().then(|| {
-            let of_residual = DMatrix::from_column_slice(residual.len(), 1, residual.as_slice());
-            let of_residual = model.table(&whitening.transposed(&of_residual));
-            GramCache::new(grams.len(), &of_residual, &beside_background)
-        });
+        let training = model.training(&whitening);
+        let (grams, beside_background, kept) = match &training {
+            Some(training) => {
+                let of_residual = DMatrix::from_columns(std::slice::from_ref(&evidence.residual));
+                let of_residual =
+                    training.beside_residual(&whitening.along_basis(&of_residual).column(0).into_owned());
+                let of_background = training.beside_background(&whitening.along_basis(&evidence.background));
+                (training.grams(), None, Some(GramCache::of_products(of_residual, of_background)))
+            }
+            None => {
+                let grams = grams(model, &whitening);
+                let beside_background = model.table(&whitening.transposed(&background));
+                let kept = model.is_linear().then(|| {
+                    let of_residual = DMatrix::from_column_slice(residual.len(), 1, residual.as_slice());
+                    let of_residual = model.table(&whitening.transposed(&of_residual));
+                    GramCache::new(grams.len(), &of_residual, &beside_background)
+                });
+                (grams, Some(beside_background), kept)
+            }
+        };
         Search {
             kept,
+            training,
             grams,
             residual,
             background: {
@@ -351,46 +368,68 @@ impl<'a> Search<'a> {
             let of = move |index: usize| {
                 let all = products.of(index);
                 let effects = all.rows(0, count).into_owned();
-                let cross = stacked(&self.beside_background.of(index), std::iter::once(&effects));
+                let background = self.beside_background.as_ref().map(|table| table.of(index));
+                let cross = stacked(&background.unwrap_or_default(), std::iter::once(&effects));
                 (cross, all.row(count).transpose())
             };
             return (moments, Box::new(of));
         };
         let effects: Vec<usize> = terms.iter().map(|c| c.candidate).collect();
-        let cross = kept.hypothesis(&effects, &|effect| {
-            let own = self.whitening.apply_columns(&self.model.neutral(effect));
-            let products = self.model.table(&self.whitening.transposed(&own));
-            (0..self.grams.len()).map(|index| products.of(index)).collect()
-        });
+        let cross = kept.hypothesis(&effects, &|effect| self.beside_effect(effect));
+        let moments = self.kept_moments(kept, terms);
+        (moments, Box::new(move |index| (cross(index), kept.residual(index).clone())))
+    }
+
+    /// Inner products of an effect's columns (rows) with those of each candidate.
+    fn beside_effect(&self, effect: usize) -> Vec<DMatrix<f64>> {
+        if let Some(training) = &self.training {
+            return training.between(effect);
+        }
+        let own = self.whitening.apply_columns(&self.model.neutral(effect));
+        let products = self.model.table(&self.whitening.transposed(&own));
+        (0..self.grams.len()).map(|index| products.of(index)).collect()
+    }
+
+    fn moments(&self, terms: &[Term]) -> Moments {
+        if let Some(kept) = &self.kept {
+            return self.kept_moments(kept, terms);
+        }
+        let (r, own) = self.linear(terms);
+        self.moments_of(&r, &own, terms)
+    }
+
+    /// Of a linear model. Of the last effect, which is often only tried, no products with all candidates are needed.
+    fn kept_moments(&self, kept: &GramCache, terms: &[Term]) -> Moments {
+        let effects: Vec<usize> = terms.iter().map(|c| c.candidate).collect();
+        let leading = &effects[..effects.len().saturating_sub(1)];
+        let cross = kept.hypothesis(leading, &|effect| self.beside_effect(effect));
         let first = self.background.0.ncols();
-        let blocks: Vec<DMatrix<f64>> = effects.iter().map(|&effect| cross(effect)).collect();
-        let count = first + blocks.iter().map(DMatrix::ncols).sum::<usize>();
+        let counts: Vec<usize> = effects.iter().map(|&effect| self.grams[effect].ncols()).collect();
+        let count = first + counts.iter().sum::<usize>();
         let (mut gram, mut product) = (DMatrix::zeros(count, count), DVector::zeros(count));
         gram.view_mut((0, 0), (first, first)).copy_from(&self.background.1);
         product.rows_mut(0, first).copy_from(&self.background.0.tr_mul(&self.residual));
         let mut next = first;
-        for (block, &effect) in blocks.iter().zip(&effects) {
-            gram.columns_mut(next, block.ncols()).copy_from(block);
-            product.rows_mut(next, block.ncols()).copy_from(kept.residual(effect));
-            next += block.ncols();
+        for (&effect, &own) in effects.iter().zip(&counts) {
+            let block = cross(effect);
+            // symmetric to the last bit
+            let above = next.min(block.nrows());
+            gram.view_mut((0, next), (above, own)).copy_from(&block.rows(0, above));
+            gram.view_mut((next, 0), (own, above)).copy_from(&block.rows(0, above).transpose());
+            gram.view_mut((next, next), (own, own)).copy_from(&self.grams[effect]);
+            product.rows_mut(next, own).copy_from(kept.residual(effect));
+            next += own;
         }
-        let beside = gram.view((0, first), (first, count - first)).transpose();
-        gram.view_mut((first, 0), (count - first, first)).copy_from(&beside);
-        let (bounds, floor) = (self.bounds(terms), self.floor());
-        let stated = self.evidence.stated_noise;
-        let square = self.residual.norm_squared();
-        let degrees_of_freedom = self.informative();
-        let effects = terms.iter().map(|c| c.values.len()).collect();
-        let moments = Moments { square, gram, product, bounds, effects, degrees_of_freedom, floor, stated };
-        (moments, Box::new(move |index| (cross(index), kept.residual(index).clone())))
-    }
-
-    fn moments(&self, terms: &[Term]) -> Moments {
-        if self.kept.is_some() {
-            return self.crossed(terms).0;
+        Moments {
+            square: self.residual.norm_squared(),
+            gram,
+            product,
+            bounds: self.bounds(terms),
+            effects: counts,
+            degrees_of_freedom: self.informative(),
+            floor: self.floor(),
+            stated: self.evidence.stated_noise,
         }
-        let (r, own) = self.linear(terms);
-        self.moments_of(&r, &own, terms)
     }
 
     /// Of a residual and the columns of the effects, the background before them.

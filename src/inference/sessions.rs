@@ -32,11 +32,12 @@ pub(super) fn leave_one_session_out(model: &Linearised<'_>, evidence: &Evidence)
     if sessions.len() < 2 {
         return Vec::new();
     }
+    let model = &model.in_parts(evidence, &evidence.session);
     let n = evidence.residual.len();
     in_parallel(sessions.len(), |k| {
         let session = sessions[k];
         let (out, kept): (Vec<usize>, Vec<usize>) = (0..n).partition(|&row| evidence.session[row] == session);
-        let trained = trained_on(model, evidence, &kept, &[]);
+        let trained = trained_on(model, evidence, &kept, session, &[]);
         let left_of = |errors: &DVector<f64>| left(evidence, errors, &out);
         LeftOutSession { session, before: left_of(&trained.before), after: left_of(&trained.after) }
     })

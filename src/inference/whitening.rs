@@ -43,6 +43,10 @@ pub struct Whitening {
     pub correlation: f64,
     /// Orthonormal basis of the whitened nuisance columns.
     basis: Vec<DVector<f64>>,
+    /// What each whitened nuisance column counts in each vector of the basis.
+    coefficients: Vec<DVector<f64>>,
+    /// How many nuisance columns there are.
+    nuisance: usize,
     /// ρ.
     pub ratio: f64,
     /// Data less what the nuisance columns absorb.
@@ -77,19 +81,28 @@ impl Whitening {
             groups,
             correlation,
             basis: Vec::new(),
+            coefficients: Vec::new(),
+            nuisance: evidence.nuisance.ncols(),
             ratio,
             degrees_of_freedom: evidence.residual.len(),
         };
-        for column in evidence.nuisance.column_iter() {
+        for (k, column) in evidence.nuisance.column_iter().enumerate() {
             let mut own = whitening.whitened(&column.into_owned());
+            let mut coefficients = DVector::zeros(whitening.nuisance);
+            coefficients[k] = 1.0;
             let before = own.norm();
             // twice is enough
             for _ in 0..2 {
-                whitening.project(&mut own);
+                for (b, counts) in whitening.basis.iter().zip(&whitening.coefficients) {
+                    let along = b.dot(&own);
+                    own.axpy(-along, b, 1.0);
+                    coefficients.axpy(-along, counts, 1.0);
+                }
             }
             let length = own.norm();
             if length > DEPENDENT * before && length > 0.0 {
                 whitening.basis.push(own / length);
+                whitening.coefficients.push(coefficients / length);
             }
         }
         whitening.degrees_of_freedom -= whitening.basis.len().min(evidence.residual.len());
@@ -194,6 +207,19 @@ impl Whitening {
         }
     }
 
+    /// What the whitened nuisance columns (rows) count in the vectors of the basis (columns).
+    pub fn coefficients(&self) -> DMatrix<f64> {
+        match self.coefficients.is_empty() {
+            true => DMatrix::zeros(self.nuisance, 0),
+            false => DMatrix::from_columns(&self.coefficients),
+        }
+    }
+
+    /// Qᵀv of whitened columns, Q the basis.
+    pub fn along_basis(&self, whitened: &DMatrix<f64>) -> DMatrix<f64> {
+        DMatrix::from_fn(self.basis.len(), whitened.ncols(), |k, j| self.basis[k].dot(&whitened.column(j)))
+    }
+
     /// Column by column, not projected.
     pub fn whitened_columns(&self, columns: &DMatrix<f64>) -> DMatrix<f64> {
         let mut result = columns.clone();
@@ -213,13 +239,20 @@ impl Whitening {
         gram - transposed_product(&along, &along)
     }
 
-    /// Factors of the nuisance columns that fit `left` best.
+    /// Factors of the nuisance columns, those of the evidence, that fit `left` best.
     pub fn nuisance(&self, columns: &DMatrix<f64>, left: &DVector<f64>) -> DVector<f64> {
         if columns.ncols() == 0 {
             return DVector::zeros(0);
         }
-        let whitened = self.whitened_columns(columns);
         let left = self.whitened(left);
+        if self.basis.len() == columns.ncols() {
+            let mut factors = DVector::zeros(columns.ncols());
+            for (b, counts) in self.basis.iter().zip(&self.coefficients) {
+                factors.axpy(b.dot(&left), counts, 1.0);
+            }
+            return factors;
+        }
+        let whitened = self.whitened_columns(columns);
         // where a part of the data cannot tell the columns apart, the smallest factors that fit
         let smallest = |_| {
             let svd = thin_svd(&whitened)?;

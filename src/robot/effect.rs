@@ -6,9 +6,12 @@
 //! encoder_scale        (s − 1)·q
 //! backlash             ½·b·sign(τ)
 //! wrist_coupling       k·q of another joint
+//! joint_compliance     c·τ
+//! weight               c·(horizontal lever of a frame about the joint): the joint yields to a weight there
+//!                      that nobody knows
 //! ```
 
-/// An error of a joint. Joints count from 0.
+/// An error of a joint; what follows the move before is in `moves.rs`. Joints count from 0.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Effect {
@@ -44,6 +47,36 @@ pub enum Effect {
         /// b, rad.
         play: f64,
     },
+    /// Play that friction holds open: the joint stays at the side that it was driven to.
+    PlayByApproach {
+        /// The joint.
+        joint: usize,
+        /// The whole gap, rad.
+        play: f64,
+    },
+    /// Angles that were read before the arm had settled.
+    Lag {
+        /// The joint; `None` for all.
+        joint: Option<usize>,
+        /// Share of the last move that was still to come.
+        fraction: f64,
+    },
+    /// A joint that yields to its torque, in files that have no place for that at the joint.
+    Compliance {
+        /// The joint.
+        joint: usize,
+        /// c, rad/(N·m).
+        per_nm: f64,
+    },
+    /// A joint that yields to an unknown weight at a frame beyond it.
+    Weight {
+        /// The joint.
+        joint: usize,
+        /// The joint on whose axis the weight sits; `None` for the flange.
+        at: Option<usize>,
+        /// Turn per horizontal lever of the weight about the joint's axis, rad/m.
+        per_metre: f64,
+    },
     /// A joint that turns with another one.
     Coupling {
         /// The one that drives.
@@ -56,15 +89,24 @@ pub enum Effect {
 }
 
 impl Effect {
-    /// The joint that it turns.
-    pub fn joint(&self) -> usize {
+    /// The joint that it turns; `None` for all.
+    pub fn joint(&self) -> Option<usize> {
         match self {
+            Effect::Lag { joint, .. } => *joint,
             Effect::Harmonic { joint, .. }
             | Effect::Table { joint, .. }
             | Effect::EncoderScale { joint, .. }
             | Effect::Backlash { joint, .. }
-            | Effect::Coupling { joint, .. } => *joint,
+            | Effect::PlayByApproach { joint, .. }
+            | Effect::Weight { joint, .. }
+            | Effect::Compliance { joint, .. }
+            | Effect::Coupling { joint, .. } => Some(*joint),
         }
+    }
+
+    /// True of a function of its joint's own angle, which a table of corrections can hold.
+    pub fn is_of_own_angle(&self) -> bool {
+        matches!(self, Effect::Harmonic { .. } | Effect::Table { .. } | Effect::EncoderScale { .. })
     }
 
     /// Turn of its joint, rad, at the joint values `q` (rad or m) under the torques `torque` (N·m;
@@ -90,7 +132,10 @@ impl Effect {
                 Some(torque) if *torque != 0.0 => 0.5 * play * torque.signum(),
                 _ => 0.0,
             },
+            Effect::Compliance { joint, per_nm } => torque.get(*joint).map_or(0.0, |torque| per_nm * torque),
             Effect::Coupling { from, fraction, .. } => fraction * q[*from],
+            // by the move before, and by where all frames are
+            Effect::PlayByApproach { .. } | Effect::Lag { .. } | Effect::Weight { .. } => 0.0,
         }
     }
 }

@@ -8,7 +8,7 @@ use super::{Effect, Robot};
 use crate::delimited::Table;
 use crate::error::Result;
 use crate::toml_text::{Number, TomlText, in_unit};
-use crate::units::{DEG, URAD};
+use crate::units::{DEG, URAD, URAD_PER_NM};
 
 /// Columns of the table of corrections.
 const COLUMNS: [&str; 3] = ["joint", "angle_deg", "correction_urad"];
@@ -17,7 +17,7 @@ const COLUMNS: [&str; 3] = ["joint", "angle_deg", "correction_urad"];
 #[serde(deny_unknown_fields, expecting = "a section [[effect]]")]
 pub(super) struct RawEffect {
     name: Spanned<String>,
-    joint: Spanned<usize>,
+    joint: Option<Spanned<usize>>,
     cycles_per_rev: Option<Number>,
     sin_urad: Option<Number>,
     cos_urad: Option<Number>,
@@ -27,6 +27,10 @@ pub(super) struct RawEffect {
     play_urad: Option<Number>,
     from_joint: Option<Spanned<usize>>,
     fraction: Option<Number>,
+    taken_up: Option<Spanned<String>>,
+    at_joint: Option<Spanned<usize>>,
+    urad_per_m: Option<Number>,
+    urad_per_nm: Option<Number>,
 }
 
 /// An effect of a robot with so many joints.
@@ -37,8 +41,12 @@ pub(super) fn read(toml: &TomlText, spanned: &Spanned<RawEffect>, joints: usize)
         _ => Err(toml.is(key, number, &format!("a joint from 1 to {joints}"))),
     };
     let lacks = |what: &str| Err(toml.wrong(spanned, format!("an effect without {what}"), EXPECTED));
-    let joint = number_of("effect.joint", &raw.joint)?;
     let finite = |key: &str, number: &Number, si: f64| Ok(toml.finite(key, number)? * si);
+    let joint = raw.joint.as_ref().map(|joint| number_of("effect.joint", joint)).transpose()?;
+    if let ("readback_lag", Some(fraction)) = (raw.name.get_ref().as_str(), &raw.fraction) {
+        return Ok(Effect::Lag { joint, fraction: finite("effect.fraction", fraction, 1.0)? });
+    }
+    let Some(joint) = joint else { return lacks("joint") };
     match raw.name.get_ref().as_str() {
         "transmission_error" => match (&raw.cycles_per_rev, &raw.angle_deg, &raw.correction_urad) {
             (Some(cycles), None, None) => {
@@ -77,9 +85,31 @@ pub(super) fn read(toml: &TomlText, spanned: &Spanned<RawEffect>, joints: usize)
             None => lacks("factor"),
         },
         "backlash" => match &raw.play_urad {
-            Some(play) => Ok(Effect::Backlash { joint, play: finite("effect.play_urad", play, URAD)? }),
+            Some(play) => {
+                let play = finite("effect.play_urad", play, URAD)?;
+                match &raw.taken_up {
+                    None => Ok(Effect::Backlash { joint, play }),
+                    Some(by) if by.get_ref() == "load" => Ok(Effect::Backlash { joint, play }),
+                    Some(by) if by.get_ref() == "approach" => Ok(Effect::PlayByApproach { joint, play }),
+                    Some(by) => Err(toml.is("effect.taken_up", by, "\"load\" or \"approach\"")),
+                }
+            }
             None => lacks("play_urad"),
         },
+        "weight" => match &raw.urad_per_m {
+            Some(turn) => {
+                let at = raw.at_joint.as_ref().map(|at| number_of("effect.at_joint", at)).transpose()?;
+                Ok(Effect::Weight { joint, at, per_metre: finite("effect.urad_per_m", turn, URAD)? })
+            }
+            None => lacks("urad_per_m"),
+        },
+        "joint_compliance" => match &raw.urad_per_nm {
+            Some(turn) => {
+                Ok(Effect::Compliance { joint, per_nm: finite("effect.urad_per_nm", turn, URAD_PER_NM)? })
+            }
+            None => lacks("urad_per_nm"),
+        },
+        "readback_lag" => lacks("fraction"),
         "wrist_coupling" => match (&raw.from_joint, &raw.fraction) {
             (Some(from), Some(fraction)) => Ok(Effect::Coupling {
                 from: number_of("effect.from_joint", from)?,
@@ -93,7 +123,8 @@ pub(super) fn read(toml: &TomlText, spanned: &Spanned<RawEffect>, joints: usize)
 }
 
 const EXPECTED: &str = "transmission_error (cycles_per_rev, sin_urad, cos_urad; or angle_deg and correction_urad), \
-                        encoder_scale (factor), backlash (play_urad) or wrist_coupling (from_joint, fraction)";
+                        encoder_scale (factor), backlash (play_urad, taken_up), wrist_coupling (from_joint, fraction), \
+                        readback_lag (fraction; of all joints without joint), joint_compliance (urad_per_nm) or weight (at_joint, urad_per_m)";
 
 /// The section of an effect.
 pub(super) fn written(effect: &Effect) -> String {
@@ -120,6 +151,23 @@ pub(super) fn written(effect: &Effect) -> String {
         Effect::Backlash { joint, play } => {
             format!("{}play_urad = {:?}\n", head("backlash", *joint), urad(*play))
         }
+        Effect::PlayByApproach { joint, play } => {
+            format!("{}play_urad = {:?}\ntaken_up = \"approach\"\n", head("backlash", *joint), urad(*play))
+        }
+        Effect::Lag { joint: Some(joint), fraction } => {
+            format!("{}fraction = {fraction:?}\n", head("readback_lag", *joint))
+        }
+        Effect::Lag { joint: None, fraction } => {
+            format!("\n[[effect]]\nname = \"readback_lag\"\nfraction = {fraction:?}\n")
+        }
+        Effect::Compliance { joint, per_nm } => {
+            let c = in_unit(*per_nm, URAD_PER_NM);
+            format!("{}urad_per_nm = {c:?}\n", head("joint_compliance", *joint))
+        }
+        Effect::Weight { joint, at, per_metre } => {
+            let at = at.map_or_else(String::new, |at| format!("at_joint = {}\n", at + 1));
+            format!("{}{at}urad_per_m = {:?}\n", head("weight", *joint), urad(*per_metre))
+        }
         Effect::Coupling { from, joint, fraction } => {
             format!("{}from_joint = {}\nfraction = {fraction:?}\n", head("wrist_coupling", *joint), from + 1)
         }
@@ -133,9 +181,7 @@ pub fn corrections_csv(robot: &Robot, angles: &[Vec<f64>]) -> String {
         "# add correction_urad to the angle that the joint shows; straight between the rows\n".to_owned();
     text += &format!("{}\n", COLUMNS.join(","));
     for (joint, angles) in angles.iter().enumerate() {
-        let own = |effect: &&Effect| {
-            effect.joint() == joint && !matches!(effect, Effect::Coupling { .. } | Effect::Backlash { .. })
-        };
+        let own = |effect: &&Effect| effect.joint() == Some(joint) && effect.is_of_own_angle();
         let effects: Vec<&Effect> = robot.effects.iter().filter(own).collect();
         if effects.is_empty() {
             continue;

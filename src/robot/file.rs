@@ -5,6 +5,7 @@ use nalgebra::Vector3;
 use serde::Deserialize;
 use toml::Spanned;
 
+use super::calibrated::{self, RawCalibrated};
 use super::defaults::{DOWN, default_name, file_stem};
 use super::effects_file::{self, RawEffect};
 use super::standard_uncertainty::{self, RawStandardUncertainty};
@@ -97,13 +98,14 @@ struct RawRobot {
     #[serde(default)]
     standard_uncertainty: RawStandardUncertainty,
     uncertainty: Option<RawUncertainty>,
+    calibrated: Option<RawCalibrated>,
     #[serde(default)]
     effect: Vec<Spanned<RawEffect>>,
 }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a section [tip]")]
-struct RawTip {
+pub(super) struct RawTip {
     xyz_mm: Spanned<Vec<Number>>,
     sd_mm: Option<Number>,
 }
@@ -126,7 +128,7 @@ struct RawJoint {
 }
 
 /// What a robot file cannot do without, in words.
-const REQUIRED: &Required = &[
+pub(super) const REQUIRED: &Required = &[
     ("[joint]", "a section [[joint]] with d_mm, a_mm, alpha_deg for each joint, base to flange"),
     ("d_mm", "the offset along the joint's axis in mm"),
     ("a_mm", "the length of the link in mm"),
@@ -152,13 +154,7 @@ fn read_table(file: &str, text: &str) -> Result<Robot> {
         return Err(toml.wrong(&raw.joint, "the robot has no joint".to_owned(), REQUIRED[0].1));
     }
     let tip = match &raw.tip {
-        Some(raw) => Some(Tip {
-            at: table.vector("tip.xyz_mm", &raw.xyz_mm, "in mm in {T}")? * MM,
-            sd: match &raw.sd_mm {
-                Some(sd) => Some(table.0.not_negative("tip.sd_mm", sd)? * MM),
-                None => None,
-            },
-        }),
+        Some(raw) => Some(self::tip(&table.0, raw)?),
         None => None,
     };
     let joint_count = raw.joint.get_ref().len();
@@ -170,18 +166,32 @@ fn read_table(file: &str, text: &str) -> Result<Robot> {
         .map(|effect| effects_file::read(&table.0, effect, joint_count))
         .collect::<Result<_>>()?;
     let joints = raw.joint.get_ref().iter().enumerate();
+    let joints: Vec<Joint> = joints.map(|(index, joint)| table.joint(index, joint)).collect::<Result<_>>()?;
+    let calibrated = raw.calibrated.as_ref().map(|range| calibrated::read(&table.0, range, &joints));
     Ok(Robot {
+        calibrated: calibrated.transpose()?,
         name: raw.name.unwrap_or_else(|| file_stem(file)),
         source: raw.source,
         gravity,
         root: Pose::IDENTITY,
-        joints: joints.map(|(index, joint)| table.joint(index, joint)).collect::<Result<_>>()?,
+        joints,
         flange: Pose::IDENTITY,
         effects,
         tip,
         standard_uncertainty: standard_uncertainty::read(&table.0, &raw.standard_uncertainty)?,
         uncertainty,
     })
+}
+
+/// The section [tip].
+pub(super) fn tip(toml: &TomlText, raw: &RawTip) -> Result<Tip> {
+    let number = |number| Ok(toml.finite("tip.xyz_mm", number)? * MM);
+    let [x, y, z] = raw.xyz_mm.get_ref().as_slice() else {
+        return Err(toml.is("tip.xyz_mm", &raw.xyz_mm, "three numbers [x, y, z] in mm in {T}"));
+    };
+    let at = Vector3::new(number(x)?, number(y)?, number(z)?);
+    let sd = raw.sd_mm.as_ref().map(|sd| toml.not_negative("tip.sd_mm", sd));
+    Ok(Tip { at, sd: sd.transpose()?.map(|sd| sd * MM) })
 }
 
 /// The checks of a table's values.

@@ -3,7 +3,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::{Hayati, Motion, Parameter, Robot, Setup};
+use super::{Effect, Hayati, Motion, Parameter, Robot, Setup};
 use crate::spatial::{Pose, left_jacobian, turned_about_x, turned_about_y, turned_about_z};
 
 /// One configuration of a [`Setup`] in {W}. Made once and moved from pose to pose without
@@ -95,12 +95,37 @@ impl<'s> Kinematics<'s> {
     /// Moves to the joint values `q` (rad or m). `torque` (N·m, one per joint) turns compliant
     /// joints on; it may be empty where no joint is compliant.
     pub fn update(&mut self, q: &[f64], torque: &[f64]) {
+        self.place(q, torque, &[]);
+        // what weights turn hardly moves their levers
+        let turns = self.turns_by_weights();
+        if !turns.is_empty() {
+            self.place(q, torque, &turns);
+        }
+    }
+
+    /// Turn of each joint by unknown weights: Σ c·z·((p − o) × down); nothing where there are none.
+    fn turns_by_weights(&self) -> Vec<f64> {
+        let robot = self.setup.robot;
+        let mut turns = Vec::new();
+        for effect in &robot.effects {
+            let Effect::Weight { joint, at, per_metre } = effect else { continue };
+            turns.resize(robot.joints.len(), 0.0);
+            let down = (self.base.rotation * robot.gravity).try_normalize(0.0).unwrap_or_default();
+            let point = at.map_or(self.flange.origin, |k| self.joints[k].origin);
+            let own = &self.joints[*joint];
+            turns[*joint] += per_metre * own.axis.dot(&(point - own.origin).cross(&down));
+        }
+        turns
+    }
+
+    fn place(&mut self, q: &[f64], torque: &[f64], turns: &[f64]) {
         let setup = self.setup;
         let mut frame = self.root;
         for (j, frames) in self.joints.iter_mut().enumerate() {
             // θ = offset + q + c·τ + effects
             let compliant_turn = torque.get(j).map_or(0.0, |torque| setup.compliance[j] * torque);
-            let correction = setup.robot.correction(j, q, torque);
+            let by_weights = turns.get(j).copied().unwrap_or(0.0);
+            let correction = setup.robot.correction(j, q, torque) + by_weights;
             let link = setup.links[j].moved(frames.motion, q[j] + compliant_turn + correction);
             let turned = turned_about_z(&frame.rotation, link.theta.sin_cos());
             let tilted = turned_about_x(&turned, frames.alpha);
@@ -187,7 +212,7 @@ impl Hayati {
 impl Robot {
     /// How much farther a joint turns than it reads, rad; see [`super::Effect::turn`].
     pub fn correction(&self, joint: usize, q: &[f64], torque: &[f64]) -> f64 {
-        let own = self.effects.iter().filter(|effect| effect.joint() == joint);
+        let own = self.effects.iter().filter(|effect| effect.joint() == Some(joint));
         own.map(|effect| effect.turn(q, torque)).sum()
     }
 

@@ -1,8 +1,8 @@
 //! Where a calibrated robot's tip is, at any joint values, and the file that they come from.
 
-use nalgebra::{Matrix3, Matrix3xX, Vector3};
+use nalgebra::{Matrix3xX, Vector3};
 
-use super::{Kinematics, Loads, Motion, Robot, Setup, Uncertainty};
+use super::{Effect, Kinematics, Loads, Motion, Parameter, Robot, Setup};
 use crate::delimited::Table;
 use crate::error::{Error, Place, Result};
 use crate::spatial::Pose;
@@ -20,17 +20,17 @@ pub struct PredictionQuery {
     pub joints: Vec<f64>,
 }
 
-impl Uncertainty {
-    /// Covariance of the tip in {0}, m², where `kinematics` stands with `torque` (N·m) on its
-    /// joints.
-    pub fn of_tip(&self, kinematics: &Kinematics, torque: &[f64]) -> Matrix3<f64> {
-        let columns: Vec<_> = self.parameters.iter().map(|&p| kinematics.column(p, torque)).collect();
-        if columns.is_empty() {
-            return Matrix3::zeros();
-        }
-        let jacobian = Matrix3xX::from_columns(&columns);
-        &jacobian * &self.covariance * jacobian.transpose()
-    }
+/// A predicted tip.
+#[derive(Debug, Clone)]
+pub struct PredictedTip {
+    /// In {0}, m.
+    pub tip: Vector3<f64>,
+    /// ∂tip/∂parameter of the parameters whose uncertainty the file states, SI.
+    pub slopes: Option<Matrix3xX<f64>>,
+    /// ∂tip/∂(base and tool), which a user may align anew.
+    pub placement: Matrix3xX<f64>,
+    /// ∂tip/∂q, m/rad or m/m.
+    pub joints: Matrix3xX<f64>,
 }
 
 impl Robot {
@@ -53,6 +53,19 @@ impl Robot {
     /// assert!((tip.y + 0.5 * 98.0665e-6).abs() < 1e-11 && sd.is_none());
     /// ```
     pub fn tip_at(&self, tool: Vector3<f64>, q: &[f64]) -> (Vector3<f64>, Option<Vector3<f64>>) {
+        let predicted = self.predicted_at(tool, q);
+        let sd = self.tip.and_then(|tip| tip.sd).map(|sd| {
+            let own = predicted.slopes.as_ref().zip(self.uncertainty.as_ref());
+            let variance = own.map_or_else(Vector3::zeros, |(slopes, known)| {
+                (slopes * &known.covariance * slopes.transpose()).diagonal()
+            });
+            variance.map(|own| (sd * sd + own).sqrt())
+        });
+        (predicted.tip, sd)
+    }
+
+    /// The tip as for [`Robot::tip_at`], and how it moves with what is uncertain.
+    pub fn predicted_at(&self, tool: Vector3<f64>, q: &[f64]) -> PredictedTip {
         let setup = Setup::new(self, Pose::IDENTITY, tool);
         let mut kinematics = Kinematics::new(&setup);
         let mut torque = vec![0.0; self.joints.len()];
@@ -62,12 +75,37 @@ impl Robot {
             kinematics.torques(&loads, &mut torque);
         }
         kinematics.update(q, &torque);
-        let sd = self.tip.and_then(|tip| tip.sd).map(|sd| {
-            let covariance = self.uncertainty.as_ref().map(|known| known.of_tip(&kinematics, &torque));
-            let variance = covariance.map_or_else(Vector3::zeros, |covariance| covariance.diagonal());
-            variance.map(|own| (sd * sd + own).sqrt())
-        });
-        (kinematics.tip, sd)
+        let column = |&parameter: &Parameter| kinematics.column(parameter, &torque);
+        let slopes = self.uncertainty.as_ref().filter(|known| !known.parameters.is_empty());
+        let slopes = slopes
+            .map(|known| Matrix3xX::from_columns(&known.parameters.iter().map(column).collect::<Vec<_>>()));
+        let placement: Vec<Parameter> =
+            Parameter::all(self.joints.len()).into_iter().filter(Parameter::is_placement).collect();
+        let placement = Matrix3xX::from_columns(&placement.iter().map(column).collect::<Vec<_>>());
+        let jacobian: Vec<_> = (0..self.joints.len()).map(|j| kinematics.joint_jacobian(j)).collect();
+        let joints = Matrix3xX::from_columns(&jacobian);
+        PredictedTip { tip: kinematics.tip, slopes, placement, joints }
+    }
+
+    /// Root mean square of what the effects of each joint's own angle add over its calibrated range, rad: what they add
+    /// beyond it nobody has seen. Zeros where no range is known.
+    pub fn effect_sizes(&self) -> Vec<f64> {
+        const STEPS: usize = 400;
+        let Some(calibrated) = &self.calibrated else { return vec![0.0; self.joints.len()] };
+        let size = |(joint, &(low, high)): (usize, &(f64, f64))| {
+            let own: Vec<&Effect> = self
+                .effects
+                .iter()
+                .filter(|effect| effect.joint() == Some(joint) && effect.is_of_own_angle())
+                .collect();
+            let mut q = vec![0.0; self.joints.len()];
+            let mut square = |k: usize| {
+                q[joint] = low + (high - low) * k as f64 / STEPS as f64;
+                own.iter().map(|effect| effect.turn(&q, &[])).sum::<f64>().powi(2)
+            };
+            ((0..=STEPS).map(&mut square).sum::<f64>() / (STEPS + 1) as f64).sqrt()
+        };
+        calibrated.joints.iter().enumerate().map(size).collect()
     }
 
     /// Poses of a table (CSV) with the columns `pose`, `q1_deg` … (`q1_mm` of a prismatic joint).
@@ -101,7 +139,12 @@ impl Robot {
             let name = row.text("pose").map_or_else(|| (at + 1).to_string(), str::to_owned);
             Ok(PredictionQuery { pose: name, joints: joints.collect::<Result<_>>()? })
         };
-        let poses: Vec<PredictionQuery> = table.rows().enumerate().map(pose).collect::<Result<_>>()?;
+        let mut poses: Vec<PredictionQuery> = table.rows().enumerate().map(pose).collect::<Result<_>>()?;
+        let values: Vec<f64> = poses.iter().flat_map(|pose| pose.joints.iter().copied()).collect();
+        let moved = self.after_moves(&values);
+        for (pose, moved) in poses.iter_mut().zip(moved.chunks(self.joints.len())) {
+            pose.joints = moved.to_vec();
+        }
         match poses.is_empty() {
             false => Ok(poses),
             true => Err(Error::Input {

@@ -55,6 +55,7 @@ impl Robot {
         }
         text += &self.standard_uncertainty.written();
         text += &self.uncertainty.as_ref().map_or_else(String::new, Uncertainty::written);
+        text += &self.calibrated.as_ref().map_or_else(String::new, |range| range.written(&self.joints));
         text += &self.effects.iter().map(effects_file::written).collect::<String>();
         Ok(text)
     }

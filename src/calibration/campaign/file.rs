@@ -77,6 +77,7 @@ impl Campaign {
 #[serde(deny_unknown_fields)]
 struct RawCampaign {
     robot: Spanned<String>,
+    effects: Option<Spanned<String>>,
     rod: Option<Spanned<String>>,
     rig: Option<Spanned<String>>,
     contact_force_n: Option<Spanned<Vec<Number>>>,
@@ -148,8 +149,9 @@ const REQUIRED: &Required = &[
 /// A key of the file itself that stands below a `[section]` belongs to that section, in TOML, not
 /// to the file.
 fn above_the_sections(error: Error) -> Error {
-    const KEYS: [&str; 9] = [
+    const KEYS: [&str; 10] = [
         "robot",
+        "effects",
         "rod",
         "rig",
         "contact_force_n",
@@ -236,6 +238,7 @@ impl Reader<'_> {
             robot,
             robot_file: raw.robot.get_ref().clone(),
             robot_text: robot_file.text,
+            effects_file: raw.effects.as_ref().map(|name| name.get_ref().clone()),
             rod_file: raw.rod.as_ref().map(|name| name.get_ref().clone()),
             base_link: raw.base_link.clone(),
             tip_link: raw.tip_link.clone(),
@@ -293,7 +296,11 @@ impl Reader<'_> {
             }
         };
         let (base_link, tip_link) = (raw.base_link.as_deref(), raw.tip_link.as_deref());
-        let robot = Robot::from_text(&named.file, &named.text, base_link, tip_link)?;
+        let mut robot = Robot::from_text(&named.file, &named.text, base_link, tip_link)?;
+        if let Some(effects) = &raw.effects {
+            let beside = self.named("effects", effects)?;
+            robot.add_beside(&beside.file, &beside.text)?;
+        }
         let is_table = !is_urdf(&named.text);
         if is_table && (base_link.is_some() || tip_link.is_some()) {
             self.warnings.push(Warning::LinksWithoutUrdf);

@@ -62,16 +62,18 @@ pub(super) fn read(
         Seen::Sockets(sockets) => Targets::Sockets(distances(&reader.groups, sockets)),
         _ => Targets::Points(points),
     };
-    let recording = Recording {
+    let mut recording = Recording {
         source: comments_above(text),
         file: file.to_owned(),
         joint_count: robot.joints.len(),
         joint_values,
+        joints_read: None,
         rows,
         groups: reader.groups.into_iter().map(|named| named.group).collect(),
         stations: reader.stations.iter().map(|name| Station::first(name)).collect(),
         targets,
     };
+    recording.take_up_moves(robot);
     let mut warnings = checks::about_dialect(file, &table);
     warnings.extend(columns.unused(file, &table));
     warnings.extend(checks::about_joints(&recording, robot, role));

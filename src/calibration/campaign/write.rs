@@ -14,6 +14,8 @@ use crate::units::{DEG, MM, UM};
 pub struct FileNames {
     /// The robot's.
     pub robot: String,
+    /// What stands beside a URDF, where there is something.
+    pub effects: Option<String>,
     /// The rod's, where there is one.
     pub rod: Option<String>,
     /// That of the rod's readings, where there are any.
@@ -30,6 +32,7 @@ impl Campaign {
         let mut text: String = above.iter().map(|line| format!("# {line}\n")).collect();
         let mut key = |key: &str, value: String| text += &format!("{key} = {value}\n");
         key("robot", quoted(&names.robot));
+        names.effects.iter().for_each(|effects| key("effects", quoted(effects)));
         names.rod.iter().for_each(|rod| key("rod", quoted(rod)));
         names.rig.iter().for_each(|rig| key("rig", quoted(rig)));
         if let Some(force) = self.contact_force {
@@ -156,7 +159,7 @@ impl Recording {
                 }
             }
             cells.extend(
-                self.joints(row)
+                self.read_joints(row)
                     .iter()
                     .zip(&robot.joints)
                     .map(|(q, joint)| number(q / if joint.motion == Motion::Revolute { DEG } else { MM })),

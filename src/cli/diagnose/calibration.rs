@@ -6,7 +6,7 @@ use clap::Args;
 use rodcal::calibration::campaign::FileNames;
 use rodcal::calibration::{self, Campaign, Options};
 use rodcal::diagnosis::calibration::effects::registry;
-use rodcal::diagnosis::calibration::mend;
+use rodcal::diagnosis::calibration::{check_memory, mend};
 use rodcal::{Result, files, report};
 
 use super::listed::listed;
@@ -57,6 +57,7 @@ fn names(campaign: &Campaign) -> FileNames {
     };
     let is_builtin = campaign.robot_file.starts_with("builtin:");
     FileNames {
+        effects: campaign.effects_file.as_deref().map(base),
         robot: if is_builtin { campaign.robot_file.clone() } else { base(&campaign.robot_file) },
         rod: campaign.rod_file.as_deref().map(base),
         rig: campaign.readings.as_ref().map(|readings| base(&readings.file)),
@@ -70,6 +71,9 @@ fn copies(campaign: &Campaign) -> Result<Vec<(String, Vec<u8>)>> {
     let names = names(campaign);
     let directory = Path::new(&campaign.file).parent().unwrap_or(Path::new(""));
     let mut copies = Vec::new();
+    if let (Some(name), Some(file)) = (names.effects, &campaign.effects_file) {
+        copies.push((name, files::read_bytes(&directory.join(file))?));
+    }
     if !campaign.robot_file.starts_with("builtin:") {
         copies.push((names.robot, campaign.robot_text.clone().into_bytes()));
     }
@@ -85,6 +89,7 @@ fn copies(campaign: &Campaign) -> Result<Vec<(String, Vec<u8>)>> {
 impl Calibration {
     pub fn run(&self) -> Result<Outcome> {
         let campaign = Campaign::read(&self.campaign)?;
+        check_memory(&campaign)?;
         let mode = self.mode.map_or_else(|| calibration::default_mode(&campaign), ModeName::mode);
         let options = Options::default();
         let mended = mend(&campaign, mode, &neighbours(&campaign), &options)?;
@@ -98,13 +103,16 @@ impl Calibration {
             None if self.apply => report
                 .warnings
                 .push("--apply has no effect: nothing was found that belongs to the robot or can be corrected in the campaign".into()),
-            None => {}
+            None => report::diagnosis::calibration::announced(&mut report, &found),
         }
         let mut outcome = Outcome::new(json, report);
         if let Some(applied) = applied {
             outcome.files = applied.files.into_iter().map(|(name, text)| (name, text.into_bytes())).collect();
-            if mended.is_changed {
-                outcome.files.extend(copies(&mended.campaign)?);
+            // what was not written anew is copied
+            for copy in copies(&mended.campaign)? {
+                if outcome.files.iter().all(|(name, _)| *name != copy.0) {
+                    outcome.files.push(copy);
+                }
             }
             outcome.default_directory = Some(PathBuf::from("reports/diagnosed"));
         }

@@ -1,17 +1,19 @@
-//! What was found, written into the robot: its model with effects, calibrated again.
+//! What was found, written into robot and campaign, and calibrated again.
 //!
-//! What belongs to the robot enters its model, and the campaign is calibrated once more with it, so
-//! that base, geometry and effects fit together. What happened to the fixture, and single bad
-//! poses, are taken out of the measured points before that. What neither can hold is said.
+//! What belongs to the robot enters its model; what happened to the fixture, single bad poses and all that a robot file has
+//! no key for are taken out of the measured points; a socket that moved becomes another one. The campaign that is written has
+//! the nominal robot with these effects, so that `calibrate` finds base and geometry anew beside them; the calibrated robot is
+//! for `predict`. What neither can hold is said, and before.
 
 use super::correction_table;
 use super::diagnose::CalibrationDiagnosis;
-use super::effects::registry;
-use crate::calibration::campaign::Campaign;
-use crate::calibration::{Options, Summary, calibrate, write_back_with};
+use super::effects::{out_of_the_points, registry};
+use super::model::CalibrationModel;
+use crate::calibration::campaign::{Campaign, FileNames, Recording};
+use crate::calibration::{Options, Summary, calibrate, write_back_with, write_beside};
 use crate::error::Result;
-use crate::inference::WrittenTo;
-use crate::robot::{Effect, corrections_csv, is_urdf};
+use crate::inference::{Finding, WrittenTo};
+use crate::robot::{Effect, Robot, corrections_csv, is_urdf};
 use crate::units::UM;
 
 /// The robot with what was found.
@@ -31,50 +33,109 @@ pub struct Applied {
     pub mean: f64,
 }
 
-/// The robot of the diagnosed campaign with what `found` says; `None` where nothing of it belongs
-/// to the robot.
+/// Where a finding would be written, without doing so.
+pub fn destination(finding: &Finding, model: &CalibrationModel) -> WrittenTo {
+    write(finding, model, &mut model.campaign.clone())
+}
+
+fn write(finding: &Finding, model: &CalibrationModel, extended: &mut Campaign) -> WrittenTo {
+    let own = registry::record(finding.effect).map(|effect| (effect.write)(finding, model, extended));
+    match own.unwrap_or(WrittenTo::Nowhere) {
+        // for these poses at least
+        WrittenTo::Nowhere => out_of_the_points(finding, model, extended),
+        written => written,
+    }
+}
+
+/// Robot and campaign with what `found` says; `None` where nothing of it could be written. `names` are those of the campaign's
+/// files; `above` is said on top of them.
 ///
 /// # Errors
 /// As [`calibrate`] and [`crate::calibration::write_back`].
-pub fn apply(found: &CalibrationDiagnosis) -> Result<Option<Applied>> {
+pub fn apply(found: &CalibrationDiagnosis, names: &FileNames, above: &[String]) -> Result<Option<Applied>> {
     let model = &found.model;
     let mut extended = model.campaign.clone();
     let (mut entered, mut removed, mut left_out) = (Vec::new(), Vec::new(), Vec::new());
     // what was undone before there was a model is nothing to write into it
     for finding in found.diagnosis.findings.iter().filter(|finding| !finding.parts.is_empty()) {
         let words = (finding.effect.cause_at)(&finding.location);
-        let written = registry::record(finding.effect)
-            .map_or(WrittenTo::Nowhere, |effect| (effect.write)(finding, model, &mut extended));
-        match written {
+        match write(finding, model, &mut extended) {
             WrittenTo::Model => entered.push(words),
             WrittenTo::Recording => removed.push(words),
             WrittenTo::Nowhere => left_out.push(words),
         }
     }
-    if entered.is_empty() {
+    if entered.is_empty() && removed.is_empty() {
         return Ok(None);
+    }
+    for recording in std::iter::once(&mut extended.measurements).chain(&mut extended.validation) {
+        recording.take_up_moves(&extended.robot);
     }
     let calibration = calibrate(&extended, model.calibration.mode, &Options::default())?;
     let held_out = found.diagnosis.held_out.as_ref();
     let sd = held_out.map_or(found.diagnosis.noise, |held_out| held_out.after);
-    let mut comments = vec![format!("With the findings: {}.", entered.join("; "))];
-    if !removed.is_empty() {
-        comments.push(format!("Removed from the measured points: {}.", removed.join("; ")));
-    }
-    if !left_out.is_empty() {
-        comments.push(format!("Not written, because this file has no key for it: {}.", left_out.join("; ")));
-    }
+    let mut comments = Vec::new();
+    let mut say = |what: &str, list: &[String]| {
+        if !list.is_empty() {
+            comments.push(format!("{what}: {}.", list.join("; ")));
+        }
+    };
+    say("With the findings", &entered);
+    say("Removed from the measured points", &removed);
+    say("Not written, because no file has a key for it", &left_out);
+    let said = comments.clone();
     let sd_um = sd / UM;
     comments.push(format!("sd: {sd_um:.1} µm per coordinate, the error of held-out poses."));
     let mut files = vec![write_back_with(&extended, &calibration, Some(sd), &comments)?];
-    if is_urdf(&model.campaign.robot_text) {
+    files.extend(write_beside(&extended, &calibration, Some(sd)));
+    if is_urdf(&model.campaign.robot_text) && extended.robot.effects.iter().any(Effect::is_of_own_angle) {
         let joints = 0..extended.robot.joints.len();
         let angles: Vec<Vec<f64>> =
             joints.map(|joint| angles(&extended, joint, &model.angles(joint))).collect();
         files.push(("corrections.csv".into(), corrections_csv(&extended.robot, &angles)));
     }
+    let corrected = format!("CORRECTED, not as recorded: {}.", model.campaign.file);
+    let above: Vec<String> = std::iter::once(corrected).chain(above.iter().cloned()).chain(said).collect();
+    files.extend(campaign_files(model.campaign, &extended, names, &above)?);
     let mean = Summary::of(&calibration.residuals()).mean;
     Ok(Some(Applied { files, undone: Vec::new(), entered, removed, left_out, mean }))
+}
+
+/// The campaign with the nominal robot and its effects. Rod and readings are as they were.
+fn campaign_files(
+    campaign: &Campaign,
+    extended: &Campaign,
+    names: &FileNames,
+    above: &[String],
+) -> Result<Vec<(String, String)>> {
+    let mut names = names.clone();
+    let mut files = Vec::new();
+    if extended.robot != campaign.robot {
+        if is_urdf(&campaign.robot_text) {
+            let mut robot =
+                Robot { tip: None, uncertainty: None, calibrated: None, ..extended.robot.clone() };
+            let own = robot.joints.iter().zip(&campaign.robot.joints).enumerate();
+            let more = own.map(|(joint, (new, old))| (joint, new.compliance - old.compliance));
+            let more = more.filter(|(_, per_nm)| *per_nm != 0.0);
+            let more: Vec<Effect> =
+                more.map(|(joint, per_nm)| Effect::Compliance { joint, per_nm }).collect();
+            robot.effects.extend(more);
+            names.effects = Some("effects.toml".into());
+            files.push(("effects.toml".into(), robot.beside_to_toml(above)));
+        } else {
+            if names.robot.starts_with("builtin:") {
+                names.robot = "robot.toml".into();
+            }
+            files.push((names.robot.clone(), extended.robot.to_toml(above)?));
+        }
+    }
+    let text = |recording: &Recording, above: &[String]| recording.to_csv(&extended.robot, above);
+    files.push(("campaign.toml".into(), extended.to_toml(&names, above)));
+    files.push((names.measurements.clone(), text(&extended.measurements, above)));
+    if let (Some(name), Some(validation)) = (&names.validation, &extended.validation) {
+        files.push((name.clone(), text(validation, &above[..1])));
+    }
+    Ok(files)
 }
 
 /// Angles over the recorded range of a joint, as fine as its finest effect.
@@ -82,8 +143,8 @@ fn angles(extended: &Campaign, joint: usize, recorded: &[f64]) -> Vec<f64> {
     let rows = |effect: &Effect| match effect {
         Effect::Harmonic { cycles_per_rev, .. } => correction_table::rows(recorded, *cycles_per_rev),
         Effect::Table { rows, .. } => rows.len(),
-        Effect::EncoderScale { .. } | Effect::Backlash { .. } | Effect::Coupling { .. } => 0,
+        _ => 0,
     };
-    let own = extended.robot.effects.iter().filter(|effect| effect.joint() == joint);
+    let own = extended.robot.effects.iter().filter(|effect| effect.joint() == Some(joint));
     correction_table::spaced(recorded, own.map(rows).max().unwrap_or(0)).collect()
 }

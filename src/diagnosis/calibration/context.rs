@@ -4,9 +4,11 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::configuration::{self, Configuration};
 use super::entry::Column;
+use super::patterns::Patterns;
 use crate::calibration::campaign::{Campaign, Recording, Targets};
 use crate::calibration::{Calibration, Compensation, Mode, Robust, plausible_compliances};
 use crate::error::Result;
+use crate::inference::Pattern;
 use crate::robot::{Motion, Setup};
 
 /// All that effects need to know of a campaign and its calibration.
@@ -16,6 +18,8 @@ pub(super) struct Context<'a> {
     /// before.
     pub since: &'a Recording,
     pub configurations: Vec<Configuration>,
+    /// Directions that many columns are multiples of.
+    pub patterns: Patterns,
     /// What each row counts, relative to the others: pooled noise over the noise of its group.
     pub scale: Vec<f64>,
     /// Pooled noise of a coordinate, m.
@@ -110,6 +114,7 @@ impl<'a> Context<'a> {
             accounted,
             softest,
             modelled_mass: modelled_mass(campaign),
+            patterns: Patterns::new(&configurations),
             configurations,
         })
     }
@@ -130,12 +135,19 @@ impl<'a> Context<'a> {
             let scaled: [f64; 3] = (displacement(row, &self.configurations[row]) * self.scale[row]).into();
             scaled
         };
-        Column { first, values: rows.flat_map(at).collect() }
+        Column { first, values: rows.flat_map(at).collect(), pattern: None }
+    }
+
+    /// A column of a displacement along one of the patterns, by row.
+    pub fn along(&self, pattern: &Pattern, weight: impl Fn(usize, &Configuration) -> f64) -> Column {
+        let at = |row: usize| weight(row, &self.configurations[row]) * self.scale[row];
+        let values = (0..self.configurations.len()).map(at).collect();
+        Column { first: 0, values, pattern: Some(pattern.clone()) }
     }
 
     /// A turn of a joint by so much at each row, rad per unit of the parameter.
     pub fn turn(&self, joint: usize, angle: impl Fn(usize, &Configuration) -> f64) -> Column {
-        self.column(|row, configuration| configuration.tip_jacobian[joint] * angle(row, configuration))
+        self.along(&self.patterns.joint[joint], angle)
     }
 
     /// How far a row is off, in noises of its group.

@@ -4,6 +4,7 @@ use super::beside::{calibrated_beside, unequal};
 use super::effects::registry;
 use super::gear::Curve;
 use super::limits::{limits, noisy};
+use super::memory::check_memory;
 use super::model::CalibrationModel;
 use super::next::next_poses;
 use super::prepared::Prepared;
@@ -49,6 +50,7 @@ pub fn diagnose_calibrated<'c>(
     campaign: &'c Campaign,
     calibration: Calibration<'c>,
 ) -> Result<CalibrationDiagnosis<'c>> {
+    check_memory(campaign)?;
     let mut prepared = Prepared::new(campaign, calibration)?;
     let mut diagnosis = infer(&prepared.model, &prepared.evidence);
     let mut scatter = None;

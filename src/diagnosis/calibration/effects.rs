@@ -133,7 +133,11 @@ fn nowhere(_: &Finding, _: &CalibrationModel, _: &mut Campaign) -> WrittenTo {
 }
 
 /// Taken out of the measured points; sockets have none.
-fn out_of_the_points(finding: &Finding, model: &CalibrationModel, extended: &mut Campaign) -> WrittenTo {
+pub(super) fn out_of_the_points(
+    finding: &Finding,
+    model: &CalibrationModel,
+    extended: &mut Campaign,
+) -> WrittenTo {
     let moved = model.by_row(&model.response_of(finding));
     match &mut extended.measurements.targets {
         Targets::Sockets(_) => WrittenTo::Nowhere,

@@ -3,13 +3,15 @@
 use nalgebra::DVector;
 
 use super::law::Law;
-use crate::inference::{Candidate, Effect, Location, Parameter};
+use crate::inference::{Candidate, Effect, Location, Parameter, Pattern, StoredColumn};
 
-/// ∂response/∂parameter: data from `first` on, m per unit of the parameter; zero elsewhere.
-#[derive(Debug, Clone, PartialEq)]
+/// ∂response/∂parameter: data from `first` on, m per unit of the parameter; zero elsewhere. Of a
+/// pattern, rows from `first` on, and what each of them counts.
+#[derive(Debug, Clone)]
 pub(super) struct Column {
     pub first: usize,
     pub values: Vec<f64>,
+    pub pattern: Option<Pattern>,
 }
 
 /// A candidate with how it acts and with what each of its parameters does.
@@ -22,8 +24,24 @@ pub(super) struct Entry {
 impl Column {
     /// Adds `value` times the column to a recording.
     pub fn add_to(&self, response: &mut DVector<f64>, value: f64) {
-        let slots = response.as_mut_slice().iter_mut().skip(self.first);
-        slots.zip(&self.values).for_each(|(slot, v)| *slot += value * v);
+        let Some(pattern) = &self.pattern else {
+            let slots = response.as_mut_slice().iter_mut().skip(self.first);
+            slots.zip(&self.values).for_each(|(slot, v)| *slot += value * v);
+            return;
+        };
+        let first = pattern.block * self.first;
+        let slots = response.as_mut_slice()[first..].chunks_mut(pattern.block);
+        for ((slots, weight), along) in
+            slots.zip(&self.values).zip(pattern.values[first..].chunks(pattern.block))
+        {
+            slots.iter_mut().zip(along).for_each(|(slot, along)| *slot += value * (weight * along));
+        }
+    }
+
+    /// As the engine sees it, for a parameter of such a size.
+    pub fn stored(&self, size: f64) -> StoredColumn<'_> {
+        let (first, values) = (self.first, self.values.as_slice().into());
+        StoredColumn { factor: size, first, values, pattern: self.pattern.as_ref() }
     }
 
     pub fn is_zero(&self) -> bool {

@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, DVector};
 use super::effects::registry;
 use super::model::CalibrationModel;
 use crate::inference::{
-    Candidate, Description, Estimate, Finding, FindingPart, ForwardModel, Hypothesis, Term,
+    Candidate, Description, Estimate, Finding, FindingPart, ForwardModel, Hypothesis, StoredColumn, Term,
 };
 
 impl ForwardModel for CalibrationModel<'_> {
@@ -23,6 +23,10 @@ impl ForwardModel for CalibrationModel<'_> {
 
     fn columns(&self, hypothesis: &[Term], position: usize) -> DMatrix<f64> {
         self.terms.columns(hypothesis[position].candidate)
+    }
+
+    fn stored(&self, candidate: usize) -> Vec<StoredColumn<'_>> {
+        self.terms.stored(candidate)
     }
 
     fn estimates(&self, parts: &[FindingPart], _: &Hypothesis) -> Vec<Estimate> {

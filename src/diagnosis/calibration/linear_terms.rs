@@ -5,11 +5,12 @@ use nalgebra::{DMatrix, DVector};
 use super::entry::{Column, Entry};
 use super::evidence::unknown_beforehand;
 use super::law::Law;
-use crate::inference::{Absorbed, Candidate, Evidence, Term, Whitening};
-use crate::parallel::in_parallel;
+use crate::inference::{Absorbed, Candidate, DataParts, Evidence, StoredColumn, Term, Whitening, products};
 
 /// Share of an effect that must be left once the calibration has absorbed what it can.
 const LEAST_UNABSORBED: f64 = 0.02;
+/// Share of a square that rounding leaves.
+const ROUNDING: f64 = 1e-13;
 
 /// All that might be left in a calibration's residuals.
 #[derive(Debug, Clone)]
@@ -36,11 +37,8 @@ impl LinearTerms {
             data,
         };
         let mut absorbed = Vec::new();
-        // what a parameter of the robot does as well is no effect of its own, however unlikely its size
-        let all = unknown_beforehand(evidence);
-        let whitening = Whitening::new(&all, &all.residual);
         let entries: Vec<Entry> = entries.into_iter().filter_map(Entry::felt).collect();
-        let shares = in_parallel(entries.len(), |k| unabsorbed(&entries[k], &whitening, data));
+        let shares = unabsorbed(&entries, evidence);
         for (entry, unabsorbed) in entries.into_iter().zip(shares) {
             if unabsorbed < LEAST_UNABSORBED {
                 let Candidate { effect, location, .. } = entry.candidate;
@@ -76,22 +74,41 @@ impl LinearTerms {
         let mut matrix = DMatrix::zeros(self.data, columns.len());
         let parameters = &self.candidates[candidate].parameters;
         for ((k, column), parameter) in columns.iter().enumerate().zip(parameters) {
-            let mut slots = matrix.view_mut((column.first, k), (column.values.len(), 1));
-            slots.copy_from_slice(&column.values);
-            slots *= parameter.size;
+            let mut whole = DVector::zeros(self.data);
+            column.add_to(&mut whole, parameter.size);
+            matrix.set_column(k, &whole);
         }
         matrix
     }
+
+    /// See [`crate::inference::ForwardModel::stored`].
+    pub fn stored(&self, candidate: usize) -> Vec<StoredColumn<'_>> {
+        stored(&self.candidates[candidate], &self.columns[candidate])
+    }
 }
 
-/// √(Σ‖M·C‖²/Σ‖C‖²) over the parameters at their sizes.
-fn unabsorbed(entry: &Entry, whitening: &Whitening, data: usize) -> f64 {
-    let (mut left, mut all) = (0.0, 0.0);
-    for (parameter, column) in entry.candidate.parameters.iter().zip(&entry.columns) {
-        let mut own = DVector::zeros(data);
-        column.add_to(&mut own, parameter.size);
-        all += own.norm_squared();
-        left += whitening.apply(&own).norm_squared();
-    }
-    (left / all.max(f64::MIN_POSITIVE)).sqrt()
+fn stored<'a>(candidate: &Candidate, columns: &'a [Column]) -> Vec<StoredColumn<'a>> {
+    columns.iter().zip(&candidate.parameters).map(|(column, known)| column.stored(known.size)).collect()
+}
+
+/// √(Σ‖M·C‖²/Σ‖C‖²) of each entry, over its parameters at their sizes: ‖M·c‖² = ‖c‖² − ‖Qᵀc‖².
+fn unabsorbed(entries: &[Entry], evidence: &Evidence) -> Vec<f64> {
+    // what a parameter of the robot does as well is no effect of its own, however unlikely its size
+    let all = unknown_beforehand(evidence);
+    let basis = Whitening::new(&all, &all.residual).basis();
+    let columns: Vec<StoredColumn> =
+        entries.iter().flat_map(|entry| stored(&entry.candidate, &entry.columns)).collect();
+    let along = products(&columns, &basis, &DataParts::whole(evidence.residual.len()));
+    let mut of_column = columns.iter().zip(along[0].column_iter());
+    let share = |entry: &Entry| {
+        let (mut taken, mut all) = (0.0, 0.0);
+        for (column, along) in of_column.by_ref().take(entry.columns.len()) {
+            all += column.norm_squared();
+            taken += along.norm_squared();
+        }
+        // less is what rounding leaves of the difference
+        let left = if all - taken > ROUNDING * all { all - taken } else { 0.0 };
+        (left / all.max(f64::MIN_POSITIVE)).sqrt()
+    };
+    entries.iter().map(share).collect()
 }

@@ -189,19 +189,22 @@ impl Mended {
     /// # Errors
     /// As [`super::apply()`].
     pub fn apply(&self, found: &CalibrationDiagnosis, names: &FileNames) -> Result<Option<Applied>> {
-        let applied = apply(found)?;
-        if !self.is_changed {
-            return Ok(applied);
+        let undone: Vec<String> =
+            self.found.iter().map(|finding| finding.description.observed.clone()).collect();
+        if let Some(applied) = apply(found, names, &undone)? {
+            return Ok(Some(Applied { undone, ..applied }));
         }
-        let mut applied = applied.unwrap_or_else(|| Applied {
+        if !self.is_changed {
+            return Ok(None);
+        }
+        let mut applied = Applied {
             files: Vec::new(),
-            undone: Vec::new(),
+            undone,
             entered: Vec::new(),
             removed: Vec::new(),
             left_out: Vec::new(),
             mean: Summary::of(&found.model.calibration.residuals()).mean,
-        });
-        applied.undone = self.found.iter().map(|finding| finding.description.observed.clone()).collect();
+        };
         let mut above =
             vec![format!("CORRECTED, not as recorded: {} without mistakes. Done:", self.campaign.file)];
         above.extend(applied.undone.iter().cloned());

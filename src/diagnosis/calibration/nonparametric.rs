@@ -147,13 +147,11 @@ fn vectors(
     weight: &dyn Fn(usize) -> f64,
 ) -> Vec<(Parameter, Column)> {
     let along = |(axis, letter): (usize, &&str)| {
-        let column = context.column(|row, configuration| {
-            let unit = match frame {
-                Frame::Tool => configuration.flange.rotation.column(axis).into(),
-                Frame::World => Vector3::ith(axis, 1.0),
-            };
-            unit * weight(row)
-        });
+        let pattern = match frame {
+            Frame::Tool => &context.patterns.tool[axis],
+            Frame::World => &context.patterns.world[axis],
+        };
+        let column = context.along(pattern, |row, _| weight(row));
         (linear(format!("{letter}_{name}_um"), UM, size), column)
     };
     AXES.iter().enumerate().map(along).collect()
@@ -339,11 +337,8 @@ fn links(context: &Context) -> Vec<Entry> {
                 let orders = (0..=ORDER.2).flat_map(|k| (0..=ORDER.2).map(move |l| (k, l))).skip(1);
                 let parameters = orders.flat_map(|(k, l)| {
                     (0..3).map(move |axis| {
-                        let column = context.column(|row, configuration| {
-                            let about = configuration.link[link].rotation.column(axis).into_owned();
-                            about.cross(&(configuration.tip - configuration.link[link].origin))
-                                * (cosine(k, x[row]) * cosine(l, y[row]))
-                        });
+                        let pattern = &context.patterns.link[link][axis];
+                        let column = context.along(pattern, |row, _| cosine(k, x[row]) * cosine(l, y[row]));
                         let name = format!("about_{}_cosines_{k}{l}_urad", AXES[axis]);
                         (linear(name, URAD, TURN / (1 + k + l) as f64), column)
                     })
@@ -370,9 +365,7 @@ fn pairs(context: &Context) -> Vec<Entry> {
             let parameters = [i, j].into_iter().flat_map(|turned| {
                 let orders = (0..=ORDER.1).flat_map(|k| (0..=ORDER.1).map(move |l| (k, l))).skip(1);
                 orders.map(move |(k, l)| {
-                    let column = context.column(|row, configuration| {
-                        configuration.tip_jacobian[turned] * (cosine(k, x[row]) * cosine(l, y[row]))
-                    });
+                    let column = context.turn(turned, |row, _| cosine(k, x[row]) * cosine(l, y[row]));
                     let name = format!("joint_{}_cosines_{k}{l}_urad", turned + 1);
                     (linear(name, URAD, TURN / (1 + k + l) as f64), column)
                 })

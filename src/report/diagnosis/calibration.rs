@@ -13,8 +13,8 @@ use super::remainder::{Remainder, Sample};
 use super::subject::{Errors, Subject};
 use super::{json as whole_json, report as whole_report};
 use crate::calibration::{MOST_SCATTER, Warning};
-use crate::diagnosis::calibration::{Applied, CalibrationDiagnosis, Gear};
-use crate::inference::{Finding, ForwardModel, Location, Plan, PosePlan, ShownBy, Variable};
+use crate::diagnosis::calibration::{Applied, CalibrationDiagnosis, Gear, destination as written_to};
+use crate::inference::{Finding, ForwardModel, Kind, Location, Plan, PosePlan, ShownBy, Variable, WrittenTo};
 use crate::report::calibration::warnings as of_calibration;
 use crate::report::{Block, Report, Section};
 use crate::robot::Motion;
@@ -156,6 +156,38 @@ fn far_from_file(found: &CalibrationDiagnosis) -> Option<String> {
     ))
 }
 
+/// Where `--apply` writes a finding; `None` where no file has a place for it.
+fn destination(found: &CalibrationDiagnosis, finding: &Finding) -> Option<&'static str> {
+    if finding.parts.is_empty() {
+        return Some("campaign");
+    }
+    match written_to(finding, &found.model) {
+        WrittenTo::Model => Some("robot"),
+        WrittenTo::Recording => Some("measurements"),
+        WrittenTo::Nowhere => None,
+    }
+}
+
+/// What `--apply` would do, before it does.
+pub fn announced(report: &mut Report, found: &CalibrationDiagnosis) {
+    let line = |finding: &Finding| {
+        let what = (finding.effect.cause_at)(&finding.location);
+        match destination(found, finding) {
+            Some("robot") => format!("Into the robot file, for calibrate and predict: {what}"),
+            Some("measurements") if finding.kind() == Kind::Physics => {
+                format!("Out of the measurements, for these poses only; predict will not know it: {what}")
+            }
+            Some("measurements") => format!("Out of the measurements: {what}"),
+            Some(_) => format!("Corrected in the campaign: {what}"),
+            None => format!("Nowhere, because no file has a place for it: {what}"),
+        }
+    };
+    let lines: Vec<String> = found.diagnosis.findings.iter().map(line).collect();
+    if !lines.is_empty() {
+        report.sections.push(Section::new("What --apply would write", vec![Block::List(lines)]));
+    }
+}
+
 /// A gear's shape takes several terms.
 fn details(found: &CalibrationDiagnosis, finding: &Finding) -> String {
     match gear_of(found, finding).is_some() && finding.parts.len() > 1 {
@@ -166,8 +198,9 @@ fn details(found: &CalibrationDiagnosis, finding: &Finding) -> String {
 
 /// Of a gear the size of its whole error.
 fn more_of(found: &CalibrationDiagnosis, finding: &Finding) -> Vec<(&'static str, Value)> {
+    let written = ("written_to", destination(found, finding).map_or(Value::Null, Value::from));
     let Some((joint, curve)) = gear_of(found, finding).and_then(|j| Some((j, found.gear(j)?))) else {
-        return Vec::new();
+        return vec![written];
     };
     let angles = found.model.angles(joint);
     let turns: Vec<f64> = angles.iter().map(|&q| curve.at(q) / URAD).collect();
@@ -185,6 +218,7 @@ fn more_of(found: &CalibrationDiagnosis, finding: &Finding) -> Vec<(&'static str
         })
         .collect();
     vec![
+        written,
         ("rms_urad", json!((square / turns.len().max(1) as f64).sqrt())),
         ("half_peak_to_peak_urad", json!(0.5 * (high - low))),
         ("cycles_per_rev_of_parts", json!(cycles)),

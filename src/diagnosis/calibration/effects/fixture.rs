@@ -8,8 +8,9 @@ use nalgebra::Vector3;
 
 use super::{
     CalibrationEffect, Context, Entry, KNOCK, MOST_PLACES, SHIFT, TURN, Transfer, capital, lack, no_event,
-    nowhere, out_of_the_points, own_parameters, size, three, unit,
+    out_of_the_points, own_parameters, size, three, unit,
 };
+use crate::calibration::campaign::Campaign;
 use crate::diagnosis::calibration::configuration::Configuration;
 use crate::diagnosis::calibration::law::Law;
 use crate::diagnosis::calibration::model::CalibrationModel;
@@ -126,7 +127,7 @@ pub static SOCKET_SHIFT: CalibrationEffect = CalibrationEffect {
         needs: "four poses in a socket, or on a plate",
         cause: "a knock or a slip of the socket",
         cause_at: |location| format!("a shift ({location})"),
-        written_to: WrittenTo::Nowhere,
+        written_to: WrittenTo::Recording,
         reported: Reported::Alone,
         seen_along: |_| Vec::new(),
         direct_check: None,
@@ -137,10 +138,22 @@ pub static SOCKET_SHIFT: CalibrationEffect = CalibrationEffect {
     },
     estimates: own_parameters,
     observed: |finding, _| moved_observed(finding),
-    write: nowhere,
+    write: another_socket,
     transfer: Transfer::Nothing,
     event: moved_event,
 };
+
+/// From then on it is another socket, or another plate.
+fn another_socket(finding: &Finding, model: &CalibrationModel, extended: &mut Campaign) -> WrittenTo {
+    let Location::Shift { what: Some(what), row, .. } = &finding.location else { return WrittenTo::Nowhere };
+    let is_moved = |at: usize| {
+        let own = &model.groups[at];
+        at > *row && (own == what || own.rsplit_once('/').is_some_and(|(plate, _)| plate == what))
+    };
+    let is_plate = !model.groups.contains(what);
+    extended.measurements.rename_groups(&is_moved, &format!("row {}", row + 2), is_plate);
+    WrittenTo::Recording
+}
 
 fn moved_observed(finding: &Finding) -> String {
     let by = size(finding, UM).say("µm");

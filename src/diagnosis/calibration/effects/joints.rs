@@ -147,12 +147,23 @@ fn compliance_observed(finding: &Finding, model: &CalibrationModel) -> String {
     }
 }
 
-/// A weight that nobody knows is no compliance.
+/// A weight that nobody knows is written with its lever.
 fn write_compliance(finding: &Finding, model: &CalibrationModel, extended: &mut Campaign) -> WrittenTo {
     match (finding.location.joint(), law(finding, model)) {
         (Some(joint), Law::Only) => {
             let known = model.calibration.setup.compliance[joint];
             extended.robot.joints[joint].compliance = known + first_value(finding);
+            WrittenTo::Model
+        }
+        (Some(joint), Law::MassesUnknown) => {
+            let Some(part) = finding.parts.first() else { return WrittenTo::Nowhere };
+            let names = &model.terms.candidates[part.term.candidate].parameters;
+            for (known, value) in names.iter().zip(&part.term.values).filter(|(_, value)| **value != 0.0) {
+                // `joint_5_urad_per_m`, `flange_urad_per_m`
+                let number = known.name.strip_prefix("joint_").and_then(|name| name.split('_').next());
+                let at = number.and_then(|number| number.parse::<usize>().ok()).map(|number| number - 1);
+                extended.robot.effects.push(robot::Effect::Weight { joint, at, per_metre: *value });
+            }
             WrittenTo::Model
         }
         _ => WrittenTo::Nowhere,

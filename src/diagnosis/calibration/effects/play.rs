@@ -77,12 +77,17 @@ fn play_observed(finding: &Finding, model: &CalibrationModel) -> String {
     format!("{} has {play} of play, {by}", capital(&finding.location))
 }
 
-/// A robot file knows torques, and not where a joint came from.
+/// Play by approach needs the order of the poses, wherever it is used.
 fn write_play(finding: &Finding, model: &CalibrationModel, extended: &mut Campaign) -> WrittenTo {
     match (finding.location.joint(), law(finding, model)) {
         (Some(joint), Law::Play(TakenUp::ByTorque)) => {
             let play = first_value(finding);
             extended.robot.effects.push(robot::Effect::Backlash { joint, play });
+            WrittenTo::Model
+        }
+        (Some(joint), Law::Play(TakenUp::ByApproach)) => {
+            let play = first_value(finding);
+            extended.robot.effects.push(robot::Effect::PlayByApproach { joint, play });
             WrittenTo::Model
         }
         _ => WrittenTo::Nowhere,

@@ -3,10 +3,10 @@
 use nalgebra::Vector3;
 
 use super::{
-    CalibrationEffect, Context, Entry, Transfer, along, first, joint, joint_by, lack, law, no_event,
-    out_of_the_points, own_parameters, single, size, three, unit,
+    CalibrationEffect, Context, Entry, Transfer, along, first, first_value, joint, joint_by, lack, law,
+    no_event, out_of_the_points, own_parameters, single, size, three, unit,
 };
-use crate::calibration::campaign::Row;
+use crate::calibration::campaign::{Campaign, Row};
 use crate::diagnosis::calibration::configuration::Configuration;
 use crate::diagnosis::calibration::entry::{Column, linear};
 use crate::diagnosis::calibration::law::{Course, Frame, Law, Warmed};
@@ -14,6 +14,7 @@ use crate::diagnosis::calibration::model::CalibrationModel;
 use crate::inference::{
     Effect, Finding, JointVariable, Kind, Location, NotTestable, Reported, Variable, WrittenTo,
 };
+use crate::robot;
 use crate::units::{MM, UM};
 
 /// Share of a move that is not made yet when an angle is read.
@@ -44,7 +45,7 @@ pub static READBACK_LAG: CalibrationEffect = CalibrationEffect {
         needs: "rows in the order of recording",
         cause: "angles were read before the arm had settled",
         cause_at: |location| format!("angles read before the arm had settled ({location})"),
-        written_to: WrittenTo::Recording,
+        written_to: WrittenTo::Model,
         reported: Reported::Alone,
         seen_along: |location| along(location, JointVariable::Move),
         direct_check: None,
@@ -52,7 +53,7 @@ pub static READBACK_LAG: CalibrationEffect = CalibrationEffect {
     candidates: lags,
     estimates: own_parameters,
     observed: lag_observed,
-    write: out_of_the_points,
+    write: write_lag,
     transfer: Transfer::Candidate,
     event: no_event,
 };
@@ -68,6 +69,13 @@ fn lags(context: &Context, _: &mut Vec<NotTestable>) -> Vec<Entry> {
         single(&READBACK_LAG, joint(j), fraction(), column)
     });
     std::iter::once(together).chain(alone).collect()
+}
+
+/// The share of each move, wherever the order of the poses is known.
+fn write_lag(finding: &Finding, _: &CalibrationModel, extended: &mut Campaign) -> WrittenTo {
+    let (joint, fraction) = (finding.location.joint(), first_value(finding));
+    extended.robot.effects.push(robot::Effect::Lag { joint, fraction });
+    WrittenTo::Model
 }
 
 fn lag_observed(finding: &Finding, _: &CalibrationModel) -> String {

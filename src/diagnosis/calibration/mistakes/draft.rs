@@ -233,6 +233,7 @@ impl Draft {
         let mut meant = recorded.subset(&self.rows);
         meant.groups = recorded.groups.clone();
         meant.joint_values = self.joints.clone();
+        meant.joints_read = None;
         for (group, device) in meant.groups.iter_mut().zip(&self.devices) {
             group.device = *device;
         }

@@ -180,11 +180,7 @@ fn findings_go_where_their_record_says() {
         let mut extended = campaign.clone();
         let record = registry::record(candidate.effect).unwrap();
         let written = (record.write)(&finding, &model, &mut extended);
-        // a robot file has no place for where a joint came from
-        let expected = match model.law(index) {
-            Law::Play(TakenUp::ByApproach) => WrittenTo::Nowhere,
-            _ => candidate.effect.written_to,
-        };
+        let expected = candidate.effect.written_to;
         assert_eq!(written, expected, "{} {}", candidate.effect, candidate.location);
         let is_same_robot = extended.robot.effects == campaign.robot.effects
             && extended.robot.joints == campaign.robot.joints;

@@ -29,7 +29,7 @@ fn the_gears_of_a_ur5_predict_poses_that_they_were_not_fitted_to() {
     let (data, rows) = (evidence.residual.len(), campaign.measurements.len());
     let by_fold = in_parallel(2, |fold| {
         let kept: Vec<usize> = (0..data).filter(|&row| evidence.fold[row] != fold).collect();
-        let (part, training) = (linear.part(&kept), evidence.part(&kept));
+        let (part, training) = (linear.part(&kept, Evidence::NONE), evidence.part(&kept));
         let (search, hypothesis, _) = infer(&part, &training, crate::inference::Pairs::Screened, None);
         let none = search.predicted(&search.fit(&[]), &evidence, &DVector::zeros(data));
         let all = search.predicted(&hypothesis, &evidence, &model.response(&hypothesis.terms));

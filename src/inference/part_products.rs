@@ -1,0 +1,179 @@
+//! Products of a linear model's columns over the parts of a recording, computed once for all searches that leave one part out.
+//!
+//! What a search over the data T needs of a candidate's columns C is, with N, B and r the nuisance, the background and the
+//! residual, Q = N·A an orthonormal basis of the nuisance and M = 1 − Q·Qᵀ,
+//!
+//! ```text
+//! QᵀC = Aᵀ·(NᵀC)     CᵀMC = CᵀC − (QᵀC)ᵀQᵀC     BᵀMC = BᵀC − (QᵀB)ᵀQᵀC     rᵀMC alike
+//! ```
+//!
+//! where NᵀC, CᵀC, BᵀC and rᵀC are sums over the parts that T holds. No column is copied for a fold.
+
+use std::collections::{BTreeMap, VecDeque};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use nalgebra::{DMatrix, DVector};
+
+use super::stored_column::{DataParts, StoredColumn, dense, fit, grams, products};
+use super::whitening::Whitening;
+use super::{Evidence, ForwardModel};
+use crate::parallel::in_parallel;
+
+/// Numbers of the products between candidates that are kept: 64 MB.
+const KEPT: usize = 1 << 23;
+
+/// Of all candidates over all parts of a recording.
+pub(super) struct PartProducts<'a> {
+    columns: Vec<StoredColumn<'a>>,
+    /// The first column of each candidate, and the number of all.
+    first: Vec<usize>,
+    /// Numbers of the parts as the evidence has them.
+    names: Vec<usize>,
+    parts: DataParts,
+    /// CᵀC of each candidate, in each part.
+    grams: Vec<Vec<DMatrix<f64>>>,
+    /// NᵀC, BᵀC and rᵀC, one below the other, of each part.
+    beside: Vec<DMatrix<f64>>,
+    /// How many columns N and B have.
+    counts: (usize, usize),
+    between: Mutex<Between>,
+}
+
+/// CₑᵀC of candidates e with all columns, of each part.
+#[derive(Default)]
+struct Between {
+    /// The oldest first.
+    order: VecDeque<usize>,
+    size: usize,
+    of: BTreeMap<usize, Arc<Vec<DMatrix<f64>>>>,
+}
+
+/// What a search over some of the parts needs.
+pub(super) struct Training<'a> {
+    all: Arc<PartProducts<'a>>,
+    /// The parts that it holds.
+    held: Vec<usize>,
+    /// QᵀC.
+    absorbed: DMatrix<f64>,
+}
+
+impl<'a> PartProducts<'a> {
+    /// By the number of each datum's part in the evidence. `None` for a model that is not linear, and where data are weighed or
+    /// share errors.
+    pub fn new(model: &'a dyn ForwardModel, evidence: &Evidence, part: &[usize]) -> Option<PartProducts<'a>> {
+        if !model.is_linear() || !evidence.is_plain() {
+            return None;
+        }
+        let mut names = part.to_vec();
+        names.sort_unstable();
+        names.dedup();
+        let own = part.iter().map(|name| names.binary_search(name).unwrap_or_default());
+        let parts = DataParts::new(own.collect());
+        let (mut columns, mut first) = (Vec::new(), vec![0]);
+        for candidate in 0..model.candidates().len() {
+            columns.extend(model.stored(candidate));
+            first.push(columns.len());
+        }
+        if !fit(&columns, &parts) {
+            return None;
+        }
+        let counts = (evidence.nuisance.ncols(), evidence.background.ncols());
+        let mut beside = DMatrix::zeros(evidence.residual.len(), counts.0 + counts.1 + 1);
+        beside.columns_mut(0, counts.0).copy_from(&evidence.nuisance);
+        beside.columns_mut(counts.0, counts.1).copy_from(&evidence.background);
+        beside.set_column(counts.0 + counts.1, &evidence.residual);
+        let of_candidate = |candidate: usize| grams(&columns[first[candidate]..first[candidate + 1]], &parts);
+        let grams = in_parallel(first.len() - 1, of_candidate);
+        let beside = products(&columns, &beside, &parts);
+        Some(PartProducts { grams, beside, columns, first, names, parts, counts, between: Mutex::default() })
+    }
+
+    /// Products of a candidate's columns with all, of each part.
+    fn between(&self, candidate: usize) -> Arc<Vec<DMatrix<f64>>> {
+        let known = |kept: &Between| kept.of.get(&candidate).cloned();
+        if let Some(known) = known(&self.between.lock().unwrap_or_else(PoisonError::into_inner)) {
+            return known;
+        }
+        let own = self.of(candidate);
+        let found = Arc::new(products(&self.columns, &dense(own, self.parts.count()), &self.parts));
+        let mut kept = self.between.lock().unwrap_or_else(PoisonError::into_inner);
+        let size = |found: &[DMatrix<f64>]| found.iter().map(DMatrix::len).sum::<usize>();
+        kept.size += size(&found);
+        kept.order.push_back(candidate);
+        if let Some(same) = kept.of.insert(candidate, Arc::clone(&found)) {
+            kept.size -= size(&same);
+            kept.order.pop_back();
+        }
+        // what is asked for again is computed again
+        while kept.size > KEPT && kept.order.len() > 1 {
+            let oldest = kept.order.pop_front().and_then(|oldest| kept.of.remove(&oldest));
+            kept.size -= oldest.map_or(0, |oldest| size(&oldest));
+        }
+        found
+    }
+
+    fn of(&self, candidate: usize) -> &[StoredColumn<'a>] {
+        &self.columns[self.first[candidate]..self.first[candidate + 1]]
+    }
+}
+
+impl<'a> Training<'a> {
+    /// Without one part, or with all of them; `whitening` is that of what is left.
+    pub fn new(all: &Arc<PartProducts<'a>>, left_out: Option<usize>, whitening: &Whitening) -> Training<'a> {
+        let held: Vec<usize> = (0..all.names.len()).filter(|&k| Some(all.names[k]) != left_out).collect();
+        let mut along = DMatrix::zeros(all.counts.0, all.columns.len());
+        held.iter().for_each(|&part| along += all.beside[part].rows(0, all.counts.0));
+        let absorbed = whitening.coefficients().tr_mul(&along);
+        Training { all: Arc::clone(all), held, absorbed }
+    }
+
+    /// CᵀMC of each candidate.
+    pub fn grams(&self) -> Vec<DMatrix<f64>> {
+        let gram = |candidate: usize| {
+            let own = self.own(candidate);
+            let mut sum = -own.tr_mul(&own);
+            self.held.iter().for_each(|&part| sum += &self.all.grams[candidate][part]);
+            sum
+        };
+        (0..self.all.first.len() - 1).map(gram).collect()
+    }
+
+    /// BᵀMC of each candidate, `of_background` being QᵀB.
+    pub fn beside_background(&self, of_background: &DMatrix<f64>) -> Vec<DMatrix<f64>> {
+        let (first, count) = self.all.counts;
+        self.beside(first, count, of_background)
+    }
+
+    /// CᵀMr of each candidate, `of_residual` being Qᵀr.
+    pub fn beside_residual(&self, of_residual: &DVector<f64>) -> Vec<DVector<f64>> {
+        let (nuisance, background) = self.all.counts;
+        let along = DMatrix::from_column_slice(of_residual.len(), 1, of_residual.as_slice());
+        let rows = self.beside(nuisance + background, 1, &along);
+        rows.iter().map(|row| row.row(0).transpose()).collect()
+    }
+
+    fn beside(&self, first: usize, count: usize, along: &DMatrix<f64>) -> Vec<DMatrix<f64>> {
+        let mut sum = -along.tr_mul(&self.absorbed);
+        self.held.iter().for_each(|&part| sum += self.all.beside[part].rows(first, count));
+        self.apart(&sum)
+    }
+
+    /// CₑᵀMC of a candidate e with each candidate.
+    pub fn between(&self, candidate: usize) -> Vec<DMatrix<f64>> {
+        let between = self.all.between(candidate);
+        let mut sum = -self.own(candidate).tr_mul(&self.absorbed);
+        self.held.iter().for_each(|&part| sum += &between[part]);
+        self.apart(&sum)
+    }
+
+    fn own(&self, candidate: usize) -> DMatrix<f64> {
+        let (first, next) = (self.all.first[candidate], self.all.first[candidate + 1]);
+        self.absorbed.columns(first, next - first).into_owned()
+    }
+
+    /// The columns of each candidate.
+    fn apart(&self, all: &DMatrix<f64>) -> Vec<DMatrix<f64>> {
+        let own = |pair: &[usize]| all.columns(pair[0], pair[1] - pair[0]).into_owned();
+        self.all.first.windows(2).map(own).collect()
+    }
+}

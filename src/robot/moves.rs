@@ -1,0 +1,74 @@
+//! Errors of a joint that depend on the move before: they are known where the order of the poses is.
+//!
+//! ```text
+//! q + ½·b·(direction of approach)     play that friction holds open, to the side that it was driven to
+//! q + f·(q − q before)                f of the last move was still to come when q was read
+//! ```
+
+use super::{Effect, Robot};
+
+/// A move of a joint below which it did not move, rad or m: a readout's last digit.
+pub const STANDSTILL: f64 = 1e-7;
+
+impl Robot {
+    /// True where the joints' values depend on the order of the poses.
+    pub fn has_moves(&self) -> bool {
+        self.effects.iter().any(|e| matches!(e, Effect::PlayByApproach { .. } | Effect::Lag { .. }))
+    }
+
+    /// Joint values (rad or m, one per joint, pose after pose) with what the moves between them add; before the first pose
+    /// nothing moved.
+    ///
+    /// ```
+    /// use rodcal::prelude::*;
+    /// use rodcal::robot::Effect;
+    ///
+    /// let mut arm = Robot::new("arm", vec![Joint::new("one", Motion::Revolute, Hayati::default())]);
+    /// arm.effects.push(Effect::PlayByApproach { joint: 0, play: 2e-4 });
+    /// // the last pose is the one before it: the joint stays where it was driven to
+    /// assert_eq!(arm.after_moves(&[0.0, 1.0, 0.5, 0.5]), [0.0, 1.0001, 0.4999, 0.4999]);
+    /// ```
+    pub fn after_moves(&self, values: &[f64]) -> Vec<f64> {
+        let n = self.joints.len();
+        let mut turned = values.to_vec();
+        let mut approach = vec![0.0; n];
+        for row in 1..values.len() / n.max(1) {
+            let step: Vec<f64> = (0..n).map(|j| values[row * n + j] - values[(row - 1) * n + j]).collect();
+            for (approach, step) in approach.iter_mut().zip(&step) {
+                if step.abs() > STANDSTILL {
+                    *approach = step.signum();
+                }
+            }
+            for effect in &self.effects {
+                match effect {
+                    Effect::PlayByApproach { joint, play } => {
+                        turned[row * n + joint] += 0.5 * play * approach[*joint];
+                    }
+                    Effect::Lag { joint, fraction } => {
+                        let own = |j: &usize| joint.is_none_or(|joint| joint == *j);
+                        (0..n).filter(own).for_each(|j| turned[row * n + j] += fraction * step[j]);
+                    }
+                    _ => {}
+                }
+            }
+        }
+        turned
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::robot::{Effect, Hayati, Joint, Motion, Robot};
+
+    #[test]
+    fn a_lag_is_a_share_of_the_last_move_of_one_joint_or_of_all() {
+        let joints = ["a", "b"].map(|name| Joint::new(name, Motion::Revolute, Hayati::default()));
+        let mut arm = Robot::new("arm", joints.to_vec());
+        assert!(!arm.has_moves());
+        arm.effects = vec![Effect::Lag { joint: Some(1), fraction: 0.1 }];
+        assert_eq!(arm.after_moves(&[0.0, 0.0, 1.0, 2.0]), [0.0, 0.0, 1.0, 2.2]);
+        arm.effects = vec![Effect::Lag { joint: None, fraction: 0.5 }];
+        assert!(arm.has_moves());
+        assert_eq!(arm.after_moves(&[0.0, 0.0, 1.0, 2.0]), [0.0, 0.0, 1.5, 3.0]);
+    }
+}

@@ -14,6 +14,7 @@
 
 mod beside;
 mod calibrated;
+mod calibrated_section;
 mod defaults;
 mod effect;
 mod effects_file;

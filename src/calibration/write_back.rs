@@ -1,7 +1,7 @@
 //! The calibrated robot as a file of the format that it came in.
 
+use super::calibrated_range::calibrated_range;
 use super::campaign::{Campaign, Targets};
-use super::extrapolation::calibrated_range;
 use super::result::Calibration;
 use crate::error::Result;
 use crate::robot::{Effect, Joint, Parameter, Robot, Tip, Uncertainty, is_urdf};

@@ -4,7 +4,7 @@
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::calibrated::{self, RawCalibrated};
+use super::calibrated_section::{self, RawCalibrated};
 use super::effects_file::{self, RawEffect};
 use super::file::{self, RawTip};
 use super::uncertainty::{self, RawUncertainty};
@@ -62,7 +62,7 @@ impl Robot {
             self.uncertainty = Some(uncertainty::read(&toml, known, count)?);
         }
         if let Some(range) = &raw.calibrated {
-            self.calibrated = Some(calibrated::read(&toml, range, &self.joints)?);
+            self.calibrated = Some(calibrated_section::read(&toml, range, &self.joints)?);
         }
         let read = |effect: &Spanned<RawEffect>| effects_file::read(&toml, effect, count);
         let effects: Vec<Effect> = raw.effect.iter().map(read).collect::<Result<_>>()?;

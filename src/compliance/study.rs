@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::steps::{Step, steps};
 use super::{Compliance, closed_form};
-use crate::beam::{Load, Motion, Physics, RodModel};
+use crate::beam::{Load, Motion, NaturalMode, Physics, RodModel};
 use crate::error::Result;
 use crate::rod::Rod;
 use crate::units::STANDARD_GRAVITY;
@@ -77,6 +77,8 @@ pub struct Shape {
     pub under_force: Vec<Matrix3<f64>>,
     /// Displacement of each point per g, m; column: axis of gravity.
     pub under_gravity: Vec<Matrix3<f64>>,
+    /// The slowest natural modes of the whole rod, a displacement for each point; none of a rod without mass.
+    pub modes: Vec<NaturalMode>,
 }
 
 impl Study {
@@ -132,11 +134,16 @@ impl Shape {
     fn new(rod: &Rod, physics: &Physics) -> Result<Self> {
         /// Enough for a smooth curve.
         const POINTS: usize = 60;
+        const MODES: usize = 3;
         let model = RodModel::new(rod, physics, POINTS, &[])?;
         let chain = &model.chain;
         let response = chain.solve(&[Load::Force { node: model.tip() }, Load::SelfWeight])?;
         let nodes = 0..=chain.end();
+        // numbers that are beyond double precision somewhere are no reason to say nothing of the rest
+        let whole = RodModel::new(rod, &Physics::WHOLE, POINTS, &[])?;
+        let modes = whole.chain.natural_modes(MODES).unwrap_or_default();
         Ok(Shape {
+            modes,
             centreline: nodes.clone().map(|node| chain.position(node)).collect(),
             under_force: nodes.clone().map(|node| response.motion(node, 0).translation).collect(),
             under_gravity: nodes

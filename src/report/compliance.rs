@@ -1,11 +1,12 @@
 //! What the `compliance` command says: JSON, tables and pictures of a [`Study`].
 
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Vector3};
 use serde_json::{Value, json};
 
 use super::pictures::{Contributions, RodShape, ShapeCase, Station, StationKind, contributions, rod_shape};
 use super::table::{Column, Table};
 use super::{Block, Report, Section};
+use crate::beam::{NaturalMode, settling_time};
 use crate::compliance::{Compliance, Mode, Shape, StationResponse, Study};
 use crate::rod::Rod;
 use crate::units::{GRAM, MM, UM, URAD, significant};
@@ -42,6 +43,7 @@ pub fn json(study: &Study) -> Value {
         "contact_force_n": study.contact_force,
         "tip_mm": (study.rod.tip() / MM).as_slice(),
         "mass_g": study.rod.mass() / GRAM,
+        "natural_frequencies_hz": study.shape.modes.iter().map(|mode| mode.frequency).collect::<Vec<_>>(),
         "contributions": steps,
         "stations": study.stations.map(|stations| json!({
             "load_station_mm": stations.load / MM,
@@ -85,7 +87,7 @@ pub fn sections(study: &Study) -> Vec<Section> {
     let stations = stations(rod);
     let force_cases = AXES.map(|axis| format!("1 N along +{}", axis.to_uppercase()));
     let gravity_cases = AXES.map(|axis| format!("1 g along +{}", axis.to_uppercase()));
-    vec![
+    let mut sections = vec![
         Section::new(format!("Compliance of the tip, rod {}", rod.name), tables),
         Section::new(
             format!("What each left-out term is worth, rod {}", rod.name),
@@ -117,7 +119,66 @@ pub fn sections(study: &Study) -> Vec<Section> {
                     ),
             ],
         ),
-    ]
+    ];
+    sections.extend(swing(study, &stations));
+    sections
+}
+
+/// How fast the rod swings, and in which shapes; nothing of a rod without mass.
+fn swing(study: &Study, stations: &[Station]) -> Option<Section> {
+    /// What a swing dies down to, and damping ratios: of bare tubes, and with bonded or threaded joints.
+    const SHARE: f64 = 0.02;
+    const DAMPING: [f64; 2] = [0.002, 0.01];
+    let (rod, modes) = (&study.rod, &study.shape.modes);
+    if modes.is_empty() {
+        return None;
+    }
+    let mut columns = vec![Column::text("mode"), Column::text("swings"), Column::number("frequency", "Hz")];
+    columns.extend(
+        DAMPING.map(|ratio| {
+            Column::number(format!("to 2 % at {} % damping", significant(100.0 * ratio, 1)), "s")
+        }),
+    );
+    let caption = format!("Rod {}: slowest natural modes, clamped at the flange.", rod.name);
+    let mut table = Table::new("natural-frequencies", caption, columns);
+    let direction = |mode: &NaturalMode| {
+        let sum = |axis: usize| mode.shape.iter().map(|[u, _]| u[axis].powi(2)).sum::<f64>();
+        let (across, within) = (sum(1), sum(0) + sum(2));
+        match across / (across + within) {
+            share if share > 0.99 => "out of the rod's plane",
+            share if share < 0.01 => "in the rod's plane",
+            _ => "both ways",
+        }
+    };
+    for (k, mode) in modes.iter().enumerate() {
+        let mut cells = vec![(k + 1).to_string(), direction(mode).to_owned(), significant(mode.frequency, 4)];
+        cells.extend(DAMPING.map(|ratio| significant(settling_time(mode.frequency, ratio, SHARE), 2)));
+        table.row(cells);
+    }
+    // a tip that swings by 1 mm
+    let shapes = |mode: &NaturalMode| mode.shape.iter().map(|[u, _]| u * MM).collect::<Vec<_>>();
+    let all: Vec<Vec<Vector3<f64>>> = modes.iter().map(shapes).collect();
+    let cases = modes.iter().zip(&all).map(|(mode, shape)| ShapeCase {
+        label: format!("{} Hz", significant(mode.frequency, 4)),
+        deflection_um: shape.iter().map(|u| (u / UM).into()).collect(),
+    });
+    let figure = rod_shape(&RodShape {
+        title: format!("Rod {}", rod.name),
+        centreline_mm: study.shape.centreline.iter().map(|p| (p / MM).into()).collect(),
+        cases: cases.collect(),
+        stations: stations.to_vec(),
+        ..RodShape::default()
+    });
+    let words = "Exact flexibilities, consistent mass of Timoshenko beams with rotary inertia; the robot is taken as rigid. \
+         Readings within the settling time of a move are readings of a swing.";
+    Some(Section::new(
+        format!("How rod {} swings", rod.name),
+        vec![
+            Block::Paragraph(words.into()),
+            Block::Table(table),
+            Block::Figure(figure.named("natural-modes").captioned("Shapes of the slowest natural modes.")),
+        ],
+    ))
 }
 
 /// One sentence: how much the rod bends.

@@ -10,8 +10,7 @@
 use nalgebra::{DMatrix, Matrix3xX};
 
 use super::campaign::Recording;
-use super::result::Calibration;
-use crate::robot::{CalibratedRange, Kinematics, Motion, Parameter, Setup};
+use crate::robot::{Kinematics, Motion, Parameter, Setup};
 
 /// Poses asked for, against those of the calibration.
 #[derive(Debug, Clone, PartialEq)]
@@ -81,21 +80,8 @@ impl Extrapolation {
     }
 }
 
-/// The poses of a calibration, for those who ask for others.
-pub(super) fn calibrated_range(calibration: &Calibration, recording: &Recording) -> CalibratedRange {
-    let free: Vec<Parameter> = calibration.parameters.iter().map(|p| p.parameter).collect();
-    let known =
-        Known { setup: &calibration.setup, free: &free, covariance: &calibration.fit.covariance.matrix };
-    let range = |joint: usize| {
-        let values = (0..recording.len()).map(|row| recording.joints(row)[joint]);
-        values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), q| (a.min(q), b.max(q)))
-    };
-    let joints = (0..calibration.setup.robot.joints.len()).map(range).collect();
-    CalibratedRange { joints, sd: sd(&known, recording) }
-}
-
 /// Root mean square of √tr(J·Σ·Jᵀ) over a recording, m.
-fn sd(known: &Known, recording: &Recording) -> f64 {
+pub(super) fn sd(known: &Known, recording: &Recording) -> f64 {
     let own: Vec<usize> = (0..known.free.len())
         .filter(|&k| !known.free[k].is_placement() && known.covariance[(k, k)].is_finite())
         .collect();

@@ -3,10 +3,9 @@
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::{Joint, Motion};
 use crate::error::Result;
 use crate::toml_text::{Number, TomlText, in_unit};
-use crate::units::{DEG, MM};
+use crate::units::MM;
 
 /// The poses that a robot was calibrated with, as far as a prediction asks for them.
 #[derive(Debug, Clone, PartialEq)]
@@ -25,15 +24,11 @@ pub(super) struct RawCalibrated {
     sd_mm: Number,
 }
 
-fn unit(joint: &Joint) -> f64 {
-    if joint.motion == Motion::Revolute { DEG } else { MM }
-}
-
 impl CalibratedRange {
-    /// The section of a robot file.
-    pub(super) fn written(&self, joints: &[Joint]) -> String {
+    /// The section of a robot file; `units` of the joints in SI.
+    pub(super) fn written(&self, units: &[f64]) -> String {
         let bound = |of: fn(&(f64, f64)) -> f64| -> Vec<f64> {
-            self.joints.iter().zip(joints).map(|(range, joint)| in_unit(of(range), unit(joint))).collect()
+            self.joints.iter().zip(units).map(|(range, unit)| in_unit(of(range), *unit)).collect()
         };
         let (low, high) = (bound(|range| range.0), bound(|range| range.1));
         let sd = in_unit(self.sd, MM);
@@ -41,14 +36,14 @@ impl CalibratedRange {
     }
 }
 
-/// The section of a robot of these joints.
-pub(super) fn read(toml: &TomlText, raw: &RawCalibrated, joints: &[Joint]) -> Result<CalibratedRange> {
+/// The section of a robot whose joints have these units in SI.
+pub(super) fn read(toml: &TomlText, raw: &RawCalibrated, units: &[f64]) -> Result<CalibratedRange> {
     let bound = |key: &str, list: &Spanned<Vec<Number>>| -> Result<Vec<f64>> {
-        if list.get_ref().len() != joints.len() {
-            return Err(toml.is(key, list, &format!("{} numbers, one for each joint", joints.len())));
+        if list.get_ref().len() != units.len() {
+            return Err(toml.is(key, list, &format!("{} numbers, one for each joint", units.len())));
         }
-        let number = |(number, joint): (&Number, &Joint)| Ok(toml.finite(key, number)? * unit(joint));
-        list.get_ref().iter().zip(joints).map(number).collect()
+        let number = |(number, unit): (&Number, &f64)| Ok(toml.finite(key, number)? * unit);
+        list.get_ref().iter().zip(units).map(number).collect()
     };
     let low = bound("calibrated.low_deg_or_mm", &raw.low_deg_or_mm)?;
     let high = bound("calibrated.high_deg_or_mm", &raw.high_deg_or_mm)?;

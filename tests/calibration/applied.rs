@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use rodcal::calibration::campaign::FileNames;
-use rodcal::calibration::{Calibration, Campaign, Mode, Options, calibrate};
+use rodcal::calibration::{Calibration, Campaign, Mode, Options, Summary, calibrate};
 use rodcal::diagnosis::calibration::{Applied, CalibrationDiagnosis, apply, diagnose};
 use rodcal::prelude::*;
 use rodcal::robot::Effect;
@@ -53,7 +53,8 @@ fn tracked() -> Campaign {
     let (seen, unseen) = (150, 60);
     let mut dice = Dice(7);
     let q: Vec<f64> = (0..6 * (seen + unseen)).map(|_| 1.8 * dice.roll()).collect();
-    let turned = built.after_moves(&q);
+    // both recordings begin at rest
+    let turned = [built.after_moves(&q[..6 * seen]), built.after_moves(&q[6 * seen..])].concat();
     let tool = nalgebra::Vector3::new(0.08, 0.0, 0.25);
     let mut recordings = [Recording::new(6), Recording::new(6)];
     for k in 0..seen + unseen {

@@ -73,7 +73,7 @@ fn a_pose_that_was_misread_is_found_by_its_name_and_ends_with_status_1() {
     assert_eq!(json["applied"]["entered"], serde_json::json!([]));
     assert!(json["applied"]["removed"][0].as_str().unwrap().contains("misreading"), "{}", json["applied"]);
     assert_eq!(json["findings"][0]["written_to"], "measurements");
-    for file in ["campaign.toml", "measurements.csv", "rod.toml", "calibrated.toml"] {
+    for file in ["campaign.toml", "measurements.csv", "5.toml", "calibrated.toml"] {
         assert!(sandbox.listing().contains_key(&format!("report/{file}")), "{file}");
     }
     assert_keys(&json);

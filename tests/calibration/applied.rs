@@ -91,7 +91,8 @@ fn a_simulated_robot_is_as_accurate_as_promised_and_nothing_is_found_again() {
     let second = diagnose(&again, Mode::None, &Options::default()).unwrap();
     assert!(second.diagnosis.findings.is_empty(), "{:?}", second.diagnosis.findings);
     // what is written is what was read: the moves are added once
-    assert_eq!(again.measurements.read_joints(7), campaign.measurements.joints(7));
+    let read = again.measurements.read_joints(7).iter().zip(campaign.measurements.joints(7));
+    assert!(read.into_iter().all(|(read, joint)| (read - joint).abs() < 1e-8));
 }
 
 /// `../shared/real`, where it is there: sockets and a URDF, whose findings stand beside it.

@@ -25,6 +25,9 @@ const FEWEST: usize = 6;
 /// A joint beyond its calibrated range by this share of it extrapolates.
 const BEYOND: f64 = 0.1;
 
+/// A joint beyond its calibrated range: number from 0, range asked for, range calibrated, rad or m.
+pub type JointBeyond = (usize, (f64, f64), (f64, f64));
+
 /// Tips of poses.
 #[derive(Debug, Clone)]
 pub struct Prediction {
@@ -39,7 +42,7 @@ pub struct Prediction {
     /// the model does not say.
     pub ratios: Option<Vec<f64>>,
     /// Joints beyond their calibrated ranges: number from 0, range asked for, range calibrated (rad or m).
-    pub beyond: Vec<(usize, (f64, f64), (f64, f64))>,
+    pub beyond: Vec<JointBeyond>,
 }
 
 impl Prediction {
@@ -129,7 +132,7 @@ fn variances(jacobian: &DMatrix<f64>, covariance: &DMatrix<f64>) -> Vec<Vector3<
         .collect()
 }
 
-fn beyond(robot: &Robot, poses: &[PredictionQuery]) -> Vec<(usize, (f64, f64), (f64, f64))> {
+fn beyond(robot: &Robot, poses: &[PredictionQuery]) -> Vec<JointBeyond> {
     let Some(calibrated) = &robot.calibrated else { return Vec::new() };
     let asked = |joint: usize| {
         let values = poses.iter().map(|pose| pose.joints[joint]);

@@ -4,7 +4,6 @@
 mod before;
 mod calibrate;
 mod calibrate_from;
-mod calibrated_range;
 pub mod campaign;
 mod checks;
 mod compare;

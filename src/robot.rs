@@ -14,7 +14,6 @@
 
 mod beside;
 mod calibrated;
-mod calibrated_section;
 mod defaults;
 mod effect;
 mod effects_file;

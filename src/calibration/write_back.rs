@@ -1,10 +1,10 @@
 //! The calibrated robot as a file of the format that it came in.
 
-use super::calibrated_range::calibrated_range;
-use super::campaign::{Campaign, Targets};
+use super::campaign::{Campaign, Recording, Targets};
+use super::extrapolation::{self, Known};
 use super::result::Calibration;
 use crate::error::Result;
-use crate::robot::{Effect, Joint, Parameter, Robot, Tip, Uncertainty, is_urdf};
+use crate::robot::{CalibratedRange, Effect, Joint, Parameter, Robot, Tip, Uncertainty, is_urdf};
 use crate::units::{DEG, MM};
 
 /// Name and text of the calibrated robot: a table with compliances, or the URDF with new origins,
@@ -107,6 +107,19 @@ fn with_what_is_known(campaign: &Campaign, calibration: &Calibration, sd: Option
     robot.uncertainty = uncertainty(calibration);
     robot.calibrated = Some(calibrated_range(calibration, &campaign.measurements));
     robot
+}
+
+/// The poses of a calibration, for those who ask for others.
+fn calibrated_range(calibration: &Calibration, recording: &Recording) -> CalibratedRange {
+    let free: Vec<Parameter> = calibration.parameters.iter().map(|p| p.parameter).collect();
+    let known =
+        Known { setup: &calibration.setup, free: &free, covariance: &calibration.fit.covariance.matrix };
+    let range = |joint: usize| {
+        let values = (0..recording.len()).map(|row| recording.joints(row)[joint]);
+        values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), q| (a.min(q), b.max(q)))
+    };
+    let joints = (0..calibration.setup.robot.joints.len()).map(range).collect();
+    CalibratedRange { joints, sd: extrapolation::sd(&known, recording) }
 }
 
 /// Covariance of what the data determine of the robot and its tool; `None` where the noise is

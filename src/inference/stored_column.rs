@@ -70,7 +70,7 @@ impl DataParts {
     }
 
     /// How many.
-    pub fn len(&self) -> usize {
+    pub(super) fn parts(&self) -> usize {
         self.data.len()
     }
 
@@ -180,7 +180,7 @@ pub fn products(
     vectors: &DMatrix<f64>,
     parts: &DataParts,
 ) -> Vec<DMatrix<f64>> {
-    let mut found = vec![DMatrix::zeros(vectors.ncols(), columns.len()); parts.len()];
+    let mut found = vec![DMatrix::zeros(vectors.ncols(), columns.len()); parts.parts()];
     let (patterns, plain, short) = by_pattern(columns, vectors.nrows());
     let mut multiply = |places: &[Vec<usize>], images: &[DMatrix<f64>], own: &[usize]| {
         let runs: Vec<Vec<Range<usize>>> = places.iter().map(|places| runs(places)).collect();
@@ -205,7 +205,7 @@ pub fn products(
         }
     };
     for (pattern, own) in patterns {
-        let places: Vec<Vec<usize>> = (0..parts.len()).map(|part| parts.blocks(part, pattern)).collect();
+        let places: Vec<Vec<usize>> = (0..parts.parts()).map(|part| parts.blocks(part, pattern)).collect();
         let image = |part: usize| {
             DMatrix::from_fn(places[part].len(), vectors.ncols(), |i, j| {
                 let first = pattern.block * places[part][i];
@@ -213,7 +213,7 @@ pub fn products(
                 data.map(|datum| pattern.values[datum] * vectors[(datum, j)]).sum::<f64>()
             })
         };
-        let images: Vec<DMatrix<f64>> = (0..parts.len()).map(image).collect();
+        let images: Vec<DMatrix<f64>> = (0..parts.parts()).map(image).collect();
         multiply(&places, &images, &own);
     }
     if !plain.is_empty() {

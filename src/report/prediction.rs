@@ -25,6 +25,9 @@ const FEWEST: usize = 6;
 /// A joint beyond its calibrated range by this share of it extrapolates.
 const BEYOND: f64 = 0.1;
 
+/// A joint beyond its calibrated range: number from 0, range asked for, range calibrated, rad or m.
+pub type JointBeyond = (usize, (f64, f64), (f64, f64));
+
 /// Tips of poses.
 #[derive(Debug, Clone)]
 pub struct Prediction {
@@ -39,7 +42,7 @@ pub struct Prediction {
     /// the model does not say.
     pub ratios: Option<Vec<f64>>,
     /// Joints beyond their calibrated ranges: number from 0, range asked for, range calibrated (rad or m).
-    pub beyond: Vec<(usize, (f64, f64), (f64, f64))>,
+    pub beyond: Vec<JointBeyond>,
 }
 
 impl Prediction {
@@ -129,7 +132,7 @@ fn variances(jacobian: &DMatrix<f64>, covariance: &DMatrix<f64>) -> Vec<Vector3<
         .collect()
 }
 
-fn beyond(robot: &Robot, poses: &[PredictionQuery]) -> Vec<(usize, (f64, f64), (f64, f64))> {
+fn beyond(robot: &Robot, poses: &[PredictionQuery]) -> Vec<JointBeyond> {
     let Some(calibrated) = &robot.calibrated else { return Vec::new() };
     let asked = |joint: usize| {
         let values = poses.iter().map(|pose| pose.joints[joint]);
@@ -250,5 +253,55 @@ pub fn report(robot: &Robot, prediction: &Prediction) -> Report {
         warnings: warnings(robot, prediction),
         sections: vec![Section::new("Predicted tips", vec![Block::Table(table)])],
         provenance: Vec::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::robot::{CalibratedRange, Effect, Hayati, Joint, Parameter, Tip, Uncertainty};
+
+    /// A joint of 0.5 m whose zero is known to 0.1 mrad, calibrated from −30° to 30°.
+    fn arm() -> Robot {
+        let link = Hayati { a: 0.5, ..Hayati::default() };
+        let joints = ["one", "two"].map(|name| Joint::new(name, Motion::Revolute, link));
+        let mut arm = Robot::new("arm", joints.to_vec());
+        arm.tip = Some(Tip { at: Vector3::zeros(), sd: Some(3e-5) });
+        let (parameters, covariance) = (vec![Parameter::Theta(1)], DMatrix::from_element(1, 1, 1e-8));
+        arm.uncertainty = Some(Uncertainty { parameters, covariance });
+        arm.calibrated = Some(CalibratedRange { joints: vec![(-0.5, 0.5); 2], sd: 4e-5 });
+        arm.effects = vec![Effect::EncoderScale { joint: 1, factor: 1.0004 }];
+        arm
+    }
+
+    fn predicted(angles: &[[f64; 2]], is_aligned: bool) -> crate::Result<Prediction> {
+        let query = |q: &[f64; 2]| PredictionQuery { pose: "1".into(), joints: q.to_vec() };
+        Prediction::new(&arm(), Vector3::zeros(), angles.iter().map(query).collect(), is_aligned)
+    }
+
+    #[test]
+    fn what_is_beyond_the_calibration_is_said_and_less_certain() {
+        let near = predicted(&[[0.1, 0.0]], false).unwrap();
+        let far = predicted(&[[0.1, 1.2]], false).unwrap();
+        // the second joint's zero moves the tip by 0.5 m · 0.1 mrad = 50 µm
+        assert!((near.ratios.as_ref().unwrap()[0] - 1.25).abs() < 1e-9 && near.far() == 0);
+        assert!(near.beyond.is_empty() && far.beyond == [(1, (1.2, 1.2), (-0.5, 0.5))]);
+        let sd = |prediction: &Prediction| prediction.tips[0].2.unwrap().norm();
+        let known = (3.0 * 3e-5f64.powi(2) + 5e-5f64.powi(2)).sqrt();
+        assert!((sd(&near) - known).abs() < 1e-9);
+        // beyond, its scale adds the rms of 0.4e-3·q over ±0.5 rad, 0.115 mrad
+        let gear = 0.5 * 0.4e-3 * 0.5 / 3f64.sqrt();
+        assert!((sd(&far) - known.hypot(gear)).abs() < 2e-7, "{} {}", sd(&far), known.hypot(gear));
+        assert!(warnings(&arm(), &far)[0].contains("joint 2 goes from 68.8° to 68.8°"));
+    }
+
+    #[test]
+    fn an_alignment_takes_up_what_base_and_tool_can() {
+        let poses: Vec<[f64; 2]> = (0..8).map(|k| [0.1 * f64::from(k), 0.3]).collect();
+        // the second joint never moves: its zero is one of the tool
+        let sd = |is_aligned| predicted(&poses, is_aligned).unwrap().tips[3].2.unwrap().norm();
+        let held_out = 3f64.sqrt() * 3e-5;
+        assert!(sd(false) > 1.2 * held_out && (sd(true) - held_out).abs() < 1e-9);
+        assert!(predicted(&poses[..3], true).is_err());
     }
 }

@@ -4,10 +4,11 @@
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::calibrated_section::{self, RawCalibrated};
+use super::calibrated::{self, RawCalibrated};
 use super::effects_file::{self, RawEffect};
 use super::file::{self, RawTip};
 use super::uncertainty::{self, RawUncertainty};
+use super::write::joint_units;
 use super::{Effect, Robot, Uncertainty};
 use crate::error::Result;
 use crate::toml_text::{self, TomlText, in_unit};
@@ -33,7 +34,10 @@ impl Robot {
             text += &tip.sd.map_or_else(String::new, |sd| format!("sd_mm = {:?}\n", in_unit(sd, MM)));
         }
         text += &self.uncertainty.as_ref().map_or_else(String::new, Uncertainty::written);
-        text += &self.calibrated.as_ref().map_or_else(String::new, |range| range.written(&self.joints));
+        text += &self
+            .calibrated
+            .as_ref()
+            .map_or_else(String::new, |range| range.written(&joint_units(&self.joints)));
         text + &self.effects.iter().map(effects_file::written).collect::<String>()
     }
 
@@ -62,11 +66,73 @@ impl Robot {
             self.uncertainty = Some(uncertainty::read(&toml, known, count)?);
         }
         if let Some(range) = &raw.calibrated {
-            self.calibrated = Some(calibrated_section::read(&toml, range, &self.joints)?);
+            self.calibrated = Some(calibrated::read(&toml, range, &joint_units(&self.joints))?);
         }
         let read = |effect: &Spanned<RawEffect>| effects_file::read(&toml, effect, count);
         let effects: Vec<Effect> = raw.effect.iter().map(read).collect::<Result<_>>()?;
         self.effects.extend(effects);
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::DMatrix;
+
+    use super::*;
+    use crate::robot::{CalibratedRange, Hayati, Joint, Motion, Parameter, Tip};
+
+    #[test]
+    fn what_is_written_beside_a_urdf_is_read_again() {
+        let joints = ["a", "b"].map(|name| Joint::new(name, Motion::Revolute, Hayati::default()));
+        let bare = Robot::new("arm", joints.to_vec());
+        let mut arm = bare.clone();
+        arm.effects = vec![
+            Effect::PlayByApproach { joint: 1, play: 2e-4 },
+            Effect::Lag { joint: None, fraction: 3e-4 },
+            Effect::Lag { joint: Some(0), fraction: 1e-4 },
+            Effect::Weight { joint: 0, at: Some(1), per_metre: 1e-3 },
+            Effect::Weight { joint: 0, at: None, per_metre: 2e-3 },
+            Effect::Compliance { joint: 1, per_nm: 1e-5 },
+        ];
+        arm.tip = Some(Tip { at: [0.0, 0.0, 0.25].into(), sd: Some(5e-5) });
+        arm.calibrated = Some(CalibratedRange { joints: vec![(-0.5, 0.5), (0.25, 1.0)], sd: 1e-5 });
+        let covariance = DMatrix::from_element(1, 1, 1e-10);
+        arm.uncertainty = Some(Uncertainty { parameters: vec![Parameter::A(0)], covariance });
+        let text = arm.beside_to_toml(&["said".to_owned()]);
+        let mut again = bare.clone();
+        again.add_beside("effects.toml", &text).unwrap();
+        assert_eq!(again.beside_to_toml(&["said".to_owned()]), text);
+        assert_eq!((again.effects.len(), again.tip.is_some()), (6, true));
+        let range = again.calibrated.unwrap();
+        assert!((range.joints[1].1 - 1.0).abs() < 1e-12 && (range.sd - 1e-5).abs() < 1e-15);
+        let message = |text: &str| bare.clone().add_beside("e.toml", text).unwrap_err().to_string();
+        for (text, words) in [
+            (
+                "[[effect]]\nname = \"backlash\"\njoint = 1\nplay_urad = 9\ntaken_up = \"wind\"\n",
+                "\"approach\"",
+            ),
+            (
+                "[[effect]]\nname = \"weight\"\njoint = 1\nat_joint = 3\nurad_per_m = 9\n",
+                "a joint from 1 to 2",
+            ),
+            ("[calibrated]\nlow_deg_or_mm = [1]\nhigh_deg_or_mm = [1, 2]\nsd_mm = 1\n", "2 numbers"),
+        ] {
+            let message = message(text);
+            assert!(message.contains(words) && message.contains("e.toml:"), "{message}");
+        }
+    }
+
+    #[test]
+    fn a_weight_turns_its_joint_by_its_lever() {
+        // an arm of 0.5 m that turns about a horizontal axis
+        let link = Hayati { a: 0.5, ..Hayati::default() };
+        let mut arm = Robot::new("arm", vec![Joint::new("one", Motion::Revolute, link)]);
+        arm.gravity = [0.0, -9.8, 0.0].into();
+        arm.effects = vec![Effect::Weight { joint: 0, at: None, per_metre: 1e-3 }];
+        let lowered = |q: f64| arm.tip_at(Default::default(), &[q]).0.y - 0.5 * q.sin();
+        // horizontal: a lever of 0.5 m turns it down by 0.5 mrad, which the tip sinks by 0.25 mm; upright: not at all
+        assert!((lowered(0.0) + 0.25e-3).abs() < 1e-9);
+        assert!(lowered(std::f64::consts::FRAC_PI_2).abs() < 1e-9);
     }
 }

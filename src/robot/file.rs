@@ -5,11 +5,12 @@ use nalgebra::Vector3;
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::calibrated_section::{self, RawCalibrated};
+use super::calibrated::{self, RawCalibrated};
 use super::defaults::{DOWN, default_name, file_stem};
 use super::effects_file::{self, RawEffect};
 use super::standard_uncertainty::{self, RawStandardUncertainty};
 use super::uncertainty::{self, RawUncertainty};
+use super::write::joint_units;
 use super::{Body, Effect, Hayati, Joint, Motion, Robot, Tip, urdf};
 use crate::error::Result;
 use crate::spatial::Pose;
@@ -167,7 +168,8 @@ fn read_table(file: &str, text: &str) -> Result<Robot> {
         .collect::<Result<_>>()?;
     let joints = raw.joint.get_ref().iter().enumerate();
     let joints: Vec<Joint> = joints.map(|(index, joint)| table.joint(index, joint)).collect::<Result<_>>()?;
-    let calibrated = raw.calibrated.as_ref().map(|range| calibrated_section::read(&table.0, range, &joints));
+    let calibrated =
+        raw.calibrated.as_ref().map(|range| calibrated::read(&table.0, range, &joint_units(&joints)));
     Ok(Robot {
         calibrated: calibrated.transpose()?,
         name: raw.name.unwrap_or_else(|| file_stem(file)),

@@ -55,10 +55,18 @@ impl Robot {
         }
         text += &self.standard_uncertainty.written();
         text += &self.uncertainty.as_ref().map_or_else(String::new, Uncertainty::written);
-        text += &self.calibrated.as_ref().map_or_else(String::new, |range| range.written(&self.joints));
+        text += &self
+            .calibrated
+            .as_ref()
+            .map_or_else(String::new, |range| range.written(&joint_units(&self.joints)));
         text += &self.effects.iter().map(effects_file::written).collect::<String>();
         Ok(text)
     }
+}
+
+/// What a joint's values are in, in files.
+pub(super) fn joint_units(joints: &[Joint]) -> Vec<f64> {
+    joints.iter().map(|joint| if joint.motion == Motion::Revolute { DEG } else { MM }).collect()
 }
 
 fn write_joint(text: &mut String, index: usize, joint: &Joint) -> std::fmt::Result {

@@ -25,7 +25,7 @@ pub struct Applied {
     pub undone: Vec<String>,
     /// What entered the model, in words.
     pub entered: Vec<String>,
-    /// What was taken out of the measured points.
+    /// What was taken out of the measured points, or made another socket.
     pub removed: Vec<String>,
     /// What nothing can hold.
     pub left_out: Vec<String>,
@@ -81,7 +81,7 @@ pub fn apply(found: &CalibrationDiagnosis, names: &FileNames, above: &[String]) 
         }
     };
     say("With the findings", &entered);
-    say("Removed from the measured points", &removed);
+    say("Corrected in the measurements", &removed);
     say("Not written, because no file has a key for it", &left_out);
     let said = comments.clone();
     let sd_um = sd / UM;

@@ -12,12 +12,13 @@ use super::headline::um;
 use super::remainder::{Remainder, Sample};
 use super::subject::{Errors, Subject};
 use super::{json as whole_json, report as whole_report};
+use crate::calibration::campaign::Targets;
 use crate::calibration::{MOST_SCATTER, Warning};
 use crate::diagnosis::calibration::{Applied, CalibrationDiagnosis, Gear, destination as written_to};
 use crate::inference::{Finding, ForwardModel, Kind, Location, Plan, PosePlan, ShownBy, Variable, WrittenTo};
 use crate::report::calibration::warnings as of_calibration;
 use crate::report::{Block, Report, Section};
-use crate::robot::Motion;
+use crate::robot::{Motion, is_urdf};
 use crate::units::{DEG, MM, UM, URAD, significant};
 
 /// Coordinates of a pose.
@@ -46,7 +47,7 @@ pub fn applied(report: &mut Report, json: &mut Value, applied: &Applied) {
     let said = [
         ("Corrected in the campaign", &applied.undone),
         ("Written into the robot file", &applied.entered),
-        ("Removed from the measured points", &applied.removed),
+        ("Corrected in the measurements", &applied.removed),
         ("Not written, because the file has no key for it", &applied.left_out),
     ];
     let list = |(what, list): (&str, &Vec<String>)| {
@@ -170,12 +171,21 @@ fn destination(found: &CalibrationDiagnosis, finding: &Finding) -> Option<&'stat
 
 /// What `--apply` would do, before it does.
 pub fn announced(report: &mut Report, found: &CalibrationDiagnosis) {
+    let campaign = found.model.campaign;
+    let (is_urdf, has_sockets) =
+        (is_urdf(&campaign.robot_text), matches!(campaign.measurements.targets, Targets::Sockets(_)));
     let line = |finding: &Finding| {
         let what = (finding.effect.cause_at)(&finding.location);
         match destination(found, finding) {
+            Some("robot") if is_urdf => {
+                format!("Into a file beside the URDF, for calibrate and predict: {what}")
+            }
             Some("robot") => format!("Into the robot file, for calibrate and predict: {what}"),
             Some("measurements") if finding.kind() == Kind::Physics => {
                 format!("Out of the measurements, for these poses only; predict will not know it: {what}")
+            }
+            Some("measurements") if has_sockets => {
+                format!("Into the measurements, where it is another socket from then on: {what}")
             }
             Some("measurements") => format!("Out of the measurements: {what}"),
             Some(_) => format!("Corrected in the campaign: {what}"),

@@ -14,7 +14,6 @@ use std::collections::BTreeMap;
 use nalgebra::DVector;
 
 use super::Evidence;
-use super::whitening::length;
 
 /// φ that are tried.
 const CORRELATIONS: [f64; 7] = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7];
@@ -66,6 +65,11 @@ pub(super) fn correlation(evidence: &Evidence, left: &DVector<f64>) -> f64 {
     let tried = CORRELATIONS.map(|phi| (phi, likeliest(&groups, phi).1));
     let best = tried.into_iter().max_by(|a, b| a.1.total_cmp(&b.1));
     best.filter(|(_, likelihood)| *likelihood > without + WORTH).map_or(0.0, |(phi, _)| phi)
+}
+
+/// |a|² of m data.
+pub(super) fn length(m: usize, phi: f64) -> f64 {
+    1.0 + (m as f64 - 1.0) * (1.0 - phi) / (1.0 + phi)
 }
 
 /// The likeliest ρ with the ln of its likelihood.

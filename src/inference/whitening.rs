@@ -17,7 +17,7 @@ use std::collections::{BTreeMap, HashMap};
 use nalgebra::{DMatrix, DVector};
 
 use super::Evidence;
-use super::correlation::{by_group, correlation, deviations, likeliest};
+use super::correlation::{by_group, correlation, deviations, length, likeliest};
 use crate::linalg::{least_squares, thin_svd, transposed_product};
 
 /// ρ that is believed before the data: a zero that was read once is as good as any other reading.
@@ -316,11 +316,6 @@ struct Tail {
     along: f64,
     /// |W·s|².
     whole: f64,
-}
-
-/// |a|² of m data.
-pub(super) fn length(m: usize, phi: f64) -> f64 {
-    1.0 + (m as f64 - 1.0) * (1.0 - phi) / (1.0 + phi)
 }
 
 /// ρ from repeats: the mean product of two deviations of one group, over what the mean square has beyond it.

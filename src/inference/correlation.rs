@@ -67,6 +67,11 @@ pub(super) fn correlation(evidence: &Evidence, left: &DVector<f64>) -> f64 {
     best.filter(|(_, likelihood)| *likelihood > without + WORTH).map_or(0.0, |(phi, _)| phi)
 }
 
+/// |a|² of m data.
+pub(super) fn length(m: usize, phi: f64) -> f64 {
+    1.0 + (m as f64 - 1.0) * (1.0 - phi) / (1.0 + phi)
+}
+
 /// The likeliest ρ with the ln of its likelihood.
 pub(super) fn likeliest(groups: &[Vec<f64>], phi: f64) -> (f64, f64) {
     // Σ of the squares of A·d, and (a·A·d)² of each group with its |a|²

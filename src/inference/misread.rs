@@ -67,6 +67,7 @@ impl Search<'_> {
         let linear = self.linear_part(&rest.terms);
         let count = self.evidence.recorded;
         let price = (PRIOR.1 / PRIOR.0 / count as f64).ln();
+        let at_first = self.plain_residual(&rest);
         let mut left = self.standardised(&rest);
         let mut off: Vec<usize> = Vec::new();
         let mut columns: Vec<DVector<f64>> = Vec::new();
@@ -75,6 +76,17 @@ impl Search<'_> {
             let Some(farthest) = others.max_by(|&a, &b| left[a].abs().total_cmp(&left[b].abs())) else {
                 break;
             };
+            // neighbours that are off to the same side have something in common
+            let is_beside = |&other: &usize| {
+                let (first, last) = (farthest.min(other), farthest.max(other));
+                let run = self.evidence.shared[first];
+                run == self.evidence.shared[last]
+                    && self.evidence.shared[first + 1..last].iter().all(|between| *between != run)
+                    && at_first[farthest] * at_first[other] > 0.0
+            };
+            if off.iter().any(is_beside) {
+                break;
+            }
             off.push(farthest);
             let mut column = DVector::zeros(self.evidence.residual.len());
             column[farthest] = USUAL * hypothesis.sigma;

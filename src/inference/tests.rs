@@ -212,8 +212,8 @@ fn the_same_recording_gives_the_same_diagnosis() {
 fn widened(form: &str, law: impl Fn(f64) -> f64) -> ((f64, f64, f64), (f64, f64, f64)) {
     let mut model = Columns::new(COUNT);
     model.add("law", "linear", column(|x| x), false);
-    model.add("law", form, column(law), false);
     let alone = diagnose(&model, &evidence(3, |x| 6.0 * x));
+    model.add("law", form, column(law), false);
     model.candidates.iter_mut().for_each(|candidate| candidate.is_alternative = true);
     if form == "other names" {
         model.candidates[1].parameters[0].name = "other".into();
@@ -242,6 +242,21 @@ fn an_interval_holds_what_another_form_of_the_law_says() {
     // neither one with another parameter nor one that leaves much more says anything of this factor
     assert_eq!(widened("other names", |x| 2.0 * x + 0.02 * x * x).1, alone);
     assert_eq!(widened("square", |x| 2.0 * x * x * x).1, alone);
+}
+
+/// A second effect that may be there as well makes the first one less sure, as much as it is likely.
+#[test]
+fn an_interval_holds_what_else_may_be_there() {
+    let half = |with: bool| {
+        let mut model = Columns::new(COUNT);
+        model.add("law", "", column(|x| x), false);
+        if with {
+            model.add("other", "", column(|x| x + 0.3 * x * x), false);
+        }
+        let (_, low, high) = of(&diagnose(&model, &evidence(3, |x| 6.0 * x)));
+        0.5 * (high - low)
+    };
+    assert!(half(true) > 1.2 * half(false), "{} {}", half(true), half(false));
 }
 
 /// What the base model is wrong by anyhow, twice as large as the effect and the other way, says nothing against the effect.

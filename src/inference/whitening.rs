@@ -361,7 +361,7 @@ fn shared_ratio(evidence: &Evidence, left: &DVector<f64>, correlation: f64) -> f
     if correlation > 0.0 {
         let count = deviations.iter().flatten().count() as f64;
         let (ratio, _) = likeliest(&by_group(evidence, &deviations), correlation);
-        return (ratio * count + RATIO_BEFORE * BELIEF) / (count + BELIEF);
+        return believed(ratio / (1.0 + ratio), 1.0 / (1.0 + ratio), count);
     }
     let (mut square, mut count) = (0.0, 0.0);
     let mut groups: BTreeMap<usize, (f64, f64, f64)> = BTreeMap::new();
@@ -398,9 +398,15 @@ fn shared_ratio(evidence: &Evidence, left: &DVector<f64>, correlation: f64) -> f
     let mean_square = square / count;
     let shared = (product / pairs).clamp(0.0, 0.999 * mean_square);
     let own = mean_square - shared;
-    // the belief counts as BELIEF data of this mean square, split as it says
+    believed(shared, own, count)
+}
+
+/// ρ of two variances that `count` data show, beside the belief: that counts as [`BELIEF`] data of the same mean square, split
+/// as it says.
+fn believed(shared: f64, own: f64, count: f64) -> f64 {
     let split = RATIO_BEFORE / (1.0 + RATIO_BEFORE);
-    (shared * count + split * mean_square * BELIEF) / (own * count + (1.0 - split) * mean_square * BELIEF)
+    let belief = BELIEF * (shared + own);
+    (shared * count + split * belief) / (own * count + (1.0 - split) * belief)
 }
 
 #[cfg(test)]

@@ -28,10 +28,10 @@ fn findings(subject: &Subject) -> Section {
     blocks.extend(source.map(|source| Block::Paragraph(format!("Source of the {}: {source}", subject.noun))));
     let findings = &subject.diagnosis.findings;
     if findings.is_empty() {
-        blocks.push(Block::Paragraph(format!(
-            "No effect of the library is needed to explain these {}.",
-            subject.noun
-        )));
+        blocks.push(Block::Paragraph(match &subject.remainder {
+            Some(_) => "An error was found that no effect of the library explains: see What remains.".into(),
+            None => format!("No effect of the library is needed to explain these {}.", subject.noun),
+        }));
         return Section::new("What was found", blocks);
     }
     let points = findings.iter().enumerate().map(|(k, finding)| {

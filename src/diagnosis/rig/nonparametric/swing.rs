@@ -21,6 +21,8 @@ const MOST_SWINGS: usize = 8;
 /// Times from which on as many swings are seen.
 const FEWEST: usize = 4 * MOST_SWINGS;
 
+type Wave = fn(f64) -> f64;
+
 /// All periods, over a coordinate from 0 to 1.
 pub(super) fn all(along: Along, coordinate: &Coordinate, data: &[Datum]) -> Vec<Entry> {
     let known: Vec<usize> = (0..data.len()).filter(|&i| coordinate[i].is_some()).collect();
@@ -39,12 +41,12 @@ pub(super) fn all(along: Along, coordinate: &Coordinate, data: &[Datum]) -> Vec<
     };
     let swings = |half: usize| {
         let turns = half as f64 / 2.0;
-        let of = |(own, wave): (&Arc<[usize]>, fn(f64) -> f64)| {
+        let of = |(own, wave): (&Arc<[usize]>, Wave)| {
             let at = |&i: &usize| coordinate[i].map_or(0.0, |x| wave(TAU * turns * x));
             let weights = Weights { data: Arc::clone(own), values: own.iter().map(at).collect() };
             (parameter("um", UM, 0.0, size(own), UNBOUNDED), Action::Shift(weights))
         };
-        let waves: [fn(f64) -> f64; 2] = [f64::cos, f64::sin];
+        let waves: [Wave; 2] = [f64::cos, f64::sin];
         let all = own.iter().flat_map(|own| waves.map(|wave| (own, wave)));
         let (parameters, actions) = all.map(of).unzip();
         let place = format!("{turns} swings, all sensors");

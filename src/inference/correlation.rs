@@ -99,11 +99,6 @@ pub(super) fn likeliest(groups: &[Vec<f64>], phi: f64) -> (f64, f64) {
     tried.into_iter().max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((0.0, f64::NEG_INFINITY))
 }
 
-/// |a|² of m data.
-pub(super) fn length(m: usize, phi: f64) -> f64 {
-    1.0 + (m as f64 - 1.0) * (1.0 - phi) / (1.0 + phi)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -56,7 +56,7 @@ pub(crate) use self::{
     selection::{DiscrepancyModel, Pairs},
 };
 pub use description::Description;
-pub use diagnose::diagnose;
+pub use diagnose::{diagnose, sketch};
 pub use diagnosis::{Diagnosed, Diagnosis, Discrepancy, ShownBy};
 pub(crate) use effect::at;
 pub use effect::{Effect, Kind, Reported, UNKNOWN, WrittenTo};

@@ -1,8 +1,7 @@
 //! Which hypothesis a recording supports: effects are added, exchanged and taken away while that makes it more probable.
 
-use super::ForwardModel;
-use super::Hypothesis;
 use super::search::{PRIOR, Search};
+use super::{ForwardModel, Hypothesis, Term};
 
 /// Odds against chance from which on an effect is named.
 pub const NAMED: f64 = 50.0;
@@ -93,7 +92,12 @@ impl Search<'_> {
             let additions = self.additions(&longer);
             let Some(more) = self.longer(&longer, &additions, false) else { break };
             let shared = self.shared(&additions, &more, &longer);
-            if more.log_probability < longer.log_probability + NAMED.ln() - shared {
+            // a second place of what is named already is that law, not quite right
+            let effect = |term: &Term| self.model.candidates()[term.candidate].effect;
+            let is_known = |new: &Term| hypothesis.terms.iter().any(|known| effect(known) == effect(new));
+            if more.terms.last().is_none_or(is_known)
+                || more.log_probability < longer.log_probability + NAMED.ln() - shared
+            {
                 break;
             }
             let mut terms = more.terms;

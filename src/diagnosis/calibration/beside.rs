@@ -11,7 +11,7 @@ use super::context::{Context, plausible};
 use super::prepared::Prepared;
 use crate::calibration::{Calibration, Compensation, Noise, Robust, calibrate_from};
 use crate::error::Result;
-use crate::inference::{Diagnosis, rms};
+use crate::inference::{Hypothesis, rms};
 use crate::units::URAD;
 
 /// A turn of a joint under its largest torque that changes columns, rad.
@@ -22,14 +22,15 @@ const LINEAR: f64 = 0.1;
 /// That robot, the rows as if nothing had been found; `None` where it is the same for all that its columns show.
 pub(super) fn calibrated_beside<'c>(
     prepared: &Prepared<'c>,
-    diagnosis: &Diagnosis,
+    hypothesis: &Hypothesis,
+    by_linear_model: &DVector<f64>,
 ) -> Result<Option<Calibration<'c>>> {
     let model = &prepared.model;
-    if diagnosis.hypothesis.terms.is_empty() {
+    if hypothesis.terms.is_empty() {
         return Ok(None);
     }
     let (campaign, known) = (model.campaign, &model.calibration);
-    let found = model.by_row(&model.terms.response(&diagnosis.hypothesis.terms));
+    let found = model.by_row(&model.terms.response(&hypothesis.terms));
     let compensation = Compensation { displaced: found.clone(), ..Compensation::new(campaign, known.mode)? };
     let free: Vec<_> = known.parameters.iter().map(|estimate| estimate.parameter).collect();
     let start = known.start.clone();
@@ -38,7 +39,7 @@ pub(super) fn calibrated_beside<'c>(
     let residual = |row: usize| -beside.deviations[row] * model.scale(row);
     let left = (0..recording.len()).flat_map(|row| <[f64; 3]>::from(residual(row)));
     let left = rms(&DVector::from_iterator(3 * recording.len(), left));
-    let expected = rms(&diagnosis.after.rows(0, diagnosis.recorded).into_owned());
+    let expected = rms(&by_linear_model.rows(0, prepared.evidence.recorded).into_owned());
     if !turns(&prepared.context, &beside) && (left - expected).abs() <= LINEAR * expected {
         return Ok(None);
     }
@@ -59,13 +60,16 @@ fn turns(context: &Context, beside: &Calibration) -> bool {
         .any(|(j, (own, used))| (own - used).abs() * context.largest(|there| there.torque[j]) > TURNED)
 }
 
-/// Noise of each clamp's or placement's rows in what a diagnosis leaves, where they scatter unequally.
-pub(super) fn unequal(prepared: &Prepared, diagnosis: &Diagnosis) -> Result<Option<Noise>> {
+/// Noise of each clamp's or placement's rows in what a hypothesis leaves, where they scatter unequally.
+pub(super) fn unequal(
+    prepared: &Prepared,
+    hypothesis: &Hypothesis,
+    left: &DVector<f64>,
+) -> Result<Option<Noise>> {
     let recording = &prepared.model.campaign.measurements;
-    let left = prepared.model.by_row(&diagnosis.after);
+    let left = prepared.model.by_row(left);
     let known = Noise { is_stated: false, ..prepared.model.calibration.noise.clone() };
-    let rank =
-        prepared.model.calibration.fit.covariance.rank + diagnosis.hypothesis.determined.round() as usize;
+    let rank = prepared.model.calibration.fit.covariance.rank + hypothesis.determined.round() as usize;
     let noise = known.estimate(recording, &left, rank.min(3 * recording.len() - 1), Robust::Huber)?;
     let first = noise.of_group.first().copied().unwrap_or_default();
     Ok(noise.of_group.iter().any(|sd| *sd != first).then_some(noise))

@@ -11,7 +11,7 @@ use super::prepared::Prepared;
 use crate::calibration::campaign::Campaign;
 use crate::calibration::{Calibration, Mode, Options, calibrate};
 use crate::error::Result;
-use crate::inference::{Diagnosed, Finding, Location, diagnose as infer};
+use crate::inference::{Diagnosed, Finding, Location, diagnose as infer, sketch};
 use crate::parallel::in_parallel;
 
 /// A campaign's diagnosis.
@@ -52,11 +52,11 @@ pub fn diagnose_calibrated<'c>(
 ) -> Result<CalibrationDiagnosis<'c>> {
     check_memory(campaign)?;
     let mut prepared = Prepared::new(campaign, calibration)?;
-    let mut diagnosis = infer(&prepared.model, &prepared.evidence);
     let mut scatter = None;
     for _ in 0..ROUNDS {
-        let about = calibrated_beside(&prepared, &diagnosis)?;
-        let noise = unequal(&prepared, &diagnosis)?;
+        let (hypothesis, left) = sketch(&prepared.model, &prepared.evidence);
+        let about = calibrated_beside(&prepared, &hypothesis, &left)?;
+        let noise = unequal(&prepared, &hypothesis, &left)?;
         let is_equal = noise.is_none() == scatter.is_none();
         if about.is_none() && is_equal {
             break;
@@ -64,8 +64,8 @@ pub fn diagnose_calibrated<'c>(
         scatter = noise;
         let about = about.unwrap_or(prepared.about);
         prepared = Prepared::about(campaign, prepared.model.calibration, about, scatter.as_ref())?;
-        diagnosis = infer(&prepared.model, &prepared.evidence);
     }
+    let mut diagnosis = infer(&prepared.model, &prepared.evidence);
     let Prepared { model, evidence, absorbed, not_testable, context, .. } = prepared;
     let next = in_parallel(diagnosis.findings.len(), |k| {
         next_poses(&model, &context, &evidence, &diagnosis, &diagnosis.findings[k])

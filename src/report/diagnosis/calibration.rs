@@ -152,8 +152,7 @@ fn far_from_file(found: &CalibrationDiagnosis) -> Option<String> {
     let space = if unit.symbol == "°" { "" } else { " " };
     let correction = format!("{}{space}{}", significant(correction / unit.si, 3), unit.symbol);
     Some(format!(
-        "Parameter {parameter} is {correction} from the robot file, {times} of its standard uncertainties: is its zero or \
-         its length another one?"
+        "Parameter {parameter} is {correction} from the robot file, {times} of its standard uncertainties."
     ))
 }
 

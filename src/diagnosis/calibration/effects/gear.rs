@@ -57,7 +57,12 @@ pub static TRANSMISSION_ERROR: CalibrationEffect = CalibrationEffect {
         parameters: &[
             ("cycles_per_rev", "frequency of the strongest wave"),
             ("amplitude_urad", "its amplitude; of a curve, of a wave of the same rms"),
-            ("cycles_per_rev_2, amplitude_urad_2, …", "the same of the next waves of that gear"),
+            ("second_cycles_per_rev", "frequency of the next wave"),
+            ("second_amplitude_urad", "its amplitude"),
+            ("third_cycles_per_rev", "frequency of the third wave"),
+            ("third_amplitude_urad", "its amplitude"),
+            ("fourth_cycles_per_rev", "frequency of the fourth wave"),
+            ("fourth_amplitude_urad", "its amplitude"),
         ],
         needs: "a joint that turns",
         cause: "an error of its gear or encoder",
@@ -177,17 +182,20 @@ fn elsewhere(context: &Context, candidate: &Candidate, law: &Law) -> Entry {
     Entry::new(candidate.effect, candidate.location.clone(), parameters).by(law.clone())
 }
 
-/// Of all waves, the strongest part first; from the second on with their number.
+/// Names of the next waves' numbers begin with this.
+const NEXT: [&str; 4] = ["", "second_", "third_", "fourth_"];
+
+/// Of all waves, the strongest part first.
 fn frequency_and_amplitude(model: &CalibrationModel, parts: &[FindingPart]) -> Vec<Estimate> {
     let of_part = |part: &FindingPart| {
         let estimates = |gear: &Gear| gear.estimates(part, &model.angles(gear.joint()));
         model.gear_of(part).map_or_else(Vec::new, estimates)
     };
-    let numbered = |(k, estimate): (usize, Estimate)| match k / 2 {
-        0 => estimate,
-        wave => Estimate { name: format!("{}_{}", estimate.name, wave + 1), ..estimate },
+    let numbered = |(k, estimate): (usize, Estimate)| {
+        let next = NEXT.get(k / 2)?;
+        Some(Estimate { name: format!("{next}{}", estimate.name), ..estimate })
     };
-    parts.iter().flat_map(of_part).enumerate().map(numbered).collect()
+    parts.iter().flat_map(of_part).enumerate().map_while(numbered).collect()
 }
 
 fn observed(finding: &Finding, model: &CalibrationModel) -> String {

@@ -59,8 +59,9 @@ pub fn diagnose(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
 pub fn sketch(model: &dyn ForwardModel, evidence: &Evidence) -> (Hypothesis, DVector<f64>) {
     let model = &Linearised::new(model);
     let folded = background::folded(&Evidence { stated_noise: None, ..evidence.clone() });
-    let settled = settled(model, &folded.evidence);
-    let (search, hypothesis, _) = infer(model, &settled, Pairs::Screened);
+    let (settled, known) = settled(model, &folded.evidence);
+    let model = &model.in_parts(&settled, &settled.fold);
+    let (search, hypothesis, _) = infer(model, &settled, Pairs::Screened, known);
     let predicted = search.predicted(&hypothesis, &settled, &model.response(&hypothesis.terms));
     (hypothesis, &settled.residual - predicted)
 }

@@ -52,7 +52,7 @@ pub(super) enum Body {
 }
 
 impl RigModel {
-    /// Name of a session, by its number in [`Evidence::session`].
+    /// Name of a session, by its number in [`Evidence::session`](crate::inference::Evidence::session).
     pub fn session(&self, number: usize) -> &str {
         let of_session = self.data.iter().find(|datum| datum.session_number == number);
         of_session.and_then(|datum| datum.session.as_deref()).unwrap_or("without a name")

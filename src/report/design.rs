@@ -216,8 +216,9 @@ fn shape_columns() -> Vec<Column> {
 }
 
 fn shape_cells(rod: &Rod) -> Vec<String> {
+    // as a drawing has them: no zeros behind, and none of the rounding of units
     [rod.l1 / MM, rod.l2 / MM, rod.gamma / DEG, rod.bend_radius / MM, rod.tip_mass / GRAM]
-        .map(|value| significant(value, 5))
+        .map(|value| ((value * 1e3).round() / 1e3).to_string())
         .to_vec()
 }
 

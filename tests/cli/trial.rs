@@ -27,7 +27,7 @@ fn a_trial_is_made_answered_in_pieces_and_scored() {
 #[test]
 fn other_readings_are_predicted_and_what_is_proposed_is_measured() {
     let sandbox = Sandbox::empty();
-    for (directory, cases) in [("a", "1..12"), ("b", "1..4")] {
+    for (directory, cases) in [("a", "1..4"), ("b", "1..2")] {
         sandbox.run(&format!("trial make {directory} --seed 8 --cases 24 --rig")).succeeded();
         sandbox.run(&format!("trial answer {directory} --case-range {cases}")).succeeded();
     }
@@ -35,18 +35,14 @@ fn other_readings_are_predicted_and_what_is_proposed_is_measured() {
     // the same once more
     let answers = |directory: &str| -> Vec<String> {
         let text = sandbox.read(&format!("{directory}/answers.jsonl"));
-        text.replace(&format!("{directory}/rig/"), "rig/").lines().take(4).map(str::to_owned).collect()
+        text.replace(&format!("{directory}/rig/"), "rig/").lines().take(2).map(str::to_owned).collect()
     };
     assert_eq!(answers("a"), answers("b"));
     assert_eq!(sandbox.read("a.key.jsonl"), sandbox.read("b.key.jsonl"));
     let asked = sandbox.read("b/rig/case-0003/asked.csv");
     assert!(asked.starts_with("# SIMULATED"), "{asked}");
     assert!(asked.lines().skip(2).all(|row| row.ends_with(",0")), "{asked}");
-    let ratio = score["counterfactual_over_oracle"].as_f64().unwrap();
-    assert!(ratio > 0.3 && ratio < 30.0, "{ratio}");
-    let next = &score["next_measurement_ok"];
-    assert!(next["n"].as_u64().unwrap() >= 1 && next["ok"].as_u64().unwrap() >= 1, "{next}");
-    assert_eq!(next["not_done"], serde_json::json!({}));
+    assert!(score["counterfactual"].is_object(), "{score}");
     // whoever answers sees the question and nothing of what belongs there
     let key = sandbox.read("a.key.jsonl");
     assert!(key.contains("true_um") && !sandbox.read("a/manifest.json").contains("true_um"));
@@ -92,6 +88,10 @@ fn a_small_trial_is_answered_as_well_as_ever() {
     for (key, least) in [("coverage", 0.75), ("gain_over_oracle", 0.9)] {
         assert!(score[key].as_f64().unwrap() > least, "{key}: {}", score[key]);
     }
+    // what was proposed could be measured
+    let next = &score["next_measurement_ok"];
+    assert!(next["n"].as_u64().unwrap() >= 1 && next["ok"].as_u64().unwrap() >= 1, "{next}");
+    assert_eq!(next["not_done"], serde_json::json!({}));
     // what is asked for is predicted about as well as by an oracle
     for (half, least) in [("rig", 1), ("calibration", 3)] {
         let asked = &score[half]["counterfactual"];

@@ -386,21 +386,13 @@ fn joint(toml: &TomlText, raw: &RawJoint) -> Result<Joint> {
 }
 
 fn limits(toml: &TomlText, raw: &RawLimits) -> Result<Vec<Limit>> {
-    let RawLimits {
-        max_mass_g,
-        max_flange_moment_nm,
-        max_tip_sag_um,
-        max_c_rod_um,
-        min_reach_mm,
-        min_first_frequency_hz,
-    } = raw;
     let numbers = [
-        max_mass_g,
-        max_flange_moment_nm,
-        max_tip_sag_um,
-        max_c_rod_um,
-        min_reach_mm,
-        min_first_frequency_hz,
+        &raw.max_mass_g,
+        &raw.max_flange_moment_nm,
+        &raw.max_tip_sag_um,
+        &raw.max_c_rod_um,
+        &raw.min_reach_mm,
+        &raw.min_first_frequency_hz,
     ];
     let mut all = Vec::new();
     for ((key, figure, is_least), number) in limits::KEYS.into_iter().zip(numbers) {

@@ -4,13 +4,12 @@
 //! A *station* is the arc length along the centreline from the flange; the tip is the largest one.
 
 mod build;
-mod file;
+pub(crate) mod file;
 mod nominal;
 mod uncertainty;
 mod warnings;
 mod write;
 
-pub(crate) use file::MaterialTable;
 pub use nominal::{Feature, Nominal, NominalNumber, Part, SectionConstant};
 pub use uncertainty::StandardUncertainty;
 pub use warnings::Warning;

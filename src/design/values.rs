@@ -4,6 +4,7 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use crate::error::Result;
+use crate::rod::file::Check;
 use crate::toml_text::{Number, TomlText};
 
 /// Most values of one key.
@@ -28,20 +29,45 @@ pub(super) struct Range {
     step: f64,
 }
 
-/// What a key's values must be.
+/// What a key's values must be, and within which ones they usually are.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Bounds {
     pub least: f64,
     pub most: f64,
     pub expected: &'static str,
+    pub unit: &'static str,
+    pub usual: (f64, f64),
 }
 
 impl Bounds {
-    pub const LENGTH: Bounds = Bounds { least: f64::MIN_POSITIVE, most: 1e6, expected: "lengths > 0 in mm" };
-    pub const RADIUS: Bounds = Bounds { least: 0.0, most: 1e6, expected: "radii of 0 or more in mm" };
-    pub const ANGLE: Bounds =
-        Bounds { least: f64::MIN_POSITIVE, most: 180.0, expected: "angles in degrees, 0 < γ <= 180" };
-    pub const MASS: Bounds = Bounds { least: 0.0, most: 1e9, expected: "masses of 0 or more in g" };
+    pub const LENGTH: Bounds = Bounds {
+        least: f64::MIN_POSITIVE,
+        most: 1e6,
+        expected: "lengths > 0 in mm",
+        unit: "mm",
+        usual: (1.0, 20_000.0),
+    };
+    pub const RADIUS: Bounds = Bounds {
+        least: 0.0,
+        most: 1e6,
+        expected: "radii of 0 or more in mm",
+        unit: "mm",
+        usual: (1.0, 20_000.0),
+    };
+    pub const ANGLE: Bounds = Bounds {
+        least: f64::MIN_POSITIVE,
+        most: 180.0,
+        expected: "angles in degrees, 0 < γ <= 180",
+        unit: "degrees",
+        usual: (10.0, 180.0),
+    };
+    pub const MASS: Bounds = Bounds {
+        least: 0.0,
+        most: 1e9,
+        expected: "masses of 0 or more in g",
+        unit: "g",
+        usual: (0.1, 20_000.0),
+    };
 }
 
 /// The values of `key` in the unit of its name, in the order of the file; those of a list that stand there twice once.
@@ -49,7 +75,8 @@ impl Bounds {
 /// # Errors
 /// Those of the file: an empty list or range, a step that does not lead from one end to the other, a value out of `bounds`,
 /// more than [`MOST_VALUES`].
-pub(super) fn values(toml: &TomlText, key: &str, raw: &Spanned<Raw>, bounds: Bounds) -> Result<Vec<f64>> {
+pub(super) fn values(check: &mut Check, key: &str, raw: &Spanned<Raw>, bounds: Bounds) -> Result<Vec<f64>> {
+    let toml = check.toml;
     let mut all = match raw.get_ref() {
         Raw::One(value) => vec![*value],
         Raw::List(values) => values.clone(),
@@ -86,6 +113,11 @@ pub(super) fn values(toml: &TomlText, key: &str, raw: &Spanned<Raw>, bounds: Bou
             }
         });
     }
+    // one that is most likely in another unit speaks for all
+    let is_odd = |value: &&f64| **value != 0.0 && !(bounds.usual.0..=bounds.usual.1).contains(*value);
+    if let Some(odd) = all.iter().find(is_odd) {
+        check.usual(key, *odd, bounds.unit, bounds.usual.0, bounds.usual.1);
+    }
     Ok(all)
 }
 
@@ -107,7 +139,7 @@ mod tests {
         let text = format!("x = {text}\n");
         let toml = TomlText::new("d.toml", &text);
         let one: One = toml.parse(&[])?;
-        values(&toml, "x", &one.x, Bounds::LENGTH)
+        values(&mut Check { toml, warnings: Vec::new() }, "x", &one.x, Bounds::LENGTH)
     }
 
     #[test]

@@ -13,9 +13,10 @@ use super::values::{Bounds, Raw, limit, values};
 use crate::error::Result;
 use crate::files;
 use crate::material::Material;
-use crate::rod::{BendFlexibility, Joint, LumpedMass, MaterialTable, Rod};
+use crate::rod::file::{Check, MaterialTable, RawFlexibility, RawJoint, RawMass};
+use crate::rod::{BendFlexibility, Joint, LumpedMass, Rod, Warning};
 use crate::toml_text::{Number, Required, TomlText};
-use crate::units::{DEG, GRAM, MM, URAD_PER_NM};
+use crate::units::{DEG, GRAM, MM};
 
 /// Most combinations of one search.
 pub const MOST_RODS: u64 = 2_000_000_000;
@@ -52,6 +53,8 @@ pub struct Wish {
     pub limits: Vec<Limit>,
     /// What counts.
     pub goals: Vec<Goal>,
+    /// What the reader of the file wants its user to know.
+    pub warnings: Vec<Warning>,
 }
 
 /// One combination.
@@ -89,7 +92,7 @@ struct RawGeometry {
     l2_mm: Spanned<Raw>,
     gamma_deg: Option<Spanned<Raw>>,
     bend_radius_mm: Option<Spanned<Raw>>,
-    bend_flexibility: Option<Spanned<String>>,
+    bend_flexibility: Option<Spanned<RawFlexibility>>,
 }
 
 #[derive(Deserialize)]
@@ -103,23 +106,6 @@ struct RawCatalogue {
 #[serde(deny_unknown_fields)]
 struct RawTip {
     mass_g: Spanned<Raw>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RawMass {
-    name: String,
-    station_mm: Number,
-    mass_g: Number,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RawJoint {
-    name: String,
-    station_mm: Number,
-    bending_urad_per_nm: Option<Number>,
-    torsion_urad_per_nm: Option<Number>,
 }
 
 #[derive(Default, Deserialize)]
@@ -203,34 +189,51 @@ impl Wish {
         let toml = TomlText::new(file, text);
         let raw: RawWish = toml.parse(REQUIRED)?;
         let geometry = &raw.geometry;
-        let of = |key: &str, raw: &Spanned<Raw>, unit: f64, bounds| -> Result<Vec<f64>> {
-            Ok(values(&toml, key, raw, bounds)?.into_iter().map(|value| value * unit).collect())
-        };
-        let or = |key: &str, raw: &Option<Spanned<Raw>>, unit: f64, bounds, otherwise: f64| match raw {
-            Some(raw) => of(key, raw, unit, bounds),
+        let mut check = Check { toml, warnings: Vec::new() };
+        let mut materials = built_in_materials();
+        materials.extend(raw.material.checked(&mut check)?);
+        let tubes = tubes(&toml, &raw.catalogue, &materials, catalogue)?;
+        let mut of = |key: &str, raw: Option<&Spanned<Raw>>, unit: f64, bounds, otherwise: f64| match raw {
+            Some(raw) => {
+                Ok(values(&mut check, key, raw, bounds)?.into_iter().map(|value| value * unit).collect())
+            }
             None => Ok(vec![otherwise * unit]),
         };
-        let mut materials = built_in_materials();
-        materials.extend(raw.material.checked(&toml)?);
-        let tubes = tubes(&toml, &raw.catalogue, &materials, catalogue)?;
+        let l1 = of("geometry.l1_mm", Some(&geometry.l1_mm), MM, Bounds::LENGTH, 0.0)?;
+        let l2 = of("geometry.l2_mm", Some(&geometry.l2_mm), MM, Bounds::LENGTH, 0.0)?;
+        let gamma = of("geometry.gamma_deg", geometry.gamma_deg.as_ref(), DEG, Bounds::ANGLE, 90.0)?;
+        let bend_radius =
+            of("geometry.bend_radius_mm", geometry.bend_radius_mm.as_ref(), MM, Bounds::RADIUS, 0.0)?;
+        let tip_mass = of("tip.mass_g", raw.tip.as_ref().map(|tip| &tip.mass_g), GRAM, Bounds::MASS, 0.0)?;
+        let flexibility =
+            geometry.bend_flexibility.as_ref().map(|raw| check.bend_flexibility(raw)).transpose()?;
+        // which rods are long enough is found out one by one
+        let mut joints: Vec<Joint> = Vec::new();
+        for joint in &raw.joint {
+            joints.push(check.joint(joint, &joints, f64::INFINITY)?);
+        }
+        let masses = raw.mass.iter().map(|mass| check.lumped_mass(mass, f64::INFINITY));
         let wish = Wish {
             file: file.to_owned(),
-            l1: of("geometry.l1_mm", &geometry.l1_mm, MM, Bounds::LENGTH)?,
-            l2: of("geometry.l2_mm", &geometry.l2_mm, MM, Bounds::LENGTH)?,
-            gamma: or("geometry.gamma_deg", &geometry.gamma_deg, DEG, Bounds::ANGLE, 90.0)?,
-            bend_radius: or("geometry.bend_radius_mm", &geometry.bend_radius_mm, MM, Bounds::RADIUS, 0.0)?,
-            bend_flexibility: bend_flexibility(&toml, &geometry.bend_flexibility)?,
-            tip_mass: match &raw.tip {
-                Some(tip) => of("tip.mass_g", &tip.mass_g, GRAM, Bounds::MASS)?,
-                None => vec![0.0],
-            },
+            l1,
+            l2,
+            gamma,
+            bend_radius,
+            bend_flexibility: flexibility.unwrap_or_default(),
+            tip_mass,
             tubes,
             is_one_tube: raw.catalogue.same_tube.unwrap_or(true),
-            masses: raw.mass.iter().map(|mass| lumped_mass(&toml, mass)).collect::<Result<_>>()?,
-            joints: raw.joint.iter().map(|raw| joint(&toml, raw)).collect::<Result<_>>()?,
+            masses: masses.collect::<Result<_>>()?,
+            joints,
             limits: limits(&toml, &raw.constraints)?,
             goals: goals(&toml, &raw.objectives)?,
+            warnings: Vec::new(),
         };
+        let mut diameters = wish.tubes.iter().map(|tube| tube.pipe.section.height() / MM);
+        if let Some(diameter) = diameters.find(|diameter| !(1.0..=1000.0).contains(diameter)) {
+            check.usual("outer_diameter_mm of the catalogue", diameter, "mm", 1.0, 1000.0);
+        }
+        let wish = Wish { warnings: check.warnings, ..wish };
         let price = wish.goals.iter().any(|goal| goal.figure == Figure::Price);
         if let (true, Some(tube)) = (price, catalogue::without_price(&wish.tubes)) {
             let found = format!("\"price\" is a goal, but tube {tube} has no price_per_m");
@@ -354,37 +357,6 @@ fn tubes(
     catalogue::read(&file, &text, materials)
 }
 
-fn bend_flexibility(toml: &TomlText, raw: &Option<Spanned<String>>) -> Result<BendFlexibility> {
-    let Some(name) = raw else { return Ok(BendFlexibility::Beam) };
-    match name.get_ref().as_str() {
-        "beam" => Ok(BendFlexibility::Beam),
-        "von-karman" => Ok(BendFlexibility::VonKarman),
-        "asme-b31.3" => Ok(BendFlexibility::AsmeB313),
-        _ => Err(toml.is("geometry.bend_flexibility", name, "\"beam\", \"von-karman\" or \"asme-b31.3\"")),
-    }
-}
-
-fn lumped_mass(toml: &TomlText, raw: &RawMass) -> Result<LumpedMass> {
-    Ok(LumpedMass {
-        name: raw.name.clone(),
-        station: toml.not_negative("mass.station_mm", &raw.station_mm)? * MM,
-        mass: toml.not_negative("mass.mass_g", &raw.mass_g)? * GRAM,
-    })
-}
-
-fn joint(toml: &TomlText, raw: &RawJoint) -> Result<Joint> {
-    let compliance = |key: &str, number: &Option<Number>| match number {
-        Some(number) => Ok(toml.not_negative(key, number)? * URAD_PER_NM),
-        None => Ok(0.0),
-    };
-    Ok(Joint {
-        name: raw.name.clone(),
-        station: toml.not_negative("joint.station_mm", &raw.station_mm)? * MM,
-        bending: compliance("joint.bending_urad_per_nm", &raw.bending_urad_per_nm)?,
-        torsion: compliance("joint.torsion_urad_per_nm", &raw.torsion_urad_per_nm)?,
-    })
-}
-
 fn limits(toml: &TomlText, raw: &RawLimits) -> Result<Vec<Limit>> {
     let numbers = [
         &raw.max_mass_g,
@@ -473,6 +445,20 @@ minimise = [\"c_rod_um\"]
         let own = "[material.own]\nyoungs_modulus_gpa = 100\npoisson_ratio = 0.3\ndensity_kg_m3 = 2000\n";
         let wish = read(&(TEXT.replace("builtin", "t.csv") + own)).unwrap();
         assert_eq!((wish.combinations(), wish.rod(1).unwrap().pipe2.material.youngs_modulus), (2, 100e9));
+    }
+
+    #[test]
+    fn what_is_most_likely_in_another_unit_is_said() {
+        let said = |from: &str, to: &str| {
+            let wish = read(&TEXT.replace(from, to)).unwrap();
+            wish.warnings.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")
+        };
+        assert_eq!(said("150", "150"), "");
+        assert!(said("150", "[0.15, 0.2]").contains("geometry.l1_mm"), "{}", said("150", "[0.15, 0.2]"));
+        let radians = said("l1_mm = 150", "l1_mm = 150\ngamma_deg = 1.5708");
+        assert!(radians.contains("is it given in degrees?"), "{radians}");
+        let pascals = "[material.m]\nyoungs_modulus_gpa = 193000\npoisson_ratio = 0.3\ndensity_kg_m3 = 7930\n[catalogue]";
+        assert!(said("[catalogue]", pascals).contains("youngs_modulus_gpa"));
     }
 
     #[test]

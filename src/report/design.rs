@@ -151,7 +151,7 @@ fn needed(limit: &Limit, to: f64) -> String {
 }
 
 fn warnings(study: &Study) -> Vec<String> {
-    let mut warnings = Vec::new();
+    let mut warnings: Vec<String> = study.wish.warnings.iter().map(ToString::to_string).collect();
     if study.found.evaluated < study.wish.combinations() {
         warnings.push(format!(
             "{} of {} combinations were looked at: better rods may be among the others",

@@ -14,10 +14,12 @@ use std::path::Path;
 use serde::Deserialize;
 use toml::Spanned;
 
-use self::check::Check;
+pub use self::check::Check;
+pub use self::geometry::RawFlexibility;
 use self::geometry::RawGeometry;
 pub use self::materials::MaterialTable;
-use self::parts::{RawJoint, RawMass, RawPipe, RawTip};
+pub use self::parts::{RawJoint, RawMass};
+use self::parts::{RawPipe, RawTip};
 use self::uncertainty::RawUncertainty;
 use super::{Rod, Warning};
 use crate::error::Result;
@@ -155,11 +157,11 @@ impl Check<'_> {
             warnings: Vec::new(),
         };
         for mass in &raw.mass {
-            let mass = self.lumped_mass(mass, &rod)?;
+            let mass = self.lumped_mass(mass, rod.length())?;
             rod.masses.push(mass);
         }
         for joint in &raw.joint {
-            let joint = self.joint(joint, &rod)?;
+            let joint = self.joint(joint, &rod.joints, rod.length())?;
             rod.joints.push(joint);
         }
         Ok(rod)

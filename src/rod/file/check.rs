@@ -4,7 +4,7 @@ use crate::rod::Warning;
 use crate::toml_text::TomlText;
 
 /// What is checked, and what there is to say about it so far.
-pub(super) struct Check<'a> {
+pub struct Check<'a> {
     pub toml: TomlText<'a>,
     pub warnings: Vec<Warning>,
 }

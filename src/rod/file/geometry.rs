@@ -23,7 +23,7 @@ pub(super) struct RawGeometry {
 
 #[derive(Deserialize)]
 #[serde(untagged, expecting = "expected \"beam\", \"von-karman\", \"asme-b31.3\" or a factor > 0")]
-enum RawFlexibility {
+pub enum RawFlexibility {
     Factor(f64),
     Name(String),
 }
@@ -107,7 +107,8 @@ impl Check<'_> {
         }
     }
 
-    fn bend_flexibility(&self, raw: &Spanned<RawFlexibility>) -> Result<BendFlexibility> {
+    /// A bend's flexibility by its name, or as a factor.
+    pub fn bend_flexibility(&self, raw: &Spanned<RawFlexibility>) -> Result<BendFlexibility> {
         let key = "geometry.bend_flexibility";
         match raw.get_ref() {
             RawFlexibility::Factor(k) => {

@@ -10,7 +10,7 @@ use super::uncertainty::{RawUncertainty, of_table};
 use crate::error::{Error, Result};
 use crate::material::{Material, MaterialUncertainty, isotropic_poisson_ratio, laminate};
 use crate::rod::Warning;
-use crate::toml_text::{Number, TomlText};
+use crate::toml_text::Number;
 use crate::units::{GPA, MM, significant};
 
 #[derive(Deserialize)]
@@ -43,8 +43,7 @@ impl MaterialTable {
     ///
     /// # Errors
     /// As [`Rod::from_toml`](crate::rod::Rod::from_toml).
-    pub fn checked(&self, toml: &TomlText) -> Result<BTreeMap<String, Material>> {
-        let mut check = Check { toml: *toml, warnings: Vec::new() };
+    pub fn checked(&self, check: &mut Check) -> Result<BTreeMap<String, Material>> {
         let usual = RawUncertainty::default();
         let of = |(name, raw): (&String, &Spanned<RawMaterial>)| {
             Ok((name.clone(), check.material(name, raw, &usual)?.material))

@@ -9,7 +9,7 @@ use super::check::Check;
 use super::materials::Checked;
 use crate::delimited::nearest_name;
 use crate::error::{Error, Result};
-use crate::rod::{Joint, LumpedMass, Pipe, Rod, Warning};
+use crate::rod::{Joint, LumpedMass, Pipe, Warning};
 use crate::toml_text::Number;
 use crate::units::{GRAM, MM, URAD_PER_NM};
 
@@ -37,7 +37,7 @@ pub(super) struct RawTip {
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a section [[mass]]")]
-pub(super) struct RawMass {
+pub struct RawMass {
     name: String,
     station_mm: Number,
     mass_g: Number,
@@ -45,7 +45,7 @@ pub(super) struct RawMass {
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a section [[joint]]")]
-pub(super) struct RawJoint {
+pub struct RawJoint {
     name: Spanned<String>,
     station_mm: Number,
     bending_urad_per_nm: Option<Number>,
@@ -94,17 +94,19 @@ impl Check<'_> {
         self.mass("tip.mass_g", &raw.mass_g)
     }
 
-    pub(super) fn lumped_mass(&mut self, raw: &RawMass, rod: &Rod) -> Result<LumpedMass> {
+    /// A mass on a rod of this length, m.
+    pub fn lumped_mass(&mut self, raw: &RawMass, length: f64) -> Result<LumpedMass> {
         Ok(LumpedMass {
             name: raw.name.clone(),
-            station: self.station("mass.station_mm", &raw.station_mm, rod.length())?,
+            station: self.station("mass.station_mm", &raw.station_mm, length)?,
             mass: self.mass("mass.mass_g", &raw.mass_g)?,
         })
     }
 
-    pub(super) fn joint(&self, raw: &RawJoint, rod: &Rod) -> Result<Joint> {
+    /// A joint beside those that are `known`, on a rod of this length, m.
+    pub fn joint(&self, raw: &RawJoint, known: &[Joint], length: f64) -> Result<Joint> {
         let name = raw.name.get_ref().clone();
-        if rod.joints.iter().any(|other| other.name == name) {
+        if known.iter().any(|other| other.name == name) {
             let found = format!("a second joint is named {}", self.toml.source(&raw.name));
             return Err(self.toml.wrong(&raw.name, found, "a name of its own for each joint"));
         }
@@ -114,7 +116,7 @@ impl Check<'_> {
         };
         Ok(Joint {
             name,
-            station: self.station("joint.station_mm", &raw.station_mm, rod.length())?,
+            station: self.station("joint.station_mm", &raw.station_mm, length)?,
             bending: compliance("joint.bending_urad_per_nm", &raw.bending_urad_per_nm)?,
             torsion: compliance("joint.torsion_urad_per_nm", &raw.torsion_urad_per_nm)?,
         })
@@ -130,7 +132,8 @@ impl Check<'_> {
         Ok(station.min(length))
     }
 
-    fn mass(&mut self, key: &str, number: &Number) -> Result<f64> {
+    /// A mass in g, kg.
+    pub fn mass(&mut self, key: &str, number: &Number) -> Result<f64> {
         let grams = self.toml.not_negative(key, number)?;
         self.usual(key, grams, "g", 0.1, 20_000.0);
         Ok(grams * GRAM)

@@ -4,7 +4,7 @@
 //! - [`Wish`]: what may vary, what must hold, what counts; read from a design file
 //! - [`Figure`]: the numbers that rods are judged by
 //! - [`search`]: all combinations, or a sample of them, to a Pareto [`Front`]
-//! - [`Intervals`]: how well a design's numbers are known, and which designs cannot be told apart
+//! - [`Intervals`]: how well a design's numbers are known, and which designs cannot be distinguished
 //! - [`Study`]: a search with all of this
 //!
 //! A combination has a number, from 0; lengths vary fastest. Nothing is kept of a rod but its number and its figures, and

@@ -1,4 +1,4 @@
-//! How well the figures of a design are known, and which designs cannot be told apart.
+//! How well the figures of a design are known, and which designs cannot be distinguished.
 //!
 //! Every nominal number of the rod (E, G, ρ, diameters, lengths, …) has a standard uncertainty u; a figure y moves with it
 //! by s = u·∂y/∂x, by a central difference of one u. The standard uncertainty of y is √Σ s² (GUM, JCGM 100:2008, 5.1.2).

@@ -41,7 +41,7 @@ pub struct Shown {
     pub tubes: Vec<String>,
     /// How well its figures are known.
     pub intervals: Intervals,
-    /// Places on the front of shown designs that cannot be told from it.
+    /// Places on the front of shown designs that cannot be distinguished from it.
     pub indistinguishable: Vec<usize>,
 }
 

@@ -230,10 +230,10 @@ fn front_table(study: &Study) -> Table {
         let (name, unit) = figure.words();
         Column::number(name, unit)
     }));
-    heads.push(Column::text("not to be told from"));
+    heads.push(Column::text("indistinguishable from"));
     let caption = "Designs of the front, best in the first goal first; ± is half of the 95 % interval from the standard \
          uncertainties of the rod's numbers. Designs that differ in no goal by more than is known of their difference \
-         cannot be told apart.";
+         cannot be distinguished.";
     let mut table = Table::new("front", caption, heads);
     for shown in &study.shown {
         let mut cells = vec![(shown.place + 1).to_string(), shown.tubes.join(" + ")];

@@ -10,7 +10,8 @@
 //!
 //! and only the best are fitted.
 
-use nalgebra::{Cholesky, DMatrix, DVector};
+use nalgebra::allocator::Allocator;
+use nalgebra::{Cholesky, DMatrix, DVector, DefaultAllocator, Dim, OMatrix, OVector, SMatrix, SVector};
 
 use super::search::Search;
 use super::{ForwardModel, Hypothesis, Kind};
@@ -127,22 +128,48 @@ impl Search<'_> {
     }
 }
 
-/// About what some columns of a whole are worth.
+/// About what some columns of a whole are worth. Of the few numbers of two effects no matrices are made.
 fn gain(gram: &DMatrix<f64>, product: &DVector<f64>, columns: &[usize], noise: f64, nu: f64) -> f64 {
-    let k = columns.len();
-    let own = DMatrix::from_fn(k, k, |i, j| gram[(columns[i], columns[j])]);
-    let b = DVector::from_fn(k, |i, _| product[columns[i]]);
+    match columns.len() {
+        1 => gain_of::<1>(gram, product, columns, noise, nu),
+        2 => gain_of::<2>(gram, product, columns, noise, nu),
+        3 => gain_of::<3>(gram, product, columns, noise, nu),
+        4 => gain_of::<4>(gram, product, columns, noise, nu),
+        k => {
+            let own = DMatrix::from_fn(k, k, |i, j| gram[(columns[i], columns[j])]);
+            worth(own, DVector::from_fn(k, |i, _| product[columns[i]]), noise, nu)
+        }
+    }
+}
+
+fn gain_of<const K: usize>(
+    gram: &DMatrix<f64>,
+    product: &DVector<f64>,
+    columns: &[usize],
+    noise: f64,
+    nu: f64,
+) -> f64 {
+    let own = SMatrix::<f64, K, K>::from_fn(|i, j| gram[(columns[i], columns[j])]);
+    worth(own, SVector::<f64, K>::from_fn(|i, _| product[columns[i]]), noise, nu)
+}
+
+fn worth<D: Dim>(own: OMatrix<f64, D, D>, b: OVector<f64, D>, noise: f64, nu: f64) -> f64
+where
+    DefaultAllocator: Allocator<D> + Allocator<D, D>,
+{
     let mut left = noise;
-    let mut value = 0.0;
+    let mut last = None;
     for _ in 0..3 {
         let mut ridge = own.clone();
-        (0..k).for_each(|i| ridge[(i, i)] += left + 1e-9 * own[(i, i)]);
+        (0..b.len()).for_each(|i| ridge[(i, i)] += left + 1e-9 * own[(i, i)]);
         let Some(root) = Cholesky::new(ridge) else { return f64::NEG_INFINITY };
         let explained = (b.dot(&root.solve(&b)) / (nu * noise)).clamp(0.0, 1.0 - 1e-9);
-        let lower = root.l_dirty();
-        let determinant: f64 = (0..k).map(|i| 2.0 * lower[(i, i)].ln() - left.ln()).sum();
-        value = -0.5 * (nu * (-explained).ln_1p() + determinant);
+        last = Some((root, explained, left));
         left = (noise * (1.0 - explained)).max(f64::MIN_POSITIVE);
     }
-    value
+    last.map_or(f64::NEG_INFINITY, |(root, explained, left)| {
+        let lower = root.l_dirty();
+        let determinant: f64 = (0..b.len()).map(|i| (lower[(i, i)] * lower[(i, i)] / left).ln()).sum();
+        -0.5 * (nu * (-explained).ln_1p() + determinant)
+    })
 }

@@ -32,6 +32,8 @@ const SCORED: usize = 6;
 const NO_STEP: usize = 3;
 /// Most Gauss–Newton steps to the values of a hypothesis.
 const STEPS: usize = 20;
+/// So often they may turn back.
+const RETURNS: usize = 4;
 /// Step, in sizes, below which they have arrived: the noise of a value is hardly ever a ten-thousandth of its size.
 const ARRIVED: f64 = 1e-5;
 
@@ -124,16 +126,31 @@ impl<'a> Search<'a> {
         let background = self.background.0.ncols();
         let mut terms = terms.to_vec();
         let mut scored = self.moments(&terms).score();
+        let (mut returns, mut last, mut least) = (0, DVector::zeros(0), f64::INFINITY);
         for _ in 0..STEPS {
             let before = flat(&terms);
             self.put(&mut terms, &scored);
-            let moved = flat(&terms) - before;
+            let moved = (flat(&terms) - &before).component_div(&self.sizes(&terms));
             // where effects are linear the first step arrives
-            if self.model.is_linear_in(&terms) || moved.component_div(&self.sizes(&terms)).amax() < ARRIVED {
+            if self.model.is_linear_in(&terms) || moved.amax() < ARRIVED {
+                least = f64::INFINITY;
                 break;
             }
+            // a curved law may send the values to and fro for ever: halfway is nearer
+            returns += usize::from(!last.is_empty() && is_return(&moved, &last));
+            if returns > RETURNS {
+                break;
+            }
+            if returns > 0 {
+                let share = 0.5f64.powi(returns as i32);
+                let halfway = &before + moved.component_mul(&self.sizes(&terms)) * share;
+                set_flat(&mut terms, &halfway);
+            }
+            (last, least) = (moved, scored.log_evidence);
             scored = self.moments(&terms).score();
         }
+        // where it has not arrived, of two views the one that claims less
+        let log_evidence = scored.log_evidence.min(least);
         let mut prior: f64 = terms.iter().map(|c| self.prior[c.candidate]).sum();
         if terms.iter().any(|term| self.is_lost_in_noise(term, scored.sigma)) {
             prior = f64::NEG_INFINITY;
@@ -141,7 +158,7 @@ impl<'a> Search<'a> {
         let sizes = DMatrix::from_diagonal(&self.sizes(&terms));
         let own = scored.covariance.view((background, background), (sizes.nrows(), sizes.ncols()));
         Hypothesis {
-            log_probability: scored.log_evidence + prior,
+            log_probability: log_evidence + prior,
             sigma: scored.sigma,
             covariance: &sizes * own * &sizes,
             background: scored.estimate.rows(0, background).into_owned(),
@@ -558,6 +575,20 @@ fn remembered<T: Clone>(memory: &Memory<T>, terms: &[Term], find: impl FnOnce() 
 
 fn flat(terms: &[Term]) -> DVector<f64> {
     DVector::from_vec(terms.iter().flat_map(|c| c.values.iter().copied()).collect())
+}
+
+/// The reverse of [`flat`].
+fn set_flat(terms: &mut [Term], values: &DVector<f64>) {
+    terms
+        .iter_mut()
+        .flat_map(|term| &mut term.values)
+        .zip(values.iter())
+        .for_each(|(own, value)| *own = *value);
+}
+
+/// True for a step back that is at least half as long as the one before.
+fn is_return(step: &DVector<f64>, last: &DVector<f64>) -> bool {
+    step.dot(last) < -0.5 * last.norm_squared()
 }
 
 /// Ln of each candidate's prior over that of none; see the top of the file.

@@ -9,14 +9,20 @@
 //! D bending of the arc k, k₀ its flexibility factor, the file's factor        J_j a joint per rad/(N·m), β_j its change
 //! ```
 //!
-//! P, B, D and J come from the beam model itself, as differences of models in which one thing was changed.
+//! P, B and D come from the beam model itself, as differences of models in which one thing was changed. A joint at x turns what
+//! is beyond it about its axes a, those across the tangent t or t itself: with the force at p and the reading at q
+//!
+//! ```text
+//! J = Σ (a × (q − x))·(a × (p − x))ᵀ = [q − x]×·A·[p − x]×ᵀ     A = 1 − t·tᵀ of bending, t·tᵀ of torsion
+//! ```
 
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Vector3};
 
 use crate::beam::{Physics, RodModel};
 use crate::error::{Error, Result};
 use crate::rig::readings::Readings;
-use crate::rod::{BendFlexibility, Joint, Pipe, Rod};
+use crate::rod::{BendFlexibility, Pipe, Rod};
+use crate::spatial::skew;
 use crate::units::{MM, UM};
 
 /// m/N for each pair of load and read station.
@@ -126,30 +132,38 @@ impl Structure {
     }
 
     /// Adds a joint of no compliance yet at a station (m); its numbers for bending and for torsion.
-    pub(super) fn add_joint(&mut self, station: f64) -> Result<[usize; 2]> {
+    pub(super) fn add_joint(&mut self, station: f64) -> [usize; 2] {
         let first = self.joints.len();
-        for (bending, torsion) in [(1.0, 0.0), (0.0, 1.0)] {
-            let joint = Joint { name: String::new(), station, bending, torsion };
-            let with_joint = Rod { joints: vec![joint], ..self.rod.clone() };
+        let (at, tangent) = (self.rod.point(station), tangent(&self.rod, station));
+        let along = tangent * tangent.transpose();
+        for axes in [Matrix3::identity() - along, along] {
+            let of_pair = |&(load, read): &(f64, f64)| match station <= load.min(read) {
+                true => {
+                    let lever = |station| skew(&(self.rod.point(station) - at));
+                    lever(read) * axes * lever(load).transpose()
+                }
+                false => Matrix3::zeros(),
+            };
+            let parts = self.pairs.iter().map(of_pair).collect();
             self.stations.push(station);
-            self.joints.push(difference(&responses(&with_joint, &self.pairs)?, &self.pipes, 1.0));
+            self.joints.push(parts);
         }
-        Ok([first, first + 1])
+        [first, first + 1]
     }
 
     /// Adds joints by which the one at `station`, added as `joint`, may be moved by `reach` (m) either way, less where the
     /// rod bends or a load or a sensor stands; `None` where it stands at such a place.
-    pub(super) fn add_nodes(&mut self, station: f64, joint: [usize; 2], reach: f64) -> Result<Option<Nodes>> {
+    pub(super) fn add_nodes(&mut self, station: f64, joint: [usize; 2], reach: f64) -> Option<Nodes> {
         const LEAST: f64 = 0.01 * MM;
         let ends = [0.0, self.rod.bend_start(), self.rod.bend_end(), self.rod.length()];
         let kinks = self.pairs.iter().flat_map(|&(load, read)| [load, read]).chain(ends);
         let reach = kinks.fold(reach, |reach, kink| reach.min((kink - station).abs()));
         if reach < LEAST {
-            return Ok(None);
+            return None;
         }
         let (before, behind) = (station - reach, station + reach);
-        let joints = [self.add_joint(before)?, joint, self.add_joint(behind)?];
-        Ok(Some(Nodes { stations: [before, station, behind], joints }))
+        let joints = [self.add_joint(before), joint, self.add_joint(behind)];
+        Some(Nodes { stations: [before, station, behind], joints })
     }
 
     /// The parts as `softening` leaves them; unchanged ones to the last digit where it changes nothing.
@@ -246,6 +260,15 @@ pub(super) fn responses(rod: &Rod, pairs: &[(f64, f64)]) -> Result<Parts> {
     pairs.iter().map(|&(load, read)| Ok(model.force_response(load, read)?.translation)).collect()
 }
 
+/// Direction of the undeformed centreline at a station, in {T}: that before a corner.
+fn tangent(rod: &Rod, station: f64) -> Vector3<f64> {
+    if station <= rod.bend_start() {
+        return Vector3::z();
+    }
+    let turn = rod.turn().min((station - rod.bend_start()) / rod.bend_radius.max(f64::MIN_POSITIVE));
+    Vector3::new(turn.sin(), 0.0, turn.cos())
+}
+
 fn difference(a: &[Matrix3<f64>], b: &[Matrix3<f64>], factor: f64) -> Parts {
     a.iter().zip(b).map(|(a, b)| (a - b) * factor).collect()
 }
@@ -261,6 +284,7 @@ fn with_shear_modulus(rod: &Rod, factor: f64) -> Rod {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::rod::Joint;
     use approx::assert_relative_eq;
 
     fn rod(bend: &str) -> Rod {
@@ -295,16 +319,18 @@ mod tests {
             pipe.material.youngs_modulus *= 0.7;
         }
         wrong.bend_flexibility = BendFlexibility::Factor(2.1);
-        let [bending, torsion] = structure.add_joint(0.06).unwrap();
-        wrong.joints.push(Joint { name: "new".into(), station: 0.06, bending: 3e-5, torsion: 5e-5 });
+        // on pipe I, within the bend and at its end
+        let middle = (rod.bend_start() + rod.bend_end()) / 2.0;
+        let mut joints = Vec::new();
+        for station in [0.06, middle, rod.bend_end()] {
+            let [bending, torsion] = structure.add_joint(station);
+            joints.extend([(bending, 3e-5), (torsion, 5e-5)]);
+            wrong.joints.push(Joint { name: "new".into(), station, bending: 3e-5, torsion: 5e-5 });
+        }
         wrong.joints[0].bending = 5e-5;
-        let [declared, _] = structure.add_joint(0.205).unwrap();
-        let softening = Softening {
-            stiffness: 0.7,
-            shear: 1.2,
-            bend: 2.1 - 1.3,
-            joints: vec![(bending, 3e-5), (torsion, 5e-5), (declared, 3e-5)],
-        };
+        let [declared, _] = structure.add_joint(0.205);
+        joints.push((declared, 3e-5));
+        let softening = Softening { stiffness: 0.7, shear: 1.2, bend: 2.1 - 1.3, joints };
         assert_same(&structure.softened(&softening), &responses(&wrong, &pairs(&rod)).unwrap());
     }
 

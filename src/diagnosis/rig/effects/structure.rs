@@ -203,9 +203,7 @@ fn roots(context: &mut Context) -> Vec<Entry> {
     let sessions = sessions(context.data);
     let Body::Rod(structure) = &mut *context.body else { return Vec::new() };
     let root = Location::Part(Part::Root);
-    let Some((everywhere, actions)) = joint(structure, &ROOT_COMPLIANCE, root, 0.0, [0.0; 2], None) else {
-        return Vec::new();
-    };
+    let (everywhere, actions) = joint(structure, &ROOT_COMPLIANCE, root, 0.0, [0.0; 2], None);
     let of_session = |(number, session): (usize, String)| {
         let location = Location::InSession { part: Part::Root, session };
         let in_session = |action: &Action| match action {
@@ -236,7 +234,7 @@ fn joints(context: &mut Context) -> Vec<Entry> {
     for declared in &rod.joints {
         let location = Location::Named(declared.name.clone());
         let of_file = [declared.bending, declared.torsion];
-        entries.extend(joint(structure, &JOINT_COMPLIANCE, location, declared.station, of_file, None));
+        entries.push(joint(structure, &JOINT_COMPLIANCE, location, declared.station, of_file, None));
     }
     // a hinge inside the arc is the bend
     let (start, end) = (rod.bend_start(), rod.bend_end());
@@ -244,13 +242,12 @@ fn joints(context: &mut Context) -> Vec<Entry> {
     for &station in scan.iter().filter(|station| !is_in_arc(**station)) {
         let location = Location::Station(station);
         let reach = Some(reach(station));
-        entries.extend(joint(structure, &JOINT_COMPLIANCE, location, station, [0.0; 2], reach));
+        entries.push(joint(structure, &JOINT_COMPLIANCE, location, station, [0.0; 2], reach));
     }
     preferring(entries, |candidate| matches!(candidate.location, Location::Named(_)))
 }
 
-/// A joint; with a reach its station is a parameter. One that the beam model cannot compute is no
-/// candidate.
+/// A joint; with a reach its station is a parameter.
 fn joint(
     structure: &mut Structure,
     effect: &'static RigEffect,
@@ -258,15 +255,15 @@ fn joint(
     station: f64,
     of_file: [f64; 2],
     reach: Option<f64>,
-) -> Option<Entry> {
+) -> Entry {
     let rotation = structure.rotation();
-    let [bending, torsion] = structure.add_joint(station).ok()?;
+    let [bending, torsion] = structure.add_joint(station);
     let compliance =
         |name, k: usize| parameter(name, URAD_PER_NM, of_file[k], JOINT * rotation[k], NOT_NEGATIVE);
     let mut parameters = vec![compliance("bending_urad_per_nm", 0), compliance("torsion_urad_per_nm", 1)];
     let mut actions = vec![Action::Joint(bending, of_file[0]), Action::Joint(torsion, of_file[1])];
     if let Some(reach) = reach
-        && let Some(nodes) = structure.add_nodes(station, [bending, torsion], reach).ok()?
+        && let Some(nodes) = structure.add_nodes(station, [bending, torsion], reach)
     {
         let [before, _, behind] = nodes.stations;
         // as likely anywhere
@@ -274,7 +271,7 @@ fn joint(
         parameters.push(parameter(STATION, MM, station, size, (before, behind)));
         actions.push(Action::Station(nodes));
     }
-    Some((candidate(&effect.effect, location, parameters), actions))
+    (candidate(&effect.effect, location, parameters), actions)
 }
 
 /// Where along the rod a joint that nobody declared may be, m; `None` for everything else.

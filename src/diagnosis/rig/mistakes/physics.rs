@@ -108,7 +108,7 @@ impl Physics {
         let places = first.into_iter().chain(second);
         let mut joints = Vec::new();
         for place in places {
-            joints.extend(structure.add_joint(place)?.into_iter().zip(rotation));
+            joints.extend(structure.add_joint(place).into_iter().zip(rotation));
         }
         let whole = structure.softened(&Softening::default());
         let more = |softening: Softening| -> Vec<Matrix3<f64>> {

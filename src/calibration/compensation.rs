@@ -9,6 +9,7 @@ use crate::compliance::{Compliance, DEFAULT_ELEMENTS, closed_form};
 use crate::error::{Error, Result};
 use crate::rig;
 use crate::robot::{Body, Kinematics, Loads, Robot, Setup};
+use crate::spatial::times;
 use crate::statistics::Random;
 use crate::units::STANDARD_GRAVITY;
 
@@ -142,7 +143,7 @@ impl Compensation {
         for row in 0..recording.len() {
             let torque = &mut pass.torque[row * n..][..n];
             kinematics.update(recording.joints(row), torque);
-            let tip_force = recording.device(row).rotation * self.contact_force;
+            let tip_force = times(&recording.device(row).rotation, &self.contact_force);
             let loads = Loads { gravity, payload: self.payload, tip_force };
             kinematics.torques(&loads, torque);
             let displaced = self.displaced.get(row).copied().unwrap_or_default();
@@ -165,7 +166,7 @@ impl Compensation {
         let r = &kinematics.flange.rotation;
         // g_T = Rᵀ·g, F_T = Rᵀ·F (Eqs 12–14); C^g is per g (Eq 19)
         let gravity = r.tr_mul(gravity) / STANDARD_GRAVITY;
-        compliance.gravity * gravity + compliance.force * r.tr_mul(force)
+        times(&compliance.gravity, &gravity) + times(&compliance.force, &r.tr_mul(force))
     }
 }
 

@@ -22,7 +22,7 @@ use super::identifiability::UnidentifiedDirection;
 use crate::least_squares::{Problem, assembled};
 use crate::linalg::RowReduction;
 use crate::robot::{Kinematics, Parameter, Setup};
-use crate::spatial::{Pose, exponential, left_jacobian, skew};
+use crate::spatial::{Pose, exponential, left_jacobian, skew, times};
 
 /// Poses per block of the Jacobian.
 const BLOCK: usize = 128;
@@ -56,7 +56,7 @@ impl Pass {
     /// Moves to the joint values of a row, joints and rod deflected: the tip is where the ball is.
     pub fn deflect(&self, kinematics: &mut Kinematics, recording: &Recording, row: usize) {
         kinematics.update(recording.joints(row), self.torque(recording, row));
-        kinematics.tip += kinematics.flange.rotation * self.deflection[row];
+        kinematics.tip += times(&kinematics.flange.rotation, &self.deflection[row]);
     }
 }
 

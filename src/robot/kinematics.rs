@@ -129,10 +129,10 @@ impl<'s> Kinematics<'s> {
             let link = setup.links[j].moved(frames.motion, q[j] + compliant_turn + correction);
             let turned = turned_about_z(&frame.rotation, link.theta.sin_cos());
             let tilted = turned_about_x(&turned, frames.alpha);
-            frames.axis = frame.rotation.column(2).into();
+            frames.axis = axis(&frame.rotation, 2);
             frames.origin = frame.origin;
-            frames.x = turned.column(0).into();
-            frames.y = tilted.column(1).into();
+            frames.x = axis(&turned, 0);
+            frames.y = axis(&tilted, 1);
             frames.distal = Pose {
                 rotation: turned_about_y(&tilted, frames.beta),
                 origin: frame.origin + frames.axis * link.d + frames.x * link.a,
@@ -191,11 +191,16 @@ impl<'s> Kinematics<'s> {
     }
 }
 
+/// An axis of a frame, a column of its rotation.
+fn axis(rotation: &Matrix3<f64>, number: usize) -> Vector3<f64> {
+    Vector3::from(rotation.data.0[number])
+}
+
 impl Hayati {
     /// `frame` after Rz(θ)·Tz(d)·Tx(a)·Rx(α)·Ry(β).
     pub fn beyond(&self, frame: &Pose) -> Pose {
         let turned = turned_about_z(&frame.rotation, self.theta.sin_cos());
-        let origin = frame.origin + turned.column(2) * self.d + turned.column(0) * self.a;
+        let origin = frame.origin + axis(&turned, 2) * self.d + axis(&turned, 0) * self.a;
         let tilted = turned_about_x(&turned, self.alpha.sin_cos());
         Pose { rotation: turned_about_y(&tilted, self.beta.sin_cos()), origin }
     }

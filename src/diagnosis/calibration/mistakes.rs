@@ -24,7 +24,7 @@ use nalgebra::Vector3;
 
 use self::draft::{Change, Draft, change_joints};
 use self::moves::{Move, Other};
-use self::quick::Body;
+use self::quick::{Body, Worthwhile};
 use self::search::{Found, Search, State, Step};
 use super::apply::{Applied, apply};
 use super::diagnose::{CalibrationDiagnosis, diagnose_calibrated};
@@ -468,7 +468,7 @@ fn turn_joints(validation: &mut Recording, robot: &Robot, tool: Vector3<f64>, ch
         let alone = Campaign::new(robot.clone(), recording.clone()).ok()?.with_tool(tool);
         let draft = Draft::of(&alone).thinned(100);
         let body = Body::new(robot, Compensation::bare(), tool, &draft);
-        quick::fit(&draft, &body, f64::INFINITY).map(|fit| fit.log_likelihood)
+        quick::fit(&draft, &body, Worthwhile::ANY).map(|fit| fit.log_likelihood)
     };
     if left(&turned) > left(validation) {
         *validation = turned;

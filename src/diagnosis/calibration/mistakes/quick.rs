@@ -16,7 +16,7 @@ use super::draft::Draft;
 use crate::calibration::Compensation;
 use crate::linalg::transposed_product;
 use crate::robot::{Kinematics, Loads, Parameter, Robot, Setup, minimal_parameters};
-use crate::spatial::{Pose, exponential, skew};
+use crate::spatial::{Pose, exponential, skew, times};
 use crate::statistics::median;
 use crate::units::{DEG, MM, STANDARD_GRAVITY};
 
@@ -34,6 +34,9 @@ const TOOL: f64 = 0.5;
 const LEAST_SCALE: f64 = 1e-5;
 const MOST_STEPS: usize = 12;
 const MOST_TURNS: usize = 12;
+/// After so many steps what one gains tells the rest, which is so many times as much at most.
+const SETTLING: usize = 2;
+const AHEAD: f64 = 10.0;
 /// More rows than these add no evidence, for they share the same unknown physics; and what the three
 /// coordinates of one row count.
 const MOST_ROWS: f64 = 150.0;
@@ -88,14 +91,27 @@ struct Rough {
     median: f64,
 }
 
-/// Fits a draft; `None` where the nominal robot leaves more than `limit` (m, median), or nothing can
-/// be computed.
-pub(super) fn fit(draft: &Draft, body: &Body, limit: f64) -> Option<Fit> {
+/// What a fit that is worth its time comes to.
+#[derive(Clone, Copy)]
+pub(super) struct Worthwhile {
+    /// The nominal robot leaves no more, m (median).
+    pub most_left: f64,
+    /// Ln of the density is no less in the end.
+    pub log_likelihood: f64,
+}
+
+impl Worthwhile {
+    /// Any is.
+    pub const ANY: Worthwhile = Worthwhile { most_left: f64::INFINITY, log_likelihood: f64::NEG_INFINITY };
+}
+
+/// Fits a draft; `None` where that is not worthwhile, or nothing can be computed.
+pub(super) fn fit(draft: &Draft, body: &Body, worthwhile: Worthwhile) -> Option<Fit> {
     let rough = rough(draft, body)?;
-    if rough.median > limit {
+    if rough.median > worthwhile.most_left {
         return None;
     }
-    refined(draft, body, rough)
+    refined(draft, body, rough, worthwhile.log_likelihood)
 }
 
 fn rough(draft: &Draft, body: &Body) -> Option<Rough> {
@@ -124,7 +140,7 @@ fn rough(draft: &Draft, body: &Body) -> Option<Rough> {
             for (row, flange) in flanges.iter().enumerate() {
                 let base = &bases[draft.station[row]];
                 let off = points[row] - base.point(&tips[row]);
-                sum.0 += (base.rotation * flange.rotation).tr_mul(&off) * weight[row];
+                sum.0 += flange.rotation.tr_mul(&base.rotation.tr_mul(&off)) * weight[row];
                 sum.1 += weight[row];
                 left.push(off.norm());
             }
@@ -198,7 +214,7 @@ struct State<'a> {
     bases: Vec<Pose>,
 }
 
-fn refined(draft: &Draft, body: &Body, rough: Rough) -> Option<Fit> {
+fn refined(draft: &Draft, body: &Body, rough: Rough, worthwhile: f64) -> Option<Fit> {
     let Rough { bases, tool, median } = rough;
     let mut state = State { setup: Setup::new(body.robot, Pose::IDENTITY, tool), bases };
     let mut torque = vec![0.0; draft.joints.len()];
@@ -208,8 +224,9 @@ fn refined(draft: &Draft, body: &Body, rough: Rough) -> Option<Fit> {
     let nominal: Vec<f64> = body.free.iter().map(|&p| state.setup.get(p)).collect();
     let least = LEAST_SCALE * body.reach;
     let mut best: Option<(f64, f64, State, Vec<Vector3<f64>>)> = None;
-    for _ in 0..MOST_STEPS {
-        let off = residuals(draft, &state, &torque, &deflection, None);
+    for taken in 0..MOST_STEPS {
+        let mut block = DMatrix::zeros(3 * draft.len(), body.free.len() + 6 * state.bases.len());
+        let off = residuals(draft, &state, &torque, &deflection, Some((&body.free, &mut block)));
         let lengths: Vec<f64> = off.iter().map(|off| off.norm()).collect();
         let scale = t_scale(&lengths, least);
         let log_likelihood = density(&lengths, scale) - moved(body, &state, &nominal, &sd);
@@ -223,7 +240,11 @@ fn refined(draft: &Draft, body: &Body, rough: Rough) -> Option<Fit> {
         if gained < 0.02 {
             break;
         }
-        state = step(draft, body, &state, (&off, &lengths, scale), (&nominal, &sd), (&torque, &deflection))?;
+        // steps gain less and less
+        if taken >= SETTLING && log_likelihood + AHEAD * gained < worthwhile {
+            return None;
+        }
+        state = step(draft, body, &state, (&off, &lengths, scale), (&nominal, &sd), block)?;
         load(draft, body, &state, &mut torque, &mut deflection);
     }
     let (log_likelihood, scale, state, off) = best?;
@@ -247,7 +268,7 @@ fn load(draft: &Draft, body: &Body, state: &State, torque: &mut [f64], deflectio
         let torque = &mut torque[row * count..][..count];
         kinematics.update(draft.joints(row), torque);
         let device = &draft.devices[draft.group[row]];
-        let in_world = device.rotation * with.contact_force;
+        let in_world = times(&device.rotation, &with.contact_force);
         let tip_force = match state.bases.get(draft.station[row]) {
             Some(base) => base.rotation.tr_mul(&in_world),
             None => in_world,
@@ -256,8 +277,9 @@ fn load(draft: &Draft, body: &Body, state: &State, torque: &mut [f64], deflectio
         kinematics.torques(&loads, torque);
         if let Some(compliance) = &with.compliance {
             let r = &kinematics.flange.rotation;
-            deflection[row] = compliance.gravity * (r.tr_mul(&body.robot.gravity) / STANDARD_GRAVITY)
-                + compliance.force * r.tr_mul(&tip_force);
+            let down = r.tr_mul(&body.robot.gravity) / STANDARD_GRAVITY;
+            deflection[row] =
+                times(&compliance.gravity, &down) + times(&compliance.force, &r.tr_mul(&tip_force));
         }
     }
 }
@@ -293,13 +315,13 @@ fn residuals(
     for row in 0..draft.len() {
         let torque = &torque[row * count..][..count];
         kinematics.update(draft.joints(row), torque);
-        kinematics.tip += kinematics.flange.rotation * deflection[row];
+        kinematics.tip += times(&kinematics.flange.rotation, &deflection[row]);
         let base = state.bases.get(draft.station[row]).copied().unwrap_or(Pose::IDENTITY);
         let tip = base.point(&kinematics.tip);
         off.push(if draft.has_sockets() { tip } else { tip - draft.point(row) });
         if let Some((free, block)) = &mut columns {
             for (k, &parameter) in free.iter().enumerate() {
-                let column = base.rotation * kinematics.column(parameter, torque);
+                let column = times(&base.rotation, &kinematics.column(parameter, torque));
                 block.fixed_view_mut::<3, 1>(3 * row, k).copy_from(&column);
             }
             if !state.bases.is_empty() {
@@ -316,19 +338,16 @@ fn residuals(
     }
 }
 
-/// One Gauss–Newton step.
+/// One Gauss–Newton step, by the columns of the state.
 fn step<'a>(
     draft: &Draft,
     body: &Body,
     state: &State<'a>,
     (off, lengths, scale): (&[Vector3<f64>], &[f64], f64),
     (nominal, sd): (&[f64], &[f64]),
-    (torque, deflection): (&[f64], &[Vector3<f64>]),
+    mut block: DMatrix<f64>,
 ) -> Option<State<'a>> {
-    let (free, stations) = (body.free.len(), state.bases.len());
-    let columns = free + 6 * stations;
-    let mut block = DMatrix::zeros(3 * draft.len(), columns);
-    residuals(draft, state, torque, deflection, Some((&body.free, &mut block)));
+    let (free, columns) = (body.free.len(), block.ncols());
     if draft.has_sockets() {
         without_means(&mut block, draft);
     }

@@ -9,7 +9,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::super::effects::mistakes::UNIT_MISTAKE;
 use super::draft::{Change, Draft};
 use super::moves::{Move, turn};
-use super::quick::{Body, Fit, fit};
+use super::quick::{Body, Fit, Worthwhile, fit};
 use crate::parallel::in_parallel;
 use crate::spatial::Pose;
 use crate::statistics::median;
@@ -92,10 +92,12 @@ impl Search<'_> {
     /// The changes that this campaign needs, with the state that they make, and what was there
     /// before; `None` where nothing can be fitted at all.
     pub fn found(&self) -> Option<(State, State, Vec<Found>)> {
-        let base = self.state(&[], f64::INFINITY)?;
+        let base = self.state(&[], Worthwhile::ANY)?;
         let mut best = base.clone();
         while best.steps.len() < MOST_CHANGES {
-            let tried = self.extended(&best);
+            // beside one that fits only what is better counts
+            let least = if self.has_failed(&best) { f64::NEG_INFINITY } else { best.score + ODDS };
+            let tried = self.extended(&best, least);
             let next = tried.iter().find(|state| self.is_better(state, &best) && !self.has_failed(state));
             let next = match next {
                 Some(next) => Some(next.clone()),
@@ -108,7 +110,7 @@ impl Search<'_> {
         // what a later one made needless goes
         loop {
             let needless = (0..best.steps.len()).find_map(|k| {
-                let rest = self.state(&without(&best.steps, k), f64::INFINITY)?;
+                let rest = self.state(&without(&best.steps, k), Worthwhile::ANY)?;
                 (best.steps.len() > 1 && !self.is_better(&best, &rest)).then_some(rest)
             });
             match needless {
@@ -137,10 +139,10 @@ impl Search<'_> {
         }
     }
 
-    fn state(&self, steps: &[Step], limit: f64) -> Option<State> {
+    fn state(&self, steps: &[Step], worthwhile: Worthwhile) -> Option<State> {
         let thin = self.thinned(&self.changed(steps));
         let body = &self.bodies[thin.body];
-        let fit = fit(&thin, body, limit)?;
+        let fit = fit(&thin, body, worthwhile)?;
         Some(self.scored(steps.to_vec(), thin, fit))
     }
 
@@ -152,22 +154,27 @@ impl Search<'_> {
         draft.part(&rows)
     }
 
-    fn scored(&self, steps: Vec<Step>, thin: Draft, fit: Fit) -> State {
+    /// Ln of how rare these changes are.
+    fn log_prior(&self, steps: &[Step]) -> f64 {
         let price = |step: &Step| match step {
             Step::Move(number) => RARE + self.moves[*number].log_prior,
             Step::Elsewhere(_) => MOVED,
         };
-        let prior: f64 = steps.iter().map(price).sum();
+        steps.iter().map(price).sum()
+    }
+
+    fn scored(&self, steps: Vec<Step>, thin: Draft, fit: Fit) -> State {
+        let prior = self.log_prior(&steps);
         let reach = self.bodies[thin.body].reach;
         // where nothing fits, base and tip are anywhere
         let guess = if is_failed(&fit, reach) { -BASE.2 - TOOL.2 } else { guess(&thin, &fit, reach) };
         State { score: fit.log_likelihood + guess + prior, steps, thin, fit, guess }
     }
 
-    /// The state with every further change, the best first.
-    fn extended(&self, from: &State) -> Vec<State> {
+    /// The state with every further change, the best first; those that will not reach the score `least` may be missing.
+    fn extended(&self, from: &State, least: f64) -> Vec<State> {
         let reach = self.bodies[from.thin.body].reach;
-        let limit = (0.8 * from.fit.rough).max(DRAWN * reach);
+        let most_left = (0.8 * from.fit.rough).max(DRAWN * reach);
         let mut steps: Vec<Step> = (0..self.moves.len()).map(Step::Move).collect();
         steps.retain(|step| !from.steps.contains(step));
         steps.extend(self.elsewhere(from).into_iter().map(Step::Elsewhere));
@@ -180,7 +187,10 @@ impl Search<'_> {
                 return Some(self.scored(all, thin, from.fit.clone()));
             }
             let is_two_bodies = matches!(self.change(&steps[k]), Change::Body(..)) && from.thin.body != 0;
-            if is_two_bodies { None } else { self.state(&all, limit) }
+            // a score is the likelihood, less what is paid
+            let log_likelihood = least - self.log_prior(&all);
+            let worthwhile = Worthwhile { most_left, log_likelihood };
+            if is_two_bodies { None } else { self.state(&all, worthwhile) }
         });
         let mut tried: Vec<State> = tried.into_iter().flatten().collect();
         tried.sort_by(|a, b| b.score.total_cmp(&a.score));
@@ -223,7 +233,8 @@ impl Search<'_> {
             _ => false,
         };
         let first: Vec<&State> = moves().take(BEAM).chain(moves().skip(BEAM).filter(is_unit)).collect();
-        let grown = first.iter().flat_map(|state| self.extended(state).into_iter().take(1));
+        let grown =
+            first.iter().flat_map(|state| self.extended(state, f64::NEG_INFINITY).into_iter().take(1));
         let mut grown: Vec<State> =
             grown.filter(|state| self.is_better(state, from) && !self.has_failed(state)).collect();
         grown.sort_by(|a, b| b.score.total_cmp(&a.score));
@@ -302,7 +313,7 @@ impl Search<'_> {
             if let Some(last) = steps.last_mut() {
                 *last = Step::Elsewhere(Change::Moved(row));
             }
-            match self.state(&steps, f64::INFINITY) {
+            match self.state(&steps, Worthwhile::ANY) {
                 Some(next) if next.score > state.score => state = next,
                 _ => return state,
             }
@@ -312,13 +323,13 @@ impl Search<'_> {
 
     /// One change of a state against the state without it.
     fn judged(&self, best: &State, k: usize) -> Option<Found> {
-        let rest = self.state(&without(&best.steps, k), f64::INFINITY)?;
+        let rest = self.state(&without(&best.steps, k), Worthwhile::ANY)?;
         let square: f64 = pairs(&rest, best).iter().map(|(old, new)| old * old - new * new).sum();
         let explains = (square / best.thin.len().max(1) as f64).max(0.0).sqrt();
         let log_odds = (best.score - rest.score).min(700.0);
         let step = best.steps[k].clone();
         let alike: Vec<State> = self
-            .extended(&rest)
+            .extended(&rest, best.score - ALIKE)
             .into_iter()
             .filter(|state| best.score - state.score < ALIKE && state.steps.last() != Some(&step))
             .collect();

@@ -6,7 +6,6 @@ use std::path::Path;
 use super::*;
 use crate::diagnosis::calibration::Neighbours;
 use crate::inference::{Effect, Linearised, UNKNOWN, infer};
-use crate::parallel::in_parallel;
 use crate::units::MM;
 
 fn ur5() -> Option<Campaign> {
@@ -18,7 +17,7 @@ fn ur5() -> Option<Campaign> {
     Some(Campaign::read(&path).unwrap_or_else(|error| panic!("{error}")))
 }
 
-/// Two fifths of the recording, each predicted by a hypothesis that was looked for without it: the
+/// A fifth of the recording, predicted by a hypothesis that was looked for without it: the
 /// published full geometric fit leaves 0.100 mm on average, and what it leaves follows the joint
 /// angles. (All five: 0.109 and 0.047 to 0.051 mm.)
 #[test]
@@ -27,7 +26,8 @@ fn the_gears_of_a_ur5_predict_poses_that_they_were_not_fitted_to() {
     let (model, evidence) = modelled(&campaign, Mode::None);
     let linear = Linearised::new(&model);
     let (data, rows) = (evidence.residual.len(), campaign.measurements.len());
-    let by_fold = in_parallel(2, |fold| {
+    let (before, after) = {
+        let fold = 0;
         let kept: Vec<usize> = (0..data).filter(|&row| evidence.fold[row] != fold).collect();
         let (part, training) = (linear.part(&kept, Evidence::NONE), evidence.part(&kept));
         let (search, hypothesis, _) = infer(&part, &training, crate::inference::Pairs::Screened, None);
@@ -39,11 +39,9 @@ fn the_gears_of_a_ur5_predict_poses_that_they_were_not_fitted_to() {
         };
         let count = (0..rows).filter(|row| evidence.fold[3 * row] == fold).count() as f64;
         (miss(&none) / count, miss(&all) / count)
-    });
-    for (before, after) in by_fold {
-        assert!((0.08 * MM..0.14 * MM).contains(&before), "{before}");
-        assert!(after < 0.6 * before, "{after} of {before}");
-    }
+    };
+    assert!((0.08 * MM..0.14 * MM).contains(&before), "{before}");
+    assert!(after < 0.6 * before, "{after} of {before}");
 }
 
 /// Nothing in what others recorded is a mistake, nor did anything move.
@@ -64,7 +62,8 @@ fn recordings_of_others_hold_no_mistake() {
 
 static PLACEBO: Effect = Effect { name: "placebo", ..UNKNOWN };
 
-/// Curves over angles that belong to other rows are offered besides, and none of them is taken.
+/// Curves over angles that belong to other rows are offered besides, and none of them is taken. On two fifths of the
+/// recording.
 #[test]
 fn a_placebo_is_refused() {
     let Some(campaign) = ur5() else { return };
@@ -91,7 +90,9 @@ fn a_placebo_is_refused() {
     let (model, _) = CalibrationModel::new(&campaign, calibration).unwrap();
     let (terms, _) = LinearTerms::new(entries, &evidence);
     let model = CalibrationModel { terms, ..model };
-    let linear = Linearised::new(&model);
+    let whole = Linearised::new(&model);
+    let kept: Vec<usize> = (0..evidence.residual.len()).filter(|&row| evidence.fold[row] < 2).collect();
+    let (linear, evidence) = (whole.part(&kept, Evidence::NONE), evidence.part(&kept));
     let (search, hypothesis, _) = infer(&linear, &evidence, crate::inference::Pairs::Screened, None);
     let effect = |term: &Term| model.candidates()[term.candidate].effect;
     let found: Vec<&Effect> = hypothesis.terms.iter().map(effect).collect();
@@ -102,5 +103,5 @@ fn a_placebo_is_refused() {
         let same = (0..additions.len()).filter(|&k| model.candidates()[k].effect == effect);
         same.map(|k| additions[k]).fold(f64::NEG_INFINITY, f64::max)
     };
-    assert!(best(gears) > 400.0 && best(&PLACEBO) < 0.0, "{}", best(&PLACEBO));
+    assert!(best(gears) > 0.4 * 400.0 && best(&PLACEBO) < 0.0, "{}", best(&PLACEBO));
 }

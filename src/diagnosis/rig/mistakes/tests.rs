@@ -395,12 +395,12 @@ fn no_physics_is_a_mistake_however_large() {
     recordings(&BENCHES, 1, |what, file, clean| {
         let model = RigModel::new(&clean, Some(file)).unwrap().0;
         for (index, candidate) in model.candidates().iter().enumerate() {
-            let is_one_of_many = candidate.effect.name == "slip" && index % 3 > 0;
+            let is_one_of_many = candidate.effect.name == "slip" && index % 9 > 0;
             let is_mistake = candidate.effect.kind == crate::inference::Kind::Mistake;
             if candidate.is_nonparametric || is_mistake || is_one_of_many {
                 continue;
             }
-            for times in [1.0f64, 3.0, 10.0, -3.0, -10.0] {
+            for times in [3.0f64, 10.0, -10.0] {
                 let value = |p: &crate::inference::Parameter| {
                     // a joint that alone yields twice as much as the whole rod could not be told from pounds
                     let most = if candidate.effect.name == "joint_compliance" { 5.0 } else { 10.0 };

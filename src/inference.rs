@@ -11,6 +11,7 @@
 
 mod background;
 mod columns;
+mod compared;
 mod correlation;
 mod description;
 mod diagnose;
@@ -55,6 +56,7 @@ pub(crate) use self::{
     pruning::infer,
     selection::{DiscrepancyModel, Pairs},
 };
+pub use compared::log_odds;
 pub use description::Description;
 pub use diagnose::{diagnose, sketch};
 pub use diagnosis::{Diagnosed, Diagnosis, Discrepancy, ShownBy};

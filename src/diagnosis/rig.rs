@@ -21,6 +21,7 @@
 //! of other sensors stand in one unit.
 
 mod action;
+mod another_rod;
 mod as_measured;
 mod build;
 mod cases;

@@ -1,5 +1,9 @@
 //! What a recording cannot tell apart is said to be so, with a measurement that would tell.
 
+use rodcal::diagnosis::rig::diagnose_among;
+use rodcal::inference::Diagnosis;
+use rodcal::rig::readings::Readings;
+use rodcal::rod::Rod;
 use rodcal::units::UM;
 use rodcal_trial::rig::{Effect, Order};
 
@@ -17,6 +21,27 @@ fn without_unloading_friction_is_a_load_offset_as_well() {
         let next = answer.findings()[0]["next_measurement"].as_str().unwrap();
         assert!(next.contains("unloading"), "{next}");
     }
+}
+
+/// The readings of rod 5# beside the files of the paper's six rods: 6# would have to be 2.3 times stiffer, 4# is told from 5# by
+/// its torsion alone.
+#[test]
+fn another_rod_is_named_before_physics_that_makes_the_given_one_like_it() {
+    let rod = |k: usize| Rod::read(format!("rods/{k}.toml").as_ref()).unwrap();
+    let readings = Readings::read("stiffness_data/5.csv".as_ref()).unwrap();
+    let diagnosed = |given: usize| {
+        let others = (1..=6).filter(|&k| k != given).map(|k| (format!("{k}.toml"), rod(k)));
+        diagnose_among(&readings, Some(&rod(given)), &others.collect::<Vec<_>>()).unwrap().diagnosis
+    };
+    let own = diagnosed(5);
+    let names = |of: &Diagnosis| of.findings.iter().map(|finding| finding.effect.name).collect::<Vec<_>>();
+    assert_eq!(names(&own), ["friction"]);
+    let six = diagnosed(6);
+    assert_eq!(names(&six), ["rod_mistake", "friction"]);
+    assert_eq!(six.findings[0].location.to_string(), "5.toml");
+    let four = diagnosed(4);
+    assert_eq!(names(&four), ["friction", "shear_modulus"]);
+    assert!(four.findings[1].rivals.iter().any(|rival| rival.effect.name == "rod_mistake"));
 }
 
 #[test]

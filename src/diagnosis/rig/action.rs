@@ -99,6 +99,21 @@ impl FromIterator<(usize, f64)> for Weights {
 }
 
 impl Action {
+    /// True for what makes the rod another one.
+    pub(super) fn changes_the_rod(&self) -> bool {
+        matches!(
+            self,
+            Action::Stiffness
+                | Action::ShearModulus
+                | Action::Bend(_)
+                | Action::Joint(..)
+                | Action::JointIn(..)
+                | Action::Station(_)
+                | Action::PerLoad
+                | Action::PerLoadSquared
+        )
+    }
+
     /// True for what adds to the readings whatever else there is.
     pub(super) fn only_adds(&self) -> bool {
         matches!(self, Action::Shift(_) | Action::Step(..))

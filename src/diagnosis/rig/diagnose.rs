@@ -1,8 +1,9 @@
 //! From readings to findings: mistakes first, then the physics of what is left.
 
+use super::mistakes::Mended;
 use super::model::{AsRecorded, RigDiagnosis, RigModel};
 use super::wanted::Wanted;
-use super::{as_measured, limits, mistakes, next};
+use super::{another_rod, as_measured, limits, mistakes, next};
 use crate::error::{Error, Place, Result};
 use crate::inference::{Diagnosed, diagnose as infer, rms};
 use crate::rig::readings::Readings;
@@ -34,14 +35,26 @@ pub fn diagnose_among(
     others: &[(String, Rod)],
 ) -> Result<RigDiagnosis> {
     check_size(readings)?;
-    let mended = mistakes::mended(readings, rod, others)?;
-    let (mended_readings, mended_rod) = match mended.has_data {
-        true => (&mended.readings, mended.rod.as_ref()),
-        false => (readings, rod),
+    let mut mended = mistakes::mended(readings, rod, others)?;
+    let inferred = |mended: &Mended| {
+        let (mended_readings, mended_rod) = match mended.has_data {
+            true => (&mended.readings, mended.rod.as_ref()),
+            false => (readings, rod),
+        };
+        let (model, evidence, not_testable) =
+            RigModel::with_effects(mended_readings, mended_rod, &Wanted::All)?;
+        let diagnosis = infer(&model, &evidence);
+        Ok::<_, Error>((model, evidence, not_testable, diagnosis))
     };
-    let (mut model, evidence, not_testable) =
-        RigModel::with_effects(mended_readings, mended_rod, &Wanted::All)?;
-    let mut diagnosis = infer(&model, &evidence);
+    let (mut model, mut evidence, mut not_testable, mut diagnosis) = inferred(&mended)?;
+    let others = another_rod::others(&mended, &model, &evidence, &diagnosis)?;
+    match others.first() {
+        Some(meant) if meant.is_meant() => {
+            mended.take(meant.number, meant.log_odds, meant.explains);
+            (model, evidence, not_testable, diagnosis) = inferred(&mended)?;
+        }
+        _ => another_rod::add_rivals(&mended, &others, &model, &mut diagnosis),
+    }
     as_measured::resize(&model, &evidence, &mut diagnosis);
     if mended.has_data {
         for k in 0..diagnosis.findings.len() {

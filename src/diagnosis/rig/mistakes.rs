@@ -32,9 +32,12 @@ use self::moves::Labels;
 use self::part::Part;
 use self::physics::Physics;
 use self::rods::Body;
+pub(super) use self::rods::OTHER_ROD;
 use self::search::{Found, Search, Trial};
+pub(super) use self::search::{ODDS, RARE};
 use self::sensors::Expected;
 use super::datum;
+use super::effects::mistakes::ROD_MISTAKE;
 use super::structure::check_stations;
 use crate::error::Result;
 use crate::inference::{Description, Effect, Estimate, Finding, Location, Rival};
@@ -54,6 +57,8 @@ pub(super) struct Mended {
     pub rod: Option<Rod>,
     /// For each of them one line: what it looks like.
     pub suspicions: Vec<String>,
+    /// Rods of other files that may have been meant, the likeliest first; none where that was decided.
+    pub others: Vec<(String, Rod)>,
     /// False where nothing that could be compared is left of the readings.
     pub has_data: bool,
 }
@@ -74,6 +79,7 @@ pub(super) fn mended(readings: &Readings, rod: Option<&Rod>, others: &[(String, 
         readings: readings.clone(),
         rod: rod.cloned(),
         suspicions: Vec::new(),
+        others: Vec::new(),
         has_data: true,
     };
     mended.sensors()?;
@@ -163,7 +169,15 @@ impl Mended {
         let is_possible = check_stations(&self.readings, &rod).is_ok();
         let length = rod.length();
         let search = Search { lines: &all, pair: &pair, pairs: &pairs, base: &base, length, is_possible };
-        if all.is_empty() || !search.is_implausible() {
+        if all.is_empty() {
+            return Ok(());
+        }
+        let verdict = |rod: &Rod| {
+            let body = Body { rod: rod.clone(), stations: [1.0; 2] };
+            search::physics(&[body], search.pairs).pop()?.map(|physics| search.verdict_of(&physics))
+        };
+        self.others = rods::likely(&rod, others, verdict);
+        if !search.is_implausible() {
             return Ok(());
         }
         let has = |k: usize| pairs.iter().any(|pair| pair[k].is_some());
@@ -178,6 +192,7 @@ impl Mended {
             self.add_move(&moves, &one);
         }
         if state.change.body > 0 {
+            self.others.clear();
             let body = &bodies[state.change.body - 1];
             for row in &mut self.readings.rows {
                 row.load_station = row.load_station.map(|s| s * body.stations[0]);
@@ -203,6 +218,19 @@ impl Mended {
             }
             self.add_part(part);
         }
+    }
+
+    /// Takes another rod for the one that was meant: what it says of the readings is `explains` (m, rms) from what was said before.
+    pub fn take(&mut self, number: usize, log_odds: f64, explains: f64) {
+        let (file, other) = self.others.swap_remove(number);
+        let Some(rod) = self.rod.replace(other.clone()) else { return };
+        let words = rods::meant(&file, &other, &rod);
+        self.others.clear();
+        self.found.push(Finding {
+            explains,
+            p_value: (-log_odds).exp(),
+            ..finding(&ROD_MISTAKE, file, Vec::new(), words, Vec::new())
+        });
     }
 
     fn add_part(&mut self, part: Part) {

@@ -4,6 +4,7 @@
 use super::super::effects::mistakes::{ROD_MISTAKE, SWAP_MISTAKE, UNIT_MISTAKE};
 use super::change::{Change, Move, exact};
 use super::moves::BESIDE;
+use super::physics::Verdict;
 use crate::inference::Effect;
 use crate::rod::{Pipe, Rod};
 use crate::section::Section;
@@ -29,6 +30,11 @@ const MODULI: [(f64, &str, f64); 4] = [
 const KEY: f64 = -0.5;
 /// Another rod is no unit: what remains must be as files are.
 const OTHER: f64 = 1.1;
+/// Ln of the prior of another rod.
+pub(in crate::diagnosis::rig) const OTHER_ROD: f64 = -2.0;
+/// Of the rods that are tried in full, how many there are at most, and how far behind the given one the slopes may see them.
+const MOST_OTHERS: usize = 4;
+const FAR_BEHIND: f64 = 10.0;
 
 /// A rod that may have been meant, with what must be done to the stations of the readings.
 pub(super) struct Body {
@@ -95,13 +101,33 @@ pub(super) fn all(rod: &Rod, others: &[(String, Rod)], has_stations: [bool; 2]) 
         }
     }
     for (file, other) in others.iter().filter(|(_, other)| !is_alike(other, rod)) {
-        let words = format!(
-            "The readings are those of rod {} ({file}), not of rod {}: use {file}",
-            other.name, rod.name
-        );
-        add(own(other.clone()), &ROD_MISTAKE, file.clone(), words, None, -2.0);
+        add(own(other.clone()), &ROD_MISTAKE, file.clone(), meant(file, other, rod), None, OTHER_ROD);
     }
     found
+}
+
+/// Rods that may have been meant: those that a load tells from `rod`, and on which the slopes have about the size that they
+/// should; the likeliest first, by the density of the slopes `of`.
+pub(super) fn likely(
+    rod: &Rod,
+    others: &[(String, Rod)],
+    of: impl Fn(&Rod) -> Option<Verdict>,
+) -> Vec<(String, Rod)> {
+    let Some(own) = of(rod) else { return Vec::new() };
+    let known = others.iter().filter(|(_, other)| !is_alike(other, rod)).filter_map(|other| {
+        let verdict = of(&other.1)?;
+        let is_likely =
+            verdict.log_scale.abs() <= OTHER.ln() && verdict.log_evidence > own.log_evidence - FAR_BEHIND;
+        is_likely.then_some((verdict.log_evidence, other))
+    });
+    let mut known: Vec<(f64, &(String, Rod))> = known.collect();
+    known.sort_by(|a, b| b.0.total_cmp(&a.0));
+    known.into_iter().take(MOST_OTHERS).map(|(_, other)| other.clone()).collect()
+}
+
+/// What is said of readings of another rod.
+pub(super) fn meant(file: &str, other: &Rod, rod: &Rod) -> String {
+    format!("The readings are those of rod {} ({file}), not of rod {}: use {file}", other.name, rod.name)
 }
 
 /// Nothing that a load could tell.

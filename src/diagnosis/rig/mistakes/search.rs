@@ -11,14 +11,14 @@ use crate::inference::Kind;
 use crate::spatial::Axis;
 
 /// A mistake is named at these odds against all else, physics included: ln 1000.
-pub(super) const ODDS: f64 = 6.907_755;
+pub(in crate::diagnosis::rig) const ODDS: f64 = 6.907_755;
 /// Another mistake within these odds explains alike: ln 20.
 const ALIKE: f64 = 2.995_732;
 /// A rod is never bent by more than this share of its length, and what it costs to say so: ln.
 const BENT: f64 = 0.05;
 const BENT_TOO_FAR: f64 = 15.0;
 /// How rare any mistake is against none: ln.
-const RARE: f64 = -0.5;
+pub(in crate::diagnosis::rig) const RARE: f64 = -0.5;
 const MOST_MISTAKES: usize = 3;
 const BEAM: usize = 6;
 /// Share of the squares of the slopes that ordinary physics hardly leaves: 22 % rms.
@@ -124,6 +124,11 @@ impl Search<'_> {
             (line.fit.slope * reading).abs() * line.largest_load > BENT * self.length
         };
         if change.body == 0 && self.lines.iter().any(is_too_far) { BENT_TOO_FAR } else { 0.0 }
+    }
+
+    /// What the slopes say of a rod, no mistakes.
+    pub fn verdict_of(&self, physics: &Physics) -> Verdict {
+        self.seen(physics, &Change::default()).verdict()
     }
 
     fn seen<'s>(&'s self, physics: &'s Physics, change: &Change) -> Seen<'s> {

@@ -1,0 +1,73 @@
+//! Readings that another rod explains better than the given one with all that may be wrong with it.
+//!
+//! Slopes alone tell rods apart that differ by a fifth ([`super::mistakes`]). Where physics had to be added to the given rod, or
+//! something is left, those of the other files that come near are compared in full: each with all effects, by the
+//! probability that the recording then has.
+
+use super::effects::mistakes::ROD_MISTAKE;
+use super::mistakes::{Mended, ODDS, OTHER_ROD, RARE};
+use super::model::RigModel;
+use super::wanted::Wanted;
+use crate::error::Result;
+use crate::inference::{Diagnosis, Evidence, Finding, Kind, Location, Rival, log_odds, rms};
+
+/// Ln of the odds within which two rods cannot be told apart: 20.
+const ALIKE: f64 = 2.995_732;
+
+/// One of the other rods beside the given one.
+pub(super) struct Other {
+    /// Its number among [`Mended::others`].
+    pub number: usize,
+    /// Ln of the odds for it.
+    pub log_odds: f64,
+    /// How far what it says of the readings is from what the given one says, m (rms).
+    pub explains: f64,
+}
+
+impl Other {
+    /// True where that is the rod, beyond doubt.
+    pub fn is_meant(&self) -> bool {
+        self.log_odds > ODDS
+    }
+}
+
+/// The other rods that the readings may be of, the likeliest first; none where they agree with the given one.
+pub(super) fn others(
+    mended: &Mended,
+    model: &RigModel,
+    evidence: &Evidence,
+    diagnosis: &Diagnosis,
+) -> Result<Vec<Other>> {
+    let mut found = Vec::new();
+    if diagnosis.discrepancy.is_none()
+        && !diagnosis.findings.iter().any(|finding| is_of_the_rod(model, finding))
+    {
+        return Ok(found);
+    }
+    for (number, (_, rod)) in mended.others.iter().enumerate() {
+        let (other, of_other, _) = RigModel::with_effects(&mended.readings, Some(rod), &Wanted::All)?;
+        if of_other.residual.len() != evidence.residual.len() {
+            continue;
+        }
+        let log_odds = log_odds((model, evidence), (&other, &of_other)) + OTHER_ROD + RARE;
+        let explains = rms(&(&evidence.residual - &of_other.residual));
+        found.push(Other { number, log_odds, explains });
+    }
+    found.sort_by(|a, b| b.log_odds.total_cmp(&a.log_odds));
+    Ok(found)
+}
+
+/// Where two rods cannot be told apart, what makes the given one fit has the other as its rival.
+pub(super) fn add_rivals(mended: &Mended, others: &[Other], model: &RigModel, diagnosis: &mut Diagnosis) {
+    for finding in diagnosis.findings.iter_mut().filter(|finding| is_of_the_rod(model, finding)) {
+        for other in others.iter().filter(|other| other.log_odds > -ALIKE) {
+            let file = Location::Key(mended.others[other.number].0.clone());
+            finding.rivals.push(Rival::without_term(&ROD_MISTAKE, file, (-other.log_odds).exp().max(1.0)));
+        }
+    }
+}
+
+fn is_of_the_rod(model: &RigModel, finding: &Finding) -> bool {
+    let changes = |candidate: usize| model.actions[candidate].iter().any(|action| action.changes_the_rod());
+    finding.kind() == Kind::Physics && finding.parts.iter().any(|part| changes(part.term.candidate))
+}

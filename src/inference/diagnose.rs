@@ -75,6 +75,7 @@ fn diagnose_with(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
     let (search, hypothesis, left_over) = infer(model, evidence, Pairs::Screened, known);
     let held_out = hold_out(model, evidence, &hypothesis.terms);
     let (hypothesis, left_over) = confirmed(model, &search, hypothesis, left_over, held_out.as_ref());
+    let (hypothesis, left_over) = apart_from_curve(model, &search, hypothesis, left_over);
     let none = search.fit(&[]);
     let by_base = search.predicted(&none, evidence, &DVector::zeros(evidence.residual.len()));
     let predicted = search.predicted(&hypothesis, evidence, &model.response(&hypothesis.terms));
@@ -211,6 +212,39 @@ fn confirmed(
     (shorter, left_over)
 }
 
+/// A hypothesis without physics that the curve beside it may be as well: where, with all else that may be there, nothing of
+/// it is an estimate like any other.
+fn apart_from_curve(
+    model: &Linearised<'_>,
+    search: &Search,
+    hypothesis: Hypothesis,
+    left_over: Option<DiscrepancyModel>,
+) -> (Hypothesis, Option<DiscrepancyModel>) {
+    let beside = beside(&left_over);
+    let coverage_factor = coverage_factor_of(search, &hypothesis);
+    let is_apart = |position: &usize| {
+        let candidate = &model.candidates()[hypothesis.terms[*position].candidate];
+        let estimates = estimates(model, search, &hypothesis, *position, beside, coverage_factor);
+        let parameters = estimates.iter().zip(&candidate.parameters);
+        candidate.effect.kind == Kind::Event
+            || parameters.into_iter().any(|(own, p)| p.neutral < own.low || p.neutral > own.high)
+    };
+    if beside.is_none() {
+        return (hypothesis, left_over);
+    }
+    let kept: Vec<usize> = (0..hypothesis.terms.len()).filter(is_apart).collect();
+    let terms: Vec<Term> = kept.iter().map(|&position| hypothesis.terms[position].clone()).collect();
+    if terms.len() == hypothesis.terms.len() {
+        return (hypothesis, left_over);
+    }
+    let shorter = search.fit(&terms);
+    // where nothing would be left to be explained it is better named than not
+    match search.remains(&shorter) {
+        Some(rest) => (shorter, Some(rest)),
+        None => (hypothesis, left_over),
+    }
+}
+
 /// What each covariate shows of the findings that are seen along it, beside all others.
 fn given_others(
     model: &Linearised<'_>,
@@ -329,15 +363,9 @@ fn part(
     let term = &hypothesis.terms[position];
     let candidates = model.candidates();
     let rest = search.without(hypothesis, position);
-    let first: usize = hypothesis.terms[..position].iter().map(|term| term.values.len()).sum();
-    let degrees_of_freedom = (search.degrees_of_freedom() as f64 - hypothesis.determined).max(1.0);
-    let coverage_factor = student_t_quantile(0.975, degrees_of_freedom).unwrap_or(1.96);
-    let mut estimates = averaged(model, search, hypothesis, position, first, coverage_factor);
-    let own =
-        |other: &Hypothesis| other.terms.get(position).filter(|own| own.candidate == term.candidate).cloned();
-    if let Some((longer, own)) = beside.and_then(|longer| Some((longer, own(longer)?))) {
-        widen(&mut estimates, intervals(model, longer, &own, first, coverage_factor));
-    }
+    let first = first_of(hypothesis, position);
+    let coverage_factor = coverage_factor_of(search, hypothesis);
+    let mut estimates = estimates(model, search, hypothesis, position, beside, coverage_factor);
     // which form of a law is the right one is not known where another one leaves hardly more
     for form in search.other_forms(term.candidate) {
         let other = search.with(&rest, form);
@@ -385,6 +413,36 @@ fn part(
         explains: explained(search, &rest, hypothesis),
         rivals,
     }
+}
+
+/// How many standard deviations a 95 % interval is, by the degrees of freedom that a hypothesis leaves.
+fn coverage_factor_of(search: &Search, hypothesis: &Hypothesis) -> f64 {
+    let degrees_of_freedom = (search.degrees_of_freedom() as f64 - hypothesis.determined).max(1.0);
+    student_t_quantile(0.975, degrees_of_freedom).unwrap_or(1.96)
+}
+
+/// Where the parameters of a term begin among all of a hypothesis.
+fn first_of(hypothesis: &Hypothesis, position: usize) -> usize {
+    hypothesis.terms[..position].iter().map(|term| term.values.len()).sum()
+}
+
+/// Value and interval of the parameters of a term, with what else may be there, and with the curve `beside`.
+fn estimates(
+    model: &Linearised<'_>,
+    search: &Search,
+    hypothesis: &Hypothesis,
+    position: usize,
+    beside: Option<&Hypothesis>,
+    coverage_factor: f64,
+) -> Vec<Estimate> {
+    let (term, first) = (&hypothesis.terms[position], first_of(hypothesis, position));
+    let mut estimates = averaged(model, search, hypothesis, position, first, coverage_factor);
+    let own =
+        |other: &Hypothesis| other.terms.get(position).filter(|own| own.candidate == term.candidate).cloned();
+    if let Some((longer, own)) = beside.and_then(|longer| Some((longer, own(longer)?))) {
+        widen(&mut estimates, intervals(model, longer, &own, first, coverage_factor));
+    }
+    estimates
 }
 
 /// Value and 95 % interval of the parameters of a term, whatever else may be there besides: the hypotheses with one effect or

@@ -12,8 +12,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::{DMatrix, DVector};
 
+use super::priors::PRIOR;
 use super::scatter::{MOST_ALONE, SUSPECT};
-use super::search::{PRIOR, Search};
+use super::search::Search;
 use super::{Evidence, Hypothesis};
 use crate::statistics::median;
 

@@ -1,6 +1,7 @@
 //! Which hypothesis a recording supports: effects are added, exchanged and taken away while that makes it more probable.
 
-use super::search::{PRIOR, Search};
+use super::priors::PRIOR;
+use super::search::Search;
 use super::{ForwardModel, Hypothesis, Term};
 
 /// Odds against chance from which on an effect is named.

@@ -1,0 +1,75 @@
+//! How much of the scatter the data of a group share.
+
+use std::collections::BTreeMap;
+
+use nalgebra::DVector;
+
+use super::Evidence;
+use super::correlation::{by_group, deviations, likeliest};
+
+/// ρ that is believed before the data: a zero that was read once is as good as any other reading.
+const RATIO_BEFORE: f64 = 1.0;
+/// What that belief counts, in degrees of freedom.
+const BELIEF: f64 = 10.0;
+/// Of fewer groups nobody knows which mean is far out; and how far that is, in robust standard
+/// deviations.
+const FEWEST_GROUPS: usize = 6;
+const FAR: f64 = 3.0;
+
+/// ρ from repeats: the mean product of two deviations of one group, over what the mean square has beyond it.
+///
+/// Deviations are from the mean of the replicate group, so that nothing that repeats itself counts.
+///
+/// Beside a correlation the likeliest, drawn towards the same belief.
+pub(super) fn shared_ratio(evidence: &Evidence, left: &DVector<f64>, correlation: f64) -> f64 {
+    let deviations = deviations(evidence, left);
+    if correlation > 0.0 {
+        let count = deviations.iter().flatten().count() as f64;
+        let (ratio, _) = likeliest(&by_group(evidence, &deviations), correlation);
+        return believed(ratio / (1.0 + ratio), 1.0 / (1.0 + ratio), count);
+    }
+    let (mut square, mut count) = (0.0, 0.0);
+    let mut groups: BTreeMap<usize, (f64, f64, f64)> = BTreeMap::new();
+    for (row, deviation) in deviations.iter().enumerate() {
+        let Some(deviation) = deviation else { continue };
+        square += deviation * deviation;
+        count += 1.0;
+        let (total, squares, members) = groups.entry(evidence.shared[row]).or_default();
+        *total += deviation;
+        *squares += deviation * deviation;
+        *members += 1.0;
+    }
+    // a step between two runs is no scatter of their zeros: a mean far out counts as far as usual
+    let limit = match groups.len() >= FEWEST_GROUPS {
+        true => {
+            let mut means: Vec<f64> =
+                groups.values().map(|(total, _, members)| (total / members).abs()).collect();
+            means.sort_by(f64::total_cmp);
+            FAR * 1.4826 * means[means.len() / 2]
+        }
+        false => f64::INFINITY,
+    };
+    let (mut product, mut pairs) = (0.0, 0.0);
+    for (total, squares, members) in groups.into_values() {
+        let mean = total / members;
+        let clipped = mean.clamp(-limit, limit);
+        let squares = squares - members * (mean * mean - clipped * clipped);
+        product += (clipped * members).powi(2) - squares;
+        pairs += members * (members - 1.0);
+    }
+    if count == 0.0 || pairs == 0.0 || square == 0.0 {
+        return RATIO_BEFORE;
+    }
+    let mean_square = square / count;
+    let shared = (product / pairs).clamp(0.0, 0.999 * mean_square);
+    let own = mean_square - shared;
+    believed(shared, own, count)
+}
+
+/// ρ of two variances that `count` data show, beside the belief: that counts as [`BELIEF`] data of the same mean square, split
+/// as it says.
+fn believed(shared: f64, own: f64, count: f64) -> f64 {
+    let split = RATIO_BEFORE / (1.0 + RATIO_BEFORE);
+    let belief = BELIEF * (shared + own);
+    (shared * count + split * belief) / (own * count + (1.0 - split) * belief)
+}

@@ -39,6 +39,16 @@ impl RigModel {
         rod: Option<&Rod>,
         wanted: &Wanted<'_>,
     ) -> Result<(RigModel, Evidence, Vec<NotTestable>)> {
+        RigModel::bent_as(readings, rod, wanted, rod)
+    }
+
+    /// The same, where deflections are as large as those of the rod `bent`: this one with what is known to yield.
+    pub(super) fn bent_as(
+        readings: &Readings,
+        rod: Option<&Rod>,
+        wanted: &Wanted<'_>,
+        bent: Option<&Rod>,
+    ) -> Result<(RigModel, Evidence, Vec<NotTestable>)> {
         let data = datum::recorded(readings);
         let (body, place) = match rod {
             Some(rod) => {
@@ -83,23 +93,7 @@ impl RigModel {
             }
             Body::Lines(_) => evidence::slopes(&model.data, &model.place),
         };
-        let large = match &model.body {
-            Body::Rod(structure) => {
-                let second = structure.second_order()?;
-                let of = |(d, &place): (&Datum, &usize)| {
-                    let more = second[place][(d.channel.index(), d.direction.axis.index())] * d.load.powi(2);
-                    // an imposed displacement needs so much less load
-                    match d.imposed {
-                        Some(imposed) if imposed.displacement != 0.0 => {
-                            -more * d.predicted / imposed.displacement
-                        }
-                        _ => more,
-                    }
-                };
-                Some(DVector::from_iterator(model.data.len(), model.data.iter().zip(&model.place).map(of)))
-            }
-            Body::Lines(_) => None,
-        };
+        let large = bent.map(|bent| model.large_deflections(bent)).transpose()?;
         let mut evidence = evidence::of(&model.data, nuisance, large);
         evidence.stated_noise = model.stated_noise();
         if let Some(rod) = rod {
@@ -113,6 +107,21 @@ impl RigModel {
         }
         let not_testable = model.add_candidates(wanted);
         Ok((model, evidence, not_testable))
+    }
+
+    /// What large deflections of `rod` add to each datum, m.
+    pub(super) fn large_deflections(&self, rod: &Rod) -> Result<DVector<f64>> {
+        let Body::Rod(structure) = &self.body else { return Ok(DVector::zeros(self.data.len())) };
+        let second = structure.second_order(rod)?;
+        let of = |(d, &place): (&Datum, &usize)| {
+            let more = second[place][(d.channel.index(), d.direction.axis.index())] * d.load.powi(2);
+            // an imposed displacement needs so much less load
+            match d.imposed {
+                Some(imposed) if imposed.displacement != 0.0 => -more * d.predicted / imposed.displacement,
+                _ => more,
+            }
+        };
+        Ok(DVector::from_iterator(self.data.len(), self.data.iter().zip(&self.place).map(of)))
     }
 
     /// Fills in the effects and their nonparametric rivals, without what can do nothing to these

@@ -157,6 +157,15 @@ fn of_file(model: &RigModel, meant: &Rod, physics: &Physics) -> Result<Complianc
 }
 
 /// Puts an effect of the structure into the rod.
+/// The rod with what `findings` say of it.
+pub(super) fn as_found(model: &RigModel, rod: &Rod, findings: &[Finding]) -> Rod {
+    let mut found = rod.clone();
+    let of_rod =
+        findings.iter().filter(|f| f.effect.written_to == WrittenTo::Model && f.kind() == Kind::Physics);
+    of_rod.flat_map(|finding| &finding.parts).for_each(|part| enter(&mut found, model, &part.term));
+    found
+}
+
 fn enter(rod: &mut Rod, model: &RigModel, term: &Term) {
     let Body::Rod(structure) = &model.body else { return };
     let candidate = &model.candidates()[term.candidate];

@@ -3,14 +3,18 @@
 use super::mistakes::Mended;
 use super::model::{AsRecorded, RigDiagnosis, RigModel};
 use super::wanted::Wanted;
-use super::{another_rod, as_measured, limits, mistakes, next};
+use super::{another_rod, as_measured, correction, limits, mistakes, next};
 use crate::error::{Error, Place, Result};
-use crate::inference::{Diagnosed, diagnose as infer, rms};
+use crate::inference::{Diagnosed, Diagnosis, diagnose as infer, rms};
 use crate::rig::readings::Readings;
 use crate::rod::Rod;
 
 /// Most rows of readings that are diagnosed.
 pub(super) const MOST_ROWS: usize = 100_000;
+/// Times that a rod is bent anew as it was found.
+const MOST_BENT: usize = 3;
+/// Part of the noise that a systematic error shows from.
+const SHOWN: f64 = 0.3;
 
 /// Diagnoses `readings` against the FEA model of `rod` as its file gives it, or, without a rod,
 /// against straight lines through the origin.
@@ -36,24 +40,32 @@ pub fn diagnose_among(
 ) -> Result<RigDiagnosis> {
     check_size(readings)?;
     let mut mended = mistakes::mended(readings, rod, others)?;
-    let inferred = |mended: &Mended| {
+    let inferred = |mended: &Mended, bent: Option<&Rod>| {
         let (mended_readings, mended_rod) = match mended.has_data {
             true => (&mended.readings, mended.rod.as_ref()),
             false => (readings, rod),
         };
         let (model, evidence, not_testable) =
-            RigModel::with_effects(mended_readings, mended_rod, &Wanted::All)?;
+            RigModel::bent_as(mended_readings, mended_rod, &Wanted::All, bent.or(mended_rod))?;
         let diagnosis = infer(&model, &evidence);
         Ok::<_, Error>((model, evidence, not_testable, diagnosis))
     };
-    let (mut model, mut evidence, mut not_testable, mut diagnosis) = inferred(&mended)?;
+    let (mut model, mut evidence, mut not_testable, mut diagnosis) = inferred(&mended, None)?;
     let others = another_rod::others(&mended, &model, &evidence, &diagnosis)?;
     match others.first() {
         Some(meant) if meant.is_meant() => {
             mended.take(meant.number, meant.log_odds, meant.explains);
-            (model, evidence, not_testable, diagnosis) = inferred(&mended)?;
+            (model, evidence, not_testable, diagnosis) = inferred(&mended, None)?;
         }
         _ => another_rod::add_rivals(&mended, &others, &model, &mut diagnosis),
+    }
+    // a rod that yields much more than its file bends much farther, which may change what was found
+    let mut bent = model.rod.clone();
+    for _ in 0..MOST_BENT {
+        let Some(found) = bends_farther(&model, bent.as_ref(), &diagnosis)? else { break };
+        (model, evidence, not_testable, diagnosis) = inferred(&mended, Some(&found))?;
+        another_rod::add_rivals(&mended, &others, &model, &mut diagnosis);
+        bent = Some(found);
     }
     as_measured::resize(&model, &evidence, &mut diagnosis);
     if mended.has_data {
@@ -79,6 +91,17 @@ pub fn diagnose_among(
     }
     let limits = limits::limits(&model, &evidence);
     Ok(Diagnosed { absorbed: Vec::new(), not_testable, limits, diagnosis, evidence, model })
+}
+
+/// The rod as it was found, where its deflections are so large that those of `bent` miss what readings show.
+fn bends_farther(model: &RigModel, bent: Option<&Rod>, diagnosis: &Diagnosis) -> Result<Option<Rod>> {
+    let (Some(rod), Some(bent)) = (model.rod(), bent) else { return Ok(None) };
+    let found = correction::as_found(model, rod, &diagnosis.findings);
+    if found == *bent {
+        return Ok(None);
+    }
+    let more = model.large_deflections(&found)? - model.large_deflections(bent)?;
+    Ok((more.amax() > SHOWN * diagnosis.noise).then_some(found))
 }
 
 /// Refuses what would take more memory or time than anybody has.

@@ -72,7 +72,7 @@ impl Default for Softening {
 /// exact. On an arc of a few degrees it is so to 1e-4.
 #[derive(Debug, Clone)]
 pub(super) struct Nodes {
-    /// Stations before, at and behind, m, at equal distances.
+    /// Stations before, at and behind, m: the first and the last are as far as it may be.
     pub stations: [f64; 3],
     /// The joints there: bending, torsion.
     pub joints: [[usize; 2]; 3],
@@ -81,9 +81,10 @@ pub(super) struct Nodes {
 impl Nodes {
     /// Of the polynomial through the nodes, at `station`.
     fn weights(&self, station: f64) -> [f64; 3] {
-        let [before, at, _] = self.stations;
-        let x = (station - at) / (at - before);
-        [0.5 * x * (x - 1.0), 1.0 - x * x, 0.5 * x * (x + 1.0)]
+        let [before, at, behind] = self.stations;
+        // Lagrange's polynomials
+        let of = |own: f64, a: f64, b: f64| (station - a) * (station - b) / ((own - a) * (own - b));
+        [of(before, at, behind), of(at, before, behind), of(behind, before, at)]
     }
 
     /// Moves what `softening` has of the joint in the middle to `station`.
@@ -151,17 +152,19 @@ impl Structure {
         [first, first + 1]
     }
 
-    /// Adds joints by which the one at `station`, added as `joint`, may be moved by `reach` (m) either way, less where the
+    /// Adds joints by which the one at `station`, added as `joint`, may be moved within `range` (m), no farther than where the
     /// rod bends or a load or a sensor stands; `None` where it stands at such a place.
-    pub(super) fn add_nodes(&mut self, station: f64, joint: [usize; 2], reach: f64) -> Option<Nodes> {
+    pub(super) fn add_nodes(&mut self, station: f64, joint: [usize; 2], range: (f64, f64)) -> Option<Nodes> {
         const LEAST: f64 = 0.01 * MM;
         let ends = [0.0, self.rod.bend_start(), self.rod.bend_end(), self.rod.length()];
         let kinks = self.pairs.iter().flat_map(|&(load, read)| [load, read]).chain(ends);
-        let reach = kinks.fold(reach, |reach, kink| reach.min((kink - station).abs()));
-        if reach < LEAST {
+        let (before, behind) = kinks.fold(range, |(before, behind), kink| match kink <= station {
+            true => (before.max(kink), behind),
+            false => (before, behind.min(kink)),
+        });
+        if (station - before).min(behind - station) < LEAST {
             return None;
         }
-        let (before, behind) = (station - reach, station + reach);
         let joints = [self.add_joint(before), joint, self.add_joint(behind)];
         Some(Nodes { stations: [before, station, behind], joints })
     }
@@ -188,13 +191,13 @@ impl Structure {
         self.stations[joint]
     }
 
-    /// What large deflections add to the displacement per square of the load along each axis, m/N² (columns: axes), for each
-    /// pair of stations: to the second order, which is even in the load.
-    pub(super) fn second_order(&self) -> Result<Parts> {
+    /// What large deflections of `rod`, this one or one that yields more, add to the displacement per square of the load along
+    /// each axis, m/N² (columns: axes), for each pair of stations: to the second order, which is even in the load.
+    pub(super) fn second_order(&self, rod: &Rod) -> Result<Parts> {
         /// Enough for three digits.
         const ELEMENTS: usize = 48;
         let stations: Vec<f64> = self.pairs.iter().flat_map(|&(load, read)| [load, read]).collect();
-        let model = RodModel::new(&self.rod, &Physics::WHOLE, ELEMENTS, &stations)?;
+        let model = RodModel::new(rod, &Physics::WHOLE, ELEMENTS, &stations)?;
         let mut known: Vec<(f64, [Vec<nalgebra::Vector3<f64>>; 3])> = Vec::new();
         let mut parts = Vec::new();
         for &(load, read) in &self.pairs {

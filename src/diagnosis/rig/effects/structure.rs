@@ -219,15 +219,23 @@ fn roots(context: &mut Context) -> Vec<Entry> {
 
 /// Declared joints, then joints that nobody declared along the rod. A value is a joint's whole
 /// compliance, to be written into the rod file. A joint that nobody declared may be anywhere up to
-/// half way to the next station of the scan.
+/// half way to the next stations of the scan, or up to the bend.
 fn joints(context: &mut Context) -> Vec<Entry> {
     let (Body::Rod(structure), Some(rod)) = (&mut *context.body, context.rod) else {
         return Vec::new();
     };
     let scan = stations(rod);
-    let reach = |station: f64| {
-        let distances = scan.iter().map(|other| (other - station).abs());
-        0.5 * distances.filter(|distance| *distance > 0.0).fold(f64::INFINITY, f64::min)
+    // half way to its neighbours; up to those that stay where the rod bends
+    let kinks = [rod.bend_start(), rod.bend_end()];
+    let between =
+        |station: f64, other: f64| if kinks.contains(&other) { other } else { 0.5 * (station + other) };
+    let range = |station: f64| {
+        let before = scan.iter().rev().find(|other| **other < station);
+        let behind = scan.iter().find(|other| **other > station);
+        (
+            before.map_or(0.0, |other| between(station, *other)),
+            behind.map_or(rod.length(), |other| between(station, *other)),
+        )
     };
     let mut entries = Vec::new();
     let structure_has_arc = structure.has_arc();
@@ -241,20 +249,20 @@ fn joints(context: &mut Context) -> Vec<Entry> {
     let is_in_arc = |station: f64| structure_has_arc && start < station && station < end;
     for &station in scan.iter().filter(|station| !is_in_arc(**station)) {
         let location = Location::Station(station);
-        let reach = Some(reach(station));
-        entries.push(joint(structure, &JOINT_COMPLIANCE, location, station, [0.0; 2], reach));
+        let range = Some(range(station));
+        entries.push(joint(structure, &JOINT_COMPLIANCE, location, station, [0.0; 2], range));
     }
     preferring(entries, |candidate| matches!(candidate.location, Location::Named(_)))
 }
 
-/// A joint; with a reach its station is a parameter.
+/// A joint; with a range its station is a parameter.
 fn joint(
     structure: &mut Structure,
     effect: &'static RigEffect,
     location: Location,
     station: f64,
     of_file: [f64; 2],
-    reach: Option<f64>,
+    range: Option<(f64, f64)>,
 ) -> Entry {
     let rotation = structure.rotation();
     let [bending, torsion] = structure.add_joint(station);
@@ -262,12 +270,12 @@ fn joint(
         |name, k: usize| parameter(name, URAD_PER_NM, of_file[k], JOINT * rotation[k], NOT_NEGATIVE);
     let mut parameters = vec![compliance("bending_urad_per_nm", 0), compliance("torsion_urad_per_nm", 1)];
     let mut actions = vec![Action::Joint(bending, of_file[0]), Action::Joint(torsion, of_file[1])];
-    if let Some(reach) = reach
-        && let Some(nodes) = structure.add_nodes(station, [bending, torsion], reach)
+    if let Some(range) = range
+        && let Some(nodes) = structure.add_nodes(station, [bending, torsion], range)
     {
         let [before, _, behind] = nodes.stations;
         // as likely anywhere
-        let size = (behind - station) / 3.0f64.sqrt();
+        let size = (behind - before) / 12.0f64.sqrt();
         parameters.push(parameter(STATION, MM, station, size, (before, behind)));
         actions.push(Action::Station(nodes));
     }

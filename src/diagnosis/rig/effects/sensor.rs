@@ -180,9 +180,11 @@ fn drifts(context: &mut Context) -> Vec<Entry> {
         return Vec::new();
     }
     let size = DRIFT * context.largest_reading() / (most - least);
-    let mut first_of_run: HashMap<usize, usize> = HashMap::new();
+    // a sensor that is read elsewhere has a zero of its own
+    let zero_of = |d: &Datum| (d.run, d.stations()[1]);
+    let mut first_of_run: HashMap<(usize, u64), usize> = HashMap::new();
     for (i, datum) in data.iter().enumerate() {
-        first_of_run.entry(datum.run).or_insert(i);
+        first_of_run.entry(zero_of(datum)).or_insert(i);
     }
     let course = |channel: Axis, zero: &dyn Fn(&Datum) -> usize| {
         let own = data.iter().enumerate().filter(|(_, d)| d.channel == channel);
@@ -212,7 +214,7 @@ fn drifts(context: &mut Context) -> Vec<Entry> {
     };
     add(None, &|_| 0);
     if data.iter().any(|d| d.run != data[0].run) {
-        add(Some("since the zero of each run"), &|d| first_of_run[&d.run]);
+        add(Some("since the zero of each run"), &|d| first_of_run[&zero_of(d)]);
     }
     entries
 }

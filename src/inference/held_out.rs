@@ -8,7 +8,8 @@ use nalgebra::DVector;
 
 use super::linearised::Linearised;
 use super::pruning::infer;
-use super::selection::Pairs;
+use super::search::Search;
+use super::selection::{APART, Pairs};
 use super::{Candidate, Effect, Evidence, ForwardModel, Hypothesis, Location, Term};
 use crate::parallel::in_parallel;
 use crate::statistics::{Random, percentile_interval};
@@ -77,7 +78,7 @@ impl HeldOut {
 pub(super) struct Trained {
     /// What the base model, fitted to them, leaves of all data.
     pub before: DVector<f64>,
-    /// And what the hypothesis that they support by themselves leaves.
+    /// And what the hypothesis that they support by themselves leaves, forms of its laws averaged.
     pub after: DVector<f64>,
     /// Its terms.
     pub terms: Vec<Term>,
@@ -114,11 +115,35 @@ pub(super) fn trained_on(
     }
     Trained {
         before: left(&search.fit(&[])),
-        after: left(&hypothesis),
+        after: averaged(&forms(&search, &hypothesis), left),
         with: if whole.is_empty() { DVector::zeros(0) } else { left(&search.fit(whole)) },
         terms: hypothesis.terms,
         without,
     }
+}
+
+/// A hypothesis and those with another form of one of its laws that these data hardly tell from it.
+fn forms(search: &Search, hypothesis: &Hypothesis) -> Vec<Hypothesis> {
+    let mut forms = vec![hypothesis.clone()];
+    for (position, term) in hypothesis.terms.iter().enumerate() {
+        let others = search.other_forms(term.candidate);
+        if others.is_empty() {
+            continue;
+        }
+        let rest = search.without(hypothesis, position);
+        let other = others.into_iter().map(|form| search.with(&rest, form));
+        forms.extend(other.filter(|other| other.log_probability > hypothesis.log_probability - APART.ln()));
+    }
+    forms
+}
+
+/// What hypotheses leave on average, each by its probability.
+fn averaged(hypotheses: &[Hypothesis], left: impl Fn(&Hypothesis) -> DVector<f64>) -> DVector<f64> {
+    let most = hypotheses.iter().map(|of| of.log_probability).fold(f64::NEG_INFINITY, f64::max);
+    let share = |of: &Hypothesis| (of.log_probability - most).exp();
+    let total: f64 = hypotheses.iter().map(share).sum();
+    let weighted = hypotheses.iter().map(|of| left(of) * (share(of) / total));
+    weighted.reduce(|sum, more| sum + more).unwrap_or_default()
 }
 
 /// Selects without each fold in turn, and predicts it; `whole` are the terms that all data support.

@@ -2,11 +2,10 @@
 
 use super::linearised::Linearised;
 use super::search::Search;
+use super::selection::APART;
 use super::{Estimate, FindingPart, ForwardModel, Hypothesis, Parameter, Rival, Term};
 use crate::statistics::{chi_squared_survival, student_t_quantile};
 
-/// Odds within which another explanation counts as indistinguishable: 20 to 1.
-const APART: f64 = 20.0;
 /// So many of the effects that may be there besides count for an interval.
 const AVERAGED: usize = 8;
 /// A form of a law that leaves at most so much more, as a factor, may be the right one.

@@ -6,6 +6,8 @@ use super::{ForwardModel, Hypothesis, Term};
 
 /// Odds against chance from which on an effect is named.
 pub const NAMED: f64 = 50.0;
+/// Odds within which another explanation counts as indistinguishable: 20 to 1.
+pub(super) const APART: f64 = 20.0;
 /// A hypothesis of known effects explains as well as one that leaves something unknown within these odds, if it leaves at most so
 /// much more, as a factor, per degree of freedom.
 const AS_WELL: (f64, f64) = (20.0, 1.01);

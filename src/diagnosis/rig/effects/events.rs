@@ -8,6 +8,7 @@ use super::places::runs_by_sensor;
 use crate::diagnosis::rig::action::Action;
 use crate::diagnosis::rig::datum::Datum;
 use crate::inference::{Effect, Kind, Location, Reported, Run, Variable, WrittenTo};
+use crate::spatial::Axis;
 use crate::units::UM;
 
 /// Slip of a bond or a clamp as a share of the largest reading.
@@ -63,15 +64,27 @@ fn slips(context: &mut Context) -> Vec<Entry> {
     within.into_iter().chain(between_runs(data, size)).collect()
 }
 
-/// Everything after a run is shifted: of each sensor, between any two runs with runs on either side.
+/// Everything after a run is shifted: of each sensor, between any two runs with runs on either side. A channel that is read at
+/// one place in each run is one sensor, which is moved from place to place, and with it goes what shifted it.
 fn between_runs(data: &[Datum], size: f64) -> Vec<Entry> {
     let mut entries = Vec::new();
-    let mut sensors: Vec<_> = data.iter().map(Datum::sensor).collect();
+    let mut place_in_run: BTreeMap<(Axis, usize), u64> = BTreeMap::new();
+    let is_moved: Vec<Axis> = Axis::ALL
+        .into_iter()
+        .filter(|&channel| {
+            data.iter().filter(|d| d.channel == channel).all(|d| {
+                let place = d.sensor().1;
+                *place_in_run.entry((channel, d.run)).or_insert(place) == place
+            })
+        })
+        .collect();
+    let sensor_of = |d: &Datum| (d.channel, (!is_moved.contains(&d.channel)).then(|| d.sensor().1));
+    let mut sensors: Vec<_> = data.iter().map(sensor_of).collect();
     sensors.sort_unstable();
     sensors.dedup();
     for sensor in sensors {
         let channel = sensor.0;
-        let mut sequence: Vec<usize> = (0..data.len()).filter(|&i| data[i].sensor() == sensor).collect();
+        let mut sequence: Vec<usize> = (0..data.len()).filter(|&i| sensor_of(&data[i]) == sensor).collect();
         sequence.sort_by_key(|&i| data[i].order);
         let last_of_run: BTreeMap<usize, usize> = sequence.iter().map(|&i| (data[i].run, i)).collect();
         let mut last_of_run: Vec<usize> = last_of_run.into_values().collect();

@@ -2,6 +2,7 @@
 
 use nalgebra::DVector;
 
+use super::correction;
 use super::datum::Datum;
 use super::model::{RigDiagnosis, RigModel};
 use super::wanted::{Wanted, is_same};
@@ -75,9 +76,9 @@ impl RigDiagnosis {
             found.iter().map(|term| &self.model.candidates[term.candidate]).collect();
         let (model, evidence, _) = RigModel::with_effects(asked, Some(rod), &Wanted::Like(&found_ones))?;
         let change = model.response(&model.transferred(&self.model, &found).terms);
-        // what large deflections add, the first column of what every hypothesis holds, is known of
-        // the rod: nobody fits it
-        let large = evidence.background.column(0);
+        // what large deflections add is known of the rod as it was found: nobody fits it
+        let as_found = correction::as_found(&self.model, rod, &self.diagnosis.findings);
+        let large = model.large_deflections(&as_found)?;
         let nominal = &evidence.nominal * self.nominal_factors(&evidence);
         let of_datum = |(i, datum): (usize, &Datum)| datum.predicted + large[i] + nominal[i] + change[i];
         // in the order of the file that asks

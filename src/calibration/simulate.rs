@@ -20,6 +20,7 @@ use super::compensation::{Compensation, Mode};
 use super::problem::Pass;
 use crate::compliance::{Compliance, PAPER_CONTACT_FORCE};
 use crate::error::Result;
+use crate::robot::postures::{anywhere, is_above_table};
 use crate::robot::{Body, Kinematics, Parameter, Robot, Setup, minimal_parameters};
 use crate::rod::Rod;
 use crate::spatial::Pose;
@@ -229,11 +230,11 @@ fn scan(truth: &Setup, plan: &Plan) -> Recording {
     };
     let mut kinematics = Kinematics::new(&short);
     while recording.len() < plan.validation_poses {
-        let q = poses::anywhere(truth.robot, &mut random);
+        let q = anywhere(truth.robot, &mut random);
         kinematics.update(&q, &[]);
         // in front of the robot, above its table
         let tip = kinematics.tip - truth.base_position;
-        if tip.x > 0.2 && tip.z > 0.1 && poses::is_above_table(&kinematics, truth.base_position.z) {
+        if tip.x > 0.2 && tip.z > 0.1 && is_above_table(&kinematics, truth.base_position.z) {
             let pose = recording.len() + 1;
             recording.joint_values.extend(&q);
             recording.rows.push(Row {

@@ -12,10 +12,12 @@
 
 mod catalogue;
 mod figure;
+mod forecast;
 mod front;
 mod intervals;
 mod limits;
 mod nearest;
+mod poses;
 mod search;
 mod study;
 mod values;
@@ -23,10 +25,12 @@ mod wish;
 
 pub use catalogue::{BUILT_IN, Tube, built_in, built_in_materials};
 pub use figure::{Figure, Figures, Goal};
+pub use forecast::{Budget, Forecast, Forecaster, Part, Unseen, Where};
 pub use front::{Design, Front};
 pub use intervals::{Intervals, indistinguishable};
 pub use limits::{Impossible, Limit};
 pub use nearest::{Nearest, Relaxed};
+pub use poses::{Beside, Candidates, Known, Obstacle, PoseCriterion, PoseLimits, PoseStudy, Source, Wanted};
 pub use search::{Found, Searched, search};
 pub use study::{Base, Shown, Study};
 pub use values::MOST_VALUES;

@@ -1,4 +1,6 @@
-//! `rodcal design rod DESIGN`.
+//! `rodcal design rod DESIGN`, `rodcal design poses CAMPAIGN`.
+
+pub mod poses;
 
 use std::path::PathBuf;
 
@@ -14,6 +16,8 @@ use super::progress::Progress;
 pub enum Design {
     /// The rods that none betters: lengths, angles, bends and tubes to choose from, limits to keep.
     Rod(DesignRod),
+    /// The poses that a calibration should measure, and how accurate the robot will be.
+    Poses(poses::DesignPoses),
 }
 
 #[derive(Debug, Args)]
@@ -61,6 +65,7 @@ impl Design {
     pub fn run(&self) -> Result<Outcome> {
         match self {
             Design::Rod(rod) => rod.run(),
+            Design::Poses(poses) => poses.run(),
         }
     }
 }

@@ -100,11 +100,12 @@ impl Measurements {
 
     /// A·Jᵀ.
     pub(super) fn spread(&self, index: usize, a: &DMatrix<f64>) -> MatrixXx3<f64> {
+        let count = a.nrows().max(1);
         let mut product = MatrixXx3::zeros(a.nrows());
-        for row in 0..3 {
-            let mut target = product.column_mut(row);
-            for (k, entry) in self.row(index, row).iter().enumerate() {
-                target.iter_mut().zip(&a.as_slice()[k * a.nrows()..]).for_each(|(t, a)| *t += entry * a);
+        // slices, for the compiler makes vectors of them
+        for (row, target) in product.as_mut_slice().chunks_exact_mut(count).enumerate() {
+            for (entry, column) in self.row(index, row).iter().zip(a.as_slice().chunks_exact(count)) {
+                target.iter_mut().zip(column).for_each(|(t, a)| *t += entry * a);
             }
         }
         product

@@ -8,10 +8,14 @@
 
 mod files;
 mod plan;
+mod planned;
 mod poses;
 
 pub use files::campaign_files;
 pub use plan::{Plan, RobotErrors};
+pub use planned::planned_poses;
+
+use plan::CLAMPS;
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -25,18 +29,8 @@ use crate::robot::{Body, Kinematics, Parameter, Robot, Setup, minimal_parameters
 use crate::rod::Rod;
 use crate::spatial::Pose;
 use crate::statistics::Random;
-use crate::units::{DEG, MM};
+use crate::units::MM;
 
-/// Where the clamps of the paper's fixture could be (500 × 300 × 151 mm, § 5.2; their places are
-/// not published), position in {W} (m) and turn about the vertical (rad). {W} stands upright in the
-/// third clamp.
-const CLAMPS: [([f64; 3], f64); 5] = [
-    ([0.10, 0.20, 0.10], 20.0 * DEG),
-    ([-0.12, 0.12, 0.0], 95.0 * DEG),
-    ([0.0, 0.0, 0.0], 0.0),
-    ([-0.12, -0.12, 0.15], -80.0 * DEG),
-    ([0.10, -0.20, 0.05], 40.0 * DEG),
-];
 /// {0} in {W}, m: the fixture stands in front of the robot, on its table.
 const BASE: [f64; 3] = [-0.62, 0.03, -0.16];
 
@@ -97,7 +91,13 @@ pub fn simulate<'r>(robot: &'r Robot, rod: &Rod, model: &Compliance, plan: &Plan
         displaced: Vec::new(),
     };
     let free = minimal_parameters(robot, truth.tool, rod.tip(), Some(payload));
-    let poses = poses::choose(&truth, &free, &groups, plan)?;
+    let poses = match plan.planned.is_empty() {
+        true => poses::choose(&truth, &free, &groups, plan)?,
+        false => {
+            planned::check(&truth, &plan.planned)?;
+            plan.planned.clone()
+        }
+    };
     let measurements = measure(&truth, &compensation, groups, poses, plan);
     let validation = scan(&truth, plan);
     Ok(Simulation { plan: plan.clone(), truth, compliance, measurements, validation, base_guess })

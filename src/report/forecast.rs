@@ -4,7 +4,9 @@ use serde_json::{Map, Value, json};
 
 use super::chart::{Axis, Bar, Chart, Colour, Dash, Direction, Figure, Mark, Range, Style};
 use super::table::{Column, Table};
-use crate::design::{Forecast, Part};
+use super::{Block, Report, Section};
+use crate::calibration::Campaign;
+use crate::design::{Budget, Forecast, Part, RodForecast};
 use crate::units::{UM, significant};
 
 /// `mean`, `p95`, `rms`, the interval of the mean and the parts.
@@ -96,4 +98,135 @@ pub fn stacked(all: &[(String, &Forecast)]) -> Figure {
     Figure::from(chart).named("error-budget").captioned(
         "Root mean square of the tip's error at unseen poses. Each part is as high as its share of the mean square.",
     )
+}
+
+/// The JSON of `rodcal compare --forecast --json`.
+pub fn comparison_json(campaign: &Campaign, rods: &[RodForecast], basis: &Basis) -> Value {
+    let all: Vec<Value> = rods
+        .iter()
+        .map(|rod| {
+            json!({
+                "rod": rod.rod,
+                "poses": rod.poses,
+                "recorded_poses": rod.is_recorded,
+                "rig_assumed": rod.is_rig_assumed,
+                "modes": rod.modes.iter().map(json).collect::<Vec<_>>(),
+            })
+        })
+        .collect();
+    let best = best(rods).map(|(rod, forecast)| json!({ "rod": rod.rod, "mode": forecast.mode.name() }));
+    json!({
+        "campaign": campaign.file,
+        "noise_um": basis.budget.noise / UM,
+        "repeatability_um": basis.budget.repeatability / UM,
+        "clamp_um": basis.budget.clamps / UM,
+        "instrument_um": basis.budget.instrument / UM,
+        "unseen": basis.unseen,
+        "forecasts": all,
+        "best": best,
+    })
+}
+
+/// What forecasts of several rods stand on.
+#[derive(Debug, Clone)]
+pub struct Basis {
+    /// What is wrong, and by how much.
+    pub budget: Budget,
+    /// Where the robot will be used, in words.
+    pub unseen: String,
+    /// Whether base and tool are aligned anew there.
+    pub is_aligned: bool,
+}
+
+impl Basis {
+    /// In sentences.
+    pub fn words(&self) -> String {
+        let aligned = if self.is_aligned { "; base and tool are aligned anew there" } else { "" };
+        let um = |size: f64| significant(size / UM, 3);
+        let clamps = match self.budget.clamps > 0.0 {
+            true => format!(", clamp places known to {} µm", um(self.budget.clamps)),
+            false => ", clamp places known exactly (state clamp_um in [noise] if they are not)".to_owned(),
+        };
+        let instrument = match self.budget.instrument > 0.0 {
+            true => format!(", an instrument that is wrong by {} µm", um(self.budget.instrument)),
+            false => String::new(),
+        };
+        format!(
+            "At {}{aligned}. Noise {}; repeatability {} µm{clamps}{instrument}. Errors that no parameter of the calibration has \
+             (gears, play, warmth) are not in the forecast: diagnose finds them in a recording.",
+            self.unseen,
+            self.budget.noise_source,
+            um(self.budget.repeatability)
+        )
+    }
+}
+
+/// The smallest mean; of equal ones the first.
+fn best(rods: &[RodForecast]) -> Option<(&RodForecast, &Forecast)> {
+    let all = rods.iter().flat_map(|rod| rod.modes.iter().map(move |forecast| (rod, forecast)));
+    all.min_by(|a, b| a.1.mean.total_cmp(&b.1.mean))
+}
+
+/// Means that differ by less than this share are as good as equal: a campaign's chance is larger.
+const EQUAL: f64 = 0.05;
+
+/// The report of `rodcal compare --forecast`.
+pub fn comparison(campaign: &Campaign, rods: &[RodForecast], basis: &Basis) -> Report {
+    let all: Vec<(String, &Forecast)> = rods
+        .iter()
+        .flat_map(|rod| {
+            rod.modes.iter().map(move |forecast| (format!("{} {}", rod.rod, forecast.mode.name()), forecast))
+        })
+        .collect();
+    let um = |size: f64| significant(size / UM, 3);
+    let mut headline = String::new();
+    if let Some((rod, least)) = best(rods) {
+        let equal: Vec<&str> = all
+            .iter()
+            .filter(|(_, other)| other.mean <= least.mean * (1.0 + EQUAL) && !std::ptr::eq(*other, least))
+            .map(|(name, _)| name.as_str())
+            .collect();
+        let equal = match equal.is_empty() {
+            true => String::new(),
+            false => format!(" As good within 5 %: {}.", equal.join(", ")),
+        };
+        headline = format!(
+            "Forecast: rod {} in mode {} leaves the smallest error, {} µm in the mean, less than {} µm at 95 % of unseen \
+             poses.{equal}",
+            rod.rod,
+            least.mode.name(),
+            um(least.mean),
+            um(least.p95)
+        );
+    }
+    let poses: Vec<String> = rods
+        .iter()
+        .map(|rod| {
+            let how = if rod.is_recorded { "as recorded" } else { "chosen by O1" };
+            format!("rod {}: {} poses {how}", rod.rod, rod.poses)
+        })
+        .collect();
+    let mut blocks = vec![
+        Block::Paragraph(basis.words()),
+        Block::Paragraph(format!("{}.", poses.join("; "))),
+        Block::Figure(stacked(&all)),
+        Block::Table(table("forecast", "rod and mode", &all)),
+    ];
+    let assumed: Vec<&str> =
+        rods.iter().filter(|rod| rod.is_rig_assumed).map(|rod| rod.rod.as_str()).collect();
+    if !assumed.is_empty() {
+        blocks.push(Block::Paragraph(format!(
+            "No rig readings of rod {}: mode meas assumes that they will give r_rod to 1 %; the other modes are judged by the \
+             standard uncertainties of the rod file. A rod that is softer than its drawing for other reasons is worse in the \
+             modes calc and fea than this forecast says.",
+            assumed.join(", ")
+        )));
+    }
+    Report {
+        title: format!("Forecast for {}", campaign.file),
+        headline,
+        warnings: Vec::new(),
+        sections: vec![Section::new("What to expect", blocks)],
+        provenance: Vec::new(),
+    }
 }

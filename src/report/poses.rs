@@ -180,21 +180,8 @@ pub fn headline(study: &PoseStudy) -> String {
 
 /// What the forecast stands on.
 fn assumptions(study: &PoseStudy) -> String {
-    let aligned = match study.is_aligned {
-        true => "; base and tool are aligned anew there",
-        false => "",
-    };
-    let clamps = match study.budget.clamps > 0.0 {
-        true => format!(", clamp places known to {} µm", significant(study.budget.clamps / UM, 2)),
-        false => ", clamp places known exactly (state clamp_um in [noise] if they are not)".to_owned(),
-    };
-    format!(
-        "At {}{aligned}. Noise {}; repeatability {} µm{clamps}. Errors that no parameter of the calibration has (gears, play, \
-         warmth) are not in the forecast: diagnose finds them in a recording.",
-        study.unseen,
-        study.budget.noise_source,
-        significant(study.budget.repeatability / UM, 3)
-    )
+    let (budget, unseen) = (study.budget.clone(), study.unseen.clone());
+    forecast::Basis { budget, unseen, is_aligned: study.is_aligned }.words()
 }
 
 fn places(study: &PoseStudy) -> Table {
@@ -202,15 +189,16 @@ fn places(study: &PoseStudy) -> Table {
         vec![Column::text("place"), Column::number("chosen", ""), Column::number("candidates", "")];
     let met: Vec<Obstacle> =
         Obstacle::ALL.into_iter().filter(|obstacle| refused(study, *obstacle) > 0).collect();
-    heads.extend(met.iter().map(|obstacle| Column::number(obstacle.words(), "")));
+    heads.extend(met.iter().map(|obstacle| Column::number(obstacle.short(), "")));
     let limits = &study.wanted.limits;
     let caption = format!(
-        "Chosen poses and candidates by place, and postures that were refused because of what they break first. Cone {}°, block \
-         {} mm, least change of a joint {}°. {} more were too like another one.",
+        "Chosen poses and candidates by place, then postures that were refused, by what they break first: out of reach, joint \
+         limits, the cone of {}° about the clamp's axis, the block of {} mm about a clamp, the table. {} more had no joint that \
+         differs by {}° from another one.",
         significant(limits.cone / DEG, 3),
         significant(limits.clear / MM, 3),
-        significant(limits.change / DEG, 3),
-        study.candidates.alike
+        study.candidates.alike,
+        significant(limits.change / DEG, 3)
     );
     let mut table = Table::new("places", &caption, heads);
     for (place, group) in study.places.iter().enumerate() {

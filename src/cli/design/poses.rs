@@ -62,6 +62,10 @@ pub struct Expected {
     /// recording shows it, else 30].
     #[arg(long, value_name = "SIZE", value_parser = size)]
     repeatability_um: Option<f64>,
+    /// Root mean square of the distance by which the instrument of a validation is wrong, in µm; 0
+    /// forecasts the robot itself.
+    #[arg(long, value_name = "SIZE", default_value_t = 0.0, value_parser = size)]
+    instrument_um: f64,
     /// Poses where the robot will be used: a table (CSV) with joint columns [default: the
     /// campaign's validation, else all over the workspace].
     #[arg(long, value_name = "FILE")]
@@ -140,7 +144,16 @@ impl Expected {
 
     /// What is wrong while the robot is calibrated and used.
     pub fn budget(&self, campaign: &Campaign) -> Result<Budget> {
-        Budget::of(campaign, self.noise_um.map(|um| um * UM), self.repeatability_um.map(|um| um * UM))
+        let [noise, repeatability] = [self.noise_um, self.repeatability_um].map(|um| um.map(|um| um * UM));
+        let budget = Budget::of(campaign, noise, repeatability)?;
+        Ok(Budget { instrument: self.instrument_um * UM, ..budget })
+    }
+
+    /// True where something is stated.
+    pub fn is_stated(&self) -> bool {
+        let Expected { noise_um, repeatability_um, instrument_um, at, volume_mm } = self;
+        let stated = [noise_um.is_some(), repeatability_um.is_some(), at.is_some(), volume_mm.is_some()];
+        stated.contains(&true) || *instrument_um != 0.0
     }
 }
 

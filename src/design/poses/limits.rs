@@ -52,7 +52,12 @@ impl Obstacle {
         ["clamp_out_of_reach", "joint_limits", "rod_cone", "clamp_block", "table"][self as usize]
     }
 
-    /// In a table.
+    /// Over a column.
+    pub fn short(self) -> &'static str {
+        ["out of reach", "joint limits", "cone", "block", "table"][self as usize]
+    }
+
+    /// In a sentence.
     pub fn words(self) -> &'static str {
         [
             "the ball does not reach the clamp",

@@ -1,0 +1,115 @@
+//! Which rod with which mode of compensation is worth it, before anybody records anything.
+
+use super::forecast::{Budget, Forecast, Forecaster, Where};
+use super::poses::{PoseCriterion, PoseLimits, PoseStudy, Source, Wanted};
+use crate::calibration::campaign::{Campaign, Recording, Targets};
+use crate::calibration::{Mode, places, planned_setup};
+use crate::compliance::closed_form;
+use crate::error::{Error, Result};
+use crate::rod::Rod;
+use crate::units::DEG;
+
+/// Candidates for every chosen pose of a rod that nothing was recorded with.
+const CANDIDATES: usize = 12;
+/// Poses on each clamp where neither a recording nor the user says how many: the paper's.
+const PER_CLAMP: usize = 30;
+
+/// What is to be expected of one rod in every mode.
+#[derive(Debug, Clone)]
+#[non_exhaustive]
+pub struct RodForecast {
+    /// The rod's name.
+    pub rod: String,
+    /// Number of poses, and whether they are those of the recording or were chosen by O1.
+    pub poses: usize,
+    /// See `poses`.
+    pub is_recorded: bool,
+    /// In every mode that applies, in the paper's order.
+    pub modes: Vec<Forecast>,
+    /// True where the rod is still to be measured: 1 % is assumed for mode meas.
+    pub is_rig_assumed: bool,
+}
+
+/// Forecasts of the campaign's own rod (`rods` empty) or of others in its place, with the recorded poses where there are
+/// any, else with `count` poses chosen by O1 for each.
+///
+/// # Errors
+/// What the choice of poses and the forecast refuse; [`Error::NotApplicable`] for a campaign without any rod.
+pub fn rods_and_modes(
+    campaign: &Campaign,
+    rods: &[Rod],
+    budget: &Budget,
+    at: &Where,
+    count: Option<usize>,
+) -> Result<Vec<RodForecast>> {
+    let recorded = campaign.measurements.len();
+    let own = campaign.rod.as_ref();
+    let all: Vec<Rod> = if rods.is_empty() { own.into_iter().cloned().collect() } else { rods.to_vec() };
+    if all.is_empty() {
+        return Err(Error::NotApplicable {
+            what: format!("a forecast for {}", campaign.file),
+            why: "the campaign names no rod".into(),
+            hint: "add `rod = \"…\"` to the campaign, or state rods with --rods".into(),
+        });
+    }
+    let forecast = |rod: &Rod| {
+        let is_own = own == Some(rod);
+        let is_recorded = is_own && recorded > 0 && count.is_none();
+        let planned = if is_own { campaign.clone() } else { with_rod(campaign, rod)? };
+        let setup = planned_setup(&planned)?;
+        let poses = match is_recorded {
+            true => recorded_poses(&planned, &setup),
+            false => {
+                let (places, _) = places(&planned, &setup);
+                let default = if recorded > 0 { recorded } else { PER_CLAMP * places.len().max(1) };
+                let count = count.unwrap_or(default);
+                let wanted = Wanted {
+                    count,
+                    criterion: PoseCriterion::O1,
+                    source: Source::Generated(CANDIDATES * count),
+                    limits: PoseLimits { change: 1.0 * DEG, ..PoseLimits::default() },
+                    mode: Some(Mode::Fea),
+                    at: at.clone(),
+                    seed: budget.seed,
+                };
+                PoseStudy::new(&planned, wanted, budget.clone(), &|_| {})?.chosen
+            }
+        };
+        let forecaster = Forecaster::new(&planned, setup.clone(), budget.clone(), at)?;
+        let has_calc = closed_form::compliance(rod).is_ok();
+        let modes = Mode::ALL.into_iter().filter(|&mode| mode != Mode::Calc || has_calc);
+        Ok(RodForecast {
+            rod: rod.name.clone(),
+            poses: poses.len(),
+            is_recorded,
+            modes: modes.map(|mode| forecaster.forecast(&poses, mode)).collect::<Result<_>>()?,
+            is_rig_assumed: planned.readings.is_none(),
+        })
+    };
+    all.iter().map(forecast).collect()
+}
+
+/// The campaign with another rod, nothing recorded, its base where the recording has it.
+fn with_rod(campaign: &Campaign, rod: &Rod) -> Result<Campaign> {
+    let base = planned_setup(campaign)?.base();
+    let mut planned =
+        campaign.clone().with_rod(rod.clone()).with_base(base.origin.into(), base.roll_pitch_yaw());
+    planned.readings = None;
+    planned.tool_is_given = false;
+    if matches!(planned.measurements.targets, Targets::Points(_)) {
+        planned.measurements = Recording::new(planned.robot.joints.len());
+    }
+    Ok(planned)
+}
+
+fn recorded_poses(campaign: &Campaign, setup: &crate::robot::Setup) -> Vec<(usize, Vec<f64>)> {
+    let recording = &campaign.measurements;
+    let (places, _) = places(campaign, setup);
+    let place = |group: usize| {
+        let name = &recording.groups[group].name;
+        places.iter().position(|place| place.name == *name).unwrap_or(0)
+    };
+    (0..recording.len())
+        .map(|row| (place(recording.rows[row].group), recording.joints(row).to_vec()))
+        .collect()
+}

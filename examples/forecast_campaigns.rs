@@ -54,7 +54,7 @@ fn said(name: &str, own: &[&Happened]) {
     let inside =
         own.iter().filter(|one| (one.forecast.interval[0]..=one.forecast.interval[1]).contains(&one.mean));
     println!(
-        "{name:14} n {:3}  forecast {:6.1} happened {:6.1} µm  slope {slope:.3}  mean ratio {:.3}, median {:.3}, sd {:.3}  \
+        "{name:14} n {:3}  forecast {:6.1} happened {:6.1} µm  slope {slope:.3}  mean ratio {:.3}, median {:.3}, sd {:.3} (forecast {:.3})  \
          within the interval {:.1} %  below the forecast 95 % {:.1} %",
         own.len(),
         mean(&x).unwrap_or(0.0),
@@ -62,6 +62,12 @@ fn said(name: &str, own: &[&Happened]) {
         mean(&ratios).unwrap_or(0.0),
         median(&ratios).unwrap_or(0.0),
         standard_deviation(&ratios).unwrap_or(0.0),
+        mean(
+            &own.iter()
+                .map(|one| (one.forecast.interval[1] - one.forecast.interval[0]) / 3.92 / one.forecast.mean)
+                .collect::<Vec<_>>()
+        )
+        .unwrap_or(0.0),
         100.0 * inside.count() as f64 / own.len() as f64,
         100.0 * own.iter().map(|one| one.below).sum::<f64>() / own.len() as f64,
     );

@@ -34,7 +34,9 @@ pub use front::{Design, Front};
 pub use intervals::{Intervals, indistinguishable};
 pub use limits::{Impossible, Limit};
 pub use nearest::{Nearest, Relaxed};
-pub use poses::{Beside, Candidates, Known, Obstacle, PoseCriterion, PoseLimits, PoseStudy, Source, Wanted};
+pub use poses::{
+    Beside, Candidates, Known, Obstacle, PoseCriterion, PoseLimits, PoseStudy, Source, Table, Wanted,
+};
 pub use rods_and_modes::{RodForecast, rods_and_modes};
 pub use search::{Found, Searched, search};
 pub use study::{Base, Shown, Study};

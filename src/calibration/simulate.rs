@@ -93,10 +93,7 @@ pub fn simulate<'r>(robot: &'r Robot, rod: &Rod, model: &Compliance, plan: &Plan
     let free = minimal_parameters(robot, truth.tool, rod.tip(), Some(payload));
     let poses = match plan.planned.is_empty() {
         true => poses::choose(&truth, &free, &groups, plan)?,
-        false => {
-            planned::check(&truth, &plan.planned)?;
-            plan.planned.clone()
-        }
+        false => planned::taken(&truth, &groups, plan)?,
     };
     let measurements = measure(&truth, &compensation, groups, poses, plan);
     let validation = scan(&truth, plan);

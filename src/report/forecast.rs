@@ -55,6 +55,9 @@ pub fn table(name: &str, first: &str, all: &[(String, &Forecast)]) -> Table {
     table
 }
 
+/// Parts below this share of the whole are not drawn: a hundredth of its square.
+const SEEN: f64 = 0.1;
+
 /// The root mean square of each forecast, divided by what its parts have of the mean square.
 pub fn stacked(all: &[(String, &Forecast)]) -> Figure {
     const COLOURS: [(Colour, Dash); 7] = [
@@ -74,7 +77,9 @@ pub fn stacked(all: &[(String, &Forecast)]) -> Figure {
         ..Axis::default()
     };
     chart.y.range = Range::AutoWithZero;
-    let shown = parts(all);
+    // what nobody would see is left to the table
+    let is_seen = |part: &Part| all.iter().any(|(_, f)| f.parts[*part as usize] > SEEN * f.rms);
+    let shown: Vec<Part> = parts(all).into_iter().filter(is_seen).collect();
     // from the top down: what is drawn later stands in front
     for (place, part) in shown.iter().enumerate().rev() {
         let bar = |(k, (_, forecast)): (usize, &(String, &Forecast))| {

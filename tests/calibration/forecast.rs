@@ -24,16 +24,17 @@ fn forecast(campaign: &Campaign, plan: &Plan, mode: Mode) -> Forecast {
 }
 
 /// Three kinds of campaigns: noise alone, clamps that are not where the file has them, and a soft rod taken for rigid. One
-/// campaign's mean of 40 poses has a standard deviation of some 7 %, of clamps 25 %; that of twelve 2 and 7 %.
+/// campaign's mean has a standard deviation of some 8 %, of clamps 45 %; that of twelve 2.5 and 13 %.
 #[test]
 fn campaigns_turn_out_as_forecast() {
-    for (mode, clamp_error, within) in
-        [(Mode::Fea, 0.0, 0.06), (Mode::Fea, 1.5e-4, 0.2), (Mode::None, 0.0, 0.06)]
+    let mut inside = 0;
+    for (kind, (mode, clamp_error, within)) in
+        [(Mode::Fea, 0.0, 0.08), (Mode::Fea, 1.5e-4, 0.4), (Mode::None, 0.0, 0.08)].into_iter().enumerate()
     {
         let plan = Plan { poses_per_clamp: 7, validation_poses: 40, clamp_error, ..Plan::default() };
         let simulator = Simulator::of(include_str!("../../rods/6.toml"), plan.clone());
         let of_seeds = in_parallel(SEEDS, |seed| {
-            let (_, mut campaign) = simulator.run(300 + seed as u64);
+            let (_, mut campaign) = simulator.run((400 + kind * SEEDS + seed) as u64);
             // the true rod is its model: what its file does not know for certain is no part of this
             campaign.readings = None;
             let forecast = forecast(&campaign, &plan, mode);
@@ -46,7 +47,8 @@ fn campaigns_turn_out_as_forecast() {
         let happened = mean(&of_seeds.iter().map(|one| one.1).collect::<Vec<_>>()).unwrap();
         let ratio = happened / forecast;
         assert!((ratio - 1.0).abs() < within, "{mode:?} {clamp_error}: {happened} instead of {forecast}");
-        // 95 of 100; fewer than 9 of 12 once in 2000 times
-        assert!(of_seeds.iter().filter(|one| one.2).count() >= 9, "{mode:?} {clamp_error}");
+        inside += of_seeds.iter().filter(|one| one.2).count();
     }
+    // 95 of 100; of 36 fewer than 29 once in 1000 times
+    assert!(inside >= 29, "{inside}");
 }

@@ -1,9 +1,14 @@
 //! Poses that somebody has planned, in place of chosen ones.
 
-use super::plan::CLAMPS;
+use nalgebra::Vector3;
+
+use super::plan::{AIM, CLAMPS, Plan};
+use crate::calibration::campaign::Group;
 use crate::delimited::Table;
 use crate::error::{Error, Result};
+use crate::robot::postures::{bring_to, has_arrived};
 use crate::robot::{Kinematics, Motion, Robot, Setup};
+use crate::statistics::Random;
 use crate::units::{MM, significant};
 
 /// Farthest from its clamp that the ball may be in a planned pose, m: what a nominal robot misses by, and more.
@@ -32,23 +37,31 @@ pub fn planned_poses(robot: &Robot, file: &str, text: &str) -> Result<Vec<(usize
     table.rows().zip(queries).map(|(cells, query)| Ok((clamp(cells)?, query.joints))).collect()
 }
 
-/// Refuses poses in which the ball is nowhere near its clamp.
-pub(super) fn check(truth: &Setup, poses: &[(usize, Vec<f64>)]) -> Result<()> {
+/// The poses as the true robot takes them: the ball is brought from where it would be to its clamp, as somebody at the robot
+/// would do.
+pub(super) fn taken(truth: &Setup, groups: &[Group], plan: &Plan) -> Result<Vec<(usize, Vec<f64>)>> {
     let mut kinematics = Kinematics::new(truth);
-    for (number, (clamp, q)) in (1..).zip(poses) {
-        kinematics.update(q, &[]);
-        let off = (kinematics.tip - nalgebra::Vector3::from(CLAMPS[*clamp].0)).norm();
-        if off > NEAR {
+    let mut random = Random::seeded(plan.seed, 1);
+    let mut taken = Vec::with_capacity(plan.planned.len());
+    for (number, (clamp, q)) in (1..).zip(&plan.planned) {
+        let mut q = q.clone();
+        kinematics.update(&q, &[]);
+        let place = groups[*clamp].device.origin;
+        let off = (kinematics.tip - place).norm();
+        let aim = place + Vector3::from_fn(|_, _| AIM * random.uniform(-1.0, 1.0));
+        if off > NEAR || !has_arrived(bring_to(&mut kinematics, &mut q, &aim)) {
             return Err(Error::NotApplicable {
                 what: "simulating these poses".into(),
                 why: format!(
-                    "in pose {number} the ball is {} mm away from clamp {}",
+                    "in pose {number} the ball is {} mm away from {}",
                     significant(off / MM, 3),
-                    clamp + 1
+                    groups[*clamp].name
                 ),
                 hint: "plan poses for a campaign of this simulation and this rod".into(),
             });
         }
+        taken.push((*clamp, q));
     }
-    Ok(())
+    taken.sort_by_key(|&(clamp, _)| clamp);
+    Ok(taken)
 }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use rodcal::calibration::Campaign;
-use rodcal::design::{Budget, PoseCriterion, PoseLimits, PoseStudy, Source, Wanted, Where};
+use rodcal::design::{Budget, PoseCriterion, PoseLimits, PoseStudy, Source, Table, Wanted, Where};
 use rodcal::units::{DEG, MM, UM};
 use rodcal::{Error, Result, files, report};
 
@@ -40,6 +40,10 @@ pub struct DesignPoses {
     /// prismatic joint: 17 times as many).
     #[arg(long, value_name = "ANGLE", default_value_t = 5.0, value_parser = angle)]
     change_deg: f64,
+    /// Height of the table in {W} in mm, or `none`: joints and flange stay 50 mm above it [default: that
+    /// of the base or of the lowest clamp].
+    #[arg(long, value_name = "HEIGHT", value_parser = table, allow_hyphen_values = true)]
+    table_mm: Option<Table>,
     /// How the rod's deflection will be known [default: meas with rig readings, else fea with a
     /// rod, else none].
     #[arg(long, value_enum)]
@@ -122,6 +126,13 @@ fn positive(text: &str) -> std::result::Result<f64, String> {
     number(text, |value| value > 0.0 && value <= 1e6, "expected a number above 0 and up to 1000000")
 }
 
+fn table(text: &str) -> std::result::Result<Table, String> {
+    match text {
+        "none" => Ok(Table::Nowhere),
+        _ => number(text, |_| true, "expected a height in mm, or none").map(|height| Table::At(height * MM)),
+    }
+}
+
 fn six_numbers(text: &str) -> std::result::Result<[f64; 6], String> {
     let expected = "expected six numbers X0,X1,Y0,Y1,Z0,Z1 in mm, each first one below its second";
     let numbers: Option<Vec<f64>> =
@@ -172,6 +183,7 @@ impl DesignPoses {
                 cone: self.cone_deg * DEG,
                 clear: self.clear_mm * MM,
                 change: self.change_deg * DEG,
+                table: self.table_mm.unwrap_or(Table::Lowest),
             },
             mode: self.mode.map(ModeName::mode),
             at: self.expected.place()?,

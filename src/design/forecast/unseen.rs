@@ -15,6 +15,8 @@ use crate::units::{MM, significant};
 /// Poses of a working volume, and random postures before it counts as out of reach.
 const POSES: usize = 100;
 const MOST_TRIALS: usize = 200_000;
+/// Fewer poses are fitted by base and tool alone.
+const FEWEST: usize = 6;
 /// The tool there: a short one on the flange's axis, m.
 const TOOL: Vector3<f64> = Vector3::new(0.0, 0.0, 0.12);
 
@@ -70,7 +72,11 @@ impl Unseen {
         if is_aligned {
             there.tool = TOOL;
         }
-        let measured = campaign.validation.as_ref().filter(|_| *at == Where::Validation);
+        let is_enough = |count: usize| !is_aligned || count >= FEWEST;
+        let measured = campaign
+            .validation
+            .as_ref()
+            .filter(|validation| *at == Where::Validation && is_enough(validation.len()));
         let poses: Vec<Vec<f64>> = match (at, measured) {
             (Where::Validation, Some(validation)) => {
                 (0..validation.len()).map(|row| validation.joints(row).to_vec()).collect()
@@ -78,9 +84,19 @@ impl Unseen {
             (Where::File(file, text), _) => {
                 robot.poses_from_csv(file, text)?.into_iter().map(|query| query.joints).collect()
             }
-            (Where::Volume(from, to), _) => within(&there, Some((from, to)))?,
-            (Where::Validation, None) => within(&there, None)?,
+            (Where::Volume(from, to), _) => within(&there, Some((from, to)), false)?,
+            // an arm that lies on its table has no pose above it
+            (Where::Validation, None) => {
+                within(&there, None, true).or_else(|_| within(&there, None, false))?
+            }
         };
+        if !is_enough(poses.len()) {
+            return Err(Error::NotApplicable {
+                what: "a forecast after an alignment".into(),
+                why: format!("there are {} poses for the nine numbers of base and tool", poses.len()),
+                hint: format!("state {FEWEST} poses at least, or `validation_refit = \"none\"`"),
+            });
+        }
         if let (Some(validation), true) = (measured, is_aligned) {
             if matches!(validation.targets, Targets::Points(_)) {
                 let found = validate(setup, validation, Refit::BaseTool)?.placement;
@@ -130,19 +146,19 @@ impl Unseen {
     }
 }
 
-/// Random postures within the joint limits and above the robot's own table.
-fn within(setup: &Setup, volume: Option<(&[f64; 3], &[f64; 3])>) -> Result<Vec<Vec<f64>>> {
+/// Random postures within the joint limits, and above the height of the base where it stands upright on a table.
+fn within(setup: &Setup, volume: Option<(&[f64; 3], &[f64; 3])>, has_table: bool) -> Result<Vec<Vec<f64>>> {
     let mut random = Random::seeded(1, 6);
     let mut kinematics = Kinematics::new(setup);
     let base = setup.base();
-    let is_upright = (base.rotation * setup.robot.gravity).normalize().z < -0.9;
+    let has_table = has_table && (base.rotation * setup.robot.gravity).normalize().z < -0.9;
     let mut poses = Vec::with_capacity(POSES);
     for _ in 0..MOST_TRIALS {
         let q = anywhere(setup.robot, &mut random);
         kinematics.update(&q, &[]);
         let tip = base.inverse().point(&kinematics.tip);
         let is_inside = volume.is_none_or(|(from, to)| (0..3).all(|k| (from[k]..=to[k]).contains(&tip[k])));
-        if is_inside && (!is_upright || is_above_table(&kinematics, setup.base_position.z)) {
+        if is_inside && (!has_table || is_above_table(&kinematics, setup.base_position.z)) {
             poses.push(q);
         }
         if poses.len() == POSES {

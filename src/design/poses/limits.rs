@@ -18,12 +18,25 @@ pub struct PoseLimits {
     pub clear: f64,
     /// Least change of at least one joint between two poses of a clamp, rad or m.
     pub change: f64,
+    /// Where the table is that joints and flange stay 50 mm above.
+    pub table: Table,
+}
+
+/// A table below the arm.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Table {
+    /// As low as the base or the lowest clamp; none where z of {W} does not point upwards.
+    Lowest,
+    /// At this height in {W}, m.
+    At(f64),
+    /// There is none.
+    Nowhere,
 }
 
 impl Default for PoseLimits {
     /// 75°, 60 mm, 5°.
     fn default() -> Self {
-        PoseLimits { cone: 75.0 * DEG, clear: 60.0 * MM, change: 5.0 * DEG }
+        PoseLimits { cone: 75.0 * DEG, clear: 60.0 * MM, change: 5.0 * DEG, table: Table::Lowest }
     }
 }
 
@@ -108,7 +121,13 @@ impl<'a> Surroundings<'a> {
             are_fixed,
             axes: places.iter().map(axis).collect(),
             rod,
-            table: (up.z > 0.9).then_some(if are_fixed { lowest } else { setup.base_position.z }),
+            table: match limits.table {
+                Table::Lowest => {
+                    (up.z > 0.9).then_some(if are_fixed { lowest } else { setup.base_position.z })
+                }
+                Table::At(height) => Some(height),
+                Table::Nowhere => None,
+            },
         }
     }
 

@@ -43,18 +43,21 @@ pub fn main(arguments: &[String]) -> Result<()> {
 fn said(name: &str, own: &[&Happened]) {
     let um = 1e6;
     let (x, y): (Vec<f64>, Vec<f64>) = own.iter().map(|one| (one.forecast.mean * um, one.mean * um)).unzip();
-    let weights: Vec<f64> = x.iter().map(|x| x.powi(-2)).collect();
-    let total: f64 = weights.iter().sum();
-    let weighted = |values: &[f64]| weights.iter().zip(values).map(|(w, v)| w * v).sum::<f64>() / total;
-    let (mx, my) = (weighted(&x), weighted(&y));
-    let products: Vec<f64> = x.iter().zip(&y).map(|(a, b)| (a - mx) * (b - my)).collect();
-    let squares: Vec<f64> = x.iter().map(|a| (a - mx).powi(2)).collect();
-    let slope = weighted(&products) / weighted(&squares);
+    let slope = |weights: &[f64]| {
+        let total: f64 = weights.iter().sum();
+        let weighted = |values: &[f64]| weights.iter().zip(values).map(|(w, v)| w * v).sum::<f64>() / total;
+        let (mx, my) = (weighted(&x), weighted(&y));
+        let products: Vec<f64> = x.iter().zip(&y).map(|(a, b)| (a - mx) * (b - my)).collect();
+        let squares: Vec<f64> = x.iter().map(|a| (a - mx).powi(2)).collect();
+        weighted(&products) / weighted(&squares)
+    };
+    let (plain, by_share) = (vec![1.0; x.len()], x.iter().map(|x| x.powi(-2)).collect::<Vec<_>>());
+    let (plain, by_share) = (slope(&plain), slope(&by_share));
     let ratios: Vec<f64> = x.iter().zip(&y).map(|(a, b)| b / a).collect();
     let inside =
         own.iter().filter(|one| (one.forecast.interval[0]..=one.forecast.interval[1]).contains(&one.mean));
     println!(
-        "{name:14} n {:3}  forecast {:6.1} happened {:6.1} µm  slope {slope:.3}  mean ratio {:.3}, median {:.3}, sd {:.3} (forecast {:.3})  \
+        "{name:14} n {:3}  forecast {:6.1} happened {:6.1} µm  slope {by_share:.3} (plain {plain:.3})  mean ratio {:.3}, median {:.3}, sd {:.3} (forecast {:.3})  \
          within the interval {:.1} %  below the forecast 95 % {:.1} %",
         own.len(),
         mean(&x).unwrap_or(0.0),

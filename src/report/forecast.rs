@@ -69,14 +69,15 @@ pub fn stacked(all: &[(String, &Forecast)]) -> Figure {
         (Colour::Grey, Dash::Solid),
         (Colour::Purple, Dash::Dotted),
     ];
-    let mut chart = Chart::new("", "", "root mean square error / µm");
-    let at = |k: usize| k as f64;
-    chart.x = Axis {
+    let mut chart = Chart::new("", "root mean square error / µm", "");
+    let at = |k: usize| -(k as f64);
+    chart.y = Axis {
         names: all.iter().enumerate().map(|(k, (name, _))| (at(k), name.clone())).collect(),
-        range: Range::Fixed(-0.6, all.len() as f64 - 0.4),
+        range: Range::Fixed(at(all.len()) + 0.4, 0.6),
         ..Axis::default()
     };
-    chart.y.range = Range::AutoWithZero;
+    chart.x.range = Range::AutoWithZero;
+    chart.height_px = Some(24.0 * all.len() as f64 + 30.0);
     // what nobody would see is left to the table
     let is_seen = |part: &Part| all.iter().any(|(_, f)| f.parts[*part as usize] > SEEN * f.rms);
     let shown: Vec<Part> = parts(all).into_iter().filter(is_seen).collect();
@@ -96,12 +97,12 @@ pub fn stacked(all: &[(String, &Forecast)]) -> Figure {
         chart.marks.push(Mark::Bars {
             label: part.words().into(),
             bars: all.iter().enumerate().map(bar).collect(),
-            direction: Direction::Up,
+            direction: Direction::Right,
             style: Style::nth(0).colour(colour).dash(dash),
         });
     }
     Figure::from(chart).named("error-budget").captioned(
-        "Root mean square of the tip's error at unseen poses. Each part is as high as its share of the mean square.",
+        "Root mean square of the tip's error at unseen poses. Each part is as long as its share of the mean square.",
     )
 }
 
@@ -186,14 +187,17 @@ pub fn comparison(campaign: &Campaign, rods: &[RodForecast], basis: &Basis) -> R
     let um = |size: f64| significant(size / UM, 3);
     let mut headline = String::new();
     if let Some((rod, least)) = best(rods) {
-        let equal: Vec<&str> = all
-            .iter()
-            .filter(|(_, other)| other.mean <= least.mean * (1.0 + EQUAL) && !std::ptr::eq(*other, least))
-            .map(|(name, _)| name.as_str())
-            .collect();
-        let equal = match equal.is_empty() {
-            true => String::new(),
-            false => format!(" As good within 5 %: {}.", equal.join(", ")),
+        let is_equal = |other: &Forecast| other.mean <= least.mean * (1.0 + EQUAL);
+        let named = |is_asked: &dyn Fn(&Forecast) -> bool| -> Vec<String> {
+            let asked = all.iter().filter(|(_, other)| is_asked(other) && !std::ptr::eq(*other, least));
+            asked.map(|(name, other)| format!("{name} ({} µm)", um(other.mean))).collect()
+        };
+        let (equal, worse) = (named(&|other| is_equal(other)), named(&|other| !is_equal(other)));
+        let equal = match (equal.len(), worse.len()) {
+            (0, _) => String::new(),
+            (_, 0) => " All others are as good within 5 %.".to_owned(),
+            (a, b) if a > b => format!(" All others are as good within 5 % but {}.", worse.join(", ")),
+            _ => format!(" As good within 5 %: {}.", equal.join(", ")),
         };
         headline = format!(
             "Forecast: rod {} in mode {} leaves the smallest error, {} µm in the mean, less than {} µm at 95 % of unseen \

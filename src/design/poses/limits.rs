@@ -4,9 +4,16 @@ use nalgebra::Vector3;
 
 use crate::calibration::Campaign;
 use crate::calibration::campaign::Group;
-use crate::robot::postures::{has_arrived, is_above_table, keeps_limits};
+use crate::robot::postures::{has_arrived, keeps_limits};
 use crate::robot::{Kinematics, Setup};
 use crate::units::{DEG, MM};
+
+/// How far the arm stays above a table, m.
+const ABOVE: f64 = 50.0 * MM;
+/// What is nearer to the ball than this is the hand that holds it, m.
+const HAND: f64 = 100.0 * MM;
+/// Points nearer than this are one, m.
+const SAME: f64 = MM;
 
 /// Limits of poses beside those of the joints.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -77,7 +84,7 @@ impl Obstacle {
             "a joint is beyond its limits",
             "the rod stands outside the cone",
             "arm or rod is within the block about a clamp",
-            "a joint or the flange is near or below the table",
+            "the arm is near or below the table",
         ][self as usize]
     }
 }
@@ -157,22 +164,36 @@ impl<'a> Surroundings<'a> {
         if self.are_fixed && self.angle(kinematics, place) > self.limits.cone {
             return Some(Obstacle::Cone);
         }
-        if self.table.is_some_and(|table| !is_above_table(kinematics, table)) {
+        let path = self.path(kinematics);
+        if self.is_below_table(&path) {
             return Some(Obstacle::Table);
         }
-        (self.are_fixed && self.is_in_block(kinematics, place)).then_some(Obstacle::Block)
+        (self.are_fixed && self.is_in_block(&path, place)).then_some(Obstacle::Block)
     }
 
-    fn is_in_block(&self, kinematics: &Kinematics, own: usize) -> bool {
+    /// Base to ball: joint by joint, then along the rod; places that coincide are one.
+    fn path(&self, kinematics: &Kinematics) -> Vec<Vector3<f64>> {
         let mut path: Vec<Vector3<f64>> = kinematics.joints.iter().map(|joint| joint.distal.origin).collect();
         path.extend(self.rod.iter().map(|point| kinematics.flange.point(point)));
-        let last = path.len() - 1;
-        let blocks = self.places.iter().map(|place| place.device.origin).enumerate();
-        blocks.into_iter().any(|(place, block)| {
-            let segments = path.windows(2).enumerate();
-            segments
-                .filter(|(k, _)| !(place == own && k + 1 == last))
-                .any(|(_, ends)| distance(&block, &ends[0], &ends[1]) < self.limits.clear)
+        path.dedup_by(|next, before| (*next - *before).norm() < SAME);
+        path
+    }
+
+    /// The first joint stands on the table, and what is at the ball is where the ball has to be.
+    fn is_below_table(&self, path: &[Vector3<f64>]) -> bool {
+        let (Some(table), Some(ball)) = (self.table, path.last()) else { return false };
+        let arm = path.iter().skip(1).filter(|point| (*point - ball).norm() > HAND);
+        arm.into_iter().any(|point| point.z < table + ABOVE)
+    }
+
+    /// Places nearer than two radii share a block: what enters one enters the other.
+    fn is_in_block(&self, path: &[Vector3<f64>], own: usize) -> bool {
+        let last = path.len().saturating_sub(2);
+        let own = self.places[own].device.origin;
+        self.places.iter().map(|place| place.device.origin).any(|block| {
+            let is_entered = (block - own).norm() < 2.0 * self.limits.clear;
+            let segments = path.windows(2).enumerate().filter(|(k, _)| !(is_entered && *k == last));
+            segments.into_iter().any(|(_, ends)| distance(&block, &ends[0], &ends[1]) < self.limits.clear)
         })
     }
 }

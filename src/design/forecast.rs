@@ -158,6 +158,26 @@ impl<'c> Forecaster<'c> {
 
     /// What is to be expected of a calibration with these poses in a mode.
     ///
+    /// ```
+    /// use rodcal::calibration::planned_setup;
+    /// use rodcal::design::{Budget, Forecaster, Part, Where};
+    /// use rodcal::prelude::*;
+    ///
+    /// let campaign = Campaign::read("campaigns/tx90-5/campaign.toml".as_ref())?;
+    /// let recording = &campaign.measurements;
+    /// let poses: Vec<_> =
+    ///     (0..60).map(|row| (recording.rows[row].group, recording.joints(row).to_vec())).collect();
+    /// let budget = Budget::of(&campaign, Some(17.6e-6), Some(30e-6))?;
+    /// let setup = planned_setup(&campaign)?;
+    /// let forecaster = Forecaster::new(&campaign, setup, budget, &Where::Validation)?;
+    /// let forecast = forecaster.forecast(&poses, Mode::Meas)?;
+    /// // 30 µm of repeatability, of which base and tool take up a tenth, and what is left of the noise
+    /// let um = |part: Part| forecast.parts[part as usize] / 1e-6;
+    /// assert!((um(Part::Repeatability) - 30.0 * (1.0 - 9.0 / 90.0f64).sqrt()).abs() < 0.3);
+    /// assert!((5.0..20.0).contains(&um(Part::Noise)), "{}", um(Part::Noise));
+    /// # Ok::<(), rodcal::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// [`Error::NotApplicable`] for a mode that the campaign's files do not allow; what the beam model refuses.
     pub fn forecast(&self, poses: &[(usize, Vec<f64>)], mode: Mode) -> Result<Forecast> {

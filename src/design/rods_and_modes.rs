@@ -33,6 +33,20 @@ pub struct RodForecast {
 /// Forecasts of the campaign's own rod (`rods` empty) or of others in its place, with the recorded poses where there are
 /// any, else with `count` poses chosen by O1 for each.
 ///
+/// ```
+/// use rodcal::design::{Budget, Where, rods_and_modes};
+/// use rodcal::prelude::*;
+///
+/// let campaign = Campaign::read("campaigns/tx90-5/campaign.toml".as_ref())?;
+/// let budget = Budget::of(&campaign, Some(17.6e-6), Some(30e-6))?;
+/// let rods = rods_and_modes(&campaign, &[], &budget, &Where::Validation, None)?;
+/// let means: Vec<f64> = rods[0].modes.iter().map(|forecast| forecast.mean).collect();
+/// assert_eq!((means.len(), rods[0].poses, rods[0].is_recorded), (4, 60, true));
+/// // a rod that is taken for rigid is worse than one that was measured, by little
+/// assert!((1.0..1.2).contains(&(means[0] / means[3])), "{means:?}");
+/// # Ok::<(), rodcal::Error>(())
+/// ```
+///
 /// # Errors
 /// What the choice of poses and the forecast refuse; [`Error::NotApplicable`] for a campaign without any rod.
 pub fn rods_and_modes(

@@ -76,6 +76,14 @@ impl Campaign {
     /// Reads a campaign that may not have been recorded yet: `measurements` and `validation` may be missing, or name files that
     /// do not exist. What is not there is empty.
     ///
+    /// ```
+    /// use rodcal::prelude::*;
+    ///
+    /// let plan = Campaign::read_plan("campaigns/tx90-5/campaign.toml".as_ref())?;
+    /// assert_eq!((plan.clamps.len(), plan.measurements.len()), (5, 60)); // it was recorded meanwhile
+    /// # Ok::<(), rodcal::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// As [`Campaign::read`].
     pub fn read_plan(path: &Path) -> Result<Campaign> {

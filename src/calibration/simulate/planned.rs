@@ -17,6 +17,17 @@ const NEAR: f64 = 30.0 * MM;
 /// The poses of a table (CSV) with the column `clamp` (1 to 5) and joint columns, as `design poses` writes it: index of the clamp
 /// and joint values, rad or m.
 ///
+/// ```
+/// use rodcal::calibration::simulate::planned_poses;
+/// use rodcal::prelude::*;
+///
+/// let joint = Joint::new("one", Motion::Revolute, Hayati::default());
+/// let robot = Robot::new("arm", vec![joint]);
+/// let poses = planned_poses(&robot, "poses.csv", "pose,clamp,q1_deg\n1,2,90\n")?;
+/// assert_eq!(poses, [(1, vec![90f64.to_radians()])]);
+/// # Ok::<(), rodcal::Error>(())
+/// ```
+///
 /// # Errors
 /// [`Error::Input`] with line and column.
 pub fn planned_poses(robot: &Robot, file: &str, text: &str) -> Result<Vec<(usize, Vec<f64>)>> {

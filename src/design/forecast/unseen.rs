@@ -97,13 +97,11 @@ impl Unseen {
                 hint: format!("state {FEWEST} poses at least, or `validation_refit = \"none\"`"),
             });
         }
-        if let (Some(validation), true) = (measured, is_aligned) {
-            if matches!(validation.targets, Targets::Points(_)) {
-                let found = validate(setup, validation, Refit::BaseTool)?.placement;
-                if let Some((base, tool)) = found {
-                    there = Setup { tool, ..Setup::new(robot, base, tool) };
-                }
-            }
+        let seen = measured.filter(|validation| matches!(validation.targets, Targets::Points(_)));
+        if let (Some(validation), true) = (seen, is_aligned)
+            && let Some((base, tool)) = validate(setup, validation, Refit::BaseTool)?.placement
+        {
+            there = Setup::new(robot, base, tool);
         }
         let words = match (at, measured) {
             (Where::Validation, Some(validation)) => {

@@ -88,6 +88,27 @@ pub struct PoseStudy<'c> {
 impl<'c> PoseStudy<'c> {
     /// Chooses poses for a campaign. `progress` is told of candidates as they are looked at.
     ///
+    /// ```
+    /// use rodcal::design::{Budget, PoseCriterion, PoseLimits, PoseStudy, Source, Wanted, Where};
+    /// use rodcal::prelude::*;
+    ///
+    /// let campaign = Campaign::read("campaigns/tx90-5/campaign.toml".as_ref())?;
+    /// let budget = Budget::of(&campaign, Some(17.6e-6), Some(30e-6))?;
+    /// let wanted = Wanted {
+    ///     count: 20,
+    ///     criterion: PoseCriterion::O1,
+    ///     source: Source::Generated(100),
+    ///     limits: PoseLimits::default(),
+    ///     mode: None,
+    ///     at: Where::Validation,
+    ///     seed: 1,
+    /// };
+    /// let study = PoseStudy::new(&campaign, wanted, budget, &|_| {})?;
+    /// assert_eq!((study.chosen.len(), study.places.len()), (20, 5));
+    /// assert!(study.value > 1.05 * study.value_random); // O1 of these poses and of random ones
+    /// # Ok::<(), rodcal::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// [`Error::Argument`] for fewer poses than a calibration needs; [`Error::NotApplicable`] for places that no pose reaches, or
     /// that have fewer candidates than poses; what candidates and forecast are refused for.

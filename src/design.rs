@@ -15,6 +15,7 @@
 
 mod catalogue;
 mod figure;
+mod for_robot;
 mod forecast;
 mod front;
 mod intervals;
@@ -29,6 +30,7 @@ mod wish;
 
 pub use catalogue::{BUILT_IN, Tube, built_in, built_in_materials};
 pub use figure::{Figure, Figures, Goal};
+pub use for_robot::{ForRobot, Proxy, Ranked, for_robot};
 pub use forecast::{Budget, Forecast, Forecaster, Part, Unseen, Where};
 pub use front::{Design, Front};
 pub use intervals::{Intervals, indistinguishable};

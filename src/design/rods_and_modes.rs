@@ -56,7 +56,6 @@ pub fn rods_and_modes(
     at: &Where,
     count: Option<usize>,
 ) -> Result<Vec<RodForecast>> {
-    let recorded = campaign.measurements.len();
     let own = campaign.rod.as_ref();
     let all: Vec<Rod> = if rods.is_empty() { own.into_iter().cloned().collect() } else { rods.to_vec() };
     if all.is_empty() {
@@ -66,41 +65,53 @@ pub fn rods_and_modes(
             hint: "add `rod = \"…\"` to the campaign, or state rods with --rods".into(),
         });
     }
-    let forecast = |rod: &Rod| {
-        let is_own = own == Some(rod);
-        let is_recorded = is_own && recorded > 0 && count.is_none();
-        let planned = if is_own { campaign.clone() } else { with_rod(campaign, rod)? };
-        let setup = planned_setup(&planned)?;
-        let poses = match is_recorded {
-            true => recorded_poses(&planned, &setup),
-            false => {
-                let (places, _) = places(&planned, &setup);
-                let default = if recorded > 0 { recorded } else { PER_CLAMP * places.len().max(1) };
-                let count = count.unwrap_or(default);
-                let wanted = Wanted {
-                    count,
-                    criterion: PoseCriterion::O1,
-                    source: Source::Generated(CANDIDATES * count),
-                    limits: PoseLimits { change: 1.0 * DEG, ..PoseLimits::default() },
-                    mode: Some(Mode::Fea),
-                    at: at.clone(),
-                    seed: budget.seed,
-                };
-                PoseStudy::new(&planned, wanted, budget.clone(), &|_| {})?.chosen
-            }
-        };
-        let forecaster = Forecaster::new(&planned, setup.clone(), budget.clone(), at)?;
-        let has_calc = closed_form::compliance(rod).is_ok();
-        let modes = Mode::ALL.into_iter().filter(|&mode| mode != Mode::Calc || has_calc);
-        Ok(RodForecast {
-            rod: rod.name.clone(),
-            poses: poses.len(),
-            is_recorded,
-            modes: modes.map(|mode| forecaster.forecast(&poses, mode)).collect::<Result<_>>()?,
-            is_rig_assumed: planned.readings.is_none(),
-        })
+    all.iter().map(|rod| rod_forecast(campaign, rod, budget, at, count)).collect()
+}
+
+/// The same of one rod in the place of the campaign's own, or of that.
+///
+/// # Errors
+/// As [`rods_and_modes`].
+pub(super) fn rod_forecast(
+    campaign: &Campaign,
+    rod: &Rod,
+    budget: &Budget,
+    at: &Where,
+    count: Option<usize>,
+) -> Result<RodForecast> {
+    let recorded = campaign.measurements.len();
+    let is_own = campaign.rod.as_ref() == Some(rod);
+    let is_recorded = is_own && recorded > 0 && count.is_none();
+    let planned = if is_own { campaign.clone() } else { with_rod(campaign, rod)? };
+    let setup = planned_setup(&planned)?;
+    let poses = match is_recorded {
+        true => recorded_poses(&planned, &setup),
+        false => {
+            let (places, _) = places(&planned, &setup);
+            let default = if recorded > 0 { recorded } else { PER_CLAMP * places.len().max(1) };
+            let count = count.unwrap_or(default);
+            let wanted = Wanted {
+                count,
+                criterion: PoseCriterion::O1,
+                source: Source::Generated(CANDIDATES * count),
+                limits: PoseLimits { change: 1.0 * DEG, ..PoseLimits::default() },
+                mode: Some(Mode::Fea),
+                at: at.clone(),
+                seed: budget.seed,
+            };
+            PoseStudy::new(&planned, wanted, budget.clone(), &|_| {})?.chosen
+        }
     };
-    all.iter().map(forecast).collect()
+    let forecaster = Forecaster::new(&planned, setup.clone(), budget.clone(), at)?;
+    let has_calc = closed_form::compliance(rod).is_ok();
+    let modes = Mode::ALL.into_iter().filter(|&mode| mode != Mode::Calc || has_calc);
+    Ok(RodForecast {
+        rod: rod.name.clone(),
+        poses: poses.len(),
+        is_recorded,
+        modes: modes.map(|mode| forecaster.forecast(&poses, mode)).collect::<Result<_>>()?,
+        is_rig_assumed: planned.readings.is_none(),
+    })
 }
 
 /// The campaign with another rod, nothing recorded, its base where the recording has it.

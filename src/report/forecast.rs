@@ -195,18 +195,21 @@ pub fn comparison(campaign: &Campaign, rods: &[RodForecast], basis: &Basis) -> R
         let (equal, worse) = (named(&|other| is_equal(other)), named(&|other| !is_equal(other)));
         let equal = match (equal.len(), worse.len()) {
             (0, _) => String::new(),
-            (_, 0) => " All others are as good within 5 %.".to_owned(),
             (a, b) if a > b => format!(" All others are as good within 5 % but {}.", worse.join(", ")),
             _ => format!(" As good within 5 %: {}.", equal.join(", ")),
         };
-        headline = format!(
-            "Forecast: rod {} in mode {} leaves the smallest error, {} µm in the mean, less than {} µm at 95 % of unseen \
-             poses.{equal}",
-            rod.rod,
-            least.mode.name(),
+        let name = format!("rod {} in mode {}", rod.rod, least.mode.name());
+        let size = format!(
+            "{} µm in the mean, less than {} µm at 95 % of unseen poses",
             um(least.mean),
             um(least.p95)
         );
+        headline = match all.len() > 1 && all.iter().all(|(_, other)| is_equal(other)) {
+            true => format!(
+                "Forecast: no rod or mode is better than another by 5 %. With {name} the error is {size}."
+            ),
+            false => format!("Forecast: {name} leaves the smallest error, {size}.{equal}"),
+        };
     }
     let poses: Vec<String> = rods
         .iter()

@@ -47,9 +47,12 @@ impl Budget {
         let um = |size: f64| significant(size / UM, 3);
         if let Some(noise) = noise.or(campaign.noise) {
             budget.noise = noise;
+            // a robot that repeats worse than what is measured of it would be no robot of that noise
+            budget.repeatability = repeatability.unwrap_or(REPEATABILITY.min(of_robot(noise)));
             budget.noise_source = format!("{} µm per coordinate, stated", um(noise));
             return Ok(budget);
         }
+        let mut unusable = String::new();
         if !campaign.measurements.is_empty() {
             let found = calibrate(campaign, default_mode(campaign), &Options::default())?;
             if found.is_plausible() {
@@ -60,19 +63,24 @@ impl Budget {
                     um(found.noise.pooled),
                     campaign.measurements.file
                 );
-                // what scatters there scatters elsewhere, but for the sensors
-                let of_robot = (3.0 * (found.noise.pooled.powi(2) - SENSORS.powi(2))).max(0.0).sqrt();
-                budget.repeatability = repeatability.unwrap_or(of_robot);
+                // what scatters there scatters elsewhere
+                budget.repeatability = repeatability.unwrap_or(of_robot(found.noise.pooled));
                 return Ok(budget);
             }
+            unusable = format!("; {} does not calibrate plausibly", campaign.measurements.file);
         }
         budget.noise = (budget.repeatability.powi(2) / 3.0 + SENSORS.powi(2)).sqrt();
         budget.noise_source = format!(
-            "{} µm per coordinate, assumed (repeatability {} µm, sensors {} µm)",
+            "{} µm per coordinate, assumed (repeatability {} µm, sensors {} µm{unusable})",
             um(budget.noise),
             um(budget.repeatability),
             um(SENSORS)
         );
         Ok(budget)
     }
+}
+
+/// Repeatability of a robot (rms of the distance) of which a coordinate is measured with this noise, but for the sensors.
+fn of_robot(noise: f64) -> f64 {
+    (3.0 * (noise.powi(2) - SENSORS.powi(2))).max(0.0).sqrt()
 }

@@ -1,5 +1,7 @@
 //! Poses to choose from: generated, or from any table with joint columns.
 
+use std::collections::BTreeMap;
+
 use super::limits::{Obstacle, Surroundings};
 use crate::calibration::NEAR;
 use crate::delimited::Table;
@@ -84,15 +86,18 @@ impl Candidates {
 
     /// Leaves out what is nearer than `change` in every joint to a pose of the same place that stays.
     fn thin(&mut self, change: f64) {
-        let mut kept: Vec<(usize, Vec<f64>)> = Vec::with_capacity(self.poses.len());
+        // equal poses are one pose, whatever change is asked for
+        let change = change.max(1e-9);
         let before = self.poses.len();
+        let mut kept: Vec<(usize, Vec<f64>)> = Vec::with_capacity(before);
+        // of each place by its first joint: what is alike stands in the same cell or beside it
+        let mut cells: BTreeMap<(usize, i64), Vec<usize>> = BTreeMap::new();
         for (place, q) in std::mem::take(&mut self.poses) {
-            let differs = |other: &[f64]| {
-                // equal poses are one pose, whatever change is asked for
-                q.iter().zip(other).any(|(a, b)| (a - b).abs() >= change.max(1e-9))
-            };
-            let own = kept.iter().rev().take_while(|(other, _)| *other == place);
-            if own.into_iter().all(|(_, other)| differs(other)) {
+            let cell = (q.first().copied().unwrap_or(0.0) / change).floor() as i64;
+            let differs = |&other: &usize| q.iter().zip(&kept[other].1).any(|(a, b)| (a - b).abs() >= change);
+            let beside = (cell - 1..=cell + 1).filter_map(|cell| cells.get(&(place, cell))).flatten();
+            if beside.into_iter().all(differs) {
+                cells.entry((place, cell)).or_default().push(kept.len());
                 kept.push((place, q));
             }
         }

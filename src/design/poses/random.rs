@@ -9,6 +9,8 @@ use crate::statistics::{Random, median};
 /// Random plans that are looked at, and those for each number of poses.
 const PLANS: usize = 101;
 const FEWER: usize = 15;
+/// Of larger plans than this fewer will do: their values hardly scatter.
+const LARGE: f64 = 2_000.0;
 /// No more is looked for than so many times as many random poses.
 const MOST: f64 = 20.0;
 /// Halvings of the interval between two numbers of poses.
@@ -40,8 +42,10 @@ pub(super) fn beside(
     let typical = median_of(plans);
     let groups: Vec<Vec<usize>> = (0..quotas.len()).map(|group| all.of_group(group).collect()).collect();
     // so many random poses that the candidates do not last: some come twice
+    let total: usize = quotas.iter().sum();
     let with = |times: f64| {
-        median_of(in_parallel(FEWER, |plan| {
+        let plans = if total as f64 * times > LARGE { FEWER / 5 } else { FEWER };
+        median_of(in_parallel(plans, |plan| {
             let mut random = Random::seeded(7, plan as u64);
             let mut chosen = Vec::new();
             for (open, quota) in groups.iter().zip(quotas) {

@@ -53,9 +53,8 @@ impl State<'_> {
         self.inverse += u * s * u.transpose();
     }
 
-    /// The measurement that is best in the place of `chosen[place]`, if that is better.
-    fn better(&self, chosen: &[usize], place: usize) -> Option<usize> {
-        let own = chosen[place];
+    /// The measurement that is best in the place of one that is chosen, if that is better.
+    fn better(&self, own: usize, is_chosen: &[bool]) -> Option<usize> {
         let u = self.all.spread(own, &self.inverse);
         let left = Matrix3::identity() - self.all.times(own, &u);
         let s = left.try_inverse()?;
@@ -71,7 +70,7 @@ impl State<'_> {
         };
         let mut best: Option<(f64, usize)> = None;
         for (index, spread, of_weight) in &self.group {
-            if chosen.contains(index) {
+            if is_chosen[*index] {
                 continue;
             }
             let a = self.all.times(*index, &u);
@@ -108,6 +107,8 @@ pub(super) fn exchanged(
     let mut groups: Vec<usize> = chosen.iter().map(|&index| all.group(index)).collect();
     groups.sort_unstable();
     groups.dedup();
+    let mut is_chosen = vec![false; all.len()];
+    chosen.iter().for_each(|&index| is_chosen[index] = true);
     for _ in 0..MOST_PASSES {
         let mut is_better = false;
         for &group in &groups {
@@ -124,7 +125,7 @@ pub(super) fn exchanged(
                 if all.group(chosen[place]) != group {
                     continue;
                 }
-                let Some(other) = state.better(&chosen, place) else { continue };
+                let Some(other) = state.better(chosen[place], &is_chosen) else { continue };
                 let u = all.spread(chosen[place], &state.inverse);
                 let Some(s) = (Matrix3::identity() - all.times(chosen[place], &u)).try_inverse() else {
                     continue;
@@ -134,6 +135,8 @@ pub(super) fn exchanged(
                 if let Some(s) = (Matrix3::identity() + all.times(other, &u)).try_inverse() {
                     state.update(&u, &-s);
                 }
+                is_chosen[chosen[place]] = false;
+                is_chosen[other] = true;
                 chosen[place] = other;
                 is_better = true;
             }

@@ -22,14 +22,17 @@ const MOST_PASSES: usize = 8;
 /// `chosen` with measurements exchanged within their groups until no exchange of one raises λₘ/√λ₁.
 pub(super) fn exchanged(all: &Measurements, mut chosen: Vec<usize>, before: &DMatrix<f64>) -> Vec<usize> {
     let Some(mut best) = balance(all.information(&chosen, before)) else { return chosen };
+    let mut is_chosen = vec![false; all.len()];
+    chosen.iter().for_each(|&index| is_chosen[index] = true);
     for _ in 0..MOST_PASSES {
         let start = best;
+        let mut whole = all.information(&chosen, before);
         for place in 0..chosen.len() {
-            let mut others = chosen.clone();
-            let own = others.remove(place);
-            let left = all.information(&others, before);
+            let own = chosen[place];
+            let nothing = DMatrix::zeros(all.columns(), all.columns());
+            let left = &whole - all.information(&[own], &nothing);
             let mut bounds = bounds(all, &left, all.group(own));
-            bounds.retain(|(bound, index)| *bound > best * (1.0 + BETTER) && !chosen.contains(index));
+            bounds.retain(|(bound, index)| *bound > best * (1.0 + BETTER) && !is_chosen[*index]);
             bounds.sort_by(|a, b| b.0.total_cmp(&a.0).then(b.1.cmp(&a.1)));
             for (bound, index) in bounds {
                 if bound <= best * (1.0 + BETTER) {
@@ -39,6 +42,10 @@ pub(super) fn exchanged(all: &Measurements, mut chosen: Vec<usize>, before: &DMa
                 if exact > best * (1.0 + BETTER) {
                     (best, chosen[place]) = (exact, index);
                 }
+            }
+            if chosen[place] != own {
+                (is_chosen[own], is_chosen[chosen[place]]) = (false, true);
+                whole = all.information(&[chosen[place]], &left);
             }
         }
         if best <= start * (1.0 + BETTER) {

@@ -37,7 +37,7 @@ pub use intervals::{Intervals, indistinguishable};
 pub use limits::{Impossible, Limit};
 pub use nearest::{Nearest, Relaxed};
 pub use poses::{
-    Beside, Candidates, Known, Obstacle, PoseCriterion, PoseLimits, PoseStudy, Source, Table, Wanted,
+    Beside, Candidates, Known, Obstacle, PoseCriterion, PoseLimits, PoseStudy, Source, TableHeight, Wanted,
 };
 pub use rods_and_modes::{RodForecast, rods_and_modes};
 pub use search::{Found, Searched, search};

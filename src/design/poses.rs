@@ -14,6 +14,6 @@ mod study;
 
 pub use candidates::{Candidates, Source};
 pub use criterion::PoseCriterion;
-pub use limits::{Obstacle, PoseLimits, Table};
+pub use limits::{Obstacle, PoseLimits, TableHeight};
 pub use random::Beside;
 pub use study::{Known, PoseStudy, Wanted};

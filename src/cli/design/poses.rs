@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use rodcal::calibration::Campaign;
-use rodcal::design::{Budget, PoseCriterion, PoseLimits, PoseStudy, Source, Table, Wanted, Where};
+use rodcal::design::{Budget, PoseCriterion, PoseLimits, PoseStudy, Source, TableHeight, Wanted, Where};
 use rodcal::units::{DEG, MM, UM};
 use rodcal::{Error, Result, files, report};
 
@@ -43,7 +43,7 @@ pub struct DesignPoses {
     /// Height of the table in {W} in mm, or `none`: the arm stays 50 mm above it [default: that of the
     /// base or of the lowest clamp].
     #[arg(long, value_name = "HEIGHT", value_parser = table, allow_hyphen_values = true)]
-    table_mm: Option<Table>,
+    table_mm: Option<TableHeight>,
     /// How the rod's deflection will be known [default: meas with rig readings, else fea with a
     /// rod, else none].
     #[arg(long, value_enum)]
@@ -126,10 +126,11 @@ fn positive(text: &str) -> std::result::Result<f64, String> {
     number(text, |value| value > 0.0 && value <= 1e6, "expected a number above 0 and up to 1000000")
 }
 
-fn table(text: &str) -> std::result::Result<Table, String> {
+fn table(text: &str) -> std::result::Result<TableHeight, String> {
     match text {
-        "none" => Ok(Table::Nowhere),
-        _ => number(text, |_| true, "expected a height in mm, or none").map(|height| Table::At(height * MM)),
+        "none" => Ok(TableHeight::Nowhere),
+        _ => number(text, |_| true, "expected a height in mm, or none")
+            .map(|height| TableHeight::At(height * MM)),
     }
 }
 
@@ -183,7 +184,7 @@ impl DesignPoses {
                 cone: self.cone_deg * DEG,
                 clear: self.clear_mm * MM,
                 change: self.change_deg * DEG,
-                table: self.table_mm.unwrap_or(Table::Lowest),
+                table: self.table_mm.unwrap_or(TableHeight::Lowest),
             },
             mode: self.mode.map(ModeName::mode),
             at: self.expected.place()?,

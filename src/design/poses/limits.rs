@@ -26,12 +26,12 @@ pub struct PoseLimits {
     /// Least change of at least one joint between two poses of a clamp, rad or m.
     pub change: f64,
     /// Where the table is that joints and flange stay 50 mm above.
-    pub table: Table,
+    pub table: TableHeight,
 }
 
 /// A table below the arm.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Table {
+pub enum TableHeight {
     /// As low as the base or the lowest clamp; none where z of {W} does not point upwards.
     Lowest,
     /// At this height in {W}, m.
@@ -43,7 +43,7 @@ pub enum Table {
 impl Default for PoseLimits {
     /// 75°, 60 mm, 5°.
     fn default() -> Self {
-        PoseLimits { cone: 75.0 * DEG, clear: 60.0 * MM, change: 5.0 * DEG, table: Table::Lowest }
+        PoseLimits { cone: 75.0 * DEG, clear: 60.0 * MM, change: 5.0 * DEG, table: TableHeight::Lowest }
     }
 }
 
@@ -129,11 +129,11 @@ impl<'a> Surroundings<'a> {
             axes: places.iter().map(axis).collect(),
             rod,
             table: match limits.table {
-                Table::Lowest => {
+                TableHeight::Lowest => {
                     (up.z > 0.9).then_some(if are_fixed { lowest } else { setup.base_position.z })
                 }
-                Table::At(height) => Some(height),
-                Table::Nowhere => None,
+                TableHeight::At(height) => Some(height),
+                TableHeight::Nowhere => None,
             },
         }
     }

@@ -17,6 +17,8 @@ pub fn plan(study: &PoseStudy) -> Figure {
         Some(rod) => {
             [0.0, rod.bend_start(), rod.bend_end(), rod.length()].map(|station| rod.point(station)).to_vec()
         }
+        // where {T} is at the ball the arm ends there
+        None if study.setup.tool.norm() < MM => Vec::new(),
         None => vec![Vector3::zeros(), study.setup.tool],
     };
     let (mut arms, mut rods, mut flanges) = (Vec::new(), Vec::new(), Vec::new());

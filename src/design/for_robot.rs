@@ -90,7 +90,8 @@ pub fn for_robot(
         Ok(Ranked {
             name: rods[k].name.clone(),
             c_rod: compliance.index(paper_contact_force()),
-            forecast: rod_forecast(campaign, rods[k], budget, at, count).map_err(|error| error.to_string()),
+            forecast: rod_forecast(campaign, Some(rods[k]), budget, at, count)
+                .map_err(|error| error.to_string()),
         })
     });
     let mut ranked: Vec<Ranked> = ranked.into_iter().collect::<Result<_>>()?;

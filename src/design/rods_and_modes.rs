@@ -5,7 +5,7 @@ use super::poses::{PoseCriterion, PoseLimits, PoseStudy, Source, Wanted};
 use crate::calibration::campaign::{Campaign, Recording, Targets};
 use crate::calibration::{Mode, places, planned_setup};
 use crate::compliance::closed_form;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::rod::Rod;
 use crate::units::DEG;
 
@@ -18,7 +18,7 @@ const PER_CLAMP: usize = 30;
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct RodForecast {
-    /// The rod's name.
+    /// The rod's name; empty without a rod.
     pub rod: String,
     /// Number of poses, and whether they are those of the recording or were chosen by O1.
     pub poses: usize,
@@ -48,7 +48,7 @@ pub struct RodForecast {
 /// ```
 ///
 /// # Errors
-/// What the choice of poses and the forecast refuse; [`Error::NotApplicable`] for a campaign without any rod.
+/// What the choice of poses and the forecast refuse.
 pub fn rods_and_modes(
     campaign: &Campaign,
     rods: &[Rod],
@@ -56,33 +56,28 @@ pub fn rods_and_modes(
     at: &Where,
     count: Option<usize>,
 ) -> Result<Vec<RodForecast>> {
-    let own = campaign.rod.as_ref();
-    let all: Vec<Rod> = if rods.is_empty() { own.into_iter().cloned().collect() } else { rods.to_vec() };
-    if all.is_empty() {
-        return Err(Error::NotApplicable {
-            what: format!("a forecast for {}", campaign.file),
-            why: "the campaign names no rod".into(),
-            hint: "add `rod = \"…\"` to the campaign, or state rods with --rods".into(),
-        });
-    }
-    all.iter().map(|rod| rod_forecast(campaign, rod, budget, at, count)).collect()
+    let all: Vec<Option<&Rod>> = match rods.is_empty() {
+        true => vec![campaign.rod.as_ref()],
+        false => rods.iter().map(Some).collect(),
+    };
+    all.into_iter().map(|rod| rod_forecast(campaign, rod, budget, at, count)).collect()
 }
 
-/// The same of one rod in the place of the campaign's own, or of that.
+/// The same of one rod in the place of the campaign's own, or of that; `None` for a campaign without any.
 ///
 /// # Errors
 /// As [`rods_and_modes`].
 pub(super) fn rod_forecast(
     campaign: &Campaign,
-    rod: &Rod,
+    rod: Option<&Rod>,
     budget: &Budget,
     at: &Where,
     count: Option<usize>,
 ) -> Result<RodForecast> {
     let recorded = campaign.measurements.len();
-    let is_own = campaign.rod.as_ref() == Some(rod);
-    let is_recorded = is_own && recorded > 0 && count.is_none();
-    let planned = if is_own { campaign.clone() } else { with_rod(campaign, rod)? };
+    let other = rod.filter(|rod| campaign.rod.as_ref() != Some(*rod));
+    let is_recorded = other.is_none() && recorded > 0 && count.is_none();
+    let planned = other.map_or_else(|| Ok(campaign.clone()), |rod| with_rod(campaign, rod))?;
     let setup = planned_setup(&planned)?;
     let poses = match is_recorded {
         true => recorded_poses(&planned, &setup),
@@ -95,7 +90,7 @@ pub(super) fn rod_forecast(
                 criterion: PoseCriterion::O1,
                 source: Source::Generated(CANDIDATES * count),
                 limits: PoseLimits { change: 1.0 * DEG, ..PoseLimits::default() },
-                mode: Some(Mode::Fea),
+                mode: rod.map(|_| Mode::Fea),
                 at: at.clone(),
                 seed: budget.seed,
             };
@@ -103,14 +98,18 @@ pub(super) fn rod_forecast(
         }
     };
     let forecaster = Forecaster::new(&planned, setup.clone(), budget.clone(), at)?;
-    let has_calc = closed_form::compliance(rod).is_ok();
-    let modes = Mode::ALL.into_iter().filter(|&mode| mode != Mode::Calc || has_calc);
+    let has_calc = rod.is_some_and(|rod| closed_form::compliance(rod).is_ok());
+    let modes = Mode::ALL.into_iter().filter(|&mode| match mode {
+        Mode::None => true,
+        Mode::Calc => has_calc,
+        Mode::Fea | Mode::Meas => rod.is_some(),
+    });
     Ok(RodForecast {
-        rod: rod.name.clone(),
+        rod: rod.map(|rod| rod.name.clone()).unwrap_or_default(),
         poses: poses.len(),
         is_recorded,
         modes: modes.map(|mode| forecaster.forecast(&poses, mode)).collect::<Result<_>>()?,
-        is_rig_assumed: planned.readings.is_none(),
+        is_rig_assumed: rod.is_some() && planned.readings.is_none(),
     })
 }
 

@@ -173,6 +173,10 @@ fn best(rods: &[RodForecast]) -> Option<(&RodForecast, &Forecast)> {
     all.min_by(|a, b| a.1.mean.total_cmp(&b.1.mean))
 }
 
+fn named_rod(rod: &RodForecast) -> String {
+    if rod.rod.is_empty() { "no rod".into() } else { format!("rod {}", rod.rod) }
+}
+
 /// Means that differ by less than this share are as good as equal: a campaign's chance is larger.
 const EQUAL: f64 = 0.05;
 
@@ -181,7 +185,9 @@ pub fn comparison(campaign: &Campaign, rods: &[RodForecast], basis: &Basis) -> R
     let all: Vec<(String, &Forecast)> = rods
         .iter()
         .flat_map(|rod| {
-            rod.modes.iter().map(move |forecast| (format!("{} {}", rod.rod, forecast.mode.name()), forecast))
+            rod.modes.iter().map(move |forecast| {
+                (format!("{} {}", rod.rod, forecast.mode.name()).trim().to_owned(), forecast)
+            })
         })
         .collect();
     let um = |size: f64| significant(size / UM, 3);
@@ -198,13 +204,13 @@ pub fn comparison(campaign: &Campaign, rods: &[RodForecast], basis: &Basis) -> R
             (a, b) if a > b => format!(" All others are as good within 5 % but {}.", worse.join(", ")),
             _ => format!(" As good within 5 %: {}.", equal.join(", ")),
         };
-        let name = format!("rod {} in mode {}", rod.rod, least.mode.name());
+        let name = format!("{} in mode {}", named_rod(rod), least.mode.name());
         let size = format!(
             "{} µm in the mean, less than {} µm at 95 % of unseen poses",
             um(least.mean),
             um(least.p95)
         );
-        headline = match all.len() > 1 && all.iter().all(|(_, other)| is_equal(other)) {
+        headline = match all.len() < 2 || all.iter().all(|(_, other)| is_equal(other)) {
             true => format!(
                 "Forecast: no rod or mode is better than another by 5 %. With {name} the error is {size}."
             ),
@@ -215,7 +221,7 @@ pub fn comparison(campaign: &Campaign, rods: &[RodForecast], basis: &Basis) -> R
         .iter()
         .map(|rod| {
             let how = if rod.is_recorded { "as recorded" } else { "chosen by O1" };
-            format!("rod {}: {} poses {how}", rod.rod, rod.poses)
+            format!("{}: {} poses {how}", named_rod(rod), rod.poses)
         })
         .collect();
     let mut blocks = vec![

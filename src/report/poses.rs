@@ -121,7 +121,7 @@ pub fn files(study: &PoseStudy) -> Vec<(String, Vec<u8>)> {
 pub fn report(study: &PoseStudy) -> Report {
     let pair = [
         ("these poses".to_owned(), &study.forecast),
-        ("as many random poses".to_owned(), &study.forecast_random),
+        ("as many random poses, one draw".to_owned(), &study.forecast_random),
     ];
     let sections = vec![
         Section::new(

@@ -199,34 +199,40 @@ pub fn comparison(campaign: &Campaign, rods: &[RodForecast], basis: &Basis) -> R
             asked.map(|(name, other)| format!("{name} ({} µm)", um(other.mean))).collect()
         };
         let (equal, worse) = (named(&|other| is_equal(other)), named(&|other| !is_equal(other)));
-        let equal = match (equal.len(), worse.len()) {
-            (0, _) => String::new(),
-            (a, b) if a > b => format!(" All others are as good within 5 % but {}.", worse.join(", ")),
-            _ => format!(" As good within 5 %: {}.", equal.join(", ")),
-        };
         let name = format!("{} in mode {}", named_rod(rod), least.mode.name());
         let size = format!(
             "{} µm in the mean, less than {} µm at 95 % of unseen poses",
             um(least.mean),
             um(least.p95)
         );
-        headline = match all.len() < 2 || all.iter().all(|(_, other)| is_equal(other)) {
-            true => format!(
-                "Forecast: no rod or mode is better than another by 5 %. With {name} the error is {size}."
+        headline = match (equal.len(), worse.len()) {
+            (0, 0) => format!("Forecast: with {name} the error is {size}."),
+            (_, 0) => {
+                format!(
+                    "Forecast: no rod or mode is better than another by 5 %. With {name} the error is {size}."
+                )
+            }
+            (0, _) => format!("Forecast: {name} leaves the smallest error, {size}."),
+            (a, b) if a > b => format!(
+                "Forecast: with {name}, as with all others within 5 % but {}, the error is {size}.",
+                worse.join(", ")
             ),
-            false => format!("Forecast: {name} leaves the smallest error, {size}.{equal}"),
+            _ => format!(
+                "Forecast: {name} leaves the smallest error, {size}. As good within 5 %: {}.",
+                equal.join(", ")
+            ),
         };
     }
     let poses: Vec<String> = rods
         .iter()
         .map(|rod| {
             let how = if rod.is_recorded { "as recorded" } else { "chosen by O1" };
-            format!("{}: {} poses {how}", named_rod(rod), rod.poses)
+            format!("{}: {} {how}", named_rod(rod), rod.poses)
         })
         .collect();
     let mut blocks = vec![
         Block::Paragraph(basis.words()),
-        Block::Paragraph(format!("{}.", poses.join("; "))),
+        Block::Paragraph(format!("Poses: {}.", poses.join("; "))),
         Block::Figure(stacked(&all)),
         Block::Table(table("forecast", "rod and mode", &all)),
     ];

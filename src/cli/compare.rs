@@ -86,7 +86,12 @@ impl Compare {
         let count = self.count.map(|count| count as usize);
         let rods = rods_and_modes(&campaign, &rods, &budget, &at, count)?;
         let unseen = Forecaster::new(&campaign, planned_setup(&campaign)?, budget.clone(), &at)?.unseen;
-        let basis = Basis { budget, unseen: unseen.words, is_aligned: unseen.is_aligned };
+        let basis = Basis {
+            budget,
+            unseen: unseen.words,
+            is_aligned: unseen.is_aligned,
+            has_clamps: !campaign.clamps.is_empty(),
+        };
         let mut report = report::forecast::comparison(&campaign, &rods, &basis);
         report.provenance = provenance(&campaign);
         Ok(Outcome::new(report::forecast::comparison_json(&campaign, &rods, &basis), report))

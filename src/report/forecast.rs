@@ -142,6 +142,8 @@ pub struct Basis {
     pub unseen: String,
     /// Whether base and tool are aligned anew there.
     pub is_aligned: bool,
+    /// False where no clamp holds the ball: then none can be wrong.
+    pub has_clamps: bool,
 }
 
 impl Basis {
@@ -150,6 +152,7 @@ impl Basis {
         let aligned = if self.is_aligned { "; base and tool are aligned anew there" } else { "" };
         let um = |size: f64| significant(size / UM, 3);
         let clamps = match self.budget.clamps > 0.0 {
+            _ if !self.has_clamps => String::new(),
             true => format!(", clamp places known to {} µm", um(self.budget.clamps)),
             false => ", clamp places known exactly (state clamp_um in [noise] if they are not)".to_owned(),
         };

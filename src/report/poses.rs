@@ -181,7 +181,8 @@ pub fn headline(study: &PoseStudy) -> String {
 /// What the forecast stands on.
 fn assumptions(study: &PoseStudy) -> String {
     let (budget, unseen) = (study.budget.clone(), study.unseen.clone());
-    forecast::Basis { budget, unseen, is_aligned: study.is_aligned }.words()
+    let has_clamps = !study.campaign.clamps.is_empty();
+    forecast::Basis { budget, unseen, is_aligned: study.is_aligned, has_clamps }.words()
 }
 
 fn places(study: &PoseStudy) -> Table {

@@ -1,7 +1,7 @@
 //! Makes again what pages and data of this project were made by, and reports to look at: one program for all of it, for each
 //! takes its time to link.
 //!
-//! `cargo run --release --example regenerate -- nist-table | table3 | readings | campaign | gallery`; what comes after the
+//! `cargo run --release --example regenerate -- nist-table | table3 | forecast | readings | campaign | gallery`; what comes after the
 //! name is explained at the top of the file of that name.
 
 #![allow(missing_docs, clippy::print_stdout)]
@@ -9,6 +9,7 @@
 #[allow(dead_code)]
 #[path = "../tests/dual.rs"]
 mod dual;
+mod forecast_campaigns;
 mod nist_table;
 mod reconstruct_readings;
 mod report_gallery;
@@ -20,10 +21,11 @@ fn main() -> rodcal::Result<()> {
     match std::env::args().nth(1).as_deref() {
         Some("nist-table") => nist_table::main(),
         Some("table3") => table3::main(&arguments),
+        Some("forecast") => forecast_campaigns::main(&arguments)?,
         Some("readings") => reconstruct_readings::main(),
         Some("campaign") => simulate_campaign::main(),
         Some("gallery") => report_gallery::main(&arguments)?,
-        _ => println!("which? nist-table, table3, readings, campaign, gallery"),
+        _ => println!("which? nist-table, table3, forecast, readings, campaign, gallery"),
     }
     Ok(())
 }

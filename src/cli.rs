@@ -78,7 +78,7 @@ enum Command {
     Demo,
     /// How much a rod bends under its weight and the contact force, from its drawing.
     Compliance(compliance::Compliance),
-    /// Which rods none betters, from a catalogue of tubes and ranges of lengths.
+    /// Which rods none betters; which poses to measure, and how accurate the robot will be.
     #[command(subcommand)]
     Design(design::Design),
     /// How much a rod really bends, from readings of its tip under known loads.

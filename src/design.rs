@@ -7,15 +7,22 @@
 //! - [`Intervals`]: how well a design's numbers are known, and which designs cannot be distinguished
 //! - [`Study`]: a search with all of this
 //!
+//! And poses that do not exist yet: which ones a calibration should measure ([`PoseStudy`]), how accurate the robot will be
+//! ([`Forecaster`]), and which rod with which mode is worth it ([`rods_and_modes`]).
+//!
 //! A combination has a number, from 0; lengths vary fastest. Nothing is kept of a rod but its number and its figures, and
 //! nothing of one that is bettered: memory is that of the front.
 
 mod catalogue;
 mod figure;
+mod for_robot;
+mod forecast;
 mod front;
 mod intervals;
 mod limits;
 mod nearest;
+mod poses;
+mod rods_and_modes;
 mod search;
 mod study;
 mod values;
@@ -23,10 +30,16 @@ mod wish;
 
 pub use catalogue::{BUILT_IN, Tube, built_in, built_in_materials};
 pub use figure::{Figure, Figures, Goal};
+pub use for_robot::{ForRobot, Proxy, Ranked, for_robot};
+pub use forecast::{Budget, Forecast, Forecaster, Part, Unseen, Where};
 pub use front::{Design, Front};
 pub use intervals::{Intervals, indistinguishable};
 pub use limits::{Impossible, Limit};
 pub use nearest::{Nearest, Relaxed};
+pub use poses::{
+    Beside, Candidates, Known, Obstacle, PoseCriterion, PoseLimits, PoseStudy, Source, TableHeight, Wanted,
+};
+pub use rods_and_modes::{RodForecast, rods_and_modes};
 pub use search::{Found, Searched, search};
 pub use study::{Base, Shown, Study};
 pub use values::MOST_VALUES;

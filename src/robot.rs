@@ -23,6 +23,7 @@ mod kinematics;
 mod minimal;
 mod moves;
 mod parameter;
+pub mod postures;
 mod predict;
 mod setup;
 mod standard_uncertainty;

@@ -21,6 +21,7 @@ const FLOORS: &[&[&str]] = &[
         "statistics",
         "parallel",
         "least_squares",
+        "optimal_design",
         "spatial",
     ],
     // the engine that knows no physics: nothing but the ground
@@ -28,10 +29,10 @@ const FLOORS: &[&[&str]] = &[
     &["section", "material", "rod"],
     &["beam"],
     &["compliance"],
-    &["design"],
     &["rig"],
     &["robot"],
     &["calibration"],
+    &["design"],
     &["diagnosis"],
     &["report"],
     // the library as its users see it

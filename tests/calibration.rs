@@ -5,6 +5,7 @@
 
 mod applied;
 mod arms;
+mod forecast;
 mod frames;
 mod groups;
 mod held_out;

@@ -4,6 +4,7 @@
 
 mod calibrate;
 mod design;
+mod design_poses;
 mod diagnose;
 mod diagnose_calibration;
 mod files;

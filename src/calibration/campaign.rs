@@ -59,7 +59,9 @@ pub struct Campaign {
     pub base: [f64; 6],
     /// False where the file says nothing about the base; the guess is then the identity.
     pub base_is_given: bool,
-    /// What was recorded.
+    /// All clamps of the file, recorded in or not; none for a tracker and for sockets.
+    pub clamps: Vec<Group>,
+    /// What was recorded; nothing in a plan ([`Campaign::read_plan`]).
     pub measurements: Recording,
     /// What the calibrated robot is judged by.
     pub validation: Option<Recording>,

@@ -31,6 +31,15 @@ pub struct Observability {
 }
 
 impl Observability {
+    /// The unit of a parameter here, SI.
+    pub(super) fn unit(parameter: Parameter) -> f64 {
+        match parameter {
+            Parameter::Compliance(_) => URAD_PER_NM,
+            // a millimetre or a milliradian
+            _ => MM,
+        }
+    }
+
     /// Of the free parameters at `p`, without weights and without what is held.
     pub(super) fn new(problem: &Residuals, p: &DVector<f64>) -> Result<Self> {
         let poses = problem.recording.len();
@@ -41,12 +50,7 @@ impl Observability {
         let mut corner = plain.information_root(p);
         let condition = thin_svd(&with_unit_columns(&corner).0)?.condition_number();
         for (k, parameter) in problem.free.iter().enumerate() {
-            let unit = match parameter {
-                Parameter::Compliance(_) => URAD_PER_NM,
-                // a millimetre or a milliradian
-                _ => MM,
-            };
-            corner.column_mut(k).scale_mut(unit);
+            corner.column_mut(k).scale_mut(Self::unit(*parameter));
         }
         let sigma = thin_svd(&corner)?.singular_values;
         let (first, last) = (sigma.iter().next().copied(), sigma.iter().next_back().copied());

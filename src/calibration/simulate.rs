@@ -8,10 +8,14 @@
 
 mod files;
 mod plan;
+mod planned;
 mod poses;
 
 pub use files::campaign_files;
 pub use plan::{Plan, RobotErrors};
+pub use planned::planned_poses;
+
+use plan::CLAMPS;
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -20,22 +24,13 @@ use super::compensation::{Compensation, Mode};
 use super::problem::Pass;
 use crate::compliance::{Compliance, PAPER_CONTACT_FORCE};
 use crate::error::Result;
+use crate::robot::postures::{anywhere, is_above_table};
 use crate::robot::{Body, Kinematics, Parameter, Robot, Setup, minimal_parameters};
 use crate::rod::Rod;
 use crate::spatial::Pose;
 use crate::statistics::Random;
-use crate::units::{DEG, MM};
+use crate::units::MM;
 
-/// Where the clamps of the paper's fixture could be (500 × 300 × 151 mm, § 5.2; their places are
-/// not published), position in {W} (m) and turn about the vertical (rad). {W} stands upright in the
-/// third clamp.
-const CLAMPS: [([f64; 3], f64); 5] = [
-    ([0.10, 0.20, 0.10], 20.0 * DEG),
-    ([-0.12, 0.12, 0.0], 95.0 * DEG),
-    ([0.0, 0.0, 0.0], 0.0),
-    ([-0.12, -0.12, 0.15], -80.0 * DEG),
-    ([0.10, -0.20, 0.05], 40.0 * DEG),
-];
 /// {0} in {W}, m: the fixture stands in front of the robot, on its table.
 const BASE: [f64; 3] = [-0.62, 0.03, -0.16];
 
@@ -96,7 +91,10 @@ pub fn simulate<'r>(robot: &'r Robot, rod: &Rod, model: &Compliance, plan: &Plan
         displaced: Vec::new(),
     };
     let free = minimal_parameters(robot, truth.tool, rod.tip(), Some(payload));
-    let poses = poses::choose(&truth, &free, &groups, plan)?;
+    let poses = match plan.planned.is_empty() {
+        true => poses::choose(&truth, &free, &groups, plan)?,
+        false => planned::taken(&truth, &groups, plan)?,
+    };
     let measurements = measure(&truth, &compensation, groups, poses, plan);
     let validation = scan(&truth, plan);
     Ok(Simulation { plan: plan.clone(), truth, compliance, measurements, validation, base_guess })
@@ -229,11 +227,11 @@ fn scan(truth: &Setup, plan: &Plan) -> Recording {
     };
     let mut kinematics = Kinematics::new(&short);
     while recording.len() < plan.validation_poses {
-        let q = poses::anywhere(truth.robot, &mut random);
+        let q = anywhere(truth.robot, &mut random);
         kinematics.update(&q, &[]);
         // in front of the robot, above its table
         let tip = kinematics.tip - truth.base_position;
-        if tip.x > 0.2 && tip.z > 0.1 && poses::is_above_table(&kinematics, truth.base_position.z) {
+        if tip.x > 0.2 && tip.z > 0.1 && is_above_table(&kinematics, truth.base_position.z) {
             let pose = recording.len() + 1;
             recording.joint_values.extend(&q);
             recording.rows.push(Row {

@@ -3,10 +3,14 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use rodcal::calibration::{self, Campaign, CompareOptions, Options};
-use rodcal::{Result, report};
+use rodcal::calibration::{self, Campaign, CompareOptions, Options, planned_setup};
+use rodcal::design::{Budget, Forecaster, rods_and_modes};
+use rodcal::report::forecast::Basis;
+use rodcal::rod::Rod;
+use rodcal::{Error, Result, report};
 
 use super::calibrate::{Weights, provenance};
+use super::design::poses::Expected;
 use super::output::Outcome;
 use super::progress::Progress;
 
@@ -23,7 +27,22 @@ pub struct Compare {
     /// Seed of the draws.
     #[arg(long, default_value_t = CompareOptions::default().seed)]
     seed: u64,
+    /// What to expect of every mode before anything is recorded: the error budget from the planned
+    /// poses.
+    #[arg(long, help_heading = FORECAST)]
+    forecast: bool,
+    /// Forecast these rods (TOML) in place of the campaign's own.
+    #[arg(long, value_name = "ROD", num_args = 1.., requires = "forecast", help_heading = FORECAST)]
+    rods: Vec<PathBuf>,
+    /// So many poses in all, chosen by O1 [default: those of the recording; for other rods as many,
+    /// else 30 on each clamp].
+    #[arg(long, value_name = "K", requires = "forecast", help_heading = FORECAST, value_parser = clap::value_parser!(u32).range(1..=20_000))]
+    count: Option<u32>,
+    #[command(flatten, next_help_heading = FORECAST)]
+    expected: Expected,
 }
+
+const FORECAST: &str = "Forecast";
 
 fn draws(text: &str) -> std::result::Result<usize, String> {
     match text.parse() {
@@ -34,6 +53,16 @@ fn draws(text: &str) -> std::result::Result<usize, String> {
 
 impl Compare {
     pub fn run(&self) -> Result<Outcome> {
+        if self.forecast {
+            return self.run_forecast();
+        }
+        if self.expected.is_stated() {
+            return Err(Error::Argument {
+                name: "what a forecast assumes",
+                found: "stated without --forecast".into(),
+                expected: "--forecast too".into(),
+            });
+        }
         let campaign = Campaign::read(&self.campaign)?;
         let options = CompareOptions {
             calibration: Options { robust: self.robust.robust(), ..Options::default() },
@@ -47,5 +76,24 @@ impl Compare {
         let mut report = report::comparison::report(&campaign, &comparison);
         report.provenance = provenance(&campaign);
         Ok(Outcome::new(report::comparison::json(&campaign, &comparison), report))
+    }
+
+    fn run_forecast(&self) -> Result<Outcome> {
+        let campaign = Campaign::read_plan(&self.campaign)?;
+        let rods: Vec<Rod> = self.rods.iter().map(|path| Rod::read(path)).collect::<Result<_>>()?;
+        let budget = Budget { seed: self.seed, ..self.expected.budget(&campaign)? };
+        let at = self.expected.place()?;
+        let count = self.count.map(|count| count as usize);
+        let rods = rods_and_modes(&campaign, &rods, &budget, &at, count)?;
+        let unseen = Forecaster::new(&campaign, planned_setup(&campaign)?, budget.clone(), &at)?.unseen;
+        let basis = Basis {
+            budget,
+            unseen: unseen.words,
+            is_aligned: unseen.is_aligned,
+            has_clamps: !campaign.clamps.is_empty(),
+        };
+        let mut report = report::forecast::comparison(&campaign, &rods, &basis);
+        report.provenance = provenance(&campaign);
+        Ok(Outcome::new(report::forecast::comparison_json(&campaign, &rods, &basis), report))
     }
 }

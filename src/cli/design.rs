@@ -1,9 +1,12 @@
-//! `rodcal design rod DESIGN`.
+//! `rodcal design rod DESIGN`, `rodcal design poses CAMPAIGN`.
+
+pub mod poses;
 
 use std::path::PathBuf;
 
-use clap::{Args, Subcommand};
-use rodcal::design::{MOST_RODS, Searched, Study, Wish};
+use clap::{Args, Subcommand, ValueEnum};
+use rodcal::calibration::Campaign;
+use rodcal::design::{Budget, MOST_RODS, Searched, Study, Where, Wish, for_robot};
 use rodcal::rod::Rod;
 use rodcal::{Error, Result, report};
 
@@ -14,6 +17,8 @@ use super::progress::Progress;
 pub enum Design {
     /// The rods that none betters: lengths, angles, bends and tubes to choose from, limits to keep.
     Rod(DesignRod),
+    /// The poses that a calibration should measure, and how accurate the robot will be.
+    Poses(poses::DesignPoses),
 }
 
 #[derive(Debug, Args)]
@@ -30,6 +35,22 @@ pub struct DesignRod {
     /// Every random number comes from this seed.
     #[arg(long, default_value_t = 1)]
     seed: u64,
+    /// A campaign (TOML): rank the designs by the accuracy that its robot will have.
+    #[arg(long, value_name = "CAMPAIGN", requires = "objective")]
+    campaign: Option<PathBuf>,
+    /// What they are ranked by, with --campaign.
+    #[arg(long, value_enum, requires = "campaign")]
+    objective: Option<Objective>,
+    /// Poses in all for each rod, chosen by O1, with --campaign [default: as many as recorded, else
+    /// 30 on each clamp].
+    #[arg(long, value_name = "K", requires = "campaign", value_parser = clap::value_parser!(u32).range(1..=20_000))]
+    count: Option<u32>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Objective {
+    /// Forecast error of the calibrated robot.
+    Forecast,
 }
 
 const NOTES: &str = "\
@@ -61,6 +82,7 @@ impl Design {
     pub fn run(&self) -> Result<Outcome> {
         match self {
             Design::Rod(rod) => rod.run(),
+            Design::Poses(poses) => poses.run(),
         }
     }
 }
@@ -91,6 +113,18 @@ impl DesignRod {
             ("program".into(), concat!("rodcal ", env!("CARGO_PKG_VERSION")).into()),
         ];
         let files = report::design::files(&study)?;
-        Ok(Outcome { files, ..Outcome::new(report::design::json(&study), report) })
+        let mut json = report::design::json(&study);
+        if let Some(path) = &self.campaign {
+            let campaign = Campaign::read_plan(path)?;
+            let budget = Budget { seed: self.seed, ..Budget::of(&campaign, None, None)? };
+            let count = self.count.map(|count| count as usize);
+            let found = for_robot(&study, &campaign, &budget, &Where::Validation, count)?;
+            json["for_robot"] = report::design::for_robot_json(&found);
+            // before what was looked at
+            let place = report.sections.len().saturating_sub(1);
+            report.sections.insert(place, report::design::for_robot_section(&found));
+            report.provenance.push(("campaign".into(), campaign.file.clone()));
+        }
+        Ok(Outcome { files, ..Outcome::new(json, report) })
     }
 }

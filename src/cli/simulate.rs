@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use rodcal::beam::Physics;
-use rodcal::calibration::simulate::{Plan, campaign_files, simulate};
+use rodcal::calibration::simulate::{Plan, campaign_files, planned_poses, simulate};
 use rodcal::compliance::{Compliance, DEFAULT_ELEMENTS};
 use rodcal::robot::{Parameter, Robot, Setup};
 use rodcal::rod::Rod;
@@ -31,6 +31,10 @@ pub struct Simulate {
     /// Poses on each of the five clamps.
     #[arg(long, value_name = "N", default_value_t = Plan::default().poses_per_clamp as u16, value_parser = clap::value_parser!(u16).range(1..=1000))]
     poses: u16,
+    /// Take these poses in place of chosen ones: a table (CSV) with clamp and joint columns, as
+    /// `design poses --out` writes it for a simulated campaign of the same rod.
+    #[arg(long, value_name = "FILE", conflicts_with = "poses")]
+    planned: Option<PathBuf>,
     /// Poses of the validation.
     #[arg(long, value_name = "N", default_value_t = Plan::default().validation_poses as u16, value_parser = clap::value_parser!(u16).range(4..=10000))]
     validation: u16,
@@ -53,8 +57,13 @@ impl Simulate {
         let (robot_name, robot_text) = self.robot_text()?;
         let robot = Robot::from_text(&self.robot, &robot_text, None, None)?;
         let model = Compliance::of_model(&rod, &Physics::default(), DEFAULT_ELEMENTS)?;
+        let planned = match &self.planned {
+            Some(path) => planned_poses(&robot, &path.display().to_string(), &files::read_text(path)?)?,
+            None => Vec::new(),
+        };
         let plan = Plan {
             seed: self.seed,
+            planned,
             poses_per_clamp: self.poses.into(),
             validation_poses: self.validation.into(),
             rod_factor: self.r_rod,

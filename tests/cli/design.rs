@@ -59,6 +59,28 @@ fn the_front_has_the_promised_keys_and_its_rods_are_rods() {
 }
 
 #[test]
+fn designs_are_ranked_by_the_accuracy_that_a_robot_will_have() {
+    let sandbox = sandbox();
+    sandbox
+        .write("design.toml", &DESIGN.replace("[100, 150, 200]", "150").replace("step = 25", "step = 100"));
+    let line = "design rod design.toml --base rods/5.toml --campaign campaigns/tx90-5/campaign.toml --objective forecast \
+                --count 15";
+    let json = sandbox.run(&format!("{line} --json")).json();
+    let ranked = json["for_robot"]["ranked"].as_array().unwrap();
+    assert!(ranked.len() > 3 && ranked.iter().any(|one| one["rod"] == "5#"), "{ranked:?}");
+    let rms = |one: &serde_json::Value, mode: &str| {
+        let modes = one["modes"].as_array().unwrap();
+        modes.iter().find(|of| of["mode"] == mode).unwrap()["rms"].as_f64().unwrap()
+    };
+    assert!(ranked.windows(2).all(|two| rms(&two[0], "fea") <= rms(&two[1], "fea")));
+    // what is compensated is as good as a rigid rod; what is not is worse
+    assert!(ranked.iter().all(|one| rms(one, "fea") <= rms(one, "none")));
+    assert!(sandbox.run(line).succeeded().stdout.contains("For this robot"));
+    let half = sandbox.run("design rod design.toml --campaign campaigns/tx90-5/campaign.toml");
+    assert!(half.status == Some(2) && half.stderr.contains("--objective"), "{}", half.stderr);
+}
+
+#[test]
 fn the_front_does_not_depend_on_the_number_of_threads() {
     let sandbox = sandbox();
     let [one, four] = ["1", "4"].map(|threads| {

@@ -10,6 +10,7 @@ pub mod error;
 pub mod files;
 pub mod least_squares;
 pub mod linalg;
+pub mod optimal_design;
 pub mod parallel;
 pub mod spatial;
 pub mod statistics;

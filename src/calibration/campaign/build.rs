@@ -61,6 +61,12 @@ impl Campaign {
             tool_is_given: false,
             base: [0.0; 6],
             base_is_given: false,
+            clamps: match &measurements.targets {
+                Targets::Points(_) => {
+                    measurements.groups.iter().filter(|group| !group.name.is_empty()).cloned().collect()
+                }
+                Targets::Sockets(_) => Vec::new(),
+            },
             measurements,
             validation: None,
             refit: Refit::BaseTool,

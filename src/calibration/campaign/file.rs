@@ -69,7 +69,30 @@ impl Campaign {
     pub fn from_texts(file: &str, text: &str, open: &dyn Fn(&str) -> Result<String>) -> Result<Campaign> {
         let toml = TomlText::new(file, text);
         let raw: RawCampaign = toml.parse(REQUIRED).map_err(above_the_sections)?;
-        Reader { file, toml, open, warnings: Vec::new() }.campaign(&raw)
+        let _: Recorded = toml.parse(REQUIRED)?;
+        Reader { file, toml, open, warnings: Vec::new(), is_plan: false }.campaign(&raw)
+    }
+
+    /// Reads a campaign that may not have been recorded yet: `measurements` and `validation` may be missing, or name files that
+    /// do not exist. What is not there is empty.
+    ///
+    /// ```
+    /// use rodcal::prelude::*;
+    ///
+    /// let plan = Campaign::read_plan("campaigns/tx90-5/campaign.toml".as_ref())?;
+    /// assert_eq!((plan.clamps.len(), plan.measurements.len()), (5, 60)); // it was recorded meanwhile
+    /// # Ok::<(), rodcal::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Campaign::read`].
+    pub fn read_plan(path: &Path) -> Result<Campaign> {
+        let directory = path.parent().unwrap_or(Path::new(""));
+        let open = |name: &str| files::read_text(&directory.join(name));
+        let (file, text) = (path.display().to_string(), files::read_text(path)?);
+        let toml = TomlText::new(&file, &text);
+        let raw: RawCampaign = toml.parse(REQUIRED).map_err(above_the_sections)?;
+        Reader { file: &file, toml, open: &open, warnings: Vec::new(), is_plan: true }.campaign(&raw)
     }
 }
 
@@ -81,7 +104,7 @@ struct RawCampaign {
     rod: Option<Spanned<String>>,
     rig: Option<Spanned<String>>,
     contact_force_n: Option<Spanned<Vec<Number>>>,
-    measurements: Spanned<String>,
+    measurements: Option<Spanned<String>>,
     validation: Option<Spanned<String>>,
     base_link: Option<String>,
     tip_link: Option<String>,
@@ -96,6 +119,13 @@ struct RawCampaign {
     parameters: RawParameters,
     #[serde(default)]
     prior: Vec<RawPrior>,
+}
+
+/// What a campaign has beyond a plan.
+#[derive(Deserialize)]
+struct Recorded {
+    #[serde(rename = "measurements")]
+    _measurements: Spanned<String>,
 }
 
 #[derive(Deserialize)]
@@ -179,6 +209,8 @@ struct Reader<'a> {
     toml: TomlText<'a>,
     open: &'a dyn Fn(&str) -> Result<String>,
     warnings: Vec<Warning>,
+    /// Whether recordings may be missing.
+    is_plan: bool,
 }
 
 /// A file that the campaign names, as the user would name it.
@@ -223,12 +255,22 @@ impl Reader<'_> {
             None if clamps.is_empty() => Seen::World,
             None => Seen::Clamps(&clamps),
         };
-        let measurements =
-            self.recording("measurements", &raw.measurements, &robot, seen, Role::Measurements)?;
+        let measurements = match &raw.measurements {
+            Some(name) => self.recording("measurements", name, &robot, seen, Role::Measurements)?,
+            None => None,
+        };
+        let nothing = || super::Recording {
+            targets: match sockets {
+                Some(_) => super::Targets::Sockets(Vec::new()),
+                None => super::Targets::Points(Vec::new()),
+            },
+            ..super::Recording::new(robot.joints.len())
+        };
+        let measurements = measurements.unwrap_or_else(nothing);
         let validation = match &raw.validation {
             Some(name) => {
                 let seen = if sockets.is_some() { seen } else { Seen::World };
-                Some(self.recording("validation", name, &robot, seen, Role::Validation)?)
+                self.recording("validation", name, &robot, seen, Role::Validation)?
             }
             None => None,
         };
@@ -249,6 +291,7 @@ impl Reader<'_> {
             contact_force,
             base: base.unwrap_or_default(),
             base_is_given: raw.base.is_some(),
+            clamps: clamps.iter().map(Clamp::group).collect(),
             measurements,
             validation,
             refit,
@@ -261,10 +304,13 @@ impl Reader<'_> {
             [campaign.base[0], campaign.base[1], campaign.base[2]],
             [campaign.base[3], campaign.base[4], campaign.base[5]],
         );
-        for recording in std::iter::once(&mut campaign.measurements).chain(&mut campaign.validation) {
+        let recordings = std::iter::once(&mut campaign.measurements).chain(&mut campaign.validation);
+        for recording in recordings.filter(|recording| !recording.is_empty()) {
             recording.align_stations(&campaign.robot, guess, campaign.tool)?;
         }
-        self.warnings.extend(checks::about(&campaign, &clamps));
+        if !campaign.measurements.is_empty() {
+            self.warnings.extend(checks::about(&campaign, &clamps));
+        }
         campaign.warnings = self.warnings;
         Ok(campaign)
     }
@@ -315,11 +361,14 @@ impl Reader<'_> {
         robot: &Robot,
         seen: Seen<'_>,
         role: Role,
-    ) -> Result<super::Recording> {
+    ) -> Result<Option<super::Recording>> {
+        if self.is_plan && is_missing((self.open)(name.get_ref())) {
+            return Ok(None);
+        }
         let Named { file, text } = self.named(key, name)?;
         let (recording, warnings) = recording::read(&file, &text, robot, seen, role)?;
         self.warnings.extend(warnings);
-        Ok(recording)
+        Ok(Some(recording))
     }
 
     fn base(&self, raw: Option<&RawBase>) -> Result<Option<[f64; 6]>> {
@@ -393,6 +442,11 @@ impl Reader<'_> {
         let number = |number| Ok(self.toml.finite(key, number)? * what.unit);
         Ok(Vector3::new(number(x)?, number(y)?, number(z)?))
     }
+}
+
+/// True for a file that nobody has written yet.
+fn is_missing(opened: Result<String>) -> bool {
+    matches!(opened, Err(Error::File { source, .. }) if source.kind() == std::io::ErrorKind::NotFound)
 }
 
 /// Three numbers of one unit.

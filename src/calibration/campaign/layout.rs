@@ -1,6 +1,7 @@
 //! Where the ball was held, as the campaign file has it: it decides which columns its recordings
 //! have.
 
+use super::Group;
 use crate::spatial::Pose;
 
 /// Where the ball was, as the campaign file has it.
@@ -18,6 +19,13 @@ pub(super) enum Seen<'a> {
 pub(super) struct Clamp {
     pub id: String,
     pub device: Pose,
+}
+
+impl Clamp {
+    /// As a recording has it.
+    pub fn group(&self) -> Group {
+        Group { name: format!("clamp {}", self.id), device: self.device }
+    }
 }
 
 /// What is known about the sockets of every placement.

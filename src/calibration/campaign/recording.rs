@@ -156,7 +156,8 @@ impl Reader<'_> {
             Seen::World => ([String::new(), String::new()], String::new(), Pose::IDENTITY),
             Seen::Clamps(clamps) => {
                 let clamp = known_clamp(cells, clamps)?;
-                ([clamp.id.clone(), String::new()], format!("clamp {}", clamp.id), clamp.device)
+                let Group { name, device } = clamp.group();
+                ([clamp.id.clone(), String::new()], name, device)
             }
             Seen::Sockets(_) => {
                 let placement = name(cells, "placement", "a name for where the sockets stood")?;

@@ -1,6 +1,6 @@
 //! What is simulated, and with which errors.
 
-use crate::units::{MM, UM};
+use crate::units::{DEG, MM, UM};
 
 /// What is simulated. The defaults are the paper's experiment.
 #[derive(Debug, Clone, PartialEq)]
@@ -9,6 +9,8 @@ pub struct Plan {
     pub seed: u64,
     /// Poses on every clamp.
     pub poses_per_clamp: usize,
+    /// Poses in place of chosen ones: index of the clamp and joint values, rad or m; empty to choose.
+    pub planned: Vec<(usize, Vec<f64>)>,
     /// Poses of the validation.
     pub validation_poses: usize,
     /// The true rod's compliance over that of its model.
@@ -44,6 +46,7 @@ impl Default for Plan {
         Plan {
             seed: 1,
             poses_per_clamp: 30,
+            planned: Vec::new(),
             validation_poses: 100,
             rod_factor: 1.0,
             errors: RobotErrors { length: 0.3 * MM, offset: 1e-3, tilt: 0.3e-3, joint_turn: 0.5e-3 },
@@ -57,3 +60,14 @@ impl Default for Plan {
 
 /// How far from the middle of the sensors' range the ball comes to rest, m.
 pub(super) const AIM: f64 = 0.2 * MM;
+
+/// Where the clamps of the paper's fixture could be (500 × 300 × 151 mm, § 5.2; their places are
+/// not published), position in {W} (m) and turn about the vertical (rad). {W} stands upright in the
+/// third clamp.
+pub(super) const CLAMPS: [([f64; 3], f64); 5] = [
+    ([0.10, 0.20, 0.10], 20.0 * DEG),
+    ([-0.12, 0.12, 0.0], 95.0 * DEG),
+    ([0.0, 0.0, 0.0], 0.0),
+    ([-0.12, -0.12, 0.15], -80.0 * DEG),
+    ([0.10, -0.20, 0.05], 40.0 * DEG),
+];

@@ -1,9 +1,10 @@
 //! One term of a hypothesis as it is reported: its interval, whatever else may be there, and its rivals.
 
 use super::linearised::Linearised;
+use super::priors::MISTAKE;
 use super::search::Search;
 use super::selection::APART;
-use super::{Estimate, FindingPart, ForwardModel, Hypothesis, Parameter, Rival, Term};
+use super::{Estimate, FindingPart, ForwardModel, Hypothesis, Kind, Parameter, Rival, Term};
 use crate::statistics::{chi_squared_survival, student_t_quantile};
 
 /// So many of the effects that may be there besides count for an interval.
@@ -42,13 +43,16 @@ pub(super) fn part(
     // certain than with it
     let gained = (hypothesis.log_probability - rest.log_probability).min(additions[term.candidate]);
     let least = gained - 2.0 * APART.ln();
+    // a mistake is as rare as it is easily looked up: it is no less of a rival
+    let rare = |index: usize| if candidates[index].effect.kind == Kind::Mistake { MISTAKE } else { 1.0 };
     let mut rivals: Vec<Rival> = (0..additions.len())
         .filter(|&index| {
-            index != term.candidate && !candidates[index].is_nonparametric && additions[index] > least
+            let is_near = additions[index] - rare(index).ln() > least;
+            index != term.candidate && !candidates[index].is_nonparametric && is_near
         })
         .filter_map(|index| {
             let other = search.with(&rest, index);
-            let odds = (hypothesis.log_probability - other.log_probability).exp();
+            let odds = (hypothesis.log_probability - other.log_probability).exp() * rare(index);
             let own = other.terms.last()?.clone();
             let (effect, location) = (candidates[index].effect, model.location(&own));
             Some(Rival { effect, location, term: own, hypothesis: other, odds })

@@ -11,7 +11,7 @@ use super::{Candidate, Kind};
 /// Prior probability that the next effect is none, one of the library, or one that nobody has named.
 pub(super) const PRIOR: (f64, f64, f64) = (0.5, 0.4, 0.1);
 /// Share of it that a mistake has: it is named at odds of 1000, where an effect is at 50.
-const MISTAKE: f64 = 0.05;
+pub(super) const MISTAKE: f64 = 0.05;
 
 /// Ln of each candidate's prior over that of none.
 pub(super) fn priors(candidates: &[Candidate]) -> Vec<f64> {

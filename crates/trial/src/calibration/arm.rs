@@ -34,10 +34,6 @@ fn rotation(axis: usize, angle: f64) -> Matrix4<f64> {
     m
 }
 
-fn shift(x: f64, z: f64) -> Matrix4<f64> {
-    Matrix4::new_translation(&Vector3::new(x, 0.0, z))
-}
-
 /// A frame from position and roll, pitch, yaw: Rz·Ry·Rx.
 pub fn frame(xyz: &Vector3<f64>, rpy: &Vector3<f64>) -> Matrix4<f64> {
     let turned = rotation(2, rpy.z) * rotation(1, rpy.y) * rotation(0, rpy.x);
@@ -46,21 +42,47 @@ pub fn frame(xyz: &Vector3<f64>, rpy: &Vector3<f64>) -> Matrix4<f64> {
 
 /// A point of a frame.
 pub fn point(frame: &Matrix4<f64>, p: &Vector3<f64>) -> Vector3<f64> {
-    (frame * Vector4::new(p.x, p.y, p.z, 1.0)).xyz()
+    turned(frame, p) + column(frame, 3)
 }
 
 /// A direction of a frame.
 pub fn turned(frame: &Matrix4<f64>, v: &Vector3<f64>) -> Vector3<f64> {
-    (frame * Vector4::new(v.x, v.y, v.z, 0.0)).xyz()
+    column(frame, 0) * v.x + column(frame, 1) * v.y + column(frame, 2) * v.z
+}
+
+/// An axis of a frame, or its origin.
+pub fn column(frame: &Matrix4<f64>, k: usize) -> Vector3<f64> {
+    Vector3::new(frame[(0, k)], frame[(1, k)], frame[(2, k)])
+}
+
+/// Two axes turned towards each other.
+fn turn(from: &mut Vector3<f64>, to: &mut Vector3<f64>, angle: f64) {
+    let (s, c) = angle.sin_cos();
+    (*from, *to) = (*from * c + *to * s, *to * c - *from * s);
+}
+
+/// The frame behind a link, axis by axis: products of 4×4 matrices take most of a trial's time.
+fn behind(frame: &Matrix4<f64>, numbers: &[f64; 5], q: f64) -> Matrix4<f64> {
+    let [theta, d, a, alpha, beta] = *numbers;
+    let [mut x, mut y, mut z, mut at] = [0, 1, 2, 3].map(|k| column(frame, k));
+    turn(&mut x, &mut y, theta + q);
+    at += x * a + z * d;
+    if alpha != 0.0 {
+        turn(&mut y, &mut z, alpha);
+    }
+    if beta != 0.0 {
+        turn(&mut z, &mut x, beta);
+    }
+    let of = |v: Vector3<f64>, last: f64| Vector4::new(v.x, v.y, v.z, last);
+    Matrix4::from_columns(&[of(x, 0.0), of(y, 0.0), of(z, 0.0), of(at, 1.0)])
 }
 
 /// The base and the frame behind every link.
 pub fn frames(arm: &[Link], base: &Matrix4<f64>, q: &[f64]) -> Vec<Matrix4<f64>> {
-    let mut frames = vec![*base];
+    let mut frames = Vec::with_capacity(arm.len() + 1);
+    frames.push(*base);
     for (link, q) in arm.iter().zip(q) {
-        let [theta, d, a, alpha, beta] = link.numbers;
-        let last = frames[frames.len() - 1];
-        frames.push(last * rotation(2, theta + q) * shift(a, d) * rotation(0, alpha) * rotation(1, beta));
+        frames.push(behind(&frames[frames.len() - 1], &link.numbers, *q));
     }
     frames
 }

@@ -12,7 +12,7 @@ use nalgebra::{DMatrix, DVector, Vector3};
 
 use super::draw::{place, shift_place};
 use super::effect::Effect;
-use super::site::{Devices, Site, gravity};
+use super::site::{Devices, Site, gravity, lever};
 use super::taken_up;
 use crate::place::Place;
 use crate::truth::Detectability;
@@ -28,7 +28,6 @@ const TURN: f64 = 1e-3;
 const MOVE: f64 = 3e-3;
 /// Singular values below this share of the largest are none; columns are scaled before.
 const RANK: f64 = 1e-9;
-const URAD_STEP: f64 = 1e-5;
 
 struct Rival {
     name: &'static str,
@@ -119,20 +118,10 @@ impl<'a> Oracle<'a> {
         let site = self.site;
         let rows = site.rows.len();
         let n = site.nominal.len();
-        let levers: Vec<Vec<Vector3<f64>>> = (0..rows)
-            .map(|row| {
-                let q = &site.rows[row].q;
-                let at = site.ball(row, q, &[]);
-                let lever = |j: usize| {
-                    let mut moved = q.clone();
-                    moved[j] += URAD_STEP;
-                    (site.ball(row, &moved, &[]) - at) / URAD_STEP
-                };
-                (0..n).map(lever).collect()
-            })
-            .collect();
         let loads: Vec<_> = (0..rows).map(|row| site.loads(row)).collect();
         let tips: Vec<Vector3<f64>> = (0..rows).map(|row| site.ball(row, &site.rows[row].q, &[])).collect();
+        let levers: Vec<Vec<Vector3<f64>>> =
+            (0..rows).map(|row| (0..n).map(|j| lever(&loads[row].1[j], &tips[row])).collect()).collect();
         let torque = |row: usize, j: usize| loads[row].0[j];
         let angle = |row: usize, j: usize| site.rows[row].q[j];
         let step = |row: usize, j: usize| angle(row, j) - angle(row.saturating_sub(1), j);

@@ -1,6 +1,6 @@
 //! A recording as it really happened: the arm, the rod, who measured, and every pose.
 
-use nalgebra::{DMatrix, DVector, Matrix3, Matrix4, Vector3};
+use nalgebra::{DVector, Matrix3, Matrix4, Vector3};
 
 use super::arm::{self, Arm, Pull, turned};
 use super::effect::Effect;
@@ -9,8 +9,6 @@ use rodcal_base::units::STANDARD_GRAVITY;
 
 /// Times that torques and the joints that they turn are computed from each other.
 const ROUNDS: usize = 3;
-/// Step of a numerical derivative, rad.
-const STEP: f64 = 1e-5;
 
 /// How the ball was measured.
 #[derive(Debug, Clone, PartialEq)]
@@ -171,7 +169,9 @@ impl Site {
         effects: &[Effect],
     ) -> (Vec<f64>, Vec<f64>) {
         let (mut turned, mut torque) = (joints.to_vec(), Vec::new());
-        for _ in 0..ROUNDS {
+        let turns = |effect: &Effect| matches!(effect, Effect::Compliance { .. } | Effect::Nonlinear { .. });
+        let rounds = if self.has_masses || effects.iter().any(turns) { ROUNDS } else { 1 };
+        for _ in 0..rounds {
             let frames = arm::frames(arm, &self.base, &turned);
             torque = arm::torques(arm, &frames, &gravity(), &self.pulls(&frames[arm.len()], row, effects));
             for (j, tau) in torque.iter().enumerate() {
@@ -295,21 +295,23 @@ impl Site {
             if off.norm() < 1e-10 {
                 return Some(q);
             }
-            let lever = DMatrix::from_fn(3, q.len(), |_, _| 0.0);
-            let mut lever = lever;
-            for j in 0..q.len() {
-                let mut moved = q.clone();
-                moved[j] += STEP;
-                lever.set_column(j, &((self.ball(row, &moved, effects) - at) / STEP));
-            }
-            let square = &lever * lever.transpose() + DMatrix::identity(3, 3) * 1e-9;
+            // what joints do by their loads and gears is too little to lead astray
+            let frames = arm::frames(&self.real, &self.base, &q);
+            let levers: Vec<Vector3<f64>> = frames[..q.len()].iter().map(|joint| lever(joint, &at)).collect();
+            let square: Matrix3<f64> = levers.iter().map(|lever| lever * lever.transpose()).sum();
             let stride = off * (0.4 / off.norm()).min(1.0);
-            let solved = square.cholesky()?.solve(&DVector::from_column_slice(stride.as_slice()));
-            let turn = lever.transpose() * solved;
-            q.iter_mut().zip(turn.iter()).for_each(|(q, turn)| *q += turn.clamp(-0.5, 0.5));
+            let solved = (square + Matrix3::identity() * 1e-9).cholesky()?.solve(&stride);
+            for (q, lever) in q.iter_mut().zip(&levers) {
+                *q += lever.dot(&solved).clamp(-0.5, 0.5);
+            }
         }
         None
     }
+}
+
+/// How a point moves when the joint whose axis is that of `frame` turns, m/rad.
+pub fn lever(frame: &Matrix4<f64>, at: &Vector3<f64>) -> Vector3<f64> {
+    arm::column(frame, 2).cross(&(at - arm::column(frame, 3)))
 }
 
 /// How much further a joint turns under load.

@@ -6,7 +6,7 @@
 //! files (15 %), or single readings that were misread (6 %). Friction accompanies some of the
 //! effects.
 
-mod actual;
+pub(crate) mod actual;
 mod again;
 mod asked;
 mod bench;
@@ -19,7 +19,7 @@ mod effect;
 mod made;
 mod memory;
 mod mistake;
-mod noise;
+pub(crate) mod noise;
 mod oracle;
 mod protocol;
 pub mod residuals;
@@ -38,7 +38,7 @@ use self::oracle::Oracle;
 pub use self::protocol::Columns;
 use super::Case;
 use crate::chance::{happens, log_uniform};
-use crate::truth::{Concealed, Detectability, Kind, Parameter, Truth};
+use crate::truth::{Concealed, Kind, Parameter, Truth};
 use rodcal_base::statistics::Random;
 use rodcal_base::units::{MM, UM};
 
@@ -255,6 +255,7 @@ fn truth(case: String, mut drawn: Drawn, asked: &Bench) -> Truth {
     Truth {
         case,
         kind: *kind,
+        conflict: None,
         effects: concealed,
         companions,
         numbers_off: drawn.times,
@@ -296,26 +297,11 @@ fn parameters(bench: &Bench, effect: &Effect, with: &[f64]) -> Vec<Parameter> {
     effect.parameters().into_iter().map(of).collect()
 }
 
-/// A mistake as it is concealed: files that do not fit each other leave nothing to detect.
+/// A mistake as it is concealed.
 fn mistaken(drawn: &Drawn, mistake: &Mistake) -> Concealed {
-    let place = mistake.place(&drawn.right);
     let parameter = |(name, value): (&str, f64)| Parameter { name: name.into(), value, with_numbers: None };
-    Concealed {
-        effect: mistake.name().into(),
-        location: place.to_string(),
-        parameters: mistake.parameters().into_iter().map(parameter).collect(),
-        size_over_noise: f64::MAX,
-        detectability: Detectability {
-            against_none: f64::MAX,
-            against_rival: f64::MAX,
-            against_pair: None,
-            best_rival: String::new(),
-            class: Vec::new(),
-            places: vec![place.clone()],
-            stations_mm: None,
-        },
-        place,
-    }
+    let parameters = mistake.parameters().into_iter().map(parameter).collect();
+    Concealed::mistake(mistake.name(), mistake.place(&drawn.right), parameters)
 }
 
 /// Root mean square of what the clean rod departs from a linear one, m.

@@ -6,6 +6,7 @@ use nalgebra::{Matrix4, Vector3, Vector4};
 
 use crate::chance::{happens, log_uniform};
 use rodcal_base::statistics::Random;
+use rodcal_base::units::DEG;
 
 /// A joint and its link: Rz(θ + q)·Tz(d)·Tx(a)·Rx(α)·Ry(β).
 #[derive(Debug, Clone, PartialEq)]
@@ -103,6 +104,14 @@ pub fn torques(arm: &[Link], frames: &[Matrix4<f64>], gravity: &Vector3<f64>, pu
     (0..arm.len()).map(about).collect()
 }
 
+/// Moment of weight and pulls about the base, N·m.
+pub fn moment(arm: &[Link], frames: &[Matrix4<f64>], gravity: &Vector3<f64>, pulls: &[Pull]) -> Vector3<f64> {
+    let from = column(&frames[0], 3);
+    let weights =
+        arm.iter().zip(&frames[1..]).map(|(link, at)| (gravity * link.mass, point(at, &link.centre)));
+    weights.chain(pulls.iter().copied()).map(|(force, at)| (at - from).cross(&force)).sum()
+}
+
 /// A six-axis arm as makers build them: with a spherical wrist, or with three parallel axes and an offset wrist.
 pub fn draw(random: &mut Random) -> (Arm, &'static str) {
     let spherical = happens(random, 0.5);
@@ -145,18 +154,61 @@ fn rounded(value: f64) -> f64 {
     (value * 1e4).round() / 1e4
 }
 
-/// The arm as it was really built.
-pub fn built(nominal: &[Link], random: &mut Random) -> Arm {
+/// How well the numbers of a robot file are known, 1 σ.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Known {
+    /// Lengths, m; twists and joint zeros, rad; share of masses and centres.
+    pub length: f64,
+    pub angle: f64,
+    pub zero: f64,
+    pub mass: f64,
+    /// False: the file says nothing and means these, the defaults.
+    pub is_stated: bool,
+}
+
+/// Least distance from its frame that the share of a centre's uncertainty is of, m.
+const LEAST_DISTANCE: f64 = 0.02;
+/// No link is lighter than this share of what its file says.
+const LIGHTEST: f64 = 0.1;
+
+impl Known {
+    /// What half of the files state; the others mean the defaults.
+    pub fn draw(random: &mut Random) -> Known {
+        let stated = Known {
+            length: (log_uniform(random, 0.1, 1.0) * 100.0).round() * 1e-5,
+            angle: (log_uniform(random, 0.02, 0.1) * 1e3).round() * 1e-3 * DEG,
+            zero: (log_uniform(random, 0.05, 0.3) * 1e3).round() * 1e-3 * DEG,
+            mass: random.uniform(5.0, 30.0).round() * 1e-2,
+            is_stated: true,
+        };
+        let default = Known { length: 1e-3, angle: 0.1 * DEG, zero: 0.3 * DEG, mass: 0.2, is_stated: false };
+        if happens(random, 0.5) { stated } else { default }
+    }
+
+    /// Of a coordinate of a link's centre, m.
+    pub fn centre(&self, link: &Link) -> f64 {
+        self.mass * link.centre.norm().max(LEAST_DISTANCE)
+    }
+
+    /// Of the five numbers of a link. An axis that is parallel to the next is not moved along itself, and one that is not has
+    /// no β.
+    pub fn numbers(&self, link: &Link) -> [f64; 5] {
+        let is_parallel = link.numbers[3].abs() < 1e-9;
+        let d = if is_parallel { 0.0 } else { self.length };
+        [self.zero, d, self.length, self.angle, if is_parallel { self.angle } else { 0.0 }]
+    }
+}
+
+/// The arm as it was really built: off by `times` what is known.
+pub fn built(nominal: &[Link], known: &Known, times: f64, random: &mut Random) -> Arm {
     let one = |link: &Link, random: &mut Random| {
-        let mut link = link.clone();
-        let [theta, d, a, alpha, beta] = &mut link.numbers;
-        let is_parallel = alpha.abs() < 1e-9;
-        *theta += 1e-3 * random.normal();
-        *d += if is_parallel { 0.0 } else { 0.3e-3 * random.normal() };
-        *a += 0.3e-3 * random.normal();
-        *alpha += 0.5e-3 * random.normal();
-        *beta += if is_parallel { 0.5e-3 * random.normal() } else { 0.0 };
-        link
+        let mut real = link.clone();
+        for (number, u) in real.numbers.iter_mut().zip(known.numbers(link)) {
+            *number += times * u * random.normal();
+        }
+        real.mass *= (1.0 + times * known.mass * random.normal()).max(LIGHTEST);
+        real.centre += Vector3::from_fn(|_, _| times * known.centre(link) * random.normal());
+        real
     };
     nominal.iter().map(|link| one(link, random)).collect()
 }

@@ -1,18 +1,27 @@
-//! All that a calibration can take up: geometry, base, tool, drives where masses are known, places of sockets.
+//! All that a calibration can take up: geometry, base, tool, drives where masses are known, places of sockets, and the numbers
+//! of the files.
 
 use nalgebra::{DMatrix, DVector, Matrix4, Vector3};
 
 use super::arm;
+use super::numbers::{drives, numbers};
 use super::site::{Devices, Row, Site, lever};
 use rodcal_base::units::UM;
 
 /// Standard deviation of the stated distance between two sockets, m.
 pub const DISTANCE_SD: f64 = 10.0 * UM;
+/// Of the place of a socket, m.
+const ANYWHERE: f64 = 0.1;
 
-/// As columns of every coordinate (and of the distances between sockets, behind them), in noises.
-pub fn columns(site: &Site) -> DMatrix<f64> {
-    let mut columns: Vec<Vec<f64>> =
-        of_robot(site).into_iter().map(|column| column.as_slice().to_vec()).collect();
+/// What a standard uncertainty of each number does to every coordinate, in noises that know nothing of each other, and to the
+/// distances between sockets behind them; and by how many of them the file is off.
+pub fn columns(site: &Site) -> (DMatrix<f64>, Vec<f64>) {
+    let numbers = numbers(site, &drives(site));
+    let mut off: Vec<f64> = numbers.iter().map(|number| number.off).collect();
+    let mut columns: Vec<Vec<f64>> = numbers
+        .iter()
+        .map(|number| site.scatter.whitened(site, &number.column).as_slice().to_vec())
+        .collect();
     if let Devices::Sockets(sockets, _) = &site.devices {
         let pairs: Vec<[usize; 2]> = (0..sockets.len())
             .filter(|&k| sockets[k].1 == 0 && k + 1 < sockets.len())
@@ -22,20 +31,22 @@ pub fn columns(site: &Site) -> DMatrix<f64> {
         for k in 0..sockets.len() {
             for axis in 0..3 {
                 let of_row =
-                    |row: &Row| [0, 1, 2].map(|a| if row.group == k && a == axis { 1.0 } else { 0.0 });
-                let mut column: Vec<f64> = site.rows.iter().flat_map(of_row).collect();
+                    |row: &Row| [0, 1, 2].map(|a| if row.group == k && a == axis { ANYWHERE } else { 0.0 });
+                let column = DVector::from_vec(site.rows.iter().flat_map(of_row).collect());
+                let mut column = site.scatter.whitened(site, &column).as_slice().to_vec();
                 column.extend(pairs.iter().map(|&[a, b]| {
                     let along = (sockets[b].2 - sockets[a].2).normalize();
                     // the socket itself is on the other side of the equation
                     let side = f64::from(u8::from(k == a)) - f64::from(u8::from(k == b));
-                    side * along[axis] * site.noise / DISTANCE_SD
+                    side * along[axis] * ANYWHERE / DISTANCE_SD
                 }));
                 columns.push(column);
+                off.push(0.0);
             }
         }
     }
     let rows = columns.first().map_or(0, Vec::len);
-    DMatrix::from_fn(rows, columns.len(), |i, j| columns[j][i]) / site.noise
+    (DMatrix::from_fn(rows, columns.len(), |i, j| columns[j][i]), off)
 }
 
 /// What of it turns and shifts the robot: ∂coordinate/∂parameter, m per unit of SI. With z a joint's axis through o, x and y
@@ -91,7 +102,7 @@ mod tests {
     #[test]
     fn columns_are_what_a_slightly_different_robot_does() {
         let needs = Needs { masses: Some(true), rod: true, ..Needs::default() };
-        let site = setup::draw(needs, &mut Random::seeded(3, 0));
+        let site = setup::draw(needs, &[], &mut Random::seeded(3, 0));
         let rest = |site: &Site| site.each(|row, q| site.ball(row, q, &[]));
         let at_rest = rest(&site);
         let columns = of_robot(&site);

@@ -42,6 +42,7 @@ fn truth(case: usize, kind: Kind, effects: Vec<Concealed>) -> Truth {
     Truth {
         case: format!("rig/case-{case:04}"),
         kind,
+        conflict: None,
         effects,
         companions: Vec::new(),
         numbers_off: 1.0,

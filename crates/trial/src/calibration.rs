@@ -58,6 +58,9 @@ const SHARES: [(Kind, f64); 5] = [
 const BELOW: (f64, f64) = (0.3, 0.1);
 /// Multiples of its detection limit from which an effect of several is drawn, and unknown physics.
 const FAINTEST: [f64; 2] = [3.0, 2.0];
+/// So often an effect is drawn anew until its detection limit is below this share of its largest size.
+const DRAWN: usize = 5;
+const SEEN: f64 = 0.25;
 /// Multiples of its detection limit of an effect that another one imitates.
 const CONFLICT: [f64; 2] = [3.0, 30.0];
 /// How often several effects are three.
@@ -168,20 +171,27 @@ fn effects(
         return vec![if conflict.is_scaled() { largest.scaled(share.min(1.0)) } else { largest }];
     }
     let of = |&number: &usize| {
-        let largest = match kind {
+        let mut draw = || match kind {
             Kind::Unknown => beyond::beyond(number, site, random),
             _ => draw::library(number, site, random),
         };
-        let limit = oracle.limit(&largest).clamp(1e-4, 1.0);
+        // at another joint or in another direction it may be seen
+        let tried: Vec<(f64, Effect)> = (0..DRAWN)
+            .map(|_| draw())
+            .map(|largest| (oracle.limit(&largest), largest))
+            .scan(false, |is_seen, tried| (!std::mem::replace(is_seen, tried.0 < SEEN)).then_some(tried))
+            .collect();
+        let (limit, largest) = tried.into_iter().next_back()?;
+        let limit = limit.clamp(1e-4, 1.0);
         let (least, most) = match kind {
             Kind::Single if happens(random, BELOW.0) => (BELOW.1 * limit, limit),
             Kind::Single => (limit, 1.0),
             Kind::Pair => ((FAINTEST[0] * limit).min(0.5), 1.0),
             _ => ((FAINTEST[1] * limit).min(0.5), 1.0),
         };
-        largest.scaled(log_uniform(random, least, most))
+        Some(largest.scaled(log_uniform(random, least, most)))
     };
-    numbers.iter().map(of).collect()
+    numbers.iter().filter_map(of).collect()
 }
 
 fn truth(case: String, drawn: &Drawn, asked: &Question) -> Truth {

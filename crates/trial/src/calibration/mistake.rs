@@ -1,7 +1,7 @@
 //! What may be written down wrongly of a calibration: signs, orders, units, zeros, rows, frames, files.
 //!
 //! A mistake is drawn only where it shows: where the robot as its file has it then misses a third of the points by a
-//! thirtieth of its reach.
+//! thirtieth of its reach, by a tenth where only a first guess is wrong.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -21,8 +21,9 @@ use rodcal_base::units::DEG;
 const KINDS: usize = 15;
 /// Tries until one shows.
 const TRIES: usize = 200;
-/// Share of the points that are missed, and by how much of the reach.
+/// Share of the points that are missed, and by how much of the reach; and by how much where only a first guess is wrong.
 const SHOWS: (f64, f64) = (0.33, 1.0 / 30.0);
+const GUESS: f64 = 0.1;
 
 /// Something that was written wrongly; joints, axes and clamps from 0.
 #[derive(Debug, Clone, PartialEq)]
@@ -97,7 +98,8 @@ pub fn draw(right: &Written, random: &mut Random) -> Mistake {
             14 if right.site.rod.is_some() => Mistake::Rod(Rod::drawing(random)),
             _ => Mistake::Stuck(random.index(3)),
         };
-        if mistake.is_possible(&right.site) && shows(&mistake.made(right), right) {
+        let least = if mistake.is_guess() { GUESS } else { SHOWS.1 };
+        if mistake.is_possible(&right.site) && shows(&mistake.made(right), right, least) {
             return mistake;
         }
     }
@@ -123,6 +125,14 @@ impl Mistake {
             Mistake::ToolOrder(_) => site.rod.is_none() && !site.has_sockets(),
             _ => true,
         }
+    }
+
+    /// True where nothing is wrong but a first guess, which a calibration corrects.
+    fn is_guess(&self) -> bool {
+        matches!(
+            self,
+            Mistake::BaseInverse | Mistake::BaseOrder | Mistake::BaseInMetres | Mistake::ToolOrder(_)
+        )
     }
 
     /// What is written by whoever makes it.
@@ -253,7 +263,7 @@ fn displace(wrong: &mut Written, by: isize, with_clamps: bool) {
 
 /// True where the robot of the files misses many of the points that they state: with sockets, of those that it reached when
 /// nothing was written wrongly.
-fn shows(wrong: &Written, right: &Written) -> bool {
+fn shows(wrong: &Written, right: &Written, least: f64) -> bool {
     let reach: f64 = right.site.nominal.iter().map(|l| l.numbers[1].abs() + l.numbers[2].abs()).sum();
     let stated = |written: &Written, row: usize| {
         let own = &written.site;
@@ -270,7 +280,7 @@ fn shows(wrong: &Written, right: &Written) -> bool {
     let misses = |row: usize| {
         let (tip, seen) = stated(wrong, row);
         let goal: Vector3<f64> = seen.unwrap_or_else(|| stated(right, row).0);
-        (tip - goal).norm() > SHOWS.1 * reach
+        (tip - goal).norm() > least * reach
     };
     (0..count).filter(|&row| misses(row)).count() as f64 > SHOWS.0 * count as f64
 }
@@ -295,12 +305,12 @@ mod tests {
         let mut names = std::collections::BTreeSet::new();
         for device in 0..3 {
             let right = right(device, 4);
-            assert!(!shows(&right, &right));
+            assert!(!shows(&right, &right, SHOWS.1));
             let files = crate::calibration::text::files(&right);
             for seed in 0..30 {
                 let mistake = draw(&right, &mut Random::seeded(seed, 1));
                 let wrong = mistake.made(&right);
-                assert!(shows(&wrong, &right) && crate::calibration::text::files(&wrong) != files);
+                assert!(shows(&wrong, &right, SHOWS.1) && crate::calibration::text::files(&wrong) != files);
                 names.insert(mistake.name());
             }
         }

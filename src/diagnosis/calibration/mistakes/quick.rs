@@ -95,7 +95,18 @@ pub(super) fn fit(draft: &Draft, body: &Body, limit: f64) -> Option<Fit> {
     if rough.median > limit {
         return None;
     }
-    refined(draft, body, rough)
+    let setup = Setup::new(body.robot, Pose::IDENTITY, rough.tool);
+    refined(draft, body, State { setup, bases: rough.bases }, rough.median)
+}
+
+/// Fits a draft from where another one's fit ended: rows that hardly count there may be others than from the rough start.
+pub(super) fn fit_from(draft: &Draft, body: &Body, start: &Fit, rough: f64) -> Option<Fit> {
+    let mut bases = start.bases.clone();
+    bases.truncate(draft.stations);
+    if !draft.has_sockets() && bases.len() < draft.stations {
+        return None;
+    }
+    refined(draft, body, State { setup: start.setup(body), bases }, rough)
 }
 
 fn rough(draft: &Draft, body: &Body) -> Option<Rough> {
@@ -198,14 +209,13 @@ struct State<'a> {
     bases: Vec<Pose>,
 }
 
-fn refined(draft: &Draft, body: &Body, rough: Rough) -> Option<Fit> {
-    let Rough { bases, tool, median } = rough;
-    let mut state = State { setup: Setup::new(body.robot, Pose::IDENTITY, tool), bases };
+fn refined<'a>(draft: &Draft, body: &Body<'a>, mut state: State<'a>, rough: f64) -> Option<Fit> {
     let mut torque = vec![0.0; draft.joints.len()];
     let mut deflection = vec![Vector3::zeros(); draft.len()];
     load(draft, body, &state, &mut torque, &mut deflection);
     let sd = sizes(draft, body, &torque);
-    let nominal: Vec<f64> = body.free.iter().map(|&p| state.setup.get(p)).collect();
+    let as_drawn = Setup::new(body.robot, Pose::IDENTITY, state.setup.tool);
+    let nominal: Vec<f64> = body.free.iter().map(|&p| as_drawn.get(p)).collect();
     let least = LEAST_SCALE * body.reach;
     let mut best: Option<(f64, f64, State, Vec<Vector3<f64>>)> = None;
     for _ in 0..MOST_STEPS {
@@ -233,7 +243,7 @@ fn refined(draft: &Draft, body: &Body, rough: Rough) -> Option<Fit> {
         tool: state.setup.tool,
         links: body.free.iter().map(|&p| (p, state.setup.get(p))).collect(),
         bases: state.bases,
-        rough: median,
+        rough,
         log_likelihood,
     })
 }
@@ -415,6 +425,12 @@ fn density(lengths: &[f64], scale: f64) -> f64 {
 }
 
 impl Fit {
+    fn setup<'a>(&self, body: &Body<'a>) -> Setup<'a> {
+        let mut setup = Setup::new(body.robot, Pose::IDENTITY, self.tool);
+        self.links.iter().for_each(|&(parameter, value)| setup.set(parameter, value));
+        setup
+    }
+
     /// Distances of the tip of every row of `draft` from its point, m, if its station were `station`.
     pub fn lengths_at(&self, draft: &Draft, body: &Body, station: usize) -> Vec<f64> {
         let mut there = draft.clone();
@@ -424,9 +440,7 @@ impl Fit {
 
     /// Distances of the tip of every row of `draft` from its point, m.
     pub fn lengths(&self, draft: &Draft, body: &Body) -> Vec<f64> {
-        let mut setup = Setup::new(body.robot, Pose::IDENTITY, self.tool);
-        self.links.iter().for_each(|&(parameter, value)| setup.set(parameter, value));
-        let state = State { setup, bases: self.bases.clone() };
+        let state = State { setup: self.setup(body), bases: self.bases.clone() };
         let mut torque = vec![0.0; draft.joints.len()];
         let mut deflection = vec![Vector3::zeros(); draft.len()];
         load(draft, body, &state, &mut torque, &mut deflection);

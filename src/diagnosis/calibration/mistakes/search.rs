@@ -9,7 +9,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::super::effects::mistakes::UNIT_MISTAKE;
 use super::draft::{Change, Draft};
 use super::moves::{Move, turn};
-use super::quick::{Body, Fit, fit};
+use super::quick::{Body, Fit, fit, fit_from};
 use crate::parallel::in_parallel;
 use crate::spatial::Pose;
 use crate::statistics::median;
@@ -103,12 +103,18 @@ impl Search<'_> {
                 None => None,
             };
             let Some(next) = next else { break };
+            // what another start of the same fit explains is no change
+            let again = self.restarted(best.clone(), &next);
+            if again.score - best.score > ODDS {
+                best = again;
+                continue;
+            }
             best = self.sharpened(next);
         }
         // what a later one made needless goes
         loop {
             let needless = (0..best.steps.len()).find_map(|k| {
-                let rest = self.state(&without(&best.steps, k), f64::INFINITY)?;
+                let rest = self.without(&best, k)?;
                 (best.steps.len() > 1 && !self.is_better(&best, &rest)).then_some(rest)
             });
             match needless {
@@ -142,6 +148,28 @@ impl Search<'_> {
         let body = &self.bodies[thin.body];
         let fit = fit(&thin, body, limit)?;
         Some(self.scored(steps.to_vec(), thin, fit))
+    }
+
+    /// The state, or what it becomes where its fit begins with that of another one, whichever is more probable: rows that a
+    /// mistake or a move touches pull at a fit, and one that has let them go is the better one with any reading of them.
+    fn restarted(&self, state: State, start: &State) -> State {
+        if state.thin.body != start.thin.body {
+            return state;
+        }
+        let body = &self.bodies[state.thin.body];
+        let again = fit_from(&state.thin, body, &start.fit, state.fit.rough)
+            .map(|fit| self.scored(state.steps.clone(), state.thin.clone(), fit));
+        match again {
+            Some(again) if again.score > state.score => again,
+            _ => state,
+        }
+    }
+
+    /// A state without one of its changes.
+    fn without(&self, state: &State, k: usize) -> Option<State> {
+        let mut steps = state.steps.to_vec();
+        steps.remove(k);
+        Some(self.restarted(self.state(&steps, f64::INFINITY)?, state))
     }
 
     /// Always the same rows of the recording, so that states can be compared row by row.
@@ -312,7 +340,7 @@ impl Search<'_> {
 
     /// One change of a state against the state without it.
     fn judged(&self, best: &State, k: usize) -> Option<Found> {
-        let rest = self.state(&without(&best.steps, k), f64::INFINITY)?;
+        let rest = self.without(best, k)?;
         let square: f64 = pairs(&rest, best).iter().map(|(old, new)| old * old - new * new).sum();
         let explains = (square / best.thin.len().max(1) as f64).max(0.0).sqrt();
         let log_odds = (best.score - rest.score).min(700.0);
@@ -351,12 +379,6 @@ fn width(draft: &Draft, rows: &[usize]) -> f64 {
 
 fn is_failed(fit: &Fit, reach: f64) -> bool {
     median(&fit.residuals).is_some_and(|left| left > FAILED * reach)
-}
-
-fn without(steps: &[Step], k: usize) -> Vec<Step> {
-    let mut rest = steps.to_vec();
-    rest.remove(k);
-    rest
 }
 
 /// Residuals of the rows that two states have in common.

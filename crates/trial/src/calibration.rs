@@ -208,7 +208,7 @@ fn truth(case: String, drawn: &Drawn, asked: &Question) -> Truth {
             effect: effect.name(site.has_sockets()).into(),
             location: place.to_string(),
             place,
-            parameters: parameters(effect.parameters()),
+            parameters: with_places(site, effect, parameters(effect.parameters())),
             size_over_noise: (alone.norm_squared() / alone.len() as f64).sqrt() / sd,
             detectability: oracle.as_ref()?.detectability(effects, which),
         })
@@ -240,6 +240,17 @@ fn truth(case: String, drawn: &Drawn, asked: &Question) -> Truth {
         residuals: Vec::new(),
         asked: Some(asked.truth(site, effects, noise)),
     }
+}
+
+/// Where a clamp stands nobody can separate from how far its place was off before.
+fn with_places(site: &Site, effect: &Effect, mut parameters: Vec<Parameter>) -> Vec<Parameter> {
+    if let Effect::ClampPose { group, by, .. } = effect {
+        let whole = by + site.clamps_off[*group];
+        for (parameter, all) in parameters.iter_mut().zip(whole.iter()) {
+            parameter.with_numbers = Some(all / UM);
+        }
+    }
+    parameters
 }
 
 fn parameters(numbers: Vec<(&str, f64)>) -> Vec<Parameter> {

@@ -227,12 +227,17 @@ pub fn pose(site: &Site, row: usize, random: &mut Random) -> Vec<f64> {
             }
         }
     }
-    // what a readout shows
-    last.iter().map(|q| (q.to_degrees() * 1e7).round() / 1e7 * DEG).collect()
+    as_shown(&last)
 }
 
-/// What was read from row `first` on with these errors: positions in the devices' frames, m. With sockets the joints are turned
-/// until the ball is in its socket, off by the noise, and nothing is read.
+/// Angles as a readout shows them.
+fn as_shown(q: &[f64]) -> Vec<f64> {
+    q.iter().map(|q| (q.to_degrees() * 1e7).round() / 1e7 * DEG).collect()
+}
+
+/// What was read from row `first` on with these errors: positions in the devices' frames, m. The joints are turned until the ball
+/// is where it was to be in its clamp, whatever is wrong; with sockets until it is in its socket, off by the noise, and nothing
+/// is read.
 pub fn measured(
     site: &mut Site,
     effects: &[Effect],
@@ -248,6 +253,19 @@ pub fn measured(
             }
         }
         return noise.to_vec();
+    }
+    if let Devices::Clamps(clamps) = site.devices.clone() {
+        // what is misread is misread afterwards
+        let still: Vec<Effect> =
+            effects.iter().filter(|effect| !matches!(effect, Effect::Outlier(_))).cloned().collect();
+        for row in first..first + noise.len() {
+            let at = &site.rows[row];
+            let target = arm::point(&clamps[at.group], &at.aside);
+            let start = at.q.clone();
+            if let Some(q) = site.reach(row, &start, &target, &still) {
+                site.rows[row].q = as_shown(&q);
+            }
+        }
     }
     let read = |(row, noise): (usize, &Vector3<f64>)| {
         let at = site.ball(row, &site.rows[row].q, effects) + noise;

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! rᵢ = B·(tip(ρ, qᵢ) + R·Δxᵢ) − xᵢ       B the base, one for each station; with sockets less the mean
-//!                                        of the socket's tips
+//!                                        of the socket's tips, of a clamp whose place is free of its rᵢ
 //! ρ ~ N(nominal, twice what a robot file is known to)
 //! density of |r|: Student's t with four degrees of freedom in space, its scale by maximum likelihood
 //! ```
@@ -190,7 +190,7 @@ fn placed(
     Some(Pose { rotation, origin: goal - rotation * centre })
 }
 
-/// Vectors less the weighted means of their sockets.
+/// Vectors less the weighted means of their sockets, or of the clamps whose place is free.
 fn minus_means(vectors: &[Vector3<f64>], draft: &Draft, weight: &[f64]) -> Vec<Vector3<f64>> {
     let mut sum = vec![(Vector3::zeros(), 0.0f64); draft.devices.len()];
     for (row, vector) in vectors.iter().enumerate() {
@@ -198,7 +198,10 @@ fn minus_means(vectors: &[Vector3<f64>], draft: &Draft, weight: &[f64]) -> Vec<V
         *total += vector * weight[row];
         *weights += weight[row];
     }
-    let mean = |group: usize| sum[group].0 / sum[group].1.max(f64::MIN_POSITIVE);
+    let mean = |group: usize| match draft.is_loose(group) {
+        true => sum[group].0 / sum[group].1.max(f64::MIN_POSITIVE),
+        false => Vector3::zeros(),
+    };
     vectors.iter().zip(&draft.group).map(|(vector, &group)| vector - mean(group)).collect()
 }
 
@@ -320,10 +323,7 @@ fn residuals(
             }
         }
     }
-    match draft.has_sockets() {
-        true => minus_means(&off, draft, &vec![1.0; off.len()]),
-        false => off,
-    }
+    minus_means(&off, draft, &vec![1.0; off.len()])
 }
 
 /// One Gauss–Newton step.
@@ -339,9 +339,7 @@ fn step<'a>(
     let columns = free + 6 * stations;
     let mut block = DMatrix::zeros(3 * draft.len(), columns);
     residuals(draft, state, torque, deflection, Some((&body.free, &mut block)));
-    if draft.has_sockets() {
-        without_means(&mut block, draft);
-    }
+    without_means(&mut block, draft);
     let mut right = DVector::zeros(3 * draft.len());
     for (row, (off, length)) in off.iter().zip(lengths).enumerate() {
         let root = weight_of(length / scale).sqrt() / scale;
@@ -375,8 +373,11 @@ fn step<'a>(
     Some(next)
 }
 
-/// Columns of displacements less the means of their sockets.
+/// Columns of displacements less the means of their sockets, or of the clamps whose place is free.
 fn without_means(block: &mut DMatrix<f64>, draft: &Draft) {
+    if !draft.has_sockets() && draft.loose.is_empty() {
+        return;
+    }
     let mut size = vec![0.0f64; draft.devices.len()];
     draft.group.iter().for_each(|&group| size[group] += 1.0);
     for mut column in block.column_iter_mut() {
@@ -384,7 +385,7 @@ fn without_means(block: &mut DMatrix<f64>, draft: &Draft) {
         for (row, &group) in draft.group.iter().enumerate() {
             sum[group] += column.fixed_rows::<3>(3 * row);
         }
-        for (row, &group) in draft.group.iter().enumerate() {
+        for (row, &group) in draft.group.iter().enumerate().filter(|(_, group)| draft.is_loose(**group)) {
             let mut own = column.fixed_rows_mut::<3>(3 * row);
             own -= sum[group] / size[group];
         }

@@ -2,7 +2,8 @@
 //!
 //! Greedy: the change that gains most, then the best beside it; where no single one cures a fit that
 //! fails, pairs that begin with the best few, or with a unit; where no pair does, nothing is named. A state is kept where it is a thousand times more
-//! probable than the one that it grew from **and** what it touches lies three times nearer.
+//! probable than the one that it grew from **and** what it touches lies three times nearer. It must also be a thousand times
+//! more probable than what is left to the effects: a small move of base or tracker, a clamp that is not quite in its place.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -31,6 +32,8 @@ const TOUCHED: (f64, usize) = (0.05, 3);
 const ROWS: usize = 120;
 /// Rows after which a move of the base is tried first.
 const PLACES: usize = 24;
+/// The price of a clamp that is not quite in its place: the same for its three numbers.
+const DISPLACED: f64 = -7.5;
 /// Fewest rows of a station.
 const LEAST_ROWS: usize = 4;
 const MOST_CHANGES: usize = 6;
@@ -96,7 +99,12 @@ impl Search<'_> {
         let mut best = base.clone();
         while best.steps.len() < MOST_CHANGES {
             let tried = self.extended(&best);
-            let next = tried.iter().find(|state| self.is_better(state, &best) && !self.has_failed(state));
+            let is_next = |state: &&State| {
+                self.is_better(state, &best)
+                    && !self.has_failed(state)
+                    && state.score - self.of_effects(state, &best, &tried) > ODDS
+            };
+            let next = tried.iter().find(is_next);
             let next = match next {
                 Some(next) => Some(next.clone()),
                 None if self.has_failed(&best) => self.pair(&best, &tried),
@@ -148,6 +156,29 @@ impl Search<'_> {
         let body = &self.bodies[thin.body];
         let fit = fit(&thin, body, limit)?;
         Some(self.scored(steps.to_vec(), thin, fit))
+    }
+
+    /// The score of what is left to the effects and acts on what a change acts on too: small moves, and where the frames of clamps
+    /// are changed their places.
+    fn of_effects(&self, changed: &State, from: &State, tried: &[State]) -> f64 {
+        let small = tried.iter().filter(|state| !self.is_far(state)).map(|state| state.score);
+        let turned: Vec<usize> = match changed.steps.last().map(|step| self.change(step)) {
+            Some(Change::Devices(frames)) => frames
+                .iter()
+                .filter(|(clamp, frame)| frame.origin == from.thin.devices[*clamp].origin)
+                .map(|(clamp, _)| *clamp)
+                .collect(),
+            _ => Vec::new(),
+        };
+        let displaced = || {
+            let mut thin = from.thin.clone();
+            thin.loose = turned.clone();
+            let fit = fit(&thin, &self.bodies[thin.body], f64::INFINITY)?;
+            let loose = self.restarted(self.scored(from.steps.clone(), thin, fit), changed);
+            Some(loose.score + DISPLACED * turned.len() as f64)
+        };
+        let displaced = if turned.is_empty() { None } else { displaced() };
+        small.chain(displaced).fold(f64::NEG_INFINITY, f64::max)
     }
 
     /// The state, or what it becomes where its fit begins with that of another one, whichever is more probable: rows that a

@@ -35,6 +35,7 @@ mod nominal;
 mod nonparametric;
 mod patterns;
 mod prepared;
+mod tails;
 #[cfg(test)]
 mod tests;
 mod transfer;

@@ -27,19 +27,25 @@ pub(super) struct Prepared<'c> {
 impl<'c> Prepared<'c> {
     /// Data are rows × (x, y, z), in {W}, then what is known besides; see `evidence.rs`.
     pub fn new(campaign: &'c Campaign, calibration: Calibration<'c>) -> Result<Prepared<'c>> {
-        Prepared::about(campaign, calibration.clone(), calibration, None)
+        Prepared::about(campaign, calibration.clone(), calibration, None, None)
     }
 
-    /// The same of effects that are linear about another robot, of groups that scatter unequally.
+    /// The same of effects that are linear about another robot, of groups that scatter unequally, and whose rows count by
+    /// `weights`.
     pub fn about(
         campaign: &'c Campaign,
         calibration: Calibration<'c>,
         about: Calibration<'c>,
         noise: Option<&Noise>,
+        weights: Option<&[f64]>,
     ) -> Result<Prepared<'c>> {
         let context = Context::new(campaign, &about)?;
         let context = match noise {
             Some(noise) => context.scattered(&noise.of_group),
+            None => context,
+        };
+        let context = match weights {
+            Some(weights) => context.weighted(weights),
             None => context,
         };
         let evidence = evidence::evidence_of(campaign, &about, &context);

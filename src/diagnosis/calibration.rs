@@ -38,6 +38,7 @@ mod prepared;
 mod tails;
 #[cfg(test)]
 mod tests;
+mod torque_uncertainty;
 mod transfer;
 mod vector;
 

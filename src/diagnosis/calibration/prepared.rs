@@ -6,6 +6,7 @@ use super::evidence;
 use super::linear_terms::LinearTerms;
 use super::model::CalibrationModel;
 use super::nonparametric;
+use super::torque_uncertainty::TorqueUncertainty;
 use crate::calibration::campaign::Campaign;
 use crate::calibration::{Calibration, Noise};
 use crate::error::Result;
@@ -62,6 +63,7 @@ impl<'c> Prepared<'c> {
             recorded: None,
             groups: recording.rows.iter().map(|row| name(row.group)).collect(),
             scale: context.scale.clone(),
+            torque_uncertainty: TorqueUncertainty::new(campaign, &context),
             terms,
         };
         Ok(Prepared { about, model, evidence, absorbed, not_testable, context })

@@ -115,7 +115,7 @@ impl Question {
         for (which, effect) in effects.iter().enumerate() {
             for larger in effect.larger() {
                 let own = recorded.added(std::slice::from_ref(&larger), std::slice::from_ref(effect));
-                let own = recorded.scatter.whitened(recorded, &own).resize_vertically(rows, 0.0);
+                let own = recorded.whitened(&own).resize_vertically(rows, 0.0);
                 if own.norm() == 0.0 {
                     continue;
                 }
@@ -132,7 +132,7 @@ impl Question {
         // a ball is read off by its noise, or sits in a socket off by it
         let sign = if recorded.has_sockets() { -1.0 } else { 1.0 };
         let noise = DVector::from_iterator(3 * noise.len(), noise.iter().flat_map(|n| <[f64; 3]>::from(*n)));
-        let noise = recorded.scatter.whitened(recorded, &noise).resize_vertically(rows, 0.0) * sign;
+        let noise = recorded.whitened(&noise).resize_vertically(rows, 0.0) * sign;
         let right = columns.tr_mul(&noise) + DVector::from_vec(off);
         let parameters = normal.cholesky()?.solve(&right);
         let mut error = DVector::zeros(3 * COUNT);
@@ -205,7 +205,7 @@ mod tests {
             let (mut site, effect) = site(effect, 3);
             let question = draw(&site, &mut Random::seeded(3, 1));
             let effects = [effect];
-            let noise = site.scatter.drawn(&site, 0, &mut Random::seeded(4, 0));
+            let noise = site.errors(0, &mut Random::seeded(4, 0));
             let says = |site: &Site, times: f64| {
                 let noise: Vec<_> = noise.iter().map(|n| n * times).collect();
                 question.truth(site, &effects, &noise)

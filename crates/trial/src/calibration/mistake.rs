@@ -294,7 +294,7 @@ mod tests {
         let random = &mut Random::seeded(seed, 0);
         let needs = Needs { device: Some(device), ..Needs::default() };
         let mut site = setup::draw(needs, &[], random);
-        let noise = site.scatter.drawn(&site, 0, random);
+        let noise = site.errors(0, random);
         let read = setup::measured(&mut site, &[], 0, &noise);
         let guess = crate::calibration::text::guess(&site, random);
         Written { site, guess, read, others: Vec::new() }

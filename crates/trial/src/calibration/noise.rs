@@ -3,7 +3,6 @@
 
 use nalgebra::{DVector, Vector3};
 
-use super::site::Site;
 use crate::chance::{happens, log_uniform, one_of};
 use crate::rig::noise::{Shape, Source};
 use rodcal_base::statistics::Random;
@@ -77,30 +76,29 @@ impl Scatter {
         words
     }
 
-    fn of_row(&self, site: &Site, row: usize) -> f64 {
-        self.of_group.get(site.rows[row].group).copied().unwrap_or(1.0)
+    fn of(&self, group: usize) -> f64 {
+        self.of_group.get(group).copied().unwrap_or(1.0)
     }
 
-    /// Errors of the rows from `first` on, in the world, m.
-    pub fn drawn(&self, site: &Site, first: usize, random: &mut Random) -> Vec<Vector3<f64>> {
+    /// Errors of rows at these clamps or sockets, in the world, m.
+    pub fn drawn(&self, groups: &[usize], random: &mut Random) -> Vec<Vector3<f64>> {
         let mut sources = [(); 3].map(|()| Source::new(&self.shape));
         let fresh = (1.0 - self.correlation * self.correlation).sqrt();
         let mut last: Option<Vector3<f64>> = None;
-        let mut errors = Vec::new();
-        for row in first..site.rows.len() {
+        let error = |&group: &usize| {
             let drawn = Vector3::from_fn(|axis, _| sources[axis].draw(random));
             let own = last.map_or(drawn, |last| last * self.correlation + drawn * fresh);
             last = Some(own);
-            errors.push(own * (self.sd * self.of_row(site, row)));
-        }
-        errors
+            own * (self.sd * self.of(group))
+        };
+        groups.iter().map(error).collect()
     }
 
     /// Σ^(−1/2)·v for coordinates row by row, and the display's steps: v/σ, then (vₖ − φ·vₖ₋₁)/√(1 − φ²).
-    pub fn whitened(&self, site: &Site, v: &DVector<f64>) -> DVector<f64> {
+    pub fn whitened(&self, groups: &[usize], v: &DVector<f64>) -> DVector<f64> {
         let mut white = v.clone();
-        for row in 0..site.rows.len() {
-            let variance = (self.sd * self.of_row(site, row)).powi(2) + self.step * self.step / 12.0;
+        for (row, &group) in groups.iter().enumerate() {
+            let variance = (self.sd * self.of(group)).powi(2) + self.step * self.step / 12.0;
             white.rows_mut(3 * row, 3).unscale_mut(variance.sqrt());
         }
         let fresh = (1.0 - self.correlation * self.correlation).sqrt();
@@ -125,19 +123,23 @@ impl Scatter {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::calibration::setup::{self, Needs};
 
     #[test]
     fn whitened_errors_have_unit_scatter_and_neighbours_that_know_nothing_of_each_other() {
-        let mut site = setup::draw(Needs::default(), &[], &mut Random::seeded(2, 0));
-        site.scatter.of_group.iter_mut().step_by(2).for_each(|factor| *factor = 3.0);
-        let scatter =
-            Scatter { shape: Shape::StudentT(6), correlation: 0.5, step: 0.0, ..site.scatter.clone() };
+        let groups: Vec<usize> = (0..90).map(|row| row / 30).collect();
+        let scatter = Scatter {
+            sd: 2e-5,
+            shape: Shape::StudentT(6),
+            correlation: 0.5,
+            of_group: vec![1.0, 3.0, 1.0],
+            step: 0.0,
+            is_stated: false,
+        };
         let (mut squares, mut products, mut count) = (0.0, 0.0, 0.0);
         for seed in 0..40 {
-            let errors = scatter.drawn(&site, 0, &mut Random::seeded(seed, 1));
+            let errors = scatter.drawn(&groups, &mut Random::seeded(seed, 1));
             let all = errors.iter().flat_map(|error| <[f64; 3]>::from(*error));
-            let white = scatter.whitened(&site, &DVector::from_iterator(3 * errors.len(), all));
+            let white = scatter.whitened(&groups, &DVector::from_iterator(3 * errors.len(), all));
             squares += white.norm_squared();
             products += (3..white.len()).map(|k| white[k] * white[k - 3]).sum::<f64>();
             count += white.len() as f64;

@@ -6,9 +6,9 @@
 
 use nalgebra::{DVector, Vector3};
 
+use super::geometry::of_robot;
 use super::rod::Rod;
 use super::site::{Devices, Site};
-use super::taken_up::of_robot;
 
 /// What nobody knows beforehand, m and rad.
 const ANYWHERE: f64 = 0.1;

@@ -28,6 +28,9 @@ use rodcal_base::linalg::{thin_svd, transposed_product};
 /// than that.
 const SAME_EFFECT: f64 = 5.0;
 const SAME_PLACE: f64 = 3.0;
+/// Less than this of a column is nothing, noises.
+const NOTHING: f64 = 1e-3;
+
 /// So many of the best rivals are paired with so many of the best.
 const PAIRED: [usize; 2] = [4, 60];
 
@@ -59,23 +62,31 @@ impl<'a> Oracle<'a> {
 
     /// Compares with every effect of the library too; moves are tried after every row where one of `effects` is such a move.
     pub fn compare(&mut self, effects: &[Effect]) {
-        self.rivals = rivals(self, self.site, effects);
+        let mut rivals = rivals(self.site, effects);
+        let all = self.all_left(rivals.iter().flat_map(|rival| &rival.columns));
+        let mut columns = all.column_iter().map(|column| column.into_owned());
+        for rival in &mut rivals {
+            let own: Vec<DVector<f64>> = columns.by_ref().take(rival.columns.len()).collect();
+            rival.columns = own.into_iter().filter(|column| column.norm() > NOTHING).collect();
+        }
+        rivals.retain(|rival| !rival.columns.is_empty());
+        self.rivals = rivals;
     }
 
     /// Σ^(−1/2)·v.
-    pub fn left(&self, coordinates: &DVector<f64>) -> DVector<f64> {
+    fn left(&self, coordinates: &DVector<f64>) -> DVector<f64> {
         let rows = coordinates.len() + self.more;
-        let whole = self.site.scatter.whitened(self.site, coordinates).resize_vertically(rows, 0.0);
+        let whole = self.site.whitened(coordinates).resize_vertically(rows, 0.0);
         let (u, shrink) = &self.directions;
         let taken = u.tr_mul(&whole).component_mul(shrink);
         whole - u * taken
     }
 
     /// The same of many, in the columns of a matrix.
-    pub fn all_left<'c>(&self, all: impl Iterator<Item = &'c DVector<f64>>) -> DMatrix<f64> {
+    fn all_left<'c>(&self, all: impl Iterator<Item = &'c DVector<f64>>) -> DMatrix<f64> {
         let (u, shrink) = &self.directions;
         let white: Vec<DVector<f64>> =
-            all.map(|v| self.site.scatter.whitened(self.site, v).resize_vertically(u.nrows(), 0.0)).collect();
+            all.map(|v| self.site.whitened(v).resize_vertically(u.nrows(), 0.0)).collect();
         let mut white = DMatrix::from_columns(&white);
         let mut taken = transposed_product(u, &white);
         taken.column_iter_mut().for_each(|mut column| column.component_mul_assign(shrink));

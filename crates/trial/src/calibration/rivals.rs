@@ -5,7 +5,6 @@ use nalgebra::{DVector, Matrix4, Vector3};
 use super::arm;
 use super::draw::shift_place;
 use super::effect::Effect;
-use super::oracle::Oracle;
 use super::site::{Devices, Site, lever};
 use crate::place::Place;
 use rodcal_base::units::UM;
@@ -22,14 +21,11 @@ const COARSE: usize = 6;
 pub struct Rival {
     pub name: &'static str,
     pub place: Place,
-    /// As the oracle has them.
+    /// What they do to every coordinate, m; to the oracle without what numbers take up, in noises.
     pub columns: Vec<DVector<f64>>,
 }
 
-/// Less than this of a column is nothing, noises.
-const NOTHING: f64 = 1e-3;
-
-/// Collects rivals with what they do to every coordinate, m.
+/// Collects rivals.
 struct List<'a> {
     site: &'a Site,
     /// Torques and frames of every row, and the ball.
@@ -68,7 +64,7 @@ impl List<'_> {
 }
 
 /// All of a site, beside `effects` that are concealed there.
-pub fn rivals(oracle: &Oracle<'_>, site: &Site, effects: &[Effect]) -> Vec<Rival> {
+pub fn rivals(site: &Site, effects: &[Effect]) -> Vec<Rival> {
     let rows = 0..site.rows.len();
     let loads = rows.clone().map(|row| site.loads(row)).collect();
     let at = rows.map(|row| site.ball(row, &site.rows[row].q, &[])).collect();
@@ -78,13 +74,6 @@ pub fn rivals(oracle: &Oracle<'_>, site: &Site, effects: &[Effect]) -> Vec<Rival
     of_drift(&mut list);
     of_fixtures(&mut list);
     of_moves(&mut list, effects);
-    let all = oracle.all_left(list.rivals.iter().flat_map(|rival| &rival.columns));
-    let mut columns = all.column_iter().map(|column| column.into_owned());
-    for rival in &mut list.rivals {
-        let own: Vec<DVector<f64>> = columns.by_ref().take(rival.columns.len()).collect();
-        rival.columns = own.into_iter().filter(|column| column.norm() > NOTHING).collect();
-    }
-    list.rivals.retain(|rival| !rival.columns.is_empty());
     list.rivals
 }
 

@@ -6,6 +6,7 @@ use super::arm::{self, Arm, Known, Pull, turned};
 use super::effect::Effect;
 use super::noise::Scatter;
 use super::rod::Rod;
+use rodcal_base::statistics::Random;
 
 /// Times that torques and the joints that they turn are computed from each other.
 const ROUNDS: usize = 3;
@@ -81,6 +82,21 @@ impl Site {
             }
         }
         down
+    }
+
+    /// The clamp or socket of every row from `first` on.
+    fn groups_from(&self, first: usize) -> Vec<usize> {
+        self.rows[first..].iter().map(|row| row.group).collect()
+    }
+
+    /// Errors of the rows from `first` on, m.
+    pub fn errors(&self, first: usize, random: &mut Random) -> Vec<Vector3<f64>> {
+        self.scatter.drawn(&self.groups_from(first), random)
+    }
+
+    /// Coordinates in noises that know nothing of each other.
+    pub fn whitened(&self, v: &DVector<f64>) -> DVector<f64> {
+        self.scatter.whitened(&self.groups_from(0), v)
     }
 
     pub fn has_sockets(&self) -> bool {
@@ -370,34 +386,6 @@ impl Site {
     pub fn each(&self, of: impl Fn(usize, &[f64]) -> Vector3<f64>) -> DVector<f64> {
         let all = self.rows.iter().enumerate().flat_map(|(row, at)| <[f64; 3]>::from(of(row, &at.q)));
         DVector::from_vec(all.collect())
-    }
-
-    /// Turns the joints of a row, as little as may be, until the ball is at a point; `None` where it does not get there.
-    pub fn reach(
-        &self,
-        row: usize,
-        q: &[f64],
-        target: &Vector3<f64>,
-        effects: &[Effect],
-    ) -> Option<Vec<f64>> {
-        let mut q = q.to_vec();
-        for _ in 0..40 {
-            let at = self.ball(row, &q, effects);
-            let off = target - at;
-            if off.norm() < 1e-10 {
-                return Some(q);
-            }
-            // what joints do by their loads and gears is too little to lead astray
-            let frames = arm::frames(&self.real, &self.base, &q);
-            let levers: Vec<Vector3<f64>> = frames[..q.len()].iter().map(|joint| lever(joint, &at)).collect();
-            let square: Matrix3<f64> = levers.iter().map(|lever| lever * lever.transpose()).sum();
-            let stride = off * (0.4 / off.norm()).min(1.0);
-            let solved = (square + Matrix3::identity() * 1e-9).cholesky()?.solve(&stride);
-            for (q, lever) in q.iter_mut().zip(&levers) {
-                *q += lever.dot(&solved).clamp(-0.5, 0.5);
-            }
-        }
-        None
     }
 }
 

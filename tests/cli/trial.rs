@@ -55,41 +55,39 @@ fn other_readings_are_predicted_and_what_is_proposed_is_measured() {
     }
 }
 
-/// A fixed trial with room for one or two cases of bad luck, which a regression would use up.
+/// A fixed trial; what it cannot know of physics outside the library it misses, and names nothing for it.
 #[test]
 fn a_small_trial_is_answered_as_well_as_ever() {
     let sandbox = Sandbox::empty();
-    sandbox.run("trial make t --seed 20261122 --cases 24").succeeded();
+    sandbox.run("trial make t --seed 20261122 --cases 16").succeeded();
     sandbox.run("trial answer t").succeeded();
     let score = sandbox.run("trial score t --json").json();
     let count = |of: &str, key: &str| score[of][key].as_u64().unwrap();
-    assert_eq!((count("clean", "n"), score["failed"].as_u64()), (5, Some(0)));
+    assert_eq!((count("clean", "n"), score["failed"].as_u64()), (3, Some(0)));
     assert!(count("clean", "false_names") + count("clean", "false_unexplained") == 0, "{}", score["clean"]);
     let single = &score["single"];
-    assert!(count("single", "identifiable") == 3 && count("single", "location_ok") == 3, "{single}");
+    assert!(count("single", "identifiable") == 1 && count("single", "location_ok") == 1, "{single}");
     // in the class wherever something is named
     let rate = |of: &str, rate: &str| {
         let rate = &score[of][rate];
         (rate["count"].as_u64().unwrap(), rate["of"].as_u64().unwrap())
     };
-    assert_eq!(rate("single", "in_class_rate"), (5, 5), "{single}");
+    assert_eq!(rate("single", "in_class_rate"), (2, 2), "{single}");
     // what nobody could detect is passed over in silence, or right
     assert_eq!(rate("below", "silent_or_right"), (2, 2), "{}", score["below"]);
     assert!(count("pairs", "identifiable") == 1 && count("pairs", "both_found") == 1, "{}", score["pairs"]);
-    assert!(count("unknown", "identifiable") == 2 && count("unknown", "wrongly_named") == 0);
-    // two at the rig, two of calibrations
-    assert_eq!((rate("mistakes", "placed"), rate("mistakes", "silent")), ((4, 4), (0, 4)));
+    assert!(count("unknown", "identifiable") == 1 && count("unknown", "wrongly_named") == 0);
+    // at the rig and of calibrations
+    assert_eq!((rate("mistakes", "placed"), rate("mistakes", "silent")), ((3, 3), (0, 3)));
     assert_eq!(rate("mistakes", "invented").0, 0, "{}", score["mistakes"]);
     assert_eq!((rate("suspects", "remarked"), rate("suspects", "named")), ((1, 1), (0, 1)));
     for (key, least) in [("coverage", 0.75), ("gain_over_oracle", 0.9)] {
         assert!(score[key].as_f64().unwrap() > least, "{key}: {}", score[key]);
     }
     // what is asked for is predicted about as well as by an oracle
-    for (half, least) in [("rig", 1), ("calibration", 2)] {
-        let asked = &score[half]["counterfactual"];
-        assert!(asked["n"] == asked["answered"] && asked["n"].as_u64().unwrap() >= least, "{half}: {asked}");
-        assert!(asked["median"].as_f64().unwrap() < 1.5, "{half}: {asked}");
-    }
+    let asked = &score["calibration"]["counterfactual"];
+    assert!(asked["n"] == asked["answered"] && asked["n"].as_u64().unwrap() >= 1, "{asked}");
+    assert!(asked["median"].as_f64().unwrap() < 1.5, "{asked}");
 }
 
 #[test]

@@ -5,24 +5,33 @@ use nalgebra::{DVector, Matrix4, Vector3};
 use super::arm;
 use super::site::{Site, lever};
 
+/// A row as the robot stands there: frames, torques N·m, and the ball.
+struct Posture {
+    frames: Vec<Matrix4<f64>>,
+    torques: Vec<f64>,
+    at: Vector3<f64>,
+}
+
+impl Posture {
+    /// How the ball moves with a turn about an axis through the origin of a frame, m/rad.
+    fn about(&self, axis: Vector3<f64>, frame: &Matrix4<f64>) -> Vector3<f64> {
+        axis.cross(&(self.at - arm::column(frame, 3)))
+    }
+}
+
 /// Of geometry, drives, base and tool: ∂coordinate/∂parameter, m per unit of SI. With z a joint's axis through o, x and y
 /// the axes of the link behind it and p the ball: z × (p − o) of θ, z of d, x of a, x × (p − o′) of α, y × (p − o′) of β. That
 /// torques change with the geometry is of second order.
 pub fn of_robot(site: &Site) -> Vec<DVector<f64>> {
     let n = site.real.len();
-    let of_rows: Vec<(Vec<Matrix4<f64>>, Vec<f64>, Vector3<f64>)> = (0..site.rows.len())
-        .map(|row| {
-            let (torques, frames) = site.loads(row);
-            let at = site.ball(row, &site.rows[row].q, &[]);
-            (frames, torques, at)
-        })
-        .collect();
-    let column = |of: &dyn Fn(&[Matrix4<f64>], &[f64], &Vector3<f64>) -> Vector3<f64>| {
-        let each = of_rows.iter().flat_map(|(frames, torques, at)| <[f64; 3]>::from(of(frames, torques, at)));
-        DVector::from_iterator(3 * of_rows.len(), each)
+    let posture = |row: usize| {
+        let (torques, frames) = site.loads(row);
+        Posture { frames, torques, at: site.ball(row, &site.rows[row].q, &[]) }
     };
-    let about = |axis: Vector3<f64>, frame: &Matrix4<f64>, at: &Vector3<f64>| {
-        axis.cross(&(at - arm::column(frame, 3)))
+    let postures: Vec<Posture> = (0..site.rows.len()).map(posture).collect();
+    let column = |of: &dyn Fn(&Posture) -> Vector3<f64>| {
+        let each = postures.iter().flat_map(|there| <[f64; 3]>::from(of(there)));
+        DVector::from_iterator(3 * postures.len(), each)
     };
     let mut columns = Vec::new();
     for j in 0..n {
@@ -30,19 +39,20 @@ pub fn of_robot(site: &Site) -> Vec<DVector<f64>> {
         // before the link was turned by β
         let x =
             |behind: &Matrix4<f64>| arm::column(behind, 0) * beta.cos() + arm::column(behind, 2) * beta.sin();
-        columns.push(column(&|frames, _, at| lever(&frames[j], at)));
-        columns.push(column(&|frames, _, _| arm::column(&frames[j], 2)));
-        columns.push(column(&|frames, _, _| x(&frames[j + 1])));
-        columns.push(column(&|frames, _, at| about(x(&frames[j + 1]), &frames[j + 1], at)));
-        columns.push(column(&|frames, _, at| about(arm::column(&frames[j + 1], 1), &frames[j + 1], at)));
+        let behind = |there: &Posture| there.frames[j + 1];
+        columns.push(column(&|there| lever(&there.frames[j], &there.at)));
+        columns.push(column(&|there| arm::column(&there.frames[j], 2)));
+        columns.push(column(&|there| x(&behind(there))));
+        columns.push(column(&|there| there.about(x(&behind(there)), &behind(there))));
+        columns.push(column(&|there| there.about(arm::column(&behind(there), 1), &behind(there))));
         if site.has_masses {
-            columns.push(column(&|frames, torques, at| lever(&frames[j], at) * torques[j]));
+            columns.push(column(&|there| lever(&there.frames[j], &there.at) * there.torques[j]));
         }
     }
     for axis in 0..3 {
-        columns.push(column(&|_, _, _| Vector3::ith(axis, 1.0)));
-        columns.push(column(&|frames, _, at| about(arm::column(&frames[0], axis), &frames[0], at)));
-        columns.push(column(&|frames, _, _| arm::column(&frames[n], axis)));
+        columns.push(column(&|_| Vector3::ith(axis, 1.0)));
+        columns.push(column(&|there| there.about(arm::column(&there.frames[0], axis), &there.frames[0])));
+        columns.push(column(&|there| arm::column(&there.frames[n], axis)));
     }
     columns
 }

@@ -60,7 +60,7 @@ pub enum Mistake {
     /// The tip with two of its axes exchanged.
     ToolOrder([usize; 2]),
     /// The file of another rod; the right one stands beside it.
-    Rod(Drawing),
+    Rod(Box<Drawing>),
     /// A position that was not recorded.
     Stuck(usize),
 }
@@ -95,7 +95,7 @@ pub fn draw(right: &Written, random: &mut Random) -> Mistake {
             11 => Mistake::BaseOrder,
             12 => Mistake::BaseInMetres,
             13 => Mistake::ToolOrder(two(3, random)),
-            14 if right.site.rod.is_some() => Mistake::Rod(Rod::drawing(random)),
+            14 if right.site.rod.is_some() => Mistake::Rod(Box::new(Rod::drawing(random))),
             _ => Mistake::Stuck(random.index(3)),
         };
         let least = if mistake.is_guess() { GUESS } else { SHOWS.1 };
@@ -179,7 +179,7 @@ impl Mistake {
             Mistake::Rod(other) => {
                 if let Some(rod) = &mut site.rod {
                     wrong.others.insert(0, ("rod-2.toml".into(), rod.drawing.clone()));
-                    rod.drawing = other.clone();
+                    rod.drawing = (**other).clone();
                     site.drawn_tool = rod.tip();
                 }
             }

@@ -78,7 +78,7 @@ mod tests {
 
     #[test]
     fn files_say_that_they_are_simulated_and_nothing_of_the_effect() {
-        for (half, cases) in [(Half::Rig, 12), (Half::Calibration, 12)] {
+        for (half, cases) in [(Half::Rig, 8), (Half::Calibration, 6)] {
             for number in 0..cases {
                 let case = case(1, half, number);
                 for (name, text) in &case.files {

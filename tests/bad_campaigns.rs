@@ -51,11 +51,6 @@ fn every_bad_key_is_named_with_its_place() {
             "campaign.toml:13:1: there is no id in [[clamp]], expected the clamp's name in quotes, as in the column clamp of the measurements",
         ),
         (
-            "position_um = 5",
-            "",
-            "campaign.toml:17:1: there is no position_um in [noise], expected the standard deviation of one measured coordinate in µm",
-        ),
-        (
             "sd = 0.1",
             "",
             "campaign.toml:22:1: there is no sd in [[prior]], expected the standard deviation of that knowledge, in the unit that the parameter's name ends with",

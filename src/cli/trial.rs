@@ -45,15 +45,18 @@ pub struct Make {
     /// Only calibrations of arms.
     #[arg(long, conflicts_with = "rig")]
     calibration: bool,
+    /// Only calibrations with effects that imitate each other, both sides of four pairs in turn: 80 cases are ten of each.
+    #[arg(long, conflicts_with_all = ["rig", "calibration"])]
+    conflicts: bool,
     /// Number of cases.
     #[arg(long, value_name = "N", default_value_t = 400, value_parser = clap::value_parser!(u16).range(1..=9999))]
     cases: u16,
     /// Only the cases from A up to B, B included.
     #[arg(long, value_name = "A..B", value_parser = case_range)]
     case_range: Option<Range<usize>>,
-    /// Noise at the rig from a real recording: a CSV with a column `residual` in any unit, from
-    /// which it is drawn in stretches.
-    #[arg(long, value_name = "FILE", conflicts_with = "calibration")]
+    /// Noise from a real recording: a CSV with a column `residual` in any unit, from which it is drawn
+    /// in stretches.
+    #[arg(long, value_name = "FILE")]
     residuals: Option<PathBuf>,
     /// File for the key [default: DIR.key.jsonl]
     #[arg(long, value_name = "FILE")]
@@ -106,9 +109,10 @@ impl Make {
     fn run(&self) -> Result<Outcome> {
         let range = self.case_range.clone().unwrap_or(1..usize::from(self.cases) + 1);
         let key = key_of(self.key.as_deref(), &self.directory)?;
-        let half = match (self.rig, self.calibration) {
-            (true, _) => Half::Rig,
-            (_, true) => Half::Calibration,
+        let half = match (self.rig, self.calibration, self.conflicts) {
+            (true, ..) => Half::Rig,
+            (_, true, _) => Half::Calibration,
+            (_, _, true) => Half::Conflicts,
             _ => Half::Both,
         };
         let residuals = self.residuals.as_deref().map(residuals::read).transpose()?.unwrap_or_default();

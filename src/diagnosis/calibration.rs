@@ -35,8 +35,10 @@ mod nominal;
 mod nonparametric;
 mod patterns;
 mod prepared;
+mod tails;
 #[cfg(test)]
 mod tests;
+mod torque_uncertainty;
 mod transfer;
 mod vector;
 

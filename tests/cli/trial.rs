@@ -5,20 +5,20 @@ use super::Sandbox;
 #[test]
 fn a_trial_is_made_answered_in_pieces_and_scored() {
     let sandbox = Sandbox::empty();
-    sandbox.run("trial make t --seed 3 --cases 5 --rig").succeeded();
+    sandbox.run("trial make t --seed 3 --cases 3 --rig").succeeded();
     let readings = sandbox.read("t/rig/case-0001/readings.csv");
     assert!(readings.starts_with("# SIMULATED"));
     assert!(!sandbox.read("t/manifest.json").contains("seed"));
     sandbox.run("trial answer t --case-range 1..2").succeeded();
     sandbox.write("t/answers.jsonl", &(sandbox.read("t/answers.jsonl") + "{\"case\": \"rig/ca"));
     let answered = sandbox.run("trial answer t --json").json();
-    assert_eq!((&answered["answered"], &answered["answered_before"]), (&3.into(), &2.into()));
-    assert_eq!(sandbox.read("t/answers.jsonl").lines().count(), 5);
+    assert_eq!((&answered["answered"], &answered["answered_before"]), (&1.into(), &2.into()));
+    assert_eq!(sandbox.read("t/answers.jsonl").lines().count(), 3);
     let score = sandbox.run("trial score t t.key.jsonl --json").json();
     let of = |kind: &str| score[kind]["n"].as_u64().unwrap();
     let rate = |of: &str, rate: &str| score[of][rate]["of"].as_u64().unwrap();
     let files = rate("mistakes", "named") + rate("suspects", "remarked");
-    assert_eq!(of("clean") + of("single") + of("pairs") + of("unknown") + files, 5);
+    assert_eq!(of("clean") + of("single") + of("pairs") + of("unknown") + files, 3);
     for key in ["coverage", "gain_over_oracle", "counterfactual_over_oracle", "next_measurement_ok"] {
         assert!(score.get(key).is_some(), "{key}");
     }
@@ -27,8 +27,8 @@ fn a_trial_is_made_answered_in_pieces_and_scored() {
 #[test]
 fn other_readings_are_predicted_and_what_is_proposed_is_measured() {
     let sandbox = Sandbox::empty();
-    for (directory, cases) in [("a", "1..4"), ("b", "1..2")] {
-        sandbox.run(&format!("trial make {directory} --seed 8 --cases 24 --rig")).succeeded();
+    for (directory, cases) in [("a", "1..3"), ("b", "1..2")] {
+        sandbox.run(&format!("trial make {directory} --seed 8 --cases 3 --rig")).succeeded();
         sandbox.run(&format!("trial answer {directory} --case-range {cases}")).succeeded();
     }
     let score = sandbox.run("trial score a --json").json();
@@ -55,72 +55,67 @@ fn other_readings_are_predicted_and_what_is_proposed_is_measured() {
     }
 }
 
-/// A fixed trial with room for one or two cases of bad luck, which a regression would use up.
+/// A fixed trial; what it cannot know of physics outside the library it misses, and names nothing for it.
 #[test]
 fn a_small_trial_is_answered_as_well_as_ever() {
     let sandbox = Sandbox::empty();
-    sandbox.run("trial make t --seed 20261121 --cases 48").succeeded();
+    sandbox.run("trial make t --seed 20261122 --cases 16").succeeded();
     sandbox.run("trial answer t").succeeded();
     let score = sandbox.run("trial score t --json").json();
     let count = |of: &str, key: &str| score[of][key].as_u64().unwrap();
-    assert_eq!((count("clean", "n"), score["failed"].as_u64()), (18, Some(0)));
-    assert!(count("clean", "false_names") + count("clean", "false_unexplained") <= 1, "{}", score["clean"]);
+    assert_eq!((count("clean", "n"), score["failed"].as_u64()), (3, Some(0)));
+    assert!(count("clean", "false_names") + count("clean", "false_unexplained") == 0, "{}", score["clean"]);
     let single = &score["single"];
-    assert!(count("single", "identifiable") == 6 && count("single", "name_ok") >= 5, "{single}");
-    assert!(count("single", "location_ok") >= 5, "{single}");
+    assert!(count("single", "identifiable") == 1 && count("single", "location_ok") == 1, "{single}");
     // in the class wherever something is named
     let rate = |of: &str, rate: &str| {
         let rate = &score[of][rate];
         (rate["count"].as_u64().unwrap(), rate["of"].as_u64().unwrap())
     };
-    let (in_class, named) = rate("single", "in_class_rate");
-    assert!(named >= 9 && in_class + 1 >= named, "{single}");
+    assert_eq!(rate("single", "in_class_rate"), (2, 2), "{single}");
     // what nobody could detect is passed over in silence, or right
-    let (right, faint) = rate("below", "silent_or_right");
-    assert!(faint == 6 && right >= 5, "{}", score["below"]);
+    assert_eq!(rate("below", "silent_or_right"), (2, 2), "{}", score["below"]);
     assert!(count("pairs", "identifiable") == 1 && count("pairs", "both_found") == 1, "{}", score["pairs"]);
-    let unknown = &score["unknown"];
-    assert!(count("unknown", "identifiable") == 5 && count("unknown", "called_unknown") >= 3, "{unknown}");
-    assert!(count("unknown", "wrongly_named") <= 1, "{unknown}");
-    assert_eq!((rate("mistakes", "named"), rate("mistakes", "silent")), ((3, 3), (0, 3)));
+    assert!(count("unknown", "identifiable") == 1 && count("unknown", "wrongly_named") == 0);
+    // at the rig and of calibrations
+    assert_eq!((rate("mistakes", "placed"), rate("mistakes", "silent")), ((3, 3), (0, 3)));
     assert_eq!(rate("mistakes", "invented").0, 0, "{}", score["mistakes"]);
-    assert_eq!((rate("suspects", "remarked"), rate("suspects", "named")), ((2, 2), (0, 2)));
+    assert_eq!((rate("suspects", "remarked"), rate("suspects", "named")), ((1, 1), (0, 1)));
     for (key, least) in [("coverage", 0.75), ("gain_over_oracle", 0.9)] {
         assert!(score[key].as_f64().unwrap() > least, "{key}: {}", score[key]);
     }
-    // what was proposed could be measured
-    let next = &score["next_measurement_ok"];
-    assert!(next["n"].as_u64().unwrap() >= 1 && next["ok"].as_u64().unwrap() >= 1, "{next}");
-    assert_eq!(next["not_done"], serde_json::json!({}));
     // what is asked for is predicted about as well as by an oracle
-    for (half, least) in [("rig", 1), ("calibration", 3)] {
-        let asked = &score[half]["counterfactual"];
-        assert!(asked["n"] == asked["answered"] && asked["n"].as_u64().unwrap() >= least, "{half}: {asked}");
-        assert!(asked["median"].as_f64().unwrap() < 1.5, "{half}: {asked}");
-    }
+    let asked = &score["calibration"]["counterfactual"];
+    assert!(asked["n"] == asked["answered"] && asked["n"].as_u64().unwrap() >= 1, "{asked}");
+    assert!(asked["median"].as_f64().unwrap() < 1.5, "{asked}");
 }
 
 #[test]
 fn poses_that_are_proposed_are_measured_by_the_same_robot() {
     let sandbox = Sandbox::empty();
-    // clamps whose places are ambiguous (108, 119, 120), a tracker (118)
-    let mut settled = [0; 2];
-    for (directory, cases) in [("t", "108..108"), ("u", "118..120")] {
-        let make = format!("trial make {directory} --seed 1480989568 --case-range {cases} --calibration");
-        sandbox.run(&make).succeeded();
+    // play that may be a read-back lag (a tracker), a clamp's place that may be a move of the base
+    let cases = [
+        ("t", "--seed 102 --case-range 1..1 --conflicts"),
+        ("u", "--seed 3883240206 --case-range 43..43 --calibration"),
+    ];
+    for (directory, drawn) in cases {
+        sandbox.run(&format!("trial make {directory} {drawn}")).succeeded();
         sandbox.run(&format!("trial answer {directory}")).succeeded();
         let score = sandbox.run(&format!("trial score {directory} --json")).json();
         let next = &score["next_measurement_ok"];
         assert_eq!((&score["failed"], &next["not_done"]), (&0.into(), &serde_json::json!({})));
-        for (count, key) in settled.iter_mut().zip(["n", "ok"]) {
-            *count += next[key].as_u64().unwrap();
+        assert_eq!((&next["n"], &next["ok"]), (&1.into(), &1.into()), "{next}");
+        if directory == "t" {
+            let counts = &score["calibration"]["conflicts"];
+            assert_eq!(
+                counts["read-back lag or play"]["backlash, not identifiable"]["backlash"], 1,
+                "{counts}"
+            );
         }
     }
-    let [open, ok] = settled;
-    assert!(open >= 2 && ok == open, "{ok} of {open}");
-    let asked = sandbox.read("t/calibration/case-0108/asked.csv");
+    let asked = sandbox.read("t/calibration/case-0001/asked.csv");
     assert!(asked.starts_with("# SIMULATED") && asked.contains(",0.0000,0.0000,0.0000"), "{asked}");
-    assert!(sandbox.read("t/calibration/case-0108/asked.toml").contains("contact_force_n"));
+    assert!(sandbox.read("t/calibration/case-0001/asked.toml").contains("contact_force_n"));
 }
 
 #[test]

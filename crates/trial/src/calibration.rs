@@ -5,9 +5,17 @@
 mod again;
 mod arm;
 mod asked;
+mod beyond;
+mod conflict;
 mod draw;
 mod effect;
+mod geometry;
+mod mistake;
+mod noise;
+mod numbers;
 mod oracle;
+mod reach;
+mod rivals;
 mod rod;
 mod setup;
 mod site;
@@ -20,12 +28,18 @@ use nalgebra::Vector3;
 
 pub use self::again::{Proposed, again};
 use self::asked::Question;
+use self::conflict::Conflict;
 use self::effect::Effect;
+use self::mistake::Mistake;
 use self::oracle::Oracle;
+use self::rod::Rod;
 use self::setup::Needs;
 use self::site::{Devices, Site};
+use self::text::Written;
 use super::Case;
+use crate::chance::{happens, log_uniform};
 use crate::truth::{Concealed, Kind, Parameter, Truth};
+use crate::{Half, Source};
 use rodcal_base::statistics::Random;
 use rodcal_base::units::UM;
 
@@ -34,46 +48,84 @@ const STREAM: u64 = 1 << 32;
 const ASKED: u64 = 4 << 32;
 const AGAIN: u64 = 5 << 32;
 
+/// Shares of clean, single, several, unknown and mistaken cases.
+const SHARES: [(Kind, f64); 5] = [
+    (Kind::Clean, 0.2),
+    (Kind::Single, 0.37),
+    (Kind::Pair, 0.15),
+    (Kind::Unknown, 0.13),
+    (Kind::Mistake, 0.15),
+];
+/// How often a single effect is below its detection limit, and how far at most.
+const BELOW: (f64, f64) = (0.3, 0.1);
+/// Multiples of its detection limit from which an effect of several is drawn, and unknown physics.
+const FAINTEST: [f64; 2] = [3.0, 2.0];
+/// So often an effect is drawn anew until its detection limit is below this share of its largest size.
+const DRAWN: usize = 5;
+const SEEN: f64 = 0.25;
+/// Multiples of its detection limit of an effect that another one imitates.
+const CONFLICT: [f64; 2] = [3.0, 30.0];
+/// How often several effects are three.
+const THREE: f64 = 0.25;
+/// How often files of other rods stand beside that of a case.
+const BESIDE: f64 = 0.25;
+
 /// A case as it was drawn.
 struct Drawn {
     kind: Kind,
+    conflict: Option<Conflict>,
     site: Site,
     effects: Vec<Effect>,
     /// Errors of the rows, m.
     noise: Vec<Vector3<f64>>,
-    /// What was read, m.
-    read: Vec<Vector3<f64>>,
-    /// Where the file has the base.
-    guess: [Vector3<f64>; 2],
+    /// As it should have been written down.
+    right: Written,
+    mistake: Option<Mistake>,
 }
 
-/// Case number `number` of the trial that belongs to `seed`.
-pub fn case(seed: u64, number: usize) -> Case {
-    let drawn = drawn(seed, number);
-    let asked = asked::draw(&drawn.site, &mut Random::seeded(seed, ASKED + number as u64));
-    let mut files = text::files(&drawn.site, &drawn.guess, &drawn.read);
+/// Case number `number` of a trial.
+pub fn case(source: &Source, number: usize) -> Case {
+    let drawn = drawn(source, number);
+    let asked = asked::draw(&drawn.site, &mut Random::seeded(source.seed, ASKED + number as u64));
+    let written = drawn.mistake.as_ref().map(|mistake| mistake.made(&drawn.right));
+    let mut files = text::files(written.as_ref().unwrap_or(&drawn.right));
     files.extend(asked.files());
     let truth = truth(format!("calibration/case-{number:04}"), &drawn, &asked);
-    Case { files, truth: Truth { seed: Some(seed), ..truth } }
+    let residuals = source.residuals.clone();
+    Case { files, truth: Truth { seed: Some(source.seed), residuals, ..truth } }
 }
 
-fn drawn(seed: u64, number: usize) -> Drawn {
-    let mut random = Random::seeded(seed, STREAM + number as u64);
-    let kind = Kind::drawn(&mut random);
-    let (numbers, needs) = numbers(kind, &mut random);
-    let mut site = setup::draw(needs, &mut random);
-    let faintest = if kind == Kind::Pair { 0.5 } else { 0.0 };
-    let effects: Vec<Effect> = numbers
-        .into_iter()
-        .map(|number| match kind {
-            Kind::Unknown => draw::beyond(number, &site, &mut random),
-            _ => draw::library(number, &site, faintest, &mut random),
-        })
-        .collect();
-    let noise = setup::noise(&site, 0, &mut random);
+fn drawn(source: &Source, number: usize) -> Drawn {
+    let mut random = Random::seeded(source.seed, STREAM + number as u64);
+    let random = &mut random;
+    let conflict = (source.half == Half::Conflicts).then(|| Conflict::of(number));
+    let kind = if conflict.is_some() { Kind::Single } else { drawn_kind(random) };
+    let (numbers, needs) = match conflict {
+        Some(conflict) => (Vec::new(), conflict.needs()),
+        None => numbers(kind, random),
+    };
+    let mut site = setup::draw(needs, &source.residuals, random);
+    let effects = effects(kind, conflict, &numbers, &site, random);
+    let noise = site.errors(0, random);
     let read = setup::measured(&mut site, &effects, 0, &noise);
-    let guess = text::guess(&site, &mut random);
-    Drawn { kind, site, effects, noise, read, guess }
+    let guess = text::guess(&site, random);
+    let mut right = Written { site: site.clone(), guess, read, others: Vec::new() };
+    if site.rod.is_some() && happens(random, BESIDE) {
+        right.others.push(("rod-3.toml".into(), Rod::drawing(random)));
+    }
+    let mistake = (kind == Kind::Mistake).then(|| mistake::draw(&right, random));
+    Drawn { kind, conflict, site, effects, noise, right, mistake }
+}
+
+fn drawn_kind(random: &mut Random) -> Kind {
+    let mut drawn = random.uniform(0.0, 1.0);
+    for (kind, share) in SHARES {
+        if drawn < share {
+            return kind;
+        }
+        drawn -= share;
+    }
+    Kind::Clean
 }
 
 /// Effects by number, and what they need of a recording together.
@@ -81,52 +133,104 @@ fn numbers(kind: Kind, random: &mut Random) -> (Vec<usize>, Needs) {
     match kind {
         Kind::Clean | Kind::Mistake | Kind::Suspect => (Vec::new(), Needs::default()),
         Kind::Unknown => {
-            let number = random.index(draw::BEYOND);
-            (vec![number], draw::needs_beyond(number))
+            let number = random.index(beyond::BEYOND);
+            (vec![number], beyond::needs(number))
         }
         Kind::Single => {
             let number = random.index(draw::LIBRARY);
             (vec![number], draw::needs(number))
         }
-        Kind::Pair => loop {
-            let first = random.index(draw::LIBRARY);
-            let second = (first + 1 + random.index(draw::LIBRARY - 1)) % draw::LIBRARY;
-            if let Some(needs) = draw::needs(first).and(draw::needs(second)) {
-                return (vec![first, second], needs);
+        Kind::Pair => {
+            let count = if happens(random, THREE) { 3 } else { 2 };
+            let (mut numbers, mut needs) = (Vec::new(), Needs::default());
+            while numbers.len() < count {
+                let number = random.index(draw::LIBRARY);
+                if let Some(both) = needs.and(draw::needs(number)).filter(|_| !numbers.contains(&number)) {
+                    numbers.push(number);
+                    needs = both;
+                }
             }
-        },
+            (numbers, needs)
+        }
     }
+}
+
+/// The effects of these numbers, as large as the kind of the case wants them.
+fn effects(
+    kind: Kind,
+    conflict: Option<Conflict>,
+    numbers: &[usize],
+    site: &Site,
+    random: &mut Random,
+) -> Vec<Effect> {
+    if kind == Kind::Clean || kind == Kind::Mistake {
+        return Vec::new();
+    }
+    let oracle = Oracle::new(site);
+    if let Some(conflict) = conflict {
+        let largest = conflict.effect(site, random);
+        let share = log_uniform(random, CONFLICT[0], CONFLICT[1]) * oracle.limit(&largest);
+        return vec![if conflict.is_scaled() { largest.scaled(share.min(1.0)) } else { largest }];
+    }
+    let of = |&number: &usize| {
+        let mut draw = || match kind {
+            Kind::Unknown => beyond::beyond(number, site, random),
+            _ => draw::library(number, site, random),
+        };
+        // at another joint or in another direction it may be seen
+        let tried: Vec<(f64, Effect)> = (0..DRAWN)
+            .map(|_| draw())
+            .map(|largest| (oracle.limit(&largest), largest))
+            .scan(false, |is_seen, tried| (!std::mem::replace(is_seen, tried.0 < SEEN)).then_some(tried))
+            .collect();
+        let (limit, largest) = tried.into_iter().next_back()?;
+        let limit = limit.clamp(1e-4, 1.0);
+        let (least, most) = match kind {
+            Kind::Single if happens(random, BELOW.0) => (BELOW.1 * limit, limit),
+            Kind::Single => (limit, 1.0),
+            Kind::Pair => ((FAINTEST[0] * limit).min(0.5), 1.0),
+            _ => ((FAINTEST[1] * limit).min(0.5), 1.0),
+        };
+        Some(largest.scaled(log_uniform(random, least, most)))
+    };
+    numbers.iter().filter_map(of).collect()
 }
 
 fn truth(case: String, drawn: &Drawn, asked: &Question) -> Truth {
     let Drawn { kind, site, effects, noise, .. } = drawn;
-    let oracle = (!effects.is_empty()).then(|| Oracle::new(site));
+    let mut oracle = (!effects.is_empty()).then(|| Oracle::new(site));
+    if let Some(oracle) = &mut oracle {
+        oracle.compare(effects);
+    }
+    let sd = site.scatter.sd.hypot(site.scatter.step / 12f64.sqrt());
     let of = |(which, effect): (usize, &Effect)| {
         let alone = site.added(std::slice::from_ref(effect), &[]);
-        let parameter =
-            |(name, value): (&str, f64)| Parameter { name: name.into(), value, with_numbers: None };
         let place = draw::place(effect, site);
         Some(Concealed {
             effect: effect.name(site.has_sockets()).into(),
             location: place.to_string(),
             place,
-            parameters: effect.parameters().into_iter().map(parameter).collect(),
-            size_over_noise: (alone.norm_squared() / alone.len() as f64).sqrt() / site.noise,
+            parameters: with_places(site, effect, parameters(effect.parameters())),
+            size_over_noise: (alone.norm_squared() / alone.len() as f64).sqrt() / sd,
             detectability: oracle.as_ref()?.detectability(effects, which),
         })
     };
     let mut concealed: Vec<Concealed> = effects.iter().enumerate().filter_map(of).collect();
     concealed.sort_by(|a, b| b.size_over_noise.total_cmp(&a.size_over_noise));
+    concealed.extend(drawn.mistake.as_ref().map(|mistake| {
+        Concealed::mistake(mistake.name(), mistake.place(site), parameters(mistake.parameters()))
+    }));
     let left = oracle.as_ref().map(|oracle| oracle.share_left(effects));
     Truth {
         case,
         kind: *kind,
+        conflict: drawn.conflict.map(|conflict| conflict.name().to_owned()),
         effects: concealed,
         companions: Vec::new(),
-        numbers_off: 0.0,
-        noise_um: site.noise / UM,
-        noise_shape: site.shape.map_or("normal".into(), |dof| format!("student-t ({dof})")),
-        quantum_um: 0.0,
+        numbers_off: site.times,
+        noise_um: sd / UM,
+        noise_shape: site.scatter.words(),
+        quantum_um: site.scatter.step / UM,
         readings: 3 * site.rows.len(),
         protocol: description(site),
         joints: BTreeMap::new(),
@@ -138,6 +242,24 @@ fn truth(case: String, drawn: &Drawn, asked: &Question) -> Truth {
         residuals: Vec::new(),
         asked: Some(asked.truth(site, effects, noise)),
     }
+}
+
+/// Where a clamp stands nobody can separate from how far its place was off before.
+fn with_places(site: &Site, effect: &Effect, mut parameters: Vec<Parameter>) -> Vec<Parameter> {
+    if let Effect::ClampPose { group, by, .. } = effect {
+        let whole = by + site.clamps_off[*group];
+        for (parameter, all) in parameters.iter_mut().zip(whole.iter()) {
+            parameter.with_numbers = Some(all / UM);
+        }
+    }
+    parameters
+}
+
+fn parameters(numbers: Vec<(&str, f64)>) -> Vec<Parameter> {
+    numbers
+        .into_iter()
+        .map(|(name, value)| Parameter { name: name.into(), value, with_numbers: None })
+        .collect()
 }
 
 fn description(site: &Site) -> String {
@@ -155,12 +277,38 @@ fn description(site: &Site) -> String {
 mod tests {
     use super::*;
 
+    fn case(half: Half, number: usize) -> Case {
+        super::case(&Source { seed: 1, half, residuals: Vec::new() }, number)
+    }
+
     #[test]
-    fn only_a_clean_case_has_no_effect() {
-        for number in 0..12 {
-            let case = case(1, number);
-            assert_eq!(case.truth.kind == Kind::Clean, case.truth.effects.is_empty());
-            assert!(case.truth.effects.iter().all(|e| e.size_over_noise > 0.0), "{:?}", case.truth);
+    fn a_case_is_what_its_kind_says() {
+        let mut kinds = std::collections::BTreeSet::new();
+        for number in 0..16 {
+            let truth = case(Half::Calibration, number).truth;
+            let expected = match truth.kind {
+                Kind::Clean | Kind::Suspect => 0..=0,
+                Kind::Single | Kind::Unknown | Kind::Mistake => 1..=1,
+                Kind::Pair => 2..=3,
+            };
+            assert!(expected.contains(&truth.effects.len()), "{truth:?}");
+            assert!(truth.effects.iter().all(|e| e.size_over_noise > 0.0), "{truth:?}");
+            assert!([1.0, 2.0].contains(&truth.numbers_off) && truth.conflict.is_none());
+            let is_unknown = truth.kind == Kind::Unknown;
+            assert!(truth.effects.iter().all(|e| e.detectability.against_pair.is_some() == is_unknown));
+            kinds.insert(format!("{:?}", truth.kind));
         }
+        assert_eq!(kinds.len(), 5);
+    }
+
+    #[test]
+    fn both_sides_of_a_conflict_are_drawn_in_turn() {
+        let names: Vec<(String, String)> = (0..4)
+            .map(|number| case(Half::Conflicts, number).truth)
+            .map(|truth| (truth.conflict.unwrap(), truth.effects[0].effect.clone()))
+            .collect();
+        let expected = ["readback_lag", "backlash", "tip_mass", "joint_compliance"];
+        assert!(names.iter().map(|(_, effect)| effect.as_str()).eq(expected), "{names:?}");
+        assert_eq!((&names[0].0, names[1].0 == names[2].0), (&names[1].0, false));
     }
 }

@@ -30,6 +30,8 @@ pub enum Half {
     Rig,
     /// Recordings of arms.
     Calibration,
+    /// Calibrations with effects that imitate each other, both sides of each pair in turn.
+    Conflicts,
     /// Of three cases the third is a calibration.
     Both,
 }
@@ -41,8 +43,8 @@ pub struct Source {
     pub seed: u64,
     /// What is tried.
     pub half: Half,
-    /// Residuals of a real recording that are the noise at the rig, in standard deviations; none:
-    /// the noise is computed.
+    /// Residuals of a real recording that are the noise, in standard deviations; none: the noise is
+    /// computed.
     pub residuals: Vec<f64>,
 }
 
@@ -50,8 +52,8 @@ impl Source {
     /// Case number `number`.
     fn case(&self, number: usize) -> Case {
         let is_third = self.half == Half::Both && number.is_multiple_of(3);
-        match self.half == Half::Calibration || is_third {
-            true => calibration::case(self.seed, number),
+        match matches!(self.half, Half::Calibration | Half::Conflicts) || is_third {
+            true => calibration::case(self, number),
             false => rig::case(self.seed, number, &self.residuals),
         }
     }
@@ -76,7 +78,7 @@ mod tests {
 
     #[test]
     fn files_say_that_they_are_simulated_and_nothing_of_the_effect() {
-        for (half, cases) in [(Half::Rig, 40), (Half::Calibration, 12)] {
+        for (half, cases) in [(Half::Rig, 8), (Half::Calibration, 6)] {
             for number in 0..cases {
                 let case = case(1, half, number);
                 for (name, text) in &case.files {

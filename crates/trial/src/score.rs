@@ -143,7 +143,7 @@ fn part(cases: &[Judged<'_>], outcomes: &BTreeMap<&str, &Outcome>) -> Part {
 
     let pairs: Vec<&Judged<'_>> = of_kind(Kind::Pair).filter(is_identifiable).collect();
     let found = |case: &Judged<'_>| case.truth.effects.iter().filter(|e| case.found(e).is_some()).count();
-    let both_found = Rate::of(pairs.iter(), |case| found(case) == 2);
+    let both_found = Rate::of(pairs.iter(), |case| found(case) == case.truth.effects.len());
     let one_found = Rate::of(pairs.iter(), |case| found(case) >= 1);
 
     let unknown: Vec<&Judged<'_>> = of_kind(Kind::Unknown).filter(is_identifiable).collect();
@@ -203,6 +203,7 @@ fn part(cases: &[Judged<'_>], outcomes: &BTreeMap<&str, &Outcome>) -> Part {
         next_measurement_ok: next::next_measurement(cases, outcomes),
         bins: tables::bins(cases),
         confusion: tables::confusion(cases),
+        conflicts: tables::conflicts(cases),
         outside: tables::outside(cases),
         power: tables::power(cases),
         failures: tables::failures(cases),

@@ -5,7 +5,6 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use crate::place::Place;
-use rodcal_base::statistics::Random;
 
 /// One case of the key. Units are those of the names.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -14,6 +13,9 @@ pub struct Truth {
     pub case: String,
     /// What sort of case.
     pub kind: Kind,
+    /// The pair of effects that imitate each other of which it is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub conflict: Option<String>,
     /// What is wrong, strongest first; of an unknown case physics that no library has.
     pub effects: Vec<Concealed>,
     /// What accompanies it and is right to be named, but not sought.
@@ -81,23 +83,6 @@ pub enum Kind {
     Suspect,
 }
 
-/// Of calibrations: shares of clean, single and paired cases; the rest is unknown.
-const SHARES: [f64; 3] = [0.25, 0.45, 0.15];
-
-impl Kind {
-    /// That of a calibration, by chance.
-    pub fn drawn(random: &mut Random) -> Kind {
-        let drawn = random.uniform(0.0, 1.0);
-        let [clean, single, pair] = SHARES;
-        match drawn {
-            u if u < clean => Kind::Clean,
-            u if u < clean + single => Kind::Single,
-            u if u < clean + single + pair => Kind::Pair,
-            _ => Kind::Unknown,
-        }
-    }
-}
-
 /// One concealed effect.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Concealed {
@@ -113,6 +98,28 @@ pub struct Concealed {
     pub size_over_noise: f64,
     /// What an oracle could have known.
     pub detectability: Detectability,
+}
+
+impl Concealed {
+    /// A mistake: files that do not fit each other leave nothing to detect.
+    pub fn mistake(effect: &str, place: Place, parameters: Vec<Parameter>) -> Concealed {
+        Concealed {
+            effect: effect.into(),
+            location: place.to_string(),
+            parameters,
+            size_over_noise: f64::MAX,
+            detectability: Detectability {
+                against_none: f64::MAX,
+                against_rival: f64::MAX,
+                against_pair: None,
+                best_rival: String::new(),
+                class: Vec::new(),
+                places: vec![place.clone()],
+                stations_mm: None,
+            },
+            place,
+        }
+    }
 }
 
 /// A number of an effect.

@@ -159,7 +159,7 @@ struct RawSockets {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a section [noise] with position_um, clamp_um")]
 struct RawNoise {
-    position_um: Number,
+    position_um: Option<Number>,
     clamp_um: Option<Number>,
 }
 
@@ -170,7 +170,6 @@ const REQUIRED: &Required = &[
     ("xyz_mm", "a position [x, y, z] in mm"),
     ("id", "the clamp's name in quotes, as in the column clamp of the measurements"),
     ("distance_mm", "the distance between the sockets 0 and 1 of a placement in mm"),
-    ("position_um", "the standard deviation of one measured coordinate in µm"),
     ("parameter", "the name of a parameter with its unit, such as \"a2_mm\""),
     ("value", "what the parameter is known to be, in the unit that its name ends with"),
     ("sd", "the standard deviation of that knowledge, in the unit that the parameter's name ends with"),
@@ -232,7 +231,7 @@ impl Reader<'_> {
             number.map(|number| Ok(self.toml.positive(&format!("noise.{key}"), number)? * UM)).transpose()
         };
         let of_noise = raw.noise.as_ref();
-        let noise = stated("position_um", of_noise.map(|noise| &noise.position_um))?;
+        let noise = stated("position_um", of_noise.and_then(|noise| noise.position_um.as_ref()))?;
         let clamp_uncertainty = stated("clamp_um", of_noise.and_then(|noise| noise.clamp_um.as_ref()))?;
         if let (Some(rig), None) = (&raw.rig, &raw.rod) {
             let expected = "a rod (`rod = \"FILE\"`) whose readings these are";

@@ -55,10 +55,11 @@ impl Campaign {
             text += &format!("\n[base]\nxyz_mm = {}\nrpy_deg = {}\n", three(&xyz, MM), three(&rpy, DEG));
         }
         text += &self.groups();
-        if let Some(noise) = self.noise {
-            text += &format!("\n[noise]\nposition_um = {}\n", number(noise / UM));
-            let of_clamps = self.clamp_uncertainty.map(|sd| format!("clamp_um = {}\n", number(sd / UM)));
-            text += &of_clamps.unwrap_or_default();
+        let stated = [("position_um", self.noise), ("clamp_um", self.clamp_uncertainty)];
+        let stated = stated.into_iter().filter_map(|(key, sd)| Some((key, sd?)));
+        let lines: String = stated.map(|(key, sd)| format!("{key} = {}\n", number(sd / UM))).collect();
+        if !lines.is_empty() {
+            text += &format!("\n[noise]\n{lines}");
         }
         text + &self.constraints()
     }

@@ -13,6 +13,7 @@ use rodcal_trial::score;
 use serde_json::Value;
 
 use super::super::diagnose::neighbours;
+use super::super::neighbours::neighbours as neighbours_of;
 
 /// The files of a case, some of them in another form than in its directory.
 pub struct CaseFiles {
@@ -49,7 +50,12 @@ impl CaseFiles {
     pub fn diagnosed(&self) -> Result<(Value, Option<Vec<f64>>)> {
         if self.has("campaign.toml") {
             let campaign = self.campaign("campaign.toml")?;
-            let found = calibration::diagnose(&campaign, default_mode(&campaign), &Options::default())?;
+            let options = Options::default();
+            let mut others = neighbours_of(&campaign);
+            // what asks is no rod of the laboratory's
+            others.rods.retain(|(file, _)| !file.starts_with("asked"));
+            let mended = calibration::mend(&campaign, default_mode(&campaign), &others, &options)?;
+            let found = mended.diagnose(&options)?;
             let asked = self.has("asked.toml").then(|| self.campaign("asked.toml")).transpose()?;
             let predicted = asked.and_then(|asked| found.predicted(&asked).ok());
             let coordinates =

@@ -40,6 +40,7 @@ fn section(half: &str, part: &Part) -> Section {
         _ => "Calibrations of arms",
     };
     let mut blocks = vec![Block::Table(targets(half, part)), Block::Table(rates(half, part))];
+    blocks.extend(conflicts(half, part).map(Block::Table));
     let figures = [Some(confusion(half, part)), bins(half, part), power(half, part)];
     blocks.extend(figures.into_iter().flatten().map(Block::Figure));
     blocks.push(Block::Table(failures(half, &part.failures)));
@@ -187,6 +188,37 @@ fn confusion(half: &str, part: &Part) -> Figure {
          cases; a circle or a square is as large as its share of the row. For physics outside the \
          library, unexplained is the right answer."
     ))
+}
+
+/// What was said of effects that imitate each other.
+fn conflicts(half: &str, part: &Part) -> Option<Table> {
+    let rows = part.conflicts.iter().flat_map(|(pair, counts)| {
+        counts.iter().map(move |(truth, answers)| {
+            let mut cells: Vec<(&String, &usize)> = answers.iter().collect();
+            cells.sort_by_key(|(_, count)| std::cmp::Reverse(**count));
+            let cells: Vec<String> =
+                cells.iter().map(|(answer, count)| format!("{count} {answer}")).collect();
+            let cases: usize = answers.values().sum();
+            [pair.clone(), truth.clone(), cases.to_string(), cells.join(", ")]
+                .map(|cell| cell.replace('_', " "))
+                .to_vec()
+        })
+    });
+    let rows: Vec<Vec<String>> = rows.collect();
+    (!rows.is_empty()).then(|| Table {
+        name: format!("{half}-conflicts"),
+        caption: "Effects that imitate each other: what was concealed, and what was said. In brackets: the truth, where it is not \
+                  the strongest finding but one that it cannot be told from."
+            .into(),
+        columns: vec![
+            Column::text("pair"),
+            Column::text("concealed"),
+            Column::number("cases", ""),
+            Column::text("answers"),
+        ],
+        rows,
+        notes: Vec::new(),
+    })
 }
 
 /// Where a bin is drawn, its share and the interval of that; `None` of an empty bin.

@@ -68,6 +68,15 @@ impl<'a> Context<'a> {
         self
     }
 
+    /// The same where rows count by weights.
+    pub fn weighted(mut self, weights: &[f64]) -> Self {
+        for (row, weight) in weights.iter().enumerate() {
+            self.scale[row] *= weight.sqrt();
+            self.off[row] *= weight.sqrt();
+        }
+        self
+    }
+
     /// Of poses that nobody measured, in a recording that came after that of `campaign`.
     pub fn later(asked: &'a Campaign, mode: Mode, setup: &Setup, campaign: &'a Campaign) -> Result<Self> {
         let deflections = Compensation::new(asked, mode)?.deflections(setup, &asked.measurements);

@@ -8,6 +8,7 @@ use super::memory::check_memory;
 use super::model::CalibrationModel;
 use super::next::next_poses;
 use super::prepared::Prepared;
+use super::tails;
 use crate::calibration::campaign::Campaign;
 use crate::calibration::{Calibration, Mode, Options, calibrate};
 use crate::error::Result;
@@ -53,17 +54,21 @@ pub fn diagnose_calibrated<'c>(
     check_memory(campaign)?;
     let mut prepared = Prepared::new(campaign, calibration)?;
     let mut scatter = None;
+    let mut weights: Option<Vec<f64>> = None;
     for _ in 0..ROUNDS {
         let (hypothesis, left) = sketch(&prepared.model, &prepared.evidence);
         let about = calibrated_beside(&prepared, &hypothesis, &left)?;
         let noise = unequal(&prepared, &hypothesis, &left)?;
         let is_equal = noise.is_none() == scatter.is_none();
-        if about.is_none() && is_equal {
+        let tails = if weights.is_none() { tails::weights(&prepared, &hypothesis, &left) } else { None };
+        if about.is_none() && is_equal && tails.is_none() {
             break;
         }
         scatter = noise;
+        weights = weights.or(tails);
         let about = about.unwrap_or(prepared.about);
-        prepared = Prepared::about(campaign, prepared.model.calibration, about, scatter.as_ref())?;
+        let calibration = prepared.model.calibration;
+        prepared = Prepared::about(campaign, calibration, about, scatter.as_ref(), weights.as_deref())?;
     }
     let mut diagnosis = infer(&prepared.model, &prepared.evidence);
     let Prepared { model, evidence, absorbed, not_testable, context, .. } = prepared;
@@ -78,8 +83,8 @@ pub fn diagnose_calibrated<'c>(
     Ok(Diagnosed { model, evidence, diagnosis, not_testable, absorbed, limits })
 }
 
-/// So many times a search begins anew about the robot that is left beside what was found, and with the scatter that its
-/// clamps show then.
+/// So many times a search begins anew about the robot that is left beside what was found, with the scatter that its clamps
+/// show then, and with what poses count that are no farther out than the tails of the others.
 const ROUNDS: usize = 2;
 
 /// Something that happened while the poses were recorded.

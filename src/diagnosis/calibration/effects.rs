@@ -17,6 +17,7 @@ pub(super) mod gear;
 pub(super) mod joints;
 pub(super) mod loads;
 pub(super) mod mistakes;
+mod per_torque;
 pub(super) mod play;
 pub(super) mod procedure;
 pub mod registry;

@@ -6,6 +6,7 @@ use super::evidence;
 use super::gear::Gear;
 use super::law::Law;
 use super::linear_terms::LinearTerms;
+use super::torque_uncertainty::TorqueUncertainty;
 use crate::calibration::campaign::Campaign;
 use crate::calibration::{Calibration, Summary};
 use crate::inference::{Finding, FindingPart, Term};
@@ -25,6 +26,8 @@ pub struct CalibrationModel<'c> {
     pub groups: Vec<String>,
     /// What each row counts.
     pub(super) scale: Vec<f64>,
+    /// How well torques are known.
+    pub(super) torque_uncertainty: TorqueUncertainty,
     pub(super) terms: LinearTerms,
 }
 

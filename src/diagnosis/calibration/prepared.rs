@@ -6,6 +6,7 @@ use super::evidence;
 use super::linear_terms::LinearTerms;
 use super::model::CalibrationModel;
 use super::nonparametric;
+use super::torque_uncertainty::TorqueUncertainty;
 use crate::calibration::campaign::Campaign;
 use crate::calibration::{Calibration, Noise};
 use crate::error::Result;
@@ -27,19 +28,25 @@ pub(super) struct Prepared<'c> {
 impl<'c> Prepared<'c> {
     /// Data are rows × (x, y, z), in {W}, then what is known besides; see `evidence.rs`.
     pub fn new(campaign: &'c Campaign, calibration: Calibration<'c>) -> Result<Prepared<'c>> {
-        Prepared::about(campaign, calibration.clone(), calibration, None)
+        Prepared::about(campaign, calibration.clone(), calibration, None, None)
     }
 
-    /// The same of effects that are linear about another robot, of groups that scatter unequally.
+    /// The same of effects that are linear about another robot, of groups that scatter unequally, and whose rows count by
+    /// `weights`.
     pub fn about(
         campaign: &'c Campaign,
         calibration: Calibration<'c>,
         about: Calibration<'c>,
         noise: Option<&Noise>,
+        weights: Option<&[f64]>,
     ) -> Result<Prepared<'c>> {
         let context = Context::new(campaign, &about)?;
         let context = match noise {
             Some(noise) => context.scattered(&noise.of_group),
+            None => context,
+        };
+        let context = match weights {
+            Some(weights) => context.weighted(weights),
             None => context,
         };
         let evidence = evidence::evidence_of(campaign, &about, &context);
@@ -56,6 +63,7 @@ impl<'c> Prepared<'c> {
             recorded: None,
             groups: recording.rows.iter().map(|row| name(row.group)).collect(),
             scale: context.scale.clone(),
+            torque_uncertainty: TorqueUncertainty::new(campaign, &context),
             terms,
         };
         Ok(Prepared { about, model, evidence, absorbed, not_testable, context })

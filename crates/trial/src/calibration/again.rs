@@ -7,7 +7,9 @@ use serde::Deserialize;
 use super::arm;
 use super::effect::Effect;
 use super::site::{Devices, Row, Site};
+use super::text::Written;
 use super::{AGAIN, Drawn, drawn, setup, text};
+use crate::Source;
 use rodcal_base::statistics::Random;
 use rodcal_base::units::{DEG, MM};
 
@@ -55,17 +57,19 @@ const NEAR: f64 = 10.0 * MM;
 const REST: f64 = 600.0;
 const PACE: f64 = 30.0;
 
-/// Case `number` of the trial that belongs to `seed` with what is `proposed`. Refuses, with the reason, what this robot cannot
-/// do.
-pub fn again(seed: u64, number: usize, proposed: &Proposed) -> Result<Again, &'static str> {
-    let Drawn { mut site, effects, read, guess, .. } = drawn(seed, number);
-    let before = text::files(&site, &guess, &read);
+/// Case `number` of a trial with what is `proposed`. Refuses, with the reason, what this robot cannot do.
+pub fn again(source: &Source, number: usize, proposed: &Proposed) -> Result<Again, &'static str> {
+    let Drawn { mut site, effects, right, mistake, .. } = drawn(source, number);
+    if mistake.is_some() {
+        return Err("files with a mistake");
+    }
+    let before = text::files(&right);
     let known = site.rows.len();
     append(&mut site, &effects, proposed)?;
-    let noise = setup::noise(&site, known, &mut Random::seeded(seed, AGAIN + number as u64));
+    let noise = site.errors(known, &mut Random::seeded(source.seed, AGAIN + number as u64));
     let more = setup::measured(&mut site, &effects, known, &noise);
-    let all: Vec<Vector3<f64>> = read.into_iter().chain(more).collect();
-    Ok(Again { before, after: text::files(&site, &guess, &all) })
+    let read: Vec<Vector3<f64>> = right.read.iter().copied().chain(more).collect();
+    Ok(Again { before, after: text::files(&Written { site, read, ..right }) })
 }
 
 /// The rows that are proposed, after the others.
@@ -79,6 +83,8 @@ fn append(site: &mut Site, effects: &[Effect], proposed: &Proposed) -> Result<()
         if !clamp.xyz_mm.iter().chain(&clamp.rpy_deg).all(|value| value.is_finite()) {
             return Err("not a place for a clamp");
         }
+        site.clamps_off.push(Vector3::zeros());
+        site.scatter.of_group.push(1.0);
         clamps.push(arm::frame(
             &(Vector3::from(clamp.xyz_mm) * MM),
             &Vector3::from(clamp.rpy_deg.map(|angle| angle * DEG)),
@@ -94,7 +100,8 @@ fn append(site: &mut Site, effects: &[Effect], proposed: &Proposed) -> Result<()
         let name = pose.group.as_deref().unwrap_or_default();
         let group = names.iter().position(|known| known == name).ok_or("no such clamp or socket")?;
         let time = ((last.time + REST + PACE * k as f64) * 10.0).round() / 10.0;
-        site.rows.push(Row { q, group, time, temperature: last.temperature });
+        let aside = Vector3::zeros();
+        site.rows.push(Row { q, group, aside, time, temperature: last.temperature });
         let row = site.rows.len() - 1;
         let at = site.ball(row, &site.rows[row].q, effects);
         let goal = match &site.devices {
@@ -105,6 +112,9 @@ fn append(site: &mut Site, effects: &[Effect], proposed: &Proposed) -> Result<()
         if (at - goal).norm() > NEAR {
             return Err("the ball would not be at its clamp or socket");
         }
+        if let Devices::Clamps(clamps) = &site.devices {
+            site.rows[row].aside = arm::turned(&clamps[group].transpose(), &(at - goal));
+        }
     }
     Ok(())
 }
@@ -114,9 +124,17 @@ mod tests {
     use super::*;
     use crate::calibration::case;
 
+    fn source(seed: u64) -> Source {
+        Source { seed, half: crate::Half::Calibration, residuals: Vec::new() }
+    }
+
+    fn has_clamps(drawn: &Drawn) -> bool {
+        matches!(drawn.site.devices, Devices::Clamps(_)) && drawn.mistake.is_none()
+    }
+
     /// The first recorded pose once more, and then the last.
     fn proposed(seed: u64, number: usize) -> Proposed {
-        let drawn = drawn(seed, number);
+        let drawn = drawn(&source(seed), number);
         let pose = |row: &Row| ProposedPose {
             joints: row.q.iter().map(|q| q / DEG).collect(),
             group: Some(drawn.site.group_name(row.group)).filter(|name| !name.is_empty()),
@@ -127,27 +145,27 @@ mod tests {
 
     #[test]
     fn the_files_are_the_sealed_ones_and_the_new_rows_are_below() {
-        for number in 1..8 {
+        for number in (1..7).filter(|&number| drawn(&source(5), number).mistake.is_none()) {
             let proposed = proposed(5, number);
-            let again = again(5, number, &proposed).unwrap();
-            let sealed = case(5, number).files;
+            let again = again(&source(5), number, &proposed).unwrap();
+            let sealed = case(&source(5), number).files;
             assert!(again.before.iter().all(|file| sealed.contains(file)));
             let rows = |files: &[(String, String)]| files[2].1.clone();
             let (before, after) = (rows(&again.before), rows(&again.after));
             assert_eq!(after.lines().count(), before.lines().count() + 2);
             assert!(after.starts_with(&before), "{after}");
-            assert_eq!(again, super::again(5, number, &proposed).unwrap());
+            assert_eq!(again, super::again(&source(5), number, &proposed).unwrap());
         }
     }
 
     #[test]
     fn what_no_robot_can_do_is_refused_with_the_reason() {
-        let number = (1..50).find(|&k| matches!(drawn(5, k).site.devices, Devices::Clamps(_))).unwrap();
+        let number = (1..50).find(|&k| has_clamps(&drawn(&source(5), k))).unwrap();
         let good = proposed(5, number);
         let refused = |change: &dyn Fn(&mut Proposed)| {
             let mut other = good.clone();
             change(&mut other);
-            again(5, number, &other).unwrap_err()
+            again(&source(5), number, &other).unwrap_err()
         };
         assert_eq!(refused(&|p| p.poses.clear()), "no poses, or too many");
         assert_eq!(refused(&|p| p.poses[0].joints[2] = 200.0), "joints beyond their range");
@@ -162,14 +180,14 @@ mod tests {
 
     #[test]
     fn a_clamp_is_set_up_where_it_is_proposed() {
-        let number = (1..50).find(|&k| matches!(drawn(5, k).site.devices, Devices::Clamps(_))).unwrap();
-        let drawn = drawn(5, number);
+        let number = (1..50).find(|&k| has_clamps(&drawn(&source(5), k))).unwrap();
+        let drawn = drawn(&source(5), number);
         let mut proposed = proposed(5, number);
         let at = drawn.site.ball(0, &drawn.site.rows[0].q, &drawn.effects) / MM;
         let name = "new clamp".to_owned();
         proposed.poses[0].group = Some(name.clone());
         proposed.new_fixture = Some(NewClamp { name, xyz_mm: at.into(), rpy_deg: [10.0, 20.0, 30.0] });
-        let again = again(5, number, &proposed).unwrap();
+        let again = again(&source(5), number, &proposed).unwrap();
         let clamps = |files: &[(String, String)]| files[0].1.matches("[[clamp]]").count();
         assert_eq!(clamps(&again.after), clamps(&again.before) + 1);
     }

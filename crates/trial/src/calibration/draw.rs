@@ -1,26 +1,25 @@
-//! Which effect, how large, where. Sizes are log-uniform over the range in which a robot or a fixture may meet them; of two
-//! effects in one case over the upper half of it:
+//! Which effect, where, and how large at most. How much of that a case holds is drawn afterwards (`calibration.rs`), on a
+//! logarithmic scale: three of ten single effects from a tenth of what could just be detected up to that, the others from there
+//! on; of several effects in one case from three times that.
 //!
-//! | effect | size | from | to |
-//! |---|---|---|---|
-//! | `transmission_error` | amplitude of the strongest of one to four waves of 1 to 30 cycles/rev, some with a beat, µrad | 10 | 500 |
-//! | `backlash` | play, µrad, by torque or by approach | 20 | 1000 |
-//! | `joint_compliance` | yielding at the largest torque, µrad, in a file without masses | 50 | 2000 |
-//! | `joint_nonlinear_stiffness` | the same beyond what is linear | 50 | 2000 |
-//! | `encoder_scale` | departure of the factor from 1 | 10⁻⁵ | 10⁻³ |
-//! | `wrist_coupling`, `readback_lag` | share | 10⁻⁵ | 10⁻³ |
-//! | `clamp_shift`, `socket_shift` | µm | 30 | 3000 |
-//! | `clamp_pose` | µm; turned by as many mrad per mm | 30 | 3000 |
-//! | `thermal_drift` | µm/K, or µm/h | 3 | 300 |
-//! | `payload_mass` | kg | 0.1 | 5 |
-//! | `tip_mass` | g | 5 | 300 |
-//! | `rod_stiffness` | departure of the factor from 1 | 2 % | 60 % |
-//! | `outlier` | noises, one or two rows | 5 | 100 |
-//! | a link twists with two joints | µrad/rad² | 10 | 1000 |
-//! | a ball out of round | µm | 5 | 200 |
-//! | a worn tooth | play in a window of 20° to 60°, µrad | 50 | 2000 |
-//! | a periodic disturbance | µm; period 4 to 20 poses | 10 | 300 |
-//! | refraction | µm/m² | 5 | 300 |
+//! | effect | size | at most |
+//! |---|---|---|
+//! | `transmission_error` | amplitude of the strongest of one to four waves of 1 to 30 cycles/rev, some with a beat, µrad | 500 |
+//! | `backlash` | play, µrad, by torque or by approach | 1000 |
+//! | `joint_compliance` | turn at the largest torque, µrad, in a file without masses | 2000 |
+//! | `joint_nonlinear_stiffness`, `joint_friction` | the same beyond what is linear; between both directions | 2000, 500 |
+//! | `encoder_scale` | departure of the factor from 1 | 10⁻³ |
+//! | `wrist_coupling`, `readback_lag` | share | 10⁻³ |
+//! | `clamp_shift`, `socket_shift`, `tool_shift` | µm | 3000 |
+//! | `clamp_pose`, `base_shift` | µm; turned by as many mrad per mm. A third of the bases: 300 mm and 0.1 rad | 3000 |
+//! | `thermal_drift` | µm/K or µm/h of the base; µrad/K or µrad/h of a joint's zero | 300, 100 |
+//! | `payload_mass`, `tip_mass` | kg, g | 5, 300 |
+//! | `rod_stiffness` | departure of the factor from 1 | 60 % |
+//! | `contact_spring`, `contact_force_variation` | N/mm, N | 0.3, 1 |
+//! | `gravity_direction`, `gravity_tilt` | degrees, µrad/(N·m) | 5, 5 |
+//! | `outlier` | noises, one or two rows | 100 |
+//!
+//! The largest size is 0.5 to 1 times that. Physics that no library has: `beyond.rs`.
 
 use nalgebra::Vector3;
 
@@ -33,30 +32,22 @@ use rodcal_base::statistics::Random;
 use rodcal_base::units::{DEG, GRAM, UM, URAD};
 
 /// Effects that a library may have, by number for [`library`].
-pub const LIBRARY: usize = 16;
-/// Effects that none has, by number for [`beyond`].
-pub const BEYOND: usize = 5;
+pub const LIBRARY: usize = 24;
+/// Range of the largest size, of the end in the table.
+const LARGEST: (f64, f64) = (0.5, 1.0);
 
 /// What a recording must have to carry the effect of the library of this number.
 pub fn needs(effect: usize) -> Needs {
     let none = Needs::default();
     match effect {
         3 => Needs { masses: Some(false), ..none },
-        2 | 4 | 10 => Needs { masses: Some(true), ..none },
+        2 | 4 | 10 | 20 | 21 | 23 => Needs { masses: Some(true), ..none },
         7 => Needs { fixture: true, ..none },
         8 => Needs { device: Some(0), ..none },
-        9 => Needs { clock: true, ..none },
+        9 | 22 => Needs { clock: true, ..none },
         11 | 14 => Needs { rod: true, ..none },
-        _ => none,
-    }
-}
-
-/// The same for what is beyond the library.
-pub fn needs_beyond(effect: usize) -> Needs {
-    let none = Needs::default();
-    match effect {
-        2 => Needs { masses: Some(true), ..none },
-        4 => Needs { device: Some(1), ..none },
+        17 => Needs { points: true, ..none },
+        18 | 19 => Needs { device: Some(0), rod: true, ..none },
         _ => none,
     }
 }
@@ -67,12 +58,12 @@ pub fn direction(random: &mut Random) -> Vector3<f64> {
     v / v.norm().max(1e-9)
 }
 
-fn either(random: &mut Random) -> f64 {
+pub fn either(random: &mut Random) -> f64 {
     if happens(random, 0.5) { -1.0 } else { 1.0 }
 }
 
 /// A joint whose gravity torque counts, and its largest size, N·m.
-fn loaded(site: &Site, random: &mut Random) -> (usize, f64) {
+pub fn loaded(site: &Site, random: &mut Random) -> (usize, f64) {
     let mut largest = vec![0.0f64; site.nominal.len()];
     for row in 0..site.rows.len() {
         for (most, torque) in largest.iter_mut().zip(site.loads(row).0) {
@@ -85,50 +76,32 @@ fn loaded(site: &Site, random: &mut Random) -> (usize, f64) {
     (joint, largest[joint])
 }
 
-/// An effect of the library at a site that can carry it; of its range the part above the share `faintest` (on the logarithm).
-pub fn library(effect: usize, site: &Site, faintest: f64, random: &mut Random) -> Effect {
-    let sized = |random: &mut Random, low: f64, high: f64| {
-        log_uniform(random, low * (high / low).powf(faintest), high)
-    };
+/// An effect of the library at a site that can carry it, as large as it may be.
+pub fn library(effect: usize, site: &Site, random: &mut Random) -> Effect {
+    let large = |random: &mut Random, most: f64| most * random.uniform(LARGEST.0, LARGEST.1);
     let n = site.nominal.len();
     let any = random.index(n);
     match effect {
-        0 | 15 => {
-            let largest = sized(random, 10.0, 500.0) * URAD;
-            let count = if happens(random, 0.4) { 1 } else { 2 + random.index(3) };
-            let base = log_uniform(random, 1.0, 30.0);
-            let waves = (0..count)
-                .map(|k| {
-                    // multiples of one another, nearly
-                    let cycles =
-                        if k == 0 { base } else { base * (k + 1) as f64 * random.uniform(0.97, 1.03) };
-                    let share = if k == 0 { 1.0 } else { random.uniform(0.1, 0.7) };
-                    [cycles.min(38.0), share * largest, random.uniform(0.0, std::f64::consts::TAU)]
-                })
-                .collect();
-            let beat = (count > 1 && happens(random, 0.3))
-                .then(|| [random.uniform(0.2, 0.6), random.uniform(0.5, 2.0)]);
-            Effect::Transmission { joint: any, waves, beat }
-        }
-        1 => Effect::Backlash { joint: any, play: sized(random, 20.0, 1000.0) * URAD, by_approach: true },
+        0 | 15 => transmission(any, large(random, 500.0) * URAD, random),
+        1 => Effect::Backlash { joint: any, play: large(random, 1000.0) * URAD, by_approach: true },
         2 => {
             let (joint, _) = loaded(site, random);
-            Effect::Backlash { joint, play: sized(random, 20.0, 1000.0) * URAD, by_approach: false }
+            Effect::Backlash { joint, play: large(random, 1000.0) * URAD, by_approach: false }
         }
         3 => {
             let (joint, largest) = loaded(site, random);
-            Effect::Compliance { joint, compliance: sized(random, 50.0, 2000.0) * URAD / largest }
+            Effect::Compliance { joint, compliance: large(random, 2000.0) * URAD / largest }
         }
         4 => {
             let (joint, largest) = loaded(site, random);
-            let (cubic, by) = (happens(random, 0.6), sized(random, 50.0, 2000.0) * URAD);
+            let (cubic, by) = (happens(random, 0.6), large(random, 2000.0) * URAD);
             Effect::Nonlinear { joint, cubic, per: by / largest.powi(if cubic { 3 } else { 2 }) }
         }
-        5 => Effect::EncoderScale { joint: any, factor: 1.0 + either(random) * sized(random, 1e-5, 1e-3) },
+        5 => Effect::EncoderScale { joint: any, more: either(random) * large(random, 1e-3) },
         6 => {
             let from = n - 3 + random.index(2);
             let (from, to) = if happens(random, 0.5) { (from, from + 1) } else { (from + 1, from) };
-            Effect::Coupling { from, to, share: either(random) * sized(random, 1e-5, 1e-3) }
+            Effect::Coupling { from, to, share: either(random) * large(random, 1e-3) }
         }
         7 => {
             let group = random.index(site.groups());
@@ -136,70 +109,99 @@ pub fn library(effect: usize, site: &Site, faintest: f64, random: &mut Random) -
                 (0..site.rows.len()).filter(|&row| site.rows[row].group == group).collect();
             let inner = rows.len().saturating_sub(4).max(1);
             let from = rows.get(2 + random.index(inner)).copied().unwrap_or(0);
-            Effect::Shift { group, from, by: direction(random) * sized(random, 30.0, 3000.0) * UM }
+            Effect::Shift { group, from, by: direction(random) * large(random, 3000.0) * UM }
         }
-        8 => {
-            let size = sized(random, 30.0, 3000.0);
-            let turn = direction(random) * (size * random.uniform(0.2, 2.0) * URAD);
-            Effect::ClampPose {
-                group: random.index(site.groups()),
-                by: direction(random) * (size * UM),
-                turn,
-            }
-        }
+        8 => clamp_pose(site, random),
         9 => {
-            let by = direction(random) * sized(random, 3.0, 300.0) * UM;
+            let by = direction(random) * large(random, 300.0) * UM;
             match site.has_temperature {
                 true => Effect::Drift { by, by_time: false },
                 false => Effect::Drift { by: by / 3600.0, by_time: true },
             }
         }
-        10 => Effect::Payload(sized(random, 0.1, 5.0)),
-        11 => Effect::TipMass(sized(random, 5.0, 300.0) * GRAM),
+        10 => Effect::Payload(large(random, 5.0)),
+        11 => Effect::TipMass(large(random, 300.0) * GRAM),
         12 => {
             let joint = happens(random, 0.4).then_some(any);
-            Effect::Lag { joint, share: sized(random, 1e-5, 1e-3) }
+            Effect::Lag { joint, share: large(random, 1e-3) }
         }
         14 => {
-            let departure = sized(random, 0.02, 0.6);
-            Effect::Rod(if happens(random, 0.75) { 1.0 + departure } else { 1.0 - departure })
+            let departure = large(random, 0.6);
+            Effect::Rod(if happens(random, 0.75) { departure } else { -departure })
+        }
+        16 => {
+            let from = within(site, random);
+            Effect::ToolShift { from, by: direction(random) * large(random, 3000.0) * UM }
+        }
+        17 => {
+            let most = if happens(random, 0.33) { 100.0 } else { 1.0 };
+            let size = large(random, 3000.0) * most;
+            let (by, turn) = (direction(random) * size * UM, direction(random) * size * URAD);
+            Effect::BaseShift { from: within(site, random), by, turn: turn / most.sqrt() }
+        }
+        18 => spring(site, large(random, 300.0), random),
+        19 => Effect::Force { group: one_clamp(site, random), by: direction(random) * large(random, 1.0) },
+        20 => {
+            let (way, size) = (random.uniform(0.0, std::f64::consts::TAU), large(random, 5.0) * DEG);
+            Effect::Level([size * way.cos(), size * way.sin()])
+        }
+        21 => Effect::BaseTilt(large(random, 5.0) * URAD),
+        22 => {
+            let per = either(random) * large(random, 100.0) * URAD;
+            let by_time = !site.has_temperature;
+            Effect::ZeroDrift { joint: any, per: if by_time { per / 3600.0 } else { per }, by_time }
+        }
+        23 => {
+            let (joint, largest) = loaded(site, random);
+            Effect::Friction { joint, per: large(random, 500.0) * URAD / largest }
         }
         _ => {
             let count = if happens(random, 0.7) { 1 } else { 2 };
             let first = random.index(site.rows.len());
             let second = (first + 1 + random.index(site.rows.len() - 1)) % site.rows.len();
-            let mut by = || direction(random) * (sized(random, 5.0, 100.0) * site.noise);
+            let mut by = || direction(random) * (large(random, 100.0) * site.scatter.sd);
             let of = [(first, by()), (second, by())];
             Effect::Outlier(of[..count].to_vec())
         }
     }
 }
 
-/// Physics that no library has.
-pub fn beyond(effect: usize, site: &Site, random: &mut Random) -> Effect {
-    match effect {
-        0 => {
-            let link = 1 + random.index(3);
-            let joints = [random.index(link), link + 1 + random.index(5 - link)];
-            Effect::LinkTorsion {
-                link,
-                joints,
-                per: either(random) * log_uniform(random, 10.0, 1000.0) * URAD,
-            }
-        }
-        1 => Effect::Ball(log_uniform(random, 5.0, 200.0) * UM),
-        2 => {
-            let (joint, _) = loaded(site, random);
-            let window = [random.uniform(-1.5, 1.5), random.uniform(20.0, 60.0) * DEG];
-            Effect::Wear { joint, window, play: log_uniform(random, 50.0, 2000.0) * URAD }
-        }
-        3 => Effect::Disturbance {
-            by: direction(random) * log_uniform(random, 10.0, 300.0) * UM,
-            period: 30.0 * log_uniform(random, 4.0, 20.0),
-            phase: random.uniform(0.0, std::f64::consts::TAU),
-        },
-        _ => Effect::Refraction(log_uniform(random, 5.0, 300.0) * UM),
-    }
+/// A row with some before it and after it.
+fn within(site: &Site, random: &mut Random) -> usize {
+    3 + random.index(site.rows.len().saturating_sub(6).max(1))
+}
+
+/// One clamp, or all of them.
+fn one_clamp(site: &Site, random: &mut Random) -> Option<usize> {
+    happens(random, 0.4).then(|| random.index(site.groups()))
+}
+
+/// A spring of so many N/m at the most.
+pub fn spring(site: &Site, rate: f64, random: &mut Random) -> Effect {
+    Effect::Spring { group: one_clamp(site, random), rate: either(random) * rate }
+}
+
+/// A clamp that stands elsewhere.
+pub fn clamp_pose(site: &Site, random: &mut Random) -> Effect {
+    let size = 3000.0 * random.uniform(LARGEST.0, LARGEST.1);
+    let turn = direction(random) * (size * random.uniform(0.2, 2.0) * URAD);
+    Effect::ClampPose { group: random.index(site.groups()), by: direction(random) * (size * UM), turn }
+}
+
+fn transmission(joint: usize, largest: f64, random: &mut Random) -> Effect {
+    let count = if happens(random, 0.4) { 1 } else { 2 + random.index(3) };
+    let base = log_uniform(random, 1.0, 30.0);
+    let waves = (0..count)
+        .map(|k| {
+            // multiples of one another, nearly
+            let cycles = if k == 0 { base } else { base * (k + 1) as f64 * random.uniform(0.97, 1.03) };
+            let share = if k == 0 { 1.0 } else { random.uniform(0.1, 0.7) };
+            [cycles.min(38.0), share * largest, random.uniform(0.0, std::f64::consts::TAU)]
+        })
+        .collect();
+    let beat =
+        (count > 1 && happens(random, 0.3)).then(|| [random.uniform(0.2, 0.6), random.uniform(0.5, 2.0)]);
+    Effect::Transmission { joint, waves, beat }
 }
 
 /// Where an effect is.
@@ -211,14 +213,23 @@ pub fn place(effect: &Effect, site: &Site) -> Place {
         | Effect::Nonlinear { joint, .. }
         | Effect::EncoderScale { joint, .. }
         | Effect::Lag { joint: Some(joint), .. }
+        | Effect::ZeroDrift { joint, .. }
+        | Effect::Friction { joint, .. }
+        | Effect::Runout { joint, .. }
         | Effect::Wear { joint, .. } => Place::joint(*joint),
         Effect::Coupling { from, to, .. } => Place { driven_by: Some(from + 1), ..Place::joint(*to) },
         Effect::ClampPose { group, .. } => Place::named(&site.group_name(*group)),
         Effect::Shift { group, from, .. } => shift_place(site, *group, *from),
-        Effect::Drift { .. } => Place::part("base"),
+        Effect::Drift { .. } | Effect::Level(_) | Effect::BaseTilt(_) => Place::part("base"),
+        Effect::ToolShift { from, .. } => Place { after_row: Some(*from), ..Place::named("tool") },
+        Effect::BaseShift { from, .. } => Place { after_row: Some(*from), ..Place::default() },
+        Effect::Spring { group, .. } | Effect::Force { group, .. } => match group {
+            Some(group) => Place::named(&site.group_name(*group)),
+            None => Place::named("all clamps"),
+        },
         Effect::Payload(_) => Place::part("flange"),
         Effect::TipMass(_) => Place::part("tip"),
-        Effect::Lag { .. } => Place { joint: Some("all".into()), ..Place::default() },
+        Effect::Lag { .. } | Effect::Memory(_) => Place { joint: Some("all".into()), ..Place::default() },
         Effect::Rod(_) => Place::part("rod"),
         Effect::Outlier(rows) => {
             let of = |(row, _): &(usize, _)| Place { row: Some(row + 1), ..Place::default() };
@@ -230,6 +241,7 @@ pub fn place(effect: &Effect, site: &Site) -> Place {
         Effect::Ball(_) => Place::part("ball"),
         Effect::Disturbance { .. } => Place::part("world"),
         Effect::Refraction(_) => Place::part("tracker"),
+        Effect::LooseMount(_) => Place::part("tool"),
     }
 }
 

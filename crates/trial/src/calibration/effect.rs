@@ -2,11 +2,10 @@
 
 use nalgebra::Vector3;
 
-use rodcal_base::units::{GRAM, UM, URAD, URAD_PER_NM};
+use rodcal_base::units::{DEG, GRAM, MM, UM, URAD, URAD_PER_NM};
 
-/// Step of a numerical derivative: m, rad or, of a drift, m/K or m/s; of other numbers relative to them.
-const STEP: f64 = 1e-6;
-const RELATIVE_STEP: f64 = 1e-4;
+/// Step of a numerical derivative, of the effect's size; of a phase, rad.
+const STEP: f64 = 1e-4;
 
 /// Something that is wrong, SI; joints and rows from 0.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,8 +19,8 @@ pub enum Effect {
     Compliance { joint: usize, compliance: f64 },
     /// A drive that turns by k·τ·|τ| or k·τ³.
     Nonlinear { joint: usize, cubic: bool, per: f64 },
-    /// Factor on a joint's angle.
-    EncoderScale { joint: usize, factor: f64 },
+    /// What a joint turns by more than it shows, of that.
+    EncoderScale { joint: usize, more: f64 },
     /// A joint that takes its neighbour along.
     Coupling { from: usize, to: usize, share: f64 },
     /// A clamp that is not where the file says, m and rad.
@@ -36,10 +35,26 @@ pub enum Effect {
     TipMass(f64),
     /// Angles that were read before the arm was there: share of the last move.
     Lag { joint: Option<usize>, share: f64 },
-    /// Factor on the rod's deflections.
+    /// What the rod deflects by more than its model, of that.
     Rod(f64),
     /// Rows that are wrong, m.
     Outlier(Vec<(usize, Vector3<f64>)>),
+    /// The ball is displaced in {T} from a row on, m: the tool slipped in its mount.
+    ToolShift { from: usize, by: Vector3<f64> },
+    /// The robot on its base, or the tracker, is displaced from a row on: m, and rad about the base.
+    BaseShift { from: usize, by: Vector3<f64>, turn: Vector3<f64> },
+    /// The contact force changes with the displacement in a clamp, or in all, N/m.
+    Spring { group: Option<usize>, rate: f64 },
+    /// The contact force of a clamp, or of all, is larger by so much, N in its frame.
+    Force { group: Option<usize>, by: Vector3<f64> },
+    /// The base is not level: gravity is turned about its x and y, rad.
+    Level([f64; 2]),
+    /// The base tilts under the arm, rad/(N·m).
+    BaseTilt(f64),
+    /// A joint's zero that follows temperature or time, rad/K or rad/s.
+    ZeroDrift { joint: usize, per: f64, by_time: bool },
+    /// A joint that stops apart, by its load and the way it came, rad/(N·m).
+    Friction { joint: usize, per: f64 },
     // ---- physics that no library has ----
     /// A link that twists about its x with the product of two joint angles, rad/rad².
     LinkTorsion { link: usize, joints: [usize; 2], per: f64 },
@@ -51,6 +66,17 @@ pub enum Effect {
     Disturbance { by: Vector3<f64>, period: f64, phase: f64 },
     /// A beam of light that bends: up by so much times the distance squared, 1/m.
     Refraction(f64),
+    /// A bearing that wobbles: the axis of a joint goes sideways twice per turn, m, phase.
+    Runout { joint: usize, by: f64, phase: f64 },
+    /// A tool that flops in its mount: along its x by the side to which gravity pulls it, m.
+    LooseMount(f64),
+    /// Angles that still show some of the move before the last one.
+    Memory(f64),
+}
+
+/// All numbers of vectors.
+fn all<'a>(vectors: impl IntoIterator<Item = &'a mut Vector3<f64>>) -> Vec<&'a mut f64> {
+    vectors.into_iter().flat_map(Vector3::iter_mut).collect()
 }
 
 impl Effect {
@@ -72,11 +98,22 @@ impl Effect {
             Effect::Lag { .. } => "readback_lag",
             Effect::Rod(_) => "rod_stiffness",
             Effect::Outlier(_) => "outlier",
+            Effect::ToolShift { .. } => "tool_shift",
+            Effect::BaseShift { .. } => "base_shift",
+            Effect::Spring { .. } => "contact_spring",
+            Effect::Force { .. } => "contact_force_variation",
+            Effect::Level(_) => "gravity_direction",
+            Effect::BaseTilt(_) => "gravity_tilt",
+            Effect::ZeroDrift { .. } => "thermal_drift",
+            Effect::Friction { .. } => "joint_friction",
             Effect::LinkTorsion { .. } => "link twists with two joints",
             Effect::Ball(_) => "ball out of round",
             Effect::Wear { .. } => "worn tooth",
             Effect::Disturbance { .. } => "periodic disturbance",
             Effect::Refraction(_) => "refraction",
+            Effect::Runout { .. } => "bearing that wobbles",
+            Effect::LooseMount(_) => "tool loose in its mount",
+            Effect::Memory(_) => "memory of the move before",
         }
     }
 
@@ -102,16 +139,23 @@ impl Effect {
             }
             Effect::Nonlinear { cubic: true, per, .. } => vec![("urad_per_nm3", per / URAD)],
             Effect::Nonlinear { per, .. } => vec![("urad_per_nm2", per / URAD)],
-            Effect::EncoderScale { factor, .. } => vec![("factor", *factor)],
+            Effect::EncoderScale { more, .. } => vec![("factor", 1.0 + more)],
             // stated as a stiffness, as on a rig
-            Effect::Rod(factor) => vec![("factor", 1.0 / factor)],
+            Effect::Rod(more) => vec![("factor", 1.0 / (1.0 + more))],
             Effect::Coupling { share, .. } | Effect::Lag { share, .. } => vec![("fraction", *share)],
-            Effect::ClampPose { by, turn, .. } => {
+            Effect::ClampPose { by, turn, .. } | Effect::BaseShift { by, turn, .. } => {
                 let mut six = three(SHIFT, by, UM);
                 six.extend(three(["rx_urad", "ry_urad", "rz_urad"], turn, URAD));
                 six
             }
-            Effect::Shift { by, .. } => three(SHIFT, by, UM),
+            Effect::Shift { by, .. } | Effect::ToolShift { by, .. } => three(SHIFT, by, UM),
+            Effect::Spring { rate, .. } => vec![("n_per_mm", rate * MM)],
+            Effect::Force { by, .. } => three(["x_n", "y_n", "z_n"], by, 1.0),
+            Effect::Level([roll, pitch]) => vec![("roll_deg", roll / DEG), ("pitch_deg", pitch / DEG)],
+            Effect::BaseTilt(per) => vec![("tilt_urad_per_nm", per / URAD_PER_NM)],
+            Effect::ZeroDrift { per, by_time: true, .. } => vec![("zero_urad_per_h", per * 3600.0 / URAD)],
+            Effect::ZeroDrift { per, .. } => vec![("zero_urad_per_k", per / URAD)],
+            Effect::Friction { per, .. } => vec![("urad_per_nm", per / URAD_PER_NM)],
             Effect::Drift { by, by_time: true } => {
                 three(["x_um_per_h", "y_um_per_h", "z_um_per_h"], by, UM / 3600.0)
             }
@@ -128,6 +172,8 @@ impl Effect {
             ],
             Effect::Disturbance { by, period, .. } => vec![("um", by.norm() / UM), ("period_s", *period)],
             Effect::Refraction(per) => vec![("um_per_m2", per / UM)],
+            Effect::Runout { by, .. } | Effect::LooseMount(by) => vec![("um", by / UM)],
+            Effect::Memory(share) => vec![("fraction", *share)],
         }
     }
 
@@ -143,93 +189,123 @@ impl Effect {
 
     /// What no other recording shows: it cannot be predicted.
     pub fn is_of_one_run(&self) -> bool {
-        matches!(self, Effect::Shift { .. } | Effect::Outlier(_))
+        matches!(
+            self,
+            Effect::Shift { .. } | Effect::Outlier(_) | Effect::ToolShift { .. } | Effect::BaseShift { .. }
+        )
     }
 
-    /// What a robot does whatever is measured with it; the rest happened to a fixture or to single rows.
-    pub fn is_of_robot(&self) -> bool {
-        !matches!(self, Effect::ClampPose { .. } | Effect::Shift { .. } | Effect::Outlier(_))
-    }
-
-    /// The effect with each of its numbers a little larger, and by how much; none for what no library has. How often a gear's
-    /// wave repeats is known.
-    pub fn larger(&self) -> Vec<(Effect, f64)> {
-        let one = |change: &dyn Fn(&mut Effect)| {
-            let mut larger = self.clone();
-            change(&mut larger);
-            (larger, STEP)
-        };
-        let axes = |of: fn(&mut Effect) -> Option<&mut Vector3<f64>>| -> Vec<(Effect, f64)> {
-            let along = |axis: usize| {
-                one(&|effect| {
-                    if let Some(vector) = of(effect) {
-                        vector[axis] += STEP;
-                    }
-                })
-            };
-            (0..3).map(along).collect()
-        };
-        let number = |of: fn(&mut Effect) -> Option<&mut f64>| -> Vec<(Effect, f64)> {
-            let mut larger = self.clone();
-            let step = of(&mut larger).map(|number| {
-                let step = RELATIVE_STEP * *number;
-                *number += step;
-                step
-            });
-            step.map(|step| (larger, step)).into_iter().collect()
-        };
-        match self {
-            Effect::Transmission { waves, .. } => (0..2 * waves.len())
-                .map(|k| {
-                    one(&|effect| {
-                        if let Effect::Transmission { waves, .. } = effect {
-                            // an amplitude, or a phase
-                            waves[k / 2][1 + k % 2] += STEP;
-                        }
-                    })
-                })
-                .collect(),
-            Effect::Outlier(rows) => (0..3 * rows.len())
-                .map(|k| {
-                    one(&|effect| {
-                        if let Effect::Outlier(rows) = effect {
-                            rows[k / 3].1[k % 3] += STEP;
-                        }
-                    })
-                })
-                .collect(),
-            Effect::ClampPose { .. } => {
-                let mut six = axes(|effect| match effect {
-                    Effect::ClampPose { by, .. } => Some(by),
-                    _ => None,
-                });
-                six.extend(axes(|effect| match effect {
-                    Effect::ClampPose { turn, .. } => Some(turn),
-                    _ => None,
-                }));
-                six
-            }
-            Effect::Shift { .. } | Effect::Drift { .. } => axes(|effect| match effect {
-                Effect::Shift { by, .. } | Effect::Drift { by, .. } => Some(by),
-                _ => None,
-            }),
-            Effect::LinkTorsion { .. }
-            | Effect::Ball(_)
-            | Effect::Wear { .. }
-            | Effect::Disturbance { .. }
-            | Effect::Refraction(_) => Vec::new(),
-            _ => number(|effect| match effect {
-                Effect::Backlash { play: size, .. }
-                | Effect::Compliance { compliance: size, .. }
-                | Effect::Nonlinear { per: size, .. }
-                | Effect::EncoderScale { factor: size, .. }
-                | Effect::Coupling { share: size, .. }
-                | Effect::Lag { share: size, .. }
-                | Effect::Payload(size)
-                | Effect::TipMass(size)
-                | Effect::Rod(size) => Some(size),
-                _ => None,
-            }),
+    /// What is left of it after the recording, away from the fixtures: what a robot does whatever is measured with it, and where
+    /// it was moved to; not what happened to a fixture or to single rows.
+    pub fn afterwards(&self) -> Option<Effect> {
+        match self.clone() {
+            Effect::ClampPose { .. }
+            | Effect::Shift { .. }
+            | Effect::Outlier(_)
+            | Effect::Spring { .. }
+            | Effect::Force { .. } => None,
+            Effect::ToolShift { by, .. } => Some(Effect::ToolShift { from: 0, by }),
+            Effect::BaseShift { by, turn, .. } => Some(Effect::BaseShift { from: 0, by, turn }),
+            other => Some(other),
         }
+    }
+
+    /// True for what no library has.
+    pub fn is_beyond(&self) -> bool {
+        matches!(
+            self,
+            Effect::LinkTorsion { .. }
+                | Effect::Ball(_)
+                | Effect::Wear { .. }
+                | Effect::Disturbance { .. }
+                | Effect::Refraction(_)
+                | Effect::Runout { .. }
+                | Effect::LooseMount(_)
+                | Effect::Memory(_)
+        )
+    }
+
+    /// What it is proportional to.
+    fn sizes(&mut self) -> Vec<&mut f64> {
+        match self {
+            Effect::Transmission { waves, .. } => waves.iter_mut().map(|wave| &mut wave[1]).collect(),
+            Effect::Outlier(rows) => all(rows.iter_mut().map(|(_, by)| by)),
+            Effect::ClampPose { by, turn, .. } | Effect::BaseShift { by, turn, .. } => all([by, turn]),
+            Effect::Shift { by, .. }
+            | Effect::ToolShift { by, .. }
+            | Effect::Drift { by, .. }
+            | Effect::Force { by, .. }
+            | Effect::Disturbance { by, .. } => all([by]),
+            Effect::Level(turn) => turn.iter_mut().collect(),
+            Effect::Backlash { play: size, .. }
+            | Effect::Compliance { compliance: size, .. }
+            | Effect::Nonlinear { per: size, .. }
+            | Effect::EncoderScale { more: size, .. }
+            | Effect::Coupling { share: size, .. }
+            | Effect::Lag { share: size, .. }
+            | Effect::Spring { rate: size, .. }
+            | Effect::ZeroDrift { per: size, .. }
+            | Effect::Friction { per: size, .. }
+            | Effect::LinkTorsion { per: size, .. }
+            | Effect::Wear { play: size, .. }
+            | Effect::Runout { by: size, .. }
+            | Effect::Payload(size)
+            | Effect::TipMass(size)
+            | Effect::Rod(size)
+            | Effect::BaseTilt(size)
+            | Effect::Ball(size)
+            | Effect::Refraction(size)
+            | Effect::LooseMount(size)
+            | Effect::Memory(size) => vec![size],
+        }
+    }
+
+    /// A share of it.
+    pub fn scaled(mut self, share: f64) -> Effect {
+        self.sizes().into_iter().for_each(|size| *size *= share);
+        self
+    }
+
+    /// The effect with each of its numbers a little larger; none for what no library has. How often a gear's
+    /// wave repeats is known.
+    pub fn larger(&self) -> Vec<Effect> {
+        if self.is_beyond() {
+            return Vec::new();
+        }
+        let mut known = self.clone();
+        let sizes: Vec<f64> = known.sizes().into_iter().map(|size| *size).collect();
+        let step = STEP * sizes.iter().fold(0.0, |most: f64, size| most.max(size.abs()));
+        let one = |k: usize| {
+            let mut larger = self.clone();
+            larger.sizes().into_iter().skip(k).take(1).for_each(|size| *size += step);
+            larger
+        };
+        let mut all: Vec<Effect> = (0..sizes.len()).map(one).collect();
+        if let Effect::Transmission { joint, waves, beat } = self {
+            all.extend((0..waves.len()).map(|k| {
+                let mut waves = waves.clone();
+                waves[k][2] += STEP;
+                Effect::Transmission { joint: *joint, waves, beat: *beat }
+            }));
+        }
+        all
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn half_of_an_effect_is_half_of_its_numbers_and_each_can_grow() {
+        let shift = Effect::ToolShift { from: 3, by: Vector3::new(1.0, -2.0, 0.0) };
+        assert_eq!(shift.clone().scaled(0.5).parameters()[1], ("dy_um", -1.0 / UM));
+        assert_eq!(shift.larger().len(), 3);
+        assert_eq!(shift.afterwards(), Some(Effect::ToolShift { from: 0, by: Vector3::new(1.0, -2.0, 0.0) }));
+        let rod = Effect::Rod(0.25).scaled(2.0);
+        assert!((rod.parameters()[0].1 - 1.0 / 1.5).abs() < 1e-12);
+        let gear = Effect::Transmission { joint: 0, waves: vec![[3.0, 1e-4, 0.1]; 2], beat: None };
+        assert_eq!(gear.larger().len(), 4);
+        assert!(Effect::Memory(0.1).larger().is_empty() && Effect::Memory(0.1).is_beyond());
     }
 }

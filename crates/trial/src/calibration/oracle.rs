@@ -1,101 +1,136 @@
-//! What could have been known at best of a calibration: every coordinate without its noise, less what the calibration can
-//! take up.
+//! What could have been known at best of a calibration: every coordinate without its noise, less what the calibration and the
+//! numbers of the files take up.
 //!
-//! The measure is the rig's (`trial/rig/oracle.rs`): with δ what an effect adds and C what a rival can add, both in noises
-//! and both without what geometry, base, tool, drives and socket points can take up (their numerical derivatives),
-//! log BF = ½·d² − (p/2)·ln(1 + d²), d² = min over β of |δ − Cβ|² + |β|². A rival's columns are first order, of a size at the
-//! upper end of its range. An effect within the library is a rival wherever it may sit.
+//! The measure is the rig's (`rig/oracle.rs`): with Σ₀ the covariance of the noise, N what a standard uncertainty of each number
+//! does (`taken_up.rs`), Σ = Σ₀ + N·Nᵀ, δ what an effect adds and C what a rival can add,
+//!
+//! ```text
+//! log BF = ½·d² − (p/2)·ln(1 + d²)        d² = min over β of (δ − Cβ)ᵀΣ⁻¹(δ − Cβ) + βᵀβ;   against nothing C is empty
+//! ```
+//!
+//! Σ^(−1/2) is Σ₀'s, then I − U·(1 − 1/√(1 + S²))·Uᵀ with U·S·Vᵀ what it makes of N. A rival's columns are first order, of a size at
+//! the upper end of its range. An effect within the library is a rival wherever it may sit; physics that no library has must
+//! also differ from every two of them.
 
 use std::collections::BTreeMap;
 
-use nalgebra::{DMatrix, DVector, Vector3};
+use nalgebra::{DMatrix, DVector};
 
-use super::draw::{place, shift_place};
+use super::draw::place;
 use super::effect::Effect;
-use super::site::{Devices, Site, gravity};
+use super::rivals::{Rival, rivals};
+use super::site::Site;
 use super::taken_up;
-use crate::place::Place;
 use crate::truth::Detectability;
-use rodcal_base::linalg::thin_svd;
-use rodcal_base::units::UM;
+use rodcal_base::linalg::{thin_svd, transposed_product};
 
 /// Effects of other names closer than this cannot be distinguished; places of one effect closer
 /// than that.
 const SAME_EFFECT: f64 = 5.0;
 const SAME_PLACE: f64 = 3.0;
-/// Size of what turns a joint, rad, and of what moves a fixture, m and rad.
-const TURN: f64 = 1e-3;
-const MOVE: f64 = 3e-3;
-/// Singular values below this share of the largest are none; columns are scaled before.
-const RANK: f64 = 1e-9;
-const URAD_STEP: f64 = 1e-5;
+/// Less than this of a column is nothing, noises.
+const NOTHING: f64 = 1e-3;
 
-struct Rival {
-    name: &'static str,
-    place: Place,
-    columns: Vec<DVector<f64>>,
-}
+/// So many of the best rivals are paired with so many of the best.
+const PAIRED: [usize; 2] = [4, 60];
 
 /// Knows a site.
 pub struct Oracle<'a> {
     site: &'a Site,
-    /// Orthonormal, in noises.
-    taken_up: DMatrix<f64>,
+    /// U, and 1 − 1/√(1 + S²).
+    directions: (DMatrix<f64>, DVector<f64>),
     /// Rows behind the coordinates.
     more: usize,
     rivals: Vec<Rival>,
 }
 
 impl<'a> Oracle<'a> {
+    /// One that compares with nothing being wrong only.
     pub fn new(site: &'a Site) -> Self {
-        let mut columns = taken_up::columns(site);
+        let (columns, _) = taken_up::columns(site);
         let more = columns.nrows() - 3 * site.rows.len();
-        for mut column in columns.column_iter_mut() {
-            let norm = column.norm();
-            if norm > 0.0 {
-                column /= norm;
-            }
-        }
-        let taken_up = thin_svd(&columns).map_or_else(
-            |_| DMatrix::zeros(columns.nrows(), 0),
-            |svd| svd.u.columns(0, svd.rank(RANK)).into_owned(),
+        let directions = thin_svd(&columns).map_or_else(
+            |_| (DMatrix::zeros(columns.nrows(), 0), DVector::zeros(0)),
+            |svd| {
+                let shrink = svd.singular_values.iter().map(|s| 1.0 - 1.0 / (1.0 + s * s).sqrt());
+                let shrink = DVector::from_iterator(svd.singular_values.len(), shrink);
+                (svd.u, shrink)
+            },
         );
-        let mut oracle = Oracle { site, taken_up, more, rivals: Vec::new() };
-        oracle.rivals = oracle.all_rivals();
-        oracle
+        Oracle { site, directions, more, rivals: Vec::new() }
     }
 
-    /// In noises, without what the calibration takes up.
-    fn left(&self, coordinates: DVector<f64>) -> DVector<f64> {
+    /// Compares with every effect of the library too; moves are tried after every row where one of `effects` is such a move.
+    pub fn compare(&mut self, effects: &[Effect]) {
+        let mut rivals = rivals(self.site, effects);
+        let all = self.all_left(rivals.iter().flat_map(|rival| &rival.columns));
+        let mut columns = all.column_iter().map(|column| column.into_owned());
+        for rival in &mut rivals {
+            let own: Vec<DVector<f64>> = columns.by_ref().take(rival.columns.len()).collect();
+            rival.columns = own.into_iter().filter(|column| column.norm() > NOTHING).collect();
+        }
+        rivals.retain(|rival| !rival.columns.is_empty());
+        self.rivals = rivals;
+    }
+
+    /// Σ^(−1/2)·v.
+    fn left(&self, coordinates: &DVector<f64>) -> DVector<f64> {
         let rows = coordinates.len() + self.more;
-        let whole = coordinates.resize_vertically(rows, 0.0) / self.site.noise;
-        let taken = self.taken_up.tr_mul(&whole);
-        whole - &self.taken_up * taken
+        let whole = self.site.whitened(coordinates).resize_vertically(rows, 0.0);
+        let (u, shrink) = &self.directions;
+        let taken = u.tr_mul(&whole).component_mul(shrink);
+        whole - u * taken
+    }
+
+    /// The same of many, in the columns of a matrix.
+    fn all_left<'c>(&self, all: impl Iterator<Item = &'c DVector<f64>>) -> DMatrix<f64> {
+        let (u, shrink) = &self.directions;
+        let white: Vec<DVector<f64>> =
+            all.map(|v| self.site.whitened(v).resize_vertically(u.nrows(), 0.0)).collect();
+        let mut white = DMatrix::from_columns(&white);
+        let mut taken = transposed_product(u, &white);
+        taken.column_iter_mut().for_each(|mut column| column.component_mul_assign(shrink));
+        white -= transposed_product(&u.transpose(), &taken);
+        white
+    }
+
+    fn added(&self, effects: &[Effect], without: &[Effect]) -> DVector<f64> {
+        self.left(&self.site.added(effects, without))
+    }
+
+    /// The share of an effect's size at which it would just be detectable: expected log Bayes factor against nothing of
+    /// [`Detectability::IDENTIFIABLE`].
+    pub fn limit(&self, effect: &Effect) -> f64 {
+        let square = self.added(std::slice::from_ref(effect), &[]).norm_squared();
+        let evidence = |share: f64| {
+            let square = share * share * square;
+            0.5 * square - 0.5 * effect.freedom() * square.ln_1p()
+        };
+        let (mut low, mut high) = (1e-6f64, 1e6f64);
+        for _ in 0..60 {
+            let middle = (low * high).sqrt();
+            if evidence(middle) < Detectability::IDENTIFIABLE { low = middle } else { high = middle }
+        }
+        high
     }
 
     /// Squared noises that effects leave after the calibration, per coordinate.
     pub fn share_left(&self, effects: &[Effect]) -> f64 {
-        self.left(self.site.added(effects, &[])).norm_squared() / (3 * self.site.rows.len()) as f64
+        self.added(effects, &[]).norm_squared() / (3 * self.site.rows.len()) as f64
     }
 
     /// What of `effects` can be known of number `which`, given all others.
     pub fn detectability(&self, effects: &[Effect], which: usize) -> Detectability {
-        let others: Vec<Effect> =
-            effects.iter().enumerate().filter(|(k, _)| *k != which).map(|(_, e)| e.clone()).collect();
-        let delta = self.left(self.site.added(effects, &others));
-        // the size of the others is not known either
-        let given: Vec<DVector<f64>> =
-            others.iter().map(|e| self.left(self.site.added(std::slice::from_ref(e), &[]))).collect();
+        let (delta, given) = self.beside(effects, which);
         let effect = &effects[which];
-        let separation = |columns: &[DVector<f64>]| {
-            let square = remainder(&delta, &given, columns);
-            0.5 * square - 0.5 * effect.freedom() * square.ln_1p()
-        };
+        let separation = |columns: &[DVector<f64>]| evidence(effect, &delta, &given, columns);
         let own = effect.name(self.site.has_sockets());
         let mut best: BTreeMap<&str, f64> = BTreeMap::new();
         let mut places = vec![place(effect, self.site)];
+        let mut alone: Vec<(f64, &Rival)> = Vec::new();
         for rival in &self.rivals {
             let apart = separation(&rival.columns);
+            alone.push((apart, rival));
             if rival.name != own {
                 let least = best.entry(rival.name).or_insert(f64::INFINITY);
                 *least = least.min(apart);
@@ -104,10 +139,17 @@ impl<'a> Oracle<'a> {
             }
         }
         let nearest = best.iter().min_by(|a, b| a.1.total_cmp(b.1));
+        alone.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let pairs = alone.iter().take(PAIRED[0]).flat_map(|(_, first)| {
+            let both = |(_, second): &(f64, &Rival)| {
+                separation(&first.columns.iter().chain(&second.columns).cloned().collect::<Vec<_>>())
+            };
+            alone.iter().take(PAIRED[1]).map(both).collect::<Vec<_>>()
+        });
         Detectability {
             against_none: separation(&[]),
             against_rival: nearest.map_or(f64::MAX, |(_, apart)| *apart),
-            against_pair: None,
+            against_pair: effect.is_beyond().then(|| pairs.fold(f64::MAX, f64::min)),
             best_rival: nearest.map_or_else(String::new, |(name, _)| (*name).to_owned()),
             class: best.iter().filter(|(_, a)| **a < SAME_EFFECT).map(|(n, _)| (*n).to_owned()).collect(),
             places,
@@ -115,138 +157,18 @@ impl<'a> Oracle<'a> {
         }
     }
 
-    fn all_rivals(&self) -> Vec<Rival> {
-        let site = self.site;
-        let rows = site.rows.len();
-        let n = site.nominal.len();
-        let levers: Vec<Vec<Vector3<f64>>> = (0..rows)
-            .map(|row| {
-                let q = &site.rows[row].q;
-                let at = site.ball(row, q, &[]);
-                let lever = |j: usize| {
-                    let mut moved = q.clone();
-                    moved[j] += URAD_STEP;
-                    (site.ball(row, &moved, &[]) - at) / URAD_STEP
-                };
-                (0..n).map(lever).collect()
-            })
-            .collect();
-        let loads: Vec<_> = (0..rows).map(|row| site.loads(row)).collect();
-        let tips: Vec<Vector3<f64>> = (0..rows).map(|row| site.ball(row, &site.rows[row].q, &[])).collect();
-        let torque = |row: usize, j: usize| loads[row].0[j];
-        let angle = |row: usize, j: usize| site.rows[row].q[j];
-        let step = |row: usize, j: usize| angle(row, j) - angle(row.saturating_sub(1), j);
-        let column = |of: &dyn Fn(usize) -> Vector3<f64>| self.left(site.each(|row, _| of(row)));
-        let turn = |j: usize, of: &dyn Fn(usize) -> f64| column(&|row| levers[row][j] * (TURN * of(row)));
-        let mut rivals: Vec<Rival> = Vec::new();
-        let mut add = |name: &'static str, place: Place, columns: Vec<DVector<f64>>| {
-            let columns: Vec<_> = columns.into_iter().filter(|c| c.norm() > 1e-3).collect();
-            if !columns.is_empty() {
-                rivals.push(Rival { name, place, columns });
-            }
-        };
-        for j in 0..n {
-            let joint = Place::joint(j);
-            let wave = |cycles: f64| {
-                [
-                    turn(j, &|row| (cycles * angle(row, j)).sin()),
-                    turn(j, &|row| (cycles * angle(row, j)).cos()),
-                ]
-            };
-            (1..=76)
-                .for_each(|k| add("transmission_error", joint.clone(), wave(0.5 * f64::from(k)).to_vec()));
-            add("transmission_error", joint.clone(), (1..=5).flat_map(|k| wave(f64::from(k))).collect());
-            add("encoder_scale", joint.clone(), vec![turn(j, &|row| angle(row, j))]);
-            add("readback_lag", joint.clone(), vec![turn(j, &|row| step(row, j))]);
-            add("backlash", joint.clone(), vec![turn(j, &|row| site.approach(row, j))]);
-            let largest = (0..rows).map(|row| torque(row, j).abs()).fold(0.0, f64::max);
-            if largest > 0.1 {
-                let of = |f: fn(f64) -> f64| vec![turn(j, &|row| f(torque(row, j) / largest))];
-                add("joint_compliance", joint.clone(), of(|t| t));
-                if site.has_masses {
-                    add("backlash", joint.clone(), of(f64::signum));
-                    add("joint_nonlinear_stiffness", joint.clone(), of(|t| t * t.abs()));
-                    add("joint_nonlinear_stiffness", joint.clone(), of(|t| t.powi(3)));
-                }
-            }
-            for to in [j.wrapping_sub(1), j + 1] {
-                if j.min(to) >= n - 3 && to < n {
-                    add(
-                        "wrist_coupling",
-                        Place { driven_by: Some(j + 1), ..Place::joint(to) },
-                        vec![turn(to, &|row| angle(row, j))],
-                    );
-                }
-            }
-        }
-        let all = column(&|row| (0..n).map(|j| levers[row][j] * (TURN * step(row, j))).sum());
-        add("readback_lag", Place { joint: Some("all".into()), ..Place::default() }, vec![all]);
-        let changed = |effect: Effect, times: f64| self.left(self.site.added(&[effect], &[])) * times;
-        if site.has_masses {
-            add("payload_mass", Place::part("flange"), vec![changed(Effect::Payload(0.1), 50.0)]);
-        }
-        if site.has_masses || site.rod.is_some() {
-            add("tip_mass", Place::part("tip"), vec![changed(Effect::TipMass(0.01), 30.0)]);
-        }
-        if site.rod.is_some() {
-            add("rod_stiffness", Place::part("rod"), vec![changed(Effect::Rod(1.01), 60.0)]);
-            let own = |row: usize| {
-                let flange = loads[row].1[n].fixed_view::<3, 3>(0, 0).into_owned();
-                site.rod.as_ref().map_or_else(Vector3::zeros, |rod| {
-                    flange * rod.per_gravity * flange.transpose() * gravity()
-                })
-            };
-            add("rod_stiffness", Place::part("rod"), vec![column(&|row| own(row) * 0.6)]);
-        }
-        let courses: [(&dyn Fn(usize) -> f64, f64); 3] = [
-            (&|row| site.rows[row].temperature - site.rows[0].temperature, 300.0 * UM),
-            (&|row| site.rows[row].time / 3600.0, 300.0 * UM),
-            (&|row| (-(row as f64) / (0.2 * rows as f64)).exp(), 300.0 * UM),
-        ];
-        for (k, (course, size)) in courses.into_iter().enumerate() {
-            if k > 0 || site.has_temperature {
-                let along = |axis: usize| column(&|row| Vector3::ith(axis, size * course(row)));
-                add("thermal_drift", Place::part("base"), (0..3).map(along).collect());
-                let own = |axis: usize| {
-                    column(&|row| loads[row].1[n].fixed_view::<3, 1>(0, axis) * (size * course(row)))
-                };
-                add("thermal_drift", Place::part("tool"), (0..3).map(own).collect());
-            }
-        }
-        if !matches!(site.devices, Devices::Tracker(_)) {
-            let shift = if site.has_sockets() { "socket_shift" } else { "clamp_shift" };
-            for group in 0..site.groups() {
-                let own: Vec<usize> = (0..rows).filter(|&row| site.rows[row].group == group).collect();
-                for &from in own.iter().skip(2).take(own.len().saturating_sub(3)) {
-                    let is_after = |row: usize| row >= from && site.rows[row].group == group;
-                    let along = |axis: usize| {
-                        column(&|row| if is_after(row) { Vector3::ith(axis, MOVE) } else { Vector3::zeros() })
-                    };
-                    add(shift, shift_place(site, group, from), (0..3).map(along).collect());
-                }
-                if !site.has_sockets() {
-                    let at = |of: &dyn Fn(usize) -> Vector3<f64>| {
-                        column(&|row| if site.rows[row].group == group { of(row) } else { Vector3::zeros() })
-                    };
-                    let six = (0..3).flat_map(|axis| {
-                        let turned = |row: usize| {
-                            Vector3::ith(axis, MOVE).cross(&(tips[row] - site.device(group).column(3).xyz()))
-                        };
-                        [at(&|_| Vector3::ith(axis, MOVE)), at(&turned)]
-                    });
-                    add("clamp_pose", Place::named(&site.group_name(group)), six.collect());
-                }
-            }
-        }
-        for row in 0..rows {
-            let along = |axis: usize| {
-                column(&|r| Vector3::ith(axis, if r == row { 100.0 * site.noise } else { 0.0 }))
-            };
-            let at = Place { row: Some(row + 1), ..Place::default() };
-            add("outlier", at, (0..3).map(along).collect());
-        }
-        rivals
+    /// What an effect adds to the others, and each of these, whose size is not known either.
+    fn beside(&self, effects: &[Effect], which: usize) -> (DVector<f64>, Vec<DVector<f64>>) {
+        let others: Vec<Effect> =
+            effects.iter().enumerate().filter(|(k, _)| *k != which).map(|(_, e)| e.clone()).collect();
+        let given = others.iter().map(|e| self.added(std::slice::from_ref(e), &[])).collect();
+        (self.added(effects, &others), given)
     }
+}
+
+fn evidence(effect: &Effect, delta: &DVector<f64>, given: &[DVector<f64>], columns: &[DVector<f64>]) -> f64 {
+    let square = remainder(delta, given, columns);
+    0.5 * square - 0.5 * effect.freedom() * square.ln_1p()
 }
 
 /// min over α, β of |δ − Gα − Cβ|² + |α|² + |β|².

@@ -2,13 +2,14 @@
 
 use nalgebra::{Matrix4, Vector3};
 
-use super::arm;
+use super::arm::{self, Known};
 use super::effect::Effect;
+use super::noise::Scatter;
 use super::rod::Rod;
 use super::site::{Devices, Row, Site};
 use crate::chance::{happens, log_uniform};
 use rodcal_base::statistics::Random;
-use rodcal_base::units::{DEG, MM, UM};
+use rodcal_base::units::{DEG, MM, STANDARD_GRAVITY, UM};
 
 /// What a recording must have to carry an effect.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -17,6 +18,8 @@ pub struct Needs {
     pub device: Option<usize>,
     /// A fixture that something can happen to.
     pub fixture: bool,
+    /// Points that are measured: no sockets.
+    pub points: bool,
     /// Masses in the robot's file, or none.
     pub masses: Option<bool>,
     pub rod: bool,
@@ -33,9 +36,12 @@ impl Needs {
         let masses = one(self.masses.map(usize::from), other.masses.map(usize::from))?.map(|m| m == 1);
         let device = one(self.device, other.device)?;
         let fixture = self.fixture || other.fixture;
-        (!fixture || device != Some(1)).then_some(Needs {
+        let points = self.points || other.points;
+        let is_possible = (!fixture || device != Some(1)) && (!points || device != Some(2));
+        is_possible.then_some(Needs {
             device,
             fixture,
+            points,
             masses,
             rod: self.rod || other.rod,
             clock: self.clock || other.clock,
@@ -48,26 +54,38 @@ const TRIES: usize = 400;
 /// Largest angle of a joint, rad.
 pub const LARGEST: f64 = 175.0 * DEG;
 
-/// A recording without its noise. With sockets the angles are those of a robot without effects: [`settle`] turns them.
-pub fn draw(needs: Needs, random: &mut Random) -> Site {
+/// How often the numbers of the files are off by twice what they state.
+const TWICE: f64 = 0.15;
+/// How far from level a robot stands that was set up with one, rad; how far a rod's tip is from where it belongs, m.
+const LEVEL: f64 = 0.05 * DEG;
+const MOUNTED: f64 = 0.5 * MM;
+/// Places of clamps that are stated to be uncertain, m, and how well they are known where nothing is stated.
+const CLAMPS: ([f64; 2], f64) = ([10.0 * UM, 60.0 * UM], UM);
+
+/// A recording without its noise. With sockets the angles are those of a robot without effects: [`measured`] turns them.
+pub fn draw(needs: Needs, residuals: &[f64], random: &mut Random) -> Site {
     let (nominal, arm_name) = arm::draw(random);
-    let real = arm::built(&nominal, random);
-    let device = needs.device.unwrap_or_else(|| match (random.index(10), needs.fixture) {
-        (0..6, _) => 0,
-        (_, true) | (9, _) => 2,
+    let known = Known::draw(random);
+    let times = if happens(random, TWICE) { 2.0 } else { 1.0 };
+    let real = arm::built(&nominal, &known, times, random);
+    let device = needs.device.unwrap_or_else(|| match (random.index(10), needs.fixture, needs.points) {
+        (0..6, ..) | (_, true, true) => 0,
+        (_, true, false) | (9, _, false) => 2,
         _ => 1,
     });
     let has_masses = needs.masses.unwrap_or_else(|| happens(random, 0.7));
     let has_rod = needs.rod || happens(random, 0.5);
-    let rod = has_rod.then(|| Rod::drawn(random));
+    let rod = has_rod.then(|| Rod::drawn(times, random));
     let drawn_tool = rod.as_ref().map_or_else(|| tool(random), Rod::tip);
-    let tool = drawn_tool + normal(random, 0.5 * MM);
+    let tool = drawn_tool + normal(random, MOUNTED);
     let base = arm::frame(&normal(random, 0.3), &normal(random, 0.01));
     let contact = match device {
         0 if has_rod => Vector3::from_fn(|_, _| (random.uniform(0.6, 2.0) * 100.0).round() / 100.0),
         _ => Vector3::zeros(),
     };
     let has_time = happens(random, 0.5);
+    let off_level = arm::frame(&Vector3::zeros(), &normal(random, LEVEL));
+    let gravity = -arm::column(&(base * off_level), 2) * STANDARD_GRAVITY;
     let mut site = Site {
         nominal,
         real,
@@ -82,8 +100,12 @@ pub fn draw(needs: Needs, random: &mut Random) -> Site {
         rows: Vec::new(),
         has_time: has_time || needs.clock,
         has_temperature: needs.clock && !has_time || happens(random, 0.25),
-        noise: log_uniform(random, 10.0, 50.0) * UM,
-        shape: happens(random, 0.3).then(|| 4 + random.index(7) as u32),
+        known,
+        times,
+        gravity,
+        clamp_sd: None,
+        clamps_off: Vec::new(),
+        scatter: Scatter::draw(0, residuals, random),
     };
     site.devices = match device {
         0 => {
@@ -115,6 +137,15 @@ pub fn draw(needs: Needs, random: &mut Random) -> Site {
             Devices::Sockets(sockets, distance)
         }
     };
+    let groups = site.groups();
+    site.scatter = Scatter::draw(groups, residuals, random);
+    if device == 0 {
+        let [low, high] = CLAMPS.0;
+        let sd = (log_uniform(random, low, high) / UM).round() * UM;
+        site.clamp_sd = happens(random, 0.5).then_some(sd);
+        let size = site.clamp_sd.map_or(CLAMPS.1, |sd| times * sd);
+        site.clamps_off = (0..groups).map(|_| normal(random, size)).collect();
+    }
     rows(&mut site, random);
     site
 }
@@ -154,8 +185,12 @@ fn rows(site: &mut Site, random: &mut Random) {
         time += random.uniform(15.0, 45.0);
         let warm = 20.0 + room[0] * time / 3600.0 + room[1] * (std::f64::consts::TAU * time / room[2]).sin();
         let temperature = (warm * 100.0).round() / 100.0;
-        site.rows.push(Row { q: vec![0.0; n], group, time: (time * 10.0).round() / 10.0, temperature });
+        let (at, aside) = ((time * 10.0).round() / 10.0, Vector3::zeros());
+        site.rows.push(Row { q: vec![0.0; n], group, aside, time: at, temperature });
         let row = site.rows.len() - 1;
+        if let Devices::Clamps(_) = site.devices {
+            site.rows[row].aside = Vector3::from_fn(|_, _| random.uniform(-0.8, 0.8) * MM);
+        }
         site.rows[row].q = pose(site, row, random);
     }
 }
@@ -179,8 +214,7 @@ pub fn pose(site: &Site, row: usize, random: &mut Random) -> Vec<f64> {
                 (at.z > site.base[(2, 3)] - 0.3).then_some(start)
             }
             Devices::Clamps(clamps) => {
-                let off = Vector3::from_fn(|_, _| random.uniform(-0.8, 0.8) * MM);
-                let target = clamps[site.rows[row].group].column(3).xyz() + off;
+                let target = arm::point(&clamps[site.rows[row].group], &site.rows[row].aside);
                 site.reach(row, &start, &target, &[])
             }
             Devices::Sockets(sockets, _) => site.reach(row, &start, &sockets[site.rows[row].group].2, &[]),
@@ -193,17 +227,17 @@ pub fn pose(site: &Site, row: usize, random: &mut Random) -> Vec<f64> {
             }
         }
     }
-    // what a readout shows
-    last.iter().map(|q| (q.to_degrees() * 1e7).round() / 1e7 * DEG).collect()
+    as_shown(&last)
 }
 
-/// Errors of the rows from `first` on, in the world, m.
-pub fn noise(site: &Site, first: usize, random: &mut Random) -> Vec<Vector3<f64>> {
-    (first..site.rows.len()).map(|_| Vector3::from_fn(|_, _| one(site, random))).collect()
+/// Angles as a readout shows them.
+fn as_shown(q: &[f64]) -> Vec<f64> {
+    q.iter().map(|q| (q.to_degrees() * 1e7).round() / 1e7 * DEG).collect()
 }
 
-/// What was read from row `first` on with these errors: positions in the devices' frames, m. With sockets the joints are turned
-/// until the ball is in its socket, off by the noise, and nothing is read.
+/// What was read from row `first` on with these errors: positions in the devices' frames, m. The joints are turned until the ball
+/// is where it was to be in its clamp, whatever is wrong; with sockets until it is in its socket, off by the noise, and nothing
+/// is read.
 pub fn measured(
     site: &mut Site,
     effects: &[Effect],
@@ -220,19 +254,24 @@ pub fn measured(
         }
         return noise.to_vec();
     }
+    if let Devices::Clamps(clamps) = site.devices.clone() {
+        // what is misread is misread afterwards
+        let still: Vec<Effect> =
+            effects.iter().filter(|effect| !matches!(effect, Effect::Outlier(_))).cloned().collect();
+        for row in first..first + noise.len() {
+            let at = &site.rows[row];
+            let target = arm::point(&clamps[at.group], &at.aside);
+            let start = at.q.clone();
+            if let Some(q) = site.reach(row, &start, &target, &still) {
+                site.rows[row].q = as_shown(&q);
+            }
+        }
+    }
     let read = |(row, noise): (usize, &Vector3<f64>)| {
         let at = site.ball(row, &site.rows[row].q, effects) + noise;
         let device: Matrix4<f64> = site.device(site.rows[row].group);
-        device.fixed_view::<3, 3>(0, 0).transpose() * (at - device.column(3).xyz())
+        let inside = device.fixed_view::<3, 3>(0, 0).transpose() * (at - device.column(3).xyz());
+        inside.map(|value| site.scatter.shown(value))
     };
     (first..).zip(noise).map(read).collect()
-}
-
-fn one(site: &Site, random: &mut Random) -> f64 {
-    let normal = random.normal();
-    let factor = site.shape.map_or(1.0, |dof| {
-        let squares: f64 = (0..dof).map(|_| random.normal().powi(2)).sum();
-        (f64::from(dof - 2) / squares).sqrt()
-    });
-    site.noise * factor * normal
 }

@@ -1,16 +1,15 @@
 //! A recording as it really happened: the arm, the rod, who measured, and every pose.
 
-use nalgebra::{DMatrix, DVector, Matrix3, Matrix4, Vector3};
+use nalgebra::{DVector, Matrix3, Matrix4, Rotation3, Vector3};
 
-use super::arm::{self, Arm, Pull, turned};
+use super::arm::{self, Arm, Known, Pull, turned};
 use super::effect::Effect;
+use super::noise::Scatter;
 use super::rod::Rod;
-use rodcal_base::units::STANDARD_GRAVITY;
+use rodcal_base::statistics::Random;
 
 /// Times that torques and the joints that they turn are computed from each other.
 const ROUNDS: usize = 3;
-/// Step of a numerical derivative, rad.
-const STEP: f64 = 1e-5;
 
 /// How the ball was measured.
 #[derive(Debug, Clone, PartialEq)]
@@ -30,6 +29,8 @@ pub struct Row {
     pub q: Vec<f64>,
     /// Clamp or socket.
     pub group: usize,
+    /// Where the ball was to be in its clamp, in that one's frame, m.
+    pub aside: Vector3<f64>,
     /// Time, s, and temperature, °C.
     pub time: f64,
     pub temperature: f64,
@@ -58,12 +59,46 @@ pub struct Site {
     /// Columns of the file.
     pub has_time: bool,
     pub has_temperature: bool,
-    /// Standard deviation of a coordinate, m; degrees of freedom of Student's t.
-    pub noise: f64,
-    pub shape: Option<u32>,
+    /// How well the numbers of the robot's file are known, and how many times as far off they are.
+    pub known: Known,
+    pub times: f64,
+    /// Gravity in the world, m/s².
+    pub gravity: Vector3<f64>,
+    /// How well the places of clamps are known, m, where the campaign states it, and by how much each is off.
+    pub clamp_sd: Option<f64>,
+    pub clamps_off: Vec<Vector3<f64>>,
+    /// Errors of what is read.
+    pub scatter: Scatter,
 }
 
 impl Site {
+    /// Gravity with what is wrong with the base, m/s².
+    pub fn down(&self, effects: &[Effect]) -> Vector3<f64> {
+        let mut down = self.gravity;
+        for effect in effects {
+            if let Effect::Level([roll, pitch]) = effect {
+                let about = arm::column(&self.base, 0) * *roll + arm::column(&self.base, 1) * *pitch;
+                down = Rotation3::from_scaled_axis(about) * down;
+            }
+        }
+        down
+    }
+
+    /// The clamp or socket of every row from `first` on.
+    fn groups_from(&self, first: usize) -> Vec<usize> {
+        self.rows[first..].iter().map(|row| row.group).collect()
+    }
+
+    /// Errors of the rows from `first` on, m.
+    pub fn errors(&self, first: usize, random: &mut Random) -> Vec<Vector3<f64>> {
+        self.scatter.drawn(&self.groups_from(first), random)
+    }
+
+    /// Coordinates in noises that know nothing of each other.
+    pub fn whitened(&self, v: &DVector<f64>) -> DVector<f64> {
+        self.scatter.whitened(&self.groups_from(0), v)
+    }
+
     pub fn has_sockets(&self) -> bool {
         matches!(self.devices, Devices::Sockets(..))
     }
@@ -109,22 +144,63 @@ impl Site {
                     let away = arm::within_a_turn(q[joint] - middle) / width;
                     joints[joint] += 0.5 * play * sign(torque[joint]) * (-away.powi(4)).exp();
                 }
+                Effect::Friction { joint, per } => {
+                    joints[joint] += 0.5 * per * torque[joint].abs() * self.approach(row, joint);
+                }
                 _ => {}
             }
         }
-        let flange = self.flange(&arm, &joints);
-        let tip = arm::point(&flange, &self.tool) + self.bent(&flange, row, effects);
+        let frames = arm::frames(&arm, &self.base, &joints);
+        let flange = frames[arm.len()];
+        let tip = arm::point(&flange, &self.held(row, &flange, effects)) + self.bent(&flange, row, effects);
+        let tip = self.tilted(tip, &frames, row, effects);
         self.seen(row, tip, &flange, effects)
     }
 
-    fn flange(&self, arm: &[arm::Link], joints: &[f64]) -> Matrix4<f64> {
-        arm::frames(arm, &self.base, joints).pop().unwrap_or(self.base)
+    /// The ball in {T}, m.
+    fn held(&self, row: usize, flange: &Matrix4<f64>, effects: &[Effect]) -> Vector3<f64> {
+        let mut held = self.tool;
+        for effect in effects {
+            match effect {
+                Effect::ToolShift { from, by } if row >= *from => held += by,
+                Effect::LooseMount(by) => held.x += by * sign(arm::column(flange, 0).dot(&self.gravity)),
+                _ => {}
+            }
+        }
+        held
+    }
+
+    /// The ball on a base that gives way to the moment of all that hangs on it.
+    fn tilted(
+        &self,
+        tip: Vector3<f64>,
+        frames: &[Matrix4<f64>],
+        row: usize,
+        effects: &[Effect],
+    ) -> Vector3<f64> {
+        let per: f64 = effects.iter().map(|e| if let Effect::BaseTilt(per) = e { *per } else { 0.0 }).sum();
+        if per == 0.0 {
+            return tip;
+        }
+        let gravity = self.down(effects);
+        let at = arm::column(&frames[0], 3);
+        let moment =
+            arm::moment(&self.real, frames, &gravity, &self.pulls(&frames[self.real.len()], row, effects));
+        let upright = gravity.normalize();
+        let level = moment - upright * upright.dot(&moment);
+        tip + (level * per).cross(&(tip - at))
     }
 
     fn twist(&self, arm: &mut Arm, q: &[f64], effects: &[Effect]) {
         for effect in effects {
-            if let Effect::LinkTorsion { link, joints: [a, b], per } = *effect {
-                arm[link].numbers[3] += per * q[a] * q[b];
+            match *effect {
+                Effect::LinkTorsion { link, joints: [a, b], per } => {
+                    arm[link].numbers[3] += per * q[a] * q[b];
+                }
+                Effect::Runout { joint, by, phase } => {
+                    arm[joint].numbers[2] += by * (2.0 * q[joint] + phase).cos();
+                }
+                _ => {}
             }
         }
     }
@@ -145,7 +221,14 @@ impl Site {
                 Effect::Backlash { joint, play, by_approach: true } => {
                     joints[*joint] += 0.5 * play * self.approach(row, *joint);
                 }
-                Effect::EncoderScale { joint, factor } => joints[*joint] += (factor - 1.0) * q[*joint],
+                Effect::EncoderScale { joint, more } => joints[*joint] += more * q[*joint],
+                Effect::ZeroDrift { joint, per, by_time } => {
+                    joints[*joint] += per * self.since(row, *by_time);
+                }
+                Effect::Memory(share) if row > 1 => {
+                    let move_before = |j: usize| self.rows[row - 1].q[j] - self.rows[row - 2].q[j];
+                    (0..q.len()).for_each(|j| joints[j] += share * move_before(j));
+                }
                 Effect::Coupling { from, to, share } => joints[*to] += share * q[*from],
                 Effect::Lag { joint, share } => {
                     let lags = |j: usize| row > 0 && joint.is_none_or(|only| only == j);
@@ -155,6 +238,12 @@ impl Site {
             }
         }
         joints
+    }
+
+    /// Seconds, or kelvins since the first row.
+    fn since(&self, row: usize, by_time: bool) -> f64 {
+        let at = &self.rows[row];
+        if by_time { at.time } else { at.temperature - self.rows[0].temperature }
     }
 
     /// Direction from which a joint came.
@@ -171,9 +260,12 @@ impl Site {
         effects: &[Effect],
     ) -> (Vec<f64>, Vec<f64>) {
         let (mut turned, mut torque) = (joints.to_vec(), Vec::new());
-        for _ in 0..ROUNDS {
+        let gravity = self.down(effects);
+        let turns = |effect: &Effect| matches!(effect, Effect::Compliance { .. } | Effect::Nonlinear { .. });
+        let rounds = if self.has_masses || effects.iter().any(turns) { ROUNDS } else { 1 };
+        for _ in 0..rounds {
             let frames = arm::frames(arm, &self.base, &turned);
-            torque = arm::torques(arm, &frames, &gravity(), &self.pulls(&frames[arm.len()], row, effects));
+            torque = arm::torques(arm, &frames, &gravity, &self.pulls(&frames[arm.len()], row, effects));
             for (j, tau) in torque.iter().enumerate() {
                 // a file without masses goes with an arm that is hardly compliant
                 let own = if self.has_masses { arm[j].compliance } else { 0.0 };
@@ -187,38 +279,51 @@ impl Site {
     /// Forces beyond the last joint.
     fn pulls(&self, flange: &Matrix4<f64>, row: usize, effects: &[Effect]) -> Vec<Pull> {
         let tip = arm::point(flange, &self.tool);
-        let weight = |mass: f64, at: &Vector3<f64>| (gravity() * mass, arm::point(flange, at));
-        let mut pulls = vec![(self.push(row), tip)];
+        let gravity = self.down(effects);
+        let weight = |mass: f64, at: &Vector3<f64>| (gravity * mass, arm::point(flange, at));
+        let mut pulls = vec![(self.push(row, effects), tip)];
         if let Some(rod) = &self.rod {
             pulls.extend(rod.slices.iter().map(|(mass, at)| weight(*mass, at)));
         }
         pulls.extend(effects.iter().filter_map(|effect| match *effect {
             Effect::Payload(mass) => Some(weight(mass, &Vector3::zeros())),
-            Effect::TipMass(mass) => Some((gravity() * mass, tip)),
+            Effect::TipMass(mass) => Some((gravity * mass, tip)),
             _ => None,
         }));
         pulls
     }
 
     /// Contact force in the world, N.
-    fn push(&self, row: usize) -> Vector3<f64> {
-        turned(&self.device(self.rows[row].group), &self.contact)
+    fn push(&self, row: usize, effects: &[Effect]) -> Vector3<f64> {
+        let group = self.rows[row].group;
+        let device = self.device(group);
+        let is_here = |of: &Option<usize>| of.is_none_or(|only| only == group);
+        let mut force = self.contact;
+        for effect in effects {
+            match effect {
+                Effect::Force { group, by } if is_here(group) => force += by,
+                Effect::Spring { group, rate } if is_here(group) => force += self.rows[row].aside * *rate,
+                _ => {}
+            }
+        }
+        turned(&device, &force)
     }
 
     /// What the rod gives way, in the world.
     pub fn bent(&self, flange: &Matrix4<f64>, row: usize, effects: &[Effect]) -> Vector3<f64> {
         let Some(rod) = &self.rod else { return Vector3::zeros() };
         let rotation: Matrix3<f64> = flange.fixed_view::<3, 3>(0, 0).into_owned();
-        let (mut force, mut factor) = (self.push(row), 1.0);
+        let (mut force, mut factor) = (self.push(row, effects), 1.0);
+        let gravity = self.down(effects);
         for effect in effects {
             match *effect {
-                Effect::TipMass(mass) => force += gravity() * mass,
-                Effect::Rod(by) => factor *= by,
+                Effect::TipMass(mass) => force += gravity * mass,
+                Effect::Rod(more) => factor *= 1.0 + more,
                 _ => {}
             }
         }
         let inside =
-            rod.per_force * rotation.transpose() * force + rod.per_gravity * rotation.transpose() * gravity();
+            rod.per_force * rotation.transpose() * force + rod.per_gravity * rotation.transpose() * gravity;
         rotation * inside * factor
     }
 
@@ -231,6 +336,7 @@ impl Site {
         effects: &[Effect],
     ) -> Vector3<f64> {
         let at = &self.rows[row];
+        tip -= self.clamps_off.get(at.group).copied().unwrap_or_default();
         for effect in effects {
             match effect {
                 Effect::ClampPose { group, by, turn } if *group == at.group => {
@@ -238,8 +344,10 @@ impl Site {
                     tip -= by + turn.cross(&(tip - from));
                 }
                 Effect::Shift { group, from, by } if *group == at.group && row >= *from => tip -= by,
-                Effect::Drift { by, by_time: true } => tip += by * at.time,
-                Effect::Drift { by, .. } => tip += by * (at.temperature - self.rows[0].temperature),
+                Effect::Drift { by, by_time } => tip += by * self.since(row, *by_time),
+                Effect::BaseShift { from, by, turn } if row >= *from => {
+                    tip += by + turn.cross(&(tip - arm::column(&self.base, 3)));
+                }
                 Effect::Outlier(rows) => {
                     tip += rows.iter().filter(|(r, _)| *r == row).map(|(_, by)| by).sum::<Vector3<f64>>();
                 }
@@ -279,37 +387,11 @@ impl Site {
         let all = self.rows.iter().enumerate().flat_map(|(row, at)| <[f64; 3]>::from(of(row, &at.q)));
         DVector::from_vec(all.collect())
     }
+}
 
-    /// Turns the joints of a row, as little as may be, until the ball is at a point; `None` where it does not get there.
-    pub fn reach(
-        &self,
-        row: usize,
-        q: &[f64],
-        target: &Vector3<f64>,
-        effects: &[Effect],
-    ) -> Option<Vec<f64>> {
-        let mut q = q.to_vec();
-        for _ in 0..40 {
-            let at = self.ball(row, &q, effects);
-            let off = target - at;
-            if off.norm() < 1e-10 {
-                return Some(q);
-            }
-            let lever = DMatrix::from_fn(3, q.len(), |_, _| 0.0);
-            let mut lever = lever;
-            for j in 0..q.len() {
-                let mut moved = q.clone();
-                moved[j] += STEP;
-                lever.set_column(j, &((self.ball(row, &moved, effects) - at) / STEP));
-            }
-            let square = &lever * lever.transpose() + DMatrix::identity(3, 3) * 1e-9;
-            let stride = off * (0.4 / off.norm()).min(1.0);
-            let solved = square.cholesky()?.solve(&DVector::from_column_slice(stride.as_slice()));
-            let turn = lever.transpose() * solved;
-            q.iter_mut().zip(turn.iter()).for_each(|(q, turn)| *q += turn.clamp(-0.5, 0.5));
-        }
-        None
-    }
+/// How a point moves when the joint whose axis is that of `frame` turns, m/rad.
+pub fn lever(frame: &Matrix4<f64>, at: &Vector3<f64>) -> Vector3<f64> {
+    arm::column(frame, 2).cross(&(at - arm::column(frame, 3)))
 }
 
 /// How much further a joint turns under load.
@@ -324,9 +406,4 @@ fn more(effect: &Effect, at: usize, tau: f64) -> f64 {
 
 fn sign(value: f64) -> f64 {
     if value == 0.0 { 0.0 } else { value.signum() }
-}
-
-/// In the world.
-pub fn gravity() -> Vector3<f64> {
-    Vector3::new(0.0, 0.0, -STANDARD_GRAVITY)
 }

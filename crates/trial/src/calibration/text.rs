@@ -4,8 +4,10 @@ use std::fmt::Write;
 
 use nalgebra::{Matrix4, Vector3};
 
+use super::arm::Known;
 use super::site::{Devices, Site};
 use super::taken_up::DISTANCE_SD;
+use crate::rig::drawing::{Drawing, rounded};
 use rodcal_base::statistics::Random;
 use rodcal_base::units::{DEG, MM, UM};
 
@@ -18,14 +20,31 @@ pub fn guess(site: &Site, random: &mut Random) -> [Vector3<f64>; 2] {
     [xyz + about(2.0 * MM), rpy + about(0.1 * DEG)]
 }
 
+/// A recording as it is written down.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Written {
+    /// Robot, rod, fixtures and angles as the files have them.
+    pub site: Site,
+    /// Where the file has the base.
+    pub guess: [Vector3<f64>; 2],
+    /// What was read, m.
+    pub read: Vec<Vector3<f64>>,
+    /// Rods whose files stand beside that of the campaign.
+    pub others: Vec<(String, Drawing)>,
+}
+
 /// Name and text of each.
-pub fn files(site: &Site, guess: &[Vector3<f64>; 2], read: &[Vector3<f64>]) -> Vec<(String, String)> {
+pub fn files(Written { site, guess, read, others }: &Written) -> Vec<(String, String)> {
     let mut files = vec![
         ("campaign.toml".to_owned(), campaign(site, guess)),
         ("robot.toml".to_owned(), robot(site)),
         ("measurements.csv".to_owned(), measurements(site, read)),
     ];
     files.extend(site.rod.as_ref().map(|rod| ("rod.toml".to_owned(), rod.drawing.toml("case"))));
+    let other = |(k, (name, drawing)): (usize, &(String, Drawing))| {
+        (name.clone(), drawing.toml(&format!("case, rod {}", k + 2)))
+    };
+    files.extend(others.iter().enumerate().map(other));
     files
 }
 
@@ -52,7 +71,7 @@ fn three(v: &Vector3<f64>, unit: f64) -> String {
 }
 
 /// xyz and roll, pitch, yaw.
-fn place(frame: &Matrix4<f64>) -> [Vector3<f64>; 2] {
+pub fn place(frame: &Matrix4<f64>) -> [Vector3<f64>; 2] {
     let pitch = (-frame[(2, 0)]).asin();
     let rpy = Vector3::new(frame[(2, 1)].atan2(frame[(2, 2)]), pitch, frame[(1, 0)].atan2(frame[(0, 0)]));
     [frame.column(3).xyz(), rpy]
@@ -70,6 +89,12 @@ fn campaign(site: &Site, [xyz, rpy]: &[Vector3<f64>; 2]) -> String {
         let _ = writeln!(text, "[tool]\nxyz_mm = {}", three(&site.drawn_tool, MM));
     }
     let _ = write!(text, "[base]\nxyz_mm = {}\nrpy_deg = {}\n", three(xyz, MM), three(rpy, DEG));
+    let stated = site.scatter.stated().map(|sd| format!("position_um = {:.3}\n", sd / UM));
+    let places = site.clamp_sd.map(|sd| format!("clamp_um = {:.1}\n", sd / UM));
+    if stated.is_some() || places.is_some() {
+        text += "[noise]\n";
+        text.extend(stated.into_iter().chain(places));
+    }
     match &site.devices {
         Devices::Clamps(clamps) => {
             for (k, clamp) in clamps.iter().enumerate() {
@@ -96,9 +121,18 @@ fn campaign(site: &Site, [xyz, rpy]: &[Vector3<f64>; 2]) -> String {
 
 fn robot(site: &Site) -> String {
     let mut text = FIRST.to_owned() + "name = \"arm\"\nconvention = \"hayati\"\n";
+    if site.known.is_stated {
+        let Known { length, angle, zero, mass, .. } = site.known;
+        let [length, angle, zero, mass] =
+            [length / MM, angle / DEG, zero / DEG, 100.0 * mass].map(|value| rounded(value, 6));
+        let _ = write!(
+            text,
+            "[standard_uncertainty]\nlength_mm = {length}\nangle_deg = {angle}\njoint_zero_deg = {zero}\nmass_percent = {mass}\n"
+        );
+    }
     for link in &site.nominal {
         let [theta, d, a, alpha, beta] = link.numbers;
-        let rounded = |value: f64| (value * 1e9).round() / 1e9;
+        let rounded = |value: f64| rounded(value, 9);
         let _ = write!(
             text,
             "[[joint]]\ntheta_offset_deg = {:?}\nd_mm = {:?}\na_mm = {:?}\nalpha_deg = {:?}\nbeta_deg = {:?}\n",

@@ -70,7 +70,7 @@ impl Bench {
             _ => None,
         });
         for (per_decade, shortest) in creep.collect::<Vec<_>>() {
-            let law = |t| creep_compliance(per_decade, shortest, t);
+            let law = creep_compliance(per_decade, shortest);
             let more = crept(&loadings, &mut solver, &forces, law);
             displaced.iter_mut().zip(more).for_each(|(u, more)| *u += more);
         }
@@ -355,8 +355,11 @@ fn crept(
     let mut add = |loading: &Loading| {
         let mut sum = Vector3::zeros();
         for (time, before, after, station) in &changes {
+            if *time >= loading.time || before == after {
+                continue;
+            }
             let grown = compliance(loading.time - time) - compliance(loading.zeroed - time);
-            if *time < loading.time && before != after && grown != 0.0 {
+            if grown != 0.0 {
                 let stations = [*station, loading.stations[1]];
                 sum += (solver.deflection(after, stations) - solver.deflection(before, stations)) * grown;
             }

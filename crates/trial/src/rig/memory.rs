@@ -18,12 +18,13 @@ const PER_DECADE: usize = 2;
 /// J(t) = (k/m)·Σ (1 − exp(−t/τᵢ)), τᵢ = τ₀·10^(i/m), m in each decade,
 ///
 /// which grows by k in every decade of time between the first and the last relaxation time.
-pub fn creep_compliance(per_decade: f64, shortest: f64, t: f64) -> f64 {
-    let element = |i: usize| {
-        let relaxation = shortest * 10f64.powf(i as f64 / PER_DECADE as f64);
-        -(-t.max(0.0) / relaxation).exp_m1()
-    };
-    per_decade / PER_DECADE as f64 * (0..=DECADES * PER_DECADE).map(element).sum::<f64>()
+pub fn creep_compliance(per_decade: f64, shortest: f64) -> impl Fn(f64) -> f64 {
+    let rate = |i: usize| -1.0 / (shortest * 10f64.powf(i as f64 / PER_DECADE as f64));
+    let rates: Vec<f64> = (0..=DECADES * PER_DECADE).map(rate).collect();
+    move |t| {
+        let all = || rates.iter().map(|rate| 1.0 - (rate * t).exp()).sum::<f64>();
+        if t > 0.0 { per_decade / PER_DECADE as f64 * all() } else { 0.0 }
+    }
 }
 
 /// Play operators with thresholds spread evenly from 0 to half of the largest load.
@@ -71,7 +72,7 @@ mod tests {
 
     #[test]
     fn creep_grows_by_its_share_in_every_decade() {
-        let at = |t: f64| creep_compliance(0.03, 1.0, t);
+        let at = creep_compliance(0.03, 1.0);
         assert!((at(1e4) - at(1e3) - 0.03).abs() < 1e-3);
         assert!((at(1e3) - at(1e2) - 0.03).abs() < 1e-3);
         assert_eq!(at(0.0), 0.0);

@@ -34,14 +34,20 @@ pub struct Noise {
 }
 
 /// Draws the noise of one reading after another, in standard deviations.
-struct Source<'a> {
+pub struct Source<'a> {
     shape: &'a Shape,
     /// The residual that comes next.
     next: usize,
 }
 
-impl Source<'_> {
-    fn draw(&mut self, random: &mut Random) -> f64 {
+impl<'a> Source<'a> {
+    /// Of a shape.
+    pub fn new(shape: &'a Shape) -> Self {
+        Source { shape, next: 0 }
+    }
+
+    /// The next one.
+    pub fn draw(&mut self, random: &mut Random) -> f64 {
         match self.shape {
             Shape::Normal => random.normal(),
             Shape::StudentT(dof) => {
@@ -90,7 +96,7 @@ impl Noise {
         let protocol = &bench.protocol;
         let quantum = protocol.quantum;
         let step = |value: f64| if quantum > 0.0 { (value / quantum).round() * quantum } else { value };
-        let mut source = Source { shape: &self.shape, next: 0 };
+        let mut source = Source::new(&self.shape);
         let runs = protocol.loadings.iter().map(|l| l.run + 1).max().unwrap_or(0);
         let zeros: Vec<[f64; 3]> = (0..runs)
             .map(|_| {
@@ -119,7 +125,7 @@ mod tests {
     use super::*;
 
     fn drawn(shape: &Shape) -> Vec<f64> {
-        let (mut source, mut random) = (Source { shape, next: 0 }, Random::seeded(1, 0));
+        let (mut source, mut random) = (Source::new(shape), Random::seeded(1, 0));
         (0..40_000).map(|_| source.draw(&mut random)).collect()
     }
 

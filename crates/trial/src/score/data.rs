@@ -71,6 +71,9 @@ pub struct Part {
     pub bins: Vec<Bin>,
     /// Truth → answer → cases.
     pub confusion: Confusion,
+    /// Effects that imitate each other: pair → truth → answer → cases.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub conflicts: BTreeMap<String, Confusion>,
     /// Names of effects that no library has.
     pub outside: BTreeSet<String>,
     /// Probability of the right name over size, by effect.
@@ -314,6 +317,8 @@ impl Part {
         say("held-out gain over the oracle's", &gain);
         say("error of other readings over the oracle's", &self.counterfactual);
         say("ambiguous: settled by what is proposed", &self.next_measurement_ok);
-        text + &confusion_text(&self.confusion)
+        text += &confusion_text("truth (identifiable)", &self.confusion);
+        self.conflicts.iter().for_each(|(pair, counts)| text += &confusion_text(pair, counts));
+        text
     }
 }

@@ -1,6 +1,6 @@
 //! One answer beside its truth.
 
-use serde::Deserialize;
+use serde::{Deserialize, Deserializer};
 use serde_json::Value;
 
 use super::counterfactual::Counterfactual;
@@ -65,13 +65,23 @@ impl Finding {
     }
 }
 
-/// A number with its 95 % interval.
+/// A number with its 95 % interval; an end that JSON has no number for is at infinity.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[allow(missing_docs)]
 pub struct Interval {
     pub name: String,
+    #[serde(deserialize_with = "below")]
     pub lo: f64,
+    #[serde(deserialize_with = "above")]
     pub hi: f64,
+}
+
+fn below<'de, D: Deserializer<'de>>(end: D) -> Result<f64, D::Error> {
+    Ok(Option::deserialize(end)?.unwrap_or(f64::NEG_INFINITY))
+}
+
+fn above<'de, D: Deserializer<'de>>(end: D) -> Result<f64, D::Error> {
+    Ok(Option::deserialize(end)?.unwrap_or(f64::INFINITY))
 }
 
 /// A single reading that an answer calls suspect.

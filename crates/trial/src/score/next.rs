@@ -13,7 +13,7 @@ use super::place;
 use super::rate::Rate;
 use crate::place::Place;
 use crate::truth::{Concealed, Kind, Truth};
-use crate::{calibration, rig};
+use crate::{Half, Source, calibration, rig};
 use rodcal_base::error::Result;
 use rodcal_base::files;
 
@@ -24,6 +24,8 @@ pub struct Due {
     pub case: String,
     seed: Option<u64>,
     residuals: Vec<f64>,
+    /// True for a case with effects that imitate each other.
+    is_conflict: bool,
     /// What the answer proposes, in words and as numbers; `None` where it proposes nothing.
     words: Option<String>,
     proposed: Option<Value>,
@@ -48,6 +50,7 @@ impl Due {
             case: case.truth.case.clone(),
             seed: case.truth.seed,
             residuals: case.truth.residuals.clone(),
+            is_conflict: case.truth.conflict.is_some(),
             words: finding.next_measurement.clone(),
             proposed: finding.next_measurement_plan.clone().filter(|plan| !plan.is_null()),
         })
@@ -67,7 +70,13 @@ impl Due {
         };
         let (half, number) = self.case.split_once("/case-").unwrap_or_default();
         let (Some(seed), Ok(number)) = (self.seed, number.parse()) else { return not("the key has no seed") };
-        let [before, after] = match once_more(half, seed, number, &self.residuals, proposed) {
+        let half_drawn = match (half, self.is_conflict) {
+            (_, true) => Half::Conflicts,
+            ("calibration", _) => Half::Calibration,
+            _ => Half::Rig,
+        };
+        let source = Source { seed, half: half_drawn, residuals: self.residuals.clone() };
+        let [before, after] = match once_more(&source, number, proposed) {
             Ok(files) => files,
             Err(why) => return not(why),
         };
@@ -86,20 +95,18 @@ pub type Files = Vec<(String, String)>;
 
 /// The files of a case as they were and with what is proposed.
 fn once_more(
-    half: &str,
-    seed: u64,
+    source: &Source,
     number: usize,
-    residuals: &[f64],
     proposed: &Value,
 ) -> std::result::Result<[Files; 2], &'static str> {
     const NONE: &str = "not a measurement";
-    if half == "calibration" {
+    if source.half != Half::Rig {
         let proposed = calibration::Proposed::deserialize(proposed).map_err(|_| NONE)?;
-        let again = calibration::again(seed, number, &proposed)?;
+        let again = calibration::again(source, number, &proposed)?;
         return Ok([again.before, again.after]);
     }
     let proposed = rig::Proposed::deserialize(proposed).map_err(|_| NONE)?;
-    let again = rig::again(seed, number, residuals, &proposed)?;
+    let again = rig::again(source.seed, number, &source.residuals, &proposed)?;
     Ok([again.before, again.after].map(|text| vec![("readings.csv".to_owned(), text)]))
 }
 

@@ -124,6 +124,26 @@ pub fn confusion(cases: &[Judged<'_>]) -> Confusion {
     counts
 }
 
+/// What was said of effects that imitate each other, whether they could be told apart or not. A name in brackets is not the
+/// strongest finding but one that it cannot distinguish from that.
+pub fn conflicts(cases: &[Judged<'_>]) -> BTreeMap<String, Confusion> {
+    let mut counts: BTreeMap<String, Confusion> = BTreeMap::new();
+    for case in cases {
+        let Some(pair) = &case.truth.conflict else { continue };
+        let Some(concealed) = case.truth.effects.first() else { continue };
+        let of = match concealed.detectability.is_identifiable() {
+            true => concealed.effect.clone(),
+            false => format!("{}, not identifiable", concealed.effect),
+        };
+        let said = match case.said() != concealed.effect && case.in_class() {
+            true => format!("{} ({})", case.said(), concealed.effect),
+            false => case.said().to_owned(),
+        };
+        *counts.entry(pair.clone()).or_default().entry(of).or_default().entry(said).or_default() += 1;
+    }
+    counts
+}
+
 /// Names of the effects that the library does not have: "unexplained" is the right answer to them.
 pub fn outside(cases: &[Judged<'_>]) -> BTreeSet<String> {
     let unknown = cases.iter().filter(|case| case.truth.kind == Kind::Unknown);
@@ -131,8 +151,8 @@ pub fn outside(cases: &[Judged<'_>]) -> BTreeSet<String> {
 }
 
 /// As a table with a line for each truth.
-pub fn confusion_text(counts: &Confusion) -> String {
-    let mut text = String::from("\ntruth (identifiable)    answers\n");
+pub fn confusion_text(heading: &str, counts: &Confusion) -> String {
+    let mut text = format!("\n{heading:27} answers\n");
     for (truth, row) in counts {
         let total: usize = row.values().sum();
         let mut cells: Vec<(&String, &usize)> = row.iter().collect();

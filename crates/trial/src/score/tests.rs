@@ -42,6 +42,7 @@ fn truth(case: usize, kind: Kind, effects: Vec<Concealed>) -> Truth {
     Truth {
         case: format!("rig/case-{case:04}"),
         kind,
+        conflict: None,
         effects,
         companions: Vec::new(),
         numbers_off: 1.0,
@@ -352,4 +353,14 @@ fn the_order_of_answers_does_not_matter() {
     let before = score(&truths, &answers, &[]);
     answers.reverse();
     assert_eq!(score(&truths, &answers, &[]), before);
+}
+
+#[test]
+fn an_interval_without_an_end_goes_on_for_ever() {
+    let truth = truth(1, Kind::Single, vec![concealed("friction", "slide", ("force_n", 1.0), 20.0)]);
+    let open = json!({"name": "force_n", "value": 1.0, "lo": 0.9, "hi": null});
+    let answer = answer(1, &[("friction", "slide", open)], false);
+    let judged = Judged::new(&truth, &answer);
+    assert!(!judged.failed);
+    assert_eq!(judged.covered(&truth.effects[0]), [("force_n".to_owned(), true)]);
 }

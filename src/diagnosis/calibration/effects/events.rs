@@ -10,7 +10,7 @@ use crate::inference::{Effect, Finding, FindingPart, Kind, Location, NotTestable
 use crate::units::{MM, UM};
 
 /// A pose that was read wrongly, m.
-const MISREAD: f64 = 0.5 * MM;
+pub(in crate::diagnosis::calibration) const MISREAD: f64 = 0.5 * MM;
 /// Most outliers that are reported one by one.
 const REPORTED: usize = 3;
 

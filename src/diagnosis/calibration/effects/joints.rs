@@ -6,6 +6,7 @@
 
 use nalgebra::Vector3;
 
+use super::per_torque::per_torque;
 use super::{
     CalibrationEffect, Context, Entry, Transfer, along, capital, first, first_value, joint, joint_by, lack,
     law, no_event, nowhere, own_parameters, single,
@@ -191,7 +192,7 @@ pub static JOINT_NONLINEAR_STIFFNESS: CalibrationEffect = CalibrationEffect {
         direct_check: None,
     },
     candidates: nonlinear,
-    estimates: own_parameters,
+    estimates: per_torque,
     observed: nonlinear_observed,
     write: nowhere,
     transfer: Transfer::Candidate,
@@ -298,7 +299,7 @@ pub static GRAVITY_TILT: CalibrationEffect = CalibrationEffect {
         direct_check: None,
     },
     candidates: tilts,
-    estimates: own_parameters,
+    estimates: per_torque,
     observed: |finding, _| {
         format!("The base tilts by {} under the arm's moment", first(finding).say("µrad/(N·m)"))
     },

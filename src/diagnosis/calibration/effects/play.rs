@@ -1,6 +1,7 @@
 //! What a joint keeps of the way that it came: play and friction.
 
 use super::joints::{NO_MASSES, loaded};
+use super::per_torque::per_torque;
 use super::{
     CalibrationEffect, Context, Entry, JOINT_ANGLE, Transfer, along, capital, first, first_value, joint,
     joint_by, lack, law, no_event, own_parameters, single,
@@ -113,7 +114,7 @@ pub static JOINT_FRICTION: CalibrationEffect = CalibrationEffect {
         direct_check: None,
     },
     candidates: frictions,
-    estimates: own_parameters,
+    estimates: per_torque,
     observed: friction_observed,
     write: super::out_of_the_points,
     transfer: Transfer::Candidate,

@@ -29,6 +29,8 @@ pub(super) struct Draft {
     pub tool: Option<Vector3<f64>>,
     /// Which of the bodies: robot and rod.
     pub body: usize,
+    /// Clamps whose place is free.
+    pub loose: Vec<usize>,
     /// Changes of the angles, in their order: the validation has them too.
     pub joint_changes: Vec<Change>,
 }
@@ -109,6 +111,7 @@ impl Draft {
             base: campaign.base_is_given.then(|| Pose::from_xyz_rpy([x, y, z], [roll, pitch, yaw])),
             tool: has_tool.then_some(campaign.tool),
             body: 0,
+            loose: Vec::new(),
             joint_changes: Vec::new(),
         }
     }
@@ -123,6 +126,11 @@ impl Draft {
 
     pub fn joints(&self, row: usize) -> &[f64] {
         &self.joints[row * self.joint_count..][..self.joint_count]
+    }
+
+    /// True where the place of a clamp or socket is not known.
+    pub fn is_loose(&self, group: usize) -> bool {
+        self.has_sockets() || self.loose.contains(&group)
     }
 
     /// Where the ball was, in {W} of its station, m.
@@ -214,6 +222,7 @@ impl Draft {
             station: rows.iter().map(|&row| self.station[row]).collect(),
             rows: rows.iter().map(|&row| self.rows[row]).collect(),
             devices: self.devices.clone(),
+            loose: self.loose.clone(),
             joint_changes: self.joint_changes.clone(),
             ..*self
         }

@@ -13,12 +13,15 @@ use crate::calibration::campaign::Campaign;
 use crate::inference::{Effect, Estimate};
 use crate::robot::Motion;
 use crate::spatial::{Pose, exponential};
-use crate::units::{DEG, significant};
+use crate::statistics::median;
+use crate::units::{DEG, MM, significant};
 
 /// Farthest displacement of rows that is tried.
 const FARTHEST_ROW: isize = 3;
 /// Clamps are exchanged one by one where there are no more; with more there are too many pairs.
 const MOST_CLAMPS: usize = 12;
+/// A ball in a clamp is displaced by less, m: by larger numbers it may be that they are in a smaller unit.
+const DISPLACEMENT: f64 = 10.0 * MM;
 /// Angles in radians are no larger than a turn and some play, in what should be degrees.
 const TURN_IN_RADIANS: f64 = 6.6;
 /// Ln of how much rarer some mistakes are.
@@ -235,6 +238,10 @@ impl List<'_> {
             return;
         }
         const ALL: &str = "x_mm, y_mm, z_mm";
+        // in clamps smaller numbers are nearer to any robot that was sent there
+        let is_clamped = self.campaign.measurements.groups.iter().any(|group| !group.name.is_empty());
+        let sizes: Vec<f64> = self.draft.seen.iter().map(|seen| seen.norm()).collect();
+        let is_far = !is_clamped || median(&sizes).is_some_and(|size| size > DISPLACEMENT);
         for (factor, unit, log_prior) in [
             (1e3, "metres", 0.0),
             (25.4, "inches", 0.0),
@@ -242,6 +249,9 @@ impl List<'_> {
             (1e-3, "micrometres", UNUSUAL),
             (0.1, "tenths of a millimetre", RARE),
         ] {
+            if factor < 1.0 && !is_far {
+                continue;
+            }
             let by = if factor < 1.0 {
                 format!("Divide {ALL} by {}", 1.0 / factor)
             } else {

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! rᵢ = B·(tip(ρ, qᵢ) + R·Δxᵢ) − xᵢ       B the base, one for each station; with sockets less the mean
-//!                                        of the socket's tips
+//!                                        of the socket's tips, of a clamp whose place is free of its rᵢ
 //! ρ ~ N(nominal, twice what a robot file is known to)
 //! density of |r|: Student's t with four degrees of freedom in space, its scale by maximum likelihood
 //! ```
@@ -111,7 +111,19 @@ pub(super) fn fit(draft: &Draft, body: &Body, worthwhile: Worthwhile) -> Option<
     if rough.median > worthwhile.most_left {
         return None;
     }
-    refined(draft, body, rough, worthwhile.log_likelihood)
+    let setup = Setup::new(body.robot, Pose::IDENTITY, rough.tool);
+    let state = State { setup, bases: rough.bases };
+    refined(draft, body, state, rough.median, worthwhile.log_likelihood)
+}
+
+/// Fits a draft from where another one's fit ended: rows that hardly count there may be others than from the rough start.
+pub(super) fn fit_from(draft: &Draft, body: &Body, start: &Fit, rough: f64) -> Option<Fit> {
+    let mut bases = start.bases.clone();
+    bases.truncate(draft.stations);
+    if !draft.has_sockets() && bases.len() < draft.stations {
+        return None;
+    }
+    refined(draft, body, State { setup: start.setup(body), bases }, rough, f64::NEG_INFINITY)
 }
 
 fn rough(draft: &Draft, body: &Body) -> Option<Rough> {
@@ -195,7 +207,7 @@ fn placed(
     Some(Pose { rotation, origin: goal - rotation * centre })
 }
 
-/// Vectors less the weighted means of their sockets.
+/// Vectors less the weighted means of their sockets, or of the clamps whose place is free.
 fn minus_means(vectors: &[Vector3<f64>], draft: &Draft, weight: &[f64]) -> Vec<Vector3<f64>> {
     let mut sum = vec![(Vector3::zeros(), 0.0f64); draft.devices.len()];
     for (row, vector) in vectors.iter().enumerate() {
@@ -203,7 +215,10 @@ fn minus_means(vectors: &[Vector3<f64>], draft: &Draft, weight: &[f64]) -> Vec<V
         *total += vector * weight[row];
         *weights += weight[row];
     }
-    let mean = |group: usize| sum[group].0 / sum[group].1.max(f64::MIN_POSITIVE);
+    let mean = |group: usize| match draft.is_loose(group) {
+        true => sum[group].0 / sum[group].1.max(f64::MIN_POSITIVE),
+        false => Vector3::zeros(),
+    };
     vectors.iter().zip(&draft.group).map(|(vector, &group)| vector - mean(group)).collect()
 }
 
@@ -214,14 +229,19 @@ struct State<'a> {
     bases: Vec<Pose>,
 }
 
-fn refined(draft: &Draft, body: &Body, rough: Rough, worthwhile: f64) -> Option<Fit> {
-    let Rough { bases, tool, median } = rough;
-    let mut state = State { setup: Setup::new(body.robot, Pose::IDENTITY, tool), bases };
+fn refined<'a>(
+    draft: &Draft,
+    body: &Body<'a>,
+    mut state: State<'a>,
+    rough: f64,
+    worthwhile: f64,
+) -> Option<Fit> {
     let mut torque = vec![0.0; draft.joints.len()];
     let mut deflection = vec![Vector3::zeros(); draft.len()];
     load(draft, body, &state, &mut torque, &mut deflection);
     let sd = sizes(draft, body, &torque);
-    let nominal: Vec<f64> = body.free.iter().map(|&p| state.setup.get(p)).collect();
+    let as_drawn = Setup::new(body.robot, Pose::IDENTITY, state.setup.tool);
+    let nominal: Vec<f64> = body.free.iter().map(|&p| as_drawn.get(p)).collect();
     let least = LEAST_SCALE * body.reach;
     let mut best: Option<(f64, f64, State, Vec<Vector3<f64>>)> = None;
     for taken in 0..MOST_STEPS {
@@ -254,7 +274,7 @@ fn refined(draft: &Draft, body: &Body, rough: Rough, worthwhile: f64) -> Option<
         tool: state.setup.tool,
         links: body.free.iter().map(|&p| (p, state.setup.get(p))).collect(),
         bases: state.bases,
-        rough: median,
+        rough,
         log_likelihood,
     })
 }
@@ -332,10 +352,7 @@ fn residuals(
             }
         }
     }
-    match draft.has_sockets() {
-        true => minus_means(&off, draft, &vec![1.0; off.len()]),
-        false => off,
-    }
+    minus_means(&off, draft, &vec![1.0; off.len()])
 }
 
 /// One Gauss–Newton step, by the columns of the state.
@@ -348,9 +365,7 @@ fn step<'a>(
     mut block: DMatrix<f64>,
 ) -> Option<State<'a>> {
     let (free, columns) = (body.free.len(), block.ncols());
-    if draft.has_sockets() {
-        without_means(&mut block, draft);
-    }
+    without_means(&mut block, draft);
     let mut right = DVector::zeros(3 * draft.len());
     for (row, (off, length)) in off.iter().zip(lengths).enumerate() {
         let root = weight_of(length / scale).sqrt() / scale;
@@ -384,8 +399,11 @@ fn step<'a>(
     Some(next)
 }
 
-/// Columns of displacements less the means of their sockets.
+/// Columns of displacements less the means of their sockets, or of the clamps whose place is free.
 fn without_means(block: &mut DMatrix<f64>, draft: &Draft) {
+    if !draft.has_sockets() && draft.loose.is_empty() {
+        return;
+    }
     let mut size = vec![0.0f64; draft.devices.len()];
     draft.group.iter().for_each(|&group| size[group] += 1.0);
     for mut column in block.column_iter_mut() {
@@ -393,7 +411,7 @@ fn without_means(block: &mut DMatrix<f64>, draft: &Draft) {
         for (row, &group) in draft.group.iter().enumerate() {
             sum[group] += column.fixed_rows::<3>(3 * row);
         }
-        for (row, &group) in draft.group.iter().enumerate() {
+        for (row, &group) in draft.group.iter().enumerate().filter(|(_, group)| draft.is_loose(**group)) {
             let mut own = column.fixed_rows_mut::<3>(3 * row);
             own -= sum[group] / size[group];
         }
@@ -434,6 +452,12 @@ fn density(lengths: &[f64], scale: f64) -> f64 {
 }
 
 impl Fit {
+    fn setup<'a>(&self, body: &Body<'a>) -> Setup<'a> {
+        let mut setup = Setup::new(body.robot, Pose::IDENTITY, self.tool);
+        self.links.iter().for_each(|&(parameter, value)| setup.set(parameter, value));
+        setup
+    }
+
     /// Distances of the tip of every row of `draft` from its point, m, if its station were `station`.
     pub fn lengths_at(&self, draft: &Draft, body: &Body, station: usize) -> Vec<f64> {
         let mut there = draft.clone();
@@ -443,9 +467,7 @@ impl Fit {
 
     /// Distances of the tip of every row of `draft` from its point, m.
     pub fn lengths(&self, draft: &Draft, body: &Body) -> Vec<f64> {
-        let mut setup = Setup::new(body.robot, Pose::IDENTITY, self.tool);
-        self.links.iter().for_each(|&(parameter, value)| setup.set(parameter, value));
-        let state = State { setup, bases: self.bases.clone() };
+        let state = State { setup: self.setup(body), bases: self.bases.clone() };
         let mut torque = vec![0.0; draft.joints.len()];
         let mut deflection = vec![Vector3::zeros(); draft.len()];
         load(draft, body, &state, &mut torque, &mut deflection);

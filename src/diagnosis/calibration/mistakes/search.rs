@@ -2,14 +2,15 @@
 //!
 //! Greedy: the change that gains most, then the best beside it; where no single one cures a fit that
 //! fails, pairs that begin with the best few, or with a unit; where no pair does, nothing is named. A state is kept where it is a thousand times more
-//! probable than the one that it grew from **and** what it touches lies three times nearer.
+//! probable than the one that it grew from **and** what it touches lies three times nearer. It must also be a thousand times
+//! more probable than what is left to the effects: a small move of base or tracker, a clamp that is not quite in its place.
 
 use nalgebra::{Matrix3, Vector3};
 
 use super::super::effects::mistakes::UNIT_MISTAKE;
 use super::draft::{Change, Draft};
 use super::moves::{Move, turn};
-use super::quick::{Body, Fit, Worthwhile, fit};
+use super::quick::{Body, Fit, Worthwhile, fit, fit_from};
 use crate::parallel::in_parallel;
 use crate::spatial::Pose;
 use crate::statistics::median;
@@ -31,6 +32,8 @@ const TOUCHED: (f64, usize) = (0.05, 3);
 const ROWS: usize = 120;
 /// Rows after which a move of the base is tried first.
 const PLACES: usize = 24;
+/// The price of a clamp that is not quite in its place: the same for its three numbers.
+const DISPLACED: f64 = -7.5;
 /// Fewest rows of a station.
 const LEAST_ROWS: usize = 4;
 const MOST_CHANGES: usize = 6;
@@ -96,21 +99,32 @@ impl Search<'_> {
         let mut best = base.clone();
         while best.steps.len() < MOST_CHANGES {
             // beside one that fits only what is better counts
-            let least = if self.has_failed(&best) { f64::NEG_INFINITY } else { best.score + ODDS };
+            let least = if self.has_failed(&best) { f64::NEG_INFINITY } else { best.score };
             let tried = self.extended(&best, least);
-            let next = tried.iter().find(|state| self.is_better(state, &best) && !self.has_failed(state));
+            let is_next = |state: &&State| {
+                self.is_better(state, &best)
+                    && !self.has_failed(state)
+                    && state.score - self.of_effects(state, &best, &tried) > ODDS
+            };
+            let next = tried.iter().find(is_next);
             let next = match next {
                 Some(next) => Some(next.clone()),
                 None if self.has_failed(&best) => self.pair(&best, &tried),
                 None => None,
             };
             let Some(next) = next else { break };
+            // what another start of the same fit explains is no change
+            let again = self.restarted(best.clone(), &next);
+            if again.score - best.score > ODDS {
+                best = again;
+                continue;
+            }
             best = self.sharpened(next);
         }
         // what a later one made needless goes
         loop {
             let needless = (0..best.steps.len()).find_map(|k| {
-                let rest = self.state(&without(&best.steps, k), Worthwhile::ANY)?;
+                let rest = self.without(&best, k)?;
                 (best.steps.len() > 1 && !self.is_better(&best, &rest)).then_some(rest)
             });
             match needless {
@@ -144,6 +158,51 @@ impl Search<'_> {
         let body = &self.bodies[thin.body];
         let fit = fit(&thin, body, worthwhile)?;
         Some(self.scored(steps.to_vec(), thin, fit))
+    }
+
+    /// The score of what is left to the effects and acts on what a change acts on too: small moves, and where the frames of clamps
+    /// are changed their places.
+    fn of_effects(&self, changed: &State, from: &State, tried: &[State]) -> f64 {
+        let small = tried.iter().filter(|state| !self.is_far(state)).map(|state| state.score);
+        let turned: Vec<usize> = match changed.steps.last().map(|step| self.change(step)) {
+            Some(Change::Devices(frames)) => frames
+                .iter()
+                .filter(|(clamp, frame)| frame.origin == from.thin.devices[*clamp].origin)
+                .map(|(clamp, _)| *clamp)
+                .collect(),
+            _ => Vec::new(),
+        };
+        let displaced = || {
+            let mut thin = from.thin.clone();
+            thin.loose = turned.clone();
+            let fit = fit(&thin, &self.bodies[thin.body], Worthwhile::ANY)?;
+            let loose = self.restarted(self.scored(from.steps.clone(), thin, fit), changed);
+            Some(loose.score + DISPLACED * turned.len() as f64)
+        };
+        let displaced = if turned.is_empty() { None } else { displaced() };
+        small.chain(displaced).fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// The state, or what it becomes where its fit begins with that of another one, whichever is more probable: rows that a
+    /// mistake or a move touches pull at a fit, and one that has let them go is the better one with any reading of them.
+    fn restarted(&self, state: State, start: &State) -> State {
+        if state.thin.body != start.thin.body {
+            return state;
+        }
+        let body = &self.bodies[state.thin.body];
+        let again = fit_from(&state.thin, body, &start.fit, state.fit.rough)
+            .map(|fit| self.scored(state.steps.clone(), state.thin.clone(), fit));
+        match again {
+            Some(again) if again.score > state.score => again,
+            _ => state,
+        }
+    }
+
+    /// A state without one of its changes.
+    fn without(&self, state: &State, k: usize) -> Option<State> {
+        let mut steps = state.steps.to_vec();
+        steps.remove(k);
+        Some(self.restarted(self.state(&steps, Worthwhile::ANY)?, state))
     }
 
     /// Always the same rows of the recording, so that states can be compared row by row.
@@ -323,7 +382,7 @@ impl Search<'_> {
 
     /// One change of a state against the state without it.
     fn judged(&self, best: &State, k: usize) -> Option<Found> {
-        let rest = self.state(&without(&best.steps, k), Worthwhile::ANY)?;
+        let rest = self.without(best, k)?;
         let square: f64 = pairs(&rest, best).iter().map(|(old, new)| old * old - new * new).sum();
         let explains = (square / best.thin.len().max(1) as f64).max(0.0).sqrt();
         let log_odds = (best.score - rest.score).min(700.0);
@@ -362,12 +421,6 @@ fn width(draft: &Draft, rows: &[usize]) -> f64 {
 
 fn is_failed(fit: &Fit, reach: f64) -> bool {
     median(&fit.residuals).is_some_and(|left| left > FAILED * reach)
-}
-
-fn without(steps: &[Step], k: usize) -> Vec<Step> {
-    let mut rest = steps.to_vec();
-    rest.remove(k);
-    rest
 }
 
 /// Residuals of the rows that two states have in common.

@@ -1,0 +1,241 @@
+//! Every effect of the library wherever it may sit: what might be in the place of another one.
+
+use nalgebra::{DVector, Matrix4, Vector3};
+
+use super::arm;
+use super::draw::shift_place;
+use super::effect::Effect;
+use super::site::{Devices, Site, lever};
+use crate::place::Place;
+use rodcal_base::units::UM;
+
+/// Size of what turns a joint, rad, and of what moves a fixture, m and rad.
+const TURN: f64 = 1e-3;
+const MOVE: f64 = 3e-3;
+/// Of a drift over its whole course, m.
+const DRIFT: f64 = 300.0 * UM;
+/// Moves of tool and base are tried after every so many rows, but where such a move is concealed.
+const COARSE: usize = 6;
+
+/// An effect that might be in the place of another one.
+pub struct Rival {
+    pub name: &'static str,
+    pub place: Place,
+    /// What they do to every coordinate, m; to the oracle without what numbers take up, in noises.
+    pub columns: Vec<DVector<f64>>,
+}
+
+/// Collects rivals.
+struct List<'a> {
+    site: &'a Site,
+    /// Torques and frames of every row, and the ball.
+    loads: Vec<(Vec<f64>, Vec<Matrix4<f64>>)>,
+    at: Vec<Vector3<f64>>,
+    rivals: Vec<Rival>,
+}
+
+impl List<'_> {
+    fn add(&mut self, name: &'static str, place: Place, columns: Vec<DVector<f64>>) {
+        self.rivals.push(Rival { name, place, columns });
+    }
+
+    /// A displacement for every row, m.
+    fn column(&self, of: impl Fn(usize) -> Vector3<f64>) -> DVector<f64> {
+        self.site.each(|row, _| of(row))
+    }
+
+    /// The same along three axes.
+    fn three(&self, of: impl Fn(usize, &Vector3<f64>) -> Vector3<f64>) -> Vec<DVector<f64>> {
+        [Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| self.column(|row| of(row, &axis))).to_vec()
+    }
+
+    /// So many times what an effect does.
+    fn changed(&self, effect: Effect, times: f64) -> DVector<f64> {
+        self.site.added(&[effect], &[]) * times
+    }
+
+    fn lever(&self, row: usize, joint: usize) -> Vector3<f64> {
+        lever(&self.loads[row].1[joint], &self.at[row])
+    }
+
+    fn flange(&self, row: usize) -> &Matrix4<f64> {
+        &self.loads[row].1[self.site.nominal.len()]
+    }
+}
+
+/// All of a site, beside `effects` that are concealed there.
+pub fn rivals(site: &Site, effects: &[Effect]) -> Vec<Rival> {
+    let rows = 0..site.rows.len();
+    let loads = rows.clone().map(|row| site.loads(row)).collect();
+    let at = rows.map(|row| site.ball(row, &site.rows[row].q, &[])).collect();
+    let mut list = List { site, loads, at, rivals: Vec::new() };
+    of_joints(&mut list);
+    of_loads(&mut list);
+    of_drift(&mut list);
+    of_fixtures(&mut list);
+    of_moves(&mut list, effects);
+    list.rivals
+}
+
+fn of_joints(list: &mut List<'_>) {
+    let (site, rows, n) = (list.site, list.site.rows.len(), list.site.nominal.len());
+    let angle = |row: usize, j: usize| site.rows[row].q[j];
+    let step = |row: usize, j: usize| angle(row, j) - angle(row.saturating_sub(1), j);
+    for j in 0..n {
+        let joint = Place::joint(j);
+        let turn = |list: &List<'_>, j: usize, of: &dyn Fn(usize) -> f64| {
+            list.column(|row| list.lever(row, j) * (TURN * of(row)))
+        };
+        let mut slow = Vec::new();
+        for k in 1..=76 {
+            let cycles = 0.5 * f64::from(k);
+            let sine = turn(list, j, &|row| (cycles * angle(row, j)).sin());
+            let columns = vec![sine, turn(list, j, &|row| (cycles * angle(row, j)).cos())];
+            if k % 2 == 0 && k <= 10 {
+                slow.extend(columns.clone());
+            }
+            list.add("transmission_error", joint.clone(), columns);
+        }
+        list.add("transmission_error", joint.clone(), slow);
+        let torques: Vec<f64> = (0..rows).map(|row| list.loads[row].0[j]).collect();
+        let largest = torques.iter().fold(0.0, |most: f64, torque| most.max(torque.abs()));
+        let mut one = |name: &'static str, of: &dyn Fn(usize) -> f64| {
+            let column = turn(list, j, of);
+            list.add(name, joint.clone(), vec![column]);
+        };
+        one("encoder_scale", &|row| angle(row, j));
+        one("readback_lag", &|row| step(row, j));
+        one("backlash", &|row| site.approach(row, j));
+        if largest > 0.1 {
+            let share = |row: usize| torques[row] / largest;
+            one("joint_compliance", &share);
+            if site.has_masses {
+                one("backlash", &|row| share(row).signum());
+                one("joint_nonlinear_stiffness", &|row| share(row) * share(row).abs());
+                one("joint_nonlinear_stiffness", &|row| share(row).powi(3));
+                one("joint_friction", &|row| share(row).abs() * site.approach(row, j));
+            }
+        }
+        for to in [j.wrapping_sub(1), j + 1] {
+            if j.min(to) >= n - 3 && to < n {
+                let place = Place { driven_by: Some(j + 1), ..Place::joint(to) };
+                let column = turn(list, to, &|row| angle(row, j));
+                list.add("wrist_coupling", place, vec![column]);
+            }
+        }
+    }
+    let all = list.column(|row| (0..n).map(|j| list.lever(row, j) * (TURN * step(row, j))).sum());
+    list.add("readback_lag", Place { joint: Some("all".into()), ..Place::default() }, vec![all]);
+}
+
+fn of_loads(list: &mut List<'_>) {
+    let site = list.site;
+    if site.has_masses {
+        let payload = list.changed(Effect::Payload(0.1), 50.0);
+        list.add("payload_mass", Place::part("flange"), vec![payload]);
+        let tilt = list.changed(Effect::BaseTilt(1e-8), 1000.0);
+        list.add("gravity_tilt", Place::part("base"), vec![tilt]);
+    }
+    if site.has_masses || site.rod.is_some() {
+        let mass = list.changed(Effect::TipMass(0.01), 30.0);
+        list.add("tip_mass", Place::part("tip"), vec![mass]);
+        let level = [[1e-3, 0.0], [0.0, 1e-3]].map(|turn| list.changed(Effect::Level(turn), 100.0));
+        list.add("gravity_direction", Place::part("base"), level.to_vec());
+    }
+    if let Some(rod) = &site.rod {
+        let softer = list.changed(Effect::Rod(0.01), 60.0);
+        list.add("rod_stiffness", Place::part("rod"), vec![softer]);
+        let own = list.column(|row| {
+            let flange = list.flange(row).fixed_view::<3, 3>(0, 0).into_owned();
+            flange * rod.per_gravity * flange.transpose() * site.gravity * 0.6
+        });
+        list.add("rod_stiffness", Place::part("rod"), vec![own]);
+    }
+}
+
+fn of_drift(list: &mut List<'_>) {
+    let (site, rows) = (list.site, list.site.rows.len());
+    let courses: [&dyn Fn(usize) -> f64; 3] = [
+        &|row| site.rows[row].temperature - site.rows[0].temperature,
+        &|row| site.rows[row].time / 3600.0,
+        &|row| (-(row as f64) / (0.2 * rows as f64)).exp(),
+    ];
+    for (k, course) in courses.into_iter().enumerate() {
+        if k == 0 && !site.has_temperature {
+            continue;
+        }
+        let world = list.three(|row, axis| axis * (DRIFT * course(row)));
+        list.add("thermal_drift", Place::part("base"), world);
+        let own = list.three(|row, axis| arm::turned(list.flange(row), axis) * (DRIFT * course(row)));
+        list.add("thermal_drift", Place::part("tool"), own);
+        for j in 0..site.nominal.len() {
+            let zero = list.column(|row| list.lever(row, j) * (TURN * course(row)));
+            list.add("thermal_drift", Place::joint(j), vec![zero]);
+        }
+    }
+}
+
+fn of_fixtures(list: &mut List<'_>) {
+    let site = list.site;
+    if matches!(site.devices, Devices::Tracker(_)) {
+        return;
+    }
+    let shift = if site.has_sockets() { "socket_shift" } else { "clamp_shift" };
+    for group in 0..site.groups() {
+        let own: Vec<usize> = (0..site.rows.len()).filter(|&row| site.rows[row].group == group).collect();
+        let here = |is: bool, v: Vector3<f64>| if is { v * MOVE } else { Vector3::zeros() };
+        for &from in own.iter().skip(2).take(own.len().saturating_sub(3)) {
+            let columns = list.three(|row, axis| here(row >= from && site.rows[row].group == group, *axis));
+            list.add(shift, shift_place(site, group, from), columns);
+        }
+        if let Devices::Clamps(clamps) = &site.devices {
+            let from = arm::column(&clamps[group], 3);
+            let is_here = |row: usize| site.rows[row].group == group;
+            let mut six = list.three(|row, axis| here(is_here(row), *axis));
+            six.extend(list.three(|row, axis| here(is_here(row), axis.cross(&(list.at[row] - from)))));
+            list.add("clamp_pose", Place::named(&site.group_name(group)), six);
+        }
+    }
+    if !matches!(site.devices, Devices::Clamps(_)) || !site.has_masses && site.rod.is_none() {
+        return;
+    }
+    for group in std::iter::once(None).chain((0..site.groups()).map(Some)) {
+        let place = Place::named(&group.map_or("all clamps".to_owned(), |group| site.group_name(group)));
+        let spring = list.changed(Effect::Spring { group, rate: 10.0 }, 50.0);
+        list.add("contact_spring", place.clone(), vec![spring]);
+        let force =
+            (0..3).map(|axis| list.changed(Effect::Force { group, by: Vector3::ith(axis, 0.01) }, 100.0));
+        let force = force.collect();
+        list.add("contact_force_variation", place, force);
+    }
+}
+
+fn of_moves(list: &mut List<'_>, effects: &[Effect]) {
+    let (site, rows) = (list.site, list.site.rows.len());
+    let moves_tool = effects.iter().any(|effect| matches!(effect, Effect::ToolShift { .. }));
+    let moves_base = effects.iter().any(|effect| matches!(effect, Effect::BaseShift { .. }));
+    let is_tried = |from: usize, is_fine: bool| is_fine || from.is_multiple_of(COARSE);
+    let base = arm::column(&site.base, 3);
+    for from in 2..rows.saturating_sub(1) {
+        let after = |name: Option<&str>| Place {
+            after_row: Some(from),
+            name: name.map(str::to_owned),
+            ..Place::default()
+        };
+        let later = |row: usize, v: Vector3<f64>| if row >= from { v * MOVE } else { Vector3::zeros() };
+        if is_tried(from, moves_tool) {
+            let columns = list.three(|row, axis| later(row, arm::turned(list.flange(row), axis)));
+            list.add("tool_shift", after(Some("tool")), columns);
+        }
+        if is_tried(from, moves_base) && !site.has_sockets() {
+            let mut six = list.three(|row, axis| later(row, *axis));
+            six.extend(list.three(|row, axis| later(row, axis.cross(&(list.at[row] - base)))));
+            list.add("base_shift", after(None), six);
+        }
+    }
+    for row in 0..rows {
+        let size = 100.0 * site.scatter.sd;
+        let columns = list.three(|r, axis| if r == row { axis * size } else { Vector3::zeros() });
+        list.add("outlier", Place { row: Some(row + 1), ..Place::default() }, columns);
+    }
+}

@@ -1,0 +1,30 @@
+//! Numbers that are per torque: the poses show their product with it alone, and it is known as well as the masses of the links. A
+//! number per p-th power of the torque is known to p·ρ at best, ρ the torque's relative standard uncertainty
+//! (`torque_uncertainty.rs`).
+
+use crate::diagnosis::calibration::law::{Law, Power};
+use crate::diagnosis::calibration::model::CalibrationModel;
+use crate::inference::{Estimate, FindingPart};
+
+/// Half of a 95 % interval in standard deviations.
+const COVERAGE: f64 = 1.96;
+
+/// The parameters with what the torque of the joint, or the moment about the base, leaves uncertain.
+pub(super) fn per_torque(model: &CalibrationModel, parts: &[FindingPart]) -> Vec<Estimate> {
+    let known = &model.torque_uncertainty;
+    let widened = |part: &FindingPart| -> Vec<Estimate> {
+        let power = match model.law(part.term.candidate) {
+            Law::Nonlinear(Power::Cube) => 3.0,
+            Law::Nonlinear(Power::Square) => 2.0,
+            _ => 1.0,
+        };
+        let relative = known.of(part.location.joint());
+        let wider = |estimate: &Estimate| {
+            let half =
+                (0.5 * (estimate.high - estimate.low)).hypot(COVERAGE * power * relative * estimate.value);
+            Estimate { low: estimate.value - half, high: estimate.value + half, ..estimate.clone() }
+        };
+        part.estimates.iter().map(wider).collect()
+    };
+    parts.iter().flat_map(widened).collect()
+}

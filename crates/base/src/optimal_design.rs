@@ -41,7 +41,7 @@ const BEGINNINGS: usize = 24;
 ///
 /// ```
 /// use nalgebra::{DMatrix, Matrix3xX, RowDVector};
-/// use rodcal::optimal_design::{Criterion, Measurements, choose};
+/// use rodcal_base::optimal_design::{Criterion, Measurements, choose};
 ///
 /// // a slope and an intercept are seen best at both ends
 /// let mut all = Measurements::new(2);

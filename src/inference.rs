@@ -24,6 +24,7 @@ mod fit;
 mod forward_model;
 mod gram_cache;
 mod held_out;
+mod hidden_step;
 mod hypothesis;
 mod lack_of_fit;
 mod limit;

@@ -10,7 +10,7 @@ use super::stored_column::dense;
 use super::whitening::Whitening;
 use super::{
     Candidate, Description, Estimate, Evidence, Finding, FindingPart, ForwardModel, Hypothesis, Location,
-    Term,
+    Step, Term,
 };
 
 /// A model of which the linear part is computed once.
@@ -68,6 +68,11 @@ impl<'a> Linearised<'a> {
             };
         }
         self.stored().dense(candidate, self.rows)
+    }
+
+    /// What a candidate is, where it is a step among all data.
+    pub(super) fn step(&self, candidate: usize) -> Option<Step> {
+        if self.rows.is_some() { None } else { self.model.step(candidate) }
     }
 
     /// Inner products of all candidates' columns at neutral values with some vectors.

@@ -7,6 +7,7 @@ use nalgebra::DVector;
 use super::Hypothesis;
 use super::background::size_offsets;
 use super::evidence::rms;
+use super::hidden_step::hidden_step;
 use super::linearised::Linearised;
 use super::misread::unlike_repeats;
 use super::scatter::{OFF, SUSPECT, weighted};
@@ -73,6 +74,12 @@ pub fn settled(model: &Linearised<'_>, evidence: &Evidence) -> (Evidence, Option
         let (ratio, correlation) = (search.shared_ratio(), search.correlation());
         let noise = longest.sigma;
         known = longest.terms.clone();
+        if pass == 0 && search.whitening.is_of_shared_errors() {
+            // a curve would draw the step
+            let response = model.response(&hypothesis.terms);
+            let left = &evidence.residual - search.predicted(&hypothesis, &evidence, &response);
+            known.extend(hidden_step(model, &evidence, &left));
+        }
         let has_shared = search.whitening.is_of_shared_errors();
         evidence.weight = if is_same_weight { evidence.weight } else { weight };
         let is_same_information = evidence.information == information;

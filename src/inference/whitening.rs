@@ -102,6 +102,15 @@ impl Whitening {
         whitening
     }
 
+    /// Ln of the determinant of W: −½·Σ ln(1 + ρ·|a|²) − ½·(m − 1)·ln(1 − φ²) over the groups.
+    pub fn log_determinant(&self) -> f64 {
+        let of_group = |(rows, _): &(Vec<usize>, f64)| {
+            let shared = (self.ratio * length(rows.len(), self.correlation)).ln_1p();
+            shared + (rows.len() - 1) as f64 * (1.0 - self.correlation * self.correlation).ln()
+        };
+        -0.5 * self.groups.iter().map(of_group).sum::<f64>()
+    }
+
     /// False where no two data share an error, so that there is no ρ to be found.
     pub fn is_of_shared_errors(&self) -> bool {
         !self.groups.is_empty()

@@ -169,6 +169,23 @@ fn slip() {
     assert_found(&Order::default(), &Effect::Slip { loading, channel: 1, by: 40.0 * UM });
 }
 
+/// A knock before the last trial, which no later zero takes out, shifts the zeros of a third of the runs.
+#[test]
+fn a_shift_is_no_scatter_of_the_zeros() {
+    let loads = (1..=10).map(|k| 1.9 * f64::from(k)).collect();
+    let order =
+        Order { axes: vec![1, 2], loads, noise: 0.7 * UM, quantum: UM, both_ways: true, ..Order::default() };
+    let friction = || Effect::Friction { axis: None, force: 0.3, presliding: 0.1 * UM, scatter: 0.0 };
+    let clean = order.made(&[friction()], SEED).readings;
+    let mut rows = clean.lines().filter(|line| !line.starts_with('#'));
+    let trial = rows.next().unwrap().split(',').position(|name| name == "trial").unwrap();
+    let loading = rows.position(|row| row.split(',').nth(trial) == Some("3")).unwrap();
+    let answer =
+        Answer::made(&order, &[friction(), Effect::Shift { loading, channel: 1, by: -20.0 * UM }], SEED);
+    let [low, _, high] = interval(answer.finding("slip"), "um");
+    assert!(low <= -20.0 && -20.0 <= high && high - low < 3.0, "{low} … {high}");
+}
+
 /// A misread display is no physics: the reading is a suspect, and nothing is named.
 #[test]
 fn a_misread_display_is_a_suspect() {

@@ -49,6 +49,7 @@ pub use urdf::Written;
 use nalgebra::Vector3;
 
 use crate::spatial::Pose;
+use crate::units::{DEG, MM};
 
 /// A robot as its file describes it, in SI units.
 #[derive(Debug, Clone, PartialEq)]
@@ -111,6 +112,15 @@ impl Joint {
     /// A rigid joint without mass or limits; `link` leads from its axis to its distal frame.
     pub fn new(name: impl Into<String>, motion: Motion, link: Hayati) -> Joint {
         Joint { name: name.into(), motion, link, compliance: 0.0, body: None, limits: None }
+    }
+
+    /// Name of the column that holds the values of the joint of this number, from 1, in tables, and its unit in SI: `q1_deg` in
+    /// degrees, or `q3_mm` in millimetres.
+    pub fn column(&self, number: usize) -> (String, f64) {
+        match self.motion {
+            Motion::Revolute => (format!("q{number}_deg"), DEG),
+            Motion::Prismatic => (format!("q{number}_mm"), MM),
+        }
     }
 }
 

@@ -75,10 +75,7 @@ fn columns(study: &PoseStudy) -> Vec<String> {
         Some(name) if name.starts_with("clamp ") => &["pose", "clamp"],
         Some(_) => &["pose", "placement", "socket"],
     };
-    let joints = study.setup.robot.joints.iter().zip(1..).map(|(joint, number)| match joint.motion {
-        Motion::Revolute => format!("q{number}_deg"),
-        Motion::Prismatic => format!("q{number}_mm"),
-    });
+    let joints = study.setup.robot.joints.iter().zip(1..).map(|(joint, number)| joint.column(number).0);
     of_place.iter().map(|name| (*name).to_owned()).chain(joints).collect()
 }
 

@@ -2,11 +2,10 @@
 
 use nalgebra::{Matrix3xX, Vector3};
 
-use super::{Effect, Kinematics, Loads, Motion, Parameter, Robot, Setup};
+use super::{Effect, Kinematics, Loads, Parameter, Robot, Setup};
 use crate::delimited::Table;
 use crate::error::{Error, Place, Result};
 use crate::spatial::Pose;
-use crate::units::{DEG, MM};
 
 /// Times that torques and the joints that they turn are computed from each other.
 const ROUNDS: usize = 3;
@@ -123,11 +122,8 @@ impl Robot {
     /// # Errors
     /// [`crate::Error::Input`] with line and column.
     pub fn poses_from_csv(&self, file: &str, text: &str) -> Result<Vec<PredictionQuery>> {
-        let column = |(joint, number): (&super::Joint, usize)| match joint.motion {
-            Motion::Revolute => (format!("q{number}_deg"), DEG),
-            Motion::Prismatic => (format!("q{number}_mm"), MM),
-        };
-        let columns: Vec<(String, f64)> = self.joints.iter().zip(1..).map(column).collect();
+        let columns: Vec<(String, f64)> =
+            self.joints.iter().zip(1..).map(|(joint, number)| joint.column(number)).collect();
         let table = Table::parse(file, text, |name| columns.iter().any(|(column, _)| column == name))?;
         let names: Vec<&str> = columns.iter().map(|(name, _)| name.as_str()).collect();
         if let Some(name) = names.iter().copied().find(|name| !table.has(name)) {

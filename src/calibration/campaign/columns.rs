@@ -4,8 +4,7 @@ use super::Warning;
 use super::layout::{Role, Seen};
 use crate::delimited::{Row, Table, nearest_name};
 use crate::error::Result;
-use crate::robot::{Motion, Robot};
-use crate::units::{DEG, MM};
+use crate::robot::Robot;
 
 pub(super) const POSITION: [&str; 3] = ["x_mm", "y_mm", "z_mm"];
 /// Where tracker or base stood.
@@ -28,9 +27,9 @@ struct JointColumn {
 
 impl Columns {
     pub(super) fn new(robot: &Robot, seen: Seen<'_>) -> Columns {
-        let joints = robot.joints.iter().zip(1..).map(|(joint, number)| match joint.motion {
-            Motion::Revolute => JointColumn { name: format!("q{number}_deg"), unit: DEG },
-            Motion::Prismatic => JointColumn { name: format!("q{number}_mm"), unit: MM },
+        let joints = robot.joints.iter().zip(1..).map(|(joint, number)| {
+            let (name, unit) = joint.column(number);
+            JointColumn { name, unit }
         });
         let names: &[&str] = match seen {
             Seen::World => &["pose"],

@@ -133,10 +133,7 @@ impl Recording {
             (false, _) => &["placement", "socket"],
         };
         columns.extend(groups.iter().map(|name| (*name).to_owned()));
-        columns.extend((1..).zip(&robot.joints).map(|(number, joint)| match joint.motion {
-            Motion::Revolute => format!("q{number}_deg"),
-            Motion::Prismatic => format!("q{number}_mm"),
-        }));
+        columns.extend((1..).zip(&robot.joints).map(|(number, joint)| joint.column(number).0));
         if has_points {
             columns.extend(["x_mm", "y_mm", "z_mm"].map(str::to_owned));
         }

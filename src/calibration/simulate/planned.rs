@@ -7,7 +7,7 @@ use crate::calibration::campaign::Group;
 use crate::delimited::Table;
 use crate::error::{Error, Result};
 use crate::robot::postures::{bring_to, has_arrived};
-use crate::robot::{Kinematics, Motion, Robot, Setup};
+use crate::robot::{Kinematics, Robot, Setup};
 use crate::statistics::Random;
 use crate::units::{MM, significant};
 
@@ -32,12 +32,8 @@ const NEAR: f64 = 30.0 * MM;
 /// [`Error::Input`] with line and column.
 pub fn planned_poses(robot: &Robot, file: &str, text: &str) -> Result<Vec<(usize, Vec<f64>)>> {
     let queries = robot.poses_from_csv(file, text)?;
-    let is_joint = |column: &str| {
-        robot.joints.iter().zip(1..).any(|(joint, number)| match joint.motion {
-            Motion::Revolute => column == format!("q{number}_deg"),
-            Motion::Prismatic => column == format!("q{number}_mm"),
-        })
-    };
+    let is_joint =
+        |column: &str| robot.joints.iter().zip(1..).any(|(joint, number)| joint.column(number).0 == column);
     let table = Table::parse(file, text, is_joint)?;
     let clamp = |cells: crate::delimited::Row<'_>| {
         let number = cells.text("clamp").and_then(|id| id.parse::<usize>().ok());

@@ -7,8 +7,8 @@ use crate::calibration::NEAR;
 use crate::delimited::Table;
 use crate::error::{Error, Place, Result};
 use crate::parallel::in_parallel;
+use crate::robot::Kinematics;
 use crate::robot::postures::{anywhere, bring_to};
-use crate::robot::{Kinematics, Motion};
 use crate::statistics::Random;
 use crate::units::{DEG, MM, significant};
 
@@ -218,12 +218,8 @@ fn why_not(around: &Surroundings, place: usize, tally: &Tally) -> String {
 fn from_table(around: &Surroundings, file: &str, text: &str) -> Result<Candidates> {
     let robot = around.setup.robot;
     let queries = robot.poses_from_csv(file, text)?;
-    let is_joint = |column: &str| {
-        robot.joints.iter().zip(1..).any(|(joint, number)| match joint.motion {
-            Motion::Revolute => column == format!("q{number}_deg"),
-            Motion::Prismatic => column == format!("q{number}_mm"),
-        })
-    };
+    let is_joint =
+        |column: &str| robot.joints.iter().zip(1..).any(|(joint, number)| joint.column(number).0 == column);
     let table = Table::parse(file, text, is_joint)?;
     let mut kinematics = Kinematics::new(around.setup);
     let mut of_place: Vec<Vec<Vec<f64>>> = vec![Vec::new(); around.places.len()];

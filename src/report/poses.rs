@@ -103,7 +103,7 @@ pub fn files(study: &PoseStudy) -> Vec<(String, Vec<u8>)> {
         "# PLANNED for {}: {} poses by {}\n{}\n",
         study.campaign.file.replace(['\n', '\r'], " "),
         study.chosen.len(),
-        study.wanted.criterion.key(),
+        study.wanted.criterion.name(),
         columns(study).join(",")
     );
     for (names, q) in rows(study) {

@@ -29,6 +29,11 @@ impl PoseCriterion {
         ["o1", "o4", "d", "a", "forecast"][self as usize]
     }
 
+    /// As it is written in a sentence.
+    pub fn name(self) -> &'static str {
+        ["O1", "O4", "D-optimality", "A-optimality", "the forecast"][self as usize]
+    }
+
     /// What its value is, with its unit.
     pub fn words(self) -> (&'static str, &'static str) {
         [

@@ -88,7 +88,7 @@ fn rod_json(study: &Study, index: u64) -> Value {
     text.and_then(|text| toml::from_str(&text).ok()).unwrap_or(Value::Null)
 }
 
-/// What [`json`] has of the designs for one robot.
+/// What [`json()`] has of the designs for one robot.
 pub fn for_robot_json(found: &ForRobot) -> Value {
     let ranked = found.ranked.iter().map(|one| {
         let mut object = Map::new();

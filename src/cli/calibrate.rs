@@ -34,7 +34,7 @@ pub struct Calibrate {
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
 pub enum ModeName {
-    /// The rod is taken for rigid.
+    /// The rod is assumed rigid.
     None,
     /// The paper's closed form.
     Calc,

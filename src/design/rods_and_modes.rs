@@ -42,7 +42,7 @@ pub struct RodForecast {
 /// let rods = rods_and_modes(&campaign, &[], &budget, &Where::Validation, None)?;
 /// let means: Vec<f64> = rods[0].modes.iter().map(|forecast| forecast.mean).collect();
 /// assert_eq!((means.len(), rods[0].poses, rods[0].is_recorded), (4, 60, true));
-/// // a rod that is taken for rigid is worse than one that was measured, by little
+/// // a rod that is assumed rigid is worse than one that was measured, by little
 /// assert!((1.0..1.2).contains(&(means[0] / means[3])), "{means:?}");
 /// # Ok::<(), rodcal::Error>(())
 /// ```

@@ -36,6 +36,7 @@ impl Search<'_> {
             // a curved law may send the values to and fro for ever: halfway is nearer
             returns += usize::from(!last.is_empty() && is_return(&moved, &last));
             if returns > RETURNS {
+                set_flat(&mut terms, &before);
                 break;
             }
             if returns > 0 {

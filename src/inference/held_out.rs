@@ -122,7 +122,7 @@ pub(super) fn trained_on(
     }
 }
 
-/// A hypothesis and those with another form of one of its laws that these data hardly tell from it.
+/// A hypothesis and those with another form of one of its laws that these data hardly distinguish from it.
 fn forms(search: &Search, hypothesis: &Hypothesis) -> Vec<Hypothesis> {
     let mut forms = vec![hypothesis.clone()];
     for (position, term) in hypothesis.terms.iter().enumerate() {

@@ -169,6 +169,16 @@ fn slip() {
     assert_found(&Order::default(), &Effect::Slip { loading, channel: 1, by: 40.0 * UM });
 }
 
+/// What a soft root adds to the second order of the deflections is no sensor that is turned.
+#[test]
+fn a_soft_root_bends_the_rod_farther_than_its_file() {
+    let loads = (1..=6).map(|k| 2.3 * f64::from(k)).collect();
+    let order = Order { loads, trials: 4, noise: UM, both_ways: true, ..Order::default() };
+    let soft = Effect::Root { bending: 470e-6, torsion: 380e-6 };
+    let answer = Answer::made(&order, &[soft], SEED);
+    assert_eq!(answer.effects(), ["root_compliance"], "{}", answer.json["headline"]);
+}
+
 /// A knock before the last trial, which no later zero takes out, shifts the zeros of a third of the runs.
 #[test]
 fn a_shift_is_no_scatter_of_the_zeros() {

@@ -208,7 +208,7 @@ fn conflicts(half: &str, part: &Part) -> Option<Table> {
     (!rows.is_empty()).then(|| Table {
         name: format!("{half}-conflicts"),
         caption: "Effects that imitate each other: what was concealed, and what was said. In brackets: the truth, where it is not \
-                  the strongest finding but one that it cannot be told from."
+                  the strongest finding but one that is indistinguishable from it."
             .into(),
         columns: vec![
             Column::text("pair"),

@@ -86,7 +86,7 @@ pub struct PoseStudy<'c> {
 }
 
 impl<'c> PoseStudy<'c> {
-    /// Chooses poses for a campaign. `progress` is told of candidates as they are looked at.
+    /// Chooses poses for a campaign. `progress` is called as candidates are looked at.
     ///
     /// ```
     /// use rodcal::design::{Budget, PoseCriterion, PoseLimits, PoseStudy, Source, Wanted, Where};

@@ -11,7 +11,7 @@ use super::wanted::Wanted;
 use crate::error::Result;
 use crate::inference::{Diagnosis, Evidence, Finding, Kind, Location, Rival, log_odds, rms};
 
-/// Ln of the odds within which two rods cannot be told apart: 20.
+/// Ln of the odds within which two rods are indistinguishable: 20.
 const ALIKE: f64 = 2.995_732;
 
 /// One of the other rods beside the given one.
@@ -57,7 +57,7 @@ pub(super) fn others(
     Ok(found)
 }
 
-/// Where two rods cannot be told apart, what makes the given one fit has the other as its rival.
+/// Where two rods are indistinguishable, what makes the given one fit has the other as its rival.
 pub(super) fn add_rivals(mended: &Mended, others: &[Other], model: &RigModel, diagnosis: &mut Diagnosis) {
     for finding in diagnosis.findings.iter_mut().filter(|finding| is_of_the_rod(model, finding)) {
         for other in others.iter().filter(|other| other.log_odds > -ALIKE) {

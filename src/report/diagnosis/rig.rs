@@ -92,6 +92,9 @@ fn subject<'a>(found: &'a RigDiagnosis, correction: Option<&Correction>) -> Subj
     }
 }
 
+/// What is left unexplained, as a share of the deflections, beside which nothing is said of the stiffness: readings that are not
+/// of this rod say nothing of its moduli.
+const NOT_OF_THE_ROD: f64 = 0.2;
 /// So many standard uncertainties of the stiffness are still within what the file says.
 const FAR: f64 = 2.0;
 
@@ -101,6 +104,10 @@ fn nominal(found: &RigDiagnosis) -> Option<String> {
     let (factors, covariance) = &found.diagnosis.nominal_factors;
     let predicted = found.model.data().iter().map(|datum| datum.predicted);
     let predicted = DVector::from_iterator(found.model.data().len(), predicted);
+    let unexplained = found.diagnosis.discrepancy.as_ref().map_or(0.0, |discrepancy| discrepancy.rms);
+    if unexplained > NOT_OF_THE_ROD * rms(&predicted) {
+        return None;
+    }
     // share of the deflections that the numbers add, and its gradient to their factors
     let gradient = found.evidence.nominal.tr_mul(&predicted) / predicted.norm_squared();
     let value = -100.0 * gradient.dot(factors);

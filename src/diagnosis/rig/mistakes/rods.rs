@@ -106,7 +106,7 @@ pub(super) fn all(rod: &Rod, others: &[(String, Rod)], has_stations: [bool; 2]) 
     found
 }
 
-/// Rods that may have been meant: those that a load tells from `rod`, and on which the slopes have about the size that they
+/// Rods that may have been meant: those that a load distinguishes from `rod`, and on which the slopes have about the size that they
 /// should; the likeliest first, by the density of the slopes `of`.
 pub(super) fn likely(
     rod: &Rod,

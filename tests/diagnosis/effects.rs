@@ -1,5 +1,9 @@
 //! Every effect of the library, injected by itself, is named, located and measured.
 
+use rodcal::diagnosis::rig::RigModel;
+use rodcal::inference::Evidence;
+use rodcal::rig::readings::Readings;
+use rodcal::rod::Rod;
 use rodcal::units::{DEG, MM, UM, URAD_PER_NM};
 use rodcal_trial::rig::{Columns, Effect, Order};
 
@@ -173,10 +177,16 @@ fn slip() {
 #[test]
 fn a_soft_root_bends_the_rod_farther_than_its_file() {
     let loads = (1..=6).map(|k| 2.3 * f64::from(k)).collect();
-    let order = Order { loads, trials: 4, noise: UM, both_ways: true, ..Order::default() };
-    let soft = Effect::Root { bending: 470e-6, torsion: 380e-6 };
-    let answer = Answer::made(&order, &[soft], SEED);
+    let order = Order { loads, trials: 4, noise: 0.5 * UM, both_ways: true, ..Order::default() };
+    let soft = Effect::Root { bending: 900e-6, torsion: 700e-6 };
+    let made = order.made(&[soft], SEED);
+    let answer = Answer::of_made(&made);
     assert_eq!(answer.effects(), ["root_compliance"], "{}", answer.json["headline"]);
+    let (rod, readings) = (Rod::from_toml("rod", &made.rod), Readings::from_text("readings", &made.readings));
+    let (_, of_file) = RigModel::new(&readings.unwrap(), Some(&rod.unwrap())).unwrap();
+    // ∝ the square of how far it yields
+    let large = |evidence: &Evidence| evidence.background.column(0).norm();
+    assert!(large(&answer.found.evidence) > 3.0 * large(&of_file));
 }
 
 /// A knock before the last trial, which no later zero takes out, shifts the zeros of a third of the runs.

@@ -58,6 +58,8 @@ pub const MISTAKES: usize = 13;
 const VISIBLE: f64 = 0.3;
 /// Draws before the next kind is tried.
 const TRIES: usize = 20;
+/// What a sensor shows of the largest deflection of the recording, at least, for what it does to matter.
+const MOVES: f64 = 0.05;
 /// Readings that a sensor cuts off at least.
 const CUT: usize = 4;
 
@@ -269,8 +271,20 @@ impl Mistake {
     fn shows(&self, written: &Written) -> bool {
         let wrong = self.made(written);
         let tip = wrong.drawing.length();
+        let cells = written.protocol.cells();
+        if let Mistake::Saturated { channel, .. }
+        | Mistake::Zero { channel, .. }
+        | Mistake::Stuck { channel, .. } = self
+        {
+            // of a sensor that has nothing to show but its last digit nobody sees that it is stuck
+            let size = |(_, shown): (&Cell, &f64)| shown.abs();
+            let of_channel = cells.iter().zip(&written.shown).filter(|(cell, _)| cell.channel == *channel);
+            let own = of_channel.map(size).fold(0.0, f64::max);
+            if own < MOVES * cells.iter().zip(&written.shown).map(size).fold(0.0, f64::max) {
+                return false;
+            }
+        }
         if let Mistake::Saturated { channel, limit } = self {
-            let cells = written.protocol.cells();
             let is_cut = |(cell, shown): &(&Cell, &f64)| cell.channel == *channel && shown.abs() > *limit;
             return cells.iter().zip(&written.shown).filter(is_cut).count() >= CUT;
         }

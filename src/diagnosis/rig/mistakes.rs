@@ -104,7 +104,7 @@ impl Mended {
             let data = datum::all(&self.readings.rows);
             let all = lines(&data, |_| true);
             let parts = match kind {
-                0 => sensors::saturated(&data),
+                0 => sensors::saturated(&data, &all, self.expected(&all)?.as_ref()),
                 1 => sensors::frozen(&data),
                 _ => sensors::stuck(&data, &all, self.expected(&all)?.as_ref()),
             };

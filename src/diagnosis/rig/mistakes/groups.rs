@@ -182,7 +182,8 @@ pub(super) fn offsets(data: &[Datum], lines: &[Line]) -> Vec<Part> {
             continue;
         }
         for line in own {
-            found.extend(of_run(data, line, moved(line.axis)));
+            // along an axis on which the rod hardly moves a zero is off by more than that in any run
+            found.extend(of_run(data, line, moved(line.axis).max(FAR * most)));
         }
     }
     found

@@ -78,6 +78,10 @@ const SINGLE_AXIS: f64 = 0.3;
 const SINGLE_CHANNEL: f64 = 0.3;
 const SINGLE_TURN: f64 = 0.09;
 
+/// Lines have one factor in common where that of so large a share of them differs by less than ln 2.
+const COMMON: f64 = 0.8;
+const NEAR: f64 = 0.693;
+
 /// What it costs to say that a rod moves against its load: a passive structure cannot.
 const AGAINST_THE_LOAD: f64 = 30.0;
 
@@ -168,8 +172,9 @@ impl Seen<'_> {
         view.factor * parts[self.pair[line]][(view.channel.index(), view.axis.index())]
     }
 
-    /// Ln of the common factor: the weighted median of the lines' own, which some wrong ones do not move.
-    fn log_scale(&self, expected: &[f64]) -> f64 {
+    /// Ln of the common factor: the weighted median of the lines' own, which some wrong ones do not move; and whether nearly all
+    /// lines have it.
+    fn log_scale(&self, expected: &[f64]) -> (f64, bool) {
         let most = self.largest(expected);
         let mut ratios: Vec<(f64, f64)> = Vec::new();
         for (k, line) in self.lines.iter().enumerate() {
@@ -182,16 +187,20 @@ impl Seen<'_> {
         ratios.sort_by(|a, b| a.0.total_cmp(&b.0));
         let total: f64 = ratios.iter().map(|(_, weight)| weight).sum();
         let mut sum = 0.0;
+        let mut median = 0.0;
         for (k, (ratio, weight)) in ratios.iter().enumerate() {
             sum += weight;
             if 2.0 * sum > total * (1.0 + 1e-9) {
-                return *ratio;
+                median = *ratio;
+                break;
             }
             if 2.0 * sum >= total * (1.0 - 1e-9) {
-                return 0.5 * (ratio + ratios.get(k + 1).map_or(*ratio, |next| next.0));
+                median = 0.5 * (ratio + ratios.get(k + 1).map_or(*ratio, |next| next.0));
+                break;
             }
         }
-        0.0
+        let near = ratios.iter().filter(|(ratio, _)| (ratio - median).abs() < NEAR);
+        (median, near.map(|(_, weight)| weight).sum::<f64>() > COMMON * total)
     }
 
     /// For each line the largest slope that the rod has under the same load, m/N.
@@ -207,13 +216,14 @@ impl Seen<'_> {
     /// How well the slopes are explained, with all that ordinary physics may add.
     pub fn verdict(&self) -> Verdict {
         let expected = self.expected();
-        let log_scale = self.log_scale(&expected);
+        let (log_scale, is_common) = self.log_scale(&expected);
         let columns = self.columns(&expected);
         let mut terms = Vec::new();
         for (mood, is_first) in MOODS.iter().zip([true, false, false, false]) {
             let scales: &[f64] = if is_first { &[0.0] } else { &[0.0, log_scale] };
             for &scale in scales {
-                let Some(solved) = self.solved(&expected, &columns, mood, scale) else { continue };
+                let sizes = if is_common { scale.min(log_scale) } else { scale };
+                let Some(solved) = self.solved(&expected, &columns, mood, scale, sizes) else { continue };
                 let (about, prior) = mood.scale;
                 let price = -0.5 * (scale / prior).powi(2) - (prior / about).ln();
                 terms.push(mood.log_weight + price + solved.log_density);
@@ -282,10 +292,18 @@ impl Seen<'_> {
         }
     }
 
-    /// The Gaussian model of one mood, solved.
-    fn solved(&self, expected: &[f64], columns: &Columns, mood: &Mood, scale: f64) -> Option<Solved> {
+    /// The Gaussian model of one mood, solved. What physics adds is measured by the deflections `sizes` (ln of what they are of
+    /// the rod's own): a part that yields less than nothing does not make a rod stiff.
+    fn solved(
+        &self,
+        expected: &[f64],
+        columns: &Columns,
+        mood: &Mood,
+        scale: f64,
+        sizes: f64,
+    ) -> Option<Solved> {
         let n = self.lines.len();
-        let factor = scale.exp();
+        let (scale, factor) = (scale.exp(), sizes.exp());
         let mut covariance = DMatrix::zeros(n, n);
         for (k, line) in self.lines.iter().enumerate() {
             covariance[(k, k)] = line.fit.error.powi(2) + (factor * mood.own * columns.own[k]).powi(2);
@@ -298,7 +316,7 @@ impl Seen<'_> {
         columns.axes.iter().for_each(|axis| add(axis, mood.axis));
         columns.channels.iter().for_each(|channel| add(channel, mood.channel));
         columns.turns.iter().for_each(|turn| add(turn, mood.turn));
-        let off = DVector::from_fn(n, |k, _| self.lines[k].fit.slope - factor * expected[k]);
+        let off = DVector::from_fn(n, |k, _| self.lines[k].fit.slope - scale * expected[k]);
         let root = Cholesky::new(covariance)?;
         let log_root: f64 = root.l_dirty().diagonal().iter().map(|d| d.ln()).sum();
         let solved = root.solve(&off);

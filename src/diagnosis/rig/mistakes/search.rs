@@ -210,15 +210,19 @@ impl Trial<'_> {
             }
             frontier = next;
         }
-        if best.moves.is_empty() {
-            return None;
+        // one that is not needed, or does not cure what it acts on, does not speak against the others
+        while !best.moves.is_empty() {
+            let judged: Vec<Option<Found>> =
+                best.moves.iter().map(|&number| self.judged(&best, number)).collect();
+            let Some(wrong) = judged.iter().position(Option::is_none) else {
+                let mut found: Vec<Found> = judged.into_iter().flatten().collect();
+                found.sort_by(|a, b| b.log_odds.total_cmp(&a.log_odds));
+                return Some((best, found));
+            };
+            best.moves.remove(wrong);
+            best = self.state(best.moves)?;
         }
-        let mut found = Vec::new();
-        for &number in &best.moves {
-            found.push(self.judged(&best, number)?);
-        }
-        found.sort_by(|a, b| b.log_odds.total_cmp(&a.log_odds));
-        Some((best, found))
+        None
     }
 
     /// One mistake of several; `None` where it is not needed or does not cure what it acts on.

@@ -29,6 +29,8 @@ const CHANGES: f64 = 0.2;
 /// Of a line of more than so many times the data, a few that do not belong to it change what it says by less than half.
 const MANY: usize = 100;
 const HARDLY: f64 = 0.5;
+/// How well a line is known by the rod, as a share of it.
+const SCALE: f64 = 0.1;
 /// How far beyond a limit the readings would lie, as a share of it.
 const BEYOND: f64 = 0.05;
 
@@ -117,7 +119,9 @@ fn is_same(values: &[f64]) -> bool {
 
 /// Readings at the largest or the smallest value that a channel shows, beyond which others of their lines
 /// would lie.
-pub(super) fn saturated(data: &[Datum]) -> Vec<Part> {
+///
+/// Where too few others are left of a line, the rod says where they would lie, if those that are left say so too.
+pub(super) fn saturated(data: &[Datum], lines: &[Line], by_rod: Option<&Expected>) -> Vec<Part> {
     let mut found = Vec::new();
     for channel in Axis::ALL {
         let own: Vec<usize> = (0..data.len()).filter(|&i| data[i].channel == channel).collect();
@@ -136,7 +140,9 @@ pub(super) fn saturated(data: &[Datum]) -> Vec<Part> {
             if at.len() < AT_LIMIT || at.len() == own.len() {
                 continue;
             }
-            let Some(expected) = expected(data, &at, &ends) else { continue };
+            let own_lines = expected(data, &at, &ends);
+            let expected = own_lines.or_else(|| expected_of_rod(data, &at, &ends, lines, by_rod?));
+            let Some(expected) = expected else { continue };
             let beyond = |(value, _): &(f64, f64)| side * value - limit;
             let scatter = expected.iter().fold(0.0, |most: f64, (_, scatter)| most.max(*scatter));
             let (low, high) = expected.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), of| {
@@ -145,8 +151,8 @@ pub(super) fn saturated(data: &[Datum]) -> Vec<Part> {
             let mean = expected.iter().map(beyond).sum::<f64>() / at.len() as f64;
             // the same value to the last digit at loads that differ, all of them beyond; friction holds
             // a rod on the way down, but not all of these
-            let is_flat =
-                high - low > (BEYOND * limit).max(scatter) && low > -scatter && mean > 2.0 * scatter;
+            let goes_on = mean > 2.0 * scatter || (high - low > 3.0 * scatter && at.len() >= 2 * AT_LIMIT);
+            let is_flat = high - low > (BEYOND * limit).max(scatter) && low > -scatter && goes_on;
             // or, at one load, well beyond, with noise in all other readings
             let step = super::super::evidence::resolution(data);
             let is_still = low > 3.0 * scatter && scatter > 3.0 * step.max(SAME * most);
@@ -251,6 +257,25 @@ fn expected(data: &[Datum], at: &[usize], without: &[usize]) -> Option<Vec<(f64,
         // loads beyond those of the others are predicted no better than the slope is known
         let scatter = line.fit.scatter.hypot(line.fit.error * d.load);
         (line.data.len() >= 3).then(|| (line.fit.at(d.signed_load()), scatter))
+    };
+    at.iter().map(of).collect()
+}
+
+/// What the rod says of some data, in the scale of all lines; `None` where the others of their lines are none or say otherwise.
+fn expected_of_rod(
+    data: &[Datum],
+    at: &[usize],
+    without: &[usize],
+    lines: &[Line],
+    by_rod: &Expected,
+) -> Option<Vec<(f64, f64)>> {
+    let of = |&i: &usize| {
+        let k = lines.iter().position(|line| line.is_of(&data[i]))?;
+        let says = |i: usize| by_rod.slopes[k] * data[i].signed_load();
+        let mut others = lines[k].data.iter().copied().filter(|i| !without.contains(i)).peekable();
+        others.peek()?;
+        let is_right = others.all(|i| (data[i].measured - says(i)).abs() < RIGHT * says(i).abs());
+        is_right.then(|| (says(i), SCALE * says(i).abs()))
     };
     at.iter().map(of).collect()
 }

@@ -1,0 +1,98 @@
+//! What a diagnosis says of them, and what it writes.
+
+use super::*;
+
+#[test]
+fn a_diagnosis_names_the_mistake_first_and_writes_the_corrected_file() {
+    let file = rod(ROD_5);
+    let clean = recorded(&file, Bench::Own, 3);
+    let wrong = with_loads(&clean, 1.0 / G);
+    let found = crate::diagnosis::rig::diagnose(&wrong, Some(&file)).unwrap();
+    let first = &found.diagnosis.findings[0];
+    assert_eq!((first.effect.name, first.kind()), ("unit_mistake", crate::inference::Kind::Mistake));
+    assert_eq!(found.diagnosis.findings.len(), 1);
+    assert!(first.parts.is_empty() && found.diagnosis.is_mismatch());
+    let said =
+        "The loads are kilograms, not newtons: multiply load_n by 9.80665 (or name the column load_kg)";
+    assert_eq!(first.description.observed, said);
+    let factor = first.quantity("factor").unwrap();
+    assert_eq!((factor.value, factor.low), (G, G));
+    assert_eq!(found.model.recorded().rows, wrong.rows);
+    let correction = found.correction().unwrap().unwrap();
+    assert_eq!(correction.undone, [said]);
+    let written = Readings::from_text("f", &correction.readings_csv).unwrap();
+    assert!((written.rows[3].load - clean.rows[3].load).abs() < 1e-9);
+    // without anything left to compare, the mistake is all there is
+    let mut stuck = recorded(&file, Bench::OneLine, 3);
+    stuck.rows.iter_mut().for_each(|row| row.offset[1] = Some(50.0 * UM));
+    let found = crate::diagnosis::rig::diagnose(&stuck, Some(&file)).unwrap();
+    assert_eq!(found.diagnosis.findings.len(), 1);
+    assert_eq!(found.diagnosis.findings[0].effect.name, "stuck_sensor");
+    assert!(found.diagnosis.discrepancy.is_none());
+    let lines = suspected(&wrong, Some(&file)).unwrap();
+    assert!(lines[0].starts_with("load_n looks like kilograms: the rod seems 9."), "{lines:?}");
+}
+
+/// Pounds for kilograms, and pounds of force where sensors along the loads see one factor only, are
+/// what a stiffer rod would read: named as a rival, and looked up before anything is measured.
+#[test]
+fn a_unit_that_looks_like_physics_is_its_rival() {
+    let file = rod(ROD_5);
+    let clean = recorded(&file, Bench::Full, 5);
+    let mut in_pounds = with_loads(&clean, 1.0 / 0.453_592_37);
+    in_pounds.load_column = crate::rig::readings::LoadColumn::Kilograms;
+    let found = crate::diagnosis::rig::diagnose(&in_pounds, Some(&file)).unwrap();
+    let first = &found.diagnosis.findings[0];
+    assert_eq!(first.effect.name, "stiffness_scale");
+    let location = Location::Key("load_kg in pounds (lb)".into());
+    assert!(first.others().iter().any(|(_, place)| *place == location), "{:?}", first.others());
+    let next = first.next.as_ref().unwrap();
+    assert!(next.plan.is_none() && next.separates_from.iter().any(|(_, place)| *place == location));
+    // a rod that is as much stiffer as no unit is
+    let stiffer = all_scaled(&clean, 0.7);
+    let found = crate::diagnosis::rig::diagnose(&stiffer, Some(&file)).unwrap();
+    let others: Vec<_> = found.diagnosis.findings.iter().flat_map(Finding::others).collect();
+    assert!(!found.diagnosis.findings.is_empty());
+    assert!(others.iter().all(|(effect, _)| effect.kind != crate::inference::Kind::Mistake), "{others:?}");
+}
+
+/// A rod that is 1 % softer than its file is within what the file knows: consistent, and --apply writes the better modulus.
+#[test]
+fn a_nominal_number_that_moved_is_written() {
+    let file = rod(ROD_5);
+    let readings = Readings::from_rows(rows(Bench::Full)).unwrap();
+    let mut actual = file.clone();
+    for pipe in [&mut actual.pipe1, &mut actual.bend, &mut actual.pipe2] {
+        pipe.material.youngs_modulus *= 0.99;
+    }
+    let model = RigModel::with_effects(&readings, Some(&actual), &Wanted::Like(&[])).unwrap().0;
+    let mut random = Random::seeded(8, 0);
+    let mut readings = readings;
+    for datum in model.data() {
+        let value = datum.predicted + UM * random.normal();
+        readings.rows[datum.row - 1].offset[datum.channel.index()] = Some(value);
+    }
+    let found = crate::diagnosis::rig::diagnose(&readings, Some(&file)).unwrap();
+    assert!(!found.diagnosis.is_mismatch() && !found.diagnosis.nominal.is_empty());
+    let correction = found.correction().unwrap().unwrap();
+    assert!(correction.entered[0].ends_with("within its standard uncertainty"), "{:?}", correction.entered);
+    // as soft as the readings say, along the axes that bend the rod by more than the noise
+    let soft =
+        crate::compliance::Compliance::of_model(&actual, &crate::beam::Physics::default(), 20).unwrap();
+    for axis in [1, 2] {
+        let [before, after, truth] =
+            [&correction.before, &correction.after, &soft].map(|c| c.force[(axis, axis)]);
+        assert!((after / truth - 1.0).abs() < 0.3 * (before / truth - 1.0).abs(), "{before} {after} {truth}");
+    }
+}
+
+#[test]
+fn every_record_of_a_mistake_is_complete() {
+    use crate::diagnosis::rig::effects::registry;
+    for effect in registry::MISTAKES {
+        for text in [effect.name, effect.summary, effect.formula, effect.needs, effect.cause] {
+            assert!(!text.is_empty(), "{effect}");
+        }
+        assert_eq!(effect.kind, crate::inference::Kind::Mistake);
+    }
+}

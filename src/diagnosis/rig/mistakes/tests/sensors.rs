@@ -1,0 +1,77 @@
+//! Sensors and zeros.
+
+use super::*;
+
+#[test]
+fn sensors_and_single_runs_are_found_with_a_rod_and_without() {
+    let mut cases = Cases::default();
+    recordings(&[Bench::Full, Bench::Own, Bench::OneLine], 2, |what, file, clean| {
+        let of_y = clean.rows.iter().filter_map(|row| row.offset[1]);
+        let most = of_y.fold(0.0, |most: f64, y| most.max(y.abs()));
+        let changed = |change: &dyn Fn(&mut f64, bool)| {
+            let mut readings = clean.clone();
+            for row in &mut readings.rows {
+                let is_second = row.trial.as_deref() == Some("2");
+                row.offset[1].iter_mut().for_each(|y| change(y, is_second));
+            }
+            readings
+        };
+        let stuck = changed(&|y, _| *y = 137.2 * UM);
+        cases.expect(&format!("{what} stuck"), &stuck, file, &["stuck_sensor dy_um"]);
+        let cut = changed(&|y, _| *y = y.clamp(-0.6 * most, 0.6 * most));
+        cases.expect(&format!("{what} cut off"), &cut, file, &["saturated_sensor dy_um"]);
+        let offset = changed(&|y, _| *y += 5.0 * most);
+        cases.expect(&format!("{what} offset"), &offset, file, &["offset_mistake dy_um"]);
+        let sign = changed(&|y, is_second| {
+            if is_second {
+                *y = -*y
+            }
+        });
+        cases.expect(&format!("{what} sign"), &sign, file, &["sign_mistake dy_um, axis y, trial 2"]);
+        if !what.contains("Full") {
+            assert_eq!(found(&stuck, None), ["stuck_sensor dy_um"], "{what}");
+            assert_eq!(found(&cut, None), ["saturated_sensor dy_um"], "{what}");
+            assert_eq!(found(&sign, None), ["sign_mistake dy_um, axis y, trial 2"], "{what}");
+        }
+        if what.contains("Own") {
+            let run = changed(&|y, is_second| {
+                if is_second {
+                    *y += 2.0 * most
+                }
+            });
+            cases.expect(&format!("{what} run"), &run, file, &["offset_mistake dy_um, axis y, trial 2"]);
+        }
+    });
+    cases.check();
+}
+
+#[test]
+fn a_sensor_that_was_cut_off_from_the_second_load_on_is_found_with_the_rod() {
+    let file = rod(ROD_5);
+    let mut readings = recorded(&file, Bench::Own, 41);
+    // one trial, up only: one reading of x is left below the limit
+    readings.rows.retain(|row| row.trial.as_deref() == Some("1") && row.phase != Some(Phase::Unload));
+    readings.rows.dedup_by(|next, row| next.direction == row.direction && next.load <= row.load);
+    let limit = 1.3 * readings.rows[0].offset[0].map_or(0.0, f64::abs);
+    readings.rows.iter_mut().for_each(|row| row.offset[0] = row.offset[0].map(|x| x.clamp(-limit, limit)));
+    assert_eq!(found(&readings, Some(&file)), ["saturated_sensor dx_um"]);
+    assert!(found(&readings, None).is_empty());
+}
+
+#[test]
+fn along_an_axis_on_which_the_rod_hardly_moves_a_zero_is_off_by_a_share_of_what_it_moves_else() {
+    // the load along z presses on the end of a straight rod
+    let file = straight();
+    let clean = recorded(&file, Bench::Own, 42);
+    let most = clean.rows.iter().filter_map(|row| row.offset[1]).fold(0.0, |most: f64, y| most.max(y.abs()));
+    let with = |share: f64| {
+        let mut readings = clean.clone();
+        let of_run = |row: &&mut Reading| row.trial.as_deref() == Some("2");
+        for row in readings.rows.iter_mut().filter(of_run) {
+            row.offset[2] = row.offset[2].map(|z| z + share * most);
+        }
+        found(&readings, Some(&file))
+    };
+    assert!(with(0.03).is_empty(), "{:?}", with(0.03));
+    assert_eq!(with(0.6), ["offset_mistake dz_um, axis z, trial 2"]);
+}

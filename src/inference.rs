@@ -24,7 +24,7 @@ mod fit;
 mod forward_model;
 mod gram_cache;
 mod held_out;
-mod hidden_step;
+mod hidden_in_groups;
 mod hypothesis;
 mod lack_of_fit;
 mod limit;

@@ -182,7 +182,8 @@ fn suspects_at_most(count: usize) -> usize {
 }
 
 /// A hypothesis without physics that held-out data do not confirm: where they are predicted no worse
-/// without it, it has no name. What happened once says nothing of other data.
+/// without it, nor without it and another one that it undoes, it has no name. What happened once says
+/// nothing of other data.
 fn confirmed(
     model: &Linearised<'_>,
     search: &Search,
@@ -191,9 +192,13 @@ fn confirmed(
     held_out: Option<&HeldOut>,
 ) -> (Hypothesis, Option<DiscrepancyModel>) {
     let Some(held_out) = held_out else { return (hypothesis, left_over) };
+    let needless: Vec<&[Theme]> =
+        held_out.losses_together().filter(|(_, loss)| *loss <= 0.0).map(|(themes, _)| themes).collect();
     let is_confirmed = |term: &Term| {
         let candidate = &model.candidates()[term.candidate];
-        candidate.effect.kind == Kind::Event || held_out.loss(Theme::new(candidate)) > 0.0
+        let own = Theme::new(candidate);
+        let is_needed = held_out.loss(own) > 0.0 && !needless.iter().any(|themes| themes.contains(&own));
+        candidate.effect.kind == Kind::Event || is_needed
     };
     let kept: Vec<Term> = hypothesis.terms.iter().filter(|term| is_confirmed(term)).cloned().collect();
     if kept.len() == hypothesis.terms.len() {

@@ -10,7 +10,7 @@ use super::linearised::Linearised;
 use super::pruning::infer;
 use super::search::Search;
 use super::selection::{APART, Pairs};
-use super::{Candidate, Effect, Evidence, ForwardModel, Hypothesis, Location, Term};
+use super::{Candidate, Effect, Evidence, ForwardModel, Hypothesis, Kind, Location, Term};
 use crate::parallel::in_parallel;
 use crate::statistics::{Random, percentile_interval};
 
@@ -33,8 +33,8 @@ pub struct HeldOut {
     pub gain_interval: Option<(f64, f64)>,
     /// Hypotheses of the folds.
     pub hypotheses: Vec<Vec<Term>>,
-    /// What each theme of a fold's hypothesis is worth there; see [`HeldOut::loss`].
-    losses: Vec<(Theme, f64)>,
+    /// What themes of all data are worth in each fold; see [`HeldOut::loss`].
+    losses: Vec<(Vec<Theme>, f64)>,
     /// What the base model leaves of each datum while it is held out; NaN for data that never are.
     pub errors_before: DVector<f64>,
     /// And what the hypothesis of its fold leaves.
@@ -70,7 +70,22 @@ impl HeldOut {
 
     /// Share of the squares of the errors before that comes back without a theme.
     pub fn loss(&self, theme: Theme) -> f64 {
-        self.losses.iter().filter(|(of, _)| *of == theme).map(|(_, loss)| loss).sum()
+        self.loss_of(&[theme])
+    }
+
+    /// The same without two of them, or without all that are physics.
+    pub fn losses_together(&self) -> impl Iterator<Item = (&[Theme], f64)> {
+        let mut together: Vec<&[Theme]> = Vec::new();
+        for (themes, _) in self.losses.iter().filter(|(themes, _)| themes.len() > 1) {
+            if !together.contains(&&themes[..]) {
+                together.push(themes);
+            }
+        }
+        together.into_iter().map(|themes| (themes, self.loss_of(themes)))
+    }
+
+    fn loss_of(&self, themes: &[Theme]) -> f64 {
+        self.losses.iter().filter(|(of, _)| of == themes).map(|(_, loss)| loss).sum()
     }
 }
 
@@ -83,10 +98,11 @@ pub(super) struct Trained {
     /// Its terms.
     pub terms: Vec<Term>,
     /// What a given hypothesis leaves, fitted to them, and what it leaves without each of its
-    /// themes.
+    /// themes, each two that are physics, and all of these: two that undo each other are worth much
+    /// to each other and nothing together.
     pub with: DVector<f64>,
     /// See `with`.
-    pub without: Vec<(Theme, DVector<f64>)>,
+    pub without: Vec<(Vec<Theme>, DVector<f64>)>,
 }
 
 /// Selects with the data `kept` only, which are all but those of the part `left_out` of the model; `whole` are the terms that all data support.
@@ -105,14 +121,12 @@ pub(super) fn trained_on(
         &evidence.residual - search.predicted(hypothesis, evidence, &response)
     };
     let theme = |term: &Term| Theme::new(&model.candidates()[term.candidate]);
-    let mut without: Vec<(Theme, DVector<f64>)> = Vec::new();
-    for term in whole {
-        let own = theme(term);
-        if without.iter().all(|(known, _)| *known != own) {
-            let others: Vec<Term> = whole.iter().filter(|term| theme(term) != own).cloned().collect();
-            without.push((own, left(&search.fit(&others))));
-        }
-    }
+    let without = left_out_together(whole.iter().map(theme)).into_iter().map(|themes| {
+        let others: Vec<Term> = whole.iter().filter(|term| !themes.contains(&theme(term))).cloned().collect();
+        let residual = left(&search.fit(&others));
+        (themes, residual)
+    });
+    let without = without.collect();
     Trained {
         before: left(&search.fit(&[])),
         after: averaged(&forms(&search, &hypothesis), left),
@@ -120,6 +134,25 @@ pub(super) fn trained_on(
         terms: hypothesis.terms,
         without,
     }
+}
+
+/// Each theme by itself, each two that are physics, and all that are.
+fn left_out_together(themes: impl Iterator<Item = Theme>) -> Vec<Vec<Theme>> {
+    let mut singles: Vec<Theme> = Vec::new();
+    for theme in themes {
+        if !singles.contains(&theme) {
+            singles.push(theme);
+        }
+    }
+    let physics: Vec<Theme> = singles.iter().copied().filter(|t| t.effect.kind != Kind::Event).collect();
+    let mut sets: Vec<Vec<Theme>> = singles.into_iter().map(|theme| vec![theme]).collect();
+    for (k, &first) in physics.iter().enumerate() {
+        sets.extend(physics[k + 1..].iter().map(|&second| vec![first, second]));
+    }
+    if physics.len() > 2 {
+        sets.push(physics);
+    }
+    sets
 }
 
 /// A hypothesis and those with another form of one of its laws that these data hardly distinguish from it.
@@ -165,7 +198,7 @@ pub fn hold_out(model: &Linearised<'_>, evidence: &Evidence, whole: &[Term]) -> 
     });
     let (mut errors_before, mut errors_after) = (DVector::repeat(n, f64::NAN), DVector::repeat(n, f64::NAN));
     let (mut squares, mut hypotheses) = (Vec::<Squares>::new(), Vec::new());
-    let mut losses: Vec<(Theme, f64)> = Vec::new();
+    let mut losses: Vec<(Vec<Theme>, f64)> = Vec::new();
     let square = |errors: &DVector<f64>, rows: &[usize]| -> f64 {
         rows.iter().map(|&row| evidence.weight[row] * errors[row].powi(2)).sum()
     };
@@ -173,8 +206,8 @@ pub fn hold_out(model: &Linearised<'_>, evidence: &Evidence, whole: &[Term]) -> 
         let count: f64 = held_out.iter().map(|&row| evidence.weight[row]).sum();
         let (before, after) = (square(&trained.before, &held_out), square(&trained.after, &held_out));
         squares.push((before, after, count));
-        for (theme, left) in trained.without {
-            losses.push((theme, square(&left, &held_out) - square(&trained.with, &held_out)));
+        for (themes, left) in trained.without {
+            losses.push((themes, square(&left, &held_out) - square(&trained.with, &held_out)));
         }
         hypotheses.push(trained.terms);
         for &row in &held_out {
@@ -211,4 +244,49 @@ fn interval(squares: &[Squares]) -> Option<(f64, f64)> {
         })
         .collect();
     percentile_interval(&mut gains, 0.95)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::inference::UNKNOWN;
+
+    #[test]
+    fn what_may_undo_each_other_is_left_out_together() {
+        let of = |effect: &'static str, kind| {
+            let effect = Box::leak(Box::new(Effect { name: effect, kind, ..UNKNOWN }));
+            Theme { effect, joints: None }
+        };
+        let (a, b, c) = (of("a", Kind::Physics), of("b", Kind::Physics), of("c", Kind::Physics));
+        let event = of("event", Kind::Event);
+        let sets = left_out_together([a, event, b, a].into_iter());
+        assert_eq!(sets, [vec![a], vec![event], vec![b], vec![a, b]]);
+        let sets = left_out_together([a, b, c].into_iter());
+        let expected = [vec![a], vec![b], vec![c], vec![a, b], vec![a, c], vec![b, c], vec![a, b, c]];
+        assert_eq!(sets, expected);
+    }
+
+    #[test]
+    fn what_two_are_worth_is_summed_over_the_folds() {
+        let of = |effect: &'static str| Theme {
+            effect: Box::leak(Box::new(Effect { name: effect, ..UNKNOWN })),
+            joints: None,
+        };
+        let (a, b) = (of("a"), of("b"));
+        let losses = vec![(vec![a], 0.5), (vec![a, b], 0.1), (vec![a], 0.2), (vec![a, b], -0.3)];
+        let held_out = HeldOut {
+            before: 1.0,
+            after: 1.0,
+            gain: 0.0,
+            gain_interval: None,
+            hypotheses: Vec::new(),
+            losses,
+            errors_before: DVector::zeros(0),
+            errors_after: DVector::zeros(0),
+        };
+        // each seems worth a name, both together are worth less than nothing
+        assert!((held_out.loss(a) - 0.7).abs() < 1e-12);
+        let together: Vec<(&[Theme], f64)> = held_out.losses_together().collect();
+        assert!(together.len() == 1 && together[0].0 == [a, b] && (together[0].1 + 0.2).abs() < 1e-12);
+    }
 }

@@ -4,11 +4,15 @@ use super::linearised::Linearised;
 use super::priors::MISTAKE;
 use super::search::Search;
 use super::selection::APART;
-use super::{Estimate, FindingPart, ForwardModel, Hypothesis, Kind, Parameter, Rival, Term};
+use super::{Estimate, FindingPart, ForwardModel, Hypothesis, Kind, Location, Parameter, Rival, Term};
 use crate::statistics::{chi_squared_survival, student_t_quantile};
 
 /// So many of the effects that may be there besides count for an interval.
 const AVERAGED: usize = 8;
+/// How well the evidence of an effect is known by its columns at neutral values, as a share of it; and so many effects, the
+/// likeliest by that, are fitted in place of another one.
+const ABOUT: f64 = 0.3;
+const TRIED: usize = 8;
 /// A form of a law that leaves at most so much more, as a factor, may be the right one.
 const HARDLY_MORE: f64 = 1.1;
 
@@ -43,13 +47,17 @@ pub(super) fn part(
     // certain than with it
     let gained = (hypothesis.log_probability - rest.log_probability).min(additions[term.candidate]);
     let least = gained - 2.0 * APART.ln();
+    // what a large effect comes to is only about known before it is fitted
+    let nearly = gained - (2.0 * APART.ln()).max(ABOUT * gained);
     // a mistake is as rare as it is easily looked up: it is no less of a rival
     let rare = |index: usize| if candidates[index].effect.kind == Kind::Mistake { MISTAKE } else { 1.0 };
-    let mut rivals: Vec<Rival> = (0..additions.len())
-        .filter(|&index| {
-            let is_near = additions[index] - rare(index).ln() > least;
-            index != term.candidate && !candidates[index].is_nonparametric && is_near
-        })
+    let is_above = |index: usize, least: f64| additions[index] - rare(index).ln() > least;
+    let mut near = search.likeliest(&additions, false);
+    near.retain(|&index| index != term.candidate && is_above(index, nearly));
+    let surely = near.iter().filter(|&&index| is_above(index, least)).count();
+    near.truncate(surely.max(TRIED));
+    let mut rivals: Vec<Rival> = near
+        .into_iter()
         .filter_map(|index| {
             let other = search.with(&rest, index);
             let odds = (hypothesis.log_probability - other.log_probability).exp() * rare(index);
@@ -60,6 +68,15 @@ pub(super) fn part(
         .filter(|rival| rival.odds < APART)
         .collect();
     rivals.sort_by(|a, b| a.odds.total_cmp(&b.odds));
+    // nor is it known which of several places along one part is the right one
+    let is_along = |location: &Location| matches!(location, Location::Named(_) | Location::Station(_));
+    let effect = candidates[term.candidate].effect;
+    for rival in rivals.iter().filter(|rival| rival.effect == effect && is_along(&rival.location)) {
+        if is_along(&candidates[term.candidate].location) {
+            let at = rival.hypothesis.covariance.nrows() - rival.term.values.len();
+            widen(&mut estimates, intervals(model, &rival.hypothesis, &rival.term, at, coverage_factor));
+        }
+    }
     let gained = search.deviance(&rest, hypothesis.sigma) - search.deviance(hypothesis, hypothesis.sigma);
     // a curve has more parameters than the data determine of it
     let determined = (hypothesis.determined - rest.determined).clamp(1.0, term.values.len().max(1) as f64);
@@ -150,7 +167,7 @@ fn averaged(
 
 /// Makes intervals hold those of another hypothesis.
 fn widen(estimates: &mut [Estimate], others: Vec<Estimate>) {
-    for (known, other) in estimates.iter_mut().zip(others) {
+    for (known, other) in estimates.iter_mut().zip(others).filter(|(known, other)| known.name == other.name) {
         (known.low, known.high) = (known.low.min(other.low), known.high.max(other.high));
     }
 }

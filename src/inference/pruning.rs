@@ -7,7 +7,7 @@ use nalgebra::DVector;
 use super::Hypothesis;
 use super::background::size_offsets;
 use super::evidence::rms;
-use super::hidden_step::hidden_step;
+use super::hidden_in_groups::hidden;
 use super::linearised::Linearised;
 use super::misread::unlike_repeats;
 use super::scatter::{OFF, SUSPECT, weighted};
@@ -75,10 +75,10 @@ pub fn settled(model: &Linearised<'_>, evidence: &Evidence) -> (Evidence, Option
         let noise = longest.sigma;
         known = longest.terms.clone();
         if pass == 0 && search.whitening.is_of_shared_errors() {
-            // a curve would draw the step
+            // a curve would draw it
             let response = model.response(&hypothesis.terms);
             let left = &evidence.residual - search.predicted(&hypothesis, &evidence, &response);
-            known.extend(hidden_step(model, &evidence, &left));
+            known.extend(hidden(model, &evidence, &left));
         }
         let has_shared = search.whitening.is_of_shared_errors();
         evidence.weight = if is_same_weight { evidence.weight } else { weight };

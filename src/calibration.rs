@@ -1,6 +1,7 @@
 //! Kinematic calibration: joint values and ball positions in, a calibrated robot with honest
 //! uncertainties out.
 
+mod accuracy;
 mod before;
 mod calibrate;
 mod calibrate_from;
@@ -29,6 +30,7 @@ mod validation;
 mod warning;
 mod write_back;
 
+pub use accuracy::{Accuracy, AccuracyVerdict, accuracy};
 pub use calibrate::{calibrate, free_parameters, start};
 pub use calibrate_from::calibrate_from;
 pub use campaign::Campaign;

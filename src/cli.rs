@@ -12,6 +12,7 @@ mod neighbours;
 pub mod output;
 mod predict;
 mod progress;
+mod provenance;
 mod rig;
 mod simulate;
 mod trial;

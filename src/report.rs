@@ -36,4 +36,4 @@ mod scale;
 pub mod table;
 pub mod text;
 
-pub use document::{Block, Report, Section};
+pub use document::{Block, Card, Report, Section, Tone};

@@ -56,7 +56,7 @@ const DOORS: [(&str, &str); 12] = [
     ("rayon", "crates/base/src/parallel.rs"),
     ("indicatif", "src/cli/progress.rs"),
     ("roxmltree", "src/robot/urdf/"),
-    ("sha2", "crates/trial/src/envelope.rs"),
+    ("sha2", "crates/base/src/files.rs"),
     ("rand", "crates/base/src/statistics/random.rs"),
     ("rand_chacha", "crates/base/src/statistics/random.rs"),
     ("rand_distr", "crates/base/src/statistics/random.rs"),

@@ -71,10 +71,22 @@ pub struct Campaign {
     pub noise: Option<f64>,
     /// Standard uncertainty of a coordinate of each clamp's place, m, where the file states it.
     pub clamp_uncertainty: Option<f64>,
+    /// Limits for the verdict, where the file states them.
+    pub accuracy: Option<AccuracyLimits>,
     /// What the user states about single parameters.
     pub wishes: ParameterConstraints,
     /// What a user should know about the files although they can be read.
     pub warnings: Vec<Warning>,
+}
+
+/// How accurate the robot has to be: limits of the error at poses that the calibration has not seen.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct AccuracyLimits {
+    /// Of the mean, m.
+    pub mean: Option<f64>,
+    /// Of the largest, m.
+    pub max: Option<f64>,
 }
 
 /// What is fitted again before the validation errors are computed.

@@ -10,6 +10,8 @@ use rodcal::report::{Report, text};
 use rodcal::{Error, Result, files};
 use serde_json::Value;
 
+use super::provenance::Provenance;
+
 /// Where the result goes: options of every command.
 #[derive(Debug, Args)]
 pub struct Options {
@@ -75,6 +77,11 @@ pub fn deliver(options: &Options, outcome: Outcome) -> Result<ExitCode> {
         }
         // the same words on stderr, on the page and in the JSON
         json["warnings"] = report.warnings.as_slice().into();
+        if directory.is_some() {
+            let provenance = Provenance::of(std::env::args().skip(1));
+            report.provenance.extend(provenance.lines());
+            json["provenance"] = provenance.json();
+        }
     }
     if let (Some(report), Some(directory)) = (&report, &directory) {
         // everything is rendered before anything is written

@@ -19,9 +19,9 @@ pub struct LackOfFit {
     pub f: f64,
     /// Probability of such an F if nothing were left out.
     pub p_value: f64,
-    /// Degrees of degrees of freedom of the replicates.
+    /// Degrees of freedom of the replicates.
     pub dof_fit: usize,
-    /// Degrees of degrees of freedom of the repeats.
+    /// Degrees of freedom of the repeats.
     pub dof_repeats: usize,
 }
 

@@ -1,5 +1,6 @@
 //! What `rodcal calibrate` says: JSON, tables and pictures of a [`Calibration`].
 
+mod cards;
 mod figures;
 mod groups;
 mod tables;
@@ -10,7 +11,9 @@ use serde_json::{Map, Value, json};
 
 use super::{Block, Report, Section};
 use crate::calibration::campaign::{Recording, Refit, Station, Targets};
-use crate::calibration::{Calibration, Campaign, CrossValidation, Mode, Summary, Validation};
+use crate::calibration::{
+    Accuracy, Calibration, Campaign, CrossValidation, Mode, Summary, Validation, accuracy,
+};
 use crate::spatial::Pose;
 use crate::units::{DEG, MM, UM, significant};
 use groups::group_summaries;
@@ -73,6 +76,7 @@ pub fn json(
         "noise_is_stated": calibration.noise.is_stated,
         "groups": groups_json(recording, calibration),
         "validation": calibration.validation.as_ref().map(validation_json),
+        "accuracy": accuracy_json(campaign, &accuracy(campaign.accuracy.as_ref(), calibration, cross_validation)),
         "extrapolation": calibration.extrapolation.as_ref().map(|there| json!({
             "sd_um": there.sd / UM,
             "sd_calibrated_um": there.sd_calibrated / UM,
@@ -129,6 +133,18 @@ fn stations_json(recording: &Recording, calibration: &Calibration) -> Vec<Value>
         })
     };
     frames.map(of).collect()
+}
+
+fn accuracy_json(campaign: &Campaign, judged: &Accuracy) -> Value {
+    let limits = campaign.accuracy.as_ref();
+    json!({
+        "verdict": judged.verdict.name(),
+        "judged_by": judged.judged_by,
+        "mean_um": judged.errors.map(|errors| errors.mean / UM),
+        "max_um": judged.errors.map(|errors| errors.max / UM),
+        "limit_mean_um": limits.and_then(|limits| limits.mean).map(|mean| mean / UM),
+        "limit_max_um": limits.and_then(|limits| limits.max).map(|max| max / UM),
+    })
 }
 
 /// JSON has no infinity.
@@ -194,6 +210,7 @@ pub fn report(
         warnings: warnings(campaign, calibration),
         sections: sections(campaign, calibration, cross_validation),
         provenance: Vec::new(),
+        cards: cards::cards(campaign, calibration, cross_validation),
     }
 }
 

@@ -8,7 +8,7 @@ use super::pictures::calibration::{
     error_over_workspace, mode_comparison, residuals_by_group,
 };
 use super::table::{Column, Table};
-use super::{Block, Report, Section};
+use super::{Block, Card, Report, Section, Tone};
 use crate::calibration::campaign::Targets;
 use crate::calibration::{Calibration, Campaign, Comparison, Difference, Mode};
 use crate::units::{MM, UM, significant};
@@ -67,7 +67,30 @@ pub fn report(campaign: &Campaign, comparison: &Comparison) -> Report {
         warnings,
         sections: sections(campaign, comparison),
         provenance: Vec::new(),
+        cards: cards(campaign, comparison),
     }
+}
+
+/// The mean error of each mode; the best is that of the smallest.
+fn cards(campaign: &Campaign, comparison: &Comparison) -> Vec<Card> {
+    let on = judged_by(campaign, comparison);
+    let means: Vec<f64> = (0..comparison.calibrations.len()).map(|k| comparison.summary(k).mean).collect();
+    let least = means.iter().copied().fold(f64::INFINITY, f64::min);
+    let card = |(calibration, &mean): (&Calibration, &f64)| {
+        let is_best = mean == least && means.len() > 1;
+        let differs = comparison
+            .differences
+            .iter()
+            .any(|d| d.is_significant && (d.mode == calibration.mode || d.against == calibration.mode));
+        let detail = match (is_best, differs) {
+            (true, true) => format!("smallest mean error on {on}"),
+            (true, false) => format!("smallest mean error on {on}, but no significant difference"),
+            (false, _) => format!("mean error on {on}"),
+        };
+        let tone = if is_best && differs { Tone::Good } else { Tone::Neutral };
+        Card::new(format!("Mode {}", calibration.mode.name()), length(mean), detail).toned(tone)
+    };
+    comparison.calibrations.iter().zip(&means).map(card).collect()
 }
 
 fn judged_by(campaign: &Campaign, comparison: &Comparison) -> String {

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 
 use super::pictures::{Contributions, RodShape, ShapeCase, Station, StationKind, contributions, rod_shape};
 use super::table::{Column, Table};
-use super::{Block, Report, Section};
+use super::{Block, Card, Report, Section};
 use crate::beam::{NaturalMode, settling_time};
 use crate::compliance::{Compliance, Mode, Shape, StationResponse, Study};
 use crate::rod::Rod;
@@ -64,6 +64,7 @@ pub fn report(study: &Study) -> Report {
         warnings: warnings(study),
         sections: sections(study),
         provenance: Vec::new(),
+        cards: cards(study),
     }
 }
 
@@ -195,6 +196,36 @@ pub fn headline(study: &Study) -> String {
         significant(largest_column(&c.gravity) / UM, 4),
         significant(study.index() / UM, 4),
     )
+}
+
+fn cards(study: &Study) -> Vec<Card> {
+    let c = study.compliance();
+    let um = |length: f64| significant(length / UM, 4);
+    let mode = match study.mode {
+        Mode::Calc => "closed form",
+        Mode::Fea => "beam model",
+    };
+    let mut cards = vec![
+        Card::new("Compliance index c_rod", format!("{} µm", um(study.index())), mode),
+        Card::new(
+            "Tip per newton, at most",
+            format!("{} µm/N", um(largest_column(&c.force))),
+            "contact force along the worst axis",
+        ),
+        Card::new(
+            "Tip under one g, at most",
+            format!("{} µm", um(largest_column(&c.gravity))),
+            "weight of rod and tip",
+        ),
+    ];
+    cards.extend(study.shape.modes.first().map(|mode| {
+        Card::new(
+            "First natural frequency",
+            format!("{} Hz", significant(mode.frequency, 3)),
+            "clamped at the flange",
+        )
+    }));
+    cards
 }
 
 /// The largest deflection a load along one axis causes.

@@ -182,6 +182,7 @@ pub fn report(study: &Study) -> Report {
         warnings: warnings(study),
         sections,
         provenance: Vec::new(),
+        cards: Vec::new(),
     }
 }
 

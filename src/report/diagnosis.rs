@@ -4,6 +4,7 @@
 //! pictures, its remainder, and what becomes of the model.
 
 pub mod calibration;
+mod cards;
 mod headline;
 mod hidden;
 mod json;
@@ -23,6 +24,7 @@ fn report(mut subject: Subject) -> Report {
     Report {
         title: subject.title.clone(),
         headline: headline::headline(&subject),
+        cards: cards::cards(&subject),
         warnings: subject.all_warnings(),
         sections: sections::all(&mut subject),
         provenance: Vec::new(),

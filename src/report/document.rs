@@ -12,12 +12,53 @@ pub struct Report {
     pub title: String,
     /// The result in one sentence, with numbers and units.
     pub headline: String,
+    /// What a reader in a hurry takes away: the answer, before and after, how sure, the verdict.
+    pub cards: Vec<Card>,
     /// What the reader must know before trusting it, one sentence or two each.
     pub warnings: Vec<String>,
     /// The body.
     pub sections: Vec<Section>,
     /// Where it all comes from: name and value, for example input files, options, version.
     pub provenance: Vec<(String, String)>,
+}
+
+/// One number or word of the overview.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Card {
+    /// What it is: "Error before and after".
+    pub label: String,
+    /// The number with its unit, or the word.
+    pub value: String,
+    /// What to know of it, in a few words.
+    pub detail: String,
+    /// How good it is.
+    pub tone: Tone,
+}
+
+/// How good what a card says is; the words say it too, for whoever sees no colour.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Tone {
+    /// Neither good nor bad.
+    Neutral,
+    /// As it should be.
+    Good,
+    /// To be looked at.
+    Attention,
+    /// Not as it should be.
+    Bad,
+}
+
+impl Card {
+    /// A card that is neither good nor bad.
+    pub fn new(label: impl Into<String>, value: impl Into<String>, detail: impl Into<String>) -> Self {
+        Card { label: label.into(), value: value.into(), detail: detail.into(), tone: Tone::Neutral }
+    }
+
+    /// The same with a tone.
+    pub fn toned(self, tone: Tone) -> Self {
+        Card { tone, ..self }
+    }
 }
 
 /// A part of a report under its own heading.

@@ -7,6 +7,7 @@ use super::labels::{Area, LabelPlacer, text_width_px, wrap};
 use super::legend::Legend;
 use super::marks;
 use super::plot::{Anchor, Canvas, Lettering, Rgb};
+use super::scale::Scale;
 
 /// Width of every figure: the text column of the page.
 const WIDTH_PX: f64 = 760.0;
@@ -130,6 +131,17 @@ impl<'a> Plan<'a> {
             canvas.text(area.centre(), "no data", NOTE, Rgb::GREY);
         } else {
             self.grid(canvas);
+            let axis = |scale: &Scale, names: &[(f64, String)]| {
+                names.is_empty().then_some((scale.from, scale.to, scale.log))
+            };
+            let chart = self.chart;
+            canvas.panel(
+                [[area.left, area.top], [area.right, area.bottom]],
+                [
+                    (axis(&self.frame.x, &chart.x.names), &chart.x.label),
+                    (axis(&self.frame.y, &chart.y.names), &chart.y.label),
+                ],
+            );
         }
         let mut labels = LabelPlacer::new(area);
         marks::draw(canvas, &self.frame, &self.chart.marks, &mut labels);

@@ -14,11 +14,11 @@ impl Report {
     pub fn files(&self) -> Result<Vec<(String, Vec<u8>)>> {
         let mut files = vec![("index.html".to_owned(), html::page(self).into_bytes())];
         for (i, figure) in self.figures().enumerate() {
-            let name = file_name("figure", i, &figure.name);
+            let name = file_name("figure", i + 1, &figure.name);
             files.push((format!("{name}.svg"), figure.svg().into_bytes()));
         }
         for (i, table) in self.tables().enumerate() {
-            let name = file_name("table", i, &table.name);
+            let name = file_name("table", i + 1, &table.name);
             files.push((format!("{name}.csv"), table.csv()?.into_bytes()));
             files.push((format!("{name}.md"), table.markdown().into_bytes()));
         }
@@ -27,11 +27,11 @@ impl Report {
 }
 
 /// "figure-1-rod-shape": the number makes it unique, the rest is safe on every file system.
-fn file_name(kind: &str, index: usize, name: &str) -> String {
+pub(super) fn file_name(kind: &str, number: usize, name: &str) -> String {
     let safe: String =
         name.to_lowercase().chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '-' }).collect();
     let words: Vec<&str> = safe.split('-').filter(|word| !word.is_empty()).collect();
-    let number = (index + 1).to_string();
+    let number = number.to_string();
     [kind, &number].into_iter().chain(words).collect::<Vec<_>>().join("-")
 }
 

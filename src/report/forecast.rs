@@ -255,5 +255,6 @@ pub fn comparison(campaign: &Campaign, rods: &[RodForecast], basis: &Basis) -> R
         warnings: Vec::new(),
         sections: vec![Section::new("What to expect", blocks)],
         provenance: Vec::new(),
+        cards: Vec::new(),
     }
 }

@@ -3,23 +3,18 @@
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::chart::Figure;
-use super::document::{Block, Report};
+use super::document::{Block, Card, Report, Section, Tone};
+use super::files::file_name;
+use super::table::Table;
 
-/// The whole page: style sheet and pictures are inside it.
+/// The whole page: style sheet, pictures and what little script there is are inside it, and it may fetch nothing.
 pub fn page(report: &Report) -> String {
     let (mut figures, mut tables) = (0, 0);
     let sections: Vec<Markup> = report
         .sections
         .iter()
         .enumerate()
-        .map(|(i, section)| {
-            html! {
-                section id=(anchor(i)) {
-                    h2 { (section.heading) }
-                    @for block in &section.blocks { (markup(block, &mut figures, &mut tables)) }
-                }
-            }
-        })
+        .map(|(i, section)| section_markup(section, i, &mut figures, &mut tables))
         .collect();
     let page = html! {
         (DOCTYPE)
@@ -27,15 +22,19 @@ pub fn page(report: &Report) -> String {
             head {
                 meta charset="utf-8";
                 meta name="viewport" content="width=device-width, initial-scale=1";
+                meta http-equiv="Content-Security-Policy" content=(NOTHING_FETCHED);
+                meta name="generator" content=(GENERATOR);
                 title { (report.title) }
-                style { (PreEscaped(STYLE)) }
+                style { (PreEscaped(include_str!("html/page.css"))) }
             }
             body {
+                a.skip href="#result" { "To the result" }
                 header {
                     h1 { (report.title) }
-                    @if !report.headline.is_empty() { p.headline { (report.headline) } }
+                    @if !report.headline.is_empty() { p.headline #result { (report.headline) } }
                 }
                 main {
+                    @if !report.cards.is_empty() { (cards(&report.cards)) }
                     @if !report.warnings.is_empty() {
                         aside.warnings aria-label="Warnings" {
                             h2 { @if report.warnings.len() == 1 { "Warning" } @else { "Warnings" } }
@@ -47,10 +46,36 @@ pub fn page(report: &Report) -> String {
                     @if !report.provenance.is_empty() { (provenance(report)) }
                 }
                 footer { p { "Written by rodcal " (env!("CARGO_PKG_VERSION")) "." } }
+                script { (PreEscaped(include_str!("html/page.js"))) }
             }
         }
     };
     page.into_string()
+}
+
+/// What a page may load: nothing but what stands in it.
+const NOTHING_FETCHED: &str = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'";
+/// By which the program knows its own pages.
+pub const GENERATOR: &str = "rodcal";
+
+fn cards(cards: &[Card]) -> Markup {
+    let class = |tone: Tone| match tone {
+        Tone::Neutral => "neutral",
+        Tone::Good => "good",
+        Tone::Attention => "attention",
+        Tone::Bad => "bad",
+    };
+    html! {
+        ul.cards aria-label="Overview" {
+            @for card in cards {
+                li class=(class(card.tone)) {
+                    span.label { (card.label) }
+                    span.value { (card.value) }
+                    @if !card.detail.is_empty() { span.detail { (card.detail) } }
+                }
+            }
+        }
+    }
 }
 
 fn contents(report: &Report) -> Markup {
@@ -72,27 +97,60 @@ fn provenance(report: &Report) -> Markup {
     }
 }
 
-fn markup(block: &Block, figures: &mut usize, tables: &mut usize) -> Markup {
-    match block {
-        Block::Paragraph(text) => html! { p { (text) } },
-        Block::List(points) => html! { ul { @for point in points { li { (point) } } } },
-        Block::Table(table) => {
-            *tables += 1;
-            table.html(*tables)
+/// People look before they read: the words, then the pictures side by side where there is room, then the tables.
+fn section_markup(section: &Section, number: usize, figures: &mut usize, tables: &mut usize) -> Markup {
+    let (mut words, mut pictures, mut folded) = (Vec::new(), Vec::new(), Vec::new());
+    for block in &section.blocks {
+        match block {
+            Block::Paragraph(text) => words.push(html! { p { (text) } }),
+            Block::List(points) => words.push(html! { ul { @for point in points { li { (point) } } } }),
+            Block::Figure(figure) => {
+                *figures += 1;
+                pictures.push(figure_markup(figure, *figures));
+            }
+            Block::Table(table) => {
+                *tables += 1;
+                folded.push(table_markup(table, *tables));
+            }
         }
-        Block::Figure(figure) => {
-            *figures += 1;
-            figure_markup(figure, *figures)
+    }
+    html! {
+        section id=(anchor(number)) {
+            h2 { (section.heading) }
+            @for words in words { (words) }
+            @if !pictures.is_empty() { div.figures { @for picture in pictures { (picture) } } }
+            @for table in folded { (table) }
         }
     }
 }
 
 fn figure_markup(figure: &Figure, number: usize) -> Markup {
+    let file = format!("{}.svg", file_name("figure", number, &figure.name));
     html! {
         figure {
             // Our own SVG: its texts are escaped where it is drawn, and it holds no ids.
-            div.wide { (PreEscaped(figure.svg())) }
-            figcaption { b { "Figure " (number) } ". " (figure.caption) }
+            div.wide tabindex="0" role="group" aria-label=(format!("Figure {number}")) { (PreEscaped(figure.svg())) }
+            figcaption {
+                b { "Figure " (number) } ". " (figure.caption) " "
+                span.files { a href=(file) { "SVG" } }
+                output {}
+            }
+        }
+    }
+}
+
+/// Tables of so many rows stand open.
+const FEW_ROWS: usize = 8;
+
+fn table_markup(table: &Table, number: usize) -> Markup {
+    let file = |kind: &str| format!("{}.{kind}", file_name("table", number, &table.name));
+    html! {
+        details open[table.rows.len() <= FEW_ROWS] {
+            summary { b { "Table " (number) } ". " (table.caption) }
+            div {
+                (table.html(number))
+                p.files { a href=(file("csv")) { "CSV" } " · " a href=(file("md")) { "Markdown" } }
+            }
         }
     }
 }
@@ -100,61 +158,6 @@ fn figure_markup(figure: &Figure, number: usize) -> Markup {
 fn anchor(section: usize) -> String {
     format!("section-{}", section + 1)
 }
-
-const STYLE: &str = "
-:root { color-scheme: light; }
-* { box-sizing: border-box; }
-body { margin: 0 auto; max-width: 52rem; padding: 2.5rem 1.25rem 4rem; background: #fff; color: #222;
-  font: 1rem/1.55 system-ui, 'Segoe UI', Roboto, 'Helvetica Neue', Arial, sans-serif; }
-h1 { font-size: 1.9rem; line-height: 1.2; margin: 0 0 .75rem; }
-h2 { font-size: 1.3rem; line-height: 1.3; margin: 2.75rem 0 .75rem; }
-p, ul, ol { margin: .75rem 0; max-width: 42rem; }
-a { color: #0072b2; }
-.headline { font-size: 1.15rem; margin: 0 0 1.5rem; padding: .8rem 1.1rem; max-width: none;
-  border-left: 4px solid #0072b2; background: #f2f7fb; }
-.warnings { margin: 1.5rem 0; padding: .7rem 1.1rem; border: 1px solid #d55e00; border-left-width: 4px;
-  background: #fdf5ef; }
-.warnings h2 { margin: 0; font-size: 1rem; color: #a34700; }
-.warnings ul { margin: .3rem 0; padding-left: 1.2rem; }
-nav { margin: 1.5rem 0; font-size: .95rem; }
-nav ol { margin: 0; padding-left: 1.3rem; columns: 2; column-gap: 2rem; }
-nav li { break-inside: avoid; }
-figure { margin: 1.75rem 0; break-inside: avoid; }
-figure svg { display: block; width: 100%; height: auto; min-width: 32rem; }
-figcaption, caption { font-size: .9rem; line-height: 1.45; color: #444; text-align: left; }
-figcaption { margin-top: .5rem; max-width: 44rem; }
-caption { caption-side: top; padding-bottom: .5rem; }
-.wide { overflow-x: auto; }
-table { border-collapse: collapse; margin: 1.5rem 0 .75rem; font-size: .88rem; break-inside: avoid;
-  font-variant-numeric: tabular-nums lining-nums; border-top: 1.5px solid #222; border-bottom: 1.5px solid #222; }
-table caption { border: 0; }
-th, td { padding: .32rem 1.1rem .32rem 0; vertical-align: baseline; text-align: left; }
-th:last-child, td:last-child { padding-right: .4rem; }
-th { font-weight: 600; border-bottom: 1px solid #222; vertical-align: bottom; }
-.unit { display: block; font-weight: 400; color: #555; }
-th:first-child, td:first-child { white-space: nowrap; }
-.number { text-align: right; white-space: nowrap; }
-tbody tr + tr td { border-top: 1px solid #e6e6e6; }
-.note { font-size: .87rem; color: #444; margin: .2rem 0; }
-dl { display: grid; grid-template-columns: max-content 1fr; gap: .25rem 1.5rem; font-size: .93rem; }
-dt { color: #555; }
-dd { margin: 0; overflow-wrap: anywhere; font-variant-numeric: tabular-nums; }
-footer { margin-top: 3rem; border-top: 1px solid #ddd; font-size: .85rem; color: #555; }
-@media (max-width: 36rem) {
-  body { padding-top: 1.25rem; }
-  nav ol { columns: 1; }
-  dl { grid-template-columns: 1fr; gap: 0; }
-  dd { margin-bottom: .5rem; }
-}
-@media print {
-  body { max-width: none; padding: 0; font-size: 10.5pt; }
-  figure svg { min-width: 0; }
-  .wide { overflow: visible; }
-  h2 { break-after: avoid; }
-  a { color: inherit; text-decoration: none; }
-  nav { display: none; }
-}
-";
 
 #[cfg(test)]
 mod tests {
@@ -170,6 +173,7 @@ mod tests {
         let report = Report {
             title: evil(),
             headline: evil(),
+            cards: vec![Card::new(evil(), evil(), evil())],
             warnings: vec![evil()],
             sections: vec![Section::new(
                 evil(),
@@ -177,7 +181,10 @@ mod tests {
             )],
             provenance: vec![(evil(), evil())],
         };
-        assert!(!page(&report).contains("<script"));
+        // the only script is the page's own
+        let page = page(&report);
+        assert_eq!(page.matches("<script").count(), 1);
+        assert!(page.ends_with("</script></body></html>"), "{}", &page[page.len() - 80..]);
     }
 
     #[test]
@@ -193,7 +200,8 @@ mod tests {
         let all = ids.len();
         ids.dedup();
         assert_eq!((ids.len(), all), (2, 2));
-        assert!(!page.replace("http://www.w3.org/2000/svg", "").contains("http"));
+        let page = page.replace("http://www.w3.org/2000/svg", "").replace("http-equiv", "");
+        assert!(!page.contains("http") && !page.contains("url(") && !page.contains("@import"));
         assert!(page.contains("Figure 2"));
     }
 }

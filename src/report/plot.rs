@@ -24,6 +24,8 @@ pub(super) struct Canvas {
     width_px: f64,
     height_px: f64,
     body: String,
+    /// The axes of the panels, as JSON, for a cursor on the page.
+    panels: Vec<serde_json::Value>,
 }
 
 /// Where a text lies relative to its point.
@@ -46,7 +48,7 @@ pub(super) struct Lettering {
 
 impl Canvas {
     pub(super) fn new(width_px: f64, height_px: f64) -> Self {
-        Canvas { width_px, height_px, body: String::new() }
+        Canvas { width_px, height_px, body: String::new(), panels: Vec::new() }
     }
 
     /// A line through points, with this dash.
@@ -101,13 +103,31 @@ impl Canvas {
         self.with(|b| b.draw_text(&printable(text), &look, fine(&at)));
     }
 
+    /// Remembers where a panel's axes are: its corners in units of the SVG, and each axis as its ends and whether it is
+    /// logarithmic, with its label; `None` where it has names and no numbers.
+    pub(super) fn panel(&mut self, corners: [Px; 2], axes: [(Option<(f64, f64, bool)>, &str); 2]) {
+        let [(left, top), (right, bottom)] = corners.map(|corner| fine(&corner));
+        let [(x, xlabel), (y, ylabel)] = axes;
+        self.panels.push(serde_json::json!({
+            "box": [left, top, right, bottom], "x": x, "y": y, "xlabel": xlabel, "ylabel": ylabel,
+        }));
+    }
+
     /// The whole document.
     pub(super) fn finish(self, title: &str, description: &str) -> String {
         let (width, height) = self.size();
-        let escape = |text: &str| printable(text).replace('&', "&amp;").replace('<', "&lt;");
+        let escape =
+            |text: &str| printable(text).replace('&', "&amp;").replace('<', "&lt;").replace('\'', "&#39;");
+        let panels = match self.panels.is_empty() {
+            true => String::new(),
+            false => format!(
+                " data-panels='{}'",
+                escape(&serde_json::Value::from(self.panels.clone()).to_string())
+            ),
+        };
         let mut svg = format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{}\" height=\"{}\" \
-             role=\"img\" stroke-linejoin=\"round\">\n<title>{}</title>\n",
+             role=\"img\" stroke-linejoin=\"round\"{panels}>\n<title>{}</title>\n",
             f64::from(width) / FINE,
             f64::from(height) / FINE,
             escape(title)

@@ -146,6 +146,7 @@ pub fn report(study: &PoseStudy) -> Report {
         warnings: study.campaign.warnings.iter().map(ToString::to_string).collect(),
         sections,
         provenance: Vec::new(),
+        cards: Vec::new(),
     }
 }
 

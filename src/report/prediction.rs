@@ -253,6 +253,7 @@ pub fn report(robot: &Robot, prediction: &Prediction) -> Report {
         warnings: warnings(robot, prediction),
         sections: vec![Section::new("Predicted tips", vec![Block::Table(table)])],
         provenance: Vec::new(),
+        cards: Vec::new(),
     }
 }
 

@@ -7,7 +7,7 @@ use super::pictures::{
     LoadDeflection, LoadLine, LoadUnit, MeanReading, Residuals, load_deflection, residuals,
 };
 use super::table::{Column, Table};
-use super::{Block, Report, Section};
+use super::{Block, Card, Report, Section, Tone};
 use crate::compliance::paper_contact_force;
 use crate::rig::line::{LackOfFit, Line, Point};
 use crate::rig::readings::{Phase, Readings};
@@ -96,6 +96,7 @@ pub fn report(fit: &Fit, readings: &Readings, rod: Option<&Rod>) -> Report {
         warnings: warnings(fit, readings, rod),
         sections: sections(fit, readings, rod),
         provenance: Vec::new(),
+        cards: cards(fit, rod),
     }
 }
 
@@ -122,6 +123,36 @@ pub fn headline(fit: &Fit, rod: Option<&Rod>) -> String {
             format!("{}.", fit.lines.iter().map(words).collect::<Vec<_>>().join("; "))
         }
     }
+}
+
+fn cards(fit: &Fit, rod: Option<&Rod>) -> Vec<Card> {
+    let mut cards = Vec::new();
+    if let (Some(measured), Some(_)) = (&fit.measured, rod) {
+        let ratio = &measured.rod_ratio;
+        let half = ratio.half_width_95();
+        let tone = match half.is_some_and(|w| (ratio.value - 1.0).abs() <= w) {
+            true => Tone::Good,
+            false => Tone::Attention,
+        };
+        let detail = half.map_or_else(
+            || "no interval".to_owned(),
+            |w| format!("95 % interval {} to {}", four(ratio.value - w), four(ratio.value + w)),
+        );
+        cards.push(
+            Card::new("r_rod, measured over modelled", significant(ratio.value, 5), detail).toned(tone),
+        );
+    }
+    let curved = fit.lines.iter().filter(|line| line.lack_of_fit.is_some_and(|test| test.is_significant()));
+    let curved: Vec<String> = curved.map(|line| line.key.label()).collect();
+    let count = fit.lines.len();
+    let lines = if count == 1 { "1 line".to_owned() } else { format!("{count} lines") };
+    cards.push(match curved.is_empty() {
+        true => Card::new("Lines", lines, "none is curved beyond its scatter"),
+        false => {
+            Card::new("Lines", lines, format!("not straight: {}", curved.join(", "))).toned(Tone::Attention)
+        }
+    });
+    cards
 }
 
 fn interval(estimate: &Estimate) -> String {

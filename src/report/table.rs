@@ -118,7 +118,7 @@ impl Table {
         String::from_utf8(bytes).map_err(|e| failed(e.to_string()))
     }
 
-    /// A `<table>`; `number` goes before its caption.
+    /// A `<table>` with its notes; `number` goes before its caption.
     pub(super) fn html(&self, number: usize) -> Markup {
         let class = |column: &Column| if column.align == Align::Left { "left" } else { "number" };
         let cells: Vec<Vec<String>> =

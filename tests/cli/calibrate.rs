@@ -162,3 +162,53 @@ fn what_cannot_be_done_is_one_error_and_leaves_no_trace() {
     }
     assert!(before == sandbox.listing(), "something was written");
 }
+
+/// The verdict stands on poses that the calibration has not seen, and says so where there are none.
+#[test]
+fn accuracy_is_judged_where_the_campaign_states_limits() {
+    let sandbox = sandbox();
+    let campaign = sandbox.read("sim/campaign.toml");
+    let judged = |limits: &str, text: &str| {
+        sandbox.write("sim/limited.toml", &format!("{text}\n{limits}"));
+        let json = sandbox.run("calibrate sim/limited.toml --mode fea --json").json();
+        let accuracy = json["accuracy"].clone();
+        (accuracy["verdict"].as_str().unwrap().to_owned(), accuracy)
+    };
+    assert_eq!(judged("", &campaign).0, "not_evaluated");
+    let (verdict, accuracy) = judged("[accuracy]\nmean_um = 5000\nmax_um = 9000\n", &campaign);
+    assert_eq!((&verdict[..], &accuracy["judged_by"]), ("pass", &"validation".into()));
+    assert!(
+        number(&accuracy["mean_um"]) < 5000.0 && number(&accuracy["limit_max_um"]) == 9000.0,
+        "{accuracy}"
+    );
+    assert_eq!(judged("[accuracy]\nmax_um = 1\n", &campaign).0, "fail");
+    // never by the poses of the fit
+    let unseen =
+        campaign.lines().filter(|line| !line.starts_with("validation")).collect::<Vec<_>>().join("\n");
+    let (verdict, accuracy) = judged("[accuracy]\nmean_um = 5000\n", &unseen);
+    assert_eq!((&verdict[..], &accuracy["judged_by"]), ("not_evaluated", &Value::Null));
+    sandbox.write("sim/limited.toml", &format!("{campaign}\n[accuracy]\nmean_um = -3\n"));
+    let refused = sandbox.run("calibrate sim/limited.toml");
+    assert_eq!(refused.status, Some(2));
+    assert!(
+        refused.stderr.contains("accuracy.mean_um") && refused.stderr.contains("-3"),
+        "{}",
+        refused.stderr
+    );
+}
+
+/// A report says how it was made, so that it can be made again.
+#[test]
+fn a_report_names_its_command_and_the_content_of_its_files() {
+    let sandbox = sandbox();
+    sandbox.run("calibrate sim/campaign.toml --mode fea --out made").succeeded();
+    let json: Value = serde_json::from_str(&sandbox.read("made/result.json")).unwrap();
+    let provenance = &json["provenance"];
+    assert_eq!(provenance["command"], "rodcal calibrate sim/campaign.toml --mode fea");
+    let inputs = provenance["inputs"].as_array().unwrap();
+    let named: Vec<&str> = inputs.iter().filter_map(|input| input["file"].as_str()).collect();
+    assert!(named.contains(&"sim/campaign.toml") && named.contains(&"sim/measurements.csv"), "{named:?}");
+    assert!(inputs.iter().all(|input| input["sha256"].as_str().unwrap().len() == 64), "{provenance}");
+    let page = sandbox.read("made/index.html");
+    assert!(page.contains("rodcal calibrate sim/campaign.toml --mode fea"));
+}

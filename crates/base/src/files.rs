@@ -3,6 +3,8 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+use sha2::{Digest, Sha256};
+
 use crate::error::{Error, Place, Result};
 
 /// The other files of the directory of `path` with the same extension, sorted; none where the
@@ -16,6 +18,11 @@ pub fn beside(path: &Path) -> Vec<PathBuf> {
         entries.filter_map(|entry| Some(entry.ok()?.path())).filter(is_like).collect();
     others.sort();
     others
+}
+
+/// SHA-256 (FIPS 180-4) of a content, in hexadecimal digits.
+pub fn sha256(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// Reads a text file. A byte-order mark (Excel writes one) is dropped.

@@ -19,7 +19,6 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
-use sha2::{Digest, Sha256};
 
 use super::Source;
 use super::truth::Truth;
@@ -43,11 +42,6 @@ pub struct Manifest {
     pub key_sha256: String,
     /// SHA-256 of each file, by its name in the directory.
     pub files: BTreeMap<String, String>,
-}
-
-/// SHA-256 (FIPS 180-4) in hexadecimal digits.
-pub fn sha256(bytes: &[u8]) -> String {
-    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// Where the key goes unless somebody says otherwise: beside the directory.
@@ -105,7 +99,7 @@ pub fn make(
             let named: Vec<(String, Vec<u8>)> =
                 case.files.into_iter().map(|(name, text)| (name, text.into_bytes())).collect();
             for (name, bytes) in &named {
-                hashes.insert(format!("{}/{name}", case.truth.case), sha256(bytes));
+                hashes.insert(format!("{}/{name}", case.truth.case), files::sha256(bytes));
             }
             files::write_together(&directory.join(&case.truth.case), &named)?;
             lines += &line(&case.truth)?;
@@ -115,7 +109,7 @@ pub fn make(
     let manifest = Manifest {
         made_by: concat!("rodcal ", env!("CARGO_PKG_VERSION")).into(),
         cases: range.len(),
-        key_sha256: sha256(lines.as_bytes()),
+        key_sha256: files::sha256(lines.as_bytes()),
         files: hashes,
     };
     files::write_whole(key, lines.as_bytes())?;
@@ -193,7 +187,7 @@ impl Manifest {
 }
 
 fn compare(path: &Path, bytes: &[u8], sealed: &str) -> Result<()> {
-    let found = sha256(bytes);
+    let found = files::sha256(bytes);
     if found == sealed {
         return Ok(());
     }
@@ -223,7 +217,7 @@ mod tests {
     #[test]
     fn the_hash_is_that_of_the_standard() {
         // FIPS 180-4, the example "abc"
-        assert!(sha256(b"abc").starts_with("ba7816bf8f01cfea"));
+        assert!(files::sha256(b"abc").starts_with("ba7816bf8f01cfea"));
     }
 
     #[test]

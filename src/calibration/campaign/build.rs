@@ -72,6 +72,7 @@ impl Campaign {
             refit: Refit::BaseTool,
             noise: None,
             clamp_uncertainty: None,
+            accuracy: None,
             wishes: ParameterConstraints::default(),
             warnings: Vec::new(),
         })

@@ -8,7 +8,7 @@ use toml::Spanned;
 
 use super::constraints::{RawParameters, RawPrior, parameter_constraints};
 use super::layout::{Clamp, Role, Seen, Sockets};
-use super::{Campaign, Refit, Warning, checks, recording};
+use super::{AccuracyLimits, Campaign, Refit, Warning, checks, recording};
 use crate::error::{Error, Result};
 use crate::files;
 use crate::rig::readings::Readings;
@@ -115,6 +115,7 @@ struct RawCampaign {
     clamp: Vec<RawClamp>,
     sockets: Option<RawSockets>,
     noise: Option<RawNoise>,
+    accuracy: Option<RawAccuracy>,
     #[serde(default)]
     parameters: RawParameters,
     #[serde(default)]
@@ -161,6 +162,13 @@ struct RawSockets {
 struct RawNoise {
     position_um: Option<Number>,
     clamp_um: Option<Number>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a section [accuracy] with mean_um, max_um")]
+struct RawAccuracy {
+    mean_um: Option<Number>,
+    max_um: Option<Number>,
 }
 
 /// What a campaign file cannot do without, in words.
@@ -228,11 +236,17 @@ impl Reader<'_> {
         let sockets = self.sockets(raw)?;
         let refit = self.refit(raw)?;
         let stated = |key: &str, number: Option<&Number>| {
-            number.map(|number| Ok(self.toml.positive(&format!("noise.{key}"), number)? * UM)).transpose()
+            number.map(|number| Ok(self.toml.positive(key, number)? * UM)).transpose()
         };
         let of_noise = raw.noise.as_ref();
-        let noise = stated("position_um", of_noise.and_then(|noise| noise.position_um.as_ref()))?;
-        let clamp_uncertainty = stated("clamp_um", of_noise.and_then(|noise| noise.clamp_um.as_ref()))?;
+        let noise = stated("noise.position_um", of_noise.and_then(|noise| noise.position_um.as_ref()))?;
+        let clamp_uncertainty = stated("noise.clamp_um", of_noise.and_then(|noise| noise.clamp_um.as_ref()))?;
+        let limits = |limits: &RawAccuracy| -> Result<AccuracyLimits> {
+            let mean = stated("accuracy.mean_um", limits.mean_um.as_ref())?;
+            Ok(AccuracyLimits { mean, max: stated("accuracy.max_um", limits.max_um.as_ref())? })
+        };
+        let accuracy = raw.accuracy.as_ref().map(limits).transpose()?;
+        let accuracy = accuracy.filter(|limits| limits.mean.is_some() || limits.max.is_some());
         if let (Some(rig), None) = (&raw.rig, &raw.rod) {
             let expected = "a rod (`rod = \"FILE\"`) whose readings these are";
             return Err(self.toml.is("rig", rig, expected));
@@ -296,6 +310,7 @@ impl Reader<'_> {
             refit,
             noise,
             clamp_uncertainty,
+            accuracy,
             wishes,
             warnings: Vec::new(),
         };

@@ -61,6 +61,13 @@ impl Campaign {
         if !lines.is_empty() {
             text += &format!("\n[noise]\n{lines}");
         }
+        if let Some(limits) = self.accuracy {
+            let stated = [("mean_um", limits.mean), ("max_um", limits.max)];
+            let stated = stated.into_iter().filter_map(|(key, limit)| Some((key, limit?)));
+            let lines: String =
+                stated.map(|(key, limit)| format!("{key} = {}\n", number(limit / UM))).collect();
+            text += &format!("\n[accuracy]\n{lines}");
+        }
         text + &self.constraints()
     }
 

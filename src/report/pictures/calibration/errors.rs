@@ -211,7 +211,7 @@ mod tests {
         ] {
             assert!(svg.contains(text), "{text}\n{svg}");
         }
-        assert_eq!(svg.matches("positioning error / mm").count(), 1);
+        assert_eq!(svg.matches(">\npositioning error / mm\n").count(), 1);
     }
 
     #[test]

@@ -1,0 +1,88 @@
+//! What a reader in a hurry takes away from a diagnosis.
+
+use super::headline::{RIVALS_SAID, cause_at, um};
+use super::subject::Subject;
+use crate::inference::{Finding, Kind};
+use crate::report::{Card, Tone};
+
+/// The answer, the errors before and after, how sure, and what is left.
+pub fn cards(subject: &Subject) -> Vec<Card> {
+    let mut cards = vec![answer(subject), errors(subject)];
+    cards.extend(subject.diagnosis.findings.first().map(|finding| sure(subject, finding)));
+    cards.push(left(subject));
+    cards
+}
+
+fn answer(subject: &Subject) -> Card {
+    let label = "Strongest finding";
+    let findings = &subject.diagnosis.findings;
+    match findings.first() {
+        Some(first) => {
+            let more = match findings.len() - 1 {
+                0 => String::new(),
+                1 => "; 1 more finding".to_owned(),
+                more => format!("; {more} more findings"),
+            };
+            let kind = match first.kind() {
+                Kind::Physics => "physics",
+                Kind::Event => "an event",
+                Kind::Mistake => "a mistake in the files",
+            };
+            Card::new(label, cause_at(first), format!("{kind}{more}")).toned(Tone::Attention)
+        }
+        None if subject.remainder.is_some() => {
+            Card::new(label, "none", "something is left that no effect explains").toned(Tone::Attention)
+        }
+        None => Card::new(label, "none", subject.agrees).toned(Tone::Good),
+    }
+}
+
+fn errors(subject: &Subject) -> Card {
+    let (errors, per) = (subject.errors, subject.per);
+    let value = |before: f64, after: f64| format!("{} → {} µm", um(before), um(after));
+    match errors.held_out {
+        _ if subject.diagnosis.findings.is_empty() => {
+            Card::new("Residual", format!("{} µm{per}", um(errors.before)), "")
+        }
+        Some((before, after)) => {
+            let tone = if after < before { Tone::Good } else { Tone::Attention };
+            let detail = format!("before and after{}", errors.averaged);
+            Card::new("Held-out error", value(before, after), detail).toned(tone)
+        }
+        None => {
+            let detail = format!("before and after{}; nothing could be held out", errors.averaged);
+            Card::new("Error", value(errors.before, errors.after), detail)
+        }
+    }
+}
+
+/// How sure the strongest finding is.
+fn sure(subject: &Subject, finding: &Finding) -> Card {
+    let others = finding.other_effects();
+    let names: Vec<String> =
+        others.iter().take(RIVALS_SAID).map(|(effect, place)| (effect.cause_at)(place)).collect();
+    let folds = finding.found_in_folds.map(|(some, all)| format!("in {some} of {all} searches"));
+    if names.is_empty() {
+        let found = match folds {
+            Some(folds) => format!("found {folds} that leave a part of the {} out", subject.noun),
+            None => "nothing else explains as much".to_owned(),
+        };
+        return Card::new("How sure", "no rival", found).toned(Tone::Good);
+    }
+    let value = match others.len() {
+        1 => "1 rival".to_owned(),
+        count => format!("{count} rivals"),
+    };
+    Card::new("How sure", value, format!("it may as well be {}", names.join(" or "))).toned(Tone::Attention)
+}
+
+fn left(subject: &Subject) -> Card {
+    let noise = format!("scatter {} µm{}", um(subject.diagnosis.noise), subject.per);
+    match &subject.remainder {
+        Some(remainder) => {
+            let value = format!("{} µm rms", um(remainder.rms));
+            Card::new("Unexplained", value, format!("{}; {noise}", remainder.location)).toned(Tone::Attention)
+        }
+        None => Card::new("Unexplained", "nothing", noise).toned(Tone::Good),
+    }
+}

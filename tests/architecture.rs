@@ -22,6 +22,7 @@ const FLOORS: &[&[&str]] = &[
         "parallel",
         "least_squares",
         "optimal_design",
+        "dual",
         "spatial",
     ],
     // the engine that knows no physics: nothing but the ground

@@ -4,6 +4,7 @@ use std::fmt;
 
 use nalgebra::{DMatrix, Matrix3, Rotation3, Vector3};
 
+use crate::dual::Number;
 use crate::error::Result;
 use crate::linalg::thin_svd;
 
@@ -192,17 +193,18 @@ fn with_turned_columns<const A: usize, const B: usize>(r: &Matrix3<f64>, (s, c):
 }
 
 /// The cross-product matrix of `v`: `skew(v) * w = v × w`.
-pub fn skew(v: &Vector3<f64>) -> Matrix3<f64> {
-    Matrix3::new(0.0, -v.z, v.y, v.z, 0.0, -v.x, -v.y, v.x, 0.0)
+pub fn skew<T: Number>(v: &Vector3<T>) -> Matrix3<T> {
+    let zero = T::zero();
+    Matrix3::new(zero, -v.z, v.y, v.z, zero, -v.x, -v.y, v.x, zero)
 }
 
 /// `v × m`, column by column: `skew(v) * m` without the products with its zeros.
-pub fn cross(v: &Vector3<f64>, m: &Matrix3<f64>) -> Matrix3<f64> {
+pub fn cross<T: Number>(v: &Vector3<T>, m: &Matrix3<T>) -> Matrix3<T> {
     Matrix3::from_columns(&[v.cross(&m.column(0)), v.cross(&m.column(1)), v.cross(&m.column(2))])
 }
 
 /// A tensor given in a rotated frame, expressed in the frame it was rotated from: `R·T·Rᵀ`.
-pub fn rotated(tensor: &Matrix3<f64>, rotation: &Rotation3<f64>) -> Matrix3<f64> {
+pub fn rotated<T: Number>(tensor: &Matrix3<T>, rotation: &Rotation3<T>) -> Matrix3<T> {
     rotation.matrix() * tensor * rotation.matrix().transpose()
 }
 

@@ -5,6 +5,7 @@
 //! - [`Figure`]: the numbers that rods are judged by
 //! - [`search`]: all combinations, or a sample of them, to a Pareto [`Front`]
 //! - [`Intervals`]: how well a design's numbers are known, and which designs cannot be distinguished
+//! - [`refine()`]: between the grid's values, and back to tubes that can be bought
 //! - [`Study`]: a search with all of this
 //!
 //! And poses that do not exist yet: which ones a calibration should measure ([`PoseStudy`]), how accurate the robot will be
@@ -22,6 +23,7 @@ mod intervals;
 mod limits;
 mod nearest;
 mod poses;
+mod refine;
 mod rods_and_modes;
 mod search;
 mod study;
@@ -39,6 +41,7 @@ pub use nearest::{Nearest, Relaxed};
 pub use poses::{
     Beside, Candidates, Known, Obstacle, PoseCriterion, PoseLimits, PoseStudy, Source, TableHeight, Wanted,
 };
+pub use refine::{Better, Refined, refine};
 pub use rods_and_modes::{RodForecast, rods_and_modes};
 pub use search::{Found, Searched, search};
 pub use study::{Base, Shown, Study};

@@ -33,6 +33,7 @@ pub mod poses;
 pub mod prediction;
 pub mod rig;
 mod scale;
+mod sensitivities;
 pub mod table;
 pub mod text;
 

@@ -18,6 +18,7 @@ const FLOORS: &[&[&str]] = &[
         "delimited",
         "toml_text",
         "linalg",
+        "linear_program",
         "statistics",
         "parallel",
         "least_squares",

@@ -32,6 +32,11 @@ pub struct DesignRod {
     /// Look at so many combinations only, spread evenly at random.
     #[arg(long, value_name = "N")]
     samples: Option<u64>,
+    /// Better design N of the front between the values of the ranges and of the tubes, then take the
+    /// nearest tubes of the catalogue [without N: design 1].
+    #[arg(long, value_name = "N", num_args = 0..=1, default_missing_value = "1",
+          value_parser = clap::value_parser!(u32).range(1..))]
+    refine: Option<u32>,
     /// Every random number comes from this seed.
     #[arg(long, default_value_t = 1)]
     seed: u64,
@@ -107,6 +112,10 @@ impl DesignRod {
         let progress = Progress::new("looking at rods", usize::try_from(count).unwrap_or(usize::MAX));
         let study = Study::new(wish, searched, base, &|more| progress.more(more))?;
         progress.finish();
+        let study = match self.refine {
+            Some(number) => study.with_refined(number as usize - 1)?,
+            None => study,
+        };
         let mut report = report::design::report(&study);
         report.provenance = vec![
             ("design file".into(), self.design.display().to_string()),

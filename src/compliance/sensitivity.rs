@@ -30,7 +30,7 @@ pub struct Sensitivity {
 
 /// Derivatives of `rod` by every number of it ([`Rod::numbers`]) under `physics`, and with a contact force of this size (N).
 ///
-/// At entries of C^F or C^g that are 0 by symmetry, |C| of c_rod has a kink; there the derivative is that of C itself.
+/// At entries of C^F or C^g that are 0 by symmetry, |C| of c_rod has a kink; there the derivative is the one as the number grows.
 ///
 /// ```
 /// use rodcal::compliance::sensitivities;

@@ -107,17 +107,28 @@ impl Figures {
     /// # Errors
     /// As [`TipSolver::solve`] and [`Rod::first_frequency_slopes`].
     pub fn slopes(rod: &Rod) -> Result<Vec<(NominalNumber, Figures)>> {
+        Figures::slopes_by(rod, &rod.numbers(), true)
+    }
+
+    /// [`Figures::slopes`] by some numbers, and only if asked for those of the frequency, which cost more than all others.
+    pub(super) fn slopes_by(
+        rod: &Rod,
+        all: &[NominalNumber],
+        swings: bool,
+    ) -> Result<Vec<(NominalNumber, Figures)>> {
         let mut solver = TipSolver::default();
-        let all = rod.numbers();
-        let frequencies = rod.first_frequency_slopes(&all)?.map(|(_, slopes)| slopes);
+        let frequencies = match swings {
+            true => rod.first_frequency_slopes(all)?.map(|(_, slopes)| slopes),
+            false => None,
+        };
         let mut slopes = Vec::new();
-        for (k, number) in all.into_iter().enumerate() {
-            let Some(varied) = rod.derivative(&number) else { continue };
+        for (k, number) in all.iter().enumerate() {
+            let Some(varied) = rod.derivative(number) else { continue };
             let mut figures = Figures(numbers(&varied, &mut solver)?.map(|figure: Dual| figure.eps));
             let frequency = frequencies.as_ref().map_or(0.0, |slopes| slopes[k]);
             figures.set(Figure::FirstFrequency, frequency);
             figures.set(Figure::Price, f64::NAN);
-            slopes.push((number, figures));
+            slopes.push((number.clone(), figures));
         }
         Ok(slopes)
     }

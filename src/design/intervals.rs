@@ -7,9 +7,7 @@
 
 use super::figure::{Figure, Figures, Goal};
 use super::front::Design;
-use super::wish::Wish;
-use crate::error::Result;
-use crate::rod::NominalNumber;
+use crate::rod::{NominalNumber, Rod};
 
 /// Half of a 95 % interval of a normal number, in standard deviations.
 const HALF: f64 = 1.959964;
@@ -25,22 +23,17 @@ pub struct Intervals {
 }
 
 impl Intervals {
-    /// Of one design.
-    ///
-    /// # Errors
-    /// What the beam model refuses.
-    pub fn of(wish: &Wish, design: &Design) -> Result<Intervals> {
+    /// Of one rod, whose figures have these derivatives ([`Figures::slopes`]).
+    pub fn of(rod: &Rod, slopes: &[(NominalNumber, Figures)]) -> Intervals {
+        let known = rod.nominal_numbers();
         let mut shifts = Vec::new();
-        if let Ok(rod) = wish.rod(design.index) {
-            let known = rod.nominal_numbers();
-            for (number, slopes) in Figures::slopes(&rod)? {
-                let Some(nominal) = known.iter().find(|nominal| nominal.number == number) else { continue };
-                let by = slopes.0.map(|slope| slope * nominal.standard_uncertainty);
-                shifts.push((number, by.map(|by| if by.is_finite() { by } else { 0.0 })));
-            }
+        for (number, slopes) in slopes {
+            let Some(nominal) = known.iter().find(|nominal| nominal.number == *number) else { continue };
+            let by = slopes.0.map(|slope| slope * nominal.standard_uncertainty);
+            shifts.push((number.clone(), by.map(|by| if by.is_finite() { by } else { 0.0 })));
         }
         let half = |k: usize| HALF * shifts.iter().map(|(_, shift)| shift[k].powi(2)).sum::<f64>().sqrt();
-        Ok(Intervals { half: Figures(std::array::from_fn(half)), shifts })
+        Intervals { half: Figures(std::array::from_fn(half)), shifts }
     }
 
     /// Half of the 95 % interval of the difference of two designs in one figure.
@@ -84,7 +77,7 @@ pub fn indistinguishable(designs: &[Design], intervals: &[Intervals], goals: &[G
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::design::{Searched, search};
+    use crate::design::{Searched, Wish, search};
 
     fn wish(l2: &str) -> Wish {
         let text = format!(
@@ -97,7 +90,11 @@ mod tests {
 
     fn of(wish: &Wish) -> (Vec<Design>, Vec<Intervals>) {
         let designs = search(wish, Searched::All, &|_| {}).unwrap().front;
-        let intervals = designs.iter().map(|design| Intervals::of(wish, design).unwrap()).collect();
+        let of = |design: &Design| {
+            let rod = wish.rod(design.index).unwrap();
+            Intervals::of(&rod, &Figures::slopes(&rod).unwrap())
+        };
+        let intervals = designs.iter().map(of).collect();
         (designs, intervals)
     }
 

@@ -39,6 +39,8 @@ pub struct Wish {
     pub bend_radius: Vec<f64>,
     #[allow(missing_docs)]
     pub tip_mass: Vec<f64>,
+    /// Which of L1, L2, γ, bend radius and tip mass were given as ranges, between whose steps values make sense too.
+    pub is_range: [bool; 5],
     /// How much more flexible bends are than beams.
     pub bend_flexibility: BendFlexibility,
     /// Tubes to choose from.
@@ -213,6 +215,14 @@ impl Wish {
             joints.push(check.joint(joint, &joints, f64::INFINITY)?);
         }
         let masses = raw.mass.iter().map(|mass| check.lumped_mass(mass, f64::INFINITY));
+        let keys = [
+            Some(&geometry.l1_mm),
+            Some(&geometry.l2_mm),
+            geometry.gamma_deg.as_ref(),
+            geometry.bend_radius_mm.as_ref(),
+            raw.tip.as_ref().map(|tip| &tip.mass_g),
+        ];
+        let is_range = keys.map(|raw| raw.is_some_and(|raw| matches!(raw.get_ref(), Raw::Range(_))));
         let wish = Wish {
             file: file.to_owned(),
             l1,
@@ -221,6 +231,7 @@ impl Wish {
             bend_radius,
             bend_flexibility: flexibility.unwrap_or_default(),
             tip_mass,
+            is_range,
             tubes,
             is_one_tube: raw.catalogue.same_tube.unwrap_or(true),
             masses: masses.collect::<Result<_>>()?,

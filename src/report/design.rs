@@ -1,15 +1,18 @@
 //! What `design rod` says: JSON, tables and pictures of a [`Study`].
 
 mod figures;
+mod refined;
 
 use serde_json::{Map, Value, json};
 
+use super::chart::Figure as Picture;
+use super::sensitivities::{self, OnePercent};
 use super::table::{Column, Table};
 use super::{Block, Report, Section};
 use crate::calibration::Mode;
-use crate::design::{Design, Figure, ForRobot, Goal, Impossible, Limit, Shown, Study};
+use crate::design::{Design, Figure, Figures, ForRobot, Goal, Impossible, Limit, Shown, Study};
 use crate::error::Result;
-use crate::rod::Rod;
+use crate::rod::{NominalNumber, Rod};
 use crate::units::{DEG, GRAM, MM, UM, significant};
 
 /// Digits of a figure in a table.
@@ -44,6 +47,7 @@ pub fn json(study: &Study) -> Value {
         "front": front,
         "infeasible_because": because,
         "relax": relaxed.collect::<Vec<_>>(),
+        "refined": study.refined.as_ref().map(refined::json),
         "base": study.base.as_ref().map(|base| {
             let mut object = figures_json(&Design { index: 0, figures: base.figures });
             object.insert("rod".into(), base.rod.name.clone().into());
@@ -73,8 +77,73 @@ fn front_json(study: &Study, place: usize, design: &Design) -> Value {
             Figure::ALL.into_iter().filter_map(interval).collect::<Map<_, _>>().into(),
         );
         object.insert("indistinguishable_from".into(), shown.indistinguishable.clone().into());
+        object.insert("sensitivities".into(), shown.slopes.iter().map(slopes_json(shown)).collect());
+        let keys = COUNTED.map(|figure| format!("{}_percent", figure.key()));
+        let keys: Vec<&str> = keys.iter().map(String::as_str).collect();
+        object.insert("one_percent_more".into(), sensitivities::json(&one_percent_more(shown), &keys));
     }
     object.into()
+}
+
+/// Derivatives of the figures by one number of a design, per unit of its key.
+fn slopes_json(shown: &Shown) -> impl Fn(&(NominalNumber, Figures)) -> Value {
+    |(number, slopes)| {
+        let mut object =
+            sensitivities::number_json(number, shown.rod.value_of(number).unwrap_or(f64::NAN));
+        let (_, si) = number.in_file();
+        for figure in COUNTED {
+            object.insert(figure.key().into(), slopes.get(figure).map(|slope| slope * si).into());
+        }
+        object.into()
+    }
+}
+
+/// Figures whose derivatives are shown.
+const COUNTED: [Figure; 7] = [
+    Figure::CRod,
+    Figure::CfMax,
+    Figure::CgMax,
+    Figure::Mass,
+    Figure::Moment,
+    Figure::FirstFrequency,
+    Figure::Reach,
+];
+
+fn one_percent_more(shown: &Shown) -> Vec<OnePercent> {
+    let of = |figures: &Figures| COUNTED.map(|figure| figures.get(figure).unwrap_or(f64::NAN)).to_vec();
+    let slopes: Vec<(NominalNumber, Vec<f64>)> =
+        shown.slopes.iter().map(|(number, slopes)| (number.clone(), of(slopes))).collect();
+    sensitivities::one_percent_more(&shown.rod, &slopes, &of(&shown.design.figures))
+}
+
+/// What 1 % more of each number does to the first, the middle and the last design that are shown.
+fn what_counts(study: &Study) -> Section {
+    let last = study.shown.len().saturating_sub(1);
+    let mut picked = vec![0, last / 2, last];
+    picked.dedup();
+    let heads = COUNTED.map(|figure| figure.words().0);
+    let mut blocks = vec![Block::Paragraph(
+        "Change of each figure by 1 % more of one number, all others kept; exact derivatives. The JSON has those of all \
+         designs that are shown, in the units of the rod file."
+            .into(),
+    )];
+    let mut panels = Vec::new();
+    for shown in picked.into_iter().filter_map(|k| study.shown.get(k)) {
+        let (rows, name) = (one_percent_more(shown), &shown.rod.name);
+        let title = format!("{name}: {}", shown.tubes.join(" + "));
+        panels.push(sensitivities::bars(title, &rows, &[(0, "c_rod"), (3, "mass"), (5, "first frequency")]));
+        let (id, caption) = (format!("sensitivities-{}", shown.place + 1), format!("What counts, {name}."));
+        blocks.push(Block::Table(sensitivities::table(&id, caption, &heads, &rows)));
+    }
+    let figure = Picture {
+        name: "sensitivities".into(),
+        caption: "What 1 % more of each number does: the numbers that count most.".into(),
+        panels,
+        columns: 1,
+        shared_legend: true,
+    };
+    blocks.insert(1, Block::Figure(figure));
+    Section::new("What counts", blocks)
 }
 
 fn figures_json(design: &Design) -> Map<String, Value> {
@@ -174,6 +243,8 @@ pub fn report(study: &Study) -> Report {
     } else {
         sections.push(Section::new("The front", front(study)));
         sections.push(Section::new("To scale", vec![Block::Figure(figures::to_scale(study))]));
+        sections.extend(study.refined.as_ref().map(|found| refined::section(study, found)));
+        sections.push(what_counts(study));
     }
     sections.push(Section::new("What was looked at", looked_at(study)));
     Report {
@@ -462,5 +533,6 @@ pub fn files(study: &Study) -> Result<Vec<(String, Vec<u8>)>> {
         (format!("design-{:03}.toml", shown.place + 1), shown.rod.to_toml(&above).into_bytes())
     };
     files.extend(study.shown.iter().map(of_rod));
+    files.extend(study.refined.iter().flat_map(|found| refined::files(found, &above)));
     Ok(files)
 }

@@ -35,10 +35,8 @@ pub trait Number:
     fn smaller(self, other: Self) -> Self {
         if other.value() < self.value() { other } else { self }
     }
-    /// |x|; its derivative at 0 is that of x.
-    fn size(self) -> Self {
-        if self.value() < 0.0 { -self } else { self }
-    }
+    /// |x|; at its kink, where x is 0, the derivative is the one as the variable grows.
+    fn size(self) -> Self;
     /// 1/x.
     fn recip(self) -> Self {
         Self::one() / self
@@ -224,6 +222,10 @@ impl Number for Dual {
     fn value(self) -> f64 {
         self.re
     }
+    fn size(self) -> Dual {
+        let eps = if self.re == 0.0 { self.eps.abs() } else { self.eps * self.re.signum() };
+        Dual { re: self.re.abs(), eps }
+    }
     fn sqrt(self) -> Dual {
         self.chained(self.re.sqrt(), 0.5 / self.re.sqrt())
     }
@@ -259,6 +261,9 @@ impl Number for Dual {
 impl Number for f64 {
     fn value(self) -> f64 {
         self
+    }
+    fn size(self) -> f64 {
+        self.abs()
     }
     fn sqrt(self) -> f64 {
         self.sqrt()

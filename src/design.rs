@@ -24,6 +24,7 @@ mod limits;
 mod nearest;
 mod poses;
 mod refine;
+mod resume;
 mod rods_and_modes;
 mod search;
 mod study;
@@ -43,7 +44,7 @@ pub use poses::{
 };
 pub use refine::{Better, Refined, refine};
 pub use rods_and_modes::{RodForecast, rods_and_modes};
-pub use search::{Found, Searched, search};
+pub use search::{Found, Search, Searched, search};
 pub use study::{Base, Shown, Study};
 pub use values::MOST_VALUES;
 pub use wish::{MOST_RODS, Wish};

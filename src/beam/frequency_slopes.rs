@@ -117,7 +117,10 @@ mod tests {
                 // of 1 % of the number, to 1e-6 of what that does, and to 1e-10 of the frequency
                 let size = 0.01 * rod.value_of(number).unwrap().abs().max(1e-6);
                 let off = (slope - expected).abs() * size;
-                assert!(off < 1e-6 * expected.abs() * size + 1e-10 * frequency, "{number}: {slope} {expected}");
+                assert!(
+                    off < 1e-6 * expected.abs() * size + 1e-10 * frequency,
+                    "{number}: {slope} {expected}"
+                );
             }
         }
     }

@@ -157,7 +157,11 @@ impl<T: Number> Chain<T> {
     }
 
     /// M x: forces and moments at the nodes.
-    pub(super) fn inertia_forces(&self, inertia: &[Option<SMatrix<T, 12, 12>>], x: &DMatrix<T>) -> DMatrix<T> {
+    pub(super) fn inertia_forces(
+        &self,
+        inertia: &[Option<SMatrix<T, 12, 12>>],
+        x: &DMatrix<T>,
+    ) -> DMatrix<T> {
         let mut forces = DMatrix::zeros(x.nrows(), x.ncols());
         for (k, element) in self.elements.iter().enumerate() {
             if let Some(mass) = &inertia[element.shape] {

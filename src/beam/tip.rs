@@ -88,18 +88,16 @@ impl<T: Number> Chain<T> {
             let (near, far) = (&self.nodes[k], &self.nodes[k + 1].position);
             let lever = tip - element.reference;
             // a newton at the tip: F = 1, M = [r]ₓ;  the weight beyond: F = φ, M = [s]ₓ, and its own
-            let [of_force, of_weight] = [
-                (T::one(), skew(&lever)),
-                (mass, skew(&(first_moment + (far - element.reference) * mass))),
-            ]
-            .map(|(mass, moment)| {
-                let mut motion = [shape.force * mass, shape.moment * moment];
-                if let Some(coupling) = &shape.coupling {
-                    motion[0] += coupling * moment;
-                    motion[1] += coupling.transpose() * mass;
-                }
-                motion
-            });
+            let [of_force, of_weight] =
+                [(T::one(), skew(&lever)), (mass, skew(&(first_moment + (far - element.reference) * mass)))]
+                    .map(|(mass, moment)| {
+                        let mut motion = [shape.force * mass, shape.moment * moment];
+                        if let Some(coupling) = &shape.coupling {
+                            motion[0] += coupling * moment;
+                            motion[1] += coupling.transpose() * mass;
+                        }
+                        motion
+                    });
             force += of_force[0] - cross(&lever, &of_force[1]);
             weight += of_weight[0] + shape.weight_translation
                 - cross(&lever, &(of_weight[1] + shape.weight_rotation));

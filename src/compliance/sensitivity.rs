@@ -92,20 +92,13 @@ mod tests {
         boxes.pipe1.section = Rectangle::hollow(0.02, 0.03, 0.002).into();
         boxes.bend.section = Rectangle::solid(0.011, 0.02).into();
         let mut general = plain.clone();
-        general.pipe2.section = General {
-            area: 1e-4,
-            iy: 3e-9,
-            iz: 2e-9,
-            torsion_constant: 4e-9,
-            shear_coefficient: 0.5,
-        }
-        .into();
+        general.pipe2.section =
+            General { area: 1e-4, iy: 3e-9, iz: 2e-9, torsion_constant: 4e-9, shear_coefficient: 0.5 }.into();
         let mut asme = plain.clone().with_bend(0.04, BendFlexibility::AsmeB313);
         asme.masses.clear();
         for rod in [plain, bent.with_mass("ring", 0.31, 0.1).with_joint(joint), boxes, general, asme] {
             let at = |rod: &Rod| {
-                let [force, weight] =
-                    RodModel::new(rod, &Physics::WHOLE, 1, &[]).unwrap().chain.tip_motion();
+                let [force, weight] = RodModel::new(rod, &Physics::WHOLE, 1, &[]).unwrap().chain.tip_motion();
                 (Compliance { force, gravity: weight * STANDARD_GRAVITY }, rod.mass())
             };
             let here = at(&rod);

@@ -246,7 +246,9 @@ impl Search<'_> {
             let terms = self.terms(&rod, &here, variables)?;
             // within this region until a step betters
             while region >= LAST_STEP {
-                let Some((step, promised)) = terms.step(region, &rod, variables) else { return Ok((rod, here)) };
+                let Some((step, promised)) = terms.step(region, &rod, variables) else {
+                    return Ok((rod, here));
+                };
                 if promised < 1e-3 * LAST_STEP {
                     return Ok((rod, here));
                 }
@@ -428,7 +430,8 @@ mod tests {
     /// Beside all rods of a grid of 1 mm and 0.05 mm.
     #[test]
     fn no_rod_of_a_fine_grid_is_better() {
-        let wish = wish("{ from = 100, to = 250, step = 50 }", "max_mass_g = 700\nmin_first_frequency_hz = 40");
+        let wish =
+            wish("{ from = 100, to = 250, step = 50 }", "max_mass_g = 700\nmin_first_frequency_hz = 40");
         let front = search(&wish, Searched::All, &|_| {}).unwrap().front;
         let place = 7;
         let start = front[place];
@@ -443,7 +446,8 @@ mod tests {
             assert_eq!(again.get(Figure::CRod), better.figures.get(Figure::CRod));
         }
         assert!(any.tubes.is_empty() && bought.tubes.len() == 1);
-        let (reach, best) = (start.figures.get(Figure::Reach).unwrap(), any.figures.get(Figure::CRod).unwrap());
+        let (reach, best) =
+            (start.figures.get(Figure::Reach).unwrap(), any.figures.get(Figure::CRod).unwrap());
         let mut solver = TipSolver::default();
         let mut checked = 0;
         for l1 in (100..=250).step_by(2) {

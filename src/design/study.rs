@@ -76,6 +76,14 @@ impl Study {
         progress: &(dyn Fn(u64) + Sync),
     ) -> Result<Study> {
         let found = search(&wish, searched, progress)?;
+        Study::of_found(wish, found, base)
+    }
+
+    /// Looks closer at what a search found.
+    ///
+    /// # Errors
+    /// What the beam model refuses.
+    pub fn of_found(wish: Wish, found: Found, base: Option<Rod>) -> Result<Study> {
         let last = found.front.len().saturating_sub(1);
         let places: Vec<usize> = match found.front.len() {
             count if count <= MOST_SHOWN => (0..count).collect(),

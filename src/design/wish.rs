@@ -29,6 +29,8 @@ const USUAL_SPEED: f64 = 1e6;
 pub struct Wish {
     /// Name of the file.
     pub file: String,
+    /// Texts of the file and of its catalogue.
+    pub(super) content: String,
     /// L1, L2 and bend radius, m; γ, rad; mass at the tip, kg.
     pub l1: Vec<f64>,
     #[allow(missing_docs)]
@@ -194,7 +196,7 @@ impl Wish {
         let mut check = Check { toml, warnings: Vec::new() };
         let mut materials = built_in_materials();
         materials.extend(raw.material.checked(&mut check)?);
-        let tubes = tubes(&toml, &raw.catalogue, &materials, catalogue)?;
+        let (of_catalogue, tubes) = tubes(&toml, &raw.catalogue, &materials, catalogue)?;
         let mut of = |key: &str, raw: Option<&Spanned<Raw>>, unit: f64, bounds, otherwise: f64| match raw {
             Some(raw) => {
                 Ok(values(&mut check, key, raw, bounds)?.into_iter().map(|value| value * unit).collect())
@@ -225,6 +227,7 @@ impl Wish {
         let is_range = keys.map(|raw| raw.is_some_and(|raw| matches!(raw.get_ref(), Raw::Range(_))));
         let wish = Wish {
             file: file.to_owned(),
+            content: format!("{text}\n{of_catalogue}"),
             l1,
             l2,
             gamma,
@@ -356,16 +359,17 @@ fn tubes(
     raw: &RawCatalogue,
     materials: &BTreeMap<String, Material>,
     find: &dyn Fn(&str) -> Result<(String, String)>,
-) -> Result<Vec<Tube>> {
+) -> Result<(String, Vec<Tube>)> {
     let name = raw.file.get_ref();
     if name == BUILT_IN {
-        return catalogue::built_in(materials);
+        return Ok((catalogue::BUILT_IN_TEXT.to_owned(), catalogue::built_in(materials)?));
     }
     if name.is_empty() {
         return Err(toml.is("catalogue.file", &raw.file, "a table of tubes, or \"builtin\""));
     }
     let (file, text) = find(name).map_err(|error| catalogue::unreadable(error, "[catalogue] file"))?;
-    catalogue::read(&file, &text, materials)
+    let tubes = catalogue::read(&file, &text, materials)?;
+    Ok((text, tubes))
 }
 
 fn limits(toml: &TomlText, raw: &RawLimits) -> Result<Vec<Limit>> {

@@ -88,8 +88,7 @@ fn front_json(study: &Study, place: usize, design: &Design) -> Value {
 /// Derivatives of the figures by one number of a design, per unit of its key.
 fn slopes_json(shown: &Shown) -> impl Fn(&(NominalNumber, Figures)) -> Value {
     |(number, slopes)| {
-        let mut object =
-            sensitivities::number_json(number, shown.rod.value_of(number).unwrap_or(f64::NAN));
+        let mut object = sensitivities::number_json(number, shown.rod.value_of(number).unwrap_or(f64::NAN));
         let (_, si) = number.in_file();
         for figure in COUNTED {
             object.insert(figure.key().into(), slopes.get(figure).map(|slope| slope * si).into());

@@ -22,11 +22,7 @@ pub struct OnePercent {
 /// What 1 % more of each number of `rod` does to `figures`, whose derivatives by it (per SI unit) are `slopes`. Numbers of
 /// 0 are left out. Of a tube these are its wall and its outer diameter at that wall; where both pipes are one tube,
 /// of both.
-pub fn one_percent_more(
-    rod: &Rod,
-    slopes: &[(NominalNumber, Vec<f64>)],
-    figures: &[f64],
-) -> Vec<OnePercent> {
+pub fn one_percent_more(rod: &Rod, slopes: &[(NominalNumber, Vec<f64>)], figures: &[f64]) -> Vec<OnePercent> {
     let of = |number: &NominalNumber| {
         let known = slopes.iter().find(|(known, _)| known == number);
         known.map_or(vec![0.0; figures.len()], |(_, slopes)| slopes.clone())
@@ -138,7 +134,8 @@ pub fn bars(title: impl Into<String>, rows: &[OnePercent], picked: &[(usize, &st
     let reach = rows.first().map_or(1.0, |row| 1.25 * most(row));
     chart.x.range = Range::Fixed(-reach, reach);
     chart.height_px = Some(30.0 + 14.0 * (picked.len() * rows.len()) as f64);
-    let looks = [(Colour::Vermilion, Dash::Solid), (Colour::Blue, Dash::Dashed), (Colour::Green, Dash::Dotted)];
+    let looks =
+        [(Colour::Vermilion, Dash::Solid), (Colour::Blue, Dash::Dashed), (Colour::Green, Dash::Dotted)];
     let thick = 0.84 / picked.len().max(1) as f64;
     for (place, ((k, label), (colour, dash))) in picked.iter().zip(looks).enumerate() {
         let top = |row: usize| 0.42 - row as f64 - place as f64 * thick;
@@ -163,7 +160,8 @@ pub fn json(rows: &[OnePercent], keys: &[&str]) -> Value {
     let of = |row: &OnePercent| {
         let mut object = Map::new();
         object.insert("number".into(), row.number.clone().into());
-        let percents = keys.iter().zip(&row.percent).map(|(key, percent)| ((*key).to_owned(), json!(percent)));
+        let percents =
+            keys.iter().zip(&row.percent).map(|(key, percent)| ((*key).to_owned(), json!(percent)));
         object.extend(percents);
         Value::Object(object)
     };

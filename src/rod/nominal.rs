@@ -131,11 +131,13 @@ impl Rod {
             }
         }
         numbers.extend(features.into_iter().map(NominalNumber::Station));
-        let mut more = |all: Vec<NominalNumber>| all.into_iter().for_each(|number| {
-            if !numbers.contains(&number) {
-                numbers.push(number);
-            }
-        });
+        let mut more = |all: Vec<NominalNumber>| {
+            all.into_iter().for_each(|number| {
+                if !numbers.contains(&number) {
+                    numbers.push(number);
+                }
+            })
+        };
         for mass in &self.masses {
             more(vec![NominalNumber::Mass(mass.name.clone())]);
         }
@@ -173,9 +175,7 @@ impl<T: Number> Rod<T> {
             NominalNumber::LengthL1 => Some(self.l1),
             NominalNumber::LengthL2 => Some(self.l2),
             NominalNumber::BendRadius => Some(self.bend_radius),
-            NominalNumber::Station(Feature::Joint(name)) => {
-                self.joint(name).map(|joint| joint.station)
-            }
+            NominalNumber::Station(Feature::Joint(name)) => self.joint(name).map(|joint| joint.station),
             NominalNumber::Station(Feature::Mass(name)) => {
                 self.masses.iter().find(|mass| mass.name == *name).map(|mass| mass.station)
             }

@@ -107,8 +107,8 @@ impl Dictionary {
             let Some(column) = gaining.min_by_key(|&j| self.free[j]) else { return Some(()) };
             let ratio = |i: usize| self.right[i] / self.rows[i][column];
             let stops = (0..self.rows.len()).filter(|&i| self.rows[i][column] > NOTHING);
-            let row =
-                stops.min_by(|&i, &j| ratio(i).total_cmp(&ratio(j)).then(self.basic[i].cmp(&self.basic[j])))?;
+            let row = stops
+                .min_by(|&i, &j| ratio(i).total_cmp(&ratio(j)).then(self.basic[i].cmp(&self.basic[j])))?;
             self.pivot(row, column);
         }
         None

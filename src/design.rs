@@ -40,7 +40,8 @@ pub use intervals::{Intervals, indistinguishable};
 pub use limits::{Impossible, Limit};
 pub use nearest::{Nearest, Relaxed};
 pub use poses::{
-    Beside, Candidates, Known, Obstacle, PoseCriterion, PoseLimits, PoseStudy, Source, TableHeight, Wanted,
+    Beside, Candidates, Known, Obstacle, PoseCriterion, PoseLimits, PoseStep, PoseStudy, Source, TableHeight,
+    Wanted,
 };
 pub use refine::{Better, Refined, refine};
 pub use rods_and_modes::{RodForecast, rods_and_modes};

@@ -283,6 +283,10 @@ impl Rod {
 /// What an arc of radius R takes off each pipe at the inside angle γ, m. A straight rod (γ = π) has
 /// no bend.
 fn tangent_length<T: Number>(bend_radius: T, gamma: T) -> T {
+    // a sharp corner takes nothing; a search asks for this a hundred times a rod
+    if bend_radius.value() == 0.0 {
+        return T::zero();
+    }
     bend_radius * ((-gamma + PI) / 2.0).tan()
 }
 

@@ -5,6 +5,7 @@
 mod calibrate;
 mod design;
 mod design_poses;
+mod design_rig;
 mod diagnose;
 mod diagnose_calibration;
 mod files;

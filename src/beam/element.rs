@@ -17,7 +17,7 @@
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
 use crate::dual::{Number, about_y};
-use crate::spatial::{rotated, skew};
+use crate::spatial::{product, rotated, skew};
 
 /// Flexibilities of a cross-section per unit length, and its mass.
 ///
@@ -86,7 +86,7 @@ impl<T: Number> Shape<T> {
             // the mean force of its own weight is half of it: U = A·m/2
             weight_translation: force * (mass / 2.0),
             // the mean moment of its own weight is (L²/6)(t × q) with q = m a/L: V = B·[t]ₓ·mL/6
-            weight_rotation: moment * skew(&ahead()) * (mass * l / 6.0),
+            weight_rotation: product(&moment, &skew(&ahead())) * (mass * l / 6.0),
             mass,
             mass_centre: Vector3::zeros(),
         }

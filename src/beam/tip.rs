@@ -11,7 +11,7 @@ use super::model::{Physics, RodModel};
 use crate::dual::{Number, about_y};
 use crate::error::Result;
 use crate::rod::Rod;
-use crate::spatial::{cross, skew};
+use crate::spatial::{cross, product, skew};
 
 /// Solves for the tips of rods one after another.
 ///
@@ -91,7 +91,7 @@ impl<T: Number> Chain<T> {
             let [of_force, of_weight] =
                 [(T::one(), skew(&lever)), (mass, skew(&(first_moment + (far - element.reference) * mass)))]
                     .map(|(mass, moment)| {
-                        let mut motion = [shape.force * mass, shape.moment * moment];
+                        let mut motion = [shape.force * mass, product(&shape.moment, &moment)];
                         if let Some(coupling) = &shape.coupling {
                             motion[0] += coupling * moment;
                             motion[1] += coupling.transpose() * mass;

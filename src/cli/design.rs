@@ -1,6 +1,7 @@
-//! `rodcal design rod DESIGN`, `rodcal design poses CAMPAIGN`.
+//! `rodcal design rod DESIGN`, `rodcal design poses CAMPAIGN`, `rodcal design rig ROD`.
 
 pub mod poses;
+pub mod rig;
 
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
@@ -20,6 +21,8 @@ pub enum Design {
     Rod(DesignRod),
     /// The poses that a calibration should measure, and how accurate the robot will be.
     Poses(poses::DesignPoses),
+    /// What to measure on a rig so that effects can be told apart, or r_rod is known well enough.
+    Rig(rig::DesignRig),
 }
 
 #[derive(Debug, Args)]
@@ -93,6 +96,7 @@ impl Design {
         match self {
             Design::Rod(rod) => rod.run(),
             Design::Poses(poses) => poses.run(),
+            Design::Rig(rig) => rig.run(),
         }
     }
 }

@@ -7,6 +7,8 @@ pub mod calibration;
 mod headline;
 mod hidden;
 mod json;
+
+pub(super) use json::load_plan;
 mod place;
 mod remainder;
 pub mod rig;

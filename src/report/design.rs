@@ -1,10 +1,12 @@
 //! What `design rod` says: JSON, tables and pictures of a [`Study`].
 
+mod cells;
 mod figures;
 mod refined;
 
 use serde_json::{Map, Value, json};
 
+use self::cells::{DIGITS, columns, figures_json, shape_cells, shape_columns};
 use super::chart::Figure as Picture;
 use super::sensitivities::{self, OnePercent};
 use super::table::{Column, Table};
@@ -14,9 +16,6 @@ use crate::design::{Design, Figure, Figures, ForRobot, Goal, Impossible, Limit, 
 use crate::error::Result;
 use crate::rod::{NominalNumber, Rod};
 use crate::units::{DEG, GRAM, MM, UM, significant};
-
-/// Digits of a figure in a table.
-const DIGITS: usize = 4;
 
 /// The JSON of `rodcal design rod --json`.
 pub fn json(study: &Study) -> Value {
@@ -143,11 +142,6 @@ fn what_counts(study: &Study) -> Section {
     };
     blocks.insert(1, Block::Figure(figure));
     Section::new("What counts", blocks)
-}
-
-fn figures_json(design: &Design) -> Map<String, Value> {
-    let known = |figure: Figure| Some((figure.key().to_owned(), json!(design.figures.get(figure)?)));
-    Figure::ALL.into_iter().filter_map(known).collect()
 }
 
 /// The keys of a rod file.
@@ -343,32 +337,6 @@ fn front(study: &Study) -> Vec<Block> {
         blocks.push(Block::Paragraph(format!("Beside rod {}: {better}. {breaks}", base.rod.name)));
     }
     blocks
-}
-
-/// The figures of a table: the goals first, then the others that every design has.
-fn columns(study: &Study) -> Vec<Figure> {
-    let mut figures: Vec<Figure> = study.wish.goals.iter().map(|goal| goal.figure).collect();
-    let more = [Figure::CRod, Figure::Mass, Figure::FirstFrequency, Figure::Reach];
-    figures
-        .extend(more.into_iter().filter(|figure| study.wish.goals.iter().all(|goal| goal.figure != *figure)));
-    figures
-}
-
-fn shape_columns() -> Vec<Column> {
-    vec![
-        Column::number("L1", "mm"),
-        Column::number("L2", "mm"),
-        Column::number("γ", "°"),
-        Column::number("R", "mm"),
-        Column::number("tip", "g"),
-    ]
-}
-
-fn shape_cells(rod: &Rod) -> Vec<String> {
-    // as a drawing has them: no zeros behind, and none of the rounding of units
-    [rod.l1 / MM, rod.l2 / MM, rod.gamma / DEG, rod.bend_radius / MM, rod.tip_mass / GRAM]
-        .map(|value| ((value * 1e3).round() / 1e3).to_string())
-        .to_vec()
 }
 
 fn front_table(study: &Study) -> Table {

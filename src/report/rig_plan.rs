@@ -53,7 +53,8 @@ pub fn report(plan: &RigPlan, rod: &Rod, bench: &Bench) -> Report {
         sections.push(Section::new("What it will tell", will_tell(plan)));
     }
     let assumed = format!(
-        "Assumed: loads to {} N, noise of {} µm of a reading and of the zero of each run, effects of their usual sizes, the \
+        "Assumed: loads to {} N, noise of {} µm of a reading and of the zero of each run, effects of their usual sizes (the odds of \
+         smaller ones are smaller), the \
          rod's nominal numbers as uncertain as its file says. Time: 10 minutes for a new place of load or sensors, 2 for a new zero, half \
          a minute for a reading, and waiting.",
         significant(bench.largest_load, 3),
@@ -87,10 +88,11 @@ fn headline(plan: &RigPlan) -> String {
     let (count, short) = all.fold((0, 0), |(count, short), (_, now, _)| {
         (count + 1, short + usize::from(*now < plan.wanted * (1.0 - 1e-9)))
     });
+    let tell = if plan.measurements.len() == 1 { "tells" } else { "tell" };
     match short {
-        0 => format!("{effort} tell these effects apart, with odds of {odds} : 1 or more to be expected."),
+        0 => format!("{effort} {tell} these effects apart, with odds of {odds} : 1 or more to be expected."),
         _ => format!(
-            "{effort} tell these effects apart in {} of {count} comparisons of places, with odds of {odds} : 1 or more to be \
+            "{effort} {tell} these effects apart in {} of {count} comparisons of places, with odds of {odds} : 1 or more to be \
              expected; the others cannot be told on this rig.",
             count - short
         ),

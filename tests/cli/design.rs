@@ -159,14 +159,15 @@ fn a_search_that_was_killed_goes_on_and_says_the_same() {
 #[test]
 fn a_design_is_refined_and_its_rod_is_written() {
     let sandbox = sandbox();
-    let json = sandbox.run("design rod design.toml --refine 3 --out o --json").json();
+    sandbox.write("design.toml", &DESIGN.replace("[100, 150, 200]", "{ from = 100, to = 200, step = 50 }"));
+    let json = sandbox.run("design rod design.toml --refine 12 --out o --json").json();
     let (refined, front) = (&json["refined"], &json["front"]);
-    assert_eq!(refined["from_design"], 3);
+    assert_eq!(refined["from_design"], 12);
     let better = &refined["catalogue"];
     let number = |value: &serde_json::Value, key: &str| value[key].as_f64().unwrap();
     assert!(number(better, "gained_percent") > 0.0, "{refined}");
-    assert!(number(better, "c_rod_um") < number(&front[2], "c_rod_um"));
-    assert!(number(better, "reach_mm") >= number(&front[2], "reach_mm") - 1e-6);
+    assert!(number(better, "c_rod_um") < number(&front[11], "c_rod_um"));
+    assert!(number(better, "reach_mm") >= number(&front[11], "reach_mm") - 1e-6);
     assert!(number(better, "mass_g") <= 900.0 && number(better, "first_frequency_hz") >= 20.0);
     let rod = sandbox.run("compliance o/refined.toml --json").json();
     assert!((number(&rod, "c_rod_um") / number(better, "c_rod_um") - 1.0).abs() < 1e-9);

@@ -31,8 +31,9 @@ use crate::rod::Rod;
 const SETUP: f64 = 10.0;
 const ZEROING: f64 = 2.0;
 const READING: f64 = 0.5;
-/// Repeats that are added at a time, and most of one measurement.
-const ADDED: [usize; 4] = [1, 2, 4, 8];
+/// Fewest repeats of a measurement, for the scatter has to be seen too; what is added at a time, and most of all.
+const FEWEST: usize = 3;
+const ADDED: [usize; 3] = [1, 3, 6];
 const MOST_REPEATS: usize = 12;
 const MOST_ROUNDS: usize = 24;
 /// Share of the rivals that a measurement has to take away.
@@ -132,10 +133,12 @@ pub fn plan(rod: &Rod, between: &[&'static Effect], odds: f64, bench: &Bench) ->
         }
         let mut offers: Vec<Vec<usize>> = Vec::new();
         for k in 0..counts.len() {
-            for more in ADDED.into_iter().filter(|more| counts[k] + more <= MOST_REPEATS) {
+            for more in ADDED {
                 let mut offer = counts.clone();
-                offer[k] += more;
-                offers.push(offer);
+                offer[k] = (counts[k] + more).max(FEWEST);
+                if offer[k] <= MOST_REPEATS && !offers.contains(&offer) {
+                    offers.push(offer);
+                }
             }
         }
         offers.sort_by(|a, b| menu.minutes(a).total_cmp(&menu.minutes(b)));
@@ -158,8 +161,7 @@ pub fn plan(rod: &Rod, between: &[&'static Effect], odds: f64, bench: &Bench) ->
     order.sort_by(|&a, &b| menu.labour(b, counts[b]).total_cmp(&menu.labour(a, counts[a])).then(a.cmp(&b)));
     for k in order {
         while counts[k] > 0 {
-            let mut fewer = counts.clone();
-            fewer[k] -= 1;
+            let fewer = one_less(&counts, k);
             let told = menu.told(&fewer);
             if !is_kept(&told) {
                 break;
@@ -168,6 +170,13 @@ pub fn plan(rod: &Rod, between: &[&'static Effect], odds: f64, bench: &Bench) ->
         }
     }
     Ok(menu.plan(&counts, wanted, &now, &all))
+}
+
+/// One repeat less of a measurement, or none.
+fn one_less(counts: &[usize], k: usize) -> Vec<usize> {
+    let mut fewer = counts.to_vec();
+    fewer[k] = if counts[k] > FEWEST { counts[k] - 1 } else { 0 };
+    fewer
 }
 
 /// The effort of a plan of loads, minutes.
@@ -320,13 +329,8 @@ impl Menu {
             let words = &self.measurements[k].words;
             let what = words.split(", three times").next().unwrap_or(words).trim_end_matches('.');
             let what = what.split("; read").next().unwrap_or(what);
-            let times = match repeats {
-                1 => "once".to_owned(),
-                2 => "twice, each time from a new zero".to_owned(),
-                times => format!("{times} times, each time from a new zero"),
-            };
             PlannedLoads {
-                words: format!("{what}, {times}; read dx, dy and dz."),
+                words: format!("{what}, {repeats} times, each time from a new zero; read dx, dy and dz."),
                 minutes: minutes(&plan),
                 loads: plan,
             }
@@ -436,8 +440,7 @@ mod tests {
             })
             .collect();
         for k in (0..counts.len()).filter(|&k| counts[k] > 0) {
-            let mut fewer = counts.clone();
-            fewer[k] -= 1;
+            let fewer = one_less(&counts, k);
             assert!(menu.told(&fewer).iter().any(|told| *told < plan.wanted), "{k}");
         }
     }

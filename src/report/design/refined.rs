@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::{DIGITS, columns, figures_json, shape_cells, shape_columns};
+use super::cells::{DIGITS, columns, figures_json, shape_cells, shape_columns};
 use crate::design::{Better, Design, Figures, Refined, Study};
 use crate::report::table::{Column, Table};
 use crate::report::{Block, Section};

@@ -4,7 +4,7 @@
 //! Var s = σ²/(R·Σ(F − F̄)²). With r_rod = (s₂₂ + s₃₃)/(c₂₂ + c₃₃) of slopes and modelled compliances, its 95 % interval is
 //! 2·t·√(Var s₂₂ + Var s₃₃)/(c₂₂ + c₃₃) wide, t of as many degrees of freedom as two lines leave.
 
-use super::{Bench, PlannedLoads, Ratio, RigPlan, minutes};
+use super::{Bench, FEWEST, PlannedLoads, Ratio, RigPlan, minutes};
 use crate::beam::{Physics, RodModel};
 use crate::error::{Error, Result};
 use crate::inference::LoadPlan;
@@ -57,7 +57,7 @@ pub fn plan_ratio(rod: &Rod, width: f64, bench: &Bench) -> Result<RigPlan> {
             hint: "larger loads, a quieter sensor or a wider interval".into(),
         });
     }
-    let mut repeats = 1;
+    let mut repeats = FEWEST;
     while of(repeats)? > width && repeats < MOST_REPEATS {
         repeats += 1;
     }

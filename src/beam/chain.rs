@@ -142,7 +142,7 @@ impl<T: Number> Chain<T> {
     /// Turns the current frame about itself: a sharp corner, or a new direction of the section's
     /// axes.
     pub fn turn(&mut self, rotation: &Rotation3<T>) {
-        self.frame = self.frame * rotation;
+        self.frame *= rotation;
     }
 
     /// A rotational spring here, about the current axes; `bending` and `torsion` in rad/(N·m).

@@ -118,10 +118,9 @@ pub fn refine(wish: &Wish, place: usize, design: &Design) -> Result<Refined> {
     }
     refined.continuous = better(best, if is_kept { names(tubes) } else { Vec::new() }, figures);
     // what can be bought is one of those that could be
-    if let (Some(bought), known) = (&refined.catalogue, &refined.continuous) {
-        if known.as_ref().is_none_or(|known| known.gained < bought.gained) {
-            refined.continuous = Some(bought.clone());
-        }
+    let known = refined.continuous.as_ref().map_or(0.0, |known| known.gained);
+    if refined.catalogue.as_ref().is_some_and(|bought| bought.gained > known) {
+        refined.continuous.clone_from(&refined.catalogue);
     }
     Ok(refined)
 }

@@ -14,7 +14,7 @@ use super::{Block, Report, Section};
 use crate::calibration::Mode;
 use crate::design::{Design, Figure, Figures, ForRobot, Goal, Impossible, Limit, Shown, Study};
 use crate::error::Result;
-use crate::rod::{NominalNumber, Rod};
+use crate::rod::NominalNumber;
 use crate::units::{DEG, GRAM, MM, UM, significant};
 
 /// The JSON of `rodcal design rod --json`.

@@ -93,7 +93,7 @@ fn headline(plan: &RigPlan) -> String {
         0 => format!("{effort} {tell} these effects apart, with odds of {odds} : 1 or more to be expected."),
         _ => format!(
             "{effort} {tell} these effects apart in {} of {count} comparisons of places, with odds of {odds} : 1 or more to be \
-             expected; the others cannot be told on this rig.",
+             expected; the others cannot be told with reasonable effort.",
             count - short
         ),
     }
@@ -114,7 +114,10 @@ fn not_told(plan: &RigPlan) -> Vec<String> {
             1..=4 => format!(" at {}", short.join(", ")),
             count => format!(" at {}, {} and {} more places", short[0], short[1], count - 2),
         };
-        Some(format!("{}{places} cannot be told from {from} here", spoken(told.effect.name)))
+        Some(format!(
+            "{}{places} cannot be told from {from} with reasonable effort",
+            spoken(told.effect.name)
+        ))
     };
     plan.told.iter().filter_map(words).collect()
 }

@@ -51,11 +51,11 @@ pub fn section(study: &Study, found: &Refined) -> Section {
         cells.extend(figures.iter().map(|figure| value(*figure)));
         table.row(cells);
     };
-    if let Some(design) = study.found.front.get(found.place) {
-        if let Ok(rod) = study.wish.rod(design.index) {
-            let tubes = study.wish.tubes_of(design.index).join(" + ");
-            row(&format!("design {}", found.place + 1), &rod, tubes, &design.figures);
-        }
+    if let Some(design) = study.found.front.get(found.place)
+        && let Ok(rod) = study.wish.rod(design.index)
+    {
+        let tubes = study.wish.tubes_of(design.index).join(" + ");
+        row(&format!("design {}", found.place + 1), &rod, tubes, &design.figures);
     }
     let named = |better: &Better| match better.tubes.is_empty() {
         true => sizes(&better.rod),

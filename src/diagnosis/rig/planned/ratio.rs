@@ -2,7 +2,7 @@
 //!
 //! Averages of R repeats at loads F have the variance σ²/R beside a zero that all of them share, so that a line's slope s has
 //! Var s = σ²/(R·Σ(F − F̄)²). With r_rod = (s₂₂ + s₃₃)/(c₂₂ + c₃₃) of slopes and modelled compliances, its 95 % interval is
-//! 2·t·√(Var s₂₂ + Var s₃₃)/(c₂₂ + c₃₃) wide, t of as many degrees of freedom as two lines leave.
+//! 2·t·√(Var s₂₂ + Var s₃₃)/(c₂₂ + c₃₃) wide, t of the degrees of freedom that two lines leave.
 
 use super::{Bench, FEWEST, PlannedLoads, Ratio, RigPlan, minutes};
 use crate::beam::{Physics, RodModel};
@@ -15,6 +15,9 @@ use crate::units::{UM, significant};
 
 /// Loads of a line, evenly up to the largest.
 const LOADS: usize = 6;
+/// A fit takes the larger of its estimates of the scatter (about the line, between repeats), with the degrees of freedom of that
+/// one: in the mean so many times the scatter, as the test below finds it.
+const LARGER: f64 = 1.1;
 /// More is no plan.
 const MOST_REPEATS: usize = 100;
 
@@ -28,7 +31,7 @@ const MOST_REPEATS: usize = 100;
 /// let bench = Bench { largest_load: 10.0, noise: 2e-6, is_at_tip: true };
 /// let plan = plan_ratio(&rod, 0.01, &bench)?;
 /// let ratio = plan.ratio.expect("that is what was asked for");
-/// assert!(ratio.expected <= 0.01 && plan.measurements[0].loads.repeats == 4);
+/// assert!(ratio.expected <= 0.01 && plan.measurements[0].loads.repeats == 6);
 /// # Ok::<(), rodcal::Error>(())
 /// ```
 ///
@@ -41,7 +44,7 @@ pub fn plan_ratio(rod: &Rod, width: f64, bench: &Bench) -> Result<RigPlan> {
     let mean = loads.iter().sum::<f64>() / LOADS as f64;
     let spread: f64 = loads.iter().map(|load| (load - mean).powi(2)).sum();
     let of = |repeats: usize| -> Result<f64> {
-        let t = student_t_quantile(0.975, 2.0 * (repeats * LOADS - 2) as f64)?;
+        let t = LARGER * student_t_quantile(0.975, 2.0 * (LOADS - 2) as f64)?;
         let slope = bench.noise * bench.noise / (repeats as f64 * spread);
         Ok(2.0 * t * (2.0 * slope).sqrt() / sum)
     };
@@ -129,8 +132,7 @@ mod tests {
         }
         let mean = widths.iter().sum::<f64>() / widths.len() as f64;
         let expected = plan.ratio.unwrap().expected;
-        // a fit takes the larger of its estimates of the scatter
-        assert!((0.95..1.25).contains(&(mean / expected)), "{mean} {expected}");
+        assert!((0.9..1.1).contains(&(mean / expected)), "{mean} {expected}");
     }
 
     #[test]

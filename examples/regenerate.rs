@@ -6,9 +6,6 @@
 
 #![allow(missing_docs, clippy::print_stdout)]
 
-#[allow(dead_code)]
-#[path = "../tests/dual.rs"]
-mod dual;
 mod forecast_campaigns;
 mod nist_table;
 mod reconstruct_readings;

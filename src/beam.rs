@@ -19,6 +19,7 @@
 mod chain;
 mod check;
 mod element;
+mod frequency_slopes;
 mod large;
 mod model;
 mod natural;

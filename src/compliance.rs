@@ -5,15 +5,18 @@
 //! axis m, load along axis n.
 
 pub mod closed_form;
+mod sensitivity;
 mod steps;
 mod study;
 
+pub use sensitivity::{Sensitivity, sensitivities};
 pub use steps::{Step, steps};
 pub use study::{Mode, Shape, StationResponse, Study};
 
 use nalgebra::Matrix3;
 
 use crate::beam::{Load, Physics, RodModel};
+use crate::dual::Number;
 use crate::error::{Error, Result};
 use crate::rod::Rod;
 use crate::units::STANDARD_GRAVITY;
@@ -32,11 +35,11 @@ pub const DEFAULT_ELEMENTS: usize = 200;
 
 /// Compliance matrices of the tip in {T}.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Compliance {
+pub struct Compliance<T = f64> {
     /// C^F, m/N; symmetric.
-    pub force: Matrix3<f64>,
+    pub force: Matrix3<T>,
     /// C^g, m per g (9.80665 m/s²); not symmetric.
-    pub gravity: Matrix3<f64>,
+    pub gravity: Matrix3<T>,
 }
 
 impl Compliance {
@@ -76,6 +79,12 @@ impl Compliance {
         }
     }
 
+    fn minus(&self, other: &Compliance) -> Compliance {
+        Compliance { force: self.force - other.force, gravity: self.gravity - other.gravity }
+    }
+}
+
+impl<T: Number> Compliance<T> {
     /// Compliance index c_rod = ΣΣ|C^g| + F ΣΣ|C^F|, m, with F (N) the size of the contact force.
     ///
     /// The paper's Eq 23; only absolute sums reproduce its Table 2.
@@ -87,11 +96,8 @@ impl Compliance {
     /// let compliance = Compliance { force: Matrix3::identity() * 20e-6, gravity: Matrix3::repeat(-1e-6) };
     /// assert!((compliance.index(2.0) - 129e-6).abs() < 1e-18); // 9·1 µm + 2 N · 3·20 µm/N
     /// ```
-    pub fn index(&self, contact_force: f64) -> f64 {
-        self.gravity.abs().sum() + contact_force * self.force.abs().sum()
-    }
-
-    fn minus(&self, other: &Compliance) -> Compliance {
-        Compliance { force: self.force - other.force, gravity: self.gravity - other.gravity }
+    pub fn index(&self, contact_force: f64) -> T {
+        let sum = |matrix: &Matrix3<T>| matrix.iter().map(|entry| entry.size()).sum::<T>();
+        sum(&self.gravity) + sum(&self.force) * contact_force
     }
 }

@@ -5,6 +5,7 @@
 //! - [`Figure`]: the numbers that rods are judged by
 //! - [`search`]: all combinations, or a sample of them, to a Pareto [`Front`]
 //! - [`Intervals`]: how well a design's numbers are known, and which designs cannot be distinguished
+//! - [`refine()`]: between the grid's values, and back to tubes that can be bought
 //! - [`Study`]: a search with all of this
 //!
 //! And poses that do not exist yet: which ones a calibration should measure ([`PoseStudy`]), how accurate the robot will be
@@ -22,6 +23,8 @@ mod intervals;
 mod limits;
 mod nearest;
 mod poses;
+mod refine;
+mod resume;
 mod rods_and_modes;
 mod search;
 mod study;
@@ -37,10 +40,12 @@ pub use intervals::{Intervals, indistinguishable};
 pub use limits::{Impossible, Limit};
 pub use nearest::{Nearest, Relaxed};
 pub use poses::{
-    Beside, Candidates, Known, Obstacle, PoseCriterion, PoseLimits, PoseStudy, Source, TableHeight, Wanted,
+    Beside, Candidates, Known, Obstacle, PoseCriterion, PoseLimits, PoseStep, PoseStudy, Source, TableHeight,
+    Wanted,
 };
+pub use refine::{Better, Refined, refine};
 pub use rods_and_modes::{RodForecast, rods_and_modes};
-pub use search::{Found, Searched, search};
+pub use search::{Found, Search, Searched, search};
 pub use study::{Base, Shown, Study};
 pub use values::MOST_VALUES;
 pub use wish::{MOST_RODS, Wish};

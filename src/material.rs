@@ -2,23 +2,25 @@
 
 pub mod laminate;
 
+use crate::dual::Number;
+
 /// The linear elastic constants a straight or curved pipe needs.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
-pub struct Material {
+pub struct Material<T = f64> {
     /// Name in the rod file.
     pub name: String,
     /// Young's modulus along the pipe E, Pa.
-    pub youngs_modulus: f64,
+    pub youngs_modulus: T,
     /// Shear modulus of the wall G, Pa.
-    pub shear_modulus: f64,
+    pub shear_modulus: T,
     /// Density ρ, kg/m³.
-    pub density: f64,
+    pub density: T,
     /// Poisson's ratio ν, contraction across the pipe per extension along it, dimensionless. Only
     /// the shear coefficient depends on it.
-    pub poisson_ratio: f64,
+    pub poisson_ratio: T,
     /// What the section's shear coefficient is multiplied with, dimensionless; 1 unless stated.
-    pub shear_coefficient_factor: f64,
+    pub shear_coefficient_factor: T,
     /// How well these numbers are known.
     pub standard_uncertainty: MaterialUncertainty,
 }
@@ -127,9 +129,11 @@ impl Material {
         let isotropic = 2.0 * (1.0 + self.poisson_ratio);
         (self.modulus_ratio() / isotropic - 1.0).abs() > ISOTROPY
     }
+}
 
+impl<T: Number> Material<T> {
     /// e = E/G, dimensionless.
-    pub fn modulus_ratio(&self) -> f64 {
+    pub fn modulus_ratio(&self) -> T {
         self.youngs_modulus / self.shear_modulus
     }
 }

@@ -32,7 +32,9 @@ mod plot;
 pub mod poses;
 pub mod prediction;
 pub mod rig;
+pub mod rig_plan;
 mod scale;
+mod sensitivities;
 pub mod table;
 pub mod text;
 

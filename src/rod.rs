@@ -18,6 +18,7 @@ use std::f64::consts::PI;
 
 use nalgebra::Vector3;
 
+use crate::dual::Number;
 use crate::material::Material;
 use crate::section::Section;
 
@@ -25,33 +26,33 @@ use crate::section::Section;
 /// [`Rod::from_toml`] and [`Rod::checked`] check it.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
-pub struct Rod {
+pub struct Rod<T = f64> {
     /// Name, for people.
     pub name: String,
     /// Where its numbers come from, in the words of its file.
     pub source: Option<String>,
     /// Flange to the corner where the two centrelines meet, L1, m.
-    pub l1: f64,
+    pub l1: T,
     /// Corner to the ball centre, L2, m.
-    pub l2: f64,
+    pub l2: T,
     /// Inside angle between the pipes γ, rad: π/2 is the L-shape, π a straight rod.
-    pub gamma: f64,
+    pub gamma: T,
     /// Radius of the bend's centreline R, m; 0 is a sharp corner. The arc is tangent to both pipes.
-    pub bend_radius: f64,
+    pub bend_radius: T,
     /// How much more flexible the bend's cross-section is than beam theory says.
-    pub bend_flexibility: BendFlexibility,
+    pub bend_flexibility: BendFlexibility<T>,
     /// Flange to bend.
-    pub pipe1: Pipe,
+    pub pipe1: Pipe<T>,
     /// The bend; without effect while `bend_radius` is 0.
-    pub bend: Pipe,
+    pub bend: Pipe<T>,
     /// Bend to tip.
-    pub pipe2: Pipe,
+    pub pipe2: Pipe<T>,
     /// Ball and ball holder, lumped at the tip, kg.
-    pub tip_mass: f64,
+    pub tip_mass: T,
     /// Sleeves and holders.
-    pub masses: Vec<LumpedMass>,
+    pub masses: Vec<LumpedMass<T>>,
     /// Bonded or threaded connections.
-    pub joints: Vec<Joint>,
+    pub joints: Vec<Joint<T>>,
     /// Largest load up to which the rod's maker or user calls it linear, N.
     pub linear_range: Option<f64>,
     /// How well the dimensions are known; each material carries its own.
@@ -62,37 +63,37 @@ pub struct Rod {
 
 /// A pipe: its section and what it is made of.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Pipe {
+pub struct Pipe<T = f64> {
     /// Cross-section.
-    pub section: Section,
+    pub section: Section<T>,
     /// Material.
-    pub material: Material,
+    pub material: Material<T>,
 }
 
 /// A mass on the centreline that carries no load.
 #[derive(Debug, Clone, PartialEq)]
-pub struct LumpedMass {
+pub struct LumpedMass<T = f64> {
     /// Name, for people.
     pub name: String,
     /// Station, m.
-    pub station: f64,
+    pub station: T,
     /// Mass, kg.
-    pub mass: f64,
+    pub mass: T,
 }
 
 /// A connection of no length that is compliant in rotation.
 ///
 /// At a sharp corner its axis is that of the pipe on the flange's side.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Joint {
+pub struct Joint<T = f64> {
     /// Name, for people and for the diagnosis.
     pub name: String,
     /// Station, m.
-    pub station: f64,
+    pub station: T,
     /// Rotation about each normal of the centreline per moment about it, rad/(N·m).
-    pub bending: f64,
+    pub bending: T,
     /// Rotation about the centreline per moment about it, rad/(N·m).
-    pub torsion: f64,
+    pub torsion: T,
 }
 
 /// A thin bent pipe ovalises and is more flexible in bending than a beam, by a factor k ≥ 1.
@@ -100,7 +101,7 @@ pub struct Joint {
 /// With h = tR/r² (t wall, R radius of the bend, r mean radius of the section).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
-pub enum BendFlexibility {
+pub enum BendFlexibility<T = f64> {
     /// k = 1: beam theory.
     #[default]
     Beam,
@@ -110,10 +111,10 @@ pub enum BendFlexibility {
     /// k = 1.65/h, not below 1. ASME B31.3 (2018), Table D300, welding elbow or pipe bend.
     AsmeB313,
     /// A factor from elsewhere, for example from a solid finite-element model or from a diagnosis.
-    Factor(f64),
+    Factor(T),
 }
 
-impl BendFlexibility {
+impl<T: Number> BendFlexibility<T> {
     /// The factor k on the bending flexibility of the bend (in and out of its plane),
     /// dimensionless; `bend_radius` in m. The two formulas are for round tubes: 1 for any other
     /// section.
@@ -127,14 +128,14 @@ impl BendFlexibility {
     /// assert!((BendFlexibility::VonKarman.factor(&tube, 0.0600625) - 43.0 / 7.0).abs() < 1e-9);
     /// assert!((BendFlexibility::AsmeB313.factor(&tube, 0.0600625) - 6.6).abs() < 1e-9); // 1.65/h
     /// ```
-    pub fn factor(&self, section: &Section, bend_radius: f64) -> f64 {
+    pub fn factor(&self, section: &Section<T>, bend_radius: T) -> T {
         // h = tR/r²
         let h = section.as_round().map(|tube| tube.wall() * bend_radius / tube.mean_radius().powi(2));
         match (*self, h) {
             (BendFlexibility::Factor(k), _) => k,
-            (BendFlexibility::VonKarman, Some(h)) => (10.0 + 12.0 * h * h) / (1.0 + 12.0 * h * h),
-            (BendFlexibility::AsmeB313, Some(h)) => (1.65 / h).max(1.0),
-            (BendFlexibility::Beam, _) | (_, None) => 1.0,
+            (BendFlexibility::VonKarman, Some(h)) => (h * 12.0 * h + 10.0) / (h * 12.0 * h + 1.0),
+            (BendFlexibility::AsmeB313, Some(h)) => (T::from(1.65) / h).larger(T::one()),
+            (BendFlexibility::Beam, _) | (_, None) => T::one(),
         }
     }
 
@@ -158,54 +159,65 @@ impl Pipe {
     pub fn new(section: impl Into<Section>, material: Material) -> Pipe {
         Pipe { section: section.into(), material }
     }
+}
 
+impl<T: Number> Pipe<T> {
     /// Shear coefficients κ for forces in the rod's plane and out of it, dimensionless.
-    pub fn shear_coefficients(&self) -> [f64; 2] {
+    pub fn shear_coefficients(&self) -> [T; 2] {
         let (ratio, nu) = (self.material.modulus_ratio(), self.material.poisson_ratio);
         self.section.shear_coefficients(ratio, nu).map(|kappa| kappa * self.material.shear_coefficient_factor)
     }
 
     /// Mass per length ρA, kg/m.
-    pub fn mass_per_length(&self) -> f64 {
+    pub fn mass_per_length(&self) -> T {
         self.material.density * self.section.area()
     }
 }
 
-impl Rod {
+impl<T: Number> Rod<T> {
     /// Angle the centreline turns through in the bend, π − γ, rad.
-    pub fn turn(&self) -> f64 {
-        PI - self.gamma
+    pub fn turn(&self) -> T {
+        -self.gamma + PI
     }
 
     /// What the bend takes off each pipe's length, R tan((π − γ)/2), m.
-    pub fn tangent_length(&self) -> f64 {
+    pub fn tangent_length(&self) -> T {
         tangent_length(self.bend_radius, self.gamma)
     }
 
     /// Length of the arc R (π − γ), m; 0 for a sharp corner.
-    pub fn arc_length(&self) -> f64 {
+    pub fn arc_length(&self) -> T {
         self.bend_radius * self.turn()
     }
 
     /// Station where the first straight pipe ends, m.
-    pub fn bend_start(&self) -> f64 {
+    pub fn bend_start(&self) -> T {
         self.l1 - self.tangent_length()
     }
 
     /// Station where the second straight pipe begins, m.
-    pub fn bend_end(&self) -> f64 {
+    pub fn bend_end(&self) -> T {
         self.bend_start() + self.arc_length()
     }
 
     /// Length of the centreline and so the tip's station, m.
-    pub fn length(&self) -> f64 {
+    pub fn length(&self) -> T {
         self.bend_end() + self.l2 - self.tangent_length()
     }
 
+    /// Mass of pipes, bend, lumped masses and tip, kg.
+    pub fn mass(&self) -> T {
+        self.pipe1.mass_per_length() * self.bend_start()
+            + self.bend.mass_per_length() * self.arc_length()
+            + self.pipe2.mass_per_length() * (self.length() - self.bend_end())
+            + self.masses.iter().map(|m| m.mass).sum::<T>()
+            + self.tip_mass
+    }
+
     /// The undeflected ball centre in {T}, `[L2 sin γ, 0, L1 − L2 cos γ]`, m (the paper's Eq 1).
-    pub fn tip(&self) -> Vector3<f64> {
+    pub fn tip(&self) -> Vector3<T> {
         let (sin, cos) = sin_cos_exact(self.gamma);
-        Vector3::new(self.l2 * sin, 0.0, self.l1 - self.l2 * cos)
+        Vector3::new(self.l2 * sin, T::zero(), self.l1 - self.l2 * cos)
     }
 
     /// Point of the undeformed centreline at a station (m; kept on the rod), in {T}, m.
@@ -222,51 +234,43 @@ impl Rod {
     /// assert!((middle.x - 0.1 * (1.0 - 0.5f64.sqrt())).abs() < 1e-12);
     /// assert!((middle.z - (0.2 + 0.1 * 0.5f64.sqrt())).abs() < 1e-12);
     /// ```
-    pub fn point(&self, station: f64) -> Vector3<f64> {
-        let station = station.clamp(0.0, self.length());
-        if station <= self.bend_start() {
-            return Vector3::new(0.0, 0.0, station);
+    pub fn point(&self, station: T) -> Vector3<T> {
+        let zero = T::zero();
+        let station = station.larger(zero).smaller(self.length());
+        if station.value() <= self.bend_start().value() {
+            return Vector3::new(zero, zero, station);
         }
         let (sin, cos) = sin_cos_exact(self.gamma);
-        if station >= self.bend_end() {
+        if station.value() >= self.bend_end().value() {
             // back from the tip along pipe II, whose direction is (sin γ, 0, −cos γ)
-            return self.tip() - Vector3::new(sin, 0.0, -cos) * (self.length() - station);
+            return self.tip() - Vector3::new(sin, zero, -cos) * (self.length() - station);
         }
         let turned = (station - self.bend_start()) / self.bend_radius;
-        Vector3::new(1.0 - turned.cos(), 0.0, turned.sin()) * self.bend_radius
-            + Vector3::new(0.0, 0.0, self.bend_start())
-    }
-
-    /// Mass of pipes, bend, lumped masses and tip, kg.
-    pub fn mass(&self) -> f64 {
-        self.pipe1.mass_per_length() * self.bend_start()
-            + self.bend.mass_per_length() * self.arc_length()
-            + self.pipe2.mass_per_length() * (self.length() - self.bend_end())
-            + self.masses.iter().map(|m| m.mass).sum::<f64>()
-            + self.tip_mass
+        Vector3::new(-turned.cos() + 1.0, zero, turned.sin()) * self.bend_radius
+            + Vector3::new(zero, zero, self.bend_start())
     }
 
     /// Centre of mass in {T}, m; the flange for a rod without mass.
-    pub fn centre_of_mass(&self) -> Vector3<f64> {
+    pub fn centre_of_mass(&self) -> Vector3<T> {
         let (start, end, length) = (self.bend_start(), self.bend_end(), self.length());
         let mut moment = self.point(start / 2.0) * (self.pipe1.mass_per_length() * start);
         moment += self.point((end + length) / 2.0) * (self.pipe2.mass_per_length() * (length - end));
-        if self.arc_length() > 0.0 {
+        if self.arc_length().value() > 0.0 {
             // the centroid of an arc lies on its bisector, R·sin(φ/2)/(φ/2) from its centre
             let half = self.turn() / 2.0;
-            let chord = self.point(end) - self.point(start);
-            let across = Vector3::new(half.cos(), 0.0, -half.sin());
+            let across = Vector3::new(half.cos(), T::zero(), -half.sin());
             let sagitta = self.bend_radius * (half.sin() / half - half.cos());
-            let centroid = (self.point(start) + self.point(end)) / 2.0 - across * sagitta;
-            debug_assert!(chord.dot(&across).abs() <= 1e-9 * chord.norm());
+            let centroid = (self.point(start) + self.point(end)) * T::from(0.5) - across * sagitta;
             moment += centroid * (self.bend.mass_per_length() * self.arc_length());
         }
-        moment += self.masses.iter().map(|m| self.point(m.station) * m.mass).sum::<Vector3<f64>>();
+        moment += self.masses.iter().map(|m| self.point(m.station) * m.mass).sum::<Vector3<T>>();
         moment += self.tip() * self.tip_mass;
         let mass = self.mass();
-        if mass > 0.0 { moment / mass } else { Vector3::zeros() }
+        if mass.value() > 0.0 { moment / mass } else { Vector3::zeros() }
     }
+}
 
+impl Rod {
     /// The two pipes are one tube of one material, as the paper's closed form (Calc) assumes.
     pub fn is_uniform(&self) -> bool {
         let same = |a: &Material, b: &Material| {
@@ -278,14 +282,18 @@ impl Rod {
 
 /// What an arc of radius R takes off each pipe at the inside angle γ, m. A straight rod (γ = π) has
 /// no bend.
-fn tangent_length(bend_radius: f64, gamma: f64) -> f64 {
-    bend_radius * ((PI - gamma) / 2.0).tan()
+fn tangent_length<T: Number>(bend_radius: T, gamma: T) -> T {
+    // a sharp corner takes nothing; a search asks for this a hundred times a rod
+    if bend_radius.value() == 0.0 {
+        return T::zero();
+    }
+    bend_radius * ((-gamma + PI) / 2.0).tan()
 }
 
 /// Sine and cosine that are exact at the right and the straight angle, where `sin π` would leave
 /// 1e-16.
-pub(crate) fn sin_cos_exact(angle: f64) -> (f64, f64) {
-    let (sin, cos) = angle.sin_cos();
-    let clean = |x: f64| if x.abs() < 1e-15 { 0.0 } else { x };
-    (clean(sin), clean(cos))
+pub(crate) fn sin_cos_exact<T: Number>(angle: T) -> (T, T) {
+    // whose derivative stays
+    let clean = |x: T| if x.value().abs() < 1e-15 { x - T::from(x.value()) } else { x };
+    (clean(angle.sin()), clean(angle.cos()))
 }

@@ -13,36 +13,38 @@ mod round;
 pub use rectangle::Rectangle;
 pub use round::Round;
 
+use crate::dual::Number;
+
 /// The cross-section of a pipe.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
-pub enum Section {
+pub enum Section<T = f64> {
     /// A tube or a solid round.
-    Round(Round),
+    Round(Round<T>),
     /// A solid rectangle or a box.
-    Rectangle(Rectangle),
+    Rectangle(Rectangle<T>),
     /// Any other section, by its constants.
-    General(General),
+    General(General<T>),
 }
 
 /// A section that is known by its constants, as a handbook or a profile's maker states them.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct General {
+pub struct General<T = f64> {
     /// Area A, m².
-    pub area: f64,
+    pub area: T,
     /// Second moment of area about Y, for bending in the rod's plane, I_y, m⁴.
-    pub iy: f64,
+    pub iy: T,
     /// Second moment of area about the axis in the rod's plane, for bending out of it, I_z, m⁴.
-    pub iz: f64,
+    pub iz: T,
     /// Torsion constant J, m⁴.
-    pub torsion_constant: f64,
+    pub torsion_constant: T,
     /// Shear coefficient κ for both directions, dimensionless.
-    pub shear_coefficient: f64,
+    pub shear_coefficient: T,
 }
 
-impl Section {
+impl<T: Number> Section<T> {
     /// Area A, m².
-    pub fn area(&self) -> f64 {
+    pub fn area(&self) -> T {
         match self {
             Section::Round(round) => round.area(),
             Section::Rectangle(rectangle) => rectangle.area(),
@@ -62,7 +64,7 @@ impl Section {
     /// let [iy, iz] = Section::from(Round::solid(0.01)).second_moments();
     /// assert_eq!(iy, iz);
     /// ```
-    pub fn second_moments(&self) -> [f64; 2] {
+    pub fn second_moments(&self) -> [T; 2] {
         match self {
             Section::Round(round) => [round.second_moment(); 2],
             Section::Rectangle(rectangle) => rectangle.second_moments(),
@@ -71,12 +73,12 @@ impl Section {
     }
 
     /// I_y, m⁴, for bending in the rod's plane: the first of [`Section::second_moments`].
-    pub fn second_moment(&self) -> f64 {
+    pub fn second_moment(&self) -> T {
         self.second_moments()[0]
     }
 
     /// Torsion constant J, m⁴.
-    pub fn torsion_constant(&self) -> f64 {
+    pub fn torsion_constant(&self) -> T {
         match self {
             Section::Round(round) => round.torsion_constant(),
             Section::Rectangle(rectangle) => rectangle.torsion_constant(),
@@ -87,7 +89,7 @@ impl Section {
     /// Shear coefficients κ for forces in the rod's plane and out of it, dimensionless, of a
     /// material with `ratio` e = E/G and Poisson's ratio ν: [`Round::shear_coefficient`] or
     /// [`Rectangle::shear_coefficients`]; those of a general section are as stated.
-    pub fn shear_coefficients(&self, ratio: f64, poisson_ratio: f64) -> [f64; 2] {
+    pub fn shear_coefficients(&self, ratio: T, poisson_ratio: T) -> [T; 2] {
         match self {
             Section::Round(round) => [round.shear_coefficient(ratio, poisson_ratio); 2],
             Section::Rectangle(rectangle) => rectangle.shear_coefficients(ratio, poisson_ratio),
@@ -96,7 +98,7 @@ impl Section {
     }
 
     /// The round, if it is one.
-    pub fn as_round(&self) -> Option<&Round> {
+    pub fn as_round(&self) -> Option<&Round<T>> {
         match self {
             Section::Round(round) => Some(round),
             _ => None,
@@ -104,7 +106,7 @@ impl Section {
     }
 
     /// Wall thickness, m, where the section has one: of a tube or a box.
-    pub fn wall(&self) -> Option<f64> {
+    pub fn wall(&self) -> Option<T> {
         match self {
             Section::Round(round) => Some(round.wall()),
             Section::Rectangle(rectangle) => rectangle.wall,
@@ -114,11 +116,11 @@ impl Section {
 
     /// Extent in the rod's plane, across the centreline, m; of a general section that of the
     /// rectangle of the same area and I_y.
-    pub fn height(&self) -> f64 {
+    pub fn height(&self) -> T {
         match self {
             Section::Round(round) => round.outer_diameter,
             Section::Rectangle(rectangle) => rectangle.height,
-            Section::General(general) => (12.0 * general.iy / general.area).sqrt(),
+            Section::General(general) => (general.iy * 12.0 / general.area).sqrt(),
         }
     }
 }

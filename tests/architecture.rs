@@ -19,9 +19,11 @@ const FLOORS: &[&[&str]] = &[
         "toml_text",
         "linalg",
         "statistics",
+        "linear_program",
         "parallel",
         "least_squares",
         "optimal_design",
+        "dual",
         "spatial",
     ],
     // the engine that knows no physics: nothing but the ground

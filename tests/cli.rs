@@ -5,6 +5,7 @@
 mod calibrate;
 mod design;
 mod design_poses;
+mod design_rig;
 mod diagnose;
 mod diagnose_calibration;
 mod files;
@@ -40,8 +41,9 @@ impl Sandbox {
             copy(&project.join(directory), &sandbox.path().join(directory));
         }
         std::fs::create_dir(sandbox.path().join("examples")).unwrap();
-        let design = "examples/design.toml";
-        std::fs::copy(project.join(design), sandbox.path().join(design)).unwrap();
+        for design in ["examples/design.toml", "examples/small-arm.toml"] {
+            std::fs::copy(project.join(design), sandbox.path().join(design)).unwrap();
+        }
         sandbox
     }
 

@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 use rodcal::robot::{Body, Hayati, Joint, Kinematics, Loads, Motion, Parameter, Robot, Setup};
 use rodcal::spatial::Pose;
 
-use crate::dual::{Dual, Number};
+use rodcal::dual::{Dual, Number};
 
 /// Rounding of a chain of a dozen products of numbers of size 1.
 const ROUNDING: f64 = 1e-13;

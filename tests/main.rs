@@ -14,7 +14,6 @@ mod circles;
 mod cli;
 mod diagnosis;
 mod documents;
-mod dual;
 mod kinematics;
 mod nist;
 mod references;

@@ -2,7 +2,8 @@
 
 use nalgebra::{Rotation3, Vector3};
 
-use super::element::{Profile, Shape};
+use super::element::{Profile, Shape, ahead};
+use crate::dual::{Number, about_y};
 
 /// A cantilever in space: node 0 is clamped, each further node hangs on the one before by one
 /// element.
@@ -27,55 +28,55 @@ use super::element::{Profile, Shape};
 /// # Ok::<(), rodcal::Error>(())
 /// ```
 #[derive(Debug, Clone)]
-pub struct Chain {
-    pub(super) nodes: Vec<Node>,
-    pub(super) elements: Vec<Element>,
-    pub(super) shapes: Vec<Shape>,
+pub struct Chain<T = f64> {
+    pub(super) nodes: Vec<Node<T>>,
+    pub(super) elements: Vec<Element<T>>,
+    pub(super) shapes: Vec<Shape<T>>,
     /// Of each shape what it is made of; none of a spring.
-    pub(super) pieces: Vec<Option<Piece>>,
-    frame: Rotation3<f64>,
+    pub(super) pieces: Vec<Option<Piece<T>>>,
+    frame: Rotation3<T>,
 }
 
 /// A point of the chain.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Node {
-    pub position: Vector3<f64>,
+pub(super) struct Node<T = f64> {
+    pub position: Vector3<T>,
     /// Arc length from node 0, m.
-    pub station: f64,
+    pub station: T,
     /// Mass lumped here, kg.
-    pub mass: f64,
+    pub mass: T,
 }
 
 /// What an element is made of: a straight beam between its nodes.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Piece {
-    pub profile: Profile,
+pub(super) struct Piece<T = f64> {
+    pub profile: Profile<T>,
     /// From node to node, m.
-    pub length: f64,
+    pub length: T,
     /// Local axes, z from node to node.
-    pub frame: Rotation3<f64>,
+    pub frame: Rotation3<T>,
 }
 
 /// The element between node k and node k + 1, k its index.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Element {
+pub(super) struct Element<T = f64> {
     /// Reference point c in space, m.
-    pub reference: Vector3<f64>,
+    pub reference: Vector3<T>,
     /// Index of its shape: congruent elements share one.
     pub shape: usize,
 }
 
-impl Chain {
+impl<T: Number> Chain<T> {
     /// A chain clamped at `position` (m), heading along the z axis of `frame`.
-    pub fn clamped_at(position: Vector3<f64>, frame: Rotation3<f64>) -> Self {
-        let root = Node { position, station: 0.0, mass: 0.0 };
+    pub fn clamped_at(position: Vector3<T>, frame: Rotation3<T>) -> Self {
+        let root = Node { position, station: T::zero(), mass: T::zero() };
         Chain { nodes: vec![root], elements: Vec::new(), shapes: Vec::new(), pieces: Vec::new(), frame }
     }
 
     /// Begins anew at the origin, heading along z, and keeps the room that it has.
     pub(super) fn restart(&mut self) {
         self.nodes.clear();
-        self.nodes.push(Node { position: Vector3::zeros(), station: 0.0, mass: 0.0 });
+        self.nodes.push(Node { position: Vector3::zeros(), station: T::zero(), mass: T::zero() });
         self.elements.clear();
         self.shapes.clear();
         self.pieces.clear();
@@ -89,35 +90,35 @@ impl Chain {
     }
 
     /// Goes straight ahead for `length` (m) in `count` equal elements (at least one).
-    pub fn straight(&mut self, profile: &Profile, length: f64, count: usize) {
+    pub fn straight(&mut self, profile: &Profile<T>, length: T, count: usize) {
         let (Node { position, station, .. }, count) = (self.last(), count.max(1));
         let step = length / count as f64;
         let piece = Piece { profile: *profile, length: step, frame: self.frame };
         let shape = self.share(Shape::straight(profile, step).turned(&self.frame), Some(piece));
-        let ahead = self.frame * Vector3::z();
+        let ahead = self.frame * ahead();
         for k in 0..count {
             // products, not running sums: node k is as accurate as node 1
-            let at = |steps: f64| position + ahead * (steps * step);
+            let at = |steps: f64| position + ahead * (step * steps);
             let (reference, end) = (at(k as f64 + 0.5), at((k + 1) as f64));
-            self.append(Element { reference, shape }, end, station + (k + 1) as f64 * step);
+            self.append(Element { reference, shape }, end, station + step * (k + 1) as f64);
         }
     }
 
     /// Goes along an arc of `radius` (m) through `angle` (rad, > 0) in `count` equal elements (at
     /// least one), bending from the current z axis towards the current x axis.
-    pub fn arc(&mut self, profile: &Profile, radius: f64, angle: f64, count: usize) {
+    pub fn arc(&mut self, profile: &Profile<T>, radius: T, angle: T, count: usize) {
         let count = count.max(1);
         let step = angle / count as f64;
         self.bend(&Shape::arc(profile, radius, step), profile, radius, angle, count);
     }
 
     /// [`Chain::arc`] of elements of a known shape.
-    pub(super) fn bend(&mut self, local: &Shape, profile: &Profile, radius: f64, angle: f64, count: usize) {
+    pub(super) fn bend(&mut self, local: &Shape<T>, profile: &Profile<T>, radius: T, angle: T, count: usize) {
         let Node { position, station, .. } = self.last();
         let step = angle / count as f64;
         let frame = self.frame;
         // between its nodes the mass is that of the arc
-        let length = 2.0 * radius * (step / 2.0).sin();
+        let length = radius * 2.0 * (step / 2.0).sin();
         let longer = radius * step / length;
         let profile = Profile {
             mass_per_length: profile.mass_per_length * longer,
@@ -125,33 +126,34 @@ impl Chain {
             ..*profile
         };
         // seen from the start of the arc: R (1 − cos α, 0, sin α)
-        let at =
-            |a: f64| position + frame * (Vector3::new(2.0 * (a / 2.0).sin().powi(2), 0.0, a.sin()) * radius);
+        let at = |a: T| {
+            position + frame * (Vector3::new((a / 2.0).sin().powi(2) * 2.0, T::zero(), a.sin()) * radius)
+        };
         for k in 0..count {
-            let (middle, end) = ((k as f64 + 0.5) * step, (k + 1) as f64 * step);
-            let turn = frame * Rotation3::from_axis_angle(&Vector3::y_axis(), middle);
+            let (middle, end) = (step * (k as f64 + 0.5), step * (k + 1) as f64);
+            let turn = frame * about_y(middle);
             let piece = Piece { profile, length, frame: turn };
             let shape = self.share(local.turned(&turn), Some(piece));
             self.append(Element { reference: at(middle), shape }, at(end), station + end * radius);
         }
-        self.turn(&Rotation3::from_axis_angle(&Vector3::y_axis(), angle));
+        self.turn(&about_y(angle));
     }
 
     /// Turns the current frame about itself: a sharp corner, or a new direction of the section's
     /// axes.
-    pub fn turn(&mut self, rotation: &Rotation3<f64>) {
+    pub fn turn(&mut self, rotation: &Rotation3<T>) {
         self.frame *= rotation;
     }
 
     /// A rotational spring here, about the current axes; `bending` and `torsion` in rad/(N·m).
-    pub fn spring(&mut self, bending: f64, torsion: f64) {
+    pub fn spring(&mut self, bending: T, torsion: T) {
         let Node { position, station, .. } = self.last();
         let shape = self.share(Shape::spring(bending, torsion).turned(&self.frame), None);
         self.append(Element { reference: position, shape }, position, station);
     }
 
     /// A mass (kg) here.
-    pub fn mass(&mut self, mass: f64) {
+    pub fn mass(&mut self, mass: T) {
         let last = self.nodes.len() - 1;
         self.nodes[last].mass += mass;
     }
@@ -167,31 +169,31 @@ impl Chain {
     }
 
     /// Position of a node in space, m.
-    pub fn position(&self, node: usize) -> Vector3<f64> {
+    pub fn position(&self, node: usize) -> Vector3<T> {
         self.nodes[node].position
     }
 
     /// Arc length of a node from the clamped end, m.
-    pub fn station(&self, node: usize) -> f64 {
+    pub fn station(&self, node: usize) -> T {
         self.nodes[node].station
     }
 
-    pub(super) fn shape(&self, element: &Element) -> &Shape {
+    pub(super) fn shape(&self, element: &Element<T>) -> &Shape<T> {
         &self.shapes[element.shape]
     }
 
-    fn last(&self) -> Node {
+    fn last(&self) -> Node<T> {
         self.nodes[self.nodes.len() - 1]
     }
 
-    fn share(&mut self, shape: Shape, piece: Option<Piece>) -> usize {
+    fn share(&mut self, shape: Shape<T>, piece: Option<Piece<T>>) -> usize {
         self.shapes.push(shape);
         self.pieces.push(piece);
         self.shapes.len() - 1
     }
 
-    fn append(&mut self, element: Element, position: Vector3<f64>, station: f64) {
+    fn append(&mut self, element: Element<T>, position: Vector3<T>, station: T) {
         self.elements.push(element);
-        self.nodes.push(Node { position, station, mass: 0.0 });
+        self.nodes.push(Node { position, station, mass: T::zero() });
     }
 }

@@ -16,65 +16,66 @@
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
-use crate::spatial::{rotated, skew};
+use crate::dual::{Number, about_y};
+use crate::spatial::{product, rotated, skew};
 
 /// Flexibilities of a cross-section per unit length, and its mass.
 ///
 /// Local axes: z along the centreline, x and y principal axes of the section.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Profile {
+pub struct Profile<T = f64> {
     /// 1/EA, 1/N.
-    pub axial: f64,
+    pub axial: T,
     /// 1/κGA for shear along x and y, 1/N; 0 in Euler–Bernoulli theory.
-    pub shear: [f64; 2],
+    pub shear: [T; 2],
     /// 1/EI for bending about x and y, 1/(N·m²).
-    pub bending: [f64; 2],
+    pub bending: [T; 2],
     /// 1/GJ, 1/(N·m²).
-    pub torsion: f64,
+    pub torsion: T,
     /// Mass per length, kg/m.
-    pub mass_per_length: f64,
+    pub mass_per_length: T,
     /// Moments of inertia per length about x and y, ρI, kg·m: what turns with the section resists.
-    pub rotary_inertia: [f64; 2],
+    pub rotary_inertia: [T; 2],
 }
 
-impl Profile {
+impl<T: Number> Profile<T> {
     /// Flexibility per length to a force in local axes, 1/N.
-    fn force(&self) -> Matrix3<f64> {
+    fn force(&self) -> Matrix3<T> {
         Matrix3::from_diagonal(&Vector3::new(self.shear[0], self.shear[1], self.axial))
     }
 
     /// Flexibility per length to a moment in local axes, 1/(N·m²).
-    fn moment(&self) -> Matrix3<f64> {
+    fn moment(&self) -> Matrix3<T> {
         Matrix3::from_diagonal(&Vector3::new(self.bending[0], self.bending[1], self.torsion))
     }
 }
 
 /// The matrices of the module's equation, in the frame in which they are needed.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Shape {
+pub(super) struct Shape<T = f64> {
     /// A, m/N.
-    pub force: Matrix3<f64>,
+    pub force: Matrix3<T>,
     /// C, rad/N; none where force and moment do not interact.
-    pub coupling: Option<Matrix3<f64>>,
+    pub coupling: Option<Matrix3<T>>,
     /// B, rad/(N·m).
-    pub moment: Matrix3<f64>,
+    pub moment: Matrix3<T>,
     /// U, m per m/s².
-    pub weight_translation: Matrix3<f64>,
+    pub weight_translation: Matrix3<T>,
     /// V, rad per m/s².
-    pub weight_rotation: Matrix3<f64>,
+    pub weight_rotation: Matrix3<T>,
     /// Mass, kg.
-    pub mass: f64,
+    pub mass: T,
     /// Centre of mass seen from the reference point, m.
-    pub mass_centre: Vector3<f64>,
+    pub mass_centre: Vector3<T>,
 }
 
-impl Shape {
+impl<T: Number> Shape<T> {
     /// A straight element of `length` (m) along the local z axis, reference at its midpoint.
-    pub fn straight(profile: &Profile, length: f64) -> Self {
+    pub fn straight(profile: &Profile<T>, length: T) -> Self {
         let (l, mass) = (length, profile.mass_per_length * length);
         // A = L·(shear, axial) + L³/12·bending: a force at the midpoint bends both halves like
         // cantilevers; a force along x bends about y and the other way round
-        let bending = Vector3::new(profile.bending[1], profile.bending[0], 0.0);
+        let bending = Vector3::new(profile.bending[1], profile.bending[0], T::zero());
         let force = profile.force() * l + Matrix3::from_diagonal(&(bending * (l.powi(3) / 12.0)));
         // B = L·(bending, torsion)
         let moment = profile.moment() * l;
@@ -85,7 +86,7 @@ impl Shape {
             // the mean force of its own weight is half of it: U = A·m/2
             weight_translation: force * (mass / 2.0),
             // the mean moment of its own weight is (L²/6)(t × q) with q = m a/L: V = B·[t]ₓ·mL/6
-            weight_rotation: moment * skew(&Vector3::z()) * (mass * l / 6.0),
+            weight_rotation: product(&moment, &skew(&ahead())) * (mass * l / 6.0),
             mass,
             mass_centre: Vector3::zeros(),
         }
@@ -93,18 +94,18 @@ impl Shape {
 
     /// A circular arc of `radius` (m) and `angle` (rad, > 0), reference at its midpoint, where the
     /// local z axis is its tangent; it bends from z towards x.
-    pub fn arc(profile: &Profile, radius: f64, angle: f64) -> Self {
+    pub fn arc(profile: &Profile<T>, radius: T, angle: T) -> Self {
         let half = angle / 2.0;
         let mass_per_angle = profile.mass_per_length * radius;
         // r(α) = R (1 − cos α, 0, sin α), the tangent there is (sin α, 0, cos α)
-        let point = |a: f64| Vector3::new(2.0 * (a / 2.0).sin().powi(2), 0.0, a.sin()) * radius;
+        let point = |a: T| Vector3::new((a / 2.0).sin().powi(2) * 2.0, T::zero(), a.sin()) * radius;
         // ∫ r dβ from a to b = R (d − sin b + sin a, 0, cos a − cos b) with d = b − a and m = (a +
         // b)/2, written without differences of nearly equal numbers, for a flat arc has a large R
         // and small angles
-        let point_integral = |a: f64, b: f64| {
+        let point_integral = |a: T, b: T| {
             let (d, m) = (b - a, (a + b) / 2.0);
-            let x = d * (2.0 * (m / 2.0).sin().powi(2) + m.cos() * one_minus_sinc(d / 2.0));
-            Vector3::new(x, 0.0, 2.0 * m.sin() * (d / 2.0).sin()) * radius
+            let x = d * ((m / 2.0).sin().powi(2) * 2.0 + m.cos() * one_minus_sinc(d / 2.0));
+            Vector3::new(x, T::zero(), m.sin() * 2.0 * (d / 2.0).sin()) * radius
         };
 
         let mut coupling = Matrix3::zeros();
@@ -119,7 +120,7 @@ impl Shape {
         };
         for (a, da) in gauss_points(-half, half) {
             let ds = radius * da;
-            let local = Rotation3::from_axis_angle(&Vector3::y_axis(), a);
+            let local = about_y(a);
             let (section_force, section_moment) =
                 (rotated(&profile.force(), &local) * ds, rotated(&profile.moment(), &local) * ds);
             // A load at the reference point has the moment M − r×F here, and a rotation here moves
@@ -143,20 +144,20 @@ impl Shape {
 
     /// A spring of no length with the local z axis as its axis; `bending` and `torsion` in
     /// rad/(N·m).
-    pub fn spring(bending: f64, torsion: f64) -> Self {
+    pub fn spring(bending: T, torsion: T) -> Self {
         Shape {
             force: Matrix3::zeros(),
             coupling: None,
             moment: Matrix3::from_diagonal(&Vector3::new(bending, bending, torsion)),
             weight_translation: Matrix3::zeros(),
             weight_rotation: Matrix3::zeros(),
-            mass: 0.0,
+            mass: T::zero(),
             mass_centre: Vector3::zeros(),
         }
     }
 
     /// The same element, its local frame turned by `rotation`.
-    pub fn turned(&self, rotation: &Rotation3<f64>) -> Self {
+    pub fn turned(&self, rotation: &Rotation3<T>) -> Self {
         Shape {
             force: rotated(&self.force, rotation),
             coupling: self.coupling.map(|coupling| rotated(&coupling, rotation)),
@@ -169,28 +170,37 @@ impl Shape {
     }
 }
 
+/// The local z axis.
+pub(super) fn ahead<T: Number>() -> Vector3<T> {
+    Vector3::new(T::zero(), T::zero(), T::one())
+}
+
 /// 1 − sin(x)/x, by its series where the difference would cancel.
-fn one_minus_sinc(x: f64) -> f64 {
+fn one_minus_sinc<T: Number>(x: T) -> T {
     let x2 = x * x;
-    if x2 < 0.01 {
+    if x2.value() < 0.01 {
         // x²/6 − x⁴/120 + x⁶/5040 − x⁸/362880 + …; the next term is below 1e-16 of the first
-        x2 / 6.0 * (1.0 - x2 / 20.0 * (1.0 - x2 / 42.0 * (1.0 - x2 / 72.0 * (1.0 - x2 / 110.0))))
+        let mut sum = T::one();
+        for denominator in [110.0, 72.0, 42.0, 20.0] {
+            sum = -(x2 / denominator * sum) + 1.0;
+        }
+        x2 / 6.0 * sum
     } else {
-        1.0 - x.sin() / x
+        -(x.sin() / x) + 1.0
     }
 }
 
 /// Gauss–Legendre points and weights on [from, to]: eight for every 45°, where an arc's integrands
 /// (products of at most four sines) are integrated to rounding.
-fn gauss_points(from: f64, to: f64) -> impl Iterator<Item = (f64, f64)> {
+fn gauss_points<T: Number>(from: T, to: T) -> impl Iterator<Item = (T, T)> {
     // Abramowitz & Stegun, Table 25.4, n = 8
     const ABSCISSAE: [f64; 4] =
         [0.1834346424956498, 0.525532409916329, 0.7966664774136267, 0.9602898564975363];
     const WEIGHTS: [f64; 4] = [0.362683783378362, 0.3137066458778873, 0.2223810344533745, 0.1012285362903763];
-    let panels = ((to - from) / std::f64::consts::FRAC_PI_4 - 1e-9).ceil().max(1.0);
+    let panels = ((to - from).value() / std::f64::consts::FRAC_PI_4 - 1e-9).ceil().max(1.0);
     let half = (to - from) / panels / 2.0;
-    (0..panels as usize).flat_map(move |panel| {
-        let middle = from + half * (2 * panel + 1) as f64;
+    (0..panels as u32).flat_map(move |panel| {
+        let middle = from + half * f64::from(2 * panel + 1);
         ABSCISSAE
             .into_iter()
             .zip(WEIGHTS)

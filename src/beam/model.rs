@@ -5,6 +5,7 @@ use nalgebra::{Rotation3, Vector3};
 use super::chain::Chain;
 use super::element::Profile;
 use super::response::{Load, Motion};
+use crate::dual::{Number, about_y};
 use crate::error::{Error, Result};
 use crate::rod::{BendFlexibility, Pipe, Rod};
 use crate::units::MM;
@@ -74,13 +75,13 @@ impl Default for Physics {
 /// # Ok::<(), rodcal::Error>(())
 /// ```
 #[derive(Debug, Clone)]
-pub struct RodModel {
+pub struct RodModel<T = f64> {
     /// Nodes and elements.
-    pub chain: Chain,
-    rod: Rod,
+    pub chain: Chain<T>,
+    rod: Rod<T>,
 }
 
-impl RodModel {
+impl<T: Number> RodModel<T> {
     /// Meshes `rod` with `elements` elements (at least one for each part between two stations of
     /// interest). The tip, the masses, the joints and the given `stations` (m) get a node.
     ///
@@ -91,7 +92,7 @@ impl RodModel {
     /// [`Error::Argument`] for no elements, or a station that is not on the rod;
     /// [`Error::Numerical`] for a rod whose pipes are too unequal in length, or too short, for
     /// double precision.
-    pub fn new(rod: &Rod, physics: &Physics, elements: usize, stations: &[f64]) -> Result<Self> {
+    pub fn new(rod: &Rod<T>, physics: &Physics, elements: usize, stations: &[T]) -> Result<Self> {
         if elements == 0 {
             return Err(Error::Argument {
                 name: "elements",
@@ -102,27 +103,28 @@ impl RodModel {
         let rod = physics.applied_to(rod);
         check_resolution(&rod)?;
         let cuts = cuts(&rod, stations)?;
-        let counts = share_out(elements, &cuts);
+        let places: Vec<f64> = cuts.iter().map(|cut| cut.value()).collect();
+        let counts = share_out(elements, &places);
         let mut chain = Chain::clamped_at(Vector3::zeros(), Rotation3::identity());
         chain.reserve(counts.iter().sum::<usize>() + rod.joints.len());
 
         let bend_factor = rod.bend_flexibility.factor(&rod.bend.section, rod.bend_radius);
-        let (pipe1, pipe2) = (physics.profile(&rod.pipe1, 1.0), physics.profile(&rod.pipe2, 1.0));
+        let (pipe1, pipe2) = (physics.profile(&rod.pipe1, T::one()), physics.profile(&rod.pipe2, T::one()));
         let bend = physics.profile(&rod.bend, bend_factor);
         let bend_length = rod.bend_end() - rod.bend_start();
-        let mut corner_ahead = rod.bend_radius == 0.0;
+        let mut corner_ahead = rod.bend_radius.value() == 0.0;
         place_features(&mut chain, &rod, cuts[0]);
         for (ends, count) in cuts.windows(2).zip(counts) {
             let (length, middle) = (ends[1] - ends[0], (ends[0] + ends[1]) / 2.0);
-            if middle < rod.bend_start() {
+            if middle.value() < rod.bend_start().value() {
                 chain.straight(&pipe1, length, count);
-            } else if middle < rod.bend_end() {
+            } else if middle.value() < rod.bend_end().value() {
                 // its share of the turn: the rounding of two stations over a tiny radius would turn
                 // all beyond it
                 chain.arc(&bend, rod.bend_radius, rod.turn() * (length / bend_length), count);
             } else {
                 if std::mem::take(&mut corner_ahead) {
-                    chain.turn(&Rotation3::from_axis_angle(&Vector3::y_axis(), rod.turn()));
+                    chain.turn(&about_y(rod.turn()));
                 }
                 chain.straight(&pipe2, length, count);
             }
@@ -133,7 +135,7 @@ impl RodModel {
     }
 
     /// The rod that is modelled: without what the physics leaves out.
-    pub fn rod(&self) -> &Rod {
+    pub fn rod(&self) -> &Rod<T> {
         &self.rod
     }
 
@@ -141,7 +143,9 @@ impl RodModel {
     pub fn tip(&self) -> usize {
         self.chain.end()
     }
+}
 
+impl RodModel {
     /// The node at a `station` (m) that was given to [`RodModel::new`]: the outermost one there,
     /// beyond any joint.
     pub fn node_at(&self, station: f64) -> usize {
@@ -173,21 +177,21 @@ const SAME_STATION: f64 = 1e-9;
 
 impl Physics {
     /// The rod without what is left out. Stations beyond a bend shift by what the corner is longer.
-    fn applied_to(&self, rod: &Rod) -> Rod {
+    fn applied_to<T: Number>(&self, rod: &Rod<T>) -> Rod<T> {
         let mut rod = rod.clone();
-        if !self.bend || rod.arc_length() < SHARPEST_BEND {
+        if !self.bend || rod.arc_length().value() < SHARPEST_BEND {
             let (start, end, tangent) = (rod.bend_start(), rod.bend_end(), rod.tangent_length());
-            let shift = |station: &mut f64| {
-                if *station >= end {
-                    *station += 2.0 * tangent - (end - start);
-                } else if *station > start {
+            let shift = |station: &mut T| {
+                if station.value() >= end.value() {
+                    *station += tangent * 2.0 - (end - start);
+                } else if station.value() > start.value() {
                     // within the bend: keep the proportion of the way round
                     *station = start + (*station - start) * 2.0 * tangent / (end - start);
                 }
             };
             rod.masses.iter_mut().for_each(|mass| shift(&mut mass.station));
             rod.joints.iter_mut().for_each(|joint| shift(&mut joint.station));
-            rod.bend_radius = 0.0;
+            rod.bend_radius = T::zero();
         }
         if !self.bend_flexibility {
             rod.bend_flexibility = BendFlexibility::Beam;
@@ -199,27 +203,27 @@ impl Physics {
             rod.masses.clear();
         }
         if !self.tip_mass {
-            rod.tip_mass = 0.0;
+            rod.tip_mass = T::zero();
         }
         rod
     }
 
     /// Flexibilities of a pipe under this physics, its bending flexibility times `bend_factor`.
-    pub(super) fn profile(&self, pipe: &Pipe, bend_factor: f64) -> Profile {
+    pub(super) fn profile<T: Number>(&self, pipe: &Pipe<T>, bend_factor: T) -> Profile<T> {
         let (section, material) = (&pipe.section, &pipe.material);
         let (e, g, area) = (material.youngs_modulus, material.shear_modulus, section.area());
         // local axes: x in the rod's plane, y = Y of {T} normal to it; a force in the plane shears
         // along x and bends about y
         let [iy, iz] = section.second_moments();
         let shear = match self.shear {
-            true => pipe.shear_coefficients().map(|kappa| 1.0 / (kappa * g * area)),
-            false => [0.0; 2],
+            true => pipe.shear_coefficients().map(|kappa| T::one() / (kappa * g * area)),
+            false => [T::zero(); 2],
         };
         Profile {
-            axial: if self.axial { 1.0 / (e * area) } else { 0.0 },
+            axial: if self.axial { T::one() / (e * area) } else { T::zero() },
             shear,
             bending: [iz, iy].map(|about| bend_factor / (e * about)),
-            torsion: 1.0 / (g * section.torsion_constant()),
+            torsion: T::one() / (g * section.torsion_constant()),
             mass_per_length: pipe.mass_per_length(),
             rotary_inertia: [iz, iy].map(|about| material.density * about),
         }
@@ -228,18 +232,19 @@ impl Physics {
 
 /// Refuses a rod one of whose pipes would be lost in rounding: stations of 1e27 m cannot tell the
 /// ends of one of 0.5 m apart.
-fn check_resolution(rod: &Rod) -> Result<()> {
+fn check_resolution<T: Number>(rod: &Rod<T>) -> Result<()> {
     let (length, tangent) = (rod.length(), rod.tangent_length());
     let pipes = [(rod.l1 - tangent, rod.bend_start()), (rod.l2 - tangent, length - rod.bend_end())];
+    let (l1, l2) = (rod.l1.value(), rod.l2.value());
     let is_lost =
-        |(pipe, between_stations): (f64, f64)| (pipe - between_stations).abs() > 1e-6 * rod.l1.min(rod.l2);
-    if pipes.into_iter().any(is_lost) || length < 1e3 * SAME_STATION {
+        |(pipe, between_stations): (T, T)| (pipe - between_stations).value().abs() > 1e-6 * l1.min(l2);
+    if pipes.into_iter().any(is_lost) || length.value() < 1e3 * SAME_STATION {
         return Err(Error::Numerical {
             what: "the beam model",
             why: format!(
                 "pipes of {:.3e} and {:.3e} mm are beyond double precision; is a length in another unit?",
-                rod.l1 / MM,
-                rod.l2 / MM
+                l1 / MM,
+                l2 / MM
             ),
         });
     }
@@ -248,29 +253,30 @@ fn check_resolution(rod: &Rod) -> Result<()> {
 
 /// Where the centreline is cut into parts: its ends, the bend's, and wherever something sits or is
 /// read.
-fn cuts(rod: &Rod, stations: &[f64]) -> Result<Vec<f64>> {
+fn cuts<T: Number>(rod: &Rod<T>, stations: &[T]) -> Result<Vec<T>> {
     let length = rod.length();
-    let mut cuts = vec![0.0, rod.bend_start(), rod.bend_end(), length];
+    let mut cuts = vec![T::zero(), rod.bend_start(), rod.bend_end(), length];
     cuts.extend(rod.masses.iter().map(|mass| mass.station));
     cuts.extend(rod.joints.iter().map(|joint| joint.station));
     for &station in stations {
-        if !(station >= 0.0 && station <= length + SAME_STATION) {
+        let (at, end) = (station.value(), length.value());
+        if !(at >= 0.0 && at <= end + SAME_STATION) {
             return Err(Error::Argument {
                 name: "station",
-                found: format!("{:.3} mm", station / MM),
-                expected: format!("a station on the rod, 0 to {:.3} mm (the tip)", length / MM),
+                found: format!("{:.3} mm", at / MM),
+                expected: format!("a station on the rod, 0 to {:.3} mm (the tip)", end / MM),
             });
         }
         cuts.push(station);
     }
-    cuts.sort_by(f64::total_cmp);
-    cuts.dedup_by(|later, earlier| *later - *earlier <= SAME_STATION);
+    cuts.sort_by(|a, b| a.value().total_cmp(&b.value()));
+    cuts.dedup_by(|later, earlier| (*later - *earlier).value() <= SAME_STATION);
     Ok(cuts)
 }
 
 /// Puts on the chain's end whatever the rod has at this station.
-fn place_features(chain: &mut Chain, rod: &Rod, station: f64) {
-    let is_here = |at: f64| (at - station).abs() <= SAME_STATION;
+fn place_features<T: Number>(chain: &mut Chain<T>, rod: &Rod<T>, station: T) {
+    let is_here = |at: T| (at - station).value().abs() <= SAME_STATION;
     for mass in rod.masses.iter().filter(|mass| is_here(mass.station)) {
         chain.mass(mass.mass);
     }

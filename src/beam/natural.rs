@@ -17,6 +17,7 @@ use nalgebra::{DMatrix, SMatrix, Vector3};
 
 use super::chain::{Chain, Piece};
 use super::model::{Physics, RodModel};
+use crate::dual::Number;
 use crate::error::{Error, Result};
 use crate::rod::Rod;
 
@@ -25,7 +26,7 @@ const ELEMENTS: usize = 60;
 /// Vectors beyond those that are asked for: the iteration's error shrinks by (ω_asked/ω_next)² each time.
 const GUARD: usize = 8;
 /// Elements, vectors beyond the one that is asked for, and where ω² stands still, for [`Rod::first_frequency`].
-const FEW: usize = 16;
+pub(super) const FEW: usize = 16;
 const FEW_GUARD: usize = 5;
 const ROUGHLY: f64 = 1e-8;
 /// Where ω² stands still.
@@ -147,14 +148,20 @@ impl Chain {
             shape: shape.into_iter().map(|both| both.map(|v| v * scale)).collect(),
         }
     }
+}
 
+impl<T: Number> Chain<T> {
     /// Mass matrix of each shape in the axes of space.
-    fn inertia(&self) -> Vec<Option<SMatrix<f64, 12, 12>>> {
+    pub(super) fn inertia(&self) -> Vec<Option<SMatrix<T, 12, 12>>> {
         self.pieces.iter().map(|piece| piece.as_ref().map(consistent_mass)).collect()
     }
 
     /// M x: forces and moments at the nodes.
-    fn inertia_forces(&self, inertia: &[Option<SMatrix<f64, 12, 12>>], x: &DMatrix<f64>) -> DMatrix<f64> {
+    pub(super) fn inertia_forces(
+        &self,
+        inertia: &[Option<SMatrix<T, 12, 12>>],
+        x: &DMatrix<T>,
+    ) -> DMatrix<T> {
         let mut forces = DMatrix::zeros(x.nrows(), x.ncols());
         for (k, element) in self.elements.iter().enumerate() {
             if let Some(mass) = &inertia[element.shape] {
@@ -162,7 +169,7 @@ impl Chain {
                 own += mass * x.rows(6 * k, 12);
             }
         }
-        for (k, node) in self.nodes.iter().enumerate().filter(|(_, node)| node.mass > 0.0) {
+        for (k, node) in self.nodes.iter().enumerate().filter(|(_, node)| node.mass.value() > 0.0) {
             let mut own = forces.rows_mut(6 * k, 3);
             own += x.rows(6 * k, 3) * node.mass;
         }
@@ -170,11 +177,11 @@ impl Chain {
     }
 
     /// F p: motions of the nodes under forces and moments at the nodes.
-    fn moved_by(&self, forces: &DMatrix<f64>) -> DMatrix<f64> {
+    pub(super) fn moved_by(&self, forces: &DMatrix<T>) -> DMatrix<T> {
         let mut moved = DMatrix::zeros(forces.nrows(), forces.ncols());
         let mut carried = vec![[Vector3::zeros(); 2]; self.elements.len()];
         for column in 0..forces.ncols() {
-            let of = |matrix: &DMatrix<f64>, row: usize| {
+            let of = |matrix: &DMatrix<T>, row: usize| {
                 Vector3::new(matrix[(row, column)], matrix[(row + 1, column)], matrix[(row + 2, column)])
             };
             // from the tip: force, and moment about the element's reference point
@@ -248,26 +255,26 @@ fn ritz(stiffness: DMatrix<f64>, mass: DMatrix<f64>) -> Option<(Vec<f64>, DMatri
 
 /// Consistent mass of a straight Timoshenko beam (Przemieniecki, Eqs 11.88 and 11.89), in the axes of space; freedoms:
 /// displacement and rotation of the near node, then of the far one.
-fn consistent_mass(piece: &Piece) -> SMatrix<f64, 12, 12> {
-    let Piece { profile, length: l, frame } = piece;
-    let (mass, mut local) = (profile.mass_per_length * l, SMatrix::<f64, 12, 12>::zeros());
+fn consistent_mass<T: Number>(piece: &Piece<T>) -> SMatrix<T, 12, 12> {
+    let Piece { profile, length: l, frame } = *piece;
+    let (mass, mut local) = (profile.mass_per_length * l, SMatrix::<T, 12, 12>::zeros());
     // displacement along x turns about y, along y about −x
     for (axis, turn, sign) in [(0, 4, 1.0), (1, 3, -1.0)] {
         // Φ = 12 EI/(κGA L²)
         let (bending, shear) = (profile.bending[1 - axis], profile.shear[axis]);
-        let phi = if bending > 0.0 { 12.0 * shear / (bending * l * l) } else { 0.0 };
-        let of_mass = mass / (1.0 + phi).powi(2);
-        let of_inertia = profile.rotary_inertia[1 - axis] / ((1.0 + phi).powi(2) * l);
+        let phi = if bending.value() > 0.0 { shear * 12.0 / (bending * l * l) } else { T::zero() };
+        let of_mass = mass / (phi + 1.0).powi(2);
+        let of_inertia = profile.rotary_inertia[1 - axis] / ((phi + 1.0).powi(2) * l);
         let (m1, m2) =
-            (13.0 / 35.0 + 0.7 * phi + phi * phi / 3.0, 11.0 / 210.0 + 11.0 * phi / 120.0 + phi * phi / 24.0);
+            (phi * 0.7 + 13.0 / 35.0 + phi * phi / 3.0, phi * 11.0 / 120.0 + 11.0 / 210.0 + phi * phi / 24.0);
         let (m3, m4) =
-            (9.0 / 70.0 + 0.3 * phi + phi * phi / 6.0, 13.0 / 420.0 + 3.0 * phi / 40.0 + phi * phi / 24.0);
+            (phi * 0.3 + 9.0 / 70.0 + phi * phi / 6.0, phi * 3.0 / 40.0 + 13.0 / 420.0 + phi * phi / 24.0);
         let (m5, m6) =
-            (1.0 / 105.0 + phi / 60.0 + phi * phi / 120.0, 1.0 / 140.0 + phi / 60.0 + phi * phi / 120.0);
-        let (r1, r2) = (1.2, 0.1 - 0.5 * phi);
-        let (r3, r4) = (2.0 / 15.0 + phi / 6.0 + phi * phi / 3.0, 1.0 / 30.0 + phi / 6.0 - phi * phi / 6.0);
+            (phi / 60.0 + 1.0 / 105.0 + phi * phi / 120.0, phi / 60.0 + 1.0 / 140.0 + phi * phi / 120.0);
+        let (r1, r2) = (T::from(1.2), -phi * 0.5 + 0.1);
+        let (r3, r4) = (phi / 6.0 + 2.0 / 15.0 + phi * phi / 3.0, phi / 6.0 + 1.0 / 30.0 - phi * phi / 6.0);
         let at = [axis, turn, axis + 6, turn + 6];
-        let signs = [1.0, sign * l, 1.0, sign * l];
+        let signs = [T::one(), l * sign, T::one(), l * sign];
         let moving = [[m1, m2, m3, -m4], [m2, m5, m4, -m6], [m3, m4, m1, -m2], [-m4, -m6, -m2, m5]];
         let turning = [[r1, r2, -r1, r2], [r2, r3, -r2, -r4], [-r1, -r2, r1, -r2], [r2, -r4, -r2, r3]];
         for i in 0..4 {
@@ -277,13 +284,13 @@ fn consistent_mass(piece: &Piece) -> SMatrix<f64, 12, 12> {
             }
         }
     }
-    let polar = profile.rotary_inertia.iter().sum::<f64>() * l;
+    let polar = profile.rotary_inertia.into_iter().sum::<T>() * l;
     for (at, amount) in [(2, mass), (5, polar)] {
         for (i, j, share) in [(at, at, 2.0), (at + 6, at + 6, 2.0), (at, at + 6, 1.0), (at + 6, at, 1.0)] {
             local[(i, j)] += amount * share / 6.0;
         }
     }
-    let mut turn = SMatrix::<f64, 12, 12>::zeros();
+    let mut turn = SMatrix::<T, 12, 12>::zeros();
     for block in 0..4 {
         turn.fixed_view_mut::<3, 3>(3 * block, 3 * block).copy_from(frame.matrix());
     }

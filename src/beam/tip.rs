@@ -8,10 +8,10 @@ use nalgebra::{Matrix3, Rotation3, Vector3};
 use super::chain::Chain;
 use super::element::{Profile, Shape};
 use super::model::{Physics, RodModel};
-use super::response::Carried;
+use crate::dual::{Number, about_y};
 use crate::error::Result;
 use crate::rod::Rod;
-use crate::spatial::{cross, skew};
+use crate::spatial::{cross, product, skew};
 
 /// Solves for the tips of rods one after another.
 ///
@@ -30,19 +30,19 @@ use crate::spatial::{cross, skew};
 /// # Ok::<(), rodcal::Error>(())
 /// ```
 #[derive(Debug, Clone)]
-pub struct TipSolver {
-    chain: Chain,
+pub struct TipSolver<T: Number = f64> {
+    chain: Chain<T>,
     /// The last arc, its radius and angle: rods that are compared often have the same bend.
-    arc: Option<(Profile, [f64; 2], Shape)>,
+    arc: Option<(Profile<T>, [T; 2], Shape<T>)>,
 }
 
-impl Default for TipSolver {
+impl<T: Number> Default for TipSolver<T> {
     fn default() -> Self {
         TipSolver { chain: Chain::clamped_at(Vector3::zeros(), Rotation3::identity()), arc: None }
     }
 }
 
-impl TipSolver {
+impl<T: Number> TipSolver<T> {
     /// Motion of the tip per newton at the tip (m/N) and per acceleration (m per m/s²), in {T}: `m[(i, j)]` is along
     /// axis i under a load along axis j. All physics is in it.
     ///
@@ -51,15 +51,15 @@ impl TipSolver {
     ///
     /// # Errors
     /// As [`RodModel::new`], for a rod with masses or joints on it only.
-    pub fn solve(&mut self, rod: &Rod) -> Result<[Matrix3<f64>; 2]> {
+    pub fn solve(&mut self, rod: &Rod<T>) -> Result<[Matrix3<T>; 2]> {
         if !rod.masses.is_empty() || !rod.joints.is_empty() {
             return Ok(RodModel::new(rod, &Physics::WHOLE, 1, &[])?.chain.tip_motion());
         }
         let physics = Physics::WHOLE;
         let tangent = rod.tangent_length();
         self.chain.restart();
-        self.chain.straight(&physics.profile(&rod.pipe1, 1.0), rod.l1 - tangent, 1);
-        if rod.bend_radius > 0.0 && rod.turn() > 0.0 {
+        self.chain.straight(&physics.profile(&rod.pipe1, T::one()), rod.l1 - tangent, 1);
+        if rod.bend_radius.value() > 0.0 && rod.turn().value() > 0.0 {
             let factor = rod.bend_flexibility.factor(&rod.bend.section, rod.bend_radius);
             let (profile, key) = (physics.profile(&rod.bend, factor), [rod.bend_radius, rod.turn()]);
             let shape = match &self.arc {
@@ -69,43 +69,41 @@ impl TipSolver {
             self.arc = Some((profile, key, shape));
             self.chain.bend(&shape, &profile, key[0], key[1], 1);
         } else {
-            self.chain.turn(&Rotation3::from_axis_angle(&Vector3::y_axis(), rod.turn()));
+            self.chain.turn(&about_y(rod.turn()));
         }
-        self.chain.straight(&physics.profile(&rod.pipe2, 1.0), rod.l2 - tangent, 1);
+        self.chain.straight(&physics.profile(&rod.pipe2, T::one()), rod.l2 - tangent, 1);
         self.chain.mass(rod.tip_mass);
         Ok(self.chain.tip_motion())
     }
 }
 
-impl Chain {
+impl<T: Number> Chain<T> {
     /// Motion of the outermost node per newton there and per acceleration.
-    pub(super) fn tip_motion(&self) -> [Matrix3<f64>; 2] {
+    pub(crate) fn tip_motion(&self) -> [Matrix3<T>; 2] {
         let tip = self.nodes[self.end()].position;
-        let mut beyond = Carried { mass: self.nodes[self.end()].mass, ..Carried::NOTHING };
+        let (mut mass, mut first_moment) = (self.nodes[self.end()].mass, Vector3::<T>::zeros());
         let [mut force, mut weight] = [Matrix3::zeros(); 2];
         for (k, element) in self.elements.iter().enumerate().rev() {
             let shape = self.shape(element);
             let (near, far) = (&self.nodes[k], &self.nodes[k + 1].position);
             let lever = tip - element.reference;
             // a newton at the tip: F = 1, M = [r]ₓ;  the weight beyond: F = φ, M = [s]ₓ, and its own
-            let [of_force, of_weight] = [
-                (1.0, skew(&lever)),
-                (beyond.mass, skew(&(beyond.first_moment + (far - element.reference) * beyond.mass))),
-            ]
-            .map(|(mass, moment)| {
-                let mut motion = [shape.force * mass, shape.moment * moment];
-                if let Some(coupling) = &shape.coupling {
-                    motion[0] += coupling * moment;
-                    motion[1] += coupling.transpose() * mass;
-                }
-                motion
-            });
+            let [of_force, of_weight] =
+                [(T::one(), skew(&lever)), (mass, skew(&(first_moment + (far - element.reference) * mass)))]
+                    .map(|(mass, moment)| {
+                        let mut motion = [shape.force * mass, product(&shape.moment, &moment)];
+                        if let Some(coupling) = &shape.coupling {
+                            motion[0] += coupling * moment;
+                            motion[1] += coupling.transpose() * mass;
+                        }
+                        motion
+                    });
             force += of_force[0] - cross(&lever, &of_force[1]);
             weight += of_weight[0] + shape.weight_translation
                 - cross(&lever, &(of_weight[1] + shape.weight_rotation));
-            beyond.first_moment += (far - near.position) * beyond.mass
+            first_moment += (far - near.position) * mass
                 + (element.reference + shape.mass_centre - near.position) * shape.mass;
-            beyond.mass += shape.mass + near.mass;
+            mass += shape.mass + near.mass;
         }
         [force, weight]
     }

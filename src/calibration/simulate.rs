@@ -74,6 +74,21 @@ pub struct Simulation<'r> {
 /// # Errors
 /// [`crate::Error::NotApplicable`] where the robot does not reach the clamps with this rod.
 pub fn simulate<'r>(robot: &'r Robot, rod: &Rod, model: &Compliance, plan: &Plan) -> Result<Simulation<'r>> {
+    simulate_telling(robot, rod, model, plan, &|| ())
+}
+
+/// [`simulate`], which takes seconds for a thousand poses; `progress` is called for every candidate that is found and for
+/// every pose that is taken.
+///
+/// # Errors
+/// As [`simulate`].
+pub fn simulate_telling<'r>(
+    robot: &'r Robot,
+    rod: &Rod,
+    model: &Compliance,
+    plan: &Plan,
+    progress: &(dyn Fn() + Sync),
+) -> Result<Simulation<'r>> {
     let payload = Body { mass: rod.mass(), centre: rod.centre_of_mass() };
     let compliance =
         Compliance { force: model.force * plan.rod_factor, gravity: model.gravity * plan.rod_factor };
@@ -92,7 +107,7 @@ pub fn simulate<'r>(robot: &'r Robot, rod: &Rod, model: &Compliance, plan: &Plan
     };
     let free = minimal_parameters(robot, truth.tool, rod.tip(), Some(payload));
     let poses = match plan.planned.is_empty() {
-        true => poses::choose(&truth, &free, &groups, plan)?,
+        true => poses::choose(&truth, &free, &groups, plan, progress)?,
         false => planned::taken(&truth, &groups, plan)?,
     };
     let measurements = measure(&truth, &compensation, groups, poses, plan);

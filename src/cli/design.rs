@@ -1,14 +1,16 @@
-//! `rodcal design rod DESIGN`, `rodcal design poses CAMPAIGN`.
+//! `rodcal design rod DESIGN`, `rodcal design poses CAMPAIGN`, `rodcal design rig ROD`.
 
 pub mod poses;
+pub mod rig;
 
 use std::path::PathBuf;
+use std::time::{Duration, Instant};
 
 use clap::{Args, Subcommand, ValueEnum};
 use rodcal::calibration::Campaign;
-use rodcal::design::{Budget, MOST_RODS, Searched, Study, Where, Wish, for_robot};
+use rodcal::design::{Budget, Found, MOST_RODS, Search, Searched, Study, Where, Wish, for_robot};
 use rodcal::rod::Rod;
-use rodcal::{Error, Result, report};
+use rodcal::{Error, Result, files, report};
 
 use super::output::Outcome;
 use super::progress::Progress;
@@ -19,6 +21,8 @@ pub enum Design {
     Rod(DesignRod),
     /// The poses that a calibration should measure, and how accurate the robot will be.
     Poses(poses::DesignPoses),
+    /// What to measure on a rig so that effects can be told apart, or r_rod is known well enough.
+    Rig(rig::DesignRig),
 }
 
 #[derive(Debug, Args)]
@@ -32,6 +36,15 @@ pub struct DesignRod {
     /// Look at so many combinations only, spread evenly at random.
     #[arg(long, value_name = "N")]
     samples: Option<u64>,
+    /// Keep the search in this file, and go on where it stopped if the file exists: for searches
+    /// that take long. Stop it whenever you like; what it says in the end is the same.
+    #[arg(long, value_name = "FILE")]
+    resume: Option<PathBuf>,
+    /// Better design N of the front between the values of the ranges and of the tubes, then take the
+    /// nearest tubes of the catalogue [without N: design 1].
+    #[arg(long, value_name = "N", num_args = 0..=1, default_missing_value = "1",
+          value_parser = clap::value_parser!(u32).range(1..))]
+    refine: Option<u32>,
     /// Every random number comes from this seed.
     #[arg(long, default_value_t = 1)]
     seed: u64,
@@ -83,11 +96,38 @@ impl Design {
         match self {
             Design::Rod(rod) => rod.run(),
             Design::Poses(poses) => poses.run(),
+            Design::Rig(rig) => rig.run(),
         }
     }
 }
 
+/// A search is kept so often.
+const KEPT_EVERY: Duration = Duration::from_secs(5);
+
 impl DesignRod {
+    /// Looks at all rods, from where the kept search stopped.
+    fn search(&self, wish: &Wish, searched: Searched, progress: &Progress) -> Result<Found> {
+        let kept = self.resume.as_deref();
+        let mut search = match kept.filter(|path| path.exists()) {
+            Some(path) => {
+                let text = files::read_text(path)?;
+                Search::from_text(wish, searched, &path.display().to_string(), &text)?
+            }
+            None => Search::new(wish, searched)?,
+        };
+        progress.more(search.done());
+        let mut last: Option<Instant> = None;
+        while !search.is_done() {
+            search.go_on(&|more| progress.more(more))?;
+            let is_time = last.is_none_or(|last| last.elapsed() > KEPT_EVERY) || search.is_done();
+            if let (Some(path), true) = (kept, is_time) {
+                files::write_whole(path, search.to_text().as_bytes())?;
+                last = Some(Instant::now());
+            }
+        }
+        search.found()
+    }
+
     fn run(&self) -> Result<Outcome> {
         let wish = Wish::read(&self.design)?;
         let base = self.base.as_deref().map(Rod::read).transpose()?;
@@ -105,8 +145,13 @@ impl DesignRod {
         }
         let count = self.samples.map_or(all, |samples| samples.min(all));
         let progress = Progress::new("looking at rods", usize::try_from(count).unwrap_or(usize::MAX));
-        let study = Study::new(wish, searched, base, &|more| progress.more(more))?;
+        let found = self.search(&wish, searched, &progress)?;
         progress.finish();
+        let study = Study::of_found(wish, found, base)?;
+        let study = match self.refine {
+            Some(number) => study.with_refined(number as usize - 1)?,
+            None => study,
+        };
         let mut report = report::design::report(&study);
         report.provenance = vec![
             ("design file".into(), self.design.display().to_string()),

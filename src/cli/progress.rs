@@ -19,6 +19,16 @@ impl Progress {
         Progress(bar)
     }
 
+    /// Of tasks that nobody can count beforehand.
+    pub fn open(what: &'static str) -> Self {
+        let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr_with_hz(5));
+        if let Ok(style) = ProgressStyle::with_template("{msg}: {pos} looked at, {elapsed}") {
+            bar.set_style(style);
+        }
+        bar.set_message(what);
+        Progress(bar)
+    }
+
     /// One task is done.
     pub fn one_more(&self) {
         self.more(1);

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use rodcal::beam::Physics;
-use rodcal::calibration::simulate::{Plan, campaign_files, planned_poses, simulate};
+use rodcal::calibration::simulate::{Plan, campaign_files, planned_poses, simulate_telling};
 use rodcal::compliance::{Compliance, DEFAULT_ELEMENTS};
 use rodcal::robot::{Parameter, Robot, Setup};
 use rodcal::rod::Rod;
@@ -13,6 +13,7 @@ use rodcal::{Error, Result, files};
 use serde_json::json;
 
 use super::output::Outcome;
+use super::progress::Progress;
 
 #[derive(Debug, Args)]
 pub struct Simulate {
@@ -69,7 +70,9 @@ impl Simulate {
             rod_factor: self.r_rod,
             ..Plan::default()
         };
-        let simulation = simulate(&robot, &rod, &model, &plan)?;
+        let progress = Progress::open("simulating poses");
+        let simulation = simulate_telling(&robot, &rod, &model, &plan, &|| progress.one_more())?;
+        progress.finish();
         let mut written: Vec<(String, Vec<u8>)> = campaign_files(&simulation, &robot_name, "rod.toml")
             .into_iter()
             .map(|(name, text)| (name, text.into_bytes()))

@@ -2,6 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::sensitivity::{Sensitivity, sensitivities};
 use super::steps::{Step, steps};
 use super::{Compliance, closed_form};
 use crate::beam::{Load, Motion, NaturalMode, Physics, RodModel};
@@ -51,6 +52,8 @@ pub struct Study {
     pub steps: Vec<Step>,
     /// The rod undeformed and deformed.
     pub shape: Shape,
+    /// How all of it follows the numbers of the rod; none where numbers are beyond double precision.
+    pub sensitivities: Vec<Sensitivity>,
     /// What one station does under a force at another, where that was asked for.
     pub stations: Option<StationResponse>,
 }
@@ -95,6 +98,7 @@ impl Study {
             fea: Compliance::of_model(&rod, &physics, elements)?,
             steps: steps(&rod, &physics, elements)?,
             shape: Shape::new(&rod, &physics)?,
+            sensitivities: sensitivities(&rod, &physics, contact_force).unwrap_or_default(),
             rod,
             mode,
             physics,

@@ -12,6 +12,9 @@ use crate::units::MM;
 /// What a design file writes for [`built_in`].
 pub const BUILT_IN: &str = "builtin";
 
+/// The built-in catalogue as a table.
+pub(super) const BUILT_IN_TEXT: &str = include_str!("built_in.csv");
+
 /// A tube that can be bought.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
@@ -55,7 +58,7 @@ pub fn built_in_materials() -> BTreeMap<String, Material> {
 /// # Errors
 /// None: a test reads it.
 pub fn built_in(materials: &BTreeMap<String, Material>) -> Result<Vec<Tube>> {
-    read(BUILT_IN, include_str!("built_in.csv"), materials)
+    read(BUILT_IN, BUILT_IN_TEXT, materials)
 }
 
 /// A catalogue from the text of `file`, a table with the columns `name`, `material`, `outer_diameter_mm`,

@@ -1,11 +1,12 @@
 //! The numbers that a rod is judged by.
 
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Vector3};
 
 use crate::beam::TipSolver;
 use crate::compliance::{Compliance, paper_contact_force};
+use crate::dual::{Dual, Number};
 use crate::error::Result;
-use crate::rod::Rod;
+use crate::rod::{NominalNumber, Rod};
 use crate::units::{GRAM, MM, STANDARD_GRAVITY, UM};
 
 /// A number of a rod. Its value is in the unit of its key.
@@ -98,18 +99,38 @@ impl Figures {
     /// # Errors
     /// As [`TipSolver::solve`].
     pub fn of(rod: &Rod, solver: &mut TipSolver) -> Result<Figures> {
-        let [force, weight] = solver.solve(rod)?;
-        let compliance = Compliance { force, gravity: weight * STANDARD_GRAVITY };
-        let largest = |matrix: &Matrix3<f64>| matrix.amax() / UM;
-        let (mass, centre) = (rod.mass(), rod.centre_of_mass());
-        let mut figures = Figures([f64::NAN; 8]);
-        figures.set(Figure::CRod, compliance.index(paper_contact_force()) / UM);
-        figures.set(Figure::CfMax, largest(&compliance.force));
-        figures.set(Figure::CgMax, largest(&compliance.gravity));
-        figures.set(Figure::Mass, mass / GRAM);
-        figures.set(Figure::Moment, mass * STANDARD_GRAVITY * centre.norm());
-        figures.set(Figure::Reach, rod.tip().norm() / MM);
-        Ok(figures)
+        Ok(Figures(numbers(rod, solver)?))
+    }
+
+    /// Derivatives of all figures of `rod` but the price by every number of it, per SI unit of the number.
+    ///
+    /// # Errors
+    /// As [`TipSolver::solve`] and [`Rod::first_frequency_slopes`].
+    pub fn slopes(rod: &Rod) -> Result<Vec<(NominalNumber, Figures)>> {
+        Figures::slopes_by(rod, &rod.numbers(), true)
+    }
+
+    /// [`Figures::slopes`] by some numbers, and only if asked for those of the frequency, which cost more than all others.
+    pub(super) fn slopes_by(
+        rod: &Rod,
+        all: &[NominalNumber],
+        swings: bool,
+    ) -> Result<Vec<(NominalNumber, Figures)>> {
+        let mut solver = TipSolver::default();
+        let frequencies = match swings {
+            true => rod.first_frequency_slopes(all)?.map(|(_, slopes)| slopes),
+            false => None,
+        };
+        let mut slopes = Vec::new();
+        for (k, number) in all.iter().enumerate() {
+            let Some(varied) = rod.derivative(number) else { continue };
+            let mut figures = Figures(numbers(&varied, &mut solver)?.map(|figure: Dual| figure.eps));
+            let frequency = frequencies.as_ref().map_or(0.0, |slopes| slopes[k]);
+            figures.set(Figure::FirstFrequency, frequency);
+            figures.set(Figure::Price, f64::NAN);
+            slopes.push((number.clone(), figures));
+        }
+        Ok(slopes)
     }
 
     /// [`Figures::of`] and the first natural frequency.
@@ -121,6 +142,24 @@ impl Figures {
         self.set(Figure::FirstFrequency, rod.first_frequency()?.unwrap_or(f64::INFINITY));
         Ok(self)
     }
+}
+
+/// What [`Figures::of`] has, with whatever the numbers of the rod carry.
+fn numbers<T: Number>(rod: &Rod<T>, solver: &mut TipSolver<T>) -> Result<[T; 8]> {
+    let [force, weight] = solver.solve(rod)?;
+    let compliance = Compliance { force, gravity: weight * T::from(STANDARD_GRAVITY) };
+    let largest = |matrix: &Matrix3<T>| matrix.iter().fold(T::zero(), |most, x| most.larger(x.size()));
+    let length = |v: &Vector3<T>| (v.x * v.x + v.y * v.y + v.z * v.z).sqrt();
+    let (mass, centre) = (rod.mass(), rod.centre_of_mass());
+    let mut figures = [T::from(f64::NAN); 8];
+    let mut set = |figure: Figure, value: T| figures[figure as usize] = value;
+    set(Figure::CRod, compliance.index(paper_contact_force()) / UM);
+    set(Figure::CfMax, largest(&compliance.force) / UM);
+    set(Figure::CgMax, largest(&compliance.gravity) / UM);
+    set(Figure::Mass, mass / GRAM);
+    set(Figure::Moment, mass * STANDARD_GRAVITY * length(&centre));
+    set(Figure::Reach, length(&rod.tip()) / MM);
+    Ok(figures)
 }
 
 /// A figure that is to be small, or large.

@@ -26,6 +26,11 @@ impl Front {
         Front { goals: goals.to_vec(), designs: Vec::new() }
     }
 
+    /// A front of designs none of which betters another.
+    pub(super) fn known(goals: &[Goal], designs: Vec<Design>) -> Front {
+        Front { goals: goals.to_vec(), designs }
+    }
+
     /// Takes `design` in, unless one that is known betters it, and puts out those that it betters.
     ///
     /// A design betters another that is as good as it in every goal and better in one.

@@ -1,15 +1,12 @@
 //! How well the figures of a design are known, and which designs cannot be distinguished.
 //!
 //! Every nominal number of the rod (E, G, ρ, diameters, lengths, …) has a standard uncertainty u; a figure y moves with it
-//! by s = u·∂y/∂x, by a central difference of one u. The standard uncertainty of y is √Σ s² (GUM, JCGM 100:2008, 5.1.2).
+//! by s = u·∂y/∂x. The standard uncertainty of y is √Σ s² (GUM, JCGM 100:2008, 5.1.2).
 //! Two designs of one material share its moduli and its density, and with them what these do: of their difference only
 //! the rest counts. Lengths and diameters are made anew for each.
 
 use super::figure::{Figure, Figures, Goal};
 use super::front::Design;
-use super::wish::Wish;
-use crate::beam::TipSolver;
-use crate::error::Result;
 use crate::rod::{NominalNumber, Rod};
 
 /// Half of a 95 % interval of a normal number, in standard deviations.
@@ -26,29 +23,17 @@ pub struct Intervals {
 }
 
 impl Intervals {
-    /// Of one design.
-    ///
-    /// # Errors
-    /// What the beam model refuses.
-    pub fn of(wish: &Wish, design: &Design) -> Result<Intervals> {
-        let mut solver = TipSolver::default();
+    /// Of one rod, whose figures have these derivatives ([`Figures::slopes`]).
+    pub fn of(rod: &Rod, slopes: &[(NominalNumber, Figures)]) -> Intervals {
+        let known = rod.nominal_numbers();
         let mut shifts = Vec::new();
-        if let Ok(rod) = wish.rod(design.index) {
-            let mut figures = |rod: &Rod| Figures::of(rod, &mut solver)?.with_frequency(rod);
-            for nominal in rod.nominal_numbers() {
-                let u = nominal.standard_uncertainty;
-                let [more, less] = [u, -u].map(|by| rod.with(&nominal.number, nominal.value + by));
-                let (more, less) = (figures(&more)?, figures(&less)?);
-                let mut shift = [0.0; 8];
-                for (k, shift) in shift.iter_mut().enumerate() {
-                    let by = 0.5 * (more.0[k] - less.0[k]);
-                    *shift = if by.is_finite() { by } else { 0.0 };
-                }
-                shifts.push((nominal.number, shift));
-            }
+        for (number, slopes) in slopes {
+            let Some(nominal) = known.iter().find(|nominal| nominal.number == *number) else { continue };
+            let by = slopes.0.map(|slope| slope * nominal.standard_uncertainty);
+            shifts.push((number.clone(), by.map(|by| if by.is_finite() { by } else { 0.0 })));
         }
         let half = |k: usize| HALF * shifts.iter().map(|(_, shift)| shift[k].powi(2)).sum::<f64>().sqrt();
-        Ok(Intervals { half: Figures(std::array::from_fn(half)), shifts })
+        Intervals { half: Figures(std::array::from_fn(half)), shifts }
     }
 
     /// Half of the 95 % interval of the difference of two designs in one figure.
@@ -92,7 +77,7 @@ pub fn indistinguishable(designs: &[Design], intervals: &[Intervals], goals: &[G
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::design::{Searched, search};
+    use crate::design::{Searched, Wish, search};
 
     fn wish(l2: &str) -> Wish {
         let text = format!(
@@ -105,7 +90,11 @@ mod tests {
 
     fn of(wish: &Wish) -> (Vec<Design>, Vec<Intervals>) {
         let designs = search(wish, Searched::All, &|_| {}).unwrap().front;
-        let intervals = designs.iter().map(|design| Intervals::of(wish, design).unwrap()).collect();
+        let of = |design: &Design| {
+            let rod = wish.rod(design.index).unwrap();
+            Intervals::of(&rod, &Figures::slopes(&rod).unwrap())
+        };
+        let intervals = designs.iter().map(of).collect();
         (designs, intervals)
     }
 

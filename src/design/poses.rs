@@ -16,4 +16,4 @@ pub use candidates::{Candidates, Source};
 pub use criterion::PoseCriterion;
 pub use limits::{Obstacle, PoseLimits, TableHeight};
 pub use random::Beside;
-pub use study::{Known, PoseStudy, Wanted};
+pub use study::{Known, PoseStep, PoseStudy, Wanted};

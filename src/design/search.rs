@@ -13,7 +13,7 @@ use crate::statistics::Random;
 
 /// Rods of one task, and tasks that are waited for together: memory is that of so many fronts.
 const TASK: u64 = 4096;
-const TASKS_AT_ONCE: u64 = 256;
+const TASKS_AT_ONCE: u64 = 64;
 /// Most designs of a front: beyond, too many goals pull in too many directions to choose from.
 const MOST_DESIGNS: usize = 200_000;
 /// The stream of random numbers of the first task.
@@ -48,43 +48,90 @@ pub struct Found {
 }
 
 /// What a task adds up.
-struct Sum {
-    front: Front,
-    feasible: u64,
-    broken: Vec<u64>,
-    impossible: [u64; 3],
-    nearest: Nearest,
+pub(super) struct Sum {
+    pub front: Front,
+    pub feasible: u64,
+    pub broken: Vec<u64>,
+    pub impossible: [u64; 3],
+    pub nearest: Nearest,
 }
 
 /// Looks at the rods of `wish` and keeps those that nobody betters. `progress` is told how many more were looked at. The
 /// result does not depend on the number of threads.
 ///
 /// # Errors
-/// [`Error::Argument`] for more than [`MOST_RODS`](super::MOST_RODS) rods, no samples, or a front of more than 200 000
-/// designs; what the beam model refuses.
+/// As [`Search::new`] and [`Search::go_on`].
 pub fn search(wish: &Wish, searched: Searched, progress: &(dyn Fn(u64) + Sync)) -> Result<Found> {
-    let all = wish.combinations();
-    let (count, seed) = match searched {
-        Searched::Samples(samples, seed) if samples < all => (samples, Some(seed)),
-        _ => (all, None),
-    };
-    if count == 0 {
-        return Err(Error::Argument {
-            name: "samples",
-            found: "0".into(),
-            expected: "at least one rod to look at".into(),
-        });
+    let mut search = Search::new(wish, searched)?;
+    while !search.is_done() {
+        search.go_on(progress)?;
     }
-    if count > super::MOST_RODS {
-        return Err(Error::Argument {
-            name: "ranges",
-            found: wish.is_too_much().unwrap_or_default(),
-            expected: format!("at most {} rods: take larger steps, or a sample", super::MOST_RODS),
-        });
+    search.found()
+}
+
+/// A search on its way, block by block: it may stop between two of them, be kept as text ([`Search::to_text`]) and go on
+/// later. Where it stops changes nothing.
+pub struct Search<'w> {
+    pub(super) wish: &'w Wish,
+    pub(super) searched: Searched,
+    count: u64,
+    pub(super) done: u64,
+    pub(super) total: Sum,
+}
+
+impl<'w> Search<'w> {
+    /// Before any rod.
+    ///
+    /// # Errors
+    /// [`Error::Argument`] for more than [`MOST_RODS`](super::MOST_RODS) rods, or no samples.
+    pub fn new(wish: &'w Wish, searched: Searched) -> Result<Search<'w>> {
+        let all = wish.combinations();
+        let count = match searched {
+            Searched::Samples(samples, _) => samples.min(all),
+            Searched::All => all,
+        };
+        if count == 0 {
+            return Err(Error::Argument {
+                name: "samples",
+                found: "0".into(),
+                expected: "at least one rod to look at".into(),
+            });
+        }
+        if count > super::MOST_RODS {
+            return Err(Error::Argument {
+                name: "ranges",
+                found: wish.is_too_much().unwrap_or_default(),
+                expected: format!("at most {} rods: take larger steps, or a sample", super::MOST_RODS),
+            });
+        }
+        Ok(Search { wish, searched, count, done: 0, total: Sum::new(wish) })
     }
-    let mut total = Sum::new(wish);
-    let mut done = 0;
-    while done < count {
+
+    /// Rods to look at in all.
+    pub fn count(&self) -> u64 {
+        self.count
+    }
+
+    /// Rods that were looked at.
+    pub fn done(&self) -> u64 {
+        self.done
+    }
+
+    /// True where nothing is left to look at.
+    pub fn is_done(&self) -> bool {
+        self.done == self.count
+    }
+
+    /// Looks at the next block of rods.
+    ///
+    /// # Errors
+    /// [`Error::Argument`] for a front of more than 200 000 designs; what the beam model refuses.
+    pub fn go_on(&mut self, progress: &(dyn Fn(u64) + Sync)) -> Result<()> {
+        let (wish, all, count, done) = (self.wish, self.wish.combinations(), self.count, self.done);
+        let seed = match self.searched {
+            Searched::Samples(samples, seed) if samples < all => Some(seed),
+            _ => None,
+        };
         let end = count.min(done + TASK * TASKS_AT_ONCE);
         let tasks = (end - done).div_ceil(TASK);
         let sums = in_parallel(tasks as usize, |task| {
@@ -104,33 +151,42 @@ pub fn search(wish: &Wish, searched: Searched, progress: &(dyn Fn(u64) + Sync)) 
             sum
         });
         for sum in sums {
-            total.merge(sum?);
+            self.total.merge(sum?);
         }
-        if total.front.len() > MOST_DESIGNS {
+        if self.total.front.len() > MOST_DESIGNS {
             return Err(Error::Argument {
                 name: "objectives",
                 found: format!("a front of more than {MOST_DESIGNS} designs"),
                 expected: "fewer goals, or some of them as limits".into(),
             });
         }
-        done = end;
+        self.done = end;
+        Ok(())
     }
-    let designs = total.front.sorted();
-    let whole = in_parallel(designs.len(), |k| {
-        let design = designs[k];
-        match (design.figures.get(Figure::FirstFrequency), wish.rod(design.index)) {
-            (None, Ok(rod)) => Ok(Design { figures: design.figures.with_frequency(&rod)?, ..design }),
-            _ => Ok(design),
-        }
-    });
-    Ok(Found {
-        evaluated: count,
-        feasible: total.feasible,
-        front: whole.into_iter().collect::<Result<_>>()?,
-        broken: total.broken,
-        impossible: total.impossible,
-        nearest: (total.feasible == 0).then_some(total.nearest),
-    })
+
+    /// What was found so far.
+    ///
+    /// # Errors
+    /// What the beam model refuses.
+    pub fn found(self) -> Result<Found> {
+        let (wish, total) = (self.wish, self.total);
+        let designs = total.front.sorted();
+        let whole = in_parallel(designs.len(), |k| {
+            let design = designs[k];
+            match (design.figures.get(Figure::FirstFrequency), wish.rod(design.index)) {
+                (None, Ok(rod)) => Ok(Design { figures: design.figures.with_frequency(&rod)?, ..design }),
+                _ => Ok(design),
+            }
+        });
+        Ok(Found {
+            evaluated: self.done,
+            feasible: total.feasible,
+            front: whole.into_iter().collect::<Result<_>>()?,
+            broken: total.broken,
+            impossible: total.impossible,
+            nearest: (total.feasible == 0).then_some(total.nearest),
+        })
+    }
 }
 
 /// What a task reuses from rod to rod.

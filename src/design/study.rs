@@ -3,12 +3,13 @@
 use super::figure::{Figure, Figures, Goal};
 use super::front::Design;
 use super::intervals::{Intervals, indistinguishable};
+use super::refine::{Refined, refine};
 use super::search::{Found, Searched, search};
 use super::wish::Wish;
 use crate::beam::TipSolver;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::parallel::in_parallel;
-use crate::rod::Rod;
+use crate::rod::{NominalNumber, Rod};
 
 /// Designs of a front whose intervals are looked at: of a longer one so many, evenly from end to end.
 const MOST_SHOWN: usize = 48;
@@ -25,6 +26,8 @@ pub struct Study {
     pub shown: Vec<Shown>,
     /// The rod that others are to better.
     pub base: Option<Base>,
+    /// What became of one design between the grid's values, where that was asked for.
+    pub refined: Option<Refined>,
 }
 
 /// A design that is shown.
@@ -39,6 +42,8 @@ pub struct Shown {
     pub rod: Rod,
     /// Names of its tubes, one where they are the same.
     pub tubes: Vec<String>,
+    /// Derivatives of its figures by every number of it, per SI unit.
+    pub slopes: Vec<(NominalNumber, Figures)>,
     /// How well its figures are known.
     pub intervals: Intervals,
     /// Places on the front of shown designs that cannot be distinguished from it.
@@ -71,33 +76,63 @@ impl Study {
         progress: &(dyn Fn(u64) + Sync),
     ) -> Result<Study> {
         let found = search(&wish, searched, progress)?;
+        Study::of_found(wish, found, base)
+    }
+
+    /// Looks closer at what a search found.
+    ///
+    /// # Errors
+    /// What the beam model refuses.
+    pub fn of_found(wish: Wish, found: Found, base: Option<Rod>) -> Result<Study> {
         let last = found.front.len().saturating_sub(1);
         let places: Vec<usize> = match found.front.len() {
             count if count <= MOST_SHOWN => (0..count).collect(),
             _ => (0..MOST_SHOWN).map(|k| k * last / (MOST_SHOWN - 1)).collect(),
         };
         let designs: Vec<Design> = places.iter().map(|&place| found.front[place]).collect();
-        let intervals = in_parallel(designs.len(), |k| Intervals::of(&wish, &designs[k]));
-        let intervals: Vec<Intervals> = intervals.into_iter().collect::<Result<_>>()?;
-        let same = indistinguishable(&designs, &intervals, &wish.goals);
-        let shown = places.iter().zip(&designs).zip(intervals).zip(same);
-        let shown = shown.filter_map(|(((&place, design), intervals), same)| {
-            let rod = wish.rod(design.index).ok()?;
-            let tubes = wish.tubes_of(design.index);
-            let indistinguishable = same.into_iter().map(|k| places[k]).collect();
-            let name = format!("design {}", place + 1);
-            Some(Shown {
+        let closer = in_parallel(designs.len(), |k| {
+            let Ok(rod) = wish.rod(designs[k].index) else { return Ok(None) };
+            let slopes = Figures::slopes(&rod)?;
+            Ok(Some((rod, slopes)))
+        });
+        let mut shown = Vec::new();
+        for (closer, (&place, design)) in closer.into_iter().zip(places.iter().zip(&designs)) {
+            let Some((rod, slopes)) = closer? else { continue };
+            shown.push(Shown {
                 place,
                 design: *design,
-                rod: Rod { name, ..rod },
-                tubes,
-                intervals,
-                indistinguishable,
-            })
-        });
-        let shown = shown.collect();
+                intervals: Intervals::of(&rod, &slopes),
+                rod: Rod { name: format!("design {}", place + 1), ..rod },
+                slopes,
+                tubes: wish.tubes_of(design.index),
+                indistinguishable: Vec::new(),
+            });
+        }
+        let intervals: Vec<Intervals> = shown.iter().map(|shown| shown.intervals.clone()).collect();
+        let designs: Vec<Design> = shown.iter().map(|shown| shown.design).collect();
+        let same = indistinguishable(&designs, &intervals, &wish.goals);
+        let places: Vec<usize> = shown.iter().map(|shown| shown.place).collect();
+        for (shown, same) in shown.iter_mut().zip(same) {
+            shown.indistinguishable = same.into_iter().map(|k| places[k]).collect();
+        }
         let base = base.map(|rod| Base::new(rod, &wish, &found)).transpose()?;
-        Ok(Study { wish, found, shown, base })
+        Ok(Study { wish, found, shown, base, refined: None })
+    }
+
+    /// Refines the design at `place` of the front, from 0.
+    ///
+    /// # Errors
+    /// [`Error::Argument`] for a place beyond the front; as [`refine`].
+    pub fn with_refined(mut self, place: usize) -> Result<Study> {
+        let Some(design) = self.found.front.get(place) else {
+            return Err(Error::Argument {
+                name: "refine",
+                found: format!("design {}", place + 1),
+                expected: format!("one of the {} designs of the front", self.found.front.len()),
+            });
+        };
+        self.refined = Some(refine(&self.wish, place, design)?);
+        Ok(self)
     }
 
     /// The first goal, and the second where there is one.

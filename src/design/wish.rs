@@ -29,6 +29,8 @@ const USUAL_SPEED: f64 = 1e6;
 pub struct Wish {
     /// Name of the file.
     pub file: String,
+    /// Texts of the file and of its catalogue.
+    pub(super) content: String,
     /// L1, L2 and bend radius, m; γ, rad; mass at the tip, kg.
     pub l1: Vec<f64>,
     #[allow(missing_docs)]
@@ -39,6 +41,8 @@ pub struct Wish {
     pub bend_radius: Vec<f64>,
     #[allow(missing_docs)]
     pub tip_mass: Vec<f64>,
+    /// Which of L1, L2, γ, bend radius and tip mass were given as ranges, between whose steps values make sense too.
+    pub is_range: [bool; 5],
     /// How much more flexible bends are than beams.
     pub bend_flexibility: BendFlexibility,
     /// Tubes to choose from.
@@ -192,7 +196,7 @@ impl Wish {
         let mut check = Check { toml, warnings: Vec::new() };
         let mut materials = built_in_materials();
         materials.extend(raw.material.checked(&mut check)?);
-        let tubes = tubes(&toml, &raw.catalogue, &materials, catalogue)?;
+        let (of_catalogue, tubes) = tubes(&toml, &raw.catalogue, &materials, catalogue)?;
         let mut of = |key: &str, raw: Option<&Spanned<Raw>>, unit: f64, bounds, otherwise: f64| match raw {
             Some(raw) => {
                 Ok(values(&mut check, key, raw, bounds)?.into_iter().map(|value| value * unit).collect())
@@ -213,14 +217,24 @@ impl Wish {
             joints.push(check.joint(joint, &joints, f64::INFINITY)?);
         }
         let masses = raw.mass.iter().map(|mass| check.lumped_mass(mass, f64::INFINITY));
+        let keys = [
+            Some(&geometry.l1_mm),
+            Some(&geometry.l2_mm),
+            geometry.gamma_deg.as_ref(),
+            geometry.bend_radius_mm.as_ref(),
+            raw.tip.as_ref().map(|tip| &tip.mass_g),
+        ];
+        let is_range = keys.map(|raw| raw.is_some_and(|raw| matches!(raw.get_ref(), Raw::Range(_))));
         let wish = Wish {
             file: file.to_owned(),
+            content: format!("{text}\n{of_catalogue}"),
             l1,
             l2,
             gamma,
             bend_radius,
             bend_flexibility: flexibility.unwrap_or_default(),
             tip_mass,
+            is_range,
             tubes,
             is_one_tube: raw.catalogue.same_tube.unwrap_or(true),
             masses: masses.collect::<Result<_>>()?,
@@ -345,16 +359,17 @@ fn tubes(
     raw: &RawCatalogue,
     materials: &BTreeMap<String, Material>,
     find: &dyn Fn(&str) -> Result<(String, String)>,
-) -> Result<Vec<Tube>> {
+) -> Result<(String, Vec<Tube>)> {
     let name = raw.file.get_ref();
     if name == BUILT_IN {
-        return catalogue::built_in(materials);
+        return Ok((catalogue::BUILT_IN_TEXT.to_owned(), catalogue::built_in(materials)?));
     }
     if name.is_empty() {
         return Err(toml.is("catalogue.file", &raw.file, "a table of tubes, or \"builtin\""));
     }
     let (file, text) = find(name).map_err(|error| catalogue::unreadable(error, "[catalogue] file"))?;
-    catalogue::read(&file, &text, materials)
+    let tubes = catalogue::read(&file, &text, materials)?;
+    Ok((text, tubes))
 }
 
 fn limits(toml: &TomlText, raw: &RawLimits) -> Result<Vec<Limit>> {

@@ -41,6 +41,7 @@ mod next;
 mod nominal;
 mod nonparametric;
 mod numbering;
+pub mod planned;
 mod response;
 mod slide;
 mod structure;

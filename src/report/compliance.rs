@@ -4,11 +4,12 @@ use nalgebra::{Matrix3, Vector3};
 use serde_json::{Value, json};
 
 use super::pictures::{Contributions, RodShape, ShapeCase, Station, StationKind, contributions, rod_shape};
+use super::sensitivities::{self, OnePercent};
 use super::table::{Column, Table};
 use super::{Block, Card, Report, Section};
 use crate::beam::{NaturalMode, settling_time};
-use crate::compliance::{Compliance, Mode, Shape, StationResponse, Study};
-use crate::rod::Rod;
+use crate::compliance::{Compliance, Mode, Sensitivity, Shape, StationResponse, Study};
+use crate::rod::{NominalNumber, Rod};
 use crate::units::{GRAM, MM, UM, URAD, significant};
 
 /// Digits of a compliance in a table.
@@ -45,6 +46,8 @@ pub fn json(study: &Study) -> Value {
         "mass_g": study.rod.mass() / GRAM,
         "natural_frequencies_hz": study.shape.modes.iter().map(|mode| mode.frequency).collect::<Vec<_>>(),
         "contributions": steps,
+        "sensitivities": study.sensitivities.iter().map(sensitivity_json).collect::<Vec<_>>(),
+        "one_percent_more": sensitivities::json(&one_percent_more(study), &PERCENTS),
         "stations": study.stations.map(|stations| json!({
             "load_station_mm": stations.load / MM,
             "read_station_mm": stations.read / MM,
@@ -121,8 +124,72 @@ pub fn sections(study: &Study) -> Vec<Section> {
             ],
         ),
     ];
+    sections.extend(what_counts(study));
     sections.extend(swing(study, &stations));
     sections
+}
+
+/// Figures of [`one_percent_more`], in its order.
+const PERCENTS: [&str; 5] = [
+    "c_rod_um_percent",
+    "cf_max_um_per_n_percent",
+    "cg_max_um_per_g_percent",
+    "mass_g_percent",
+    "first_frequency_hz_percent",
+];
+
+/// Derivatives of everything by one number, per unit of its key.
+fn sensitivity_json(one: &Sensitivity) -> Value {
+    let (_, si) = one.number.in_file();
+    let mut object = sensitivities::number_json(&one.number, one.value);
+    let rows_of = |matrix: &Matrix3<f64>| json!(rows(&(matrix * si), UM));
+    object.insert("cf_um_per_n".into(), rows_of(&one.compliance.force));
+    object.insert("cg_um_per_g".into(), rows_of(&one.compliance.gravity));
+    object.insert("c_rod_um".into(), (one.index * si / UM).into());
+    object.insert("mass_g".into(), (one.mass * si / GRAM).into());
+    object.insert("first_frequency_hz".into(), (one.frequency * si).into());
+    object.into()
+}
+
+fn one_percent_more(study: &Study) -> Vec<OnePercent> {
+    let largest = |matrix: &Matrix3<f64>| {
+        let at = (0..9).max_by(|&a, &b| matrix[a].abs().total_cmp(&matrix[b].abs())).unwrap_or(0);
+        (at, matrix[at])
+    };
+    let ((force_at, force), (gravity_at, gravity)) = (largest(&study.fea.force), largest(&study.fea.gravity));
+    let frequency = study.shape.modes.first().map_or(f64::INFINITY, |mode| mode.frequency);
+    let figures = [study.fea.index(study.contact_force), force, gravity, study.rod.mass(), frequency];
+    let slopes: Vec<(NominalNumber, Vec<f64>)> = study
+        .sensitivities
+        .iter()
+        .map(|one| {
+            let (force, gravity) = (one.compliance.force[force_at], one.compliance.gravity[gravity_at]);
+            (one.number.clone(), vec![one.index, force, gravity, one.mass, one.frequency])
+        })
+        .collect();
+    sensitivities::one_percent_more(&study.rod, &slopes, &figures)
+}
+
+/// What 1 % more of each number does; nothing where that is not known.
+fn what_counts(study: &Study) -> Option<Section> {
+    let (rod, rows) = (&study.rod, one_percent_more(study));
+    if rows.is_empty() {
+        return None;
+    }
+    let caption = format!(
+        "Rod {}: change of each figure (beam model) by 1 % more of one number, all others kept; exact derivatives.",
+        rod.name
+    );
+    let heads = ["c_rod", "largest C^F", "largest C^g", "mass", "first frequency"];
+    let chart = sensitivities::bars(
+        format!("Rod {}", rod.name),
+        &rows,
+        &[(0, "c_rod"), (3, "mass"), (4, "first frequency")],
+    );
+    let figure = super::chart::Figure::from(chart)
+        .named_block("sensitivities", "What 1 % more of each number does: the numbers that count most.");
+    let table = Block::Table(sensitivities::table("sensitivities", caption, &heads, &rows));
+    Some(Section::new(format!("What counts, rod {}", rod.name), vec![table, figure]))
 }
 
 /// How fast the rod swings, and in which shapes; nothing of a rod without mass.

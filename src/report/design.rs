@@ -1,19 +1,21 @@
 //! What `design rod` says: JSON, tables and pictures of a [`Study`].
 
+mod cells;
 mod figures;
+mod refined;
 
 use serde_json::{Map, Value, json};
 
+use self::cells::{DIGITS, columns, figures_json, shape_cells, shape_columns};
+use super::chart::Figure as Picture;
+use super::sensitivities::{self, OnePercent};
 use super::table::{Column, Table};
 use super::{Block, Report, Section};
 use crate::calibration::Mode;
-use crate::design::{Design, Figure, ForRobot, Goal, Impossible, Limit, Shown, Study};
+use crate::design::{Design, Figure, Figures, ForRobot, Goal, Impossible, Limit, Shown, Study};
 use crate::error::Result;
-use crate::rod::Rod;
+use crate::rod::NominalNumber;
 use crate::units::{DEG, GRAM, MM, UM, significant};
-
-/// Digits of a figure in a table.
-const DIGITS: usize = 4;
 
 /// The JSON of `rodcal design rod --json`.
 pub fn json(study: &Study) -> Value {
@@ -44,6 +46,7 @@ pub fn json(study: &Study) -> Value {
         "front": front,
         "infeasible_because": because,
         "relax": relaxed.collect::<Vec<_>>(),
+        "refined": study.refined.as_ref().map(refined::json),
         "base": study.base.as_ref().map(|base| {
             let mut object = figures_json(&Design { index: 0, figures: base.figures });
             object.insert("rod".into(), base.rod.name.clone().into());
@@ -73,13 +76,72 @@ fn front_json(study: &Study, place: usize, design: &Design) -> Value {
             Figure::ALL.into_iter().filter_map(interval).collect::<Map<_, _>>().into(),
         );
         object.insert("indistinguishable_from".into(), shown.indistinguishable.clone().into());
+        object.insert("sensitivities".into(), shown.slopes.iter().map(slopes_json(shown)).collect());
+        let keys = COUNTED.map(|figure| format!("{}_percent", figure.key()));
+        let keys: Vec<&str> = keys.iter().map(String::as_str).collect();
+        object.insert("one_percent_more".into(), sensitivities::json(&one_percent_more(shown), &keys));
     }
     object.into()
 }
 
-fn figures_json(design: &Design) -> Map<String, Value> {
-    let known = |figure: Figure| Some((figure.key().to_owned(), json!(design.figures.get(figure)?)));
-    Figure::ALL.into_iter().filter_map(known).collect()
+/// Derivatives of the figures by one number of a design, per unit of its key.
+fn slopes_json(shown: &Shown) -> impl Fn(&(NominalNumber, Figures)) -> Value {
+    |(number, slopes)| {
+        let mut object = sensitivities::number_json(number, shown.rod.value_of(number).unwrap_or(f64::NAN));
+        let (_, si) = number.in_file();
+        for figure in COUNTED {
+            object.insert(figure.key().into(), slopes.get(figure).map(|slope| slope * si).into());
+        }
+        object.into()
+    }
+}
+
+/// Figures whose derivatives are shown.
+const COUNTED: [Figure; 7] = [
+    Figure::CRod,
+    Figure::CfMax,
+    Figure::CgMax,
+    Figure::Mass,
+    Figure::Moment,
+    Figure::FirstFrequency,
+    Figure::Reach,
+];
+
+fn one_percent_more(shown: &Shown) -> Vec<OnePercent> {
+    let of = |figures: &Figures| COUNTED.map(|figure| figures.get(figure).unwrap_or(f64::NAN)).to_vec();
+    let slopes: Vec<(NominalNumber, Vec<f64>)> =
+        shown.slopes.iter().map(|(number, slopes)| (number.clone(), of(slopes))).collect();
+    sensitivities::one_percent_more(&shown.rod, &slopes, &of(&shown.design.figures))
+}
+
+/// What 1 % more of each number does to the first, the middle and the last design that are shown.
+fn what_counts(study: &Study) -> Section {
+    let last = study.shown.len().saturating_sub(1);
+    let mut picked = vec![0, last / 2, last];
+    picked.dedup();
+    let heads = COUNTED.map(|figure| figure.words().0);
+    let mut blocks = vec![Block::Paragraph(
+        "Change of each figure by 1 % more of one number, all others kept; exact derivatives. The JSON has those of all \
+         designs that are shown, in the units of the rod file."
+            .into(),
+    )];
+    let mut panels = Vec::new();
+    for shown in picked.into_iter().filter_map(|k| study.shown.get(k)) {
+        let (rows, name) = (one_percent_more(shown), &shown.rod.name);
+        let title = format!("{name}: {}", shown.tubes.join(" + "));
+        panels.push(sensitivities::bars(title, &rows, &[(0, "c_rod"), (3, "mass"), (5, "first frequency")]));
+        let (id, caption) = (format!("sensitivities-{}", shown.place + 1), format!("What counts, {name}."));
+        blocks.push(Block::Table(sensitivities::table(&id, caption, &heads, &rows)));
+    }
+    let figure = Picture {
+        name: "sensitivities".into(),
+        caption: "What 1 % more of each number does: the numbers that count most.".into(),
+        panels,
+        columns: 1,
+        shared_legend: true,
+    };
+    blocks.insert(1, Block::Figure(figure));
+    Section::new("What counts", blocks)
 }
 
 /// The keys of a rod file.
@@ -174,6 +236,8 @@ pub fn report(study: &Study) -> Report {
     } else {
         sections.push(Section::new("The front", front(study)));
         sections.push(Section::new("To scale", vec![Block::Figure(figures::to_scale(study))]));
+        sections.extend(study.refined.as_ref().map(|found| refined::section(study, found)));
+        sections.push(what_counts(study));
     }
     sections.push(Section::new("What was looked at", looked_at(study)));
     Report {
@@ -274,32 +338,6 @@ fn front(study: &Study) -> Vec<Block> {
         blocks.push(Block::Paragraph(format!("Beside rod {}: {better}. {breaks}", base.rod.name)));
     }
     blocks
-}
-
-/// The figures of a table: the goals first, then the others that every design has.
-fn columns(study: &Study) -> Vec<Figure> {
-    let mut figures: Vec<Figure> = study.wish.goals.iter().map(|goal| goal.figure).collect();
-    let more = [Figure::CRod, Figure::Mass, Figure::FirstFrequency, Figure::Reach];
-    figures
-        .extend(more.into_iter().filter(|figure| study.wish.goals.iter().all(|goal| goal.figure != *figure)));
-    figures
-}
-
-fn shape_columns() -> Vec<Column> {
-    vec![
-        Column::number("L1", "mm"),
-        Column::number("L2", "mm"),
-        Column::number("γ", "°"),
-        Column::number("R", "mm"),
-        Column::number("tip", "g"),
-    ]
-}
-
-fn shape_cells(rod: &Rod) -> Vec<String> {
-    // as a drawing has them: no zeros behind, and none of the rounding of units
-    [rod.l1 / MM, rod.l2 / MM, rod.gamma / DEG, rod.bend_radius / MM, rod.tip_mass / GRAM]
-        .map(|value| ((value * 1e3).round() / 1e3).to_string())
-        .to_vec()
 }
 
 fn front_table(study: &Study) -> Table {
@@ -463,5 +501,6 @@ pub fn files(study: &Study) -> Result<Vec<(String, Vec<u8>)>> {
         (format!("design-{:03}.toml", shown.place + 1), shown.rod.to_toml(&above).into_bytes())
     };
     files.extend(study.shown.iter().map(of_rod));
+    files.extend(study.refined.iter().flat_map(|found| refined::files(found, &above)));
     Ok(files)
 }

@@ -8,6 +8,8 @@ mod cards;
 mod headline;
 mod hidden;
 mod json;
+
+pub(super) use json::load_plan;
 mod place;
 mod remainder;
 pub mod rig;

@@ -4,12 +4,14 @@
 //! Whoever compares a model with readings differentiates the compliance by these numbers, and
 //! weighs each with its standard uncertainty before calling a difference a mismatch.
 
+mod derivative;
 mod number;
 #[cfg(test)]
 mod tests;
 
 pub use self::number::{Feature, NominalNumber, Part, SectionConstant};
-use super::{Pipe, Rod};
+use super::{BendFlexibility, Joint, Pipe, Rod};
+use crate::dual::Number;
 use crate::material::Material;
 use crate::section::Section;
 
@@ -60,9 +62,36 @@ impl Rod {
     /// # Ok::<(), rodcal::Error>(())
     /// ```
     pub fn nominal_numbers(&self) -> Vec<Nominal> {
-        let mut numbers = vec![NominalNumber::LengthL1, NominalNumber::LengthL2];
+        let known = |number: NominalNumber| {
+            let value = self.value_of(&number)?;
+            let standard_uncertainty = self.uncertainty_of(&number, value);
+            Some(Nominal { number, standard_uncertainty, value })
+        };
+        self.all_numbers().into_iter().filter_map(known).filter(|n| n.standard_uncertainty > 0.0).collect()
+    }
+
+    /// All numbers of this rod that its beam model depends on, however well they are known, in the order of the rod
+    /// file; of parts and places as [`Rod::nominal_numbers`]. What sits at one station is one thing, whose station is
+    /// named once.
+    pub fn numbers(&self) -> Vec<NominalNumber> {
+        let mut stations: Vec<f64> = Vec::new();
+        let mut is_new = |number: &NominalNumber| {
+            let NominalNumber::Station(_) = number else { return true };
+            let station = self.value_of(number).unwrap_or(f64::NAN);
+            let is_new = stations.iter().all(|known| (known - station).abs() > SAME_PLACE);
+            stations.push(station);
+            is_new
+        };
+        self.all_numbers().into_iter().filter(|number| is_new(number)).collect()
+    }
+
+    fn all_numbers(&self) -> Vec<NominalNumber> {
+        let mut numbers = vec![NominalNumber::LengthL1, NominalNumber::LengthL2, NominalNumber::Angle];
         if self.bend_radius > 0.0 {
             numbers.push(NominalNumber::BendRadius);
+            if matches!(self.bend_flexibility, BendFlexibility::Factor(_)) {
+                numbers.push(NominalNumber::BendFactor);
+            }
         }
         let mut known: Vec<&str> = Vec::new();
         for (_, pipe) in self.parts() {
@@ -77,6 +106,7 @@ impl Rod {
                 NominalNumber::ShearModulus(name()),
                 NominalNumber::Density(name()),
                 NominalNumber::ShearCoefficient(name()),
+                NominalNumber::PoissonRatio(name()),
             ]);
         }
         for (part, pipe) in self.parts() {
@@ -101,16 +131,27 @@ impl Rod {
             }
         }
         numbers.extend(features.into_iter().map(NominalNumber::Station));
-        let known = |number: NominalNumber| {
-            let value = self.value_of(&number)?;
-            let standard_uncertainty = self.uncertainty_of(&number, value);
-            Some(Nominal { number, standard_uncertainty, value })
+        let mut more = |all: Vec<NominalNumber>| {
+            all.into_iter().for_each(|number| {
+                if !numbers.contains(&number) {
+                    numbers.push(number);
+                }
+            })
         };
-        numbers.into_iter().filter_map(known).filter(|n| n.standard_uncertainty > 0.0).collect()
+        for mass in &self.masses {
+            more(vec![NominalNumber::Mass(mass.name.clone())]);
+        }
+        for joint in &self.joints {
+            let name = || joint.name.clone();
+            more(vec![NominalNumber::JointBending(name()), NominalNumber::JointTorsion(name())]);
+        }
+        numbers
     }
+}
 
+impl<T: Number> Rod<T> {
     /// The value of a number, SI; `None` where this rod has no such number.
-    pub fn value_of(&self, number: &NominalNumber) -> Option<f64> {
+    pub fn value_of(&self, number: &NominalNumber) -> Option<T> {
         let material = |name: &str| {
             self.parts().into_iter().map(|(_, pipe)| &pipe.material).find(|material| material.name == name)
         };
@@ -126,18 +167,30 @@ impl Rod {
             | NominalNumber::Wall(part)
             | NominalNumber::Section(part, _) => {
                 let mut section = self.part(*part).section;
-                dimension(&mut section, number).copied()
+                match (&section, number) {
+                    (Section::Round(round), NominalNumber::Wall(_)) => Some(round.wall()),
+                    _ => dimension(&mut section, number).copied(),
+                }
             }
             NominalNumber::LengthL1 => Some(self.l1),
             NominalNumber::LengthL2 => Some(self.l2),
             NominalNumber::BendRadius => Some(self.bend_radius),
-            NominalNumber::Station(Feature::Joint(name)) => {
-                self.joints.iter().find(|joint| joint.name == *name).map(|joint| joint.station)
-            }
+            NominalNumber::Station(Feature::Joint(name)) => self.joint(name).map(|joint| joint.station),
             NominalNumber::Station(Feature::Mass(name)) => {
                 self.masses.iter().find(|mass| mass.name == *name).map(|mass| mass.station)
             }
             NominalNumber::TipMass => Some(self.tip_mass),
+            NominalNumber::Angle => Some(self.gamma),
+            NominalNumber::PoissonRatio(name) => Some(material(name)?.poisson_ratio),
+            NominalNumber::BendFactor => match self.bend_flexibility {
+                BendFlexibility::Factor(factor) => Some(factor),
+                _ => None,
+            },
+            NominalNumber::Mass(name) => {
+                self.masses.iter().find(|mass| mass.name == *name).map(|mass| mass.mass)
+            }
+            NominalNumber::JointBending(name) => self.joint(name).map(|joint| joint.bending),
+            NominalNumber::JointTorsion(name) => self.joint(name).map(|joint| joint.torsion),
         }
     }
 
@@ -150,10 +203,10 @@ impl Rod {
     /// rod. A diameter of pipe 1 is also the bend's where the two are one tube.
     ///
     /// The value is not checked: [`Rod::checked`] does.
-    pub fn with(&self, number: &NominalNumber, value: f64) -> Rod {
+    pub fn with(&self, number: &NominalNumber, value: T) -> Rod<T> {
         let mut rod = self.clone();
         let Some(nominal) = self.value_of(number) else { return rod };
-        let mut of_material = |name: &str, field: fn(&mut Material) -> &mut f64| {
+        let mut of_material = |name: &str, field: fn(&mut Material<T>) -> &mut T| {
             for pipe in [&mut rod.pipe1, &mut rod.bend, &mut rod.pipe2] {
                 if pipe.material.name == name {
                     let own = field(&mut pipe.material);
@@ -180,8 +233,12 @@ impl Rod {
                     Part::Bend => &mut rod.bend,
                     Part::Pipe2 => &mut rod.pipe2,
                 };
-                if let Some(own) = dimension(&mut own.section, number) {
-                    *own = value;
+                match (&mut own.section, number) {
+                    // a tube's outer diameter stays
+                    (Section::Round(round), NominalNumber::Wall(_)) => {
+                        round.inner_diameter = round.outer_diameter - value * 2.0;
+                    }
+                    (section, _) => dimension(section, number).into_iter().for_each(|own| *own = value),
                 }
                 if *part == Part::Pipe1 && is_one_tube {
                     rod.bend.section = rod.pipe1.section;
@@ -199,27 +256,49 @@ impl Rod {
                 own.for_each(|mass| mass.station += value - nominal);
             }
             NominalNumber::TipMass => rod.tip_mass = value,
+            NominalNumber::Angle => rod.gamma = value,
+            NominalNumber::PoissonRatio(name) => of_material(name, |m| &mut m.poisson_ratio),
+            NominalNumber::BendFactor => rod.bend_flexibility = BendFlexibility::Factor(value),
+            NominalNumber::Mass(name) => {
+                let own = rod.masses.iter_mut().filter(|mass| mass.name == *name);
+                own.for_each(|mass| mass.mass += value - nominal);
+            }
+            NominalNumber::JointBending(name) => {
+                let own = rod.joints.iter_mut().filter(|joint| joint.name == *name);
+                own.for_each(|joint| joint.bending += value - nominal);
+            }
+            NominalNumber::JointTorsion(name) => {
+                let own = rod.joints.iter_mut().filter(|joint| joint.name == *name);
+                own.for_each(|joint| joint.torsion += value - nominal);
+            }
         }
         let (before, after, length) = (self.places(), rod.places(), rod.length());
-        let kept = |station: f64| {
-            let here = before.iter().zip(after).find(|(place, _)| (*place - station).abs() <= SAME_PLACE);
-            here.map_or(station, |(_, moved)| moved).clamp(0.0, length.max(0.0))
+        let on_rod = |station: T| station.larger(T::zero()).smaller(length.larger(T::zero()));
+        let kept = |station: T| {
+            let is_here = |place: &T| (*place - station).value().abs() <= SAME_PLACE;
+            let here = before.iter().zip(after).find(|(place, _)| is_here(place));
+            on_rod(here.map_or(station, |(_, moved)| moved))
         };
-        let is_length =
-            matches!(number, NominalNumber::LengthL1 | NominalNumber::LengthL2 | NominalNumber::BendRadius);
+        let is_length = matches!(
+            number,
+            NominalNumber::LengthL1
+                | NominalNumber::LengthL2
+                | NominalNumber::BendRadius
+                | NominalNumber::Angle
+        );
         let stations = rod.masses.iter_mut().map(|mass| &mut mass.station);
         for station in stations.chain(rod.joints.iter_mut().map(|joint| &mut joint.station)) {
-            *station = if is_length { kept(*station) } else { station.clamp(0.0, length.max(0.0)) };
+            *station = if is_length { kept(*station) } else { on_rod(*station) };
         }
         rod
     }
 
     /// Flange, both ends of the bend (or the corner, twice) and tip, stations in m.
-    fn places(&self) -> [f64; 4] {
-        [0.0, self.bend_start(), self.bend_end(), self.length()]
+    fn places(&self) -> [T; 4] {
+        [T::zero(), self.bend_start(), self.bend_end(), self.length()]
     }
 
-    fn part(&self, part: Part) -> &Pipe {
+    fn part(&self, part: Part) -> &Pipe<T> {
         match part {
             Part::Pipe1 => &self.pipe1,
             Part::Bend => &self.bend,
@@ -228,11 +307,17 @@ impl Rod {
     }
 
     /// The parts from the flange on; the bend only where it has a length.
-    fn parts(&self) -> Vec<(Part, &Pipe)> {
-        let bend = (self.bend_radius > 0.0).then_some((Part::Bend, &self.bend));
+    fn parts(&self) -> Vec<(Part, &Pipe<T>)> {
+        let bend = (self.bend_radius.value() > 0.0).then_some((Part::Bend, &self.bend));
         [(Part::Pipe1, &self.pipe1)].into_iter().chain(bend).chain([(Part::Pipe2, &self.pipe2)]).collect()
     }
 
+    fn joint(&self, name: &str) -> Option<&Joint<T>> {
+        self.joints.iter().find(|joint| joint.name == name)
+    }
+}
+
+impl Rod {
     /// One standard deviation of a number of this `value`, SI.
     fn uncertainty_of(&self, number: &NominalNumber, value: f64) -> f64 {
         let material = |name: &str| {
@@ -251,12 +336,20 @@ impl Rod {
             | NominalNumber::Width(_)
             | NominalNumber::Height(_)
             | NominalNumber::Wall(_) => own.diameter,
+            NominalNumber::Section(_, SectionConstant::ShearCoefficient) => 0.0,
             NominalNumber::Section(..) => own.section * value,
             NominalNumber::LengthL1
             | NominalNumber::LengthL2
             | NominalNumber::BendRadius
             | NominalNumber::Station(_) => own.length,
             NominalNumber::TipMass => own.tip_mass,
+            // what the file has no standard uncertainty for is taken to be as stated
+            NominalNumber::Angle
+            | NominalNumber::PoissonRatio(_)
+            | NominalNumber::BendFactor
+            | NominalNumber::Mass(_)
+            | NominalNumber::JointBending(_)
+            | NominalNumber::JointTorsion(_) => 0.0,
         }
     }
 }
@@ -277,6 +370,7 @@ fn of_section(part: Part, section: &Section) -> Vec<NominalNumber> {
             SectionConstant::Iy,
             SectionConstant::Iz,
             SectionConstant::TorsionConstant,
+            SectionConstant::ShearCoefficient,
         ]
         .map(|constant| NominalNumber::Section(part, constant))
         .to_vec(),
@@ -284,7 +378,7 @@ fn of_section(part: Part, section: &Section) -> Vec<NominalNumber> {
 }
 
 /// The field of `section` that `number` names, where the section has it.
-fn dimension<'s>(section: &'s mut Section, number: &NominalNumber) -> Option<&'s mut f64> {
+fn dimension<'s, T: Number>(section: &'s mut Section<T>, number: &NominalNumber) -> Option<&'s mut T> {
     match (section, number) {
         (Section::Round(round), NominalNumber::OuterDiameter(_)) => Some(&mut round.outer_diameter),
         (Section::Round(round), NominalNumber::InnerDiameter(_)) => Some(&mut round.inner_diameter),
@@ -296,6 +390,7 @@ fn dimension<'s>(section: &'s mut Section, number: &NominalNumber) -> Option<&'s
             SectionConstant::Iy => &mut general.iy,
             SectionConstant::Iz => &mut general.iz,
             SectionConstant::TorsionConstant => &mut general.torsion_constant,
+            SectionConstant::ShearCoefficient => &mut general.shear_coefficient,
         }),
         _ => None,
     }

@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use super::contraction::contraction;
+use crate::dual::Number;
 
 /// A rectangle, `height` in the rod's plane and `width` across it.
 ///
@@ -14,13 +15,13 @@ use super::contraction::contraction;
 /// assert!((square.torsion_constant() / 0.010f64.powi(4) - 0.1406).abs() < 5e-5);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Rectangle {
+pub struct Rectangle<T = f64> {
     /// Extent along Y, normal to the rod's plane, b, m.
-    pub width: f64,
+    pub width: T,
     /// Extent in the rod's plane, across the centreline, h, m.
-    pub height: f64,
+    pub height: T,
     /// Wall thickness t, m; `None` for a solid rectangle.
-    pub wall: Option<f64>,
+    pub wall: Option<T>,
 }
 
 impl Rectangle {
@@ -33,22 +34,24 @@ impl Rectangle {
     pub fn hollow(width: f64, height: f64, wall: f64) -> Rectangle {
         Rectangle { width, height, wall: Some(wall) }
     }
+}
 
+impl<T: Number> Rectangle<T> {
     /// Area bh, less that of the hole, m².
-    pub fn area(&self) -> f64 {
+    pub fn area(&self) -> T {
         let (b, h) = (self.width, self.height);
         match self.wall {
             None => b * h,
             // 2t(b + h − 2t), which does not cancel on thin walls
-            Some(t) => 2.0 * t * (b + h - 2.0 * t),
+            Some(t) => t * 2.0 * (b + h - t * 2.0),
         }
     }
 
     /// I_y = bh³/12 and I_z = hb³/12, less those of the hole, m⁴.
-    pub fn second_moments(&self) -> [f64; 2] {
+    pub fn second_moments(&self) -> [T; 2] {
         let (b, h) = (self.width, self.height);
-        let hole = self.wall.map_or([0.0; 2], |t| [b - 2.0 * t, h - 2.0 * t]);
-        let about = |across: f64, along: f64| across * along.powi(3) / 12.0;
+        let hole = self.wall.map_or([T::zero(); 2], |t| [b - t * 2.0, h - t * 2.0]);
+        let about = |across: T, along: T| across * along.powi(3) / 12.0;
         [about(b, h) - about(hole[0], hole[1]), about(h, b) - about(hole[1], hole[0])]
     }
 
@@ -60,19 +63,20 @@ impl Rectangle {
     /// A box: J = 4A_m²t/s + st³/3, A_m the area and s the length of the wall's middle line
     /// (Bredt; the second term is what the wall resists by itself), 2 % too small with a wall of a
     /// twentieth of the side.
-    pub fn torsion_constant(&self) -> f64 {
+    pub fn torsion_constant(&self) -> T {
         if let Some(t) = self.wall {
             let (b, h) = (self.width - t, self.height - t);
-            let middle_line = 2.0 * (b + h);
-            return 4.0 * (b * h).powi(2) * t / middle_line + middle_line * t.powi(3) / 3.0;
+            let middle_line = (b + h) * 2.0;
+            return (b * h).powi(2) * 4.0 * t / middle_line + middle_line * t.powi(3) / 3.0;
         }
-        let (long, short) = (self.width.max(self.height), self.width.min(self.height));
+        let (long, short) = (self.width.larger(self.height), self.height.smaller(self.width));
         // the terms fall like n⁻⁵; beyond n = 401 their sum is below 1e-12
-        let series: f64 = (0..200)
+        let series: T = (0..200)
             .map(|k| f64::from(2 * k + 1))
-            .map(|n| (n * PI * long / (2.0 * short)).tanh() / n.powi(5))
+            .map(|n| (long * (n * PI) / (short * 2.0)).tanh() / n.powi(5))
             .sum();
-        long * short.powi(3) / 3.0 * (1.0 - 192.0 / PI.powi(5) * (short / long) * series)
+        let left = -((short / long) * (192.0 / PI.powi(5)) * series) + 1.0;
+        long * short.powi(3) / 3.0 * left
     }
 
     /// Shear coefficients κ for forces in the rod's plane and out of it, dimensionless, of a
@@ -86,21 +90,21 @@ impl Rectangle {
     ///
     /// Source: G. R. Cowper, J. Appl. Mech. 33 (1966) 335–340, rectangle and thin-walled box. They
     /// are linear in ν/(1+ν) there; ν/(1+ν) = 2ν/e carries them over to other e (docs/beam.md).
-    pub fn shear_coefficients(&self, ratio: f64, poisson_ratio: f64) -> [f64; 2] {
+    pub fn shear_coefficients(&self, ratio: T, poisson_ratio: T) -> [T; 2] {
         let s = contraction(ratio, poisson_ratio);
-        let Some(t) = self.wall else { return [5.0 / (6.0 - s); 2] };
+        let Some(t) = self.wall else { return [T::from(5.0) / (-s + 6.0); 2] };
         let (b, h) = (self.width - t, self.height - t);
         [thin_box(b, h, s), thin_box(h, b, s)]
     }
 }
 
 /// κ of a thin-walled box with sides `across` and `along` the force, s = ν/e.
-fn thin_box(across: f64, along: f64, s: f64) -> f64 {
+fn thin_box<T: Number>(across: T, along: T, s: T) -> T {
     let m = across / along;
     // Cowper's denominator is A + νB, here with walls of one thickness
-    let a = 12.0 + m * (72.0 + m * (150.0 + m * (120.0 + m * 30.0)));
-    let b = 11.0 + m * (66.0 + m * (135.0 + m * 100.0));
-    10.0 * (1.0 + 3.0 * m).powi(2) / (a - 2.0 * s * (a - b))
+    let a = m * (m * (m * (m * 30.0 + 120.0) + 150.0) + 72.0) + 12.0;
+    let b = m * (m * (m * 100.0 + 135.0) + 66.0) + 11.0;
+    (m * 3.0 + 1.0).powi(2) * 10.0 / (a - s * 2.0 * (a - b))
 }
 
 #[cfg(test)]

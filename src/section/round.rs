@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use super::contraction::contraction;
+use crate::dual::Number;
 
 /// A circular section, hollow (tube) or solid (`inner_diameter = 0`).
 ///
@@ -16,11 +17,11 @@ use super::contraction::contraction;
 /// assert_eq!(tube.torsion_constant(), 2.0 * tube.second_moment());
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Round {
+pub struct Round<T = f64> {
     /// Outer diameter D, m.
-    pub outer_diameter: f64,
+    pub outer_diameter: T,
     /// Inner diameter d, m; 0 for a solid round.
-    pub inner_diameter: f64,
+    pub inner_diameter: T,
 }
 
 impl Round {
@@ -33,23 +34,25 @@ impl Round {
     pub fn solid(diameter: f64) -> Round {
         Round { outer_diameter: diameter, inner_diameter: 0.0 }
     }
+}
 
+impl<T: Number> Round<T> {
     /// Area A = π/4 (D² − d²), m².
-    pub fn area(&self) -> f64 {
+    pub fn area(&self) -> T {
         let (outer, inner) = (self.outer_diameter, self.inner_diameter);
         // (D − d)(D + d) keeps its digits on thin walls, where D² − d² would cancel
-        PI / 4.0 * (outer - inner) * (outer + inner)
+        T::from(PI / 4.0) * (outer - inner) * (outer + inner)
     }
 
     /// Second moment of area about any diameter, I = π/64 (D⁴ − d⁴), m⁴.
-    pub fn second_moment(&self) -> f64 {
+    pub fn second_moment(&self) -> T {
         // I = A (D² + d²)/16
         self.area() * (self.outer_diameter.powi(2) + self.inner_diameter.powi(2)) / 16.0
     }
 
     /// Torsion constant, for a circular section the polar moment J = 2I, m⁴.
-    pub fn torsion_constant(&self) -> f64 {
-        2.0 * self.second_moment()
+    pub fn torsion_constant(&self) -> T {
+        self.second_moment() * 2.0
     }
 
     /// Shear coefficient κ of a hollow circle (solid: m = 0), dimensionless, of a material with
@@ -76,21 +79,21 @@ impl Round {
     /// let tube = Round::tube(0.030, 0.026);
     /// assert!((tube.shear_coefficient(118.0 / 9.5, 0.3) - 0.510).abs() < 5e-4);
     /// ```
-    pub fn shear_coefficient(&self, ratio: f64, poisson_ratio: f64) -> f64 {
+    pub fn shear_coefficient(&self, ratio: T, poisson_ratio: T) -> T {
         // divided by e, so that ν/e is what remains of the material
         let s = contraction(ratio, poisson_ratio);
         let m2 = (self.inner_diameter / self.outer_diameter).powi(2);
-        let ring = (1.0 + m2).powi(2);
-        3.0 * ring / ((3.5 - s) * ring + (10.0 - 8.0 * s) * m2)
+        let ring = (m2 + 1.0).powi(2);
+        ring * 3.0 / ((-s + 3.5) * ring + (-s * 8.0 + 10.0) * m2)
     }
 
     /// Wall thickness t = (D − d)/2, m; the radius for a solid round.
-    pub fn wall(&self) -> f64 {
+    pub fn wall(&self) -> T {
         (self.outer_diameter - self.inner_diameter) / 2.0
     }
 
     /// Mean radius of the wall r = (D + d)/4, m.
-    pub fn mean_radius(&self) -> f64 {
+    pub fn mean_radius(&self) -> T {
         (self.outer_diameter + self.inner_diameter) / 4.0
     }
 }

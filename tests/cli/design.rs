@@ -126,3 +126,59 @@ fn a_wish_that_cannot_be_granted_is_refused_and_nothing_is_written() {
     let sampled = sandbox.run("design rod design.toml --samples 500").succeeded();
     assert!(sampled.stderr.contains("better rods may be among the others"), "{}", sampled.stderr);
 }
+
+#[test]
+fn a_search_that_was_killed_goes_on_and_says_the_same() {
+    let sandbox = sandbox();
+    let many = DESIGN
+        .replace("step = 25", "step = 0.1")
+        .replace("[100, 150, 200]", "{ from = 100, to = 200, step = 2 }")
+        .replace("min_first_frequency_hz = 20", "min_reach_mm = 300");
+    sandbox.write("design.toml", &many);
+    let whole = sandbox.run("design rod design.toml --json").succeeded().stdout;
+    let line = ["design", "rod", "design.toml", "--json", "--resume", "kept"];
+    let mut running = sandbox.command(&line).spawn().unwrap();
+    // kept first after a block of the search, of which there are three
+    while running.try_wait().unwrap().is_none() && !sandbox.path().join("kept").exists() {
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    running.kill().unwrap();
+    running.wait().unwrap();
+    assert_eq!(sandbox.run(&line.join(" ")).succeeded().stdout, whole);
+    // what is done is done, and another wish is another search
+    assert_eq!(sandbox.run(&line.join(" ")).succeeded().stdout, whole);
+    sandbox.write("design.toml", &many.replace("= 900", "= 800"));
+    let refused = sandbox.run(&line.join(" "));
+    assert!(
+        refused.status == Some(2) && refused.stderr.contains("another design file"),
+        "{}",
+        refused.stderr
+    );
+}
+
+#[test]
+fn a_design_is_refined_and_its_rod_is_written() {
+    let sandbox = sandbox();
+    sandbox.write("design.toml", &DESIGN.replace("[100, 150, 200]", "{ from = 100, to = 200, step = 50 }"));
+    let json = sandbox.run("design rod design.toml --refine 12 --out o --json").json();
+    let (refined, front) = (&json["refined"], &json["front"]);
+    assert_eq!(refined["from_design"], 12);
+    let better = &refined["catalogue"];
+    let number = |value: &serde_json::Value, key: &str| value[key].as_f64().unwrap();
+    assert!(number(better, "gained_percent") > 0.0, "{refined}");
+    assert!(number(better, "c_rod_um") < number(&front[11], "c_rod_um"));
+    assert!(number(better, "reach_mm") >= number(&front[11], "reach_mm") - 1e-6);
+    assert!(number(better, "mass_g") <= 900.0 && number(better, "first_frequency_hz") >= 20.0);
+    let rod = sandbox.run("compliance o/refined.toml --json").json();
+    assert!((number(&rod, "c_rod_um") / number(better, "c_rod_um") - 1.0).abs() < 1e-9);
+    let beyond = sandbox.run("design rod design.toml --refine 999");
+    assert!(beyond.status == Some(2) && beyond.stderr.contains("designs of the front"), "{}", beyond.stderr);
+    // and what counts: 1 % more of E and G is 1 % less of C^F
+    let counts = json["front"][0]["one_percent_more"].as_array().unwrap();
+    let of = |name: &str| {
+        let row = counts.iter().find(|row| row["number"].as_str().unwrap().starts_with(name)).unwrap();
+        number(row, "cf_max_um_per_n_percent")
+    };
+    assert!((of("E of") + of("G of") + 1.0).abs() < 1e-9, "{counts:?}");
+    assert!(sandbox.run("design rod design.toml").succeeded().stdout.contains("wall of both pipes"));
+}

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use nalgebra::{DMatrix, DVector};
 use rodcal::least_squares::{Fit, Options, Problem, fit};
 
-use crate::dual::{Dual, Number};
+use rodcal::dual::{Dual, Number};
 
 /// A problem as NIST states it.
 pub struct Nist {

@@ -2,14 +2,16 @@
 //!
 //! - [`error`]: the one error type · [`files`]: text in, whole files out · [`units`]: SI inside, these at the boundary
 //! - [`delimited`], [`toml_text`]: tables and TOML whose errors name file, line and column
-//! - [`linalg`], [`least_squares`], [`spatial`], [`statistics`]: numbers
+//! - [`linalg`], [`least_squares`], [`linear_program`], [`dual`], [`spatial`], [`statistics`]: numbers
 //! - [`parallel`]: jobs side by side whose results do not depend on it
 
 pub mod delimited;
+pub mod dual;
 pub mod error;
 pub mod files;
 pub mod least_squares;
 pub mod linalg;
+pub mod linear_program;
 pub mod optimal_design;
 pub mod parallel;
 pub mod spatial;

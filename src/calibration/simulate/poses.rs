@@ -29,6 +29,7 @@ pub(super) fn choose(
     free: &[Parameter],
     groups: &[Group],
     plan: &Plan,
+    progress: &(dyn Fn() + Sync),
 ) -> Result<Vec<(usize, Vec<f64>)>> {
     let mut random = Random::seeded(plan.seed, 1);
     let mut kinematics = Kinematics::new(truth);
@@ -48,12 +49,13 @@ pub(super) fn choose(
             let columns: Vec<Vector3<f64>> = free.iter().map(|&p| kinematics.column(p, &torque)).collect();
             all.push(group, &Matrix3xX::from_columns(&columns));
             postures.push(q);
+            progress();
         }
     }
     all.scale(&all.column_norms());
     let before = DMatrix::identity(free.len(), free.len()) * FAINT;
     let quotas = vec![plan.poses_per_clamp; groups.len()];
-    let mut chosen = grow(&all, &quotas, &before, &Criterion::Determinant).unwrap_or_default();
+    let mut chosen = grow(&all, &quotas, &before, &Criterion::Determinant, progress).unwrap_or_default();
     chosen.sort_by_key(|&index| all.group(index));
     Ok(chosen.into_iter().map(|index| (all.group(index), std::mem::take(&mut postures[index]))).collect())
 }

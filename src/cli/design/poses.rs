@@ -4,7 +4,9 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use rodcal::calibration::Campaign;
-use rodcal::design::{Budget, PoseCriterion, PoseLimits, PoseStudy, Source, TableHeight, Wanted, Where};
+use rodcal::design::{
+    Budget, PoseCriterion, PoseLimits, PoseStep, PoseStudy, Source, TableHeight, Wanted, Where,
+};
 use rodcal::units::{DEG, MM, UM};
 use rodcal::{Error, Result, files, report};
 
@@ -199,8 +201,17 @@ impl DesignPoses {
         }
         let budget = self.expected.budget(&campaign)?;
         let progress = Progress::new("looking for poses", self.generate as usize);
-        let study = PoseStudy::new(&campaign, wanted, budget, &|more| progress.more(more))?;
+        let choosing = Progress::open("choosing poses");
+        let tell = |step| match step {
+            PoseStep::Candidate => progress.one_more(),
+            PoseStep::Choice => {
+                progress.finish();
+                choosing.one_more();
+            }
+        };
+        let study = PoseStudy::new(&campaign, wanted, budget, &tell)?;
         progress.finish();
+        choosing.finish();
         let mut report = report::poses::report(&study);
         report.provenance = provenance(&campaign);
         let files = report::poses::files(&study);

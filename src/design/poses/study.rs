@@ -86,7 +86,8 @@ pub struct PoseStudy<'c> {
 }
 
 impl<'c> PoseStudy<'c> {
-    /// Chooses poses for a campaign. `progress` is called as candidates are looked at.
+    /// Chooses poses for a campaign. `progress` is called for every candidate that is looked at, and then for every pose that is
+    /// taken or held against the others.
     ///
     /// ```
     /// use rodcal::design::{Budget, PoseCriterion, PoseLimits, PoseStudy, Source, Wanted, Where};
@@ -116,7 +117,7 @@ impl<'c> PoseStudy<'c> {
         campaign: &'c Campaign,
         wanted: Wanted,
         budget: Budget,
-        progress: &(dyn Fn(u64) + Sync),
+        progress: &(dyn Fn(PoseStep) + Sync),
     ) -> Result<Self> {
         let setup = planned_setup(campaign)?;
         let mode = wanted.mode.unwrap_or_else(|| default_mode(campaign));
@@ -146,7 +147,8 @@ impl<'c> PoseStudy<'c> {
             });
         }
         let around = Surroundings::new(campaign, &setup, &places, wanted.limits);
-        let candidates = Candidates::new(&around, &wanted.source, wanted.seed, progress)?;
+        let candidates =
+            Candidates::new(&around, &wanted.source, wanted.seed, &|_| progress(PoseStep::Candidate))?;
         let quotas = quotas(wanted.count, &places, &candidates)?;
         let forecaster = Forecaster::new(campaign, setup.clone(), budget, &wanted.at)?;
 
@@ -159,7 +161,8 @@ impl<'c> PoseStudy<'c> {
             what: "the choice of poses",
             why: "the information of the poses is not positive definite".into(),
         };
-        let mut chosen = choose(&measurements, &quotas, &before, &criterion).ok_or_else(numerical)?;
+        let mut chosen = choose(&measurements, &quotas, &before, &criterion, &|| progress(PoseStep::Choice))
+            .ok_or_else(numerical)?;
         let own = value(&measurements, &chosen, &before, &criterion).ok_or_else(numerical)?;
         let Beside { median, worth } = beside(&measurements, &quotas, &before, &criterion, own);
         // ln |M| of the places alone: as many rows of one as there are poses
@@ -208,6 +211,15 @@ impl<'c> PoseStudy<'c> {
             candidates,
         })
     }
+}
+
+/// A step on the way to a plan.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PoseStep {
+    /// A candidate was looked at.
+    Candidate,
+    /// A pose was taken, or held against all others of its place.
+    Choice,
 }
 
 /// How many poses each place gets: as equally many as can be, the first ones one more.

@@ -2,9 +2,9 @@
 
 use std::fmt;
 
-use crate::units::{GRAM, MM};
+use crate::units::{DEG, GPA, GRAM, MM, URAD_PER_NM};
 
-/// A number of the rod file that is known within a standard uncertainty.
+/// A number of the rod file.
 ///
 /// ```
 /// use rodcal::prelude::*;
@@ -53,6 +53,18 @@ pub enum NominalNumber {
     Station(Feature),
     /// Ball and ball holder, kg.
     TipMass,
+    /// Inside angle between the pipes γ, rad.
+    Angle,
+    /// ν of the material of this name, dimensionless, in every pipe made of it.
+    PoissonRatio(String),
+    /// A bend's flexibility factor that the file states, dimensionless.
+    BendFactor,
+    /// A sleeve or a holder, kg; masses of one name go together.
+    Mass(String),
+    /// Bending compliance of the joint of this name, rad/(N·m).
+    JointBending(String),
+    /// Torsional compliance of the joint of this name, rad/(N·m).
+    JointTorsion(String),
 }
 
 /// One of the three parts that have a section of their own.
@@ -77,6 +89,8 @@ pub enum SectionConstant {
     Iz,
     /// J.
     TorsionConstant,
+    /// κ.
+    ShearCoefficient,
 }
 
 /// Something that sits at a station.
@@ -110,7 +124,33 @@ impl NominalNumber {
             NominalNumber::LengthL2 => "l2_mm",
             NominalNumber::BendRadius => "bend_radius_mm",
             NominalNumber::Station(_) => "station_mm",
-            NominalNumber::TipMass => "mass_g",
+            NominalNumber::TipMass | NominalNumber::Mass(_) => "mass_g",
+            NominalNumber::Section(_, SectionConstant::ShearCoefficient) => "kappa",
+            NominalNumber::Angle => "gamma_deg",
+            NominalNumber::PoissonRatio(_) => "poisson_ratio",
+            NominalNumber::BendFactor => "bend_flexibility",
+            NominalNumber::JointBending(_) => "bending_urad_per_nm",
+            NominalNumber::JointTorsion(_) => "torsion_urad_per_nm",
+        }
+    }
+
+    /// Its key in the rod file, and one of its unit in SI.
+    pub fn in_file(&self) -> (&'static str, f64) {
+        match self {
+            NominalNumber::YoungsModulus(_) => ("youngs_modulus_gpa", GPA),
+            NominalNumber::ShearModulus(_) => ("shear_modulus_gpa", GPA),
+            NominalNumber::Density(_) => ("density_kg_m3", 1.0),
+            NominalNumber::ShearCoefficient(_) => ("shear_coefficient_factor", 1.0),
+            NominalNumber::Section(_, SectionConstant::Area) => ("area_mm2", MM * MM),
+            NominalNumber::Section(_, SectionConstant::Iy) => ("iy_mm4", MM * MM * MM * MM),
+            NominalNumber::Section(_, SectionConstant::Iz) => ("iz_mm4", MM * MM * MM * MM),
+            NominalNumber::Section(_, SectionConstant::TorsionConstant) => ("j_mm4", MM * MM * MM * MM),
+            _ => {
+                let key = self.key();
+                let units = [("_mm", MM), ("_g", GRAM), ("_deg", DEG), ("_urad_per_nm", URAD_PER_NM)];
+                let unit = units.into_iter().find(|(end, _)| key.ends_with(end));
+                (key, unit.map_or(1.0, |(_, si)| si))
+            }
         }
     }
 
@@ -121,18 +161,25 @@ impl NominalNumber {
             NominalNumber::YoungsModulus(material)
             | NominalNumber::ShearModulus(material)
             | NominalNumber::Density(material)
-            | NominalNumber::ShearCoefficient(material) => format!("material.{material}"),
+            | NominalNumber::ShearCoefficient(material)
+            | NominalNumber::PoissonRatio(material) => format!("material.{material}"),
             NominalNumber::OuterDiameter(part)
             | NominalNumber::InnerDiameter(part)
             | NominalNumber::Width(part)
             | NominalNumber::Height(part)
             | NominalNumber::Wall(part)
             | NominalNumber::Section(part, _) => part.key().to_owned(),
-            NominalNumber::LengthL1 | NominalNumber::LengthL2 | NominalNumber::BendRadius => {
-                "geometry".to_owned()
+            NominalNumber::LengthL1
+            | NominalNumber::LengthL2
+            | NominalNumber::BendRadius
+            | NominalNumber::Angle
+            | NominalNumber::BendFactor => "geometry".to_owned(),
+            NominalNumber::Station(Feature::Joint(name))
+            | NominalNumber::JointBending(name)
+            | NominalNumber::JointTorsion(name) => format!("joint.{name}"),
+            NominalNumber::Station(Feature::Mass(name)) | NominalNumber::Mass(name) => {
+                format!("mass.{name}")
             }
-            NominalNumber::Station(Feature::Joint(name)) => format!("joint.{name}"),
-            NominalNumber::Station(Feature::Mass(name)) => format!("mass.{name}"),
             NominalNumber::TipMass => "tip".to_owned(),
         }
     }
@@ -191,6 +238,13 @@ impl fmt::Display for NominalNumber {
             NominalNumber::Station(Feature::Joint(name)) => write!(f, "station of joint {name}"),
             NominalNumber::Station(Feature::Mass(name)) => write!(f, "station of mass {name}"),
             NominalNumber::TipMass => f.write_str("tip mass"),
+            NominalNumber::Section(part, SectionConstant::ShearCoefficient) => write!(f, "κ of {part}"),
+            NominalNumber::Angle => f.write_str("γ"),
+            NominalNumber::PoissonRatio(material) => write!(f, "ν of {material}"),
+            NominalNumber::BendFactor => f.write_str("flexibility factor of the bend"),
+            NominalNumber::Mass(name) => write!(f, "mass {name}"),
+            NominalNumber::JointBending(name) => write!(f, "bending compliance of joint {name}"),
+            NominalNumber::JointTorsion(name) => write!(f, "torsional compliance of joint {name}"),
         }
     }
 }

@@ -14,9 +14,12 @@ use nalgebra::{DMatrix, Matrix3, MatrixXx3};
 use super::criterion::{Criterion, gain};
 use super::measurements::Measurements;
 use crate::linalg::positive_definite_inverse;
+use crate::parallel::in_parallel;
 
 /// An exchange has to be better by this share.
 const BETTER: f64 = 1e-9;
+/// Measurements of one job.
+const PART: usize = 128;
 /// Most times that all of a choice is gone through.
 const MOST_PASSES: usize = 20;
 
@@ -28,10 +31,22 @@ struct State<'a> {
     /// P.
     inverse: DMatrix<f64>,
     /// The measurements of the group with their JPJᵀ and J·PWP·Jᵀ.
-    group: Vec<(usize, Matrix3<f64>, Matrix3<f64>)>,
+    group: Vec<Known>,
 }
 
+/// A measurement with its JPJᵀ and J·PWP·Jᵀ.
+type Known = (usize, Matrix3<f64>, Matrix3<f64>);
+
 impl State<'_> {
+    /// What `job` makes of each measurement of the group, in their order; parts of the group on all processors.
+    fn in_parts<T: Send>(&self, job: impl Fn(&Known) -> T + Sync + Send) -> Vec<T> {
+        let parts: Vec<&[Known]> = self.group.chunks(PART).collect();
+        in_parallel(parts.len(), |part| parts[part].iter().map(&job).collect::<Vec<T>>())
+            .into_iter()
+            .flatten()
+            .collect()
+    }
+
     /// P ← P + U·S·Uᵀ, and with it what measurements would add: with A = J·U, B = J·PW·U, T = UᵀWU
     ///
     /// JPJᵀ ← JPJᵀ + A·S·Aᵀ        J·PWP·Jᵀ ← J·PWP·Jᵀ + A·S·Bᵀ + B·S·Aᵀ + A·S·T·S·Aᵀ
@@ -41,15 +56,18 @@ impl State<'_> {
             let t: Matrix3<f64> = u.tr_mul(&wu);
             (&self.inverse * wu, t)
         });
-        for (index, spread, of_weight) in &mut self.group {
+        let updated = self.in_parts(|(index, spread, of_weight)| {
+            let (mut spread, mut of_weight) = (*spread, *of_weight);
             let a = self.all.times(*index, u);
-            *spread += a * s * a.transpose();
+            spread += a * s * a.transpose();
             if let Some((pwu, t)) = &weighted {
                 let b = self.all.times(*index, pwu);
                 let across = a * s * b.transpose();
-                *of_weight += across + across.transpose() + a * s * t * s * a.transpose();
+                of_weight += across + across.transpose() + a * s * t * s * a.transpose();
             }
-        }
+            (*index, spread, of_weight)
+        });
+        self.group = updated;
         self.inverse += u * s * u.transpose();
     }
 
@@ -68,10 +86,9 @@ impl State<'_> {
             (Some((_, t)), Some(weight)) => ((s * t).trace(), self.inverse.dot(weight)),
             _ => (left.determinant(), 1.0),
         };
-        let mut best: Option<(f64, usize)> = None;
-        for (index, spread, of_weight) in &self.group {
+        let changes = self.in_parts(|(index, spread, of_weight)| {
             if is_chosen[*index] {
-                continue;
+                return (f64::NEG_INFINITY, *index);
             }
             let a = self.all.times(*index, &u);
             let spread = spread + a * s * a.transpose();
@@ -84,8 +101,12 @@ impl State<'_> {
                     gain(&spread, Some(&of_weight)) - loss
                 }
             };
+            (change, *index)
+        });
+        let mut best: Option<(f64, usize)> = None;
+        for (change, index) in changes {
             if change > BETTER * now && best.is_none_or(|(most, _)| change >= most) {
-                best = Some((change, *index));
+                best = Some((change, index));
             }
         }
         best.map(|(_, index)| index)
@@ -99,6 +120,7 @@ pub(super) fn exchanged(
     mut chosen: Vec<usize>,
     before: &DMatrix<f64>,
     criterion: &Criterion,
+    progress: &(dyn Fn() + Sync),
 ) -> Option<Vec<usize>> {
     let weight = match criterion {
         Criterion::Trace(weight) => Some(weight),
@@ -119,12 +141,14 @@ pub(super) fn exchanged(
                 let weighted = of_weight.as_ref().map(|of_weight| all.quadratic(index, of_weight));
                 (index, all.quadratic(index, &inverse), weighted.unwrap_or_default())
             };
-            let group_known = all.of_group(group).map(known).collect();
+            let of_group: Vec<usize> = all.of_group(group).collect();
+            let group_known = in_parallel(of_group.len(), |k| known(of_group[k]));
             let mut state = State { all, weight, inverse, group: group_known };
             for place in 0..chosen.len() {
                 if all.group(chosen[place]) != group {
                     continue;
                 }
+                progress();
                 let Some(other) = state.better(chosen[place], &is_chosen) else { continue };
                 let u = all.spread(chosen[place], &state.inverse);
                 let Some(s) = (Matrix3::identity() - all.times(chosen[place], &u)).try_inverse() else {

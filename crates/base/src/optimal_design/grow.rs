@@ -8,6 +8,7 @@ use nalgebra::{DMatrix, Matrix3};
 use super::criterion::{Criterion, gain};
 use super::measurements::Measurements;
 use crate::linalg::positive_definite_inverse;
+use crate::parallel::in_parallel;
 
 /// What a measurement added when it was last looked at, after so many others.
 struct Offer {
@@ -46,6 +47,7 @@ pub fn grow(
     quotas: &[usize],
     before: &DMatrix<f64>,
     criterion: &Criterion,
+    progress: &(dyn Fn() + Sync),
 ) -> Option<Vec<usize>> {
     // P = M⁻¹, and PWP
     let (mut inverse, _) = positive_definite_inverse(before)?;
@@ -60,8 +62,9 @@ pub fn grow(
     };
     let mut open: Vec<BinaryHeap<Offer>> = (0..quotas.len())
         .map(|group| {
-            let offer = |index| Offer { gain: gain_of(index, &inverse, weight.as_ref()), index, after: 0 };
-            all.of_group(group).map(offer).collect()
+            let of_group: Vec<usize> = all.of_group(group).collect();
+            let gains = in_parallel(of_group.len(), |k| gain_of(of_group[k], &inverse, weight.as_ref()));
+            of_group.into_iter().zip(gains).map(|(index, gain)| Offer { gain, index, after: 0 }).collect()
         })
         .collect();
     let mut chosen = Vec::with_capacity(quotas.iter().sum());
@@ -74,6 +77,7 @@ pub fn grow(
                     continue;
                 }
                 chosen.push(offer.index);
+                progress();
                 // (M + JᵀJ)⁻¹ = P − P·Jᵀ(1 + J·P·Jᵀ)⁻¹J·P
                 let across = all.spread(offer.index, &inverse);
                 let grown = Matrix3::identity() + all.times(offer.index, &across);

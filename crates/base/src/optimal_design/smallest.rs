@@ -13,14 +13,22 @@ use nalgebra::{DMatrix, DVector, Matrix3, MatrixXx3};
 
 use super::criterion::balance;
 use super::measurements::Measurements;
+use crate::parallel::in_parallel;
 
 /// An exchange has to be better by this share.
 const BETTER: f64 = 1e-9;
+/// Measurements of one job.
+const PART: usize = 128;
 /// Most times that all of a choice is gone through.
 const MOST_PASSES: usize = 8;
 
 /// `chosen` with measurements exchanged within their groups until no exchange of one raises λₘ/√λ₁.
-pub(super) fn exchanged(all: &Measurements, mut chosen: Vec<usize>, before: &DMatrix<f64>) -> Vec<usize> {
+pub(super) fn exchanged(
+    all: &Measurements,
+    mut chosen: Vec<usize>,
+    before: &DMatrix<f64>,
+    progress: &(dyn Fn() + Sync),
+) -> Vec<usize> {
     let Some(mut best) = balance(all.information(&chosen, before)) else { return chosen };
     let mut is_chosen = vec![false; all.len()];
     chosen.iter().for_each(|&index| is_chosen[index] = true);
@@ -28,6 +36,7 @@ pub(super) fn exchanged(all: &Measurements, mut chosen: Vec<usize>, before: &DMa
         let start = best;
         let mut whole = all.information(&chosen, before);
         for place in 0..chosen.len() {
+            progress();
             let own = chosen[place];
             let nothing = DMatrix::zeros(all.columns(), all.columns());
             let left = &whole - all.information(&[own], &nothing);
@@ -69,11 +78,15 @@ fn bounds(all: &Measurements, left: &DMatrix<f64>, group: usize) -> Vec<(f64, us
     let zeros = DVector::zeros(left.nrows());
     let high = MatrixXx3::from_columns(&[vector(greatest), zeros.clone(), zeros]);
     let lowest = Matrix3::from_diagonal(&[value(0), value(1).min(1e300), value(2).min(1e300)].into());
-    all.of_group(group)
-        .map(|index| {
+    let of_group: Vec<usize> = all.of_group(group).collect();
+    let parts: Vec<&[usize]> = of_group.chunks(PART).collect();
+    let of_part = |part: usize| -> Vec<(f64, usize)> {
+        let bound = |&index: &usize| {
             let (down, up) = (all.times(index, &low), all.times(index, &high));
             let least = (lowest + down.tr_mul(&down)).symmetric_eigenvalues().min();
             (least.max(0.0) / (value(greatest) + up.norm_squared()).sqrt(), index)
-        })
-        .collect()
+        };
+        parts[part].iter().map(bound).collect()
+    };
+    in_parallel(parts.len(), of_part).into_iter().flatten().collect()
 }

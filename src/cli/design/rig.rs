@@ -1,0 +1,95 @@
+//! `rodcal design rig ROD`.
+
+use std::path::PathBuf;
+
+use clap::{ArgGroup, Args};
+use rodcal::diagnosis::rig::planned::{Bench, effect_named, effect_names, plan, plan_ratio};
+use rodcal::inference::Effect;
+use rodcal::rod::Rod;
+use rodcal::units::UM;
+use rodcal::{Error, Result, report};
+
+use super::super::output::Outcome;
+
+#[derive(Debug, Args)]
+#[command(after_long_help = NOTES)]
+#[command(group(ArgGroup::new("goal").required(true).args(["between", "r_rod_width_percent"])))]
+pub struct DesignRig {
+    /// Rod file (TOML).
+    rod: PathBuf,
+    /// Effects to be told from each other and from nothing, with commas between them.
+    #[arg(long, value_name = "EFFECTS", value_delimiter = ',')]
+    between: Vec<String>,
+    /// Or: how wide the 95 % interval of r_rod may be, in %.
+    #[arg(long, value_name = "PERCENT", value_parser = positive)]
+    r_rod_width_percent: Option<f64>,
+    /// Odds to be expected against what it is not.
+    #[arg(long, value_name = "ODDS", default_value_t = 20.0, value_parser = more_than_one)]
+    odds: f64,
+    /// Largest load that rod and rig bear, in N.
+    #[arg(long, value_name = "N", default_value_t = 10.0, value_parser = positive)]
+    max_load: f64,
+    /// Standard deviation of a reading, in µm.
+    #[arg(long, value_name = "UM", default_value_t = 2.0, value_parser = positive)]
+    noise_um: f64,
+    /// Loads hang and sensors stand at the tip only.
+    #[arg(long)]
+    at_tip: bool,
+}
+
+const NOTES: &str = "\
+Effects are named as in the answers of `rodcal diagnose rig`, for example
+joint_compliance, root_compliance, stiffness_scale, shear_modulus, friction,
+load_offset, sensor_scale, creep. Each is taken to be of its usual size.
+
+With --out the readings to be filled in are written too (readings.csv), for
+`rodcal rig fit` and `rodcal diagnose rig`.";
+
+fn positive(text: &str) -> std::result::Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(number) if number.is_finite() && number > 0.0 => Ok(number),
+        _ => Err("expected a number > 0".into()),
+    }
+}
+
+fn more_than_one(text: &str) -> std::result::Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(number) if number.is_finite() && number > 1.0 => Ok(number),
+        _ => Err("expected odds > 1, such as 20".into()),
+    }
+}
+
+impl DesignRig {
+    pub fn run(&self) -> Result<Outcome> {
+        let rod = Rod::read(&self.rod)?;
+        let bench = Bench { largest_load: self.max_load, noise: self.noise_um * UM, is_at_tip: self.at_tip };
+        let plan = match self.r_rod_width_percent {
+            Some(percent) => plan_ratio(&rod, percent / 100.0, &bench)?,
+            None => plan(&rod, &self.effects()?, self.odds, &bench)?,
+        };
+        let mut report = report::rig_plan::report(&plan, &rod, &bench);
+        report.provenance = vec![
+            ("rod file".into(), self.rod.display().to_string()),
+            ("program".into(), concat!("rodcal ", env!("CARGO_PKG_VERSION")).into()),
+        ];
+        let files = vec![("readings.csv".to_owned(), report::rig_plan::template(&plan, &rod).into_bytes())];
+        Ok(Outcome { files, ..Outcome::new(report::rig_plan::json(&plan, &rod, &bench), report) })
+    }
+
+    fn effects(&self) -> Result<Vec<&'static Effect>> {
+        let mut effects: Vec<&'static Effect> = Vec::new();
+        for name in &self.between {
+            let Some(effect) = effect_named(name.trim()) else {
+                return Err(Error::Argument {
+                    name: "between",
+                    found: name.clone(),
+                    expected: format!("one of {}", effect_names().join(", ")),
+                });
+            };
+            if !effects.contains(&effect) {
+                effects.push(effect);
+            }
+        }
+        Ok(effects)
+    }
+}

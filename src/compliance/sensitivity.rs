@@ -1,0 +1,150 @@
+//! How compliance, mass and first frequency follow every number of a rod.
+//!
+//! The rod's numbers carry a derivative through the formulas that compute the figures ([`Rod::derivative`]): no steps, no
+//! second set of formulas, exact to rounding.
+
+use super::Compliance;
+use crate::beam::{Physics, RodModel};
+use crate::error::Result;
+use crate::parallel::in_parallel;
+use crate::rod::{NominalNumber, Rod};
+use crate::units::STANDARD_GRAVITY;
+
+/// Derivatives by one number of a rod, everything in SI units per SI unit of the number.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Sensitivity {
+    /// By which number.
+    pub number: NominalNumber,
+    /// Its value.
+    pub value: f64,
+    /// Of C^F and C^g.
+    pub compliance: Compliance,
+    /// Of c_rod under the contact force that was asked for.
+    pub index: f64,
+    /// Of the mass.
+    pub mass: f64,
+    /// Of the first natural frequency (all physics), Hz; 0 where nothing has mass.
+    pub frequency: f64,
+}
+
+/// Derivatives of `rod` by every number of it ([`Rod::numbers`]) under `physics`, and with a contact force of this size (N).
+///
+/// At entries of C^F or C^g that are 0 by symmetry, |C| of c_rod has a kink; there the derivative is the one as the number grows.
+///
+/// ```
+/// use rodcal::compliance::sensitivities;
+/// use rodcal::prelude::*;
+///
+/// let rod = Rod::read("rods/5.toml".as_ref())?;
+/// let all = sensitivities(&rod, &Physics::default(), paper_contact_force())?;
+/// let of = |name: &str| all.iter().find(|one| one.number.to_string() == name).expect("5# has it");
+/// let index = Compliance::of_model(&rod, &Physics::default(), 10)?.index(paper_contact_force());
+/// // 1 % more of L2: c_rod grows by 2.8 %
+/// let share = of("l2").index * rod.l2 / index;
+/// assert!((share - 2.8).abs() < 0.1, "{share}");
+/// # Ok::<(), rodcal::Error>(())
+/// ```
+///
+/// # Errors
+/// As [`RodModel::new`] and [`Rod::natural_modes`].
+pub fn sensitivities(rod: &Rod, physics: &Physics, contact_force: f64) -> Result<Vec<Sensitivity>> {
+    let numbers = rod.numbers();
+    let frequencies = rod.first_frequency_slopes(&numbers)?.map(|(_, slopes)| slopes);
+    let all = in_parallel(numbers.len(), |k| {
+        let number = &numbers[k];
+        let Some(varied) = rod.derivative(number) else { return Ok(None) };
+        let [force, weight] = RodModel::new(&varied, physics, 1, &[])?.chain.tip_motion();
+        let compliance = Compliance { force, gravity: weight.map(|entry| entry * STANDARD_GRAVITY) };
+        Ok(Some(Sensitivity {
+            number: number.clone(),
+            value: rod.value_of(number).unwrap_or(f64::NAN),
+            index: compliance.index(contact_force).eps,
+            compliance: Compliance {
+                force: compliance.force.map(|entry| entry.eps),
+                gravity: compliance.gravity.map(|entry| entry.eps),
+            },
+            mass: varied.mass().eps,
+            frequency: frequencies.as_ref().map_or(0.0, |slopes| slopes[k]),
+        }))
+    });
+    all.into_iter().filter_map(Result::transpose).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Matrix3;
+
+    use super::*;
+    use crate::compliance::paper_contact_force;
+    use crate::rod::{BendFlexibility, Joint};
+    use crate::section::{General, Rectangle};
+
+    /// Every kind of section, of bend, of feature: against central differences, to 1e-6.
+    #[test]
+    fn derivatives_are_those_of_differences() {
+        let plain = Rod::read("rods/2.toml".as_ref()).unwrap();
+        let joint = Joint { name: "glue".into(), station: 0.11, bending: 1e-4, torsion: 2e-4 };
+        let mut bent = plain.clone().with_bend(0.06, BendFlexibility::VonKarman).with_angle(1.9);
+        // a mass at a joint has a kink there
+        bent.masses[0].station += 0.004;
+        let mut boxes = bent.clone().with_bend(0.05, BendFlexibility::Factor(3.0));
+        boxes.pipe1.section = Rectangle::hollow(0.02, 0.03, 0.002).into();
+        boxes.bend.section = Rectangle::solid(0.011, 0.02).into();
+        let mut general = plain.clone();
+        general.pipe2.section =
+            General { area: 1e-4, iy: 3e-9, iz: 2e-9, torsion_constant: 4e-9, shear_coefficient: 0.5 }.into();
+        let mut asme = plain.clone().with_bend(0.04, BendFlexibility::AsmeB313);
+        asme.masses.clear();
+        for rod in [plain, bent.with_mass("ring", 0.31, 0.1).with_joint(joint), boxes, general, asme] {
+            let at = |rod: &Rod| {
+                let [force, weight] = RodModel::new(rod, &Physics::WHOLE, 1, &[]).unwrap().chain.tip_motion();
+                (Compliance { force, gravity: weight * STANDARD_GRAVITY }, rod.mass())
+            };
+            let here = at(&rod);
+            let all = sensitivities(&rod, &Physics::WHOLE, paper_contact_force()).unwrap();
+            assert_eq!(all.len(), rod.numbers().len());
+            for one in all {
+                // of fourth order: 1e-4 of a diameter is much of a wall
+                let step = if one.value == 0.0 { 1e-6 } else { 1e-4 * one.value };
+                let [a, b, c, d] =
+                    [-2.0, -1.0, 1.0, 2.0].map(|k| at(&rod.with(&one.number, one.value + k * step)));
+                let difference = |of: &dyn Fn(&(Compliance, f64)) -> Matrix3<f64>| {
+                    ((of(&c) - of(&b)) * 8.0 - (of(&d) - of(&a))) / (12.0 * step)
+                };
+                // to 1e-6 of the derivative, and to 1e-10 of what 1 % of the number would do to the figure
+                let size = 0.01 * one.value.abs().max(1e-3);
+                let force = paper_contact_force();
+                let index = |both: &(Compliance, f64)| Matrix3::repeat(both.0.index(force));
+                let mass = |both: &(Compliance, f64)| Matrix3::repeat(both.1);
+                for (slope, of) in [
+                    (one.compliance.force, &(|both: &(Compliance, f64)| both.0.force) as &dyn Fn(&_) -> _),
+                    (one.compliance.gravity, &|both: &(Compliance, f64)| both.0.gravity),
+                    (Matrix3::repeat(one.index), &index),
+                    (Matrix3::repeat(one.mass), &mass),
+                ] {
+                    let off = (slope - difference(of)).amax();
+                    let whole = 1e-6 * slope.amax() + 1e-10 * of(&here).amax() / size;
+                    assert!(off < whole, "{}: {off} of {whole}", one.number);
+                }
+            }
+        }
+    }
+
+    /// A sleeve and its mass are one thing: they move together, and are named once.
+    #[test]
+    fn what_sits_at_one_station_moves_together() {
+        let steel = Rod::read("rods/5.toml".as_ref()).unwrap();
+        let rod = |station: f64| {
+            let joint = Joint { name: "glue".into(), station, bending: 1e-4, torsion: 2e-4 };
+            steel.clone().with_mass("sleeve", station, 0.1).with_joint(joint)
+        };
+        let all = sensitivities(&rod(0.3), &Physics::WHOLE, 2.0).unwrap();
+        let stations: Vec<&Sensitivity> =
+            all.iter().filter(|one| matches!(one.number, NominalNumber::Station(_))).collect();
+        assert_eq!(stations.len(), 1);
+        let at = |station: f64| Compliance::of_model(&rod(station), &Physics::WHOLE, 5).unwrap().index(2.0);
+        let expected = (at(0.3001) - at(0.2999)) / 2e-4;
+        assert!((stations[0].index / expected - 1.0).abs() < 1e-6, "{} {expected}", stations[0].index);
+    }
+}

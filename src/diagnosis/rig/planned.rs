@@ -1,0 +1,532 @@
+//! What to measure on a rig that has measured nothing yet, so that some effects can be told apart.
+//!
+//! An effect a of its usual size adds C_a·θ, θ ~ N(0, 1), to readings that scatter by Σ₀: noise, the zero of each run, the
+//! rod's nominal numbers. Where a is what there is, the ln of the odds against b that a plan is expected to give is
+//!
+//! ```text
+//! ½·[tr(K_b⁻¹K_a) − n + ln|K_b| − ln|K_a|],   K = Σ₀ + C·Cᵀ
+//! ```
+//!
+//! the Kullback–Leibler divergence of the two (D. V. Lindley, *Ann. Math. Statist.* 27 (1956) 986–1005). Measurements are those
+//! that a diagnosis proposes from (`feasible.rs`), chosen one after another as it does (`experiment_design.rs`): the least
+//! laborious one that leaves least of the rivals; then whatever is not needed is given up again.
+
+mod ratio;
+
+use nalgebra::DMatrix;
+
+pub use self::ratio::plan_ratio;
+use super::effects::registry;
+use super::feasible::{Measurement, feasible};
+use super::model::RigModel;
+use super::wanted::Wanted;
+use crate::beam::{Physics, RodModel};
+use crate::error::{Error, Result};
+use crate::inference::{Effect, Evidence, ExperimentDesign, ForwardModel, LoadPlan, Location};
+use crate::parallel::in_parallel;
+use crate::rig::readings::{Axis, Direction, Reading, Readings};
+use crate::rod::Rod;
+
+/// Minutes that a new place of load or sensors takes, that a new zero takes, and that a reading takes.
+const SETUP: f64 = 10.0;
+const ZEROING: f64 = 2.0;
+const READING: f64 = 0.5;
+/// Fewest repeats of a measurement, for the scatter has to be seen too; what is added at a time, and most of all.
+const FEWEST: usize = 3;
+const ADDED: [usize; 3] = [1, 3, 6];
+const MOST_REPEATS: usize = 12;
+const MOST_ROUNDS: usize = 24;
+/// What all measurements together would have to tell, in ln odds, times what is asked for: less would take nearly all of them.
+const REASONABLE: f64 = 2.0;
+/// Share of the rivals that a measurement has to take away.
+const WORTH: f64 = 0.98;
+
+/// What the rig can do.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bench {
+    /// Largest load, N.
+    pub largest_load: f64,
+    /// Standard deviation of a reading's noise, m.
+    pub noise: f64,
+    /// True where loads hang and sensors stand at the tip only.
+    pub is_at_tip: bool,
+}
+
+/// A plan, and what it will tell.
+#[derive(Debug, Clone)]
+#[non_exhaustive]
+pub struct RigPlan {
+    /// What to do, in its order.
+    pub measurements: Vec<PlannedLoads>,
+    /// How long that takes, minutes.
+    pub minutes: f64,
+    /// ln of the odds that were asked for.
+    pub wanted: f64,
+    /// Each effect beside each other one, and beside nothing.
+    pub told: Vec<Told>,
+    /// The interval of r_rod, where that is what was asked for.
+    pub ratio: Option<Ratio>,
+}
+
+/// Width of the 95 % interval of r_rod, a share.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ratio {
+    /// At most so wide.
+    pub asked: f64,
+    /// As noise makes it.
+    pub expected: f64,
+}
+
+/// One of its measurements.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlannedLoads {
+    /// What to do; a full sentence.
+    pub words: String,
+    /// The same as numbers.
+    pub loads: LoadPlan,
+    /// How long that takes, minutes.
+    pub minutes: f64,
+}
+
+/// How well one effect is told from another.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Told {
+    /// What there is.
+    pub effect: &'static Effect,
+    /// What it may be taken for; `None` is nothing at all.
+    pub against: Option<&'static Effect>,
+    /// For each place where it may be the ln of the odds against the other one, wherever that is: that this plan is
+    /// expected to give, and that all measurements together, repeated twelve times, would.
+    pub places: Vec<(Location, f64, f64)>,
+}
+
+/// The effect of a rig that has this name.
+pub fn effect_named(name: &str) -> Option<&'static Effect> {
+    registry::ALL.into_iter().map(|effect| &effect.effect).find(|effect| effect.name == name)
+}
+
+/// Names of all effects of a rig.
+pub fn effect_names() -> Vec<&'static str> {
+    registry::ALL.into_iter().map(|effect| effect.effect.name).collect()
+}
+
+/// The least laborious plan that tells effects of their usual sizes apart, `odds` to 1, and from nothing; as far as the rig
+/// can do that with reasonable effort: where all measurements together tell less than odds², nearly all of them would be needed.
+///
+/// # Errors
+/// [`Error::NotApplicable`] for an effect that no such measurement shows; what the beam model refuses.
+pub fn plan(rod: &Rod, between: &[&'static Effect], odds: f64, bench: &Bench) -> Result<RigPlan> {
+    let menu = Menu::new(rod, between, bench)?;
+    let wanted = odds.ln();
+    let all = menu.told(&vec![MOST_REPEATS; menu.measurements.len()]);
+    // what cannot be told with reasonable effort is not asked for
+    let aims: Vec<f64> =
+        all.iter().map(|best| if *best < REASONABLE * wanted { 0.0 } else { wanted }).collect();
+    let mut counts = vec![0; menu.measurements.len()];
+    let left = |told: &[f64]| -> f64 {
+        let short = |(told, aim): (&f64, &f64)| if *aim > 0.0 { (-told.min(*aim)).exp() } else { 0.0 };
+        told.iter().zip(&aims).map(short).sum()
+    };
+    let is_enough = |told: &[f64]| told.iter().zip(&aims).all(|(told, aim)| told >= aim);
+    let mut now = vec![0.0; aims.len()];
+    for _ in 0..MOST_ROUNDS {
+        if is_enough(&now) {
+            break;
+        }
+        let mut offers: Vec<Vec<usize>> = Vec::new();
+        for k in 0..counts.len() {
+            for more in ADDED {
+                let mut offer = counts.clone();
+                offer[k] = (counts[k] + more).max(FEWEST);
+                if offer[k] <= MOST_REPEATS && !offers.contains(&offer) {
+                    offers.push(offer);
+                }
+            }
+        }
+        offers.sort_by(|a, b| menu.minutes(a).total_cmp(&menu.minutes(b)));
+        let told = in_parallel(offers.len(), |k| menu.told(&offers[k]));
+        let mut design = ExperimentDesign::default();
+        for (offer, told) in offers.into_iter().zip(told) {
+            let useful: Vec<f64> = told.iter().zip(&aims).map(|(told, aim)| told.min(*aim)).collect();
+            design.offer((offer, told), useful, &vec![1.0; aims.len()]);
+        }
+        let Some(((best, told), _)) = design.best().filter(|((_, told), _)| left(told) < WORTH * left(&now))
+        else {
+            break;
+        };
+        (counts, now) = (best, told);
+    }
+    if !is_enough(&now) {
+        // some are told by several measurements together only: from all of them, as many as can be left out
+        counts = vec![MOST_REPEATS; counts.len()];
+        now.clone_from(&all);
+        let mut order: Vec<usize> = (0..counts.len()).collect();
+        order.sort_by(|&a, &b| menu.labour(b, 1).total_cmp(&menu.labour(a, 1)).then(b.cmp(&a)));
+        for k in order {
+            let mut fewer = counts.clone();
+            fewer[k] = 0;
+            let told = menu.told(&fewer);
+            if is_enough(&told) {
+                (counts, now) = (fewer, told);
+            }
+        }
+    }
+    // the most laborious first
+    let reached: Vec<f64> = now.iter().zip(&aims).map(|(now, aim)| now.min(*aim)).collect();
+    let is_kept = |told: &[f64]| told.iter().zip(&reached).all(|(told, reached)| told >= reached);
+    let mut order: Vec<usize> = (0..counts.len()).filter(|&k| counts[k] > 0).collect();
+    order.sort_by(|&a, &b| menu.labour(b, counts[b]).total_cmp(&menu.labour(a, counts[a])).then(a.cmp(&b)));
+    for k in order {
+        while counts[k] > 0 {
+            let fewer = one_less(&counts, k);
+            let told = menu.told(&fewer);
+            if !is_kept(&told) {
+                break;
+            }
+            (counts, now) = (fewer, told);
+        }
+    }
+    Ok(menu.plan(&counts, wanted, &now, &all))
+}
+
+/// One repeat less of a measurement, or none.
+fn one_less(counts: &[usize], k: usize) -> Vec<usize> {
+    let mut fewer = counts.to_vec();
+    fewer[k] = if counts[k] > FEWEST { counts[k] - 1 } else { 0 };
+    fewer
+}
+
+/// The effort of a plan of loads, minutes.
+pub fn minutes(loads: &LoadPlan) -> f64 {
+    let up = loads.loads.len();
+    let steps = if loads.unloading { 2 * up - 1 } else { up };
+    let waiting = loads.waits.last().copied().unwrap_or_default() / 60.0;
+    let readings = (steps * loads.waits.len()) as f64 * READING;
+    SETUP + loads.repeats as f64 * (ZEROING + readings + waiting)
+}
+
+/// Readings that might be made, once each, as one model.
+struct Menu {
+    measurements: Vec<Measurement>,
+    /// For each datum the measurement that it belongs to.
+    owner: Vec<usize>,
+    evidence: Evidence,
+    noise: f64,
+    between: Vec<&'static Effect>,
+    /// Of each candidate its effect, its place and its columns.
+    candidates: Vec<(&'static Effect, Location, DMatrix<f64>)>,
+}
+
+impl Menu {
+    fn new(rod: &Rod, between: &[&'static Effect], bench: &Bench) -> Result<Menu> {
+        let seed = at_tip(rod, bench.largest_load)?;
+        let is_possible = |measurement: &Measurement| {
+            let plan = &measurement.plan;
+            let is_bearable = plan.loads.iter().all(|load| *load <= bench.largest_load * (1.0 + 1e-9));
+            is_bearable && (!bench.is_at_tip || (plan.load_station, plan.read_station) == (None, None))
+        };
+        let measurements: Vec<Measurement> =
+            feasible(&seed, Some(rod)).into_iter().filter(is_possible).collect();
+        let (mut rows, mut of_row) = (Vec::new(), Vec::new());
+        let mut clock = 0.0;
+        for (k, measurement) in measurements.iter().enumerate() {
+            let new = &measurement.readings.rows[measurement.known_rows..];
+            let first = new.first().and_then(|row| row.trial.clone());
+            let mut since = None;
+            for row in new.iter().filter(|row| row.trial == first) {
+                // all on one clock
+                let time = row.time.unwrap_or_default();
+                let start = *since.get_or_insert(time - 30.0);
+                rows.push(Reading {
+                    trial: Some(k.to_string()),
+                    phase: row.phase.or(Some(crate::rig::readings::Phase::Load)),
+                    time: Some(clock + time - start),
+                    ..row.clone()
+                });
+                of_row.push(k);
+            }
+            clock = rows.last().and_then(|row: &Reading| row.time).unwrap_or(clock) + 600.0;
+        }
+        // sizes are shares of the readings: those that the rod's model predicts
+        let mut readings = Readings::from_rows(rows)?;
+        let (model, _, _) = RigModel::with_effects(&readings, Some(rod), &Wanted::Like(&[]))?;
+        for datum in model.data() {
+            readings.rows[datum.row - 1].offset[datum.channel.index()] = Some(datum.predicted);
+        }
+        let (model, evidence, not_testable) = RigModel::with_effects(&readings, Some(rod), &Wanted::All)?;
+        let mut candidates = Vec::new();
+        for (k, candidate) in model.candidates().iter().enumerate() {
+            if between.contains(&candidate.effect) && !candidate.is_nonparametric {
+                let columns = model.columns(&[candidate.neutral(k)], 0);
+                candidates.push((candidate.effect, candidate.location.clone(), columns));
+            }
+        }
+        for effect in between {
+            if candidates.iter().all(|(known, ..)| known != effect) {
+                let reason = not_testable.iter().find(|one| one.effect == *effect);
+                return Err(Error::NotApplicable {
+                    what: format!("a plan that shows {}", effect.name),
+                    why: reason.map_or_else(|| "no load shows it".to_owned(), |one| one.reason.to_string()),
+                    hint: "leave it out of --between".into(),
+                });
+            }
+        }
+        Ok(Menu {
+            owner: model.data().iter().map(|datum| of_row[datum.row - 1]).collect(),
+            measurements,
+            evidence,
+            noise: bench.noise,
+            between: between.to_vec(),
+            candidates,
+        })
+    }
+
+    /// For each candidate, beside each other effect and beside nothing, the least ln of the odds.
+    fn told(&self, counts: &[usize]) -> Vec<f64> {
+        let rows: Vec<usize> = (0..self.owner.len()).filter(|&i| counts[self.owner[i]] > 0).collect();
+        let others = self.between.len();
+        if rows.is_empty() {
+            return vec![0.0; self.candidates.len() * others];
+        }
+        let part = self.evidence.part(&rows);
+        let variance = self.noise * self.noise;
+        let mut scatter = DMatrix::from_fn(rows.len(), rows.len(), |i, j| {
+            let repeats = counts[self.owner[rows[i]]] as f64;
+            let own = f64::from(u8::from(i == j)) + f64::from(u8::from(part.shared[i] == part.shared[j]));
+            own * variance / repeats
+        });
+        scatter += &part.nominal * part.nominal.transpose();
+        scatter += &part.background * part.background.transpose();
+        let zeros: Vec<f64> = part.least_offset.iter().map(|least| least.max(self.noise)).collect();
+        let offsets = DMatrix::from_fn(rows.len(), zeros.len(), |i, j| part.offsets[(i, j)] * zeros[j]);
+        scatter += &offsets * offsets.transpose();
+        let Some(root) = scatter.cholesky() else { return vec![0.0; self.candidates.len() * others] };
+        // Σ₀^(−½)·C, and what each pair has in common
+        let white: Vec<DMatrix<f64>> = self
+            .candidates
+            .iter()
+            .map(|(_, _, columns)| {
+                let columns = columns.select_rows(&rows);
+                root.l_dirty().solve_lower_triangular(&columns).unwrap_or(columns * 0.0)
+            })
+            .collect();
+        let alone: Vec<Alone> = white.iter().map(Alone::new).collect();
+        let mut told = Vec::with_capacity(self.candidates.len() * others);
+        for (i, (effect, ..)) in self.candidates.iter().enumerate() {
+            told.push(0.5 * (alone[i].gram.trace() - alone[i].ln));
+            for other in self.between.iter().filter(|other| other != &effect) {
+                let rivals = (0..self.candidates.len()).filter(|&j| self.candidates[j].0 == *other);
+                let apart = |j: usize| {
+                    let shared = white[j].tr_mul(&white[i]);
+                    let taken = &alone[j].inverse * (&alone[j].gram + &shared * shared.transpose());
+                    0.5 * (alone[i].gram.trace() - taken.trace() + alone[j].ln - alone[i].ln)
+                };
+                told.push(rivals.map(apart).fold(f64::INFINITY, f64::min).max(0.0));
+            }
+        }
+        told
+    }
+
+    /// Minutes of one measurement.
+    fn labour(&self, k: usize, repeats: usize) -> f64 {
+        match repeats {
+            0 => 0.0,
+            _ => minutes(&LoadPlan { repeats, ..self.measurements[k].plan.clone() }),
+        }
+    }
+
+    fn minutes(&self, counts: &[usize]) -> f64 {
+        counts.iter().enumerate().map(|(k, repeats)| self.labour(k, *repeats)).sum()
+    }
+
+    fn plan(&self, counts: &[usize], wanted: f64, now: &[f64], all: &[f64]) -> RigPlan {
+        let chosen = counts.iter().enumerate().filter(|(_, repeats)| **repeats > 0);
+        let measurements = chosen.map(|(k, &repeats)| {
+            let plan = LoadPlan { repeats, ..self.measurements[k].plan.clone() };
+            let words = &self.measurements[k].words;
+            let what = words.split(", three times").next().unwrap_or(words).trim_end_matches('.');
+            let what = what.split("; read").next().unwrap_or(what);
+            PlannedLoads {
+                words: format!("{what}, {repeats} times, each time from a new zero; read dx, dy and dz."),
+                minutes: minutes(&plan),
+                loads: plan,
+            }
+        });
+        let others = self.between.len();
+        let mut told: Vec<Told> = Vec::new();
+        for (i, (effect, place, _)) in self.candidates.iter().enumerate() {
+            let rivals = self.between.iter().filter(|other| *other != effect).map(|other| Some(*other));
+            for (k, against) in [None].into_iter().chain(rivals).enumerate() {
+                let entry = (place.clone(), now[i * others + k], all[i * others + k]);
+                match told.iter_mut().find(|known| known.effect == *effect && known.against == against) {
+                    Some(known) => known.places.push(entry),
+                    None => told.push(Told { effect, against, places: vec![entry] }),
+                }
+            }
+        }
+        RigPlan {
+            measurements: measurements.collect(),
+            minutes: self.minutes(counts),
+            wanted,
+            told,
+            ratio: None,
+        }
+    }
+}
+
+/// G = CᵀΣ₀⁻¹C of one candidate, (1 + G)⁻¹ and ln|1 + G|.
+struct Alone {
+    gram: DMatrix<f64>,
+    inverse: DMatrix<f64>,
+    ln: f64,
+}
+
+impl Alone {
+    fn new(white: &DMatrix<f64>) -> Alone {
+        let gram = white.tr_mul(white);
+        let whole = &gram + DMatrix::identity(gram.nrows(), gram.ncols());
+        match whole.clone().cholesky() {
+            Some(root) => Alone {
+                ln: 2.0 * root.l_dirty().diagonal().map(f64::ln).sum(),
+                inverse: root.inverse(),
+                gram,
+            },
+            None => Alone { gram: &gram * 0.0, inverse: whole * 0.0, ln: 0.0 },
+        }
+    }
+}
+
+/// Loads at the tip along every axis in four steps, as the rod's model has them: what the menu is written from.
+fn at_tip(rod: &Rod, largest: f64) -> Result<Readings> {
+    let model = RodModel::new(rod, &Physics::WHOLE, 1, &[])?;
+    let [force, _] = model.chain.tip_motion();
+    let mut rows = Vec::new();
+    for axis in Axis::ALL {
+        for step in 1..=4 {
+            let load = largest * f64::from(step) / 4.0;
+            let mut row = Reading::new(Direction::along(axis), load);
+            for channel in Axis::ALL {
+                row = row.with_offset(channel, force[(channel.index(), axis.index())] * load);
+            }
+            rows.push(row);
+        }
+    }
+    Readings::from_rows(rows)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnosis::rig::diagnose;
+    use crate::units::UM;
+
+    const BENCH: Bench = Bench { largest_load: 10.0, noise: 1e-6, is_at_tip: false };
+
+    fn rod() -> Rod {
+        Rod::read("rods/2.toml".as_ref()).unwrap()
+    }
+
+    fn effects(names: [&str; 2]) -> [&'static Effect; 2] {
+        names.map(|name| effect_named(name).unwrap())
+    }
+
+    /// Where a joint is near the flange it takes several measurements together.
+    #[test]
+    fn what_can_be_told_is_told() {
+        let rod = Rod::read("rods/5.toml".as_ref()).unwrap();
+        let between = effects(["joint_compliance", "root_compliance"]);
+        let plan = plan(&rod, &between, 20.0, &BENCH).unwrap();
+        let all = || plan.told.iter().flat_map(|told| &told.places);
+        assert!(all().any(|(_, _, best)| *best < plan.wanted) && all().any(|(_, now, _)| *now > plan.wanted));
+        for (place, now, best) in all() {
+            let is_hard = *best < REASONABLE * plan.wanted;
+            assert!(is_hard || *now >= plan.wanted - 1e-9, "{place}: {now} {best}");
+        }
+    }
+
+    #[test]
+    fn a_plan_is_no_more_than_is_needed_and_keeps_what_it_promises() {
+        let between = effects(["friction", "root_compliance"]);
+        let rod = rod();
+        let plan = plan(&rod, &between, 20.0, &BENCH).unwrap();
+        assert!(!plan.measurements.is_empty() && plan.minutes > 0.0);
+        for told in &plan.told {
+            for (place, now, best) in &told.places {
+                assert!(
+                    *now >= plan.wanted.min(*best) - 1e-9 || *best < plan.wanted,
+                    "{place}: {now} {best}"
+                );
+            }
+        }
+        // one repeat less of anything tells less than was asked for
+        let menu = Menu::new(&rod, &between, &BENCH).unwrap();
+        let counts: Vec<usize> = menu
+            .measurements
+            .iter()
+            .map(|one| {
+                let same = |planned: &&PlannedLoads| {
+                    LoadPlan { repeats: one.plan.repeats, ..planned.loads.clone() } == one.plan
+                };
+                plan.measurements.iter().find(same).map_or(0, |planned| planned.loads.repeats)
+            })
+            .collect();
+        for k in (0..counts.len()).filter(|&k| counts[k] > 0) {
+            let fewer = one_less(&counts, k);
+            let all = menu.told(&vec![MOST_REPEATS; counts.len()]);
+            let is_missed =
+                |(told, best): (&f64, &f64)| *best >= REASONABLE * plan.wanted && *told < plan.wanted;
+            assert!(menu.told(&fewer).iter().zip(&all).any(is_missed), "{k}");
+        }
+    }
+
+    /// Recorded as planned with a root that gives way, the diagnosis names it.
+    #[test]
+    fn what_was_planned_for_is_then_found() {
+        let between = effects(["stiffness_scale", "root_compliance"]);
+        let rod = Rod::read("rods/5.toml".as_ref()).unwrap();
+        let plan = plan(&rod, &between, 20.0, &BENCH).unwrap();
+        let root = crate::rod::Joint { name: "root".into(), station: 0.0, bending: 60e-6, torsion: 60e-6 };
+        let soft = rod.clone().with_joint(root);
+        let mut random = crate::statistics::Random::seeded(3, 1);
+        let mut rows = Vec::new();
+        for (k, one) in plan.measurements.iter().enumerate() {
+            let tip = soft.length();
+            let [load_at, read_at] =
+                [one.loads.load_station, one.loads.read_station].map(|station| station.unwrap_or(tip));
+            let model = RodModel::new(&soft, &Physics::WHOLE, 1, &[load_at, read_at]).unwrap();
+            let motion = model.force_response(load_at, read_at).unwrap().translation;
+            for trial in 0..one.loads.repeats {
+                for &load in &one.loads.loads {
+                    let mut row = Reading::new(one.loads.direction, load);
+                    let signed = load * f64::from(one.loads.direction.sign);
+                    for channel in Axis::ALL {
+                        let slope = motion[(channel.index(), one.loads.direction.axis.index())];
+                        row = row.with_offset(channel, slope * signed + UM * random.normal());
+                    }
+                    rows.push(Reading {
+                        trial: Some(format!("{k} {trial}")),
+                        load_station: one.loads.load_station,
+                        read_station: one.loads.read_station,
+                        ..row
+                    });
+                }
+            }
+        }
+        let readings = Readings::from_rows(rows).unwrap();
+        let found = diagnose(&readings, Some(&rod)).unwrap().diagnosis;
+        assert_eq!(found.findings.len(), 1, "{:?}", found.findings);
+        let finding = &found.findings[0];
+        let is_named = finding.effect.name == "root_compliance"
+            || finding.rivals.iter().any(|rival| rival.effect.name == "root_compliance");
+        assert!(is_named && finding.rivals.iter().all(|rival| rival.effect.name != "stiffness_scale"));
+    }
+
+    #[test]
+    fn what_no_load_shows_is_refused() {
+        let bent = effects(["bend_flexibility", "root_compliance"]);
+        let error = plan(&rod(), &bent, 20.0, &BENCH).unwrap_err().to_string();
+        assert!(error.starts_with("a plan that shows bend_flexibility is not possible"), "{error}");
+        assert_eq!(effect_named("gremlins"), None);
+    }
+}

@@ -1,0 +1,45 @@
+//! What all tables and the JSON of designs share: figures, shapes, digits.
+
+use serde_json::{Map, Value, json};
+
+use crate::design::{Design, Figure, Study};
+use crate::report::table::Column;
+use crate::rod::Rod;
+use crate::units::{DEG, GRAM, MM};
+
+/// Digits of a figure in a table.
+pub const DIGITS: usize = 4;
+
+/// The figures that are known, by key.
+pub fn figures_json(design: &Design) -> Map<String, Value> {
+    let known = |figure: Figure| Some((figure.key().to_owned(), json!(design.figures.get(figure)?)));
+    Figure::ALL.into_iter().filter_map(known).collect()
+}
+
+/// The figures of a table: the goals first, then the others that every design has.
+pub fn columns(study: &Study) -> Vec<Figure> {
+    let mut figures: Vec<Figure> = study.wish.goals.iter().map(|goal| goal.figure).collect();
+    let more = [Figure::CRod, Figure::Mass, Figure::FirstFrequency, Figure::Reach];
+    figures
+        .extend(more.into_iter().filter(|figure| study.wish.goals.iter().all(|goal| goal.figure != *figure)));
+    figures
+}
+
+/// Lengths, angle, bend and tip.
+pub fn shape_columns() -> Vec<Column> {
+    vec![
+        Column::number("L1", "mm"),
+        Column::number("L2", "mm"),
+        Column::number("γ", "°"),
+        Column::number("R", "mm"),
+        Column::number("tip", "g"),
+    ]
+}
+
+/// What stands below [`shape_columns`].
+pub fn shape_cells(rod: &Rod) -> Vec<String> {
+    // as a drawing has them: no zeros behind, and none of the rounding of units
+    [rod.l1 / MM, rod.l2 / MM, rod.gamma / DEG, rod.bend_radius / MM, rod.tip_mass / GRAM]
+        .map(|value| ((value * 1e3).round() / 1e3).to_string())
+        .to_vec()
+}

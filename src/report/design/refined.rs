@@ -1,0 +1,116 @@
+//! What became of a design between the values of the grid: JSON, a table and rod files.
+
+use serde_json::{Value, json};
+
+use super::cells::{DIGITS, columns, figures_json, shape_cells, shape_columns};
+use crate::design::{Better, Design, Figures, Refined, Study};
+use crate::report::table::{Column, Table};
+use crate::report::{Block, Section};
+use crate::rod::Rod;
+use crate::section::Section as Shape;
+use crate::units::{MM, significant};
+
+/// What the JSON has of it.
+pub fn json(found: &Refined) -> Value {
+    let of = |better: &Option<Better>| {
+        better.as_ref().map(|better| {
+            let mut object = figures_json(&Design { index: 0, figures: better.figures });
+            let rod: Value = toml::from_str(&better.rod.to_toml(&[])).unwrap_or(Value::Null);
+            object.insert("rod".into(), rod);
+            object.insert("tubes".into(), better.tubes.clone().into());
+            object.insert("gained_percent".into(), (100.0 * better.gained).into());
+            object
+        })
+    };
+    json!({
+        "from_design": found.place + 1,
+        "continuous": of(&found.continuous),
+        "catalogue": of(&found.catalogue),
+    })
+}
+
+/// The design, the best that could be made and the best that can be bought.
+pub fn section(study: &Study, found: &Refined) -> Section {
+    let figures = columns(study);
+    let mut heads = vec![Column::text(""), Column::text("tube")];
+    heads.extend(shape_columns());
+    heads.extend(figures.iter().map(|figure| {
+        let (name, unit) = figure.words();
+        Column::number(name, unit)
+    }));
+    let caption = format!(
+        "From design {}: its first goal is bettered, no other goal loses, all limits are kept. Ranges of the design file and \
+         sizes of tubes may take any value between their ends; then the nearest tubes of the catalogue are tried.",
+        found.place + 1
+    );
+    let mut table = Table::new("refined", caption, heads);
+    let mut row = |name: &str, rod: &Rod, tube: String, values: &Figures| {
+        let mut cells = vec![name.to_owned(), tube];
+        cells.extend(shape_cells(rod));
+        let value = |figure| values.get(figure).map_or("–".to_owned(), |v| significant(v, DIGITS));
+        cells.extend(figures.iter().map(|figure| value(*figure)));
+        table.row(cells);
+    };
+    if let Some(design) = study.found.front.get(found.place)
+        && let Ok(rod) = study.wish.rod(design.index)
+    {
+        let tubes = study.wish.tubes_of(design.index).join(" + ");
+        row(&format!("design {}", found.place + 1), &rod, tubes, &design.figures);
+    }
+    let named = |better: &Better| match better.tubes.is_empty() {
+        true => sizes(&better.rod),
+        false => better.tubes.join(" + "),
+    };
+    for (name, better) in [("any tube", &found.continuous), ("to be bought", &found.catalogue)] {
+        if let Some(better) = better {
+            row(name, &better.rod, named(better), &better.figures);
+        }
+    }
+    let (goal, _) = study.axes();
+    let (word, _) = goal.figure.words();
+    let gained = |better: &Better| format!("{} %", significant(100.0 * better.gained, 2));
+    let change = if goal.is_maximised { "larger" } else { "smaller" };
+    let said = match (&found.continuous, &found.catalogue) {
+        (None, _) => format!(
+            "Nothing is gained: no step between the values of the ranges makes {word} {change} without a loss elsewhere."
+        ),
+        (Some(any), Some(bought)) => format!(
+            "{word} becomes {} {change} with tubes of the catalogue, {} if tubes of any size could be had.",
+            gained(bought),
+            gained(any)
+        ),
+        (Some(any), None) => format!(
+            "{word} would become {} {change} with a tube that the catalogue does not have; with its tubes nothing is gained.",
+            gained(any)
+        ),
+    };
+    let note = "The optimum is a local one: another design of the front may lead to another.";
+    Section::new(
+        "Between the grid's values",
+        vec![Block::Paragraph(format!("{said} {note}")), Block::Table(table)],
+    )
+}
+
+/// `32.4x1.13`: outer diameter and wall of the tubes, mm.
+fn sizes(rod: &Rod) -> String {
+    let size = |section: &Shape| match (section.as_round(), section.wall()) {
+        (Some(round), Some(wall)) => {
+            format!("{}x{}", significant(round.outer_diameter / MM, 4), significant(wall / MM, 3))
+        }
+        _ => "–".to_owned(),
+    };
+    let mut sizes = vec![size(&rod.pipe1.section), size(&rod.pipe2.section)];
+    sizes.dedup();
+    sizes.join(" + ")
+}
+
+/// The rods as files.
+pub fn files(found: &Refined, above: &[String]) -> Vec<(String, Vec<u8>)> {
+    let all = [("refined-any-tube.toml", &found.continuous), ("refined.toml", &found.catalogue)];
+    let file = |(name, better): (&str, &Option<Better>)| {
+        let better = better.as_ref()?;
+        let rod = Rod { name: format!("design {} refined", found.place + 1), ..better.rod.clone() };
+        Some((name.to_owned(), rod.to_toml(above).into_bytes()))
+    };
+    all.into_iter().filter_map(file).collect()
+}

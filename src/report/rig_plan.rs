@@ -1,0 +1,290 @@
+//! What `design rig` says: the measurements, what they will tell, a picture of them, and readings to be filled in.
+
+use nalgebra::Matrix3;
+use serde_json::{Value, json};
+
+use super::diagnosis::load_plan;
+use super::pictures::{RodShape, ShapeCase, Station, StationKind, rod_shape};
+use super::table::{Column, Table};
+use super::{Block, Report, Section};
+use crate::beam::{Load, Physics, RodModel};
+use crate::diagnosis::rig::planned::{Bench, PlannedLoads, RigPlan, Told};
+use crate::inference::LoadPlan;
+use crate::rod::Rod;
+use crate::units::{MM, UM, significant};
+
+/// The JSON of `rodcal design rig --json`.
+pub fn json(plan: &RigPlan, rod: &Rod, bench: &Bench) -> Value {
+    let measurement = |one: &PlannedLoads| {
+        let mut object = load_plan(&one.loads);
+        object["words"] = one.words.clone().into();
+        object["minutes"] = one.minutes.into();
+        object
+    };
+    let told = plan.told.iter().map(|told| {
+        let places = told.places.iter().map(|(place, now, best)| {
+            json!({ "location": place.to_string(), "log_odds": now, "log_odds_of_everything": best })
+        });
+        json!({
+            "effect": told.effect.name,
+            "against": told.against.map(|effect| effect.name),
+            "places": places.collect::<Vec<_>>(),
+        })
+    });
+    json!({
+        "rod": rod.name,
+        "largest_load_n": bench.largest_load,
+        "noise_um": bench.noise / UM,
+        "measurements": plan.measurements.iter().map(measurement).collect::<Vec<_>>(),
+        "minutes": plan.minutes,
+        "log_odds_wanted": plan.wanted.is_finite().then_some(plan.wanted),
+        "told": told.collect::<Vec<_>>(),
+        "r_rod": plan.ratio.map(|ratio| json!({
+            "width_asked_percent": 100.0 * ratio.asked,
+            "width_expected_percent": 100.0 * ratio.expected,
+        })),
+    })
+}
+
+/// The report of `rodcal design rig`.
+pub fn report(plan: &RigPlan, rod: &Rod, bench: &Bench) -> Report {
+    let mut sections = vec![Section::new("What to measure", measurements(plan, rod))];
+    if !plan.told.is_empty() {
+        sections.push(Section::new("What it will tell", will_tell(plan)));
+    }
+    let assumed = format!(
+        "Assumed: loads to {} N, noise of {} µm of a reading and of the zero of each run, effects of their usual sizes (the odds of \
+         smaller ones are smaller), the \
+         rod's nominal numbers as uncertain as its file says. Time: 10 minutes for a new place of load or sensors, 2 for a new zero, half \
+         a minute for a reading, and waiting.",
+        significant(bench.largest_load, 3),
+        significant(bench.noise / UM, 3)
+    );
+    sections.push(Section::new("What was assumed", vec![Block::Paragraph(assumed)]));
+    Report {
+        title: format!("Rig measurements for rod {}", rod.name),
+        headline: headline(plan),
+        warnings: not_told(plan),
+        sections,
+        provenance: Vec::new(),
+    }
+}
+
+fn headline(plan: &RigPlan) -> String {
+    let effort = match plan.measurements.len() {
+        0 => return "No measurement of this rig tells these effects apart.".into(),
+        1 => format!("One measurement of about {:.0} minutes", plan.minutes),
+        count => format!("{count} measurements of about {:.0} minutes in all", plan.minutes),
+    };
+    if let Some(ratio) = plan.ratio {
+        return format!(
+            "{effort} give r_rod with a 95 % interval {} % wide (asked for: {} %).",
+            significant(100.0 * ratio.expected, 2),
+            significant(100.0 * ratio.asked, 3)
+        );
+    }
+    let odds = significant(plan.wanted.exp(), 3);
+    let all = plan.told.iter().flat_map(|told| &told.places);
+    let (count, short) = all.fold((0, 0), |(count, short), (_, now, _)| {
+        (count + 1, short + usize::from(*now < plan.wanted * (1.0 - 1e-9)))
+    });
+    let tell = if plan.measurements.len() == 1 { "tells" } else { "tell" };
+    match short {
+        0 => format!("{effort} {tell} these effects apart, with odds of {odds} : 1 or more to be expected."),
+        _ => format!(
+            "{effort} {tell} these effects apart in {} of {count} comparisons of places, with odds of {odds} : 1 or more to be \
+             expected; the others cannot be told with reasonable effort.",
+            count - short
+        ),
+    }
+}
+
+/// What stays untold, in words.
+fn not_told(plan: &RigPlan) -> Vec<String> {
+    let short = |told: &Told| -> Vec<String> {
+        let is_short = |now: f64| now < plan.wanted * (1.0 - 1e-9);
+        told.places.iter().filter(|(_, now, _)| is_short(*now)).map(|(place, ..)| place.to_string()).collect()
+    };
+    let words = |told: &Told| {
+        let short = short(told);
+        let from = told.against.map_or("nothing".to_owned(), |other| spoken(other.name));
+        let places = match short.len() {
+            0 => return None,
+            count if count == told.places.len() => String::new(),
+            1..=4 => format!(" at {}", short.join(", ")),
+            count => format!(" at {}, {} and {} more places", short[0], short[1], count - 2),
+        };
+        Some(format!(
+            "{}{places} cannot be told from {from} with reasonable effort",
+            spoken(told.effect.name)
+        ))
+    };
+    plan.told.iter().filter_map(words).collect()
+}
+
+fn spoken(name: &str) -> String {
+    name.replace('_', " ")
+}
+
+fn measurements(plan: &RigPlan, rod: &Rod) -> Vec<Block> {
+    let heads = vec![
+        Column::number("", ""),
+        Column::text("what to do"),
+        Column::number("repeats", ""),
+        Column::number("time", "min"),
+    ];
+    let mut table = Table::new("plan", "In this order; each repeat from a new zero.", heads);
+    for (k, one) in plan.measurements.iter().enumerate() {
+        table.row(vec![
+            (k + 1).to_string(),
+            one.words.clone(),
+            one.loads.repeats.to_string(),
+            format!("{:.0}", one.minutes),
+        ]);
+    }
+    let mut blocks = vec![Block::Table(table)];
+    blocks.extend(picture(plan, rod).map(Block::Figure));
+    blocks
+}
+
+/// Where loads hang and sensors stand, and how the rod bends there.
+fn picture(plan: &RigPlan, rod: &Rod) -> Option<super::chart::Figure> {
+    const POINTS: usize = 60;
+    let tip = rod.length();
+    let model = RodModel::new(rod, &Physics::WHOLE, POINTS, &[]).ok()?;
+    let chain = &model.chain;
+    let places = || (0..=chain.end()).map(|node| chain.position(node));
+    let mut cases: Vec<ShapeCase> = Vec::new();
+    let mut marks: Vec<(f64, StationKind, Vec<String>)> = Vec::new();
+    for (k, one) in plan.measurements.iter().enumerate() {
+        let at = |station: Option<f64>| station.unwrap_or(tip);
+        let (load_at, read_at) = (at(one.loads.load_station), at(one.loads.read_station));
+        for (station, kind) in [(load_at, StationKind::Load), (read_at, StationKind::Reading)] {
+            let number = (k + 1).to_string();
+            match marks.iter_mut().find(|(known, of, _)| (*known - station).abs() < MM && *of == kind) {
+                Some((_, _, numbers)) => numbers.push(number),
+                None => marks.push((station, kind, vec![number])),
+            }
+        }
+        let with_load = RodModel::new(rod, &Physics::WHOLE, POINTS, &[load_at]).ok()?;
+        let response = with_load.chain.solve(&[Load::Force { node: with_load.node_at(load_at) }]).ok()?;
+        let (axis, sign) = (one.loads.direction.axis.index(), f64::from(one.loads.direction.sign));
+        let largest = one.loads.loads.iter().copied().fold(0.0, f64::max) * sign;
+        let label = format!("{} N along {}", significant(largest.abs(), 3), one.loads.direction);
+        let of = |node: usize| -> Matrix3<f64> { response.motion(node, 0).translation };
+        let near = |p: nalgebra::Vector3<f64>| {
+            (0..=with_load.chain.end())
+                .min_by(|&a, &b| {
+                    let far = |node: usize| (with_load.chain.position(node) - p).norm();
+                    far(a).total_cmp(&far(b))
+                })
+                .unwrap_or(0)
+        };
+        if cases.iter().all(|case| case.label != label) {
+            let moved = places().map(|p| (of(near(p)).column(axis) * (largest / UM)).into());
+            cases.push(ShapeCase { label, deflection_um: moved.collect() });
+        }
+    }
+    let station = |(station, kind, numbers): (f64, StationKind, Vec<String>)| Station {
+        label: match kind {
+            StationKind::Load => format!("load {}", numbers.join(", ")),
+            _ => format!("read {}", numbers.join(", ")),
+        },
+        at_mm: (rod.point(station) / MM).into(),
+        kind,
+    };
+    let figure = rod_shape(&RodShape {
+        title: format!("Rod {}", rod.name),
+        centreline_mm: places().map(|p| (p / MM).into()).collect(),
+        cases,
+        stations: marks.into_iter().map(station).collect(),
+        ..RodShape::default()
+    });
+    let caption = "Where loads hang and sensors stand, by the number of the measurement, and how the rod bends under the largest \
+                   load of each.";
+    Some(figure.named("rig-plan").captioned(caption))
+}
+
+fn will_tell(plan: &RigPlan) -> Vec<Block> {
+    let heads = vec![
+        Column::text("where it is"),
+        Column::text("told from"),
+        Column::text("at"),
+        Column::number("odds", ": 1"),
+        Column::number("odds of everything", ": 1"),
+    ];
+    let caption = "Odds to be expected of this plan, and of all measurements that the rig can make, each repeated twelve times: what is \
+                   small there cannot be told. Of each pair the places with the least and the largest odds.";
+    let mut table = Table::new("told", caption, heads);
+    let odds = |ln: f64| match ln / std::f64::consts::LN_10 {
+        powers if powers > 4.0 => format!("10^{powers:.0}"),
+        _ => significant(ln.exp(), 2),
+    };
+    for told in &plan.told {
+        let mut places: Vec<_> = told.places.iter().collect();
+        places.sort_by(|a, b| a.1.total_cmp(&b.1));
+        let last = places.len().saturating_sub(1);
+        let mut picked = vec![0, last];
+        picked.dedup();
+        for (place, now, best) in picked.into_iter().filter_map(|k| places.get(k)) {
+            table.row(vec![
+                spoken(told.effect.name),
+                told.against.map_or("nothing".into(), |other| spoken(other.name)),
+                place.to_string(),
+                odds(*now),
+                odds(*best),
+            ]);
+        }
+    }
+    vec![Block::Table(table)]
+}
+
+/// The readings that the plan asks for, offsets left blank: for `rig fit` and `diagnose rig` once they are filled in.
+pub fn template(plan: &RigPlan, rod: &Rod) -> String {
+    let mut text = format!(
+        "# Rod {}: offsets in the tool frame to be filled in (µm, from the unloaded, zeroed rod); blank: not measured\n",
+        rod.name
+    );
+    let is_timed = plan.measurements.iter().any(|one| one.loads.waits.iter().any(|wait| *wait > 0.0));
+    let has_stations = plan
+        .measurements
+        .iter()
+        .any(|one| one.loads.load_station.is_some() || one.loads.read_station.is_some());
+    text += "axis,load_n,trial,phase";
+    text += if is_timed { ",time_s" } else { "" };
+    text += if has_stations { ",load_station_mm,read_station_mm" } else { "" };
+    text += ",dx_um,dy_um,dz_um\n";
+    let mm = |station: Option<f64>| station.map_or(String::new(), |s| significant(s / MM, 6));
+    let mut clock = 0.0;
+    for (k, one) in plan.measurements.iter().enumerate() {
+        for repeat in 1..=one.loads.repeats {
+            for (load, phase) in steps(&one.loads) {
+                for wait in &one.loads.waits {
+                    text += &format!(
+                        "{},{},{}.{repeat},{phase}",
+                        one.loads.direction,
+                        significant(load, 6),
+                        k + 1
+                    );
+                    if is_timed {
+                        text += &format!(",{}", clock + wait);
+                    }
+                    if has_stations {
+                        text += &format!(",{},{}", mm(one.loads.load_station), mm(one.loads.read_station));
+                    }
+                    text += ",,,\n";
+                }
+                clock += one.loads.waits.last().copied().unwrap_or_default() + 30.0;
+            }
+        }
+    }
+    text
+}
+
+fn steps(plan: &LoadPlan) -> Vec<(f64, &'static str)> {
+    let mut steps: Vec<(f64, &'static str)> = plan.loads.iter().map(|load| (*load, "load")).collect();
+    if plan.unloading {
+        steps.extend(plan.loads.iter().rev().skip(1).map(|load| (*load, "unload")));
+    }
+    steps
+}

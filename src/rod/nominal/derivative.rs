@@ -1,0 +1,108 @@
+//! The rod whose numbers carry a derivative: formulas that take any [`Number`] differentiate themselves.
+
+use super::{NominalNumber, SAME_PLACE};
+use crate::dual::{Dual, Number};
+use crate::material::Material;
+use crate::rod::{BendFlexibility, Joint, LumpedMass, Pipe, Rod};
+use crate::section::{General, Rectangle, Round, Section};
+
+impl Rod {
+    /// This rod with the derivative of each of its numbers by one of them, all else equal: what [`Rod::with`] moves
+    /// along moves along, and so does what sits at the station that moves. `None` where the rod does not have this number.
+    ///
+    /// ```
+    /// use rodcal::prelude::*;
+    /// use rodcal::rod::NominalNumber;
+    ///
+    /// let rod = Rod::read("rods/5.toml".as_ref())?;
+    /// let mass = rod.derivative(&NominalNumber::LengthL2).expect("a rod has an L2").mass();
+    /// // kg per metre of pipe 2
+    /// assert_eq!((mass.re, mass.eps), (rod.mass(), rod.pipe2.mass_per_length()));
+    /// # Ok::<(), rodcal::Error>(())
+    /// ```
+    pub fn derivative(&self, number: &NominalNumber) -> Option<Rod<Dual>> {
+        let value = Dual::from(self.value_of(number)?).derivative();
+        let mut rod = self.lifted();
+        if let NominalNumber::Station(_) = number {
+            let is_here = |station: &Dual| (station.re - value.re).abs() <= SAME_PLACE;
+            let masses = rod.masses.iter_mut().map(|mass| &mut mass.station);
+            let all = masses.chain(rod.joints.iter_mut().map(|joint| &mut joint.station));
+            all.filter(|station| is_here(station)).for_each(|station| *station = value);
+            return Some(rod);
+        }
+        Some(rod.with(number, value))
+    }
+
+    /// The same rod in numbers of another kind.
+    pub fn lifted<T: Number>(&self) -> Rod<T> {
+        let of = |x: f64| T::from(x);
+        let joint = |joint: &Joint| Joint {
+            name: joint.name.clone(),
+            station: of(joint.station),
+            bending: of(joint.bending),
+            torsion: of(joint.torsion),
+        };
+        let mass = |mass: &LumpedMass| LumpedMass {
+            name: mass.name.clone(),
+            station: of(mass.station),
+            mass: of(mass.mass),
+        };
+        Rod {
+            name: self.name.clone(),
+            source: self.source.clone(),
+            l1: of(self.l1),
+            l2: of(self.l2),
+            gamma: of(self.gamma),
+            bend_radius: of(self.bend_radius),
+            bend_flexibility: match self.bend_flexibility {
+                BendFlexibility::Beam => BendFlexibility::Beam,
+                BendFlexibility::VonKarman => BendFlexibility::VonKarman,
+                BendFlexibility::AsmeB313 => BendFlexibility::AsmeB313,
+                BendFlexibility::Factor(k) => BendFlexibility::Factor(of(k)),
+            },
+            pipe1: self.pipe1.lifted(),
+            bend: self.bend.lifted(),
+            pipe2: self.pipe2.lifted(),
+            tip_mass: of(self.tip_mass),
+            masses: self.masses.iter().map(mass).collect(),
+            joints: self.joints.iter().map(joint).collect(),
+            linear_range: self.linear_range,
+            standard_uncertainty: self.standard_uncertainty,
+            warnings: self.warnings.clone(),
+        }
+    }
+}
+
+impl Pipe {
+    fn lifted<T: Number>(&self) -> Pipe<T> {
+        let (of, material) = (|x: f64| T::from(x), &self.material);
+        let section = match self.section {
+            Section::Round(round) => Section::Round(Round {
+                outer_diameter: of(round.outer_diameter),
+                inner_diameter: of(round.inner_diameter),
+            }),
+            Section::Rectangle(rectangle) => Section::Rectangle(Rectangle {
+                width: of(rectangle.width),
+                height: of(rectangle.height),
+                wall: rectangle.wall.map(of),
+            }),
+            Section::General(general) => Section::General(General {
+                area: of(general.area),
+                iy: of(general.iy),
+                iz: of(general.iz),
+                torsion_constant: of(general.torsion_constant),
+                shear_coefficient: of(general.shear_coefficient),
+            }),
+        };
+        let material = Material {
+            name: material.name.clone(),
+            youngs_modulus: of(material.youngs_modulus),
+            shear_modulus: of(material.shear_modulus),
+            density: of(material.density),
+            poisson_ratio: of(material.poisson_ratio),
+            shear_coefficient_factor: of(material.shear_coefficient_factor),
+            standard_uncertainty: material.standard_uncertainty,
+        };
+        Pipe { section, material }
+    }
+}

@@ -267,7 +267,9 @@ fn one_sided((low, high): (f64, f64)) -> (f64, f64) {
 
 /// Inner products of each candidate's columns, whitened and projected, with each other.
 fn grams(model: &Linearised<'_>, whitening: &Whitening) -> Vec<DMatrix<f64>> {
-    let squares = whitening.squares_of_steps(&model.sequences());
+    // along a course no step is a sum over the data behind it
+    let sequences = if whitening.is_correlated() { Vec::new() } else { model.sequences() };
+    let squares = whitening.squares_of_steps(&sequences);
     let basis = whitening.basis();
     let absorbed = (basis.ncols() > 0).then(|| model.table(&whitening.transposed(&basis)));
     let gram = |candidate: usize| match model.stored().square_of_step(candidate, &squares) {

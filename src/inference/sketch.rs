@@ -1,0 +1,117 @@
+//! Is what neighbours have in common an effect, or do their errors hang together?
+//!
+//! Errors that hang together look like anything that goes on for a while: a drift, a step, a curve over an angle that the
+//! poses follow. An effect, on the other hand, makes errors look as if they hung together. So both are tried: the best hypothesis of independent
+//! errors, and those beside the errors in common that are likeliest where nothing is known, and where the first has been taken out.
+//! They are compared by the probability of the recording,
+//!
+//! ```text
+//! ln p = ln p(W·y) + ln |W| − ½·ln |NᵀWᵀWN|       N the nuisance, W as in `correlated_noise.rs`
+//! ln p(r) = ln |W| − ½·ln |NᵀWᵀWN| − ½·ν·ln |M·W·r|²     restricted likelihood of what a hypothesis leaves, by which a and l are found
+//! ```
+//!
+//! (H. D. Patterson, R. Thompson, *Biometrika* 58 (1971) 545–554), less a price for a and l ([`WORTH`]).
+
+use nalgebra::DVector;
+
+use super::background::folded;
+use super::correlated_noise::CorrelatedNoise;
+use super::linearised::Linearised;
+use super::pruning::{infer, settled};
+use super::selection::{DiscrepancyModel, Pairs};
+use super::whitening::Whitening;
+use super::{Evidence, ForwardModel, Hypothesis};
+use crate::parallel::in_parallel;
+
+/// Shares a and lengths l, in places of the course, that are tried.
+const SHARES: [f64; 6] = [0.2, 0.35, 0.5, 0.7, 0.85, 1.0];
+const LENGTHS: [f64; 7] = [0.7, 1.4, 2.8, 5.5, 11.0, 22.0, 45.0];
+/// A length is at most this share of its course: what goes on for longer is no scatter.
+const LONGEST: f64 = 0.25;
+/// Ln of the odds from which on errors hang together.
+const WORTH: f64 = 3.0;
+/// Times that an answer is asked again with the errors that it leaves.
+const ROUNDS: usize = 2;
+/// Fewer data say nothing.
+const FEWEST: usize = 60;
+
+/// The best hypothesis and what it leaves: neither confirmed by held-out data nor compared with its rivals.
+#[derive(Debug, Clone)]
+pub struct Sketch {
+    /// The hypothesis.
+    pub hypothesis: Hypothesis,
+    /// What it leaves.
+    pub left: DVector<f64>,
+    /// The errors that neighbours have in common beside it.
+    pub correlated_noise: Option<CorrelatedNoise>,
+    /// Ln of the probability of all of it, but for a constant.
+    log_probability: f64,
+}
+
+/// Of a recording whose `neighbours` nobody knows.
+pub fn sketch(model: &dyn ForwardModel, evidence: &Evidence) -> Sketch {
+    let model = &Linearised::new(model);
+    let evidence =
+        &folded(&Evidence { stated_noise: None, correlated_noise: None, ..evidence.clone() }).evidence;
+    let (mut best, none) = beside(model, evidence, None);
+    if evidence.courses.is_empty() {
+        return best;
+    }
+    let mut tried = vec![None];
+    for start in [none, best.left.clone()] {
+        let mut left = start;
+        for _ in 0..ROUNDS {
+            let correlated_noise = likeliest(evidence, &left);
+            if tried.contains(&correlated_noise) {
+                break;
+            }
+            tried.push(correlated_noise);
+            let (own, _) = beside(model, evidence, correlated_noise);
+            left.copy_from(&own.left);
+            if own.log_probability - WORTH > best.log_probability {
+                best = Sketch { log_probability: own.log_probability - WORTH, ..own };
+            }
+        }
+    }
+    best
+}
+
+/// With these errors in common; and what is left where there is no effect.
+fn beside(
+    model: &Linearised<'_>,
+    evidence: &Evidence,
+    correlated_noise: Option<CorrelatedNoise>,
+) -> (Sketch, DVector<f64>) {
+    let evidence = &Evidence { correlated_noise, ..evidence.clone() };
+    let (settled, known) = settled(model, evidence);
+    let model = &model.in_parts(&settled, &settled.fold);
+    let (search, hypothesis, left_over) = infer(model, &settled, Pairs::Screened, known);
+    let predicted = search.predicted(&hypothesis, &settled, &model.response(&hypothesis.terms));
+    let whole = match &left_over {
+        Some(DiscrepancyModel::Curve(longer)) => longer.log_probability.max(hypothesis.log_probability),
+        _ => hypothesis.log_probability,
+    };
+    let log_probability = whole + search.whitening.log_jacobian();
+    let none = &settled.residual - &settled.background * search.fit(&[]).background;
+    (Sketch { left: &settled.residual - predicted, hypothesis, correlated_noise, log_probability }, none)
+}
+
+/// The likeliest errors in common of what is left; `None` where independent ones are as likely.
+fn likeliest(evidence: &Evidence, left: &DVector<f64>) -> Option<CorrelatedNoise> {
+    let places = || evidence.courses.iter().flatten().map(|(_, place)| *place);
+    if places().count() < FEWEST {
+        return None;
+    }
+    let extent = places().fold(f64::NEG_INFINITY, f64::max) - places().fold(f64::INFINITY, f64::min);
+    let lengths = LENGTHS.into_iter().filter(|length| *length <= LONGEST * extent);
+    let all: Vec<CorrelatedNoise> =
+        lengths.flat_map(|length| SHARES.map(|share| CorrelatedNoise { share, length })).collect();
+    let likelihood = |correlated_noise: Option<CorrelatedNoise>| {
+        let whitening = Whitening::new(&Evidence { correlated_noise, ..evidence.clone() }, left);
+        let square = whitening.apply(left).norm_squared().max(f64::MIN_POSITIVE);
+        whitening.log_jacobian() - 0.5 * whitening.degrees_of_freedom as f64 * square.ln()
+    };
+    let tried = in_parallel(all.len(), |k| (likelihood(Some(all[k])), all[k]));
+    let best = tried.into_iter().max_by(|a, b| a.0.total_cmp(&b.0))?;
+    (best.0 > likelihood(None) + WORTH).then_some(best.1)
+}

@@ -25,9 +25,9 @@ use crate::parallel::in_parallel;
 
 /// Shares a and lengths l, in places of the course, that are tried.
 const SHARES: [f64; 6] = [0.2, 0.35, 0.5, 0.7, 0.85, 1.0];
-const LENGTHS: [f64; 7] = [0.7, 1.4, 2.8, 5.5, 11.0, 22.0, 45.0];
-/// A length is at most this share of its course: what goes on for longer is no scatter.
-const LONGEST: f64 = 0.25;
+const LENGTHS: [f64; 5] = [0.7, 1.4, 2.8, 5.5, 11.0];
+/// A length is at most this share of its course. What goes on for longer, or over more than some ten poses, is no scatter.
+const LONGEST: f64 = 0.15;
 /// Ln of the odds from which on errors hang together.
 const WORTH: f64 = 3.0;
 /// Times that an answer is asked again with the errors that it leaves.
@@ -114,4 +114,76 @@ fn likeliest(evidence: &Evidence, left: &DVector<f64>) -> Option<CorrelatedNoise
     let tried = in_parallel(all.len(), |k| (likelihood(Some(all[k])), all[k]));
     let best = tried.into_iter().max_by(|a, b| a.0.total_cmp(&b.0))?;
     (best.0 > likelihood(None) + WORTH).then_some(best.1)
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::DMatrix;
+
+    use super::*;
+    use crate::inference::tests::{Columns, independent};
+    use crate::statistics::Random;
+
+    const COUNT: usize = 120;
+
+    /// A drift, moves after each tenth datum, and smooth curves.
+    fn model() -> Columns {
+        let along = |row: usize| row as f64 / COUNT as f64;
+        let mut model = Columns::new(COUNT);
+        model.add("drift", "", DMatrix::from_fn(COUNT, 1, |row, _| 2.0 * along(row) - 1.0), false);
+        for place in (10..COUNT).step_by(10) {
+            let step = DMatrix::from_fn(COUNT, 1, |row, _| f64::from(u8::from(row >= place)));
+            model.add("move", &format!("{place}"), step, false);
+        }
+        let wave = |row: usize, k: usize| (std::f64::consts::PI * (k + 1) as f64 * along(row)).cos();
+        model.add("curve", "", DMatrix::from_fn(COUNT, 6, wave), true);
+        model
+    }
+
+    /// Errors of which 0.7 of the variance goes on for 5 data, with a drift besides; a course, or none.
+    fn evidence(seed: u64, drift: f64, is_course: bool) -> Evidence {
+        let mut random = Random::seeded(seed, 4);
+        let (share, carried) = (0.7_f64, (-0.2_f64).exp());
+        let mut slow = random.normal();
+        let own = |row: usize| {
+            slow = carried * slow + (1.0 - carried * carried).sqrt() * random.normal();
+            let error = share.sqrt() * slow + (1.0 - share).sqrt() * random.normal();
+            error + drift * (2.0 * row as f64 / COUNT as f64 - 1.0)
+        };
+        let residual = (0..COUNT).map(own).collect();
+        let nuisance = DMatrix::from_element(COUNT, 1, 1.0);
+        let place = |row: usize| is_course.then_some((0, row as f64));
+        let courses = (0..COUNT).map(place).collect();
+        let courses = if is_course { courses } else { Vec::new() };
+        Evidence { nuisance, courses, ..independent(residual) }
+    }
+
+    #[test]
+    fn errors_in_common_are_no_effect_and_hide_none_that_is_larger() {
+        let model = model();
+        let named = |drift: f64, is_course: bool| -> usize {
+            let of = |seed: u64| {
+                let found = sketch(&model, &evidence(seed, drift, is_course));
+                assert!(is_course || found.correlated_noise.is_none());
+                usize::from(!found.hypothesis.terms.is_empty())
+            };
+            (0..40).map(of).sum()
+        };
+        // taken for independent they are moves and drifts
+        assert!(named(0.0, false) >= 6, "{}", named(0.0, false));
+        assert!(named(0.0, true) <= 2, "{}", named(0.0, true));
+        assert!(named(4.0, true) >= 36, "{}", named(4.0, true));
+    }
+
+    #[test]
+    fn share_and_length_are_found_and_independent_errors_have_none() {
+        for seed in 0..10 {
+            let evidence = evidence(seed, 0.0, true);
+            let found = likeliest(&evidence, &evidence.residual).unwrap();
+            assert!(found.share >= 0.35 && (1.4..=11.0).contains(&found.length), "{seed} {found:?}");
+            let mut random = Random::seeded(seed, 5);
+            let independent = DVector::from_fn(COUNT, |_, _| random.normal());
+            assert_eq!(likeliest(&evidence, &independent), None, "{seed}");
+        }
+    }
 }

@@ -132,13 +132,12 @@ impl Evidence {
         }
     }
 
-    /// True where all data count alike and none share an error.
-    pub fn is_plain(&self) -> bool {
+    /// True where all data count alike and none share an offset.
+    pub fn is_even(&self) -> bool {
         let mut shared = self.shared.clone();
         shared.sort_unstable();
         shared.dedup();
-        let is_alone = shared.len() == self.residual.len() && self.correlated_noise.is_none();
-        is_alone && self.weight.iter().all(|weight| *weight == 1.0)
+        shared.len() == self.residual.len() && self.weight.iter().all(|weight| *weight == 1.0)
     }
 
     /// The covariate of a variable, where the recording has it.

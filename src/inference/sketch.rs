@@ -18,9 +18,11 @@ use super::background::folded;
 use super::correlated_noise::CorrelatedNoise;
 use super::linearised::Linearised;
 use super::pruning::{infer, settled};
+use super::score::Moments;
 use super::selection::{DiscrepancyModel, Pairs};
 use super::whitening::Whitening;
 use super::{Evidence, ForwardModel, Hypothesis};
+use crate::linalg::transposed_product;
 use crate::parallel::in_parallel;
 
 /// Shares a and lengths l, in places of the course, that are tried.
@@ -32,6 +34,8 @@ const LONGEST: f64 = 0.15;
 const WORTH: f64 = 3.0;
 /// Times that an answer is asked again with the errors that it leaves.
 const ROUNDS: usize = 2;
+/// Ln of the odds by which a recording is too much for errors in common alone.
+const FAR: f64 = 100.0;
 /// Fewer data say nothing.
 const FEWEST: usize = 60;
 
@@ -58,10 +62,16 @@ pub fn sketch(model: &dyn ForwardModel, evidence: &Evidence) -> Sketch {
         return best;
     }
     let mut tried = vec![None];
-    for start in [none, best.left.clone()] {
+    let white = best.log_probability;
+    for (start, is_none) in [(none, true), (best.left.clone(), false)] {
         let mut left = start;
         for _ in 0..ROUNDS {
             let correlated_noise = likeliest(evidence, &left);
+            // what is far too much for errors in common says nothing of them
+            let is_effect = |noise: CorrelatedNoise| log_probability_of_none(evidence, noise) < white - FAR;
+            if is_none && correlated_noise.is_some_and(is_effect) {
+                break;
+            }
             if tried.contains(&correlated_noise) {
                 break;
             }
@@ -94,6 +104,24 @@ fn beside(
     let log_probability = whole + search.whitening.log_jacobian();
     let none = &settled.residual - &settled.background * search.fit(&[]).background;
     (Sketch { left: &settled.residual - predicted, hypothesis, correlated_noise, log_probability }, none)
+}
+
+/// Ln of the probability of a recording without any effect, as [`Sketch`] has it.
+fn log_probability_of_none(evidence: &Evidence, noise: CorrelatedNoise) -> f64 {
+    let whitening =
+        Whitening::new(&Evidence { correlated_noise: Some(noise), ..evidence.clone() }, &evidence.residual);
+    let (r, columns) = (whitening.apply(&evidence.residual), whitening.apply_columns(&evidence.background));
+    let moments = Moments {
+        square: r.norm_squared(),
+        gram: transposed_product(&columns, &columns),
+        product: columns.tr_mul(&r),
+        bounds: vec![(f64::NEG_INFINITY, f64::INFINITY); columns.ncols()],
+        effects: Vec::new(),
+        degrees_of_freedom: whitening.degrees_of_freedom,
+        floor: evidence.resolution / 12.0f64.sqrt(),
+        stated: None,
+    };
+    moments.score().log_evidence + whitening.log_jacobian()
 }
 
 /// The likeliest errors in common of what is left; `None` where independent ones are as likely.

@@ -12,6 +12,7 @@
 mod background;
 mod columns;
 mod compared;
+mod correlated_noise;
 mod correlation;
 mod description;
 mod diagnose;
@@ -33,6 +34,7 @@ mod locate;
 mod location;
 mod misread;
 mod moments;
+
 mod nominal;
 mod pairs;
 mod part_products;
@@ -48,6 +50,7 @@ mod search;
 mod selection;
 mod sessions;
 mod shared_ratio;
+mod sketch;
 mod stored_column;
 mod untested;
 mod variable;
@@ -63,8 +66,9 @@ pub(crate) use self::{
     selection::{DiscrepancyModel, Pairs},
 };
 pub use compared::log_odds;
+pub use correlated_noise::CorrelatedNoise;
 pub use description::Description;
-pub use diagnose::{diagnose, sketch};
+pub use diagnose::diagnose;
 pub use diagnosis::{Diagnosed, Diagnosis, Discrepancy, ShownBy};
 pub(crate) use effect::at;
 pub use effect::{Effect, Kind, Reported, UNKNOWN, WrittenTo};
@@ -85,6 +89,7 @@ pub use ranking::{Rank, Ranked, ranking};
 pub use scatter::{NoiseTest, Suspect};
 pub use selection::NAMED;
 pub use sessions::LeftOutSession;
+pub use sketch::{Sketch, sketch};
 pub use stored_column::{DataParts, Pattern, StoredColumn, products};
 pub use untested::{Absorbed, NotTestable};
 pub use variable::{JointVariable, Variable};

@@ -174,7 +174,7 @@ impl Columns {
     pub fn square_of_step(&self, candidate: usize, squares: &[Vec<f64>]) -> Option<f64> {
         match *self.own(candidate) {
             [Column::Step { sequence, from, size }] => {
-                Some(size * size * squares[sequence].get(from).copied().unwrap_or(0.0))
+                Some(size * size * squares.get(sequence)?.get(from).copied().unwrap_or(0.0))
             }
             _ => None,
         }

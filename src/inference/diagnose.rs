@@ -47,17 +47,6 @@ pub fn diagnose(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
     diagnosis
 }
 
-/// The best hypothesis and what it leaves: neither confirmed by held-out data nor compared with its rivals.
-pub fn sketch(model: &dyn ForwardModel, evidence: &Evidence) -> (Hypothesis, DVector<f64>) {
-    let model = &Linearised::new(model);
-    let folded = background::folded(&Evidence { stated_noise: None, ..evidence.clone() });
-    let (settled, known) = settled(model, &folded.evidence);
-    let model = &model.in_parts(&settled, &settled.fold);
-    let (search, hypothesis, _) = infer(model, &settled, Pairs::Screened, known);
-    let predicted = search.predicted(&hypothesis, &settled, &model.response(&hypothesis.terms));
-    (hypothesis, &settled.residual - predicted)
-}
-
 fn diagnose_with(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
     let model = &Linearised::new(model);
     let folded = background::folded(evidence);

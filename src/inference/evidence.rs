@@ -2,6 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::correlated_noise::CorrelatedNoise;
 use super::{NominalParameter, Variable};
 
 /// A recording as the engine sees it, n data.
@@ -39,6 +40,10 @@ pub struct Evidence {
     pub shared_ratio: Option<f64>,
     /// Correlation of neighbours that share an error, beyond that; `None` where it is to be found out.
     pub correlation: Option<f64>,
+    /// Course of each datum, along which neighbours may have errors in common, and its place there; nothing where none do.
+    pub courses: Vec<Option<(usize, f64)>>,
+    /// What they have in common; `None` where that is nothing.
+    pub correlated_noise: Option<CorrelatedNoise>,
     /// What a datum says, over what it would say of a normal distribution: (ν + 1)/(ν + 3) of Student's t.
     pub information: f64,
     /// Repeats: data of the same number were recorded under the same conditions.
@@ -80,6 +85,8 @@ impl Evidence {
             weight: vec![1.0; count],
             shared_ratio: None,
             correlation: None,
+            courses: Vec::new(),
+            correlated_noise: None,
             information: 1.0,
             replicate_group: (0..count).collect(),
             shared: (0..count).collect(),
@@ -109,6 +116,11 @@ impl Evidence {
             weight: rows.iter().map(|&row| self.weight[row]).collect(),
             shared_ratio: self.shared_ratio,
             correlation: self.correlation,
+            courses: match self.courses.is_empty() {
+                true => Vec::new(),
+                false => rows.iter().map(|&row| self.courses[row]).collect(),
+            },
+            correlated_noise: self.correlated_noise,
             information: self.information,
             replicate_group: pick(&self.replicate_group),
             shared: pick(&self.shared),
@@ -120,8 +132,8 @@ impl Evidence {
         }
     }
 
-    /// True where all data count alike and none share an error.
-    pub fn is_plain(&self) -> bool {
+    /// True where all data count alike and none share an offset.
+    pub fn is_even(&self) -> bool {
         let mut shared = self.shared.clone();
         shared.sort_unstable();
         shared.dedup();

@@ -22,7 +22,8 @@ impl Search<'_> {
     fn fit_anew(&self, terms: &[Term]) -> Hypothesis {
         let background = self.background.0.ncols();
         let mut terms = terms.to_vec();
-        let mut scored = self.moments(&terms).score();
+        let mut moments = self.moments(&terms);
+        let mut scored = moments.score();
         let (mut returns, mut last, mut least) = (0, DVector::zeros(0), f64::INFINITY);
         for _ in 0..STEPS {
             let before = flat(&terms);
@@ -45,7 +46,8 @@ impl Search<'_> {
                 set_flat(&mut terms, &halfway);
             }
             (last, least) = (moved, scored.log_evidence);
-            scored = self.moments(&terms).score();
+            moments = self.moments(&terms);
+            scored = moments.score();
         }
         // where it has not arrived, of two views the one that claims less
         let log_evidence = scored.log_evidence.min(least);
@@ -54,7 +56,8 @@ impl Search<'_> {
             prior = f64::NEG_INFINITY;
         }
         let sizes = DMatrix::from_diagonal(&self.sizes(&terms));
-        let own = scored.covariance.view((background, background), (sizes.nrows(), sizes.ncols()));
+        let covariance = moments.covariance(&scored, &self.alike(&terms));
+        let own = covariance.view((background, background), (sizes.nrows(), sizes.ncols()));
         Hypothesis {
             log_probability: log_evidence + prior,
             sigma: scored.sigma,
@@ -64,6 +67,15 @@ impl Search<'_> {
             determined: scored.determined,
             terms,
         }
+    }
+
+    /// Of each term, how many numbers of one unit follow one another.
+    fn alike(&self, terms: &[Term]) -> Vec<Vec<usize>> {
+        let of = |term: &Term| {
+            let parameters = &self.model.candidates()[term.candidate].parameters;
+            parameters.chunk_by(|a, b| a.unit == b.unit).map(<[_]>::len).collect()
+        };
+        terms.iter().map(of).collect()
     }
 
     /// Values less neutral values, in sizes.

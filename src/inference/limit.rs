@@ -32,6 +32,8 @@ pub enum Limit {
     /// A clamp or placement that scatters far more than the others: its name, its scatter of a coordinate and that of
     /// the others in the middle, m.
     NoisyGroup(String, f64, f64),
+    /// Poses that follow one another have errors in common: so much of the variance, over so many poses.
+    CorrelatedPoses(f64, f64),
     /// The poses are too few to hold any out.
     NoFoldsOfPoses,
 }
@@ -96,6 +98,15 @@ impl fmt::Display for Limit {
                 significant(own / UM, 3),
                 significant(own / others, 2),
                 significant(others / UM, 3)
+            ),
+            Limit::CorrelatedPoses(share, length) => write!(
+                f,
+                "Poses that follow one another have errors in common: {} % of the variance of what is left, over about {} \
+                 poses. No effect of the library explains them. The uncertainties take them into account; an effect \
+                 that changes as slowly is found only where it is larger. Measure the first poses again at the end, or in \
+                 another order.",
+                significant(100.0 * share, 2),
+                significant(*length, 2),
             ),
             Limit::NoFoldsOfPoses => f.write_str(
                 "The poses are too few to hold any out: no finding is confirmed by \

@@ -75,6 +75,11 @@ impl<'a> Linearised<'a> {
         if self.rows.is_some() { None } else { self.model.step(candidate) }
     }
 
+    /// How many data two candidates are apart that are steps of one sequence; a model that stores its own columns has none.
+    pub(super) fn steps_apart(&self, one: usize, other: usize) -> Option<usize> {
+        if self.model.is_linear() { None } else { self.stored().steps_apart(one, other) }
+    }
+
     /// Inner products of all candidates' columns at neutral values with some vectors.
     pub(super) fn products(&self, vectors: DMatrix<f64>) -> Products<'_> {
         self.stored().products(vectors, self.rows)

@@ -8,6 +8,12 @@
 //! ```
 //!
 //! where NᵀC, CᵀC, BᵀC and rᵀC are sums over the parts that T holds. No column is copied for a fold.
+//!
+//! Where neighbours have errors in common the parts are not apart, and each search whitens its own data:
+//!
+//! ```text
+//! (W·v)ᵀ(W·C) = (Wᵀ·W·v)ᵀC      for few vectors v, and CᵀWᵀWC candidate by candidate
+//! ```
 
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -17,6 +23,7 @@ use nalgebra::{DMatrix, DVector};
 use super::stored_column::{DataParts, StoredColumn, dense, fit, grams, products};
 use super::whitening::Whitening;
 use super::{Evidence, ForwardModel};
+use crate::linalg::transposed_product;
 use crate::parallel::in_parallel;
 
 /// Numbers of the products between candidates that are kept: 64 MB.
@@ -36,6 +43,8 @@ pub(super) struct PartProducts<'a> {
     beside: Vec<DMatrix<f64>>,
     /// How many columns N and B have.
     counts: (usize, usize),
+    /// The data themselves, N, B and r, where neighbours have errors in common: nothing is summed over parts then.
+    correlated: Option<DMatrix<f64>>,
     between: Mutex<Between>,
 }
 
@@ -55,13 +64,24 @@ pub(super) struct Training<'a> {
     held: Vec<usize>,
     /// QᵀC.
     absorbed: DMatrix<f64>,
+    /// Where neighbours have errors in common.
+    own: Option<Whitened>,
+}
+
+/// The data of a search whose errors are not independent.
+struct Whitened {
+    whitening: Whitening,
+    /// Their numbers among all data.
+    rows: Vec<usize>,
+    /// NᵀWᵀWC, BᵀWᵀWC and rᵀWᵀWC, one below the other.
+    beside: DMatrix<f64>,
 }
 
 impl<'a> PartProducts<'a> {
     /// By the number of each datum's part in the evidence. `None` for a model that is not linear, and where data are weighed or
     /// share errors.
     pub fn new(model: &'a dyn ForwardModel, evidence: &Evidence, part: &[usize]) -> Option<PartProducts<'a>> {
-        if !model.is_linear() || !evidence.is_plain() {
+        if !model.is_linear() || !evidence.is_even() {
             return None;
         }
         let mut names = part.to_vec();
@@ -82,10 +102,26 @@ impl<'a> PartProducts<'a> {
         beside.columns_mut(0, counts.0).copy_from(&evidence.nuisance);
         beside.columns_mut(counts.0, counts.1).copy_from(&evidence.background);
         beside.set_column(counts.0 + counts.1, &evidence.residual);
+        if evidence.correlated_noise.is_some() {
+            let (grams, between, correlated) = (Vec::new(), Mutex::default(), Some(beside));
+            let beside = Vec::new();
+            return Some(PartProducts {
+                grams,
+                beside,
+                columns,
+                first,
+                names,
+                parts,
+                counts,
+                correlated,
+                between,
+            });
+        }
         let of_candidate = |candidate: usize| grams(&columns[first[candidate]..first[candidate + 1]], &parts);
         let grams = in_parallel(first.len() - 1, of_candidate);
         let beside = products(&columns, &beside, &parts);
-        Some(PartProducts { grams, beside, columns, first, names, parts, counts, between: Mutex::default() })
+        let (correlated, between) = (None, Mutex::default());
+        Some(PartProducts { grams, beside, columns, first, names, parts, counts, correlated, between })
     }
 
     /// Products of a candidate's columns with all, of each part.
@@ -112,8 +148,32 @@ impl<'a> PartProducts<'a> {
         found
     }
 
+    /// The data of these parts, ascending.
+    fn rows(&self, held: &[usize]) -> Vec<usize> {
+        (0..self.parts.count()).filter(|&datum| held.contains(&self.parts.part_of(datum))).collect()
+    }
+
     fn of(&self, candidate: usize) -> &[StoredColumn<'a>] {
         &self.columns[self.first[candidate]..self.first[candidate + 1]]
+    }
+}
+
+impl Whitened {
+    /// Columns of these data, whitened.
+    fn whitened(&self, columns: &[StoredColumn<'_>], count: usize) -> DMatrix<f64> {
+        self.whitening.whitened_columns(&dense(columns, count).select_rows(&self.rows))
+    }
+
+    /// Products of whitened vectors (rows) with all columns.
+    fn products(&self, all: &PartProducts<'_>, whitened: &DMatrix<f64>) -> DMatrix<f64> {
+        let count = all.parts.count();
+        let mut vectors = DMatrix::zeros(count, whitened.ncols());
+        let back = self.whitening.transposed(whitened);
+        for (own, &row) in back.row_iter().zip(&self.rows) {
+            vectors.set_row(row, &own);
+        }
+        let found = products(&all.columns, &vectors, &DataParts::whole(count)).pop();
+        found.unwrap_or_else(|| DMatrix::zeros(whitened.ncols(), all.columns.len()))
     }
 }
 
@@ -121,14 +181,30 @@ impl<'a> Training<'a> {
     /// Without one part, or with all of them; `whitening` is that of what is left.
     pub fn new(all: &Arc<PartProducts<'a>>, left_out: Option<usize>, whitening: &Whitening) -> Training<'a> {
         let held: Vec<usize> = (0..all.names.len()).filter(|&k| Some(all.names[k]) != left_out).collect();
+        if let Some(data) = &all.correlated {
+            let rows = all.rows(&held);
+            let whitened = whitening.whitened_columns(&data.select_rows(&rows));
+            let own = Whitened { whitening: whitening.clone(), beside: DMatrix::zeros(0, 0), rows };
+            let beside = own.products(all, &whitened);
+            let absorbed = own.products(all, &whitening.basis());
+            return Training { all: Arc::clone(all), held, absorbed, own: Some(Whitened { beside, ..own }) };
+        }
         let mut along = DMatrix::zeros(all.counts.0, all.columns.len());
         held.iter().for_each(|&part| along += all.beside[part].rows(0, all.counts.0));
         let absorbed = whitening.coefficients().tr_mul(&along);
-        Training { all: Arc::clone(all), held, absorbed }
+        Training { all: Arc::clone(all), held, absorbed, own: None }
     }
 
     /// CᵀMC of each candidate.
     pub fn grams(&self) -> Vec<DMatrix<f64>> {
+        if let Some(data) = &self.own {
+            let gram = |candidate: usize| {
+                let absorbed = self.own(candidate);
+                let whitened = data.whitened(self.all.of(candidate), self.all.parts.count());
+                transposed_product(&whitened, &whitened) - absorbed.tr_mul(&absorbed)
+            };
+            return in_parallel(self.all.first.len() - 1, gram);
+        }
         let gram = |candidate: usize| {
             let own = self.own(candidate);
             let mut sum = -own.tr_mul(&own);
@@ -154,14 +230,21 @@ impl<'a> Training<'a> {
 
     fn beside(&self, first: usize, count: usize, along: &DMatrix<f64>) -> Vec<DMatrix<f64>> {
         let mut sum = -along.tr_mul(&self.absorbed);
+        if let Some(data) = &self.own {
+            return self.apart(&(sum + data.beside.rows(first, count)));
+        }
         self.held.iter().for_each(|&part| sum += self.all.beside[part].rows(first, count));
         self.apart(&sum)
     }
 
     /// CₑᵀMC of a candidate e with each candidate.
     pub fn between(&self, candidate: usize) -> Vec<DMatrix<f64>> {
-        let between = self.all.between(candidate);
         let mut sum = -self.own(candidate).tr_mul(&self.absorbed);
+        if let Some(data) = &self.own {
+            let whitened = data.whitened(self.all.of(candidate), self.all.parts.count());
+            return self.apart(&(sum + data.products(&self.all, &whitened)));
+        }
+        let between = self.all.between(candidate);
         self.held.iter().for_each(|&part| sum += &between[part]);
         self.apart(&sum)
     }

@@ -20,7 +20,7 @@ mod tests;
 use nalgebra::{DMatrix, DVector};
 
 use crate::linalg::{positive_definite_inverse, transposed_product};
-use crate::statistics::ln_normal_mass;
+use crate::statistics::{ln_normal_mass, student_t_quantile};
 
 /// Least noise variance relative to that of the residual.
 const LEAST: f64 = 1e-12;
@@ -79,6 +79,11 @@ pub struct ColumnBlock<'a> {
     pub bounds: Vec<(f64, f64)>,
 }
 
+/// Parameters of an effect that the data leave open, from which on their prior's size counts for an interval.
+const UNDETERMINED: f64 = 0.05;
+/// 97.5 % quantile of the normal distribution.
+const NORMAL: f64 = 1.959964;
+
 /// What a fit of a hypothesis comes to.
 #[derive(Debug, Clone)]
 pub struct Score {
@@ -92,6 +97,8 @@ pub struct Score {
     pub covariance: DMatrix<f64>,
     /// How many parameters the data determine, Σλ/(λ + σ²).
     pub determined: f64,
+    /// κ of every effect.
+    pub scales: Vec<f64>,
 }
 
 impl Moments {
@@ -163,7 +170,39 @@ impl Moments {
             determined: solved.determined(&sizes, s),
             covariance: solved.inverse * s,
             estimate: solved.solution,
+            scales,
         }
+    }
+
+    /// Posterior covariance of the parameters of a score, κ uncertain as well; `alike` are, of each effect, how many numbers of one kind
+    /// (lengths, angles) follow one another.
+    ///
+    /// In a direction that the data leave open a number is known by the size of the others of its kind alone, with what the data
+    /// determine of each, dₖ = 1 − cov xₖ/κ²:
+    ///
+    /// ```text
+    /// κ² = Σ dₖ·xₖ²/γ,   γ = Σ dₖ      and a Student's t distribution of γ degrees of freedom, by t/1.96 wider
+    /// ```
+    pub fn covariance(&self, score: &Score, alike: &[Vec<usize>]) -> DMatrix<f64> {
+        let (square, before) = (score.sigma.powi(2), self.sizes(&score.scales));
+        let mut sizes = before.clone();
+        let mut first = self.gram.ncols() - self.effects.iter().sum::<usize>();
+        for &count in alike.iter().flatten() {
+            let own = first..first + count;
+            first += count;
+            let seen = |k: usize| (1.0 - score.covariance[(k, k)] / before[k].powi(2)).max(0.0);
+            let known: f64 = own.clone().map(seen).sum();
+            if count > 1 && known < count as f64 - UNDETERMINED {
+                let squares: f64 = own.clone().map(|k| seen(k) * score.estimate[k].powi(2)).sum();
+                let size = (squares / known.max(UNDETERMINED)).sqrt();
+                let wider = student_t_quantile(0.975, known.max(1.0)).unwrap_or(NORMAL) / NORMAL;
+                sizes[own].iter_mut().for_each(|own| *own = own.max(size) * wider);
+            }
+        }
+        if sizes == before {
+            return score.covariance.clone();
+        }
+        Ridge::new(&self.gram, &self.product, |k| square / sizes[k].powi(2)).inverse * square
     }
 
     /// What the stated noise counts, and what it adds to the squares.

@@ -25,6 +25,9 @@ const MISTAKEN: f64 = 10.0;
 const SCORED: usize = 6;
 /// Steps of one sequence are so many data apart at least.
 const NO_STEP: usize = 3;
+/// Answers that are remembered; a hypothesis of a dozen effects has some 100 kB.
+const REMEMBERED: usize = 256;
+
 /// Looks for the most probable hypothesis.
 pub struct Search<'a> {
     pub(super) model: &'a Linearised<'a>,
@@ -65,10 +68,11 @@ impl<'a> Search<'a> {
         let training = model.training(&whitening);
         let (grams, beside_background, kept) = match &training {
             Some(training) => {
+                let along =
+                    |columns: &DMatrix<f64>| whitening.along_basis(&whitening.whitened_columns(columns));
                 let of_residual = DMatrix::from_columns(std::slice::from_ref(&evidence.residual));
-                let of_residual =
-                    training.beside_residual(&whitening.along_basis(&of_residual).column(0).into_owned());
-                let of_background = training.beside_background(&whitening.along_basis(&evidence.background));
+                let of_residual = training.beside_residual(&along(&of_residual).column(0).into_owned());
+                let of_background = training.beside_background(&along(&evidence.background));
                 (training.grams(), None, Some(GramCache::of_products(of_residual, of_background)))
             }
             None => {
@@ -156,7 +160,7 @@ impl<'a> Search<'a> {
     /// those data are off.
     fn excludes(&self, term: &Term, index: usize) -> bool {
         let (old, new) = (&self.model.candidates()[term.candidate], &self.model.candidates()[index]);
-        let are_near = || self.model.stored().steps_apart(term.candidate, index).is_some_and(|n| n < NO_STEP);
+        let are_near = || self.model.steps_apart(term.candidate, index).is_some_and(|n| n < NO_STEP);
         term.candidate == index
             || (old.is_alternative && new.is_alternative && old.effect == new.effect)
             || are_near()
@@ -267,7 +271,9 @@ fn one_sided((low, high): (f64, f64)) -> (f64, f64) {
 
 /// Inner products of each candidate's columns, whitened and projected, with each other.
 fn grams(model: &Linearised<'_>, whitening: &Whitening) -> Vec<DMatrix<f64>> {
-    let squares = whitening.squares_of_steps(&model.sequences());
+    // along a course no step is a sum over the data behind it
+    let sequences = if whitening.is_correlated() { Vec::new() } else { model.sequences() };
+    let squares = whitening.squares_of_steps(&sequences);
     let basis = whitening.basis();
     let absorbed = (basis.ncols() > 0).then(|| model.table(&whitening.transposed(&basis)));
     let gram = |candidate: usize| match model.stored().square_of_step(candidate, &squares) {
@@ -287,7 +293,11 @@ pub(super) fn remembered<T: Clone>(memory: &Memory<T>, terms: &[Term], find: imp
     let known = memory.lock().unwrap_or_else(PoisonError::into_inner).get(&key).cloned();
     known.unwrap_or_else(|| {
         let found = find();
-        memory.lock().unwrap_or_else(PoisonError::into_inner).insert(key, found.clone());
+        let mut known = memory.lock().unwrap_or_else(PoisonError::into_inner);
+        if known.len() >= REMEMBERED {
+            known.clear();
+        }
+        known.insert(key, found.clone());
         found
     })
 }

@@ -14,7 +14,7 @@ const AS_WELL: (f64, f64) = (20.0, 1.01);
 /// Standard deviations of what more degrees of freedom take by chance that count as chance.
 const CHANCE: f64 = 3.0;
 /// Most effects in one hypothesis.
-const MOST: usize = 8;
+const MOST: usize = 10;
 /// Of how many candidates, the likeliest by their columns at neutral values, the values are fitted.
 const REFITTED: usize = 6;
 /// And how many of them may be of one effect, of the forms of a law with as many parameters.

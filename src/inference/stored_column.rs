@@ -79,6 +79,11 @@ impl DataParts {
         self.part.len()
     }
 
+    /// The part of a datum.
+    pub(super) fn part_of(&self, datum: usize) -> usize {
+        self.part[datum]
+    }
+
     /// True where the data of every block are in one part.
     fn holds_blocks(&self, block: usize, count: usize) -> bool {
         self.part[..count].chunks(block).all(|own| own.iter().all(|part| *part == own[0]))

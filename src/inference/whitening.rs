@@ -10,13 +10,15 @@
 //!
 //! (A·v)₁ = v₁   (A·v)ₜ = (vₜ − φ·vₜ₋₁)/√(1 − φ²)   and a = A·1,
 //!
-//! (1 − (1 − 1/√(1 + ρ·|a|²))/|a|² · a·aᵀ)·A takes its place. What is left is projected on the complement of the whitened nuisance columns, M = 1 − Q·Qᵀ.
+//! (1 − (1 − 1/√(1 + ρ·|a|²))/|a|² · a·aᵀ)·A takes its place. Where neighbours along a course have errors in common,
+//! [`super::correlated_noise`] makes them independent. What is left is projected on the complement of the whitened nuisance columns, M = 1 − Q·Qᵀ.
 
 use std::collections::{BTreeMap, HashMap};
 
 use nalgebra::{DMatrix, DVector};
 
 use super::Evidence;
+use super::correlated_noise::Filter;
 use super::correlation::{correlation, length};
 use super::shared_ratio::shared_ratio;
 use crate::linalg::{least_squares, thin_svd, transposed_product};
@@ -34,6 +36,10 @@ pub struct Whitening {
     groups: Vec<(Vec<usize>, f64)>,
     /// φ.
     pub correlation: f64,
+    /// Of errors that neighbours along a course have in common.
+    correlated_noise: Option<Filter>,
+    /// Ln of the volume that the whitened nuisance columns span.
+    log_volume: f64,
     /// Orthonormal basis of the whitened nuisance columns.
     basis: Vec<DVector<f64>>,
     /// What each whitened nuisance column counts in each vector of the basis.
@@ -73,6 +79,8 @@ impl Whitening {
             roots,
             groups,
             correlation,
+            correlated_noise: evidence.correlated_noise.map(|noise| Filter::new(noise, &evidence.courses)),
+            log_volume: 0.0,
             basis: Vec::new(),
             coefficients: Vec::new(),
             nuisance: evidence.nuisance.ncols(),
@@ -96,6 +104,7 @@ impl Whitening {
             if length > DEPENDENT * before && length > 0.0 {
                 whitening.basis.push(own / length);
                 whitening.coefficients.push(coefficients / length);
+                whitening.log_volume += length.ln();
             }
         }
         whitening.degrees_of_freedom -= whitening.basis.len().min(evidence.residual.len());
@@ -109,6 +118,17 @@ impl Whitening {
             shared + (rows.len() - 1) as f64 * (1.0 - self.correlation * self.correlation).ln()
         };
         -0.5 * self.groups.iter().map(of_group).sum::<f64>()
+    }
+
+    /// Ln of what the density of the data is times that of the whitened and projected ones, but for what does not depend on the errors
+    /// that neighbours have in common: ln |W| − ½·ln |NᵀWᵀWN|, N the nuisance.
+    pub fn log_jacobian(&self) -> f64 {
+        self.correlated_noise.as_ref().map_or(0.0, Filter::log_determinant) - self.log_volume
+    }
+
+    /// True where neighbours along a course have errors in common.
+    pub fn is_correlated(&self) -> bool {
+        self.correlated_noise.is_some()
     }
 
     /// False where no two data share an error, so that there is no ρ to be found.
@@ -290,6 +310,9 @@ impl Whitening {
 
     fn whiten(&self, v: &mut [f64]) {
         v.iter_mut().zip(&self.roots).for_each(|(v, root)| *v *= root);
+        if let Some(filter) = &self.correlated_noise {
+            filter.whiten(v);
+        }
         if self.correlation > 0.0 {
             let (phi, (_, quick)) = (self.correlation, self.along());
             for (rows, _) in &self.groups {
@@ -316,6 +339,9 @@ impl Whitening {
                     v[last] /= quick;
                 }
             }
+        }
+        if let Some(filter) = &self.correlated_noise {
+            filter.transpose(v);
         }
         v.iter_mut().zip(&self.roots).for_each(|(v, root)| *v *= root);
     }

@@ -9,7 +9,7 @@ use crate::robot::{Body, Kinematics, Loads, Motion, Setup};
 use crate::spatial::Pose;
 
 /// A move of a joint below which it did not move, rad or m: a readout's last digit.
-const STANDSTILL: f64 = 1e-7;
+pub(super) const STANDSTILL: f64 = 1e-7;
 /// The calibrated robot at one row.
 #[derive(Debug, Clone)]
 pub(super) struct Configuration {

@@ -12,7 +12,7 @@ use super::tails;
 use crate::calibration::campaign::Campaign;
 use crate::calibration::{Calibration, Mode, Options, calibrate};
 use crate::error::Result;
-use crate::inference::{Diagnosed, Finding, Location, diagnose as infer, sketch};
+use crate::inference::{Diagnosed, Finding, Limit, Location, Sketch, diagnose as infer, sketch};
 use crate::parallel::in_parallel;
 
 /// A campaign's diagnosis.
@@ -56,7 +56,8 @@ pub fn diagnose_calibrated<'c>(
     let mut scatter = None;
     let mut weights: Option<Vec<f64>> = None;
     for _ in 0..ROUNDS {
-        let (hypothesis, left) = sketch(&prepared.model, &prepared.evidence);
+        let Sketch { hypothesis, left, correlated_noise, .. } = sketch(&prepared.model, &prepared.evidence);
+        prepared.evidence.correlated_noise = correlated_noise;
         let about = calibrated_beside(&prepared, &hypothesis, &left)?;
         let noise = unequal(&prepared, &hypothesis, &left)?;
         let is_equal = noise.is_none() == scatter.is_none();
@@ -69,6 +70,7 @@ pub fn diagnose_calibrated<'c>(
         let about = about.unwrap_or(prepared.about);
         let calibration = prepared.model.calibration;
         prepared = Prepared::about(campaign, calibration, about, scatter.as_ref(), weights.as_deref())?;
+        prepared.evidence.correlated_noise = correlated_noise;
     }
     let mut diagnosis = infer(&prepared.model, &prepared.evidence);
     let Prepared { model, evidence, absorbed, not_testable, context, .. } = prepared;
@@ -80,6 +82,8 @@ pub fn diagnose_calibrated<'c>(
     }
     let mut limits = limits(&context, &model.calibration, &evidence);
     limits.extend(scatter.iter().flat_map(|noise| noisy(campaign, noise)));
+    let of_neighbours = evidence.correlated_noise;
+    limits.extend(of_neighbours.map(|noise| Limit::CorrelatedPoses(noise.share, noise.length)));
     Ok(Diagnosed { model, evidence, diagnosis, not_testable, absorbed, limits })
 }
 

@@ -103,6 +103,7 @@ pub(super) fn evidence_of(campaign: &Campaign, calibration: &Calibration, contex
         intercept: intercepts(recording, data),
         resolution: resolution(recording),
         covariates: covariates(context, data),
+        courses: courses(rows, data),
         recorded: 3 * rows,
         ..Evidence::new(residual)
     };
@@ -118,6 +119,11 @@ pub(super) fn unknown_beforehand(evidence: &Evidence) -> Evidence {
     columns.columns_mut(nuisance.ncols(), background.ncols()).copy_from(background);
     let background = DMatrix::zeros(nuisance.nrows(), 0);
     Evidence { nuisance: columns, background, ..evidence.clone() }
+}
+
+/// Each coordinate in the order of the poses: neighbours may have errors in common.
+fn courses(rows: usize, data: usize) -> Vec<Option<(usize, f64)>> {
+    (0..data).map(|datum| (datum < 3 * rows).then_some((datum % 3, (datum / 3) as f64))).collect()
 }
 
 /// The largest scatter of a coordinate that an arm may have, m; `None` where it does not reach

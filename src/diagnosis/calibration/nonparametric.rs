@@ -17,9 +17,12 @@
 //! of a link             all beyond a joint turns about any axis of its link by products of two
 //!                       joints' angles
 //! of each clamp         a vector in {W}, or in {T}
+//! of the last moves     `moves.rs`
 //! ```
 //!
 //! for every shape is more likely to be smooth than not.
+
+mod moves;
 
 use std::f64::consts::PI;
 
@@ -107,6 +110,7 @@ pub(super) fn all(context: &Context) -> Vec<Entry> {
     entries.extend(pairs(context));
     entries.extend(links(context));
     entries.extend(clamps(context));
+    entries.extend(moves::all(context));
     entries
 }
 

@@ -184,3 +184,31 @@ fn what_is_not_a_number_explains_nothing() {
     let (about, exact) = worth(&infinite, &columns, &columns);
     assert!(!is_favoured(about) && !is_favoured(exact), "{about} {exact}");
 }
+
+/// Of an effect of four numbers, as large as each other, the data show two: an interval of the others knows of their size by
+/// these two alone.
+#[test]
+fn intervals_of_what_the_data_leave_open_know_how_well_its_size_is_known() {
+    const DRAWS: u64 = 400;
+    let held = |is_wide: bool| {
+        let of_draw = |seed: u64| {
+            let mut random = Random::seeded(seed, 8);
+            let truth: Vec<f64> = (0..4).map(|_| 3.0 * random.normal()).collect();
+            let columns = DMatrix::from_columns(&[0, 1, 2, 3].map(|k| {
+                let seen = if k < 2 { 1.0 } else { 1e-4 };
+                noise(40, 900 + k) * seen
+            }));
+            let r = &columns * DVector::from_vec(truth.clone()) + noise(40, 10_000 + seed) * 0.1;
+            let moments = Moments::new(&r, &columns, vec![FREE; 4], vec![4], 40, 0.0);
+            let score = moments.score();
+            let covariance =
+                if is_wide { moments.covariance(&score, &[vec![4]]) } else { score.covariance.clone() };
+            let is_held = |k: usize| (score.estimate[k] - truth[k]).abs() < 1.96 * covariance[(k, k)].sqrt();
+            (2..4).filter(|&k| is_held(k)).count()
+        };
+        (0..DRAWS).map(of_draw).sum::<usize>() as f64 / (2 * DRAWS) as f64
+    };
+    let (plain, wide) = (held(false), held(true));
+    assert!(plain < 0.85, "{plain}");
+    assert!((0.92..0.98).contains(&wide), "{wide}");
+}

@@ -50,7 +50,7 @@ pub fn json(subject: &Subject) -> Value {
     });
     let head = subject.head.iter().map(|(key, value)| ((*key).to_owned(), value.clone()));
     let mut all: Map<String, Value> = head.collect();
-    let main = json!({
+    let mut main = json!({
         "headline": headline(subject),
         "verdict": if diagnosis.is_mismatch() { "mismatch" } else { "consistent" },
         "noise_um": um(diagnosis.noise),
@@ -83,6 +83,9 @@ pub fn json(subject: &Subject) -> Value {
         "n": subject.count,
         "warnings": subject.all_warnings(),
     });
+    if let Some(noise) = subject.evidence.correlated_noise {
+        main["noise"]["correlated"] = json!({ "share": noise.share, "length_poses": noise.length });
+    }
     if let Value::Object(main) = main {
         all.extend(main);
     }

@@ -3,7 +3,7 @@
 use super::happened::sockets;
 use super::*;
 use crate::calibration::campaign::Distance;
-use crate::inference::Limit;
+use crate::inference::{CorrelatedNoise, Limit, Linearised, Pairs, infer};
 use crate::robot::Parameter;
 use nalgebra::DMatrix;
 
@@ -298,4 +298,29 @@ fn the_weight_of_a_rod_tells_no_torque_of_an_arm_of_unknown_masses() {
     let places: Vec<String> = compliances.map(|c| c.location.to_string()).collect();
     assert!(!places.is_empty() && places.iter().all(|place| place.ends_with("masses unknown")), "{places:?}");
     assert!(not_testable.iter().any(|not| not.effect.name == "joint_nonlinear_stiffness"));
+}
+
+/// What a search needs of columns whose errors hang together is the same by products with stored columns and by whitened ones.
+#[test]
+fn errors_in_common_whiten_stored_columns_as_whole_ones() {
+    let campaign = clamps(5);
+    let campaign = noisy(&campaign, |_| 20.0 * UM, 3);
+    let (model, evidence) = modelled(&campaign, Mode::Fea);
+    let noise = CorrelatedNoise { share: 0.6, length: 3.0 };
+    let evidence = Evidence { correlated_noise: Some(noise), ..evidence };
+    let whole = Linearised::new(&model);
+    let stored = whole.in_parts(&evidence, &evidence.fold);
+    let kept: Vec<usize> = (0..evidence.residual.len()).filter(|&row| evidence.fold[row] != 1).collect();
+    let part = evidence.part(&kept);
+    for (whole, stored, evidence) in
+        [(whole.part(&kept, 1), stored.part(&kept, 1), &part), (whole, stored, &evidence)]
+    {
+        let additions = |model: &Linearised<'_>| {
+            let (search, _, _) = infer(model, evidence, Pairs::LeftOut, None);
+            search.additions(&search.with(&search.fit(&[]), 3)).to_vec()
+        };
+        for (a, b) in additions(&whole).into_iter().zip(additions(&stored)) {
+            assert!(a == b || (a - b).abs() < 1e-4 * (1.0 + a.abs()), "{a} {b}");
+        }
+    }
 }

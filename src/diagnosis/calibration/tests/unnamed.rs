@@ -177,3 +177,26 @@ fn places_and_ways_to_hold_the_tool_move_it() {
     ];
     assert_changes(&campaign, &calibration, cases);
 }
+
+/// Joints that keep a share of the move before the last one: that runs against the last move on average, and looks like lag.
+#[test]
+fn what_is_remembered_of_the_move_before_is_no_lag() {
+    let campaign = clamps(12);
+    let calibration = calibrate(&campaign, Mode::Fea, &Options::default()).unwrap();
+    let context = Context::new(&campaign, &calibration).unwrap();
+    let with = |back: usize| {
+        let by = |row: usize| {
+            let there = &context.configurations[row];
+            let step =
+                |j: usize| row.checked_sub(back).map_or(0.0, |row| context.configurations[row].step[j]);
+            (0..6).map(|j| there.tip_jacobian[j] * 4e-4 * step(j)).sum()
+        };
+        let recorded = recorded(&campaign, &by, 20.0 * UM, 5);
+        let found = diagnose(&recorded, Mode::Fea, &Options::default()).unwrap();
+        let names: Vec<&str> = found.diagnosis.findings.iter().map(|f| f.effect.name).collect();
+        let left = found.diagnosis.discrepancy.and_then(|left| left.location);
+        (names, left.map(|location| location.to_string()))
+    };
+    assert_eq!(with(0), (vec!["readback_lag"], None));
+    assert_eq!(with(1), (vec![], Some("order, the last moves of all joints".to_owned())));
+}

@@ -1,0 +1,68 @@
+//! Rivals for what an arm remembers of the way that it came.
+//!
+//! Lag and play follow the last move alone. What follows moves before it (a belt that creeps, a seal that was dragged along, a
+//! controller that integrates) looks like both, because a move that begins where the one before ended runs against that
+//! on average. With Δₖ the k-th move before a pose, of joint j
+//!
+//! ```text
+//! all joints alike    Σⱼ Jⱼ·Σ_k f_k·Δₖⱼ               k from 1, the last move, on
+//! each joint          Jⱼ·Σ_k f_k·Δₖⱼ
+//! by their direction  Jⱼ·Σ_k h_k·sign Δₖⱼ
+//! ```
+
+use super::curve;
+use crate::diagnosis::calibration::configuration::STANDSTILL;
+use crate::diagnosis::calibration::context::Context;
+use crate::diagnosis::calibration::entry::{Entry, linear};
+use crate::inference::Variable;
+use crate::units::URAD;
+
+/// Moves that may be remembered.
+const MOVES: usize = 3;
+/// Size of a share of a move, and of a turn by its direction, rad.
+const SHARE: f64 = 3e-4;
+const TURN: f64 = 100e-6;
+
+/// All of them.
+pub(super) fn all(context: &Context) -> Vec<Entry> {
+    let mut entries = vec![all_joints(context)];
+    for j in context.revolute() {
+        let joint = format!("joint {}", j + 1);
+        entries.push(of_joint(context, j, format!("{joint}, its last moves"), SHARE, &|step| step));
+        let direction = |step: f64| if step.abs() > STANDSTILL { step.signum() } else { 0.0 };
+        entries.push(of_joint(
+            context,
+            j,
+            format!("{joint}, the directions of its last moves"),
+            TURN,
+            &direction,
+        ));
+    }
+    entries
+}
+
+/// The k-th move before a row, zero where there was none.
+fn step(context: &Context, row: usize, k: usize, joint: usize) -> f64 {
+    row.checked_sub(k - 1).map_or(0.0, |row| context.configurations[row].step[joint])
+}
+
+fn all_joints(context: &Context) -> Entry {
+    let parameters = (1..=MOVES).map(|k| {
+        let column = context.column(|row, there| {
+            let moved = there.tip_jacobian.iter().enumerate();
+            moved.map(|(j, jacobian)| jacobian * step(context, row, k, j)).sum()
+        });
+        (linear(format!("share_of_move_{k}"), 1.0, SHARE), column)
+    });
+    let follows = "follows the moves before, not the last one alone";
+    curve("order, the last moves of all joints", follows, Some(Variable::Order), parameters.collect())
+}
+
+fn of_joint(context: &Context, j: usize, label: String, size: f64, of: &dyn Fn(f64) -> f64) -> Entry {
+    let parameters = (1..=MOVES).map(|k| {
+        let column = context.turn(j, |row, _| of(step(context, row, k, j)));
+        (linear(format!("move_{k}_urad"), URAD, size), column)
+    });
+    let follows = format!("follows the moves of joint {} before, not the last one alone", j + 1);
+    curve(label, follows, Some(Variable::Order), parameters.collect())
+}

@@ -67,6 +67,7 @@ pub fn report(plan: &RigPlan, rod: &Rod, bench: &Bench) -> Report {
         warnings: not_told(plan),
         sections,
         provenance: Vec::new(),
+        cards: Vec::new(),
     }
 }
 

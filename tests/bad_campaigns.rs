@@ -18,12 +18,12 @@ fn every_bad_key_is_named_with_its_place() {
         (
             "rod =",
             "rodd =",
-            "campaign.toml:2:1: unknown key `rodd`, expected one of robot, effects, rod, rig, contact_force_n, measurements, validation, base_link, tip_link, validation_refit, tool, base, clamp, sockets, noise, parameters, prior -> did you mean rod?",
+            "campaign.toml:2:1: unknown key `rodd`, expected one of robot, effects, rod, rig, contact_force_n, measurements, validation, base_link, tip_link, validation_refit, tool, base, clamp, sockets, noise, accuracy, parameters, prior -> did you mean rod?",
         ),
         (
             "[base]",
             "[bases]",
-            "campaign.toml:7:2: unknown section [bases], expected one of robot, effects, rod, rig, contact_force_n, measurements, validation, base_link, tip_link, validation_refit, tool, base, clamp, sockets, noise, parameters, prior -> did you mean [base]?",
+            "campaign.toml:7:2: unknown section [bases], expected one of robot, effects, rod, rig, contact_force_n, measurements, validation, base_link, tip_link, validation_refit, tool, base, clamp, sockets, noise, accuracy, parameters, prior -> did you mean [base]?",
         ),
         (
             "id = \"2\"",

@@ -61,13 +61,11 @@ fn report(poses: usize) -> Report {
             ),
             Section::new("Later results", vec![Block::Figure(joint_angles()), Block::Figure(histogram())]),
         ],
-        cards: Vec::new(),
         provenance: vec![
             ("Readings".into(), "stiffness_data/rod5.csv, 36 readings, sha256 0c1d9f6b2f…".into()),
             ("Rod".into(), "rods/rod5.toml".into()),
             ("Options".into(), "robust = false, confidence = 95 %".into()),
-        ],
-    }
+        ], ..Report::default() }
 }
 
 fn compliance_table() -> Table {

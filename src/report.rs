@@ -40,4 +40,4 @@ mod sensitivities;
 pub mod table;
 pub mod text;
 
-pub use document::{Block, Card, Report, Section, Tone};
+pub use document::{Block, Card, PageLink, Report, Section, Tone};

@@ -6,7 +6,7 @@ use rodcal::beam::Physics;
 use rodcal::calibration::{self, Campaign, CompareOptions};
 use rodcal::compliance::{DEFAULT_ELEMENTS, Mode, Study, paper_contact_force};
 use rodcal::report::text::wrapped;
-use rodcal::report::{self, Report};
+use rodcal::report::{self, Block, Card, PageLink, Report, Section};
 use rodcal::rig::readings::Readings;
 use rodcal::rod::Rod;
 use rodcal::{Error, Result, rig};
@@ -22,9 +22,31 @@ const RECONSTRUCTED: &str = "Rods 2# and 5# and their readings are reconstructed
 /// Enough to show what a comparison looks like within a blink; `rodcal compare` takes more.
 const DRAWS: usize = 20;
 
+/// The pages, in the order of the story.
+const PAGES: [(&str, &str, &str); 3] = [
+    ("rod", "How much does my rod bend?", "Rod 5#: the beam model beside readings on a rig."),
+    (
+        "robot",
+        "How accurate is my robot once that is compensated?",
+        "A TX90 in five clamps, with and without the rod's deflection.",
+    ),
+    ("why", "My simulation and my recordings disagree: where, and why?", "Two sets of readings, diagnosed."),
+];
+/// Which card of each page the index shows: c_rod, the error at validation poses, the strongest finding.
+const IN_SHORT: [usize; 3] = [0, 2, 0];
+/// The rod whose page the demo shows, and the one whose readings are diagnosed.
+const SHOWN: &str = "5#";
+const DIAGNOSED: &str = "2#";
+
 pub fn run() -> Result<Outcome> {
-    let mut report = Report { title: "rodcal demo".into(), ..Report::default() };
-    let (mut results, mut words, mut headlines) = (Vec::new(), String::new(), Vec::new());
+    let [mut rod_page, mut robot_page, mut why_page] = PAGES.map(|(page, title, _)| Report {
+        page: page.into(),
+        pages: links(),
+        title: title.into(),
+        ..Report::default()
+    });
+    let (mut results, mut words, mut warnings) = (Vec::new(), String::new(), vec![RECONSTRUCTED.to_owned()]);
+    let mut provenance: Vec<(String, String)> = Vec::new();
     for example in &RODS {
         let rod = Rod::from_toml(example.rod_file, example.rod)?;
         let readings = Readings::from_text(example.readings_file, example.readings)?;
@@ -35,39 +57,60 @@ pub fn run() -> Result<Outcome> {
         let rig_report = report::rig::report(&fit, &readings, Some(&rod));
         words += &wrapped(&format!("{} {}", rod_report.headline, rig_report.headline));
         words.push('\n');
-        headlines.push(rig_report.headline.clone());
         results.push(json!({
             "compliance": report::compliance::json(&study),
             "rig": report::rig::json(&fit, &readings, Some(&rod)),
         }));
-        for part in [rod_report, rig_report] {
-            let warnings = part.warnings.into_iter().map(|warning| format!("rod {}: {warning}", rod.name));
-            report.warnings.extend(warnings);
-            report.sections.extend(part.sections);
+        provenance.push(("rod file".into(), example.rod_file.into()));
+        provenance.push(("readings".into(), format!("{} (reconstructed)", example.readings_file)));
+        for part in [&rod_report, &rig_report] {
+            warnings.extend(part.warnings.iter().map(|warning| format!("rod {}: {warning}", rod.name)));
         }
-        report.provenance.push(("rod file".into(), example.rod_file.into()));
-        report.provenance.push(("readings".into(), format!("{} (reconstructed)", example.readings_file)));
+        if rod.name == SHOWN {
+            rod_page.headline = format!("{} {}", rod_report.headline, rig_report.headline);
+            rod_page.cards = rod_report.cards.into_iter().chain(rig_report.cards).collect();
+            rod_page.sections = shown(rod_report.sections, &["shape-force", "contributions"]);
+            rod_page.sections.extend(shown(rig_report.sections, &["load-deflection"]));
+        } else if rod.name == DIAGNOSED {
+            add(&mut why_page, &format!("Rod {DIAGNOSED}"), diagnosed(&readings, Some(&rod))?);
+        }
     }
 
     let readings = Readings::from_text(LOAD_CELL_FILE, LOAD_CELL)?;
     let fit = rig::fit(&readings, None, &rig::Options::default())?;
     let cell_report = report::rig::report(&fit, &readings, None);
     words += &wrapped(&format!("Load cell (NIST): {}", cell_report.headline));
-    report.warnings.insert(0, RECONSTRUCTED.into());
-    report.warnings.extend(cell_report.warnings.into_iter().map(|warning| format!("load cell: {warning}")));
-    report.sections.extend(cell_report.sections);
-    report.provenance.push(("readings".into(), format!("{LOAD_CELL_FILE} (NIST StRD, Pontius)")));
+    warnings.extend(cell_report.warnings.into_iter().map(|warning| format!("load cell: {warning}")));
+    provenance.push(("readings".into(), format!("{LOAD_CELL_FILE} (NIST StRD, Pontius)")));
+    add(&mut why_page, "Load cell (NIST)", diagnosed(&readings, None)?);
+    words += &format!("\n{}", wrapped(&why_page.headline));
 
     let (robot_report, calibrated, compared) = robot()?;
     words += &format!("\n{}", wrapped(&robot_report.headline));
     words += &format!("\n{}", wrapped(RECONSTRUCTED));
-    headlines.push(robot_report.headline);
-    report.warnings.extend(robot_report.warnings.into_iter().map(|warning| format!("TX90: {warning}")));
-    report.sections.extend(robot_report.sections);
-    report.provenance.push(("campaign".into(), format!("{CAMPAIGN_FILE} (simulated)")));
-    report.provenance.push(("program".into(), concat!("rodcal ", env!("CARGO_PKG_VERSION")).into()));
+    warnings.extend(robot_report.warnings.into_iter().map(|warning| format!("TX90: {warning}")));
+    robot_page.headline = robot_report.headline;
+    robot_page.cards = robot_report.cards;
+    robot_page.sections =
+        shown(robot_report.sections, &["error-distribution", "error-over-workspace", "mode-comparison"]);
+    provenance.push(("campaign".into(), format!("{CAMPAIGN_FILE} (simulated)")));
+    provenance.push(("program".into(), concat!("rodcal ", env!("CARGO_PKG_VERSION")).into()));
 
-    report.headline = headlines.join(" ");
+    let pages = [rod_page, robot_page, why_page];
+    let index = Report {
+        pages: links(),
+        title: "rodcal demo".into(),
+        headline: "A bent measuring rod, a robot that it calibrates, and what the readings say that the model does not."
+            .into(),
+        cards: pages.iter().zip(IN_SHORT).filter_map(|(page, k)| page.cards.get(k).cloned()).collect(),
+        warnings,
+        provenance,
+        ..Report::default()
+    };
+    let mut files = Vec::new();
+    for page in &pages {
+        files.extend(page.files()?);
+    }
     Ok(Outcome {
         json: json!({
             "rods": results,
@@ -75,12 +118,58 @@ pub fn run() -> Result<Outcome> {
             "calibration": calibrated,
             "comparison": compared,
         }),
-        report: Some(report),
+        report: Some(index),
         text: Some(words),
         default_directory: Some(PathBuf::from("reports/demo")),
-        files: Vec::new(),
+        files,
         status: 0,
     })
+}
+
+/// All pages, as each of them links them.
+fn links() -> Vec<PageLink> {
+    let of = |(page, title, answer): (&str, &str, &str)| PageLink {
+        file: format!("{page}.html"),
+        title: title.into(),
+        answer: answer.into(),
+    };
+    PAGES.into_iter().map(of).collect()
+}
+
+/// The sections that have one of these pictures, with the first of each and with their tables.
+fn shown(sections: Vec<Section>, pictures: &[&str]) -> Vec<Section> {
+    let mut left: Vec<&str> = pictures.to_vec();
+    let mut kept = Vec::new();
+    for mut section in sections {
+        section.blocks.retain(|block| match block {
+            Block::Figure(figure) => {
+                let at = left.iter().position(|name| *name == figure.name);
+                at.map(|at| left.remove(at)).is_some()
+            }
+            _ => true,
+        });
+        if section.blocks.iter().any(|block| matches!(block, Block::Figure(_))) {
+            kept.push(section);
+        }
+    }
+    kept
+}
+
+/// A diagnosis as a part of a page: its answer, its first cards, what it looks like before and after.
+fn add(page: &mut Report, of: &str, part: Report) {
+    let gap = if page.headline.is_empty() { "" } else { " " };
+    page.headline += &format!("{gap}{of}: {}", part.headline);
+    let labelled = |card: Card| Card { label: format!("{of}: {}", card.label.to_lowercase()), ..card };
+    page.cards.extend(part.cards.into_iter().take(3).map(labelled));
+    let sections = shown(part.sections, &["before-after", "ranking"]);
+    let blocks = sections.into_iter().flat_map(|section| section.blocks).collect();
+    page.sections.push(Section::new(of, blocks));
+}
+
+/// The report of a diagnosis.
+fn diagnosed(readings: &Readings, rod: Option<&Rod>) -> Result<Report> {
+    let found = rodcal::diagnosis::rig::diagnose(readings, rod)?;
+    Ok(report::diagnosis::rig::report(&found, found.correction()?.as_ref()))
 }
 
 /// The campaign inside the program, calibrated in its default mode, and all modes compared: report

@@ -210,8 +210,8 @@ pub fn report(
         headline: headline(campaign, calibration, cross_validation),
         warnings: warnings(campaign, calibration),
         sections: sections(campaign, calibration, cross_validation),
-        provenance: Vec::new(),
         cards: cards::cards(campaign, calibration, cross_validation),
+        ..Report::default()
     }
 }
 

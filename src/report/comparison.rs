@@ -67,8 +67,8 @@ pub fn report(campaign: &Campaign, comparison: &Comparison) -> Report {
         headline: verdict(campaign, comparison),
         warnings,
         sections: sections(campaign, comparison),
-        provenance: Vec::new(),
         cards: cards(campaign, comparison),
+        ..Report::default()
     }
 }
 

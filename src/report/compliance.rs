@@ -66,8 +66,8 @@ pub fn report(study: &Study) -> Report {
         headline: headline(study),
         warnings: warnings(study),
         sections: sections(study),
-        provenance: Vec::new(),
         cards: cards(study),
+        ..Report::default()
     }
 }
 

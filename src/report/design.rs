@@ -245,8 +245,7 @@ pub fn report(study: &Study) -> Report {
         headline: headline(study),
         warnings: warnings(study),
         sections,
-        provenance: Vec::new(),
-        cards: Vec::new(),
+        ..Report::default()
     }
 }
 

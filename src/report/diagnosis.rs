@@ -29,7 +29,7 @@ fn report(mut subject: Subject) -> Report {
         cards: cards::cards(&subject),
         warnings: subject.all_warnings(),
         sections: sections::all(&mut subject),
-        provenance: Vec::new(),
+        ..Report::default()
     }
 }
 

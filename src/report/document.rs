@@ -8,6 +8,10 @@ use super::table::Table;
 /// A report as plain data.
 #[derive(Debug, Clone, Default, Serialize)]
 pub struct Report {
+    /// Name of its page among others of one directory, `rod` for `rod.html`; nothing for `index.html`.
+    pub page: String,
+    /// The other pages, where there are several.
+    pub pages: Vec<PageLink>,
     /// What was done, for example "Stiffness of rod 5#".
     pub title: String,
     /// The result in one sentence, with numbers and units.
@@ -20,6 +24,17 @@ pub struct Report {
     pub sections: Vec<Section>,
     /// Where it all comes from: name and value, for example input files, options, version.
     pub provenance: Vec<(String, String)>,
+}
+
+/// Another page of the same directory.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct PageLink {
+    /// Its file: `rod.html`.
+    pub file: String,
+    /// Its title.
+    pub title: String,
+    /// What it answers, in a sentence.
+    pub answer: String,
 }
 
 /// One number or word of the overview.

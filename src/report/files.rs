@@ -1,25 +1,25 @@
 //! A report as files.
 
 use super::document::Report;
-use super::file_name::file_name;
+use super::file_name::{file_name, page_name};
 use super::html;
 use crate::error::Result;
 
 impl Report {
-    /// Names and bytes of all files of the report: `index.html`, each figure as SVG, each
+    /// Names and bytes of all files of the report: `index.html` (or its own page), each figure as SVG, each
     /// table as CSV and as Markdown. Write them with
     /// [`crate::files::write_together`].
     ///
     /// # Errors
     /// [`crate::Error::Numerical`] where a table cannot be written as CSV.
     pub fn files(&self) -> Result<Vec<(String, Vec<u8>)>> {
-        let mut files = vec![("index.html".to_owned(), html::page(self).into_bytes())];
+        let mut files = vec![(page_name(&self.page), html::page(self).into_bytes())];
         for (i, figure) in self.figures().enumerate() {
-            let name = file_name("figure", i + 1, &figure.name);
+            let name = file_name(&self.page, "figure", i + 1, &figure.name);
             files.push((format!("{name}.svg"), figure.svg().into_bytes()));
         }
         for (i, table) in self.tables().enumerate() {
-            let name = file_name("table", i + 1, &table.name);
+            let name = file_name(&self.page, "table", i + 1, &table.name);
             files.push((format!("{name}.csv"), table.csv()?.into_bytes()));
             files.push((format!("{name}.md"), table.markdown().into_bytes()));
         }

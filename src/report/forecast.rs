@@ -262,7 +262,6 @@ pub fn comparison(campaign: &Campaign, rods: &[RodForecast], basis: &Basis) -> R
         headline,
         warnings: Vec::new(),
         sections: vec![Section::new("What to expect", blocks)],
-        provenance: Vec::new(),
-        cards: Vec::new(),
+        ..Report::default()
     }
 }

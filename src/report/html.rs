@@ -4,7 +4,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::chart::Figure;
 use super::document::{Block, Card, Report, Section, Tone};
-use super::file_name::file_name;
+use super::file_name::{file_name, page_name};
 use super::table::Table;
 
 /// The whole page: style sheet, pictures and what little script there is are inside it, and it may fetch nothing.
@@ -14,7 +14,7 @@ pub fn page(report: &Report) -> String {
         .sections
         .iter()
         .enumerate()
-        .map(|(i, section)| section_markup(section, i, &mut figures, &mut tables))
+        .map(|(i, section)| section_markup(&report.page, section, i, &mut figures, &mut tables))
         .collect();
     let page = html! {
         (DOCTYPE)
@@ -34,6 +34,7 @@ pub fn page(report: &Report) -> String {
                     @if !report.headline.is_empty() { p.headline #result { (report.headline) } }
                 }
                 main {
+                    @if !report.pages.is_empty() { (pages(report)) }
                     @if !report.cards.is_empty() { (cards(&report.cards)) }
                     @if !report.warnings.is_empty() {
                         aside.warnings aria-label="Warnings" {
@@ -78,6 +79,21 @@ fn cards(cards: &[Card]) -> Markup {
     }
 }
 
+fn pages(report: &Report) -> Markup {
+    let own = page_name(&report.page);
+    html! {
+        nav aria-label="Pages" {
+            ol.pages { @for page in &report.pages {
+                li {
+                    @if page.file == own { b aria-current="page" { (page.title) } }
+                    @else { a href=(page.file) { (page.title) } }
+                    @if report.page.is_empty() { span.detail { (page.answer) } }
+                }
+            } }
+        }
+    }
+}
+
 fn contents(report: &Report) -> Markup {
     html! {
         nav aria-label="Contents" {
@@ -98,7 +114,13 @@ fn provenance(report: &Report) -> Markup {
 }
 
 /// People look before they read: the words, then the pictures side by side where there is room, then the tables.
-fn section_markup(section: &Section, number: usize, figures: &mut usize, tables: &mut usize) -> Markup {
+fn section_markup(
+    page: &str,
+    section: &Section,
+    number: usize,
+    figures: &mut usize,
+    tables: &mut usize,
+) -> Markup {
     let (mut words, mut pictures, mut folded) = (Vec::new(), Vec::new(), Vec::new());
     for block in &section.blocks {
         match block {
@@ -106,11 +128,11 @@ fn section_markup(section: &Section, number: usize, figures: &mut usize, tables:
             Block::List(points) => words.push(html! { ul { @for point in points { li { (point) } } } }),
             Block::Figure(figure) => {
                 *figures += 1;
-                pictures.push(figure_markup(figure, *figures));
+                pictures.push(figure_markup(page, figure, *figures));
             }
             Block::Table(table) => {
                 *tables += 1;
-                folded.push(table_markup(table, *tables));
+                folded.push(table_markup(page, table, *tables));
             }
         }
     }
@@ -124,8 +146,8 @@ fn section_markup(section: &Section, number: usize, figures: &mut usize, tables:
     }
 }
 
-fn figure_markup(figure: &Figure, number: usize) -> Markup {
-    let file = format!("{}.svg", file_name("figure", number, &figure.name));
+fn figure_markup(page: &str, figure: &Figure, number: usize) -> Markup {
+    let file = format!("{}.svg", file_name(page, "figure", number, &figure.name));
     html! {
         figure {
             // Our own SVG: its texts are escaped where it is drawn, and it holds no ids.
@@ -142,8 +164,8 @@ fn figure_markup(figure: &Figure, number: usize) -> Markup {
 /// Tables of so many rows stand open.
 const FEW_ROWS: usize = 8;
 
-fn table_markup(table: &Table, number: usize) -> Markup {
-    let file = |kind: &str| format!("{}.{kind}", file_name("table", number, &table.name));
+fn table_markup(page: &str, table: &Table, number: usize) -> Markup {
+    let file = |kind: &str| format!("{}.{kind}", file_name(page, "table", number, &table.name));
     html! {
         details open[table.rows.len() <= FEW_ROWS] {
             summary { b { "Table " (number) } ". " (table.caption) }
@@ -180,6 +202,7 @@ mod tests {
                 vec![Block::Paragraph(evil()), Block::List(vec![evil()]), Block::Figure(figure)],
             )],
             provenance: vec![(evil(), evil())],
+            ..Report::default()
         };
         // the only script is the page's own
         let page = page(&report);

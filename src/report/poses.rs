@@ -145,8 +145,7 @@ pub fn report(study: &PoseStudy) -> Report {
         headline: headline(study),
         warnings: study.campaign.warnings.iter().map(ToString::to_string).collect(),
         sections,
-        provenance: Vec::new(),
-        cards: Vec::new(),
+        ..Report::default()
     }
 }
 

@@ -252,8 +252,7 @@ pub fn report(robot: &Robot, prediction: &Prediction) -> Report {
         headline: format!("{}: {tips} predicted{known}.", robot.name),
         warnings: warnings(robot, prediction),
         sections: vec![Section::new("Predicted tips", vec![Block::Table(table)])],
-        provenance: Vec::new(),
-        cards: Vec::new(),
+        ..Report::default()
     }
 }
 

@@ -95,8 +95,8 @@ pub fn report(fit: &Fit, readings: &Readings, rod: Option<&Rod>) -> Report {
         headline: headline(fit, rod),
         warnings: warnings(fit, readings, rod),
         sections: sections(fit, readings, rod),
-        provenance: Vec::new(),
         cards: cards(fit, rod),
+        ..Report::default()
     }
 }
 

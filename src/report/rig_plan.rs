@@ -66,8 +66,7 @@ pub fn report(plan: &RigPlan, rod: &Rod, bench: &Bench) -> Report {
         headline: headline(plan),
         warnings: not_told(plan),
         sections,
-        provenance: Vec::new(),
-        cards: Vec::new(),
+        ..Report::default()
     }
 }
 

@@ -30,8 +30,8 @@ pub fn report(score: &Score) -> Report {
         headline,
         warnings: Vec::new(),
         sections: score.halves().map(|(half, part)| section(half, part)).collect(),
-        cards: Vec::new(),
         provenance: vec![("program".into(), concat!("rodcal ", env!("CARGO_PKG_VERSION")).into())],
+        ..Report::default()
     }
 }
 

@@ -193,7 +193,6 @@ def sockets(options):
     rows = [[number, *row] for number, row in enumerate(rows, 1)]
     header = ["pose", "placement", "socket", *(f"q{i + 1}_deg" for i in range(len(rows[0]) - 3))]
     os.makedirs(options.out, exist_ok=True)
-    at = lambda name: os.path.join(options.out, name)  # noqa: E731
     robot = os.path.relpath(options.urdf, options.out).replace(os.sep, "/")
 
     def campaign(name, measurements, validation=None):
@@ -201,15 +200,17 @@ def sockets(options):
         lines += [f'tip_link = "{options.tip_link}"', f'measurements = "{measurements}"']
         lines += [f'validation = "{validation}"'] * (validation is not None)
         lines += ["", "[sockets]", f"distance_mm = {options.distance}", ""]
-        with open(at(name), "w", encoding="utf-8") as file:
+        with open(os.path.join(options.out, name), "w", encoding="utf-8") as file:
             file.write("\n".join(lines))
 
-    write(at("all.csv"), header, rows)
+    write(os.path.join(options.out, "all.csv"), header, rows)
     campaign("campaign.toml", "all.csv")
     # each placement predicted from all others: the honest test of a calibration
     for place in sorted({row[1] for row in rows}):
-        write(at(f"only-{place}.csv"), header, [row for row in rows if row[1] == place])
-        write(at(f"without-{place}.csv"), header, [row for row in rows if row[1] != place])
+        here = os.path.join(options.out, f"only-{place}.csv")
+        write(here, header, [row for row in rows if row[1] == place])
+        others = os.path.join(options.out, f"without-{place}.csv")
+        write(others, header, [row for row in rows if row[1] != place])
         campaign(f"holdout-{place}.toml", f"without-{place}.csv", f"only-{place}.csv")
 
 
@@ -235,7 +236,7 @@ def main():
         command.add_argument("out")
         command.add_argument("--length", choices=LENGTH, required=True, help="unit of the points")
         if kind is bag:
-            command.add_argument("--time", choices=TIME, default="ns")
+            command.add_argument("--time", choices=TIME, required=True, help="of the stamps")
             command.add_argument("--still", type=float, default=1.0, help="s without motion")
             command.add_argument("--tolerance", type=float, default=0.01, help="degrees")
     options = parser.parse_args()

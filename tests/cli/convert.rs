@@ -83,7 +83,7 @@ fn joint_states_become_poses_in_the_order_of_the_robot() {
     }
     sandbox.write("states.csv", &states);
     sandbox.write("points.txt", "1 2 3\n4 5 6\n");
-    let line = "bag states.csv points.txt m.csv --angle rad --length mm --joints shoulder,elbow";
+    let line = "bag states.csv points.txt m.csv --angle rad --length mm --time ns --joints shoulder,elbow";
     let Some(said) = convert(&sandbox, line) else { return };
     said.unwrap();
     assert_eq!(

@@ -18,12 +18,12 @@ fn every_bad_key_is_named_with_its_place() {
         (
             "rod =",
             "rodd =",
-            "campaign.toml:2:1: unknown key `rodd`, expected one of robot, effects, rod, rig, contact_force_n, measurements, validation, base_link, tip_link, validation_refit, tool, base, clamp, sockets, noise, parameters, prior -> did you mean rod?",
+            "campaign.toml:2:1: unknown key `rodd`, expected one of robot, effects, rod, rig, contact_force_n, measurements, validation, base_link, tip_link, validation_refit, tool, base, clamp, sockets, noise, accuracy, parameters, prior -> did you mean rod?",
         ),
         (
             "[base]",
             "[bases]",
-            "campaign.toml:7:2: unknown section [bases], expected one of robot, effects, rod, rig, contact_force_n, measurements, validation, base_link, tip_link, validation_refit, tool, base, clamp, sockets, noise, parameters, prior -> did you mean [base]?",
+            "campaign.toml:7:2: unknown section [bases], expected one of robot, effects, rod, rig, contact_force_n, measurements, validation, base_link, tip_link, validation_refit, tool, base, clamp, sockets, noise, accuracy, parameters, prior -> did you mean [base]?",
         ),
         (
             "id = \"2\"",
@@ -248,7 +248,7 @@ fn every_bad_column_or_cell_is_named_with_its_place() {
         (
             "q2_deg",
             "joint2",
-            "measurements.csv:1: there is no column q2_deg, expected q1_deg, q2_deg, q3_mm, for the robot has 3 joints",
+            "measurements.csv:1: there is no column q2_deg, expected q1_deg, q2_deg, q3_mm, for the robot has 3 joints -> rename \"joint2\" to q2_deg",
         ),
         (
             "q3_mm",

@@ -9,6 +9,7 @@ pub(super) use figures::{convergence, mode_residuals};
 
 use serde_json::{Map, Value, json};
 
+use super::length::length;
 use super::{Block, Report, Section};
 use crate::calibration::campaign::{Recording, Refit, Station, Targets};
 use crate::calibration::{
@@ -281,14 +282,6 @@ pub fn headline(
         words += &format!("; error at held-out poses ({} folds) {}", cv.folds, described(&cv.summary));
     }
     words + "."
-}
-
-/// In µm below a millimetre, else in mm.
-pub(super) fn length(metres: f64) -> String {
-    match metres < MM {
-        true => format!("{} µm", significant(metres / UM, 3)),
-        false => format!("{} mm", significant(metres / MM, 3)),
-    }
 }
 
 /// The body of [`report`].

@@ -2,7 +2,8 @@
 
 use serde_json::{Value, json};
 
-use super::calibration::{self, convergence, length, mode_residuals};
+use super::calibration::{self, convergence, mode_residuals};
+use super::length::length;
 use super::pictures::calibration::{
     MethodErrors, ModeComparison, ModeResiduals, PoseError, cumulative_errors, error_distribution,
     error_over_workspace, mode_comparison, residuals_by_group,

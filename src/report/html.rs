@@ -4,7 +4,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::chart::Figure;
 use super::document::{Block, Card, Report, Section, Tone};
-use super::files::file_name;
+use super::file_name::file_name;
 use super::table::Table;
 
 /// The whole page: style sheet, pictures and what little script there is are inside it, and it may fetch nothing.

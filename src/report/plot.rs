@@ -19,6 +19,9 @@ const FAR_PX: f64 = 1e5;
 /// Plotters divides font sizes by this number on their way into the SVG.
 const PLOTTERS_FONT_FACTOR: f64 = 1.24;
 
+/// Where an axis begins and ends, and whether it is logarithmic.
+pub(super) type AxisEnds = (f64, f64, bool);
+
 /// An SVG in the making.
 pub(super) struct Canvas {
     width_px: f64,
@@ -105,7 +108,7 @@ impl Canvas {
 
     /// Remembers where a panel's axes are: its corners in units of the SVG, and each axis as its ends and whether it is
     /// logarithmic, with its label; `None` where it has names and no numbers.
-    pub(super) fn panel(&mut self, corners: [Px; 2], axes: [(Option<(f64, f64, bool)>, &str); 2]) {
+    pub(super) fn panel(&mut self, corners: [Px; 2], axes: [(Option<AxisEnds>, &str); 2]) {
         let [(left, top), (right, bottom)] = corners.map(|corner| fine(&corner));
         let [(x, xlabel), (y, ylabel)] = axes;
         self.panels.push(serde_json::json!({

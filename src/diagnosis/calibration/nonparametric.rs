@@ -22,16 +22,18 @@
 //!
 //! for every shape is more likely to be smooth than not.
 
+mod curve;
 mod moves;
 
-use std::f64::consts::PI;
+use std::f64::consts::TAU;
 
 use nalgebra::{Matrix3, Vector3};
 
+use self::curve::{cosine, curve, scaled};
 use super::context::Context;
 use super::entry::{Column, Entry, linear};
 use super::law::Frame;
-use crate::inference::{JointVariable, Location, Parameter, UNKNOWN, Variable};
+use crate::inference::{JointVariable, Parameter, Variable};
 use crate::units::{UM, URAD};
 
 /// Size of a displacement, m: what calibrated arms of 1 m reach miss by.
@@ -114,32 +116,8 @@ pub(super) fn all(context: &Context) -> Vec<Entry> {
     entries
 }
 
-/// A curve: its name in tables, what is said of it, and the number that it is a function of.
-fn curve(
-    label: impl Into<String>,
-    follows: impl Into<String>,
-    along: Option<Variable>,
-    parameters: Vec<(Parameter, Column)>,
-) -> Entry {
-    let location = Location::Curve { label: label.into(), follows: follows.into(), along };
-    let mut entry = Entry::new(&UNKNOWN, location, parameters);
-    entry.candidate.is_nonparametric = true;
-    entry
-}
-
 fn angle_of(joint: usize) -> Variable {
     Variable::Joint(joint, JointVariable::Angle)
-}
-
-/// From 0 to 1; `None` where the values do not differ.
-fn scaled(values: &[f64]) -> Option<Vec<f64>> {
-    let (low, high) =
-        values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), &v| (a.min(v), b.max(v)));
-    (high > low).then(|| values.iter().map(|v| (v - low) / (high - low)).collect())
-}
-
-fn cosine(k: usize, x: f64) -> f64 {
-    (PI * k as f64 * x).cos()
 }
 
 /// A vector in {W} or in {T} times a weight for each row.
@@ -208,7 +186,7 @@ fn again_and_again(context: &Context) -> Vec<Entry> {
     // steps of half a cycle tell all frequencies apart
     let counts = (4..=2 * rows / 3).take(RETURNS).map(|halves| 0.5 * halves as f64);
     let of_count = |count: f64| {
-        let phase = |row: usize| 2.0 * PI * count * row as f64 / rows as f64;
+        let phase = |row: usize| TAU * count * row as f64 / rows as f64;
         let mut parameters = vectors(context, "sin", SIZE, Frame::World, &|row| phase(row).sin());
         parameters.extend(vectors(context, "cos", SIZE, Frame::World, &|row| phase(row).cos()));
         let every = rows as f64 / count;

@@ -1,9 +1,9 @@
 //! What a reader in a hurry takes away from a calibration.
 
-use super::length;
 use crate::calibration::{
     Accuracy, AccuracyVerdict, Calibration, Campaign, CrossValidation, Summary, accuracy,
 };
+use crate::report::length::length;
 use crate::report::{Card, Tone};
 
 /// The fit, the errors before and after, at poses that it has not seen, and the verdict.

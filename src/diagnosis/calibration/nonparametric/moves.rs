@@ -10,7 +10,7 @@
 //! by their direction  Jⱼ·Σ_k h_k·sign Δₖⱼ
 //! ```
 
-use super::curve;
+use super::curve::curve;
 use crate::diagnosis::calibration::configuration::STANDSTILL;
 use crate::diagnosis::calibration::context::Context;
 use crate::diagnosis::calibration::entry::{Entry, linear};

@@ -1,0 +1,31 @@
+//! What every curve is made of.
+
+use std::f64::consts::PI;
+
+use crate::diagnosis::calibration::entry::{Column, Entry};
+use crate::inference::{Location, Parameter, UNKNOWN, Variable};
+
+/// A curve: its name in tables, what is said of it, and the number that it is a function of.
+pub(super) fn curve(
+    label: impl Into<String>,
+    follows: impl Into<String>,
+    along: Option<Variable>,
+    parameters: Vec<(Parameter, Column)>,
+) -> Entry {
+    let location = Location::Curve { label: label.into(), follows: follows.into(), along };
+    let mut entry = Entry::new(&UNKNOWN, location, parameters);
+    entry.candidate.is_nonparametric = true;
+    entry
+}
+
+/// From 0 to 1; `None` where the values do not differ.
+pub(super) fn scaled(values: &[f64]) -> Option<Vec<f64>> {
+    let (low, high) =
+        values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), &v| (a.min(v), b.max(v)));
+    (high > low).then(|| values.iter().map(|v| (v - low) / (high - low)).collect())
+}
+
+/// cos(π·k·x).
+pub(super) fn cosine(k: usize, x: f64) -> f64 {
+    (PI * k as f64 * x).cos()
+}

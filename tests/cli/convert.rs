@@ -6,6 +6,7 @@ use std::process::Command;
 use super::Sandbox;
 
 /// Runs the converter in the sandbox; `None` where there is no Python.
+#[allow(clippy::print_stderr)]
 fn convert(sandbox: &Sandbox, line: &str) -> Option<Result<String, String>> {
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/convert.py");
     let run = Command::new("python3").arg(script).args(line.split(' ')).current_dir(sandbox.path()).output();

@@ -127,7 +127,7 @@ impl Columns {
             more => format!("there are no columns {}", listed(more)),
         };
         let known: Vec<&str> = self.known().collect();
-        let hint = renamed(table.columns(), &known).or_else(|| self.meant(table, missing));
+        let hint = renamed(table.columns(), &known, missing).or_else(|| self.meant(table, missing));
         Err(table.header_error("", found, expected, hint))
     }
 

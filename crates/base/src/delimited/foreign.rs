@@ -4,57 +4,31 @@ use super::quoted;
 
 /// Words for what a column holds, without accents (ä is ae, é is e), and its name here. `#` stands for the joint's number, `@` for
 /// an axis. German, French, Italian and Spanish, for laboratories export in the language of their spreadsheet.
-const WORDS: [(&[&str], &str); 14] = [
-    (
-        &[
-            "achse",
-            "gelenk",
-            "gelenkwinkel",
-            "winkel",
-            "joint",
-            "axe",
-            "articulation",
-            "asse",
-            "giunto",
-            "eje",
-        ],
-        "q#_deg",
-    ),
-    (
-        &["achse", "richtung", "lastrichtung", "axe", "direction", "asse", "direzione", "eje", "direccion"],
-        "axis",
-    ),
-    (&["kraft", "last", "belastung", "force", "charge", "forza", "carico", "fuerza", "carga"], "load_n"),
-    (&["masse", "gewicht", "massa", "peso", "masa"], "load_kg"),
-    (
-        &[
-            "verschiebung",
-            "weg",
-            "auslenkung",
-            "durchbiegung",
-            "deplacement",
-            "fleche",
-            "spostamento",
-            "freccia",
-            "desplazamiento",
-            "flecha",
-        ],
-        "d@_um",
-    ),
-    (&["position", "koordinate", "posizione", "posicion", "coordonnee", "coordenada"], "@_mm"),
-    (&["versuch", "messreihe", "durchgang", "essai", "prova", "ensayo"], "trial"),
-    (&["fase"], "phase"),
-    (&["zeit", "temps", "tempo", "tiempo"], "time_s"),
-    (&["temperatur", "temperatura"], "temperature_c"),
-    (&["pose", "stellung", "messpunkt", "posa", "postura"], "pose"),
-    (&["klemme", "spannstelle", "pince", "morsetto", "mordaza"], "clamp"),
-    (&["aufstellung", "emplacement", "collocazione", "emplazamiento"], "placement"),
-    (&["kugelpfanne", "pfanne", "alveole", "sede", "alojamiento"], "socket"),
+const WORDS: [(&str, &str); 15] = [
+    ("achse gelenk gelenkwinkel winkel joint axe articulation asse giunto eje", "q#_deg"),
+    ("achse richtung lastrichtung axe direction asse direzione eje direccion", "axis"),
+    ("kraft last belastung force charge forza carico fuerza carga", "load_n"),
+    ("masse gewicht massa peso masa", "load_kg"),
+    ("verschiebung weg auslenkung durchbiegung deplacement fleche", "d@_um"),
+    ("spostamento freccia desplazamiento flecha", "d@_um"),
+    ("position koordinate posizione posicion coordonnee coordenada", "@_mm"),
+    ("versuch messreihe durchgang essai prova ensayo", "trial"),
+    ("fase", "phase"),
+    ("zeit temps tempo tiempo", "time_s"),
+    ("temperatur temperatura", "temperature_c"),
+    ("pose stellung messpunkt posa postura", "pose"),
+    ("klemme spannstelle pince morsetto mordaza", "clamp"),
+    ("aufstellung emplacement collocazione emplazamiento", "placement"),
+    ("kugelpfanne pfanne alveole alojamiento", "socket"),
 ];
 
-/// What the columns of a header would be called here, as a hint; `None` where none is known by another name. `known` are
-/// the names that the file may have; those that the header has already are not said again.
-pub fn renamed<'t>(columns: impl Iterator<Item = &'t str>, known: &[&str]) -> Option<String> {
+/// What the columns of a header would be called here, as a hint; `None` where none of the `missing` names is among them. `known`
+/// are the names that the file may have; those that the header has already are not said again.
+pub fn renamed<'t>(
+    columns: impl Iterator<Item = &'t str>,
+    known: &[&str],
+    missing: &[&str],
+) -> Option<String> {
     let columns: Vec<&str> = columns.collect();
     let mut said: Vec<String> = Vec::new();
     let mut taken: Vec<&str> = Vec::new();
@@ -66,11 +40,16 @@ pub fn renamed<'t>(columns: impl Iterator<Item = &'t str>, known: &[&str]) -> Op
         }
         taken.push(name);
         let own = name.rsplit_once('_').map_or("", |(_, own)| own);
-        let other = unit.filter(|unit| unit != own && !own.is_empty());
+        let as_written = |unit: String| {
+            let mut words = column.split(|c: char| !c.is_alphanumeric());
+            words.find(|word| word.to_lowercase() == unit).map_or(unit.clone(), str::to_owned)
+        };
+        let other = unit.filter(|unit| unit != own && !own.is_empty()).map(as_written);
         let convert = other.map_or(String::new(), |unit| format!(" (converted from {unit})"));
         said.push(format!("{} to {name}{convert}", quoted(column)));
     }
-    (!said.is_empty()).then(|| format!("rename {}", said.join(", ")))
+    let helps = taken.iter().any(|name| missing.contains(name));
+    helps.then(|| format!("rename {}", said.join(", ")))
 }
 
 /// The known name that a column of another language stands for, and the unit that it states.
@@ -95,7 +74,7 @@ fn translated<'k>(column: &str, known: &[&'k str]) -> Option<(&'k str, Option<St
         ("load_kg", Some("n")) => find("load_n"),
         _ => Some(name),
     };
-    let mut meant = WORDS.iter().filter(|(words, _)| words.contains(&word.as_str()));
+    let mut meant = WORDS.iter().filter(|(words, _)| words.split(' ').any(|known| known == word));
     let name = meant.find_map(|(_, pattern)| find(pattern)).and_then(by_unit)?;
     Some((name, unit.cloned()))
 }
@@ -149,11 +128,11 @@ mod tests {
 
     #[test]
     fn columns_of_other_languages_are_mapped_with_their_units() {
-        let hint = |columns: &[&str], known: &[&str]| renamed(columns.iter().copied(), known);
+        let hint = |columns: &[&str], known: &[&str]| renamed(columns.iter().copied(), known, known);
         let german = ["Achse", "Kraft [kN]", "Versuch", "Verschiebung Y [µm]", "Temperatur [°C]", "Zeit_s"];
         assert_eq!(
             hint(&german, &RIG).unwrap(),
-            "rename \"Achse\" to axis, \"Kraft [kN]\" to load_n (converted from kn), \"Versuch\" to trial, \
+            "rename \"Achse\" to axis, \"Kraft [kN]\" to load_n (converted from kN), \"Versuch\" to trial, \
              \"Verschiebung Y [µm]\" to dy_um, \"Temperatur [°C]\" to temperature_c, \"Zeit_s\" to time_s"
         );
         assert_eq!(hint(&["Last (kg)"], &RIG).unwrap(), "rename \"Last (kg)\" to load_kg");
@@ -170,7 +149,9 @@ mod tests {
 
     #[test]
     fn what_is_there_or_not_known_is_not_mapped() {
-        assert_eq!(renamed(["axis", "Achse", "weight", "", "dy_um"].into_iter(), &RIG), None);
-        assert_eq!(renamed(["Verschiebung", "Achse"].into_iter(), &ARM), None);
+        assert_eq!(renamed(["axis", "Achse", "weight", "", "dy_um"].into_iter(), &RIG, &RIG), None);
+        assert_eq!(renamed(["Verschiebung", "Achse"].into_iter(), &ARM, &ARM), None);
+        // of no help: the column that is missing is another one
+        assert_eq!(renamed(["Zeit", "q1_rad"].into_iter(), &ARM, &["q1_deg"]), None);
     }
 }

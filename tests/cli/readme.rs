@@ -182,6 +182,39 @@ fn every_command_of_the_docs_runs() {
     assert!(ran >= 4, "docs/ show {ran} commands only");
 }
 
+/// The answers that the guides quote are what the program says today: the first two sentences of each.
+#[test]
+fn the_answers_in_the_guides_are_current() {
+    let guide = |name: &str| {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs").join(name);
+        std::fs::read_to_string(path)
+            .unwrap()
+            .replace("\n> ", " ")
+            .split_whitespace()
+            .collect::<Vec<_>>()
+            .join(" ")
+    };
+    let sandbox = Sandbox::new();
+    sandbox
+        .run("simulate my-robot --rod rods/5.toml --robot robots/six-axis.urdf --poses 12 --validation 30")
+        .succeeded();
+    for (name, command) in [
+        ("why-they-disagree.md", "diagnose rig linear stiffness_data/nist-load-cell.csv"),
+        ("why-they-disagree.md", "diagnose rig rods/5.toml stiffness_data/5.csv"),
+        ("from-readings-to-compliance.md", "rig fit rods/5.toml stiffness_data/5.csv"),
+        ("calibrate-your-robot.md", "calibrate my-robot/campaign.toml --folds 5"),
+        ("calibrate-your-robot.md", "diagnose calibration my-robot/campaign.toml"),
+    ] {
+        let answer = sandbox.run(command).succeeded().stdout;
+        let headline = answer.split("\n\n").next().unwrap().split_whitespace().collect::<Vec<_>>().join(" ");
+        // the guide leaves out whose answer it is
+        let headline = headline.strip_prefix("six-axis, rod 5# compensated (meas): ").unwrap_or(&headline);
+        for sentence in headline.split(". ").take(2) {
+            assert!(guide(name).contains(sentence), "docs/{name} does not quote: {sentence}");
+        }
+    }
+}
+
 /// The README's picture is what the program draws today.
 /// To renew it: `rodcal rig fit rods/5.toml stiffness_data/5.csv --out DIR`, then copy the first figure.
 #[test]

@@ -26,6 +26,8 @@ const AT_LIMIT: usize = 3;
 const FROZEN: usize = 4;
 /// The loads change while it is frozen: so much of the largest reading is expected at least.
 const CHANGES: f64 = 0.2;
+/// And so many steps of the display.
+const DIGITS: f64 = 5.0;
 /// Of a line of more than so many times the data, a few that do not belong to it change what it says by less than half.
 const MANY: usize = 100;
 const HARDLY: f64 = 0.5;
@@ -140,25 +142,15 @@ pub(super) fn saturated(data: &[Datum], lines: &[Line], by_rod: Option<&Expected
             if at.len() < AT_LIMIT || at.len() == own.len() {
                 continue;
             }
-            let own_lines = expected(data, &at, &ends);
-            let expected = own_lines.or_else(|| expected_of_rod(data, &at, &ends, lines, by_rod?));
-            let Some(expected) = expected else { continue };
-            let beyond = |(value, _): &(f64, f64)| side * value - limit;
-            let scatter = expected.iter().fold(0.0, |most: f64, (_, scatter)| most.max(*scatter));
-            let (low, high) = expected.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), of| {
-                (low.min(beyond(of)), high.max(beyond(of)))
-            });
-            let mean = expected.iter().map(beyond).sum::<f64>() / at.len() as f64;
-            // the same value to the last digit at loads that differ, all of them beyond; friction holds
-            // a rod on the way down, but not all of these
-            let goes_on = mean > 2.0 * scatter || (high - low > 3.0 * scatter && at.len() >= 2 * AT_LIMIT);
-            let is_flat = high - low > (BEYOND * limit).max(scatter) && low > -scatter && goes_on;
-            // or, at one load, well beyond, with noise in all other readings
+            let of_lines = expected(data, &at, &ends);
+            let of_rod = by_rod.and_then(|rod| expected_of_rod(data, &at, &ends, lines, rod));
             let step = super::super::evidence::resolution(data);
-            let is_still = low > 3.0 * scatter && scatter > 3.0 * step.max(SAME * most);
-            if mean < BEYOND * limit || !(is_flat || is_still) {
-                continue;
-            }
+            let beyond = |expected: Vec<(f64, f64)>| {
+                let beyond = expected.iter().map(|(value, _)| side * value - limit).collect::<Vec<_>>();
+                let scatter = expected.iter().fold(0.0, |most: f64, (_, scatter)| most.max(*scatter));
+                cut_off(&beyond, scatter, limit, step.max(SAME * most))
+            };
+            let Some(high) = [of_lines, of_rod].into_iter().flatten().find_map(beyond) else { continue };
             let name = column(channel);
             let shown = side * limit / UM;
             found.push(Part {
@@ -180,10 +172,27 @@ pub(super) fn saturated(data: &[Datum], lines: &[Line], by_rod: Option<&Expected
     found
 }
 
+/// How far beyond a limit the farthest of some readings would lie, where they show that they are cut off there; `beyond` is what
+/// is expected of each, with its scatter.
+fn cut_off(beyond: &[f64], scatter: f64, limit: f64, step: f64) -> Option<f64> {
+    let (low, high) = beyond
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), of| (low.min(*of), high.max(*of)));
+    let mean = beyond.iter().sum::<f64>() / beyond.len() as f64;
+    // the same value to the last digit at loads that differ, all of them beyond; friction holds
+    // a rod on the way down, but not all of these
+    let goes_on = mean > 2.0 * scatter || (high - low > 3.0 * scatter && beyond.len() >= 2 * AT_LIMIT);
+    let is_flat = high - low > (BEYOND * limit).max(scatter) && low > -scatter && goes_on;
+    // or, at one load, well beyond, with noise in all other readings
+    let is_still = low > 3.0 * scatter && scatter > 3.0 * step;
+    (mean > BEYOND * limit && (is_flat || is_still)).then_some(high)
+}
+
 /// Displays that stood still for some rows in which the loads changed.
 pub(super) fn frozen(data: &[Datum]) -> Vec<Part> {
     let mut found = Vec::new();
     let all = lines(data, |_| true);
+    let step = super::super::evidence::resolution(data);
     for channel in Axis::ALL {
         let own: Vec<usize> = (0..data.len()).filter(|&i| data[i].channel == channel).collect();
         let largest = own.iter().fold(0.0, |most: f64, &i| most.max(data[i].measured.abs()));
@@ -205,7 +214,9 @@ pub(super) fn frozen(data: &[Datum]) -> Vec<Part> {
                 .iter()
                 .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), (v, _)| (l.min(*v), h.max(*v)));
             let scatter = expected.iter().fold(0.0, |most: f64, (_, scatter)| most.max(*scatter));
-            if range.1 - range.0 < (CHANGES * largest).max(TIMES_SCATTER * scatter) {
+            // what moves by a digit or two stays the same for long
+            let least = (CHANGES * largest).max(TIMES_SCATTER * scatter).max(DIGITS * step);
+            if range.1 - range.0 < least {
                 continue;
             }
             let (name, rows) = (column(channel), (data[at[0]].row, data[at[same - 1]].row));

@@ -75,3 +75,16 @@ fn along_an_axis_on_which_the_rod_hardly_moves_a_zero_is_off_by_a_share_of_what_
     assert!(with(0.03).is_empty(), "{:?}", with(0.03));
     assert_eq!(with(0.6), ["offset_mistake dz_um, axis z, trial 2"]);
 }
+
+#[test]
+fn a_display_with_a_digit_to_show_is_not_stuck() {
+    let file = straight();
+    let mut readings = recorded(&file, Bench::Full, 43);
+    // in steps of 2 µm, of which the load along the rod moves it by one now and then
+    for (k, row) in readings.rows.iter_mut().enumerate() {
+        row.offset = row.offset.map(|offset| offset.map(|of| (of / (2.0 * UM)).round() * 2.0 * UM));
+        let is_along = row.direction.axis == Axis::Z;
+        row.offset[2] = Some(if is_along && k % 3 == 0 { 2.0 * UM } else { 0.0 });
+    }
+    assert!(found(&readings, Some(&file)).is_empty(), "{:?}", found(&readings, Some(&file)));
+}

@@ -231,6 +231,11 @@ fn every_bad_column_or_cell_is_named_with_its_place() {
             "measurements.csv:1: there is no column clamp, expected the id of the clamp that held the ball, for the campaign has [[clamp]]",
         ),
         (
+            "q1_deg,q2_deg",
+            "Achse 1 [°],Gelenk2_rad",
+            "measurements.csv:1: there are no columns q1_deg, q2_deg, expected q1_deg, q2_deg, q3_mm, for the robot has 3 joints -> rename \"Achse 1 [°]\" to q1_deg, \"Gelenk2_rad\" to q2_deg (converted from rad)",
+        ),
+        (
             "q2_deg",
             "q2",
             "measurements.csv:1: there is no column q2_deg, expected q1_deg, q2_deg, q3_mm, for the robot has 3 joints -> is the column q2 meant to be q2_deg?",
@@ -243,7 +248,7 @@ fn every_bad_column_or_cell_is_named_with_its_place() {
         (
             "q2_deg",
             "joint2",
-            "measurements.csv:1: there is no column q2_deg, expected q1_deg, q2_deg, q3_mm, for the robot has 3 joints",
+            "measurements.csv:1: there is no column q2_deg, expected q1_deg, q2_deg, q3_mm, for the robot has 3 joints -> rename \"joint2\" to q2_deg",
         ),
         (
             "q3_mm",

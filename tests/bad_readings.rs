@@ -117,8 +117,13 @@ fn every_bad_cell_or_column_is_named_with_its_place() {
         ),
         (
             "axis",
+            "Achse",
+            "rig.csv:1: there is no column axis, expected the direction of each load, such as x or -z -> rename \"Achse\" to axis",
+        ),
+        (
+            "axis",
             "direction",
-            "rig.csv:1: there is no column axis, expected the direction of each load, such as x or -z",
+            "rig.csv:1: there is no column axis, expected the direction of each load, such as x or -z -> rename \"direction\" to axis",
         ),
         (
             "phase",

@@ -6,7 +6,7 @@ use clap::Args;
 use rodcal::beam::Physics;
 use rodcal::calibration::simulate::{Plan, campaign_files, planned_poses, simulate_telling};
 use rodcal::compliance::{Compliance, DEFAULT_ELEMENTS};
-use rodcal::robot::{Parameter, Robot, Setup};
+use rodcal::robot::{Parameter, Robot, Setup, is_urdf};
 use rodcal::rod::Rod;
 use rodcal::units::MM;
 use rodcal::{Error, Result, files};
@@ -23,7 +23,7 @@ pub struct Simulate {
     /// Rod file (TOML).
     #[arg(long)]
     rod: PathBuf,
-    /// Robot file (a table in TOML), or `builtin:tx90`.
+    /// Robot file (a table in TOML, or a URDF with the links base_link and tip_link), or `builtin:tx90`.
     #[arg(long, default_value = "builtin:tx90")]
     robot: String,
     /// Every random number comes from this seed.
@@ -78,7 +78,7 @@ impl Simulate {
             .map(|(name, text)| (name, text.into_bytes()))
             .collect();
         written.push(("rod.toml".into(), rod_text.into_bytes()));
-        if robot_name == "robot.toml" {
+        if !robot_name.starts_with("builtin:") {
             written.push((robot_name, robot_text.into_bytes()));
         }
         files::write_together(&self.directory, &written)?;
@@ -134,7 +134,11 @@ impl Simulate {
                     expected: "builtin:tx90 or a file".into(),
                 }),
             },
-            None => Ok(("robot.toml".into(), files::read_text(&PathBuf::from(&self.robot))?)),
+            None => {
+                let text = files::read_text(&PathBuf::from(&self.robot))?;
+                let name = if is_urdf(&text) { "robot.urdf" } else { "robot.toml" };
+                Ok((name.into(), text))
+            }
         }
     }
 }

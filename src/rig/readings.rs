@@ -12,7 +12,7 @@ mod write;
 
 use std::path::Path;
 
-use crate::delimited::{Row, Table, nearest_name};
+use crate::delimited::{Row, Table, nearest_name, renamed};
 use crate::error::{Error, Place, Result};
 use crate::files;
 use crate::units::{MM, STANDARD_GRAVITY, UM};
@@ -181,6 +181,7 @@ fn check_columns(table: &Table) -> Result<()> {
     let missing = |what: &str, expected: &str, wanted: &[&str]| {
         let meant = table.columns().find_map(|column| Some((column, nearest_name(column, wanted)?)));
         let hint = meant.map(|(column, known)| format!("is the column {column} meant to be {known}?"));
+        let hint = renamed(table.columns(), &KNOWN_COLUMNS, wanted).or(hint);
         Err(table.header_error("", format!("there is no {what}"), expected.into(), hint))
     };
     if !table.has("axis") {

@@ -35,7 +35,7 @@ fn a_file_that_cannot_be_read_is_named() {
     let latin_1 = text_of_bytes("rod.toml", b"[geometry]\n# \xB5m\n".to_vec()).expect_err("not UTF-8");
     assert_eq!(
         in_words(&latin_1),
-        "rod.toml:2:3: byte 0xB5, expected UTF-8 text -> save the file as UTF-8 (in Excel: \"CSV UTF-8\")"
+        "rod.toml:2:3: byte 0xB5, which is \"µ\" in Latin-1 (Windows-1252), expected UTF-8 text -> save the file as UTF-8 (in Excel: \"CSV UTF-8\")"
     );
 }
 

@@ -161,3 +161,16 @@ fn the_demo_is_made_of_the_other_commands() {
         assert_eq!(demo["validation"], comparison["validation"]);
     }
 }
+
+/// Excel's "Unicode Text": UTF-16, tabs and decimal commas.
+#[test]
+fn unicode_text_of_a_spreadsheet_is_read_as_utf_8_would_be() {
+    let sandbox = Sandbox::new();
+    let plain = sandbox.read("stiffness_data/5.csv");
+    let tabs = plain.replace(',', "\t").replace('.', ",");
+    let mut bytes = vec![0xFF, 0xFE];
+    bytes.extend(tabs.encode_utf16().flat_map(u16::to_le_bytes));
+    std::fs::write(sandbox.path().join("stiffness_data/unicode.csv"), bytes).unwrap();
+    let fit = |file: &str| sandbox.run(&format!("rig fit rods/5.toml stiffness_data/{file} --json")).json();
+    assert_eq!(fit("unicode.csv")["slopes"], fit("5.csv")["slopes"]);
+}

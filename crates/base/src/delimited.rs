@@ -5,12 +5,14 @@
 //! own line instead of swallowing the rest of the file.
 
 mod decimal_mark;
+mod foreign;
 mod names;
 mod numbers;
 mod split;
 mod table;
 mod written;
 
+pub use foreign::renamed;
 pub use names::nearest_name;
 pub use numbers::Dialect;
 pub use table::{Row, Table};

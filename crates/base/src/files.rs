@@ -1,11 +1,15 @@
 //! Text in, whole files out. The only place that touches the file system.
 
+mod encoding;
+
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use sha2::{Digest, Sha256};
 
-use crate::error::{Error, Place, Result};
+pub use encoding::text_of_bytes;
+
+use crate::error::{Error, Result};
 
 /// The other files of the directory of `path` with the same extension, sorted; none where the
 /// directory cannot be read.
@@ -25,10 +29,10 @@ pub fn sha256(bytes: &[u8]) -> String {
     Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// Reads a text file. A byte-order mark (Excel writes one) is dropped.
+/// Reads a text file: UTF-8, or UTF-16 with its mark; see [`text_of_bytes`].
 ///
 /// # Errors
-/// [`Error::File`] where it cannot be read, [`Error::Input`] with line and column where it is not UTF-8.
+/// [`Error::File`] where it cannot be read, [`Error::Input`] with line and column where it is neither.
 pub fn read_text(path: &Path) -> Result<String> {
     text_of_bytes(&path.display().to_string(), read_bytes(path)?)
 }
@@ -51,24 +55,6 @@ pub fn append(path: &Path, contents: &[u8]) -> Result<()> {
         file.sync_data()
     });
     written.map_err(failed("write", path))
-}
-
-/// The text of a file's bytes; see [`read_text`]. `file` only names it in errors.
-///
-/// # Errors
-/// [`Error::Input`] where the bytes are not UTF-8.
-pub fn text_of_bytes(file: &str, bytes: Vec<u8>) -> Result<String> {
-    let text = String::from_utf8(bytes).map_err(|e| {
-        let valid = e.utf8_error().valid_up_to();
-        let before = String::from_utf8_lossy(&e.as_bytes()[..valid]).into_owned();
-        Error::Input {
-            at: Place::of_offset(file, &before, valid),
-            found: format!("byte 0x{:02X}", e.as_bytes()[valid]),
-            expected: "UTF-8 text".into(),
-            hint: Some("save the file as UTF-8 (in Excel: \"CSV UTF-8\")".into()),
-        }
-    })?;
-    Ok(text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text))
 }
 
 /// Writes a file whole or not at all: to a temporary file beside it, then renamed onto it.
@@ -124,17 +110,6 @@ fn readable_by_all() -> std::fs::Permissions {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_byte_order_mark_is_dropped() {
-        assert_eq!(text_of_bytes("f", b"\xEF\xBB\xBFaxis".to_vec()).unwrap(), "axis");
-    }
-
-    #[test]
-    fn latin_1_is_refused_with_its_place() {
-        let error = text_of_bytes("f.csv", b"axis\n\xB5m".to_vec()).unwrap_err();
-        assert_eq!(error.to_string(), "f.csv:2:1: byte 0xB5, expected UTF-8 text");
-    }
 
     #[test]
     fn writing_replaces_the_whole_file_and_leaves_nothing_else() {

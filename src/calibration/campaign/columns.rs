@@ -2,7 +2,7 @@
 
 use super::Warning;
 use super::layout::{Role, Seen};
-use crate::delimited::{Row, Table, nearest_name};
+use crate::delimited::{Row, Table, nearest_name, renamed};
 use crate::error::Result;
 use crate::robot::Robot;
 
@@ -126,7 +126,9 @@ impl Columns {
             [one] => format!("there is no column {one}"),
             more => format!("there are no columns {}", listed(more)),
         };
-        Err(table.header_error("", found, expected, self.meant(table, missing)))
+        let known: Vec<&str> = self.known().collect();
+        let hint = renamed(table.columns(), &known, missing).or_else(|| self.meant(table, missing));
+        Err(table.header_error("", found, expected, hint))
     }
 
     /// Which column of the table was most likely meant to be one of the `missing` ones.

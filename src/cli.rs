@@ -18,6 +18,8 @@ mod simulate;
 mod trial;
 mod values;
 
+use std::path::Path;
+
 use clap::{CommandFactory, Parser, Subcommand};
 use rodcal::Result;
 
@@ -105,7 +107,10 @@ enum Command {
 
 /// Runs the command that was asked for.
 pub fn run(arguments: &Arguments) -> Result<Outcome> {
-    output::check(&arguments.output)?;
+    let options = &arguments.output;
+    let is_demo = matches!(arguments.command, None | Some(Command::Demo));
+    let directory = options.out.as_deref().or(is_demo.then(|| Path::new(demo::DIRECTORY)));
+    output::check(options, directory)?;
     match &arguments.command {
         None | Some(Command::Demo) => demo::run(),
         Some(Command::Compliance(command)) => command.run(),
@@ -115,8 +120,8 @@ pub fn run(arguments: &Arguments) -> Result<Outcome> {
         Some(Command::Compare(command)) => command.run(),
         Some(Command::Diagnose(command)) => command.run(),
         Some(Command::Predict(command)) => command.run(),
-        Some(Command::Simulate(command)) => command.run(),
-        Some(Command::Trial(command)) => command.run(),
+        Some(Command::Simulate(command)) => command.run(options.existing()),
+        Some(Command::Trial(command)) => command.run(options.existing()),
         Some(Command::Completions(command)) => Ok(command.run(Arguments::command())),
     }
 }

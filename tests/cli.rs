@@ -10,6 +10,7 @@ mod diagnose;
 mod diagnose_calibration;
 mod files;
 mod json;
+mod kept;
 mod mistakes;
 mod page;
 mod readme;

@@ -22,6 +22,9 @@ const RECONSTRUCTED: &str = "Rods 2# and 5# and their readings are reconstructed
 /// Enough to show what a comparison looks like within a blink; `rodcal compare` takes more.
 const DRAWS: usize = 20;
 
+/// Where its report goes unless somebody says otherwise.
+pub const DIRECTORY: &str = "reports/demo";
+
 pub fn run() -> Result<Outcome> {
     let mut report = Report { title: "rodcal demo".into(), ..Report::default() };
     let (mut results, mut words, mut headlines) = (Vec::new(), String::new(), Vec::new());
@@ -77,7 +80,7 @@ pub fn run() -> Result<Outcome> {
         }),
         report: Some(report),
         text: Some(words),
-        default_directory: Some(PathBuf::from("reports/demo")),
+        default_directory: Some(PathBuf::from(DIRECTORY)),
         files: Vec::new(),
         status: 0,
     })

@@ -2,12 +2,13 @@
 //! report to files.
 
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Args;
+use rodcal::files::{self, Existing};
 use rodcal::report::{Report, text};
-use rodcal::{Error, Result, files};
+use rodcal::{Error, Result};
 use serde_json::Value;
 
 use super::provenance::Provenance;
@@ -20,14 +21,30 @@ pub struct Options {
     pub json: bool,
 
     /// Write a report into this directory: index.html for a browser, pictures (SVG), tables (CSV,
-    /// Markdown) and result.json. Made if missing; other files in it stay.
+    /// Markdown) and result.json. Made if missing. Files in it that rodcal did not write, or that
+    /// were changed since, stay.
     #[arg(long, global = true, value_name = "DIR", help_heading = OUTPUT)]
     pub out: Option<PathBuf>,
 
     /// With --out: write the pictures as PNG too.
     #[arg(long, global = true, help_heading = OUTPUT)]
     pub png: bool,
+
+    /// Replace files that rodcal did not write, or that were changed since.
+    #[arg(long, global = true, help_heading = OUTPUT)]
+    pub force: bool,
 }
+
+impl Options {
+    /// What becomes of files that stand where others are to be written.
+    pub fn existing(&self) -> Existing {
+        if self.force { Existing::Replace } else { Existing::Keep }
+    }
+}
+
+/// What every report has, whatever it is of.
+const PAGE: &str = "index.html";
+const RESULT: &str = "result.json";
 
 const OUTPUT: &str = "Output";
 
@@ -64,7 +81,7 @@ impl Outcome {
 /// Prints warnings and the result, after the report is written whole.
 ///
 /// # Errors
-/// [`Error::File`] where a file cannot be written.
+/// [`Error::File`] where a file cannot be written, [`Error::InTheWay`] where one would be lost.
 pub fn deliver(options: &Options, outcome: Outcome) -> Result<ExitCode> {
     let Outcome { mut json, mut report, text, default_directory, files: more, status } = outcome;
     let directory = options.out.clone().or(default_directory);
@@ -89,10 +106,10 @@ pub fn deliver(options: &Options, outcome: Outcome) -> Result<ExitCode> {
         if options.png {
             files.extend(pngs(&files)?);
         }
-        json["report"] = directory.join("index.html").display().to_string().into();
+        json["report"] = directory.join(PAGE).display().to_string().into();
         files.extend(more);
-        files.push(("result.json".into(), pretty(&json).into_bytes()));
-        files::write_together(directory, &files)?;
+        files.push((RESULT.into(), pretty(&json).into_bytes()));
+        files::write_together(directory, &files, options.existing())?;
     }
     let warnings = report.as_ref().map_or(&[][..], |report| &report.warnings);
     for warning in warnings {
@@ -105,7 +122,7 @@ pub fn deliver(options: &Options, outcome: Outcome) -> Result<ExitCode> {
         (false, None, None) => String::new(),
     };
     if let (false, Some(directory), Some(_)) = (options.json, &directory, &report) {
-        words += &format!("\nreport: {}\n", directory.join("index.html").display());
+        words += &format!("\nreport: {}\n", directory.join(PAGE).display());
     }
     match std::io::stdout().write_all(words.as_bytes()) {
         // `rodcal … | head` closes the pipe early and means no harm
@@ -116,12 +133,12 @@ pub fn deliver(options: &Options, outcome: Outcome) -> Result<ExitCode> {
     }
 }
 
-/// Refuses what cannot be delivered, before anything is calculated.
+/// Refuses what cannot be delivered, before anything is calculated; the report goes to `directory`.
 ///
 /// # Errors
 /// [`Error::NotApplicable`] for `--png` in a build without it, [`Error::Argument`] for a file in the
-/// place of the directory.
-pub fn check(options: &Options) -> Result<()> {
+/// place of the directory, [`Error::InTheWay`] for a page or a result in it that would be lost.
+pub fn check(options: &Options, directory: Option<&Path>) -> Result<()> {
     if options.png && !cfg!(feature = "png") {
         return Err(Error::NotApplicable {
             what: "--png".into(),
@@ -129,13 +146,16 @@ pub fn check(options: &Options) -> Result<()> {
             hint: "build one that can: cargo install --path . --features png".into(),
         });
     }
-    match &options.out {
-        Some(directory) if directory.exists() && !directory.is_dir() => Err(Error::Argument {
-            name: "--out",
-            found: format!("{}, which is a file", directory.display()),
-            expected: "a directory, or a name that is still free".into(),
-        }),
-        _ => Ok(()),
+    match directory {
+        Some(directory) if options.out.is_some() && directory.exists() && !directory.is_dir() => {
+            Err(Error::Argument {
+                name: "--out",
+                found: format!("{}, which is a file", directory.display()),
+                expected: "a directory, or a name that is still free".into(),
+            })
+        }
+        Some(directory) => files::check_free(directory, &[PAGE, RESULT], options.existing()),
+        None => Ok(()),
     }
 }
 

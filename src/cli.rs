@@ -2,6 +2,7 @@
 
 mod calibrate;
 mod compare;
+mod compare_runs;
 mod completions;
 mod compliance;
 mod demo;
@@ -15,6 +16,7 @@ mod progress;
 mod provenance;
 mod rig;
 mod simulate;
+pub mod suggestions;
 mod trial;
 mod values;
 
@@ -91,6 +93,8 @@ enum Command {
     Calibrate(calibrate::Calibrate),
     /// Calibrate in every mode of compensation, and test which differences are significant.
     Compare(compare::Compare),
+    /// Set results of one command side by side: what changed in inputs, parameters, errors, findings.
+    CompareRuns(compare_runs::CompareRuns),
     /// Where recording and model disagree: which physics did the model leave out?
     #[command(subcommand)]
     Diagnose(diagnose::Diagnose),
@@ -118,6 +122,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome> {
         Some(Command::Rig(command)) => command.run(),
         Some(Command::Calibrate(command)) => command.run(),
         Some(Command::Compare(command)) => command.run(),
+        Some(Command::CompareRuns(command)) => command.run(),
         Some(Command::Diagnose(command)) => command.run(),
         Some(Command::Predict(command)) => command.run(),
         Some(Command::Simulate(command)) => command.run(options.existing()),

@@ -7,7 +7,10 @@ use std::process::ExitCode;
 use clap::Parser;
 
 fn main() -> ExitCode {
-    let arguments = cli::Arguments::parse();
+    let arguments = match cli::Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => cli::suggestions::with_nested(error).exit(),
+    };
     match cli::run(&arguments).and_then(|outcome| cli::output::deliver(&arguments.output, outcome)) {
         Ok(status) => status,
         Err(error) => {

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod calibrate;
+mod compare_runs;
 mod design;
 mod design_poses;
 mod design_rig;

@@ -53,7 +53,7 @@ pub struct DesignRod {
     #[arg(long, value_name = "CAMPAIGN", requires = "objective")]
     campaign: Option<PathBuf>,
     /// What they are ranked by, with --campaign.
-    #[arg(long, value_enum, requires = "campaign")]
+    #[arg(long, ignore_case = true, value_enum, requires = "campaign")]
     objective: Option<Objective>,
     /// Poses in all for each rod, chosen by O1, with --campaign [default: as many as recorded, else
     /// 30 on each clamp].

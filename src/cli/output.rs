@@ -44,7 +44,8 @@ impl Options {
 
 /// What every report has, whatever it is of.
 const PAGE: &str = "index.html";
-const RESULT: &str = "result.json";
+/// The result as JSON.
+pub const RESULT: &str = "result.json";
 
 const OUTPUT: &str = "Output";
 
@@ -88,6 +89,7 @@ pub fn deliver(options: &Options, outcome: Outcome) -> Result<ExitCode> {
     if report.is_none() && options.out.is_some() {
         say("warning: this command writes no report: --out has no effect");
     }
+    let mut inputs = Vec::new();
     if let Some(report) = &mut report {
         if options.png && directory.is_none() {
             report.warnings.push("--png has no effect without --out".into());
@@ -96,6 +98,7 @@ pub fn deliver(options: &Options, outcome: Outcome) -> Result<ExitCode> {
         json["warnings"] = report.warnings.as_slice().into();
         if directory.is_some() {
             let provenance = Provenance::of(std::env::args().skip(1));
+            inputs.extend(provenance.inputs.iter().cloned());
             report.provenance.extend(provenance.lines());
             json["provenance"] = provenance.json();
         }
@@ -109,6 +112,7 @@ pub fn deliver(options: &Options, outcome: Outcome) -> Result<ExitCode> {
         json["report"] = directory.join(PAGE).display().to_string().into();
         files.extend(more);
         files.push((RESULT.into(), pretty(&json).into_bytes()));
+        files::check_apart(&inputs, directory, &files, options.existing())?;
         files::write_together(directory, &files, options.existing())?;
     }
     let warnings = report.as_ref().map_or(&[][..], |report| &report.warnings);

@@ -40,7 +40,9 @@ impl Provenance {
         let named =
             kept.iter().map(|argument| argument.split_once('=').map_or(&argument[..], |(_, value)| value));
         let mut found: BTreeSet<PathBuf> = BTreeSet::new();
-        for path in named.map(PathBuf::from).filter(|path| path.is_file()) {
+        // of a run that is compared, its result
+        let file = |path: PathBuf| if path.is_dir() { path.join(super::output::RESULT) } else { path };
+        for path in named.map(PathBuf::from).map(file).filter(|path| path.is_file()) {
             found.extend(named_in(&path));
             found.insert(path);
         }

@@ -46,6 +46,9 @@ pub(super) struct Lettering {
     pub(super) upwards: bool,
 }
 
+/// Both ends of an axis, and whether it is logarithmic.
+type Ends = (f64, f64, bool);
+
 impl Canvas {
     pub(super) fn new(width_px: f64, height_px: f64) -> Self {
         Canvas { width_px, height_px, body: String::new(), panels: Vec::new() }
@@ -103,9 +106,9 @@ impl Canvas {
         self.with(|b| b.draw_text(&printable(text), &look, fine(&at)));
     }
 
-    /// Remembers where a panel's axes are: its corners in units of the SVG, and each axis as its ends and whether it is
-    /// logarithmic, with its label; `None` where it has names and no numbers.
-    pub(super) fn panel(&mut self, corners: [Px; 2], axes: [(Option<(f64, f64, bool)>, &str); 2]) {
+    /// Remembers where a panel's axes are: its corners in units of the SVG, and each axis with its label; `None` where it
+    /// has names and no numbers.
+    pub(super) fn panel(&mut self, corners: [Px; 2], axes: [(Option<Ends>, &str); 2]) {
         let [(left, top), (right, bottom)] = corners.map(|corner| fine(&corner));
         let [(x, xlabel), (y, ylabel)] = axes;
         self.panels.push(serde_json::json!({

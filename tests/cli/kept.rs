@@ -3,7 +3,7 @@
 use super::{Answer, Sandbox};
 
 /// Every command that takes `--out`; none of them gets as far as its input here.
-const REPORTS: [&str; 12] = [
+const REPORTS: [&str; 13] = [
     "demo",
     "compliance rods/5.toml",
     "rig fit rods/5.toml stiffness_data/5.csv",
@@ -16,6 +16,7 @@ const REPORTS: [&str; 12] = [
     "design poses campaigns/tx90-5/campaign.toml --count 60",
     "design rig rods/5.toml --r-rod-width-percent 1",
     "trial score t",
+    "compare-runs a b",
 ];
 
 const SIMULATE: &str = "simulate sim --rod rods/5.toml --poses 6 --validation 4";

@@ -112,6 +112,8 @@ pub enum Whose {
     Changed,
     /// Whoever wrote it: its like is written once.
     Kept,
+    /// It is an input of what is to be written.
+    Read,
 }
 
 impl Error {
@@ -151,6 +153,7 @@ fn in_the_way(files: &[PathBuf], whose: Whose) -> String {
     match whose {
         Whose::Unknown => format!("{names} {are} there already, and rodcal did not write {them}"),
         Whose::Changed => format!("{names} {have} been changed since rodcal wrote {them}"),
+        Whose::Read => format!("this command reads {names}, and its result would replace {them}"),
         Whose::Kept => format!("{names} {are} there already"),
     }
 }

@@ -150,6 +150,29 @@ pub fn check_absent(path: &Path, existing: Existing) -> Result<()> {
     refuse(&[("", Standing::at(path)?)], existing, |_, _| Some(Whose::Kept))
 }
 
+/// Refuses to write over what was read: `inputs` by name and SHA-256, `files` as [`write_together`] takes them.
+///
+/// # Errors
+/// [`Error::InTheWay`].
+pub fn check_apart(
+    inputs: &[(String, String)],
+    directory: &Path,
+    files: &[(String, Vec<u8>)],
+    existing: Existing,
+) -> Result<()> {
+    let read: BTreeMap<PathBuf, &String> =
+        inputs.iter().filter_map(|(name, hash)| Some((Path::new(name).canonicalize().ok()?, hash))).collect();
+    let is_lost = |(name, contents): &&(String, Vec<u8>)| {
+        let path = directory.join(name).canonicalize().ok();
+        path.and_then(|path| read.get(&path)).is_some_and(|hash| **hash != sha256(contents))
+    };
+    let lost: Vec<PathBuf> = files.iter().filter(is_lost).map(|(name, _)| directory.join(name)).collect();
+    match lost.is_empty() || existing == Existing::Replace {
+        true => Ok(()),
+        false => Err(Error::InTheWay { files: lost, whose: Whose::Read }),
+    }
+}
+
 fn write(directory: &Path, files: &[(String, Vec<u8>)], existing: Existing, known: &Known) -> Result<()> {
     let there = files.iter().map(|(name, _)| Ok((name.as_str(), Standing::at(&directory.join(name))?)));
     let there = there.collect::<Result<Vec<_>>>()?;

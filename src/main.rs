@@ -14,7 +14,8 @@ fn main() -> ExitCode {
     match cli::run(&arguments).and_then(|outcome| cli::output::deliver(&arguments.output, outcome)) {
         Ok(status) => status,
         Err(error) => {
-            cli::output::say(&format!("error: {error}"));
+            let word = cli::output::coloured("error:", cli::output::RED);
+            cli::output::say(&format!("{word} {error}"));
             if let Some(hint) = error.hint() {
                 cli::output::say(&format!("hint: {hint}"));
             }

@@ -1,7 +1,7 @@
 //! What a command hands back, and where it goes: the result to stdout, warnings to stderr, the
 //! report to files.
 
-use std::io::Write;
+use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -117,12 +117,12 @@ pub fn deliver(options: &Options, outcome: Outcome) -> Result<ExitCode> {
     }
     let warnings = report.as_ref().map_or(&[][..], |report| &report.warnings);
     for warning in warnings {
-        say(&format!("warning: {warning}"));
+        say(&format!("{} {warning}", coloured("warning:", YELLOW)));
     }
     let mut words = match (options.json, text, &report) {
         (true, ..) => pretty(&json),
         (false, Some(text), _) => text,
-        (false, None, Some(report)) => text::text(report),
+        (false, None, Some(report)) => text::text_within(report, width()),
         (false, None, None) => String::new(),
     };
     if let (false, Some(directory), Some(_)) = (options.json, &directory, &report) {
@@ -174,9 +174,33 @@ fn pngs(_: &[(String, Vec<u8>)]) -> Result<Vec<(String, Vec<u8>)>> {
     Ok(Vec::new())
 }
 
+/// ANSI colours of what asks for attention, and of what went wrong.
+const YELLOW: u8 = 33;
+pub const RED: u8 = 31;
+
+/// A word for stderr: in colour on a terminal, unless NO_COLOR says otherwise.
+pub fn coloured(word: &str, colour: u8) -> String {
+    let is_plain = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
+    match std::io::stderr().is_terminal() && !is_plain {
+        true => format!("\u{1b}[1;{colour}m{word}\u{1b}[0m"),
+        false => word.to_owned(),
+    }
+}
+
 /// A line on stderr. Nobody may be listening (`2>&1 | head`), and `eprintln!` would panic.
 pub fn say(line: &str) {
     let _ = writeln!(std::io::stderr(), "{line}");
+}
+
+/// Columns of the terminal that stdout is, or as COLUMNS says; in a file or a pipe tables take what they need.
+fn width() -> usize {
+    if !std::io::stdout().is_terminal() {
+        return usize::MAX;
+    }
+    let told = std::env::var("COLUMNS").ok().and_then(|columns| columns.parse().ok());
+    let seen = || terminal_size::terminal_size().map(|(width, _)| usize::from(width.0));
+    // what is narrower is not a terminal that anybody reads
+    told.or_else(seen).unwrap_or(100).max(20)
 }
 
 fn pretty(json: &Value) -> String {

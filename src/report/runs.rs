@@ -244,10 +244,18 @@ fn warnings(runs: &Runs) -> Vec<String> {
 }
 
 fn commands(runs: &Runs) -> Section {
-    let columns = ["run", "command", "program", "verdict"].map(Column::text).to_vec();
+    let has_verdict = runs.runs.iter().any(|run| run.verdict.is_some());
+    let headers = ["run", "command", "program", "verdict"];
+    let columns =
+        headers[..if has_verdict { 4 } else { 3 }].iter().map(|header| Column::text(*header)).collect();
     let mut table = Table::new("runs", "What was run; every other run is compared with the first.", columns);
     for run in &runs.runs {
-        table.row([&run.folder, &run.command, &run.program, run.verdict.as_ref().unwrap_or(&String::new())]);
+        table.row([
+            run.folder.as_str(),
+            &run.command,
+            &run.program,
+            run.verdict.as_deref().unwrap_or_default(),
+        ]);
     }
     Section::new("The runs", vec![Block::Table(table)])
 }

@@ -116,7 +116,12 @@ fn last(file: &File) -> &str {
     file.0.rsplit(['/', '\\']).next().unwrap_or_default()
 }
 
-/// The same content first, then the same name, then the same last part of it.
+/// What its name ends in: "csv".
+fn kind(file: &File) -> &str {
+    last(file).rsplit_once('.').map_or("", |(_, kind)| kind)
+}
+
+/// The same content first, then the same name, then the same last part of it, then the only ones of a kind.
 fn inputs(first: &Run, other: &Run) -> Vec<Input> {
     let mut rest: Vec<&File> = other.inputs.iter().collect();
     let mut partners: Vec<Option<&File>> = vec![None; first.inputs.len()];
@@ -127,6 +132,16 @@ fn inputs(first: &Run, other: &Run) -> Vec<Input> {
         {
             let place = rest.iter().position(|candidate| is_partner(file, candidate));
             *partner = place.map(|place| rest.remove(place));
+        }
+    }
+    // one that is left on either side, of one kind
+    let left: Vec<usize> = (0..partners.len()).filter(|&k| partners[k].is_none()).collect();
+    for &k in &left {
+        let is_only =
+            left.iter().filter(|&&other| kind(&first.inputs[other]) == kind(&first.inputs[k])).count() == 1;
+        let mut alike = rest.iter().enumerate().filter(|(_, file)| kind(file) == kind(&first.inputs[k]));
+        if let (true, Some((place, _)), None) = (is_only, alike.next(), alike.next()) {
+            partners[k] = Some(rest.remove(place));
         }
     }
     let pair = |(file, partner): (&File, Option<&File>)| Input {
@@ -194,12 +209,13 @@ mod tests {
 
     #[test]
     fn files_are_matched_by_content_then_by_name() {
-        let first = run(&[("a/x.toml", "1"), ("a/y.csv", "2"), ("z.csv", "3")], 1.0);
-        let other = run(&[("b/renamed.toml", "1"), ("b/y.csv", "9"), ("new.csv", "4")], 1.0);
+        let first = run(&[("a/x.toml", "1"), ("a/y.csv", "2"), ("old.csv", "3"), ("base.urdf", "5")], 1.0);
+        let other = run(&[("b/renamed.toml", "1"), ("b/y.csv", "9"), ("new.csv", "4"), ("c.stl", "6")], 1.0);
         let found = inputs(&first, &other);
         let states: Vec<State> = found.iter().map(|input| input.state).collect();
-        assert_eq!(states, [State::Same, State::Changed, State::Alone, State::Alone]);
-        assert_eq!(found[3].files, [None, Some("new.csv".into())]);
+        assert_eq!(states, [State::Same, State::Changed, State::Changed, State::Alone, State::Alone]);
+        assert_eq!(found[2].files, [Some("old.csv".into()), Some("new.csv".into())]);
+        assert_eq!(found[4].files, [None, Some("c.stl".into())]);
     }
 
     /// t = 1.5/(0.3·√2) = 3.536; with 8 degrees of freedom P = 0.0077, below 0.05/2; 1.0/(0.3·√2) has P = 0.046.

@@ -4,6 +4,7 @@
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use rodcal::files::{Existing, write_together};
 use rodcal::report::chart::{Bar, Chart, Direction, Figure, Mark, Point, Range, Style};
 use rodcal::report::pictures::calibration::{
     Convergence, MethodErrors, ModeComparison, ModeResiduals, ParameterCorrection, PoseError, PoseResidual,
@@ -21,7 +22,7 @@ pub fn main(arguments: &[String]) -> rodcal::Result<()> {
     let directory = arguments.first().cloned().unwrap_or_else(|| "reports/gallery".into());
     let poses = arguments.get(1).and_then(|n| n.parse().ok()).unwrap_or(150);
     let files = report(poses).files()?;
-    rodcal::files::write_together(std::path::Path::new(&directory), &files)
+    write_together(std::path::Path::new(&directory), &files, Existing::Keep)
 }
 
 fn report(poses: usize) -> Report {

@@ -2,6 +2,7 @@
 
 mod calibrate;
 mod compare;
+mod compare_runs;
 mod completions;
 mod compliance;
 mod demo;
@@ -15,8 +16,11 @@ mod progress;
 mod provenance;
 mod rig;
 mod simulate;
+pub mod suggestions;
 mod trial;
 mod values;
+
+use std::path::Path;
 
 use clap::{CommandFactory, Parser, Subcommand};
 use rodcal::Result;
@@ -89,6 +93,8 @@ enum Command {
     Calibrate(calibrate::Calibrate),
     /// Calibrate in every mode of compensation, and test which differences are significant.
     Compare(compare::Compare),
+    /// Set results of one command side by side: what changed in inputs, parameters, errors, findings.
+    CompareRuns(compare_runs::CompareRuns),
     /// Where recording and model disagree: which physics did the model leave out?
     #[command(subcommand)]
     Diagnose(diagnose::Diagnose),
@@ -105,7 +111,10 @@ enum Command {
 
 /// Runs the command that was asked for.
 pub fn run(arguments: &Arguments) -> Result<Outcome> {
-    output::check(&arguments.output)?;
+    let options = &arguments.output;
+    let is_demo = matches!(arguments.command, None | Some(Command::Demo));
+    let directory = options.out.as_deref().or(is_demo.then(|| Path::new(demo::DIRECTORY)));
+    output::check(options, directory)?;
     match &arguments.command {
         None | Some(Command::Demo) => demo::run(),
         Some(Command::Compliance(command)) => command.run(),
@@ -113,10 +122,11 @@ pub fn run(arguments: &Arguments) -> Result<Outcome> {
         Some(Command::Rig(command)) => command.run(),
         Some(Command::Calibrate(command)) => command.run(),
         Some(Command::Compare(command)) => command.run(),
+        Some(Command::CompareRuns(command)) => command.run(),
         Some(Command::Diagnose(command)) => command.run(),
         Some(Command::Predict(command)) => command.run(),
-        Some(Command::Simulate(command)) => command.run(),
-        Some(Command::Trial(command)) => command.run(),
+        Some(Command::Simulate(command)) => command.run(options.existing()),
+        Some(Command::Trial(command)) => command.run(options.existing()),
         Some(Command::Completions(command)) => Ok(command.run(Arguments::command())),
     }
 }

@@ -7,11 +7,15 @@ use std::process::ExitCode;
 use clap::Parser;
 
 fn main() -> ExitCode {
-    let arguments = cli::Arguments::parse();
+    let arguments = match cli::Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => cli::suggestions::with_nested(error).exit(),
+    };
     match cli::run(&arguments).and_then(|outcome| cli::output::deliver(&arguments.output, outcome)) {
         Ok(status) => status,
         Err(error) => {
-            cli::output::say(&format!("error: {error}"));
+            let word = cli::output::coloured("error:", cli::output::RED);
+            cli::output::say(&format!("{word} {error}"));
             if let Some(hint) = error.hint() {
                 cli::output::say(&format!("hint: {hint}"));
             }

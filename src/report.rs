@@ -35,6 +35,7 @@ pub mod poses;
 pub mod prediction;
 pub mod rig;
 pub mod rig_plan;
+pub mod runs;
 mod scale;
 mod sensitivities;
 pub mod table;

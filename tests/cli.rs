@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod calibrate;
+mod compare_runs;
 mod convert;
 mod design;
 mod design_poses;
@@ -11,6 +12,7 @@ mod diagnose;
 mod diagnose_calibration;
 mod files;
 mod json;
+mod kept;
 mod mistakes;
 mod page;
 mod readme;

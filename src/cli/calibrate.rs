@@ -17,10 +17,10 @@ pub struct Calibrate {
     campaign: PathBuf,
     /// How the rod's deflection is known [default: meas with rig readings, else fea with a rod,
     /// else none].
-    #[arg(long, value_enum)]
+    #[arg(long, ignore_case = true, value_enum)]
     mode: Option<ModeName>,
     /// What an outlier counts.
-    #[arg(long, value_enum, default_value_t = Weights::None)]
+    #[arg(long, ignore_case = true, value_enum, default_value_t = Weights::None)]
     robust: Weights,
     /// Hold numbers of the robot whose correction is smaller than its standard error at their
     /// nominal values, and calibrate again.

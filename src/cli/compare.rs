@@ -19,7 +19,7 @@ pub struct Compare {
     /// Campaign file (TOML): robot, rod, measurements, validation.
     campaign: PathBuf,
     /// What an outlier counts.
-    #[arg(long, value_enum, default_value_t = Weights::None)]
+    #[arg(long, ignore_case = true, value_enum, default_value_t = Weights::None)]
     robust: Weights,
     /// Draws of the bootstrap that tells differences from chance.
     #[arg(long, value_name = "N", default_value_t = CompareOptions::default().draws, value_parser = draws)]

@@ -17,10 +17,10 @@ pub struct Compliance {
     /// Rod file (TOML): lengths, angle, sections, materials, masses.
     rod: PathBuf,
     /// Which model the headline and the JSON are about; the tables show both.
-    #[arg(long, value_enum, default_value_t = CliMode::Fea)]
+    #[arg(long, ignore_case = true, value_enum, default_value_t = CliMode::Fea)]
     mode: CliMode,
     /// Beam theory of fea [default: timoshenko]; calc is Euler–Bernoulli by definition.
-    #[arg(long, value_enum)]
+    #[arg(long, ignore_case = true, value_enum)]
     theory: Option<Theory>,
     /// Number of beam elements of fea. They are exact: the result does not depend on it.
     #[arg(long, default_value_t = DEFAULT_ELEMENTS, value_parser = elements)]

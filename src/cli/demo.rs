@@ -37,6 +37,8 @@ const IN_SHORT: [usize; 3] = [0, 2, 0];
 /// The rod whose page the demo shows, and the one whose readings are diagnosed.
 const SHOWN: &str = "5#";
 const DIAGNOSED: &str = "2#";
+/// Where its report goes unless somebody says otherwise.
+pub const DIRECTORY: &str = "reports/demo";
 
 pub fn run() -> Result<Outcome> {
     let [mut rod_page, mut robot_page, mut why_page] = PAGES.map(|(page, title, _)| Report {
@@ -120,7 +122,7 @@ pub fn run() -> Result<Outcome> {
         }),
         report: Some(index),
         text: Some(words),
-        default_directory: Some(PathBuf::from("reports/demo")),
+        default_directory: Some(PathBuf::from(DIRECTORY)),
         files,
         status: 0,
     })

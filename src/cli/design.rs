@@ -9,8 +9,9 @@ use std::time::{Duration, Instant};
 use clap::{Args, Subcommand, ValueEnum};
 use rodcal::calibration::Campaign;
 use rodcal::design::{Budget, Found, MOST_RODS, Search, Searched, Study, Where, Wish, for_robot};
+use rodcal::files::{self, Existing};
 use rodcal::rod::Rod;
-use rodcal::{Error, Result, files, report};
+use rodcal::{Error, Result, report};
 
 use super::output::Outcome;
 use super::progress::Progress;
@@ -52,7 +53,7 @@ pub struct DesignRod {
     #[arg(long, value_name = "CAMPAIGN", requires = "objective")]
     campaign: Option<PathBuf>,
     /// What they are ranked by, with --campaign.
-    #[arg(long, value_enum, requires = "campaign")]
+    #[arg(long, ignore_case = true, value_enum, requires = "campaign")]
     objective: Option<Objective>,
     /// Poses in all for each rod, chosen by O1, with --campaign [default: as many as recorded, else
     /// 30 on each clamp].
@@ -108,7 +109,9 @@ impl DesignRod {
     /// Looks at all rods, from where the kept search stopped.
     fn search(&self, wish: &Wish, searched: Searched, progress: &Progress) -> Result<Found> {
         let kept = self.resume.as_deref();
-        let mut search = match kept.filter(|path| path.exists()) {
+        let found = kept.filter(|path| path.exists());
+        let mut is_own = found.is_some();
+        let mut search = match found {
             Some(path) => {
                 let text = files::read_text(path)?;
                 Search::from_text(wish, searched, &path.display().to_string(), &text)?
@@ -121,7 +124,10 @@ impl DesignRod {
             search.go_on(&|more| progress.more(more))?;
             let is_time = last.is_none_or(|last| last.elapsed() > KEPT_EVERY) || search.is_done();
             if let (Some(path), true) = (kept, is_time) {
-                files::write_whole(path, search.to_text().as_bytes())?;
+                // what was read, or written before, is a search of the program's
+                let existing = if is_own { Existing::Replace } else { Existing::Keep };
+                files::write_new(path, search.to_text().as_bytes(), existing)?;
+                is_own = true;
                 last = Some(Instant::now());
             }
         }

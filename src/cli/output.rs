@@ -1,13 +1,14 @@
 //! What a command hands back, and where it goes: the result to stdout, warnings to stderr, the
 //! report to files.
 
-use std::io::Write;
-use std::path::PathBuf;
+use std::io::{IsTerminal, Write};
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Args;
+use rodcal::files::{self, Existing};
 use rodcal::report::{Report, text};
-use rodcal::{Error, Result, files};
+use rodcal::{Error, Result};
 use serde_json::Value;
 
 use super::provenance::Provenance;
@@ -20,14 +21,31 @@ pub struct Options {
     pub json: bool,
 
     /// Write a report into this directory: index.html for a browser, pictures (SVG), tables (CSV,
-    /// Markdown) and result.json. Made if missing; other files in it stay.
+    /// Markdown) and result.json. Made if missing. Files in it that rodcal did not write, or that
+    /// were changed since, stay.
     #[arg(long, global = true, value_name = "DIR", help_heading = OUTPUT)]
     pub out: Option<PathBuf>,
 
     /// With --out: write the pictures as PNG too.
     #[arg(long, global = true, help_heading = OUTPUT)]
     pub png: bool,
+
+    /// Replace files that rodcal did not write, or that were changed since.
+    #[arg(long, global = true, help_heading = OUTPUT)]
+    pub force: bool,
 }
+
+impl Options {
+    /// What becomes of files that stand where others are to be written.
+    pub fn existing(&self) -> Existing {
+        if self.force { Existing::Replace } else { Existing::Keep }
+    }
+}
+
+/// What every report has, whatever it is of.
+const PAGE: &str = "index.html";
+/// The result as JSON.
+pub const RESULT: &str = "result.json";
 
 const OUTPUT: &str = "Output";
 
@@ -64,13 +82,14 @@ impl Outcome {
 /// Prints warnings and the result, after the report is written whole.
 ///
 /// # Errors
-/// [`Error::File`] where a file cannot be written.
+/// [`Error::File`] where a file cannot be written, [`Error::InTheWay`] where one would be lost.
 pub fn deliver(options: &Options, outcome: Outcome) -> Result<ExitCode> {
     let Outcome { mut json, mut report, text, default_directory, files: more, status } = outcome;
     let directory = options.out.clone().or(default_directory);
     if report.is_none() && options.out.is_some() {
         say("warning: this command writes no report: --out has no effect");
     }
+    let mut inputs = Vec::new();
     if let Some(report) = &mut report {
         if options.png && directory.is_none() {
             report.warnings.push("--png has no effect without --out".into());
@@ -79,6 +98,7 @@ pub fn deliver(options: &Options, outcome: Outcome) -> Result<ExitCode> {
         json["warnings"] = report.warnings.as_slice().into();
         if directory.is_some() {
             let provenance = Provenance::of(std::env::args().skip(1));
+            inputs.extend(provenance.inputs.iter().cloned());
             report.provenance.extend(provenance.lines());
             json["provenance"] = provenance.json();
         }
@@ -89,23 +109,24 @@ pub fn deliver(options: &Options, outcome: Outcome) -> Result<ExitCode> {
         if options.png {
             files.extend(pngs(&files)?);
         }
-        json["report"] = directory.join("index.html").display().to_string().into();
+        json["report"] = directory.join(PAGE).display().to_string().into();
         files.extend(more);
-        files.push(("result.json".into(), pretty(&json).into_bytes()));
-        files::write_together(directory, &files)?;
+        files.push((RESULT.into(), pretty(&json).into_bytes()));
+        files::check_apart(&inputs, directory, &files, options.existing())?;
+        files::write_together(directory, &files, options.existing())?;
     }
     let warnings = report.as_ref().map_or(&[][..], |report| &report.warnings);
     for warning in warnings {
-        say(&format!("warning: {warning}"));
+        say(&format!("{} {warning}", coloured("warning:", YELLOW)));
     }
     let mut words = match (options.json, text, &report) {
         (true, ..) => pretty(&json),
         (false, Some(text), _) => text,
-        (false, None, Some(report)) => text::text(report),
+        (false, None, Some(report)) => text::text_within(report, width()),
         (false, None, None) => String::new(),
     };
     if let (false, Some(directory), Some(_)) = (options.json, &directory, &report) {
-        words += &format!("\nreport: {}\n", directory.join("index.html").display());
+        words += &format!("\nreport: {}\n", directory.join(PAGE).display());
     }
     match std::io::stdout().write_all(words.as_bytes()) {
         // `rodcal … | head` closes the pipe early and means no harm
@@ -116,12 +137,12 @@ pub fn deliver(options: &Options, outcome: Outcome) -> Result<ExitCode> {
     }
 }
 
-/// Refuses what cannot be delivered, before anything is calculated.
+/// Refuses what cannot be delivered, before anything is calculated; the report goes to `directory`.
 ///
 /// # Errors
 /// [`Error::NotApplicable`] for `--png` in a build without it, [`Error::Argument`] for a file in the
-/// place of the directory.
-pub fn check(options: &Options) -> Result<()> {
+/// place of the directory, [`Error::InTheWay`] for a page or a result in it that would be lost.
+pub fn check(options: &Options, directory: Option<&Path>) -> Result<()> {
     if options.png && !cfg!(feature = "png") {
         return Err(Error::NotApplicable {
             what: "--png".into(),
@@ -129,13 +150,16 @@ pub fn check(options: &Options) -> Result<()> {
             hint: "build one that can: cargo install --path . --features png".into(),
         });
     }
-    match &options.out {
-        Some(directory) if directory.exists() && !directory.is_dir() => Err(Error::Argument {
-            name: "--out",
-            found: format!("{}, which is a file", directory.display()),
-            expected: "a directory, or a name that is still free".into(),
-        }),
-        _ => Ok(()),
+    match directory {
+        Some(directory) if options.out.is_some() && directory.exists() && !directory.is_dir() => {
+            Err(Error::Argument {
+                name: "--out",
+                found: format!("{}, which is a file", directory.display()),
+                expected: "a directory, or a name that is still free".into(),
+            })
+        }
+        Some(directory) => files::check_free(directory, &[PAGE, RESULT], options.existing()),
+        None => Ok(()),
     }
 }
 
@@ -150,9 +174,33 @@ fn pngs(_: &[(String, Vec<u8>)]) -> Result<Vec<(String, Vec<u8>)>> {
     Ok(Vec::new())
 }
 
+/// ANSI colours of what asks for attention, and of what went wrong.
+const YELLOW: u8 = 33;
+pub const RED: u8 = 31;
+
+/// A word for stderr: in colour on a terminal, unless NO_COLOR says otherwise.
+pub fn coloured(word: &str, colour: u8) -> String {
+    let is_plain = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
+    match std::io::stderr().is_terminal() && !is_plain {
+        true => format!("\u{1b}[1;{colour}m{word}\u{1b}[0m"),
+        false => word.to_owned(),
+    }
+}
+
 /// A line on stderr. Nobody may be listening (`2>&1 | head`), and `eprintln!` would panic.
 pub fn say(line: &str) {
     let _ = writeln!(std::io::stderr(), "{line}");
+}
+
+/// Columns of the terminal that stdout is, or as COLUMNS says; in a file or a pipe tables take what they need.
+fn width() -> usize {
+    if !std::io::stdout().is_terminal() {
+        return usize::MAX;
+    }
+    let told = std::env::var("COLUMNS").ok().and_then(|columns| columns.parse().ok());
+    let seen = || terminal_size::terminal_size().map(|(width, _)| usize::from(width.0));
+    // what is narrower is not a terminal that anybody reads
+    told.or_else(seen).unwrap_or(100).max(20)
 }
 
 fn pretty(json: &Value) -> String {

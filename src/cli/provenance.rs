@@ -5,8 +5,10 @@ use std::path::{Path, PathBuf};
 
 use rodcal::files;
 
-/// The options that say where to write: the same report elsewhere is the same report.
+/// The option that says where to write: the same report elsewhere is the same report.
 const WHERE: &str = "--out";
+/// What changes no result.
+const WITHOUT_EFFECT: [&str; 1] = ["--force"];
 
 /// What stands in a report besides its own sources: name and value.
 pub struct Provenance {
@@ -24,7 +26,7 @@ impl Provenance {
         while let Some(argument) = arguments.next() {
             if argument == WHERE {
                 arguments.next();
-            } else if !argument.starts_with(&format!("{WHERE}=")) {
+            } else if !argument.starts_with(&format!("{WHERE}=")) && !WITHOUT_EFFECT.contains(&&*argument) {
                 kept.push(argument);
             }
         }
@@ -38,7 +40,9 @@ impl Provenance {
         let named =
             kept.iter().map(|argument| argument.split_once('=').map_or(&argument[..], |(_, value)| value));
         let mut found: BTreeSet<PathBuf> = BTreeSet::new();
-        for path in named.map(PathBuf::from).filter(|path| path.is_file()) {
+        // of a run that is compared, its result
+        let file = |path: PathBuf| if path.is_dir() { path.join(super::output::RESULT) } else { path };
+        for path in named.map(PathBuf::from).map(file).filter(|path| path.is_file()) {
             found.extend(named_in(&path));
             found.insert(path);
         }

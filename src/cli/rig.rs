@@ -29,13 +29,13 @@ pub struct Fit {
     /// Readings (CSV): how far the tip moved under each load.
     readings: PathBuf,
     /// Beam theory of the model the readings are compared with.
-    #[arg(long, value_enum, default_value_t = Theory::Timoshenko)]
+    #[arg(long, ignore_case = true, value_enum, default_value_t = Theory::Timoshenko)]
     theory: Theory,
     /// Number of beam elements of that model.
     #[arg(long, default_value_t = DEFAULT_ELEMENTS, value_parser = elements)]
     elements: usize,
     /// What an outlier counts.
-    #[arg(long, value_enum, default_value_t = Weights::None)]
+    #[arg(long, ignore_case = true, value_enum, default_value_t = Weights::None)]
     robust: Weights,
 }
 

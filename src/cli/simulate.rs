@@ -6,10 +6,11 @@ use clap::Args;
 use rodcal::beam::Physics;
 use rodcal::calibration::simulate::{Plan, campaign_files, planned_poses, simulate_telling};
 use rodcal::compliance::{Compliance, DEFAULT_ELEMENTS};
+use rodcal::files::{self, Existing};
 use rodcal::robot::{Parameter, Robot, Setup, is_urdf};
 use rodcal::rod::Rod;
 use rodcal::units::MM;
-use rodcal::{Error, Result, files};
+use rodcal::{Error, Result};
 use serde_json::json;
 
 use super::output::Outcome;
@@ -44,6 +45,9 @@ pub struct Simulate {
     r_rod: f64,
 }
 
+/// What is not copied but made, and so new whenever an option changes.
+const MADE: [&str; 4] = ["campaign.toml", "measurements.csv", "validation.csv", "readings.csv"];
+
 fn factor(text: &str) -> std::result::Result<f64, String> {
     match text.parse::<f64>() {
         Ok(r) if r > 0.0 && r <= 100.0 => Ok(r),
@@ -52,7 +56,8 @@ fn factor(text: &str) -> std::result::Result<f64, String> {
 }
 
 impl Simulate {
-    pub fn run(&self) -> Result<Outcome> {
+    pub fn run(&self, existing: Existing) -> Result<Outcome> {
+        files::check_free(&self.directory, &MADE, existing)?;
         let rod_text = files::read_text(&self.rod)?;
         let rod = Rod::from_toml(&self.rod.display().to_string(), &rod_text)?;
         let (robot_name, robot_text) = self.robot_text()?;
@@ -81,7 +86,7 @@ impl Simulate {
         if !robot_name.starts_with("builtin:") {
             written.push((robot_name, robot_text.into_bytes()));
         }
-        files::write_together(&self.directory, &written)?;
+        files::write_together(&self.directory, &written, existing)?;
         let campaign = self.directory.join("campaign.toml").display().to_string();
         let drawn = Setup::new(&robot, simulation.base_guess, rod.tip());
         let truth: Vec<_> = Parameter::all(robot.joints.len())

@@ -7,6 +7,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
+use rodcal::files::Existing;
 use rodcal::parallel::in_parallel;
 use rodcal::{Error, Result};
 use rodcal_trial::answers::{self, Answer};
@@ -96,9 +97,9 @@ fn case_range(text: &str) -> std::result::Result<Range<usize>, String> {
 }
 
 impl Trial {
-    pub fn run(&self) -> Result<Outcome> {
+    pub fn run(&self, existing: Existing) -> Result<Outcome> {
         match self {
-            Trial::Make(make) => make.run(),
+            Trial::Make(make) => make.run(existing),
             Trial::Answer(answer) => answer.run(),
             Trial::Score(score) => score.run(),
         }
@@ -106,7 +107,7 @@ impl Trial {
 }
 
 impl Make {
-    fn run(&self) -> Result<Outcome> {
+    fn run(&self, existing: Existing) -> Result<Outcome> {
         let range = self.case_range.clone().unwrap_or(1..usize::from(self.cases) + 1);
         let key = key_of(self.key.as_deref(), &self.directory)?;
         let half = match (self.rig, self.calibration, self.conflicts) {
@@ -118,7 +119,7 @@ impl Make {
         let residuals = self.residuals.as_deref().map(residuals::read).transpose()?.unwrap_or_default();
         let source = Source { seed: self.seed, half, residuals };
         let progress = Progress::new("cases", range.len());
-        let made = envelope::make(&self.directory, &key, &source, range, || progress.one_more());
+        let made = envelope::make(&self.directory, &key, &source, range, existing, || progress.one_more());
         progress.finish();
         let manifest = made?;
         let directory = self.directory.display();

@@ -1,5 +1,7 @@
 //! A table as plain data, and as text, HTML, Markdown and CSV.
 
+mod within;
+
 use maud::{Markup, html};
 use serde::Serialize;
 

@@ -3,21 +3,26 @@
 use super::table::Table;
 use super::{Block, Report, Section};
 
-/// Columns that words may take; tables take what they need.
+/// Columns that words may take at most.
 const WIDTH: usize = 100;
 
-/// The headline, then every section with its words and tables. Warnings are left to stderr.
+/// The headline, then every section with its words and tables, which take what they need. Warnings are left to stderr.
 pub fn text(report: &Report) -> String {
-    let mut text = wrapped(&report.headline);
+    text_within(report, usize::MAX)
+}
+
+/// The same on a terminal of so many columns: tables are broken between words, or become records.
+pub fn text_within(report: &Report, width: usize) -> String {
+    let mut text = wrapped_within(&report.headline, width);
     let has_words = |section: &&Section| section.blocks.iter().any(|b| !matches!(b, Block::Figure(_)));
     for section in report.sections.iter().filter(has_words) {
         let heading = &section.heading;
         text += &format!("\n{heading}\n{}\n", "─".repeat(heading.chars().count()));
         for block in &section.blocks {
             match block {
-                Block::Paragraph(words) => text += &wrapped(words),
-                Block::List(points) => points.iter().for_each(|point| text += &hanging("- ", point)),
-                Block::Table(table) => text += &format!("\n{}", table_text(table)),
+                Block::Paragraph(words) => text += &wrapped_within(words, width),
+                Block::List(points) => points.iter().for_each(|point| text += &hanging("- ", point, width)),
+                Block::Table(table) => text += &format!("\n{}", table_text(table, width)),
                 Block::Figure(_) => {}
             }
         }
@@ -25,26 +30,32 @@ pub fn text(report: &Report) -> String {
     text
 }
 
-fn table_text(table: &Table) -> String {
+fn table_text(table: &Table, width: usize) -> String {
     let bare = Table { caption: String::new(), notes: Vec::new(), ..table.clone() };
-    let notes: String = table.notes.iter().map(|note| hanging("  ", note)).collect();
-    let caption = if table.caption.is_empty() { String::new() } else { wrapped(&table.caption) + "\n" };
-    caption + &bare.text() + &notes
+    let notes: String = table.notes.iter().map(|note| hanging("  ", note, width)).collect();
+    let caption =
+        if table.caption.is_empty() { String::new() } else { wrapped_within(&table.caption, width) + "\n" };
+    caption + &bare.text_within(width) + &notes
 }
 
 /// Words in lines of at most 100 columns, each ended by "\n". Lines of the words stay lines.
 pub fn wrapped(words: &str) -> String {
-    words.lines().map(|line| hanging("", line)).collect()
+    wrapped_within(words, WIDTH)
+}
+
+fn wrapped_within(words: &str, width: usize) -> String {
+    words.lines().map(|line| hanging("", line, width)).collect()
 }
 
 /// One paragraph after `mark`, further lines below its first word. What is longer than a line stays
 /// whole.
-fn hanging(mark: &str, words: &str) -> String {
+fn hanging(mark: &str, words: &str, width: usize) -> String {
+    let width = width.min(WIDTH);
     let indent = mark.chars().count();
     let (mut text, mut column) = (mark.to_owned(), indent);
     for word in words.split(' ').filter(|word| !word.is_empty()) {
         let length = word.chars().count();
-        if column > indent && column + 1 + length > WIDTH {
+        if column > indent && column + 1 + length > width {
             text += &format!("\n{:indent$}", "");
             column = indent;
         } else if column > indent {
@@ -92,7 +103,7 @@ mod tests {
     fn words_wrap_and_nothing_gets_lost() {
         let words = "Dehnung µm/N ".repeat(40);
         let long = "x".repeat(120);
-        let text = hanging("- ", &format!("{words}{long} end"));
+        let text = hanging("- ", &format!("{words}{long} end"), usize::MAX);
         let lines: Vec<&str> = text.lines().collect();
         assert!(lines.iter().all(|line| line.chars().count() <= WIDTH || line.trim() == long), "{text}");
         assert!(lines[1..].iter().all(|line| line.starts_with("  ") && !line.ends_with(' ')), "{text}");

@@ -3,10 +3,11 @@
 use super::{Answer, Sandbox};
 
 /// What is typed, how the error begins, and a word that tells what would be right.
-const CASES: [(&str, &str, &str); 30] = [
+const CASES: [(&str, &str, &str); 31] = [
     // arguments
     ("frobnicate", "unrecognized subcommand 'frobnicate'", "--help"),
     ("complianze rods/5.toml", "unrecognized subcommand 'complianze'", "'compliance'"),
+    ("fit rods/5.toml", "unrecognized subcommand 'fit'", "'rig fit'"),
     ("compliance", "the following required arguments were not provided", "<ROD>"),
     ("rig fit linear", "the following required arguments were not provided", "<READINGS>"),
     ("compliance rods/5.toml --wrong", "unexpected argument '--wrong'", "--help"),

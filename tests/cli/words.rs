@@ -136,3 +136,11 @@ fn version() {
     let answer = Sandbox::empty().run("--version").succeeded();
     assert_eq!(answer.stdout, format!("rodcal {}\n", env!("CARGO_PKG_VERSION")));
 }
+
+#[test]
+fn values_may_be_typed_in_capitals() {
+    let sandbox = Sandbox::new();
+    let [small, large] =
+        ["fea", "FEA"].map(|mode| sandbox.run(&format!("compliance rods/5.toml --mode {mode}")));
+    assert_eq!(small.succeeded().stdout, large.succeeded().stdout);
+}

@@ -23,6 +23,15 @@ pub enum Error {
         source: std::io::Error,
     },
 
+    /// What stands where files are to be written would be lost.
+    #[error("{}", in_the_way(files, *whose))]
+    InTheWay {
+        /// The files, one or more.
+        files: Vec<PathBuf>,
+        /// Whose they are.
+        whose: Whose,
+    },
+
     /// An input file does not follow its format: no valid TOML, an unknown or a missing key.
     #[error("{at}: {message}")]
     Syntax {
@@ -94,12 +103,26 @@ pub enum Error {
     },
 }
 
+/// Whose a file is that must not be replaced.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Whose {
+    /// The program did not write it.
+    Unknown,
+    /// The program wrote it, and it has been changed since.
+    Changed,
+    /// Whoever wrote it: its like is written once.
+    Kept,
+    /// It is an input of what is to be written.
+    Read,
+}
+
 impl Error {
     /// Advice on how to repair the cause, to be shown on a line of its own after the message.
     pub fn hint(&self) -> Option<&str> {
         match self {
             Error::Input { hint, .. } => hint.as_deref(),
             Error::NotApplicable { hint, .. } => Some(hint),
+            Error::InTheWay { .. } => Some("write to another place, or replace what is there with --force"),
             Error::SelfCheck { .. } => Some(
                 "check the stiffnesses near that station; numbers many orders of magnitude apart overflow double precision",
             ),
@@ -113,6 +136,25 @@ impl Error {
             *hint = advice;
         }
         self
+    }
+}
+
+/// So many files in the way are named.
+const NAMED: usize = 3;
+
+fn in_the_way(files: &[PathBuf], whose: Whose) -> String {
+    let names: Vec<String> = files.iter().take(NAMED).map(|path| path.display().to_string()).collect();
+    let more = match files.len().saturating_sub(NAMED) {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    let (are, them, have) = if files.len() == 1 { ("is", "it", "has") } else { ("are", "them", "have") };
+    let names = names.join(", ") + &more;
+    match whose {
+        Whose::Unknown => format!("{names} {are} there already, and rodcal did not write {them}"),
+        Whose::Changed => format!("{names} {have} been changed since rodcal wrote {them}"),
+        Whose::Read => format!("this command reads {names}, and its result would replace {them}"),
+        Whose::Kept => format!("{names} {are} there already"),
     }
 }
 

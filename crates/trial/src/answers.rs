@@ -34,7 +34,23 @@ pub fn read(path: &Path) -> Result<Vec<Answer>> {
         return Ok(Vec::new());
     }
     let name = path.display().to_string();
-    let text = files::text_of_bytes(&name, whole_lines(files::read_bytes(path)?))?;
+    let bytes = files::read_bytes(path)?;
+    let whole = whole_lines(bytes.clone());
+    // what is not the beginning of an answer is somebody else's, and would be taken away
+    let rest = &bytes[whole.len()..];
+    if !rest.starts_with(BEGINNING) && !BEGINNING.starts_with(rest) {
+        return Err(Error::Input {
+            at: Place {
+                file: name,
+                line: whole.iter().filter(|&&byte| byte == b'\n').count() + 1,
+                column: 1,
+            },
+            found: "the last line has no end and is no answer".into(),
+            expected: "a file of answers, or a name that is still free".into(),
+            hint: None,
+        });
+    }
+    let text = files::text_of_bytes(&name, whole)?;
     let mut answers: Vec<Answer> = Vec::new();
     let mut seen: BTreeMap<String, usize> = BTreeMap::new();
     for (index, text) in text.lines().enumerate().filter(|(_, text)| !text.trim().is_empty()) {
@@ -75,6 +91,9 @@ pub fn append(path: &Path, answers: &[Answer]) -> Result<()> {
     files::append(path, lines.as_bytes())
 }
 
+/// How the line of every answer begins.
+const BEGINNING: &[u8] = b"{\"case\":";
+
 /// Cases that have no answer yet.
 pub fn missing(cases: &[String], answers: &[Answer]) -> Vec<String> {
     let answered: BTreeSet<&str> = answers.iter().map(|answer| answer.case.as_str()).collect();
@@ -106,11 +125,21 @@ mod tests {
         let path = directory.path().join("answers.jsonl");
         assert_eq!(read(&path).unwrap(), []);
         append(&path, &[answer("a"), answer("b")]).unwrap();
-        files::append(&path, "{\"case\": \"µ".as_bytes().split_last().unwrap().1).unwrap();
+        files::append(&path, "{\"case\":\"µ".as_bytes().split_last().unwrap().1).unwrap();
         let there = read(&path).unwrap();
         assert_eq!(missing(&["a".into(), "b".into(), "c".into()], &there), ["c"]);
         append(&path, &[answer("c")]).unwrap();
         assert_eq!(read(&path).unwrap(), [answer("a"), answer("b"), answer("c")]);
+    }
+
+    #[test]
+    fn a_file_of_somebody_else_is_refused_whole_or_in_its_last_line() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("notes.txt");
+        for text in ["notes", "notes\n", "{\"case\"", "{}"] {
+            files::write_whole(&path, text.as_bytes()).unwrap();
+            assert_eq!(read(&path).is_ok(), text.starts_with("{\"case"), "{text}");
+        }
     }
 
     #[test]

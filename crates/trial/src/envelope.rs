@@ -23,7 +23,7 @@ use serde::{Deserialize, Serialize};
 use super::Source;
 use super::truth::Truth;
 use rodcal_base::error::{Error, Place, Result};
-use rodcal_base::files;
+use rodcal_base::files::{self, Existing};
 use rodcal_base::parallel::in_parallel;
 
 /// Name of the manifest in a trial's directory.
@@ -64,21 +64,16 @@ pub fn default_key(directory: &Path) -> Result<PathBuf> {
 /// Draws cases by number and seals them; `made` is called after each.
 ///
 /// # Errors
-/// [`Error::Argument`] where a trial is there already, or the key would be in it; [`Error::File`].
+/// [`Error::Argument`] where the key would be in the trial's directory; [`Error::InTheWay`] where a trial or a key is
+/// there already; [`Error::File`].
 pub fn make(
     directory: &Path,
     key: &Path,
     source: &Source,
     range: Range<usize>,
+    existing: Existing,
     made: impl Fn() + Sync + Send,
 ) -> Result<Manifest> {
-    if directory.join(MANIFEST).exists() {
-        return Err(Error::Argument {
-            name: "DIR",
-            found: format!("{}, which holds a trial already", directory.display()),
-            expected: "a directory without one: its answers would belong to other cases".into(),
-        });
-    }
     if key.starts_with(directory) {
         return Err(Error::Argument {
             name: "--key",
@@ -86,6 +81,9 @@ pub fn make(
             expected: "a place that whoever answers does not see".into(),
         });
     }
+    // the answers to a trial belong to its cases, and nothing else knows what its key knows
+    files::check_absent(&directory.join(MANIFEST), existing)?;
+    files::check_absent(key, existing)?;
     let (mut hashes, mut lines) = (BTreeMap::new(), String::new());
     let mut next = range.start;
     while next < range.end {
@@ -101,7 +99,7 @@ pub fn make(
             for (name, bytes) in &named {
                 hashes.insert(format!("{}/{name}", case.truth.case), files::sha256(bytes));
             }
-            files::write_together(&directory.join(&case.truth.case), &named)?;
+            files::write_once(&directory.join(&case.truth.case), &named, existing)?;
             lines += &line(&case.truth)?;
         }
         next += block;
@@ -112,9 +110,9 @@ pub fn make(
         key_sha256: files::sha256(lines.as_bytes()),
         files: hashes,
     };
-    files::write_whole(key, lines.as_bytes())?;
+    files::write_new(key, lines.as_bytes(), existing)?;
     let text = serde_json::to_string_pretty(&manifest).map_err(unwritable)? + "\n";
-    files::write_whole(&directory.join(MANIFEST), text.as_bytes())?;
+    files::write_new(&directory.join(MANIFEST), text.as_bytes(), existing)?;
     Ok(manifest)
 }
 
@@ -210,7 +208,7 @@ mod tests {
 
     fn trial(directory: &Path) -> (PathBuf, PathBuf) {
         let (trial, key) = (directory.join("t"), directory.join("t.key.jsonl"));
-        make(&trial, &key, &source(5), 1..4, || {}).unwrap();
+        make(&trial, &key, &source(5), 1..4, Existing::Keep, || {}).unwrap();
         (trial, key)
     }
 
@@ -232,8 +230,8 @@ mod tests {
         assert_eq!(manifest.case_names(), ["rig/case-0001", "rig/case-0002", "rig/case-0003"]);
         assert!(!files::read_text(&a.join(MANIFEST)).unwrap().contains("seed"));
         assert_eq!(manifest.read_key(&key_a).unwrap().len(), 3);
-        assert!(make(&a, &key_a, &source(6), 1..2, || {}).is_err());
-        assert!(make(&b.join("new"), &b.join("new/key"), &source(6), 1..2, || {}).is_err());
+        assert!(make(&a, &key_a, &source(6), 1..2, Existing::Keep, || {}).is_err());
+        assert!(make(&b.join("new"), &b.join("new/key"), &source(6), 1..2, Existing::Keep, || {}).is_err());
         assert!(default_key(Path::new(".")).is_err());
     }
 

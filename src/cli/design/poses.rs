@@ -23,7 +23,7 @@ pub struct DesignPoses {
     #[arg(long, value_name = "K", value_parser = clap::value_parser!(u32).range(1..=20_000))]
     count: u32,
     /// What the poses shall be good for.
-    #[arg(long, value_enum, default_value_t = CriterionName::O1)]
+    #[arg(long, ignore_case = true, value_enum, default_value_t = CriterionName::O1)]
     criterion: CriterionName,
     /// Poses to choose from: any table (CSV) with the robot's joint columns, such as a previous
     /// recording [default: generated].
@@ -48,7 +48,7 @@ pub struct DesignPoses {
     table_mm: Option<TableHeight>,
     /// How the rod's deflection will be known [default: meas with rig readings, else fea with a
     /// rod, else none].
-    #[arg(long, value_enum)]
+    #[arg(long, ignore_case = true, value_enum)]
     mode: Option<ModeName>,
     #[command(flatten)]
     expected: Expected,

@@ -6,7 +6,8 @@ use clap::Args;
 use rodcal::report::runs::{Run, Runs, json, report};
 use rodcal::{Error, Result, files};
 
-use super::output::{Outcome, RESULT};
+use super::output::Outcome;
+use super::provenance::RESULT;
 
 #[derive(Debug, Args)]
 #[command(after_long_help = NOTES)]

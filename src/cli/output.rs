@@ -11,7 +11,7 @@ use rodcal::report::{Report, text};
 use rodcal::{Error, Result};
 use serde_json::Value;
 
-use super::provenance::Provenance;
+use super::provenance::{Provenance, RESULT};
 
 /// Where the result goes: options of every command.
 #[derive(Debug, Args)]
@@ -44,8 +44,6 @@ impl Options {
 
 /// What every report has, whatever it is of.
 const PAGE: &str = "index.html";
-/// The result as JSON.
-pub const RESULT: &str = "result.json";
 
 const OUTPUT: &str = "Output";
 

@@ -5,6 +5,9 @@ use std::path::{Path, PathBuf};
 
 use rodcal::files;
 
+/// The result as JSON, in every directory of a report.
+pub const RESULT: &str = "result.json";
+
 /// The option that says where to write: the same report elsewhere is the same report.
 const WHERE: &str = "--out";
 /// What changes no result.
@@ -41,7 +44,7 @@ impl Provenance {
             kept.iter().map(|argument| argument.split_once('=').map_or(&argument[..], |(_, value)| value));
         let mut found: BTreeSet<PathBuf> = BTreeSet::new();
         // of a run that is compared, its result
-        let file = |path: PathBuf| if path.is_dir() { path.join(super::output::RESULT) } else { path };
+        let file = |path: PathBuf| if path.is_dir() { path.join(RESULT) } else { path };
         for path in named.map(PathBuf::from).map(file).filter(|path| path.is_file()) {
             found.extend(named_in(&path));
             found.insert(path);

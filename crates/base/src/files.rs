@@ -2,6 +2,7 @@
 //!
 //! Nothing that somebody else wrote is lost: see [`Existing`].
 
+mod content;
 mod encoding;
 mod marker;
 
@@ -9,11 +10,11 @@ use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use sha2::{Digest, Sha256};
-
+pub use self::content::{read_bytes, sha256};
 pub use self::encoding::text_of_bytes;
 pub use self::marker::MARKER;
 
+use self::content::failed;
 use self::marker::Marker;
 use crate::error::{Error, Result, Whose};
 
@@ -40,25 +41,12 @@ pub fn beside(path: &Path) -> Vec<PathBuf> {
     others
 }
 
-/// SHA-256 (FIPS 180-4) of a content, in hexadecimal digits.
-pub fn sha256(bytes: &[u8]) -> String {
-    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
-}
-
 /// Reads a text file: UTF-8, or UTF-16 with its mark; see [`text_of_bytes`].
 ///
 /// # Errors
 /// [`Error::File`] where it cannot be read, [`Error::Input`] with line and column where it is neither.
 pub fn read_text(path: &Path) -> Result<String> {
     text_of_bytes(&path.display().to_string(), read_bytes(path)?)
-}
-
-/// The bytes of a file.
-///
-/// # Errors
-/// [`Error::File`] where it cannot be read.
-pub fn read_bytes(path: &Path) -> Result<Vec<u8>> {
-    std::fs::read(path).map_err(|source| Error::File { path: path.to_owned(), action: "read", source })
 }
 
 /// Adds to the end of a file, which is made if missing, and waits until it is on the disk.
@@ -250,10 +238,6 @@ impl Standing {
         let sha256 = if kind.is_file() { sha256(&read_bytes(path)?) } else { String::new() };
         Ok(Some(Standing { path: path.to_owned(), sha256 }))
     }
-}
-
-fn failed(action: &'static str, path: &Path) -> impl Fn(std::io::Error) -> Error {
-    move |source| Error::File { path: path.to_owned(), action, source }
 }
 
 #[cfg(unix)]

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use super::{read_bytes, sha256};
+use super::content::{read_bytes, sha256};
 use crate::error::Result;
 
 /// The file in a directory of the program's that names what it wrote there, with the SHA-256 of each as it was

@@ -1,6 +1,6 @@
-//! Time of the rod's six load cases, model build included, over the number of elements; beside it a banded and a
-//! dense stiffness method of our own on the same elements. Only the ratios mean anything: run them in one go.
-//! Before that, how far each is off the independent references.
+//! Time of the rod's six load cases, model build included, over the number of elements; beside it a
+//! banded and a dense stiffness method of our own on the same elements. Only the ratios mean
+//! anything: run them in one go. Before that, how far each is off the independent references.
 //!
 //! `cargo bench -p rodcal-benches --bench beam`
 
@@ -63,8 +63,9 @@ fn six_load_cases(c: &mut Criterion) {
     group.finish();
 }
 
-/// Prints how far each method is off the independent references (tests/references), Timoshenko's theory: the worst
-/// of all rods for ours, of the sharp-cornered rods without joints and masses for all three.
+/// Prints how far each method is off the independent references (tests/references), Timoshenko's
+/// theory: the worst of all rods for ours, of the sharp-cornered rods without joints and masses for
+/// all three.
 fn accuracy() {
     let references: Value =
         serde_json::from_str(include_str!("../tests/references/beam_references.json")).unwrap();

@@ -1,5 +1,6 @@
-//! Time of one calibration of a simulated TX90 campaign, beside what the bare QR factorisations of its Jacobians cost,
-//! and over the number of poses. Only the ratios mean anything: run them in one go.
+//! Time of one calibration of a simulated TX90 campaign, beside what the bare QR factorisations of
+//! its Jacobians cost, and over the number of poses. Only the ratios mean anything: run them in one
+//! go.
 //!
 //! `cargo bench -p rodcal-benches --bench calibration`
 

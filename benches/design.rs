@@ -1,6 +1,6 @@
-//! Time of a rod of a search: the tip alone, all figures of the tip, the whole search through the public call on all
-//! processors. Beside it a plain loop in C (`benches/reference/rods.c`) and PyNite (`benches/reference/pynite_rods.py`);
-//! only ratios of one go mean anything.
+//! Time of a rod of a search: the tip alone, all figures of the tip, the whole search through the
+//! public call on all processors. Beside it a plain loop in C (`benches/reference/rods.c`) and
+//! PyNite (`benches/reference/pynite_rods.py`); only ratios of one go mean anything.
 //!
 //! `cargo bench -p rodcal-benches --bench design`
 

@@ -1,6 +1,6 @@
-//! Time of a whole diagnosis, held-out folds included. Of a rig's recording on one core, beside one QR factorisation of as many
-//! rows and as many columns as there are candidates; of a campaign on all cores, beside its calibration. Only the ratio of
-//! the two means the same on every machine.
+//! Time of a whole diagnosis, held-out folds included. Of a rig's recording on one core, beside one
+//! QR factorisation of as many rows and as many columns as there are candidates; of a campaign on
+//! all cores, beside its calibration. Only the ratio of the two means the same on every machine.
 //!
 //! `cargo bench -p rodcal-benches --bench diagnosis`
 

@@ -1,9 +1,10 @@
-//! A fit of 450 residuals and 32 parameters, beside the bare QR decompositions of as many Jacobians: their ratio is
-//! what the search costs on top of what no Gauss–Newton method can do without. And the time of one linear fit over
-//! the number of its rows, in blocks: it should grow as they do.
+//! A fit of 450 residuals and 32 parameters, beside the bare QR decompositions of as many
+//! Jacobians: their ratio is what the search costs on top of what no Gauss–Newton method can do
+//! without. And the time of one linear fit over the number of its rows, in blocks: it should grow
+//! as they do.
 //!
-//! `cargo bench -p rodcal-benches --bench least_squares`; with the argument `fits 100` or `factorisations 100` it does only that, for
-//! `valgrind --tool=callgrind`.
+//! `cargo bench -p rodcal-benches --bench least_squares`; with the argument `fits 100` or
+//! `factorisations 100` it does only that, for `valgrind --tool=callgrind`.
 
 #![allow(missing_docs, clippy::unwrap_used, clippy::print_stdout)]
 
@@ -19,7 +20,8 @@ const PARAMETERS: usize = 32;
 const ROWS_IN_BLOCK: usize = 240;
 const TALL: [usize; 4] = [450, 3000, 30_000, 300_000];
 
-/// rᵢ = sin(aᵢᵀp) − sin(aᵢᵀp₀) + noise: as smooth as a kinematic chain and with as little cost of its own as possible.
+/// rᵢ = sin(aᵢᵀp) − sin(aᵢᵀp₀) + noise: as smooth as a kinematic chain and with as little cost of
+/// its own as possible.
 struct Waves {
     /// aᵢᵀ, m × n.
     rows: DMatrix<f64>,

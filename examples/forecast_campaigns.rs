@@ -1,5 +1,5 @@
-//! Forecasts against what then happened: simulated campaigns of many kinds, each forecast from its plan alone and then
-//! calibrated. The figures of `docs/design.md` are from it:
+//! Forecasts against what then happened: simulated campaigns of many kinds, each forecast from its
+//! plan alone and then calibrated. The figures of `docs/design.md` are from it:
 //!
 //! `cargo run --release --example regenerate -- forecast [COUNT]`
 
@@ -39,7 +39,8 @@ pub fn main(arguments: &[String]) -> Result<()> {
     Ok(())
 }
 
-/// What was forecast and what happened, and how one follows the other: as both scatter by a share of themselves, by weights 1/x².
+/// What was forecast and what happened, and how one follows the other: as both scatter by a share
+/// of themselves, by weights 1/x².
 fn said(name: &str, own: &[&Happened]) {
     let um = 1e6;
     let (x, y): (Vec<f64>, Vec<f64>) = own.iter().map(|one| (one.forecast.mean * um, one.mean * um)).unzip();

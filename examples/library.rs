@@ -1,4 +1,5 @@
-//! The library in one small program: rod, rig, calibration, diagnosis, and what to do with the result.
+//! The library in one small program: rod, rig, calibration, diagnosis, and what to do with the
+//! result.
 //!
 //! `cargo run --example library`
 

@@ -1,8 +1,8 @@
-//! Makes again what pages and data of this project were made by, and reports to look at: one program for all of it, for each
-//! takes its time to link.
+//! Makes again what pages and data of this project were made by, and reports to look at: one
+//! program for all of it, for each takes its time to link.
 //!
-//! `cargo run --release --example regenerate -- nist-table | table3 | forecast | readings | campaign | gallery`; what comes after the
-//! name is explained at the top of the file of that name.
+//! `cargo run --release --example regenerate -- nist-table | table3 | forecast | readings |
+//! campaign | gallery`; what comes after the name is explained at the top of the file of that name.
 
 #![allow(missing_docs, clippy::print_stdout)]
 

@@ -1,6 +1,6 @@
 //! Writes a report with one of every picture into a directory, to look at while working on them:
-//! `cargo run --example regenerate -- gallery <directory> <poses>`. The numbers are invented but of the
-//! right size.
+//! `cargo run --example regenerate -- gallery <directory> <poses>`. The numbers are invented but of
+//! the right size.
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;

@@ -1,7 +1,7 @@
 //! Makes `campaigns/tx90-5/`: a small campaign of a TX90 with the paper's rod 5#, simulated.
 //!
-//! `cargo run --example regenerate -- campaign` writes its files; a test makes sure that they are what
-//! this makes.
+//! `cargo run --example regenerate -- campaign` writes its files; a test makes sure that they are
+//! what this makes.
 //!
 //! Smaller than the paper's (12 poses on each clamp, 30 of validation), so that trying it takes no
 //! time. The true rod is 1.013 times as compliant as its model, the published r_rod of 5#. What is

@@ -1,8 +1,8 @@
 //! The paper's Table 3 by simulation: six rods, every mode of compensation, validation errors
 //! beside the published ones.
 //!
-//! `cargo run --release --example regenerate -- table3` prints the tables of `docs/simulation.md`; a number after
-//! `--` changes how many seeds are taken for each rod.
+//! `cargo run --release --example regenerate -- table3` prints the tables of `docs/simulation.md`;
+//! a number after `--` changes how many seeds are taken for each rod.
 //!
 //! Published (Improved MultiCal, *Sensors* 23 (2023) 5717, Tables 1 to 3, § 5): the robot's model,
 //! r_rod, noise of sensors (3 µm), robot (30 µm) and scanner (43 µm), contact force, five clamps,

@@ -93,7 +93,8 @@ enum Command {
     Calibrate(calibrate::Calibrate),
     /// Calibrate in every mode of compensation, and test which differences are significant.
     Compare(compare::Compare),
-    /// Set results of one command side by side: what changed in inputs, parameters, errors, findings.
+    /// Set results of one command side by side: what changed in inputs, parameters, errors,
+    /// findings.
     CompareRuns(compare_runs::CompareRuns),
     /// Where recording and model disagree: which physics did the model leave out?
     #[command(subcommand)]

@@ -1,18 +1,21 @@
-//! Rods that do not exist yet: every combination of lengths, angles, bends and tubes that a designer asks for, and those
-//! of them that nobody can better in one respect without losing in another.
+//! Rods that do not exist yet: every combination of lengths, angles, bends and tubes that a
+//! designer asks for, and those of them that nobody can better in one respect without losing in
+//! another.
 //!
 //! - [`Wish`]: what may vary, what must hold, what counts; read from a design file
 //! - [`Figure`]: the numbers that rods are judged by
 //! - [`search`]: all combinations, or a sample of them, to a Pareto [`Front`]
-//! - [`Intervals`]: how well a design's numbers are known, and which designs cannot be distinguished
+//! - [`Intervals`]: how well a design's numbers are known, and which designs cannot be
+//!   distinguished
 //! - [`refine()`]: between the grid's values, and back to tubes that can be bought
 //! - [`Study`]: a search with all of this
 //!
-//! And poses that do not exist yet: which ones a calibration should measure ([`PoseStudy`]), how accurate the robot will be
-//! ([`Forecaster`]), and which rod with which mode is worth it ([`rods_and_modes`]).
+//! And poses that do not exist yet: which ones a calibration should measure ([`PoseStudy`]), how
+//! accurate the robot will be ([`Forecaster`]), and which rod with which mode is worth it
+//! ([`rods_and_modes`]).
 //!
-//! A combination has a number, from 0; lengths vary fastest. Nothing is kept of a rod but its number and its figures, and
-//! nothing of one that is bettered: memory is that of the front.
+//! A combination has a number, from 0; lengths vary fastest. Nothing is kept of a rod but its
+//! number and its figures, and nothing of one that is bettered: memory is that of the front.
 
 mod catalogue;
 mod figure;

@@ -6,7 +6,8 @@
 //!
 //! - [`chart`]: charts as data, drawn by [`chart::Figure::svg`]
 //! - [`pictures`]: the pictures of a rod and of a calibration, from numbers to charts
-//! - [`compliance`] · [`rig`] · [`design`] · [`diagnosis`]: results of the library as reports and as JSON
+//! - [`compliance`] · [`rig`] · [`design`] · [`diagnosis`]: results of the library as reports and
+//!   as JSON
 //! - [`text`]: a report for the terminal · [`table`]: tables to text, HTML, Markdown, CSV ·
 //!   [`html`]: the page
 

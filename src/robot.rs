@@ -114,8 +114,8 @@ impl Joint {
         Joint { name: name.into(), motion, link, compliance: 0.0, body: None, limits: None }
     }
 
-    /// Name of the column that holds the values of the joint of this number, from 1, in tables, and its unit in SI: `q1_deg` in
-    /// degrees, or `q3_mm` in millimetres.
+    /// Name of the column that holds the values of the joint of this number, from 1, in tables, and
+    /// its unit in SI: `q1_deg` in degrees, or `q3_mm` in millimetres.
     pub fn column(&self, number: usize) -> (String, f64) {
         match self.motion {
             Motion::Revolute => (format!("q{number}_deg"), DEG),

@@ -1,7 +1,8 @@
-//! The floors of the house: a file imports only from its own room and from rooms below it (ARCHITECTURE.md).
+//! The floors of the house: a file imports only from its own room and from rooms below it
+//! (ARCHITECTURE.md).
 //!
-//! The ground floor is the crate `rodcal-base`, whose rooms have their names in `src` too; trials are the crate
-//! `rodcal-trial`, which the compiler keeps apart from everything but the ground.
+//! The ground floor is the crate `rodcal-base`, whose rooms have their names in `src` too; trials
+//! are the crate `rodcal-trial`, which the compiler keeps apart from everything but the ground.
 
 #![allow(clippy::unwrap_used)]
 
@@ -121,7 +122,8 @@ fn in_rooms() -> Vec<Source> {
     all.filter(|source| !source.file.ends_with("src/lib.rs")).collect()
 }
 
-/// Rooms that a text names: `crate::room::…`, `crate::{room, …}`, `rodcal_base::`, and `rodcal::` in the binary.
+/// Rooms that a text names: `crate::room::…`, `crate::{room, …}`, `rodcal_base::`, and `rodcal::`
+/// in the binary.
 fn named_rooms(text: &str) -> Vec<String> {
     let code: String =
         text.lines().map(|line| line.split("//").next().unwrap_or("")).collect::<Vec<_>>().join("\n");
@@ -186,8 +188,8 @@ fn members_needed(package: &str) -> Vec<String> {
     all.filter(|(name, how)| is_member(name, how)).map(|(name, _)| name.clone()).collect()
 }
 
-/// What hides effects must not know how they are looked for: a generator that shared physics with the models would prove
-/// only that they agree with themselves.
+/// What hides effects must not know how they are looked for: a generator that shared physics with
+/// the models would prove only that they agree with themselves.
 #[test]
 fn trials_share_no_model_with_what_they_try() {
     assert_eq!(members_needed("crates/trial/Cargo.toml"), ["rodcal-base"]);
@@ -287,6 +289,24 @@ fn the_libraries_never_print() {
         }
         for print in ["println!", "eprintln!", "print!(", "dbg!"] {
             assert!(!text.contains(print), "{file} contains {print}");
+        }
+    }
+}
+
+/// Columns that a line of words has at most; tables, equations and code take what they need.
+const WIDTH: usize = 100;
+
+#[test]
+fn comments_are_no_wider_than_a_page() {
+    for Source { file, text, .. } in everything() {
+        let mut is_code = false;
+        for (number, line) in text.lines().enumerate() {
+            let Some(words) = line.trim_start().strip_prefix("//") else { continue };
+            let words = words.trim_start_matches(['/', '!']);
+            is_code ^= words.trim_start().starts_with("```");
+            let is_words = !words.contains("   ") && !words.trim_start().starts_with('|');
+            let is_wide = line.chars().count() > WIDTH && words.trim().contains(' ');
+            assert!(is_code || !is_words || !is_wide, "{file}:{}: {line}", number + 1);
         }
     }
 }

@@ -1,5 +1,5 @@
-//! Campaigns that are wrong are refused with a message that names the place, whichever file is to blame.
-//! No bytes at all make the reader panic.
+//! Campaigns that are wrong are refused with a message that names the place, whichever file is to
+//! blame. No bytes at all make the reader panic.
 
 use crate::campaigns::desk::Desk;
 use proptest::prelude::*;
@@ -473,7 +473,8 @@ fn every_bad_file_is_named() {
     }
 }
 
-/// Whatever stands in the files: the campaign is read or refused, and then at a place that the file has.
+/// Whatever stands in the files: the campaign is read or refused, and then at a place that the file
+/// has.
 fn read_any(mut desk: Desk) -> Result<(), TestCaseError> {
     match desk.read() {
         Ok(campaign) => {

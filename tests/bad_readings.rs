@@ -1,5 +1,5 @@
-//! Readings that are wrong are refused with a message that names the place; readings that are odd are warned about.
-//! No bytes at all make the reader panic.
+//! Readings that are wrong are refused with a message that names the place; readings that are odd
+//! are warned about. No bytes at all make the reader panic.
 
 use proptest::prelude::*;
 use rodcal::error::Error;
@@ -248,7 +248,8 @@ fn odd_files_are_read_with_a_warning() {
     );
 }
 
-/// Reads bytes as a user's file is read; whatever they are, what is said about them lies within the file.
+/// Reads bytes as a user's file is read; whatever they are, what is said about them lies within the
+/// file.
 fn read_any(bytes: Vec<u8>) -> Result<Result<Readings, Error>, TestCaseError> {
     let line_count = bytes.iter().filter(|&&b| b == b'\n').count() + 1;
     let result = text_of_bytes("f", bytes).and_then(|text| Readings::from_text("f", &text));

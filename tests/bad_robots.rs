@@ -1,5 +1,5 @@
-//! Robot files that are wrong are refused with a message that names the place, what stood there and what is right.
-//! No text at all makes the reader, the kinematics or the writers panic.
+//! Robot files that are wrong are refused with a message that names the place, what stood there and
+//! what is right. No text at all makes the reader, the kinematics or the writers panic.
 
 mod any_text;
 mod tables;
@@ -20,7 +20,8 @@ fn in_words(error: &Error) -> String {
     }
 }
 
-/// Every case: the piece of the good text, what stands there instead, and the message that it gives.
+/// Every case: the piece of the good text, what stands there instead, and the message that it
+/// gives.
 fn check(good: &str, cases: &[(&str, &str, &str)]) {
     let mut wrong = Vec::new();
     for (piece, other, expected) in cases {

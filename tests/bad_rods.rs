@@ -1,5 +1,6 @@
-//! Rod files that are wrong are refused with a message that names the place, what stood there and what is right;
-//! rod files that are odd are warned about. No text at all makes the reader or the beam model panic.
+//! Rod files that are wrong are refused with a message that names the place, what stood there and
+//! what is right; rod files that are odd are warned about. No text at all makes the reader or the
+//! beam model panic.
 
 mod any_text;
 mod odd;

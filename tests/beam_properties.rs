@@ -1,5 +1,6 @@
-//! What must hold for every chain, whatever its shape: symmetry, reciprocity, independence of frame, mesh and
-//! direction. Stiffness-method programs fail some of these on members along an axis; so they are drawn often.
+//! What must hold for every chain, whatever its shape: symmetry, reciprocity, independence of
+//! frame, mesh and direction. Stiffness-method programs fail some of these on members along an
+//! axis; so they are drawn often.
 
 #![allow(clippy::unwrap_used)]
 
@@ -186,7 +187,8 @@ proptest! {
         prop_assert!(backward.position(backward.end()).norm() < 1e-12, "the way back leads home");
 
         let [uf, um, _, rf, rm, _] = tip(&forward);
-        // the tip's compliance, moved to the root as if rigidly attached to the tip: u + θ×d, M = d×F
+        // the tip's compliance, moved to the root as if rigidly attached to the tip: u + θ×d, M =
+        // d×F
         let d = -forward.position(forward.end());
         let lever = d.cross_matrix();
         let moved = uf + um * lever - lever * (rf + rm * lever);

@@ -1,5 +1,5 @@
-//! The calibration as a whole: campaigns whose truth is known to the last digit, made by a second implementation of the
-//! physics; campaigns with noise, many times over; and real recordings.
+//! The calibration as a whole: campaigns whose truth is known to the last digit, made by a second
+//! implementation of the physics; campaigns with noise, many times over; and real recordings.
 
 #![allow(clippy::unwrap_used)]
 

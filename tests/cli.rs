@@ -32,7 +32,8 @@ use tempfile::TempDir;
 /// Asks for PNGs where this build can write them.
 const PNG: &str = if cfg!(feature = "png") { " --png" } else { "" };
 
-/// A directory of its own for each test, with copies of the project's data: what a test writes harms nobody.
+/// A directory of its own for each test, with copies of the project's data: what a test writes
+/// harms nobody.
 struct Sandbox(TempDir);
 
 impl Sandbox {
@@ -176,7 +177,8 @@ fn ran(line: &str) -> &'static Ran {
     })
 }
 
-/// Steel rod and readings, carbon rod and readings, real readings: every command that makes a report.
+/// Steel rod and readings, carbon rod and readings, real readings: every command that makes a
+/// report.
 const REPORTS: [&str; 10] = [
     "compliance rods/5.toml",
     "compliance rods/5.toml --mode calc --theory timoshenko",

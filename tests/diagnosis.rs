@@ -1,5 +1,5 @@
-//! `diagnosis::rig::diagnose` against recordings made by the trials' generator, which shares no physics with it, and against
-//! readings written by hand.
+//! `diagnosis::rig::diagnose` against recordings made by the trials' generator, which shares no
+//! physics with it, and against readings written by hand.
 
 #![allow(clippy::unwrap_used)]
 

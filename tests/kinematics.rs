@@ -1,4 +1,5 @@
-//! The robot's kinematics and its analytic derivatives, against the same chain written a second time with dual numbers.
+//! The robot's kinematics and its analytic derivatives, against the same chain written a second
+//! time with dual numbers.
 
 #![allow(clippy::unwrap_used)]
 
@@ -180,7 +181,8 @@ fn the_flange_without_torque_is_the_robots_own() {
     assert_eq!(setup.calibrated().joints[1].link.a, 0.5);
 }
 
-/// Virtual work: a joint's torque is what gravity and the force on the tip gain per radian of its turn.
+/// Virtual work: a joint's torque is what gravity and the force on the tip gain per radian of its
+/// turn.
 #[test]
 fn torques_are_the_work_of_gravity_and_tip_force() {
     let robot = robot();

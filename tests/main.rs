@@ -1,4 +1,5 @@
-//! Every test that uses the project as its users do, in one binary: sixteen took their time to link.
+//! Every test that uses the project as its users do, in one binary: sixteen took their time to
+//! link.
 
 #![allow(missing_docs)]
 

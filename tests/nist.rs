@@ -1,7 +1,8 @@
-//! Matching digits on the NIST Statistical Reference Datasets for nonlinear regression: 27 problems, two starts
-//! each, one set of default options.
+//! Matching digits on the NIST Statistical Reference Datasets for nonlinear regression: 27
+//! problems, two starts each, one set of default options.
 //!
-//! NIST's files are not part of this project; where their folder is absent, the test says so and passes.
+//! NIST's files are not part of this project; where their folder is absent, the test says so and
+//! passes.
 
 #[allow(missing_docs)]
 mod problems;
@@ -12,9 +13,9 @@ use rodcal::least_squares::{Problem, TerminationReason, central_differences};
 
 /// Certified values have 11 digits; ten times the last one is left to the arithmetic.
 const DIGITS: f64 = 10.0;
-/// Lanczos1 was generated without noise: its residuals (1e-13) are the rounding of its 14-digit data and of the
-/// sum of exponentials itself. Their sum of squares, and with it the standard deviations, has about three digits in
-/// double precision; the parameters keep theirs.
+/// Lanczos1 was generated without noise: its residuals (1e-13) are the rounding of its 14-digit
+/// data and of the sum of exponentials itself. Their sum of squares, and with it the standard
+/// deviations, has about three digits in double precision; the parameters keep theirs.
 const LANCZOS1_DIGITS: f64 = 2.5;
 
 fn problems() -> Option<Vec<Nist>> {
@@ -67,8 +68,8 @@ fn nothing_is_called_converged_that_is_not_the_certified_minimum() {
                 let options = Options { max_iterations, first_radius, ..Options::default() };
                 let fit = fit(&nist, &DVector::from_vec(start.clone()), &options).unwrap();
                 let digits = nist.digits(&fit).parameters;
-                // NIST's problems have one minimum each near their starts; converged means there, to 7 digits
-                // (the gradient tolerance), and said otherwise would be false
+                // NIST's problems have one minimum each near their starts; converged means there,
+                // to 7 digits (the gradient tolerance), and said otherwise would be false
                 assert!(
                     !fit.is_converged() || digits >= 7.0,
                     "{} with {max_iterations} iterations and radius {first_radius}: {digits:.1} digits, yet {}",

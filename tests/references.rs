@@ -1,6 +1,6 @@
-//! The beam model against references that share no code with it: 18 rods, two theories, tip and stations, from
-//! the unit-load integral in 40-digit arithmetic (`tests/references/README.md` says how they were made and which
-//! other solvers agree with them).
+//! The beam model against references that share no code with it: 18 rods, two theories, tip and
+//! stations, from the unit-load integral in 40-digit arithmetic (`tests/references/README.md` says
+//! how they were made and which other solvers agree with them).
 
 #![allow(clippy::unwrap_used)]
 

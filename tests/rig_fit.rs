@@ -1,5 +1,5 @@
-//! `rig fit` against readings made here, by formulas of their own, from known slopes, friction and noise;
-//! against NIST's certified values; and against the figures that the paper published.
+//! `rig fit` against readings made here, by formulas of their own, from known slopes, friction and
+//! noise; against NIST's certified values; and against the figures that the paper published.
 
 #![allow(clippy::unwrap_used)]
 
@@ -31,7 +31,8 @@ fn distance(found: rodcal::statistics::Estimate, truth: f64) -> f64 {
 
 #[test]
 fn slope_intercept_and_load_offset_of_perfect_readings_are_exact() {
-    // up and down, towards + and −, in N and in kg; friction takes 0.8 N off, the zero is off by 4 µm
+    // up and down, towards + and −, in N and in kg; friction takes 0.8 N off, the zero is off by 4
+    // µm
     for (axis, sign) in [("z", 1.0), ("-z", -1.0)] {
         for (unit, newtons) in [("load_n", 1.0), ("load_kg", STANDARD_GRAVITY)] {
             let text = format!("axis,{unit},dz_um\n")
@@ -72,7 +73,8 @@ fn friction_splits_loading_from_unloading_and_leaves_the_slope_alone() {
         let line = &fit.lines[0];
         assert!(distance(line.slope, 20.0 * UM) < 3.0, "{:?}", line.slope);
         assert!(distance(line.friction.unwrap(), 1.1) < 3.0, "{:?}", line.friction);
-        // the zero error of 5 µm is 0.25 N more of an offset, on the same side for both directions of the offset
+        // the zero error of 5 µm is 0.25 N more of an offset, on the same side for both directions
+        // of the offset
         let sign = if axis == "y" { 1.0 } else { -1.0 };
         assert!(distance(line.load_offset.unwrap(), 1.1 - sign * 0.25) < 3.0, "{:?}", line.load_offset);
         assert!(distance(line.intercept, (-sign * 22.0 + 5.0) * UM) < 3.0);
@@ -109,7 +111,8 @@ fn averages_weigh_as_much_as_they_have_readings() {
     let fit = fit(text);
     let line = &fit.lines[0];
     assert_relative_eq!(line.slope.value / UM, 11.5, max_relative = 1e-12);
-    // d̄ = 123/6 = 20.5; residuals of the averages 1, −½, 1; F = (1 + 4/4 + 1)/1 over (1 + 1 + 4 + 4)/3
+    // d̄ = 123/6 = 20.5; residuals of the averages 1, −½, 1; F = (1 + 4/4 + 1)/1 over (1 + 1 + 4 +
+    // 4)/3
     let test = line.lack_of_fit.unwrap();
     assert_relative_eq!(test.f, 3.0 / (10.0 / 3.0), max_relative = 1e-9);
     assert_eq!((test.dof_fit, test.dof_repeats), (1, 3));
@@ -188,7 +191,8 @@ fn stations_are_compared_with_the_model_at_those_stations() {
     let tube = made::Tube { e_gpa: 160.0, g_gpa: 64.0, ..made::STEEL };
     let s: f64 = 0.2;
     let ei = tube.ei();
-    // a force at the tip bends pipe I by a force and, in y, nothing else that moves its centreline sideways
+    // a force at the tip bends pipe I by a force and, in y, nothing else that moves its centreline
+    // sideways
     let at_s_by_tip = s * s * (3.0 * tube.l1 - s) / (6.0 * ei) / UM;
     let at_s_by_s = s.powi(3) / (3.0 * ei) / UM;
     for (columns, slope) in [("200,", at_s_by_tip), (",200", at_s_by_tip), ("200,200", at_s_by_s)] {
@@ -232,7 +236,8 @@ fn all_channels(entries: [[f64; 3]; 3], noise: [f64; 3], seed: u64) -> String {
 fn cross_channels_are_two_measurements_of_one_number() {
     let steel = &made::STEEL;
     let (c11, c13) = (steel.c11(), steel.c13());
-    // dz under load x says 1.3 times the model, dx under load z 1.1 times, with a quarter of the weight
+    // dz under load x says 1.3 times the model, dx under load z 1.1 times, with a quarter of the
+    // weight
     let entries =
         [[1.2 * c11, 0.0, 1.1 * c13], [0.0, 1.2 * steel.c22(), 0.0], [1.3 * c13, 0.0, 1.2 * steel.c33()]];
     let fit = with_rod(&all_channels(entries, [0.5, 0.5, 1.0], 3), &rod(steel), Robust::None);
@@ -276,7 +281,8 @@ fn a_slope_that_symmetry_forbids_is_cross_talk_and_no_compliance() {
 
 #[test]
 fn symmetry_is_judged_where_the_rod_was_loaded_and_read() {
-    // a force along z on pipe I bends nothing: dx there is cross talk although C13 of the tip is not zero
+    // a force along z on pipe I bends nothing: dx there is cross talk although C13 of the tip is
+    // not zero
     let mut text = "axis,load_n,dx_um,dy_um,load_station_mm,read_station_mm\n".to_owned();
     for load in [5.0, 10.0, 15.0, 20.0] {
         text += &format!("y,{load},,{},,\nz,{load},{},,200,200\n", made::STEEL.c22() * load, 1.5 * load);

@@ -1,4 +1,5 @@
-//! Robot files of every kind become the chain that they describe, and are written back without loss.
+//! Robot files of every kind become the chain that they describe, and are written back without
+//! loss.
 
 mod product;
 mod tables;
@@ -22,7 +23,8 @@ fn difference(a: &Pose, b: &Pose) -> f64 {
     turned.max((a.origin - b.origin).abs().max())
 }
 
-/// Numbers between −1 and 1 that are the same every time: a linear congruential generator (Knuth, MMIX).
+/// Numbers between −1 and 1 that are the same every time: a linear congruential generator (Knuth,
+/// MMIX).
 struct Dice(u64);
 
 impl Dice {

@@ -1,4 +1,5 @@
-//! Validation against published values: one example a test, each with its source and a tolerance with a reason.
+//! Validation against published values: one example a test, each with its source and a tolerance
+//! with a reason.
 
 #![allow(clippy::unwrap_used)]
 

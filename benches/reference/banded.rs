@@ -1,4 +1,5 @@
-//! Banded Cholesky: a chain numbered from end to end couples a freedom with eleven others before it.
+//! Banded Cholesky: a chain numbered from end to end couples a freedom with eleven others before
+//! it.
 
 use rodcal::compliance::Compliance;
 use rodcal::rod::Rod;
@@ -29,7 +30,8 @@ fn factorise(a: &mut [[f64; BAND]]) -> Option<()> {
         let row = &mut this[0];
         let first = i.saturating_sub(BAND - 1);
         for (j, other) in above.iter().enumerate().skip(first) {
-            // L_ij = (A_ij − Σ_k L_ik L_jk)/L_jj; column k of row j lies i − j places further right than in row i
+            // L_ij = (A_ij − Σ_k L_ik L_jk)/L_jj; column k of row j lies i − j places further right
+            // than in row i
             let (shift, at) = (i - j, BAND - 1 + j - i);
             let start = BAND - 1 + first - i;
             let products = row[start..at].iter().zip(&other[start + shift..]).map(|(a, b)| a * b);

@@ -1,7 +1,8 @@
 //! The same rod by the stiffness method, as most programs do it: to compare with, not to use.
 //!
-//! Two-node Timoshenko elements of 12 freedoms, assembled into one matrix and factorised: [`banded`] and [`dense`]
-//! differ in that only. Sharp-cornered rods of round tubes, without joints or masses but the tip's.
+//! Two-node Timoshenko elements of 12 freedoms, assembled into one matrix and factorised:
+//! [`banded`] and [`dense`] differ in that only. Sharp-cornered rods of round tubes, without joints
+//! or masses but the tip's.
 
 pub mod banded;
 pub mod dense;
@@ -56,8 +57,8 @@ impl<'a> Frame<'a> {
         NODE * self.pipes.len()
     }
 
-    /// Hands each number of the elements' matrices to `add(row, column, value)` where both freedoms are free, and
-    /// returns the right-hand sides, one row a freedom.
+    /// Hands each number of the elements' matrices to `add(row, column, value)` where both freedoms
+    /// are free, and returns the right-hand sides, one row a freedom.
     pub fn assemble(&self, mut add: impl FnMut(usize, usize, f64)) -> Vec<[f64; CASES]> {
         let mut right = vec![[0.0; CASES]; self.freedoms()];
         for (k, pipe) in self.pipes.iter().enumerate() {
@@ -94,8 +95,8 @@ impl<'a> Frame<'a> {
 
 /// Stiffness and consistent nodal loads of one element, in the axes of {T}.
 ///
-/// J. S. Przemieniecki, *Theory of Matrix Structural Analysis* (1968), § 5.6; for a round section the twelve
-/// freedoms need no local axes but the unit vector t along the element.
+/// J. S. Przemieniecki, *Theory of Matrix Structural Analysis* (1968), § 5.6; for a round section
+/// the twelve freedoms need no local axes but the unit vector t along the element.
 fn element(pipe: &Pipe, along: Vector3<f64>) -> (Stiffness, Loads) {
     let (section, material) = (&pipe.section, &pipe.material);
     let length = along.norm();

@@ -1,14 +1,16 @@
 //! How the first natural frequency follows the numbers of a rod.
 //!
-//! A mode x of x = ω² F M x carries the inertia forces p = M x; λ = 1/ω². F and M are symmetric, so that
+//! A mode x of x = ω² F M x carries the inertia forces p = M x; λ = 1/ω². F and M are symmetric, so
+//! that
 //!
 //! ```text
 //! dλ = (pᵀ dF p + λ xᵀ dM x)/(xᵀ M x),    df/f = −dλ/2λ
 //! ```
 //!
-//! (R. L. Fox, M. P. Kapoor, *AIAA J.* 6 (1968) 2426–2429, with flexibilities in the place of stiffnesses). Where two modes
-//! have one frequency, as those of a straight round rod, dλ is a matrix of 2 by 2, and the lower frequency follows its
-//! larger eigenvalue as the number grows. dF and dM are those of the chain whose numbers carry a derivative.
+//! (R. L. Fox, M. P. Kapoor, *AIAA J.* 6 (1968) 2426–2429, with flexibilities in the place of
+//! stiffnesses). Where two modes have one frequency, as those of a straight round rod, dλ is a
+//! matrix of 2 by 2, and the lower frequency follows its larger eigenvalue as the number grows. dF
+//! and dM are those of the chain whose numbers carry a derivative.
 
 use nalgebra::{DMatrix, Matrix2};
 
@@ -23,8 +25,8 @@ use crate::rod::{NominalNumber, Rod};
 const SAME: f64 = 1e-7;
 
 impl Rod {
-    /// First natural frequency, Hz, and its derivative by each of `numbers`, Hz per SI unit of the number; `None` where
-    /// nothing has mass.
+    /// First natural frequency, Hz, and its derivative by each of `numbers`, Hz per SI unit of the
+    /// number; `None` where nothing has mass.
     ///
     /// ```
     /// use rodcal::prelude::*;

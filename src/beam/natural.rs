@@ -1,17 +1,18 @@
 //! Natural frequencies and shapes: how fast a rod swings when nobody holds it.
 //!
-//! Inertia forces are loads like others. The chain's flexibilities F turn them into motions and the mass matrix M turns
-//! motions into inertia forces, so that
+//! Inertia forces are loads like others. The chain's flexibilities F turn them into motions and the
+//! mass matrix M turns motions into inertia forces, so that
 //!
 //! ```text
 //! x = ω² F M x
 //! ```
 //!
-//! is solved by iterating x ← F M x on several vectors at once, the smallest ω first (subspace iteration: K.-J. Bathe,
-//! *Finite Element Procedures*, 2nd ed., § 11.6). F is exact. M is consistent with the deflections of a Timoshenko beam
-//! between two nodes, rotary inertia included (J. S. Przemieniecki, *Theory of Matrix Structural Analysis*, 1968,
-//! § 11.6), and lumped masses sit at their nodes; an arc weighs along its chords. ω converges from above with the
-//! fourth power of the elements' length, with arcs with the second.
+//! is solved by iterating x ← F M x on several vectors at once, the smallest ω first (subspace
+//! iteration: K.-J. Bathe, *Finite Element Procedures*, 2nd ed., § 11.6). F is exact. M is
+//! consistent with the deflections of a Timoshenko beam between two nodes, rotary inertia included
+//! (J. S. Przemieniecki, *Theory of Matrix Structural Analysis*, 1968, § 11.6), and lumped masses
+//! sit at their nodes; an arc weighs along its chords. ω converges from above with the fourth power
+//! of the elements' length, with arcs with the second.
 
 use nalgebra::{DMatrix, SMatrix, Vector3};
 
@@ -23,9 +24,11 @@ use crate::rod::Rod;
 
 /// Elements of [`Rod::natural_modes`]: the first frequencies are off by less than a millionth.
 const ELEMENTS: usize = 60;
-/// Vectors beyond those that are asked for: the iteration's error shrinks by (ω_asked/ω_next)² each time.
+/// Vectors beyond those that are asked for: the iteration's error shrinks by (ω_asked/ω_next)² each
+/// time.
 const GUARD: usize = 8;
-/// Elements, vectors beyond the one that is asked for, and where ω² stands still, for [`Rod::first_frequency`].
+/// Elements, vectors beyond the one that is asked for, and where ω² stands still, for
+/// [`Rod::first_frequency`].
 pub(super) const FEW: usize = 16;
 const FEW_GUARD: usize = 5;
 const ROUGHLY: f64 = 1e-8;
@@ -39,12 +42,14 @@ const MOST_ITERATIONS: usize = 200;
 pub struct NaturalMode {
     /// Frequency ω/2π, Hz.
     pub frequency: f64,
-    /// For each node its displacement (m) and rotation (rad), such that the largest displacement is 1 m.
+    /// For each node its displacement (m) and rotation (rad), such that the largest displacement is
+    /// 1 m.
     pub shape: Vec<[Vector3<f64>; 2]>,
 }
 
-/// Time in which a swing dies down to `share` of its size: t = ln(1/share)/(ζω), s, with ω = 2π·`frequency` (Hz) and the
-/// damping ratio ζ > 0 (bare steel 0.001 to 0.005, bonded or threaded joints 0.005 to 0.02).
+/// Time in which a swing dies down to `share` of its size: t = ln(1/share)/(ζω), s, with ω =
+/// 2π·`frequency` (Hz) and the damping ratio ζ > 0 (bare steel 0.001 to 0.005, bonded or threaded
+/// joints 0.005 to 0.02).
 ///
 /// ```
 /// use rodcal::beam::settling_time;
@@ -57,8 +62,8 @@ pub fn settling_time(frequency: f64, damping_ratio: f64, share: f64) -> f64 {
 }
 
 impl Rod {
-    /// The first `count` natural modes of the rod as built, clamped at the flange, slowest first; fewer where it has
-    /// fewer.
+    /// The first `count` natural modes of the rod as built, clamped at the flange, slowest first;
+    /// fewer where it has fewer.
     ///
     /// ```
     /// use rodcal::prelude::*;
@@ -76,8 +81,8 @@ impl Rod {
         RodModel::new(self, &Physics::WHOLE, ELEMENTS, &[])?.chain.natural_modes(count)
     }
 
-    /// The first natural frequency, Hz, within some millionths of [`Rod::natural_modes`] and in a tenth of the time;
-    /// `None` where nothing has mass.
+    /// The first natural frequency, Hz, within some millionths of [`Rod::natural_modes`] and in a
+    /// tenth of the time; `None` where nothing has mass.
     ///
     /// # Errors
     /// As [`Rod::natural_modes`].
@@ -88,7 +93,8 @@ impl Rod {
 }
 
 impl Chain {
-    /// The first `count` natural modes of the clamped chain, slowest first; fewer where it has fewer.
+    /// The first `count` natural modes of the clamped chain, slowest first; fewer where it has
+    /// fewer.
     ///
     /// # Errors
     /// [`Error::Numerical`] where the iteration does not settle.
@@ -99,7 +105,8 @@ impl Chain {
     fn modes(&self, count: usize, guard: usize, settled: f64) -> Result<Vec<NaturalMode>> {
         let inertia = self.inertia();
         let (length, nodes) = (self.station(self.end()).max(f64::MIN_POSITIVE), self.nodes.len());
-        // bodies that sway along and turn about each axis: uniformly, in proportion to the station …
+        // bodies that sway along and turn about each axis: uniformly, in proportion to the station
+        // …
         let mut x = DMatrix::from_fn(6 * nodes, count + guard, |row, k| {
             let is_own = row % 6 == k % 6;
             if is_own { (self.station(row / 6) / length).powi((k / 6) as i32) } else { 0.0 }
@@ -214,8 +221,8 @@ impl<T: Number> Chain<T> {
     }
 }
 
-/// M φ = λ K φ, λ = 1/ω²: ω² ascending, and φ with φᵀ K φ = 1. The largest λ is found to the last digits, however much
-/// faster the other modes are; directions without mass are left out.
+/// M φ = λ K φ, λ = 1/ω²: ω² ascending, and φ with φᵀ K φ = 1. The largest λ is found to the last
+/// digits, however much faster the other modes are; directions without mass are left out.
 fn ritz(stiffness: DMatrix<f64>, mass: DMatrix<f64>) -> Option<(Vec<f64>, DMatrix<f64>)> {
     /// Share of the largest below which there is nothing.
     const NOTHING: f64 = 1e-14;
@@ -253,8 +260,8 @@ fn ritz(stiffness: DMatrix<f64>, mass: DMatrix<f64>) -> Option<(Vec<f64>, DMatri
     Some((order.iter().map(|&k| 1.0 / found.eigenvalues[k]).collect(), turned))
 }
 
-/// Consistent mass of a straight Timoshenko beam (Przemieniecki, Eqs 11.88 and 11.89), in the axes of space; freedoms:
-/// displacement and rotation of the near node, then of the far one.
+/// Consistent mass of a straight Timoshenko beam (Przemieniecki, Eqs 11.88 and 11.89), in the axes
+/// of space; freedoms: displacement and rotation of the near node, then of the far one.
 fn consistent_mass<T: Number>(piece: &Piece<T>) -> SMatrix<T, 12, 12> {
     let Piece { profile, length: l, frame } = *piece;
     let (mass, mut local) = (profile.mass_per_length * l, SMatrix::<T, 12, 12>::zeros());
@@ -399,8 +406,8 @@ mod tests {
         assert!((found / exact - 1.0).abs() < 1e-4, "{found} {exact}");
     }
 
-    /// An L that bends in its plane only, from the equations of its two beams: the second cannot move
-    /// along the first and rides on it as a mass (H. Bang, *J. Guidance* 19 (1996) 248–250).
+    /// An L that bends in its plane only, from the equations of its two beams: the second cannot
+    /// move along the first and rides on it as a mass (H. Bang, *J. Guidance* 19 (1996) 248–250).
     #[test]
     fn an_l_swings_in_its_plane_as_its_two_beams_together() {
         let (l1, l2) = (0.3, 0.5);

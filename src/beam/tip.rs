@@ -1,7 +1,8 @@
 //! The tip alone, for very many rods: no memory is asked for, one element for each part.
 //!
-//! Elements are exact and internal forces follow from equilibrium, so that the tip's motion is the sum of what every
-//! element does to it: u = Σ u_e + θ_e×(p_tip − c), one sweep from the tip to the root.
+//! Elements are exact and internal forces follow from equilibrium, so that the tip's motion is the
+//! sum of what every element does to it: u = Σ u_e + θ_e×(p_tip − c), one sweep from the tip to the
+//! root.
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
@@ -43,11 +44,11 @@ impl<T: Number> Default for TipSolver<T> {
 }
 
 impl<T: Number> TipSolver<T> {
-    /// Motion of the tip per newton at the tip (m/N) and per acceleration (m per m/s²), in {T}: `m[(i, j)]` is along
-    /// axis i under a load along axis j. All physics is in it.
+    /// Motion of the tip per newton at the tip (m/N) and per acceleration (m per m/s²), in {T}:
+    /// `m[(i, j)]` is along axis i under a load along axis j. All physics is in it.
     ///
-    /// The rod is taken as it is: [`Rod::checked`] checks it. The sums are not checked either, as those of
-    /// [`RodModel`] are: numbers beyond double precision make a result that is not finite.
+    /// The rod is taken as it is: [`Rod::checked`] checks it. The sums are not checked either, as
+    /// those of [`RodModel`] are: numbers beyond double precision make a result that is not finite.
     ///
     /// # Errors
     /// As [`RodModel::new`], for a rod with masses or joints on it only.
@@ -87,7 +88,8 @@ impl<T: Number> Chain<T> {
             let shape = self.shape(element);
             let (near, far) = (&self.nodes[k], &self.nodes[k + 1].position);
             let lever = tip - element.reference;
-            // a newton at the tip: F = 1, M = [r]ₓ;  the weight beyond: F = φ, M = [s]ₓ, and its own
+            // a newton at the tip: F = 1, M = [r]ₓ;  the weight beyond: F = φ, M = [s]ₓ, and its
+            // own
             let [of_force, of_weight] =
                 [(T::one(), skew(&lever)), (mass, skew(&(first_moment + (far - element.reference) * mass)))]
                     .map(|(mass, moment)| {

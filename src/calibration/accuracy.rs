@@ -1,4 +1,5 @@
-//! Is the robot accurate enough? Limits that a campaign states, against errors at poses that the calibration has not seen.
+//! Is the robot accurate enough? Limits that a campaign states, against errors at poses that the
+//! calibration has not seen.
 
 use super::campaign::AccuracyLimits;
 use super::{Calibration, CrossValidation, Summary};
@@ -38,8 +39,8 @@ pub struct Accuracy {
     pub errors: Option<Summary>,
 }
 
-/// Judges a calibration by its validation poses, else by its cross-validation, and never by the poses that it was fitted to. A fit
-/// that did not converge or is not plausible does not pass.
+/// Judges a calibration by its validation poses, else by its cross-validation, and never by the
+/// poses that it was fitted to. A fit that did not converge or is not plausible does not pass.
 pub fn accuracy(
     limits: Option<&AccuracyLimits>,
     calibration: &Calibration,

@@ -1,5 +1,5 @@
-//! The calibration itself: rough start, fit, compensation recomputed until it no longer changes (Eqs
-//! 7–14).
+//! The calibration itself: rough start, fit, compensation recomputed until it no longer changes
+//! (Eqs 7–14).
 
 use super::before::before;
 use super::calibrate_from::calibrate_from;
@@ -34,8 +34,8 @@ use crate::spatial::best_motion;
 /// ```
 ///
 /// # Errors
-/// What [`Compensation::new`] refuses; [`crate::Error::Input`] for fewer measurements than parameters;
-/// what the fits refuse. A fit that does not converge is no error: see
+/// What [`Compensation::new`] refuses; [`crate::Error::Input`] for fewer measurements than
+/// parameters; what the fits refuse. A fit that does not converge is no error: see
 /// [`Calibration::is_converged`].
 pub fn calibrate<'c>(campaign: &'c Campaign, mode: Mode, options: &Options) -> Result<Calibration<'c>> {
     let compensation = Compensation::new(campaign, mode)?;

@@ -1,4 +1,5 @@
-//! One calibration from a given start: fit and compensation until neither changes, and what is known then.
+//! One calibration from a given start: fit and compensation until neither changes, and what is
+//! known then.
 
 use super::campaign::{Campaign, Recording, Targets};
 use super::compensation::Compensation;

@@ -53,7 +53,8 @@ pub struct Campaign {
     pub contact_force: Option<Vector3<f64>>,
     /// First guess of the undeflected tip in {T}, m.
     pub tool: Vector3<f64>,
-    /// False where the file says nothing about the tool; the guess is then the rod's tip or the flange.
+    /// False where the file says nothing about the tool; the guess is then the rod's tip or the
+    /// flange.
     pub tool_is_given: bool,
     /// First guess of {0} in {W}: position (m) and roll, pitch, yaw (rad).
     pub base: [f64; 6],
@@ -79,7 +80,8 @@ pub struct Campaign {
     pub warnings: Vec<Warning>,
 }
 
-/// How accurate the robot has to be: limits of the error at poses that the calibration has not seen.
+/// How accurate the robot has to be: limits of the error at poses that the calibration has not
+/// seen.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct AccuracyLimits {
@@ -122,7 +124,8 @@ pub struct Recording {
     pub joint_count: usize,
     /// Joint values, rad or m, n per row, one row after the other.
     pub joint_values: Vec<f64>,
-    /// The same as they were read, where the robot's file says what the moves between the poses add.
+    /// The same as they were read, where the robot's file says what the moves between the poses
+    /// add.
     pub joints_read: Option<Vec<f64>>,
     /// One per row of the file.
     pub rows: Vec<Row>,
@@ -168,8 +171,8 @@ pub struct Group {
 pub struct Station {
     /// As in the column `station`.
     pub name: String,
-    /// {W} of this station in that of the first one, as the nominal robot shows it: points are given
-    /// in the first station's {W} by it, and a calibration corrects the rest.
+    /// {W} of this station in that of the first one, as the nominal robot shows it: points are
+    /// given in the first station's {W} by it, and a calibration corrects the rest.
     pub frame: Pose,
 }
 
@@ -220,7 +223,8 @@ impl Recording {
         }
     }
 
-    /// Adds to the joint values as they were read what the moves between the poses add, by the robot's file.
+    /// Adds to the joint values as they were read what the moves between the poses add, by the
+    /// robot's file.
     pub fn take_up_moves(&mut self, robot: &Robot) {
         let read = self.joints_read.take().unwrap_or_else(|| self.joint_values.clone());
         self.joint_values = robot.after_moves(&read);

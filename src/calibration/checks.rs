@@ -55,7 +55,8 @@ pub(super) fn all(campaign: &Campaign, recording: &Recording, calibration: &Cali
 /// So many standard uncertainties of the robot file are worth a word.
 const FAR: f64 = 10.0;
 
-/// Numbers that the data put far from where the robot file has them, but not farther than a robot can be.
+/// Numbers that the data put far from where the robot file has them, but not farther than a robot
+/// can be.
 fn far_from_drawing(calibration: &Calibration) -> impl Iterator<Item = Warning> {
     let known = &calibration.setup.robot.standard_uncertainty;
     calibration.parameters.iter().filter_map(|estimate| {

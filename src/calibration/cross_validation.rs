@@ -82,8 +82,8 @@ pub fn cross_validate(
     Ok(CrossValidation { fold, folds, summary: Summary::of(&errors), errors, deviations })
 }
 
-/// Deflected tips of a recording as a calibration on `training` predicts them, less what was measured
-/// or less their sockets' means.
+/// Deflected tips of a recording as a calibration on `training` predicts them, less what was
+/// measured or less their sockets' means.
 fn predict(
     trained: &Calibration,
     training: &Recording,

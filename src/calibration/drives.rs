@@ -1,9 +1,10 @@
 //! How compliant drives are, before anybody measures them.
 //!
-//! A gear turns by some 1.5 mrad under the torque that it is rated for, whatever its size: strain-wave gears of industrial
-//! arms by 1.4 to 2 (catalogue stiffnesses of sizes 14 to 40, 3.4 to 100 kN·m/rad, at 5.4 to 137 N·m), cycloidal ones
-//! by 1. What a drive carries is the least that it is rated for, and a drive nearer to the base is no weaker than those beyond
-//! it. So a compliance is half-normal: never negative, and hardly more than three times
+//! A gear turns by some 1.5 mrad under the torque that it is rated for, whatever its size:
+//! strain-wave gears of industrial arms by 1.4 to 2 (catalogue stiffnesses of sizes 14 to 40, 3.4
+//! to 100 kN·m/rad, at 5.4 to 137 N·m), cycloidal ones by 1. What a drive carries is the least that
+//! it is rated for, and a drive nearer to the base is no weaker than those beyond it. So a
+//! compliance is half-normal: never negative, and hardly more than three times
 //!
 //! ```text
 //! 1.5 mrad / max(5 N·m, the largest torque of gravity on any joint from j on)
@@ -39,8 +40,8 @@ pub(crate) fn plausible_compliances(setup: &Setup, payload: Option<Body>) -> Vec
     plausible
 }
 
-/// What is known of the compliances among the free parameters, about the values of the robot file; not
-/// of `stated` ones, for which there is a prior of the user's.
+/// What is known of the compliances among the free parameters, about the values of the robot file;
+/// not of `stated` ones, for which there is a prior of the user's.
 pub(super) fn priors(
     nominal: &Setup,
     free: &[Parameter],

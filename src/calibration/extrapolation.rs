@@ -4,8 +4,8 @@
 //! variance of a predicted tip    tr(J·Σ·Jᵀ)    J = ∂tip/∂ρ of the robot's own parameters, Σ their covariance
 //! ```
 //!
-//! and its mean over the poses asked for, beside that over the calibration's own. Base and tool are left out: whoever
-//! aligns the robot anew fits them again.
+//! and its mean over the poses asked for, beside that over the calibration's own. Base and tool are
+//! left out: whoever aligns the robot anew fits them again.
 
 use nalgebra::{DMatrix, Matrix3xX};
 

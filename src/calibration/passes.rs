@@ -20,7 +20,8 @@ const SETTLED: f64 = 1e-9;
 /// Relative change of noise and weights below which the loop has converged: far below their own
 /// uncertainty.
 const SETTLED_RELATIVE: f64 = 1e-3;
-/// Change of the logarithm of the drawing's scale below which the loop has converged: far below how well it is known.
+/// Change of the logarithm of the drawing's scale below which the loop has converged: far below how
+/// well it is known.
 const RESCALED: f64 = 0.06;
 /// So many passes choose the drawing's scale.
 const RESCALING_PASSES: usize = 6;
@@ -199,8 +200,8 @@ impl<'a, 'c> Run<'a, 'c> {
         let problem = self.problem();
         let p = problem.start();
         let mut corner = problem.information_root(&p);
-        // before the first fit it is the nominal robot's misfit that parameters have to be judged by
-        // from, not the noise
+        // before the first fit it is the nominal robot's misfit that parameters have to be judged
+        // by from, not the noise
         if self.passes.is_empty() {
             let squares = problem.residuals(&p).norm_squared();
             corner /= (squares / problem.residual_count() as f64).sqrt().max(1.0);

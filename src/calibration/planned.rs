@@ -28,9 +28,9 @@ pub fn planned_setup(campaign: &Campaign) -> Result<Setup<'_>> {
     Ok(Setup::new(&campaign.robot, base, tool))
 }
 
-/// How well each free parameter is known before anybody measures, SI: what the drawing (its standard
-/// uncertainties times `scale`), the class of the drives and the user say; of base and tool how far a
-/// rough start may be off.
+/// How well each free parameter is known before anybody measures, SI: what the drawing (its
+/// standard uncertainties times `scale`), the class of the drives and the user say; of base and
+/// tool how far a rough start may be off.
 pub fn known_before(
     campaign: &Campaign,
     setup: &Setup,
@@ -72,8 +72,8 @@ pub struct Planned<'c> {
 }
 
 impl<'c> Planned<'c> {
-    /// Poses (the index of their place, joint values in rad or m) at these places, of a robot that stands as in `setup`, with
-    /// the loads of `compensation`.
+    /// Poses (the index of their place, joint values in rad or m) at these places, of a robot that
+    /// stands as in `setup`, with the loads of `compensation`.
     pub fn new(
         setup: Setup<'c>,
         free: &[Parameter],
@@ -123,8 +123,8 @@ impl<'c> Planned<'c> {
         &self.recording
     }
 
-    /// ∂(tip − place)/∂unknown of every pose in {W}, m per unit (SI): the free parameters, then the coordinates of
-    /// unknown places.
+    /// ∂(tip − place)/∂unknown of every pose in {W}, m per unit (SI): the free parameters, then the
+    /// coordinates of unknown places.
     pub fn rows(&self) -> Vec<Matrix3xX<f64>> {
         let problem = self.problem();
         let mut rows = Vec::with_capacity(self.recording.len());
@@ -137,7 +137,8 @@ impl<'c> Planned<'c> {
         rows
     }
 
-    /// What a rod of this compliance (with the loads that belong to it) adds to each tip, in {W}, m.
+    /// What a rod of this compliance (with the loads that belong to it) adds to each tip, in {W},
+    /// m.
     pub fn deflections(&self, compensation: &Compensation) -> Vec<Vector3<f64>> {
         compensation.deflections(&self.setup, &self.recording)
     }
@@ -172,8 +173,9 @@ impl<'c> Planned<'c> {
     }
 }
 
-/// Where the ball can be held: the campaign's clamps, its sockets where the nominal robot has them, or one place without a
-/// name for a tracker, which sees the ball anywhere. With it whether the places are unknown numbers.
+/// Where the ball can be held: the campaign's clamps, its sockets where the nominal robot has them,
+/// or one place without a name for a tracker, which sees the ball anywhere. With it whether the
+/// places are unknown numbers.
 ///
 /// # Errors
 /// As [`planned_setup`].

@@ -1,7 +1,8 @@
 //! Numbers of the robot that the data do not support are held where the drawing has them.
 //!
-//! A correction that is smaller than its standard error improves no prediction: what it takes out of the bias it adds, and
-//! more, in variance. The least supported go first, for what is held decides what the others are worth.
+//! A correction that is smaller than its standard error improves no prediction: what it takes out
+//! of the bias it adds, and more, in variance. The least supported go first, for what is held
+//! decides what the others are worth.
 
 use super::calibrate_from::calibrate_from;
 use super::campaign::Campaign;

@@ -34,8 +34,8 @@ pub struct Calibration<'c> {
     /// Where the sockets were found, m, with their standard errors; in {0}. Empty for measured
     /// points.
     pub sockets: Vec<[(f64, Option<f64>); 3]>,
-    /// For each station what brings its points, as the recording has them, into {W}: the identity for
-    /// the first.
+    /// For each station what brings its points, as the recording has them, into {W}: the identity
+    /// for the first.
     pub stations: Vec<Pose>,
     /// Combinations of the free parameters that the data do not identify: held where the
     /// nominal robot has them.
@@ -117,8 +117,8 @@ impl Calibration<'_> {
         pairs
     }
 
-    /// What brings the points of each station of another `recording` into {W}, by the stations of the
-    /// same name in that which was calibrated on; the identity for a station that is not there.
+    /// What brings the points of each station of another `recording` into {W}, by the stations of
+    /// the same name in that which was calibrated on; the identity for a station that is not there.
     pub fn motions(&self, calibrated: &Recording, recording: &Recording) -> Vec<Pose> {
         let of = |name: &str| {
             let known = calibrated.stations.iter().position(|known| known.name == name);

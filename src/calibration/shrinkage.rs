@@ -1,18 +1,21 @@
 //! What the drawing says of the robot, as far as the data believe it.
 //!
-//! Every number of the geometry is normal about its nominal value with the standard deviation s·u: u is that of the robot
-//! file (`[standard_uncertainty]`), s one factor for all, the common scale, which the data choose. What the poses show stays
-//! as they show it; along what they hardly show the robot stays near its drawing, instead of wandering by centimetres in
-//! search of the last micrometre of the residual.
+//! Every number of the geometry is normal about its nominal value with the standard deviation s·u:
+//! u is that of the robot file (`[standard_uncertainty]`), s one factor for all, the common scale,
+//! which the data choose. What the poses show stays as they show it; along what they hardly show
+//! the robot stays near its drawing, instead of wandering by centimetres in search of the last
+//! micrometre of the residual.
 //!
-//! With A = M·J·U, the whitened columns of the geometry in units of u with all else projected out, d its singular values and z
-//! the components of the nominal robot's residual along its left singular vectors, the marginal likelihood is
+//! With A = M·J·U, the whitened columns of the geometry in units of u with all else projected out,
+//! d its singular values and z the components of the nominal robot's residual along its left
+//! singular vectors, the marginal likelihood is
 //!
 //! ```text
 //! ln p(y | s) = −½·Σₖ [ ln(1 + s²dₖ²) + zₖ²/(1 + s²dₖ²) ] + const        D. J. C. MacKay, Neural Computation 4 (1992) 415–447
 //! ```
 //!
-//! At an estimate t̂ = U⁻¹(ρ̂ − ρ₀) with the scale s₀, where the gradient vanishes, z = (d + 1/(s₀²d))·Vᵀt̂.
+//! At an estimate t̂ = U⁻¹(ρ̂ − ρ₀) with the scale s₀, where the gradient vanishes, z = (d +
+//! 1/(s₀²d))·Vᵀt̂.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -69,9 +72,9 @@ impl Drawing {
         self.known.iter().flatten().count() as f64 - self.determined
     }
 
-    /// Chooses the scale by the marginal likelihood: `root` is the square root of the information of
-    /// the data alone (whitened, free parameters), `p` the estimate with the present scale. By how
-    /// much its logarithm has changed.
+    /// Chooses the scale by the marginal likelihood: `root` is the square root of the information
+    /// of the data alone (whitened, free parameters), `p` the estimate with the present scale. By
+    /// how much its logarithm has changed.
     ///
     /// # Errors
     /// As [`thin_svd`].
@@ -116,8 +119,8 @@ impl Drawing {
     }
 }
 
-/// M·J·U: the columns of the geometry in units of what is known of them, without what base, tool and
-/// compliances take up.
+/// M·J·U: the columns of the geometry in units of what is known of them, without what base, tool
+/// and compliances take up.
 fn geometry(root: &DMatrix<f64>, own: &[usize], unit: &[f64]) -> Result<DMatrix<f64>> {
     let rest: Vec<usize> = (0..root.ncols()).filter(|k| !own.contains(k)).collect();
     let mut columns = DMatrix::from_fn(root.nrows(), own.len(), |i, k| root[(i, own[k])] * unit[k]);

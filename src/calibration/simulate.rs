@@ -77,8 +77,8 @@ pub fn simulate<'r>(robot: &'r Robot, rod: &Rod, model: &Compliance, plan: &Plan
     simulate_telling(robot, rod, model, plan, &|| ())
 }
 
-/// [`simulate`], which takes seconds for a thousand poses; `progress` is called for every candidate that is found and for
-/// every pose that is taken.
+/// [`simulate`], which takes seconds for a thousand poses; `progress` is called for every candidate
+/// that is found and for every pose that is taken.
 ///
 /// # Errors
 /// As [`simulate`].

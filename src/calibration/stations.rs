@@ -1,4 +1,5 @@
-//! Recordings from several stations: the frames of tracker or base, as the nominal robot shows them.
+//! Recordings from several stations: the frames of tracker or base, as the nominal robot shows
+//! them.
 //!
 //! Of each station the base alone is fitted to its own points, with the tool that the largest of
 //! them shows; the two bases give the motion from one frame to the other. That is as good as the
@@ -14,9 +15,9 @@ use crate::robot::Robot;
 use crate::spatial::{Pose, best_motion};
 
 impl Recording {
-    /// Brings the points of all stations, each given in its own frame, into that of the first, by the
-    /// nominal robot; `base` and `tool` (m) are first guesses. Nothing with one station, nor with
-    /// sockets.
+    /// Brings the points of all stations, each given in its own frame, into that of the first, by
+    /// the nominal robot; `base` and `tool` (m) are first guesses. Nothing with one station, nor
+    /// with sockets.
     ///
     /// # Errors
     /// As [`crate::linalg::thin_svd`]; none in practice.
@@ -51,9 +52,9 @@ impl Recording {
         Ok(())
     }
 
-    /// The points of a validation in the {W} of a calibration on `calibrated`: a station of the same
-    /// name stands where it was found; any other is placed by the calibrated robot, so that only what
-    /// no rigid motion explains is left there. As it is where no station is named.
+    /// The points of a validation in the {W} of a calibration on `calibrated`: a station of the
+    /// same name stands where it was found; any other is placed by the calibrated robot, so that
+    /// only what no rigid motion explains is left there. As it is where no station is named.
     ///
     /// # Errors
     /// As [`crate::linalg::thin_svd`]; none in practice.

@@ -28,8 +28,8 @@ pub fn write_back(campaign: &Campaign, calibration: &Calibration) -> Result<(Str
     write_back_with(campaign, calibration, None, &[])
 }
 
-/// The same with more comments; `sd` is how well the robot predicts poses that were held out, m, in place of the scatter that
-/// the calibration leaves.
+/// The same with more comments; `sd` is how well the robot predicts poses that were held out, m, in
+/// place of the scatter that the calibration leaves.
 ///
 /// # Errors
 /// As [`write_back`].
@@ -70,8 +70,8 @@ pub fn write_back_with(
     Ok(("calibrated.urdf".into(), written.text))
 }
 
-/// What a URDF has no place for, in a file beside it: tip, uncertainty, calibrated ranges, effects and compliances. `None` for
-/// a table, which holds them itself.
+/// What a URDF has no place for, in a file beside it: tip, uncertainty, calibrated ranges, effects
+/// and compliances. `None` for a table, which holds them itself.
 pub fn write_beside(
     campaign: &Campaign,
     calibration: &Calibration,

@@ -12,8 +12,8 @@ use super::provenance::RESULT;
 #[derive(Debug, Args)]
 #[command(after_long_help = NOTES)]
 pub struct CompareRuns {
-    /// Folders of results of one command, as --out writes them: two or more. Each is compared with the
-    /// first.
+    /// Folders of results of one command, as --out writes them: two or more. Each is compared with
+    /// the first.
     #[arg(required = true, num_args = 2.., value_name = "RUN")]
     runs: Vec<PathBuf>,
 }

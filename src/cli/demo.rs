@@ -32,7 +32,8 @@ const PAGES: [(&str, &str, &str); 3] = [
     ),
     ("why", "My simulation and my recordings disagree: where, and why?", "Two sets of readings, diagnosed."),
 ];
-/// Which card of each page the index shows: c_rod, the error at validation poses, the strongest finding.
+/// Which card of each page the index shows: c_rod, the error at validation poses, the strongest
+/// finding.
 const IN_SHORT: [usize; 3] = [0, 2, 0];
 /// The rod whose page the demo shows, and the one whose readings are diagnosed.
 const SHOWN: &str = "5#";
@@ -157,7 +158,8 @@ fn shown(sections: Vec<Section>, pictures: &[&str]) -> Vec<Section> {
     kept
 }
 
-/// A diagnosis as a part of a page: its answer, its first cards, what it looks like before and after.
+/// A diagnosis as a part of a page: its answer, its first cards, what it looks like before and
+/// after.
 fn add(page: &mut Report, of: &str, part: Report) {
     let gap = if page.headline.is_empty() { "" } else { " " };
     page.headline += &format!("{gap}{of}: {}", part.headline);

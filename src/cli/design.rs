@@ -41,8 +41,8 @@ pub struct DesignRod {
     /// that take long. Stop it whenever you like; what it says in the end is the same.
     #[arg(long, value_name = "FILE")]
     resume: Option<PathBuf>,
-    /// Better design N of the front between the values of the ranges and of the tubes, then take the
-    /// nearest tubes of the catalogue [without N: design 1].
+    /// Better design N of the front between the values of the ranges and of the tubes, then take
+    /// the nearest tubes of the catalogue [without N: design 1].
     #[arg(long, value_name = "N", num_args = 0..=1, default_missing_value = "1",
           value_parser = clap::value_parser!(u32).range(1..))]
     refine: Option<u32>,

@@ -20,9 +20,11 @@ const MOST_NEIGHBOURS: usize = 50;
 
 #[derive(Debug, Subcommand)]
 pub enum Diagnose {
-    /// Which physics the model of a rod left out: located, named, measured, confirmed on held-out readings.
+    /// Which physics the model of a rod left out: located, named, measured, confirmed on held-out
+    /// readings.
     Rig(Rig),
-    /// Which physics of robot, rod, fixture or procedure a calibration left out: which joint, clamp, time or pose.
+    /// Which physics of robot, rod, fixture or procedure a calibration left out: which joint,
+    /// clamp, time or pose.
     Calibration(calibration::Calibration),
 }
 
@@ -33,8 +35,9 @@ pub struct Rig {
     rod: PathBuf,
     /// Readings (CSV): how far the tip moved under each load. `rodcal rig fit --help` shows one.
     readings: PathBuf,
-    /// Also write what was found into a rod file and into readings that `compliance`, `rig fit`, `calibrate` and
-    /// `compare` read, `*-diagnosed.toml` and `*-diagnosed.csv` [without --out: in reports/diagnosed].
+    /// Also write what was found into a rod file and into readings that `compliance`, `rig fit`,
+    /// `calibrate` and `compare` read, `*-diagnosed.toml` and `*-diagnosed.csv` [without --out: in
+    /// reports/diagnosed].
     #[arg(long)]
     apply: bool,
 }
@@ -113,7 +116,8 @@ impl Rig {
     }
 }
 
-/// The rods whose files stand beside `file`, by their file names: one of them may have been on the rig.
+/// The rods whose files stand beside `file`, by their file names: one of them may have been on the
+/// rig.
 pub fn neighbours(file: &Path) -> Vec<(String, Rod)> {
     let named = |path: PathBuf| {
         let name = path.file_name()?.to_string_lossy().into_owned();

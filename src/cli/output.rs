@@ -138,8 +138,8 @@ pub fn deliver(options: &Options, outcome: Outcome) -> Result<ExitCode> {
 /// Refuses what cannot be delivered, before anything is calculated; the report goes to `directory`.
 ///
 /// # Errors
-/// [`Error::NotApplicable`] for `--png` in a build without it, [`Error::Argument`] for a file in the
-/// place of the directory, [`Error::InTheWay`] for a page or a result in it that would be lost.
+/// [`Error::NotApplicable`] for `--png` in a build without it, [`Error::Argument`] for a file in
+/// the place of the directory, [`Error::InTheWay`] for a page or a result in it that would be lost.
 pub fn check(options: &Options, directory: Option<&Path>) -> Result<()> {
     if options.png && !cfg!(feature = "png") {
         return Err(Error::NotApplicable {
@@ -190,7 +190,8 @@ pub fn say(line: &str) {
     let _ = writeln!(std::io::stderr(), "{line}");
 }
 
-/// Columns of the terminal that stdout is, or as COLUMNS says; in a file or a pipe tables take what they need.
+/// Columns of the terminal that stdout is, or as COLUMNS says; in a file or a pipe tables take what
+/// they need.
 fn width() -> usize {
     if !std::io::stdout().is_terminal() {
         return usize::MAX;

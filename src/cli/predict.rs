@@ -21,8 +21,8 @@ pub struct Predict {
     /// the flange].
     #[arg(long, value_name = "X,Y,Z", value_parser = three_numbers, allow_hyphen_values = true)]
     tool: Option<[f64; 3]>,
-    /// What stands beside a URDF, as `calibrate --out` and `--apply` write it (TOML): tip, uncertainty,
-    /// calibrated ranges and effects.
+    /// What stands beside a URDF, as `calibrate --out` and `--apply` write it (TOML): tip,
+    /// uncertainty, calibrated ranges and effects.
     #[arg(long, value_name = "FILE", conflicts_with = "corrections")]
     effects: Option<PathBuf>,
     /// State the uncertainty that is left after base and tool were aligned anew to these poses.

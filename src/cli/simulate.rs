@@ -24,7 +24,8 @@ pub struct Simulate {
     /// Rod file (TOML).
     #[arg(long)]
     rod: PathBuf,
-    /// Robot file (a table in TOML, or a URDF with the links base_link and tip_link), or `builtin:tx90`.
+    /// Robot file (a table in TOML, or a URDF with the links base_link and tip_link), or
+    /// `builtin:tx90`.
     #[arg(long, default_value = "builtin:tx90")]
     robot: String,
     /// Every random number comes from this seed.

@@ -25,7 +25,8 @@ const BLOCK: usize = 8;
 
 #[derive(Debug, Subcommand)]
 pub enum Trial {
-    /// Draw cases with concealed effects: recordings into DIR, what they conceal into a key beside it.
+    /// Draw cases with concealed effects: recordings into DIR, what they conceal into a key beside
+    /// it.
     Make(Make),
     /// Diagnose every case of DIR that has no answer yet; the key is not needed and not read.
     Answer(AnswerCases),
@@ -46,7 +47,8 @@ pub struct Make {
     /// Only calibrations of arms.
     #[arg(long, conflicts_with = "rig")]
     calibration: bool,
-    /// Only calibrations with effects that imitate each other, both sides of four pairs in turn: 80 cases are ten of each.
+    /// Only calibrations with effects that imitate each other, both sides of four pairs in turn: 80
+    /// cases are ten of each.
     #[arg(long, conflicts_with_all = ["rig", "calibration"])]
     conflicts: bool,
     /// Number of cases.
@@ -55,8 +57,8 @@ pub struct Make {
     /// Only the cases from A up to B, B included.
     #[arg(long, value_name = "A..B", value_parser = case_range)]
     case_range: Option<Range<usize>>,
-    /// Noise from a real recording: a CSV with a column `residual` in any unit, from which it is drawn
-    /// in stretches.
+    /// Noise from a real recording: a CSV with a column `residual` in any unit, from which it is
+    /// drawn in stretches.
     #[arg(long, value_name = "FILE")]
     residuals: Option<PathBuf>,
     /// File for the key [default: DIR.key.jsonl]
@@ -68,7 +70,8 @@ pub struct Make {
 pub struct AnswerCases {
     /// Directory of the trial.
     directory: PathBuf,
-    /// File for the answers, one line each; cases that stand in it already are left alone [default: DIR/answers.jsonl]
+    /// File for the answers, one line each; cases that stand in it already are left alone [default:
+    /// DIR/answers.jsonl]
     #[arg(long, value_name = "FILE")]
     answers: Option<PathBuf>,
     /// Only the cases from A up to B, B included.

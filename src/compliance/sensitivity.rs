@@ -1,7 +1,7 @@
 //! How compliance, mass and first frequency follow every number of a rod.
 //!
-//! The rod's numbers carry a derivative through the formulas that compute the figures ([`Rod::derivative`]): no steps, no
-//! second set of formulas, exact to rounding.
+//! The rod's numbers carry a derivative through the formulas that compute the figures
+//! ([`Rod::derivative`]): no steps, no second set of formulas, exact to rounding.
 
 use super::Compliance;
 use crate::beam::{Physics, RodModel};
@@ -28,9 +28,11 @@ pub struct Sensitivity {
     pub frequency: f64,
 }
 
-/// Derivatives of `rod` by every number of it ([`Rod::numbers`]) under `physics`, and with a contact force of this size (N).
+/// Derivatives of `rod` by every number of it ([`Rod::numbers`]) under `physics`, and with a
+/// contact force of this size (N).
 ///
-/// At entries of C^F or C^g that are 0 by symmetry, |C| of c_rod has a kink; there the derivative is the one as the number grows.
+/// At entries of C^F or C^g that are 0 by symmetry, |C| of c_rod has a kink; there the derivative
+/// is the one as the number grows.
 ///
 /// ```
 /// use rodcal::compliance::sensitivities;
@@ -112,7 +114,8 @@ mod tests {
                 let difference = |of: &dyn Fn(&(Compliance, f64)) -> Matrix3<f64>| {
                     ((of(&c) - of(&b)) * 8.0 - (of(&d) - of(&a))) / (12.0 * step)
                 };
-                // to 1e-6 of the derivative, and to 1e-10 of what 1 % of the number would do to the figure
+                // to 1e-6 of the derivative, and to 1e-10 of what 1 % of the number would do to the
+                // figure
                 let size = 0.01 * one.value.abs().max(1e-3);
                 let force = paper_contact_force();
                 let index = |both: &(Compliance, f64)| Matrix3::repeat(both.0.index(force));

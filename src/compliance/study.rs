@@ -52,7 +52,8 @@ pub struct Study {
     pub steps: Vec<Step>,
     /// The rod undeformed and deformed.
     pub shape: Shape,
-    /// How all of it follows the numbers of the rod; none where numbers are beyond double precision.
+    /// How all of it follows the numbers of the rod; none where numbers are beyond double
+    /// precision.
     pub sensitivities: Vec<Sensitivity>,
     /// What one station does under a force at another, where that was asked for.
     pub stations: Option<StationResponse>,
@@ -80,7 +81,8 @@ pub struct Shape {
     pub under_force: Vec<Matrix3<f64>>,
     /// Displacement of each point per g, m; column: axis of gravity.
     pub under_gravity: Vec<Matrix3<f64>>,
-    /// The slowest natural modes of the whole rod, a displacement for each point; none of a rod without mass.
+    /// The slowest natural modes of the whole rod, a displacement for each point; none of a rod
+    /// without mass.
     pub modes: Vec<NaturalMode>,
 }
 
@@ -143,7 +145,8 @@ impl Shape {
         let chain = &model.chain;
         let response = chain.solve(&[Load::Force { node: model.tip() }, Load::SelfWeight])?;
         let nodes = 0..=chain.end();
-        // numbers that are beyond double precision somewhere are no reason to say nothing of the rest
+        // numbers that are beyond double precision somewhere are no reason to say nothing of the
+        // rest
         let whole = RodModel::new(rod, &Physics::WHOLE, POINTS, &[])?;
         let modes = whole.chain.natural_modes(MODES).unwrap_or_default();
         Ok(Shape {

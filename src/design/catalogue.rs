@@ -29,12 +29,14 @@ pub struct Tube {
     pub source: Option<String>,
 }
 
-/// Materials of the built-in catalogue by name: `steel`, `stainless`, `aluminium`, `carbon-pultruded`, `carbon-wrapped`.
+/// Materials of the built-in catalogue by name: `steel`, `stainless`, `aluminium`,
+/// `carbon-pultruded`, `carbon-wrapped`.
 ///
-/// Metals: EN 1993-1-1 § 3.2.6 (E 210 GPa, ν 0.3), EN 10088-1 Annex E (1.4301: E 200 GPa, ρ 7900), EN 1999-1-1 § 3.2.5
-/// (E 70 GPa, ν 0.3, ρ 2700). Carbon: what makers' data sheets typically state along the tube (pultruded, all fibres
-/// along it, 60 % of them; roll-wrapped with a half of the plies along it); the next maker's differs by more than 5 %,
-/// which is their standard uncertainty here. State your own.
+/// Metals: EN 1993-1-1 § 3.2.6 (E 210 GPa, ν 0.3), EN 10088-1 Annex E (1.4301: E 200 GPa, ρ 7900),
+/// EN 1999-1-1 § 3.2.5 (E 70 GPa, ν 0.3, ρ 2700). Carbon: what makers' data sheets typically state
+/// along the tube (pultruded, all fibres along it, 60 % of them; roll-wrapped with a half of the
+/// plies along it); the next maker's differs by more than 5 %, which is their standard uncertainty
+/// here. State your own.
 pub fn built_in_materials() -> BTreeMap<String, Material> {
     let carbon = |name: &str, e: f64, g: f64| {
         let mut material = Material::anisotropic(name, e, g, 0.3, 1550.0);
@@ -52,8 +54,8 @@ pub fn built_in_materials() -> BTreeMap<String, Material> {
     all.into_iter().map(|material| (material.name.clone(), material)).collect()
 }
 
-/// The built-in catalogue: common round tubes of steel (EN 10305-1), stainless steel (ISO 1127), aluminium and carbon
-/// fibre.
+/// The built-in catalogue: common round tubes of steel (EN 10305-1), stainless steel (ISO 1127),
+/// aluminium and carbon fibre.
 ///
 /// # Errors
 /// None: a test reads it.
@@ -61,12 +63,13 @@ pub fn built_in(materials: &BTreeMap<String, Material>) -> Result<Vec<Tube>> {
     read(BUILT_IN, BUILT_IN_TEXT, materials)
 }
 
-/// A catalogue from the text of `file`, a table with the columns `name`, `material`, `outer_diameter_mm`,
-/// `inner_diameter_mm` and, if there are prices, `price_per_m`.
+/// A catalogue from the text of `file`, a table with the columns `name`, `material`,
+/// `outer_diameter_mm`, `inner_diameter_mm` and, if there are prices, `price_per_m`.
 ///
 /// # Errors
-/// [`Error::Input`] with line and column for a column that is missing, a name that stands there twice, a material that is
-/// not among `materials`, a tube that is none, a price below 0, and a table without tubes.
+/// [`Error::Input`] with line and column for a column that is missing, a name that stands there
+/// twice, a material that is not among `materials`, a tube that is none, a price below 0, and a
+/// table without tubes.
 pub(super) fn read(file: &str, text: &str, materials: &BTreeMap<String, Material>) -> Result<Vec<Tube>> {
     let is_number = |column: &str| column.ends_with("_mm") || column == "price_per_m";
     let table = Table::parse(file, text, is_number)?;

@@ -20,7 +20,8 @@ pub enum Figure {
     CgMax,
     /// Mass of pipes, bend, tip and sleeves, g.
     Mass,
-    /// Largest moment of the rod's weight about the flange's origin, N·m: m·g·|r|, r the centre of mass.
+    /// Largest moment of the rod's weight about the flange's origin, N·m: m·g·|r|, r the centre of
+    /// mass.
     Moment,
     /// First natural frequency, Hz ([`Rod::first_frequency`]).
     FirstFrequency,
@@ -94,7 +95,8 @@ impl Figures {
         self.0[figure as usize] = value;
     }
 
-    /// Everything of `rod` but its frequency and price: those cost more than all others, or need a catalogue.
+    /// Everything of `rod` but its frequency and price: those cost more than all others, or need a
+    /// catalogue.
     ///
     /// # Errors
     /// As [`TipSolver::solve`].
@@ -102,7 +104,8 @@ impl Figures {
         Ok(Figures(numbers(rod, solver)?))
     }
 
-    /// Derivatives of all figures of `rod` but the price by every number of it, per SI unit of the number.
+    /// Derivatives of all figures of `rod` but the price by every number of it, per SI unit of the
+    /// number.
     ///
     /// # Errors
     /// As [`TipSolver::solve`] and [`Rod::first_frequency_slopes`].
@@ -110,7 +113,8 @@ impl Figures {
         Figures::slopes_by(rod, &rod.numbers(), true)
     }
 
-    /// [`Figures::slopes`] by some numbers, and only if asked for those of the frequency, which cost more than all others.
+    /// [`Figures::slopes`] by some numbers, and only if asked for those of the frequency, which
+    /// cost more than all others.
     pub(super) fn slopes_by(
         rod: &Rod,
         all: &[NominalNumber],

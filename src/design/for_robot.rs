@@ -1,7 +1,9 @@
-//! Which rod for which robot: designs of a front by the accuracy that the robot will have, and whether c_rod says it too.
+//! Which rod for which robot: designs of a front by the accuracy that the robot will have, and
+//! whether c_rod says it too.
 //!
-//! How one order follows another is Spearman's coefficient, the correlation r of the ranks, with the interval
-//! tanh(artanh r ± 1.96·√(1.06/(n − 3))) (E. C. Fieller, H. O. Hartley, E. S. Pearson, *Biometrika* 44 (1957) 470–481).
+//! How one order follows another is Spearman's coefficient, the correlation r of the ranks, with
+//! the interval tanh(artanh r ± 1.96·√(1.06/(n − 3))) (E. C. Fieller, H. O. Hartley, E. S.
+//! Pearson, *Biometrika* 44 (1957) 470–481).
 
 use super::forecast::{Budget, Forecast, Where};
 use super::rods_and_modes::{RodForecast, rod_forecast};

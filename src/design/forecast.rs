@@ -1,19 +1,22 @@
-//! How accurate a robot will be once it is calibrated with planned poses, before anybody records them.
+//! How accurate a robot will be once it is calibrated with planned poses, before anybody records
+//! them.
 //!
-//! A calibration measures x = f(ρ) + R·Δx + ε and fits f(ρ) + R·Δx_mode. With the Jacobian A of the planned poses, their noise σ
-//! and what is known before, Λ = diag 1/sd², it finds
+//! A calibration measures x = f(ρ) + R·Δx + ε and fits f(ρ) + R·Δx_mode. With the Jacobian A of the
+//! planned poses, their noise σ and what is known before, Λ = diag 1/sd², it finds
 //!
 //! ```text
 //! P = (AᵀA/σ² + Λ)⁻¹        ρ̂ − ρ = P·Aᵀ/σ²·(ε + δ + c) − P·Λ·t
 //! ```
 //!
 //! - ε: sensors and the robot's repeatability
-//! - δ: what the mode gets wrong of the rod's deflection; a bias that is known, and what nobody knows of the rod
+//! - δ: what the mode gets wrong of the rod's deflection; a bias that is known, and what nobody
+//!   knows of the rod
 //! - c: errors of the clamps' places, one for all poses of a clamp
 //! - t: how far the robot is from its drawing, which the poses do not show entirely
 //!
-//! At unseen poses with the Jacobian B the tip is wrong by B·(ρ̂ − ρ) and by the robot's repeatability. Where base and tool are
-//! aligned anew there, as in the paper's validation, what they can take up is projected out.
+//! At unseen poses with the Jacobian B the tip is wrong by B·(ρ̂ − ρ) and by the robot's
+//! repeatability. Where base and tool are aligned anew there, as in the paper's validation, what
+//! they can take up is projected out.
 
 mod budget;
 mod rod;
@@ -143,7 +146,8 @@ impl<'c> Forecaster<'c> {
         known_before(self.campaign, &self.setup, &self.free, payload, self.budget.drawing_scale)
     }
 
-    /// B′ᵀB′ per unseen pose in units of what is known before, so that tr(W·P) is the mean square of the tip's error, m².
+    /// B′ᵀB′ per unseen pose in units of what is known before, so that tr(W·P) is the mean square
+    /// of the tip's error, m².
     pub fn weight(&self, columns: usize) -> DMatrix<f64> {
         let known = self.known_before();
         let mut slopes = self.unseen.slopes.clone();
@@ -179,7 +183,8 @@ impl<'c> Forecaster<'c> {
     /// ```
     ///
     /// # Errors
-    /// [`Error::NotApplicable`] for a mode that the campaign's files do not allow; what the beam model refuses.
+    /// [`Error::NotApplicable`] for a mode that the campaign's files do not allow; what the beam
+    /// model refuses.
     pub fn forecast(&self, poses: &[(usize, Vec<f64>)], mode: Mode) -> Result<Forecast> {
         let loads = rod::Loads::new(self.campaign, mode)?;
         let (setup, free) = (self.setup.clone(), &self.free);
@@ -205,7 +210,8 @@ impl<'c> Forecaster<'c> {
             mode,
             mean: mean(&means),
             p95: quantile(&lengths, 0.95).unwrap_or(0.0),
-            // independent parts: the sum of the squares has less chance in it than the square of the sums
+            // independent parts: the sum of the squares has less chance in it than the square of
+            // the sums
             rms: parts.iter().map(|part| part * part).sum::<f64>().sqrt(),
             interval: [0.025, 0.975].map(|p| quantile(&means, p).unwrap_or(0.0)),
             parts,

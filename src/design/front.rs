@@ -1,4 +1,5 @@
-//! The Pareto front: designs that no other design betters in one goal without losing in another. Ties are kept.
+//! The Pareto front: designs that no other design betters in one goal without losing in another.
+//! Ties are kept.
 
 use super::figure::{Figures, Goal};
 

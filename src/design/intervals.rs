@@ -1,9 +1,10 @@
 //! How well the figures of a design are known, and which designs cannot be distinguished.
 //!
-//! Every nominal number of the rod (E, G, ρ, diameters, lengths, …) has a standard uncertainty u; a figure y moves with it
-//! by s = u·∂y/∂x. The standard uncertainty of y is √Σ s² (GUM, JCGM 100:2008, 5.1.2).
-//! Two designs of one material share its moduli and its density, and with them what these do: of their difference only
-//! the rest counts. Lengths and diameters are made anew for each.
+//! Every nominal number of the rod (E, G, ρ, diameters, lengths, …) has a standard uncertainty u; a
+//! figure y moves with it by s = u·∂y/∂x. The standard uncertainty of y is √Σ s² (GUM, JCGM
+//! 100:2008, 5.1.2). Two designs of one material share its moduli and its density, and with them
+//! what these do: of their difference only the rest counts. Lengths and diameters are made anew for
+//! each.
 
 use super::figure::{Figure, Figures, Goal};
 use super::front::Design;
@@ -61,7 +62,8 @@ impl Intervals {
     }
 }
 
-/// For each design the other ones (by place) that differ from it in no goal by more than what is known of the difference.
+/// For each design the other ones (by place) that differ from it in no goal by more than what is
+/// known of the difference.
 pub fn indistinguishable(designs: &[Design], intervals: &[Intervals], goals: &[Goal]) -> Vec<Vec<usize>> {
     let is_same = |a: usize, b: usize| {
         goals.iter().all(|goal| {

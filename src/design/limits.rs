@@ -16,7 +16,8 @@ pub struct Limit {
     pub is_least: bool,
 }
 
-/// Keys of limits, which figure they hold, and whether they are least values. A tip's sag of 1 g is C^g's largest entry.
+/// Keys of limits, which figure they hold, and whether they are least values. A tip's sag of 1 g is
+/// C^g's largest entry.
 pub(super) const KEYS: [(&str, Figure, bool); 6] = [
     ("max_mass_g", Figure::Mass, false),
     ("max_flange_moment_nm", Figure::Moment, false),

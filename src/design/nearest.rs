@@ -22,13 +22,14 @@ pub struct Relaxed {
 pub struct Nearest {
     /// Limits that alone are in the way, in the order of the design file's limits.
     pub one_limit: Vec<Relaxed>,
-    /// The design whose worst limit is broken by the smallest share, with that share; frequencies are not looked at where
-    /// another limit is broken.
+    /// The design whose worst limit is broken by the smallest share, with that share; frequencies
+    /// are not looked at where another limit is broken.
     pub all_limits: Option<(Design, f64)>,
 }
 
 impl Nearest {
-    /// True where giving up `limit` alone for a design with these figures would ask for less than what is known.
+    /// True where giving up `limit` alone for a design with these figures would ask for less than
+    /// what is known.
     pub(super) fn would_relax(&self, limit: &Limit, figures: &Figures) -> bool {
         let to = figures.get(limit.figure).unwrap_or(f64::NAN);
         match self.one_limit.iter().find(|known| known.limit.key == limit.key) {
@@ -38,8 +39,8 @@ impl Nearest {
         }
     }
 
-    /// Remembers a design that breaks `broken`, if it is nearer than those before; `is_all` where those are all that it
-    /// breaks.
+    /// Remembers a design that breaks `broken`, if it is nearer than those before; `is_all` where
+    /// those are all that it breaks.
     pub(super) fn offer(&mut self, design: Design, broken: &[&Limit], is_all: bool) {
         if let ([only], true) = (broken, is_all) {
             let to = design.figures.get(only.figure).unwrap_or(f64::NAN);

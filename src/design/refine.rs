@@ -1,17 +1,20 @@
-//! From a design of the front to the best one between the grid's values, and back to tubes that can be bought.
+//! From a design of the front to the best one between the grid's values, and back to tubes that can
+//! be bought.
 //!
-//! The first goal is bettered while no other goal loses and all limits are kept. What the design file gives as a range may
-//! take any value between its ends, what it gives as a list stays; outer diameter and wall may take any value between
-//! those of the catalogue's tubes of that material. Figures of rods are near products of powers of their numbers, so
-//! that their logarithms are near linear in those of the numbers: each step solves the linear program
+//! The first goal is bettered while no other goal loses and all limits are kept. What the design
+//! file gives as a range may take any value between its ends, what it gives as a list stays; outer
+//! diameter and wall may take any value between those of the catalogue's tubes of that material.
+//! Figures of rods are near products of powers of their numbers, so that their logarithms are near
+//! linear in those of the numbers: each step solves the linear program
 //!
 //! ```text
 //! min s₀·Δ + M·t,   ln f_i + s_i·Δ ≤ ln b_i + t,   |Δ_j| ≤ r,   s_ij = ∂ln f_i/∂ln x_j
 //! ```
 //!
-//! with exact derivatives, and the region r shrinks where the step promises more than it keeps (sequential linear
-//! programming with an exact penalty: R. Fletcher, E. Sainz de la Maza, *Math. Program.* 43 (1989) 235–256). The optimum
-//! is a local one. Then the nearest tubes of the catalogue are tried in turn, and everything else once more with each.
+//! with exact derivatives, and the region r shrinks where the step promises more than it keeps
+//! (sequential linear programming with an exact penalty: R. Fletcher, E. Sainz de la Maza, *Math.
+//! Program.* 43 (1989) 235–256). The optimum is a local one. Then the nearest tubes of the
+//! catalogue are tried in turn, and everything else once more with each.
 
 use nalgebra::DMatrix;
 
@@ -30,7 +33,8 @@ const TUBES: usize = 8;
 const TUBES_OF_TWO: usize = 4;
 /// What breaking a limit by a share weighs against bettering the goal by that share.
 const PENALTY: f64 = 100.0;
-/// Shares: first and last size of a step, by how much limits are kept at least, and a gain that is none.
+/// Shares: first and last size of a step, by how much limits are kept at least, and a gain that is
+/// none.
 const FIRST_STEP: f64 = 0.1;
 const LAST_STEP: f64 = 1e-6;
 const MARGIN: f64 = 1e-7;
@@ -43,7 +47,8 @@ const MOST_STEPS: usize = 80;
 pub struct Better {
     /// The rod.
     pub rod: Rod,
-    /// Names of its tubes, one where they are the same; none of tubes that the catalogue does not have.
+    /// Names of its tubes, one where they are the same; none of tubes that the catalogue does not
+    /// have.
     pub tubes: Vec<String>,
     /// Its figures.
     pub figures: Figures,
@@ -271,7 +276,8 @@ impl Search<'_> {
         Ok((rod, here))
     }
 
-    /// ln of the first goal, such that less is better, and of every other figure over what it may be.
+    /// ln of the first goal, such that less is better, and of every other figure over what it may
+    /// be.
     fn logarithms(&self, figures: &Figures) -> (f64, Vec<f64>) {
         let ln = |figure: Figure| figures.get(figure).unwrap_or(f64::NAN).ln();
         let sign = |is_large: bool| if is_large { -1.0 } else { 1.0 };
@@ -349,7 +355,8 @@ struct Terms {
 }
 
 impl Terms {
-    /// The step Δ within `region`, and how much it betters the merit if everything is as linear as assumed.
+    /// The step Δ within `region`, and how much it betters the merit if everything is as linear as
+    /// assumed.
     fn step(&self, region: f64, rod: &Rod, variables: &[Variable]) -> Option<(Vec<f64>, f64)> {
         let n = variables.len();
         // the last one is t

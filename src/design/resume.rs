@@ -1,5 +1,6 @@
-//! A search that stopped, as text: what it is a search of, how far it came, and what it has found so far. Numbers are
-//! written as their bits, so that a search that goes on is the one that never stopped.
+//! A search that stopped, as text: what it is a search of, how far it came, and what it has found
+//! so far. Numbers are written as their bits, so that a search that goes on is the one that never
+//! stopped.
 
 use super::figure::Figures;
 use super::front::{Design, Front};
@@ -48,7 +49,8 @@ impl<'w> Search<'w> {
     /// The search that was kept in `file`, whose text this is.
     ///
     /// # Errors
-    /// [`Error::Input`] where it is another search (another program, design file, catalogue or sample), or no search.
+    /// [`Error::Input`] where it is another search (another program, design file, catalogue or
+    /// sample), or no search.
     pub fn from_text(wish: &'w Wish, of: Searched, file: &str, text: &str) -> Result<Search<'w>> {
         let mut search = Search::new(wish, of)?;
         let mut lines = Lines { file, lines: text.lines(), number: 0 };

@@ -30,8 +30,8 @@ pub struct RodForecast {
     pub is_rig_assumed: bool,
 }
 
-/// Forecasts of the campaign's own rod (`rods` empty) or of others in its place, with the recorded poses where there are
-/// any, else with `count` poses chosen by O1 for each.
+/// Forecasts of the campaign's own rod (`rods` empty) or of others in its place, with the recorded
+/// poses where there are any, else with `count` poses chosen by O1 for each.
 ///
 /// ```
 /// use rodcal::design::{Budget, Where, rods_and_modes};
@@ -63,7 +63,8 @@ pub fn rods_and_modes(
     all.into_iter().map(|rod| rod_forecast(campaign, rod, budget, at, count)).collect()
 }
 
-/// The same of one rod in the place of the campaign's own, or of that; `None` for a campaign without any.
+/// The same of one rod in the place of the campaign's own, or of that; `None` for a campaign
+/// without any.
 ///
 /// # Errors
 /// As [`rods_and_modes`].

@@ -38,8 +38,8 @@ pub struct Found {
     pub feasible: u64,
     /// The front, best in the first goal first. All figures but the price are known of each.
     pub front: Vec<Design>,
-    /// For each limit of the wish the number of rods that break it. A rod counts for every limit that it breaks; its
-    /// frequency is looked at only where it keeps all others.
+    /// For each limit of the wish the number of rods that break it. A rod counts for every limit
+    /// that it breaks; its frequency is looked at only where it keeps all others.
     pub broken: Vec<u64>,
     /// Combinations that are no rods, in the order of [`Impossible::ALL`](super::Impossible::ALL).
     pub impossible: [u64; 3],
@@ -56,8 +56,8 @@ pub(super) struct Sum {
     pub nearest: Nearest,
 }
 
-/// Looks at the rods of `wish` and keeps those that nobody betters. `progress` is told how many more were looked at. The
-/// result does not depend on the number of threads.
+/// Looks at the rods of `wish` and keeps those that nobody betters. `progress` is told how many
+/// more were looked at. The result does not depend on the number of threads.
 ///
 /// # Errors
 /// As [`Search::new`] and [`Search::go_on`].
@@ -69,8 +69,8 @@ pub fn search(wish: &Wish, searched: Searched, progress: &(dyn Fn(u64) + Sync)) 
     search.found()
 }
 
-/// A search on its way, block by block: it may stop between two of them, be kept as text ([`Search::to_text`]) and go on
-/// later. Where it stops changes nothing.
+/// A search on its way, block by block: it may stop between two of them, be kept as text
+/// ([`Search::to_text`]) and go on later. Where it stops changes nothing.
 pub struct Search<'w> {
     pub(super) wish: &'w Wish,
     pub(super) searched: Searched,

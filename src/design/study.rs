@@ -11,7 +11,8 @@ use crate::error::{Error, Result};
 use crate::parallel::in_parallel;
 use crate::rod::{NominalNumber, Rod};
 
-/// Designs of a front whose intervals are looked at: of a longer one so many, evenly from end to end.
+/// Designs of a front whose intervals are looked at: of a longer one so many, evenly from end to
+/// end.
 const MOST_SHOWN: usize = 48;
 
 /// The designs of a front that are shown, and a rod to compare them with.
@@ -58,7 +59,8 @@ pub struct Base {
     pub rod: Rod,
     /// Its figures, without a price.
     pub figures: Figures,
-    /// Designs of the front that are as good in every goal and better in one; nobody, where a goal is the price.
+    /// Designs of the front that are as good in every goal and better in one; nobody, where a goal
+    /// is the price.
     pub bettered_by: usize,
     /// Limits that it breaks.
     pub broken: Vec<&'static str>,

@@ -70,11 +70,12 @@ impl Bounds {
     };
 }
 
-/// The values of `key` in the unit of its name, in the order of the file; those of a list that stand there twice once.
+/// The values of `key` in the unit of its name, in the order of the file; those of a list that
+/// stand there twice once.
 ///
 /// # Errors
-/// Those of the file: an empty list or range, a step that does not lead from one end to the other, a value out of `bounds`,
-/// more than [`MOST_VALUES`].
+/// Those of the file: an empty list or range, a step that does not lead from one end to the other,
+/// a value out of `bounds`, more than [`MOST_VALUES`].
 pub(super) fn values(check: &mut Check, key: &str, raw: &Spanned<Raw>, bounds: Bounds) -> Result<Vec<f64>> {
     let toml = check.toml;
     let mut all = match raw.get_ref() {

@@ -41,7 +41,8 @@ pub struct Wish {
     pub bend_radius: Vec<f64>,
     #[allow(missing_docs)]
     pub tip_mass: Vec<f64>,
-    /// Which of L1, L2, γ, bend radius and tip mass were given as ranges, between whose steps values make sense too.
+    /// Which of L1, L2, γ, bend radius and tip mass were given as ranges, between whose steps
+    /// values make sense too.
     pub is_range: [bool; 5],
     /// How much more flexible bends are than beams.
     pub bend_flexibility: BendFlexibility,
@@ -145,7 +146,8 @@ const REQUIRED: &Required = &[
 ];
 
 impl Wish {
-    /// Reads and checks a design file and the catalogue that it names, whose path is seen from the file's folder.
+    /// Reads and checks a design file and the catalogue that it names, whose path is seen from the
+    /// file's folder.
     ///
     /// # Errors
     /// [`crate::Error::File`] where one of them cannot be read; else as [`Wish::from_toml`].
@@ -159,8 +161,8 @@ impl Wish {
         Wish::from_toml(&file, &files::read_text(path)?, &catalogue)
     }
 
-    /// Reads and checks the text of a design file; `catalogue` finds the name and the text of a catalogue by what the
-    /// file calls it.
+    /// Reads and checks the text of a design file; `catalogue` finds the name and the text of a
+    /// catalogue by what the file calls it.
     ///
     /// ```
     /// use rodcal::design::Wish;
@@ -182,9 +184,9 @@ impl Wish {
     /// ```
     ///
     /// # Errors
-    /// [`crate::Error::Syntax`] or [`crate::Error::Input`] with line and column: keys and values that are none, limits
-    /// that contradict one another, more than [`MOST_RODS`] combinations, no goal, prices that the catalogue does not
-    /// have, what is wrong with the catalogue.
+    /// [`crate::Error::Syntax`] or [`crate::Error::Input`] with line and column: keys and values
+    /// that are none, limits that contradict one another, more than [`MOST_RODS`] combinations, no
+    /// goal, prices that the catalogue does not have, what is wrong with the catalogue.
     pub fn from_toml(
         file: &str,
         text: &str,
@@ -269,7 +271,8 @@ impl Wish {
         u64::try_from(all).unwrap_or(u64::MAX)
     }
 
-    /// How many rods that would be and how long they would take, where they are more than a search takes.
+    /// How many rods that would be and how long they would take, where they are more than a search
+    /// takes.
     pub fn is_too_much(&self) -> Option<String> {
         let all = self.combinations();
         (all > MOST_RODS).then(|| {

@@ -1,8 +1,9 @@
 //! The columns of all candidates at their neutral values, each stored as small as it is.
 //!
-//! A recording of n data has a column for each of some hundred parameters, and a step may be anywhere. Most columns are the
-//! same for all data of a case (one load, one channel), however often it was recorded; a step is two numbers. With W what
-//! whitens, the inner product of a column c with a whitened vector v is
+//! A recording of n data has a column for each of some hundred parameters, and a step may be
+//! anywhere. Most columns are the same for all data of a case (one load, one channel), however
+//! often it was recorded; a step is two numbers. With W what whitens, the inner product of a column
+//! c with a whitened vector v is
 //!
 //! ```text
 //! (W·c)ᵀv = cᵀu,   u = Wᵀv      of a case: Σ over its data of u      of a step: Σ of u from its place on
@@ -59,7 +60,8 @@ pub(super) struct Products<'a> {
     /// Vectors × columns, as these are stored.
     whole: DMatrix<f64>,
     by_case: DMatrix<f64>,
-    /// Of each sequence: vectors × its data, the sums from a datum on; computed when they are first asked for.
+    /// Of each sequence: vectors × its data, the sums from a datum on; computed when they are first
+    /// asked for.
     sums: OnceLock<Vec<DMatrix<f64>>>,
 }
 
@@ -130,7 +132,8 @@ impl Columns {
         }
     }
 
-    /// cᵀu of every column with every column u of `vectors`, which have the data `rows` only, or all.
+    /// cᵀu of every column with every column u of `vectors`, which have the data `rows` only, or
+    /// all.
     pub fn products(&self, vectors: DMatrix<f64>, rows: Option<&[usize]>) -> Products<'_> {
         let vectors = match rows {
             None => vectors,
@@ -155,7 +158,8 @@ impl Columns {
         }
     }
 
-    /// The same for many vectors, some at a time, lest all that is computed for them stands in memory.
+    /// The same for many vectors, some at a time, lest all that is computed for them stands in
+    /// memory.
     pub fn table(&self, vectors: &DMatrix<f64>, rows: Option<&[usize]>) -> Table<'_> {
         let at_once = (AT_ONCE / self.data.max(1)).max(1);
         let mut all = DMatrix::zeros(vectors.ncols(), self.columns.len());
@@ -170,7 +174,8 @@ impl Columns {
         Table { columns: self, all }
     }
 
-    /// The square of a candidate that is a step, by the `squares` of steps of size 1 at each datum of each sequence.
+    /// The square of a candidate that is a step, by the `squares` of steps of size 1 at each datum
+    /// of each sequence.
     pub fn square_of_step(&self, candidate: usize, squares: &[Vec<f64>]) -> Option<f64> {
         match *self.own(candidate) {
             [Column::Step { sequence, from, size }] => {
@@ -317,7 +322,8 @@ mod tests {
     use super::super::{DERIVATIVE_STEP, Location, Parameter, Step, Term, UNKNOWN};
     use super::*;
 
-    /// `count` data of 5 cases in sequences of 8; a candidate of each sort of column, and a step before every datum.
+    /// `count` data of 5 cases in sequences of 8; a candidate of each sort of column, and a step
+    /// before every datum.
     struct Recording {
         candidates: Vec<Candidate>,
         cases: Vec<usize>,

@@ -1,7 +1,7 @@
 //! Two models of one recording: which of them makes it more probable.
 //!
-//! Each may use the effects that it has. The scatter is that of the first, for both: a probability means something only
-//! beside others of the same data with the same errors.
+//! Each may use the effects that it has. The scatter is that of the first, for both: a probability
+//! means something only beside others of the same data with the same errors.
 
 use nalgebra::DVector;
 
@@ -12,8 +12,9 @@ use super::selection::{DiscrepancyModel, Pairs};
 use super::whitening::Whitening;
 use super::{Evidence, ForwardModel};
 
-/// Ln of how many times more probable a recording is by the best hypothesis of the second model, what it leaves unexplained
-/// included, than by that of the first. Both evidences hold the same data.
+/// Ln of how many times more probable a recording is by the best hypothesis of the second model,
+/// what it leaves unexplained included, than by that of the first. Both evidences hold the same
+/// data.
 pub fn log_odds(
     (first, own): (&dyn ForwardModel, &Evidence),
     (second, other): (&dyn ForwardModel, &Evidence),

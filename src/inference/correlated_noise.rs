@@ -1,15 +1,17 @@
 //! Errors that neighbours in the order of a recording have in common, beside those of their own.
 //!
-//! Along a course the error of a datum is a slow part and a part of its own, of the variance σ² together,
+//! Along a course the error of a datum is a slow part and a part of its own, of the variance σ²
+//! together,
 //!
 //! ```text
 //! cov(i, k) = σ²·(a·e^(−|tᵢ − tₖ|/l) + (1 − a)·δᵢₖ)
 //! ```
 //!
-//! a the share of the slow part, l its length in the places t of the course (G. E. Uhlenbeck, L. S. Ornstein, *Phys. Rev.* 36 (1930) 823–841;
-//! with a = 1 at equal distances a first-order autoregression). Its whitening is what a Kalman filter is surprised by (R. E.
-//! Kalman, *J. Basic Eng.* 82 (1960) 35–45), so that n data need n steps. With m what the past says of the slow part and p the variance
-//! of that,
+//! a the share of the slow part, l its length in the places t of the course (G. E. Uhlenbeck, L. S.
+//! Ornstein, *Phys. Rev.* 36 (1930) 823–841; with a = 1 at equal distances a first-order
+//! autoregression). Its whitening is what a Kalman filter is surprised by (R. E. Kalman, *J. Basic
+//! Eng.* 82 (1960) 35–45), so that n data need n steps. With m what the past says of the slow part
+//! and p the variance of that,
 //!
 //! ```text
 //! S = p + 1 − a   K = p/S   (W·v)ₜ = (vₜ − m)/√S   m ← f·(m + K·(vₜ − m))   p ← f²·(1 − K)·p + a·(1 − f²)

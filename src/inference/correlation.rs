@@ -1,7 +1,8 @@
-//! How much neighbours of a run resemble each other beyond what the run has in common: φ of a first-order autoregression.
+//! How much neighbours of a run resemble each other beyond what the run has in common: φ of a
+//! first-order autoregression.
 //!
-//! Found in repeats, from what each datum is off the mean of its own condition d, so that nothing that repeats itself counts:
-//! the φ that makes
+//! Found in repeats, from what each datum is off the mean of its own condition d, so that nothing
+//! that repeats itself counts: the φ that makes
 //!
 //! ```text
 //! −2·ln L = n·ln(Σ|W·d|²/n) + Σ ((m − 1)·ln(1 − φ²) + ln(1 + ρ·|a|²))
@@ -26,8 +27,9 @@ const HARDLY: f64 = 1e-3;
 /// Fewer repeated data say nothing.
 const FEWEST: usize = 20;
 
-/// What each datum is off the mean of its repeats, as much as it counts, scaled to the variance of a datum: r repeats leave
-/// (r − 1)/r of it. Nothing for what was not repeated, or hardly counts: what is far off says nothing of the others.
+/// What each datum is off the mean of its repeats, as much as it counts, scaled to the variance of
+/// a datum: r repeats leave (r − 1)/r of it. Nothing for what was not repeated, or hardly counts:
+/// what is far off says nothing of the others.
 pub(super) fn deviations(evidence: &Evidence, left: &DVector<f64>) -> Vec<Option<f64>> {
     let counts = |row: usize| evidence.weight[row] > HARDLY;
     let mut replicates: BTreeMap<usize, (f64, f64)> = BTreeMap::new();

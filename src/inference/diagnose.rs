@@ -29,8 +29,8 @@ const WORTH_SAYING: f64 = 3.0;
 
 /// Diagnoses a recording.
 ///
-/// A stated noise that the best hypothesis contradicts tells no shape from chance: what is left is searched again with the scatter
-/// that it has, and said to be more than was stated.
+/// A stated noise that the best hypothesis contradicts tells no shape from chance: what is left is
+/// searched again with the scatter that it has, and said to be more than was stated.
 pub fn diagnose(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
     let diagnosis = diagnose_with(model, evidence);
     let Some(stated) = evidence.stated_noise.filter(|_| diagnosis.noise_test.is_contradicted()) else {
@@ -151,7 +151,8 @@ fn diagnose_with(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
     }
 }
 
-/// True where neighbours of a run are far off to one side: so many that they are no single ones, or the run as a whole.
+/// True where neighbours of a run are far off to one side: so many that they are no single ones, or
+/// the run as a whole.
 fn are_together(evidence: &Evidence, suspects: &[Suspect]) -> bool {
     const TOGETHER: usize = 3;
     let side: BTreeMap<usize, bool> = suspects.iter().map(|s| (s.datum, s.sigma > 0.0)).collect();
@@ -170,9 +171,9 @@ fn suspects_at_most(count: usize) -> usize {
     (count / 10).max(3)
 }
 
-/// A hypothesis without physics that held-out data do not confirm: where they are predicted no worse
-/// without it, nor without it and another one that it undoes, it has no name. What happened once says
-/// nothing of other data.
+/// A hypothesis without physics that held-out data do not confirm: where they are predicted no
+/// worse without it, nor without it and another one that it undoes, it has no name. What happened
+/// once says nothing of other data.
 fn confirmed(
     model: &Linearised<'_>,
     search: &Search,
@@ -198,8 +199,8 @@ fn confirmed(
     (shorter, left_over)
 }
 
-/// A hypothesis without physics that the curve beside it may be as well: where, with all else that may be there, nothing of
-/// it is an estimate like any other.
+/// A hypothesis without physics that the curve beside it may be as well: where, with all else that
+/// may be there, nothing of it is an estimate like any other.
 fn apart_from_curve(
     model: &Linearised<'_>,
     search: &Search,
@@ -263,8 +264,8 @@ fn noise_test(stated: Option<f64>, estimated: f64, degrees_of_freedom: f64) -> N
     NoiseTest { stated, estimated, p_value }
 }
 
-/// Parts as they are reported, the strongest first: the waves of one gear, all misread poses, are one
-/// finding. `base` is the root mean square that the base model leaves.
+/// Parts as they are reported, the strongest first: the waves of one gear, all misread poses, are
+/// one finding. `base` is the root mean square that the base model leaves.
 fn findings(
     model: &Linearised<'_>,
     search: &Search,

@@ -44,8 +44,8 @@ pub struct Diagnosis {
     pub structure_before: Vec<Structure>,
     /// And of `after`.
     pub structure_after: Vec<Structure>,
-    /// The same of what is left without the findings that are seen along a covariate, all others known; `None` where
-    /// none of several is.
+    /// The same of what is left without the findings that are seen along a covariate, all others
+    /// known; `None` where none of several is.
     pub structure_given_others: Vec<Option<Structure>>,
     /// Every candidate alone against none: ln of the odds, prior included.
     pub odds: Vec<f64>,

@@ -9,8 +9,9 @@ use super::Location;
 
 /// An effect: what it is, how large it usually is, what it needs, how it is said, where it goes.
 ///
-/// Records are statics of the registries (`diagnosis/rig/effects`, `diagnosis/calibration/effects`),
-/// which are the only source of names: `--help`, docs, JSON and "cannot be tested" read them.
+/// Records are statics of the registries (`diagnosis/rig/effects`,
+/// `diagnosis/calibration/effects`), which are the only source of names: `--help`, docs, JSON and
+/// "cannot be tested" read them.
 #[derive(Debug, Clone, Copy)]
 pub struct Effect {
     /// Name in JSON, tables and arguments, for example `friction`.

@@ -1,4 +1,5 @@
-//! A recording as numbers: what is left of the base model, how it scatters, and what hangs together.
+//! A recording as numbers: what is left of the base model, how it scatters, and what hangs
+//! together.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -12,10 +13,11 @@ pub struct Evidence {
     pub residual: DVector<f64>,
     /// How many of them, from the first, were recorded; the others are known besides.
     pub recorded: usize,
-    /// What the base model can absorb by itself: n × k, any columns, none for a model that is not fitted.
+    /// What the base model can absorb by itself: n × k, any columns, none for a model that is not
+    /// fitted.
     pub nuisance: DMatrix<f64>,
-    /// What the base model is always a little wrong by: n × b, each column times the size of its unknown factor, whose prior
-    /// is the standard normal. Part of every hypothesis.
+    /// What the base model is always a little wrong by: n × b, each column times the size of its
+    /// unknown factor, whose prior is the standard normal. Part of every hypothesis.
     pub background: DMatrix<f64>,
     /// The numbers of the model's file and of the set-up that are known to a standard uncertainty.
     pub nominal_numbers: Vec<NominalParameter>,
@@ -38,24 +40,29 @@ pub struct Evidence {
     /// Variance of the errors that data share, over that of their own; `None` where it is to be
     /// found out.
     pub shared_ratio: Option<f64>,
-    /// Correlation of neighbours that share an error, beyond that; `None` where it is to be found out.
+    /// Correlation of neighbours that share an error, beyond that; `None` where it is to be found
+    /// out.
     pub correlation: Option<f64>,
-    /// Course of each datum, along which neighbours may have errors in common, and its place there; nothing where none do.
+    /// Course of each datum, along which neighbours may have errors in common, and its place there;
+    /// nothing where none do.
     pub courses: Vec<Option<(usize, f64)>>,
     /// What they have in common; `None` where that is nothing.
     pub correlated_noise: Option<CorrelatedNoise>,
-    /// What a datum says, over what it would say of a normal distribution: (ν + 1)/(ν + 3) of Student's t.
+    /// What a datum says, over what it would say of a normal distribution: (ν + 1)/(ν + 3) of
+    /// Student's t.
     pub information: f64,
     /// Repeats: data of the same number were recorded under the same conditions.
     pub replicate_group: Vec<usize>,
-    /// Data of the same number share an error, such as the zero that their readings are offsets from.
+    /// Data of the same number share an error, such as the zero that their readings are offsets
+    /// from.
     pub shared: Vec<usize>,
     /// Data of the same number are held out together; those of [`Evidence::NONE`] never are.
     pub fold: Vec<usize>,
-    /// Data of the same number belong to one session, such as a clamp or a placement: what is found in the others must
-    /// predict it. [`Evidence::NONE`] for what belongs to none.
+    /// Data of the same number belong to one session, such as a clamp or a placement: what is found
+    /// in the others must predict it. [`Evidence::NONE`] for what belongs to none.
     pub session: Vec<usize>,
-    /// Data of the same number have a level that nobody knows, such as the place of a socket; [`Evidence::NONE`] for none.
+    /// Data of the same number have a level that nobody knows, such as the place of a socket;
+    /// [`Evidence::NONE`] for none.
     pub intercept: Vec<usize>,
     /// Smallest step of the recorded numbers: what is below it is rounding.
     pub resolution: f64,
@@ -64,7 +71,8 @@ pub struct Evidence {
 }
 
 impl Evidence {
-    /// Number of no fold, session or intercept: of what is known besides the recording, or has none.
+    /// Number of no fold, session or intercept: of what is known besides the recording, or has
+    /// none.
     pub const NONE: usize = usize::MAX;
 
     /// Of residuals that have nothing to do with each other, each in a fold of none.

@@ -1,12 +1,13 @@
 //! Which of several measurements to propose: the one that leaves least of a finding's rivals.
 //!
-//! A measurement separates a finding from a rival by the ln of the odds that are expected of it, its separation. With so much left of
-//! rivals that are now 1 to o,
+//! A measurement separates a finding from a rival by the ln of the odds that are expected of it,
+//! its separation. With so much left of rivals that are now 1 to o,
 //!
 //! Σ exp(−separation)/o,
 //!
-//! the measurement is proposed that leaves least (separations as of T-optimal designs: A. C. Atkinson, V. V. Fedorov, Biometrika 62
-//! (1975) 57–70). The closest rival counts most; but where nothing separates one of them, the others are nevertheless.
+//! the measurement is proposed that leaves least (separations as of T-optimal designs: A. C.
+//! Atkinson, V. V. Fedorov, Biometrika 62 (1975) 57–70). The closest rival counts most; but where
+//! nothing separates one of them, the others are nevertheless.
 
 /// A more laborious measurement has to leave so much less of the rivals,
 const BETTER: f64 = 1.3;
@@ -28,7 +29,8 @@ impl<M> Default for ExperimentDesign<M> {
 }
 
 impl<M> ExperimentDesign<M> {
-    /// A measurement with its separation from each rival; `odds` are those against the rivals by now.
+    /// A measurement with its separation from each rival; `odds` are those against the rivals by
+    /// now.
     pub fn offer(&mut self, measurement: M, separations: Vec<f64>, odds: &[f64]) {
         let of_rivals = separations.iter().zip(odds);
         let left: f64 = of_rivals.map(|(apart, odds)| (-apart).exp() / odds.max(1.0)).sum();
@@ -38,7 +40,8 @@ impl<M> ExperimentDesign<M> {
         }
     }
 
-    /// The measurement to propose, with its separations; `None` where nothing separates any of the rivals.
+    /// The measurement to propose, with its separations; `None` where nothing separates any of the
+    /// rivals.
     pub fn best(self) -> Option<(M, Vec<f64>)> {
         self.best
     }

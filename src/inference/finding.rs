@@ -1,4 +1,5 @@
-//! A finding, complete in itself: what, where, how large, how sure, what else it may be, what to do.
+//! A finding, complete in itself: what, where, how large, how sure, what else it may be, what to
+//! do.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -155,8 +156,8 @@ impl Finding {
         }
     }
 
-    /// What can be weighed, gauged or looked up without any recording, and separates it from some of
-    /// `rivals`: the finding, or else the likeliest such rival.
+    /// What can be weighed, gauged or looked up without any recording, and separates it from some
+    /// of `rivals`: the finding, or else the likeliest such rival.
     pub fn direct_check(&self, rivals: &[&Rival]) -> Option<Proposal> {
         /// Ln odds that leave no doubt.
         const DECISIVE: f64 = 30.0;

@@ -10,11 +10,13 @@ use super::{ForwardModel, Hypothesis, Term};
 const STEPS: usize = 20;
 /// So often they may turn back.
 const RETURNS: usize = 4;
-/// Step, in sizes, below which they have arrived: the noise of a value is hardly ever a ten-thousandth of its size.
+/// Step, in sizes, below which they have arrived: the noise of a value is hardly ever a
+/// ten-thousandth of its size.
 const ARRIVED: f64 = 1e-5;
 
 impl Search<'_> {
-    /// Fits the values of `terms` together, by Gauss–Newton steps from where they are, and scores them.
+    /// Fits the values of `terms` together, by Gauss–Newton steps from where they are, and scores
+    /// them.
     pub fn fit(&self, terms: &[Term]) -> Hypothesis {
         remembered(&self.fitted, terms, || self.fit_anew(terms))
     }
@@ -94,8 +96,9 @@ impl Search<'_> {
         DVector::from_vec(terms.iter().flat_map(of).collect())
     }
 
-    /// Puts the estimates of a score, in sizes from the neutral values, into a hypothesis, within the physical bounds: what
-    /// would be beyond its bound is held there, and the others are what they are given that.
+    /// Puts the estimates of a score, in sizes from the neutral values, into a hypothesis, within
+    /// the physical bounds: what would be beyond its bound is held there, and the others are what
+    /// they are given that.
     fn put(&self, terms: &mut [Term], scored: &Score) {
         let background = self.background.0.ncols();
         let bounds: Vec<(f64, f64)> =

@@ -1,4 +1,5 @@
-//! The physics as the engine sees it: candidates with parameters, and what they would do to a recording.
+//! The physics as the engine sees it: candidates with parameters, and what they would do to a
+//! recording.
 
 use std::sync::Arc;
 
@@ -38,7 +39,8 @@ pub struct Parameter {
     pub unit: f64,
     /// Value at which nothing happens, SI.
     pub neutral: f64,
-    /// Size at which the effect is typically met: standard deviation of its prior about the neutral value, SI.
+    /// Size at which the effect is typically met: standard deviation of its prior about the neutral
+    /// value, SI.
     pub size: f64,
     /// Physical bounds, SI; ±∞ where there are none.
     pub bounds: (f64, f64),
@@ -85,13 +87,14 @@ pub trait ForwardModel: Sync {
         columns.column_iter().map(|column| plain(column.as_slice())).collect()
     }
 
-    /// Number of the case of each datum, counted from 0, where data of one case respond alike to many of the candidates;
-    /// nothing where no two do. It saves time and memory only.
+    /// Number of the case of each datum, counted from 0, where data of one case respond alike to
+    /// many of the candidates; nothing where no two do. It saves time and memory only.
     fn cases(&self) -> &[usize] {
         &[]
     }
 
-    /// The step that a candidate is, where it is one and nothing else. It saves time and memory only.
+    /// The step that a candidate is, where it is one and nothing else. It saves time and memory
+    /// only.
     fn step(&self, _candidate: usize) -> Option<Step> {
         None
     }

@@ -1,7 +1,9 @@
-//! Inner products between the columns of all candidates of a linear model, computed when they are first asked for.
+//! Inner products between the columns of all candidates of a linear model, computed when they are
+//! first asked for.
 //!
-//! A search adds, takes away and exchanges effects, and each time asks how every candidate goes with those that are there.
-//! Where effects are linear the products of a candidate's columns with all others are the same each time, and are kept.
+//! A search adds, takes away and exchanges effects, and each time asks how every candidate goes
+//! with those that are there. Where effects are linear the products of a candidate's columns with
+//! all others are the same each time, and are kept.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -51,8 +53,8 @@ impl GramCache {
         &self.residual[candidate]
     }
 
-    /// Products of the columns of a hypothesis (rows: background, then each effect) with those of a candidate. `compute` gives those
-    /// of an effect that is met for the first time.
+    /// Products of the columns of a hypothesis (rows: background, then each effect) with those of a
+    /// candidate. `compute` gives those of an effect that is met for the first time.
     pub fn hypothesis<'a>(
         &'a self,
         effects: &[usize],

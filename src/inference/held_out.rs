@@ -27,7 +27,8 @@ pub struct HeldOut {
     pub before: f64,
     /// And of what the hypothesis found without them leaves.
     pub after: f64,
-    /// 1 − after²/before², with its 95 % interval by drawing folds again; `None` with fewer than three folds.
+    /// 1 − after²/before², with its 95 % interval by drawing folds again; `None` with fewer than
+    /// three folds.
     pub gain: f64,
     /// See `gain`.
     pub gain_interval: Option<(f64, f64)>,
@@ -105,7 +106,8 @@ pub(super) struct Trained {
     pub without: Vec<(Vec<Theme>, DVector<f64>)>,
 }
 
-/// Selects with the data `kept` only, which are all but those of the part `left_out` of the model; `whole` are the terms that all data support.
+/// Selects with the data `kept` only, which are all but those of the part `left_out` of the model;
+/// `whole` are the terms that all data support.
 pub(super) fn trained_on(
     model: &Linearised<'_>,
     evidence: &Evidence,
@@ -155,7 +157,8 @@ fn left_out_together(themes: impl Iterator<Item = Theme>) -> Vec<Vec<Theme>> {
     sets
 }
 
-/// A hypothesis and those with another form of one of its laws that these data hardly distinguish from it.
+/// A hypothesis and those with another form of one of its laws that these data hardly distinguish
+/// from it.
 fn forms(search: &Search, hypothesis: &Hypothesis) -> Vec<Hypothesis> {
     let mut forms = vec![hypothesis.clone()];
     for (position, term) in hypothesis.terms.iter().enumerate() {

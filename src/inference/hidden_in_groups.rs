@@ -1,14 +1,17 @@
-//! What acts on whole groups of data that share an error, and looks like the scatter of these errors.
+//! What acts on whole groups of data that share an error, and looks like the scatter of these
+//! errors.
 //!
-//! Zeros that are read run by run scatter; a knock between two runs shifts all that follow, a drift moves them all. As long as the
-//! ratio ρ of that scatter is found with the knock or the drift in it, neither is worth a name: it is what zeros do. With
-//! it taken out, ρ is another one, and the Gaussian likelihoods of what is left can be compared,
+//! Zeros that are read run by run scatter; a knock between two runs shifts all that follow, a drift
+//! moves them all. As long as the ratio ρ of that scatter is found with the knock or the drift in
+//! it, neither is worth a name: it is what zeros do. With it taken out, ρ is another one, and the
+//! Gaussian likelihoods of what is left can be compared,
 //!
 //! ```text
 //! ln p = −½·ν·ln(|W·r|²/ν) − ½·Σ ln(1 + ρ·|a|²)      over the groups, W and a as in `whitening.rs`
 //! ```
 //!
-//! less ½·k·ln(number of groups) for the k numbers of what is taken out (G. Schwarz, *Ann. Stat.* 6 (1978) 461–464).
+//! less ½·k·ln(number of groups) for the k numbers of what is taken out (G. Schwarz, *Ann. Stat.* 6
+//! (1978) 461–464).
 
 use std::collections::BTreeMap;
 
@@ -26,10 +29,12 @@ const GROUPS: usize = 2;
 
 /// Ratios among which the likeliest is looked for.
 const RATIOS: [f64; 8] = [0.0, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0];
-/// Share of a column's squares that its means over the groups have, at least, of what acts on whole groups.
+/// Share of a column's squares that its means over the groups have, at least, of what acts on whole
+/// groups.
 const OF_GROUPS: f64 = 0.5;
 
-/// The step, or whatever acts on whole groups, that is most probably hidden in what is `left`; `None` where none is.
+/// The step, or whatever acts on whole groups, that is most probably hidden in what is `left`;
+/// `None` where none is.
 pub(super) fn hidden(model: &Linearised<'_>, evidence: &Evidence, left: &DVector<f64>) -> Option<Term> {
     let both = [hidden_step(model, evidence, left), hidden_course(model, evidence, left)];
     let mut found: Vec<Hidden> = both.into_iter().flatten().filter(|of| of.log_odds > HIDDEN).collect();

@@ -20,7 +20,8 @@ pub struct Hypothesis {
     pub log_probability: f64,
     /// Noise of a datum under it.
     pub sigma: f64,
-    /// Posterior covariance of all its parameters, SI, in the order of `terms`, without regard to bounds.
+    /// Posterior covariance of all its parameters, SI, in the order of `terms`, without regard to
+    /// bounds.
     pub covariance: DMatrix<f64>,
     /// Factors of the evidence's background columns.
     pub background: DVector<f64>,

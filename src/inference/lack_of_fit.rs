@@ -1,11 +1,12 @@
 //! Do the averages of repeats leave what a hypothesis says by more than the repeats scatter?
 //!
-//! With whitened residuals w of a hypothesis of p parameters and a mean for every replicate group fitted to them,
+//! With whitened residuals w of a hypothesis of p parameters and a mean for every replicate group
+//! fitted to them,
 //!
 //! F = ((|w|² − S)/(c − p)) / (S/(n − c))        S what the c replicate group means leave
 //!
-//! (N. R. Draper, H. Smith, *Applied Regression Analysis*, 3rd ed., ch. 2: lack of fit and pure error). A shape that no
-//! smooth curve describes is seen here.
+//! (N. R. Draper, H. Smith, *Applied Regression Analysis*, 3rd ed., ch. 2: lack of fit and pure
+//! error). A shape that no smooth curve describes is seen here.
 
 use nalgebra::DVector;
 
@@ -26,8 +27,8 @@ pub struct LackOfFit {
 }
 
 impl LackOfFit {
-    /// Ln of the odds that every replicate group is off by a normal number of its own, against nothing being left: the one-way model of
-    /// random effects at its likeliest variances,
+    /// Ln of the odds that every replicate group is off by a normal number of its own, against
+    /// nothing being left: the one-way model of random effects at its likeliest variances,
     ///
     /// ½(a + b)·ln((a·F + b)/(a + b)) − ½a·ln F − 1     a, b the degrees of freedom of replicates and repeats
     ///
@@ -41,7 +42,8 @@ impl LackOfFit {
     }
 }
 
-/// The space of what is the same in all repeats: A the indicators of the replicates, W what whitens.
+/// The space of what is the same in all repeats: A the indicators of the replicates, W what
+/// whitens.
 #[derive(Debug, Clone)]
 pub(super) struct Replicates {
     whitening: Whitening,

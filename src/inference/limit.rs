@@ -29,10 +29,11 @@ pub enum Limit {
     NarrowJoint(usize, f64),
     /// A joint, from 0, whose axis the target lies on: so far beside it at most, m.
     OnAxis(usize, f64),
-    /// A clamp or placement that scatters far more than the others: its name, its scatter of a coordinate and that of
-    /// the others in the middle, m.
+    /// A clamp or placement that scatters far more than the others: its name, its scatter of a
+    /// coordinate and that of the others in the middle, m.
     NoisyGroup(String, f64, f64),
-    /// Poses that follow one another have errors in common: so much of the variance, over so many poses.
+    /// Poses that follow one another have errors in common: so much of the variance, over so many
+    /// poses.
     CorrelatedPoses(f64, f64),
     /// The poses are too few to hold any out.
     NoFoldsOfPoses,

@@ -16,8 +16,9 @@ use super::{
 /// A model of which the linear part is computed once.
 pub struct Linearised<'a> {
     model: &'a dyn ForwardModel,
-    /// Each candidate's [`ForwardModel::columns`] at its neutral values, alone; of all data, whatever `rows` are. Found when they
-    /// are first asked for: a linear model needs only what is in `parts`.
+    /// Each candidate's [`ForwardModel::columns`] at its neutral values, alone; of all data,
+    /// whatever `rows` are. Found when they are first asked for: a linear model needs only what is
+    /// in `parts`.
     columns: Arc<OnceLock<Columns>>,
     /// Products of a linear model's columns over parts of the data, and the part that is left out.
     parts: Option<(Arc<PartProducts<'a>>, Option<usize>)>,
@@ -36,7 +37,8 @@ impl<'a> Linearised<'a> {
         Linearised { model, columns: Arc::new(columns), parts: None, rows: None }
     }
 
-    /// With what searches share that leave one of these parts of an evidence out, where the model is linear.
+    /// With what searches share that leave one of these parts of an evidence out, where the model
+    /// is linear.
     pub fn in_parts(&self, evidence: &Evidence, part: &[usize]) -> Linearised<'a> {
         let parts = PartProducts::new(self.model, evidence, part);
         let parts = parts.map(|parts| (Arc::new(parts), None));
@@ -75,7 +77,8 @@ impl<'a> Linearised<'a> {
         if self.rows.is_some() { None } else { self.model.step(candidate) }
     }
 
-    /// How many data two candidates are apart that are steps of one sequence; a model that stores its own columns has none.
+    /// How many data two candidates are apart that are steps of one sequence; a model that stores
+    /// its own columns has none.
     pub(super) fn steps_apart(&self, one: usize, other: usize) -> Option<usize> {
         if self.model.is_linear() { None } else { self.stored().steps_apart(one, other) }
     }
@@ -95,7 +98,8 @@ impl<'a> Linearised<'a> {
         self.columns.get_or_init(|| Columns::new(self.model))
     }
 
-    /// The sequences that steps may be in, by the numbers that their data have here; `None` for those that are left out.
+    /// The sequences that steps may be in, by the numbers that their data have here; `None` for
+    /// those that are left out.
     pub(super) fn sequences(&self) -> Vec<Vec<Option<usize>>> {
         let mut place: Vec<Option<usize>> = Vec::new();
         if let Some(rows) = self.rows {

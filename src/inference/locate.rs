@@ -1,9 +1,9 @@
 //! Where a mismatch lives: along which of a recording's numbers the residuals are structured.
 //!
-//! Of residuals r, less their mean, sorted by a covariate that takes other values from datum to datum, the strength is the
-//! correlation of neighbours, Σ rᵢ·rᵢ₊₁ / Σ rᵢ²; along a covariate that repeats its values it is the share of the squares
-//! that the means of the values explain. z is its distance, in standard deviations, from what the same residuals in random
-//! order give.
+//! Of residuals r, less their mean, sorted by a covariate that takes other values from datum to
+//! datum, the strength is the correlation of neighbours, Σ rᵢ·rᵢ₊₁ / Σ rᵢ²; along a covariate that
+//! repeats its values it is the share of the squares that the means of the values explain. z is its
+//! distance, in standard deviations, from what the same residuals in random order give.
 
 use nalgebra::DVector;
 

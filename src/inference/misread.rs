@@ -1,8 +1,9 @@
 //! Single data far off that effects were taken for.
 //!
-//! A datum far off draws effects to itself: a step to it and a step back, a play of its line. Every effect of a hypothesis
-//! is therefore compared with some data that are off by any amount each, in its place: a column eᵢ of each such datum, whose
-//! size is as little known as an effect's. That some datum of n is misread is as likely as that any effect is there,
+//! A datum far off draws effects to itself: a step to it and a step back, a play of its line. Every
+//! effect of a hypothesis is therefore compared with some data that are off by any amount each, in
+//! its place: a column eᵢ of each such datum, whose size is as little known as an effect's. That
+//! some datum of n is misread is as likely as that any effect is there,
 //!
 //! ```text
 //! ln p(rest, data off) = ln p(r | rest, e₁ … eₖ) + ln prior(rest) + k·ln(library/none/n)
@@ -20,8 +21,8 @@ use crate::statistics::median;
 
 /// Most data that may stand for one effect.
 const MOST: usize = 3;
-/// Standard deviation of a datum, over the median size of what repeats are off their median: twice that of a normal
-/// distribution, for medians of a few are near to their data.
+/// Standard deviation of a datum, over the median size of what repeats are off their median: twice
+/// that of a normal distribution, for medians of a few are near to their data.
 const FAR: f64 = 3.0;
 /// Size of such an error, in the hypothesis's noise: what is far off is usually so.
 const USUAL: f64 = 10.0;
@@ -29,8 +30,8 @@ const USUAL: f64 = 10.0;
 /// Fewer repeats do not show which one of them is off.
 const FEWEST: usize = 3;
 
-/// Single data far off the median of their repeats, as long as they are few and no two of a run are neighbours: until something
-/// explains them they are misread. What every repeat shows stays.
+/// Single data far off the median of their repeats, as long as they are few and no two of a run are
+/// neighbours: until something explains them they are misread. What every repeat shows stays.
 pub(super) fn unlike_repeats(evidence: &Evidence) -> BTreeSet<usize> {
     let mut repeats: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
     for (datum, &group) in evidence.replicate_group.iter().enumerate().take(evidence.recorded) {

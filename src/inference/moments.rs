@@ -1,4 +1,5 @@
-//! What a hypothesis's evidence is computed from: inner products of its columns, the background before them.
+//! What a hypothesis's evidence is computed from: inner products of its columns, the background
+//! before them.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -8,11 +9,13 @@ use super::search::Search;
 use super::{ForwardModel, Hypothesis, Term};
 use crate::linalg::transposed_product;
 
-/// For a candidate, the inner products of its columns with those of a hypothesis (rows), and with a residual.
+/// For a candidate, the inner products of its columns with those of a hypothesis (rows), and with a
+/// residual.
 pub(super) type CrossProducts<'a> = dyn Fn(usize) -> (DMatrix<f64>, DVector<f64>) + 'a;
 
 impl Search<'_> {
-    /// Residual and columns of a hypothesis, background first, whitened; the residual without what its values explain.
+    /// Residual and columns of a hypothesis, background first, whitened; the residual without what
+    /// its values explain.
     pub(super) fn linear_part(&self, terms: &[Term]) -> (DVector<f64>, DMatrix<f64>) {
         let (r, own) = self.linear(terms);
         let background = self.background.0.ncols();
@@ -21,8 +24,8 @@ impl Search<'_> {
         (r, all)
     }
 
-    /// Ln of the probability of a hypothesis, of this [`Search::linear_part`], with `more` columns beside its own, each an effect of
-    /// no prior by itself; and what it leaves, whitened.
+    /// Ln of the probability of a hypothesis, of this [`Search::linear_part`], with `more` columns
+    /// beside its own, each an effect of no prior by itself; and what it leaves, whitened.
     pub(super) fn with_columns(
         &self,
         hypothesis: &Hypothesis,
@@ -43,8 +46,8 @@ impl Search<'_> {
         (scored.log_evidence + prior, left)
     }
 
-    /// Residual and columns of the effects of a hypothesis at their values, linear about the neutral ones and whitened.
-    /// Estimates are in sizes from the neutral values.
+    /// Residual and columns of the effects of a hypothesis at their values, linear about the
+    /// neutral ones and whitened. Estimates are in sizes from the neutral values.
     fn linear(&self, terms: &[Term]) -> (DVector<f64>, DMatrix<f64>) {
         let own: Vec<DMatrix<f64>> =
             (0..terms.len()).map(|position| self.model.columns(terms, position)).collect();
@@ -60,8 +63,8 @@ impl Search<'_> {
         (self.whitening.apply(&left), self.whitening.apply_columns(&columns))
     }
 
-    /// The moments of a hypothesis, and the inner products of each candidate's columns with the hypothesis's and with the residual that it
-    /// is fitted to.
+    /// The moments of a hypothesis, and the inner products of each candidate's columns with the
+    /// hypothesis's and with the residual that it is fitted to.
     pub(super) fn crossed(&self, terms: &[Term]) -> (Moments, Box<CrossProducts<'_>>) {
         let Some(kept) = &self.kept else {
             let (r, own) = self.linear(terms);
@@ -103,7 +106,8 @@ impl Search<'_> {
         self.moments_of(&r, &own, terms)
     }
 
-    /// Of a linear model. Of the last effect, which is often only tried, no products with all candidates are needed.
+    /// Of a linear model. Of the last effect, which is often only tried, no products with all
+    /// candidates are needed.
     fn kept_moments(&self, kept: &GramCache, terms: &[Term]) -> Moments {
         let effects: Vec<usize> = terms.iter().map(|c| c.candidate).collect();
         let leading = &effects[..effects.len().saturating_sub(1)];

@@ -1,8 +1,8 @@
 //! Which two effects together may explain what neither does alone.
 //!
 //! A modulus that is too low and a root that gives way hide each other: each alone makes the fit
-//! worse. All pairs are screened by the inner products of their columns, G and b, what the hypothesis
-//! so far explains taken out:
+//! worse. All pairs are screened by the inner products of their columns, G and b, what the
+//! hypothesis so far explains taken out:
 //!
 //! ```text
 //! gain ≈ −½·ν·ln(1 − Δ/νσ²) − ½·ln|1 + G/s|     Δ = bᵀ(G + s)⁻¹b, s what is then left of σ²
@@ -128,7 +128,8 @@ impl Search<'_> {
     }
 }
 
-/// About what some columns of a whole are worth. Of the few numbers of two effects no matrices are made.
+/// About what some columns of a whole are worth. Of the few numbers of two effects no matrices are
+/// made.
 fn gain(gram: &DMatrix<f64>, product: &DVector<f64>, columns: &[usize], noise: f64, nu: f64) -> f64 {
     match columns.len() {
         1 => gain_of::<1>(gram, product, columns, noise, nu),

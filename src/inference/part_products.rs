@@ -1,15 +1,18 @@
-//! Products of a linear model's columns over the parts of a recording, computed once for all searches that leave one part out.
+//! Products of a linear model's columns over the parts of a recording, computed once for all
+//! searches that leave one part out.
 //!
-//! What a search over the data T needs of a candidate's columns C is, with N, B and r the nuisance, the background and the
-//! residual, Q = N·A an orthonormal basis of the nuisance and M = 1 − Q·Qᵀ,
+//! What a search over the data T needs of a candidate's columns C is, with N, B and r the nuisance,
+//! the background and the residual, Q = N·A an orthonormal basis of the nuisance and M = 1 − Q·Qᵀ,
 //!
 //! ```text
 //! QᵀC = Aᵀ·(NᵀC)     CᵀMC = CᵀC − (QᵀC)ᵀQᵀC     BᵀMC = BᵀC − (QᵀB)ᵀQᵀC     rᵀMC alike
 //! ```
 //!
-//! where NᵀC, CᵀC, BᵀC and rᵀC are sums over the parts that T holds. No column is copied for a fold.
+//! where NᵀC, CᵀC, BᵀC and rᵀC are sums over the parts that T holds. No column is copied for a
+//! fold.
 //!
-//! Where neighbours have errors in common the parts are not apart, and each search whitens its own data:
+//! Where neighbours have errors in common the parts are not apart, and each search whitens its own
+//! data:
 //!
 //! ```text
 //! (W·v)ᵀ(W·C) = (Wᵀ·W·v)ᵀC      for few vectors v, and CᵀWᵀWC candidate by candidate
@@ -43,7 +46,8 @@ pub(super) struct PartProducts<'a> {
     beside: Vec<DMatrix<f64>>,
     /// How many columns N and B have.
     counts: (usize, usize),
-    /// The data themselves, N, B and r, where neighbours have errors in common: nothing is summed over parts then.
+    /// The data themselves, N, B and r, where neighbours have errors in common: nothing is summed
+    /// over parts then.
     correlated: Option<DMatrix<f64>>,
     between: Mutex<Between>,
 }
@@ -78,8 +82,8 @@ struct Whitened {
 }
 
 impl<'a> PartProducts<'a> {
-    /// By the number of each datum's part in the evidence. `None` for a model that is not linear, and where data are weighed or
-    /// share errors.
+    /// By the number of each datum's part in the evidence. `None` for a model that is not linear,
+    /// and where data are weighed or share errors.
     pub fn new(model: &'a dyn ForwardModel, evidence: &Evidence, part: &[usize]) -> Option<PartProducts<'a>> {
         if !model.is_linear() || !evidence.is_even() {
             return None;

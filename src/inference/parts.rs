@@ -1,4 +1,5 @@
-//! One term of a hypothesis as it is reported: its interval, whatever else may be there, and its rivals.
+//! One term of a hypothesis as it is reported: its interval, whatever else may be there, and its
+//! rivals.
 
 use super::linearised::Linearised;
 use super::priors::MISTAKE;
@@ -9,15 +10,15 @@ use crate::statistics::{chi_squared_survival, student_t_quantile};
 
 /// So many of the effects that may be there besides count for an interval.
 const AVERAGED: usize = 8;
-/// How well the evidence of an effect is known by its columns at neutral values, as a share of it; and so many effects, the
-/// likeliest by that, are fitted in place of another one.
+/// How well the evidence of an effect is known by its columns at neutral values, as a share of it;
+/// and so many effects, the likeliest by that, are fitted in place of another one.
 const ABOUT: f64 = 0.3;
 const TRIED: usize = 8;
 /// A form of a law that leaves at most so much more, as a factor, may be the right one.
 const HARDLY_MORE: f64 = 1.1;
 
-/// One term with its interval and its rivals. What is left unexplained, a curve of the hypothesis `beside`, may be a part of it
-/// or not: the interval holds both.
+/// One term with its interval and its rivals. What is left unexplained, a curve of the hypothesis
+/// `beside`, may be a part of it or not: the interval holds both.
 pub(super) fn part(
     model: &Linearised<'_>,
     search: &Search,
@@ -96,7 +97,8 @@ pub(super) fn part(
     }
 }
 
-/// How many standard deviations a 95 % interval is, by the degrees of freedom that a hypothesis leaves.
+/// How many standard deviations a 95 % interval is, by the degrees of freedom that a hypothesis
+/// leaves.
 pub(super) fn coverage_factor_of(search: &Search, hypothesis: &Hypothesis) -> f64 {
     let degrees_of_freedom = (search.degrees_of_freedom() as f64 - hypothesis.determined).max(1.0);
     student_t_quantile(0.975, degrees_of_freedom).unwrap_or(1.96)
@@ -107,7 +109,8 @@ fn first_of(hypothesis: &Hypothesis, position: usize) -> usize {
     hypothesis.terms[..position].iter().map(|term| term.values.len()).sum()
 }
 
-/// Value and interval of the parameters of a term, with what else may be there, and with the curve `beside`.
+/// Value and interval of the parameters of a term, with what else may be there, and with the curve
+/// `beside`.
 pub(super) fn estimates(
     model: &Linearised<'_>,
     search: &Search,
@@ -126,8 +129,9 @@ pub(super) fn estimates(
     estimates
 }
 
-/// Value and 95 % interval of the parameters of a term, whatever else may be there besides: the hypotheses with one effect or
-/// curve more, Y, have their share p in it (J. A. Hoeting et al., *Statistical Science* 14 (1999) 382–417, Eq 3),
+/// Value and 95 % interval of the parameters of a term, whatever else may be there besides: the
+/// hypotheses with one effect or curve more, Y, have their share p in it (J. A. Hoeting et
+/// al., *Statistical Science* 14 (1999) 382–417, Eq 3),
 ///
 /// ```text
 /// var x = Σ p_Y·(s_Y² + (x_Y − x)²)
@@ -172,8 +176,9 @@ fn widen(estimates: &mut [Estimate], others: Vec<Estimate>) {
     }
 }
 
-/// By how much the residual of a hypothesis is less than that of a shorter one, root of the difference of their mean
-/// squares: what the base model would take up is explained by nothing else.
+/// By how much the residual of a hypothesis is less than that of a shorter one, root of the
+/// difference of their mean squares: what the base model would take up is explained by nothing
+/// else.
 pub(super) fn explained(search: &Search, shorter: &Hypothesis, hypothesis: &Hypothesis) -> f64 {
     let squares = search.left_rms(shorter).powi(2) - search.left_rms(hypothesis).powi(2);
     squares.max(0.0).sqrt()

@@ -1,14 +1,16 @@
 //! The prior of a hypothesis.
 //!
-//! Before the data half of all recordings hold nothing, the library shares 0.4, physics that nobody has named 0.1. Within the
-//! library every effect has the same share, and within an effect every place a share of that, so that a scan over a hundred
-//! places finds nothing a hundred times as often as a single place does.
+//! Before the data half of all recordings hold nothing, the library shares 0.4, physics that nobody
+//! has named 0.1. Within the library every effect has the same share, and within an effect every
+//! place a share of that, so that a scan over a hundred places finds nothing a hundred times as
+//! often as a single place does.
 
 use std::collections::BTreeMap;
 
 use super::{Candidate, Kind};
 
-/// Prior probability that the next effect is none, one of the library, or one that nobody has named.
+/// Prior probability that the next effect is none, one of the library, or one that nobody has
+/// named.
 pub(super) const PRIOR: (f64, f64, f64) = (0.5, 0.4, 0.1);
 /// Share of it that a mistake has: it is named at odds of 1000, where an effect is at 50.
 pub(super) const MISTAKE: f64 = 0.05;

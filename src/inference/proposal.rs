@@ -10,8 +10,8 @@ pub struct Proposal {
     pub words: String,
     /// The same as numbers; `None` for what is weighed or gauged without any recording.
     pub plan: Option<Plan>,
-    /// By how much it would separate the finding from the closest of `separates_from`: ln of the odds
-    /// that are expected.
+    /// By how much it would separate the finding from the closest of `separates_from`: ln of the
+    /// odds that are expected.
     pub log_odds: f64,
     /// What it separates the finding from.
     pub separates_from: Vec<(&'static Effect, Location)>,

@@ -19,7 +19,8 @@ use super::{Evidence, ForwardModel, Term};
 /// What is left is little: as a share of what an effect explains, and of the noise.
 const LITTLE: (f64, f64) = (0.1, 0.5);
 
-/// An effect that a curve cannot draw has a name beside one that explains at most so many times as much.
+/// An effect that a curve cannot draw has a name beside one that explains at most so many times as
+/// much.
 const BESIDE: f64 = 0.5;
 
 /// Most times that weights and scatter are found anew.
@@ -28,8 +29,8 @@ const PASSES: usize = 3;
 const SAME_WEIGHT: f64 = 0.05;
 
 /// A recording with the scatter that its hypothesis leaves: weights of the data, and the ratio of
-/// shared to own errors. What is found first changes how the rest scatters, so that both are found in
-/// turns. `evidence` may fix the ratio beforehand; then its weights count too.
+/// shared to own errors. What is found first changes how the rest scatters, so that both are found
+/// in turns. `evidence` may fix the ratio beforehand; then its weights count too.
 ///
 /// Where nothing of it moved any more, what the last search has found comes with it.
 pub fn settled(model: &Linearised<'_>, evidence: &Evidence) -> (Evidence, Option<Best>) {
@@ -99,8 +100,8 @@ pub fn settled(model: &Linearised<'_>, evidence: &Evidence) -> (Evidence, Option
 /// The most probable hypothesis, and what it leaves.
 pub type Best = (Hypothesis, Option<DiscrepancyModel>);
 
-/// The hypothesis that a recording supports, what it leaves unexplained, and the search that found them,
-/// with the scatter that [`settled`] has found; `known` is the best where that has found it.
+/// The hypothesis that a recording supports, what it leaves unexplained, and the search that found
+/// them, with the scatter that [`settled`] has found; `known` is the best where that has found it.
 pub fn infer<'a>(
     model: &'a Linearised<'a>,
     evidence: &'a Evidence,
@@ -114,11 +115,12 @@ pub fn infer<'a>(
     (search, hypothesis, left_over)
 }
 
-/// A hypothesis without the effects that may as well be a part of what is left unexplained, and what is left then.
+/// A hypothesis without the effects that may as well be a part of what is left unexplained, and
+/// what is left then.
 ///
-/// An effect stays if it explains half as much as the unexplained curve, or more, even where that is there to take its place
-/// (an outlier, which no smooth curve draws), or if what is left is little beside it or beside the noise (a law of creep that is not quite
-/// the right one).
+/// An effect stays if it explains half as much as the unexplained curve, or more, even where that
+/// is there to take its place (an outlier, which no smooth curve draws), or if what is left is
+/// little beside it or beside the noise (a law of creep that is not quite the right one).
 fn convincing(
     search: &Search,
     hypothesis: Hypothesis,
@@ -151,11 +153,11 @@ fn convincing(
     (hypothesis, remainder)
 }
 
-/// A hypothesis without events (a reading, or the three coordinates of a pose) that are no farther out than the tails of this
-/// recording's noise coverage_factor.
+/// A hypothesis without events (a reading, or the three coordinates of a pose) that are no farther
+/// out than the tails of this recording's noise coverage_factor.
 ///
-/// Where the other residuals have more kurtosis than a normal distribution, by three standard errors √(24/n), a datum has to
-/// be twice as far out as any of them.
+/// Where the other residuals have more kurtosis than a normal distribution, by three standard
+/// errors √(24/n), a datum has to be twice as far out as any of them.
 fn beyond_the_tails(search: &Search, hypothesis: Hypothesis) -> Hypothesis {
     let events: Vec<bool> = hypothesis.terms.iter().map(|term| search.is_event(term)).collect();
     if !events.contains(&true) {
@@ -311,8 +313,9 @@ mod tests {
         if row.is_multiple_of(2) { 1.0 } else { -1.0 }
     }
 
-    /// Does the law stay, beside what is left of a recording of it, of a ripple and of noise of these sizes? The ripple is seen by
-    /// the repeats or is drawn by an unknown curve, which also has this function of the law.
+    /// Does the law stay, beside what is left of a recording of it, of a ripple and of noise of
+    /// these sizes? The ripple is seen by the repeats or is drawn by an unknown curve, which also
+    /// has this function of the law.
     fn convinces(law_size: f64, ripple_size: f64, noise: f64, curve: Option<fn(f64) -> f64>) -> bool {
         let mut model = Columns::new(COUNT);
         model.add("law", "", DMatrix::from_fn(COUNT, 1, |row, _| law(row)), false);

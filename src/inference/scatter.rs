@@ -113,8 +113,9 @@ impl Tails {
         residual.iter().map(weight).collect()
     }
 
-    /// What a datum says of a place, over what it would say were the distribution normal with this scale: (ν + 1)/(ν + 3)
-    /// (Lange, Little & Taylor, §2). Weights alone make data that agree too sure.
+    /// What a datum says of a place, over what it would say were the distribution normal with this
+    /// scale: (ν + 1)/(ν + 3) (Lange, Little & Taylor, §2). Weights alone make data that agree too
+    /// sure.
     fn information(&self) -> f64 {
         if self.freedom.is_infinite() { 1.0 } else { (self.freedom + 1.0) / (self.freedom + 3.0) }
     }
@@ -134,8 +135,8 @@ impl Tails {
     }
 }
 
-/// How much each datum counts, and what it then says over what a normal one does. A few data far off beside normal ones are
-/// no heavy tails: they hardly count, and the others all alike.
+/// How much each datum counts, and what it then says over what a normal one does. A few data far
+/// off beside normal ones are no heavy tails: they hardly count, and the others all alike.
 pub(super) fn weighted(residual: &DVector<f64>) -> (Vec<f64>, f64) {
     let tails = Tails::of(residual);
     if tails.freedom.is_infinite() {

@@ -1,18 +1,20 @@
-//! How probable a recording is under a hypothesis: the evidence of a Gaussian linear model, in closed form.
+//! How probable a recording is under a hypothesis: the evidence of a Gaussian linear model, in
+//! closed form.
 //!
-//! With r the whitened and projected residual (ν degrees of freedom), the columns C of the hypothesis's parameters, scaled so
-//! that their prior is the standard normal, G = CᵀC and b = Cᵀr:
+//! With r the whitened and projected residual (ν degrees of freedom), the columns C of the
+//! hypothesis's parameters, scaled so that their prior is the standard normal, G = CᵀC and b = Cᵀr:
 //!
 //! ln p(r) = −½·ν·ln σ² − ½·ln|1 + G/σ²| − (rᵀr − bᵀ(G + σ²·1)⁻¹b) / 2σ² + constant
 //!
-//! at the σ that makes it largest. The determinant is the price of parameters: one that the data pin down a thousand times
-//! better than its prior costs ln 1000. A parameter with a bound has the part of the normal prior within it; the evidence
-//! then gains ln(posterior mass within the bound / prior mass within it), parameter by parameter: a friction that comes out
-//! negative has no mass where friction is possible.
+//! at the σ that makes it largest. The determinant is the price of parameters: one that the data
+//! pin down a thousand times better than its prior costs ln 1000. A parameter with a bound has the
+//! part of the normal prior within it; the evidence then gains ln(posterior mass within the bound /
+//! prior mass within it), parameter by parameter: a friction that comes out negative has no mass
+//! where friction is possible.
 //!
-//! Nobody knows beforehand how large an effect is within a factor of ten. The prior of each effect is therefore κ times as wide
-//! as its usual size, where κ is what makes the evidence largest (empirical Bayes, by expectation–maximisation), at the price
-//! of ½·(log₁₀ κ)².
+//! Nobody knows beforehand how large an effect is within a factor of ten. The prior of each effect
+//! is therefore κ times as wide as its usual size, where κ is what makes the evidence largest
+//! (empirical Bayes, by expectation–maximisation), at the price of ½·(log₁₀ κ)².
 
 #[cfg(test)]
 mod tests;
@@ -34,11 +36,12 @@ const SCALES: (f64, f64) = (1.0 / 30.0, 30.0);
 const SCALE_STEPS: usize = 6;
 /// Most steps to σ², which comes on alone where κ stays.
 const STEPS: usize = 60;
-/// Relative steps at which σ² and κ have arrived, and at which they have for a first look. The evidence is largest there:
-/// what is missing changes it by the square.
+/// Relative steps at which σ² and κ have arrived, and at which they have for a first look. The
+/// evidence is largest there: what is missing changes it by the square.
 const SETTLED: (f64, f64) = (1e-6, 0.02);
 const ROUGHLY: f64 = 0.05;
-/// Size, relative to what a column was, of what rounding leaves of one that a hypothesis holds already.
+/// Size, relative to what a column was, of what rounding leaves of one that a hypothesis holds
+/// already.
 const ROUNDING: f64 = 1e-9;
 /// Numbers of cross products below which they are few.
 const FEW: usize = 96;
@@ -79,7 +82,8 @@ pub struct ColumnBlock<'a> {
     pub bounds: Vec<(f64, f64)>,
 }
 
-/// Parameters of an effect that the data leave open, from which on their prior's size counts for an interval.
+/// Parameters of an effect that the data leave open, from which on their prior's size counts for an
+/// interval.
 const UNDETERMINED: f64 = 0.05;
 /// 97.5 % quantile of the normal distribution.
 const NORMAL: f64 = 1.959964;
@@ -102,7 +106,8 @@ pub struct Score {
 }
 
 impl Moments {
-    /// Of the residual `r` and `columns`, with bounds of their factors and the sizes of the effects, the last of the columns.
+    /// Of the residual `r` and `columns`, with bounds of their factors and the sizes of the
+    /// effects, the last of the columns.
     #[cfg(test)]
     pub fn new(
         r: &DVector<f64>,
@@ -117,13 +122,15 @@ impl Moments {
         Moments { square, gram, product, bounds, effects, degrees_of_freedom, floor, stated: None }
     }
 
-    /// The score: σ² and κ are found together, by MacKay's fixed point and expectation–maximisation.
+    /// The score: σ² and κ are found together, by MacKay's fixed point and
+    /// expectation–maximisation.
     ///
-    /// σ² comes from above, from what the residual has without any hypothesis, and goes no further down than the floor. Far below
-    /// what is left, columns that are nearly the same would explain their own rounding.
+    /// σ² comes from above, from what the residual has without any hypothesis, and goes no further
+    /// down than the floor. Far below what is left, columns that are nearly the same would explain
+    /// their own rounding.
     ///
-    /// σ² = |r − C·x|² / (ν − γ), where γ parameters are determined by the data (D. J. C. MacKay, Neural Computation 4 (1992)
-    /// 415–447, §4)
+    /// σ² = |r − C·x|² / (ν − γ), where γ parameters are determined by the data (D. J. C. MacKay,
+    /// Neural Computation 4 (1992) 415–447, §4)
     pub fn score(&self) -> Score {
         let (p, nu) = (self.gram.ncols(), (self.degrees_of_freedom as f64).max(1.0));
         let (count, believed) = self.believed();
@@ -174,11 +181,11 @@ impl Moments {
         }
     }
 
-    /// Posterior covariance of the parameters of a score, κ uncertain as well; `alike` are, of each effect, how many numbers of one kind
-    /// (lengths, angles) follow one another.
+    /// Posterior covariance of the parameters of a score, κ uncertain as well; `alike` are, of each
+    /// effect, how many numbers of one kind (lengths, angles) follow one another.
     ///
-    /// In a direction that the data leave open a number is known by the size of the others of its kind alone, with what the data
-    /// determine of each, dₖ = 1 − cov xₖ/κ²:
+    /// In a direction that the data leave open a number is known by the size of the others of its
+    /// kind alone, with what the data determine of each, dₖ = 1 − cov xₖ/κ²:
     ///
     /// ```text
     /// κ² = Σ dₖ·xₖ²/γ,   γ = Σ dₖ      and a Student's t distribution of γ degrees of freedom, by t/1.96 wider
@@ -219,7 +226,8 @@ impl Moments {
         (self.square - 2.0 * self.product.dot(x) + x.dot(&(&self.gram * x))).max(0.0)
     }
 
-    /// The next κ of every effect: root mean square of its parameters, in sizes, their uncertainty included.
+    /// The next κ of every effect: root mean square of its parameters, in sizes, their uncertainty
+    /// included.
     fn rescaled(&self, scales: &[f64], solved: &Ridge, s: f64) -> Vec<f64> {
         let mut first = self.gram.ncols() - self.effects.iter().sum::<usize>();
         let mut next = Vec::with_capacity(scales.len());
@@ -239,11 +247,12 @@ impl Moments {
         std::iter::repeat_n(1.0, fixed).chain(scales.iter().zip(&self.effects).flat_map(of_effect)).collect()
     }
 
-    /// About the log evidence that `more` columns add to a hypothesis of this score: the noise follows what they explain.
+    /// About the log evidence that `more` columns add to a hypothesis of this score: the noise
+    /// follows what they explain.
     ///
-    /// With the hypothesis's columns out of them (G' = Gₘ − X(G + σ²)⁻¹Xᵀ, b' = bₘ − X(G + σ²)⁻¹b, X the cross products) they explain
-    /// Δ = b'ᵀ(G' + σ²/κ²)⁻¹b' of the squares Q = rᵀr − bᵀx, priors of the hypothesis's own numbers included, which leaves
-    /// s' = σ²·(1 − Δ/Q), and
+    /// With the hypothesis's columns out of them (G' = Gₘ − X(G + σ²)⁻¹Xᵀ, b' = bₘ − X(G + σ²)⁻¹b,
+    /// X the cross products) they explain Δ = b'ᵀ(G' + σ²/κ²)⁻¹b' of the squares Q = rᵀr − bᵀx,
+    /// priors of the hypothesis's own numbers included, which leaves s' = σ²·(1 − Δ/Q), and
     ///
     /// gain ≈ −½·ν·ln(1 − Δ/Q) − ½·ln|1 + κ²G'/s'| + ln(room)
     pub fn about(&self, score: &Score, more: &ColumnBlock) -> f64 {
@@ -325,7 +334,8 @@ impl Moments {
         }
     }
 
-    /// Inner products of `more` columns with each other and with r, the hypothesis's columns out of them.
+    /// Inner products of `more` columns with each other and with r, the hypothesis's columns out of
+    /// them.
     fn reduced(&self, score: &Score, more: &ColumnBlock) -> (DMatrix<f64>, DVector<f64>) {
         // (G + σ²)⁻¹ is the posterior covariance over σ²
         let per_square = score.sigma.powi(2).recip();
@@ -346,8 +356,9 @@ impl Moments {
         (gram, &more.product - reduced.tr_mul(&self.product))
     }
 
-    /// What a hypothesis of this score leaves, as a problem of its own: its columns are taken out with the uncertainty that they have
-    /// now, and so are the degrees of freedom that they determine.
+    /// What a hypothesis of this score leaves, as a problem of its own: its columns are taken out
+    /// with the uncertainty that they have now, and so are the degrees of freedom that they
+    /// determine.
     pub fn rest(&self, score: &Score) -> Moments {
         Moments {
             square: (self.square - self.product.dot(&score.estimate)).max(0.0),
@@ -361,7 +372,8 @@ impl Moments {
         }
     }
 
-    /// `more` columns in what a hypothesis leaves: a problem of theirs only, not of the hypothesis's besides.
+    /// `more` columns in what a hypothesis leaves: a problem of theirs only, not of the
+    /// hypothesis's besides.
     pub fn beyond(&self, score: &Score, more: &ColumnBlock) -> Moments {
         let (mut gram, product) = self.reduced(score, more);
         let rounding = ROUNDING * more.gram.diagonal().amax();

@@ -1,7 +1,7 @@
 //! Hypotheses: fitted, scored, and asked what would make them more probable.
 //!
-//! A hypothesis is a few candidates that act together. Its probability is that of the recording ([`super::score`]) times its
-//! prior ([`super::priors`]).
+//! A hypothesis is a few candidates that act together. Its probability is that of the recording
+//! ([`super::score`]) times its prior ([`super::priors`]).
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -21,7 +21,8 @@ use crate::linalg::transposed_product;
 
 /// A mistake is so many times as large as what readings scatter by.
 const MISTAKEN: f64 = 10.0;
-/// Of how many candidates, the likeliest, and the likeliest of each effect besides, the evidence is computed exactly.
+/// Of how many candidates, the likeliest, and the likeliest of each effect besides, the evidence is
+/// computed exactly.
 const SCORED: usize = 6;
 /// Steps of one sequence are so many data apart at least.
 const NO_STEP: usize = 3;
@@ -35,12 +36,13 @@ pub struct Search<'a> {
     pub(super) whitening: Whitening,
     /// Background, whitened and projected, and its inner products.
     pub(super) background: (DMatrix<f64>, DMatrix<f64>),
-    /// Those of the background with each candidate's columns at neutral values; not of a linear model in parts.
+    /// Those of the background with each candidate's columns at neutral values; not of a linear
+    /// model in parts.
     pub(super) beside_background: Option<Table<'a>>,
     /// Of a linear model in parts.
     pub(super) training: Option<Training<'a>>,
-    /// Inner products of each candidate's columns, whitened and projected, with each other. Those with what is projected
-    /// need no projection of theirs.
+    /// Inner products of each candidate's columns, whitened and projected, with each other. Those
+    /// with what is projected need no projection of theirs.
     pub(super) grams: Vec<DMatrix<f64>>,
     /// The residual, whitened and projected.
     pub(super) residual: DVector<f64>,
@@ -106,7 +108,8 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// True for a mistake that is no larger than readings and their zeros scatter anyway: nobody made it.
+    /// True for a mistake that is no larger than readings and their zeros scatter anyway: nobody
+    /// made it.
     pub(super) fn is_lost_in_noise(&self, term: &Term, sigma: f64) -> bool {
         if self.model.candidates()[term.candidate].effect.kind != Kind::Mistake {
             return false;
@@ -117,9 +120,10 @@ impl<'a> Search<'a> {
         rms < MISTAKEN * sigma * (1.0 + self.whitening.ratio).sqrt()
     }
 
-    /// About the ln of what adding each candidate to `hypothesis` does to its probability, by the candidate's columns at its
-    /// neutral values, exact for the likeliest known and unknown ones and for the likeliest place of every effect, lest
-    /// one effect with many places leaves the others out; −∞ for those that are in it already.
+    /// About the ln of what adding each candidate to `hypothesis` does to its probability, by the
+    /// candidate's columns at its neutral values, exact for the likeliest known and unknown ones
+    /// and for the likeliest place of every effect, lest one effect with many places leaves the
+    /// others out; −∞ for those that are in it already.
     pub fn additions(&self, hypothesis: &Hypothesis) -> Arc<Vec<f64>> {
         remembered(&self.added, &hypothesis.terms, || Arc::new(self.additions_anew(hypothesis)))
     }
@@ -156,8 +160,8 @@ impl<'a> Search<'a> {
         additions
     }
 
-    /// True where a candidate can not be added to a hypothesis that holds `term`: what returns within two data is no step,
-    /// those data are off.
+    /// True where a candidate can not be added to a hypothesis that holds `term`: what returns
+    /// within two data is no step, those data are off.
     fn excludes(&self, term: &Term, index: usize) -> bool {
         let (old, new) = (&self.model.candidates()[term.candidate], &self.model.candidates()[index]);
         let are_near = || self.model.steps_apart(term.candidate, index).is_some_and(|n| n < NO_STEP);
@@ -222,8 +226,9 @@ impl<'a> Search<'a> {
         self.whitening.correlation
     }
 
-    /// ‖y − effects − background·b‖²/σ² + ‖b‖² of a hypothesis, shared errors and nuisance taken out: what two
-    /// hypotheses differ by has about the χ² distribution where the longer one is chance.
+    /// ‖y − effects − background·b‖²/σ² + ‖b‖² of a hypothesis, shared errors and nuisance taken
+    /// out: what two hypotheses differ by has about the χ² distribution where the longer one is
+    /// chance.
     pub fn deviance(&self, hypothesis: &Hypothesis, sigma: f64) -> f64 {
         let left = &self.evidence.residual
             - self.model.response(&hypothesis.terms)
@@ -239,8 +244,9 @@ impl<'a> Search<'a> {
         self.replicates.as_ref()?.test(&self.whitening.whitened(&left), parameters + absorbed)
     }
 
-    /// What a hypothesis says of all data of `evidence`, of which this search may have seen only a part: its effects' `change`
-    /// of them, the background, and the nuisance that fits best to what this search has seen.
+    /// What a hypothesis says of all data of `evidence`, of which this search may have seen only a
+    /// part: its effects' `change` of them, the background, and the nuisance that fits best to what
+    /// this search has seen.
     pub fn predicted(
         &self,
         hypothesis: &Hypothesis,
@@ -263,8 +269,8 @@ impl<'a> Search<'a> {
     }
 }
 
-/// A bound that is where nothing happens; a far one says little about columns at neutral values, where the effect may be far
-/// from linear.
+/// A bound that is where nothing happens; a far one says little about columns at neutral values,
+/// where the effect may be far from linear.
 fn one_sided((low, high): (f64, f64)) -> (f64, f64) {
     (if low == 0.0 { 0.0 } else { f64::NEG_INFINITY }, if high == 0.0 { 0.0 } else { f64::INFINITY })
 }

@@ -1,4 +1,5 @@
-//! Which hypothesis a recording supports: effects are added, exchanged and taken away while that makes it more probable.
+//! Which hypothesis a recording supports: effects are added, exchanged and taken away while that
+//! makes it more probable.
 
 use super::priors::PRIOR;
 use super::search::Search;
@@ -8,8 +9,8 @@ use super::{ForwardModel, Hypothesis, Term};
 pub const NAMED: f64 = 50.0;
 /// Odds within which another explanation counts as indistinguishable: 20 to 1.
 pub(super) const APART: f64 = 20.0;
-/// A hypothesis of known effects explains as well as one that leaves something unknown within these odds, if it leaves at most so
-/// much more, as a factor, per degree of freedom.
+/// A hypothesis of known effects explains as well as one that leaves something unknown within these
+/// odds, if it leaves at most so much more, as a factor, per degree of freedom.
 const AS_WELL: (f64, f64) = (20.0, 1.01);
 /// Standard deviations of what more degrees of freedom take by chance that count as chance.
 const CHANCE: f64 = 3.0;
@@ -45,12 +46,13 @@ pub enum DiscrepancyModel {
 }
 
 impl Search<'_> {
-    /// The most probable hypothesis of known effects, and what it leaves, if that is more than chance.
+    /// The most probable hypothesis of known effects, and what it leaves, if that is more than
+    /// chance.
     ///
-    /// Known effects are named only as far as they are likelier than a shorter hypothesis that leaves
-    /// something unknown: several of them together can draw the shape of something that is none of
-    /// them. Effects are added one by one from nothing, and from the best pair: two that hide each
-    /// other are found by no single step.
+    /// Known effects are named only as far as they are likelier than a shorter hypothesis that
+    /// leaves something unknown: several of them together can draw the shape of something that is
+    /// none of them. Effects are added one by one from nothing, and from the best pair: two that
+    /// hide each other are found by no single step.
     pub fn best(&self, pairs: Pairs) -> (Hypothesis, Option<DiscrepancyModel>) {
         let none = self.fit(&[]);
         let additions = self.additions(&none);
@@ -88,8 +90,8 @@ impl Search<'_> {
         }
     }
 
-    /// Effects that are named beside a curve, the last of `longer`: what is hidden by something unknown
-    /// is seen once that is described. The curve may be another one then.
+    /// Effects that are named beside a curve, the last of `longer`: what is hidden by something
+    /// unknown is seen once that is described. The curve may be another one then.
     fn beside(&self, mut hypothesis: Hypothesis, mut longer: Hypothesis) -> (Hypothesis, Hypothesis) {
         while longer.terms.len() <= MOST {
             let additions = self.additions(&longer);
@@ -156,8 +158,8 @@ impl Search<'_> {
         (path.swap_remove(named), remainder, most)
     }
 
-    /// Does a hypothesis leave as little, per degree of freedom, as a curve with more of them does? By chance that leaves
-    /// less by √(2·more)/2ν, one standard deviation.
+    /// Does a hypothesis leave as little, per degree of freedom, as a curve with more of them does?
+    /// By chance that leaves less by √(2·more)/2ν, one standard deviation.
     fn leaves_as_little(&self, hypothesis: &Hypothesis, longer: &Hypothesis) -> bool {
         let all = self.degrees_of_freedom().max(1) as f64;
         let per_freedom =
@@ -200,9 +202,9 @@ impl Search<'_> {
         (best.terms.len() > 1 && (0..best.terms.len()).all(is_needed)).then_some(best)
     }
 
-    /// The longer hypothesis with its effects exchanged for better ones, if each of them is likelier, by the odds of a name, than
-    /// chance. Where one alone is not, another one may be needed with it: two outliers hide each other in the noise that they
-    /// make.
+    /// The longer hypothesis with its effects exchanged for better ones, if each of them is
+    /// likelier, by the odds of a name, than chance. Where one alone is not, another one may be
+    /// needed with it: two outliers hide each other in the noise that they make.
     fn accepted(&self, hypothesis: &Hypothesis, longer: Hypothesis, shared: f64) -> Option<Hypothesis> {
         let mut longer = longer;
         let mut least = hypothesis.log_probability + NAMED.ln() - shared;
@@ -231,7 +233,8 @@ impl Search<'_> {
         self.remainder(hypothesis, &self.additions(hypothesis)).map(|(_, remainder)| remainder)
     }
 
-    /// What a hypothesis leaves, with the ln of the probability of both, if that is more than chance.
+    /// What a hypothesis leaves, with the ln of the probability of both, if that is more than
+    /// chance.
     fn remainder(&self, hypothesis: &Hypothesis, additions: &[f64]) -> Option<(f64, DiscrepancyModel)> {
         let least = hypothesis.log_probability + NAMED.ln();
         let curve = self.longer(hypothesis, additions, true).filter(|longer| longer.log_probability > least);
@@ -246,7 +249,8 @@ impl Search<'_> {
         }
     }
 
-    /// The hypothesis with one candidate more, the likeliest of those that are unknown or of those that are not.
+    /// The hypothesis with one candidate more, the likeliest of those that are unknown or of those
+    /// that are not.
     fn longer(&self, hypothesis: &Hypothesis, additions: &[f64], unknown: bool) -> Option<Hypothesis> {
         // a scan over places must not crowd out what is at one place only
         let mut tried: Vec<usize> = Vec::new();

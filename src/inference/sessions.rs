@@ -1,7 +1,8 @@
 //! Does what is found in some sessions predict the others?
 //!
-//! A recording may hold several sessions: clamps, placements of a fixture. Each is left out as a whole, the search included, and
-//! predicted from the others: an effect of the robot must be there too, one that only describes a fixture is not.
+//! A recording may hold several sessions: clamps, placements of a fixture. Each is left out as a
+//! whole, the search included, and predicted from the others: an effect of the robot must be there
+//! too, one that only describes a fixture is not.
 
 use std::collections::BTreeMap;
 

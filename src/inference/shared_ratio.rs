@@ -16,7 +16,8 @@ const BELIEF: f64 = 10.0;
 const FEWEST_GROUPS: usize = 6;
 const FAR: f64 = 3.0;
 
-/// ρ from repeats: the mean product of two deviations of one group, over what the mean square has beyond it.
+/// ρ from repeats: the mean product of two deviations of one group, over what the mean square has
+/// beyond it.
 ///
 /// Deviations are from the mean of the replicate group, so that nothing that repeats itself counts.
 ///
@@ -66,8 +67,8 @@ pub(super) fn shared_ratio(evidence: &Evidence, left: &DVector<f64>, correlation
     believed(shared, own, count)
 }
 
-/// ρ of two variances that `count` data show, beside the belief: that counts as [`BELIEF`] data of the same mean square, split
-/// as it says.
+/// ρ of two variances that `count` data show, beside the belief: that counts as [`BELIEF`] data of
+/// the same mean square, split as it says.
 fn believed(shared: f64, own: f64, count: f64) -> f64 {
     let split = RATIO_BEFORE / (1.0 + RATIO_BEFORE);
     let belief = BELIEF * (shared + own);

@@ -1,16 +1,18 @@
 //! Is what neighbours have in common an effect, or do their errors hang together?
 //!
-//! Errors that hang together look like anything that goes on for a while: a drift, a step, a curve over an angle that the
-//! poses follow. An effect, on the other hand, makes errors look as if they hung together. So both are tried: the best hypothesis of independent
-//! errors, and those beside the errors in common that are likeliest where nothing is known, and where the first has been taken out.
-//! They are compared by the probability of the recording,
+//! Errors that hang together look like anything that goes on for a while: a drift, a step, a curve
+//! over an angle that the poses follow. An effect, on the other hand, makes errors look as if they
+//! hung together. So both are tried: the best hypothesis of independent errors, and those beside
+//! the errors in common that are likeliest where nothing is known, and where the first has been
+//! taken out. They are compared by the probability of the recording,
 //!
 //! ```text
 //! ln p = ln p(W·y) + ln |W| − ½·ln |NᵀWᵀWN|       N the nuisance, W as in `correlated_noise.rs`
 //! ln p(r) = ln |W| − ½·ln |NᵀWᵀWN| − ½·ν·ln |M·W·r|²     restricted likelihood of what a hypothesis leaves, by which a and l are found
 //! ```
 //!
-//! (H. D. Patterson, R. Thompson, *Biometrika* 58 (1971) 545–554), less a price for a and l ([`WORTH`]).
+//! (H. D. Patterson, R. Thompson, *Biometrika* 58 (1971) 545–554), less a price for a and l
+//! ([`WORTH`]).
 
 use nalgebra::DVector;
 
@@ -28,7 +30,8 @@ use crate::parallel::in_parallel;
 /// Shares a and lengths l, in places of the course, that are tried.
 const SHARES: [f64; 6] = [0.2, 0.35, 0.5, 0.7, 0.85, 1.0];
 const LENGTHS: [f64; 5] = [0.7, 1.4, 2.8, 5.5, 11.0];
-/// A length is at most this share of its course. What goes on for longer, or over more than some ten poses, is no scatter.
+/// A length is at most this share of its course. What goes on for longer, or over more than some
+/// ten poses, is no scatter.
 const LONGEST: f64 = 0.15;
 /// Ln of the odds from which on errors hang together.
 const WORTH: f64 = 3.0;
@@ -39,7 +42,8 @@ const FAR: f64 = 100.0;
 /// Fewer data say nothing.
 const FEWEST: usize = 60;
 
-/// The best hypothesis and what it leaves: neither confirmed by held-out data nor compared with its rivals.
+/// The best hypothesis and what it leaves: neither confirmed by held-out data nor compared with its
+/// rivals.
 #[derive(Debug, Clone)]
 pub struct Sketch {
     /// The hypothesis.
@@ -168,7 +172,8 @@ mod tests {
         model
     }
 
-    /// Errors of which 0.7 of the variance goes on for 5 data, with a drift besides; a course, or none.
+    /// Errors of which 0.7 of the variance goes on for 5 data, with a drift besides; a course, or
+    /// none.
     fn evidence(seed: u64, drift: f64, is_course: bool) -> Evidence {
         let mut random = Random::seeded(seed, 4);
         let (share, carried) = (0.7_f64, (-0.2_f64).exp());

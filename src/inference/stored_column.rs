@@ -1,14 +1,16 @@
-//! Columns of a linear model as they are stored, and their products with vectors, part by part of the data.
+//! Columns of a linear model as they are stored, and their products with vectors, part by part of
+//! the data.
 //!
-//! Many columns are a number for each block of data times one pattern: a joint that turns by w_i at pose i moves the tip by
-//! w_i·J_i. With D the pattern, three data a block, and v a vector,
+//! Many columns are a number for each block of data times one pattern: a joint that turns by w_i at
+//! pose i moves the tip by w_i·J_i. With D the pattern, three data a block, and v a vector,
 //!
 //! ```text
 //! cᵀv = Σᵢ wᵢ·zᵢ,   zᵢ = Dᵢᵀvᵢ
 //! ```
 //!
-//! so that the columns of one pattern need a third of the memory and of the work, and whole blocks of them one product of
-//! matrices. What is summed over a part of the data is summed once and for all searches that hold that part.
+//! so that the columns of one pattern need a third of the memory and of the work, and whole blocks
+//! of them one product of matrices. What is summed over a part of the data is summed once and for
+//! all searches that hold that part.
 
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -119,7 +121,8 @@ impl StoredColumn<'_> {
         (from..to).map(|datum| self.at(datum).powi(2)).sum()
     }
 
-    /// The numbers at some places (data, of a pattern blocks), which come in `runs`, without pattern and factor.
+    /// The numbers at some places (data, of a pattern blocks), which come in `runs`, without
+    /// pattern and factor.
     fn gather(&self, runs: &[Range<usize>], target: &mut [f64]) {
         let mut next = 0;
         for run in runs {
@@ -153,7 +156,8 @@ fn runs(places: &[usize]) -> Vec<Range<usize>> {
     runs
 }
 
-/// Columns (by their numbers) of each pattern, in the order in which the patterns are met; plain ones; short ones.
+/// Columns (by their numbers) of each pattern, in the order in which the patterns are met; plain
+/// ones; short ones.
 type Sorted<'a> = (Vec<(&'a Pattern, Vec<usize>)>, Vec<usize>, Vec<usize>);
 
 fn by_pattern<'a>(columns: &[StoredColumn<'a>], data: usize) -> Sorted<'a> {

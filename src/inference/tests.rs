@@ -84,7 +84,8 @@ fn column(f: impl Fn(f64) -> f64) -> DMatrix<f64> {
     DMatrix::from_fn(COUNT, 1, |row, _| f(x(row)))
 }
 
-/// A slope, its twin under another name, a curvature, steps at twelve places, and smooth unknown curves.
+/// A slope, its twin under another name, a curvature, steps at twelve places, and smooth unknown
+/// curves.
 fn model() -> Columns {
     let mut model = Columns::new(COUNT);
     model.add("slope", "here", column(|x| x), false);
@@ -244,7 +245,8 @@ fn an_interval_holds_what_another_form_of_the_law_says() {
     assert_eq!(widened("square", |x| 2.0 * x * x * x).1, alone);
 }
 
-/// A second effect that may be there as well makes the first one less sure, as much as it is likely.
+/// A second effect that may be there as well makes the first one less sure, as much as it is
+/// likely.
 #[test]
 fn an_interval_holds_what_else_may_be_there() {
     let half = |with: bool| {
@@ -259,7 +261,8 @@ fn an_interval_holds_what_else_may_be_there() {
     assert!(half(true) > 1.2 * half(false), "{} {}", half(true), half(false));
 }
 
-/// What the base model is wrong by anyhow, twice as large as the effect and the other way, says nothing against the effect.
+/// What the base model is wrong by anyhow, twice as large as the effect and the other way, says
+/// nothing against the effect.
 #[test]
 fn chance_is_that_of_the_effect_beside_a_large_background() {
     let model = model();
@@ -271,7 +274,8 @@ fn chance_is_that_of_the_effect_beside_a_large_background() {
     }
 }
 
-/// A slope that the base model has, and a column that is nearly the same: what it explains is what the base model could not.
+/// A slope that the base model has, and a column that is nearly the same: what it explains is what
+/// the base model could not.
 #[test]
 fn nothing_explains_more_than_is_left() {
     let mut model = Columns::new(COUNT);

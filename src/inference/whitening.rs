@@ -1,17 +1,19 @@
 //! Errors that data share, and what the base model absorbs, taken out of residuals and columns.
 //!
-//! The errors of a group that shares one, of relative variance ρ, have the covariance σ²·(1 + ρ·J), J all ones. With m
-//! data in the group
+//! The errors of a group that shares one, of relative variance ρ, have the covariance σ²·(1 + ρ·J),
+//! J all ones. With m data in the group
 //!
 //! (1 + ρ·J)^(−1/2) = 1 − (1 − 1/√(1 + ρ·m))/m · J
 //!
-//! makes them independent. Where neighbours in a group resemble each other, with the correlation φ, its covariance is
-//! σ²·(R + ρ·J), R the φ^|i − j| of a first-order autoregression. With A·R·Aᵀ = 1,
+//! makes them independent. Where neighbours in a group resemble each other, with the correlation φ,
+//! its covariance is σ²·(R + ρ·J), R the φ^|i − j| of a first-order autoregression. With A·R·Aᵀ =
+//! 1,
 //!
 //! (A·v)₁ = v₁   (A·v)ₜ = (vₜ − φ·vₜ₋₁)/√(1 − φ²)   and a = A·1,
 //!
-//! (1 − (1 − 1/√(1 + ρ·|a|²))/|a|² · a·aᵀ)·A takes its place. Where neighbours along a course have errors in common,
-//! [`super::correlated_noise`] makes them independent. What is left is projected on the complement of the whitened nuisance columns, M = 1 − Q·Qᵀ.
+//! (1 − (1 − 1/√(1 + ρ·|a|²))/|a|² · a·aᵀ)·A takes its place. Where neighbours along a course have
+//! errors in common, [`super::correlated_noise`] makes them independent. What is left is projected
+//! on the complement of the whitened nuisance columns, M = 1 − Q·Qᵀ.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -53,7 +55,8 @@ pub struct Whitening {
 }
 
 impl Whitening {
-    /// For an evidence whose residuals, without what is explained already, are `left`: ρ is estimated from them.
+    /// For an evidence whose residuals, without what is explained already, are `left`: ρ is
+    /// estimated from them.
     pub fn new(evidence: &Evidence, left: &DVector<f64>) -> Self {
         let correlation = evidence.correlation.unwrap_or_else(|| correlation(evidence, left));
         let ratio = evidence.shared_ratio.unwrap_or_else(|| shared_ratio(evidence, left, correlation));
@@ -120,8 +123,9 @@ impl Whitening {
         -0.5 * self.groups.iter().map(of_group).sum::<f64>()
     }
 
-    /// Ln of what the density of the data is times that of the whitened and projected ones, but for what does not depend on the errors
-    /// that neighbours have in common: ln |W| − ½·ln |NᵀWᵀWN|, N the nuisance.
+    /// Ln of what the density of the data is times that of the whitened and projected ones, but for
+    /// what does not depend on the errors that neighbours have in common: ln |W| − ½·ln |NᵀWᵀWN|, N
+    /// the nuisance.
     pub fn log_jacobian(&self) -> f64 {
         self.correlated_noise.as_ref().map_or(0.0, Filter::log_determinant) - self.log_volume
     }
@@ -176,8 +180,8 @@ impl Whitening {
     }
 
     /// |W·s|² of each step s that is 1 from one datum of a sequence on, whose data of a group are the last of it: with e = A·w,
-    /// w the roots of these data, Σ e² − (2 − s)·s·(a·e)²/|a|² over the groups, s what is taken off. `None` are data that are
-    /// not there.
+    /// w the roots of these data, Σ e² − (2 − s)·s·(a·e)²/|a|² over the groups, s what is taken
+    /// off. `None` are data that are not there.
     pub fn squares_of_steps(&self, sequences: &[Vec<Option<usize>>]) -> Vec<Vec<f64>> {
         let mut place: Vec<Option<(usize, usize)>> = vec![None; self.data];
         for (group, (rows, _)) in self.groups.iter().enumerate() {
@@ -287,8 +291,8 @@ impl Whitening {
         fitted.unwrap_or_else(|_| DVector::zeros(columns.ncols()))
     }
 
-    /// Without the errors that data share, estimated from each group: (1 − (1 − 1/√(1 + ρ·m))/m · J)
-    /// times v, weights only in the group's mean.
+    /// Without the errors that data share, estimated from each group: (1 − (1 − 1/√(1 + ρ·m))/m ·
+    /// J) times v, weights only in the group's mean.
     pub fn without_shared(&self, v: &DVector<f64>) -> DVector<f64> {
         let mut result = v.clone();
         for (rows, share) in &self.groups {

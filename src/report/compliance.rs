@@ -194,7 +194,8 @@ fn what_counts(study: &Study) -> Option<Section> {
 
 /// How fast the rod swings, and in which shapes; nothing of a rod without mass.
 fn swing(study: &Study, stations: &[Station]) -> Option<Section> {
-    /// What a swing dies down to, and damping ratios: of bare tubes, and with bonded or threaded joints.
+    /// What a swing dies down to, and damping ratios: of bare tubes, and with bonded or threaded
+    /// joints.
     const SHARE: f64 = 0.02;
     const DAMPING: [f64; 2] = [0.002, 0.01];
     let (rod, modes) = (&study.rod, &study.shape.modes);

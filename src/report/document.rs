@@ -8,7 +8,8 @@ use super::table::Table;
 /// A report as plain data.
 #[derive(Debug, Clone, Default, Serialize)]
 pub struct Report {
-    /// Name of its page among others of one directory, `rod` for `rod.html`; nothing for `index.html`.
+    /// Name of its page among others of one directory, `rod` for `rod.html`; nothing for
+    /// `index.html`.
     pub page: String,
     /// The other pages, where there are several.
     pub pages: Vec<PageLink>,

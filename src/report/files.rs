@@ -6,9 +6,8 @@ use super::html;
 use crate::error::Result;
 
 impl Report {
-    /// Names and bytes of all files of the report: `index.html` (or its own page), each figure as SVG, each
-    /// table as CSV and as Markdown. Write them with
-    /// [`crate::files::write_together`].
+    /// Names and bytes of all files of the report: `index.html` (or its own page), each figure as
+    /// SVG, each table as CSV and as Markdown. Write them with [`crate::files::write_together`].
     ///
     /// # Errors
     /// [`crate::Error::Numerical`] where a table cannot be written as CSV.

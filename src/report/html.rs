@@ -7,7 +7,8 @@ use super::document::{Block, Card, Report, Section, Tone};
 use super::file_name::{file_name, page_name};
 use super::table::Table;
 
-/// The whole page: style sheet, pictures and what little script there is are inside it, and it may fetch nothing.
+/// The whole page: style sheet, pictures and what little script there is are inside it, and it may
+/// fetch nothing.
 pub fn page(report: &Report) -> String {
     let (mut figures, mut tables) = (0, 0);
     let sections: Vec<Markup> = report
@@ -113,7 +114,8 @@ fn provenance(report: &Report) -> Markup {
     }
 }
 
-/// People look before they read: the words, then the pictures side by side where there is room, then the tables.
+/// People look before they read: the words, then the pictures side by side where there is room,
+/// then the tables.
 fn section_markup(
     page: &str,
     section: &Section,

@@ -106,8 +106,9 @@ impl Canvas {
         self.with(|b| b.draw_text(&printable(text), &look, fine(&at)));
     }
 
-    /// Remembers where a panel's axes are: its corners in units of the SVG, and each axis as its ends and whether it is
-    /// logarithmic, with its label; `None` where it has names and no numbers.
+    /// Remembers where a panel's axes are: its corners in units of the SVG, and each axis as its
+    /// ends and whether it is logarithmic, with its label; `None` where it has names and no
+    /// numbers.
     pub(super) fn panel(&mut self, corners: [Px; 2], axes: [(Option<AxisEnds>, &str); 2]) {
         let [(left, top), (right, bottom)] = corners.map(|corner| fine(&corner));
         let [(x, xlabel), (y, ylabel)] = axes;

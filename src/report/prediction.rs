@@ -1,4 +1,5 @@
-//! What `rodcal predict` says: tips in the base frame, with their uncertainty, and where the model extrapolates.
+//! What `rodcal predict` says: tips in the base frame, with their uncertainty, and where the model
+//! extrapolates.
 //!
 //! ```text
 //! variance of a tip         sd² + diag J·Σ·Jᵀ             sd: error of held-out poses, Σ: covariance of the parameters
@@ -18,7 +19,8 @@ use crate::linalg::{thin_svd, transposed_product};
 use crate::robot::{Motion, PredictionQuery, Robot};
 use crate::units::{DEG, MM, significant};
 
-/// A pose whose own parameters make it so many times more uncertain than the calibration's poses extrapolates.
+/// A pose whose own parameters make it so many times more uncertain than the calibration's poses
+/// extrapolates.
 const FAR: f64 = 2.0;
 /// Fewer poses are fitted by nine numbers alone.
 const FEWEST: usize = 6;
@@ -38,10 +40,11 @@ pub struct Prediction {
     /// Poses with their tips in {0}, m, and the standard deviations of their coordinates where the
     /// model knows them.
     pub tips: Vec<(PredictionQuery, Vector3<f64>, Option<Vector3<f64>>)>,
-    /// How many times more uncertain than at the calibration's poses each one is by the robot's own parameters; `None` where
-    /// the model does not say.
+    /// How many times more uncertain than at the calibration's poses each one is by the robot's own
+    /// parameters; `None` where the model does not say.
     pub ratios: Option<Vec<f64>>,
-    /// Joints beyond their calibrated ranges: number from 0, range asked for, range calibrated (rad or m).
+    /// Joints beyond their calibrated ranges: number from 0, range asked for, range calibrated (rad
+    /// or m).
     pub beyond: Vec<JointBeyond>,
 }
 

@@ -1,4 +1,5 @@
-//! What `design rig` says: the measurements, what they will tell, a picture of them, and readings to be filled in.
+//! What `design rig` says: the measurements, what they will tell, a picture of them, and readings
+//! to be filled in.
 
 use nalgebra::Matrix3;
 use serde_json::{Value, json};
@@ -239,7 +240,8 @@ fn will_tell(plan: &RigPlan) -> Vec<Block> {
     vec![Block::Table(table)]
 }
 
-/// The readings that the plan asks for, offsets left blank: for `rig fit` and `diagnose rig` once they are filled in.
+/// The readings that the plan asks for, offsets left blank: for `rig fit` and `diagnose rig` once
+/// they are filled in.
 pub fn template(plan: &RigPlan, rod: &Rod) -> String {
     let mut text = format!(
         "# Rod {}: offsets in the tool frame to be filled in (µm, from the unloaded, zeroed rod); blank: not measured\n",

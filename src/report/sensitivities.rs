@@ -1,4 +1,5 @@
-//! "1 % more wall gives …": what the numbers of a rod do to its figures, as rows, a table, bars and JSON.
+//! "1 % more wall gives …": what the numbers of a rod do to its figures, as rows, a table, bars and
+//! JSON.
 
 use serde_json::{Map, Value, json};
 
@@ -19,9 +20,9 @@ pub struct OnePercent {
     pub percent: Vec<f64>,
 }
 
-/// What 1 % more of each number of `rod` does to `figures`, whose derivatives by it (per SI unit) are `slopes`. Numbers of
-/// 0 are left out. Of a tube these are its wall and its outer diameter at that wall; where both pipes are one tube,
-/// of both.
+/// What 1 % more of each number of `rod` does to `figures`, whose derivatives by it (per SI unit)
+/// are `slopes`. Numbers of 0 are left out. Of a tube these are its wall and its outer diameter at
+/// that wall; where both pipes are one tube, of both.
 pub fn one_percent_more(rod: &Rod, slopes: &[(NominalNumber, Vec<f64>)], figures: &[f64]) -> Vec<OnePercent> {
     let of = |number: &NominalNumber| {
         let known = slopes.iter().find(|(known, _)| known == number);

@@ -6,7 +6,8 @@ use super::{Block, Report, Section};
 /// Columns that words may take at most.
 const WIDTH: usize = 100;
 
-/// The headline, then every section with its words and tables, which take what they need. Warnings are left to stderr.
+/// The headline, then every section with its words and tables, which take what they need. Warnings
+/// are left to stderr.
 pub fn text(report: &Report) -> String {
     text_within(report, usize::MAX)
 }

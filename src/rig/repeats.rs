@@ -121,10 +121,12 @@ impl Repeats {
     }
 }
 
-/// What is left of the deviations once each of `points` averages and each trial's offset and slope are fitted to them.
+/// What is left of the deviations once each of `points` averages and each trial's offset and slope
+/// are fitted to them.
 ///
-/// Of many trials: offset and slope concern one of them only, so that they are eliminated trial by trial, which leaves normal
-/// equations for the averages. Time and memory grow with the readings, however many trials they are in.
+/// Of many trials: offset and slope concern one of them only, so that they are eliminated trial by
+/// trial, which leaves normal equations for the averages. Time and memory grow with the readings,
+/// however many trials they are in.
 fn within_trials(samples: &[Sample], place: &[usize], points: usize, deviations: &DVector<f64>) -> Squares {
     /// Length, relative to what it was, below which nothing but rounding is left of a direction.
     const ROUNDING: f64 = 1e-9;

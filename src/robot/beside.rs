@@ -1,5 +1,5 @@
-//! What a URDF has no place for, in a file beside it (TOML): tip, uncertainty, calibrated ranges and effects, in the sections
-//! that a robot file has.
+//! What a URDF has no place for, in a file beside it (TOML): tip, uncertainty, calibrated ranges
+//! and effects, in the sections that a robot file has.
 
 use serde::Deserialize;
 use toml::Spanned;
@@ -131,7 +131,8 @@ mod tests {
         arm.gravity = [0.0, -9.8, 0.0].into();
         arm.effects = vec![Effect::Weight { joint: 0, at: None, per_metre: 1e-3 }];
         let lowered = |q: f64| arm.tip_at(Default::default(), &[q]).0.y - 0.5 * q.sin();
-        // horizontal: a lever of 0.5 m turns it down by 0.5 mrad, which the tip sinks by 0.25 mm; upright: not at all
+        // horizontal: a lever of 0.5 m turns it down by 0.5 mrad, which the tip sinks by 0.25 mm;
+        // upright: not at all
         assert!((lowered(0.0) + 0.25e-3).abs() < 1e-9);
         assert!(lowered(std::f64::consts::FRAC_PI_2).abs() < 1e-9);
     }

@@ -1,4 +1,5 @@
-//! Where a robot was calibrated: the ranges of its joints, and how sure its tip is there by its numbers alone.
+//! Where a robot was calibrated: the ranges of its joints, and how sure its tip is there by its
+//! numbers alone.
 
 use serde::Deserialize;
 use toml::Spanned;

@@ -1,4 +1,5 @@
-//! Errors of a joint that depend on the move before: they are known where the order of the poses is.
+//! Errors of a joint that depend on the move before: they are known where the order of the poses
+//! is.
 //!
 //! ```text
 //! q + ½·b·(direction of approach)     play that friction holds open, to the side that it was driven to
@@ -16,8 +17,8 @@ impl Robot {
         self.effects.iter().any(|e| matches!(e, Effect::PlayByApproach { .. } | Effect::Lag { .. }))
     }
 
-    /// Joint values (rad or m, one per joint, pose after pose) with what the moves between them add; before the first pose
-    /// nothing moved.
+    /// Joint values (rad or m, one per joint, pose after pose) with what the moves between them
+    /// add; before the first pose nothing moved.
     ///
     /// ```
     /// use rodcal::prelude::*;

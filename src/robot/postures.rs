@@ -45,8 +45,8 @@ pub fn is_above_table(kinematics: &Kinematics, table: f64) -> bool {
         && kinematics.flange.origin.z > table + ABOVE
 }
 
-/// Moves `q` the shortest way in joint space until the tip is at `aim` (m, in {W}), and `kinematics`
-/// with it; gives what is left of the way, m. Limits are not looked at.
+/// Moves `q` the shortest way in joint space until the tip is at `aim` (m, in {W}), and
+/// `kinematics` with it; gives what is left of the way, m. Limits are not looked at.
 pub fn bring_to(kinematics: &mut Kinematics, q: &mut [f64], aim: &Vector3<f64>) -> f64 {
     for _ in 0..MOST_STEPS {
         kinematics.update(q, &[]);

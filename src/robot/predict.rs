@@ -86,8 +86,8 @@ impl Robot {
         PredictedTip { tip: kinematics.tip, slopes, placement, joints }
     }
 
-    /// Root mean square of what the effects of each joint's own angle add over its calibrated range, rad: what they add
-    /// beyond it nobody has seen. Zeros where no range is known.
+    /// Root mean square of what the effects of each joint's own angle add over its calibrated
+    /// range, rad: what they add beyond it nobody has seen. Zeros where no range is known.
     pub fn effect_sizes(&self) -> Vec<f64> {
         const STEPS: usize = 400;
         let Some(calibrated) = &self.calibrated else { return vec![0.0; self.joints.len()] };

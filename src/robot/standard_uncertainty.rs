@@ -1,8 +1,9 @@
-//! How well a robot's numbers are known before anybody measures it: `[standard_uncertainty]` of the robot file (GUM: one
-//! standard deviation).
+//! How well a robot's numbers are known before anybody measures it: `[standard_uncertainty]` of the
+//! robot file (GUM: one standard deviation).
 //!
-//! It is what a drawing and an assembly allow. A calibration takes the nominal robot for known to that, up to a common
-//! factor that its data may correct, so that what the poses hardly show stays where the drawing has it.
+//! It is what a drawing and an assembly allow. A calibration takes the nominal robot for known to
+//! that, up to a common factor that its data may correct, so that what the poses hardly show stays
+//! where the drawing has it.
 
 use serde::Deserialize;
 

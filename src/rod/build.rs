@@ -82,11 +82,11 @@ impl Rod {
     /// The rod itself, if it can be one.
     ///
     /// # Errors
-    /// [`Error::Argument`] for a length or a modulus that is not positive, a wall without thickness,
-    /// an angle beyond 0 < γ ≤ π, a bend that does not fit between the pipes, a flexibility for
-    /// round tubes on a bend that is none, a mass, a compliance or a standard uncertainty that is
-    /// negative, and a station that is not on the rod. Numbers that are not finite are none of
-    /// these.
+    /// [`Error::Argument`] for a length or a modulus that is not positive, a wall without
+    /// thickness, an angle beyond 0 < γ ≤ π, a bend that does not fit between the pipes, a
+    /// flexibility for round tubes on a bend that is none, a mass, a compliance or a standard
+    /// uncertainty that is negative, and a station that is not on the rod. Numbers that are not
+    /// finite are none of these.
     pub fn checked(self) -> Result<Rod> {
         positive("l1", self.l1)?;
         positive("l2", self.l2)?;

@@ -31,8 +31,8 @@ pub struct Nominal {
 const SAME_PLACE: f64 = 1e-6;
 
 impl Nominal {
-    /// Unit of the number for people, what one of it is in SI, and its value in SI; of what is known to a share the
-    /// unit is a percent of the value.
+    /// Unit of the number for people, what one of it is in SI, and its value in SI; of what is
+    /// known to a share the unit is a percent of the value.
     pub fn for_people(&self) -> (&'static str, f64, f64) {
         let key = self.number.key();
         let si = 1.0 / self.number.in_unit(1.0, self.value);
@@ -70,9 +70,9 @@ impl Rod {
         self.all_numbers().into_iter().filter_map(known).filter(|n| n.standard_uncertainty > 0.0).collect()
     }
 
-    /// All numbers of this rod that its beam model depends on, however well they are known, in the order of the rod
-    /// file; of parts and places as [`Rod::nominal_numbers`]. What sits at one station is one thing, whose station is
-    /// named once.
+    /// All numbers of this rod that its beam model depends on, however well they are known, in the
+    /// order of the rod file; of parts and places as [`Rod::nominal_numbers`]. What sits at one
+    /// station is one thing, whose station is named once.
     pub fn numbers(&self) -> Vec<NominalNumber> {
         let mut stations: Vec<f64> = Vec::new();
         let mut is_new = |number: &NominalNumber| {

@@ -8,8 +8,8 @@ use rodcal::robot::Robot;
 
 use super::{TABLE, URDF};
 
-/// Reads bytes as a user's file is read; what is said about them lies within the file. A robot that is read moves and
-/// is written back, and what is written can be read.
+/// Reads bytes as a user's file is read; what is said about them lies within the file. A robot that
+/// is read moves and is written back, and what is written can be read.
 fn read_and_write(bytes: Vec<u8>) -> Result<(), TestCaseError> {
     let line_count = bytes.iter().filter(|&&b| b == b'\n').count() + 1;
     let text = text_of_bytes("f", bytes);
@@ -49,8 +49,8 @@ fn read_and_write(bytes: Vec<u8>) -> Result<(), TestCaseError> {
     Ok(())
 }
 
-/// What a slip of the hand or of a script does to a text: pieces, cut at these characters, go, come twice, change
-/// places or become something else.
+/// What a slip of the hand or of a script does to a text: pieces, cut at these characters, go, come
+/// twice, change places or become something else.
 #[derive(Debug, Clone)]
 enum Edit {
     Delete(usize),

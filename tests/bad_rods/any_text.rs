@@ -9,7 +9,8 @@ use rodcal::rod::Rod;
 
 use super::{GOOD, changed, read};
 
-/// Numbers on the edge of what the reader takes may be too much for the beam model, which then says so itself.
+/// Numbers on the edge of what the reader takes may be too much for the beam model, which then says
+/// so itself.
 #[test]
 fn extreme_numbers_end_in_a_finite_compliance_or_an_error() {
     for (piece, extreme, is_solved) in [
@@ -55,8 +56,8 @@ fn is_finite(compliance: &Compliance) -> bool {
     compliance.force.iter().chain(compliance.gravity.iter()).all(|c| c.is_finite())
 }
 
-/// Reads bytes as a user's file is read and solves the rod; whatever they are, what is said about them lies
-/// within the file.
+/// Reads bytes as a user's file is read and solves the rod; whatever they are, what is said about
+/// them lies within the file.
 fn read_and_solve(bytes: Vec<u8>) -> Result<(), TestCaseError> {
     let line_count = bytes.iter().filter(|&&b| b == b'\n').count() + 1;
     match text_of_bytes("f", bytes).and_then(|text| Rod::from_toml("f", &text)) {
@@ -213,7 +214,8 @@ proptest! {
         read_and_solve(lines.join("\n").into_bytes())?;
     }
 
-    /// Every number of the file at once at the edge: what the reader takes, the beam model solves or refuses.
+    /// Every number of the file at once at the edge: what the reader takes, the beam model solves
+    /// or refuses.
     #[test]
     fn nasty_numbers_are_solved_or_refused(values in prop::collection::vec((0..60usize, nasty_value()), 1..12)) {
         let mut lines: Vec<String> = GOOD.lines().map(str::to_owned).collect();

@@ -16,7 +16,8 @@ fn in_words(error: &Error) -> String {
     }
 }
 
-/// Every case: the piece of the good file, what stands there instead, and the message that it gives.
+/// Every case: the piece of the good file, what stands there instead, and the message that it
+/// gives.
 fn check(cases: &[(&str, &str, &str)]) {
     for (piece, wrong, expected) in cases {
         let text = changed(&[(piece, wrong)]);

@@ -1,4 +1,5 @@
-//! Round trip: what is found and applied makes the robot as accurate as was promised, and nothing is found again.
+//! Round trip: what is found and applied makes the robot as accurate as was promised, and nothing
+//! is found again.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -22,7 +23,8 @@ fn names(robot: &str, validation: Option<&str>) -> FileNames {
     }
 }
 
-/// The campaign that was written; `robot` is what stood in its robot file, where that was not written.
+/// The campaign that was written; `robot` is what stood in its robot file, where that was not
+/// written.
 fn written(applied: &Applied, robot: &str) -> Campaign {
     let files: BTreeMap<&str, &str> = applied.files.iter().map(|(a, b)| (a.as_str(), b.as_str())).collect();
     let open = |name: &str| Ok((*files.get(name).unwrap_or(&robot)).to_owned());
@@ -37,7 +39,8 @@ fn validated(calibration: &Calibration) -> f64 {
     calibration.validation.as_ref().unwrap().summary.rms
 }
 
-/// A robot with a gear that errs, play by approach and angles that are read too early, seen by a tracker.
+/// A robot with a gear that errs, play by approach and angles that are read too early, seen by a
+/// tracker.
 fn tracked() -> Campaign {
     let (file, text) = Robot::builtin("tx90").unwrap();
     let nominal = Robot::from_text(file, text, None, None).unwrap();

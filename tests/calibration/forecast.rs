@@ -23,8 +23,9 @@ fn forecast(campaign: &Campaign, plan: &Plan, mode: Mode) -> Forecast {
     Forecaster::new(campaign, setup, budget, &Where::Validation).unwrap().forecast(&poses, mode).unwrap()
 }
 
-/// Three kinds of campaigns: noise alone, clamps that are not where the file has them, and a soft rod assumed rigid. One
-/// campaign's mean has a standard deviation of some 8 %, of clamps 45 %; that of twelve 2.5 and 13 %.
+/// Three kinds of campaigns: noise alone, clamps that are not where the file has them, and a soft
+/// rod assumed rigid. One campaign's mean has a standard deviation of some 8 %, of clamps 45 %;
+/// that of twelve 2.5 and 13 %.
 #[test]
 fn campaigns_turn_out_as_forecast() {
     let mut inside = 0;

@@ -1,4 +1,5 @@
-//! Where {W} lies, how the poses are ordered, and what the user takes the base for: none of it is physics.
+//! Where {W} lies, how the poses are ordered, and what the user takes the base for: none of it is
+//! physics.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -10,9 +11,11 @@ use super::arms::{self, SCARA, UR5};
 use super::lab::{Dice, Lab, PHYSICS, isometry, millimetres, read};
 use super::recovery::{Clamped, spoil};
 
-/// Differences of parameters in standard errors: a fit may stop where a step is worth a millionth of one.
+/// Differences of parameters in standard errors: a fit may stop where a step is worth a millionth
+/// of one.
 const OF_AN_ERROR: f64 = 1e-6;
-/// Of residuals and standard errors, relative; rounding, and what a millionth of a standard error makes of it.
+/// Of residuals and standard errors, relative; rounding, and what a millionth of a standard error
+/// makes of it.
 const ALIKE: f64 = 1e-6;
 
 fn calibrated(campaign: &Campaign, mode: Mode) -> Calibration<'_> {
@@ -55,7 +58,8 @@ fn assert_same_residuals(what: &str, a: &Calibration, b: &Calibration, by: &Unit
     }
 }
 
-/// Robots on floor, wall and ceiling. At a pitch of 90° roll and yaw are one, and anything made of them breaks.
+/// Robots on floor, wall and ceiling. At a pitch of 90° roll and yaw are one, and anything made of
+/// them breaks.
 #[test]
 fn moving_the_world_changes_nothing() {
     let mut made = Clamped::new(PHYSICS);
@@ -163,7 +167,8 @@ fn a_tracker_needs_no_word_about_the_base() {
     }
 }
 
-/// A quill that stays at its height: balls in a plane look the same in a mirror, and no robot stands in one.
+/// A quill that stays at its height: balls in a plane look the same in a mirror, and no robot
+/// stands in one.
 #[test]
 fn tips_in_a_plane_do_not_turn_the_base_inside_out() {
     let mut dice = Dice(53);

@@ -1,5 +1,5 @@
-//! Held-out errors are those of poses that no fit has seen, and differences between modes are claimed only where there are
-//! some.
+//! Held-out errors are those of poses that no fit has seen, and differences between modes are
+//! claimed only where there are some.
 
 use nalgebra::Vector3;
 use rodcal::calibration::campaign::Targets;
@@ -34,8 +34,8 @@ fn folds_share_out_the_poses() {
     }
 }
 
-/// A pose held out may be anywhere: what the fit without it says of it does not move, and the others are predicted by fits
-/// that have seen it.
+/// A pose held out may be anywhere: what the fit without it says of it does not move, and the
+/// others are predicted by fits that have seen it.
 #[test]
 fn no_fold_trains_on_what_it_predicts() {
     let clean = campaign();
@@ -116,7 +116,8 @@ fn modes_that_are_the_same_do_not_differ() {
     }
 }
 
-/// The rod is as its model has it, and a rig finds the same to half a percent: which of the two predicts better is chance.
+/// The rod is as its model has it, and a rig finds the same to half a percent: which of the two
+/// predicts better is chance.
 #[test]
 fn chance_is_not_called_a_difference() {
     const SEEDS: usize = 16;
@@ -132,12 +133,14 @@ fn chance_is_not_called_a_difference() {
         assert!(d.mean != 0.0 && d.interval.0 < d.interval.1, "{d:?}");
         d.is_significant
     });
-    // at a level of 5 % over six pairs a pair is claimed once in 120; three of 16 happen once in 3000
+    // at a level of 5 % over six pairs a pair is claimed once in 120; three of 16 happen once in
+    // 3000
     let claimed = of_seeds.iter().filter(|&&claimed| claimed).count();
     assert!(claimed <= 2, "{claimed} of {SEEDS}");
 }
 
-/// The truth is Calc: without it held-out poses are worse by more than chance, and with it they are at their noise.
+/// The truth is Calc: without it held-out poses are worse by more than chance, and with it they are
+/// at their noise.
 #[test]
 fn a_better_mode_is_called_better() {
     let campaign = campaign();

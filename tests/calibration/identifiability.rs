@@ -85,8 +85,8 @@ fn a_joint_that_never_moves_hides_its_neighbours() {
     let rows = made.rows(0..60);
     let campaign = made.campaign(&rows, "");
     let still = calibrated(&campaign);
-    // what moves no tip, by differences of the laboratory's own: four directions, for a joint that stands still makes one
-    // link of two
+    // what moves no tip, by differences of the laboratory's own: four directions, for a joint that
+    // stands still makes one link of two
     let parameters: Vec<Parameter> = still.parameters.iter().map(|p| p.parameter).collect();
     let poses: Vec<Vec<f64>> = (0..60).map(|row| campaign.measurements.joints(row).to_vec()).collect();
     let ranges = parameters.iter().map(|&p| plausible_range(p, 0.0));
@@ -187,7 +187,8 @@ fn one_point_hides_where_the_robot_stands_and_how_large_it_is() {
     let campaign = made.campaign();
     let found = calibrate(&campaign, Mode::Calc, &Options::default()).unwrap();
     assert!(found.is_converged, "{} {:?}", found.fit.reason, found.passes);
-    // round the ball the robot may stand anyhow, and how large it is only the rod's weight shows: 3 and 1
+    // round the ball the robot may stand anyhow, and how large it is only the rod's weight shows: 3
+    // and 1
     assert_eq!(found.held.len(), 4, "{:?}", unknown(&found));
     let hidden =
         ["base_x", "base_y", "base_z", "base_rx", "base_ry", "base_rz", "a2", "d4", "tool_x", "tool_z"];

@@ -1,6 +1,7 @@
-//! A laboratory that knows the truth: robot, rod and clamps written a second time, with isometries and virtual work in
-//! place of the program's frames and Newton–Euler recursion. Signs are those of the interfaces: gravity pulls down,
-//! the contact force acts on the ball in the device's frame, measured = rigid tip + R·Δx.
+//! A laboratory that knows the truth: robot, rod and clamps written a second time, with isometries
+//! and virtual work in place of the program's frames and Newton–Euler recursion. Signs are those of
+//! the interfaces: gravity pulls down, the contact force acts on the ball in the device's frame,
+//! measured = rigid tip + R·Δx.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -10,7 +11,8 @@ use rodcal::error::{Error, Place};
 use rodcal::robot::{Hayati, Motion, Parameter, Robot};
 use rodcal::spatial::Pose;
 
-/// Numbers between −1 and 1 that are the same every time: a linear congruential generator (Knuth, MMIX).
+/// Numbers between −1 and 1 that are the same every time: a linear congruential generator (Knuth,
+/// MMIX).
 pub struct Dice(pub u64);
 
 impl Dice {
@@ -137,8 +139,8 @@ impl Lab {
         work
     }
 
-    /// Torque on each joint. The work is a sine of a joint's angle, and half its difference over a quarter turn to
-    /// either side is its derivative, exactly.
+    /// Torque on each joint. The work is a sine of a joint's angle, and half its difference over a
+    /// quarter turn to either side is its derivative, exactly.
     pub fn torques(&self, q: &[f64], push: &Vector3<f64>) -> Vec<f64> {
         let at = |j: usize, by: f64| {
             let mut q = q.to_vec();
@@ -210,7 +212,8 @@ impl Lab {
             .collect()
     }
 
-    /// Joint values that bring the ball to a point of {W}, from a start nearby; `None` where it does not get there.
+    /// Joint values that bring the ball to a point of {W}, from a start nearby; `None` where it
+    /// does not get there.
     pub fn reach(&self, target: &Vector3<f64>, start: &[f64]) -> Option<Vec<f64>> {
         const STEP: f64 = 1e-6;
         let upright = UnitQuaternion::identity();

@@ -1,4 +1,5 @@
-//! Modes of compensation: each needs its files, the better one wins, and the loop comes to rest where its equations hold.
+//! Modes of compensation: each needs its files, the better one wins, and the loop comes to rest
+//! where its equations hold.
 
 use nalgebra::{UnitQuaternion, Vector3};
 use rodcal::calibration::simulate::{Plan, RobotErrors};
@@ -85,8 +86,9 @@ fn a_mode_without_its_files_says_what_is_missing() {
     }
 }
 
-/// Every pass of the loop is on record, each nearer to rest than the one before, and at rest the deflections are those that
-/// C^F and C^g give for the calibrated robot, by the laboratory's own arithmetic.
+/// Every pass of the loop is on record, each nearer to rest than the one before, and at rest the
+/// deflections are those that C^F and C^g give for the calibrated robot, by the laboratory's own
+/// arithmetic.
 #[test]
 fn at_rest_the_deflections_satisfy_their_equation() {
     let mut made = Clamped::new(PHYSICS);

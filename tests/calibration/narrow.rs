@@ -1,4 +1,5 @@
-//! What the poses hardly show stays as the drawing has it: beyond them a calibrated robot is no worse than the nominal one.
+//! What the poses hardly show stays as the drawing has it: beyond them a calibrated robot is no
+//! worse than the nominal one.
 
 use nalgebra::Vector3;
 use rodcal::calibration::{Mode, Options, calibrate};
@@ -66,8 +67,8 @@ fn recorded(robot: &Robot, count: usize, wrist: f64, draw: &mut Draw) -> String 
     csv
 }
 
-/// Mean errors at poses anywhere of the nominal robot where the campaign says that it stands, of the robot as calibrated on
-/// narrow poses, and what the campaign's validation says of the latter.
+/// Mean errors at poses anywhere of the nominal robot where the campaign says that it stands, of
+/// the robot as calibrated on narrow poses, and what the campaign's validation says of the latter.
 fn errors(times: f64, seed: u64) -> (f64, f64) {
     let mut draw = Draw(seed);
     let actual = built(times, &mut draw);
@@ -107,8 +108,8 @@ fn beyond_narrow_poses_a_calibrated_robot_is_no_worse_than_the_nominal_one() {
     }
 }
 
-/// A robot of which one link is longer than drawn, and nothing else: pruned, it keeps that link and little more, and the
-/// errors at other poses are no larger.
+/// A robot of which one link is longer than drawn, and nothing else: pruned, it keeps that link and
+/// little more, and the errors at other poses are no larger.
 #[test]
 fn what_the_data_do_not_support_is_held() {
     let mut draw = Draw(11);
@@ -141,8 +142,9 @@ fn what_the_data_do_not_support_is_held() {
     assert!(pruned.extrapolation.unwrap().ratio() < 2.0);
 }
 
-/// The zero of joint 5 was 5 degrees elsewhere while the calibration was recorded: the fit takes it up, and the validation,
-/// recorded with the right zero, says that the result is worse than the nominal robot.
+/// The zero of joint 5 was 5 degrees elsewhere while the calibration was recorded: the fit takes it
+/// up, and the validation, recorded with the right zero, says that the result is worse than the
+/// nominal robot.
 #[test]
 fn a_robot_that_is_worse_than_the_nominal_one_is_said_to_be() {
     let mut draw = Draw(5);

@@ -1,5 +1,6 @@
-//! The set of parameters: complete, so that any robot nearby can be described, and minimal, so that each one can be
-//! found. Judged by the rank of a Jacobian that shares nothing with the program's: differences of the laboratory's tip.
+//! The set of parameters: complete, so that any robot nearby can be described, and minimal, so that
+//! each one can be found. Judged by the rank of a Jacobian that shares nothing with the program's:
+//! differences of the laboratory's tip.
 
 use nalgebra::{DMatrix, Isometry3, Vector3};
 use rodcal::robot::{Body, Parameter, Robot, minimal_parameters};
@@ -8,14 +9,15 @@ use super::arms::{self, SCARA, SEVEN, UR5};
 use super::lab::{Dice, Lab, TrueRod};
 use super::rods;
 
-/// Singular values of columns of size 1 from differences over ±1e-5 that are wrong by 1e-10: below this there is nothing.
+/// Singular values of columns of size 1 from differences over ±1e-5 that are wrong by 1e-10: below
+/// this there is nothing.
 pub const NOTHING: f64 = 1e-8;
-/// The program leaves out what is less than 1 % of a direction of its own; what it keeps is known that well, or to
-/// the few tenths of that which remain where two dozen such columns come together.
+/// The program leaves out what is less than 1 % of a direction of its own; what it keeps is known
+/// that well, or to the few tenths of that which remain where two dozen such columns come together.
 const SOMETHING: f64 = 1e-4;
 
-/// Columns of the tip's Jacobian over poses, lengths per metre, angles per radian, compliances per radian at their
-/// largest torque.
+/// Columns of the tip's Jacobian over poses, lengths per metre, angles per radian, compliances per
+/// radian at their largest torque.
 pub fn jacobian(lab: &Lab, parameters: &[Parameter], poses: &[Vec<f64>]) -> DMatrix<f64> {
     const STEP: f64 = 1e-5;
     let torques: Vec<Vec<f64>> = poses.iter().map(|q| lab.torques(q, &Vector3::zeros())).collect();
@@ -111,7 +113,8 @@ fn every_kind_of_arm_has_a_complete_and_minimal_set() {
     let (_, tx90) = arms::tx90();
     let (ur5, scara) = (arms::robot(UR5), arms::robot(SCARA));
     let (seven, weightless) = (arms::robot(SEVEN), arms::robot(&arms::weightless(SEVEN)));
-    // 4 for every turning joint, 2 for a sliding one, 6 for the base, of the tool only the point: 4R + 2P + 3
+    // 4 for every turning joint, 2 for a sliding one, 6 for the base, of the tool only the point:
+    // 4R + 2P + 3
     for (name, robot, tool, rod, count) in [
         ("UR5", &ur5, aside, None, Some(27)),
         ("seven joints without masses", &weightless, aside, None, Some(31)),

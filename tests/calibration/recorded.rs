@@ -23,7 +23,8 @@ fn calibrated(campaign: &Campaign) -> Calibration<'_> {
     found
 }
 
-/// Held-out rms of MUKCa's own optimiser on the same files, mm: `../shared/real/README.md` (raised_left to one digit more).
+/// Held-out rms of MUKCa's own optimiser on the same files, mm: `../shared/real/README.md`
+/// (raised_left to one digit more).
 const MUKCA: [(&str, f64); 6] = [
     ("kuka_14/holdout-front", 0.171),
     ("kuka_14/holdout-left_back", 0.181),

@@ -8,8 +8,9 @@ use super::arms::{self, SEVEN, UR5};
 use super::lab::{Dice, Lab, Laws, PHYSICS, isometry, millimetres, placed, read};
 use super::rods;
 
-/// Metres, radians, and radians at the largest torque: a thousand times the rounding of a chain of a dozen frames. (The
-/// compensation may stop 1 nm from rest, but that shrinks a thousandfold with every pass, and the last fit stands on it.)
+/// Metres, radians, and radians at the largest torque: a thousand times the rounding of a chain of
+/// a dozen frames. (The compensation may stop 1 nm from rest, but that shrinks a thousandfold with
+/// every pass, and the last fit stands on it.)
 pub const EXACT: f64 = 1e-11;
 /// What a wrong sign does: hundreds of micrometres, of which parameters may take most but not all.
 const WRONG: f64 = 1e-4;
@@ -121,7 +122,8 @@ impl Clamped {
     }
 }
 
-/// Largest error of link, compliance and tool parameters, and of the base's frame; m, rad, rad at a joint's full torque.
+/// Largest error of link, compliance and tool parameters, and of the base's frame; m, rad, rad at a
+/// joint's full torque.
 pub fn worst_error(lab: &Lab, found: &Calibration) -> (f64, String) {
     let mut truth = found.setup.clone();
     for (j, joint) in lab.robot.joints.iter().enumerate() {
@@ -167,8 +169,8 @@ fn clamps_give_the_truth_back() {
     assert!(found.held.is_empty());
 }
 
-/// A recording without noise is no special case: with a stated noise the drawing draws by less than a hundredth of what
-/// that noise leaves uncertain.
+/// A recording without noise is no special case: with a stated noise the drawing draws by less than
+/// a hundredth of what that noise leaves uncertain.
 #[test]
 fn clamps_give_the_truth_back_where_the_noise_is_stated() {
     let made = Clamped::new(PHYSICS);
@@ -182,7 +184,8 @@ fn clamps_give_the_truth_back_where_the_noise_is_stated() {
     assert!(found.noise.is_stated && (found.noise.pooled - 20e-6).abs() < 1e-12);
 }
 
-/// What the recovery rests on: every sign and unit of the physics, one after the other made wrong, is noticed.
+/// What the recovery rests on: every sign and unit of the physics, one after the other made wrong,
+/// is noticed.
 #[test]
 fn no_other_physics_gives_the_truth_back() {
     let laws: [(&str, Laws); 8] = [
@@ -204,8 +207,8 @@ fn no_other_physics_gives_the_truth_back() {
     }
 }
 
-/// A table or URDF whose every number is a little wrong, redundant ones too: the calibrated robot puts the tip where the
-/// true one has it, whatever it makes of the numbers.
+/// A table or URDF whose every number is a little wrong, redundant ones too: the calibrated robot
+/// puts the tip where the true one has it, whatever it makes of the numbers.
 #[test]
 fn a_tracker_finds_a_robot_that_moves_as_the_true_one() {
     for (name, text) in [("UR5", UR5.to_owned()), ("seven joints", arms::weightless(SEVEN))] {

@@ -10,8 +10,9 @@ const SEEDS: u64 = 6;
 /// Rows that a ball slipped at, on different clamps, and which way.
 const SLIPPED: [(usize, [f64; 3]); 3] =
     [(5, [0.0012, 0.0016, 0.0]), (31, [-0.002, 0.0, 0.0]), (60, [0.0, -0.0012, 0.0016])];
-/// How far the parameters may be from those of the clean recording, in standard errors of these. Huber's weights let
-/// each of the three pull with 2.2 standard deviations; Tukey's let go of three poses of 70 and weigh the rest anew.
+/// How far the parameters may be from those of the clean recording, in standard errors of these.
+/// Huber's weights let each of the three pull with 2.2 standard deviations; Tukey's let go of three
+/// poses of 70 and weigh the rest anew.
 const STRAY: [(Robust, f64); 2] = [(Robust::Huber, 2.0), (Robust::Tukey, 2.0)];
 
 fn spoilt(campaign: &Campaign) -> Campaign {
@@ -89,8 +90,8 @@ fn robust_weights_leave_clean_recordings_alone() {
     let clean = calibrated(&campaign, Robust::None);
     for robust in [Robust::Huber, Robust::Tukey] {
         let found = calibrated(&campaign, robust);
-        // 95 % efficiency: a twentieth of the variance more is √0.05 = 0.22 standard errors for one parameter, and there
-        // are 32 of them
+        // 95 % efficiency: a twentieth of the variance more is √0.05 = 0.22 standard errors for one
+        // parameter, and there are 32 of them
         let apart = apart(&clean, &found);
         assert!(apart < 0.9, "{robust:?}: {apart} standard errors");
         let wider = clean

@@ -1,4 +1,5 @@
-//! Sockets: nothing but joint angles, weights, and a plate with two holes that was put down four times.
+//! Sockets: nothing but joint angles, weights, and a plate with two holes that was put down four
+//! times.
 
 use nalgebra::{Isometry3, Vector3};
 use rodcal::calibration::{Calibration, Campaign, Mode, Options, calibrate};
@@ -62,7 +63,8 @@ fn sockets_give_the_truth_back() {
     rho.sort();
     assert_eq!(free, rho);
     assert!(found.held.is_empty());
-    // how large the robot is, the drawing knows as well as the distance does: within what both leave uncertain
+    // how large the robot is, the drawing knows as well as the distance does: within what both
+    // leave uncertain
     let (error, name) = worst_error(&lab, &found);
     let own = found.parameters.iter().find(|p| p.parameter.to_string() == name);
     let sd = own.and_then(|p| p.std_error).unwrap();
@@ -77,7 +79,8 @@ fn sockets_give_the_truth_back() {
     }
 }
 
-/// One socket of each placement: nothing tells a robot from one twice as large, and the user is told so.
+/// One socket of each placement: nothing tells a robot from one twice as large, and the user is
+/// told so.
 #[test]
 fn without_a_distance_the_size_of_the_robot_is_unknown() {
     let (_, csv) = recorded();

@@ -1,5 +1,5 @@
-//! Do 95 % intervals hold the truth, is the noise that is reported the noise that there was, and is nothing made of
-//! clean data?
+//! Do 95 % intervals hold the truth, is the noise that is reported the noise that there was, and is
+//! nothing made of clean data?
 
 use std::sync::LazyLock;
 
@@ -75,7 +75,8 @@ fn coverage(said: &[Said]) -> f64 {
     100.0 * said.iter().map(|s| s.holds).sum::<usize>() as f64 / intervals as f64
 }
 
-/// Parameters of one seed share their noise: 80 seeds are worth some 800 independent intervals, 95 ± 0.8 %.
+/// Parameters of one seed share their noise: 80 seeds are worth some 800 independent intervals, 95
+/// ± 0.8 %.
 #[test]
 fn intervals_hold_the_truth_19_times_in_20() {
     for (said, kind) in SAID.iter().zip(["estimated", "stated", "huber"]) {
@@ -84,8 +85,8 @@ fn intervals_hold_the_truth_19_times_in_20() {
     }
 }
 
-/// One seed's estimate has a standard deviation of 1/√(2·178) = 5.3 %, the mean of 80 one of 0.6 %; Huber's, from a
-/// median, half as much again.
+/// One seed's estimate has a standard deviation of 1/√(2·178) = 5.3 %, the mean of 80 one of 0.6 %;
+/// Huber's, from a median, half as much again.
 #[test]
 fn the_noise_is_what_it_was() {
     let mean = |said: &[Said]| said.iter().map(|s| s.noise).sum::<f64>() / SEEDS as f64;
@@ -95,8 +96,8 @@ fn the_noise_is_what_it_was() {
     assert!((huber - 1.0).abs() < 0.03, "{huber}");
 }
 
-/// Outliers are those beyond what one clean recording in a hundred has, unequal noises likewise: of 80 seeds more than
-/// four, with 1 % each, happen once in a thousand.
+/// Outliers are those beyond what one clean recording in a hundred has, unequal noises likewise: of
+/// 80 seeds more than four, with 1 % each, happen once in a thousand.
 #[test]
 fn clean_data_are_called_clean() {
     for (said, kind) in SAID.iter().zip(["estimated", "stated", "huber"]) {

@@ -1,4 +1,5 @@
-//! `simulate`, `calibrate` and `compare` as they are typed: promised keys, files, refusals, the same bytes.
+//! `simulate`, `calibrate` and `compare` as they are typed: promised keys, files, refusals, the
+//! same bytes.
 
 use serde_json::Value;
 

@@ -1,4 +1,5 @@
-//! examples/convert.py: what common instruments export becomes measurements. Skipped, with a word, where there is no Python.
+//! examples/convert.py: what common instruments export becomes measurements. Skipped, with a word,
+//! where there is no Python.
 
 use std::path::Path;
 use std::process::Command;
@@ -23,8 +24,8 @@ fn numbers(row: &str, from: usize) -> Vec<f64> {
     row.split(',').skip(from).map(|cell| cell.parse().unwrap()).collect()
 }
 
-/// The poses of a recording in radians, their points in metres and another order: the same recording comes back, and is one
-/// that a robot is calibrated with.
+/// The poses of a recording in radians, their points in metres and another order: the same
+/// recording comes back, and is one that a robot is calibrated with.
 #[test]
 fn points_of_a_tracker_and_joint_values_are_a_recording() {
     let sandbox = Sandbox::new();
@@ -100,7 +101,8 @@ fn joint_states_become_poses_in_the_order_of_the_robot() {
     assert_eq!(unknown, "convert.py: states.csv:1: 0 columns for the joint wrist, expected one\n");
 }
 
-/// A folder for a placement, a file for a socket: one table, and a campaign that leaves out each placement.
+/// A folder for a placement, a file for a socket: one table, and a campaign that leaves out each
+/// placement.
 #[test]
 fn folders_of_placements_become_campaigns() {
     let sandbox = Sandbox::empty();

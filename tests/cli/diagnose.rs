@@ -131,7 +131,8 @@ fn apply_writes_the_rod_and_the_readings() {
     assert!(none.warnings().iter().any(|warning| warning.contains("without a rod file")));
 }
 
-/// What `--apply` writes is read by all commands that take a rod or readings, and is what the readings say.
+/// What `--apply` writes is read by all commands that take a rod or readings, and is what the
+/// readings say.
 #[test]
 fn what_apply_writes_is_a_rod_and_readings_like_others() {
     let sandbox = Sandbox::new();

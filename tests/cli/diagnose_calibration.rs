@@ -1,4 +1,5 @@
-//! `diagnose calibration` and `predict`: what they promise to scripts, and that what was put in is found.
+//! `diagnose calibration` and `predict`: what they promise to scripts, and that what was put in is
+//! found.
 
 use serde_json::Value;
 
@@ -125,7 +126,8 @@ fn tips_are_predicted_with_what_the_model_says_of_its_joints() {
     assert_eq!(wrong.status, Some(2));
 }
 
-/// What a user does in the end: diagnose, apply, calibrate and compare with the model that was written, and predict with it.
+/// What a user does in the end: diagnose, apply, calibrate and compare with the model that was
+/// written, and predict with it.
 #[test]
 fn what_is_applied_makes_the_robot_as_accurate_as_promised() {
     const ERROR: &str = "\n[[effect]]\nname = \"transmission_error\"\njoint = 3\ncycles_per_rev = 11.4\nsin_urad = 250.0\ncos_urad = -120.0\n";

@@ -85,7 +85,8 @@ fn compliance_in_every_mode_and_theory() {
     }
 }
 
-/// Rows are offsets, columns are loads; µm per newton, µm per g, grams, millimetres: one bare tube by hand.
+/// Rows are offsets, columns are loads; µm per newton, µm per g, grams, millimetres: one bare tube
+/// by hand.
 #[test]
 fn compliance_is_in_its_units() {
     let sandbox = Sandbox::empty();
@@ -101,13 +102,15 @@ fn compliance_is_in_its_units() {
     let (l1, l2, e) = (0.3_f64, 0.45_f64, 193e9);
     let ei = e * PI / 64.0 * (0.016_f64.powi(4) - 0.012_f64.powi(4));
     let cf = matrix(&json["cf_um_per_n"]);
-    // a force along x bends pipe I: along x by L1³/3EI, and tilts pipe II, so that the tip goes down
+    // a force along x bends pipe I: along x by L1³/3EI, and tilts pipe II, so that the tip goes
+    // down
     assert_relative_eq!(cf[(0, 0)], 1e6 * l1.powi(3) / (3.0 * ei), max_relative = 1e-12);
     assert_relative_eq!(cf[(2, 0)], -1e6 * l1.powi(2) * l2 / (2.0 * ei), max_relative = 1e-12);
     let mass = 1e3 * 7930.0 * PI / 4.0 * (0.016_f64.powi(2) - 0.012_f64.powi(2)) * (l1 + l2);
     assert_relative_eq!(number(&json["mass_g"]), mass, max_relative = 1e-12);
     assert_relative_eq!(number(&json["tip_mm"][0]), 450.0, max_relative = 1e-12);
-    // weight q per length along z bends pipe II as a cantilever (q L2⁴/8EI) on the tilted end of pipe I (q L2²/2 · L1/EI · L2)
+    // weight q per length along z bends pipe II as a cantilever (q L2⁴/8EI) on the tilted end of
+    // pipe I (q L2²/2 · L1/EI · L2)
     let q = 9.80665 * 1e-3 * mass / (l1 + l2);
     let sag = q * l2.powi(4) / (8.0 * ei) + q * l2.powi(3) * l1 / (2.0 * ei);
     let cg = matrix(&json["cg_um_per_g"]);
@@ -125,7 +128,8 @@ fn what_a_station_does_is_in_its_units() {
     assert_eq!((number(&stations["load_station_mm"]), number(&stations["read_station_mm"])), (400.0, 675.0));
     let away = matrix(&stations["displacement_um_per_n"]);
     let rod = Rod::read(&sandbox.path().join("rods/5.toml")).unwrap();
-    // Maxwell: the tip under a force at the station is the station under a force at the tip, transposed
+    // Maxwell: the tip under a force at the station is the station under a force at the tip,
+    // transposed
     let back = sandbox.run("compliance rods/5.toml --read-station 400 --json").json();
     let back = matrix(&back["stations"]["displacement_um_per_n"]);
     assert_relative_eq!(away, back.transpose(), epsilon = 1e-9);
@@ -139,7 +143,8 @@ fn what_a_station_does_is_in_its_units() {
     matrix(&both["stations"]["rotation_urad_per_n"]);
 }
 
-/// Lines made by hand: 46 µm/N along y, of which friction takes 1.5 N, and 40 µm/N along z; noise ±1 µm in balance.
+/// Lines made by hand: 46 µm/N along y, of which friction takes 1.5 N, and 40 µm/N along z; noise
+/// ±1 µm in balance.
 fn readings() -> String {
     let mut text = "axis,load_kg,trial,dy_um,dz_um\n".to_owned();
     for trial in [1, 2] {

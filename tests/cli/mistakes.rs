@@ -1,4 +1,5 @@
-//! Mistakes in a campaign: named by `diagnose calibration` and `calibrate`, undone by `--apply`; stations.
+//! Mistakes in a campaign: named by `diagnose calibration` and `calibrate`, undone by `--apply`;
+//! stations.
 
 use serde_json::Value;
 
@@ -29,7 +30,8 @@ fn at(header: &[String], name: &str) -> usize {
     header.iter().position(|column| column == name).unwrap()
 }
 
-/// The campaign of the project with the sign of joint 4 turned round, in measurements and validation.
+/// The campaign of the project with the sign of joint 4 turned round, in measurements and
+/// validation.
 fn flipped() -> Sandbox {
     let sandbox = Sandbox::new();
     for file in [MEASUREMENTS, "campaigns/tx90-5/validation.csv"] {

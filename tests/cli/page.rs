@@ -30,7 +30,8 @@ fn assert_sane(page: &str, beside: &BTreeSet<String>) {
     assert_eq!(elements(page, "h1").len(), 1);
     assert_eq!(elements(page, "h1"), elements(&page[..page.find("<body").unwrap()], "title"));
 
-    // nothing is fetched, and the browser is told so; the only script is the page's own, the same on all
+    // nothing is fetched, and the browser is told so; the only script is the page's own, the same
+    // on all
     assert!(page.contains("content=\"default-src 'none'; "), "no policy");
     let (page, script) = page.split_once("<script>").unwrap();
     assert!(script.starts_with(include_str!("../../src/report/html/page.js")));

@@ -5,7 +5,8 @@ use std::process::Stdio;
 
 use super::Sandbox;
 
-/// The commands in the fenced blocks of `markdown`, as they would be typed with `rodcal` on the path.
+/// The commands in the fenced blocks of `markdown`, as they would be typed with `rodcal` on the
+/// path.
 fn commands(markdown: &str) -> Vec<String> {
     let (mut found, mut fenced) = (Vec::new(), false);
     for line in markdown.replace("\\\n", " ").lines().map(str::trim) {
@@ -87,7 +88,8 @@ fn every_command_of_the_readme_runs() {
     }
 }
 
-/// What stands for a user's own files in the synopses of docs/, with the files that a test has instead.
+/// What stands for a user's own files in the synopses of docs/, with the files that a test has
+/// instead.
 const PLACEHOLDERS: [(&str, &str); 12] = [
     ("[--cases N]", "--cases 2"),
     ("[--draws N]", "--draws 50"),
@@ -141,8 +143,9 @@ fn is_read_by(line: &str, commands: &[String]) -> bool {
     directory.is_some_and(|name| commands.iter().any(|command| command.contains(&format!("{name}/"))))
 }
 
-/// Every synopsis and every command of docs/ runs, and every option that one names exists. What the README runs on the same
-/// files is not run again, unless a command further down reads what it writes.
+/// Every synopsis and every command of docs/ runs, and every option that one names exists. What the
+/// README runs on the same files is not run again, unless a command further down reads what it
+/// writes.
 #[test]
 fn every_command_of_the_docs_runs() {
     let project = Path::new(env!("CARGO_MANIFEST_DIR"));
@@ -182,7 +185,8 @@ fn every_command_of_the_docs_runs() {
     assert!(ran >= 4, "docs/ show {ran} commands only");
 }
 
-/// The answers that the guides quote are what the program says today: the first two sentences of each.
+/// The answers that the guides quote are what the program says today: the first two sentences of
+/// each.
 #[test]
 fn the_answers_in_the_guides_are_current() {
     let guide = |name: &str| {
@@ -215,8 +219,8 @@ fn the_answers_in_the_guides_are_current() {
     }
 }
 
-/// The README's picture is what the program draws today.
-/// To renew it: `rodcal rig fit rods/5.toml stiffness_data/5.csv --out DIR`, then copy the first figure.
+/// The README's picture is what the program draws today. To renew it: `rodcal rig fit rods/5.toml
+/// stiffness_data/5.csv --out DIR`, then copy the first figure.
 #[test]
 fn the_picture_in_the_readme_is_current() {
     let sandbox = Sandbox::new();

@@ -55,7 +55,8 @@ fn other_readings_are_predicted_and_what_is_proposed_is_measured() {
     }
 }
 
-/// A fixed trial; what it cannot know of physics outside the library it misses, and names nothing for it.
+/// A fixed trial; what it cannot know of physics outside the library it misses, and names nothing
+/// for it.
 #[test]
 fn a_small_trial_is_answered_as_well_as_ever() {
     let sandbox = Sandbox::empty();

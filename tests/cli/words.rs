@@ -1,5 +1,5 @@
-//! What a user reads. A changed word is shown by a failing snapshot: read it as somebody who has never seen the
-//! program, and accept it only if it still teaches.
+//! What a user reads. A changed word is shown by a failing snapshot: read it as somebody who has
+//! never seen the program, and accept it only if it still teaches.
 
 use super::{Sandbox, ran};
 

@@ -9,8 +9,8 @@ use super::Answer;
 /// Recordings of each kind.
 const SEEDS: usize = 40;
 
-/// 300 recordings with normal noise and a display in steps. At most 2 % are to be found wrong: of 300 with that rate more than
-/// 12 are in one of 100 times (binomial, 99 %).
+/// 300 recordings with normal noise and a display in steps. At most 2 % are to be found wrong: of
+/// 300 with that rate more than 12 are in one of 100 times (binomial, 99 %).
 #[test]
 fn clean_recordings_stay_clean() {
     let orders = [

@@ -23,8 +23,8 @@ fn without_unloading_friction_is_a_load_offset_as_well() {
     }
 }
 
-/// The readings of rod 5# beside the files of the paper's six rods: 6# would have to be 2.3 times stiffer, 4# is told from 5# by
-/// its torsion alone.
+/// The readings of rod 5# beside the files of the paper's six rods: 6# would have to be 2.3 times
+/// stiffer, 4# is told from 5# by its torsion alone.
 #[test]
 fn another_rod_is_named_before_physics_that_makes_the_given_one_like_it() {
     let rod = |k: usize| Rod::read(format!("rods/{k}.toml").as_ref()).unwrap();

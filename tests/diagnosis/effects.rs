@@ -11,7 +11,8 @@ use super::{Answer, interval};
 
 const SEED: u64 = 11;
 
-/// The effect is the only finding, at its place, its numbers within their intervals and these near the values.
+/// The effect is the only finding, at its place, its numbers within their intervals and these near
+/// the values.
 fn assert_found(order: &Order, effect: &Effect) -> Answer {
     let made = order.made(std::slice::from_ref(effect), SEED);
     let answer = Answer::of_made(&made);
@@ -109,7 +110,8 @@ fn backlash() {
     assert_found(&Order::default(), &Effect::Backlash { axis: None, play: 30.0 * UM });
 }
 
-/// The generator's chain of springs and dampers is not the library's logarithm: the rate is met, not the law.
+/// The generator's chain of springs and dampers is not the library's logarithm: the rate is met,
+/// not the law.
 #[test]
 fn creep() {
     let effect = Effect::Creep { per_decade: 0.05, shortest: 10.0 };
@@ -189,7 +191,8 @@ fn a_soft_root_bends_the_rod_farther_than_its_file() {
     assert!(large(&answer.found.evidence) > 3.0 * large(&of_file));
 }
 
-/// A knock before the last trial, which no later zero takes out, shifts the zeros of a third of the runs.
+/// A knock before the last trial, which no later zero takes out, shifts the zeros of a third of the
+/// runs.
 #[test]
 fn a_shift_is_no_scatter_of_the_zeros() {
     let loads = (1..=10).map(|k| 1.9 * f64::from(k)).collect();

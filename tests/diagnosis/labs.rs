@@ -1,5 +1,6 @@
-//! Recordings as labs make them: loads that go up and down, displacements that are imposed, sessions, times of hanging. Made
-//! here by closed-form mechanics of a straight tube that share nothing with the program's; moduli are off as any rod's are.
+//! Recordings as labs make them: loads that go up and down, displacements that are imposed,
+//! sessions, times of hanging. Made here by closed-form mechanics of a straight tube that share
+//! nothing with the program's; moduli are off as any rod's are.
 
 use rodcal::rig::readings::Readings;
 use rodcal::statistics::Random;
@@ -47,8 +48,8 @@ impl Lab {
         sd * self.random.normal()
     }
 
-    /// Deflection at a station per load at the tip, m/N, with a compliant root (rad/(N·m)): Euler–Bernoulli with Timoshenko's
-    /// shear, κ by Cowper (J. Appl. Mech. 33 (1966) 335–340).
+    /// Deflection at a station per load at the tip, m/N, with a compliant root (rad/(N·m)):
+    /// Euler–Bernoulli with Timoshenko's shear, κ by Cowper (J. Appl. Mech. 33 (1966) 335–340).
     fn compliance(&self, s: f64, root: f64) -> f64 {
         let (outer, inner) = (0.012f64, 0.008f64);
         let second = std::f64::consts::PI / 64.0 * (outer.powi(4) - inner.powi(4));
@@ -65,7 +66,8 @@ fn signed(load: f64) -> String {
     format!("{},{:.5}", if load < 0.0 { "-y" } else { "y" }, load.abs())
 }
 
-/// Four cycles to and fro, or up and down on one side, from 0 in even steps, as shares of the largest.
+/// Four cycles to and fro, or up and down on one side, from 0 in even steps, as shares of the
+/// largest.
 fn cycles(steps: usize, is_one_sided: bool) -> Vec<f64> {
     let share = |k: usize| {
         let t = (k % steps) as f64 / steps as f64;
@@ -79,7 +81,8 @@ fn cycles(steps: usize, is_one_sided: bool) -> Vec<f64> {
     (1..=4 * steps).map(share).collect()
 }
 
-/// Weights that go up and down without a `phase`: friction (N), play (m), stations (m); a time in every row.
+/// Weights that go up and down without a `phase`: friction (N), play (m), stations (m); a time in
+/// every row.
 fn hung(seed: u64, is_one_sided: bool, friction: f64, play: f64, stations: &[f64]) -> String {
     let mut lab = Lab::new(seed);
     let zeros: Vec<f64> = stations.iter().map(|_| lab.noise(2e-6)).collect();
@@ -97,7 +100,8 @@ fn hung(seed: u64, is_one_sided: bool, friction: f64, play: f64, stations: &[f64
     text
 }
 
-/// An imposed displacement of 4 mm to and fro, in even steps or as a sine, with friction (N) and play (m) in series.
+/// An imposed displacement of 4 mm to and fro, in even steps or as a sine, with friction (N) and
+/// play (m) in series.
 fn imposed(seed: u64, is_sine: bool, friction: f64, play: f64) -> String {
     let mut lab = Lab::new(seed);
     let c = lab.compliance(LENGTH, 0.0);
@@ -117,7 +121,8 @@ fn imposed(seed: u64, is_sine: bool, friction: f64, play: f64) -> String {
     text
 }
 
-/// Two sessions of three trials, read at two stations, with the root's compliance (rad/(N·m)) and friction (N) of each.
+/// Two sessions of three trials, read at two stations, with the root's compliance (rad/(N·m)) and
+/// friction (N) of each.
 fn sessions(seed: u64, roots: [f64; 2], friction: [f64; 2]) -> String {
     let mut lab = Lab::new(seed);
     let mut text = "session,trial,axis,load_n,time_s,read_station_mm,dy_um\n".to_owned();
@@ -140,8 +145,8 @@ fn sessions(seed: u64, roots: [f64; 2], friction: [f64; 2]) -> String {
     text
 }
 
-/// Four trials of loads that are read several times; creep of 3 % per decade, t₀ 10 s, since the load was hung (`loaded_at_s`
-/// stated) or since a moment before each trial.
+/// Four trials of loads that are read several times; creep of 3 % per decade, t₀ 10 s, since the
+/// load was hung (`loaded_at_s` stated) or since a moment before each trial.
 fn creeping(seed: u64, rate: f64, is_stated: bool) -> String {
     let mut lab = Lab::new(seed);
     let c = lab.compliance(LENGTH, 0.0);
@@ -193,7 +198,8 @@ fn held(seed: u64, rate: f64) -> String {
     text
 }
 
-/// A friction damper of 14 kN under a sine of 20 mm, without a rod; its play is crossed at every turn.
+/// A friction damper of 14 kN under a sine of 20 mm, without a rod; its play is crossed at every
+/// turn.
 fn damper(seed: u64, friction: f64, play: f64, stiffness: f64) -> String {
     let mut lab = Lab::new(seed);
     let mut text = "# driven = \"displacement\"\naxis,load_n,time_s,dx_um\n".to_owned();
@@ -222,8 +228,8 @@ fn assert_silent(texts: impl Iterator<Item = String>, what: &str) {
     }
 }
 
-/// The interval lies within ± `most` of the value, which lies in twice the interval but for 2 %: what the moduli are off by is
-/// no part of it.
+/// The interval lies within ± `most` of the value, which lies in twice the interval but for 2 %:
+/// what the moduli are off by is no part of it.
 fn assert_found(finding: &Value, name: &str, truth: f64, most: f64) {
     let [low, _, high] = interval(finding, name);
     let wide = 0.5 * (high - low) + 0.02 * truth;
@@ -321,7 +327,8 @@ fn creep_is_measured_since_each_load_was_hung_or_since_a_moment_nobody_knows() {
     }
 }
 
-/// A smooth curve along the run follows anything that repeats; the law says it with one number or two.
+/// A smooth curve along the run follows anything that repeats; the law says it with one number or
+/// two.
 #[test]
 fn a_friction_damper_is_a_friction_damper() {
     for seed in SEEDS {
@@ -334,7 +341,8 @@ fn a_friction_damper_is_a_friction_damper() {
         assert_eq!(loose.effects()[0], "friction", "{}", loose.json["headline"]);
         assert!(loose.json["unexplained"].is_null(), "{}", loose.json["headline"]);
         assert_found(loose.finding("friction"), "force_n", 14e3, 500.0);
-        // at a turn the readings are 0.2, 1 and 2.2 mm of travel behind it, then 3.8: the gap of 3 mm ends between two of them
+        // at a turn the readings are 0.2, 1 and 2.2 mm of travel behind it, then 3.8: the gap of 3
+        // mm ends between two of them
         let [low, value, high] = interval(loose.finding("friction"), "play_um");
         assert!(
             low < 1.5e3 && high > 1.5e3 && (1.09e3..1.91e3).contains(&value),
@@ -392,7 +400,8 @@ fn gcd(a: usize, b: usize) -> usize {
     if b == 0 { a } else { gcd(b, a % b) }
 }
 
-/// With times or without, one row for all channels, one for each, station after station or all of an instant together.
+/// With times or without, one row for all channels, one for each, station after station or all of
+/// an instant together.
 #[test]
 fn one_row_per_station_or_channel_is_the_same_recording() {
     let mut lab = Lab::new(5);

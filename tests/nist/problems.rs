@@ -1,7 +1,8 @@
-//! The 27 nonlinear regression problems of the NIST Statistical Reference Datasets, and the fit of each.
+//! The 27 nonlinear regression problems of the NIST Statistical Reference Datasets, and the fit of
+//! each.
 //!
-//! Data, starts and certified values are read from NIST's own files; only the models are written here, generic in
-//! the number type, so that dual numbers give the exact Jacobian.
+//! Data, starts and certified values are read from NIST's own files; only the models are written
+//! here, generic in the number type, so that dual numbers give the exact Jacobian.
 
 use std::f64::consts::PI;
 use std::path::{Path, PathBuf};
@@ -49,7 +50,8 @@ impl Nist {
             .unwrap_or_else(|e| panic!("{}: {e}", self.name))
     }
 
-    /// Smallest number of matching digits over the parameters, over their standard deviations and in the sum.
+    /// Smallest number of matching digits over the parameters, over their standard deviations and
+    /// in the sum.
     pub fn digits(&self, fit: &Fit) -> Digits {
         let errors: Vec<f64> = fit.standard_errors().iter().map(|e| e.unwrap_or(f64::NAN)).collect();
         let worst = |computed: &[f64], certified: &[f64]| {
@@ -130,7 +132,8 @@ impl Problem for Nist {
     }
 }
 
-/// −log₁₀ of the relative error, at most 11: the certified values have no more digits. Negative or NaN counts as 0.
+/// −log₁₀ of the relative error, at most 11: the certified values have no more digits. Negative or
+/// NaN counts as 0.
 fn matching_digits(computed: f64, certified: f64) -> f64 {
     let digits = -((computed - certified) / certified).abs().log10();
     if digits.is_nan() { 0.0 } else { digits.clamp(0.0, 11.0) }

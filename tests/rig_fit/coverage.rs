@@ -58,8 +58,9 @@ fn long(rig: Rig) -> Rig {
     Rig { loads: (1..=8).map(|k| 2.5 * f64::from(k)).collect(), trials: 6, ..rig }
 }
 
-/// The paper's plan (4 loads, 5 trials) and a longer one (8 loads, 6 trials), repeats independent or not.
-/// Trial offsets of 2 to 10 µm stand beside a noise of 3 µm; slope errors of 0.05 to 0.5 % are 1 to 12 µm at 20 N.
+/// The paper's plan (4 loads, 5 trials) and a longer one (8 loads, 6 trials), repeats independent
+/// or not. Trial offsets of 2 to 10 µm stand beside a noise of 3 µm; slope errors of 0.05 to 0.5 %
+/// are 1 to 12 µm at 20 N.
 fn designs() -> Vec<(&'static str, Rig)> {
     let of = |trial_offset, trial_slope| Rig { trial_offset, trial_slope, ..Rig::default() };
     vec![
@@ -80,7 +81,8 @@ fn intervals_hold_the_truth_and_clean_lines_pass() {
         let rates = rates(name, &rig, Robust::None);
         assert!((90.0..=98.0).contains(&rates.slope), "{name}: slope {} %", rates.slope);
         assert!((90.0..=98.5).contains(&rates.load_offset), "{name}: offset {} %", rates.load_offset);
-        // where one line's trials are seen to differ and the other's are not, their sum is on the safe side
+        // where one line's trials are seen to differ and the other's are not, their sum is on the
+        // safe side
         assert!((90.0..=99.5).contains(&rates.r_rod), "{name}: r_rod {} %", rates.r_rod);
         assert!(rates.crooked <= 2.0, "{name}: {} % called crooked", rates.crooked);
         assert!(rates.offset_warnings <= 2.0, "{name}: {} % warned of an offset", rates.offset_warnings);

@@ -87,7 +87,8 @@ pub fn rod(tube: &Tube) -> Rod {
     Rod::from_toml("made.toml", &rod_text(tube)).unwrap()
 }
 
-/// One line: load direction, slope along it (µm/N) and error of the zero (µm, along the positive axis).
+/// One line: load direction, slope along it (µm/N) and error of the zero (µm, along the positive
+/// axis).
 #[derive(Clone, Copy)]
 pub struct Truth {
     pub axis: &'static str,

@@ -46,7 +46,8 @@ fn check_load_cell(file: &Path, demanded: f64) {
     let line = &fit.lines[0];
     assert_eq!((fit.lines.len(), line.count), (1, 40));
     let straight = line.lack_of_fit.unwrap();
-    // the textbook's ratio of mean squares; its certified counterpart is the quadratic's residual SD
+    // the textbook's ratio of mean squares; its certified counterpart is the quadratic's residual
+    // SD
     assert!((straight.f - 214.747).abs() < 5e-4, "{straight:?}");
     assert_eq!((straight.dof_fit, straight.dof_repeats), (18, 20));
     assert!(straight.p_value < 1e-15);
@@ -84,7 +85,8 @@ fn the_load_cell_with_rounded_loads_keeps_seven_digits() {
 
 #[test]
 fn the_certified_standard_deviations_of_the_quadratic_are_met() {
-    // its lack of fit has p = 0.67: both variances together are NIST's residual variance with 37 dof
+    // its lack of fit has p = 0.67: both variances together are NIST's residual variance with 37
+    // dof
     let fit = fit(None, &project().join("stiffness_data/nist-load-cell.csv"));
     let b = fit.lines[0].quadratic.unwrap().coefficients;
     let errors = b.map(|b| b.std_error.unwrap());
@@ -157,8 +159,9 @@ fn the_reconstructed_readings_give_the_published_figures() {
 
 #[test]
 fn the_simulated_ratio_is_the_published_one() {
-    // The rods' sections are reconstructed: steel within 1.5 % of Table 2, carbon within 4 %, so their ratio is
-    // good to about 5 %. c_rod, which they were matched to, sums all entries: c22 alone may be off by more.
+    // The rods' sections are reconstructed: steel within 1.5 % of Table 2, carbon within 4 %, so
+    // their ratio is good to about 5 %. c_rod, which they were matched to, sums all entries: c22
+    // alone may be off by more.
     let c22 = |number| {
         let options = rodcal::beam::Physics::default();
         rodcal::compliance::Compliance::of_model(&rod(number), &options, 20).unwrap().force[(1, 1)]

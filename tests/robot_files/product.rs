@@ -1,5 +1,5 @@
-//! A URDF's kinematics as its definition has it: the product of all transforms from base to tip. Nothing here is shared
-//! with the reader but the XML.
+//! A URDF's kinematics as its definition has it: the product of all transforms from base to tip.
+//! Nothing here is shared with the reader but the XML.
 
 use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion, Vector3};
 use rodcal::spatial::Pose;

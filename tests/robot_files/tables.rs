@@ -97,7 +97,8 @@ fn the_example_of_the_documentation_is_read() {
     assert_eq!((robot.joints[0].name.as_str(), robot.has_masses()), ("shoulder", true));
 }
 
-/// What `--apply` writes is what is read again: bit by bit, or but for the last bit where units change.
+/// What `--apply` writes is what is read again: bit by bit, or but for the last bit where units
+/// change.
 #[test]
 fn effects_of_joints_are_read_and_written() {
     let text = EXAMPLE.to_owned()

@@ -48,7 +48,8 @@ fn the_table_has_the_kinematics_of_the_ros_model() {
     }
 }
 
-/// Masses (kg) and centres (m) of the ROS model's links, in its link frames; scaled as `robots/tx90.toml` says.
+/// Masses (kg) and centres (m) of the ROS model's links, in its link frames; scaled as
+/// `robots/tx90.toml` says.
 const BODIES: [(f64, [f64; 3]); 6] = [
     (16.9, [0.019, 0.025, -0.065]),
     (13.0 * 1.95, [0.0, 0.221, 0.173]),
@@ -76,7 +77,8 @@ fn the_masses_hang_where_the_ros_model_has_them() {
     }
 }
 
-/// The same masses, read from a URDF's inertials, make the same torques about axes that may point the other way.
+/// The same masses, read from a URDF's inertials, make the same torques about axes that may point
+/// the other way.
 #[test]
 fn a_urdf_s_inertials_make_the_torques_of_the_table() {
     let mut text = ros_model();
@@ -115,9 +117,10 @@ fn gravity_torques(robot: &Robot, q: &[f64]) -> Vec<f64> {
     (0..robot.joints.len()).map(torque).collect()
 }
 
-/// Identified on a real TX90: at most about 217, 45, 1.8, 1.0, 0.2 N·m on joints 2 to 6. The factors on the masses were
-/// found from the big two, so these come out to half of their last digit. The wrist's do not: in the model it is
-/// symmetrical to 3 mm, so what it has is a third of what was identified; cables and hoses are not in it.
+/// Identified on a real TX90: at most about 217, 45, 1.8, 1.0, 0.2 N·m on joints 2 to 6. The
+/// factors on the masses were found from the big two, so these come out to half of their last
+/// digit. The wrist's do not: in the model it is symmetrical to 3 mm, so what it has is a third of
+/// what was identified; cables and hoses are not in it.
 #[test]
 fn gravity_torques_are_near_the_identified_ones() {
     let robot = tx90();
@@ -148,8 +151,8 @@ fn gravity_torques_are_near_the_identified_ones() {
     assert!(most[5] < 1e-12, "the last link's centre is on its axis: {}", most[5]);
 }
 
-/// Identified: τ2 ≈ −172 sin q2 − 44 sin(q2+q3), the torque that holds the arm in angles from the vertical. Gravity's own
-/// has the other sign.
+/// Identified: τ2 ≈ −172 sin q2 − 44 sin(q2+q3), the torque that holds the arm in angles from the
+/// vertical. Gravity's own has the other sign.
 #[test]
 fn the_shoulder_s_torque_has_the_identified_shape() {
     let robot = tx90();

@@ -1,4 +1,5 @@
-//! Robots written back: a table to the last digit, a URDF with its new origins and everything else as it was.
+//! Robots written back: a table to the last digit, a URDF with its new origins and everything else
+//! as it was.
 
 use nalgebra::Vector3;
 use rodcal::error::Error;

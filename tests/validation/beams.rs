@@ -18,7 +18,8 @@ const EXACT_AT_20_000: f64 = 1e-7;
 
 const UM_PER_N: f64 = 1e-6;
 
-/// The rod of the project's reference: L1 300, L2 450, tube 16 × 12, E 193 GPa, ν 0.29, ρ 7930, Timoshenko, Cowper.
+/// The rod of the project's reference: L1 300, L2 450, tube 16 × 12, E 193 GPa, ν 0.29, ρ 7930,
+/// Timoshenko, Cowper.
 fn reference_rod(geometry: &str) -> Rod {
     let text = format!(
         r#"
@@ -48,7 +49,8 @@ fn compliance(geometry: &str, elements: usize) -> Compliance {
     Compliance::of_model(&reference_rod(geometry), &Physics::default(), elements).unwrap()
 }
 
-/// Castigliano's theorem with axial and shear terms, evaluated independently (see tests/references).
+/// Castigliano's theorem with axial and shear terms, evaluated independently (see
+/// tests/references).
 #[test]
 fn castigliano_sharp_corner_at_2_to_2000_elements() {
     let published = [((0, 0), 21.314804), ((0, 2), -47.711141), ((1, 1), 277.622146), ((2, 2), 214.842826)];
@@ -85,8 +87,8 @@ fn castigliano_inside_angle_120() {
     assert_relative_eq!(c.force[(2, 2)] / UM_PER_N, 161.143164, max_relative = PRINTED_DIGITS);
 }
 
-/// S. Timoshenko, *Strength of Materials* I, 3rd ed., § 21 and 39: a cantilever of length L under its own weight q,
-/// δ = qL⁴/8EI + qL²/2κGA, θ = qL³/6EI, and along its axis qL²/2EA.
+/// S. Timoshenko, *Strength of Materials* I, 3rd ed., § 21 and 39: a cantilever of length L under
+/// its own weight q, δ = qL⁴/8EI + qL²/2κGA, θ = qL³/6EI, and along its axis qL²/2EA.
 #[test]
 fn a_cantilever_under_its_own_weight() {
     let profile = Profile {
@@ -110,7 +112,8 @@ fn a_cantilever_under_its_own_weight() {
     }
 }
 
-/// A rectangle b (along local x) by h (along local y): A, I, Roark's torsion constant and Cowper's κ.
+/// A rectangle b (along local x) by h (along local y): A, I, Roark's torsion constant and Cowper's
+/// κ.
 fn rectangle(b: f64, h: f64, e: f64, nu: f64) -> Profile {
     let (area, g) = (b * h, e / (2.0 * (1.0 + nu)));
     // Roark's Formulas, 7th ed., Table 10.1, case 4
@@ -134,9 +137,10 @@ fn tip_of(chain: &Chain) -> nalgebra::Matrix3<f64> {
     chain.solve(&[Load::Force { node }]).unwrap().motion(node, 0).translation
 }
 
-/// R. H. MacNeal, R. L. Harder, "A proposed standard set of problems to test finite element accuracy",
-/// Finite Elements in Analysis and Design 1 (1985) 3–20, Table 3: straight cantilever 6 × 0.2 × 0.1,
-/// E 1e7, ν 0.30, unit end loads. Their theory is beam theory with shear: four printed digits.
+/// R. H. MacNeal, R. L. Harder, "A proposed standard set of problems to test finite element
+/// accuracy", Finite Elements in Analysis and Design 1 (1985) 3–20, Table 3: straight cantilever 6
+/// × 0.2 × 0.1, E 1e7, ν 0.30, unit end loads. Their theory is beam theory with shear: four printed
+/// digits.
 #[test]
 fn macneal_harder_straight_beam() {
     let mut chain = Chain::clamped_at(Vector3::zeros(), Rotation3::identity());
@@ -147,9 +151,10 @@ fn macneal_harder_straight_beam() {
     assert_relative_eq!(c[(1, 1)], 0.4321, max_relative = 5e-4);
 }
 
-/// MacNeal & Harder (1985), Table 5: quarter circle, radii 4.12 and 4.32, thickness 0.1, E 1e7, ν 0.25, unit end
-/// loads: 0.08734 in the plane, 0.5022 out of it. Their in-plane value is not that of beam theory (a slender
-/// curved beam gives πPR³/4EI = 0.0885), so one and a half per cent is as near as a beam comes.
+/// MacNeal & Harder (1985), Table 5: quarter circle, radii 4.12 and 4.32, thickness 0.1, E 1e7, ν
+/// 0.25, unit end loads: 0.08734 in the plane, 0.5022 out of it. Their in-plane value is not that
+/// of beam theory (a slender curved beam gives πPR³/4EI = 0.0885), so one and a half per cent is as
+/// near as a beam comes.
 #[test]
 fn macneal_harder_curved_beam() {
     let mut chain = Chain::clamped_at(Vector3::zeros(), Rotation3::identity());
@@ -160,9 +165,9 @@ fn macneal_harder_curved_beam() {
     assert_relative_eq!(c[(1, 1)], 0.5022, max_relative = 0.005);
 }
 
-/// MacNeal & Harder (1985), Table 6: length 12, width 1.1, depth 0.32, twisted by 90°, E 29e6, ν 0.22, unit end
-/// loads: 0.005424 in the plane of the tip's width, 0.001754 across it. Twelve pieces, each at its mean angle,
-/// stand for the continuous twist.
+/// MacNeal & Harder (1985), Table 6: length 12, width 1.1, depth 0.32, twisted by 90°, E 29e6, ν
+/// 0.22, unit end loads: 0.005424 in the plane of the tip's width, 0.001754 across it. Twelve
+/// pieces, each at its mean angle, stand for the continuous twist.
 #[test]
 fn macneal_harder_twisted_beam() {
     const PIECES: usize = 48;
@@ -181,7 +186,8 @@ fn macneal_harder_twisted_beam() {
     assert_relative_eq!(stiff, 0.001754, max_relative = 0.005);
 }
 
-/// The tube of the VPCS arcs, 20 × 16 mm, E 200 GPa, ν 0.3, without shear and extension as in the guide's theory.
+/// The tube of the VPCS arcs, 20 × 16 mm, E 200 GPa, ν 0.3, without shear and extension as in the
+/// guide's theory.
 fn vpcs_tube() -> Profile {
     let tube = Round { outer_diameter: 0.020, inner_diameter: 0.016 };
     let (e, g) = (2e11, 2e11 / 2.6);
@@ -195,17 +201,18 @@ fn vpcs_tube() -> Profile {
     }
 }
 
-/// AFNOR/SFM, *Guide de validation des progiciels de calcul de structures* (VPCS, 1990), SSLL06: quarter circle of
-/// R = 3 m clamped at one end; at the other F1 = 10 N across the tangent there, F2 = 5 N along it, and Mz = 8 N·m
-/// in the plane: u = 0.3791 m along F1, v = 0.2417 m along F2, θ = 0.1654 rad, all in the sense of the loads.
+/// AFNOR/SFM, *Guide de validation des progiciels de calcul de structures* (VPCS, 1990), SSLL06:
+/// quarter circle of R = 3 m clamped at one end; at the other F1 = 10 N across the tangent there,
+/// F2 = 5 N along it, and Mz = 8 N·m in the plane: u = 0.3791 m along F1, v = 0.2417 m along F2, θ =
+/// 0.1654 rad, all in the sense of the loads.
 #[test]
 fn vpcs_ssll06_arc_in_plane() {
     let mut chain = Chain::clamped_at(Vector3::zeros(), Rotation3::identity());
     chain.arc(&vpcs_tube(), 3.0, FRAC_PI_2, 4);
     let node = chain.end();
     let response = chain.solve(&[Load::Force { node }, Load::Couple { node }]).unwrap();
-    // Clamped along z, the arc ends along x: across its end is z, and loads that open the bend act along +z,
-    // −x and −y (a moment about +y closes it).
+    // Clamped along z, the arc ends along x: across its end is z, and loads that open the bend act
+    // along +z, −x and −y (a moment about +y closes it).
     let (force, couple) = (response.motion(node, 0), response.motion(node, 1));
     let load = Vector3::new(-5.0, 0.0, 10.0);
     let moment = Vector3::new(0.0, -8.0, 0.0);
@@ -216,8 +223,8 @@ fn vpcs_ssll06_arc_in_plane() {
     assert_relative_eq!(-rotation.y, 0.1654, max_relative = 5e-4);
 }
 
-/// VPCS SSLL07: quarter circle of R = 1 m, 100 N out of its plane at the free end: the end moves by 0.13462 m,
-/// and at θ = 15° torsion is 74.1180 N·m and bending −96.5925 N·m.
+/// VPCS SSLL07: quarter circle of R = 1 m, 100 N out of its plane at the free end: the end moves by
+/// 0.13462 m, and at θ = 15° torsion is 74.1180 N·m and bending −96.5925 N·m.
 #[test]
 fn vpcs_ssll07_arc_out_of_plane() {
     let mut chain = Chain::clamped_at(Vector3::zeros(), Rotation3::identity());
@@ -236,7 +243,8 @@ fn vpcs_ssll07_arc_out_of_plane() {
     assert_relative_eq!(moment.dot(&normal).abs(), 96.5925, max_relative = 2e-6);
 }
 
-/// A joint of bending compliance b at station s adds b·(lever)² to the tip's compliance across the lever.
+/// A joint of bending compliance b at station s adds b·(lever)² to the tip's compliance across the
+/// lever.
 #[test]
 fn a_joint_turns_everything_beyond_it() {
     let rod = reference_rod("");
@@ -265,16 +273,18 @@ fn a_station_between_flange_and_tip_can_be_loaded_and_read() {
     let rod = reference_rod("gamma_deg = 180.0");
     let model = RodModel::new(&rod, &Physics { shear: false, ..Physics::default() }, 7, &[0.2, 0.5]).unwrap();
     let ei = 193e9 * rod.pipe1.section.second_moment();
-    // Roark's Formulas, 7th ed., Table 8.1, case 1a: force at a = 0.5 m read at x = 0.2 m: δ = x²(3a − x)/6EI
+    // Roark's Formulas, 7th ed., Table 8.1, case 1a: force at a = 0.5 m read at x = 0.2 m: δ =
+    // x²(3a − x)/6EI
     let motion = model.force_response(0.5, 0.2).unwrap();
     assert_relative_eq!(motion.translation[(0, 0)], 0.04 * (1.5 - 0.2) / (6.0 * ei), max_relative = 1e-9);
     // rotation there: θ = x(2a − x)/2EI about +y
     assert_relative_eq!(motion.rotation[(1, 0)], 0.2 * (1.0 - 0.2) / (2.0 * ei), max_relative = 1e-9);
 }
 
-/// Flexibility factors of a thin bend: tube 16 × 12, radius 40 mm, so h = tR/r² = 1.6327. Reference: the unit-load
-/// integral with the arc's bending flexibility times k (tests/references/README.md): von Kármán
-/// k = (10 + 12h²)/(1 + 12h²) = 1.272837, ASME B31.3 k = 1.65/h = 1.010625. A solid model gives 212.80 and 270.63.
+/// Flexibility factors of a thin bend: tube 16 × 12, radius 40 mm, so h = tR/r² = 1.6327.
+/// Reference: the unit-load integral with the arc's bending flexibility times k
+/// (tests/references/README.md): von Kármán k = (10 + 12h²)/(1 + 12h²) = 1.272837, ASME B31.3 k =
+/// 1.65/h = 1.010625. A solid model gives 212.80 and 270.63.
 #[test]
 fn flexibility_factors_of_the_bend() {
     let cases = [("\"von-karman\"", 214.0774, 271.5795), ("\"asme-b31.3\"", 206.7106, 267.8805)];

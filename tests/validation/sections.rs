@@ -132,12 +132,14 @@ fn a_section_by_its_constants_is_the_same_section() {
     assert!((calc.gravity - beam.gravity).amax() < 1e-12 * calc.gravity.amax());
 }
 
-/// T300/5208 graphite–epoxy: S. W. Tsai, H. T. Hahn, *Introduction to Composite Materials* (1980), Table 1.7.
+/// T300/5208 graphite–epoxy: S. W. Tsai, H. T. Hahn, *Introduction to Composite Materials* (1980),
+/// Table 1.7.
 fn t300(angle_deg: f64) -> Ply {
     Ply { e1: 181e9, e2: 10.3e9, g12: 7.17e9, nu12: 0.28, thickness: 0.125e-3, angle: angle_deg.to_radians() }
 }
 
-/// A. K. Kaw, *Mechanics of Composite Materials*, 2nd ed. (2006), Example 2.6: Q̄ of a 60° ply, GPa, four digits.
+/// A. K. Kaw, *Mechanics of Composite Materials*, 2nd ed. (2006), Example 2.6: Q̄ of a 60° ply,
+/// GPa, four digits.
 #[test]
 fn kaw_reduced_stiffness_of_a_60_degree_ply() {
     let q = t300(60.0).stiffness() / 1e9;
@@ -154,7 +156,8 @@ fn kaw_reduced_stiffness_of_a_60_degree_ply() {
     }
 }
 
-/// Tsai & Hahn (1980), § 4.4: the quasi-isotropic [0/±45/90]s laminate, E 69.68 GPa, G 26.88 GPa, ν 0.296.
+/// Tsai & Hahn (1980), § 4.4: the quasi-isotropic [0/±45/90]s laminate, E 69.68 GPa, G 26.88 GPa, ν
+/// 0.296.
 #[test]
 fn tsai_hahn_quasi_isotropic_laminate() {
     let plies = [0.0, 45.0, -45.0, 90.0, 90.0, -45.0, 45.0, 0.0].map(t300);

@@ -1,8 +1,9 @@
-//! Tables of text cells that know where they stand: a header line, then rows, separated by `,`, `;` or tabs.
+//! Tables of text cells that know where they stand: a header line, then rows, separated by `,`, `;`
+//! or tabs.
 //!
-//! `#` comment lines, blank lines, quoted cells, spaces around cells, CRLF and a byte-order mark are understood.
-//! One record is one line: no measurement has a line break in a cell, and so an unclosed quote is found on its
-//! own line instead of swallowing the rest of the file.
+//! `#` comment lines, blank lines, quoted cells, spaces around cells, CRLF and a byte-order mark
+//! are understood. One record is one line: no measurement has a line break in a cell, and so an
+//! unclosed quote is found on its own line instead of swallowing the rest of the file.
 
 mod decimal_mark;
 mod foreign;

@@ -1,4 +1,5 @@
-//! Numbers with one derivative: a + b ε with ε² = 0. Formulas that are generic in [`Number`] differentiate themselves.
+//! Numbers with one derivative: a + b ε with ε² = 0. Formulas that are generic in [`Number`]
+//! differentiate themselves.
 
 use std::iter::Sum;
 use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};

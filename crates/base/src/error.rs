@@ -93,7 +93,8 @@ pub enum Error {
         relative: f64,
     },
 
-    /// A numerical procedure has no answer (for example a matrix with no full rank where one is needed).
+    /// A numerical procedure has no answer (for example a matrix with no full rank where one is
+    /// needed).
     #[error("{what}: {why}")]
     Numerical {
         /// The procedure.

@@ -21,8 +21,8 @@ use crate::error::{Error, Result, Whose};
 /// What becomes of a file that stands where one is to be written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Existing {
-    /// It stays, and nothing is written, unless the program wrote it and nobody has changed it since
-    /// ([`MARKER`] says so), or it has the very bytes that are to be written.
+    /// It stays, and nothing is written, unless the program wrote it and nobody has changed it
+    /// since ([`MARKER`] says so), or it has the very bytes that are to be written.
     Keep,
     /// It is replaced.
     Replace,
@@ -44,7 +44,8 @@ pub fn beside(path: &Path) -> Vec<PathBuf> {
 /// Reads a text file: UTF-8, or UTF-16 with its mark; see [`text_of_bytes`].
 ///
 /// # Errors
-/// [`Error::File`] where it cannot be read, [`Error::Input`] with line and column where it is neither.
+/// [`Error::File`] where it cannot be read, [`Error::Input`] with line and column where it is
+/// neither.
 pub fn read_text(path: &Path) -> Result<String> {
     text_of_bytes(&path.display().to_string(), read_bytes(path)?)
 }
@@ -61,8 +62,9 @@ pub fn append(path: &Path, contents: &[u8]) -> Result<()> {
     written.map_err(failed("write", path))
 }
 
-/// Writes a file whole or not at all: to a temporary file beside it, then renamed onto it. For a file that the caller
-/// has read and knows as its own: what stands there is replaced. Missing directories are created.
+/// Writes a file whole or not at all: to a temporary file beside it, then renamed onto it. For a
+/// file that the caller has read and knows as its own: what stands there is replaced. Missing
+/// directories are created.
 ///
 /// # Errors
 /// [`Error::File`]; the old file, if any, is then untouched.
@@ -82,13 +84,14 @@ pub fn write_new(path: &Path, contents: &[u8], existing: Existing) -> Result<()>
     write_once(directory, &[(name.to_string_lossy().into_owned(), contents.to_vec())], existing)
 }
 
-/// Writes all files, given by name and contents, into `directory`, or none of them: each to a temporary file first,
-/// and only when all of those are complete are they renamed. Missing directories are created. [`MARKER`] beside them
-/// says what was written, so that the program may replace it another time.
+/// Writes all files, given by name and contents, into `directory`, or none of them: each to a
+/// temporary file first, and only when all of those are complete are they renamed. Missing
+/// directories are created. [`MARKER`] beside them says what was written, so that the program may
+/// replace it another time.
 ///
 /// # Errors
-/// [`Error::InTheWay`], [`Error::File`]; old files are then untouched, unless a rename itself fails in the midst of
-/// the others.
+/// [`Error::InTheWay`], [`Error::File`]; old files are then untouched, unless a rename itself fails
+/// in the midst of the others.
 pub fn write_together(directory: &Path, files: &[(String, Vec<u8>)], existing: Existing) -> Result<()> {
     let marker = Marker::read(directory)?;
     // the marker comes last: if the power fails before it, the same files can be written again
@@ -104,7 +107,8 @@ pub fn write_once(directory: &Path, files: &[(String, Vec<u8>)], existing: Exist
     write(directory, files, existing, &Known::Nothing)
 }
 
-/// Refuses files that [`write_together`] would refuse whatever their contents, before these are known.
+/// Refuses files that [`write_together`] would refuse whatever their contents, before these are
+/// known.
 ///
 /// # Errors
 /// [`Error::InTheWay`], [`Error::File`].
@@ -122,7 +126,8 @@ pub fn check_absent(path: &Path, existing: Existing) -> Result<()> {
     refuse(&[("", Standing::at(path)?)], existing, |_, _| Some(Whose::Kept))
 }
 
-/// Refuses to write over what was read: `inputs` by name and SHA-256, `files` as [`write_together`] takes them.
+/// Refuses to write over what was read: `inputs` by name and SHA-256, `files` as [`write_together`]
+/// takes them.
 ///
 /// # Errors
 /// [`Error::InTheWay`].

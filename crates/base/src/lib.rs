@@ -1,8 +1,10 @@
 //! The ground floor of rodcal: what knows nothing of rods and robots.
 //!
-//! - [`error`]: the one error type · [`files`]: text in, whole files out · [`units`]: SI inside, these at the boundary
+//! - [`error`]: the one error type · [`files`]: text in, whole files out · [`units`]: SI inside,
+//!   these at the boundary
 //! - [`delimited`], [`toml_text`]: tables and TOML whose errors name file, line and column
-//! - [`linalg`], [`least_squares`], [`linear_program`], [`dual`], [`spatial`], [`statistics`]: numbers
+//! - [`linalg`], [`least_squares`], [`linear_program`], [`dual`], [`spatial`], [`statistics`]:
+//!   numbers
 //! - [`parallel`]: jobs side by side whose results do not depend on it
 
 pub mod delimited;

@@ -1,8 +1,9 @@
-//! Dense decompositions for least squares: QR (of rows that arrive in pieces, too), thin SVD, rank and condition
-//! number. All of them run on the calling thread, so that the same input gives the same bytes.
+//! Dense decompositions for least squares: QR (of rows that arrive in pieces, too), thin SVD, rank
+//! and condition number. All of them run on the calling thread, so that the same input gives the
+//! same bytes.
 //!
-//! The only file that names faer. Matrices come in and go out as nalgebra's; both libraries store columns one
-//! after the other, so faer reads them in place.
+//! The only file that names faer. Matrices come in and go out as nalgebra's; both libraries store
+//! columns one after the other, so faer reads them in place.
 
 use std::ops::Range;
 
@@ -15,7 +16,8 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::error::{Error, Result};
 
-/// Singular value decomposition A = U·diag(σ)·Vᵀ of an m × n matrix, thin: k = min(m, n) columns in U and V.
+/// Singular value decomposition A = U·diag(σ)·Vᵀ of an m × n matrix, thin: k = min(m, n) columns in
+/// U and V.
 #[derive(Debug, Clone)]
 pub struct Svd {
     /// Left singular vectors, m × k, orthonormal columns.
@@ -29,8 +31,9 @@ pub struct Svd {
 impl Svd {
     /// Number of singular values above `tolerance · σ₁`; 0 for a matrix of zeros.
     ///
-    /// [`rounding_tolerance`] is the tolerance for a matrix known to the last digit; one that was measured or
-    /// differenced deserves a larger one (Golub & Van Loan, *Matrix Computations*, 4th ed., §5.4.1).
+    /// [`rounding_tolerance`] is the tolerance for a matrix known to the last digit; one that was
+    /// measured or differenced deserves a larger one (Golub & Van Loan, *Matrix Computations*, 4th
+    /// ed., §5.4.1).
     pub fn rank(&self, tolerance: f64) -> usize {
         let largest = self.singular_values.iter().fold(0.0, |a: f64, &b| a.max(b));
         self.singular_values.iter().filter(|&&s| s > tolerance * largest).count()
@@ -77,7 +80,8 @@ pub fn thin_svd(a: &DMatrix<f64>) -> Result<Svd> {
 
 /// The n × x that minimises ‖A·x − b‖, for an m × n matrix A of full column rank.
 ///
-/// Columns are first brought to norm 1, so that their units do not matter, then A·P = Q·R with column pivoting.
+/// Columns are first brought to norm 1, so that their units do not matter, then A·P = Q·R with
+/// column pivoting.
 ///
 /// # Errors
 /// [`Error::Numerical`] where A has fewer rows than columns, lacks full rank (a pivot below
@@ -115,8 +119,8 @@ pub fn transposed_product(a: &DMatrix<f64>, b: &DMatrix<f64>) -> DMatrix<f64> {
     product
 }
 
-/// A⁻¹ and ln|A| of a symmetric matrix, of which the lower triangle counts, by Cholesky's decomposition; `None` where it is
-/// not positive definite.
+/// A⁻¹ and ln|A| of a symmetric matrix, of which the lower triangle counts, by Cholesky's
+/// decomposition; `None` where it is not positive definite.
 pub fn positive_definite_inverse(a: &DMatrix<f64>) -> Option<(DMatrix<f64>, f64)> {
     /// From here on faer's blocks are faster.
     const LARGE: usize = 24;
@@ -190,8 +194,8 @@ pub fn rank(a: &DMatrix<f64>, tolerance: f64) -> Result<usize> {
 
 /// The upper triangle R (n × n) and the vector Qᵀb (n) of the thin decomposition A = Q·R.
 ///
-/// With them ‖A·x − b‖² = ‖R·x − Qᵀb‖² + a constant, for every x. An A with fewer rows than columns is continued
-/// with rows of zeros.
+/// With them ‖A·x − b‖² = ‖R·x − Qᵀb‖² + a constant, for every x. An A with fewer rows than columns
+/// is continued with rows of zeros.
 ///
 /// # Errors
 /// [`Error::Numerical`] where an entry is not finite.
@@ -210,10 +214,12 @@ pub fn triangular(a: &DMatrix<f64>, b: &DVector<f64>) -> Result<(DMatrix<f64>, D
     Ok((both.view((0, 0), (n, n)).into_owned(), both.view((0, n), (n, 1)).column(0).into_owned()))
 }
 
-/// Rows of a tall matrix A, reduced to the triangle R of A = Q·R while they arrive, in the memory of a few hundred.
+/// Rows of a tall matrix A, reduced to the triangle R of A = Q·R while they arrive, in the memory
+/// of a few hundred.
 ///
-/// When the store is full, its rows give way to their triangle, on which the next ones are stacked: [R; Aₖ] → R
-/// (Lawson & Hanson, *Solving Least Squares Problems*, 1974, ch. 27). A matrix that fits the store takes one QR.
+/// When the store is full, its rows give way to their triangle, on which the next ones are stacked:
+/// [R; Aₖ] → R (Lawson & Hanson, *Solving Least Squares Problems*, 1974, ch. 27). A matrix that
+/// fits the store takes one QR.
 pub struct RowReduction {
     /// Column after column; rows from `filled` on are free.
     store: DMatrix<f64>,
@@ -245,8 +251,8 @@ impl RowReduction {
         self.filled = 0;
     }
 
-    /// Adds `count` finite rows. `fill(range, column, entries)` writes the entries of one column in the rows
-    /// `range`, counted from the first of these.
+    /// Adds `count` finite rows. `fill(range, column, entries)` writes the entries of one column in
+    /// the rows `range`, counted from the first of these.
     pub fn push(&mut self, count: usize, mut fill: impl FnMut(Range<usize>, usize, &mut [f64])) {
         let capacity = self.store.nrows();
         let mut done = 0;
@@ -295,8 +301,8 @@ impl RowReduction {
     }
 }
 
-/// Reflections applied at once: faer's recommendation for the triangle. That for the tall matrix, which goes by its
-/// area, is slower.
+/// Reflections applied at once: faer's recommendation for the triangle. That for the tall matrix,
+/// which goes by its area, is slower.
 fn block_size(columns: usize) -> usize {
     factor::recommended_block_size::<f64>(columns, columns)
 }
@@ -307,7 +313,8 @@ pub fn column_norms(a: &DMatrix<f64>) -> DVector<f64> {
     DVector::from_iterator(a.ncols(), a.column_iter().map(|c| norm_or_one(c.norm())))
 }
 
-/// A with every column divided by its Euclidean norm, and the norms. A column of zeros stays, with norm 1.
+/// A with every column divided by its Euclidean norm, and the norms. A column of zeros stays, with
+/// norm 1.
 pub fn with_unit_columns(a: &DMatrix<f64>) -> (DMatrix<f64>, DVector<f64>) {
     let norms = column_norms(a);
     (DMatrix::from_fn(a.nrows(), a.ncols(), |i, j| a[(i, j)] / norms[j]), norms)
@@ -372,7 +379,8 @@ mod tests {
 
     #[test]
     fn the_condition_of_the_hilbert_matrix_is_the_published_one() {
-        // cond₂(H₅) = 4.76607e5: Higham, Accuracy and Stability of Numerical Algorithms, 2nd ed., ch. 28
+        // cond₂(H₅) = 4.76607e5: Higham, Accuracy and Stability of Numerical Algorithms, 2nd ed.,
+        // ch. 28
         assert!((condition_number(&hilbert(5)).unwrap() / 4.76607e5 - 1.0).abs() < 1e-5);
         assert_eq!(condition_number(&DMatrix::zeros(2, 2)).unwrap(), f64::INFINITY);
     }

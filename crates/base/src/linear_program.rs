@@ -1,5 +1,5 @@
-//! Small linear programs: the best point of a polytope, by the simplex method in dictionary form with Bland's rule
-//! (R. G. Bland, *Math. Oper. Res.* 2 (1977) 103–107), which does not cycle.
+//! Small linear programs: the best point of a polytope, by the simplex method in dictionary form
+//! with Bland's rule (R. G. Bland, *Math. Oper. Res.* 2 (1977) 103–107), which does not cycle.
 
 use nalgebra::DMatrix;
 
@@ -8,8 +8,8 @@ const NOTHING: f64 = 1e-11;
 /// Many more pivots than any program of a hundred rows takes.
 const MOST_PIVOTS: usize = 10_000;
 
-/// The x within `low` and `high` (both finite) with the smallest c·x among those with A·x ≤ b; `None` where there is none.
-/// Meant for coefficients of the size of 1.
+/// The x within `low` and `high` (both finite) with the smallest c·x among those with A·x ≤ b;
+/// `None` where there is none. Meant for coefficients of the size of 1.
 ///
 /// ```
 /// use nalgebra::dmatrix;
@@ -41,8 +41,9 @@ pub fn minimise(c: &[f64], a: &DMatrix<f64>, b: &[f64], low: &[f64], high: &[f64
     Some((0..n).map(|j| low[j] + program.value(j)).collect())
 }
 
-/// Basic variables by the others: `basic[i] = right[i] − Σ rows[i][j]·free[j]`; what is maximised is Σ gains[j]·free[j] and
-/// a constant. Variables 0 to n − 1 are y, those after them the slacks of the rows.
+/// Basic variables by the others: `basic[i] = right[i] − Σ rows[i][j]·free[j]`; what is maximised
+/// is Σ gains[j]·free[j] and a constant. Variables 0 to n − 1 are y, those after them the slacks of
+/// the rows.
 struct Dictionary {
     rows: Vec<Vec<f64>>,
     right: Vec<f64>,

@@ -1,7 +1,7 @@
 //! Which of very many measurements to make: exact designs of distinct measurements.
 //!
-//! A measurement says of m unknowns what its three rows J of the Jacobian say; with Λ known beforehand, those that are
-//! chosen say
+//! A measurement says of m unknowns what its three rows J of the Jacobian say; with Λ known
+//! beforehand, those that are chosen say
 //!
 //! ```text
 //! M = Λ + Σ JᵀJ        P = M⁻¹, the covariance of the unknowns
@@ -11,11 +11,13 @@
 //! - [`Criterion`]: what M shall be good for
 //! - [`choose`]: so many distinct ones of each group
 //!
-//! The choice grows one by one by the largest gain (H. P. Wynn, *Ann. Math. Statist.* 41 (1970) 1655–1664), with gains
-//! that are computed again only where they may be the largest (M. Minoux, *Optimization Techniques* (1978) 234–243). Then
-//! single measurements are exchanged for others of their group as long as that is better (V. V. Fedorov, *Theory of
-//! Optimal Experiments* (1972)), by updates of rank three. Where there is little to choose from, it begins from other
-//! choices too. Of equal gains the later measurement counts, so that nothing depends on chance.
+//! The choice grows one by one by the largest gain (H. P. Wynn, *Ann. Math. Statist.* 41 (1970)
+//! 1655–1664), with gains that are computed again only where they may be the largest (M.
+//! Minoux, *Optimization
+//! Techniques* (1978) 234–243). Then single measurements are exchanged for others of their group as
+//! long as that is better (V. V. Fedorov, *Theory of Optimal Experiments* (1972)), by updates of
+//! rank three. Where there is little to choose from, it begins from other choices too. Of equal
+//! gains the later measurement counts, so that nothing depends on chance.
 
 mod criterion;
 mod exchange;
@@ -36,9 +38,10 @@ use crate::statistics::Random;
 const FEW: usize = 5_000;
 const BEGINNINGS: usize = 24;
 
-/// `quotas[g]` distinct measurements of each group g, in ascending order: those that `criterion` takes for best as far as
-/// exchanging single ones finds them. `before` is Λ, positive definite. `None` where it is not, or where a group has too few.
-/// `progress` is called whenever one more was taken or held against all others of its group.
+/// `quotas[g]` distinct measurements of each group g, in ascending order: those that `criterion`
+/// takes for best as far as exchanging single ones finds them. `before` is Λ, positive definite.
+/// `None` where it is not, or where a group has too few. `progress` is called whenever one more was
+/// taken or held against all others of its group.
 ///
 /// ```
 /// use nalgebra::{DMatrix, Matrix3xX, RowDVector};

@@ -4,8 +4,9 @@ use rayon::prelude::*;
 
 /// `job(0)`, `job(1)`, … `job(count − 1)`, in this order, worked on by all processors.
 ///
-/// The results are the same for every number of threads if each job depends on its index alone; one that needs random
-/// numbers takes the stream of its index ([`Random::seeded`](crate::statistics::Random::seeded)). A job may itself call this.
+/// The results are the same for every number of threads if each job depends on its index alone; one
+/// that needs random numbers takes the stream of its index
+/// ([`Random::seeded`](crate::statistics::Random::seeded)). A job may itself call this.
 pub fn in_parallel<T: Send>(count: usize, job: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
     (0..count).into_par_iter().map(job).collect()
 }

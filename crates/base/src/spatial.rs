@@ -26,7 +26,8 @@ pub struct Direction {
     pub sign: i8,
 }
 
-/// A frame: rotation matrix and origin. Columns of the rotation are its axes in the frame it is given in.
+/// A frame: rotation matrix and origin. Columns of the rotation are its axes in the frame it is
+/// given in.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pose {
     /// Axes of the frame, as columns.
@@ -86,7 +87,8 @@ impl Pose {
         origin: Vector3::new(0.0, 0.0, 0.0),
     };
 
-    /// From position (m) and `[roll, pitch, yaw]` (rad): Rz(yaw)·Ry(pitch)·Rx(roll), the URDF convention.
+    /// From position (m) and `[roll, pitch, yaw]` (rad): Rz(yaw)·Ry(pitch)·Rx(roll), the URDF
+    /// convention.
     pub fn from_xyz_rpy(xyz: [f64; 3], rpy: [f64; 3]) -> Self {
         let [r, p, y] = rpy;
         let yawed = turned_about_z(&Matrix3::identity(), y.sin_cos());
@@ -119,9 +121,9 @@ impl Pose {
     }
 }
 
-/// The motion that brings points `from` closest to as many points `to`, in the sense of least squares: with the singular value
-/// decomposition U·S·Vᵀ of Σ (y − ȳ)(x − x̄)ᵀ its rotation is U·diag(1, 1, ±1)·Vᵀ (W. Kabsch, *Acta Cryst.* A32 (1976)
-/// 922–923).
+/// The motion that brings points `from` closest to as many points `to`, in the sense of least
+/// squares: with the singular value decomposition U·S·Vᵀ of Σ (y − ȳ)(x − x̄)ᵀ its rotation is
+/// U·diag(1, 1, ±1)·Vᵀ (W. Kabsch, *Acta Cryst.* A32 (1976) 922–923).
 ///
 /// # Errors
 /// As [`thin_svd`]: for points that are not finite.
@@ -181,7 +183,8 @@ pub fn turned_about_y(r: &Matrix3<f64>, turn: (f64, f64)) -> Matrix3<f64> {
     with_turned_columns::<2, 0>(r, turn)
 }
 
-/// Column a·c + b·s in the place of a, and b·c − a·s in that of b: in plain numbers, for kinematics do little else.
+/// Column a·c + b·s in the place of a, and b·c − a·s in that of b: in plain numbers, for kinematics
+/// do little else.
 fn with_turned_columns<const A: usize, const B: usize>(r: &Matrix3<f64>, (s, c): (f64, f64)) -> Matrix3<f64> {
     let mut turned = *r;
     let (a, b) = (r.data.0[A], r.data.0[B]);
@@ -208,7 +211,8 @@ pub fn rotated<T: Number>(tensor: &Matrix3<T>, rotation: &Rotation3<T>) -> Matri
     product(&product(rotation.matrix(), tensor), &rotation.matrix().transpose())
 }
 
-/// `a·b` written out: in loops over very many small matrices that is five times as fast, and the same to the last bit.
+/// `a·b` written out: in loops over very many small matrices that is five times as fast, and the
+/// same to the last bit.
 #[inline]
 pub fn product<T: Number>(a: &Matrix3<T>, b: &Matrix3<T>) -> Matrix3<T> {
     let column = |j: usize| {

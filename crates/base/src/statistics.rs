@@ -20,8 +20,8 @@ pub use statrs::function::gamma::ln_gamma;
 
 use crate::error::{Error, Result};
 
-/// Factor that makes the median absolute deviation of normal data estimate their standard deviation:
-/// 1/Φ⁻¹(3/4), here to full precision (quoted as 1.4826).
+/// Factor that makes the median absolute deviation of normal data estimate their standard
+/// deviation: 1/Φ⁻¹(3/4), here to full precision (quoted as 1.4826).
 pub const MAD_TO_SD: f64 = 1.482_602_218_505_602;
 
 /// The t below which Student's t with `dof` degrees of freedom falls with the probability `p`.
@@ -35,7 +35,8 @@ pub fn student_t_quantile(p: f64, dof: f64) -> Result<f64> {
     if tail == 0.5 {
         return Ok(0.0);
     }
-    // bracket the upper tail, then bisect: log-scale halving reaches the last digit for every tail and dof
+    // bracket the upper tail, then bisect: log-scale halving reaches the last digit for every tail
+    // and dof
     let upper = |t: f64| 0.5 * two_sided(t, dof);
     let (mut low, mut high) = (f64::MIN_POSITIVE, 1.0);
     while upper(high) > tail && high < f64::MAX / 2.0 {
@@ -53,9 +54,11 @@ pub fn student_t_quantile(p: f64, dof: f64) -> Result<f64> {
     Ok(if p < 0.5 { -t } else { t })
 }
 
-/// Probability that Student's t with `dof` degrees of freedom lies farther from 0 than `t`, on either side.
+/// Probability that Student's t with `dof` degrees of freedom lies farther from 0 than `t`, on
+/// either side.
 ///
-/// P(|T| > |t|) = I(ν/2, ½; ν/(ν + t²)), the regularised incomplete beta function (Abramowitz & Stegun 26.7.1).
+/// P(|T| > |t|) = I(ν/2, ½; ν/(ν + t²)), the regularised incomplete beta function (Abramowitz &
+/// Stegun 26.7.1).
 ///
 /// # Errors
 /// [`Error::Argument`] unless dof > 0 and t is a number.
@@ -67,7 +70,8 @@ pub fn student_t_two_sided_p(t: f64, dof: f64) -> Result<f64> {
 
 /// Probability that F with (`dof_1`, `dof_2`) degrees of freedom exceeds `f`.
 ///
-/// P(F > f) = I(ν₂/2, ν₁/2; ν₂/(ν₂ + ν₁·f)) (Abramowitz & Stegun 26.6.2); accurate far into the tail.
+/// P(F > f) = I(ν₂/2, ν₁/2; ν₂/(ν₂ + ν₁·f)) (Abramowitz & Stegun 26.6.2); accurate far into the
+/// tail.
 ///
 /// # Errors
 /// [`Error::Argument`] unless both degrees of freedom are > 0 and f is a number.
@@ -84,7 +88,8 @@ pub fn f_survival(f: f64, dof_1: f64, dof_2: f64) -> Result<f64> {
 
 /// Probability that χ² with `dof` degrees of freedom exceeds `x`.
 ///
-/// P(χ² > x) = Q(ν/2, x/2), the regularised upper incomplete gamma function (Abramowitz & Stegun 26.4.19).
+/// P(χ² > x) = Q(ν/2, x/2), the regularised upper incomplete gamma function (Abramowitz & Stegun
+/// 26.4.19).
 ///
 /// # Errors
 /// [`Error::Argument`] unless dof > 0 and x is a number.
@@ -131,8 +136,8 @@ pub fn standard_deviation(values: &[f64]) -> Option<f64> {
     Some((sum / (values.len() - 1) as f64).sqrt())
 }
 
-/// The value below which the fraction `p` of the values lies, with linear interpolation between order statistics:
-/// definition 7 of Hyndman & Fan, *The American Statistician* 50 (1996) 361–365.
+/// The value below which the fraction `p` of the values lies, with linear interpolation between
+/// order statistics: definition 7 of Hyndman & Fan, *The American Statistician* 50 (1996) 361–365.
 ///
 /// `None` for no values, a NaN among them, or p outside [0, 1].
 pub fn quantile(values: &[f64], p: f64) -> Option<f64> {
@@ -159,7 +164,8 @@ pub fn median(values: &[f64]) -> Option<f64> {
 
 /// Standard deviation by the median absolute deviation: [`MAD_TO_SD`] · median |x − median x|.
 ///
-/// Up to half of the values may be wrong without ruining it. `None` for no values or a NaN among them.
+/// Up to half of the values may be wrong without ruining it. `None` for no values or a NaN among
+/// them.
 pub fn mad(values: &[f64]) -> Option<f64> {
     let middle = median(values)?;
     let deviations: Vec<f64> = values.iter().map(|x| (x - middle).abs()).collect();

@@ -1,4 +1,5 @@
-//! TOML files whose every error names file, line and column, what stood there and what would be right.
+//! TOML files whose every error names file, line and column, what stood there and what would be
+//! right.
 
 mod text;
 mod wording;

@@ -1,7 +1,8 @@
 //! SI inside; the constants and conversions of the boundary.
 //!
-//! Every quantity inside the library is an SI `f64`. Keys of files, columns and JSON carry their unit
-//! as a suffix, and these factors turn one into the other: `metres = value_mm * MM`, `value_mm = metres / MM`.
+//! Every quantity inside the library is an SI `f64`. Keys of files, columns and JSON carry their
+//! unit as a suffix, and these factors turn one into the other: `metres = value_mm * MM`,
+//! `value_mm = metres / MM`.
 
 /// One g along an axis, m/s²: the standard acceleration of gravity (3rd CGPM, 1901), exact.
 pub const STANDARD_GRAVITY: f64 = 9.80665;
@@ -21,9 +22,11 @@ pub const URAD: f64 = 1e-6;
 /// µrad/(N·m) in rad/(N·m).
 pub const URAD_PER_NM: f64 = 1e-6;
 
-/// Shows a number with `digits` significant digits, without an exponent where a reader would not expect one.
+/// Shows a number with `digits` significant digits, without an exponent where a reader would not
+/// expect one.
 ///
-/// `significant(0.0123456, 3)` is "0.0123"; `significant(1234.6, 3)` is "1235" (digits before the point are kept).
+/// `significant(0.0123456, 3)` is "0.0123"; `significant(1234.6, 3)` is "1235" (digits before the
+/// point are kept).
 pub fn significant(value: f64, digits: usize) -> String {
     if value == 0.0 {
         return "0".into();

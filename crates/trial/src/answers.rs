@@ -1,5 +1,5 @@
-//! Answers: one line of JSON for each case, in any order. A line is whole or it is not there; files of answers from several
-//! machines are merged by concatenation.
+//! Answers: one line of JSON for each case, in any order. A line is whole or it is not there; files
+//! of answers from several machines are merged by concatenation.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -20,12 +20,14 @@ pub struct Answer {
     pub answer: Value,
     /// SHA-256 of the files that it saw, by name.
     pub sha256: BTreeMap<String, String>,
-    /// What would be read where `asked.csv` asks, in its order, µm; nothing where it does not, or where there is no answer.
+    /// What would be read where `asked.csv` asks, in its order, µm; nothing where it does not, or
+    /// where there is no answer.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub asked_um: Option<Vec<f64>>,
 }
 
-/// The answers that are there, none where there is no file; half a line at the end, of a run that was cut off, is dropped.
+/// The answers that are there, none where there is no file; half a line at the end, of a run that
+/// was cut off, is dropped.
 ///
 /// # Errors
 /// [`Error::File`], [`Error::Syntax`], [`Error::Input`] for a case with two different answers.

@@ -43,7 +43,8 @@ use crate::{Half, Source};
 use rodcal_base::statistics::Random;
 use rodcal_base::units::UM;
 
-/// Streams of random numbers that the rig does not use: of the cases, and of what came later than these.
+/// Streams of random numbers that the rig does not use: of the cases, and of what came later than
+/// these.
 const STREAM: u64 = 1 << 32;
 const ASKED: u64 = 4 << 32;
 const AGAIN: u64 = 5 << 32;
@@ -60,7 +61,8 @@ const SHARES: [(Kind, f64); 5] = [
 const BELOW: (f64, f64) = (0.3, 0.1);
 /// Multiples of its detection limit from which an effect of several is drawn, and unknown physics.
 const FAINTEST: [f64; 2] = [3.0, 2.0];
-/// So often an effect is drawn anew until its detection limit is below this share of its largest size.
+/// So often an effect is drawn anew until its detection limit is below this share of its largest
+/// size.
 const DRAWN: usize = 5;
 const SEEN: f64 = 0.25;
 /// Multiples of its detection limit of an effect that another one imitates.

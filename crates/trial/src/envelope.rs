@@ -11,8 +11,9 @@
 //! DIR.key.jsonl                  the key: one line for each case
 //! ```
 //!
-//! Whoever answers sees DIR alone. Whoever scores compares the hashes, so that neither the key nor a recording can have been
-//! changed since. The seed decides everything: draw one that nobody guesses and keep it with the key.
+//! Whoever answers sees DIR alone. Whoever scores compares the hashes, so that neither the key nor
+//! a recording can have been changed since. The seed decides everything: draw one that nobody
+//! guesses and keep it with the key.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -64,8 +65,8 @@ pub fn default_key(directory: &Path) -> Result<PathBuf> {
 /// Draws cases by number and seals them; `made` is called after each.
 ///
 /// # Errors
-/// [`Error::Argument`] where the key would be in the trial's directory; [`Error::InTheWay`] where a trial or a key is
-/// there already; [`Error::File`].
+/// [`Error::Argument`] where the key would be in the trial's directory; [`Error::InTheWay`] where a
+/// trial or a key is there already; [`Error::File`].
 pub fn make(
     directory: &Path,
     key: &Path,

@@ -45,8 +45,8 @@ use rodcal_base::units::{MM, UM};
 /// Load, relative to the nominal one, at which a rod is linear.
 const SMALL: f64 = 1e-3;
 
-/// Streams of random numbers for what came later than the cases: what is asked for, and what is measured once more. Those
-/// of the cases are their numbers, of a rig's and of a calibration's.
+/// Streams of random numbers for what came later than the cases: what is asked for, and what is
+/// measured once more. Those of the cases are their numbers, of a rig's and of a calibration's.
 const ASKED: u64 = 2 << 32;
 const AGAIN: u64 = 3 << 32;
 

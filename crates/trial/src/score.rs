@@ -1,7 +1,8 @@
 //! The score of a trial: what was said, beside what was concealed and what could have been known.
 //!
-//! An effect counts as identifiable where the oracle's expected log Bayes factor is 5 or more against nothing and against
-//! the best other effect. Rates have Wilson's 95 % intervals; nothing depends on the order of the answers.
+//! An effect counts as identifiable where the oracle's expected log Bayes factor is 5 or more
+//! against nothing and against the best other effect. Rates have Wilson's 95 % intervals; nothing
+//! depends on the order of the answers.
 
 mod counterfactual;
 mod data;
@@ -53,8 +54,8 @@ impl Sealed {
 /// Reads the key and the answers to the trial in `directory`.
 ///
 /// # Errors
-/// [`Error::Input`] for a key, a recording or an answer that does not belong to this trial; [`Error::File`],
-/// [`Error::Syntax`].
+/// [`Error::Input`] for a key, a recording or an answer that does not belong to this trial;
+/// [`Error::File`], [`Error::Syntax`].
 pub fn open(directory: &Path, key: &Path, answers: &Path) -> Result<Sealed> {
     let manifest = Manifest::read(directory)?;
     let truths = manifest.read_key(key)?;

@@ -36,12 +36,15 @@ pub struct Truth {
     pub protocol: String,
     /// Joints that the rod file declares, and where, mm.
     pub joints: BTreeMap<String, f64>,
-    /// Root mean square of what large deflection adds to the linear rod, µm: no effect, but no noise either.
+    /// Root mean square of what large deflection adds to the linear rod, µm: no effect, but no
+    /// noise either.
     pub geometric_um: f64,
-    /// Share of the held-out squares that goes once the effects are known, 1 − noise²/(noise² + effects²), the noise with
-    /// that of the zero; `None` where there is nothing to gain: no effect, or one that a single run has.
+    /// Share of the held-out squares that goes once the effects are known, 1 − noise²/(noise² +
+    /// effects²), the noise with that of the zero; `None` where there is nothing to gain: no
+    /// effect, or one that a single run has.
     pub oracle_gain: Option<f64>,
-    /// Seed of the trial, from which whoever scores makes the case once more. A key of before has none.
+    /// Seed of the trial, from which whoever scores makes the case once more. A key of before has
+    /// none.
     #[serde(default)]
     pub seed: Option<u64>,
     /// Residuals of a real recording from which the noise was drawn; empty where it was computed.
@@ -52,15 +55,18 @@ pub struct Truth {
     pub asked: Option<Asked>,
 }
 
-/// Readings, or coordinates x, y, z of balls, that are asked for and not given, in the order of the file that asks, µm.
+/// Readings, or coordinates x, y, z of balls, that are asked for and not given, in the order of the
+/// file that asks, µm.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Asked {
     /// What would be read without noise.
     pub true_um: Vec<f64>,
-    /// What an oracle says that knows the law and the place of every effect and finds its size out from the recording; `None`
-    /// where there is no such size: no effect, one of a single run, or physics that no library has.
+    /// What an oracle says that knows the law and the place of every effect and finds its size out
+    /// from the recording; `None` where there is no such size: no effect, one of a single run, or
+    /// physics that no library has.
     pub oracle_um: Option<Vec<f64>>,
-    /// True for points in a frame that nobody knows: they are compared after the best motion of all of them.
+    /// True for points in a frame that nobody knows: they are compared after the best motion of all
+    /// of them.
     #[serde(default)]
     pub is_any_frame: bool,
 }
@@ -135,7 +141,8 @@ pub struct Parameter {
     pub with_numbers: Option<f64>,
 }
 
-/// Expected log Bayes factors of an oracle that knows the readings without noise, natural logarithms.
+/// Expected log Bayes factors of an oracle that knows the readings without noise, natural
+/// logarithms.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Detectability {
     /// Against nothing being wrong.

@@ -73,8 +73,8 @@ impl Campaign {
         Reader { file, toml, open, warnings: Vec::new(), is_plan: false }.campaign(&raw)
     }
 
-    /// Reads a campaign that may not have been recorded yet: `measurements` and `validation` may be missing, or name files that
-    /// do not exist. What is not there is empty.
+    /// Reads a campaign that may not have been recorded yet: `measurements` and `validation` may be
+    /// missing, or name files that do not exist. What is not there is empty.
     ///
     /// ```
     /// use rodcal::prelude::*;

@@ -5,8 +5,9 @@ use std::collections::BTreeMap;
 use super::{Distance, Group, Recording, Targets};
 
 impl Recording {
-    /// Gives the sockets of the rows that `is_moved` names new ones, as whose place nobody knows: `front/0` becomes
-    /// `front from row 42/0`. Distances within a plate that moved as a whole (`keeps_distances`) stay known.
+    /// Gives the sockets of the rows that `is_moved` names new ones, as whose place nobody knows:
+    /// `front/0` becomes `front from row 42/0`. Distances within a plate that moved as a whole
+    /// (`keeps_distances`) stay known.
     pub fn rename_groups(&mut self, is_moved: &dyn Fn(usize) -> bool, from: &str, keeps_distances: bool) {
         let mut renamed: BTreeMap<usize, usize> = BTreeMap::new();
         for row in 0..self.rows.len() {

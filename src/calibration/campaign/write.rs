@@ -124,8 +124,8 @@ impl Campaign {
 }
 
 impl Recording {
-    /// The CSV file of a recording with `robot`, with comments above it: each position in its clamp's
-    /// frame and at its own station, as it was measured.
+    /// The CSV file of a recording with `robot`, with comments above it: each position in its
+    /// clamp's frame and at its own station, as it was measured.
     pub fn to_csv(&self, robot: &Robot, above: &[String]) -> String {
         let mut text: String = above.iter().map(|line| format!("# {line}\n")).collect();
         let has_clamps = self.groups.iter().any(|group| group.name.starts_with("clamp "));

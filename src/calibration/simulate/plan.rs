@@ -9,7 +9,8 @@ pub struct Plan {
     pub seed: u64,
     /// Poses on every clamp.
     pub poses_per_clamp: usize,
-    /// Poses in place of chosen ones: index of the clamp and joint values, rad or m; empty to choose.
+    /// Poses in place of chosen ones: index of the clamp and joint values, rad or m; empty to
+    /// choose.
     pub planned: Vec<(usize, Vec<f64>)>,
     /// Poses of the validation.
     pub validation_poses: usize,

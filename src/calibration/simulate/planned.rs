@@ -11,11 +11,12 @@ use crate::robot::{Kinematics, Robot, Setup};
 use crate::statistics::Random;
 use crate::units::{MM, significant};
 
-/// Farthest from its clamp that the ball may be in a planned pose, m: what a nominal robot misses by, and more.
+/// Farthest from its clamp that the ball may be in a planned pose, m: what a nominal robot misses
+/// by, and more.
 const NEAR: f64 = 30.0 * MM;
 
-/// The poses of a table (CSV) with the column `clamp` (1 to 5) and joint columns, as `design poses` writes it: index of the clamp
-/// and joint values, rad or m.
+/// The poses of a table (CSV) with the column `clamp` (1 to 5) and joint columns, as `design poses`
+/// writes it: index of the clamp and joint values, rad or m.
 ///
 /// ```
 /// use rodcal::calibration::simulate::planned_poses;
@@ -44,8 +45,8 @@ pub fn planned_poses(robot: &Robot, file: &str, text: &str) -> Result<Vec<(usize
     table.rows().zip(queries).map(|(cells, query)| Ok((clamp(cells)?, query.joints))).collect()
 }
 
-/// The poses as the true robot takes them: the ball is brought from where it would be to its clamp, as somebody at the robot
-/// would do.
+/// The poses as the true robot takes them: the ball is brought from where it would be to its clamp,
+/// as somebody at the robot would do.
 pub(super) fn taken(truth: &Setup, groups: &[Group], plan: &Plan) -> Result<Vec<(usize, Vec<f64>)>> {
     let mut kinematics = Kinematics::new(truth);
     let mut random = Random::seeded(plan.seed, 1);

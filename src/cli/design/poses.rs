@@ -42,8 +42,8 @@ pub struct DesignPoses {
     /// prismatic joint: 17 times as many).
     #[arg(long, value_name = "ANGLE", default_value_t = 5.0, value_parser = angle)]
     change_deg: f64,
-    /// Height of the table in {W} in mm, or `none`: the arm stays 50 mm above it [default: that of the
-    /// base or of the lowest clamp].
+    /// Height of the table in {W} in mm, or `none`: the arm stays 50 mm above it [default: that of
+    /// the base or of the lowest clamp].
     #[arg(long, value_name = "HEIGHT", value_parser = table, allow_hyphen_values = true)]
     table_mm: Option<TableHeight>,
     /// How the rod's deflection will be known [default: meas with rig readings, else fea with a

@@ -19,11 +19,13 @@ use crate::cli::output::Outcome;
 pub struct Calibration {
     /// Campaign file (TOML): robot, rod, measurements. `docs/campaign-file.md` has its keys.
     campaign: PathBuf,
-    /// How the rod's deflection is known [default: meas with rig readings, else fea with a rod, else none].
+    /// How the rod's deflection is known [default: meas with rig readings, else fea with a rod,
+    /// else none].
     #[arg(long, ignore_case = true, value_enum)]
     mode: Option<ModeName>,
-    /// Also write the calibrated robot with what was found, for `calibrate`, `compare` and `predict`, for a URDF with a table of
-    /// corrections beside it; and the campaign without its mistakes, with all its files [without --out: in reports/diagnosed].
+    /// Also write the calibrated robot with what was found, for `calibrate`, `compare` and
+    /// `predict`, for a URDF with a table of corrections beside it; and the campaign without its
+    /// mistakes, with all its files [without --out: in reports/diagnosed].
     #[arg(long)]
     apply: bool,
 }

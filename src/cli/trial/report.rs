@@ -1,4 +1,5 @@
-//! The report of a trial: targets that are missed, rates, what was taken for what, and how large an effect must be.
+//! The report of a trial: targets that are missed, rates, what was taken for what, and how large an
+//! effect must be.
 
 use std::collections::BTreeSet;
 

@@ -4,8 +4,8 @@ use crate::calibration::{Campaign, Options, calibrate, default_mode};
 use crate::error::Result;
 use crate::units::{UM, significant};
 
-/// Noise of a displacement sensor and repeatability of the robot where nobody states them, m: the paper's sensors, and the
-/// data sheet of the TX90.
+/// Noise of a displacement sensor and repeatability of the robot where nobody states them, m: the
+/// paper's sensors, and the data sheet of the TX90.
 const SENSORS: f64 = 3.0 * UM;
 const REPEATABILITY: f64 = 30.0 * UM;
 
@@ -22,15 +22,16 @@ pub struct Budget {
     pub repeatability: f64,
     /// The same of the instrument that measures the unseen poses; 0 forecasts the robot itself.
     pub instrument: f64,
-    /// How many times farther from its drawing the robot is than its file's standard uncertainties say.
+    /// How many times farther from its drawing the robot is than its file's standard uncertainties
+    /// say.
     pub drawing_scale: f64,
     /// Every random number comes from it.
     pub seed: u64,
 }
 
 impl Budget {
-    /// Of a campaign: the noise that is given here, or that the file states, or that its recording shows, or else that of the
-    /// paper; `repeatability` (m) likewise.
+    /// Of a campaign: the noise that is given here, or that the file states, or that its recording
+    /// shows, or else that of the paper; `repeatability` (m) likewise.
     ///
     /// # Errors
     /// What the calibration of a recording refuses.
@@ -47,7 +48,8 @@ impl Budget {
         let um = |size: f64| significant(size / UM, 3);
         if let Some(noise) = noise.or(campaign.noise) {
             budget.noise = noise;
-            // a robot that repeats worse than what is measured of it would be no robot of that noise
+            // a robot that repeats worse than what is measured of it would be no robot of that
+            // noise
             budget.repeatability = repeatability.unwrap_or(REPEATABILITY.min(of_robot(noise)));
             budget.noise_source = format!("{} µm per coordinate, stated", um(noise));
             return Ok(budget);
@@ -80,7 +82,8 @@ impl Budget {
     }
 }
 
-/// Repeatability of a robot (rms of the distance) of which a coordinate is measured with this noise, but for the sensors.
+/// Repeatability of a robot (rms of the distance) of which a coordinate is measured with this
+/// noise, but for the sensors.
 fn of_robot(noise: f64) -> f64 {
     (3.0 * (noise.powi(2) - SENSORS.powi(2))).max(0.0).sqrt()
 }

@@ -1,7 +1,8 @@
 //! What a mode of compensation gets wrong of the rod's deflection.
 //!
-//! The best that is known of the rod is its readings on the rig, else the beam model. A mode is wrong by what it differs from
-//! that, and by what is not known of that: the standard error of r_rod, or the standard uncertainties of the rod file.
+//! The best that is known of the rod is its readings on the rig, else the beam model. A mode is
+//! wrong by what it differs from that, and by what is not known of that: the standard error of
+//! r_rod, or the standard uncertainties of the rod file.
 
 use nalgebra::Vector3;
 

@@ -35,7 +35,8 @@ pub enum Where {
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct Unseen {
-    /// ∂tip/∂parameter, three rows a pose, without what base and tool can take up where they are aligned anew.
+    /// ∂tip/∂parameter, three rows a pose, without what base and tool can take up where they are
+    /// aligned anew.
     pub slopes: DMatrix<f64>,
     /// Which poses, in words.
     pub words: String,
@@ -144,7 +145,8 @@ impl Unseen {
     }
 }
 
-/// Random postures within the joint limits, and above the height of the base where it stands upright on a table.
+/// Random postures within the joint limits, and above the height of the base where it stands
+/// upright on a table.
 fn within(setup: &Setup, volume: Option<(&[f64; 3], &[f64; 3])>, has_table: bool) -> Result<Vec<Vec<f64>>> {
     let mut random = Random::seeded(1, 6);
     let mut kinematics = Kinematics::new(setup);

@@ -68,8 +68,9 @@ impl Candidates {
     /// From a source, without those that break a limit or are like another one.
     ///
     /// # Errors
-    /// [`Error::NotApplicable`] for places that no posture reaches; [`Error::Input`] for a table without the robot's joint
-    /// columns, with a clamp that the campaign does not know, or without a pose that keeps the limits.
+    /// [`Error::NotApplicable`] for places that no posture reaches; [`Error::Input`] for a table
+    /// without the robot's joint columns, with a clamp that the campaign does not know, or without
+    /// a pose that keeps the limits.
     pub(super) fn new(
         around: &Surroundings,
         source: &Source,
@@ -84,7 +85,8 @@ impl Candidates {
         Ok(candidates)
     }
 
-    /// Leaves out what is nearer than `change` in every joint to a pose of the same place that stays.
+    /// Leaves out what is nearer than `change` in every joint to a pose of the same place that
+    /// stays.
     fn thin(&mut self, change: f64) {
         // equal poses are one pose, whatever change is asked for
         let change = change.max(1e-9);
@@ -213,8 +215,8 @@ fn why_not(around: &Surroundings, place: usize, tally: &Tally) -> String {
     format!("{name} is reached in {reached} of {} postures, but {}", tally.tried, broken.join(", "))
 }
 
-/// Poses of any table with the robot's joint columns. The column `clamp` names the place; without it a pose belongs to the place
-/// that its tip is nearest to.
+/// Poses of any table with the robot's joint columns. The column `clamp` names the place; without
+/// it a pose belongs to the place that its tip is nearest to.
 fn from_table(around: &Surroundings, file: &str, text: &str) -> Result<Candidates> {
     let robot = around.setup.robot;
     let queries = robot.poses_from_csv(file, text)?;

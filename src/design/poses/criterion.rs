@@ -13,9 +13,11 @@ pub enum PoseCriterion {
     O4,
     /// |M|: the geometric mean over all principal directions of what is left of the standard deviations before.
     D,
-    /// tr(M⁻¹) in units of what is known before: the root mean square of the same over all parameters.
+    /// tr(M⁻¹) in units of what is known before: the root mean square of the same over all
+    /// parameters.
     A,
-    /// The root mean square of the tip's error at unseen poses that noise and undetermined parameters make.
+    /// The root mean square of the tip's error at unseen poses that noise and undetermined
+    /// parameters make.
     Forecast,
 }
 
@@ -65,7 +67,8 @@ impl PoseCriterion {
         }
     }
 
-    /// From the exchange's value: `columns` unknowns, `count` poses, `constant` what ln |M| has of unknown places.
+    /// From the exchange's value: `columns` unknowns, `count` poses, `constant` what ln |M| has of
+    /// unknown places.
     pub(super) fn shown(self, value: f64, columns: usize, count: usize, constant: f64) -> f64 {
         let m = columns.max(1) as f64;
         match self {

@@ -1,4 +1,5 @@
-//! What a pose has to keep: joint limits, the clamp's reach, how the rod may stand, where no arm may be.
+//! What a pose has to keep: joint limits, the clamp's reach, how the rod may stand, where no arm
+//! may be.
 
 use nalgebra::Vector3;
 
@@ -18,10 +19,11 @@ const SAME: f64 = MM;
 /// Limits of poses beside those of the joints.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PoseLimits {
-    /// Largest angle between the rod at its ball and the axis of the clamp, rad. The axis is the direction of the contact force
-    /// (it pushes the ball out of the device), else upwards.
+    /// Largest angle between the rod at its ball and the axis of the clamp, rad. The axis is the
+    /// direction of the contact force (it pushes the ball out of the device), else upwards.
     pub cone: f64,
-    /// Radius of the block about every clamp that arm and rod stay out of, m; the ball's end of the rod may enter its own.
+    /// Radius of the block about every clamp that arm and rod stay out of, m; the ball's end of the
+    /// rod may enter its own.
     pub clear: f64,
     /// Least change of at least one joint between two poses of a clamp, rad or m.
     pub change: f64,
@@ -138,7 +140,8 @@ impl<'a> Surroundings<'a> {
         }
     }
 
-    /// Angle between the rod at its ball and the axis of a place, rad; 0 where nothing is on the flange.
+    /// Angle between the rod at its ball and the axis of a place, rad; 0 where nothing is on the
+    /// flange.
     pub fn angle(&self, kinematics: &Kinematics, place: usize) -> f64 {
         let [.., before, end] = self.rod.as_slice() else { return 0.0 };
         let along = kinematics.flange.rotation * (before - end);

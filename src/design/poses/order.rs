@@ -1,7 +1,7 @@
 //! The order in which poses are measured: from each to the nearest that is left.
 
-/// Sorts the poses of one clamp: it begins with the one nearest to the joints' zeros; a way is as long as the largest change
-/// of a joint. Of equally near ones the first comes first.
+/// Sorts the poses of one clamp: it begins with the one nearest to the joints' zeros; a way is as
+/// long as the largest change of a joint. Of equally near ones the first comes first.
 pub(super) fn sort(poses: &mut [Vec<f64>]) {
     let mut from = vec![0.0; poses.first().map_or(0, Vec::len)];
     for at in 0..poses.len() {

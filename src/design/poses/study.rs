@@ -16,7 +16,8 @@ use crate::error::{Error, Result};
 use crate::optimal_design::{Measurements, choose, value};
 use crate::robot::{Parameter, Setup};
 
-/// What is known before the first pose where a criterion knows nothing: a share of what all candidates say.
+/// What is known before the first pose where a criterion knows nothing: a share of what all
+/// candidates say.
 const FAINT: f64 = 1e-9;
 
 /// What is asked for.
@@ -61,7 +62,8 @@ pub struct PoseStudy<'c> {
     pub places: Vec<Group>,
     /// What there was to choose from.
     pub candidates: Candidates,
-    /// Index of the place and joint values (rad or m), place after place, in the order in which they are best measured.
+    /// Index of the place and joint values (rad or m), place after place, in the order in which
+    /// they are best measured.
     pub chosen: Vec<(usize, Vec<f64>)>,
     /// Value of the criterion.
     pub value: f64,
@@ -86,8 +88,8 @@ pub struct PoseStudy<'c> {
 }
 
 impl<'c> PoseStudy<'c> {
-    /// Chooses poses for a campaign. `progress` is called for every candidate that is looked at, and then for every pose that is
-    /// taken or held against the others.
+    /// Chooses poses for a campaign. `progress` is called for every candidate that is looked at,
+    /// and then for every pose that is taken or held against the others.
     ///
     /// ```
     /// use rodcal::design::{Budget, PoseCriterion, PoseLimits, PoseStudy, Source, Wanted, Where};
@@ -111,8 +113,9 @@ impl<'c> PoseStudy<'c> {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Argument`] for fewer poses than a calibration needs; [`Error::NotApplicable`] for places that no pose reaches, or
-    /// that have fewer candidates than poses; what candidates and forecast are refused for.
+    /// [`Error::Argument`] for fewer poses than a calibration needs; [`Error::NotApplicable`] for
+    /// places that no pose reaches, or that have fewer candidates than poses; what candidates and
+    /// forecast are refused for.
     pub fn new(
         campaign: &'c Campaign,
         wanted: Wanted,
@@ -266,8 +269,8 @@ fn scaled(
     (measurements, before)
 }
 
-/// Rows divided by the noise, columns in units of what is known before (`of_place`, m, of a place that nobody knows), which is
-/// then the identity.
+/// Rows divided by the noise, columns in units of what is known before (`of_place`, m, of a place
+/// that nobody knows), which is then the identity.
 fn in_noise(all: &Planned, known: &[f64], of_place: f64, noise: f64) -> (Measurements, DMatrix<f64>) {
     let rows = all.rows();
     let columns = rows.first().map_or(0, |block| block.ncols());

@@ -1,9 +1,10 @@
 //! What was found, written into robot and campaign, and calibrated again.
 //!
-//! What belongs to the robot enters its model; what happened to the fixture, single bad poses and all that a robot file has
-//! no key for are taken out of the measured points; a socket that moved becomes another one. The campaign that is written has
-//! the nominal robot with these effects, so that `calibrate` finds base and geometry anew beside them; the calibrated robot is
-//! for `predict`. What neither can hold is said, and before.
+//! What belongs to the robot enters its model; what happened to the fixture, single bad poses and
+//! all that a robot file has no key for are taken out of the measured points; a socket that moved
+//! becomes another one. The campaign that is written has the nominal robot with these effects, so
+//! that `calibrate` finds base and geometry anew beside them; the calibrated robot is for
+//! `predict`. What neither can hold is said, and before.
 
 use super::correction_table;
 use super::diagnose::CalibrationDiagnosis;
@@ -47,8 +48,8 @@ fn write(finding: &Finding, model: &CalibrationModel, extended: &mut Campaign) -
     }
 }
 
-/// Robot and campaign with what `found` says; `None` where nothing of it could be written. `names` are those of the campaign's
-/// files; `above` is said on top of them.
+/// Robot and campaign with what `found` says; `None` where nothing of it could be written. `names`
+/// are those of the campaign's files; `above` is said on top of them.
 ///
 /// # Errors
 /// As [`calibrate`] and [`crate::calibration::write_back`].

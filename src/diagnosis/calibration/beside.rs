@@ -1,9 +1,10 @@
 //! The robot about which effects are linear: calibrated beside what was found.
 //!
-//! A calibration that knows of no effect puts it into its parameters as well as it can: a heavier tip becomes a softer
-//! wrist, a slipped tool turns joints by milliradians. Columns that are made there are those of another robot. So the
-//! campaign is calibrated once more with what was found taken out of its rows, and the search begins anew about that robot,
-//! of which nothing is taken out then.
+//! A calibration that knows of no effect puts it into its parameters as well as it can: a heavier
+//! tip becomes a softer wrist, a slipped tool turns joints by milliradians. Columns that are made
+//! there are those of another robot. So the campaign is calibrated once more with what was found
+//! taken out of its rows, and the search begins anew about that robot, of which nothing is taken
+//! out then.
 
 use nalgebra::DVector;
 
@@ -16,10 +17,12 @@ use crate::units::URAD;
 
 /// A turn of a joint under its largest torque that changes columns, rad.
 const TURNED: f64 = 20.0 * URAD;
-/// Share by which the residual of a robot that is calibrated again may differ from what the linear model says of it.
+/// Share by which the residual of a robot that is calibrated again may differ from what the linear
+/// model says of it.
 const LINEAR: f64 = 0.1;
 
-/// That robot, the rows as if nothing had been found; `None` where it is the same for all that its columns show.
+/// That robot, the rows as if nothing had been found; `None` where it is the same for all that its
+/// columns show.
 pub(super) fn calibrated_beside<'c>(
     prepared: &Prepared<'c>,
     hypothesis: &Hypothesis,
@@ -60,7 +63,8 @@ fn turns(context: &Context, beside: &Calibration) -> bool {
         .any(|(j, (own, used))| (own - used).abs() * context.largest(|there| there.torque[j]) > TURNED)
 }
 
-/// Noise of each clamp's or placement's rows in what a hypothesis leaves, where they scatter unequally.
+/// Noise of each clamp's or placement's rows in what a hypothesis leaves, where they scatter
+/// unequally.
 pub(super) fn unequal(
     prepared: &Prepared,
     hypothesis: &Hypothesis,

@@ -55,8 +55,8 @@ impl Configuration {
         (0..self.tip_jacobian.len()).map(of_joint).sum()
     }
 
-    /// Displacement of the tip by joints up to `last` that yield to a force (N) at a point of the link
-    /// that joint moves: Σ J·c·z·(lever × force), the levers as each joint sees them, m.
+    /// Displacement of the tip by joints up to `last` that yield to a force (N) at a point of the
+    /// link that joint moves: Σ J·c·z·(lever × force), the levers as each joint sees them, m.
     pub fn yielding_below(
         &self,
         last: usize,
@@ -91,7 +91,8 @@ impl Configuration {
     }
 }
 
-/// One for every row of a recording; the joints yield by `compliance`, `deflections` are what deflects the tip there, in {W}, m.
+/// One for every row of a recording; the joints yield by `compliance`, `deflections` are what
+/// deflects the tip there, in {W}, m.
 pub(super) fn all(
     recording: &Recording,
     setup: &Setup,

@@ -206,8 +206,8 @@ fn modelled_mass(campaign: &Campaign) -> (f64, f64) {
     (rod.map_or(0.0, |rod| rod.tip_mass), last + rod.map_or(0.0, |rod| rod.mass()))
 }
 
-/// Compliances as effects use them: a drive that a calibration has made softer than drives of its class are, in
-/// place of something else, would spoil them.
+/// Compliances as effects use them: a drive that a calibration has made softer than drives of its
+/// class are, in place of something else, would spoil them.
 pub(super) fn plausible(setup: &Setup, softest: &[f64]) -> Vec<f64> {
     setup.compliance.iter().zip(softest).map(|(own, softest)| own.clamp(0.0, softest.max(0.0))).collect()
 }

@@ -87,8 +87,9 @@ pub fn diagnose_calibrated<'c>(
     Ok(Diagnosed { model, evidence, diagnosis, not_testable, absorbed, limits })
 }
 
-/// So many times a search begins anew about the robot that is left beside what was found, with the scatter that its clamps
-/// show then, and with what poses count that are no farther out than the tails of the others.
+/// So many times a search begins anew about the robot that is left beside what was found, with the
+/// scatter that its clamps show then, and with what poses count that are no farther out than the
+/// tails of the others.
 const ROUNDS: usize = 2;
 
 /// Something that happened while the poses were recorded.

@@ -110,8 +110,8 @@ pub(super) fn evidence_of(campaign: &Campaign, calibration: &Calibration, contex
     nominal::with_numbers(evidence, campaign, calibration.mode, context)
 }
 
-/// The evidence of a calibration of which nothing is known beforehand: all that it is free to change
-/// takes up what it can, however far from the drawing.
+/// The evidence of a calibration of which nothing is known beforehand: all that it is free to
+/// change takes up what it can, however far from the drawing.
 pub(super) fn unknown_beforehand(evidence: &Evidence) -> Evidence {
     let (nuisance, background) = (&evidence.nuisance, &evidence.background);
     let mut columns = DMatrix::zeros(nuisance.nrows(), nuisance.ncols() + background.ncols());

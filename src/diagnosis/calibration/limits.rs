@@ -14,7 +14,8 @@ const NARROW: f64 = 0.35;
 
 /// Tip's motion by a usual error of a joint, in noises, below which the joint is not seen.
 const UNSEEN: f64 = 0.1;
-/// Distance from an axis, as a share of the arm's reach, beyond which a target is not on it, whatever the noise.
+/// Distance from an axis, as a share of the arm's reach, beyond which a target is not on it,
+/// whatever the noise.
 const ON_AXIS: f64 = 0.02;
 
 /// A clamp that scatters so many times as much as the others is worth a look.

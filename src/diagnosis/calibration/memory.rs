@@ -13,12 +13,14 @@ use crate::robot::Motion;
 
 /// Bytes beyond which a diagnosis is refused.
 pub const MEMORY_LIMIT: f64 = 4e9;
-/// Numbers for each pose: of a joint's gear and approach; of a pair of joints and of a link by a pair of them; of all else.
+/// Numbers for each pose: of a joint's gear and approach; of a pair of joints and of a link by a
+/// pair of them; of all else.
 const OF_JOINT: f64 = 1300.0;
 const OF_PAIR: f64 = 30.0;
 const OF_LINK: f64 = 9.0;
 const OF_ALL: f64 = 3500.0;
-/// What all else that has a number for each pose takes beside the columns, and what does not grow with the poses.
+/// What all else that has a number for each pose takes beside the columns, and what does not grow
+/// with the poses.
 const BESIDE: f64 = 1.3;
 const ANYWAY: f64 = 150e6;
 

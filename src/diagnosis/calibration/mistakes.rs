@@ -1,13 +1,16 @@
-//! Mistakes before physics: signs, orders, units, zeros, rows, frames, files, and frames that moved.
+//! Mistakes before physics: signs, orders, units, zeros, rows, frames, files, and frames that
+//! moved.
 //!
 //! They are discrete, few and of enormous evidence, so they are undone before the robot is
 //! calibrated and its residuals are asked for physics. Three steps:
 //!
 //! 1. every mistake that the files could hold, as a list of what undoes it (`moves.rs`);
-//! 2. each is tried on a draft of the campaign (`draft.rs`) with a quick robust fit (`quick.rs`); what
-//!    turns poses that fit nothing into poses that fit is kept, one after another (`search.rs`).
-//!    That tracker or base stood elsewhere from some row on competes with the mistakes;
-//! 3. columns without information (`columns.rs`) cannot be undone: with them there is no physics to see.
+//! 2. each is tried on a draft of the campaign (`draft.rs`) with a quick robust fit (`quick.rs`);
+//!    what turns poses that fit nothing into poses that fit is kept, one after another
+//!    (`search.rs`). That tracker or base stood elsewhere from some row on competes with the
+//!    mistakes;
+//! 3. columns without information (`columns.rs`) cannot be undone: with them there is no physics to
+//!    see.
 //!
 //! A mistake that these poses cannot tell from another one names it as a rival; one that they hide
 //! altogether (the zero of the first joint without a stated base) is not named.
@@ -119,7 +122,8 @@ pub fn suspected(campaign: &Campaign, mode: Mode, others: &Neighbours) -> Result
 }
 
 impl Mended {
-    /// Calibrates the mended campaign and diagnoses what is left; the mistakes stand before all else.
+    /// Calibrates the mended campaign and diagnoses what is left; the mistakes stand before all
+    /// else.
     ///
     /// # Errors
     /// As [`super::diagnose()`].
@@ -143,8 +147,8 @@ impl Mended {
 }
 
 impl Mended {
-    /// How far the base moved by the calibration, with 95 % intervals: the frame of a station is six of
-    /// its unknowns. Of several moves the order is that of the rows.
+    /// How far the base moved by the calibration, with 95 % intervals: the frame of a station is
+    /// six of its unknowns. Of several moves the order is that of the rows.
     fn measure_moves(&self, calibration: &Calibration, findings: &mut [Finding]) {
         let recording = &self.campaign.measurements;
         let rows = recording.rows.windows(2).filter(|pair| pair[0].station != pair[1].station);
@@ -182,9 +186,9 @@ impl Mended {
         }
     }
 
-    /// What becomes of robot and campaign: the robot with what `found` says, and the campaign without
-    /// its mistakes. `names` are the files that the campaign shall name; `None` where nothing could be
-    /// written.
+    /// What becomes of robot and campaign: the robot with what `found` says, and the campaign
+    /// without its mistakes. `names` are the files that the campaign shall name; `None` where
+    /// nothing could be written.
     ///
     /// # Errors
     /// As [`super::apply()`].
@@ -453,8 +457,8 @@ fn drop_unused(draft: &mut Draft) {
     draft.stations = known.len();
 }
 
-/// The joints of a validation as they are meant, where it holds the mistake too: where the robot fits
-/// it better so.
+/// The joints of a validation as they are meant, where it holds the mistake too: where the robot
+/// fits it better so.
 fn turn_joints(validation: &mut Recording, robot: &Robot, tool: Vector3<f64>, changes: &[Change]) {
     if changes.is_empty() {
         return;

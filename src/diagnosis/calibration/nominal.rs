@@ -1,5 +1,5 @@
-//! The numbers of the files that a calibration does not fit, each known to its standard uncertainty: what
-//! they explain within that is no mismatch.
+//! The numbers of the files that a calibration does not fit, each known to its standard
+//! uncertainty: what they explain within that is no mismatch.
 //!
 //! ```text
 //! mass of link k      Σ_{j≤k} Jⱼ·cⱼ·zⱼ·((p_k − oⱼ) × g)·u       u a share of its mass

@@ -360,8 +360,9 @@ fn pairs(context: &Context) -> Vec<Entry> {
     entries
 }
 
-/// In fixed directions (of sockets nobody knows the places), and in such that turn with the tool: what an arm does
-/// otherwise in another region, where each clamp or placement is one, looks like a tool that slipped between them.
+/// In fixed directions (of sockets nobody knows the places), and in such that turn with the tool:
+/// what an arm does otherwise in another region, where each clamp or placement is one, looks like a
+/// tool that slipped between them.
 fn clamps(context: &Context) -> Vec<Entry> {
     let groups = &context.recording.groups;
     if groups.len() < 2 {

@@ -31,8 +31,8 @@ impl<'c> Prepared<'c> {
         Prepared::about(campaign, calibration.clone(), calibration, None, None)
     }
 
-    /// The same of effects that are linear about another robot, of groups that scatter unequally, and whose rows count by
-    /// `weights`.
+    /// The same of effects that are linear about another robot, of groups that scatter unequally,
+    /// and whose rows count by `weights`.
     pub fn about(
         campaign: &'c Campaign,
         calibration: Calibration<'c>,

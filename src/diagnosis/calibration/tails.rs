@@ -1,15 +1,16 @@
 //! Poses that were misread, or scatter with heavy tails?
 //!
-//! A reading that is wrong stands alone; where the others have heavy tails too, it is one of them. Residuals z in noises, of
-//! n rows:
+//! A reading that is wrong stands alone; where the others have heavy tails too, it is one of them.
+//! Residuals z in noises, of n rows:
 //!
 //! ```text
 //! misread   Σ ln N(z; s) of the other rows + Σ ln N(z; s_m) of those − k·ln n        s_m what a misreading is off by
 //! tails     Σ ln t_ν(z; s) of all                                                    ν of a list, s by maximum likelihood
 //! ```
 //!
-//! (K. L. Lange, R. J. A. Little, J. M. G. Taylor, *JASA* 84 (1989) 881–896.) With tails each row counts by w ~ (ν + 3)/(ν + |z|²/s²), near the
-//! middle all alike, so that what is far out is neither misread nor two opposite moves; the scatter of all stays what it is.
+//! (K. L. Lange, R. J. A. Little, J. M. G. Taylor, *JASA* 84 (1989) 881–896.) With tails each row
+//! counts by w ~ (ν + 3)/(ν + |z|²/s²), near the middle all alike, so that what is far out is
+//! neither misread nor two opposite moves; the scatter of all stays what it is.
 
 use std::f64::consts::PI;
 
@@ -24,8 +25,8 @@ const TAILS: [f64; 7] = [2.0, 3.0, 4.0, 5.0, 7.0, 10.0, 20.0];
 /// Iterations of a scale.
 const ROUNDS: usize = 30;
 
-/// How much each row counts where a hypothesis calls rows misread although heavy tails of all explain them better; `left` is
-/// what it leaves.
+/// How much each row counts where a hypothesis calls rows misread although heavy tails of all
+/// explain them better; `left` is what it leaves.
 pub(super) fn weights(prepared: &Prepared, hypothesis: &Hypothesis, left: &DVector<f64>) -> Option<Vec<f64>> {
     let model = &prepared.model;
     let is_misread = |term: &&Term| *model.terms.candidates[term.candidate].effect == OUTLIER.effect;

@@ -7,8 +7,9 @@
 //! reading    y = s·e·(u + play·d) + shifts                            e = channel, turned; s its scale
 //! ```
 //!
-//! A load of zero is an unloaded rod: nothing hangs there, so there is no offset, no play and, on the way up, no friction.
-//! Where the direction of motion stands for a phase, friction and play follow the course of the run (`slide.rs`).
+//! A load of zero is an unloaded rod: nothing hangs there, so there is no offset, no play and, on
+//! the way up, no friction. Where the direction of motion stands for a phase, friction and play
+//! follow the course of the run (`slide.rs`).
 //!
 //! Under an imposed displacement the same chain is solved for the load that was measured:
 //!
@@ -59,7 +60,8 @@ pub(super) enum Action {
     PerLoad,
     /// Displacement grows with the history of loads \[0\].
     Memory(Memory, History),
-    /// How long before the first reading of a run its load was hung, s \[that of the form\]; of creep alone.
+    /// How long before the first reading of a run its load was hung, s \[that of the form\]; of
+    /// creep alone.
     Onset(Onset),
     /// Factor on a channel \[1\].
     SensorScale(Axis),
@@ -307,7 +309,8 @@ impl<'a> State<'a> {
         !self.memories.is_empty()
     }
 
-    /// The load that explains the displacement of datum number `index`, N, history included; `load` is that without.
+    /// The load that explains the displacement of datum number `index`, N, history included; `load`
+    /// is that without.
     pub(super) fn with_history(&self, load: f64, index: usize) -> f64 {
         load * self.remembered(index) + self.lingering(index)
     }
@@ -333,7 +336,8 @@ impl<'a> State<'a> {
         self.memories.iter().map(|memory| 1.0 + self.growth(index, memory)).product()
     }
 
-    /// The share of the load that is left under a held displacement: 1 − v·w of what relaxes, 1/(1 + v·w) of all else.
+    /// The share of the load that is left under a held displacement: 1 − v·w of what relaxes,
+    /// 1/(1 + v·w) of all else.
     fn relaxed(&self, index: usize) -> f64 {
         let factor = |memory: &(&Memory, History, f64)| match memory.1 {
             History::Creep(..) => 1.0 - self.growth(index, memory),
@@ -356,7 +360,8 @@ impl<'a> State<'a> {
         self.memories.iter().map(|(memory, _, value)| value * memory.lingering[index]).sum()
     }
 
-    /// What each imposed displacement meets, by its datum; `compliance` of a datum (m/N) is that along its load.
+    /// What each imposed displacement meets, by its datum; `compliance` of a datum (m/N) is that
+    /// along its load.
     pub(super) fn met(
         &self,
         data: &[Datum],
@@ -381,7 +386,8 @@ impl<'a> State<'a> {
         all
     }
 
-    /// The load (N, along the positive axis) that is measured where the rod is bent by `x` (m) of this compliance (m/N).
+    /// The load (N, along the positive axis) that is measured where the rod is bent by `x` (m) of
+    /// this compliance (m/N).
     pub(super) fn measured_load(&self, index: usize, datum: &Datum, met: &Met, compliance: f64) -> f64 {
         let per_newton = datum.imposed.map_or(compliance, |imposed| imposed.per_newton);
         let linear = met.rod / compliance;

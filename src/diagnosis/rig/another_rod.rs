@@ -1,8 +1,8 @@
 //! Readings that another rod explains better than the given one with all that may be wrong with it.
 //!
-//! Slopes alone tell rods apart that differ by a fifth ([`super::mistakes`]). Where physics had to be added to the given rod, or
-//! something is left, those of the other files that come near are compared in full: each with all effects, by the
-//! probability that the recording then has.
+//! Slopes alone tell rods apart that differ by a fifth ([`super::mistakes`]). Where physics had to
+//! be added to the given rod, or something is left, those of the other files that come near are
+//! compared in full: each with all effects, by the probability that the recording then has.
 
 use super::effects::mistakes::ROD_MISTAKE;
 use super::mistakes::{Mended, ODDS, OTHER_ROD, RARE};
@@ -31,7 +31,8 @@ impl Other {
     }
 }
 
-/// The other rods that the readings may be of, the likeliest first; none where they agree with the given one.
+/// The other rods that the readings may be of, the likeliest first; none where they agree with the
+/// given one.
 pub(super) fn others(
     mended: &Mended,
     model: &RigModel,

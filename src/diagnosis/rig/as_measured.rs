@@ -1,17 +1,18 @@
 //! Sizes of effects on the rod as the readings say it is.
 //!
-//! Every hypothesis holds the nominal numbers by their derivatives, beside effects of the rod as its file gives it. Where the
-//! rod is 2 % stiffer than its file, the friction that displaces its tip as far is 2 % larger. With δᵢ the share by which the
-//! nominal numbers change the deflection of datum i, an effect whose response r is in proportion to the rod's compliance has
-//! the response (1 + δ)·r, and the sizes θ of all effects become those that do the same to that rod,
+//! Every hypothesis holds the nominal numbers by their derivatives, beside effects of the rod as
+//! its file gives it. Where the rod is 2 % stiffer than its file, the friction that displaces its
+//! tip as far is 2 % larger. With δᵢ the share by which the nominal numbers change the deflection
+//! of datum i, an effect whose response r is in proportion to the rod's compliance has the response
+//! (1 + δ)·r, and the sizes θ of all effects become those that do the same to that rod,
 //!
 //! ```text
 //! Σ (1 + δ)·r(θ + Δ) = Σ r(θ):   Δ = −(J'ᵀJ' + λ)⁻¹·J'ᵀ·Σ δ·r(θ),   J' = (1 + δ)·J
 //! ```
 //!
-//! A joint's compliance, a play and whatever shifts readings is what it is on any rod, and a factor on the file's stiffness
-//! counts from the file: δ = 0. Intervals gain what is left
-//! unknown of the numbers: Δ is to its uncertainty as the mean of δ is to its own.
+//! A joint's compliance, a play and whatever shifts readings is what it is on any rod, and a factor
+//! on the file's stiffness counts from the file: δ = 0. Intervals gain what is left unknown of the
+//! numbers: Δ is to its uncertainty as the mean of δ is to its own.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -136,8 +137,8 @@ mod tests {
     use crate::statistics::Random;
     use crate::units::UM;
 
-    /// A rod that is 1.5 % stiffer than its file, read to 0.5 µm with 2 N held back: the friction is
-    /// that which the stiffer rod needs to bend as much.
+    /// A rod that is 1.5 % stiffer than its file, read to 0.5 µm with 2 N held back: the friction
+    /// is that which the stiffer rod needs to bend as much.
     #[test]
     fn friction_is_that_of_the_rod_as_it_was_found() {
         let file = Rod::from_toml("rod", include_str!("../../../rods/5.toml")).unwrap();

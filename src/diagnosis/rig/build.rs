@@ -1,4 +1,5 @@
-//! A model is built: its data, its ideal rod or lines, and the candidates that these readings can show.
+//! A model is built: its data, its ideal rod or lines, and the candidates that these readings can
+//! show.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -23,8 +24,8 @@ use crate::rod::Rod;
 const NOTHING: f64 = 1e-9;
 
 impl RigModel {
-    /// The model of `readings`: against the FEA model of `rod` as its file gives it, or against straight lines through the
-    /// origin where there is none.
+    /// The model of `readings`: against the FEA model of `rod` as its file gives it, or against
+    /// straight lines through the origin where there is none.
     ///
     /// # Errors
     /// [`crate::Error::Input`] for a station that is not on the rod; what the beam model refuses.
@@ -42,7 +43,8 @@ impl RigModel {
         RigModel::bent_as(readings, rod, wanted, rod)
     }
 
-    /// The same, where deflections are as large as those of the rod `bent`: this one with what is known to yield.
+    /// The same, where deflections are as large as those of the rod `bent`: this one with what is
+    /// known to yield.
     pub(super) fn bent_as(
         readings: &Readings,
         rod: Option<&Rod>,
@@ -154,7 +156,8 @@ impl RigModel {
                 .into_iter()
                 .zip(actions)
                 .filter(|(parameter, action)| {
-                    // where a joint is matters as soon as it gives way, when a load was hung as soon as there is creep
+                    // where a joint is matters as soon as it gives way, when a load was hung as
+                    // soon as there is creep
                     matches!(action, Action::Station(_))
                         || is_dependent(action)
                         || self.is_felt(action, parameter, nothing)
@@ -179,7 +182,8 @@ impl RigModel {
     /// False for what changes nothing (m) to first order: a twist under loads that do not twist.
     fn is_felt(&self, action: &Action, parameter: &Parameter, nothing: f64) -> bool {
         let Parameter { neutral, size, bounds, .. } = *parameter;
-        // a parameter at its bound can only go one way, and a second-order effect goes the same way twice
+        // a parameter at its bound can only go one way, and a second-order effect goes the same way
+        // twice
         let step = if neutral + size <= bounds.1 { size } else { bounds.1 - neutral };
         if let Some(largest) = action.largest_addition() {
             return 2.0 * step * largest > nothing;

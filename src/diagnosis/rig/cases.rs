@@ -3,7 +3,8 @@
 use super::datum::Datum;
 use super::numbering::numbered;
 
-/// Data that differ in nothing but their place in the history of loads: load, phase, place and channel are the same.
+/// Data that differ in nothing but their place in the history of loads: load, phase, place and
+/// channel are the same.
 #[derive(Debug, Clone)]
 pub(super) struct Cases {
     pub of_datum: Vec<usize>,

@@ -1,11 +1,13 @@
-//! What was recorded when: the order of the rows, sessions, trials and runs, and the direction of motion.
+//! What was recorded when: the order of the rows, sessions, trials and runs, and the direction of
+//! motion.
 //!
-//! With a time in every row the rows stand in the order of their times, wherever they stand in the file. Without, the order of
-//! the file is the order of recording. A session or trial whose clock begins anew keeps its place in the file.
+//! With a time in every row the rows stand in the order of their times, wherever they stand in the
+//! file. Without, the order of the file is the order of recording. A session or trial whose clock
+//! begins anew keeps its place in the file.
 //!
-//! **Direction of motion.** Where no row states a phase and the loads go up and down in steps, a reading was taken while loading
-//! or while unloading as the load before it was smaller or larger. A turn counts once the load has gone back by [`TURN`] of its
-//! range: a measured load trembles.
+//! **Direction of motion.** Where no row states a phase and the loads go up and down in steps, a
+//! reading was taken while loading or while unloading as the load before it was smaller or larger.
+//! A turn counts once the load has gone back by [`TURN`] of its range: a measured load trembles.
 
 use std::collections::HashMap;
 
@@ -36,7 +38,8 @@ pub(super) struct Entry {
     pub run: usize,
     /// Number of the instant; ascending in the order of recording.
     pub place: usize,
-    /// By the direction of motion; `None` where phases are stated or the loads do not go up and down.
+    /// By the direction of motion; `None` where phases are stated or the loads do not go up and
+    /// down.
     pub motion: Option<Motion>,
 }
 
@@ -169,8 +172,9 @@ fn reads_twice(rows: &[Reading], of: &[usize]) -> bool {
 /// What all rows of an instant without a time share: direction, load and where it hangs.
 type Hung = (Direction, u64, Option<u64>);
 
-/// Without times: neighbours may be one instant; and where stations were written one after the other, the so many-th instant of
-/// a run at one of them is that of the others, if its load is the same. An instant stands where its first row does.
+/// Without times: neighbours may be one instant; and where stations were written one after the
+/// other, the so many-th instant of a run at one of them is that of the others, if its load is the
+/// same. An instant stands where its first row does.
 fn untimed(rows: &[Reading], run: &[usize]) -> Vec<usize> {
     let mut known: HashMap<(usize, usize), (usize, Hung)> = HashMap::new();
     let mut count: HashMap<(usize, u64), usize> = HashMap::new();
@@ -219,7 +223,8 @@ fn drive(row: &Reading, driven: Driven) -> Option<f64> {
     }
 }
 
-/// The direction of motion of each row that has a key; nothing where the rows of the keys do not go up and down in steps.
+/// The direction of motion of each row that has a key; nothing where the rows of the keys do not go
+/// up and down in steps.
 fn motions(
     rows: &[Reading],
     driven: Driven,
@@ -272,8 +277,8 @@ fn motions(
     }
 }
 
-/// For each value of a sequence that begins at rest the direction in which it was reached, and how many turns from falling to
-/// rising came before.
+/// For each value of a sequence that begins at rest the direction in which it was reached, and how
+/// many turns from falling to rising came before.
 fn turns(values: &[f64]) -> Vec<(f64, usize)> {
     let least = TURN * values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
     let mut direction = vec![0.0; values.len()];
@@ -319,8 +324,9 @@ struct OpenRun {
 }
 
 impl OpenRun {
-    /// Number of the run that a row without a trial continues or begins: a run along an axis goes on until something is read
-    /// again that it has read before; reading the display once more at the same load is no new run.
+    /// Number of the run that a row without a trial continues or begins: a run along an axis goes
+    /// on until something is read again that it has read before; reading the display once more at
+    /// the same load is no new run.
     fn trial(&mut self, row: &Reading, driven: Driven) -> usize {
         let stations = [row.load_station, row.read_station].map(|s| s.map(f64::to_bits));
         let set = drive(row, driven).unwrap_or(row.load).abs();

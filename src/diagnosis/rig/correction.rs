@@ -24,17 +24,18 @@ pub struct Correction {
     pub rod: Rod,
     /// Its file.
     pub rod_toml: String,
-    /// The readings without what was found to be the rig's and not the rod's (friction, offsets, drift, slips …): a file for
-    /// `rig fit` and for the Meas mode.
+    /// The readings without what was found to be the rig's and not the rod's (friction, offsets,
+    /// drift, slips …): a file for `rig fit` and for the Meas mode.
     pub readings_csv: String,
     /// Compliance of the rod as its file gave it (FEA).
     pub before: Compliance,
     /// Compliance of the corrected rod.
     pub after: Compliance,
-    /// r_rod of the readings as they are, by Eq 21, with what the paper's rule makes of it: C^g = r_rod × FEA. `None` where
-    /// the readings give no such number.
+    /// r_rod of the readings as they are, by Eq 21, with what the paper's rule makes of it: C^g =
+    /// r_rod × FEA. `None` where the readings give no such number.
     pub by_ratio: Option<(f64, Compliance)>,
-    /// Mistakes that were undone in the readings or in the rod's file: what was wrong, with the correction.
+    /// Mistakes that were undone in the readings or in the rod's file: what was wrong, with the
+    /// correction.
     pub undone: Vec<String>,
     /// What was entered into the rod, in words.
     pub entered: Vec<String>,
@@ -53,7 +54,8 @@ impl RigDiagnosis {
     pub fn correction(&self) -> Result<Option<Correction>> {
         match self.model.rod() {
             Some(rod) => {
-                // several numbers share what they explain: together they are as stiff as the readings
+                // several numbers share what they explain: together they are as stiff as the
+                // readings
                 let moved = match self.diagnosis.nominal.is_empty() {
                     true => Vec::new(),
                     false => self.moved(rod),
@@ -67,8 +69,8 @@ impl RigDiagnosis {
         }
     }
 
-    /// Those of the nominal numbers that stand in the file of `rod` and are off by more than a trace;
-    /// the others are the rig's.
+    /// Those of the nominal numbers that stand in the file of `rod` and are off by more than a
+    /// trace; the others are the rig's.
     fn moved(&self, rod: &Rod) -> Vec<Moved> {
         let (factors, _) = &self.diagnosis.nominal_factors;
         let numbers = rod.nominal_numbers();
@@ -149,8 +151,8 @@ fn corrected(model: &RigModel, rod: &Rod, findings: &[Finding], moved: &[Moved])
     })
 }
 
-/// Compliance of the rod as its file gave it; of the one that was meant where a mistake made it a rod that
-/// cannot be computed.
+/// Compliance of the rod as its file gave it; of the one that was meant where a mistake made it a
+/// rod that cannot be computed.
 fn of_file(model: &RigModel, meant: &Rod, physics: &Physics) -> Result<Compliance> {
     let of_file = Compliance::of_model(model.rod_of_file().unwrap_or(meant), physics, DEFAULT_ELEMENTS);
     of_file.or_else(|_| Compliance::of_model(meant, physics, DEFAULT_ELEMENTS))

@@ -1,7 +1,9 @@
-//! The data of a recording: one for each offset that was measured, with the run through the loads that it belongs to.
+//! The data of a recording: one for each offset that was measured, with the run through the loads
+//! that it belongs to.
 //!
-//! Data stand in the order in which they were recorded, those of one instant by station and channel, so that rows in another
-//! order, one row per station and one row per channel are the same recording: see [`chronicle`](super::chronicle).
+//! Data stand in the order in which they were recorded, those of one instant by station and
+//! channel, so that rows in another order, one row per station and one row per channel are the same
+//! recording: see [`chronicle`](super::chronicle).
 
 use super::chronicle::{Chronicle, Motion};
 use super::numbering::numbered;
@@ -11,7 +13,8 @@ use crate::rig::readings::{Axis, Direction, Driven, Phase, Reading, Readings};
 /// One measured offset.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Datum {
-    /// Row in the file, from 1: rows of readings only, without the header, comments and blank lines.
+    /// Row in the file, from 1: rows of readings only, without the header, comments and blank
+    /// lines.
     pub row: usize,
     /// Line in the file, from 1.
     pub line: usize,
@@ -21,8 +24,8 @@ pub struct Datum {
     pub channel: Axis,
     /// Nominal magnitude of the load, N.
     pub load: f64,
-    /// Whether the load was reached by loading or by unloading; where no row says so and the loads go up and down, by the
-    /// direction of motion.
+    /// Whether the load was reached by loading or by unloading; where no row says so and the loads
+    /// go up and down, by the direction of motion.
     pub phase: Option<Phase>,
     /// Which way the load or the displacement went, where that is known without a phase.
     pub(super) motion: Option<Motion>,
@@ -32,9 +35,11 @@ pub struct Datum {
     pub session_number: usize,
     /// Name of the trial, where the file has one.
     pub trial: Option<String>,
-    /// Number of the trial, from 0, across axes: the runs of one name, else the k-th run of each axis.
+    /// Number of the trial, from 0, across axes: the runs of one name, else the k-th run of each
+    /// axis.
     pub trial_number: usize,
-    /// Number of the run, from 0: one trial of a session along one axis, from one zeroing to the next.
+    /// Number of the run, from 0: one trial of a session along one axis, from one zeroing to the
+    /// next.
     pub run: usize,
     /// Number of the instant in the recording, from 0: data of one instant share it.
     pub order: usize,
@@ -48,8 +53,8 @@ pub struct Datum {
     pub load_station: Option<f64>,
     /// Arc length from the flange to the sensor, m; `None`: the tip.
     pub read_station: Option<f64>,
-    /// What is compared with the model, m: the offset that was read, or, of a load that was measured under an imposed
-    /// displacement, the load times `Imposed::per_newton`.
+    /// What is compared with the model, m: the offset that was read, or, of a load that was
+    /// measured under an imposed displacement, the load times `Imposed::per_newton`.
     pub measured: f64,
     /// The same as the base model predicts it, m; 0 without a rod.
     pub predicted: f64,
@@ -62,8 +67,8 @@ pub struct Datum {
 pub struct Imposed {
     /// Along the positive axis, m.
     pub displacement: f64,
-    /// What a newton of the measured load counts, m/N: one number for all loads of a recording, its largest displacement over
-    /// its largest load.
+    /// What a newton of the measured load counts, m/N: one number for all loads of a recording, its
+    /// largest displacement over its largest load.
     pub per_newton: f64,
 }
 
@@ -73,12 +78,14 @@ impl Datum {
         f64::from(self.direction.sign) * self.load
     }
 
-    /// What was set: the load along the positive axis (N), or the displacement that was imposed (m).
+    /// What was set: the load along the positive axis (N), or the displacement that was imposed
+    /// (m).
     pub fn drive(&self) -> f64 {
         self.imposed.map_or(self.signed_load(), |imposed| imposed.displacement)
     }
 
-    /// What a linear rod of this compliance (m/N) shows: the offset C·F, or the load u/C as [`Datum::measured`] counts it.
+    /// What a linear rod of this compliance (m/N) shows: the offset C·F, or the load u/C as
+    /// [`Datum::measured`] counts it.
     pub(super) fn elastic(&self, compliance: f64) -> f64 {
         match self.imposed {
             None => compliance * self.signed_load(),
@@ -123,7 +130,8 @@ impl Datum {
     }
 }
 
-/// One datum for each offset of the rows of weights that were hung, in the order of recording; nothing predicted yet.
+/// One datum for each offset of the rows of weights that were hung, in the order of recording;
+/// nothing predicted yet.
 pub(super) fn all(rows: &[Reading]) -> Vec<Datum> {
     of_rows(rows, Driven::Load)
 }

@@ -28,8 +28,8 @@ pub fn diagnose(readings: &Readings, rod: Option<&Rod>) -> Result<RigDiagnosis> 
 /// Diagnoses `readings` as [`diagnose`] does, where they may also be those of one of `others`: rods
 /// with the names of their files, such as all that stand beside the given one.
 ///
-/// Mistakes are looked for first. They stand before all other findings, which are those of the corrected readings and the
-/// corrected rod.
+/// Mistakes are looked for first. They stand before all other findings, which are those of the
+/// corrected readings and the corrected rod.
 ///
 /// # Errors
 /// [`Error::Input`] for more than 100 000 rows; see also [`RigModel::new`].
@@ -93,7 +93,8 @@ pub fn diagnose_among(
     Ok(Diagnosed { absorbed: Vec::new(), not_testable, limits, diagnosis, evidence, model })
 }
 
-/// The rod as it was found, where its deflections are so large that those of `bent` miss what readings show.
+/// The rod as it was found, where its deflections are so large that those of `bent` miss what
+/// readings show.
 fn bends_farther(model: &RigModel, bent: Option<&Rod>, diagnosis: &Diagnosis) -> Result<Option<Rod>> {
     let (Some(rod), Some(bent)) = (model.rod(), bent) else { return Ok(None) };
     let found = correction::as_found(model, rod, &diagnosis.findings);

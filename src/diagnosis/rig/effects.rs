@@ -1,8 +1,8 @@
 //! The effects that a rig may show: one file for a family, one record for an effect.
 //!
-//! A record ([`RigEffect`](entry::RigEffect)) and the functions below it say everything of an effect: its law, its
-//! usual size and the source of that number, what it needs of a recording, how it is said, where it
-//! is written. [`registry::ALL`] is the list of them.
+//! A record ([`RigEffect`](entry::RigEffect)) and the functions below it say everything of an
+//! effect: its law, its usual size and the source of that number, what it needs of a recording, how
+//! it is said, where it is written. [`registry::ALL`] is the list of them.
 //!
 //! A prior size is what a rig of this kind is usually wrong by: a share of the recording's own
 //! loads, readings, times and temperatures, so that the same recording in other units, or of a rod

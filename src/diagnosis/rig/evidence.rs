@@ -1,5 +1,5 @@
-//! What the engine knows about a rig's recording besides the residual: what repeats, what hangs together, what to hold
-//! out, and along which numbers a mismatch may be structured.
+//! What the engine knows about a rig's recording besides the residual: what repeats, what hangs
+//! together, what to hold out, and along which numbers a mismatch may be structured.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -12,8 +12,8 @@ use crate::units::UM;
 /// Folds of a cross-validation: fewer cost less to run, more keep more to learn from.
 const MOST_FOLDS: usize = 5;
 const FEWEST_FOLDS: usize = 3;
-/// Error of a sensor's zero that all runs have in common, as a share of its full scale: the zero balance of good load cells
-/// and displacement sensors is stated as 0.05 to 1 %.
+/// Error of a sensor's zero that all runs have in common, as a share of its full scale: the zero
+/// balance of good load cells and displacement sensors is stated as 0.05 to 1 %.
 const ZERO: f64 = 5e-4;
 /// Scatter that a rig may have, as a share of its largest reading: displacement sensors repeat to
 /// 0.1 % of their range or better, and a range is not used to less than a tenth.
@@ -46,15 +46,15 @@ pub(super) fn of(data: &[Datum], nuisance: DMatrix<f64>, large: Option<DVector<f
     }
 }
 
-/// The largest scatter that a rig may have, m: a share of its largest reading, and some steps of the
-/// display. What is larger is no noise, whether or not anything was repeated.
+/// The largest scatter that a rig may have, m: a share of its largest reading, and some steps of
+/// the display. What is larger is no noise, whether or not anything was repeated.
 fn most_scatter(data: &[Datum]) -> Option<f64> {
     let largest = data.iter().fold(0.0, |most: f64, datum| most.max(datum.measured.abs()));
     Some((SCATTER * largest).max(STEPS_OF_DISPLAY * resolution(data)))
 }
 
-/// What large deflections add (`large`), which the linear model leaves out; whether the readings show
-/// it is not the diagnosis' question.
+/// What large deflections add (`large`), which the linear model leaves out; whether the readings
+/// show it is not the diagnosis' question.
 fn background(data: &[Datum], large: Option<DVector<f64>>) -> DMatrix<f64> {
     match large {
         Some(large) => DMatrix::from_columns(&[large]),
@@ -82,14 +82,16 @@ fn zeros(data: &[Datum]) -> (DMatrix<f64>, Vec<f64>) {
     (offsets, largest.into_iter().map(|largest| ZERO * largest).collect())
 }
 
-/// One column for each straight line through the origin: the load or the imposed displacement. For readings without a rod.
+/// One column for each straight line through the origin: the load or the imposed displacement. For
+/// readings without a rod.
 pub(super) fn slopes(data: &[Datum], line: &[usize]) -> DMatrix<f64> {
     let count = line.iter().max().map_or(0, |last| last + 1);
     DMatrix::from_fn(data.len(), count, |i, j| if line[i] == j { data[i].drive() } else { 0.0 })
 }
 
-/// Three to five folds of whole trials. Of one or two trials whole cycles are held out where the load goes up and down again
-/// and again; else whole loads, so that repeats stay together; of one or two loads every third datum of a line.
+/// Three to five folds of whole trials. Of one or two trials whole cycles are held out where the
+/// load goes up and down again and again; else whole loads, so that repeats stay together; of one
+/// or two loads every third datum of a line.
 fn folds(data: &[Datum]) -> Vec<usize> {
     let trials: Vec<usize> = numbered(data.iter().map(|d| d.trial_number));
     if count(&trials) >= FEWEST_FOLDS {
@@ -129,7 +131,8 @@ fn levels(data: &[Datum]) -> Vec<usize> {
     data.iter().map(level).collect()
 }
 
-/// The step that all offsets are multiples of, m: 10, 5, 2, 1, 0.5 µm and so on; 0 where they show none.
+/// The step that all offsets are multiples of, m: 10, 5, 2, 1, 0.5 µm and so on; 0 where they show
+/// none.
 pub(super) fn resolution(data: &[Datum]) -> f64 {
     const COARSEST: i32 = 1;
     const FINEST: i32 = -6;

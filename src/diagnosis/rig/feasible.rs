@@ -19,8 +19,8 @@ pub(super) struct Measurement {
     pub words: String,
     /// The same as numbers.
     pub plan: LoadPlan,
-    /// A few of the present readings, so that nothing that they show is forgotten, then those to come; these have offsets of
-    /// a straight line.
+    /// A few of the present readings, so that nothing that they show is forgotten, then those to
+    /// come; these have offsets of a straight line.
     pub readings: Readings,
     /// How many rows are present ones.
     pub known_rows: usize,
@@ -149,7 +149,8 @@ impl<'a> Rig<'a> {
         Axis::ALL.into_iter().filter(|axis| self.has_rod || is_loaded(axis)).collect()
     }
 
-    /// Loads that have been used along the axis, four of them at most; those of the other axes where there are none.
+    /// Loads that have been used along the axis, four of them at most; those of the other axes
+    /// where there are none.
     fn levels(&self, axis: Axis) -> Vec<f64> {
         let of = |is_of: &dyn Fn(&Reading) -> bool| {
             let mut loads: Vec<f64> = self
@@ -229,8 +230,8 @@ impl<'a> Rig<'a> {
         }
     }
 
-    /// Slope through the origin of each channel under loads along a direction, m/N: 0 for a rod's channel that was not read,
-    /// and nothing for that of a line.
+    /// Slope through the origin of each channel under loads along a direction, m/N: 0 for a rod's
+    /// channel that was not read, and nothing for that of a line.
     fn slopes(&self, direction: Direction) -> [Option<f64>; 3] {
         Axis::ALL.map(|channel| {
             let rows = self.readings.rows.iter().filter(|row| row.direction.axis == direction.axis);
@@ -249,7 +250,8 @@ impl<'a> Rig<'a> {
     }
 }
 
-/// Where a load could hang or a sensor stand: at the declared joints, at the end of the bend, in the middle of the pipes.
+/// Where a load could hang or a sensor stand: at the declared joints, at the end of the bend, in
+/// the middle of the pipes.
 fn stations(rod: &Rod) -> Vec<f64> {
     const APART: f64 = 15.0 * MM;
     let (start, end, tip) = (rod.bend_start(), rod.bend_end(), rod.length());

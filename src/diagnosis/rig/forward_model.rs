@@ -38,15 +38,18 @@ impl ForwardModel for RigModel {
         terms.iter().all(|term| self.actions[term.candidate].iter().all(Action::only_adds))
     }
 
-    /// By what the cases show, and what only adds to the readings itself: both are sooner done than whole responses.
+    /// By what the cases show, and what only adds to the readings itself: both are sooner done than
+    /// whole responses.
     ///
-    /// Play that an imposed displacement crosses acts in steps: it is moved by half its usual size. What does nothing without
-    /// its effect's first parameter is seen beside the usual size of that.
+    /// Play that an imposed displacement crosses acts in steps: it is moved by half its usual size.
+    /// What does nothing without its effect's first parameter is seen beside the usual size of
+    /// that.
     fn columns(&self, terms: &[Term], position: usize) -> DMatrix<f64> {
         let term = &terms[position];
         let parameters = &self.candidates[term.candidate].parameters;
         let mut columns = DMatrix::zeros(self.data.len(), parameters.len());
-        // without a rod an addition changes the slope of its line if anything but additions stands beside it
+        // without a rod an addition changes the slope of its line if anything but additions stands
+        // beside it
         let is_sum = matches!(self.body, Body::Rod(_)) || self.is_linear_in(terms);
         let is_imposed = !self.course.imposed.is_empty();
         let as_it_is = self.state(terms);

@@ -9,12 +9,13 @@ use crate::spatial::Axis;
 /// Fewer than these are few.
 const FEW: usize = 12;
 
-/// A load that jumps does so by so many of its usual steps, and by so much of its range; a displacement that goes in even steps
-/// makes none of so many of its own.
+/// A load that jumps does so by so many of its usual steps, and by so much of its range; a
+/// displacement that goes in even steps makes none of so many of its own.
 const JUMP: (f64, f64) = (5.0, 0.1);
 const EVEN: f64 = 3.0;
 
-/// Does the displacement along some axis go in even steps while the load jumps, three times at least?
+/// Does the displacement along some axis go in even steps while the load jumps, three times at
+/// least?
 fn jumps_at_turns(data: &[Datum]) -> bool {
     const TIMES: usize = 3;
     Axis::ALL.into_iter().any(|axis| {

@@ -28,17 +28,19 @@ pub(super) enum History {
 /// Since when a reading has crept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Clock {
-    /// t counts from when this load was hung, as the file says, or else right after the last reading of another load.
+    /// t counts from when this load was hung, as the file says, or else right after the last
+    /// reading of another load.
     ThisLoad,
     /// t counts from a moment before the first reading of each run that nobody knows.
     UnknownOnset,
     /// t counts from the first reading of the run.
     FirstReading,
-    /// t counts from one reading before that: the first load too had hung for a while when it was read.
+    /// t counts from one reading before that: the first load too had hung for a while when it was
+    /// read.
     FirstLoad,
-    /// Every change of the load creeps by itself and the changes add up (Boltzmann's superposition); a load is taken
-    /// to change right after the reading before, half way to the reading at it, or when it was first read, unless the file
-    /// says when it was hung.
+    /// Every change of the load creeps by itself and the changes add up (Boltzmann's
+    /// superposition); a load is taken to change right after the reading before, half way to the
+    /// reading at it, or when it was first read, unless the file says when it was hung.
     EachLoad(Changed),
     /// t is the file's own time.
     File,
@@ -114,7 +116,8 @@ impl Onset {
         }
     }
 
-    /// Adds to w what it is more for an onset `to` instead of `from` seconds before the first reading.
+    /// Adds to w what it is more for an onset `to` instead of `from` seconds before the first
+    /// reading.
     pub(super) fn move_in(&self, w: &mut Vec<f64>, from: f64, to: f64) {
         let end = self.since.iter().map(|(datum, _)| datum + 1).max().unwrap_or(0);
         w.resize(w.len().max(end), 0.0);
@@ -143,7 +146,8 @@ pub(super) fn is_stated(data: &[Datum]) -> bool {
     data.iter().any(|d| d.loaded_at.is_some()) && data.iter().all(|d| d.load == 0.0 || d.loaded_at.is_some())
 }
 
-/// An instant of a run: its load along the positive axis (N), its time and when that load was hung (s).
+/// An instant of a run: its load along the positive axis (N), its time and when that load was hung
+/// (s).
 struct Moment {
     load: f64,
     time: f64,
@@ -165,8 +169,8 @@ fn moments(data: &[Datum], run: &[usize], times: &[f64]) -> Vec<Moment> {
     instants(data, run).into_iter().map(of_instant).collect()
 }
 
-/// Logarithmic creep: displacement × (1 + k·log₁₀(1 + t/t₀)), t₀ in s. Nothing where a reading has no time, or where all have the
-/// same.
+/// Logarithmic creep: displacement × (1 + k·log₁₀(1 + t/t₀)), t₀ in s. Nothing where a reading has
+/// no time, or where all have the same.
 pub(super) fn creep(data: &[Datum], clock: Clock, t0: f64) -> Option<Memory> {
     /// Of more changes of a load the first ones creep like the others.
     const MOST_CHANGES: usize = 400;
@@ -220,8 +224,8 @@ pub(super) fn creep(data: &[Datum], clock: Clock, t0: f64) -> Option<Memory> {
     Some(memory)
 }
 
-/// Softening with temperature: displacement × (1 + k·(T − T̄)), T̄ the mean of the recording, K. Nothing where a
-/// reading has no temperature, or where all have the same.
+/// Softening with temperature: displacement × (1 + k·(T − T̄)), T̄ the mean of the recording, K.
+/// Nothing where a reading has no temperature, or where all have the same.
 pub(super) fn warmth(data: &[Datum]) -> Option<Memory> {
     let temperatures: Vec<f64> = data.iter().map(|d| d.temperature).collect::<Option<_>>()?;
     temperatures.iter().any(|one| *one != temperatures[0]).then_some(())?;
@@ -229,28 +233,33 @@ pub(super) fn warmth(data: &[Datum]) -> Option<Memory> {
     Some(Memory { relative: temperatures.into_iter().map(|one| one - mean).collect(), ..none(data) })
 }
 
-/// Shape of a hysteresis loop. All are independent of rate and closed at the largest load of the run, F_max, and at half of it
-/// h of full scale wide.
+/// Shape of a hysteresis loop. All are independent of rate and closed at the largest load of the
+/// run, F_max, and at half of it h of full scale wide.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Loop {
     /// Closed at zero too: unloading readings are larger by h·4·C·F·(1 − F/F_max).
     Closed,
-    /// As [`Loop::Closed`], half of it below the straight line on the way up and half above it on the way down: a rod that
-    /// was loaded before (A. Visintin, Differential Models of Hysteresis, 1994, ch. III: plays of Prandtl and Ishlinskii).
+    /// As [`Loop::Closed`], half of it below the straight line on the way up and half above it on
+    /// the way down: a rod that was loaded before (A. Visintin, Differential Models of Hysteresis,
+    /// 1994, ch. III: plays of Prandtl and Ishlinskii).
     Symmetric,
-    /// Open at zero: unloading readings are larger by h·C·(F_max − F), twice as wide there as at half load.
+    /// Open at zero: unloading readings are larger by h·C·(F_max − F), twice as wide there as at
+    /// half load.
     Remanent,
-    /// A rod that is loaded for the first time: b·F² on the way up, b·(F_max² − ½(F_max − F)²) on the way down, b = 8h/5F_max
-    /// (Lord Rayleigh, Phil. Mag. 23 (1887) 225–245: a quadratic law and branches of half its curvature).
+    /// A rod that is loaded for the first time: b·F² on the way up, b·(F_max² − ½(F_max − F)²) on
+    /// the way down, b = 8h/5F_max (Lord Rayleigh, Phil. Mag. 23 (1887) 225–245: a quadratic law
+    /// and branches of half its curvature).
     Virgin,
-    /// A new rod that remembers from run to run: as [`Loop::Symmetric`] but in a run that goes further than any before in its
-    /// direction, which is a first one by Lord Rayleigh's law with the same branches, F·(1 − 2h) + 4h·F²/F_max on the way up.
+    /// A new rod that remembers from run to run: as [`Loop::Symmetric`] but in a run that goes
+    /// further than any before in its direction, which is a first one by Lord Rayleigh's law with
+    /// the same branches, F·(1 − 2h) + 4h·F²/F_max on the way up.
     NewByRayleigh,
-    /// The same by plays that are spread evenly up to half of the largest load (Visintin, ch. III): beyond half of it the first
-    /// way up is straight, F·(1 + 2h) − h·F_max.
+    /// The same by plays that are spread evenly up to half of the largest load (Visintin, ch. III):
+    /// beyond half of it the first way up is straight, F·(1 + 2h) − h·F_max.
     NewByPlays,
-    /// A load that goes up and down across zero: half of h of its whole range above the straight line between its turns while
-    /// falling, below it while rising, by parabolas (Lord Rayleigh's branches, Masing's rule).
+    /// A load that goes up and down across zero: half of h of its whole range above the straight
+    /// line between its turns while falling, below it while rising, by parabolas (Lord Rayleigh's
+    /// branches, Masing's rule).
     Turning,
 }
 
@@ -424,7 +433,8 @@ mod tests {
         assert_eq!(remanent.lingering, [0.0, 0.0, 10.0, 20.0]);
         let symmetric = hysteresis(&data, Loop::Symmetric).unwrap();
         assert_eq!(symmetric.relative, [-1.0, 0.0, 1.0, 2.0]);
-        // the branches of a virgin rod meet at the largest load, and are h·F_max apart at half of it
+        // the branches of a virgin rod meet at the largest load, and are h·F_max apart at half of
+        // it
         let virgin = hysteresis(&data, Loop::Virgin).unwrap();
         let felt = |i: usize| data[i].load * virgin.relative[i] + virgin.lingering[i];
         assert!((felt(2) - felt(0) - 10.0).abs() < 1e-12 && felt(3) > 0.0);

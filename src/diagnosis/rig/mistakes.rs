@@ -1,16 +1,19 @@
 //! Mistakes before physics: units, signs, names, zeros, sensors, files.
 //!
-//! They are discrete, few and of enormous evidence, so they are undone before there is a model. Three steps:
+//! They are discrete, few and of enormous evidence, so they are undone before there is a model.
+//! Three steps:
 //!
-//! 1. readings that no load could give: channels that are stuck or cut off, runs whose sign is the other way (`sensors.rs`,
-//!    `groups.rs`); a line of readings shows these by itself;
-//! 2. the slopes of all lines against the rod (`lines.rs`, `physics.rs`): where what is left is more than ordinary physics
-//!    leaves, some hundred hypotheses (`moves.rs`, `rods.rs`), each a [`change::Change`] of readings and rod, compete with
-//!    each other and with all that physics may add (`search.rs`);
+//! 1. readings that no load could give: channels that are stuck or cut off, runs whose sign is the
+//!    other way (`sensors.rs`, `groups.rs`); a line of readings shows these by itself;
+//! 2. the slopes of all lines against the rod (`lines.rs`, `physics.rs`): where what is left is
+//!    more than ordinary physics leaves, some hundred hypotheses (`moves.rs`, `rods.rs`), each a
+//!    [`change::Change`] of readings and rod, compete with each other and with all that physics may
+//!    add (`search.rs`);
 //! 3. zeros that were not taken, on the corrected lines (`groups.rs`).
 //!
-//! A mistake is named where what it acts on is more than 22 % (rms) off without it and plausible with it, at odds of 1000
-//! against everything else. Physics may stand beside: a unit counts where what remains is a factor of 0.8 to 1.25.
+//! A mistake is named where what it acts on is more than 22 % (rms) off without it and plausible
+//! with it, at odds of 1000 against everything else. Physics may stand beside: a unit counts where
+//! what remains is a factor of 0.8 to 1.25.
 
 mod change;
 mod groups;
@@ -57,14 +60,16 @@ pub(super) struct Mended {
     pub rod: Option<Rod>,
     /// For each of them one line: what it looks like.
     pub suspicions: Vec<String>,
-    /// Rods of other files that may have been meant, the likeliest first; none where that was decided.
+    /// Rods of other files that may have been meant, the likeliest first; none where that was
+    /// decided.
     pub others: Vec<(String, Rod)>,
     /// False where nothing that could be compared is left of the readings.
     pub has_data: bool,
 }
 
-/// One line for each mistake that `readings` seem to hold, for those who do not ask for a diagnosis: `load_n looks like
-/// kilograms: the rod seems 9.8 times softer than its file; rodcal diagnose rig says more`.
+/// One line for each mistake that `readings` seem to hold, for those who do not ask for a
+/// diagnosis: `load_n looks like kilograms: the rod seems 9.8 times softer than its file; rodcal
+/// diagnose rig says more`.
 ///
 /// # Errors
 /// What the beam model refuses of the rod.
@@ -220,7 +225,8 @@ impl Mended {
         }
     }
 
-    /// Takes another rod for the one that was meant: what it says of the readings is `explains` (m, rms) from what was said before.
+    /// Takes another rod for the one that was meant: what it says of the readings is `explains` (m,
+    /// rms) from what was said before.
     pub fn take(&mut self, number: usize, log_odds: f64, explains: f64) {
         let (file, other) = self.others.swap_remove(number);
         let Some(rod) = self.rod.replace(other.clone()) else { return };

@@ -1,4 +1,5 @@
-//! Readings of a rig as the engine sees them: data, what turns forces into displacements, candidates.
+//! Readings of a rig as the engine sees them: data, what turns forces into displacements,
+//! candidates.
 
 use super::action::Action;
 use super::cases::Cases;
@@ -52,7 +53,8 @@ pub(super) enum Body {
 }
 
 impl RigModel {
-    /// Name of a session, by its number in [`Evidence::session`](crate::inference::Evidence::session).
+    /// Name of a session, by its number in
+    /// [`Evidence::session`](crate::inference::Evidence::session).
     pub fn session(&self, number: usize) -> &str {
         let of_session = self.data.iter().find(|datum| datum.session_number == number);
         of_session.and_then(|datum| datum.session.as_deref()).unwrap_or("without a name")
@@ -94,7 +96,8 @@ impl RigModel {
         self.data.iter().find_map(|datum| datum.imposed).map(|imposed| imposed.per_newton)
     }
 
-    /// Stated noise of a datum, m: where the load was measured, that of load and displacement together.
+    /// Stated noise of a datum, m: where the load was measured, that of load and displacement
+    /// together.
     pub(super) fn stated_noise(&self) -> Option<f64> {
         let header = &self.readings.header;
         let of_load = self.per_newton().zip(header.load_noise).map(|(per_newton, noise)| per_newton * noise);

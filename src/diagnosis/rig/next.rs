@@ -1,12 +1,12 @@
 //! The measurement that would separate a finding from its rivals.
 //!
-//! Two hypotheses predict new readings η₁ and η₂, each with the uncertainty that its parameters have by now. New readings of noise
-//! σ separate them by the expected ln of the odds
+//! Two hypotheses predict new readings η₁ and η₂, each with the uncertainty that its parameters
+//! have by now. New readings of noise σ separate them by the expected ln of the odds
 //!
 //! ½·dᵀ·(σ²(1 + ρJ) + S₁Σ₁S₁ᵀ + S₂Σ₂S₂ᵀ)⁻¹·d,   d = η₁ − η₂
 //!
-//! with S the sensitivities and Σ the covariances of the parameters. Of the feasible measurements the one is proposed that
-//! leaves least of the rivals (`experiment_design.rs`).
+//! with S the sensitivities and Σ the covariances of the parameters. Of the feasible measurements
+//! the one is proposed that leaves least of the rivals (`experiment_design.rs`).
 
 use nalgebra::{DMatrix, DVector};
 
@@ -20,7 +20,8 @@ use crate::inference::{
     Rival, Term, separates,
 };
 
-/// Effects that a measurement has to separate the finding from, and their places: the likeliest ones.
+/// Effects that a measurement has to separate the finding from, and their places: the likeliest
+/// ones.
 const MOST_RIVALS: usize = 6;
 const MOST_PLACES: usize = 10;
 
@@ -149,7 +150,8 @@ impl Future {
         }
     }
 
-    /// Covariance of the parameters of a transferred hypothesis, SI: what is known by now, and of what is not the prior.
+    /// Covariance of the parameters of a transferred hypothesis, SI: what is known by now, and of
+    /// what is not the prior.
     fn covariance(&self, hypothesis: &Hypothesis, transferred: &Transferred) -> DMatrix<f64> {
         let parameters: Vec<f64> = transferred
             .terms

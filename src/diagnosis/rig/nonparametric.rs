@@ -6,13 +6,16 @@
 //! Σ_j a_j·cos(π j x)       a_j ~ s/(1 + j)
 //! ```
 //!
-//! for every shape is more likely to be smooth than not. Over the levels of the load x counts levels, so that four loads have
-//! four columns and any shape can be met: a step at one load, a contact that stiffens beyond 10 N. A curve adds to the readings
-//! of one line or channel (s a share of what was read there), or it multiplies the deflections of all lines at once (s a share of
-//! them), or, over the load, it adds to what is read along the load on all lines: then physics that acts on all lines alike, such
-//! as relaxation with one time constant or a seat that gives way, is one rival and not many.
+//! for every shape is more likely to be smooth than not. Over the levels of the load x counts
+//! levels, so that four loads have four columns and any shape can be met: a step at one load, a
+//! contact that stiffens beyond 10 N. A curve adds to the readings of one line or channel (s a
+//! share of what was read there), or it multiplies the deflections of all lines at once (s a share
+//! of them), or, over the load, it adds to what is read along the load on all lines: then physics
+//! that acts on all lines alike, such as relaxation with one time constant or a seat that gives
+//! way, is one rival and not many.
 //!
-//! What comes and goes in time has finer curves besides, of [`FINE`] columns of which the first half are of one size.
+//! What comes and goes in time has finer curves besides, of [`FINE`] columns of which the first
+//! half are of one size.
 
 mod along;
 mod before;
@@ -41,12 +44,13 @@ const MOST_COLUMNS: usize = 6;
 const FINE: usize = 14;
 /// Loads that are hung are at most so many different ones.
 const MOST_LEVELS: usize = 30;
-/// Share by which the slope of a line may be off, and share of the steepest line's slope that a flat one may have: as large as
-/// the known effects on a rod.
+/// Share by which the slope of a line may be off, and share of the steepest line's slope that a
+/// flat one may have: as large as the known effects on a rod.
 const SLOPE: (f64, f64) = (0.27, 0.02);
 const PERCENT: f64 = 0.01;
 
-/// All curves for these readings. `deflections`: how far the rod yields at each datum by the base model, m.
+/// All curves for these readings. `deflections`: how far the rod yields at each datum by the base
+/// model, m.
 pub(super) fn all(data: &[Datum], deflections: &[f64], has_rod: bool) -> Vec<Entry> {
     let everything: Vec<usize> = (0..data.len()).collect();
     let lines = groups(data, &numbered(data.iter().map(Datum::line_key)), &|d| {
@@ -96,7 +100,8 @@ pub(super) fn all(data: &[Datum], deflections: &[f64], has_rod: bool) -> Vec<Ent
     entries
 }
 
-/// What a reading may follow: name, coordinate, and whether it acts by line (loads) or by channel (drifts).
+/// What a reading may follow: name, coordinate, and whether it acts by line (loads) or by channel
+/// (drifts).
 fn coordinates(data: &[Datum]) -> Vec<(Along, Coordinate, bool)> {
     let levels = by_axis(data, |d| d.drive().abs(), |_| true);
     let unloading = by_axis(data, |d| d.drive().abs(), Datum::is_unloading);
@@ -140,8 +145,9 @@ fn coordinates(data: &[Datum]) -> Vec<(Along, Coordinate, bool)> {
     found
 }
 
-/// Rank of the load, as `of` counts it, among those along its axis, for the data that `is_of` admits. Of more than
-/// [`MOST_LEVELS`] loads the size instead: where a measured load trembles about its levels, its rank is a better load.
+/// Rank of the load, as `of` counts it, among those along its axis, for the data that `is_of`
+/// admits. Of more than [`MOST_LEVELS`] loads the size instead: where a measured load trembles
+/// about its levels, its rank is a better load.
 fn by_axis(data: &[Datum], of: impl Fn(&Datum) -> f64, is_of: impl Fn(&Datum) -> bool) -> Coordinate {
     let levels = Axis::ALL.map(|axis| {
         let along = data.iter().filter(|d| is_of(d) && d.direction.axis == axis);
@@ -163,10 +169,11 @@ fn by_axis(data: &[Datum], of: impl Fn(&Datum) -> f64, is_of: impl Fn(&Datum) ->
     data.iter().map(rank).collect()
 }
 
-/// Takes away, of a load that goes up and down again and again, curves along the recording that do not predict the next cycle: a
-/// curve through neighbours follows anything that a law repeats.
+/// Takes away, of a load that goes up and down again and again, curves along the recording that do
+/// not predict the next cycle: a curve through neighbours follows anything that a law repeats.
 ///
-/// Each cycle in turn is predicted from the others, by the curve with its prior; a curve stays if it lowers the squares.
+/// Each cycle in turn is predicted from the others, by the curve with its prior; a curve stays if
+/// it lowers the squares.
 pub(super) fn retain_predictive(entries: &mut Vec<Entry>, data: &[Datum], deflections: &[f64]) {
     let is_cyclic = data.iter().any(|d| d.motion.is_some_and(|motion| motion.cycle > 0));
     if !is_cyclic {
@@ -183,7 +190,8 @@ pub(super) fn retain_predictive(entries: &mut Vec<Entry>, data: &[Datum], deflec
     });
 }
 
-/// True where a curve that is fitted to all other cycles lowers the squares of each cycle, all of them together.
+/// True where a curve that is fitted to all other cycles lowers the squares of each cycle, all of
+/// them together.
 fn predicts(candidate: &Candidate, actions: &[Action], left: &DVector<f64>, cycle: &[usize]) -> bool {
     let mut columns = DMatrix::zeros(left.len(), actions.len());
     for (k, (action, parameter)) in actions.iter().zip(&candidate.parameters).enumerate() {
@@ -220,7 +228,8 @@ fn scaled(values: &[Option<f64>]) -> Coordinate {
     values.iter().map(scale).collect()
 }
 
-/// A curve over a coordinate on some of the data; nothing where the coordinate has no meaning for any.
+/// A curve over a coordinate on some of the data; nothing where the coordinate has no meaning for
+/// any.
 fn curve(
     along: Along,
     place: &str,
@@ -279,8 +288,8 @@ fn cosines(
     Some((rival(location, parameters), actions))
 }
 
-/// What moves the tip towards the load, by a curve of its size wherever it pulls to; nothing along a single axis, where the curve
-/// of its line is the same.
+/// What moves the tip towards the load, by a curve of its size wherever it pulls to; nothing along
+/// a single axis, where the curve of its line is the same.
 fn along_the_load(data: &[Datum]) -> Option<Entry> {
     let along: Vec<usize> = (0..data.len())
         .filter(|&i| data[i].channel == data[i].direction.axis && data[i].drive() != 0.0)
@@ -293,7 +302,8 @@ fn along_the_load(data: &[Datum]) -> Option<Entry> {
     (axes > 1).then(|| curve(LOAD, "readings along the load", &coordinate, &along, UM, size, sign)).flatten()
 }
 
-/// A slope of its own for every line: a rod whose compliance differs from the model in a way that no part of it explains.
+/// A slope of its own for every line: a rod whose compliance differs from the model in a way that
+/// no part of it explains.
 fn slopes(data: &[Datum], deflections: &[f64], lines: &[(String, Vec<usize>)]) -> Option<Entry> {
     let slope =
         |&i: &usize| if data[i].drive() != 0.0 { (deflections[i] / data[i].drive()).abs() } else { 0.0 };
@@ -357,7 +367,8 @@ mod tests {
             Action::Shift(weights) => weights.iter().collect::<Vec<_>>(),
             _ => panic!("a shift"),
         };
-        // by datum: dy and dz of every row; a constant, and one half of a cosine from no load to the largest
+        // by datum: dy and dz of every row; a constant, and one half of a cosine from no load to
+        // the largest
         assert_eq!(weights(&actions[0]), [(2, -1.0), (4, -1.0), (7, 1.0)]);
         let half: Vec<f64> = weights(&actions[1]).iter().map(|(_, weight)| *weight).collect();
         assert!(half[0].abs() < 1e-15 && half[1..] == [1.0, -1.0], "{half:?}");

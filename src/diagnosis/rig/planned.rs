@@ -1,15 +1,17 @@
 //! What to measure on a rig that has measured nothing yet, so that some effects can be told apart.
 //!
-//! An effect a of its usual size adds C_a·θ, θ ~ N(0, 1), to readings that scatter by Σ₀: noise, the zero of each run, the
-//! rod's nominal numbers. Where a is what there is, the ln of the odds against b that a plan is expected to give is
+//! An effect a of its usual size adds C_a·θ, θ ~ N(0, 1), to readings that scatter by Σ₀: noise,
+//! the zero of each run, the rod's nominal numbers. Where a is what there is, the ln of the odds
+//! against b that a plan is expected to give is
 //!
 //! ```text
 //! ½·[tr(K_b⁻¹K_a) − n + ln|K_b| − ln|K_a|],   K = Σ₀ + C·Cᵀ
 //! ```
 //!
-//! the Kullback–Leibler divergence of the two (D. V. Lindley, *Ann. Math. Statist.* 27 (1956) 986–1005). Measurements are those
-//! that a diagnosis proposes from (`feasible.rs`), chosen one after another as it does (`experiment_design.rs`): the least
-//! laborious one that leaves least of the rivals; then whatever is not needed is given up again.
+//! the Kullback–Leibler divergence of the two (D. V. Lindley, *Ann. Math. Statist.* 27 (1956)
+//! 986–1005). Measurements are those that a diagnosis proposes from (`feasible.rs`), chosen one
+//! after another as it does (`experiment_design.rs`): the least laborious one that leaves least of
+//! the rivals; then whatever is not needed is given up again.
 
 mod ratio;
 
@@ -27,16 +29,19 @@ use crate::parallel::in_parallel;
 use crate::rig::readings::{Axis, Direction, Reading, Readings};
 use crate::rod::Rod;
 
-/// Minutes that a new place of load or sensors takes, that a new zero takes, and that a reading takes.
+/// Minutes that a new place of load or sensors takes, that a new zero takes, and that a reading
+/// takes.
 const SETUP: f64 = 10.0;
 const ZEROING: f64 = 2.0;
 const READING: f64 = 0.5;
-/// Fewest repeats of a measurement, for the scatter has to be seen too; what is added at a time, and most of all.
+/// Fewest repeats of a measurement, for the scatter has to be seen too; what is added at a time,
+/// and most of all.
 const FEWEST: usize = 3;
 const ADDED: [usize; 3] = [1, 3, 6];
 const MOST_REPEATS: usize = 12;
 const MOST_ROUNDS: usize = 24;
-/// What all measurements together would have to tell, in ln odds, times what is asked for: less would take nearly all of them.
+/// What all measurements together would have to tell, in ln odds, times what is asked for: less
+/// would take nearly all of them.
 const REASONABLE: f64 = 2.0;
 /// Share of the rivals that a measurement has to take away.
 const WORTH: f64 = 0.98;
@@ -96,8 +101,9 @@ pub struct Told {
     pub effect: &'static Effect,
     /// What it may be taken for; `None` is nothing at all.
     pub against: Option<&'static Effect>,
-    /// For each place where it may be the ln of the odds against the other one, wherever that is: that this plan is
-    /// expected to give, and that all measurements together, repeated twelve times, would.
+    /// For each place where it may be the ln of the odds against the other one, wherever that is:
+    /// that this plan is expected to give, and that all measurements together, repeated twelve
+    /// times, would.
     pub places: Vec<(Location, f64, f64)>,
 }
 
@@ -111,11 +117,13 @@ pub fn effect_names() -> Vec<&'static str> {
     registry::ALL.into_iter().map(|effect| effect.effect.name).collect()
 }
 
-/// The least laborious plan that tells effects of their usual sizes apart, `odds` to 1, and from nothing; as far as the rig
-/// can do that with reasonable effort: where all measurements together tell less than odds², nearly all of them would be needed.
+/// The least laborious plan that tells effects of their usual sizes apart, `odds` to 1, and from
+/// nothing; as far as the rig can do that with reasonable effort: where all measurements together
+/// tell less than odds², nearly all of them would be needed.
 ///
 /// # Errors
-/// [`Error::NotApplicable`] for an effect that no such measurement shows; what the beam model refuses.
+/// [`Error::NotApplicable`] for an effect that no such measurement shows; what the beam model
+/// refuses.
 pub fn plan(rod: &Rod, between: &[&'static Effect], odds: f64, bench: &Bench) -> Result<RigPlan> {
     let menu = Menu::new(rod, between, bench)?;
     let wanted = odds.ln();
@@ -158,7 +166,8 @@ pub fn plan(rod: &Rod, between: &[&'static Effect], odds: f64, bench: &Bench) ->
         (counts, now) = (best, told);
     }
     if !is_enough(&now) {
-        // some are told by several measurements together only: from all of them, as many as can be left out
+        // some are told by several measurements together only: from all of them, as many as can be
+        // left out
         counts = vec![MOST_REPEATS; counts.len()];
         now.clone_from(&all);
         let mut order: Vec<usize> = (0..counts.len()).collect();
@@ -397,7 +406,8 @@ impl Alone {
     }
 }
 
-/// Loads at the tip along every axis in four steps, as the rod's model has them: what the menu is written from.
+/// Loads at the tip along every axis in four steps, as the rod's model has them: what the menu is
+/// written from.
 fn at_tip(rod: &Rod, largest: f64) -> Result<Readings> {
     let model = RodModel::new(rod, &Physics::WHOLE, 1, &[])?;
     let [force, _] = model.chain.tip_motion();

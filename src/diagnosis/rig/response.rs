@@ -9,7 +9,8 @@ use super::model::{Body, RigModel};
 use super::structure::{Parts, Structure};
 
 impl RigModel {
-    /// How far the rod yields at each datum, m: the prediction, or the reading's share in a line through the origin.
+    /// How far the rod yields at each datum, m: the prediction, or the reading's share in a line
+    /// through the origin.
     pub(super) fn deflections(&self) -> Vec<f64> {
         match self.body {
             Body::Rod(_) => self.data.iter().map(|d| d.predicted).collect(),
@@ -32,8 +33,8 @@ impl RigModel {
         sums.into_iter().map(|(xy, xx)| if xx > 0.0 { xy / xx } else { 0.0 }).collect()
     }
 
-    /// True where data of one case show the same but for their history: no load that was hung or imposed one after
-    /// another, and no joint of one session.
+    /// True where data of one case show the same but for their history: no load that was hung or
+    /// imposed one after another, and no joint of one session.
     pub(super) fn is_by_case(&self, state: &State<'_>) -> bool {
         self.course.hung.is_empty() && self.course.imposed.is_empty() && state.of_sessions.is_empty()
     }
@@ -127,7 +128,8 @@ impl RigModel {
                     felt.push(pull.load * f64::from(datum.direction.sign));
                     change[i] += pull.direction[datum.channel.index()] * pull.play;
                 }
-                // of an imposed displacement a line is the load per displacement: c₀ the compliance that its unit is
+                // of an imposed displacement a line is the load per displacement: c₀ the compliance
+                // that its unit is
                 let unit = |i: usize| self.data[i].imposed.map_or(1.0, |imposed| imposed.per_newton);
                 let measured: Vec<f64> = self.data.iter().map(|d| d.measured).collect();
                 let drives: Vec<f64> = self.data.iter().map(Datum::drive).collect();

@@ -8,9 +8,11 @@
 //!                      F = x/C + f·z in contact, 0 in the gap; no friction in the slider's gap
 //! ```
 //!
-//! f the friction, p the play, q that of the slider alone, C the compliance. Within its play a rod stays where friction holds it, |x| ≤ f·C, and returns as
-//! far as that by itself. Without presliding z is the direction of motion. Sources: A. Visintin, *Differential Models of
-//! Hysteresis*, 1994, ch. III; J. Awrejcewicz, P. Olejnik, *Appl. Mech. Rev.* 58 (2005) 389–411 (dry friction).
+//! f the friction, p the play, q that of the slider alone, C the compliance. Within its play a rod
+//! stays where friction holds it, |x| ≤ f·C, and returns as far as that by itself. Without
+//! presliding z is the direction of motion. Sources: A. Visintin, *Differential Models of
+//! Hysteresis*, 1994, ch. III; J. Awrejcewicz, P. Olejnik, *Appl. Mech. Rev.* 58 (2005) 389–411
+//! (dry friction).
 
 use super::datum::Datum;
 use super::load_history::{instants, runs};
@@ -48,7 +50,8 @@ impl Course {
     }
 }
 
-/// Friction and play of a hung load: the force that the rod feels, and to which side of its play it leans.
+/// Friction and play of a hung load: the force that the rod feels, and to which side of its play it
+/// leans.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Hung {
     /// Along the positive axis, N.
@@ -123,15 +126,16 @@ impl Slide {
         }
     }
 
-    /// Contact across a play where one side is `ahead` of the other, moved in `direction`: 1, or 0 in the gap.
+    /// Contact across a play where one side is `ahead` of the other, moved in `direction`: 1, or 0
+    /// in the gap.
     fn contact(&self, play: f64, ahead: f64, direction: f64) -> f64 {
         let depth = ahead.abs() - play;
         let ramp = self.step.min(RAMP * play);
         if depth >= -TOUCHING * play {
             1.0
         } else if direction * ahead > 0.0 && ramp > 0.0 {
-            // the last piece of the gap belongs to the contact ahead, in part: what is measured then changes with the play
-            // without a jump
+            // the last piece of the gap belongs to the contact ahead, in part: what is measured
+            // then changes with the play without a jump
             (1.0 + depth / ramp).max(0.0)
         } else {
             0.0
@@ -164,7 +168,8 @@ mod tests {
         path.iter().map(next).collect()
     }
 
-    /// A hung load is held back on the way up and on the way down, and nothing moves within 2f of a turn.
+    /// A hung load is held back on the way up and on the way down, and nothing moves within 2f of a
+    /// turn.
     #[test]
     fn friction_lags_behind_a_hung_load() {
         let mut hung = Hung::default();

@@ -1,7 +1,8 @@
-//! What a rod gives way by, as a sum of parts that are exactly linear in what may be wrong with them.
+//! What a rod gives way by, as a sum of parts that are exactly linear in what may be wrong with
+//! them.
 //!
-//! A rod is an open chain: the flexibilities of its parts add up. With C the displacement at the read station per force at
-//! the load station, in {T},
+//! A rod is an open chain: the flexibilities of its parts add up. With C the displacement at the
+//! read station per force at the load station, in {T},
 //!
 //! ```text
 //! C = C₀ + (P + B·(1/g − 1) + D·(k − k₀))/f − P + Σ β_j·J_j
@@ -9,8 +10,9 @@
 //! D bending of the arc k, k₀ its flexibility factor, the file's factor        J_j a joint per rad/(N·m), β_j its change
 //! ```
 //!
-//! P, B and D come from the beam model itself, as differences of models in which one thing was changed. A joint at x turns what
-//! is beyond it about its axes a, those across the tangent t or t itself: with the force at p and the reading at q
+//! P, B and D come from the beam model itself, as differences of models in which one thing was
+//! changed. A joint at x turns what is beyond it about its axes a, those across the tangent t or t
+//! itself: with the force at p and the reading at q
 //!
 //! ```text
 //! J = Σ (a × (q − x))·(a × (p − x))ᵀ = [q − x]×·A·[p − x]×ᵀ     A = 1 − t·tᵀ of bending, t·tᵀ of torsion
@@ -67,9 +69,10 @@ impl Default for Softening {
 
 /// A joint that may sit anywhere about its station.
 ///
-/// On a straight piece of the rod the displacement per compliance of a joint is a polynomial of second degree in its
-/// station, for the lever arms of the load and of the reading are of first degree: the polynomial through three stations is
-/// exact. On an arc of a few degrees it is so to 1e-4.
+/// On a straight piece of the rod the displacement per compliance of a joint is a polynomial of
+/// second degree in its station, for the lever arms of the load and of the reading are of first
+/// degree: the polynomial through three stations is exact. On an arc of a few degrees it is so to
+/// 1e-4.
 #[derive(Debug, Clone)]
 pub(super) struct Nodes {
     /// Stations before, at and behind, m: the first and the last are as far as it may be.
@@ -152,8 +155,9 @@ impl Structure {
         [first, first + 1]
     }
 
-    /// Adds joints by which the one at `station`, added as `joint`, may be moved within `range` (m), no farther than where the
-    /// rod bends or a load or a sensor stands; `None` where it stands at such a place.
+    /// Adds joints by which the one at `station`, added as `joint`, may be moved within `range`
+    /// (m), no farther than where the rod bends or a load or a sensor stands; `None` where it
+    /// stands at such a place.
     pub(super) fn add_nodes(&mut self, station: f64, joint: [usize; 2], range: (f64, f64)) -> Option<Nodes> {
         const LEAST: f64 = 0.01 * MM;
         let ends = [0.0, self.rod.bend_start(), self.rod.bend_end(), self.rod.length()];
@@ -169,7 +173,8 @@ impl Structure {
         Some(Nodes { stations: [before, station, behind], joints })
     }
 
-    /// The parts as `softening` leaves them; unchanged ones to the last digit where it changes nothing.
+    /// The parts as `softening` leaves them; unchanged ones to the last digit where it changes
+    /// nothing.
     pub(super) fn softened(&self, softening: &Softening) -> Parts {
         let of_pair = |pair: usize| {
             let mut pipes = self.pipes[pair];
@@ -191,8 +196,9 @@ impl Structure {
         self.stations[joint]
     }
 
-    /// What large deflections of `rod`, this one or one that yields more, add to the displacement per square of the load along
-    /// each axis, m/N² (columns: axes), for each pair of stations: to the second order, which is even in the load.
+    /// What large deflections of `rod`, this one or one that yields more, add to the displacement
+    /// per square of the load along each axis, m/N² (columns: axes), for each pair of stations: to
+    /// the second order, which is even in the load.
     pub(super) fn second_order(&self, rod: &Rod) -> Result<Parts> {
         /// Enough for three digits.
         const ELEMENTS: usize = 48;
@@ -219,7 +225,8 @@ impl Structure {
         self.arc.is_some()
     }
 
-    /// How far the whole rod bends and twists at the tip per moment there, ∫ds/EI and ∫ds/GJ, rad/(N·m).
+    /// How far the whole rod bends and twists at the tip per moment there, ∫ds/EI and ∫ds/GJ,
+    /// rad/(N·m).
     pub(super) fn rotation(&self) -> [f64; 2] {
         let rod = &self.rod;
         let (start, end, length) = (rod.bend_start(), rod.bend_end(), rod.length());

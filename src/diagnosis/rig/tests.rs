@@ -275,7 +275,8 @@ fn neutral_values_change_nothing_and_typical_ones_something() {
     }
 }
 
-/// The engine's derivatives beside friction, a memory and a shift, evaluated by cases, against differences of whole responses.
+/// The engine's derivatives beside friction, a memory and a shift, evaluated by cases, against
+/// differences of whole responses.
 #[test]
 fn derivatives_are_those_of_the_responses() {
     let rod = rod("");

@@ -1,4 +1,5 @@
-//! What was found in one recording, in the model of other readings: what the rod and the rig would show there.
+//! What was found in one recording, in the model of other readings: what the rod and the rig would
+//! show there.
 
 use nalgebra::DVector;
 
@@ -20,7 +21,8 @@ pub(super) struct Transferred {
 }
 
 impl RigModel {
-    /// Terms of `from` in this model. What happened once (a slip, a zero that was not taken) does not happen again.
+    /// Terms of `from` in this model. What happened once (a slip, a zero that was not taken) does
+    /// not happen again.
     pub(super) fn transferred(&self, from: &RigModel, terms: &[Term]) -> Transferred {
         let (mut transferred, mut known, mut first) = (Vec::new(), Vec::new(), 0);
         for effect in terms {
@@ -42,9 +44,10 @@ impl RigModel {
 }
 
 impl RigDiagnosis {
-    /// What would be read where other readings are `asked` for, m, without noise: the model of the rod with all findings, and
-    /// with what large deflections add to second order.
-    /// One number for each offset of `asked`, row by row, dx before dy before dz; the offsets that stand there do not matter.
+    /// What would be read where other readings are `asked` for, m, without noise: the model of the
+    /// rod with all findings, and with what large deflections add to second order. One number for
+    /// each offset of `asked`, row by row, dx before dy before dz; the offsets that stand there do
+    /// not matter.
     ///
     /// ```
     /// use rodcal::prelude::*;
@@ -61,7 +64,8 @@ impl RigDiagnosis {
     /// ```
     ///
     /// # Errors
-    /// As [`RigModel::new`]. Without a rod nothing is known of the slope of another line: [`crate::Error::NotApplicable`].
+    /// As [`RigModel::new`]. Without a rod nothing is known of the slope of another line:
+    /// [`crate::Error::NotApplicable`].
     pub fn predicted(&self, asked: &Readings) -> Result<Vec<f64>> {
         let Some(rod) = self.model.rod() else {
             return Err(crate::Error::NotApplicable {

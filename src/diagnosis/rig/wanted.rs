@@ -26,8 +26,8 @@ impl Wanted<'_> {
     }
 }
 
-/// The candidate of another recording that stands for the same. Laws of one effect at one place differ in their parameters;
-/// of one law either recording may show some only.
+/// The candidate of another recording that stands for the same. Laws of one effect at one place
+/// differ in their parameters; of one law either recording may show some only.
 pub(super) fn is_same(new: &Candidate, old: &Candidate) -> bool {
     (&new.effect, &new.location) == (&old.effect, &old.location)
         && !new.is_nonparametric

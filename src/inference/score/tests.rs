@@ -185,8 +185,8 @@ fn what_is_not_a_number_explains_nothing() {
     assert!(!is_favoured(about) && !is_favoured(exact), "{about} {exact}");
 }
 
-/// Of an effect of four numbers, as large as each other, the data show two: an interval of the others knows of their size by
-/// these two alone.
+/// Of an effect of four numbers, as large as each other, the data show two: an interval of the
+/// others knows of their size by these two alone.
 #[test]
 fn intervals_of_what_the_data_leave_open_know_how_well_its_size_is_known() {
     const DRAWS: u64 = 400;

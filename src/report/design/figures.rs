@@ -131,7 +131,8 @@ fn outlines(rod: &Rod) -> Vec<Vec<[f64; 2]>> {
         (0..=count)
             .map(|k| {
                 let station = from + (to - from) * k as f64 / count as f64;
-                // the normal of the centreline, from the middle of this piece where it ends at a corner
+                // the normal of the centreline, from the middle of this piece where it ends at a
+                // corner
                 let inside =
                     (from + (to - from) * (k as f64).clamp(0.25, count as f64 - 0.25) / count as f64, 1e-4);
                 let tangent = (rod.point(inside.0 + inside.1) - rod.point(inside.0 - inside.1)).normalize();

@@ -134,8 +134,8 @@ fn subject<'a>(found: &'a CalibrationDiagnosis<'_>) -> Subject<'a> {
     }
 }
 
-/// A number of the robot that the calibration has put far from its file: no error of the poses, but hardly what the
-/// file means.
+/// A number of the robot that the calibration has put far from its file: no error of the poses, but
+/// hardly what the file means.
 fn far_from_file(found: &CalibrationDiagnosis) -> Option<String> {
     let calibration = &found.model.calibration;
     let known = &calibration.setup.robot.standard_uncertainty;

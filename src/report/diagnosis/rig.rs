@@ -92,13 +92,14 @@ fn subject<'a>(found: &'a RigDiagnosis, correction: Option<&Correction>) -> Subj
     }
 }
 
-/// What is left unexplained, as a share of the deflections, beside which nothing is said of the stiffness: readings that are not
-/// of this rod say nothing of its moduli.
+/// What is left unexplained, as a share of the deflections, beside which nothing is said of the
+/// stiffness: readings that are not of this rod say nothing of its moduli.
 const NOT_OF_THE_ROD: f64 = 0.2;
 /// So many standard uncertainties of the stiffness are still within what the file says.
 const FAR: f64 = 2.0;
 
-/// `The stiffness is 0.4 ± 0.1 % above that of the rod file, within the stated uncertainty of E of steel (1 %).`
+/// `The stiffness is 0.4 ± 0.1 % above that of the rod file, within the stated uncertainty of E of
+/// steel (1 %).`
 fn nominal(found: &RigDiagnosis) -> Option<String> {
     let moved = found.diagnosis.nominal.first()?;
     let (factors, covariance) = &found.diagnosis.nominal_factors;
@@ -139,7 +140,8 @@ fn nominal(found: &RigDiagnosis) -> Option<String> {
     ))
 }
 
-/// Where the displacement was imposed: what a newton counts, and the errors of the loads in newtons.
+/// Where the displacement was imposed: what a newton counts, and the errors of the loads in
+/// newtons.
 fn measured_load(found: &RigDiagnosis) -> Option<Value> {
     let per_newton = found.model.per_newton()?;
     let (diagnosis, newtons) = (&found.diagnosis, |error: f64| error / per_newton);

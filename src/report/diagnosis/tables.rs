@@ -13,7 +13,8 @@ use crate::report::table::{Column, Table};
 use crate::report::{Block, Section};
 use crate::units::{UM, significant};
 
-/// Distances from chance, in standard deviations, from which on structure is called weak and strong.
+/// Distances from chance, in standard deviations, from which on structure is called weak and
+/// strong.
 const WEAK: f64 = 3.0;
 const STRONG: f64 = 6.0;
 

@@ -1,4 +1,5 @@
-//! The pictures of a diagnosis: residuals before and after, how likely each effect is, errors of held-out readings.
+//! The pictures of a diagnosis: residuals before and after, how likely each effect is, errors of
+//! held-out readings.
 
 mod angle;
 mod residual;
@@ -112,7 +113,8 @@ pub struct HeldOut {
     pub noise_um: f64,
 }
 
-/// Two bars, the interval on the second, and the noise below which no model comes. `noun` says what was held out.
+/// Two bars, the interval on the second, and the noise below which no model comes. `noun` says what
+/// was held out.
 pub fn held_out(noun: &str, data: &HeldOut) -> Figure {
     let mut chart = Chart::new(format!("error of held-out {noun}"), "root mean square / µm", "");
     chart.y.names = vec![(0.0, "model as it is".into()), (-1.0, "with the findings".into())];

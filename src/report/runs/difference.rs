@@ -4,7 +4,8 @@ use super::run::{Quantity, Run};
 use crate::error::Result;
 use crate::statistics::student_t_two_sided_p;
 
-/// The probability of any significant difference among all numbers where there is none (Bonferroni).
+/// The probability of any significant difference among all numbers where there is none
+/// (Bonferroni).
 pub const LEVEL: f64 = 0.05;
 
 /// A file in two runs.
@@ -40,7 +41,8 @@ pub struct Change {
     pub difference: Option<f64>,
     /// √(s₁² + s₂²), as of two recordings that have nothing in common.
     pub std_error: Option<f64>,
-    /// Difference over its standard error is larger than chance allows; nothing where that cannot be told.
+    /// Difference over its standard error is larger than chance allows; nothing where that cannot
+    /// be told.
     pub is_significant: Option<bool>,
 }
 
@@ -71,7 +73,8 @@ impl Difference {
         let shared_recordings: Vec<String> =
             shared.filter_map(|input| input.files[0].as_ref()).filter(is_recording).cloned().collect();
         let mut parameters = changes(&first.parameters, &other.parameters);
-        // the same data cannot differ by chance, and a difference of what they have in common is no test
+        // the same data cannot differ by chance, and a difference of what they have in common is no
+        // test
         if shared_recordings.is_empty() {
             test(&mut parameters)?;
         }
@@ -121,7 +124,8 @@ fn kind(file: &File) -> &str {
     last(file).rsplit_once('.').map_or("", |(_, kind)| kind)
 }
 
-/// The same content first, then the same name, then the same last part of it, then the only ones of a kind.
+/// The same content first, then the same name, then the same last part of it, then the only ones of
+/// a kind.
 fn inputs(first: &Run, other: &Run) -> Vec<Input> {
     let mut rest: Vec<&File> = other.inputs.iter().collect();
     let mut partners: Vec<Option<&File>> = vec![None; first.inputs.len()];
@@ -218,7 +222,8 @@ mod tests {
         assert_eq!(found[4].files, [None, Some("c.stl".into())]);
     }
 
-    /// t = 1.5/(0.3·√2) = 3.536; with 8 degrees of freedom P = 0.0077, below 0.05/2; 1.0/(0.3·√2) has P = 0.046.
+    /// t = 1.5/(0.3·√2) = 3.536; with 8 degrees of freedom P = 0.0077, below 0.05/2; 1.0/(0.3·√2)
+    /// has P = 0.046.
     #[test]
     fn significance_is_that_of_student_and_of_all_numbers_together() {
         let of = |slope: f64, file: &str| {

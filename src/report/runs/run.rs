@@ -53,7 +53,8 @@ impl Run {
     /// Of the text of `file`, the result in `folder`.
     ///
     /// # Errors
-    /// [`Error::Syntax`] where the text is no JSON, [`Error::Input`] where it is no result that says what it was made of.
+    /// [`Error::Syntax`] where the text is no JSON, [`Error::Input`] where it is no result that
+    /// says what it was made of.
     pub fn from_text(folder: &str, file: &str, text: &str) -> Result<Run> {
         let json: Value = serde_json::from_str(text).map_err(|error| Error::Syntax {
             at: Place { file: file.into(), line: error.line(), column: error.column() },
@@ -140,7 +141,8 @@ fn plain(name: String, unit: &str, value: f64) -> Quantity {
     Quantity { name, unit: unit.into(), value, std_error: None, dof: MANY }
 }
 
-/// A parameter of a calibration; one that the data do not identify has no standard error worth the name.
+/// A parameter of a calibration; one that the data do not identify has no standard error worth the
+/// name.
 fn parameter(json: &Value) -> Option<Quantity> {
     let name = json["name"].as_str()?.replace('_', " ");
     let std_error = json["std_error"].as_f64().filter(|_| json["identifiable"].as_bool() != Some(false));

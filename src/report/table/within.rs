@@ -1,4 +1,5 @@
-//! A table in as many columns of text as a terminal has: cells broken between words, or one field a line.
+//! A table in as many columns of text as a terminal has: cells broken between words, or one field a
+//! line.
 
 use super::{Align, Table};
 
@@ -6,8 +7,9 @@ use super::{Align, Table};
 const GAP: usize = 2;
 
 impl Table {
-    /// [`Table::text`] in lines of at most `width` columns, as far as no single word is longer: cells and headings are
-    /// broken between words; where even that is too wide, every row becomes a record with one field a line.
+    /// [`Table::text`] in lines of at most `width` columns, as far as no single word is longer:
+    /// cells and headings are broken between words; where even that is too wide, every row becomes
+    /// a record with one field a line.
     pub fn text_within(&self, width: usize) -> String {
         let columns: Vec<Vec<String>> = (0..self.columns.len()).map(|i| self.padded(i, ' ', ' ')).collect();
         let widest = |texts: &mut dyn Iterator<Item = &str>| texts.map(length).max().unwrap_or(0);

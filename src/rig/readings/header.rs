@@ -25,7 +25,8 @@ pub struct RigHeader {
     pub driven: Driven,
     /// Stated noise of one reading, one standard deviation, m; `None`: not stated.
     pub noise: Option<f64>,
-    /// Stated noise of a measured load, one standard deviation, N; `None`: not stated. Of displacement-driven recordings.
+    /// Stated noise of a measured load, one standard deviation, N; `None`: not stated. Of
+    /// displacement-driven recordings.
     pub load_noise: Option<f64>,
     /// Relative standard uncertainty of the scale of all loads, dimensionless; 0 is exact.
     pub load_scale: f64,

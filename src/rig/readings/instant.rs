@@ -29,8 +29,8 @@ impl Readings {
     ///
     /// Rows of one session, trial, phase, direction, load, load station and time are readings of
     /// one instant, wherever they stand in the file: what they share (friction, creep, a slip)
-    /// happened once. Where rows have no time, those that follow each other directly are one instant, up to
-    /// the row that reads a channel at a station again: that is a repeat.
+    /// happened once. Where rows have no time, those that follow each other directly are one
+    /// instant, up to the row that reads a channel at a station again: that is a repeat.
     ///
     /// ```
     /// use rodcal::prelude::*;

@@ -1,4 +1,5 @@
-//! The rod whose numbers carry a derivative: formulas that take any [`Number`] differentiate themselves.
+//! The rod whose numbers carry a derivative: formulas that take any [`Number`] differentiate
+//! themselves.
 
 use super::{NominalNumber, SAME_PLACE};
 use crate::dual::{Dual, Number};
@@ -7,8 +8,9 @@ use crate::rod::{BendFlexibility, Joint, LumpedMass, Pipe, Rod};
 use crate::section::{General, Rectangle, Round, Section};
 
 impl Rod {
-    /// This rod with the derivative of each of its numbers by one of them, all else equal: what [`Rod::with`] moves
-    /// along moves along, and so does what sits at the station that moves. `None` where the rod does not have this number.
+    /// This rod with the derivative of each of its numbers by one of them, all else equal: what
+    /// [`Rod::with`] moves along moves along, and so does what sits at the station that moves.
+    /// `None` where the rod does not have this number.
     ///
     /// ```
     /// use rodcal::prelude::*;

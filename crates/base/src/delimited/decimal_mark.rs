@@ -5,8 +5,9 @@ use super::written::quoted;
 use crate::error::{Error, Result};
 
 impl Table {
-    /// The mark that all numbers of the file share. Commas are refused where they may as well group thousands:
-    /// `500`, `1,000`, `1,500` in one column, with no comma elsewhere in the file that can only be a decimal one.
+    /// The mark that all numbers of the file share. Commas are refused where they may as well group
+    /// thousands: `500`, `1,000`, `1,500` in one column, with no comma elsewhere in the file that
+    /// can only be a decimal one.
     pub(super) fn find_decimal_mark(&self, holds_numbers: impl Fn(&str) -> bool) -> Result<char> {
         if self.dialect.separator == ',' {
             return Ok('.');

@@ -2,8 +2,9 @@
 
 use super::quoted;
 
-/// Words for what a column holds, without accents (ä is ae, é is e), and its name here. `#` stands for the joint's number, `@` for
-/// an axis. German, French, Italian and Spanish, for laboratories export in the language of their spreadsheet.
+/// Words for what a column holds, without accents (ä is ae, é is e), and its name here. `#` stands
+/// for the joint's number, `@` for an axis. German, French, Italian and Spanish, for laboratories
+/// export in the language of their spreadsheet.
 const WORDS: [(&str, &str); 15] = [
     ("achse gelenk gelenkwinkel winkel joint axe articulation asse giunto eje", "q#_deg"),
     ("achse richtung lastrichtung axe direction asse direzione eje direccion", "axis"),
@@ -22,8 +23,9 @@ const WORDS: [(&str, &str); 15] = [
     ("kugelpfanne pfanne alveole alojamiento", "socket"),
 ];
 
-/// What the columns of a header would be called here, as a hint; `None` where none of the `missing` names is among them. `known`
-/// are the names that the file may have; those that the header has already are not said again.
+/// What the columns of a header would be called here, as a hint; `None` where none of the `missing`
+/// names is among them. `known` are the names that the file may have; those that the header has
+/// already are not said again.
 pub fn renamed<'t>(
     columns: impl Iterator<Item = &'t str>,
     known: &[&str],
@@ -79,7 +81,8 @@ fn translated<'k>(column: &str, known: &[&'k str]) -> Option<(&'k str, Option<St
     Some((name, unit.cloned()))
 }
 
-/// Words, numbers and units of a name, in lower case and without accents: `Verschiebung_Y [µm]` is `verschiebung`, `y`, `um`.
+/// Words, numbers and units of a name, in lower case and without accents: `Verschiebung_Y [µm]` is
+/// `verschiebung`, `y`, `um`.
 fn pieces(column: &str) -> Vec<String> {
     let mut pieces: Vec<String> = vec![String::new()];
     let mut digits = false;

@@ -2,7 +2,8 @@
 
 use std::fmt;
 
-/// How the cells of a file are separated and its numbers written. Its `Display` is a note for the user.
+/// How the cells of a file are separated and its numbers written. Its `Display` is a note for the
+/// user.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Dialect {
     /// `,`, `;` or a tab.
@@ -11,7 +12,8 @@ pub struct Dialect {
     pub decimal_mark: char,
 }
 
-/// The largest number a cell may hold: no quantity in any unit comes near, and its square is still finite.
+/// The largest number a cell may hold: no quantity in any unit comes near, and its square is still
+/// finite.
 pub(super) const LARGEST: f64 = 1e30;
 
 impl Dialect {

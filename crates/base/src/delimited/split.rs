@@ -18,7 +18,8 @@ pub(super) fn separator_of(header: &str) -> char {
     [';', '\t'].into_iter().find(|&s| outside().any(|part| part.contains(s))).unwrap_or(',')
 }
 
-/// The cells of each line: one record per line, since a quote that is still open at its end is an error.
+/// The cells of each line: one record per line, since a quote that is still open at its end is an
+/// error.
 pub(super) fn split<'t>(
     file: &'t str,
     lines: &'t [(usize, &'t str)],
@@ -43,8 +44,9 @@ pub(super) fn split<'t>(
     })
 }
 
-/// What the csv reader unquoted is quoted again and compared with the line: this gives the cells' columns, and shows
-/// every quote that the reader had to guess about. The error is the column of such a quote.
+/// What the csv reader unquoted is quoted again and compared with the line: this gives the cells'
+/// columns, and shows every quote that the reader had to guess about. The error is the column of
+/// such a quote.
 fn place_cells(
     number: usize,
     line: &str,

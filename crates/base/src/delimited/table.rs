@@ -24,12 +24,14 @@ pub struct Row<'t> {
 impl Table {
     /// Reads a table from `text`, the contents of `file`.
     ///
-    /// `holds_numbers` tells by its name whether a column holds numbers; from those cells the decimal mark is found.
-    /// The separator is that of the header. Decimal commas are read where `;` or tabs separate the cells.
+    /// `holds_numbers` tells by its name whether a column holds numbers; from those cells the
+    /// decimal mark is found. The separator is that of the header. Decimal commas are read where
+    /// `;` or tabs separate the cells.
     ///
     /// # Errors
-    /// [`Error::Input`] for an empty or binary file, a header that is missing, nameless or ambiguous, a row with
-    /// more or fewer cells than the header, stray quotes, and decimal marks that differ or may group thousands.
+    /// [`Error::Input`] for an empty or binary file, a header that is missing, nameless or
+    /// ambiguous, a row with more or fewer cells than the header, stray quotes, and decimal marks
+    /// that differ or may group thousands.
     pub fn parse(file: &str, text: &str, holds_numbers: impl Fn(&str) -> bool) -> Result<Table> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         refuse_binary(file, text)?;
@@ -88,7 +90,8 @@ impl Table {
         self.rows.iter().map(|cells| Row { table: self, cells })
     }
 
-    /// An error about the header: at `column`, if there is one of that name, else at the header's line.
+    /// An error about the header: at `column`, if there is one of that name, else at the header's
+    /// line.
     pub fn header_error(&self, column: &str, found: String, expected: String, hint: Option<String>) -> Error {
         let at = match self.position(column) {
             Some(index) => self.place(&self.header[index]),
@@ -171,7 +174,8 @@ impl<'t> Row<'t> {
         self.cells.first().map_or(0, |cell| cell.line)
     }
 
-    /// A cell's text without the spaces around it; `None` where it is blank or there is no such column.
+    /// A cell's text without the spaces around it; `None` where it is blank or there is no such
+    /// column.
     pub fn text(&self, column: &str) -> Option<&'t str> {
         let cell = &self.cells[self.table.position(column)?];
         (!cell.text.is_empty()).then_some(cell.text.as_str())
@@ -180,7 +184,8 @@ impl<'t> Row<'t> {
     /// A cell's number; `None` where it is blank or there is no such column.
     ///
     /// # Errors
-    /// [`Error::Input`] where there is something else than a finite decimal number of at most 1e30 in size.
+    /// [`Error::Input`] where there is something else than a finite decimal number of at most 1e30
+    /// in size.
     pub fn number(&self, column: &str) -> Result<Option<f64>> {
         let Some(text) = self.text(column) else { return Ok(None) };
         let value = parse_number(text, self.table.dialect).ok_or_else(|| {

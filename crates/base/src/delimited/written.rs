@@ -7,7 +7,8 @@ pub fn comments_above(text: &str) -> Option<String> {
     (!words.is_empty()).then_some(words)
 }
 
-/// `text` as a cell of a table that is written: between quotes where it would be taken for more than one cell.
+/// `text` as a cell of a table that is written: between quotes where it would be taken for more
+/// than one cell.
 pub fn cell(text: &str) -> String {
     match text.contains([',', ';', '"', '\n', '\r', '\t', '#']) || text.trim() != text {
         true => format!("\"{}\"", text.replace('"', "\"\"")),

@@ -1,11 +1,12 @@
-//! Text from bytes: UTF-8, and UTF-16 that says so. All else is refused, for a guessed µ may be another letter.
+//! Text from bytes: UTF-8, and UTF-16 that says so. All else is refused, for a guessed µ may be
+//! another letter.
 
 use crate::error::{Error, Place, Result};
 
 const HINT: &str = "save the file as UTF-8 (in Excel: \"CSV UTF-8\")";
 
-/// The text of a file's bytes, without a byte-order mark: UTF-8, or UTF-16 with its mark (Excel's "Unicode Text").
-/// `file` only names it in errors.
+/// The text of a file's bytes, without a byte-order mark: UTF-8, or UTF-16 with its mark (Excel's
+/// "Unicode Text"). `file` only names it in errors.
 ///
 /// # Errors
 /// [`Error::Input`] where the bytes are neither; it says what they look like.

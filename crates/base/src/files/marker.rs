@@ -6,8 +6,8 @@ use std::path::Path;
 use super::content::{read_bytes, sha256};
 use crate::error::Result;
 
-/// The file in a directory of the program's that names what it wrote there, with the SHA-256 of each as it was
-/// written. `sha256sum --check` reads it too.
+/// The file in a directory of the program's that names what it wrote there, with the SHA-256 of
+/// each as it was written. `sha256sum --check` reads it too.
 pub const MARKER: &str = "rodcal.sha256";
 
 const FIRST_LINE: &str =

@@ -1,12 +1,14 @@
 //! How well the parameters are known at the end of a fit, and which of them not at all.
 //!
-//! With the Jacobian's columns scaled to norm 1, J·D⁻¹ = U·diag(σ)·Vᵀ, the covariance of the estimates is
+//! With the Jacobian's columns scaled to norm 1, J·D⁻¹ = U·diag(σ)·Vᵀ, the covariance of the
+//! estimates is
 //!
 //! C = s² · D⁻¹·V·diag(σ⁻²)·Vᵀ·D⁻¹   over the singular values that count,
 //!
-//! s the standard deviation of one residual. The remaining columns of V span the null space: combinations of the
-//! parameters that no residual notices. A parameter that takes part in one has no standard error; the others keep
-//! theirs. Parameters resting on a bound are constants to the others: theirs are conditional on it.
+//! s the standard deviation of one residual. The remaining columns of V span the null space:
+//! combinations of the parameters that no residual notices. A parameter that takes part in one has
+//! no standard error; the others keep theirs. Parameters resting on a bound are constants to the
+//! others: theirs are conditional on it.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -15,8 +17,8 @@ use super::trust_region::Side;
 
 /// Share of a parameter in a null direction above which it counts as not identified.
 ///
-/// A null direction is known to about the rank tolerance over the gap between the singular values; its entries
-/// below this are rounding.
+/// A null direction is known to about the rank tolerance over the gap between the singular values;
+/// its entries below this are rounding.
 const SHARE: f64 = 1e-6;
 
 /// How a parameter came out.
@@ -35,8 +37,8 @@ pub enum Standing {
 /// Covariance of the estimates of n parameters.
 #[derive(Debug, Clone)]
 pub struct Covariance {
-    /// C, n × n. A parameter not identified has the variance ∞ and covariances NaN; one on a bound has zeros.
-    /// All NaN where the residual standard deviation is unknown (no degrees of freedom).
+    /// C, n × n. A parameter not identified has the variance ∞ and covariances NaN; one on a bound
+    /// has zeros. All NaN where the residual standard deviation is unknown (no degrees of freedom).
     pub matrix: DMatrix<f64>,
     /// How each parameter came out, n.
     pub standing: Vec<Standing>,
@@ -46,15 +48,18 @@ pub struct Covariance {
     pub singular_values: DVector<f64>,
     /// σ₁/σₙ over all free parameters; infinite where one is exactly without influence.
     pub condition_number: f64,
-    /// Combinations of the parameters that no residual notices, n × (free − rank), in the parameters' units.
-    /// Times D (the norms of the Jacobian's columns, [`Covariance::scale`]) its columns are orthonormal.
+    /// Combinations of the parameters that no residual notices, n × (free − rank), in the
+    /// parameters' units. Times D (the norms of the Jacobian's columns, [`Covariance::scale`]) its
+    /// columns are orthonormal.
     pub null_space: DMatrix<f64>,
-    /// D, n: norms of the columns of the Jacobian (1 for a column of zeros or a parameter on a bound).
+    /// D, n: norms of the columns of the Jacobian (1 for a column of zeros or a parameter on a
+    /// bound).
     pub scale: DVector<f64>,
 }
 
 impl Covariance {
-    /// Standard error of each parameter, n; `None` where it is not [`Standing::Estimated`] or s is unknown.
+    /// Standard error of each parameter, n; `None` where it is not [`Standing::Estimated`] or s is
+    /// unknown.
     pub fn standard_errors(&self) -> Vec<Option<f64>> {
         (0..self.standing.len())
             .map(|j| {
@@ -64,7 +69,8 @@ impl Covariance {
             .collect()
     }
 
-    /// Correlations Cᵢⱼ/√(Cᵢᵢ·Cⱼⱼ), n × n; NaN for parameters without a standard error, whatever s is.
+    /// Correlations Cᵢⱼ/√(Cᵢᵢ·Cⱼⱼ), n × n; NaN for parameters without a standard error, whatever s
+    /// is.
     pub fn correlation(&self) -> DMatrix<f64> {
         let sd = self.matrix.diagonal().map(f64::sqrt);
         DMatrix::from_fn(sd.len(), sd.len(), |i, j| self.matrix[(i, j)] / (sd[i] * sd[j]))

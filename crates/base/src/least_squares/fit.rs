@@ -40,13 +40,13 @@ pub struct Fit {
 
 /// Fits the parameters of `problem`, starting from `start`.
 ///
-/// A start far from the minimum is fine, a model that yields NaN or ±∞ on the way too: such steps are taken back.
-/// A search without success is no error; look at [`Fit::reason`].
+/// A start far from the minimum is fine, a model that yields NaN or ±∞ on the way too: such steps
+/// are taken back. A search without success is no error; look at [`Fit::reason`].
 ///
 /// # Errors
-/// [`Error::Argument`] for a start, prior, bound or option that makes no sense, or a problem whose residuals or
-/// Jacobian have another shape than it says;
-/// [`Error::Numerical`] where the singular value decomposition fails.
+/// [`Error::Argument`] for a start, prior, bound or option that makes no sense, or a problem whose
+/// residuals or Jacobian have another shape than it says; [`Error::Numerical`] where the singular
+/// value decomposition fails.
 pub fn fit(problem: &dyn Problem, start: &DVector<f64>, options: &Options) -> Result<Fit> {
     check(problem, start, options)?;
     let m = problem.residual_count();
@@ -76,7 +76,8 @@ pub fn fit(problem: &dyn Problem, start: &DVector<f64>, options: &Options) -> Re
 }
 
 impl Fit {
-    /// True where the search ended at a stationary point within its tolerances; see [`TerminationReason`].
+    /// True where the search ended at a stationary point within its tolerances; see
+    /// [`TerminationReason`].
     pub fn is_converged(&self) -> bool {
         self.reason.is_converged()
     }
@@ -109,10 +110,11 @@ impl Fit {
     }
 }
 
-/// Alternates between weights and weighted fits until fresh weights leave the gradient at zero; gives the fit,
-/// its weights and the scale they were made with.
+/// Alternates between weights and weighted fits until fresh weights leave the gradient at zero;
+/// gives the fit, its weights and the scale they were made with.
 ///
-/// The scale is re-estimated in the first passes and then held, so that what is being minimised no longer moves.
+/// The scale is re-estimated in the first passes and then held, so that what is being minimised no
+/// longer moves.
 fn reweighted(
     problem: &dyn Problem,
     mut minimum: Minimum,

@@ -1,7 +1,9 @@
-//! The full step, and how far the residual vector still is from orthogonal on what the parameters can do to it.
+//! The full step, and how far the residual vector still is from orthogonal on what the parameters
+//! can do to it.
 //!
-//! Where R·D⁻¹ is evidently of full rank, the step is a back-substitution, the plane has all n dimensions and the
-//! projection is ‖c‖; the singular values are asked for only where the rank is in doubt. Evident is
+//! Where R·D⁻¹ is evidently of full rank, the step is a back-substitution, the plane has all n
+//! dimensions and the projection is ‖c‖; the singular values are asked for only where the rank is
+//! in doubt. Evident is
 //!
 //! σ₁/σₙ ≤ ‖R·D⁻¹‖ · ‖(R·D⁻¹)⁻¹‖ < 1/tolerance   (Frobenius norms).
 
@@ -39,7 +41,8 @@ impl GaussNewton {
     }
 }
 
-/// True only where all singular values of an upper triangle are above `tolerance` times the largest.
+/// True only where all singular values of an upper triangle are above `tolerance` times the
+/// largest.
 fn has_full_rank(triangle: &DMatrix<f64>, tolerance: f64) -> bool {
     let n = triangle.nrows();
     let inverse = triangle.solve_upper_triangular(&DMatrix::identity(n, n));

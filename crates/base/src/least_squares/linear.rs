@@ -9,9 +9,10 @@ use crate::error::{Error, Result};
 
 /// Fits y ≈ X·β, minimising Σ wᵢ·(yᵢ − (X·β)ᵢ)².
 ///
-/// `design` is X, m × n; `y` has m values; `weights` are wᵢ > 0 (1/σᵢ² up to a factor), m values, or `None` for
-/// equal ones. Priors, bounds and robust weights come with `options` as in [`fit`]. The residuals of the result are
-/// √wᵢ·((X·β)ᵢ − yᵢ), and its `residual_sd` is that of an observation with weight 1.
+/// `design` is X, m × n; `y` has m values; `weights` are wᵢ > 0 (1/σᵢ² up to a factor), m values,
+/// or `None` for equal ones. Priors, bounds and robust weights come with `options` as in [`fit`].
+/// The residuals of the result are √wᵢ·((X·β)ᵢ − yᵢ), and its `residual_sd` is that of an
+/// observation with weight 1.
 ///
 /// # Errors
 /// [`Error::Argument`] where shapes or numbers make no sense; see also [`fit`].

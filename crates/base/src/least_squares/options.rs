@@ -8,28 +8,32 @@ pub struct Options {
     /// What is known beforehand about single parameters; at most one prior per parameter.
     /// Priors need [`Noise::Known`], for they are weighed against the data.
     pub priors: Vec<Prior>,
-    /// Box each parameter must stay in; empty for none, else one `(lower, upper)` per parameter, ±∞ allowed.
+    /// Box each parameter must stay in; empty for none, else one `(lower, upper)` per parameter, ±∞
+    /// allowed.
     pub bounds: Vec<(f64, f64)>,
     /// Standard deviation of the residuals: estimated from them, or known.
     pub noise: Noise,
     /// Weights that limit the influence of outliers.
     pub robust: Robust,
-    /// Cosine between the residual vector and the tangent plane of the model below which the gradient is zero.
-    /// It bounds the distance to the minimum: each parameter is within `gradient_tolerance · √dof` of its
-    /// standard errors (Bates & Watts, *Technometrics* 23 (1981) 179–183).
+    /// Cosine between the residual vector and the tangent plane of the model below which the
+    /// gradient is zero. It bounds the distance to the minimum: each parameter is within
+    /// `gradient_tolerance · √dof` of its standard errors (Bates & Watts, *Technometrics* 23 (1981)
+    /// 179–183).
     pub gradient_tolerance: f64,
-    /// Whether the search goes on below the gradient tolerance, to the last digit that the arithmetic gives. Without it
-    /// the search stops at the tolerance: for fits that are repeated, such as the passes of an outer loop.
+    /// Whether the search goes on below the gradient tolerance, to the last digit that the
+    /// arithmetic gives. Without it the search stops at the tolerance: for fits that are repeated,
+    /// such as the passes of an outer loop.
     pub to_the_last_digit: bool,
-    /// Relative length of the next Gauss–Newton step (scaled by the columns) below which the parameters stand still.
+    /// Relative length of the next Gauss–Newton step (scaled by the columns) below which the
+    /// parameters stand still.
     pub step_tolerance: f64,
-    /// Singular value of the Jacobian (columns scaled to norm 1), relative to the largest, below which a direction
-    /// counts as not identified. Raise it to ~1e-8 for a Jacobian by differences.
+    /// Singular value of the Jacobian (columns scaled to norm 1), relative to the largest, below
+    /// which a direction counts as not identified. Raise it to ~1e-8 for a Jacobian by differences.
     pub rank_tolerance: f64,
     /// Most Jacobians evaluated in one minimisation.
     pub max_iterations: usize,
-    /// Radius of the first trust region relative to the scaled length of the start; infinite tries a full
-    /// Gauss–Newton step at once.
+    /// Radius of the first trust region relative to the scaled length of the start; infinite tries
+    /// a full Gauss–Newton step at once.
     pub first_radius: f64,
 }
 

@@ -16,24 +16,26 @@ pub trait Problem {
     /// Jᵢⱼ = ∂rᵢ/∂pⱼ, m × n; [`central_differences`] for those who have no formula.
     fn jacobian(&self, parameters: &DVector<f64>) -> DMatrix<f64>;
 
-    /// The same Jacobian in blocks of consecutive rows, from the first to the last: `visit` takes the index of a
-    /// block's first row and the block, as many rows as there are × n.
+    /// The same Jacobian in blocks of consecutive rows, from the first to the last: `visit` takes
+    /// the index of a block's first row and the block, as many rows as there are × n.
     ///
-    /// A fit asks for nothing else and forgets each block: a problem too tall to be held whole overrides this (and
-    /// [`assembled`] is then its [`Problem::jacobian`]). The size of the blocks is free; the fit gathers small ones.
+    /// A fit asks for nothing else and forgets each block: a problem too tall to be held whole
+    /// overrides this (and [`assembled`] is then its [`Problem::jacobian`]). The size of the blocks
+    /// is free; the fit gathers small ones.
     fn jacobian_blocks(&self, parameters: &DVector<f64>, visit: &mut dyn FnMut(usize, &DMatrix<f64>)) {
         visit(0, &self.jacobian(parameters));
     }
 
-    /// Absolute rounding error of one residual where it is more than that of the parameters, for example ε times
-    /// the measured values of a model that reproduces them exactly; residuals below it are noise of the arithmetic.
+    /// Absolute rounding error of one residual where it is more than that of the parameters, for
+    /// example ε times the measured values of a model that reproduces them exactly; residuals below
+    /// it are noise of the arithmetic.
     fn residual_rounding(&self) -> f64 {
         0.0
     }
 }
 
-/// The whole Jacobian, m × n, from [`Problem::jacobian_blocks`]: rows that belong to no block are 0, and what of a
-/// block lies outside of the matrix is left out.
+/// The whole Jacobian, m × n, from [`Problem::jacobian_blocks`]: rows that belong to no block are
+/// 0, and what of a block lies outside of the matrix is left out.
 pub fn assembled(problem: &(impl Problem + ?Sized), parameters: &DVector<f64>) -> DMatrix<f64> {
     let mut j = DMatrix::zeros(problem.residual_count(), problem.parameter_count());
     problem.jacobian_blocks(parameters, &mut |first, block| {
@@ -50,7 +52,8 @@ pub fn assembled(problem: &(impl Problem + ?Sized), parameters: &DVector<f64>) -
 ///
 /// ∂rᵢ/∂pⱼ ≈ (rᵢ(p + hⱼeⱼ) − rᵢ(p − hⱼeⱼ)) / 2hⱼ with hⱼ = ε^⅓ · max(|pⱼ|, sⱼ)
 ///
-/// `sizes` are the sⱼ > 0: changes of the parameters that matter, in their units. About ten digits are right.
+/// `sizes` are the sⱼ > 0: changes of the parameters that matter, in their units. About ten digits
+/// are right.
 pub fn central_differences(
     residuals: impl Fn(&DVector<f64>) -> DVector<f64>,
     parameters: &DVector<f64>,

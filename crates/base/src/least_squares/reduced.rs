@@ -1,4 +1,5 @@
-//! The linearised problem after its one QR decomposition: everything m rows say about n parameters, in n rows.
+//! The linearised problem after its one QR decomposition: everything m rows say about n parameters,
+//! in n rows.
 //!
 //! With J = Q·R and c = Qᵀr, for every step δ
 //!

@@ -18,15 +18,17 @@ pub enum Robust {
     /// Least squares: all weights 1.
     #[default]
     None,
-    /// w(u) = min(1, k/|u|): influence grows no further beyond k. k = 1.345 loses 5 % on normal data.
+    /// w(u) = min(1, k/|u|): influence grows no further beyond k. k = 1.345 loses 5 % on normal
+    /// data.
     Huber {
         /// Where the influence stops growing, in units of the scale.
         k: f64,
         /// What residuals are compared to.
         scale: RobustScale,
     },
-    /// w(u) = (1 − (u/c)²)² for |u| < c, else 0: gross outliers lose all influence. c = 4.685 loses 5 % on normal
-    /// data. The sum to be minimised has more than one minimum; Huber's fit (k = 1.345) is the start.
+    /// w(u) = (1 − (u/c)²)² for |u| < c, else 0: gross outliers lose all influence. c = 4.685 loses
+    /// 5 % on normal data. The sum to be minimised has more than one minimum; Huber's fit (k =
+    /// 1.345) is the start.
     Tukey {
         /// Where the influence ends, in units of the scale.
         c: f64,
@@ -72,7 +74,8 @@ impl Robust {
         residuals.map(|r| self.weight(r / scale))
     }
 
-    /// s of the module's formula, for `n` parameters; `None` for plain least squares or without a scale.
+    /// s of the module's formula, for `n` parameters; `None` for plain least squares or without a
+    /// scale.
     pub(super) fn residual_sd(self, residuals: &DVector<f64>, scale: f64, n: usize) -> Option<f64> {
         let m = residuals.len() as f64;
         let u = residuals.map(|r| r / scale);

@@ -1,7 +1,9 @@
-//! The tangent plane of the model at a point in its principal axes: rank, covariance and damped steps.
+//! The tangent plane of the model at a point in its principal axes: rank, covariance and damped
+//! steps.
 //!
-//! With the columns of J scaled by D, J·D⁻¹ = Q·R = (Q·U)·diag(σ)·Vᵀ. The plane is spanned by the columns of Q·U
-//! with σ > tolerance·σ₁; in its coordinates the residual vector is c = (Q·U)ᵀr. Normal equations are never formed.
+//! With the columns of J scaled by D, J·D⁻¹ = Q·R = (Q·U)·diag(σ)·Vᵀ. The plane is spanned by the
+//! columns of Q·U with σ > tolerance·σ₁; in its coordinates the residual vector is c = (Q·U)ᵀr.
+//! Normal equations are never formed.
 
 use nalgebra::DVector;
 
@@ -9,7 +11,8 @@ use super::reduced::Reduced;
 use crate::error::Result;
 use crate::linalg::{Svd, thin_svd};
 
-/// How much longer than the radius a step may be, relative to it: not worth another iteration for the damping.
+/// How much longer than the radius a step may be, relative to it: not worth another iteration for
+/// the damping.
 pub(super) const CLOSE_ENOUGH: f64 = 0.1;
 
 /// Linearised residuals r + J·δ in the parameters that are free to move.
@@ -42,20 +45,23 @@ impl Tangent {
         Ok(Tangent { free, scale, svd, rank, c })
     }
 
-    /// Length of the residual vector's projection on the plane: what the parameters can still take away.
+    /// Length of the residual vector's projection on the plane: what the parameters can still take
+    /// away.
     pub fn projection(&self) -> f64 {
         self.c.rows(0, self.rank).norm()
     }
 
-    /// The Gauss–Newton step of the free parameters, the shortest (in the scale D) of those that minimise ‖r + J·δ‖.
+    /// The Gauss–Newton step of the free parameters, the shortest (in the scale D) of those that
+    /// minimise ‖r + J·δ‖.
     pub fn full_step(&self) -> DVector<f64> {
         self.damped_step(0.0)
     }
 
     /// The step of the free parameters that minimises ‖r + J·δ‖ within ‖D·δ‖ ≤ `radius`.
     ///
-    /// Its damping λ solves ‖D·δ(λ)‖ = radius by Newton's method on 1/‖D·δ‖, which from the left of the root
-    /// climbs to it without overshoot (Moré, *Lecture Notes in Mathematics* 630 (1978) 105–116, §5).
+    /// Its damping λ solves ‖D·δ(λ)‖ = radius by Newton's method on 1/‖D·δ‖, which from the left of
+    /// the root climbs to it without overshoot (Moré, *Lecture Notes in Mathematics* 630 (1978)
+    /// 105–116, §5).
     pub fn step_within(&self, radius: f64) -> DVector<f64> {
         let mut lambda = 0.0;
         for _ in 0..100 {

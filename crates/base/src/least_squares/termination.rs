@@ -4,22 +4,24 @@
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum TerminationReason {
-    /// The residual vector is orthogonal to the tangent plane within the gradient tolerance, and the next
-    /// Gauss–Newton step is below the step tolerance.
+    /// The residual vector is orthogonal to the tangent plane within the gradient tolerance, and
+    /// the next Gauss–Newton step is below the step tolerance.
     GradientAndStep,
-    /// The residual vector is orthogonal to the tangent plane within the gradient tolerance; the next Gauss–Newton
-    /// step is not below the step tolerance, as happens where the problem is badly conditioned.
+    /// The residual vector is orthogonal to the tangent plane within the gradient tolerance; the
+    /// next Gauss–Newton step is not below the step tolerance, as happens where the problem is
+    /// badly conditioned.
     Gradient,
-    /// What the parameters could still take from the residuals is no more than the rounding of the parameters
-    /// and of the residuals makes of them: nothing better can be told apart in double precision.
+    /// What the parameters could still take from the residuals is no more than the rounding of the
+    /// parameters and of the residuals makes of them: nothing better can be told apart in double
+    /// precision.
     Rounding,
-    /// No step made the sum of squares smaller, though the gradient is not zero: the Jacobian does not belong to
-    /// the residuals, or they are not smooth.
+    /// No step made the sum of squares smaller, though the gradient is not zero: the Jacobian does
+    /// not belong to the residuals, or they are not smooth.
     NoProgress,
     /// No free parameter changes any residual here.
     NoInfluence,
-    /// A parameter that changed the residuals at the start ran to where it no longer does: the sum of squares has
-    /// no minimum there, it only levels out.
+    /// A parameter that changed the residuals at the start ran to where it no longer does: the sum
+    /// of squares has no minimum there, it only levels out.
     InfluenceLost,
     /// The limit of iterations was reached first.
     MaxIterations,

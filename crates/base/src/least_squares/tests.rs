@@ -43,8 +43,9 @@ fn line(x: &[f64]) -> DMatrix<f64> {
     DMatrix::from_fn(x.len(), 2, |i, j| if j == 0 { 1.0 } else { x[i] })
 }
 
-/// Operation of a plant oxidising ammonia: Brownlee, *Statistical Theory and Methodology in Science and
-/// Engineering*, 2nd ed., 1965, p. 454. Intercept, air flow, water temperature, acid concentration; stack loss.
+/// Operation of a plant oxidising ammonia: Brownlee, *Statistical Theory and Methodology in Science
+/// and Engineering*, 2nd ed., 1965, p. 454. Intercept, air flow, water temperature, acid
+/// concentration; stack loss.
 fn stack_loss() -> (DMatrix<f64>, DVector<f64>) {
     let air = [80, 80, 75, 62, 62, 62, 62, 62, 58, 58, 58, 58, 58, 58, 50, 50, 50, 50, 50, 56, 70];
     let water = [27, 27, 25, 24, 22, 23, 24, 24, 23, 18, 18, 17, 18, 19, 18, 18, 19, 19, 20, 20, 20];
@@ -130,7 +131,8 @@ fn tukey_forgets_a_gross_outlier_altogether() {
 
 #[test]
 fn rosenbrock_from_the_classical_start() {
-    // Moré, Garbow & Hillstrom, ACM TOMS 7 (1981) 17–41, problem 1: r = (10(p₂ − p₁²), 1 − p₁), minimum 0 at (1, 1)
+    // Moré, Garbow & Hillstrom, ACM TOMS 7 (1981) 17–41, problem 1: r = (10(p₂ − p₁²), 1 − p₁),
+    // minimum 0 at (1, 1)
     let problem = Closures {
         n: 2,
         m: 2,
@@ -159,8 +161,8 @@ fn jennrich_sampson() -> impl Problem {
 
 #[test]
 fn where_two_columns_become_one_the_search_arrives_but_does_not_vouch_for_it() {
-    // Moré, Garbow & Hillstrom, problem 6: S = 124.362 at p₁ = p₂ = 0.2578. The tangent plane loses a direction
-    // just there, so the residuals are never seen to be orthogonal to it.
+    // Moré, Garbow & Hillstrom, problem 6: S = 124.362 at p₁ = p₂ = 0.2578. The tangent plane loses
+    // a direction just there, so the residuals are never seen to be orthogonal to it.
     let fit = default_fit(&jennrich_sampson(), dvector![0.3, 0.4]);
     assert_relative_eq!(fit.sum_of_squares, 124.362, epsilon = 5e-4);
     assert_relative_eq!(fit.parameters, dvector![0.2578, 0.2578], epsilon = 5e-5);
@@ -169,7 +171,8 @@ fn where_two_columns_become_one_the_search_arrives_but_does_not_vouch_for_it() {
 
 #[test]
 fn large_residuals_are_no_obstacle() {
-    // Brown & Dennis: Moré, Garbow & Hillstrom, problem 16, S = 85822.2. With differences for a Jacobian.
+    // Brown & Dennis: Moré, Garbow & Hillstrom, problem 16, S = 85822.2. With differences for a
+    // Jacobian.
     let r = |p: &DVector<f64>| {
         DVector::from_fn(20, |i, _| {
             let t = (i + 1) as f64 / 5.0;

@@ -1,9 +1,10 @@
 //! The search: steps within a trust region, then Gauss–Newton steps to the last digit.
 //!
-//! Moré's form of Levenberg–Marquardt (*Lecture Notes in Mathematics* 630 (1978) 105–116): the step minimises the
-//! linearised residuals within an ellipsoid ‖D·δ‖ ≤ Δ, which grows where the linearisation proved good and shrinks
-//! where it did not. The sum of squares tells parameters apart only to half of the digits, because it is flat at its
-//! minimum; so the last steps are judged by the gradient instead, which is not.
+//! Moré's form of Levenberg–Marquardt (*Lecture Notes in Mathematics* 630 (1978) 105–116): the step
+//! minimises the linearised residuals within an ellipsoid ‖D·δ‖ ≤ Δ, which grows where the
+//! linearisation proved good and shrinks where it did not. The sum of squares tells parameters
+//! apart only to half of the digits, because it is flat at its minimum; so the last steps are
+//! judged by the gradient instead, which is not.
 
 use nalgebra::DVector;
 
@@ -16,13 +17,15 @@ use super::termination::TerminationReason;
 use crate::error::Result;
 use crate::linalg::RowReduction;
 
-/// Cosine below which the linearisation is trusted altogether and full steps are judged by the gradient:
-/// its square, what is left to gain, is still far above the rounding of the sum of squares.
+/// Cosine below which the linearisation is trusted altogether and full steps are judged by the
+/// gradient: its square, what is left to gain, is still far above the rounding of the sum of
+/// squares.
 const NEAR: f64 = 1e-6;
 /// What a full step near the minimum has to gain in the cosine to be worth another.
 const WORTHWHILE: f64 = 0.9;
-/// What remains per iteration of the largest norm a column has had. Without fading, a start among huge derivatives
-/// keeps the steps short for ever; with quick fading, a parameter that loses its influence runs away.
+/// What remains per iteration of the largest norm a column has had. Without fading, a start among
+/// huge derivatives keeps the steps short for ever; with quick fading, a parameter that loses its
+/// influence runs away.
 const FADING: f64 = 0.995;
 /// Actual over predicted reduction below which a step is taken back (Moré's 1e-4).
 const ACCEPTABLE: f64 = 1e-4;
@@ -120,8 +123,9 @@ pub(super) fn minimise(system: &Stacked, start: &DVector<f64>, options: &Options
     })
 }
 
-/// Factor on the radius after a step that reduced the squares by `ratio` < ¼ of what was predicted: half for one
-/// that still was a gain, else to the minimum of the parabola through both ends of the step (Moré, §5).
+/// Factor on the radius after a step that reduced the squares by `ratio` < ¼ of what was predicted:
+/// half for one that still was a gain, else to the minimum of the parabola through both ends of the
+/// step (Moré, §5).
 fn shrink(ratio: f64) -> f64 {
     match ratio {
         _ if ratio >= 0.0 => 0.5,
@@ -131,7 +135,8 @@ fn shrink(ratio: f64) -> f64 {
     }
 }
 
-/// The tangent plane of a linearisation, columns scaled to norm 1, with the parameters held that are held.
+/// The tangent plane of a linearisation, columns scaled to norm 1, with the parameters held that
+/// are held.
 pub(super) fn tangent_plane(reduced: &Reduced, held: &[Option<Side>], options: &Options) -> Result<Tangent> {
     let free = free(held);
     let norms = of_free(&reduced.column_norms(), &free);
@@ -161,8 +166,8 @@ struct View {
     free: Vec<usize>,
     /// Norms of the columns, n: the scale of what judges rank and gradient, and makes full steps.
     norms: DVector<f64>,
-    /// Largest norms of the columns so far, slowly forgotten, n: the scale of the trust region. A parameter that
-    /// loses its influence is thereby not set free to run away.
+    /// Largest norms of the columns so far, slowly forgotten, n: the scale of the trust region. A
+    /// parameter that loses its influence is thereby not set free to run away.
     region: DVector<f64>,
     full: GaussNewton,
     /// The residual vector's projection on the tangent plane, relative to the vector.
@@ -179,8 +184,9 @@ impl View {
         self.free.iter().map(|&j| (scale[j] * v[j]).powi(2)).sum::<f64>().sqrt()
     }
 
-    /// True where what is left to gain, the square of the projection, drowns in the rounding of the sum of squares:
-    /// 2·‖r‖ times that of the residual vector. The gradient is then the better judge.
+    /// True where what is left to gain, the square of the projection, drowns in the rounding of the
+    /// sum of squares: 2·‖r‖ times that of the residual vector. The gradient is then the better
+    /// judge.
     fn is_unresolved(&self, here: &Point) -> bool {
         let projection = self.full.projection;
         projection <= self.rounding || projection.powi(2) <= 2.0 * self.rounding * here.square.sqrt()
@@ -210,7 +216,8 @@ struct Search<'a> {
     system: &'a Stacked<'a>,
     options: &'a Options,
     store: RowReduction,
-    /// Largest norm each column of the Jacobian has had on the way, slowly forgotten: the D of the trust region.
+    /// Largest norm each column of the Jacobian has had on the way, slowly forgotten: the D of the
+    /// trust region.
     scale: DVector<f64>,
     /// Norms of the columns at the start, 0 for a column of zeros.
     first_norms: Option<DVector<f64>>,
@@ -318,7 +325,8 @@ impl Search<'_> {
         }
     }
 
-    /// A point with a smaller projection on the tangent plane, by a full Gauss–Newton step, if it is worth the while.
+    /// A point with a smaller projection on the tangent plane, by a full Gauss–Newton step, if it
+    /// is worth the while.
     fn polish(&mut self, here: &Point, view: &View) -> Result<Option<(Point, View)>> {
         let p = self.within_bounds(&here.p, &view.full_step());
         if p == here.p {

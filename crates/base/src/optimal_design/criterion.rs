@@ -16,7 +16,8 @@ pub enum Criterion {
     Smallest,
 }
 
-/// What a choice is worth, the more the better: ln |M|, −tr(W·M⁻¹), or λₘ/√λ₁. `None` where M is not positive definite.
+/// What a choice is worth, the more the better: ln |M|, −tr(W·M⁻¹), or λₘ/√λ₁. `None` where M is
+/// not positive definite.
 pub fn value(
     all: &Measurements,
     chosen: &[usize],

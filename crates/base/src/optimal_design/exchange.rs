@@ -6,8 +6,8 @@
 //! P⁻ = P + U·S·Uᵀ        |M⁻| = |M|·|1 − JⱼU|        tr(W·P⁻) = tr(W·P) + tr(S·UᵀWU)
 //! ```
 //!
-//! and with another one i added to that as for a choice that grows. What JᵢP⁻Jᵢᵀ takes is JᵢPJᵢᵀ, which every measurement
-//! keeps by itself, and JᵢU: a few hundred products for each pair.
+//! and with another one i added to that as for a choice that grows. What JᵢP⁻Jᵢᵀ takes is JᵢPJᵢᵀ,
+//! which every measurement keeps by itself, and JᵢU: a few hundred products for each pair.
 
 use nalgebra::{DMatrix, Matrix3, MatrixXx3};
 
@@ -23,7 +23,8 @@ const PART: usize = 128;
 /// Most times that all of a choice is gone through.
 const MOST_PASSES: usize = 20;
 
-/// What is known by the present choice, and what every measurement of the group in question would add to it.
+/// What is known by the present choice, and what every measurement of the group in question would
+/// add to it.
 struct State<'a> {
     all: &'a Measurements,
     /// W.
@@ -38,7 +39,8 @@ struct State<'a> {
 type Known = (usize, Matrix3<f64>, Matrix3<f64>);
 
 impl State<'_> {
-    /// What `job` makes of each measurement of the group, in their order; parts of the group on all processors.
+    /// What `job` makes of each measurement of the group, in their order; parts of the group on all
+    /// processors.
     fn in_parts<T: Send>(&self, job: impl Fn(&Known) -> T + Sync + Send) -> Vec<T> {
         let parts: Vec<&[Known]> = self.group.chunks(PART).collect();
         in_parallel(parts.len(), |part| parts[part].iter().map(&job).collect::<Vec<T>>())
@@ -113,8 +115,8 @@ impl State<'_> {
     }
 }
 
-/// `chosen` with measurements exchanged within their groups until no exchange of one is better; the determinant stands for
-/// [`Criterion::Smallest`]. `None` where M is not positive definite.
+/// `chosen` with measurements exchanged within their groups until no exchange of one is better; the
+/// determinant stands for [`Criterion::Smallest`]. `None` where M is not positive definite.
 pub(super) fn exchanged(
     all: &Measurements,
     mut chosen: Vec<usize>,

@@ -37,11 +37,12 @@ impl Ord for Offer {
     }
 }
 
-/// `quotas[g]` measurements of each group in the order in which they were taken, one group after the other: every time the
-/// one that adds most to what is known by then. `None` where `before` is not positive definite.
+/// `quotas[g]` measurements of each group in the order in which they were taken, one group after
+/// the other: every time the one that adds most to what is known by then. `None` where `before` is
+/// not positive definite.
 ///
-/// What a measurement adds to a determinant only falls as others are taken: one whose gain of earlier is below another's of
-/// now needs no second look. Gains of a trace nearly always fall.
+/// What a measurement adds to a determinant only falls as others are taken: one whose gain of
+/// earlier is below another's of now needs no second look. Gains of a trace nearly always fall.
 pub fn grow(
     all: &Measurements,
     quotas: &[usize],

@@ -1,13 +1,15 @@
 //! Exchanges that raise the least eigenvalue of the information: O4.
 //!
-//! No update of low rank gives λₘ. But vectors that span a part of the space bound it from above and λ₁ from below
-//! (Rayleigh): with the lowest eigenvectors V of M⁻, the highest v and J of another measurement,
+//! No update of low rank gives λₘ. But vectors that span a part of the space bound it from above
+//! and λ₁ from below (Rayleigh): with the lowest eigenvectors V of M⁻, the highest v and J of
+//! another measurement,
 //!
 //! ```text
 //! λₘ(M⁻ + JᵀJ) ≤ λₘ(Vᵀ(M⁻ + JᵀJ)V)        λ₁(M⁻ + JᵀJ) ≥ λ₁(M⁻) + |J·v|²
 //! ```
 //!
-//! so that only those measurements are looked at exactly whose bound is above the best that was found.
+//! so that only those measurements are looked at exactly whose bound is above the best that was
+//! found.
 
 use nalgebra::{DMatrix, DVector, Matrix3, MatrixXx3};
 

@@ -3,18 +3,20 @@
 use super::{chi_squared_survival, require, require_positive};
 use crate::error::{Error, Result};
 
-/// Probability of variances at least as different as these, if all were the same and the data normal.
+/// Probability of variances at least as different as these, if all were the same and the data
+/// normal.
 ///
 /// `variances_with_dof` are pairs (s², ν), ν degrees of freedom each. With s̄² = Σνᵢsᵢ²/Σνᵢ,
 ///
 /// T = \[ν̄·ln s̄² − Σνᵢ·ln sᵢ²\] / \[1 + (Σ1/νᵢ − 1/ν̄)/(3(k − 1))\],   ν̄ = Σνᵢ,
 ///
-/// is nearly χ² with k − 1 degrees of freedom (Snedecor & Cochran, *Statistical Methods*, 8th ed., 1989;
-/// NIST/SEMATECH e-Handbook, §1.3.5.7). The test is sensitive to data that are not normal. A variance of 0 beside one
-/// that is not gives 0.
+/// is nearly χ² with k − 1 degrees of freedom (Snedecor & Cochran, *Statistical Methods*, 8th ed.,
+/// 1989; NIST/SEMATECH e-Handbook, §1.3.5.7). The test is sensitive to data that are not normal. A
+/// variance of 0 beside one that is not gives 0.
 ///
 /// # Errors
-/// [`Error::Argument`] for fewer than two variances, a negative or infinite one, only zeros, or ν not > 0.
+/// [`Error::Argument`] for fewer than two variances, a negative or infinite one, only zeros, or ν
+/// not > 0.
 pub fn bartlett(variances_with_dof: &[(f64, f64)]) -> Result<f64> {
     chi_squared_survival(statistic(variances_with_dof)?, variances_with_dof.len() as f64 - 1.0)
 }
@@ -51,7 +53,8 @@ mod tests {
     use crate::statistics::standard_deviation;
     use approx::assert_relative_eq;
 
-    /// Gear diameters, ten batches of ten: GEAR.DAT of the NIST/SEMATECH e-Handbook, §1.3.5.7, in thousandths.
+    /// Gear diameters, ten batches of ten: GEAR.DAT of the NIST/SEMATECH e-Handbook, §1.3.5.7, in
+    /// thousandths.
     const GEAR: [[i32; 10]; 10] = [
         [1006, 996, 998, 1000, 992, 993, 1002, 999, 994, 1000],
         [998, 1006, 1000, 1002, 997, 998, 996, 1000, 1006, 988],
@@ -71,8 +74,8 @@ mod tests {
             let batch = batch.map(|d| f64::from(d) / 1000.0);
             (standard_deviation(&batch).unwrap().powi(2), 9.0)
         });
-        // published: T = 20.78580, beyond the critical value 16.919 of 5 %; these data give 20.78587, and where the
-        // last digit got lost is not known
+        // published: T = 20.78580, beyond the critical value 16.919 of 5 %; these data give
+        // 20.78587, and where the last digit got lost is not known
         assert_relative_eq!(statistic(&variances).unwrap(), 20.78580, max_relative = 1e-5);
         let p = bartlett(&variances).unwrap();
         assert_relative_eq!(p, chi_squared_survival(20.78580, 9.0).unwrap(), max_relative = 1e-4);

@@ -2,9 +2,9 @@
 
 use super::quantile_of_sorted;
 
-/// The interval that leaves (1 − level)/2 of the `samples` out on either side: the percentile interval of the
-/// bootstrap (Efron & Tibshirani, *An Introduction to the Bootstrap*, 1993, ch. 13), quantiles as in
-/// [`quantile`](super::quantile). Sorts the samples.
+/// The interval that leaves (1 − level)/2 of the `samples` out on either side: the percentile
+/// interval of the bootstrap (Efron & Tibshirani, *An Introduction to the Bootstrap*, 1993, ch.
+/// 13), quantiles as in [`quantile`](super::quantile). Sorts the samples.
 ///
 /// `None` for no samples, a NaN among them, or a level outside [0, 1].
 pub fn percentile_interval(samples: &mut [f64], level: f64) -> Option<(f64, f64)> {

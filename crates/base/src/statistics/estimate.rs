@@ -24,8 +24,9 @@ impl Estimate {
         }
     }
 
-    /// Sum of independent quantities: variances add, the degrees of freedom by Welch and Satterthwaite,
-    /// ν = (Σ sᵢ²)² / Σ sᵢ⁴/νᵢ (F. E. Satterthwaite, *Biometrics Bulletin* 2 (1946) 110–114), rounded down.
+    /// Sum of independent quantities: variances add, the degrees of freedom by Welch and
+    /// Satterthwaite, ν = (Σ sᵢ²)² / Σ sᵢ⁴/νᵢ (F. E. Satterthwaite, *Biometrics Bulletin* 2 (1946)
+    /// 110–114), rounded down.
     pub fn sum(terms: &[Estimate]) -> Self {
         let variances: Option<Vec<f64>> = terms.iter().map(|term| Some(term.std_error?.powi(2))).collect();
         let value = terms.iter().map(|term| term.value).sum();
@@ -41,8 +42,8 @@ impl Estimate {
         Estimate { value, std_error: Some(total.sqrt()), dof: (dof + 1e-9) as usize }
     }
 
-    /// Independent estimates of one quantity as one: weighted by 1/s², or their mean where a weight is missing
-    /// or infinite. `None` without any.
+    /// Independent estimates of one quantity as one: weighted by 1/s², or their mean where a weight
+    /// is missing or infinite. `None` without any.
     pub fn pooled(estimates: &[Estimate]) -> Option<Self> {
         let weight = |e: &Estimate| e.std_error.map(|s| 1.0 / (s * s)).filter(|w| w.is_finite());
         let weights: Option<Vec<f64>> = estimates.iter().map(weight).collect();
@@ -58,7 +59,8 @@ impl Estimate {
         Some(t * self.std_error?)
     }
 
-    /// True where the value differs from zero with a two-sided p below `level`; never without a standard error.
+    /// True where the value differs from zero with a two-sided p below `level`; never without a
+    /// standard error.
     pub fn is_significant(&self, level: f64) -> bool {
         match self.std_error {
             Some(error) if error > 0.0 => {

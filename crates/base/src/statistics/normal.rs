@@ -5,10 +5,11 @@ use statrs::function::erf::erfc;
 /// Where erfc underflows: beyond it the tail's asymptotic series is exact to 1e-4.
 const FAR: f64 = 25.0;
 
-/// Ln of the probability that a standard normal number lies between `low` and `high`; −∞ where there is no room.
+/// Ln of the probability that a standard normal number lies between `low` and `high`; −∞ where
+/// there is no room.
 ///
-/// ln Q(z) is computed as such, so that 1e-400 is not 0: Q(z) = ½·erfc(z/√2), far out exp(−z²/2)/(z·√2π)
-/// (Abramowitz & Stegun 26.2.12).
+/// ln Q(z) is computed as such, so that 1e-400 is not 0: Q(z) = ½·erfc(z/√2), far out
+/// exp(−z²/2)/(z·√2π) (Abramowitz & Stegun 26.2.12).
 pub fn ln_normal_mass(low: f64, high: f64) -> f64 {
     if low.is_nan() || high.is_nan() || low >= high {
         return f64::NEG_INFINITY;

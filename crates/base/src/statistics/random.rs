@@ -1,7 +1,8 @@
 //! Random numbers that are the same in every run and for every number of threads.
 //!
-//! The generator is ChaCha with 8 rounds, seeded by a number and split into streams that never overlap: give every
-//! job of a parallel run the stream of its index, and no result depends on which thread did what.
+//! The generator is ChaCha with 8 rounds, seeded by a number and split into streams that never
+//! overlap: give every job of a parallel run the stream of its index, and no result depends on
+//! which thread did what.
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;

@@ -1,7 +1,7 @@
 //! The parser's messages in the words of somebody who measures rods.
 //!
-//! What is not recognised here keeps the parser's own words, so that a new version of it can only make
-//! messages plainer, never wrong.
+//! What is not recognised here keeps the parser's own words, so that a new version of it can only
+//! make messages plainer, never wrong.
 
 use std::ops::Range;
 
@@ -46,7 +46,8 @@ impl TomlText<'_> {
     fn missing_key(&self, message: &str, span: &Range<usize>, required: &Required) -> Option<Error> {
         let name = message.strip_prefix("missing field `")?.strip_suffix('`')?;
         let words = |key: &str| required.iter().find(|(k, _)| *k == key).map(|(_, words)| words.to_string());
-        // the parser places what is missing at the top level nowhere, and the rest at its section's header
+        // the parser places what is missing at the top level nowhere, and the rest at its section's
+        // header
         if span.is_empty() {
             let is_blank = |line: &str| line.trim().is_empty() || line.trim_start().starts_with('#');
             let (missing, expected) = match words(&format!("[{name}]")) {

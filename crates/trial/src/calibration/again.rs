@@ -1,5 +1,5 @@
-//! Once more at the robot: poses that somebody proposes are measured with the same arm, the same effects and the same
-//! instruments, after everything that was done before.
+//! Once more at the robot: poses that somebody proposes are measured with the same arm, the same
+//! effects and the same instruments, after everything that was done before.
 
 use nalgebra::Vector3;
 use serde::Deserialize;
@@ -57,7 +57,8 @@ const NEAR: f64 = 10.0 * MM;
 const REST: f64 = 600.0;
 const PACE: f64 = 30.0;
 
-/// Case `number` of a trial with what is `proposed`. Refuses, with the reason, what this robot cannot do.
+/// Case `number` of a trial with what is `proposed`. Refuses, with the reason, what this robot
+/// cannot do.
 pub fn again(source: &Source, number: usize, proposed: &Proposed) -> Result<Again, &'static str> {
     let Drawn { mut site, effects, right, mistake, .. } = drawn(source, number);
     if mistake.is_some() {

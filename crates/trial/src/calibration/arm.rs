@@ -112,7 +112,8 @@ pub fn moment(arm: &[Link], frames: &[Matrix4<f64>], gravity: &Vector3<f64>, pul
     weights.chain(pulls.iter().copied()).map(|(force, at)| (at - from).cross(&force)).sum()
 }
 
-/// A six-axis arm as makers build them: with a spherical wrist, or with three parallel axes and an offset wrist.
+/// A six-axis arm as makers build them: with a spherical wrist, or with three parallel axes and an
+/// offset wrist.
 pub fn draw(random: &mut Random) -> (Arm, &'static str) {
     let spherical = happens(random, 0.5);
     let h = FRAC_PI_2;
@@ -190,8 +191,8 @@ impl Known {
         self.mass * link.centre.norm().max(LEAST_DISTANCE)
     }
 
-    /// Of the five numbers of a link. An axis that is parallel to the next is not moved along itself, and one that is not has
-    /// no β.
+    /// Of the five numbers of a link. An axis that is parallel to the next is not moved along
+    /// itself, and one that is not has no β.
     pub fn numbers(&self, link: &Link) -> [f64; 5] {
         let is_parallel = link.numbers[3].abs() < 1e-9;
         let d = if is_parallel { 0.0 } else { self.length };

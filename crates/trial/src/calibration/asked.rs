@@ -1,9 +1,10 @@
-//! Poses that are asked for and not measured: where the ball would have been, free in space, with another force on it and, on a
-//! rod, with a heavier ball.
+//! Poses that are asked for and not measured: where the ball would have been, free in space, with
+//! another force on it and, on a rod, with a heavier ball.
 //!
-//! A campaign of its own beside the recorded one, without points. Its clock goes on after the recording, in a room that may
-//! have become warmer. It begins with the first recorded pose, so that the move that led there is known, and what it asks
-//! depends on the protocol alone: it says nothing of the effect.
+//! A campaign of its own beside the recorded one, without points. Its clock goes on after the
+//! recording, in a room that may have become warmer. It begins with the first recorded pose, so
+//! that the move that led there is known, and what it asks depends on the protocol alone: it says
+//! nothing of the effect.
 
 use nalgebra::{DMatrix, DVector, Vector3};
 
@@ -80,9 +81,10 @@ impl Question {
         text::question(&self.site, &self.force)
     }
 
-    /// Where the ball would be, and what an oracle says that knows which effects there are and where, and fits their numbers,
-    /// together with all that the calibration is free to change and the numbers of the files, each known as these state, to a
-    /// recording with this `noise`: to first order, from the truth.
+    /// Where the ball would be, and what an oracle says that knows which effects there are and
+    /// where, and fits their numbers, together with all that the calibration is free to change and
+    /// the numbers of the files, each known as these state, to a recording with this `noise`: to
+    /// first order, from the truth.
     pub fn truth(&self, recorded: &Site, effects: &[Effect], noise: &[Vector3<f64>]) -> Asked {
         let truth = self.asked(&afterwards(effects));
         let is_known = !effects.is_empty() && !effects.iter().any(Effect::is_beyond);
@@ -100,8 +102,8 @@ impl Question {
         of_asked(&self.site.each(|row, q| self.site.ball(row, q, effects)))
     }
 
-    /// J′·(AᵀA + 1)⁻¹·(Aᵀn + o): by how much the noise n, and the files' numbers that are off by o, mislead the oracle, m. A, J′:
-    /// what its parameters do to the recorded and to these rows.
+    /// J′·(AᵀA + 1)⁻¹·(Aᵀn + o): by how much the noise n, and the files' numbers that are off by o,
+    /// mislead the oracle, m. A, J′: what its parameters do to the recorded and to these rows.
     fn error(&self, recorded: &Site, effects: &[Effect], noise: &[Vector3<f64>]) -> Option<DVector<f64>> {
         let (absorbed, mut off) = taken_up::columns(recorded);
         let rows = absorbed.nrows();

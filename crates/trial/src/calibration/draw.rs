@@ -1,6 +1,7 @@
-//! Which effect, where, and how large at most. How much of that a case holds is drawn afterwards (`calibration.rs`), on a
-//! logarithmic scale: three of ten single effects from a tenth of what could just be detected up to that, the others from there
-//! on; of several effects in one case from three times that.
+//! Which effect, where, and how large at most. How much of that a case holds is drawn afterwards
+//! (`calibration.rs`), on a logarithmic scale: three of ten single effects from a tenth of what
+//! could just be detected up to that, the others from there on; of several effects in one case from
+//! three times that.
 //!
 //! | effect | size | at most |
 //! |---|---|---|

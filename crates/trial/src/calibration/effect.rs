@@ -41,7 +41,8 @@ pub enum Effect {
     Outlier(Vec<(usize, Vector3<f64>)>),
     /// The ball is displaced in {T} from a row on, m: the tool slipped in its mount.
     ToolShift { from: usize, by: Vector3<f64> },
-    /// The robot on its base, or the tracker, is displaced from a row on: m, and rad about the base.
+    /// The robot on its base, or the tracker, is displaced from a row on: m, and rad about the
+    /// base.
     BaseShift { from: usize, by: Vector3<f64>, turn: Vector3<f64> },
     /// The contact force changes with the displacement in a clamp, or in all, N/m.
     Spring { group: Option<usize>, rate: f64 },
@@ -195,8 +196,9 @@ impl Effect {
         )
     }
 
-    /// What is left of it after the recording, away from the fixtures: what a robot does whatever is measured with it, and where
-    /// it was moved to; not what happened to a fixture or to single rows.
+    /// What is left of it after the recording, away from the fixtures: what a robot does whatever
+    /// is measured with it, and where it was moved to; not what happened to a fixture or to single
+    /// rows.
     pub fn afterwards(&self) -> Option<Effect> {
         match self.clone() {
             Effect::ClampPose { .. }
@@ -266,8 +268,8 @@ impl Effect {
         self
     }
 
-    /// The effect with each of its numbers a little larger; none for what no library has. How often a gear's
-    /// wave repeats is known.
+    /// The effect with each of its numbers a little larger; none for what no library has. How often
+    /// a gear's wave repeats is known.
     pub fn larger(&self) -> Vec<Effect> {
         if self.is_beyond() {
             return Vec::new();

@@ -19,9 +19,10 @@ impl Posture {
     }
 }
 
-/// Of geometry, drives, base and tool: ∂coordinate/∂parameter, m per unit of SI. With z a joint's axis through o, x and y
-/// the axes of the link behind it and p the ball: z × (p − o) of θ, z of d, x of a, x × (p − o′) of α, y × (p − o′) of β. That
-/// torques change with the geometry is of second order.
+/// Of geometry, drives, base and tool: ∂coordinate/∂parameter, m per unit of SI. With z a joint's
+/// axis through o, x and y the axes of the link behind it and p the ball: z × (p − o) of θ, z of d,
+/// x of a, x × (p − o′) of α, y × (p − o′) of β. That torques change with the geometry is of second
+/// order.
 pub fn of_robot(site: &Site) -> Vec<DVector<f64>> {
     let n = site.real.len();
     let posture = |row: usize| {

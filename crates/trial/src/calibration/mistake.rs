@@ -1,7 +1,8 @@
-//! What may be written down wrongly of a calibration: signs, orders, units, zeros, rows, frames, files.
+//! What may be written down wrongly of a calibration: signs, orders, units, zeros, rows, frames,
+//! files.
 //!
-//! A mistake is drawn only where it shows: where the robot as its file has it then misses a third of the points by a
-//! thirtieth of its reach, by a tenth where only a first guess is wrong.
+//! A mistake is drawn only where it shows: where the robot as its file has it then misses a third
+//! of the points by a thirtieth of its reach, by a tenth where only a first guess is wrong.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -21,7 +22,8 @@ use rodcal_base::units::DEG;
 const KINDS: usize = 15;
 /// Tries until one shows.
 const TRIES: usize = 200;
-/// Share of the points that are missed, and by how much of the reach; and by how much where only a first guess is wrong.
+/// Share of the points that are missed, and by how much of the reach; and by how much where only a
+/// first guess is wrong.
 const SHOWS: (f64, f64) = (0.33, 1.0 / 30.0);
 const GUESS: f64 = 0.1;
 
@@ -261,8 +263,8 @@ fn displace(wrong: &mut Written, by: isize, with_clamps: bool) {
     wrong.site.rows = kept.iter().map(row).collect();
 }
 
-/// True where the robot of the files misses many of the points that they state: with sockets, of those that it reached when
-/// nothing was written wrongly.
+/// True where the robot of the files misses many of the points that they state: with sockets, of
+/// those that it reached when nothing was written wrongly.
 fn shows(wrong: &Written, right: &Written, least: f64) -> bool {
     let reach: f64 = right.site.nominal.iter().map(|l| l.numbers[1].abs() + l.numbers[2].abs()).sum();
     let stated = |written: &Written, row: usize| {

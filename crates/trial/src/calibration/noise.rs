@@ -1,5 +1,5 @@
-//! Errors of what is read: normal, heavy-tailed or those of a real recording; correlated along the rows; larger at some clamps;
-//! shown in steps.
+//! Errors of what is read: normal, heavy-tailed or those of a real recording; correlated along the
+//! rows; larger at some clamps; shown in steps.
 
 use nalgebra::{DVector, Vector3};
 
@@ -94,7 +94,8 @@ impl Scatter {
         groups.iter().map(error).collect()
     }
 
-    /// Σ^(−1/2)·v for coordinates row by row, and the display's steps: v/σ, then (vₖ − φ·vₖ₋₁)/√(1 − φ²).
+    /// Σ^(−1/2)·v for coordinates row by row, and the display's steps: v/σ, then (vₖ − φ·vₖ₋₁)/√(1
+    /// − φ²).
     pub fn whitened(&self, groups: &[usize], v: &DVector<f64>) -> DVector<f64> {
         let mut white = v.clone();
         for (row, &group) in groups.iter().enumerate() {

@@ -1,8 +1,9 @@
-//! The numbers of the files and what a calibration is free to change, each with its standard uncertainty.
+//! The numbers of the files and what a calibration is free to change, each with its standard
+//! uncertainty.
 //!
-//! Geometry, masses and centres by the robot's file, the rod's by its own, the places of clamps by the campaign. Drives are
-//! hardly more compliant than three times what gears turn by, 1.5 mrad at their rated torque. Of base, tip and the places of
-//! sockets next to nothing is known.
+//! Geometry, masses and centres by the robot's file, the rod's by its own, the places of clamps by
+//! the campaign. Drives are hardly more compliant than three times what gears turn by, 1.5 mrad at
+//! their rated torque. Of base, tip and the places of sockets next to nothing is known.
 
 use nalgebra::{DVector, Vector3};
 
@@ -12,7 +13,8 @@ use super::site::{Devices, Site};
 
 /// What nobody knows beforehand, m and rad.
 const ANYWHERE: f64 = 0.1;
-/// Angle of a drive at its rated torque, rad, how many times that it may be, and the least torque that one is rated for, N·m.
+/// Angle of a drive at its rated torque, rad, how many times that it may be, and the least torque
+/// that one is rated for, N·m.
 const DRIVE: (f64, f64, f64) = (1.5e-3, 3.0, 5.0);
 
 /// A number that is known to a standard uncertainty.

@@ -1,16 +1,18 @@
-//! What could have been known at best of a calibration: every coordinate without its noise, less what the calibration and the
-//! numbers of the files take up.
+//! What could have been known at best of a calibration: every coordinate without its noise, less
+//! what the calibration and the numbers of the files take up.
 //!
-//! The measure is the rig's (`rig/oracle.rs`): with Σ₀ the covariance of the noise, N what a standard uncertainty of each number
-//! does (`taken_up.rs`), Σ = Σ₀ + N·Nᵀ, δ what an effect adds and C what a rival can add,
+//! The measure is the rig's (`rig/oracle.rs`): with Σ₀ the covariance of the noise, N what a
+//! standard uncertainty of each number does (`taken_up.rs`), Σ = Σ₀ + N·Nᵀ, δ what an effect adds
+//! and C what a rival can add,
 //!
 //! ```text
 //! log BF = ½·d² − (p/2)·ln(1 + d²)        d² = min over β of (δ − Cβ)ᵀΣ⁻¹(δ − Cβ) + βᵀβ;   against nothing C is empty
 //! ```
 //!
-//! Σ^(−1/2) is Σ₀'s, then I − U·(1 − 1/√(1 + S²))·Uᵀ with U·S·Vᵀ what it makes of N. A rival's columns are first order, of a size at
-//! the upper end of its range. An effect within the library is a rival wherever it may sit; physics that no library has must
-//! also differ from every two of them.
+//! Σ^(−1/2) is Σ₀'s, then I − U·(1 − 1/√(1 + S²))·Uᵀ with U·S·Vᵀ what it makes of N. A rival's
+//! columns are first order, of a size at the upper end of its range. An effect within the library
+//! is a rival wherever it may sit; physics that no library has must also differ from every two of
+//! them.
 
 use std::collections::BTreeMap;
 
@@ -60,7 +62,8 @@ impl<'a> Oracle<'a> {
         Oracle { site, directions, more, rivals: Vec::new() }
     }
 
-    /// Compares with every effect of the library too; moves are tried after every row where one of `effects` is such a move.
+    /// Compares with every effect of the library too; moves are tried after every row where one of
+    /// `effects` is such a move.
     pub fn compare(&mut self, effects: &[Effect]) {
         let mut rivals = rivals(self.site, effects);
         let all = self.all_left(rivals.iter().flat_map(|rival| &rival.columns));
@@ -98,8 +101,8 @@ impl<'a> Oracle<'a> {
         self.left(&self.site.added(effects, without))
     }
 
-    /// The share of an effect's size at which it would just be detectable: expected log Bayes factor against nothing of
-    /// [`Detectability::IDENTIFIABLE`].
+    /// The share of an effect's size at which it would just be detectable: expected log Bayes
+    /// factor against nothing of [`Detectability::IDENTIFIABLE`].
     pub fn limit(&self, effect: &Effect) -> f64 {
         let square = self.added(std::slice::from_ref(effect), &[]).norm_squared();
         let evidence = |share: f64| {

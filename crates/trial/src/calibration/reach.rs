@@ -7,7 +7,8 @@ use super::effect::Effect;
 use super::site::{Site, lever};
 
 impl Site {
-    /// Turns the joints of a row, as little as may be, until the ball is at a point; `None` where it does not get there.
+    /// Turns the joints of a row, as little as may be, until the ball is at a point; `None` where
+    /// it does not get there.
     pub fn reach(
         &self,
         row: usize,

@@ -56,13 +56,16 @@ pub const LARGEST: f64 = 175.0 * DEG;
 
 /// How often the numbers of the files are off by twice what they state.
 const TWICE: f64 = 0.15;
-/// How far from level a robot stands that was set up with one, rad; how far a rod's tip is from where it belongs, m.
+/// How far from level a robot stands that was set up with one, rad; how far a rod's tip is from
+/// where it belongs, m.
 const LEVEL: f64 = 0.05 * DEG;
 const MOUNTED: f64 = 0.5 * MM;
-/// Places of clamps that are stated to be uncertain, m, and how well they are known where nothing is stated.
+/// Places of clamps that are stated to be uncertain, m, and how well they are known where nothing
+/// is stated.
 const CLAMPS: ([f64; 2], f64) = ([10.0 * UM, 60.0 * UM], UM);
 
-/// A recording without its noise. With sockets the angles are those of a robot without effects: [`measured`] turns them.
+/// A recording without its noise. With sockets the angles are those of a robot without effects:
+/// [`measured`] turns them.
 pub fn draw(needs: Needs, residuals: &[f64], random: &mut Random) -> Site {
     let (nominal, arm_name) = arm::draw(random);
     let known = Known::draw(random);
@@ -201,7 +204,8 @@ fn any(n: usize, random: &mut Random) -> Vec<f64> {
         .collect()
 }
 
-/// Joint angles with which the ball is where a row has it, rad; any above the floor where that is free.
+/// Joint angles with which the ball is where a row has it, rad; any above the floor where that is
+/// free.
 pub fn pose(site: &Site, row: usize, random: &mut Random) -> Vec<f64> {
     let n = site.nominal.len();
     let mut last = any(n, random);
@@ -235,9 +239,9 @@ fn as_shown(q: &[f64]) -> Vec<f64> {
     q.iter().map(|q| (q.to_degrees() * 1e7).round() / 1e7 * DEG).collect()
 }
 
-/// What was read from row `first` on with these errors: positions in the devices' frames, m. The joints are turned until the ball
-/// is where it was to be in its clamp, whatever is wrong; with sockets until it is in its socket, off by the noise, and nothing
-/// is read.
+/// What was read from row `first` on with these errors: positions in the devices' frames, m. The
+/// joints are turned until the ball is where it was to be in its clamp, whatever is wrong; with
+/// sockets until it is in its socket, off by the noise, and nothing is read.
 pub fn measured(
     site: &mut Site,
     effects: &[Effect],

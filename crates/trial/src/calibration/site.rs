@@ -64,7 +64,8 @@ pub struct Site {
     pub times: f64,
     /// Gravity in the world, m/s².
     pub gravity: Vector3<f64>,
-    /// How well the places of clamps are known, m, where the campaign states it, and by how much each is off.
+    /// How well the places of clamps are known, m, where the campaign states it, and by how much
+    /// each is off.
     pub clamp_sd: Option<f64>,
     pub clamps_off: Vec<Vector3<f64>>,
     /// Errors of what is read.

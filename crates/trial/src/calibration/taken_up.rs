@@ -1,5 +1,5 @@
-//! All that a calibration can take up: geometry, base, tool, drives where masses are known, places of sockets, and the numbers
-//! of the files.
+//! All that a calibration can take up: geometry, base, tool, drives where masses are known, places
+//! of sockets, and the numbers of the files.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -12,8 +12,9 @@ pub const DISTANCE_SD: f64 = 10.0 * UM;
 /// Of the place of a socket, m.
 const ANYWHERE: f64 = 0.1;
 
-/// What a standard uncertainty of each number does to every coordinate, in noises that know nothing of each other, and to the
-/// distances between sockets behind them; and by how many of them the file is off.
+/// What a standard uncertainty of each number does to every coordinate, in noises that know nothing
+/// of each other, and to the distances between sockets behind them; and by how many of them the
+/// file is off.
 pub fn columns(site: &Site) -> (DMatrix<f64>, Vec<f64>) {
     let numbers = numbers(site, &drives(site));
     let mut off: Vec<f64> = numbers.iter().map(|number| number.off).collect();

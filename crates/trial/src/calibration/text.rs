@@ -1,4 +1,5 @@
-//! The files of a campaign: a robot as its maker has it, guesses of base and tool, and the recording.
+//! The files of a campaign: a robot as its maker has it, guesses of base and tool, and the
+//! recording.
 
 use std::fmt::Write;
 

@@ -1,5 +1,5 @@
-//! Once more at the rig: what somebody proposes to measure next is done with the same rod, the same effects and the same
-//! sensors, after everything that was done before.
+//! Once more at the rig: what somebody proposes to measure next is done with the same rod, the same
+//! effects and the same sensors, after everything that was done before.
 
 use std::collections::BTreeMap;
 
@@ -50,8 +50,9 @@ const MOST_LOADINGS: usize = 500;
 const REST: f64 = 600.0;
 const DWELL: f64 = 30.0;
 
-/// Case `number` of the trial that belongs to `seed` with what is `proposed`; the numbers of before are the same, the new ones
-/// have a noise of their own. Refuses, with the reason, what this rig cannot do.
+/// Case `number` of the trial that belongs to `seed` with what is `proposed`; the numbers of before
+/// are the same, the new ones have a noise of their own. Refuses, with the reason, what this rig
+/// cannot do.
 pub fn again(
     seed: u64,
     number: usize,
@@ -137,7 +138,8 @@ fn planned(bench: &Bench, proposed: &Proposed) -> Result<Protocol, &'static str>
     Ok(Protocol { loadings, channels, columns, zeroed_once: false, ..recorded.clone() })
 }
 
-/// One table below another one of the same format: all columns of both, blanks where a table has none.
+/// One table below another one of the same format: all columns of both, blanks where a table has
+/// none.
 fn joined(above: &str, below: &str) -> String {
     let is_row = |line: &&str| !line.starts_with('#');
     let header = |text: &str| text.lines().find(is_row).unwrap_or_default().to_owned();

@@ -1,8 +1,10 @@
-//! Readings that are asked for and not given: what would have been read had the rod been loaded or read elsewhere.
+//! Readings that are asked for and not given: what would have been read had the rod been loaded or
+//! read elsewhere.
 //!
-//! Another protocol in the place of the recorded one: every recorded axis with the load, or else the sensors, at a station
-//! where they never were; then an axis along which nothing was pulled, or, of three, one of them the other way. Which it is
-//! depends on the protocol alone, so that the question says nothing of the effect.
+//! Another protocol in the place of the recorded one: every recorded axis with the load, or else
+//! the sensors, at a station where they never were; then an axis along which nothing was pulled,
+//! or, of three, one of them the other way. Which it is depends on the protocol alone, so that the
+//! question says nothing of the effect.
 
 use super::bench::Bench;
 use super::drawing::rounded;
@@ -73,8 +75,8 @@ pub fn csv(asked: &Bench) -> String {
     asked.protocol.table(ABOVE, &vec![0.0; asked.protocol.cells().len()])
 }
 
-/// What would be read, and what the oracle says: `oracle` knows the effects and where they are, and finds their sizes out from
-/// `shown`.
+/// What would be read, and what the oracle says: `oracle` knows the effects and where they are, and
+/// finds their sizes out from `shown`.
 pub fn truth(asked: &Bench, effects: &[Effect], oracle: &Oracle, shown: &[f64]) -> Asked {
     let happen_again: Vec<Effect> =
         effects.iter().filter(|effect| !effect.is_of_one_run()).cloned().collect();

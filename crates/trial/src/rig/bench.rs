@@ -32,7 +32,8 @@ pub struct Bench {
     pub protocol: Protocol,
     /// By loading, −1 to 1: how the slide happens to stick.
     pub sticking: Vec<f64>,
-    /// The largest load of the recording, N: what effects that are shares of full scale refer to, whatever else is done.
+    /// The largest load of the recording, N: what effects that are shares of full scale refer to,
+    /// whatever else is done.
     pub full_scale: f64,
 }
 

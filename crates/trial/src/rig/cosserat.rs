@@ -1,17 +1,19 @@
-//! A rod in space that bends, twists, shears and stretches as far as it likes: Cosserat's rod under one dead load.
+//! A rod in space that bends, twists, shears and stretches as far as it likes: Cosserat's rod under
+//! one dead load.
 //!
-//! With p the centreline, R the frame of its section (third axis along it), F the load at the station s_L, p_L = p(s_L),
+//! With p the centreline, R the frame of its section (third axis along it), F the load at the
+//! station s_L, p_L = p(s_L),
 //!
 //! ```text
 //! p' = R·(e₃ + diag(s, s, a)·Rᵀn)     n = F below the load, 0 above it
 //! R' = R·[κ₀ + diag(b, b, t)·Rᵀm]×    m = (p_L − p) × n
 //! ```
 //!
-//! (S. S. Antman, *Nonlinear Problems of Elasticity*, ch. 8; b, t, s, a of [`Flexibility`]). A joint turns the frame at
-//! once by diag(β, β, τ)·Rᵀm. Nothing is unknown but where the load ends up: p_L is put in, the rod is integrated from the
-//! flange by Runge and Kutta's fourth order, and p_L is what came out, until it converges.
-//! Deflections are differences of two runs of the same integrator, so that its error cancels to
-//! first order.
+//! (S. S. Antman, *Nonlinear Problems of Elasticity*, ch. 8; b, t, s, a of [`Flexibility`]). A
+//! joint turns the frame at once by diag(β, β, τ)·Rᵀm. Nothing is unknown but where the load ends
+//! up: p_L is put in, the rod is integrated from the flange by Runge and Kutta's fourth order, and
+//! p_L is what came out, until it converges. Deflections are differences of two runs of the same
+//! integrator, so that its error cancels to first order.
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
@@ -181,7 +183,8 @@ impl Piece {
         at
     }
 
-    /// p' and the quaternion of R' = R·[κ]×, which is ½·q∘(0, κ). Number by number: a trial spends most of its time here.
+    /// p' and the quaternion of R' = R·[κ]×, which is ½·q∘(0, κ). Number by number: a trial spends
+    /// most of its time here.
     fn slope(&self, at: &Section, force: &Vector3<f64>, loaded: &Vector3<f64>) -> Section {
         let q = &at.frame;
         let (w, i, j, k) = (q.w, q.i, q.j, q.k);

@@ -190,9 +190,9 @@ pub(super) fn direction(random: &mut Random) -> [f64; 3] {
     drawn.map(|part| part / norm)
 }
 
-/// Every effect of the library that has a meaning at a bench, wherever it may sit, at `share` of the upper end of its range;
-/// those with two numbers in two parts. Joints along the rod and slips are the oracle's own
-/// business.
+/// Every effect of the library that has a meaning at a bench, wherever it may sit, at `share` of
+/// the upper end of its range; those with two numbers in two parts. Joints along the rod and slips
+/// are the oracle's own business.
 pub(super) fn all(bench: &Bench, share: f64) -> Vec<Vec<Effect>> {
     let protocol = &bench.protocol;
     let (axes, channels, largest) = (protocol.axes(), protocol.read_channels(), protocol.largest_load());

@@ -232,8 +232,8 @@ pub(super) mod tests {
 
     #[test]
     fn the_documented_bend_is_met() {
-        // docs/rod-file.md: 16 × 12 mm, legs 300 and 450 mm, bend of 40 mm: 206.41 and 267.73 µm/N along z and y, with von
-        // Kármán's factor 214.08 and 271.58
+        // docs/rod-file.md: 16 × 12 mm, legs 300 and 450 mm, bend of 40 mm: 206.41 and 267.73 µm/N
+        // along z and y, with von Kármán's factor 214.08 and 271.58
         let rod = Drawing { legs: [0.3, 0.45], ..l_shape(0.04) };
         let length = rod.length();
         assert!((length - (0.75 - 0.08 + 0.02 * PI)).abs() < 1e-12);

@@ -18,8 +18,9 @@ pub enum Effect {
     Root { bending: f64, torsion: f64 },
     /// The bend's flexibility factor, where the file says that of a beam.
     Bend(f64),
-    /// Coulomb friction of the slide under loads along `axis` (`None`: all), N. It takes `presliding` (m) of travel to
-    /// turn round, and at every reading the slide sticks with up to the share `scatter` less than the full value.
+    /// Coulomb friction of the slide under loads along `axis` (`None`: all), N. It takes
+    /// `presliding` (m) of travel to turn round, and at every reading the slide sticks with up to
+    /// the share `scatter` less than the full value.
     Friction { axis: Option<usize>, force: f64, presliding: f64, scatter: f64 },
     /// Added to every load, N.
     LoadOffset { axis: Option<usize>, force: f64 },
@@ -27,7 +28,8 @@ pub enum Effect {
     Backlash { axis: Option<usize>, play: f64 },
     /// Viscoelastic creep by `per_decade` of the displacement, beginning at the time `shortest`, s.
     Creep { per_decade: f64, shortest: f64 },
-    /// Hysteresis with a loop as wide, at half load, as this share of full scale; exercised before, or virgin.
+    /// Hysteresis with a loop as wide, at half load, as this share of full scale; exercised before,
+    /// or virgin.
     Hysteresis { fraction: f64, is_exercised: bool },
     /// Displacement × (1 + k·F²), 1/N².
     Cubic(f64),
@@ -37,7 +39,8 @@ pub enum Effect {
     SensorScale { channel: usize, factor: f64 },
     /// A channel turned towards another axis, rad.
     SensorMisalignment { channel: usize, towards: usize, angle: f64 },
-    /// Loads along `axis` turned towards another one, rad; with `frame` loads along both turn together.
+    /// Loads along `axis` turned towards another one, rad; with `frame` loads along both turn
+    /// together.
     LoadMisalignment { axis: usize, towards: usize, angle: f64, frame: bool },
     /// The block that holds all sensors, turned by this vector, rad.
     SensorBlock([f64; 3]),
@@ -61,7 +64,8 @@ pub enum Effect {
     Ripple { channel: usize, amplitude: f64, period: f64, phase: f64 },
     /// A Hertzian seat gives way by this, m, at the largest load, and with F^(2/3) below.
     Seat(f64),
-    /// A rod that runs in: the first loading gives this share more, less by e with every so many loadings.
+    /// A rod that runs in: the first loading gives this share more, less by e with every so many
+    /// loadings.
     RunningIn { share: f64, loadings: f64 },
     /// A channel that does not go beyond this, m.
     Saturation { channel: usize, limit: f64 },

@@ -12,7 +12,8 @@ use super::tube::Tube;
 use rodcal_base::statistics::Random;
 use rodcal_base::units::{MM, UM};
 
-/// A steel rod in the shape of an L, 16 × 12 mm, with a declared joint `sleeve`, and what is done with it. SI.
+/// A steel rod in the shape of an L, 16 × 12 mm, with a declared joint `sleeve`, and what is done
+/// with it. SI.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Order {
     /// Radius of the bend, m; 0 is a sharp corner.

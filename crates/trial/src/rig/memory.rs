@@ -1,7 +1,8 @@
-//! What a rig remembers: friction that has to turn round, creep by a chain of springs and dampers, hysteresis by plays.
+//! What a rig remembers: friction that has to turn round, creep by a chain of springs and dampers,
+//! hysteresis by plays.
 
-/// Friction by P. R. Dahl's model (*A solid friction model*, TOR-0158(3107–18)-1, 1968): on its way the slide's
-/// resistance goes to ±f exponentially with the distance travelled since it turned,
+/// Friction by P. R. Dahl's model (*A solid friction model*, TOR-0158(3107–18)-1, 1968): on its way
+/// the slide's resistance goes to ±f exponentially with the distance travelled since it turned,
 ///
 /// z → ±f + (z ∓ f)·exp(−|travel|/presliding).
 pub fn friction_after(z: f64, force: f64, travel: f64, presliding: f64) -> f64 {
@@ -13,7 +14,8 @@ pub fn friction_after(z: f64, force: f64, travel: f64, presliding: f64) -> f64 {
 const DECADES: usize = 6;
 const PER_DECADE: usize = 2;
 
-/// Creep compliance, relative to the elastic one, a time t (s) after a load came: a Prony series of Kelvin elements,
+/// Creep compliance, relative to the elastic one, a time t (s) after a load came: a Prony series of
+/// Kelvin elements,
 ///
 /// J(t) = (k/m)·Σ (1 − exp(−t/τᵢ)), τᵢ = τ₀·10^(i/m), m in each decade,
 ///
@@ -30,12 +32,14 @@ pub fn creep_compliance(per_decade: f64, shortest: f64) -> impl Fn(f64) -> f64 {
 /// Play operators with thresholds spread evenly from 0 to half of the largest load.
 const PLAYS: usize = 32;
 
-/// Hysteresis of Prandtl and Ishlinskii (A. Visintin, *Differential Models of Hysteresis*, ch. III):
+/// Hysteresis of Prandtl and Ishlinskii (A. Visintin, *Differential Models of Hysteresis*, ch.
+/// III):
 ///
 /// out = (1 − 2h)·F + (8h/F_max)·∫₀^(F_max/2) p_r[F] dr,   p_r ← max(F − r, min(F + r, p_r))
 ///
-/// A rod that was loaded to F_max before follows F − 2h·F·(1 − F/F_max) up and F + 2h·F·(1 − F/F_max) down: the loop is
-/// closed at both ends and at half load as wide as the share h of F_max. A virgin one does not come back to zero.
+/// A rod that was loaded to F_max before follows F − 2h·F·(1 − F/F_max) up and F + 2h·F·(1 −
+/// F/F_max) down: the loop is closed at both ends and at half load as wide as the share h of F_max.
+/// A virgin one does not come back to zero.
 #[derive(Debug, Clone)]
 pub struct Plays {
     fraction: f64,

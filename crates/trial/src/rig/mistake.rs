@@ -58,7 +58,8 @@ pub const MISTAKES: usize = 13;
 const VISIBLE: f64 = 0.3;
 /// Draws before the next kind is tried.
 const TRIES: usize = 20;
-/// What a sensor shows of the largest deflection of the recording, at least, for what it does to matter.
+/// What a sensor shows of the largest deflection of the recording, at least, for what it does to
+/// matter.
 const MOVES: f64 = 0.05;
 /// Readings that a sensor cuts off at least.
 const CUT: usize = 4;

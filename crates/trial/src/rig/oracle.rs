@@ -168,10 +168,10 @@ impl Oracle {
         best
     }
 
-    /// What it says of other readings, m, after it has found the sizes of the effects out from what was `shown`: least squares
-    /// about the truth, as Gauss and Newton's last step would be, with the upper end of its range as the standard deviation of
-    /// every size, and the numbers of the files beside them. `None` where there is no size to be
-    /// found.
+    /// What it says of other readings, m, after it has found the sizes of the effects out from what
+    /// was `shown`: least squares about the truth, as Gauss and Newton's last step would be, with
+    /// the upper end of its range as the standard deviation of every size, and the numbers of the
+    /// files beside them. `None` where there is no size to be found.
     pub fn predicted(&self, effects: &[Effect], shown: &[f64], asked: &Bench) -> Option<Vec<f64>> {
         let here = self.bench.readings(effects);
         let whitened = |v: Vec<f64>| self.covariance.over_noise(DVector::from_vec(v));
@@ -290,8 +290,8 @@ fn others(effects: &[Effect], which: usize) -> Vec<Effect> {
     effects.iter().enumerate().filter(|(k, _)| *k != which).map(|(_, effect)| effect.clone()).collect()
 }
 
-/// min over α, β of |δ − Gα − Cβ|² + |α|² + |β|², with β ≥ 0 where it is one-sided: all subsets of its few columns are
-/// tried. α counts a change of the other effects' size by themselves.
+/// min over α, β of |δ − Gα − Cβ|² + |α|² + |β|², with β ≥ 0 where it is one-sided: all subsets of
+/// its few columns are tried. α counts a change of the other effects' size by themselves.
 fn remainder(
     delta: &DVector<f64>,
     given: &[DVector<f64>],

@@ -1,4 +1,5 @@
-//! What was done at the rig: the loadings in their order, what was read, and how it is written down.
+//! What was done at the rig: the loadings in their order, what was read, and how it is written
+//! down.
 
 use std::fmt::Write;
 

@@ -32,7 +32,8 @@ pub struct Needs {
     pub two_axes: bool,
     /// Everything read and loaded at the tip.
     pub tip: bool,
-    /// Two readings before and two after something that happens within a run: next to a single one it is an outlier.
+    /// Two readings before and two after something that happens within a run: next to a single one
+    /// it is an outlier.
     pub long_runs: bool,
     /// Readings at another station than the tip.
     pub stations: bool,
@@ -68,7 +69,8 @@ impl Needs {
     }
 }
 
-/// Deflection at the largest load, over the rod's length: enough to read, and little enough for a linear rod.
+/// Deflection at the largest load, over the rod's length: enough to read, and little enough for a
+/// linear rod.
 const DEFLECTION: (f64, f64) = (5e-4, 2.5e-3);
 /// Rods that are tried before one is taken as it is.
 const TRIES: usize = 200;

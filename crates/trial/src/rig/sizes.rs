@@ -1,4 +1,5 @@
-//! How large an effect is: the numbers that somebody who knows its law and its place has to find out.
+//! How large an effect is: the numbers that somebody who knows its law and its place has to find
+//! out.
 
 use super::bench::Bench;
 use super::effect::Effect;
@@ -8,8 +9,8 @@ use rodcal_base::units::{DEG, UM};
 const FORCE: (f64, f64) = (2.0, 0.7);
 
 impl Effect {
-    /// Its sizes, 0 for no effect, each with the upper end of the range that it is drawn from. Nothing for what belongs to
-    /// single rows and for physics that no library has.
+    /// Its sizes, 0 for no effect, each with the upper end of the range that it is drawn from.
+    /// Nothing for what belongs to single rows and for physics that no library has.
     pub(super) fn sizes(&self, bench: &Bench) -> Vec<(f64, f64)> {
         let (full, smallest) = (bench.full_scale, bench.protocol.smallest_load());
         let [bends, twists] = bench.drawing.rotation();

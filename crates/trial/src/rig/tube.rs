@@ -45,8 +45,9 @@ impl Tube {
         PI / 4.0 * (self.outer.powi(4) - self.inner.powi(4))
     }
 
-    /// Shear coefficient of a hollow circle, m = a/b, e = E/G (S. Dharmarajan, H. McCutchen, *J. Compos. Mater.* 7 (1973)
-    /// 530–535; with e = 2(1 + ν) it is G. R. Cowper's, *J. Appl. Mech.* 33 (1966) 335–340):
+    /// Shear coefficient of a hollow circle, m = a/b, e = E/G (S. Dharmarajan, H. McCutchen, *J.
+    /// Compos. Mater.* 7 (1973) 530–535; with e = 2(1 + ν) it is G. R. Cowper's, *J. Appl. Mech.*
+    /// 33 (1966) 335–340):
     ///
     /// κ = 3e(1 + m²)² / ((3.5e − ν)(1 + m²)² + (10e − 8ν)m²).
     ///
@@ -71,13 +72,15 @@ impl Tube {
         }
     }
 
-    /// How many times as flexible in bending a bend of radius R is as the straight tube, since its section becomes oval:
-    /// the third approximation of von Kármán's series, with λ = tR/r² (t wall, r mean radius)
+    /// How many times as flexible in bending a bend of radius R is as the straight tube, since its
+    /// section becomes oval: the third approximation of von Kármán's series, with λ = tR/r² (t
+    /// wall, r mean radius)
     ///
     /// k = (252 + 73912λ² + 2446176λ⁴ + 2822400λ⁶) / (3 + 3280λ² + 329376λ⁴ + 2822400λ⁶)
     ///
-    /// (Th. von Kármán, Z. VDI 55 (1911) 1889; the same out of the plane: I. Vigness, Trans. ASME 65 (1943) 105). It goes
-    /// to 1.65/λ for thin walls, and differs from the first approximation by half a per cent at λ = 0.5 and twofold at 0.1.
+    /// (Th. von Kármán, Z. VDI 55 (1911) 1889; the same out of the plane: I. Vigness, Trans. ASME
+    /// 65 (1943) 105). It goes to 1.65/λ for thin walls, and differs from the first approximation
+    /// by half a per cent at λ = 0.5 and twofold at 0.1.
     pub fn ovalisation(&self, bend_radius: f64) -> f64 {
         let (wall, mean) = (self.outer - self.inner, (self.outer + self.inner) / 2.0);
         let l = (wall * bend_radius / (mean * mean)).powi(2);

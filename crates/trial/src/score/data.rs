@@ -13,7 +13,8 @@ use super::{
 };
 use crate::envelope::unwritable;
 
-/// A trial's score: of all cases, and of each half of them. As JSON its keys are those of [`Part`], then the halves.
+/// A trial's score: of all cases, and of each half of them. As JSON its keys are those of [`Part`],
+/// then the halves.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Score {
     /// All cases.

@@ -284,7 +284,8 @@ impl<'a> Judged<'a> {
         self.truth.effects.first().is_some_and(|concealed| self.class().contains(&concealed.effect.as_str()))
     }
 
-    /// For each number of a concealed effect that was found at its place: whether the interval holds it.
+    /// For each number of a concealed effect that was found at its place: whether the interval
+    /// holds it.
     pub fn covered(&self, concealed: &Concealed) -> Vec<(String, bool)> {
         let Some(finding) = self.found(concealed).filter(|_| self.is_placed(concealed)) else {
             return Vec::new();

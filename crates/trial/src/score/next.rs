@@ -120,7 +120,8 @@ fn ambiguous<'a>(case: &'a Judged<'_>) -> Option<(&'a Finding, &'a Concealed)> {
     is_ambiguous.then_some((finding, concealed))
 }
 
-/// True where the truth is now a finding, at its place, that none of its former rivals can stand for.
+/// True where the truth is now a finding, at its place, that none of its former rivals can stand
+/// for.
 fn is_settled(truth: &Truth, before: &Finding, concealed: &Concealed, after: &Judged<'_>) -> bool {
     let named: Vec<&Finding> = match truth.kind {
         Kind::Single => after.sought().take(1).collect(),
@@ -239,7 +240,8 @@ impl Serialize for NextMeasurement {
     }
 }
 
-/// `12 of 40, 30.0 % (18.1 to 45.4); 3 more without a proposal; 1 not done (a station that is not on the rod)`.
+/// `12 of 40, 30.0 % (18.1 to 45.4); 3 more without a proposal; 1 not done (a station that is not
+/// on the rod)`.
 impl fmt::Display for NextMeasurement {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}", self.settled)?;

@@ -124,8 +124,8 @@ pub fn confusion(cases: &[Judged<'_>]) -> Confusion {
     counts
 }
 
-/// What was said of effects that imitate each other, distinguishable or not. A name in brackets is not the
-/// strongest finding but one that it cannot distinguish from that.
+/// What was said of effects that imitate each other, distinguishable or not. A name in brackets is
+/// not the strongest finding but one that it cannot distinguish from that.
 pub fn conflicts(cases: &[Judged<'_>]) -> BTreeMap<String, Confusion> {
     let mut counts: BTreeMap<String, Confusion> = BTreeMap::new();
     for case in cases {

@@ -1,6 +1,6 @@
-//! Numbers that are per torque: the poses show their product with it alone, and it is known as well as the masses of the links. A
-//! number per p-th power of the torque is known to p·ρ at best, ρ the torque's relative standard uncertainty
-//! (`torque_uncertainty.rs`).
+//! Numbers that are per torque: the poses show their product with it alone, and it is known as well
+//! as the masses of the links. A number per p-th power of the torque is known to p·ρ at best, ρ the
+//! torque's relative standard uncertainty (`torque_uncertainty.rs`).
 
 use crate::diagnosis::calibration::law::{Law, Power};
 use crate::diagnosis::calibration::model::CalibrationModel;
@@ -9,7 +9,8 @@ use crate::inference::{Estimate, FindingPart};
 /// Half of a 95 % interval in standard deviations.
 const COVERAGE: f64 = 1.96;
 
-/// The parameters with what the torque of the joint, or the moment about the base, leaves uncertain.
+/// The parameters with what the torque of the joint, or the moment about the base, leaves
+/// uncertain.
 pub(super) fn per_torque(model: &CalibrationModel, parts: &[FindingPart]) -> Vec<Estimate> {
     let known = &model.torque_uncertainty;
     let widened = |part: &FindingPart| -> Vec<Estimate> {

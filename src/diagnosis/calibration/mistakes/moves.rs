@@ -20,7 +20,8 @@ use crate::units::{DEG, MM, significant};
 const FARTHEST_ROW: isize = 3;
 /// Clamps are exchanged one by one where there are no more; with more there are too many pairs.
 const MOST_CLAMPS: usize = 12;
-/// A ball in a clamp is displaced by less, m: by larger numbers it may be that they are in a smaller unit.
+/// A ball in a clamp is displaced by less, m: by larger numbers it may be that they are in a
+/// smaller unit.
 const DISPLACEMENT: f64 = 10.0 * MM;
 /// Angles in radians are no larger than a turn and some play, in what should be degrees.
 const TURN_IN_RADIANS: f64 = 6.6;

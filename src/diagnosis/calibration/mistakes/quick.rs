@@ -37,8 +37,8 @@ const MOST_TURNS: usize = 12;
 /// After so many steps what one gains tells the rest, which is so many times as much at most.
 const SETTLING: usize = 2;
 const AHEAD: f64 = 10.0;
-/// More rows than these add no evidence, for they share the same unknown physics; and what the three
-/// coordinates of one row count.
+/// More rows than these add no evidence, for they share the same unknown physics; and what the
+/// three coordinates of one row count.
 const MOST_ROWS: f64 = 150.0;
 const ROW: f64 = 1.0 / 3.0;
 /// The median length of a normal vector in space.
@@ -116,7 +116,8 @@ pub(super) fn fit(draft: &Draft, body: &Body, worthwhile: Worthwhile) -> Option<
     refined(draft, body, state, rough.median, worthwhile.log_likelihood)
 }
 
-/// Fits a draft from where another one's fit ended: rows that hardly count there may be others than from the rough start.
+/// Fits a draft from where another one's fit ended: rows that hardly count there may be others than
+/// from the rough start.
 pub(super) fn fit_from(draft: &Draft, body: &Body, start: &Fit, rough: f64) -> Option<Fit> {
     let mut bases = start.bases.clone();
     bases.truncate(draft.stations);
@@ -458,7 +459,8 @@ impl Fit {
         setup
     }
 
-    /// Distances of the tip of every row of `draft` from its point, m, if its station were `station`.
+    /// Distances of the tip of every row of `draft` from its point, m, if its station were
+    /// `station`.
     pub fn lengths_at(&self, draft: &Draft, body: &Body, station: usize) -> Vec<f64> {
         let mut there = draft.clone();
         there.station.iter_mut().for_each(|own| *own = station);

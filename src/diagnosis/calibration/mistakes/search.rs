@@ -1,9 +1,12 @@
 //! Which mistakes turn poses that fit nothing into poses that fit.
 //!
-//! Greedy: the change that gains most, then the best beside it; where no single one cures a fit that
-//! fails, pairs that begin with the best few, or with a unit; where no pair does, nothing is named. A state is kept where it is a thousand times more
-//! probable than the one that it grew from **and** what it touches lies three times nearer. It must also be a thousand times
-//! more probable than what is left to the effects: a small move of base or tracker, a clamp that is not quite in its place.
+//! Greedy: the change that gains most, then the best beside it; where no single one cures a fit
+//! that fails, pairs that begin with the best few, or with a unit; where no pair does, nothing is
+//! named. A state is kept where it is a thousand times more probable than the one that it grew from
+//! **and**
+//! what it touches lies three times nearer. It must also be a thousand times more probable than
+//! what is left to the effects: a small move of base or tracker, a clamp that is not quite in its
+//! place.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -48,7 +51,8 @@ const BASE: (f64, f64, f64) = (0.03, 2.0 * DEG, 24.0);
 const TOOL: (f64, f64, f64) = (5.0 * MM, 0.03, 12.0);
 /// Width of the points of a station, as a share of the reach; see [`width`].
 const WIDTH: f64 = 0.02;
-/// The least that is called a move of the base: smaller ones are left to the effects, which distinguish them from drift.
+/// The least that is called a move of the base: smaller ones are left to the effects, which
+/// distinguish them from drift.
 const LEAST_MOVE: (f64, f64) = (2.0 * MM, 2e-3);
 
 /// One of the changes that make a state.
@@ -160,8 +164,8 @@ impl Search<'_> {
         Some(self.scored(steps.to_vec(), thin, fit))
     }
 
-    /// The score of what is left to the effects and acts on what a change acts on too: small moves, and where the frames of clamps
-    /// are changed their places.
+    /// The score of what is left to the effects and acts on what a change acts on too: small moves,
+    /// and where the frames of clamps are changed their places.
     fn of_effects(&self, changed: &State, from: &State, tried: &[State]) -> f64 {
         let small = tried.iter().filter(|state| !self.is_far(state)).map(|state| state.score);
         let turned: Vec<usize> = match changed.steps.last().map(|step| self.change(step)) {
@@ -183,8 +187,9 @@ impl Search<'_> {
         small.chain(displaced).fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// The state, or what it becomes where its fit begins with that of another one, whichever is more probable: rows that a
-    /// mistake or a move touches pull at a fit, and one that has let them go is the better one with any reading of them.
+    /// The state, or what it becomes where its fit begins with that of another one, whichever is
+    /// more probable: rows that a mistake or a move touches pull at a fit, and one that has let
+    /// them go is the better one with any reading of them.
     fn restarted(&self, state: State, start: &State) -> State {
         if state.thin.body != start.thin.body {
             return state;
@@ -230,7 +235,8 @@ impl Search<'_> {
         State { score: fit.log_likelihood + guess + prior, steps, thin, fit, guess }
     }
 
-    /// The state with every further change, the best first; those that will not reach the score `least` may be missing.
+    /// The state with every further change, the best first; those that will not reach the score
+    /// `least` may be missing.
     fn extended(&self, from: &State, least: f64) -> Vec<State> {
         let reach = self.bodies[from.thin.body].reach;
         let most_left = (0.8 * from.fit.rough).max(DRAWN * reach);

@@ -1,8 +1,9 @@
 //! Rivals for what an arm remembers of the way that it came.
 //!
-//! Lag and play follow the last move alone. What follows moves before it (a belt that creeps, a seal that was dragged along, a
-//! controller that integrates) looks like both, because a move that begins where the one before ended runs against that
-//! on average. With Δₖ the k-th move before a pose, of joint j
+//! Lag and play follow the last move alone. What follows moves before it (a belt that creeps, a
+//! seal that was dragged along, a controller that integrates) looks like both, because a move that
+//! begins where the one before ended runs against that on average. With Δₖ the k-th move before a
+//! pose, of joint j
 //!
 //! ```text
 //! all joints alike    Σⱼ Jⱼ·Σ_k f_k·Δₖⱼ               k from 1, the last move, on

@@ -300,7 +300,8 @@ fn the_weight_of_a_rod_tells_no_torque_of_an_arm_of_unknown_masses() {
     assert!(not_testable.iter().any(|not| not.effect.name == "joint_nonlinear_stiffness"));
 }
 
-/// What a search needs of columns whose errors hang together is the same by products with stored columns and by whitened ones.
+/// What a search needs of columns whose errors hang together is the same by products with stored
+/// columns and by whitened ones.
 #[test]
 fn errors_in_common_whiten_stored_columns_as_whole_ones() {
     let campaign = clamps(5);

@@ -133,7 +133,8 @@ fn what_the_calibration_absorbs_is_said() {
     assert_eq!(untested, ["thermal_drift"]);
 }
 
-/// What no physics does, a tip that is lighter by three times what is modelled, does not make one of its numbers absurd.
+/// What no physics does, a tip that is lighter by three times what is modelled, does not make one
+/// of its numbers absurd.
 #[test]
 fn no_mass_is_negative_and_no_drive_turns_against_its_load() {
     let campaign = clamps(30);

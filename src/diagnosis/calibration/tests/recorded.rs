@@ -62,8 +62,8 @@ fn recordings_of_others_hold_no_mistake() {
 
 static PLACEBO: Effect = Effect { name: "placebo", ..UNKNOWN };
 
-/// Curves over angles that belong to other rows are offered besides, and none of them is taken. On two fifths of the
-/// recording.
+/// Curves over angles that belong to other rows are offered besides, and none of them is taken. On
+/// two fifths of the recording.
 #[test]
 fn a_placebo_is_refused() {
     let Some(campaign) = ur5() else { return };

@@ -178,7 +178,8 @@ fn places_and_ways_to_hold_the_tool_move_it() {
     assert_changes(&campaign, &calibration, cases);
 }
 
-/// Joints that keep a share of the move before the last one: that runs against the last move on average, and looks like lag.
+/// Joints that keep a share of the move before the last one: that runs against the last move on
+/// average, and looks like lag.
 #[test]
 fn what_is_remembered_of_the_move_before_is_no_lag() {
     let campaign = clamps(12);

@@ -64,8 +64,9 @@ fn slips(context: &mut Context) -> Vec<Entry> {
     within.into_iter().chain(between_runs(data, size)).collect()
 }
 
-/// Everything after a run is shifted: of each sensor, between any two runs with runs on either side. A channel that is read at
-/// one place in each run is one sensor, which is moved from place to place, and with it goes what shifted it.
+/// Everything after a run is shifted: of each sensor, between any two runs with runs on either
+/// side. A channel that is read at one place in each run is one sensor, which is moved from place
+/// to place, and with it goes what shifted it.
 fn between_runs(data: &[Datum], size: f64) -> Vec<Entry> {
     let mut entries = Vec::new();
     let mut place_in_run: BTreeMap<(Axis, usize), u64> = BTreeMap::new();

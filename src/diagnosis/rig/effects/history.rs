@@ -17,7 +17,8 @@ const PER_DECADE: f64 = 0.03;
 const CREEP_STARTS: [f64; 4] = [1.0, 10.0, 60.0, 600.0];
 /// Growth of the deflection per kelvin.
 const PER_KELVIN: f64 = 5e-4;
-/// Most runs whose onset of creep is found, each for itself; and how long before its first reading, in usual steps of time.
+/// Most runs whose onset of creep is found, each for itself; and how long before its first reading,
+/// in usual steps of time.
 const MOST_ONSETS: usize = 12;
 const ONSET_START: f64 = CREEP_STARTS[1];
 const LATEST: f64 = 100.0;

@@ -16,7 +16,8 @@ const SLIDE: f64 = 0.05;
 const TARE: f64 = 0.05;
 /// Travel over which friction turns round as a share of the largest displacement.
 const PRESLIDING: f64 = 0.05;
-/// Plays of friction that are tried, as shares of the largest displacement, and how far from one of them another one begins.
+/// Plays of friction that are tried, as shares of the largest displacement, and how far from one of
+/// them another one begins.
 const PLAYS: [f64; 10] = [0.01, 0.015, 0.025, 0.04, 0.06, 0.09, 0.13, 0.2, 0.3, 0.45];
 const SPAN: f64 = 1.35;
 /// Play as a share of the largest displacement at most.
@@ -197,8 +198,8 @@ pub static LOAD_MISALIGNMENT: RigEffect = RigEffect {
     },
 };
 
-/// Friction of loads that are measured while the displacement goes to and fro: one that turns round over some travel, and one
-/// behind a play that the motion crosses at every turn.
+/// Friction of loads that are measured while the displacement goes to and fro: one that turns round
+/// over some travel, and one behind a play that the motion crosses at every turn.
 fn at_turns(context: &Context, force: &Parameter) -> Vec<Entry> {
     let largest = largest_imposed(context.data);
     let is_moving = context.data.iter().any(|d| d.imposed.is_some() && d.is_unloading());
@@ -237,7 +238,8 @@ fn most_play(data: &[Datum]) -> f64 {
     }
 }
 
-/// A part as a whole, under the loads of each axis and in each session: a rig is set up anew for each.
+/// A part as a whole, under the loads of each axis and in each session: a rig is set up anew for
+/// each.
 fn of_axes(data: &[Datum], part: Part, make: &dyn Fn(Location, Scope) -> Entry) -> Vec<Entry> {
     let axes = loaded_axes(data);
     let everywhere = Scope { axes: [true; 3], session: None };

@@ -1,4 +1,5 @@
-//! What may have been written or wired wrongly: units, signs, names, a zero, a sensor, the wrong file.
+//! What may have been written or wired wrongly: units, signs, names, a zero, a sensor, the wrong
+//! file.
 //!
 //! These are records only: a mistake is no term of a model but something that is undone before
 //! there is one. How they are found: `diagnosis/rig/mistakes`.

@@ -62,8 +62,9 @@ pub(super) fn runs_by_sensor(data: &[Datum]) -> Vec<(Run, Vec<usize>)> {
     groups
 }
 
-/// Where a joint that nobody declared may be, m: wherever a mass sits (sleeves are masses), at the ends of the bend, and at
-/// equal steps along the rod. Not at the root, nor where a joint is declared.
+/// Where a joint that nobody declared may be, m: wherever a mass sits (sleeves are masses), at the
+/// ends of the bend, and at equal steps along the rod. Not at the root, nor where a joint is
+/// declared.
 pub(super) fn stations(rod: &Rod) -> Vec<f64> {
     let length = rod.length();
     let step =

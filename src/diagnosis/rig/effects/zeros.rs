@@ -1,6 +1,8 @@
-//! A zero that was not taken, as a term beside physics: what is as small as play, drift or a slip competes with them.
+//! A zero that was not taken, as a term beside physics: what is as small as play, drift or a slip
+//! competes with them.
 //!
-//! What is larger than the rod's own deflection is undone before there is a model: `diagnosis/rig/mistakes`.
+//! What is larger than the rod's own deflection is undone before there is a model:
+//! `diagnosis/rig/mistakes`.
 
 use super::entry::{Context, Entry, RigEffect, UNBOUNDED, entry, of, parameter};
 use super::mistakes::OFFSET_MISTAKE;

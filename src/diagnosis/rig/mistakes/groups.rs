@@ -64,8 +64,8 @@ fn is_flipped(data: &[Datum], group: &Group, slope: f64, scatter: f64) -> bool {
         && (all / loads.len() as f64).sqrt() > 0.25 * TIMES_SCATTER * scatter
 }
 
-/// Runs, or directions, of a channel whose sign is the other way than that of the rest; `expected` is the slope of each
-/// line by the rod, in the scale of the readings, where there is one.
+/// Runs, or directions, of a channel whose sign is the other way than that of the rest; `expected`
+/// is the slope of each line by the rod, in the scale of the readings, where there is one.
 pub(super) fn flipped(data: &[Datum], lines: &[Line], expected: Option<&[f64]>) -> Vec<Part> {
     let mut found: Vec<Part> = Vec::new();
     for (k, line) in lines.iter().enumerate() {
@@ -182,7 +182,8 @@ pub(super) fn offsets(data: &[Datum], lines: &[Line]) -> Vec<Part> {
             continue;
         }
         for line in own {
-            // along an axis on which the rod hardly moves a zero is off by more than that in any run
+            // along an axis on which the rod hardly moves a zero is off by more than that in any
+            // run
             found.extend(of_run(data, line, moved(line.axis).max(FAR * most)));
         }
     }

@@ -1,12 +1,12 @@
-//! Lines of readings: one sensor under the loads of one axis, as a slope that play, friction, a zero and single wrong readings
-//! do not change.
+//! Lines of readings: one sensor under the loads of one axis, as a slope that play, friction, a
+//! zero and single wrong readings do not change.
 //!
 //! ```text
 //! y = b·F + a + p·sign F      a, p with weak priors: a third of the largest reading
 //! ```
 //!
-//! by iteratively reweighted least squares with Cauchy's weights (P. W. Holland, R. E. Welsch, *Commun. Stat. A* 6 (1977)
-//! 813–827), so that a fifth of the readings may be wrong.
+//! by iteratively reweighted least squares with Cauchy's weights (P. W. Holland, R. E.
+//! Welsch, *Commun. Stat. A* 6 (1977) 813–827), so that a fifth of the readings may be wrong.
 
 use nalgebra::{Matrix3, Vector3};
 

@@ -1,7 +1,8 @@
 //! Units that look like physics: a pound for a kilogram is a rod 2.2 times stiffer than its file.
 //!
-//! A unit so near to what a rod may do is not tried as a mistake, since a joint or a modulus would be blamed on the
-//! operator. It is a rival instead: where all that a finding does to the readings ŷ is one factor,
+//! A unit so near to what a rod may do is not tried as a mistake, since a joint or a modulus would
+//! be blamed on the operator. It is a rival instead: where all that a finding does to the readings
+//! ŷ is one factor,
 //!
 //! ```text
 //! ŷ + Δ ≈ s·ŷ,   s = ŷᵀ(ŷ + Δ)/ŷᵀŷ        Δ the response of the finding's terms

@@ -66,10 +66,12 @@ const FOR_MICROMETRES: [Unit; 7] = [
     unit("hundredths of a millimetre", 10.0, -1.5, "multiply by 10"),
 ];
 
-/// Pounds for kilograms are within what a rod does: joints alone make some twice as soft as their pipes.
+/// Pounds for kilograms are within what a rod does: joints alone make some twice as soft as their
+/// pipes.
 const LIKE_A_ROD: [(&str, f64); 1] = [("pounds (lb)", 0.453_592_37)];
 
-/// The load's column, and the units of it, with their factors, that softer or stiffer rods look like.
+/// The load's column, and the units of it, with their factors, that softer or stiffer rods look
+/// like.
 pub(super) fn like_physics(column: LoadColumn) -> (&'static str, Vec<(&'static str, f64)>) {
     match column {
         LoadColumn::Newtons => {
@@ -145,8 +147,8 @@ fn load_units(labels: &Labels) -> Vec<Move> {
     };
     let mut moves = Vec::new();
     for unit in units {
-        // loads along one axis cannot separate a pound from a joint that yields, nor can sensors along the
-        // loads only, unless it comes very near
+        // loads along one axis cannot separate a pound from a joint that yields, nor can sensors
+        // along the loads only, unless it comes very near
         let is_near_physics = unit.within < BESIDE;
         let within = if is_near_physics && !labels.has_cross { VERY_NEAR } else { unit.within };
         let mut add = |axes: [bool; 3], location: String, whose: String, log_prior: f64, rows: &str| {

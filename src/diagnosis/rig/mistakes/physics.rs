@@ -1,13 +1,15 @@
-//! What a rod says of each line, and what ordinary physics may add to that: the rivals of every mistake.
+//! What a rod says of each line, and what ordinary physics may add to that: the rivals of every
+//! mistake.
 //!
 //! ```text
 //! b = G·C[m, n]·eᵗ + Σ size·column + own      b the slope of a line, m/N; G the factor of the mistakes
 //! ```
 //!
-//! Columns: stiffness, shear, joints along the rod, one axis' loads, one channel, loads and sensors turned; `own` is each
-//! line's own. How large they may be is a [`MOODS`] entry: as files are, some times that, much, and, one after another, one
-//! thing far off with the rest as files are. Everything is relative to the rod, so that units do not matter, and the density
-//! is that of the slopes as recorded, so that no rescaling is favoured.
+//! Columns: stiffness, shear, joints along the rod, one axis' loads, one channel, loads and sensors
+//! turned; `own` is each line's own. How large they may be is a [`MOODS`] entry: as files are, some
+//! times that, much, and, one after another, one thing far off with the rest as files are.
+//! Everything is relative to the rod, so that units do not matter, and the density is that of the
+//! slopes as recorded, so that no rescaling is favoured.
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn, Matrix3};
 
@@ -78,7 +80,8 @@ const SINGLE_AXIS: f64 = 0.3;
 const SINGLE_CHANNEL: f64 = 0.3;
 const SINGLE_TURN: f64 = 0.09;
 
-/// Lines have one factor in common where that of so large a share of them differs by less than ln 2.
+/// Lines have one factor in common where that of so large a share of them differs by less than ln
+/// 2.
 const COMMON: f64 = 0.8;
 const NEAR: f64 = 0.693;
 
@@ -93,7 +96,8 @@ const AS_THE_ROD: f64 = 0.3;
 pub(super) struct Physics {
     compliance: Vec<Matrix3<f64>>,
     shear: Vec<Matrix3<f64>>,
-    /// Softer joints along the rod, each in bending and in torsion, by the whole rod's own flexibility.
+    /// Softer joints along the rod, each in bending and in torsion, by the whole rod's own
+    /// flexibility.
     joints: Vec<Vec<Matrix3<f64>>>,
 }
 
@@ -172,8 +176,8 @@ impl Seen<'_> {
         view.factor * parts[self.pair[line]][(view.channel.index(), view.axis.index())]
     }
 
-    /// Ln of the common factor: the weighted median of the lines' own, which some wrong ones do not move; and whether nearly all
-    /// lines have it.
+    /// Ln of the common factor: the weighted median of the lines' own, which some wrong ones do not
+    /// move; and whether nearly all lines have it.
     fn log_scale(&self, expected: &[f64]) -> (f64, bool) {
         let most = self.largest(expected);
         let mut ratios: Vec<(f64, f64)> = Vec::new();
@@ -292,8 +296,9 @@ impl Seen<'_> {
         }
     }
 
-    /// The Gaussian model of one mood, solved. What physics adds is measured by the deflections `sizes` (ln of what they are of
-    /// the rod's own): a part that yields less than nothing does not make a rod stiff.
+    /// The Gaussian model of one mood, solved. What physics adds is measured by the deflections
+    /// `sizes` (ln of what they are of the rod's own): a part that yields less than nothing does
+    /// not make a rod stiff.
     fn solved(
         &self,
         expected: &[f64],

@@ -32,7 +32,8 @@ const KEY: f64 = -0.5;
 const OTHER: f64 = 1.1;
 /// Ln of the prior of another rod.
 pub(in crate::diagnosis::rig) const OTHER_ROD: f64 = -2.0;
-/// Of the rods that are tried in full, how many there are at most, and how far behind the given one the slopes may see them.
+/// Of the rods that are tried in full, how many there are at most, and how far behind the given one
+/// the slopes may see them.
 const MOST_OTHERS: usize = 4;
 const FAR_BEHIND: f64 = 10.0;
 
@@ -106,8 +107,9 @@ pub(super) fn all(rod: &Rod, others: &[(String, Rod)], has_stations: [bool; 2]) 
     found
 }
 
-/// Rods that may have been meant: those that a load distinguishes from `rod`, and on which the slopes have about the size that they
-/// should; the likeliest first, by the density of the slopes `of`.
+/// Rods that may have been meant: those that a load distinguishes from `rod`, and on which the
+/// slopes have about the size that they should; the likeliest first, by the density of the slopes
+/// `of`.
 pub(super) fn likely(
     rod: &Rod,
     others: &[(String, Rod)],
@@ -255,7 +257,8 @@ fn diameters_in_other_units(rod: &Rod) -> Vec<Meant> {
     found
 }
 
-/// What a rod file would allow, and a workshop could make: a file that is corrected holds a real rod.
+/// What a rod file would allow, and a workshop could make: a file that is corrected holds a real
+/// rod.
 fn is_possible(rod: &Rod) -> bool {
     let is_section = |section: &Section| match section {
         Section::Round(round) => {

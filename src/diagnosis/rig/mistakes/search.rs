@@ -96,8 +96,8 @@ impl Search<'_> {
         self.lines[line].fit.slope.abs().max(expected.abs()) * self.lines[line].largest_load
     }
 
-    /// Share of the squares of the deflections that is left of some lines; the larger one of measured and
-    /// expected counts, so that no unit is favoured.
+    /// Share of the squares of the deflections that is left of some lines; the larger one of
+    /// measured and expected counts, so that no unit is favoured.
     fn left(&self, part: &[usize], expected: &[f64], log_scale: f64) -> f64 {
         let factor = log_scale.exp();
         let (mut left, mut all) = (0.0, 0.0);
@@ -110,14 +110,16 @@ impl Search<'_> {
         if all > 0.0 { left / all } else { 0.0 }
     }
 
-    /// Share of the squares that is scatter about the lines: what does not follow the load, no factor cures.
+    /// Share of the squares that is scatter about the lines: what does not follow the load, no
+    /// factor cures.
     fn scattered(&self, part: &[usize], expected: &[f64], log_scale: f64) -> f64 {
         let all: f64 = part.iter().map(|&k| self.deflection(k, log_scale.exp() * expected[k]).powi(2)).sum();
         let scatter: f64 = part.iter().map(|&k| self.lines[k].fit.scatter.powi(2)).sum();
         if all > 0.0 { scatter / all } else { 0.0 }
     }
 
-    /// What it costs that the readings, once they are corrected, are larger than any that a rod survives.
+    /// What it costs that the readings, once they are corrected, are larger than any that a rod
+    /// survives.
     fn bent_too_far(&self, change: &Change) -> f64 {
         let is_too_far = |line: &Line| {
             let reading = change.reading[line.axis.index()][line.channel.index()];
@@ -210,7 +212,8 @@ impl Trial<'_> {
             }
             frontier = next;
         }
-        // one that is not needed, or does not cure what it acts on, does not speak against the others
+        // one that is not needed, or does not cure what it acts on, does not speak against the
+        // others
         while !best.moves.is_empty() {
             let judged: Vec<Option<Found>> =
                 best.moves.iter().map(|&number| self.judged(&best, number)).collect();

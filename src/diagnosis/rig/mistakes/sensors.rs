@@ -28,7 +28,8 @@ const FROZEN: usize = 4;
 const CHANGES: f64 = 0.2;
 /// And so many steps of the display.
 const DIGITS: f64 = 5.0;
-/// Of a line of more than so many times the data, a few that do not belong to it change what it says by less than half.
+/// Of a line of more than so many times the data, a few that do not belong to it change what it
+/// says by less than half.
 const MANY: usize = 100;
 const HARDLY: f64 = 0.5;
 /// How well a line is known by the rod, as a share of it.
@@ -119,10 +120,11 @@ fn is_same(values: &[f64]) -> bool {
     values.iter().all(|value| (value - values[0]).abs() <= SAME * most)
 }
 
-/// Readings at the largest or the smallest value that a channel shows, beyond which others of their lines
-/// would lie.
+/// Readings at the largest or the smallest value that a channel shows, beyond which others of their
+/// lines would lie.
 ///
-/// Where too few others are left of a line, the rod says where they would lie, if those that are left say so too.
+/// Where too few others are left of a line, the rod says where they would lie, if those that are
+/// left say so too.
 pub(super) fn saturated(data: &[Datum], lines: &[Line], by_rod: Option<&Expected>) -> Vec<Part> {
     let mut found = Vec::new();
     for channel in Axis::ALL {
@@ -172,8 +174,8 @@ pub(super) fn saturated(data: &[Datum], lines: &[Line], by_rod: Option<&Expected
     found
 }
 
-/// How far beyond a limit the farthest of some readings would lie, where they show that they are cut off there; `beyond` is what
-/// is expected of each, with its scatter.
+/// How far beyond a limit the farthest of some readings would lie, where they show that they are
+/// cut off there; `beyond` is what is expected of each, with its scatter.
 fn cut_off(beyond: &[f64], scatter: f64, limit: f64, step: f64) -> Option<f64> {
     let (low, high) = beyond
         .iter()
@@ -239,8 +241,8 @@ pub(super) fn frozen(data: &[Datum]) -> Vec<Part> {
     found
 }
 
-/// True where lines that `at` is hardly a part of say that its readings are the same within `change`: no need to fit the
-/// lines without it.
+/// True where lines that `at` is hardly a part of say that its readings are the same within
+/// `change`: no need to fit the lines without it.
 fn is_surely_flat(data: &[Datum], lines: &[Line], at: &[usize], change: f64) -> bool {
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     for &i in at {
@@ -272,7 +274,8 @@ fn expected(data: &[Datum], at: &[usize], without: &[usize]) -> Option<Vec<(f64,
     at.iter().map(of).collect()
 }
 
-/// What the rod says of some data, in the scale of all lines; `None` where the others of their lines are none or say otherwise.
+/// What the rod says of some data, in the scale of all lines; `None` where the others of their
+/// lines are none or say otherwise.
 fn expected_of_rod(
     data: &[Datum],
     at: &[usize],
@@ -291,7 +294,8 @@ fn expected_of_rod(
     at.iter().map(of).collect()
 }
 
-/// What readings at a single load say of another one: a line through the origin, which play and friction leave by some.
+/// What readings at a single load say of another one: a line through the origin, which play and
+/// friction leave by some.
 fn through_origin(data: &[Datum], line: &Line, d: &Datum) -> Option<(f64, f64)> {
     const PLAY: f64 = 0.1;
     let sums = line.data.iter().fold((0.0, 0.0), |(xy, xx), &i| {

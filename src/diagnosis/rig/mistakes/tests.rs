@@ -70,7 +70,8 @@ fn rows(bench: Bench) -> Vec<Reading> {
     rows
 }
 
-/// Read on `file`'s rod, whose numbers are 1 % off: to 2 µm, in steps of 0.1 µm, a zero for each run.
+/// Read on `file`'s rod, whose numbers are 1 % off: to 2 µm, in steps of 0.1 µm, a zero for each
+/// run.
 fn recorded(file: &Rod, bench: Bench, seed: u64) -> Readings {
     let mut random = Random::seeded(seed, 0);
     let mut actual = file.clone();
@@ -203,7 +204,8 @@ fn no_physics_is_a_mistake_however_large() {
             }
             for times in [3.0f64, 10.0, -10.0] {
                 let value = |p: &crate::inference::Parameter| {
-                    // a joint that alone yields twice as much as the whole rod could not be told from pounds
+                    // a joint that alone yields twice as much as the whole rod could not be told
+                    // from pounds
                     let most = if candidate.effect.name == "joint_compliance" { 5.0 } else { 10.0 };
                     let value = p.neutral + times.min(most) * p.size;
                     let value = match (candidate.effect.name, p.name.as_str()) {
@@ -221,7 +223,8 @@ fn no_physics_is_a_mistake_however_large() {
                     *offset = offset.map(|offset| offset + change);
                 }
                 let case = format!("{what}: {} {} × {times}", candidate.effect, candidate.location);
-                // what a slip before the last run does, a zero that was not taken there does too: both are said
+                // what a slip before the last run does, a zero that was not taken there does too:
+                // both are said
                 let is_said = |found: &Finding| {
                     let others = found.others();
                     candidate.effect.name == "slip" && others.iter().any(|(e, _)| *e == candidate.effect)

@@ -1,7 +1,8 @@
-//! What came before a reading: how far and how long ago its load was changed, and what hung there until then.
+//! What came before a reading: how far and how long ago its load was changed, and what hung there
+//! until then.
 //!
-//! A slide that is damped, or a rod that settles, is still on its way when it is read: it lacks a share of the last change
-//! that depends on the time since,
+//! A slide that is damped, or a rod that settles, is still on its way when it is read: it lacks a
+//! share of the last change that depends on the time since,
 //!
 //! ```text
 //! y = C·F + g(t)·C·(F − F′)      F′ the load before, t the time since the load was changed
@@ -67,7 +68,8 @@ impl Before {
         (0..data.len()).map(|i| slope[line[i]] * (data[i].drive() - self.load[i])).collect()
     }
 
-    /// F′ as a coordinate; nothing where it is always the same at the same load, whose curve is then the same.
+    /// F′ as a coordinate; nothing where it is always the same at the same load, whose curve is
+    /// then the same.
     pub fn loads(&self, data: &[Datum]) -> Option<Coordinate> {
         let conditions = numbered(data.iter().map(|d| (d.direction, d.drive().to_bits(), d.phase)));
         let mut first_of: Vec<usize> = Vec::new();

@@ -1,8 +1,9 @@
 //! The least laborious measurement of r_rod: loads along y and z at the tip, and how often.
 //!
-//! Averages of R repeats at loads F have the variance σ²/R beside a zero that all of them share, so that a line's slope s has
-//! Var s = σ²/(R·Σ(F − F̄)²). With r_rod = (s₂₂ + s₃₃)/(c₂₂ + c₃₃) of slopes and modelled compliances, its 95 % interval is
-//! 2·t·√(Var s₂₂ + Var s₃₃)/(c₂₂ + c₃₃) wide, t of the degrees of freedom that two lines leave.
+//! Averages of R repeats at loads F have the variance σ²/R beside a zero that all of them share, so
+//! that a line's slope s has Var s = σ²/(R·Σ(F − F̄)²). With r_rod = (s₂₂ + s₃₃)/(c₂₂ + c₃₃) of
+//! slopes and modelled compliances, its 95 % interval is 2·t·√(Var s₂₂ + Var s₃₃)/(c₂₂ + c₃₃) wide,
+//! t of the degrees of freedom that two lines leave.
 
 use super::{Bench, FEWEST, PlannedLoads, Ratio, RigPlan, minutes};
 use crate::beam::{Physics, RodModel};
@@ -15,13 +16,15 @@ use crate::units::{UM, significant};
 
 /// Loads of a line, evenly up to the largest.
 const LOADS: usize = 6;
-/// A fit takes the larger of its estimates of the scatter (about the line, between repeats), with the degrees of freedom of that
-/// one: in the mean so many times the scatter, as the test below finds it.
+/// A fit takes the larger of its estimates of the scatter (about the line, between repeats), with
+/// the degrees of freedom of that one: in the mean so many times the scatter, as the test below
+/// finds it.
 const LARGER: f64 = 1.1;
 /// More is no plan.
 const MOST_REPEATS: usize = 100;
 
-/// The plan whose 95 % interval of r_rod is at most `width` wide (a share: 0.01 is 1 %), as far as noise makes it.
+/// The plan whose 95 % interval of r_rod is at most `width` wide (a share: 0.01 is 1 %), as far as
+/// noise makes it.
 ///
 /// ```
 /// use rodcal::diagnosis::rig::planned::{Bench, plan_ratio};

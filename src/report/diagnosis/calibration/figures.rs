@@ -24,8 +24,8 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 const DENSE: usize = 60;
 
 /// What the calibration leaves, before and after: of each joint over its angle, the strongest of
-/// what is not a gear's, or what is unexplained, over the number that it is best seen along, and all
-/// of it in its order, with what happened.
+/// what is not a gear's, or what is unexplained, over the number that it is best seen along, and
+/// all of it in its order, with what happened.
 pub fn seen(found: &CalibrationDiagnosis) -> Vec<Figure> {
     let mut figures = angle::errors(found);
     let other = found.diagnosis.findings.iter().find(|finding| gear_of(found, finding).is_none());

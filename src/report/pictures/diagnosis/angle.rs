@@ -16,15 +16,15 @@ const HEIGHT: f64 = 150.0;
 pub struct AngleError {
     /// The joint's name.
     pub joint: String,
-    /// Angle (°), error that a pose shows before and after (µrad). With a curve the former is without all else that was
-    /// found, so that the curve goes through it.
+    /// Angle (°), error that a pose shows before and after (µrad). With a curve the former is
+    /// without all else that was found, so that the curve goes through it.
     pub poses: Vec<[f64; 3]>,
     /// Angle (°), error as it was found, half of its 95 % interval (µrad); empty where none was.
     pub curve: Vec<[f64; 3]>,
 }
 
-/// For each joint two panels to one scale, before and after, or one where after is as before in all of them. As many figures
-/// as that takes.
+/// For each joint two panels to one scale, before and after, or one where after is as before in all
+/// of them. As many figures as that takes.
 pub fn angle_errors(joints: &[AngleError]) -> Vec<Figure> {
     let is_changed = |joint: &AngleError| {
         !joint.curve.is_empty() || joint.poses.iter().any(|[_, before, after]| before != after)

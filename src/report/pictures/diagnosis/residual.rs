@@ -9,8 +9,9 @@ use crate::statistics::median;
 
 /// So many times the usual distance of points is a gap.
 const GAP: f64 = 3.0;
-/// Mean square of a series' steps over its variance (von Neumann 1941) from which on none is drawn as a line, but as points: it
-/// is 2 where neighbours have nothing in common, and a line through many of them would be ink.
+/// Mean square of a series' steps over its variance (von Neumann 1941) from which on none is drawn
+/// as a line, but as points: it is 2 where neighbours have nothing in common, and a line through
+/// many of them would be ink.
 const JAGGED: f64 = 1.0;
 /// Heights of the plot of one panel, and of one among several below one another, px.
 const HEIGHT: f64 = 190.0;
@@ -19,7 +20,8 @@ const ROW_HEIGHT: f64 = 120.0;
 const LANE: f64 = 16.0;
 const LANES: usize = 6;
 
-/// What a model leaves of the readings, before and after something was taken into account, along a number.
+/// What a model leaves of the readings, before and after something was taken into account, along a
+/// number.
 #[derive(Debug, Clone, Default, Serialize)]
 pub struct BeforeAfter {
     /// The number with its unit, for example "load / N".
@@ -72,8 +74,9 @@ pub struct ResidualPoint {
 /// What one panel shows: its title, the residual, what is said of it, and the name of that.
 type Shown = (&'static str, fn(&ResidualPoint) -> f64, fn(&ResidualPoint) -> f64, &'static str);
 
-/// Two panels to the same scale, or one where nothing was found. Lines show what the findings say, and what no effect
-/// explains; bands are twice the noise. Where a number repeats, series stand beside one another.
+/// Two panels to the same scale, or one where nothing was found. Lines show what the findings say,
+/// and what no effect explains; bands are twice the noise. Where a number repeats, series stand
+/// beside one another.
 pub fn before_after(data: &BeforeAfter) -> Figure {
     let found = |p: &ResidualPoint| p.before_um - p.after_um;
     let (found_says, unexplained) = ("explained by the findings", "unexplained");

@@ -56,7 +56,8 @@ fn a_unit_that_looks_like_physics_is_its_rival() {
     assert!(others.iter().all(|(effect, _)| effect.kind != crate::inference::Kind::Mistake), "{others:?}");
 }
 
-/// A rod that is 1 % softer than its file is within what the file knows: consistent, and --apply writes the better modulus.
+/// A rod that is 1 % softer than its file is within what the file knows: consistent, and --apply
+/// writes the better modulus.
 #[test]
 fn a_nominal_number_that_moved_is_written() {
     let file = rod(ROD_5);

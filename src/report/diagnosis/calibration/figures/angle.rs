@@ -16,8 +16,8 @@ const POINTS: (f64, f64) = (120.0, 1500.0);
 /// Part of a joint's longest lever below which a pose shows too little of its angle.
 const LEVER: f64 = 0.25;
 
-/// Every joint that turns, with the curve that was found of it. A joint whose axis the target lies on has no lever to be seen
-/// by.
+/// Every joint that turns, with the curve that was found of it. A joint whose axis the target lies
+/// on has no lever to be seen by.
 pub fn errors(found: &CalibrationDiagnosis) -> Vec<Figure> {
     let is_unseen = |joint: usize| {
         found.limits.iter().any(|limit| matches!(limit, Limit::OnAxis(unseen, _) if *unseen == joint))

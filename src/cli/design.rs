@@ -22,7 +22,7 @@ pub enum Design {
     Rod(DesignRod),
     /// The poses that a calibration should measure, and how accurate the robot will be.
     Poses(poses::DesignPoses),
-    /// What to measure on a rig so that effects can be told apart, or r_rod is known well enough.
+    /// What to measure on a rig to distinguish effects, or to know r_rod well enough.
     Rig(rig::DesignRig),
 }
 

@@ -51,7 +51,7 @@ pub fn json(plan: &RigPlan, rod: &Rod, bench: &Bench) -> Value {
 pub fn report(plan: &RigPlan, rod: &Rod, bench: &Bench) -> Report {
     let mut sections = vec![Section::new("What to measure", measurements(plan, rod))];
     if !plan.told.is_empty() {
-        sections.push(Section::new("What it will tell", will_tell(plan)));
+        sections.push(Section::new("What it will show", will_tell(plan)));
     }
     let assumed = format!(
         "Assumed: loads to {} N, noise of {} µm of a reading and of the zero of each run, effects of their usual sizes (the odds of \
@@ -73,7 +73,7 @@ pub fn report(plan: &RigPlan, rod: &Rod, bench: &Bench) -> Report {
 
 fn headline(plan: &RigPlan) -> String {
     let effort = match plan.measurements.len() {
-        0 => return "No measurement of this rig tells these effects apart.".into(),
+        0 => return "No measurement of this rig distinguishes these effects.".into(),
         1 => format!("One measurement of about {:.0} minutes", plan.minutes),
         count => format!("{count} measurements of about {:.0} minutes in all", plan.minutes),
     };
@@ -89,12 +89,12 @@ fn headline(plan: &RigPlan) -> String {
     let (count, short) = all.fold((0, 0), |(count, short), (_, now, _)| {
         (count + 1, short + usize::from(*now < plan.wanted * (1.0 - 1e-9)))
     });
-    let tell = if plan.measurements.len() == 1 { "tells" } else { "tell" };
+    let distinguish = if plan.measurements.len() == 1 { "distinguishes" } else { "distinguish" };
     match short {
-        0 => format!("{effort} {tell} these effects apart, with odds of {odds} : 1 or more to be expected."),
+        0 => format!("{effort} {distinguish} these effects, with odds of {odds} : 1 or more to be expected."),
         _ => format!(
-            "{effort} {tell} these effects apart in {} of {count} comparisons of places, with odds of {odds} : 1 or more to be \
-             expected; the others cannot be told with reasonable effort.",
+            "{effort} {distinguish} these effects in {} of {count} comparisons of places, with odds of {odds} : 1 or more to be \
+             expected; the others would take more than reasonable effort.",
             count - short
         ),
     }
@@ -116,7 +116,7 @@ fn not_told(plan: &RigPlan) -> Vec<String> {
             count => format!(" at {}, {} and {} more places", short[0], short[1], count - 2),
         };
         Some(format!(
-            "{}{places} cannot be told from {from} with reasonable effort",
+            "{}{places} cannot be distinguished from {from} with reasonable effort",
             spoken(told.effect.name)
         ))
     };
@@ -208,15 +208,15 @@ fn picture(plan: &RigPlan, rod: &Rod) -> Option<super::chart::Figure> {
 
 fn will_tell(plan: &RigPlan) -> Vec<Block> {
     let heads = vec![
-        Column::text("where it is"),
-        Column::text("told from"),
+        Column::text("effect"),
+        Column::text("distinguished from"),
         Column::text("at"),
         Column::number("odds", ": 1"),
         Column::number("odds of everything", ": 1"),
     ];
     let caption = "Odds to be expected of this plan, and of all measurements that the rig can make, each repeated twelve times: what is \
-                   small there cannot be told. Of each pair the places with the least and the largest odds.";
-    let mut table = Table::new("told", caption, heads);
+                   small there cannot be distinguished. Of each pair the places with the least and the largest odds.";
+    let mut table = Table::new("odds", caption, heads);
     let odds = |ln: f64| match ln / std::f64::consts::LN_10 {
         powers if powers > 4.0 => format!("10^{powers:.0}"),
         _ => significant(ln.exp(), 2),

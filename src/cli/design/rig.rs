@@ -17,7 +17,7 @@ use super::super::output::Outcome;
 pub struct DesignRig {
     /// Rod file (TOML).
     rod: PathBuf,
-    /// Effects to be told from each other and from nothing, with commas between them.
+    /// Effects to be distinguished from each other and from nothing, with commas between them.
     #[arg(long, value_name = "EFFECTS", value_delimiter = ',')]
     between: Vec<String>,
     /// Or: how wide the 95 % interval of r_rod may be, in %.

@@ -331,6 +331,10 @@ impl Mended {
                 rivals.push(Rival::without_term(effect, location, odds));
             }
         }
+        // the base turned about joint 1 says the same
+        if matches!(&found.step, Step::Move(number) if search.moves[*number].change.is_zero_of_first()) {
+            rivals.push(Rival::without_term(&FRAME_MISTAKE, Location::Key("base.rpy_deg".into()), 1.0));
+        }
         if let Some(clamp) = found.may_be_clamp {
             let name = self.campaign.measurements.groups[clamp].name.clone();
             rivals.push(Rival::without_term(&CLAMP_POSE.effect, Location::Named(name), 1.0));

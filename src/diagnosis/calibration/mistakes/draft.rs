@@ -72,6 +72,14 @@ impl Change {
         Change::Joints { order: (0..count).collect(), factor, offset: vec![0.0; count] }
     }
 
+    /// True for an offset of joint 1 and nothing else.
+    pub fn is_zero_of_first(&self) -> bool {
+        let Change::Joints { order, factor, offset } = self else { return false };
+        order.iter().enumerate().all(|(joint, from)| joint == *from)
+            && factor.iter().all(|factor| *factor == 1.0)
+            && offset.iter().enumerate().all(|(joint, by)| (*by != 0.0) == (joint == 0))
+    }
+
     /// A constant on one joint, rad, after a factor.
     pub fn offset(joint: usize, count: usize, factor: f64, angle: f64) -> Change {
         let only =

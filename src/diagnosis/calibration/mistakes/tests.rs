@@ -150,6 +150,11 @@ fn zeros_a_quarter_or_half_turn_away() {
 fn the_zero_of_the_first_joint_is_seen_by_the_stated_base_only() {
     let wrong = with_joints(&tracked(60, 7), |q| q[0] += 90.0 * DEG);
     assert_eq!(found(&wrong), one("offset_mistake", "q1_deg"));
+    // or the base is stated in another way: turned about joint 1
+    let rivals = &mended(&wrong).found[0].rivals;
+    assert!(rivals.iter().any(|rival| rival.effect.name == "frame_mistake"), "{rivals:?}");
+    let second = with_joints(&tracked(60, 7), |q| q[1] += 90.0 * DEG);
+    assert!(mended(&second).found[0].rivals.iter().all(|rival| rival.effect.name != "frame_mistake"));
     let unstated = Campaign { base_is_given: false, ..wrong };
     assert_eq!(found(&unstated), []);
 }

@@ -27,12 +27,12 @@ const ELEMENTS: usize = 60;
 /// Vectors beyond those that are asked for: the iteration's error shrinks by (ω_asked/ω_next)² each
 /// time.
 const GUARD: usize = 8;
-/// Elements, vectors beyond the one that is asked for, and where ω² stands still, for
+/// Elements, vectors beyond the one that is asked for, and where ω² has converged, for
 /// [`Rod::first_frequency`].
 pub(super) const FEW: usize = 16;
 const FEW_GUARD: usize = 5;
 const ROUGHLY: f64 = 1e-8;
-/// Where ω² stands still.
+/// Where ω² has converged.
 const SETTLED: f64 = 1e-12;
 const MOST_ITERATIONS: usize = 200;
 

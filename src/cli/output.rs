@@ -36,7 +36,7 @@ pub struct Options {
 }
 
 impl Options {
-    /// What becomes of files that stand where others are to be written.
+    /// What happens to files that stand where others are to be written.
     pub fn existing(&self) -> Existing {
         if self.force { Existing::Replace } else { Existing::Keep }
     }
@@ -196,10 +196,10 @@ fn width() -> usize {
     if !std::io::stdout().is_terminal() {
         return usize::MAX;
     }
-    let told = std::env::var("COLUMNS").ok().and_then(|columns| columns.parse().ok());
+    let stated = std::env::var("COLUMNS").ok().and_then(|columns| columns.parse().ok());
     let seen = || terminal_size::terminal_size().map(|(width, _)| usize::from(width.0));
     // what is narrower is not a terminal that anybody reads
-    told.or_else(seen).unwrap_or(100).max(20)
+    stated.or_else(seen).unwrap_or(100).max(20)
 }
 
 fn pretty(json: &Value) -> String {

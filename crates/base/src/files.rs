@@ -18,7 +18,7 @@ use self::content::failed;
 use self::marker::Marker;
 use crate::error::{Error, Result, Whose};
 
-/// What becomes of a file that stands where one is to be written.
+/// What happens to a file that stands where one is to be written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Existing {
     /// It stays, and nothing is written, unless the program wrote it and nobody has changed it

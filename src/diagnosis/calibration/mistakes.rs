@@ -186,7 +186,7 @@ impl Mended {
         }
     }
 
-    /// What becomes of robot and campaign: the robot with what `found` says, and the campaign
+    /// Robot and campaign as corrected: the robot with what `found` says, and the campaign
     /// without its mistakes. `names` are the files that the campaign shall name; `None` where
     /// nothing could be written.
     ///

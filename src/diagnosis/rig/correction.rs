@@ -46,7 +46,7 @@ pub struct Correction {
 }
 
 impl RigDiagnosis {
-    /// What becomes of the rod and of the readings; `None` without a rod, or where nothing was
+    /// Rod and readings as corrected; `None` without a rod, or where nothing was
     /// found and no number of the rod's file moved.
     ///
     /// # Errors

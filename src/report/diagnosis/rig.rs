@@ -118,11 +118,8 @@ fn nominal(found: &RigDiagnosis) -> Option<String> {
     let word = if value >= 0.0 { "above" } else { "below" };
     let share = Quantity { value, low: value - half, high: value + half }.size().say("%");
     let number = &moved.number;
-    let percent = 100.0 * number.standard_uncertainty / number.value.abs();
-    let known = match number.value != 0.0 && percent < 50.0 {
-        true => format!("{} %", significant(percent, 2)),
-        false => format!("{} {}", significant(number.standard_uncertainty / number.si, 2), number.unit),
-    };
+    // a share of a diameter is no share of the stiffness
+    let known = format!("{} {}", significant(number.standard_uncertainty / number.si, 2), number.unit);
     let others = if found.diagnosis.nominal.len() > 1 { " and of other numbers" } else { "" };
     if value.abs() > FAR * stated {
         return Some(format!(

@@ -61,7 +61,7 @@ pub struct Subject<'a> {
     pub places: Vec<Block>,
     /// Does it help: more tables and pictures.
     pub proof: Vec<Block>,
-    /// What becomes of the model.
+    /// What is written back to the model.
     pub consequences: Option<Section>,
     /// Number of rows or readings.
     pub count: usize,

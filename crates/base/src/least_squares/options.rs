@@ -25,7 +25,7 @@ pub struct Options {
     /// such as the passes of an outer loop.
     pub to_the_last_digit: bool,
     /// Relative length of the next Gauss–Newton step (scaled by the columns) below which the
-    /// parameters stand still.
+    /// parameters no longer change.
     pub step_tolerance: f64,
     /// Singular value of the Jacobian (columns scaled to norm 1), relative to the largest, below
     /// which a direction counts as not identified. Raise it to ~1e-8 for a Jacobian by differences.

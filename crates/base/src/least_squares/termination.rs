@@ -12,7 +12,7 @@ pub enum TerminationReason {
     /// badly conditioned.
     Gradient,
     /// What the parameters could still take from the residuals is no more than the rounding of the
-    /// parameters and of the residuals makes of them: nothing better can be told apart in double
+    /// parameters and of the residuals makes of them: nothing better can be distinguished in double
     /// precision.
     Rounding,
     /// No step made the sum of squares smaller, though the gradient is not zero: the Jacobian does
@@ -43,7 +43,7 @@ impl TerminationReason {
 impl std::fmt::Display for TerminationReason {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
-            Self::GradientAndStep => "converged: the gradient is zero and the parameters stand still",
+            Self::GradientAndStep => "converged: the gradient is zero and the parameters no longer change",
             Self::Gradient => "converged: the gradient is zero",
             Self::Rounding => "converged: the gradient is zero within the rounding of the numbers",
             Self::NoProgress => {

@@ -1,5 +1,5 @@
-//! What becomes of the rod: its compliance as its file gives it, by the paper's one ratio, and with
-//! the physics found.
+//! What is written back to the rod: its compliance as its file gives it, by the paper's one ratio,
+//! and with the physics found.
 
 use serde_json::{Value, json};
 

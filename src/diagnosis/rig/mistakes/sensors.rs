@@ -4,6 +4,7 @@ use std::collections::HashSet;
 
 use super::super::datum::Datum;
 use super::super::effects::mistakes::{SATURATED_SENSOR, STUCK_SENSOR};
+use super::super::evidence::resolution;
 use super::lines::{Line, lines};
 use super::moves::column;
 use super::part::Part;
@@ -146,7 +147,7 @@ pub(super) fn saturated(data: &[Datum], lines: &[Line], by_rod: Option<&Expected
             }
             let of_lines = expected(data, &at, &ends);
             let of_rod = by_rod.and_then(|rod| expected_of_rod(data, &at, &ends, lines, rod));
-            let step = super::super::evidence::resolution(data);
+            let step = step_of(data, &own);
             let beyond = |expected: Vec<(f64, f64)>| {
                 let beyond = expected.iter().map(|(value, _)| side * value - limit).collect::<Vec<_>>();
                 let scatter = expected.iter().fold(0.0, |most: f64, (_, scatter)| most.max(*scatter));
@@ -194,7 +195,6 @@ fn cut_off(beyond: &[f64], scatter: f64, limit: f64, step: f64) -> Option<f64> {
 pub(super) fn frozen(data: &[Datum]) -> Vec<Part> {
     let mut found = Vec::new();
     let all = lines(data, |_| true);
-    let step = super::super::evidence::resolution(data);
     for channel in Axis::ALL {
         let own: Vec<usize> = (0..data.len()).filter(|&i| data[i].channel == channel).collect();
         let largest = own.iter().fold(0.0, |most: f64, &i| most.max(data[i].measured.abs()));
@@ -216,7 +216,8 @@ pub(super) fn frozen(data: &[Datum]) -> Vec<Part> {
                 .iter()
                 .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), (v, _)| (l.min(*v), h.max(*v)));
             let scatter = expected.iter().fold(0.0, |most: f64, (_, scatter)| most.max(*scatter));
-            // what moves by a digit or two stays the same for long
+            // what moves by a digit or two of its own display stays the same for long
+            let step = step_of(data, &own);
             let least = (CHANGES * largest).max(TIMES_SCATTER * scatter).max(DIGITS * step);
             if range.1 - range.0 < least {
                 continue;
@@ -239,6 +240,11 @@ pub(super) fn frozen(data: &[Datum]) -> Vec<Part> {
         }
     }
     found
+}
+
+/// The smallest step of the display of a channel, whose data are `own`, m: every sensor has its own.
+fn step_of(data: &[Datum], own: &[usize]) -> f64 {
+    resolution(&own.iter().map(|&i| data[i].clone()).collect::<Vec<_>>())
 }
 
 /// True where lines that `at` is hardly a part of say that its readings are the same within

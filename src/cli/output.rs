@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Args;
+use rodcal::answer::Answer;
 use rodcal::files::{self, Existing};
 use rodcal::report::{Report, text};
 use rodcal::{Error, Result};
@@ -47,6 +48,9 @@ const PAGE: &str = "index.html";
 
 const OUTPUT: &str = "Output";
 
+/// Where what was found is applied without --out.
+pub const APPLIED: &str = "reports/diagnosed";
+
 /// The result of a command.
 pub struct Outcome {
     /// For `--json`.
@@ -61,6 +65,12 @@ pub struct Outcome {
     pub files: Vec<(String, Vec<u8>)>,
     /// Exit status.
     pub status: u8,
+}
+
+impl From<Answer> for Outcome {
+    fn from(Answer { json, report, files, status, .. }: Answer) -> Self {
+        Outcome { files, status, ..Outcome::new(json, report) }
+    }
 }
 
 impl Outcome {

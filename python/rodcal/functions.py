@@ -153,7 +153,7 @@ def calibrate(
     native = as_campaign(campaign)._native
     answer, arrays = _rodcal.calibrate(native, mode, robust, prune, folds)
     warn(answer.warnings)
-    return CalibrationResult(answer, arrays)
+    return CalibrationResult(answer, arrays, native)
 
 
 def compare(

@@ -319,10 +319,12 @@ class CalibrationResult(Calibrated, Result):
 
     suspected_mistakes: list[str]
     _arrays: dict[str, Array]
+    _links: tuple[str | None, str | None]
 
-    def __init__(self, answer: _rodcal.Answer, arrays: dict[str, Array]) -> None:
+    def __init__(self, answer: _rodcal.Answer, arrays: dict[str, Array], campaign: _rodcal.Campaign) -> None:
         Result.__init__(self, answer)
         self._arrays = arrays
+        self._links = campaign.links
 
     @property
     def deviations_um(self) -> Array:
@@ -339,12 +341,12 @@ class CalibrationResult(Calibrated, Result):
         """The tip at each pose, in {W}, mm, shape (n, 3)."""
         return self._arrays["tips_mm"]
 
-    def calibrated(self, base_link: str | None = None, tip_link: str | None = None) -> Robot:
-        """The calibrated robot, for `predict` and further campaigns; links are those of a URDF."""
-        (file, text), *beside = self.files.items()
-        effects = next((content.decode() for name, content in beside if name.endswith(".toml")), None)
-        links = (base_link, tip_link) if file.endswith(".urdf") else (None, None)
-        return Robot.from_text(text.decode(), base_link=links[0], tip_link=links[1], effects=effects)
+    def calibrated(self) -> Robot:
+        """The calibrated robot, with its uncertainty and what no URDF can hold, for `predict`."""
+        (_, text), *beside = self.files.items()
+        effects = next((content.decode() for _, content in beside), None)
+        base, tip = self._links
+        return Robot.from_text(text.decode(), base_link=base, tip_link=tip, effects=effects)
 
     def _rows(self) -> list[dict[str, Any]]:
         parameters: list[dict[str, Any]] = self.to_dict()["parameters"]

@@ -245,6 +245,12 @@ impl Campaign {
         &self.campaign.file
     }
 
+    /// The links of its URDF that it names.
+    #[getter]
+    fn links(&self) -> (Option<&str>, Option<&str>) {
+        (self.campaign.base_link.as_deref(), self.campaign.tip_link.as_deref())
+    }
+
     #[getter]
     fn robot(&self) -> &str {
         &self.campaign.robot.name

@@ -2,7 +2,7 @@
 //!
 //! It holds inputs and answers of the library and turns them into Python's objects; names, units,
 //! defaults and documentation stand in the package's Python files. Everything that takes time runs
-//! without Python's lock, and Ctrl-C stops it ([`work`]).
+//! without Python's lock, and Ctrl-C stops it (`work.rs`).
 
 mod answer;
 mod arguments;

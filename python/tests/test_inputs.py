@@ -148,5 +148,5 @@ def test_designs_from_dicts_and_poses_from_arrays() -> None:
     assert rodcal.compliance(designs.front[0].rod).c_rod_um == pytest.approx(designs.front[0].c_rod_um, rel=1e-9)
     generated = rodcal.design_poses(TX90, 30, generate=200)
     chosen = rodcal.design_poses(TX90, 20, candidates=generated.joints_deg, at=generated.joints_deg)
-    rows = {tuple(map(float, row)) for row in generated.joints_deg}
-    assert all(tuple(map(float, row)) in rows for row in chosen.joints_deg)
+    rows = {row.tobytes() for row in generated.joints_deg}
+    assert all(row.tobytes() in rows for row in chosen.joints_deg)

@@ -217,7 +217,9 @@ fn will_tell(plan: &RigPlan) -> Vec<Block> {
     let caption = "Odds to be expected of this plan, and of all measurements that the rig can make, each repeated twelve times: what is \
                    small there cannot be distinguished. Of each pair the places with the least and the largest odds.";
     let mut table = Table::new("odds", caption, heads);
+    // no model of noise is right so far out
     let odds = |ln: f64| match ln / std::f64::consts::LN_10 {
+        powers if powers > 6.0 => "over 10^6".to_owned(),
         powers if powers > 4.0 => format!("10^{powers:.0}"),
         _ => significant(ln.exp(), 2),
     };

@@ -10,6 +10,7 @@ mod design_poses;
 mod design_rig;
 mod diagnose;
 mod diagnose_calibration;
+mod faults;
 mod files;
 mod json;
 mod kept;

@@ -114,18 +114,17 @@ pub fn run() -> Result<Outcome> {
     for page in &pages {
         files.extend(page.files()?);
     }
+    let json = json!({
+        "rods": results,
+        "load_cell": report::rig::json(&fit, &readings, None),
+        "calibration": calibrated,
+        "comparison": compared,
+    });
     Ok(Outcome {
-        json: json!({
-            "rods": results,
-            "load_cell": report::rig::json(&fit, &readings, None),
-            "calibration": calibrated,
-            "comparison": compared,
-        }),
-        report: Some(index),
         text: Some(words),
         default_directory: Some(PathBuf::from(DIRECTORY)),
         files,
-        status: 0,
+        ..Outcome::new(json, index)
     })
 }
 

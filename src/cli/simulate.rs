@@ -6,7 +6,8 @@ use clap::Args;
 use rodcal::beam::Physics;
 use rodcal::calibration::simulate::{Plan, campaign_files, planned_poses, simulate_telling};
 use rodcal::compliance::{Compliance, DEFAULT_ELEMENTS};
-use rodcal::files::{self, Existing};
+use rodcal::delimited::visible;
+use rodcal::files::{self, Existing, Staged};
 use rodcal::robot::{Parameter, Robot, Setup, is_urdf};
 use rodcal::rod::Rod;
 use rodcal::units::MM;
@@ -87,7 +88,7 @@ impl Simulate {
         if !robot_name.starts_with("builtin:") {
             written.push((robot_name, robot_text.into_bytes()));
         }
-        files::write_together(&self.directory, &written, existing)?;
+        let staged = Staged::new(&self.directory, &written, existing)?;
         let campaign = self.directory.join("campaign.toml").display().to_string();
         let drawn = Setup::new(&robot, simulation.base_guess, rod.tip());
         let truth: Vec<_> = Parameter::all(robot.joints.len())
@@ -103,30 +104,25 @@ impl Simulate {
                 })
             })
             .collect();
+        let shown = visible(&campaign);
         let text = format!(
-            "Simulated {} poses of {} with rod {} (seed {}).\nrodcal calibrate {campaign}\nrodcal compare {campaign}\n",
+            "Simulated {} poses of {} with rod {} (seed {}).\nrodcal calibrate {shown}\nrodcal compare {shown}\n",
             simulation.measurements.len(),
-            robot.name,
-            rod.name,
+            visible(&robot.name),
+            visible(&rod.name),
             self.seed
         );
-        Ok(Outcome {
-            json: json!({
-                "campaign": campaign,
-                "robot": robot.name,
-                "rod": rod.name,
-                "seed": self.seed,
-                "poses": simulation.measurements.len(),
-                "r_rod": self.r_rod,
-                "tip_mm": (simulation.truth.tool / MM).as_slice(),
-                "truth": truth,
-            }),
-            report: None,
-            text: Some(text),
-            default_directory: None,
-            files: Vec::new(),
-            status: 0,
-        })
+        let json = json!({
+            "campaign": campaign,
+            "robot": robot.name,
+            "rod": rod.name,
+            "seed": self.seed,
+            "poses": simulation.measurements.len(),
+            "r_rod": self.r_rod,
+            "tip_mm": (simulation.truth.tool / MM).as_slice(),
+            "truth": truth,
+        });
+        Ok(Outcome { commit: Some(Box::new(|| staged.commit())), ..Outcome::plain(json, text) })
     }
 
     /// What the campaign calls the robot's file, and its text.

@@ -26,6 +26,7 @@ pub fn report(score: &Score) -> Report {
         0 => format!("{cases} cases with concealed effects: every target is met."),
         n => format!("{cases} cases with concealed effects: {n} targets are missed. {}.", missed.join(". ")),
     };
+    let headline = score.remarks.iter().cloned().chain([headline]).collect::<Vec<_>>().join(" ");
     Report {
         title: "Concealed-effect trial".into(),
         headline,

@@ -322,7 +322,7 @@ fn other_readings_are_scored_against_the_oracle() {
 #[test]
 fn what_was_measured_once_more_settles_or_does_not() {
     let (truths, answers) = example();
-    let sealed = Sealed { truths, given: answers };
+    let sealed = Sealed { truths, given: answers, names_manifest: true };
     let due: Vec<String> = sealed.due().into_iter().map(|due| due.case).collect();
     assert_eq!(due, [3, 4, 5, 7].map(|case| format!("rig/case-{case:04}")));
     let diagnosed = |effect: &str, place: &str, others: &[&str]| {

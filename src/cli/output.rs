@@ -4,6 +4,7 @@
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::time::Instant;
 
 use clap::Args;
 use rodcal::files::{self, Existing};
@@ -29,6 +30,15 @@ pub struct Options {
     /// With --out: write the pictures as PNG too.
     #[arg(long, global = true, help_heading = OUTPUT)]
     pub png: bool,
+
+    /// No progress and no warnings on stderr; errors are said. Warnings stay in --json and on the
+    /// page.
+    #[arg(short, long, global = true, conflicts_with = "verbose", help_heading = OUTPUT)]
+    pub quiet: bool,
+
+    /// Say on stderr what was read (with its SHA-256), how long it took and what was written.
+    #[arg(short, long, global = true, help_heading = OUTPUT)]
+    pub verbose: bool,
 
     /// Replace files that rodcal did not write, or that were changed since.
     #[arg(long, global = true, help_heading = OUTPUT)]
@@ -77,14 +87,21 @@ impl Outcome {
     }
 }
 
-/// Prints warnings and the result, after the report is written whole.
+/// Prints warnings and the result, after the report is written whole. The command was `started`
+/// then.
 ///
 /// # Errors
 /// [`Error::File`] where a file cannot be written, [`Error::InTheWay`] where one would be lost.
-pub fn deliver(options: &Options, outcome: Outcome) -> Result<ExitCode> {
+pub fn deliver(options: &Options, started: Instant, outcome: Outcome) -> Result<ExitCode> {
     let Outcome { mut json, mut report, text, default_directory, files: more, status } = outcome;
     let directory = options.out.clone().or(default_directory);
-    if report.is_none() && options.out.is_some() {
+    let note = |line: &dyn Fn() -> String| {
+        if options.verbose {
+            say(&line());
+        }
+    };
+    let mut written = Vec::new();
+    if report.is_none() && options.out.is_some() && !options.quiet {
         say("warning: this command writes no report: --out has no effect");
     }
     let mut inputs = Vec::new();
@@ -94,11 +111,16 @@ pub fn deliver(options: &Options, outcome: Outcome) -> Result<ExitCode> {
         }
         // the same words on stderr, on the page and in the JSON
         json["warnings"] = report.warnings.as_slice().into();
-        if directory.is_some() {
+        if directory.is_some() || options.verbose {
             let provenance = Provenance::of(std::env::args().skip(1));
-            inputs.extend(provenance.inputs.iter().cloned());
-            report.provenance.extend(provenance.lines());
-            json["provenance"] = provenance.json();
+            for (file, hash) in &provenance.inputs {
+                note(&|| format!("read {file}, SHA-256 {hash}"));
+            }
+            if directory.is_some() {
+                inputs.extend(provenance.inputs.iter().cloned());
+                report.provenance.extend(provenance.lines());
+                json["provenance"] = provenance.json();
+            }
         }
     }
     if let (Some(report), Some(directory)) = (&report, &directory) {
@@ -112,9 +134,14 @@ pub fn deliver(options: &Options, outcome: Outcome) -> Result<ExitCode> {
         files.push((RESULT.into(), pretty(&json).into_bytes()));
         files::check_apart(&inputs, directory, &files, options.existing())?;
         files::write_together(directory, &files, options.existing())?;
+        written.extend(files.iter().map(|(name, content)| (directory.join(name), content.len())));
+    }
+    note(&|| format!("calculated and rendered in {:.2} s", started.elapsed().as_secs_f64()));
+    for (file, bytes) in &written {
+        note(&|| format!("wrote {}, {bytes} bytes", file.display()));
     }
     let warnings = report.as_ref().map_or(&[][..], |report| &report.warnings);
-    for warning in warnings {
+    for warning in warnings.iter().filter(|_| !options.quiet) {
         say(&format!("{} {warning}", coloured("warning:", YELLOW)));
     }
     let mut words = match (options.json, text, &report) {

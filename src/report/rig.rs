@@ -223,10 +223,10 @@ fn lines_table(fit: &Fit) -> Table {
     for line in &fit.lines {
         table.row([
             line.key.label(),
-            significant(line.slope.value / UM, 5),
+            known(&line.slope, UM),
             shown(line.slope.std_error, UM, 2),
             shown(line.slope.half_width_95(), UM, 2),
-            shown(line.load_offset.map(|e| e.value), 1.0, 3),
+            line.load_offset.map_or("–".into(), |offset| known(&offset, 1.0)),
             shown(line.load_offset.and_then(|e| e.std_error), 1.0, 2),
             shown(line.noise_sd, UM, 2),
             line.count.to_string(),
@@ -242,6 +242,11 @@ fn lines_table(fit: &Fit) -> Table {
         }
     }
     table
+}
+
+/// An estimate in its unit, with the digits that its standard error deserves.
+fn known(estimate: &Estimate, unit: f64) -> String {
+    estimate.show(unit).split(' ').next().unwrap_or_default().to_owned()
 }
 
 /// A number in its unit, or a dash where there is none.
@@ -293,7 +298,7 @@ fn measured_section(measured: &Measured, readings: &Readings, rod: &Rod) -> Sect
     );
     let mut row = |name: String, estimate: &Estimate| {
         let (error, width) = (estimate.std_error, estimate.half_width_95());
-        table.row([name, significant(estimate.value, 5), shown(error, 1.0, 2), shown(width, 1.0, 2)]);
+        table.row([name, known(estimate, 1.0), shown(error, 1.0, 2), shown(width, 1.0, 2)]);
     };
     measured.ratios.iter().for_each(|ratio| row(format!("r{}", ratio.name()), &ratio.value));
     row("r_rod".into(), &measured.rod_ratio);

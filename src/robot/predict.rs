@@ -128,7 +128,8 @@ impl Robot {
         let names: Vec<&str> = columns.iter().map(|(name, _)| name.as_str()).collect();
         if let Some(name) = names.iter().copied().find(|name| !table.has(name)) {
             let expected = format!("pose, {}: one column for each joint of {}", names.join(", "), self.name);
-            return Err(table.header_error(name, format!("there is no column {name}"), expected, None));
+            let (found, hint) = (format!("there is no column {name}"), table.columns_found());
+            return Err(table.header_error(name, found, expected, Some(hint)));
         }
         let pose = |(at, row): (usize, crate::delimited::Row<'_>)| {
             let joints = columns.iter().map(|(name, unit)| Ok(row.required_number(name)? * unit));

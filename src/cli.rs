@@ -9,7 +9,6 @@ mod demo;
 mod design;
 mod diagnose;
 mod embedded;
-mod neighbours;
 pub mod output;
 mod predict;
 mod progress;

@@ -78,6 +78,7 @@
 //! # Ok::<(), rodcal::Error>(())
 //! ```
 
+pub mod answer;
 pub mod beam;
 pub mod calibration;
 pub mod compliance;

@@ -38,6 +38,8 @@ const FLOORS: &[&[&str]] = &[
     &["design"],
     &["diagnosis"],
     &["report"],
+    // what is answered: the same for the command line and for Python
+    &["answer"],
     // the library as its users see it
     &["prelude", "lib"],
     &["cli", "main"],
@@ -47,9 +49,10 @@ const FLOORS: &[&[&str]] = &[
 const ROOMS: [&str; 2] = ["src", "crates/base/src"];
 const TRIAL: &str = "crates/trial/src";
 const PNG: &str = "crates/png/src";
+const PYTHON: &str = "python/src";
 
 /// What only the files whose paths start so may name.
-const DOORS: [(&str, &str); 12] = [
+const DOORS: [(&str, &str); 14] = [
     // what conceals effects serves one command, and the library knows nothing of it
     ("rodcal_trial", "src/cli/trial"),
     ("faer", "crates/base/src/linalg.rs"),
@@ -63,6 +66,8 @@ const DOORS: [(&str, &str); 12] = [
     ("rand", "crates/base/src/statistics/random.rs"),
     ("rand_chacha", "crates/base/src/statistics/random.rs"),
     ("rand_distr", "crates/base/src/statistics/random.rs"),
+    ("pyo3", PYTHON),
+    ("numpy", PYTHON),
 ];
 
 /// Position of a room, counted through all floors: rooms on one floor are ordered too.
@@ -113,7 +118,7 @@ fn files(directory: &str) -> Vec<Source> {
 
 /// All files of the project's crates.
 fn everything() -> Vec<Source> {
-    ROOMS.iter().chain(&[TRIAL, PNG]).flat_map(|directory| files(directory)).collect()
+    ROOMS.iter().chain(&[TRIAL, PNG, PYTHON]).flat_map(|directory| files(directory)).collect()
 }
 
 /// All files that are in a room: the list of rooms at the top of a library is in none.
@@ -203,6 +208,21 @@ fn trials_share_no_model_with_what_they_try() {
         );
     }
     assert!(count > 10, "only {count} imports found: does the test still read them?");
+}
+
+/// The Python package rests on the library alone, and nobody who builds the library compiles it.
+#[test]
+fn python_costs_rust_nothing() {
+    assert_eq!(members_needed("python/Cargo.toml"), ["rodcal"]);
+    let workspace: toml::Table = fs::read_to_string(root().join("Cargo.toml")).unwrap().parse().unwrap();
+    let of = |key: &str| workspace["workspace"][key].as_array().unwrap();
+    assert!(of("members").iter().any(|member| member.as_str() == Some("python")));
+    assert!(of("default-members").iter().all(|member| member.as_str() != Some("python")));
+    for package in
+        ["Cargo.toml", "crates/base/Cargo.toml", "crates/trial/Cargo.toml", "crates/png/Cargo.toml"]
+    {
+        assert!(!members_needed(package).iter().any(|name| name == "rodcal-python"), "{package}");
+    }
 }
 
 #[test]

@@ -1,5 +1,7 @@
 //! The calibrated robot as a file of the format that it came in.
 
+use nalgebra::Vector3;
+
 use super::campaign::{Campaign, Recording, Targets};
 use super::extrapolation::{self, Known};
 use super::result::Calibration;
@@ -81,6 +83,12 @@ pub fn write_beside(
         return None;
     }
     let mut robot = with_what_is_known(campaign, calibration, sd);
+    // there {T} is `tip_link`, which stands at the tip already where the file could take it up
+    if holds_tip(campaign, calibration, &robot)
+        && let Some(tip) = &mut robot.tip
+    {
+        tip.at = Vector3::zeros();
+    }
     let compliant = robot.joints.iter().enumerate().filter(|(_, joint)| joint.compliance != 0.0);
     let of_joint = |(joint, own): (usize, &Joint)| Effect::Compliance { joint, per_nm: own.compliance };
     let compliances: Vec<Effect> = compliant.map(of_joint).collect();
@@ -92,6 +100,14 @@ pub fn write_beside(
             .into(),
     ];
     Some(("calibrated-effects.toml".into(), robot.beside_to_toml(&comments)))
+}
+
+/// Whether `tip_link` of the calibrated URDF stands at the tip.
+fn holds_tip(campaign: &Campaign, calibration: &Calibration, robot: &Robot) -> bool {
+    let (file, text) = (&campaign.robot_file, &campaign.robot_text);
+    let (base, tip) = (campaign.base_link.as_deref(), campaign.tip_link.as_deref());
+    let written = robot.to_urdf(file, text, base, tip, Some(calibration.setup.tool), &[]);
+    written.is_ok_and(|written| written.has_tool)
 }
 
 fn first_line(campaign: &Campaign, calibration: &Calibration) -> String {

@@ -3,13 +3,12 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use rodcal::calibration::{self, Campaign, CompareOptions, Options, planned_setup};
-use rodcal::design::{Budget, Forecaster, rods_and_modes};
-use rodcal::report::forecast::Basis;
+use rodcal::calibration::{Campaign, CompareOptions, Options};
+use rodcal::design::Budget;
 use rodcal::rod::Rod;
-use rodcal::{Error, Result, report};
+use rodcal::{Error, Result, answer};
 
-use super::calibrate::{Weights, provenance};
+use super::calibrate::Weights;
 use super::design::poses::Expected;
 use super::output::Outcome;
 use super::progress::Progress;
@@ -71,11 +70,9 @@ impl Compare {
             ..CompareOptions::default()
         };
         let progress = Progress::new("comparing modes", self.draws);
-        let comparison = calibration::compare(&campaign, &options, &|_| progress.one_more())?;
+        let answer = answer::compare(&campaign, &options, &|_| progress.one_more())?;
         progress.finish();
-        let mut report = report::comparison::report(&campaign, &comparison);
-        report.provenance = provenance(&campaign);
-        Ok(Outcome::new(report::comparison::json(&campaign, &comparison), report))
+        Ok(answer.into())
     }
 
     fn run_forecast(&self) -> Result<Outcome> {
@@ -84,16 +81,6 @@ impl Compare {
         let budget = Budget { seed: self.seed, ..self.expected.budget(&campaign)? };
         let at = self.expected.place()?;
         let count = self.count.map(|count| count as usize);
-        let rods = rods_and_modes(&campaign, &rods, &budget, &at, count)?;
-        let unseen = Forecaster::new(&campaign, planned_setup(&campaign)?, budget.clone(), &at)?.unseen;
-        let basis = Basis {
-            budget,
-            unseen: unseen.words,
-            is_aligned: unseen.is_aligned,
-            has_clamps: !campaign.clamps.is_empty(),
-        };
-        let mut report = report::forecast::comparison(&campaign, &rods, &basis);
-        report.provenance = provenance(&campaign);
-        Ok(Outcome::new(report::forecast::comparison_json(&campaign, &rods, &basis), report))
+        Ok(answer::forecast(&campaign, &rods, budget, &at, count)?.into())
     }
 }

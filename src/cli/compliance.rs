@@ -3,10 +3,11 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use rodcal::compliance::{DEFAULT_ELEMENTS, Mode, Study, paper_contact_force};
+use rodcal::Result;
+use rodcal::answer::{self, ComplianceOptions};
+use rodcal::compliance::{DEFAULT_ELEMENTS, Mode, paper_contact_force};
 use rodcal::rod::Rod;
 use rodcal::units::MM;
-use rodcal::{Result, report};
 
 use super::output::Outcome;
 use super::values::{Theory, elements};
@@ -75,30 +76,28 @@ fn contact_force(text: &str) -> std::result::Result<f64, String> {
 
 impl Compliance {
     pub fn run(&self) -> Result<Outcome> {
-        let mode = match self.mode {
-            CliMode::Calc => Mode::Calc,
-            CliMode::Fea => Mode::Fea,
+        let options = ComplianceOptions {
+            mode: match self.mode {
+                CliMode::Calc => Mode::Calc,
+                CliMode::Fea => Mode::Fea,
+            },
+            physics: self.theory.unwrap_or(Theory::Timoshenko).physics(),
+            elements: self.elements,
+            contact_force: self.contact_force.unwrap_or_else(paper_contact_force),
+            load_station: self.load_station.map(|mm| mm * MM),
+            read_station: self.read_station.map(|mm| mm * MM),
         };
-        let force = self.contact_force.unwrap_or_else(paper_contact_force);
-        let rod = Rod::read(&self.rod)?;
-        let physics = self.theory.unwrap_or(Theory::Timoshenko).physics();
-        let tip = rod.length();
-        let mut study = Study::new(rod, mode, physics, self.elements, force)?;
-        if self.load_station.is_some() || self.read_station.is_some() {
-            let at = |station: Option<f64>| station.map_or(tip, |mm| mm * MM);
-            study = study.with_stations(at(self.load_station), at(self.read_station))?;
-        }
-        let mut report = report::compliance::report(&study);
+        let mut answer = answer::compliance(Rod::read(&self.rod)?, &options)?;
         if let (CliMode::Calc, Some(Theory::Timoshenko)) = (self.mode, self.theory) {
-            report.warnings.push(
+            answer.report.warnings.push(
                 "calc is Euler–Bernoulli by definition; --theory timoshenko only changes the fea columns"
                     .into(),
             );
         }
-        report.provenance = vec![
+        answer.report.provenance = vec![
             ("rod file".into(), self.rod.display().to_string()),
             ("program".into(), concat!("rodcal ", env!("CARGO_PKG_VERSION")).into()),
         ];
-        Ok(Outcome::new(report::compliance::json(&study), report))
+        Ok(answer.into())
     }
 }

@@ -8,10 +8,10 @@ use std::time::{Duration, Instant};
 
 use clap::{Args, Subcommand, ValueEnum};
 use rodcal::calibration::Campaign;
-use rodcal::design::{Budget, Found, MOST_RODS, Search, Searched, Study, Where, Wish, for_robot};
+use rodcal::design::{Found, Search, Searched, Wish};
 use rodcal::files::{self, Existing};
 use rodcal::rod::Rod;
-use rodcal::{Error, Result, report};
+use rodcal::{Result, answer};
 
 use super::output::Outcome;
 use super::progress::Progress;
@@ -138,44 +138,25 @@ impl DesignRod {
         let wish = Wish::read(&self.design)?;
         let base = self.base.as_deref().map(Rod::read).transpose()?;
         let all = wish.combinations();
-        let searched = match self.samples {
-            Some(samples) => Searched::Samples(samples, self.seed),
-            None => Searched::All,
+        let campaign = self.campaign.as_deref().map(Campaign::read_plan).transpose()?;
+        let asked = answer::DesignRod {
+            base,
+            refine: self.refine.map(|number| number as usize),
+            campaign: campaign.as_ref().map(|campaign| (campaign, self.count.map(|count| count as usize))),
+            seed: self.seed,
         };
-        if let (None, Some(much)) = (self.samples, wish.is_too_much()) {
-            return Err(Error::Argument {
-                name: "ranges",
-                found: much,
-                expected: format!("at most {MOST_RODS} rods: take larger steps, or --samples N"),
-            });
-        }
+        let searched = asked.searched(&wish, self.samples)?;
         let count = self.samples.map_or(all, |samples| samples.min(all));
         let progress = Progress::new("looking at rods", usize::try_from(count).unwrap_or(usize::MAX));
         let found = self.search(&wish, searched, &progress)?;
         progress.finish();
-        let study = Study::of_found(wish, found, base)?;
-        let study = match self.refine {
-            Some(number) => study.with_refined(number as usize - 1)?,
-            None => study,
-        };
-        let mut report = report::design::report(&study);
-        report.provenance = vec![
+        let mut answer = answer::design_rod(wish, found, &asked)?;
+        let provenance = &mut answer.report.provenance;
+        *provenance = vec![
             ("design file".into(), self.design.display().to_string()),
             ("program".into(), concat!("rodcal ", env!("CARGO_PKG_VERSION")).into()),
         ];
-        let files = report::design::files(&study)?;
-        let mut json = report::design::json(&study);
-        if let Some(path) = &self.campaign {
-            let campaign = Campaign::read_plan(path)?;
-            let budget = Budget { seed: self.seed, ..Budget::of(&campaign, None, None)? };
-            let count = self.count.map(|count| count as usize);
-            let found = for_robot(&study, &campaign, &budget, &Where::Validation, count)?;
-            json["for_robot"] = report::design::for_robot_json(&found);
-            // before what was looked at
-            let place = report.sections.len().saturating_sub(1);
-            report.sections.insert(place, report::design::for_robot_section(&found));
-            report.provenance.push(("campaign".into(), campaign.file.clone()));
-        }
-        Ok(Outcome { files, ..Outcome::new(json, report) })
+        provenance.extend(campaign.map(|campaign| ("campaign".into(), campaign.file)));
+        Ok(answer.into())
     }
 }

@@ -6,17 +6,14 @@ mod listed;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
+use rodcal::Result;
+use rodcal::answer::{self, rods_beside};
 use rodcal::diagnosis::rig::effects::registry;
-use rodcal::diagnosis::rig::{Correction, diagnose_among};
 use rodcal::rig::readings::Readings;
 use rodcal::rod::Rod;
-use rodcal::{Result, files, report};
 
 use self::listed::listed;
-use super::output::Outcome;
-
-/// More rods than these in one directory are not compared.
-const MOST_NEIGHBOURS: usize = 50;
+use super::output::{self, Outcome};
 
 #[derive(Debug, Subcommand)]
 pub enum Diagnose {
@@ -73,55 +70,26 @@ impl Rig {
     fn run(&self) -> Result<Outcome> {
         let rod = if self.rod == Path::new("linear") { None } else { Some(Rod::read(&self.rod)?) };
         let readings = Readings::read(&self.readings)?;
-        let others = if rod.is_some() { neighbours(&self.rod) } else { Vec::new() };
-        let found = diagnose_among(&readings, rod.as_ref(), &others)?;
-        let correction = found.correction()?;
-        let mut report = report::diagnosis::rig::report(&found, correction.as_ref());
+        let others = if rod.is_some() { rods_beside(&self.rod) } else { Vec::new() };
+        let named = |what: &str| self.named(what);
+        let apply = self.apply.then_some(&named as &dyn Fn(&str) -> String);
+        let mut answer = answer::diagnose_rig(&readings, rod.as_ref(), &others, apply)?;
         let model = rod.as_ref().map_or("none, straight lines".into(), |_| self.rod.display().to_string());
-        report.provenance = vec![
+        answer.report.provenance = vec![
             ("rod file".into(), model),
             ("readings".into(), self.readings.display().to_string()),
             ("program".into(), concat!("rodcal ", env!("CARGO_PKG_VERSION")).into()),
         ];
-        let mut json = report::diagnosis::rig::json(&found, correction.as_ref());
-        let mut outcome_files = Vec::new();
-        let mut default_directory = None;
-        if self.apply {
-            outcome_files =
-                correction.as_ref().map(|correction| self.applied(correction)).unwrap_or_default();
-            if outcome_files.is_empty() {
-                report.warnings.push(match rod {
-                    Some(_) => "--apply has no effect: nothing was found that could be applied".into(),
-                    None => "--apply has no effect without a rod file".into(),
-                });
-            } else {
-                default_directory = Some(PathBuf::from("reports/diagnosed"));
-                json["applied"] = outcome_files.iter().map(|(name, _)| name.as_str()).collect();
-            }
-        }
-        let mut outcome = Outcome::new(json, report);
-        outcome.files = outcome_files;
-        outcome.default_directory = default_directory;
-        outcome.status = u8::from(found.diagnosis.is_mismatch());
-        Ok(outcome)
+        let default_directory = (!answer.files.is_empty()).then(|| PathBuf::from(output::APPLIED));
+        Ok(Outcome { default_directory, ..answer.into() })
     }
 
-    /// Names and contents of the rod file and the readings with what was found.
-    fn applied(&self, correction: &Correction) -> Vec<(String, Vec<u8>)> {
+    /// What the file of the rod or of the readings is called with what was found.
+    fn named(&self, what: &str) -> String {
         let stem = |path: &Path| path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        vec![
-            (format!("{}-diagnosed.toml", stem(&self.rod)), correction.rod_toml.clone().into_bytes()),
-            (format!("{}-diagnosed.csv", stem(&self.readings)), correction.readings_csv.clone().into_bytes()),
-        ]
+        match what {
+            "rod" => format!("{}-diagnosed.toml", stem(&self.rod)),
+            _ => format!("{}-diagnosed.csv", stem(&self.readings)),
+        }
     }
-}
-
-/// The rods whose files stand beside `file`, by their file names: one of them may have been on the
-/// rig.
-pub fn neighbours(file: &Path) -> Vec<(String, Rod)> {
-    let named = |path: PathBuf| {
-        let name = path.file_name()?.to_string_lossy().into_owned();
-        Some((name, Rod::read(&path).ok()?))
-    };
-    files::beside(file).into_iter().take(MOST_NEIGHBOURS).filter_map(named).collect()
 }

@@ -7,6 +7,7 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use clap::Args;
+use rodcal::answer::Answer;
 use rodcal::delimited::{is_obeyed, visible, visible_lines};
 use rodcal::files::{self, Existing, Staged};
 use rodcal::report::{Report, text};
@@ -58,6 +59,9 @@ const PAGE: &str = "index.html";
 
 const OUTPUT: &str = "Output";
 
+/// Where what was found is applied without --out.
+pub const APPLIED: &str = "reports/diagnosed";
+
 /// The result of a command.
 pub struct Outcome {
     /// For `--json`.
@@ -80,6 +84,12 @@ pub struct Outcome {
 
 /// What is left to be done after the result has been said; dropped, nothing has been written.
 pub type Commit = Box<dyn FnOnce() -> Result<()>>;
+
+impl From<Answer> for Outcome {
+    fn from(Answer { json, report, files, status, .. }: Answer) -> Self {
+        Outcome { files, status, ..Outcome::new(json, report) }
+    }
+}
 
 impl Outcome {
     /// A result with its report, exit status 0.

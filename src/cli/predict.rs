@@ -3,10 +3,9 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use rodcal::report::prediction::{Prediction, json, report};
 use rodcal::robot::{Robot, corrections_from_csv};
 use rodcal::units::MM;
-use rodcal::{Result, files};
+use rodcal::{Result, answer, files};
 
 use super::output::Outcome;
 
@@ -54,18 +53,14 @@ impl Predict {
         }
         let poses =
             robot.poses_from_csv(&self.poses.display().to_string(), &files::read_text(&self.poses)?)?;
-        let tool = match self.tool {
-            Some(xyz) => xyz.map(|x| x * MM).into(),
-            None => robot.tip.map(|tip| tip.at).unwrap_or_default(),
-        };
-        let prediction = Prediction::new(&robot, tool, poses, self.aligned)?;
-        let mut report = report(&robot, &prediction);
-        report.provenance = vec![
+        let tool = self.tool.map(|xyz| xyz.map(|x| x * MM).into());
+        let (mut answer, _) = answer::predict(&robot, tool, poses, self.aligned)?;
+        answer.report.provenance = vec![
             ("model".into(), name),
             ("poses".into(), self.poses.display().to_string()),
             ("program".into(), concat!("rodcal ", env!("CARGO_PKG_VERSION")).into()),
         ];
-        Ok(Outcome::new(json(&robot, &prediction), report))
+        Ok(answer.into())
     }
 }
 

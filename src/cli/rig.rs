@@ -4,11 +4,10 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand, ValueEnum};
 use rodcal::compliance::DEFAULT_ELEMENTS;
-use rodcal::diagnosis::rig::suspected;
 use rodcal::least_squares::{Robust, RobustScale};
 use rodcal::rig::readings::Readings;
 use rodcal::rod::Rod;
-use rodcal::{Result, report, rig};
+use rodcal::{Result, answer, rig};
 
 use super::output::Outcome;
 use super::values::{Theory, elements};
@@ -87,15 +86,13 @@ impl Fit {
                 Weights::Tukey => Robust::Tukey { c: 4.685, scale: RobustScale::Mad },
             },
         };
-        let fit = rig::fit(&readings, rod.as_ref(), &options)?;
-        let mut report = report::rig::report(&fit, &readings, rod.as_ref());
+        let mut answer = answer::rig_fit(&readings, rod.as_ref(), &options)?;
         let model = rod.as_ref().map_or("none, straight lines".into(), |_| self.rod.display().to_string());
-        report.provenance = vec![
+        answer.report.provenance = vec![
             ("rod file".into(), model),
             ("readings".into(), self.readings.display().to_string()),
             ("program".into(), concat!("rodcal ", env!("CARGO_PKG_VERSION")).into()),
         ];
-        report.warnings.extend(suspected(&readings, rod.as_ref())?);
-        Ok(Outcome::new(report::rig::json(&fit, &readings, rod.as_ref()), report))
+        Ok(answer.into())
     }
 }

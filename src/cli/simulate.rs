@@ -3,16 +3,13 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use rodcal::beam::Physics;
-use rodcal::calibration::simulate::{Plan, campaign_files, planned_poses, simulate_telling};
-use rodcal::compliance::{Compliance, DEFAULT_ELEMENTS};
+use rodcal::Result;
+use rodcal::answer::{Simulated, named_robot, simulate};
+use rodcal::calibration::simulate::{Plan, planned_poses};
 use rodcal::delimited::visible;
 use rodcal::files::{self, Existing, Staged};
-use rodcal::robot::{Parameter, Robot, Setup, is_urdf};
+use rodcal::robot::Robot;
 use rodcal::rod::Rod;
-use rodcal::units::MM;
-use rodcal::{Error, Result};
-use serde_json::json;
 
 use super::output::Outcome;
 use super::progress::Progress;
@@ -62,9 +59,8 @@ impl Simulate {
         files::check_free(&self.directory, &MADE, existing)?;
         let rod_text = files::read_text(&self.rod)?;
         let rod = Rod::from_toml(&self.rod.display().to_string(), &rod_text)?;
-        let (robot_name, robot_text) = self.robot_text()?;
-        let robot = Robot::from_text(&self.robot, &robot_text, None, None)?;
-        let model = Compliance::of_model(&rod, &Physics::default(), DEFAULT_ELEMENTS)?;
+        let named = named_robot(&self.robot)?;
+        let robot = Robot::from_text(&self.robot, &named.1, None, None)?;
         let planned = match &self.planned {
             Some(path) => planned_poses(&robot, &path.display().to_string(), &files::read_text(path)?)?,
             None => Vec::new(),
@@ -77,70 +73,20 @@ impl Simulate {
             rod_factor: self.r_rod,
             ..Plan::default()
         };
-        let progress = Progress::open("simulating poses");
-        let simulation = simulate_telling(&robot, &rod, &model, &plan, &|| progress.one_more())?;
-        progress.finish();
-        let mut written: Vec<(String, Vec<u8>)> = campaign_files(&simulation, &robot_name, "rod.toml")
-            .into_iter()
-            .map(|(name, text)| (name, text.into_bytes()))
-            .collect();
-        written.push(("rod.toml".into(), rod_text.into_bytes()));
-        if !robot_name.starts_with("builtin:") {
-            written.push((robot_name, robot_text.into_bytes()));
-        }
-        let staged = Staged::new(&self.directory, &written, existing)?;
         let campaign = self.directory.join("campaign.toml").display().to_string();
-        let drawn = Setup::new(&robot, simulation.base_guess, rod.tip());
-        let truth: Vec<_> = Parameter::all(robot.joints.len())
-            .into_iter()
-            .map(|parameter| {
-                let unit = parameter.unit();
-                let value = simulation.truth.get(parameter);
-                json!({
-                    "name": parameter.to_string(),
-                    "unit": unit.suffix,
-                    "value": value / unit.si,
-                    "correction": (value - drawn.get(parameter)) / unit.si,
-                })
-            })
-            .collect();
+        let progress = Progress::open("simulating poses");
+        let tell = || progress.one_more();
+        let Simulated { files, json, poses, names: [robot, rod], .. } =
+            simulate(&robot, named, (&rod, rod_text), &plan, &campaign, &tell)?;
+        progress.finish();
+        let staged = Staged::new(&self.directory, &files, existing)?;
         let shown = visible(&campaign);
         let text = format!(
-            "Simulated {} poses of {} with rod {} (seed {}).\nrodcal calibrate {shown}\nrodcal compare {shown}\n",
-            simulation.measurements.len(),
-            visible(&robot.name),
-            visible(&rod.name),
+            "Simulated {poses} poses of {} with rod {} (seed {}).\nrodcal calibrate {shown}\nrodcal compare {shown}\n",
+            visible(&robot),
+            visible(&rod),
             self.seed
         );
-        let json = json!({
-            "campaign": campaign,
-            "robot": robot.name,
-            "rod": rod.name,
-            "seed": self.seed,
-            "poses": simulation.measurements.len(),
-            "r_rod": self.r_rod,
-            "tip_mm": (simulation.truth.tool / MM).as_slice(),
-            "truth": truth,
-        });
         Ok(Outcome { commit: Some(Box::new(|| staged.commit())), ..Outcome::plain(json, text) })
-    }
-
-    /// What the campaign calls the robot's file, and its text.
-    fn robot_text(&self) -> Result<(String, String)> {
-        match self.robot.strip_prefix("builtin:") {
-            Some(name) => match Robot::builtin(name) {
-                Some((_, text)) => Ok((self.robot.clone(), text.to_owned())),
-                None => Err(Error::Argument {
-                    name: "--robot",
-                    found: self.robot.clone(),
-                    expected: "builtin:tx90 or a file".into(),
-                }),
-            },
-            None => {
-                let text = files::read_text(&PathBuf::from(&self.robot))?;
-                let name = if is_urdf(&text) { "robot.urdf" } else { "robot.toml" };
-                Ok((name.into(), text))
-            }
-        }
     }
 }

@@ -15,7 +15,9 @@ pub fn page(report: &Report) -> String {
         .sections
         .iter()
         .enumerate()
-        .map(|(i, section)| section_markup(&report.page, section, i, &mut figures, &mut tables))
+        .map(|(i, section)| {
+            section_markup(Beside::Files(&report.page), section, Some(i), &mut figures, &mut tables)
+        })
         .collect();
     let page = html! {
         (DOCTYPE)
@@ -38,10 +40,7 @@ pub fn page(report: &Report) -> String {
                     @if !report.pages.is_empty() { (pages(report)) }
                     @if !report.cards.is_empty() { (cards(&report.cards)) }
                     @if !report.warnings.is_empty() {
-                        aside.warnings aria-label="Warnings" {
-                            h2 { @if report.warnings.len() == 1 { "Warning" } @else { "Warnings" } }
-                            ul { @for warning in &report.warnings { li { (warning) } } }
-                        }
+                        (warnings(&report.warnings))
                     }
                     @if report.sections.len() > 1 { (contents(report)) }
                     @for section in sections { (section) }
@@ -53,6 +52,31 @@ pub fn page(report: &Report) -> String {
         }
     };
     page.into_string()
+}
+
+/// The same without a page around it, for a notebook: overview, words, pictures and tables, with
+/// their own style and nothing outside. It holds no ids and no links, for there may be many.
+pub fn fragment(report: &Report) -> String {
+    let (mut figures, mut tables) = (0, 0);
+    let part = |section: &Section| section_markup(Beside::Nothing, section, None, &mut figures, &mut tables);
+    let sections: Vec<Markup> = report.sections.iter().map(part).collect();
+    let fragment = html! {
+        div.rodcal {
+            style { (PreEscaped(fragment_style())) }
+            h1 { (report.title) }
+            @if !report.headline.is_empty() { p.headline { (report.headline) } }
+            @if !report.cards.is_empty() { (cards(&report.cards)) }
+            @if !report.warnings.is_empty() { (warnings(&report.warnings)) }
+            @for section in sections { (section) }
+        }
+    };
+    fragment.into_string()
+}
+
+/// The page's style sheet, nested below the fragment, which stands for the page there.
+fn fragment_style() -> String {
+    let page = include_str!("html/page.css").replace(":root {", "& {").replace("body {", "& {");
+    format!(".rodcal {{\n{page}}}\n")
 }
 
 /// What a page may load: nothing but what stands in it.
@@ -76,6 +100,15 @@ fn cards(cards: &[Card]) -> Markup {
                     @if !card.detail.is_empty() { span.detail { (card.detail) } }
                 }
             }
+        }
+    }
+}
+
+fn warnings(warnings: &[String]) -> Markup {
+    html! {
+        aside.warnings aria-label="Warnings" {
+            h2 { @if warnings.len() == 1 { "Warning" } @else { "Warnings" } }
+            ul { @for warning in warnings { li { (warning) } } }
         }
     }
 }
@@ -114,12 +147,20 @@ fn provenance(report: &Report) -> Markup {
     }
 }
 
+/// Whether the figures and tables of a report stand beside it as files.
+#[derive(Clone, Copy)]
+enum Beside<'a> {
+    /// They do, by the name of its page.
+    Files(&'a str),
+    Nothing,
+}
+
 /// People look before they read: the words, then the pictures side by side where there is room,
 /// then the tables.
 fn section_markup(
-    page: &str,
+    beside: Beside,
     section: &Section,
-    number: usize,
+    number: Option<usize>,
     figures: &mut usize,
     tables: &mut usize,
 ) -> Markup {
@@ -130,16 +171,16 @@ fn section_markup(
             Block::List(points) => words.push(html! { ul { @for point in points { li { (point) } } } }),
             Block::Figure(figure) => {
                 *figures += 1;
-                pictures.push(figure_markup(page, figure, *figures));
+                pictures.push(figure_markup(beside, figure, *figures));
             }
             Block::Table(table) => {
                 *tables += 1;
-                folded.push(table_markup(page, table, *tables));
+                folded.push(table_markup(beside, table, *tables));
             }
         }
     }
     html! {
-        section id=(anchor(number)) {
+        section id=[number.map(anchor)] {
             h2 { (section.heading) }
             @for words in words { (words) }
             @if !pictures.is_empty() { div.figures { @for picture in pictures { (picture) } } }
@@ -148,16 +189,18 @@ fn section_markup(
     }
 }
 
-fn figure_markup(page: &str, figure: &Figure, number: usize) -> Markup {
-    let file = format!("{}.svg", file_name(page, "figure", number, &figure.name));
+fn figure_markup(beside: Beside, figure: &Figure, number: usize) -> Markup {
     html! {
         figure {
             // Our own SVG: its texts are escaped where it is drawn, and it holds no ids.
             div.wide tabindex="0" role="group" aria-label=(format!("Figure {number}")) { (PreEscaped(figure.svg())) }
             figcaption {
                 b { "Figure " (number) } ". " (figure.caption) " "
-                span.files { a href=(file) { "SVG" } }
-                output {}
+                @if let Beside::Files(page) = beside {
+                    @let file = format!("{}.svg", file_name(page, "figure", number, &figure.name));
+                    span.files { a href=(file) { "SVG" } }
+                    output {}
+                }
             }
         }
     }
@@ -166,14 +209,16 @@ fn figure_markup(page: &str, figure: &Figure, number: usize) -> Markup {
 /// Tables of so many rows stand open.
 const FEW_ROWS: usize = 8;
 
-fn table_markup(page: &str, table: &Table, number: usize) -> Markup {
-    let file = |kind: &str| format!("{}.{kind}", file_name(page, "table", number, &table.name));
+fn table_markup(beside: Beside, table: &Table, number: usize) -> Markup {
+    let file = |page: &str, kind: &str| format!("{}.{kind}", file_name(page, "table", number, &table.name));
     html! {
         details open[table.rows.len() <= FEW_ROWS] {
             summary { b { "Table " (number) } ". " (table.caption) }
             div {
                 (table.html(number))
-                p.files { a href=(file("csv")) { "CSV" } " · " a href=(file("md")) { "Markdown" } }
+                @if let Beside::Files(page) = beside {
+                    p.files { a href=(file(page, "csv")) { "CSV" } " · " a href=(file(page, "md")) { "Markdown" } }
+                }
             }
         }
     }
@@ -210,6 +255,27 @@ mod tests {
         let page = page(&report);
         assert_eq!(page.matches("<script").count(), 1);
         assert!(page.ends_with("</script></body></html>"), "{}", &page[page.len() - 80..]);
+    }
+
+    #[test]
+    fn a_fragment_stands_in_any_page() {
+        let figure = Figure::from(Chart::new("<i>", "x", "y"));
+        let mut table = Table::new("t", "Two & two", vec![super::super::table::Column::number("n", "")]);
+        table.row(["4"]);
+        let report = Report {
+            title: "<u>".into(),
+            cards: vec![Card::new("c", "1", "")],
+            warnings: vec!["<w>".into()],
+            sections: vec![Section::new("S", vec![Block::Figure(figure), Block::Table(table)])],
+            provenance: vec![("file".into(), "x".into())],
+            ..Report::default()
+        };
+        let fragment = fragment(&report);
+        for foreign in [" id=", "href=", "<script", "<html", "<u>", "<w>", ":root", "body {"] {
+            assert!(!fragment.contains(foreign), "{foreign} in {fragment}");
+        }
+        assert!(fragment.starts_with("<div class=\"rodcal\">") && fragment.ends_with("</div>"));
+        assert!(fragment.contains("<svg") && fragment.contains("Table 1"));
     }
 
     #[test]

@@ -2,8 +2,12 @@
 //! as it was.
 
 use nalgebra::Vector3;
+use rodcal::answer::{calibrated_robot, simulate};
+use rodcal::calibration::simulate::Plan;
+use rodcal::calibration::{Campaign, Mode, Options, calibrate};
 use rodcal::error::Error;
 use rodcal::robot::{Body, Joint, Motion, Robot};
+use rodcal::rod::Rod;
 
 use super::product::product;
 use super::urdfs::{ARMS, urdf};
@@ -232,4 +236,39 @@ fn numbers(joint: &Joint) -> Vec<f64> {
     all.extend(joint.limits.iter().flatten());
     all.extend(joint.body.iter().flat_map(|body| [body.mass, body.centre.x, body.centre.y, body.centre.z]));
     all
+}
+
+/// The URDF's `tip_link` stands at the tip afterwards: what stands beside it must not add the tool
+/// once more.
+#[test]
+fn a_calibrated_urdf_with_what_stands_beside_it_predicts_as_it_was_calibrated() {
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+    let read = |name: &str| std::fs::read_to_string(root.join(name)).unwrap();
+    let (robot_text, rod_text) = (read("robots/six-axis.urdf"), read("rods/5.toml"));
+    let robot = Robot::from_text("robot.urdf", &robot_text, None, None).unwrap();
+    let rod = Rod::from_toml("rod.toml", &rod_text).unwrap();
+    let plan = Plan { poses_per_clamp: 8, validation_poses: 5, ..Plan::default() };
+    let named = ("robot.urdf".to_owned(), robot_text);
+    let simulated = simulate(&robot, named, (&rod, rod_text), &plan, "campaign.toml", &|| ()).unwrap();
+    let text_of = |files: &[(String, Vec<u8>)], name: &str| {
+        let (_, content) = files.iter().find(|(own, _)| own == name).expect("it is there");
+        String::from_utf8(content.clone()).unwrap()
+    };
+    let open = |name: &str| Ok(text_of(&simulated.files, name));
+    let campaign = Campaign::from_texts("campaign.toml", &open("campaign.toml").unwrap(), &open).unwrap();
+    let calibration = calibrate(&campaign, Mode::Meas, &Options::default()).unwrap();
+
+    let files = calibrated_robot(&campaign, &calibration).unwrap();
+    let urdf = text_of(&files, "calibrated.urdf");
+    let mut again = Robot::from_text("calibrated.urdf", &urdf, None, None).unwrap();
+    again.add_beside("effects.toml", &text_of(&files, "calibrated-effects.toml")).unwrap();
+    let tip = again.tip.expect("it stands beside").at;
+    let calibrated = calibration.setup.calibrated();
+    let mut dice = Dice(7);
+    for _ in 0..10 {
+        let q = dice.angles(6);
+        let (expected, _) = calibrated.tip_at(calibration.setup.tool, &q);
+        let (found, _) = again.tip_at(tip, &q);
+        assert!((found - expected).norm() < 1e-9, "{found} {expected}");
+    }
 }

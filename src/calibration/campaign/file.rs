@@ -89,10 +89,22 @@ impl Campaign {
     pub fn read_plan(path: &Path) -> Result<Campaign> {
         let directory = path.parent().unwrap_or(Path::new(""));
         let open = |name: &str| files::read_text(&directory.join(name));
-        let (file, text) = (path.display().to_string(), files::read_text(path)?);
-        let toml = TomlText::new(&file, &text);
+        Campaign::plan_from_texts(&path.display().to_string(), &files::read_text(path)?, &open)
+    }
+
+    /// Reads the text of a campaign that may not have been recorded yet, as
+    /// [`Campaign::from_texts`] reads that of one that was.
+    ///
+    /// # Errors
+    /// As [`Campaign::read`].
+    pub fn plan_from_texts(
+        file: &str,
+        text: &str,
+        open: &dyn Fn(&str) -> Result<String>,
+    ) -> Result<Campaign> {
+        let toml = TomlText::new(file, text);
         let raw: RawCampaign = toml.parse(REQUIRED).map_err(above_the_sections)?;
-        Reader { file: &file, toml, open: &open, warnings: Vec::new(), is_plan: true }.campaign(&raw)
+        Reader { file, toml, open, warnings: Vec::new(), is_plan: true }.campaign(&raw)
     }
 }
 

@@ -4,13 +4,11 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use rodcal::calibration::Campaign;
-use rodcal::design::{
-    Budget, PoseCriterion, PoseLimits, PoseStep, PoseStudy, Source, TableHeight, Wanted, Where,
-};
+use rodcal::design::{Budget, PoseCriterion, PoseLimits, PoseStep, Source, TableHeight, Wanted, Where};
 use rodcal::units::{DEG, MM, UM};
-use rodcal::{Error, Result, files, report};
+use rodcal::{Result, answer, files};
 
-use crate::cli::calibrate::{ModeName, provenance};
+use crate::cli::calibrate::ModeName;
 use crate::cli::output::Outcome;
 use crate::cli::progress::Progress;
 
@@ -192,13 +190,6 @@ impl DesignPoses {
             at: self.expected.place()?,
             seed: self.seed,
         };
-        if let (None, true) = (&self.candidates, self.generate < self.count) {
-            return Err(Error::Argument {
-                name: "--generate",
-                found: self.generate.to_string(),
-                expected: format!("at least {} candidates to choose {} poses from", self.count, self.count),
-            });
-        }
         let budget = self.expected.budget(&campaign)?;
         let progress = Progress::new("looking for poses", self.generate as usize);
         let choosing = Progress::open("choosing poses");
@@ -209,12 +200,9 @@ impl DesignPoses {
                 choosing.one_more();
             }
         };
-        let study = PoseStudy::new(&campaign, wanted, budget, &tell)?;
+        let answer = answer::design_poses(&campaign, wanted, budget, &tell)?;
         progress.finish();
         choosing.finish();
-        let mut report = report::poses::report(&study);
-        report.provenance = provenance(&campaign);
-        let files = report::poses::files(&study);
-        Ok(Outcome { files, ..Outcome::new(report::poses::json(&study), report) })
+        Ok(answer.into())
     }
 }

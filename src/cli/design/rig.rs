@@ -3,11 +3,10 @@
 use std::path::PathBuf;
 
 use clap::{ArgGroup, Args};
-use rodcal::diagnosis::rig::planned::{Bench, effect_named, effect_names, plan, plan_ratio};
-use rodcal::inference::Effect;
+use rodcal::diagnosis::rig::planned::Bench;
 use rodcal::rod::Rod;
 use rodcal::units::UM;
-use rodcal::{Error, Result, report};
+use rodcal::{Result, answer};
 
 use super::super::output::Outcome;
 
@@ -63,33 +62,12 @@ impl DesignRig {
     pub fn run(&self) -> Result<Outcome> {
         let rod = Rod::read(&self.rod)?;
         let bench = Bench { largest_load: self.max_load, noise: self.noise_um * UM, is_at_tip: self.at_tip };
-        let plan = match self.r_rod_width_percent {
-            Some(percent) => plan_ratio(&rod, percent / 100.0, &bench)?,
-            None => plan(&rod, &self.effects()?, self.odds, &bench)?,
-        };
-        let mut report = report::rig_plan::report(&plan, &rod, &bench);
-        report.provenance = vec![
+        let width = self.r_rod_width_percent.map(|percent| percent / 100.0);
+        let mut answer = answer::design_rig(&rod, &self.between, width, self.odds, &bench)?;
+        answer.report.provenance = vec![
             ("rod file".into(), self.rod.display().to_string()),
             ("program".into(), concat!("rodcal ", env!("CARGO_PKG_VERSION")).into()),
         ];
-        let files = vec![("readings.csv".to_owned(), report::rig_plan::template(&plan, &rod).into_bytes())];
-        Ok(Outcome { files, ..Outcome::new(report::rig_plan::json(&plan, &rod, &bench), report) })
-    }
-
-    fn effects(&self) -> Result<Vec<&'static Effect>> {
-        let mut effects: Vec<&'static Effect> = Vec::new();
-        for name in &self.between {
-            let Some(effect) = effect_named(name.trim()) else {
-                return Err(Error::Argument {
-                    name: "between",
-                    found: name.clone(),
-                    expected: format!("one of {}", effect_names().join(", ")),
-                });
-            };
-            if !effects.contains(&effect) {
-                effects.push(effect);
-            }
-        }
-        Ok(effects)
+        Ok(answer.into())
     }
 }

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use rodcal::answer::{neighbours, rods_beside};
 use rodcal::calibration::campaign::Campaign;
 use rodcal::calibration::{Options, default_mode};
 use rodcal::diagnosis::{calibration, rig};
@@ -11,9 +12,6 @@ use rodcal::units::UM;
 use rodcal::{Result, files, report};
 use rodcal_trial::score;
 use serde_json::Value;
-
-use super::super::diagnose::neighbours;
-use super::super::neighbours::neighbours as neighbours_of;
 
 /// The files of a case, some of them in another form than in its directory.
 pub struct CaseFiles {
@@ -55,7 +53,7 @@ impl CaseFiles {
         if self.has("campaign.toml") {
             let campaign = self.campaign("campaign.toml")?;
             let options = Options::default();
-            let mut others = neighbours_of(&campaign);
+            let mut others = neighbours(&campaign);
             // what asks is no rod of the laboratory's
             others.rods.retain(|(file, _)| !file.starts_with("asked"));
             let mended = calibration::mend(&campaign, default_mode(&campaign), &others, &options)?;
@@ -69,7 +67,7 @@ impl CaseFiles {
         let file = self.directory.join("rod.toml");
         let rod = Rod::read(&file)?;
         let readings = self.readings("readings.csv")?;
-        let found = rig::diagnose_among(&readings, Some(&rod), &neighbours(&file))?;
+        let found = rig::diagnose_among(&readings, Some(&rod), &rods_beside(&file))?;
         let asked = self.has("asked.csv").then(|| self.readings("asked.csv")).transpose()?;
         let predicted = asked.and_then(|asked| found.predicted(&asked).ok());
         let readings_um = predicted.map(|readings| micrometres(&readings));

@@ -16,6 +16,7 @@ use super::tangent::{CLOSE_ENOUGH, Tangent};
 use super::termination::TerminationReason;
 use crate::error::Result;
 use crate::linalg::RowReduction;
+use crate::parallel::checkpoint;
 
 /// Cosine below which the linearisation is trusted altogether and full steps are judged by the
 /// gradient: its square, what is left to gain, is still far above the rounding of the sum of
@@ -82,6 +83,7 @@ pub(super) fn minimise(system: &Stacked, start: &DVector<f64>, options: &Options
         radius = f64::INFINITY;
     }
     let reason = loop {
+        checkpoint();
         if search.iterations >= options.max_iterations {
             break search.verdict(&here, &view, TerminationReason::MaxIterations);
         }

@@ -1,12 +1,12 @@
-//! Files that stand beside those of a campaign: one of them may have been meant.
+//! Files that stand beside those of a recording: one of them may have been meant.
 
 use std::path::{Path, PathBuf};
 
-use rodcal::calibration::Campaign;
-use rodcal::diagnosis::calibration::Neighbours;
-use rodcal::files;
-use rodcal::robot::Robot;
-use rodcal::rod::Rod;
+use crate::calibration::Campaign;
+use crate::diagnosis::calibration::Neighbours;
+use crate::files;
+use crate::robot::Robot;
+use crate::rod::Rod;
 
 /// More files than these in one directory are not compared.
 const MOST: usize = 50;
@@ -38,4 +38,14 @@ pub fn neighbours(campaign: &Campaign) -> Neighbours {
             false => Vec::new(),
         },
     }
+}
+
+/// The rods whose files stand beside `file`, by their file names: one of them may have been on the
+/// rig.
+pub fn rods_beside(file: &Path) -> Vec<(String, Rod)> {
+    let named = |path: PathBuf| {
+        let name = path.file_name()?.to_string_lossy().into_owned();
+        Some((name, Rod::read(&path).ok()?))
+    };
+    files::beside(file).into_iter().take(MOST).filter_map(named).collect()
 }

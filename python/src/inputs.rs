@@ -1,0 +1,300 @@
+//! Rods, readings, robots and campaigns as Python holds them.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use pyo3::prelude::*;
+use rodcal::calibration::campaign::Targets;
+use rodcal::robot::corrections_from_csv;
+use rodcal::{Result, files};
+
+use crate::errors::IntoPython;
+
+/// A rod with the text that it was read from.
+#[pyclass(frozen, module = "rodcal._rodcal")]
+pub struct Rod {
+    pub rod: rodcal::rod::Rod,
+    pub text: String,
+    /// Its file, where it was read from one.
+    pub path: Option<PathBuf>,
+}
+
+#[pymethods]
+impl Rod {
+    #[staticmethod]
+    fn read(py: Python<'_>, path: PathBuf) -> PyResult<Rod> {
+        let text = files::read_text(&path).or_raise(py)?;
+        let rod = rodcal::rod::Rod::from_toml(&path.display().to_string(), &text).or_raise(py)?;
+        Ok(Rod { rod, text, path: Some(path) })
+    }
+
+    #[staticmethod]
+    fn from_text(py: Python<'_>, file: &str, text: String) -> PyResult<Rod> {
+        let rod = rodcal::rod::Rod::from_toml(file, &text).or_raise(py)?;
+        Ok(Rod { rod, text, path: None })
+    }
+
+    #[getter]
+    fn name(&self) -> &str {
+        &self.rod.name
+    }
+
+    #[getter]
+    fn length_m(&self) -> f64 {
+        self.rod.length()
+    }
+
+    #[getter]
+    fn mass_kg(&self) -> f64 {
+        self.rod.mass()
+    }
+
+    #[getter]
+    fn tip_m(&self) -> [f64; 3] {
+        self.rod.tip().into()
+    }
+
+    #[getter]
+    fn text(&self) -> &str {
+        &self.text
+    }
+
+    #[getter]
+    fn path(&self) -> Option<String> {
+        self.path.as_ref().map(|path| path.display().to_string())
+    }
+
+    #[getter]
+    fn warnings(&self) -> Vec<String> {
+        self.rod.warnings.iter().map(ToString::to_string).collect()
+    }
+
+    fn to_toml(&self) -> String {
+        self.rod.to_toml(&[])
+    }
+}
+
+/// Readings of a rig with the text that they were read from.
+#[pyclass(frozen, module = "rodcal._rodcal")]
+pub struct Readings {
+    pub readings: rodcal::rig::readings::Readings,
+    pub text: String,
+}
+
+#[pymethods]
+impl Readings {
+    #[staticmethod]
+    fn read(py: Python<'_>, path: PathBuf) -> PyResult<Readings> {
+        let readings = rodcal::rig::readings::Readings::read(&path).or_raise(py)?;
+        Ok(Readings { readings, text: files::read_text(&path).or_raise(py)? })
+    }
+
+    #[staticmethod]
+    fn from_text(py: Python<'_>, file: &str, text: String) -> PyResult<Readings> {
+        let readings = rodcal::rig::readings::Readings::from_text(file, &text).or_raise(py)?;
+        Ok(Readings { readings, text })
+    }
+
+    fn __len__(&self) -> usize {
+        self.readings.rows.len()
+    }
+
+    #[getter]
+    fn file(&self) -> &str {
+        &self.readings.file
+    }
+
+    #[getter]
+    fn warnings(&self) -> Vec<String> {
+        self.readings.warnings.iter().map(ToString::to_string).collect()
+    }
+
+    #[getter]
+    fn text(&self) -> &str {
+        &self.text
+    }
+}
+
+/// A robot with the text that it was read from.
+#[pyclass(frozen, module = "rodcal._rodcal")]
+pub struct Robot {
+    pub robot: rodcal::robot::Robot,
+    pub file: String,
+    pub text: String,
+    pub links: [Option<String>; 2],
+    /// What stands beside a URDF, where it was read too.
+    pub beside: Option<String>,
+}
+
+#[pymethods]
+impl Robot {
+    /// `effects` and `corrections` are names and texts of what stands beside a URDF.
+    #[staticmethod]
+    #[pyo3(signature = (file, text, base_link, tip_link, effects, corrections))]
+    fn from_text(
+        py: Python<'_>,
+        file: String,
+        text: String,
+        base_link: Option<String>,
+        tip_link: Option<String>,
+        effects: Option<(String, String)>,
+        corrections: Option<(String, String)>,
+    ) -> PyResult<Robot> {
+        let (base, tip) = (base_link.as_deref(), tip_link.as_deref());
+        let robot = rodcal::robot::Robot::from_text(&file, &text, base, tip);
+        let mut robot = robot.or_raise(py)?;
+        if let Some((name, text)) = &effects {
+            robot.add_beside(name, text).or_raise(py)?;
+        }
+        if let Some((name, text)) = &corrections {
+            let more = corrections_from_csv(name, text, robot.joints.len()).or_raise(py)?;
+            robot.effects.extend(more);
+        }
+        let beside = effects.map(|(_, text)| text);
+        Ok(Robot { robot, file, text, links: [base_link, tip_link], beside })
+    }
+
+    #[staticmethod]
+    fn named(py: Python<'_>, name: &str) -> PyResult<Robot> {
+        let (file, text) = rodcal::answer::named_robot(name).or_raise(py)?;
+        Robot::from_text(py, file, text, None, None, None, None)
+    }
+
+    #[getter]
+    fn name(&self) -> &str {
+        &self.robot.name
+    }
+
+    #[getter]
+    fn file(&self) -> &str {
+        &self.file
+    }
+
+    #[getter]
+    fn text(&self) -> &str {
+        &self.text
+    }
+
+    #[getter]
+    fn beside(&self) -> Option<&str> {
+        self.beside.as_deref()
+    }
+
+    #[getter]
+    fn links(&self) -> (Option<&str>, Option<&str>) {
+        (self.links[0].as_deref(), self.links[1].as_deref())
+    }
+
+    /// The columns of its joint values: `q1_deg`, `q3_mm`.
+    #[getter]
+    fn columns(&self) -> Vec<String> {
+        columns(&self.robot)
+    }
+}
+
+fn columns(robot: &rodcal::robot::Robot) -> Vec<String> {
+    robot.joints.iter().zip(1..).map(|(joint, number)| joint.column(number).0).collect()
+}
+
+/// The text of a file; what cannot be read is the package's own exception.
+#[pyfunction]
+pub fn read_text(py: Python<'_>, path: PathBuf) -> PyResult<String> {
+    files::read_text(&path).or_raise(py)
+}
+
+/// A campaign, read or built.
+#[pyclass(frozen, module = "rodcal._rodcal")]
+pub struct Campaign {
+    pub campaign: rodcal::calibration::Campaign,
+    /// Read from a file of its own, beside which others may stand.
+    pub is_file: bool,
+}
+
+#[pymethods]
+impl Campaign {
+    #[staticmethod]
+    fn read(py: Python<'_>, path: PathBuf, is_plan: bool) -> PyResult<Campaign> {
+        let campaign = match is_plan {
+            true => rodcal::calibration::Campaign::read_plan(&path),
+            false => rodcal::calibration::Campaign::read(&path),
+        };
+        Ok(Campaign { campaign: campaign.or_raise(py)?, is_file: true })
+    }
+
+    /// Of a campaign's text and the texts that it names; what is none of those is a file.
+    #[staticmethod]
+    fn from_texts(
+        py: Python<'_>,
+        file: &str,
+        text: &str,
+        texts: BTreeMap<String, String>,
+        is_plan: bool,
+    ) -> PyResult<Campaign> {
+        let open = |name: &str| -> Result<String> {
+            texts.get(name).cloned().map_or_else(|| files::read_text(Path::new(name)), Ok)
+        };
+        let campaign = match is_plan {
+            true => rodcal::calibration::Campaign::plan_from_texts(file, text, &open),
+            false => rodcal::calibration::Campaign::from_texts(file, text, &open),
+        };
+        Ok(Campaign { campaign: campaign.or_raise(py)?, is_file: false })
+    }
+
+    #[getter]
+    fn file(&self) -> &str {
+        &self.campaign.file
+    }
+
+    /// The links of its URDF that it names.
+    #[getter]
+    fn links(&self) -> (Option<&str>, Option<&str>) {
+        (self.campaign.base_link.as_deref(), self.campaign.tip_link.as_deref())
+    }
+
+    #[getter]
+    fn robot(&self) -> &str {
+        &self.campaign.robot.name
+    }
+
+    #[getter]
+    fn rod(&self) -> Option<&str> {
+        self.campaign.rod.as_ref().map(|rod| rod.name.as_str())
+    }
+
+    /// The columns of its robot's joint values.
+    #[getter]
+    fn columns(&self) -> Vec<String> {
+        columns(&self.campaign.robot)
+    }
+
+    #[getter]
+    fn mode(&self) -> &'static str {
+        rodcal::calibration::default_mode(&self.campaign).name()
+    }
+
+    #[getter]
+    fn pose_names(&self) -> Vec<String> {
+        let recording = &self.campaign.measurements;
+        (0..recording.len()).map(|row| recording.pose_name(row)).collect()
+    }
+
+    #[getter]
+    fn poses(&self) -> usize {
+        self.campaign.measurements.len()
+    }
+
+    #[getter]
+    fn validation_poses(&self) -> usize {
+        self.campaign.validation.as_ref().map_or(0, |recording| recording.len())
+    }
+
+    #[getter]
+    fn has_points(&self) -> bool {
+        matches!(self.campaign.measurements.targets, Targets::Points(_))
+    }
+
+    #[getter]
+    fn warnings(&self) -> Vec<String> {
+        self.campaign.warnings.iter().map(ToString::to_string).collect()
+    }
+}

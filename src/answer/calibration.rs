@@ -1,0 +1,104 @@
+//! How accurate is a robot, and does it matter how its rod's deflection is known?
+
+use super::Answer;
+use crate::calibration::campaign::Recording;
+use crate::calibration::{
+    self, Calibration, Campaign, CompareOptions, Compensation, Mode, Options, write_back, write_beside,
+};
+use crate::diagnosis::calibration::{Neighbours, suspected};
+use crate::error::Result;
+use crate::report;
+
+/// Calibrates, with the calibrated robot as a file; `folds` also predicts every pose from a
+/// calibration without it. `others` are files that may have been meant.
+///
+/// # Errors
+/// As [`calibration::calibrate`] and [`calibration::cross_validate`].
+pub fn calibrate<'c>(
+    campaign: &'c Campaign,
+    mode: Mode,
+    options: &Options,
+    folds: Option<usize>,
+    others: &Neighbours,
+) -> Result<(Answer, Calibration<'c>)> {
+    let calibrated = calibration::calibrate(campaign, mode, options)?;
+    let cross_validation = match folds {
+        Some(folds) => {
+            let compensation = Compensation::new(campaign, mode)?;
+            Some(calibration::cross_validate(campaign, &calibrated, &compensation, folds, options)?)
+        }
+        None => None,
+    };
+    let cross_validation = cross_validation.as_ref();
+    let mut report = report::calibration::report(campaign, &calibrated, cross_validation);
+    report.provenance = provenance(campaign);
+    if let (Some(asked), Some(held_out)) = (folds, cross_validation)
+        && held_out.folds != asked
+    {
+        report.warnings.push(format!(
+            "{} folds in place of {asked}: with sockets whole placements are held out, for poses of one placement share its \
+             unknown points",
+            held_out.folds
+        ));
+    }
+    let suspicions = suspected(campaign, mode, others)?;
+    let is_plausible = calibrated.is_plausible() && suspicions.iter().all(|suspicion| !suspicion.spoils_fit);
+    let lines: Vec<String> = suspicions.into_iter().map(|suspicion| suspicion.words).collect();
+    let mut json = report::calibration::json(campaign, &calibrated, cross_validation);
+    json["plausible"] = is_plausible.into();
+    json["suspected_mistakes"] = lines.clone().into();
+    // before all else: it explains the rest
+    report.warnings.splice(0..0, lines);
+    let files = calibrated_robot(campaign, &calibrated)?;
+    Ok((Answer { json, report, files, status: u8::from(!is_plausible) }, calibrated))
+}
+
+/// Every mode of compensation that the campaign allows, and which differences are significant.
+/// `progress` is told of every draw.
+///
+/// # Errors
+/// As [`calibration::compare`].
+pub fn compare(
+    campaign: &Campaign,
+    options: &CompareOptions,
+    progress: &(dyn Fn(usize) + Sync),
+) -> Result<Answer> {
+    let comparison = calibration::compare(campaign, options, progress)?;
+    let mut report = report::comparison::report(campaign, &comparison);
+    report.provenance = provenance(campaign);
+    Ok(Answer::new(report::comparison::json(campaign, &comparison), report))
+}
+
+/// Where it all comes from.
+pub fn provenance(campaign: &Campaign) -> Vec<(String, String)> {
+    let mut list = vec![
+        ("campaign".to_owned(), campaign.file.clone()),
+        ("robot".to_owned(), campaign.robot_file.clone()),
+    ];
+    if let Some(rod) = &campaign.rod {
+        list.push(("rod".into(), rod.name.clone()));
+        list.extend(
+            rod.source.iter().map(|source| ("source of the rod's numbers".to_owned(), source.clone())),
+        );
+    }
+    list.extend(campaign.readings.iter().map(|readings| ("rig readings".to_owned(), readings.file.clone())));
+    let described = |recording: &Recording| match &recording.source {
+        Some(source) => format!("{} ({source})", recording.file),
+        None => recording.file.clone(),
+    };
+    list.push(("measurements".into(), described(&campaign.measurements)));
+    list.extend(campaign.validation.iter().map(|recording| ("validation".to_owned(), described(recording))));
+    list.push(("program".into(), concat!("rodcal ", env!("CARGO_PKG_VERSION")).into()));
+    list
+}
+
+/// The calibrated robot in the format of its file.
+///
+/// # Errors
+/// As [`write_back`].
+pub fn calibrated_robot(campaign: &Campaign, calibrated: &Calibration) -> Result<Vec<(String, Vec<u8>)>> {
+    let (name, text) = write_back(campaign, calibrated)?;
+    let beside = write_beside(campaign, calibrated, None);
+    let files = std::iter::once((name, text)).chain(beside);
+    Ok(files.map(|(name, text)| (name, text.into_bytes())).collect())
+}

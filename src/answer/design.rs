@@ -1,0 +1,129 @@
+//! Which rods, poses and loads?
+
+use super::{Answer, provenance};
+use crate::calibration::Campaign;
+use crate::design::{
+    Budget, Found, MOST_RODS, PoseStep, PoseStudy, Searched, Source, Study, Wanted, Where, Wish, for_robot,
+};
+use crate::diagnosis::rig::planned::{Bench, effect_named, effect_names, plan, plan_ratio};
+use crate::error::{Error, Result};
+use crate::inference::Effect;
+use crate::report;
+use crate::rod::Rod;
+
+/// What is asked about the rods of a search.
+#[derive(Default)]
+pub struct DesignRod<'c> {
+    /// A rod that the designs are compared with.
+    pub base: Option<Rod>,
+    /// The design of the front, from 1, that is bettered between the grid's values.
+    pub refine: Option<usize>,
+    /// The robot that they are ranked for, and how many poses are chosen for each rod.
+    pub campaign: Option<(&'c Campaign, Option<usize>)>,
+    /// Every random number comes from this seed.
+    pub seed: u64,
+}
+
+impl DesignRod<'_> {
+    /// Which rods of `wish` are looked at; `samples` of them, or all.
+    ///
+    /// # Errors
+    /// [`Error::Argument`] for all of more rods than a search takes.
+    pub fn searched(&self, wish: &Wish, samples: Option<u64>) -> Result<Searched> {
+        match (samples, wish.is_too_much()) {
+            (Some(samples), _) => Ok(Searched::Samples(samples, self.seed)),
+            (None, None) => Ok(Searched::All),
+            (None, Some(much)) => Err(Error::Argument {
+                name: "ranges",
+                found: much,
+                expected: format!("at most {MOST_RODS} rods: take larger steps, or --samples N"),
+            }),
+        }
+    }
+}
+
+/// The rods that none betters, as rod files too.
+///
+/// # Errors
+/// As [`Study::of_found`], [`Study::with_refined`] and [`for_robot`].
+pub fn design_rod(wish: Wish, found: Found, asked: &DesignRod<'_>) -> Result<Answer> {
+    let study = Study::of_found(wish, found, asked.base.clone())?;
+    let study = match asked.refine {
+        Some(number) => study.with_refined(number.saturating_sub(1))?,
+        None => study,
+    };
+    let mut answer = Answer::new(report::design::json(&study), report::design::report(&study));
+    answer.files = report::design::files(&study)?;
+    if let Some((campaign, count)) = asked.campaign {
+        let budget = Budget { seed: asked.seed, ..Budget::of(campaign, None, None)? };
+        let found = for_robot(&study, campaign, &budget, &Where::Validation, count)?;
+        answer.json["for_robot"] = report::design::for_robot_json(&found);
+        // before what was looked at
+        let place = answer.report.sections.len().saturating_sub(1);
+        answer.report.sections.insert(place, report::design::for_robot_section(&found));
+    }
+    Ok(answer)
+}
+
+/// The poses that a calibration should measure, as a table too.
+///
+/// # Errors
+/// [`Error::Argument`] for fewer candidates than poses; as [`PoseStudy::new`].
+pub fn design_poses(
+    campaign: &Campaign,
+    wanted: Wanted,
+    budget: Budget,
+    progress: &(dyn Fn(PoseStep) + Sync),
+) -> Result<Answer> {
+    if let Source::Generated(count) = wanted.source
+        && count < wanted.count
+    {
+        return Err(Error::Argument {
+            name: "--generate",
+            found: count.to_string(),
+            expected: format!("at least {} candidates to choose {} poses from", wanted.count, wanted.count),
+        });
+    }
+    let study = PoseStudy::new(campaign, wanted, budget, progress)?;
+    let mut report = report::poses::report(&study);
+    report.provenance = provenance(campaign);
+    Ok(Answer { files: report::poses::files(&study), ..Answer::new(report::poses::json(&study), report) })
+}
+
+/// What to measure on a rig: to distinguish the effects of these names with such odds, or to know
+/// r_rod within a 95 % interval of `r_rod_width` of it.
+///
+/// # Errors
+/// [`Error::Argument`] for an effect that nobody knows; as [`plan`] and [`plan_ratio`].
+pub fn design_rig(
+    rod: &Rod,
+    between: &[String],
+    r_rod_width: Option<f64>,
+    odds: f64,
+    bench: &Bench,
+) -> Result<Answer> {
+    let plan = match r_rod_width {
+        Some(width) => plan_ratio(rod, width, bench)?,
+        None => plan(rod, &effects(between)?, odds, bench)?,
+    };
+    let report = report::rig_plan::report(&plan, rod, bench);
+    let files = vec![("readings.csv".to_owned(), report::rig_plan::template(&plan, rod).into_bytes())];
+    Ok(Answer { files, ..Answer::new(report::rig_plan::json(&plan, rod, bench), report) })
+}
+
+fn effects(names: &[String]) -> Result<Vec<&'static Effect>> {
+    let mut effects: Vec<&'static Effect> = Vec::new();
+    for name in names {
+        let Some(effect) = effect_named(name.trim()) else {
+            return Err(Error::Argument {
+                name: "between",
+                found: name.clone(),
+                expected: format!("one of {}", effect_names().join(", ")),
+            });
+        };
+        if !effects.contains(&effect) {
+            effects.push(effect);
+        }
+    }
+    Ok(effects)
+}

@@ -1,0 +1,128 @@
+//! Where do recording and model disagree, and which physics was left out?
+
+use std::path::Path;
+
+use super::{Answer, provenance};
+use crate::calibration::campaign::FileNames;
+use crate::calibration::{Campaign, Mode, Options};
+use crate::diagnosis::calibration::{Neighbours, check_memory, mend};
+use crate::diagnosis::rig::diagnose_among;
+use crate::error::Result;
+use crate::files;
+use crate::report::diagnosis as reports;
+use crate::rig::readings::Readings;
+use crate::rod::Rod;
+
+/// What the readings show that the model of `rod` leaves out, or straight lines without one.
+/// `others` are rods that may have been on the rig. With `apply`, rod and readings with what was
+/// found are its files, where something can be applied.
+///
+/// # Errors
+/// As [`diagnose_among`].
+pub fn diagnose_rig(
+    readings: &Readings,
+    rod: Option<&Rod>,
+    others: &[(String, Rod)],
+    apply: Option<&dyn Fn(&str) -> String>,
+) -> Result<Answer> {
+    let found = diagnose_among(readings, rod, others)?;
+    let correction = found.correction()?;
+    let report = reports::rig::report(&found, correction.as_ref());
+    let json = reports::rig::json(&found, correction.as_ref());
+    let mut answer = Answer::new(json, report);
+    answer.status = u8::from(found.diagnosis.is_mismatch());
+    match (apply, correction) {
+        (None, _) => {}
+        (Some(named), Some(correction)) => {
+            answer.files = vec![
+                (named("rod"), correction.rod_toml.into_bytes()),
+                (named("readings"), correction.readings_csv.into_bytes()),
+            ];
+            answer.json["applied"] = answer.files.iter().map(|(name, _)| name.as_str()).collect();
+        }
+        (Some(_), None) => answer.report.warnings.push(match rod {
+            Some(_) => "--apply has no effect: nothing was found that could be applied".into(),
+            None => "--apply has no effect without a rod file".into(),
+        }),
+    }
+    Ok(answer)
+}
+
+/// What the residuals of a calibration show that its model leaves out. `others` are files that may
+/// have been meant. With `apply`, the corrected robot and campaign are its files, where something
+/// can be corrected.
+///
+/// # Errors
+/// As [`mend`] and what calibrates; [`crate::Error::File`] where a file that is copied cannot be
+/// read.
+pub fn diagnose_calibration(
+    campaign: &Campaign,
+    mode: Mode,
+    others: &Neighbours,
+    apply: bool,
+) -> Result<Answer> {
+    check_memory(campaign)?;
+    let options = Options::default();
+    let mended = mend(campaign, mode, others, &options)?;
+    let found = mended.diagnose(&options)?;
+    let mut report = reports::calibration::report(&found);
+    report.provenance = provenance(campaign);
+    let mut json = reports::calibration::json(&found);
+    let applied = if apply { mended.apply(&found, &names(&mended.campaign))? } else { None };
+    match &applied {
+        Some(applied) => reports::calibration::applied(&mut report, &mut json, applied),
+        None if apply => report
+            .warnings
+            .push("--apply has no effect: nothing was found that belongs to the robot or can be corrected in the campaign".into()),
+        None => reports::calibration::announced(&mut report, &found),
+    }
+    let mut answer = Answer::new(json, report);
+    if let Some(applied) = applied {
+        answer.files = applied.files.into_iter().map(|(name, text)| (name, text.into_bytes())).collect();
+        // what was not written anew is copied
+        for copy in copies(&mended.campaign)? {
+            if answer.files.iter().all(|(name, _)| *name != copy.0) {
+                answer.files.push(copy);
+            }
+        }
+    }
+    answer.status = u8::from(found.diagnosis.is_mismatch());
+    Ok(answer)
+}
+
+/// What a corrected campaign calls its files: all of them stand beside it.
+fn names(campaign: &Campaign) -> FileNames {
+    let base = |name: &str| {
+        let end = Path::new(name).file_name();
+        end.map_or_else(|| name.to_owned(), |end| end.to_string_lossy().into_owned())
+    };
+    let is_builtin = campaign.robot_file.starts_with("builtin:");
+    FileNames {
+        effects: campaign.effects_file.as_deref().map(base),
+        robot: if is_builtin { campaign.robot_file.clone() } else { base(&campaign.robot_file) },
+        rod: campaign.rod_file.as_deref().map(base),
+        rig: campaign.readings.as_ref().map(|readings| base(&readings.file)),
+        measurements: "measurements.csv".into(),
+        validation: campaign.validation.as_ref().map(|_| "validation.csv".into()),
+    }
+}
+
+/// Robot, rod and readings as they are, for a corrected campaign in another folder.
+fn copies(campaign: &Campaign) -> Result<Vec<(String, Vec<u8>)>> {
+    let names = names(campaign);
+    let directory = Path::new(&campaign.file).parent().unwrap_or(Path::new(""));
+    let mut copies = Vec::new();
+    if let (Some(name), Some(file)) = (names.effects, &campaign.effects_file) {
+        copies.push((name, files::read_bytes(&directory.join(file))?));
+    }
+    if !campaign.robot_file.starts_with("builtin:") {
+        copies.push((names.robot, campaign.robot_text.clone().into_bytes()));
+    }
+    if let (Some(name), Some(file)) = (names.rod, &campaign.rod_file) {
+        copies.push((name, files::read_bytes(&directory.join(file))?));
+    }
+    if let (Some(name), Some(readings)) = (names.rig, &campaign.readings) {
+        copies.push((name, files::read_bytes(Path::new(&readings.file))?));
+    }
+    Ok(copies)
+}

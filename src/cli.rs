@@ -113,6 +113,9 @@ enum Command {
 /// Runs the command that was asked for.
 pub fn run(arguments: &Arguments) -> Result<Outcome> {
     let options = &arguments.output;
+    if options.quiet {
+        progress::be_quiet();
+    }
     let is_demo = matches!(arguments.command, None | Some(Command::Demo));
     let directory = options.out.as_deref().or(is_demo.then(|| Path::new(demo::DIRECTORY)));
     output::check(options, directory)?;

@@ -3,6 +3,7 @@
 mod cli;
 
 use std::process::ExitCode;
+use std::time::Instant;
 
 use clap::Parser;
 
@@ -11,7 +12,9 @@ fn main() -> ExitCode {
         Ok(arguments) => arguments,
         Err(error) => cli::suggestions::exit_with(error),
     };
-    match cli::run(&arguments).and_then(|outcome| cli::output::deliver(&arguments.output, outcome)) {
+    let started = Instant::now();
+    let deliver = |outcome| cli::output::deliver(&arguments.output, started, outcome);
+    match cli::run(&arguments).and_then(deliver) {
         Ok(status) => status,
         Err(error) => {
             let word = cli::output::coloured("error:", cli::output::RED);

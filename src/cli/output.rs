@@ -4,6 +4,7 @@
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::time::Instant;
 
 use clap::Args;
 use rodcal::delimited::{is_obeyed, visible, visible_lines};
@@ -30,6 +31,15 @@ pub struct Options {
     /// With --out: write the pictures as PNG too.
     #[arg(long, global = true, help_heading = OUTPUT)]
     pub png: bool,
+
+    /// No progress and no warnings on stderr; errors are said. Warnings stay in --json and on the
+    /// page.
+    #[arg(short, long, global = true, conflicts_with = "verbose", help_heading = OUTPUT)]
+    pub quiet: bool,
+
+    /// Say on stderr what was read (with its SHA-256), how long it took and what was written.
+    #[arg(short, long, global = true, help_heading = OUTPUT)]
+    pub verbose: bool,
 
     /// Replace files that rodcal did not write, or that were changed since.
     #[arg(long, global = true, help_heading = OUTPUT)]
@@ -93,15 +103,22 @@ impl Outcome {
 }
 
 /// Prints warnings and the result. Before that all files are complete, after it they go where they
-/// belong: nothing is left where nothing could be said (a full disk behind stdout).
+/// belong: nothing is left where nothing could be said (a full disk behind stdout). The command was
+/// `started` then.
 ///
 /// # Errors
 /// [`Error::File`] where a file cannot be written, [`Error::InTheWay`] where one would be lost.
-pub fn deliver(options: &Options, outcome: Outcome) -> Result<ExitCode> {
+pub fn deliver(options: &Options, started: Instant, outcome: Outcome) -> Result<ExitCode> {
     let Outcome { mut json, mut report, text, default_directory, files: more, warnings, commit, status } =
         outcome;
     let directory = options.out.clone().or(default_directory);
-    if report.is_none() && options.out.is_some() {
+    let note = |line: &dyn Fn() -> String| {
+        if options.verbose {
+            say("", &line());
+        }
+    };
+    let mut written = Vec::new();
+    if report.is_none() && options.out.is_some() && !options.quiet {
         say(&coloured("warning:", YELLOW), "this command writes no report: --out has no effect");
     }
     let mut inputs = Vec::new();
@@ -112,11 +129,16 @@ pub fn deliver(options: &Options, outcome: Outcome) -> Result<ExitCode> {
         }
         // the same words on stderr, on the page and in the JSON
         json["warnings"] = report.warnings.as_slice().into();
-        if directory.is_some() {
+        if directory.is_some() || options.verbose {
             let provenance = Provenance::of(std::env::args().skip(1));
-            inputs.extend(provenance.inputs.iter().cloned());
-            report.provenance.extend(provenance.lines());
-            json["provenance"] = provenance.json();
+            for (file, hash) in &provenance.inputs {
+                note(&|| format!("read {file}, SHA-256 {hash}"));
+            }
+            if directory.is_some() {
+                inputs.extend(provenance.inputs.iter().cloned());
+                report.provenance.extend(provenance.lines());
+                json["provenance"] = provenance.json();
+            }
         }
     }
     if let (Some(report), Some(directory)) = (&report, &directory) {
@@ -130,11 +152,14 @@ pub fn deliver(options: &Options, outcome: Outcome) -> Result<ExitCode> {
         files.push((RESULT.into(), pretty(&json).into_bytes()));
         files::check_apart(&inputs, directory, &files, options.existing())?;
         staged = Some(Staged::new(directory, &files, options.existing())?);
+        written.extend(files.iter().map(|(name, content)| (directory.join(name), content.len())));
     }
+    note(&|| format!("calculated and rendered in {:.2} s", started.elapsed().as_secs_f64()));
     if report.is_none() && !warnings.is_empty() {
         json["warnings"] = warnings.as_slice().into();
     }
-    for warning in report.as_ref().map_or(&warnings, |report| &report.warnings) {
+    let warnings = report.as_ref().map_or(&warnings, |report| &report.warnings);
+    for warning in warnings.iter().filter(|_| !options.quiet) {
         say(&coloured("warning:", YELLOW), warning);
     }
     let mut words = match (options.json, text, &report) {
@@ -156,6 +181,9 @@ pub fn deliver(options: &Options, outcome: Outcome) -> Result<ExitCode> {
         _ => {}
     }
     staged.map_or(Ok(()), Staged::commit)?;
+    for (file, bytes) in &written {
+        note(&|| format!("wrote {}, {bytes} bytes", file.display()));
+    }
     commit.map_or(Ok(()), |commit| commit())?;
     Ok(ExitCode::from(status))
 }
@@ -226,7 +254,8 @@ pub fn coloured(word: &str, colour: u8) -> String {
 /// `eprintln!` would panic. Names of files and what stands in them may hold anything: it is shown,
 /// not obeyed.
 pub fn say(word: &str, line: &str) {
-    let _ = writeln!(std::io::stderr(), "{word} {}", visible(line));
+    let space = if word.is_empty() { "" } else { " " };
+    let _ = writeln!(std::io::stderr(), "{word}{space}{}", visible(line));
 }
 
 /// Columns of the terminal that stdout is, or as COLUMNS says; in a file or a pipe tables take what

@@ -13,15 +13,24 @@ const RETURNS: usize = 4;
 /// Step, in sizes, below which they have arrived: the noise of a value is hardly ever a
 /// ten-thousandth of its size.
 const ARRIVED: f64 = 1e-5;
+/// Step, in standard deviations of each value, below which they have arrived, and below which they
+/// have for a first look: the evidence still changes by half the square of it.
+const SETTLED: (f64, f64) = (1e-3, 0.1);
 
 impl Search<'_> {
     /// Fits the values of `terms` together, by Gauss–Newton steps from where they are, and scores
     /// them.
     pub fn fit(&self, terms: &[Term]) -> Hypothesis {
-        remembered(&self.fitted, terms, || self.fit_anew(terms))
+        remembered(&self.fitted, terms, || self.fit_until(terms, SETTLED.0))
     }
 
-    fn fit_anew(&self, terms: &[Term]) -> Hypothesis {
+    /// The same for a first look: values within a tenth of their standard deviations.
+    pub(super) fn fit_roughly(&self, terms: &[Term]) -> Hypothesis {
+        self.fit_until(terms, SETTLED.1)
+    }
+
+    /// The same until a step is smaller than `settled` standard deviations of every value.
+    fn fit_until(&self, terms: &[Term], settled: f64) -> Hypothesis {
         let background = self.background.0.ncols();
         let mut terms = terms.to_vec();
         let mut moments = self.moments(&terms);
@@ -32,7 +41,9 @@ impl Search<'_> {
             self.put(&mut terms, &scored);
             let moved = (flat(&terms) - &before).component_div(&self.sizes(&terms));
             // where effects are linear the first step arrives
-            if self.model.is_linear_in(&terms) || moved.amax() < ARRIVED {
+            let variance = |k: usize| scored.covariance[(background + k, background + k)];
+            let is_small = |k: usize| moved[k].powi(2) < settled.powi(2) * variance(k);
+            if self.model.is_linear_in(&terms) || moved.amax() < ARRIVED || (0..moved.len()).all(is_small) {
                 least = f64::INFINITY;
                 break;
             }

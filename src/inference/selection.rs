@@ -18,6 +18,10 @@ const CHANCE: f64 = 3.0;
 const MOST: usize = 10;
 /// Of how many candidates, the likeliest by their columns at neutral values, the values are fitted.
 const REFITTED: usize = 6;
+/// Ln of the odds within which a first look at their values decides nothing.
+const NEAR: f64 = 1.0;
+/// Ln of the odds that an exchange has to gain: less is where the values were looked for from.
+const NO_GAIN: f64 = 1e-3;
 /// And how many of them may be of one effect, of the forms of a law with as many parameters.
 const OF_ONE_EFFECT: usize = 2;
 
@@ -252,6 +256,17 @@ impl Search<'_> {
     /// The hypothesis with one candidate more, the likeliest of those that are unknown or of those
     /// that are not.
     fn longer(&self, hypothesis: &Hypothesis, additions: &[f64], unknown: bool) -> Option<Hypothesis> {
+        self.longer_than(f64::NEG_INFINITY, hypothesis, additions, unknown)
+    }
+
+    /// The same; none that is clearly less probable than `least`, the ln of a probability.
+    fn longer_than(
+        &self,
+        least: f64,
+        hypothesis: &Hypothesis,
+        additions: &[f64],
+        unknown: bool,
+    ) -> Option<Hypothesis> {
         // a scan over places must not crowd out what is at one place only
         let mut tried: Vec<usize> = Vec::new();
         for index in self.likeliest(additions, unknown) {
@@ -272,7 +287,19 @@ impl Search<'_> {
                 break;
             }
         }
-        let refitted = tried.into_iter().map(|index| self.with(hypothesis, index));
+        let rough: Vec<Hypothesis> = tried
+            .into_iter()
+            .map(|index| {
+                let mut terms = hypothesis.terms.clone();
+                terms.push(self.model.candidates()[index].neutral(index));
+                self.fit_roughly(&terms)
+            })
+            .collect();
+        let best = rough.iter().fold(least, |best, other| best.max(other.log_probability));
+        let refitted = rough
+            .iter()
+            .filter(|other| other.log_probability > best - NEAR)
+            .map(|other| self.fit(&other.terms));
         refitted.reduce(|best, other| if other.log_probability > best.log_probability { other } else { best })
     }
 
@@ -283,11 +310,12 @@ impl Search<'_> {
             let mut better: Option<Hypothesis> = None;
             for position in 0..hypothesis.terms.len() {
                 let rest = self.without(&hypothesis, position);
-                let best = self.longer(&rest, &self.additions(&rest), false);
+                let least = |better: &Option<Hypothesis>| {
+                    better.as_ref().map_or(hypothesis.log_probability + NO_GAIN, |b| b.log_probability)
+                };
+                let best = self.longer_than(least(&better), &rest, &self.additions(&rest), false);
                 for other in [Some(rest), best].into_iter().flatten() {
-                    let least =
-                        better.as_ref().map_or(hypothesis.log_probability + 1e-6, |b| b.log_probability);
-                    if other.log_probability > least {
+                    if other.log_probability > least(&better) {
                         better = Some(other);
                     }
                 }

@@ -91,6 +91,7 @@ pub fn stacked(all: &[(String, &Forecast)]) -> Figure {
                 to: at(k) + 0.3,
                 value: if forecast.rms > 0.0 { below / forecast.rms / UM } else { 0.0 },
                 text: if is_whole { significant(forecast.rms / UM, 3) } else { String::new() },
+                ..Bar::default()
             }
         };
         let (colour, dash) = COLOURS[*part as usize];

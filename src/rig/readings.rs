@@ -184,6 +184,7 @@ fn check_columns(table: &Table) -> Result<()> {
         let meant = table.columns().find_map(|column| Some((column, nearest_name(column, wanted)?)));
         let hint = meant.map(|(column, known)| format!("is the column {column} meant to be {known}?"));
         let hint = renamed(table.columns(), &KNOWN_COLUMNS, wanted).or(hint);
+        let hint = hint.or_else(|| Some(table.columns_found()));
         Err(table.header_error("", format!("there is no {what}"), expected.into(), hint))
     };
     if !table.has("axis") {

@@ -130,7 +130,8 @@ impl Robot {
             let (first, last) = (names.first().unwrap_or(&""), names.last().unwrap_or(&""));
             let columns = if names.len() > 12 { format!("{first} … {last}") } else { names.join(", ") };
             let expected = format!("pose, {columns}: one column for each joint of {}", self.name);
-            return Err(table.header_error(name, format!("there is no column {name}"), expected, None));
+            let (found, hint) = (format!("there is no column {name}"), table.columns_found());
+            return Err(table.header_error(name, found, expected, Some(hint)));
         }
         let pose = |(at, row): (usize, crate::delimited::Row<'_>)| {
             let joints = columns.iter().map(|(name, unit)| Ok(row.required_number(name)? * unit));

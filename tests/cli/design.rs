@@ -133,7 +133,8 @@ fn a_search_that_was_killed_goes_on_and_says_the_same() {
     let many = DESIGN
         .replace("step = 25", "step = 0.1")
         .replace("[100, 150, 200]", "{ from = 100, to = 200, step = 2 }")
-        .replace("min_first_frequency_hz = 20", "min_reach_mm = 300");
+        .replace("min_first_frequency_hz = 20", "min_reach_mm = 300")
+        .replace("maximise = [\"reach_mm\"]\n", "");
     sandbox.write("design.toml", &many);
     let whole = sandbox.run("design rod design.toml --json").succeeded().stdout;
     let line = ["design", "rod", "design.toml", "--json", "--resume", "kept"];

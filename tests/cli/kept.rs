@@ -78,7 +78,7 @@ fn files_beside_the_page_are_kept_too() {
     std::fs::create_dir(sandbox.path().join("own")).unwrap();
     for (name, line) in [
         ("own/5-diagnosed.toml", "diagnose rig rods/5.toml soft.csv --apply"),
-        ("own/figure-1-contributions.svg", "compliance rods/5.toml"),
+        ("own/figure-1-waterfall.svg", "compliance rods/5.toml"),
         ("own/design-001.toml", "design rod design.toml"),
     ] {
         let readings = sandbox.read("stiffness_data/5.csv");

@@ -52,6 +52,9 @@ fn at_the_tip_along_one_axis_all_softness_is_alike() {
         Effect::StiffnessScale(0.85),
         Effect::SensorScale { channel: 1, factor: 1.1 },
         Effect::Root { bending: 0.2 * rotation, torsion: 0.0 },
+        // so large that columns at neutral values say little of what would do as well
+        Effect::StiffnessScale(0.45),
+        Effect::Root { bending: 1.5 * rotation, torsion: 0.0 },
     ];
     for effect in effects {
         let name = effect.name();

@@ -86,6 +86,21 @@ impl Table {
         self.header.iter().map(|cell| cell.text.as_str())
     }
 
+    /// "the columns are x_mm, y_mm": for errors about one that is not there.
+    pub fn columns_found(&self) -> String {
+        /// More names than these hide what they are listed for.
+        const MOST: usize = 12;
+        let names: Vec<&str> = self.columns().take(MOST).collect();
+        let rest = match self.header.len().saturating_sub(MOST) {
+            0 => String::new(),
+            more => format!(" and {more} more"),
+        };
+        match names.as_slice() {
+            [one] if rest.is_empty() => format!("the only column is {one}"),
+            _ => format!("the columns are {}{rest}", names.join(", ")),
+        }
+    }
+
     /// Whether there is a column of this name (upper and lower case are the same).
     pub fn has(&self, column: &str) -> bool {
         self.position(column).is_some()
@@ -214,6 +229,7 @@ impl<'t> Row<'t> {
     /// An error about what stands in one cell; without such a column, about the row.
     pub fn error(&self, column: &str, expected: String, hint: Option<String>) -> Error {
         let Some(index) = self.table.position(column) else {
+            let hint = hint.or_else(|| Some(self.table.columns_found()));
             return self.row_error(format!("there is no column {column}"), expected, hint);
         };
         let name = &self.table.header[index].text;

@@ -242,7 +242,7 @@ pub(super) fn frozen(data: &[Datum]) -> Vec<Part> {
     found
 }
 
-/// The smallest step of the display of a channel, whose data are `own`, m: every sensor has its own.
+/// The smallest step of the display of the channel of which `own` are the data, m.
 fn step_of(data: &[Datum], own: &[usize]) -> f64 {
     resolution(&own.iter().map(|&i| data[i].clone()).collect::<Vec<_>>())
 }

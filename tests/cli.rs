@@ -12,6 +12,7 @@ mod diagnose;
 mod diagnose_calibration;
 mod faults;
 mod files;
+mod hostile;
 mod json;
 mod kept;
 mod mistakes;

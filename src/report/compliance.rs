@@ -11,7 +11,9 @@ use super::sensitivities::{self, OnePercent};
 use super::table::{Column, Table};
 use super::{Block, Card, Report, Section};
 use crate::beam::{NaturalMode, settling_time};
-use crate::compliance::{Compliance, Mode, Sensitivity, Shape, StationResponse, Study};
+use crate::compliance::{
+    Compliance, LINEAR_SHARE, Mode, Sensitivity, Shape, StationResponse, Study, TipLoad,
+};
 use crate::rod::{NominalNumber, Rod};
 use crate::units::{GRAM, MM, UM, URAD, significant};
 
@@ -250,6 +252,9 @@ fn swing(study: &Study) -> Option<Section> {
 
 /// One sentence: how much the rod bends.
 pub fn headline(study: &Study) -> String {
+    if let Some(words) = beyond_linear(study) {
+        return words;
+    }
     let c = study.compliance();
     let mode = match study.mode {
         Mode::Calc => "the closed form".to_owned(),
@@ -264,7 +269,32 @@ pub fn headline(study: &Study) -> String {
     )
 }
 
+/// Why no number of this rod holds, where it bends too far.
+fn beyond_linear(study: &Study) -> Option<String> {
+    let (load, share) = study.beyond_linear()?;
+    let load = match load {
+        TipLoad::OneG => "its own weight".to_owned(),
+        TipLoad::ContactForce => format!("{} N", significant(study.contact_force, 3)),
+    };
+    let far = match share {
+        ..10.0 => format!("by {:.0} % of its length", 100.0 * share),
+        1e6.. => "by more than a million times its length".to_owned(),
+        _ => format!("by {share:.0} times its length"),
+    };
+    Some(format!(
+        "Rod {} is beyond this model: under {load} its tip would move {far}. Deflections are proportional to \
+         loads up to about {:.0} % of the length; beyond that the numbers below do not hold. Is a length, \
+         a diameter or a modulus in another unit?",
+        study.rod.name,
+        100.0 * LINEAR_SHARE
+    ))
+}
+
 fn cards(study: &Study) -> Vec<Card> {
+    if let Some((_, share)) = study.beyond_linear() {
+        let share = if share < 1e6 { format!("{:.0} %", 100.0 * share) } else { "> 100 million %".into() };
+        return vec![Card::new("Deflection over length", share, "beyond the linear model")];
+    }
     let c = study.compliance();
     let um = |length: f64| significant(length / UM, 4);
     let mode = match study.mode {
@@ -376,7 +406,8 @@ fn shape_figure(
 }
 
 fn warnings(study: &Study) -> Vec<String> {
-    study.rod.warnings.iter().map(ToString::to_string).collect()
+    let beyond = beyond_linear(study).into_iter();
+    beyond.chain(study.rod.warnings.iter().map(ToString::to_string)).collect()
 }
 
 /// A matrix as JSON rows in the unit.

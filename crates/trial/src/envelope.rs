@@ -28,6 +28,7 @@ pub use self::make::{Made, Plan, make};
 use super::truth::Truth;
 use rodcal_base::error::{Error, Place, Result};
 use rodcal_base::files;
+use rodcal_base::limits;
 
 /// Name of the manifest in a trial's directory.
 pub const MANIFEST: &str = "manifest.json";
@@ -136,6 +137,7 @@ impl Manifest {
             return Err(wrong(format!("it names {name:?}"), expected));
         }
         let count = manifest.case_names().len();
+        limits::check(&path.display().to_string(), count, limits::TRIAL_CASES, "cases")?;
         if count != manifest.cases {
             let found = format!("it has files of {count} cases");
             return Err(wrong(found, format!("the {} that it says", manifest.cases)));

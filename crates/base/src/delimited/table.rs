@@ -4,6 +4,7 @@ use super::numbers::{Dialect, LARGEST, number_hint, parse_number};
 use super::split::{Cell, separator_of, split};
 use super::written::quoted;
 use crate::error::{Error, Place, Result};
+use crate::limits;
 
 /// A header and rows of as many cells.
 #[derive(Debug, Clone)]
@@ -35,6 +36,7 @@ impl Table {
     pub fn parse(file: &str, text: &str, holds_numbers: impl Fn(&str) -> bool) -> Result<Table> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         refuse_binary(file, text)?;
+        limits::check(file, text.len(), limits::TABLE_BYTES, "bytes")?;
         let lines: Vec<(usize, &str)> = (1..)
             .zip(text.lines())
             .filter(|(_, line)| !line.trim().is_empty() && !line.trim_start().starts_with('#'))
@@ -50,6 +52,10 @@ impl Table {
             });
         };
         let separator = separator_of(header);
+        let columns = header.matches(separator).count() + 1;
+        limits::check(file, columns, limits::TABLE_COLUMNS, "columns")?;
+        limits::check(file, lines.len() - 1, limits::TABLE_ROWS, "rows")?;
+        limits::check(file, (lines.len() - 1) * columns, limits::TABLE_CELLS, "cells")?;
         let mut records = split(file, &lines, separator);
         let mut table = Table {
             file: file.to_owned(),

@@ -13,14 +13,35 @@ pub fn comments_above(text: &str) -> Option<String> {
 /// than one cell, and behind a `'` where a spreadsheet would take it for a formula, which begins
 /// with `=`, `+`, `-` or `@` and is no number. Control characters are escaped.
 pub fn cell(text: &str) -> String {
-    let is_number = text.parse::<f64>().is_ok() || text == "-";
-    let is_formula = text.trim_start().starts_with(['=', '+', '-', '@']) && !is_number;
-    let text = visible(text);
-    let text = if is_formula { format!("'{text}").into() } else { text };
+    let text = guarded(text);
     match text.contains([',', ';', '"', '#']) || text.trim() != text {
         true => format!("\"{}\"", text.replace('"', "\"\"")),
         false => text.into_owned(),
     }
+}
+
+/// `text` with control characters escaped, and behind a `'` where a spreadsheet would take it for a
+/// formula; the reader of tables takes that away again.
+pub fn guarded(text: &str) -> Cow<'_, str> {
+    let shown = visible(text);
+    match is_formula(text) {
+        true => Cow::Owned(format!("'{shown}")),
+        false => shown,
+    }
+}
+
+/// Begins with `=`, `+`, `-` or `@` and is no number, none with a unit or an interval, and no
+/// direction (`-x`).
+pub(super) fn is_formula(text: &str) -> bool {
+    let is_number = |word: &str| word.trim_end_matches(['%', ',']).parse::<f64>().is_ok();
+    let is_word = |word: &str| word == "±" || word == "…" || word.chars().all(char::is_alphabetic);
+    let mut words = text.split_whitespace();
+    let begins = words.next().is_some_and(|first| match first {
+        "-" | "+" | "-x" | "-y" | "-z" | "+x" | "+y" | "+z" => false,
+        first => first.starts_with(['=', '+', '-', '@']) && !is_number(first),
+    });
+    let begins_as_number = text.trim_start().starts_with(['+', '-']);
+    begins || (begins_as_number && !words.all(|word| is_number(word) || is_word(word)))
 }
 
 /// `text` between quotes, shortened and with control characters made visible, for a message.
@@ -71,6 +92,7 @@ pub fn is_obeyed(c: char) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use super::super::Table;
     use super::*;
 
     #[test]
@@ -83,10 +105,13 @@ mod tests {
 
     #[test]
     fn a_cell_is_no_formula() {
-        for text in ["=1+1", "+cmd|' /C calc'!A0", "-1+1", "@SUM(1)", "=HYPERLINK(\"x\")"] {
+        for text in ["=1+1", "+cmd|' /C calc'!A0", "-1+1", "@SUM(1)", "=HYPERLINK(\"x\")", " =1", "-2 +A1(3)"]
+        {
             assert!(cell(text).trim_start_matches('"').starts_with('\''), "{text}: {}", cell(text));
+            let table = Table::parse("f", &format!("a\n{}\n", cell(text)), |_| false).unwrap();
+            assert_eq!(table.rows().next().unwrap().text("a"), Some(text.trim()));
         }
-        for text in ["-1.5", "+2e-3", "-", "x=1", "", "\u{2212}3", "-0"] {
+        for text in ["-1.5", "+2e-3", "-", "x=1", "", "\u{2212}3", "-0", "-x", "-1.5 ± 0.2 mm", "-3 to 4"] {
             assert_eq!(cell(text), text);
         }
         assert_eq!(cell("a,b"), "\"a,b\"");

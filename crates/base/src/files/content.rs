@@ -1,17 +1,38 @@
 //! What is in a file, and the sum by which it is known.
 
+use std::fs::File;
+use std::io::Read;
 use std::path::{Component, Path};
 
 use sha2::{Digest, Sha256};
 
 use crate::error::{Error, Place, Result};
+use crate::limits;
 
 /// The bytes of a file.
 ///
 /// # Errors
-/// [`Error::File`] where it cannot be read.
+/// [`Error::File`] where it cannot be read, [`Error::Input`] beyond [`limits::FILE_BYTES`].
 pub fn read_bytes(path: &Path) -> Result<Vec<u8>> {
-    std::fs::read(path).map_err(|source| Error::File { path: path.to_owned(), action: "read", source })
+    let mut bytes = Vec::new();
+    let most = limits::FILE_BYTES as u64;
+    // what says nothing of its length (a pipe, a device) is not read for ever either
+    let length = File::open(path).and_then(|file| match file.metadata()?.len() {
+        length if length > most => Ok(length),
+        _ => file.take(most + 1).read_to_end(&mut bytes).map(|length| length as u64),
+    });
+    match length.map_err(failed("read", path))? {
+        length if length > most => Err(Error::Input {
+            at: Place::whole_file(&path.display().to_string()),
+            found: match bytes.is_empty() {
+                true => format!("it has {length} bytes"),
+                false => "it has no end in sight".into(),
+            },
+            expected: format!("at most {most} bytes"),
+            hint: None,
+        }),
+        _ => Ok(bytes),
+    }
 }
 
 /// The bytes of a file by its name below `directory`, which must not lead out of it: not `..`, no

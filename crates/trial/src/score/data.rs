@@ -17,9 +17,6 @@ use crate::envelope::unwritable;
 /// then the halves.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Score {
-    /// What limits it, to be said before anything else: cases without an answer.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub remarks: Vec<String>,
     /// All cases.
     #[serde(flatten)]
     pub whole: Part,
@@ -31,6 +28,9 @@ pub struct Score {
     /// Calibrations of arms.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub calibration: Option<Part>,
+    /// What limits it, to be said before anything else: cases without an answer.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub remarks: Vec<String>,
 }
 
 /// The score of some cases.

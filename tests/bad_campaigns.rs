@@ -205,7 +205,7 @@ fn every_bad_key_is_named_with_its_place() {
         (
             "\"measurements.csv\"",
             "\"rig.csv\"",
-            "rig.csv:1: there is no column pose, expected a name for each pose",
+            "rig.csv:1: there is no column pose, expected a name for each pose -> the columns are axis, load_n, dz_um",
         ),
     ];
     assert_refused(Desk::with_clamps, "campaign.toml", &cases);
@@ -228,7 +228,7 @@ fn every_bad_column_or_cell_is_named_with_its_place() {
         (
             "clamp",
             "device",
-            "measurements.csv:1: there is no column clamp, expected the id of the clamp that held the ball, for the campaign has [[clamp]]",
+            "measurements.csv:1: there is no column clamp, expected the id of the clamp that held the ball, for the campaign has [[clamp]] -> the columns are pose, device, q1_deg, q2_deg, q3_mm, x_mm, y_mm, z_mm, time_s, temperature_c",
         ),
         (
             "q1_deg,q2_deg",

@@ -342,6 +342,21 @@ mod tests {
     }
 
     #[test]
+    fn the_page_says_in_short_how_well_tips_are_known_and_where() {
+        let far = predicted(&[[0.1, 1.2]], false).unwrap();
+        let report = report(&arm(), &far);
+        let said: Vec<&str> = report.cards.iter().map(|card| card.detail.as_str()).collect();
+        assert_eq!(said[2], "1 joint beyond its calibrated range");
+        assert_eq!(report.figures().count(), 1);
+        let mut silent = arm();
+        silent.tip = None;
+        let query = PredictionQuery { pose: "1".into(), joints: vec![0.1, 0.0] };
+        let unknown = Prediction::new(&silent, Vector3::zeros(), vec![query], false).unwrap();
+        let report = super::report(&silent, &unknown);
+        assert_eq!((report.cards[1].value.as_str(), report.figures().count()), ("not stated", 0));
+    }
+
+    #[test]
     fn an_alignment_takes_up_what_base_and_tool_can() {
         let poses: Vec<[f64; 2]> = (0..8).map(|k| [0.1 * f64::from(k), 0.3]).collect();
         // the second joint never moves: its zero is one of the tool

@@ -128,6 +128,14 @@ impl Classes {
         Classes { step_mm, number, largest_px }
     }
 
+    /// So many steps: in µm where all of them are below a millimetre.
+    fn size(&self, steps: f64) -> String {
+        match self.number as f64 * self.step_mm < 1.0 {
+            true => round_amount(steps * self.step_mm * 1e3, self.step_mm * 1e3, "µm"),
+            false => round_amount(steps * self.step_mm, self.step_mm, "mm"),
+        }
+    }
+
     fn class(&self, error_mm: f64) -> usize {
         ((error_mm / self.step_mm - 1e-9).ceil() as usize).clamp(1, self.number.max(1)) - 1
     }
@@ -142,7 +150,7 @@ impl Classes {
         };
         let style = Style::nth(0).colour(colour).dash(Dash::Solid).marker(Marker::Circle);
         Mark::Points {
-            label: format!("up to {}", round_amount((class + 1) as f64 * self.step_mm, self.step_mm, "mm")),
+            label: format!("up to {}", self.size((class + 1) as f64)),
             points,
             style: style.size((self.largest_px * part).max(1.2)),
         }
@@ -196,7 +204,7 @@ pub(super) mod tests {
         let figure = error_over_workspace(&poses);
         assert_eq!(figure.panels.iter().map(dots).collect::<Vec<_>>(), [150, 150]);
         let svg = figure.svg();
-        for text in ["x / mm", "y / mm", "z / mm", "up to 0.02\u{a0}mm", "up to 0.10\u{a0}mm"] {
+        for text in ["x / mm", "y / mm", "z / mm", "up to 20\u{a0}µm", "up to 100\u{a0}µm"] {
             assert!(svg.contains(text), "{text}\n{svg}");
         }
     }

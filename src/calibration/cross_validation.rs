@@ -49,8 +49,8 @@ pub struct CrossValidation {
 /// ```
 ///
 /// # Errors
-/// [`Error::Argument`] for more folds than poses; as [`super::calibrate()`], where a fold leaves too
-/// few poses.
+/// [`Error::Argument`] for more folds than poses; as [`super::calibrate()`], where a fold leaves
+/// too few poses.
 pub fn cross_validate(
     campaign: &Campaign,
     calibration: &Calibration,

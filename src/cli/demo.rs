@@ -72,8 +72,8 @@ pub fn run() -> Result<Outcome> {
         if rod.name == SHOWN {
             rod_page.headline = format!("{} {}", rod_report.headline, rig_report.headline);
             rod_page.cards = rod_report.cards.into_iter().chain(rig_report.cards).collect();
-            rod_page.sections = shown(rod_report.sections, &["shape-force", "waterfall"]);
-            rod_page.sections.extend(shown(rig_report.sections, &["load-deflection"]));
+            rod_page.sections = shown(rod_report.sections, &["shape-force"]);
+            rod_page.sections.extend(shown(rig_report.sections, &["load-deflection", "waterfall"]));
         } else if rod.name == DIAGNOSED {
             add(&mut why_page, &format!("Rod {DIAGNOSED}"), diagnosed(&readings, Some(&rod))?);
         }

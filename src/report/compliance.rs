@@ -1,6 +1,9 @@
 //! What the `compliance` command says: JSON, tables and pictures of a [`Study`].
 
+mod numbers;
 pub(super) mod steps;
+
+pub use numbers::number;
 
 use nalgebra::{Matrix3, Vector3};
 use serde_json::{Value, json};
@@ -16,9 +19,6 @@ use crate::compliance::{
 };
 use crate::rod::{NominalNumber, Rod};
 use crate::units::{GRAM, MM, UM, URAD, significant};
-
-/// Digits of a compliance in a table.
-const DIGITS: usize = 5;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
@@ -364,16 +364,6 @@ fn station_table(response: &StationResponse) -> Block {
         table.row(cells);
     }
     Block::Table(table)
-}
-
-/// A compliance in µm; what symmetry makes zero is shown as 0.
-pub fn number(value: f64) -> String {
-    significant(in_um(value), DIGITS)
-}
-
-/// In µm, without the rounding (1e-14) of what is zero by symmetry.
-fn in_um(value: f64) -> f64 {
-    if value.abs() < 1e-9 * UM { 0.0 } else { value / UM }
 }
 
 /// A figure that becomes a block under its own name.

@@ -19,8 +19,8 @@ fn warnings_go_to_stderr_and_with_json_also_into_it() {
     }
 }
 
-/// Quiet hides warnings from stderr and from nowhere else, and never an error; verbose says what was
-/// read and written. Neither changes the result.
+/// Quiet hides warnings from stderr and from nowhere else, and never an error; verbose says what
+/// was read and written. Neither changes the result.
 #[test]
 fn quiet_and_verbose_change_stderr_alone() {
     let sandbox = Sandbox::new();

@@ -1,6 +1,6 @@
 //! From Calc over FEA to Meas, one left-out term after another: as a table and as a waterfall.
 
-use super::{DIGITS, in_um, number};
+use super::numbers::{DIGITS, in_um, number};
 use crate::compliance::{Compliance, Step, Study};
 use crate::report::chart::Figure;
 use crate::report::pictures::{Rung, Waterfall, waterfall};

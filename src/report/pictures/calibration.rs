@@ -20,7 +20,7 @@ pub use errors::{MethodErrors, cumulative_errors, error_distribution};
 pub use intervals::{ModeComparison, ParameterCorrection, mode_comparison, parameter_corrections};
 pub use residuals::{ModeResiduals, PoseResidual, ResidualGroup, residuals_by_group};
 pub use vectors::{PoseVector, residual_vectors, residual_vectors_of};
-pub use workspace::{PoseError, error_over_workspace};
+pub use workspace::{PoseError, error_over_workspace, uncertainty_over_workspace};
 
 use super::super::scale::label;
 use super::{significant, typeset};

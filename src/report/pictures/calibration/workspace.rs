@@ -25,23 +25,32 @@ pub struct PoseError {
 /// The poses in x–y and in x–z, as discs whose diameter is in proportion to the error, in steps
 /// that the legend shows.
 pub fn error_over_workspace(poses: &[PoseError]) -> Figure {
+    over_workspace(poses, "error")
+}
+
+/// The same for standard deviations that are expected, not errors that were measured.
+pub fn uncertainty_over_workspace(poses: &[PoseError]) -> Figure {
+    over_workspace(poses, "uncertainty")
+}
+
+/// `what` is "error", "uncertainty", …
+fn over_workspace(poses: &[PoseError], what: &str) -> Figure {
     let known =
         |p: &&PoseError| p.at_mm.iter().chain([&p.error_mm]).all(|v| drawable(*v)) && p.error_mm >= 0.0;
     let poses: Vec<PoseError> = poses.iter().filter(known).copied().collect();
     let room = Room::around(poses.iter().map(|p| p.at_mm));
     let cell_mm = one_two_five_below(room.size_mm() / 16.0);
-    let mut caption =
-        String::from("The poses in the workspace; the larger a disc, the larger the error there.");
+    let mut caption = format!("The poses in the workspace; the larger a disc, the larger the {what} there.");
     if poses.len() > MOST_POINTS {
         caption += &format!(
-            " Of {} poses the one with the largest error in each square of {} is drawn.",
+            " Of {} poses the one with the largest {what} in each square of {} is drawn.",
             typeset(&poses.len().to_string()),
             round_amount(cell_mm, cell_mm, "mm")
         );
     }
     let classes = Classes::new(&poses);
     let panel = |(view, label, axis): (&str, &str, usize)| {
-        let mut chart = room.chart(format!("error, {view}"), label, axis);
+        let mut chart = room.chart(format!("{what}, {view}"), label, axis);
         // First for the legend, from small to large; then to be drawn, the small on top of the
         // large.
         for class in 0..classes.number {
@@ -56,7 +65,7 @@ pub fn error_over_workspace(poses: &[PoseError]) -> Figure {
         }
         chart
     };
-    room.figure("error-over-workspace", caption, VIEWS.map(panel).into())
+    room.figure(&format!("{what}-over-workspace"), caption, VIEWS.map(panel).into())
 }
 
 /// What both views span.
@@ -119,6 +128,14 @@ impl Classes {
         Classes { step_mm, number, largest_px }
     }
 
+    /// So many steps: in µm where all of them are below a millimetre.
+    fn size(&self, steps: f64) -> String {
+        match self.number as f64 * self.step_mm < 1.0 {
+            true => round_amount(steps * self.step_mm * 1e3, self.step_mm * 1e3, "µm"),
+            false => round_amount(steps * self.step_mm, self.step_mm, "mm"),
+        }
+    }
+
     fn class(&self, error_mm: f64) -> usize {
         ((error_mm / self.step_mm - 1e-9).ceil() as usize).clamp(1, self.number.max(1)) - 1
     }
@@ -133,7 +150,7 @@ impl Classes {
         };
         let style = Style::nth(0).colour(colour).dash(Dash::Solid).marker(Marker::Circle);
         Mark::Points {
-            label: format!("up to {}", round_amount((class + 1) as f64 * self.step_mm, self.step_mm, "mm")),
+            label: format!("up to {}", self.size((class + 1) as f64)),
             points,
             style: style.size((self.largest_px * part).max(1.2)),
         }
@@ -187,7 +204,7 @@ pub(super) mod tests {
         let figure = error_over_workspace(&poses);
         assert_eq!(figure.panels.iter().map(dots).collect::<Vec<_>>(), [150, 150]);
         let svg = figure.svg();
-        for text in ["x / mm", "y / mm", "z / mm", "up to 0.02\u{a0}mm", "up to 0.10\u{a0}mm"] {
+        for text in ["x / mm", "y / mm", "z / mm", "up to 20\u{a0}µm", "up to 100\u{a0}µm"] {
             assert!(svg.contains(text), "{text}\n{svg}");
         }
     }

@@ -12,8 +12,8 @@ use rodcal::report::pictures::calibration::{
     mode_comparison, parameter_corrections, residual_vectors, residuals_by_group,
 };
 use rodcal::report::pictures::{
-    Contributions, LoadDeflection, LoadLine, LoadUnit, MeanReading, Residuals, RodShape, ShapeCase, Station,
-    StationKind, contributions, load_deflection, residuals, rod_shape,
+    LoadDeflection, LoadLine, LoadUnit, MeanReading, Residuals, RodShape, Rung, ShapeCase, Station,
+    StationKind, Waterfall, load_deflection, residuals, rod_shape, waterfall,
 };
 use rodcal::report::table::{Column, Table};
 use rodcal::report::{Block, Report, Section};
@@ -90,7 +90,7 @@ fn compliance_table() -> Table {
 }
 
 fn line(label: &str, slope_um_per_n: f64, intercept_um: f64, is_fit: bool) -> LoadLine {
-    LoadLine { label: label.into(), slope_um_per_n, intercept_um, is_fit }
+    LoadLine { label: label.into(), slope_um_per_n, intercept_um, is_fit, band: Vec::new() }
 }
 
 fn readings(slope: f64, friction: f64, error: f64) -> Vec<MeanReading> {
@@ -98,6 +98,7 @@ fn readings(slope: f64, friction: f64, error: f64) -> Vec<MeanReading> {
         load_n: *load_n,
         mean_um: slope * (load_n - friction) + wobble * error,
         standard_error_um: error,
+        residual_um: wobble * error,
     };
     [(4.9, 0.7), (9.8, -1.0), (14.7, -0.2), (19.6, 0.5)].iter().map(reading).collect()
 }
@@ -178,18 +179,23 @@ fn shape() -> Figure {
 }
 
 fn contribution_picture() -> Figure {
-    let group = |title: &str, unit: &str, values: [f64; 6]| {
-        let names = ["axial", "shear", "tip mass", "bend", "joints", "sleeves"];
-        let terms = names.iter().zip(values).map(|(name, value)| (name.to_string(), value)).collect();
-        Contributions { title: title.into(), unit: unit.into(), terms }
+    let quantity = |title: &str, calc: f64, values: [f64; 5], measured: f64| {
+        let total = |name: &str, value, half_width| Rung::Total { name: name.into(), value, half_width };
+        let names = ["axial", "shear", "bend", "joints", "sleeves"];
+        let model = calc + values.iter().sum::<f64>();
+        let mut rungs = vec![total("Calc", calc, None)];
+        rungs.extend(
+            names.iter().zip(values).map(|(name, added)| Rung::Term { name: name.to_string(), added }),
+        );
+        rungs.push(total("FEA", model, None));
+        rungs.push(Rung::Remainder { name: "not in the model".into(), added: measured - model });
+        rungs.push(total("Meas", measured, Some(0.4)));
+        Waterfall { title: title.into(), unit: "µm/N".into(), rungs }
     };
-    contributions(&[
-        group("C11", "µm/N", [0.0021, 0.011, 0.0, 0.05, 0.13, -0.02]),
-        group("C22", "µm/N", [0.0, 0.043, 0.0, 0.92, 2.41, -0.38]),
-        group("C33", "µm/N", [0.0013, 0.038, 0.0, 0.71, 1.36, -0.29]),
-        group("Cg33", "%", [0.004, 0.12, 18.3, 2.1, 6.9, -1.4]),
+    waterfall(&[
+        quantity("C^F 22", 30.2, [0.0, 0.043, 0.92, 2.41, -0.38], 35.1),
+        quantity("C^F 33", 25.1, [0.0013, 0.038, 0.71, 1.36, -0.29], 26.6),
     ])
-    .captioned("What each left-out term would add.")
 }
 
 fn joint_angles() -> Figure {
@@ -221,7 +227,7 @@ fn histogram() -> Figure {
         let bar = |i: i32| {
             let x = f64::from(i) * 10.0 - 100.0 + shift;
             let value = 40.0 * f64::exp(-(x / seed).powi(2)).max(0.004);
-            Bar { from: x, to: x + 4.5, value: value.round(), text: String::new() }
+            Bar { from: x, to: x + 4.5, value: value.round(), ..Bar::default() }
         };
         (0..20).map(bar).collect()
     };

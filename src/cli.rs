@@ -74,7 +74,7 @@ names of keys and columns (l1_mm, load_n, dz_um).
 
 Exit status: 0 done; 1 a diagnosis found a mismatch, or a calibration's fit is
 not plausible; 2 could not run (the error says what and where), and nothing has
-been written.";
+been written but what a long run keeps to go on from (answers, --resume).";
 
 #[derive(Debug, Subcommand)]
 enum Command {
@@ -112,6 +112,9 @@ enum Command {
 /// Runs the command that was asked for.
 pub fn run(arguments: &Arguments) -> Result<Outcome> {
     let options = &arguments.output;
+    if options.quiet {
+        progress::be_quiet();
+    }
     let is_demo = matches!(arguments.command, None | Some(Command::Demo));
     let directory = options.out.as_deref().or(is_demo.then(|| Path::new(demo::DIRECTORY)));
     output::check(options, directory)?;
@@ -126,7 +129,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome> {
         Some(Command::Diagnose(command)) => command.run(),
         Some(Command::Predict(command)) => command.run(),
         Some(Command::Simulate(command)) => command.run(options.existing()),
-        Some(Command::Trial(command)) => command.run(options.existing()),
+        Some(Command::Trial(command)) => command.run(),
         Some(Command::Completions(command)) => Ok(command.run(Arguments::command())),
     }
 }

@@ -9,9 +9,9 @@ mod sensitivity;
 mod steps;
 mod study;
 
-pub use sensitivity::{Sensitivity, sensitivities};
+pub use sensitivity::{Sensitivity, sensitivities, standard_uncertainty};
 pub use steps::{Step, steps};
-pub use study::{Mode, Shape, StationResponse, Study};
+pub use study::{LINEAR_SHARE, Mode, Shape, StationResponse, Study, TipLoad};
 
 use nalgebra::Matrix3;
 

@@ -3,21 +3,24 @@
 mod cli;
 
 use std::process::ExitCode;
+use std::time::Instant;
 
 use clap::Parser;
 
 fn main() -> ExitCode {
     let arguments = match cli::Arguments::try_parse() {
         Ok(arguments) => arguments,
-        Err(error) => cli::suggestions::with_nested(error).exit(),
+        Err(error) => cli::suggestions::exit_with(error),
     };
-    match cli::run(&arguments).and_then(|outcome| cli::output::deliver(&arguments.output, outcome)) {
+    let started = Instant::now();
+    let deliver = |outcome| cli::output::deliver(&arguments.output, started, outcome);
+    match cli::run(&arguments).and_then(deliver) {
         Ok(status) => status,
         Err(error) => {
             let word = cli::output::coloured("error:", cli::output::RED);
-            cli::output::say(&format!("{word} {error}"));
+            cli::output::say(&word, &error.to_string());
             if let Some(hint) = error.hint() {
-                cli::output::say(&format!("hint: {hint}"));
+                cli::output::say("hint:", hint);
             }
             ExitCode::from(2)
         }

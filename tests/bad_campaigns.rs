@@ -205,7 +205,7 @@ fn every_bad_key_is_named_with_its_place() {
         (
             "\"measurements.csv\"",
             "\"rig.csv\"",
-            "rig.csv:1: there is no column pose, expected a name for each pose",
+            "rig.csv:1: there is no column pose, expected a name for each pose -> the columns are axis, load_n, dz_um",
         ),
     ];
     assert_refused(Desk::with_clamps, "campaign.toml", &cases);
@@ -228,7 +228,7 @@ fn every_bad_column_or_cell_is_named_with_its_place() {
         (
             "clamp",
             "device",
-            "measurements.csv:1: there is no column clamp, expected the id of the clamp that held the ball, for the campaign has [[clamp]]",
+            "measurements.csv:1: there is no column clamp, expected the id of the clamp that held the ball, for the campaign has [[clamp]] -> the columns are pose, device, q1_deg, q2_deg, q3_mm, x_mm, y_mm, z_mm, time_s, temperature_c",
         ),
         (
             "q1_deg,q2_deg",
@@ -263,7 +263,7 @@ fn every_bad_column_or_cell_is_named_with_its_place() {
         (
             "q1_deg,q2_deg,q3_mm",
             "a,b,c",
-            "measurements.csv:1: there are no columns q1_deg, q2_deg, q3_mm, expected q1_deg, q2_deg, q3_mm, for the robot has 3 joints",
+            "measurements.csv:1: there are no columns q1_deg, q2_deg, q3_mm, expected q1_deg, q2_deg, q3_mm, for the robot has 3 joints -> the columns are pose, clamp, a, b, c, x_mm, y_mm, z_mm, time_s, temperature_c",
         ),
         (
             "q1_deg,q2_deg,q3_mm",
@@ -372,7 +372,7 @@ fn every_bad_column_or_cell_is_named_with_its_place() {
         (
             "socket,",
             "x_mm,",
-            "measurements.csv:1: there is no column socket, expected the number of the socket that held the ball, 0 or 1, for the campaign has [sockets]",
+            "measurements.csv:1: there is no column socket, expected the number of the socket that held the ball, 0 or 1, for the campaign has [sockets] -> the columns are pose, placement, x_mm, q1_deg, q2_deg, q3_mm",
         ),
         (
             "3,front,1",

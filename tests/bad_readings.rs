@@ -108,7 +108,7 @@ fn every_bad_cell_or_column_is_named_with_its_place() {
         (
             "load_n",
             "weight",
-            "rig.csv:1: there is no load, expected a column load_n (newtons) or load_kg (kilograms)",
+            "rig.csv:1: there is no load, expected a column load_n (newtons) or load_kg (kilograms) -> the columns are axis, weight, dz_um, phase, time_s, temperature_c, load_station_mm",
         ),
         (
             "dz_um",

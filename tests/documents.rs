@@ -74,3 +74,19 @@ fn every_effect_has_its_rivals_and_no_other_is_listed() {
         assert_eq!(named, known, "docs/diagnosis.md, {name}");
     }
 }
+
+/// Name and number of every limit.
+#[test]
+fn the_page_of_limits_lists_those_of_the_code() {
+    let code = document("crates/base/src/limits.rs");
+    let constants = code.lines().filter_map(|line| line.strip_prefix("pub const ")?.split_once(": usize = "));
+    let stated: Vec<String> = constants
+        .map(|(name, number)| format!("| `{name}` | {} |", number.trim_end_matches(';').replace('_', "")))
+        .collect();
+    let page = document("docs/limits.md");
+    let rows: Vec<&str> = page.lines().filter(|line| line.starts_with("| `")).collect();
+    assert!(stated.len() > 10 && rows.len() == stated.len(), "{stated:?}");
+    for (row, stated) in rows.iter().zip(stated) {
+        assert!(row.starts_with(&stated), "{row}: the code has {stated}");
+    }
+}

@@ -15,6 +15,7 @@ mod circles;
 mod cli;
 mod diagnosis;
 mod documents;
+mod fuzz;
 mod kinematics;
 mod nist;
 mod references;

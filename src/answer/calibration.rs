@@ -32,6 +32,15 @@ pub fn calibrate<'c>(
     let cross_validation = cross_validation.as_ref();
     let mut report = report::calibration::report(campaign, &calibrated, cross_validation);
     report.provenance = provenance(campaign);
+    if let (Some(asked), Some(held_out)) = (folds, cross_validation)
+        && held_out.folds != asked
+    {
+        report.warnings.push(format!(
+            "{} folds in place of {asked}: with sockets whole placements are held out, for poses of one placement share its \
+             unknown points",
+            held_out.folds
+        ));
+    }
     let suspicions = suspected(campaign, mode, others)?;
     let is_plausible = calibrated.is_plausible() && suspicions.iter().all(|suspicion| !suspicion.spoils_fit);
     let lines: Vec<String> = suspicions.into_iter().map(|suspicion| suspicion.words).collect();

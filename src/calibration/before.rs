@@ -25,8 +25,14 @@ pub(super) fn before(
     let start = calibration.start.clone();
     let nominal = calibrate_from(campaign, &campaign.measurements, start, &placed, compensation, options)?;
     let validation = match &campaign.validation {
-        Some(recording) => Some(validate(&nominal.setup, recording, campaign.refit)?.summary),
+        Some(recording) => Some(validate(&nominal.setup, recording, campaign.refit)?),
         None => None,
     };
-    Ok(Before { residual: Summary::of(&nominal.residuals()), validation })
+    let residuals = nominal.residuals();
+    Ok(Before {
+        residual: Summary::of(&residuals),
+        residuals,
+        validation: validation.as_ref().map(|validation| validation.summary),
+        validation_errors: validation.map_or_else(Vec::new, |validation| validation.errors),
+    })
 }

@@ -78,7 +78,7 @@ const WORSE: f64 = 1.2;
 
 /// Where the nominal robot predicts the validation better than the calibrated one.
 pub(super) fn worse_than_nominal(calibration: &Calibration) -> Option<Warning> {
-    let before = calibration.before?.validation?.mean;
+    let before = calibration.before.as_ref()?.validation?.mean;
     let after = calibration.validation.as_ref()?.summary.mean;
     (after > WORSE * before).then_some(Warning::WorseThanNominal { before, after })
 }

@@ -9,7 +9,7 @@ use super::options::Options;
 use super::problem::Pass;
 use super::result::Calibration;
 use super::validation::Summary;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::parallel::in_parallel;
 use crate::robot::Kinematics;
 
@@ -49,7 +49,8 @@ pub struct CrossValidation {
 /// ```
 ///
 /// # Errors
-/// As [`super::calibrate()`], where a fold leaves too few poses.
+/// [`Error::Argument`] for more folds than poses; as [`super::calibrate()`], where a fold leaves
+/// too few poses.
 pub fn cross_validate(
     campaign: &Campaign,
     calibration: &Calibration,
@@ -58,6 +59,13 @@ pub fn cross_validate(
     options: &Options,
 ) -> Result<CrossValidation> {
     let recording = &campaign.measurements;
+    if folds > recording.len() {
+        return Err(Error::Argument {
+            name: "folds",
+            found: folds.to_string(),
+            expected: format!("at most {}: so many poses were recorded", recording.len()),
+        });
+    }
     let fold = recording.folds(folds);
     let folds = fold.iter().max().map_or(0, |last| last + 1);
     let free: Vec<_> = calibration.parameters.iter().map(|p| p.parameter).collect();

@@ -67,8 +67,10 @@ impl Recording {
     /// Which fold each row belongs to, 0 … `folds` − 1: the rows of every clamp are cut into blocks
     /// of consecutive ones, four for every fold where they are long enough, and the blocks dealt to
     /// the folds in turn. Neighbours, which often share an error, are thereby held out together,
-    /// and yet no fold is a corner of the workspace. With sockets whole placements are held out, as
-    /// many folds as there are placements, where there are two or more.
+    /// and yet no fold is a corner of the workspace. Clamps that have fewer rows than there are
+    /// folds are dealt row by row, each going on where the one before it ended: so there are as
+    /// many folds as were asked for, where there are as many rows. With sockets whole placements
+    /// are held out, as many folds as there are placements, where there are two or more.
     ///
     /// ```
     /// use rodcal::prelude::*;
@@ -92,12 +94,25 @@ impl Recording {
         }
         let mut seen = vec![0usize; self.groups.len()];
         let folds = folds.max(2);
+        // where each group of few rows begins
+        let mut dealt = 0;
+        let begins: Vec<usize> = size
+            .iter()
+            .map(|&size| {
+                let begin = dealt;
+                dealt += if size < folds { size } else { 0 };
+                begin
+            })
+            .collect();
         self.rows
             .iter()
             .map(|row| {
                 let at = seen[row.group];
                 seen[row.group] += 1;
                 let size = size[row.group];
+                if size < folds {
+                    return (begins[row.group] + at) % folds;
+                }
                 let rounds = if size >= 4 * folds * LEAST_BLOCK { 4 } else { 1 };
                 (at * folds * rounds / size) % folds
             })

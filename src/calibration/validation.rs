@@ -49,14 +49,18 @@ pub struct Summary {
 }
 
 /// Errors of the nominal robot at the poses of a campaign.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Before {
     /// Of the calibration's poses: only where the robot stands and where its tip is (or where the
     /// sockets are) was fitted to them.
     pub residual: Summary,
+    /// The same, one by one, m.
+    pub residuals: Vec<f64>,
     /// Of the validation's poses; `None` without a validation.
     pub validation: Option<Summary>,
+    /// The same, one by one, m; empty without a validation.
+    pub validation_errors: Vec<f64>,
 }
 
 impl Summary {

@@ -23,13 +23,6 @@ impl Completions {
         let mut script = Vec::new();
         clap_complete::generate(self.shell, &mut command, "rodcal", &mut script);
         let script = String::from_utf8_lossy(&script).into_owned();
-        Outcome {
-            json: serde_json::json!({ "completions": script }),
-            report: None,
-            text: Some(script),
-            default_directory: None,
-            files: Vec::new(),
-            status: 0,
-        }
+        Outcome::plain(serde_json::json!({ "completions": script }), script)
     }
 }

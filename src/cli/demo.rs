@@ -72,8 +72,8 @@ pub fn run() -> Result<Outcome> {
         if rod.name == SHOWN {
             rod_page.headline = format!("{} {}", rod_report.headline, rig_report.headline);
             rod_page.cards = rod_report.cards.into_iter().chain(rig_report.cards).collect();
-            rod_page.sections = shown(rod_report.sections, &["shape-force", "contributions"]);
-            rod_page.sections.extend(shown(rig_report.sections, &["load-deflection"]));
+            rod_page.sections = shown(rod_report.sections, &["shape-force"]);
+            rod_page.sections.extend(shown(rig_report.sections, &["load-deflection", "waterfall"]));
         } else if rod.name == DIAGNOSED {
             add(&mut why_page, &format!("Rod {DIAGNOSED}"), diagnosed(&readings, Some(&rod))?);
         }
@@ -114,18 +114,17 @@ pub fn run() -> Result<Outcome> {
     for page in &pages {
         files.extend(page.files()?);
     }
+    let json = json!({
+        "rods": results,
+        "load_cell": report::rig::json(&fit, &readings, None),
+        "calibration": calibrated,
+        "comparison": compared,
+    });
     Ok(Outcome {
-        json: json!({
-            "rods": results,
-            "load_cell": report::rig::json(&fit, &readings, None),
-            "calibration": calibrated,
-            "comparison": compared,
-        }),
-        report: Some(index),
         text: Some(words),
         default_directory: Some(PathBuf::from(DIRECTORY)),
         files,
-        status: 0,
+        ..Outcome::new(json, index)
     })
 }
 

@@ -4,10 +4,12 @@
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::time::Instant;
 
 use clap::Args;
 use rodcal::answer::Answer;
-use rodcal::files::{self, Existing};
+use rodcal::delimited::{is_obeyed, visible, visible_lines};
+use rodcal::files::{self, Existing, Staged};
 use rodcal::report::{Report, text};
 use rodcal::{Error, Result};
 use serde_json::Value;
@@ -30,6 +32,15 @@ pub struct Options {
     /// With --out: write the pictures as PNG too.
     #[arg(long, global = true, help_heading = OUTPUT)]
     pub png: bool,
+
+    /// No progress and no warnings on stderr; errors are said. Warnings stay in --json and on the
+    /// page.
+    #[arg(short, long, global = true, conflicts_with = "verbose", help_heading = OUTPUT)]
+    pub quiet: bool,
+
+    /// Say on stderr what was read (with its SHA-256), how long it took and what was written.
+    #[arg(short, long, global = true, help_heading = OUTPUT)]
+    pub verbose: bool,
 
     /// Replace files that rodcal did not write, or that were changed since.
     #[arg(long, global = true, help_heading = OUTPUT)]
@@ -63,9 +74,16 @@ pub struct Outcome {
     pub default_directory: Option<PathBuf>,
     /// Names and contents of more files for the report's directory.
     pub files: Vec<(String, Vec<u8>)>,
+    /// Where there is no report: what a user should know.
+    pub warnings: Vec<String>,
+    /// Puts files that are complete where they belong, once the result has been said.
+    pub commit: Option<Commit>,
     /// Exit status.
     pub status: u8,
 }
+
+/// What is left to be done after the result has been said; dropped, nothing has been written.
+pub type Commit = Box<dyn FnOnce() -> Result<()>>;
 
 impl From<Answer> for Outcome {
     fn from(Answer { json, report, files, status, .. }: Answer) -> Self {
@@ -82,33 +100,55 @@ impl Outcome {
             text: None,
             default_directory: None,
             files: Vec::new(),
+            warnings: Vec::new(),
+            commit: None,
             status: 0,
         }
     }
+
+    /// A result without one.
+    pub fn plain(json: Value, text: String) -> Self {
+        Outcome { report: None, text: Some(text), ..Outcome::new(json, Report::default()) }
+    }
 }
 
-/// Prints warnings and the result, after the report is written whole.
+/// Prints warnings and the result. Before that all files are complete, after it they go where they
+/// belong: nothing is left where nothing could be said (a full disk behind stdout). The command was
+/// `started` then.
 ///
 /// # Errors
 /// [`Error::File`] where a file cannot be written, [`Error::InTheWay`] where one would be lost.
-pub fn deliver(options: &Options, outcome: Outcome) -> Result<ExitCode> {
-    let Outcome { mut json, mut report, text, default_directory, files: more, status } = outcome;
+pub fn deliver(options: &Options, started: Instant, outcome: Outcome) -> Result<ExitCode> {
+    let Outcome { mut json, mut report, text, default_directory, files: more, warnings, commit, status } =
+        outcome;
     let directory = options.out.clone().or(default_directory);
-    if report.is_none() && options.out.is_some() {
-        say("warning: this command writes no report: --out has no effect");
+    let note = |line: &dyn Fn() -> String| {
+        if options.verbose {
+            say("", &line());
+        }
+    };
+    let mut written = Vec::new();
+    if report.is_none() && options.out.is_some() && !options.quiet {
+        say(&coloured("warning:", YELLOW), "this command writes no report: --out has no effect");
     }
     let mut inputs = Vec::new();
+    let mut staged = None;
     if let Some(report) = &mut report {
         if options.png && directory.is_none() {
             report.warnings.push("--png has no effect without --out".into());
         }
         // the same words on stderr, on the page and in the JSON
         json["warnings"] = report.warnings.as_slice().into();
-        if directory.is_some() {
+        if directory.is_some() || options.verbose {
             let provenance = Provenance::of(std::env::args().skip(1));
-            inputs.extend(provenance.inputs.iter().cloned());
-            report.provenance.extend(provenance.lines());
-            json["provenance"] = provenance.json();
+            for (file, hash) in &provenance.inputs {
+                note(&|| format!("read {file}, SHA-256 {hash}"));
+            }
+            if directory.is_some() {
+                inputs.extend(provenance.inputs.iter().cloned());
+                report.provenance.extend(provenance.lines());
+                json["provenance"] = provenance.json();
+            }
         }
     }
     if let (Some(report), Some(directory)) = (&report, &directory) {
@@ -121,11 +161,16 @@ pub fn deliver(options: &Options, outcome: Outcome) -> Result<ExitCode> {
         files.extend(more);
         files.push((RESULT.into(), pretty(&json).into_bytes()));
         files::check_apart(&inputs, directory, &files, options.existing())?;
-        files::write_together(directory, &files, options.existing())?;
+        staged = Some(Staged::new(directory, &files, options.existing())?);
+        written.extend(files.iter().map(|(name, content)| (directory.join(name), content.len())));
     }
-    let warnings = report.as_ref().map_or(&[][..], |report| &report.warnings);
-    for warning in warnings {
-        say(&format!("{} {warning}", coloured("warning:", YELLOW)));
+    note(&|| format!("calculated and rendered in {:.2} s", started.elapsed().as_secs_f64()));
+    if report.is_none() && !warnings.is_empty() {
+        json["warnings"] = warnings.as_slice().into();
+    }
+    let warnings = report.as_ref().map_or(&warnings, |report| &report.warnings);
+    for warning in warnings.iter().filter(|_| !options.quiet) {
+        say(&coloured("warning:", YELLOW), warning);
     }
     let mut words = match (options.json, text, &report) {
         (true, ..) => pretty(&json),
@@ -136,13 +181,33 @@ pub fn deliver(options: &Options, outcome: Outcome) -> Result<ExitCode> {
     if let (false, Some(directory), Some(_)) = (options.json, &directory, &report) {
         words += &format!("\nreport: {}\n", directory.join(PAGE).display());
     }
-    match std::io::stdout().write_all(words.as_bytes()) {
+    let words = if options.json { escaped_json(&words).into() } else { visible_lines(&words) };
+    let mut stdout = std::io::stdout();
+    match stdout.write_all(words.as_bytes()).and_then(|()| stdout.flush()) {
         // `rodcal … | head` closes the pipe early and means no harm
         Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => {
-            Err(Error::File { path: "stdout".into(), action: "write", source: e })
+            return Err(Error::File { path: "stdout".into(), action: "write", source: e });
         }
-        _ => Ok(ExitCode::from(status)),
+        _ => {}
     }
+    staged.map_or(Ok(()), Staged::commit)?;
+    for (file, bytes) in &written {
+        note(&|| format!("wrote {}, {bytes} bytes", file.display()));
+    }
+    commit.map_or(Ok(()), |commit| commit())?;
+    Ok(ExitCode::from(status))
+}
+
+/// JSON with everything escaped that a terminal would obey; what is read from it is the same.
+fn escaped_json(text: &str) -> String {
+    let mut escaped = String::with_capacity(text.len());
+    for c in text.chars() {
+        match is_obeyed(c) && c != '\n' {
+            true => c.encode_utf16(&mut [0; 2]).iter().for_each(|unit| escaped += &format!("\\u{unit:04x}")),
+            false => escaped.push(c),
+        }
+    }
+    escaped
 }
 
 /// Refuses what cannot be delivered, before anything is calculated; the report goes to `directory`.
@@ -195,9 +260,12 @@ pub fn coloured(word: &str, colour: u8) -> String {
     }
 }
 
-/// A line on stderr. Nobody may be listening (`2>&1 | head`), and `eprintln!` would panic.
-pub fn say(line: &str) {
-    let _ = writeln!(std::io::stderr(), "{line}");
+/// A line on stderr after a word of the program's own. Nobody may be listening (`2>&1 | head`), and
+/// `eprintln!` would panic. Names of files and what stands in them may hold anything: it is shown,
+/// not obeyed.
+pub fn say(word: &str, line: &str) {
+    let space = if word.is_empty() { "" } else { " " };
+    let _ = writeln!(std::io::stderr(), "{word}{space}{}", visible(line));
 }
 
 /// Columns of the terminal that stdout is, or as COLUMNS says; in a file or a pipe tables take what

@@ -1,8 +1,25 @@
 //! A bar on stderr for what takes longer than a second, on a terminal only.
 
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+/// Whether bars are to be seen at all.
+static IS_QUIET: AtomicBool = AtomicBool::new(false);
+
+/// No bars from now on.
+pub fn be_quiet() {
+    IS_QUIET.store(true, Ordering::Relaxed);
+}
+
+/// Five times a second on stderr, where that is a terminal.
+fn target() -> ProgressDrawTarget {
+    match IS_QUIET.load(Ordering::Relaxed) {
+        true => ProgressDrawTarget::hidden(),
+        false => ProgressDrawTarget::stderr_with_hz(5),
+    }
+}
 
 /// Counts finished tasks.
 pub struct Progress(ProgressBar);
@@ -11,7 +28,7 @@ impl Progress {
     /// Of `count` tasks; nothing is seen of it in the first second, nor where stderr is no
     /// terminal.
     pub fn new(what: &'static str, count: usize) -> Self {
-        let bar = ProgressBar::with_draw_target(Some(count as u64), ProgressDrawTarget::stderr_with_hz(5));
+        let bar = ProgressBar::with_draw_target(Some(count as u64), target());
         if let Ok(style) = ProgressStyle::with_template("{msg} {bar:40} {pos}/{len}, {eta} left") {
             bar.set_style(style);
         }
@@ -21,7 +38,7 @@ impl Progress {
 
     /// Of tasks that nobody can count beforehand.
     pub fn open(what: &'static str) -> Self {
-        let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr_with_hz(5));
+        let bar = ProgressBar::with_draw_target(None, target());
         if let Ok(style) = ProgressStyle::with_template("{msg}: {pos} looked at, {elapsed}") {
             bar.set_style(style);
         }

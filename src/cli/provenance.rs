@@ -11,7 +11,7 @@ pub const RESULT: &str = "result.json";
 /// The option that says where to write: the same report elsewhere is the same report.
 const WHERE: &str = "--out";
 /// What changes no result.
-const WITHOUT_EFFECT: [&str; 1] = ["--force"];
+const WITHOUT_EFFECT: [&str; 5] = ["--force", "-q", "--quiet", "-v", "--verbose"];
 
 /// What stands in a report besides its own sources: name and value.
 pub struct Provenance {
@@ -97,6 +97,10 @@ mod tests {
     #[test]
     fn where_a_report_goes_is_no_part_of_the_command() {
         let made = of(&["fit", "a b.csv", "--out", "x", "--mode=fea", "--out=y"]);
+        assert_eq!(
+            of(&["fit", "-q", "a.csv"]).command,
+            of(&["fit", "a.csv", "--verbose", "--force"]).command
+        );
         assert_eq!(made.command, "rodcal fit 'a b.csv' --mode=fea");
         assert_eq!(of(&["--out", "x"]).command, of(&["--out=y"]).command);
     }

@@ -6,7 +6,8 @@ use clap::Args;
 use rodcal::Result;
 use rodcal::answer::{Simulated, named_robot, simulate};
 use rodcal::calibration::simulate::{Plan, planned_poses};
-use rodcal::files::{self, Existing};
+use rodcal::delimited::visible;
+use rodcal::files::{self, Existing, Staged};
 use rodcal::robot::Robot;
 use rodcal::rod::Rod;
 
@@ -78,18 +79,14 @@ impl Simulate {
         let Simulated { files, json, poses, names: [robot, rod], .. } =
             simulate(&robot, named, (&rod, rod_text), &plan, &campaign, &tell)?;
         progress.finish();
-        files::write_together(&self.directory, &files, existing)?;
+        let staged = Staged::new(&self.directory, &files, existing)?;
+        let shown = visible(&campaign);
         let text = format!(
-            "Simulated {poses} poses of {robot} with rod {rod} (seed {}).\nrodcal calibrate {campaign}\nrodcal compare {campaign}\n",
+            "Simulated {poses} poses of {} with rod {} (seed {}).\nrodcal calibrate {shown}\nrodcal compare {shown}\n",
+            visible(&robot),
+            visible(&rod),
             self.seed
         );
-        Ok(Outcome {
-            json,
-            report: None,
-            text: Some(text),
-            default_directory: None,
-            files: Vec::new(),
-            status: 0,
-        })
+        Ok(Outcome { commit: Some(Box::new(|| staged.commit())), ..Outcome::plain(json, text) })
     }
 }

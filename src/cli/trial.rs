@@ -7,14 +7,14 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
-use rodcal::files::Existing;
+use rodcal::delimited::visible;
 use rodcal::parallel::in_parallel;
 use rodcal::{Error, Result};
 use rodcal_trial::answers::{self, Answer};
-use rodcal_trial::envelope::{self, Manifest};
+use rodcal_trial::envelope::{self, Manifest, Plan};
 use rodcal_trial::rig::residuals;
-use rodcal_trial::{Half, Source, score};
-use serde_json::{Value, json};
+use rodcal_trial::{Half, Seed, score};
+use serde_json::json;
 
 use self::case::CaseFiles;
 use super::output::Outcome;
@@ -38,9 +38,10 @@ pub enum Trial {
 pub struct Make {
     /// Directory for the cases; made if missing.
     directory: PathBuf,
-    /// Every random number comes from this seed: draw one that nobody guesses.
+    /// Every random number comes from this seed, decimal or 0x and hexadecimal; whoever guesses it
+    /// knows the key [default: 128 random bits].
     #[arg(long)]
-    seed: u64,
+    seed: Option<Seed>,
     /// Only rods at a rig; without this and --calibration two of three cases are of a rig.
     #[arg(long)]
     rig: bool,
@@ -100,9 +101,9 @@ fn case_range(text: &str) -> std::result::Result<Range<usize>, String> {
 }
 
 impl Trial {
-    pub fn run(&self, existing: Existing) -> Result<Outcome> {
+    pub fn run(&self) -> Result<Outcome> {
         match self {
-            Trial::Make(make) => make.run(existing),
+            Trial::Make(make) => make.run(),
             Trial::Answer(answer) => answer.run(),
             Trial::Score(score) => score.run(),
         }
@@ -110,7 +111,7 @@ impl Trial {
 }
 
 impl Make {
-    fn run(&self, existing: Existing) -> Result<Outcome> {
+    fn run(&self) -> Result<Outcome> {
         let range = self.case_range.clone().unwrap_or(1..usize::from(self.cases) + 1);
         let key = key_of(self.key.as_deref(), &self.directory)?;
         let half = match (self.rig, self.calibration, self.conflicts) {
@@ -120,30 +121,38 @@ impl Make {
             _ => Half::Both,
         };
         let residuals = self.residuals.as_deref().map(residuals::read).transpose()?.unwrap_or_default();
-        let source = Source { seed: self.seed, half, residuals };
         let progress = Progress::new("cases", range.len());
-        let made = envelope::make(&self.directory, &key, &source, range, existing, || progress.one_more());
+        let plan = Plan { seed: self.seed, half, residuals, range };
+        let made = envelope::make(&self.directory, &key, &plan, || progress.one_more());
         progress.finish();
-        let manifest = made?;
-        let directory = self.directory.display();
+        let (made, directory) = (made?, self.directory.display().to_string());
+        let shown = visible(&directory);
         let text = format!(
-            "{} cases in {directory}, key in {} (keep it from whoever answers).\nrodcal trial answer {directory}\n",
-            manifest.cases,
-            key.display()
+            "{} cases in {shown}, key in {} (keep it from whoever answers; it holds the seed).\nrodcal trial answer {shown}\n",
+            made.manifest.cases,
+            visible(&key.display().to_string())
         );
         let json = json!({
-            "directory": directory.to_string(),
+            "directory": directory,
             "key": key.display().to_string(),
-            "cases": manifest.cases,
-            "key_sha256": manifest.key_sha256,
+            "cases": made.manifest.cases,
+            "key_sha256": made.manifest.key_sha256,
         });
-        Ok(plain(json, text))
+        let mut warnings = Vec::new();
+        if made.seed.is_small() {
+            warnings.push(format!(
+                "the seed {} has fewer than 65 bits and may be guessed, and with it the key: leave --seed out",
+                made.seed
+            ));
+        }
+        Ok(Outcome { warnings, commit: Some(Box::new(|| made.seal())), ..Outcome::plain(json, text) })
     }
 }
 
 impl AnswerCases {
     fn run(&self) -> Result<Outcome> {
         let manifest = Manifest::read(&self.directory)?;
+        manifest.check_directory(&self.directory)?;
         let path = self.answers.clone().unwrap_or_else(|| self.directory.join("answers.jsonl"));
         let given = answers::read(&path)?;
         let number = |case: &str| case.rsplit('-').next().and_then(|number| number.parse::<usize>().ok());
@@ -168,14 +177,14 @@ impl AnswerCases {
             "{} cases answered, {} were before: {}\n",
             open.len(),
             asked.len() - open.len(),
-            path.display()
+            visible(&path.display().to_string())
         );
         let json = json!({
             "answers": path.display().to_string(),
             "answered": open.len(),
             "answered_before": asked.len() - open.len(),
         });
-        Ok(plain(json, text))
+        Ok(Outcome::plain(json, text))
     }
 
     fn answer(&self, manifest: &Manifest, case: &str) -> Result<Answer> {
@@ -228,8 +237,4 @@ impl ScoreAnswers {
 
 fn key_of(key: Option<&Path>, directory: &Path) -> Result<PathBuf> {
     key.map_or_else(|| envelope::default_key(directory), |key| Ok(key.to_owned()))
-}
-
-fn plain(json: Value, text: String) -> Outcome {
-    Outcome { json, report: None, text: Some(text), default_directory: None, files: Vec::new(), status: 0 }
 }

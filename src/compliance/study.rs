@@ -134,6 +134,45 @@ impl Study {
     pub fn index(&self) -> f64 {
         self.compliance().index(self.contact_force)
     }
+
+    /// What takes the tip beyond [`LINEAR_SHARE`] of the rod's length, if anything does: the larger
+    /// of one g and the contact force, each along its worst axis.
+    ///
+    /// ```
+    /// use rodcal::prelude::*;
+    ///
+    /// let mut rod = Rod::read("rods/5.toml".as_ref())?;
+    /// rod.l2 = 40.0; // m
+    /// let physics = Physics::default();
+    /// let study = rodcal::compliance::Study::new(
+    ///     rod, rodcal::compliance::Mode::Fea, physics, DEFAULT_ELEMENTS, paper_contact_force(),
+    /// )?;
+    /// assert!(study.beyond_linear().is_some_and(|(_, share)| share > 0.1));
+    /// # Ok::<(), rodcal::Error>(())
+    /// ```
+    pub fn beyond_linear(&self) -> Option<(TipLoad, f64)> {
+        let worst = |matrix: &Matrix3<f64>| matrix.column_iter().map(|c| c.norm()).fold(0.0, f64::max);
+        let c = self.compliance();
+        let gravity = worst(&c.gravity) / self.rod.length();
+        let force = worst(&c.force) * self.contact_force / self.rod.length();
+        let (load, share) =
+            if gravity >= force { (TipLoad::OneG, gravity) } else { (TipLoad::ContactForce, force) };
+        (share > LINEAR_SHARE).then_some((load, share))
+    }
+}
+
+/// Deflection over length beyond which it is no longer taken to be proportional to its load: the
+/// exact deflection of a cantilever leaves the linear one from there on (K. E. Bisshopp,
+/// D. C. Drucker, *Quart. Appl. Math.* 3 (1945) 272–275).
+pub const LINEAR_SHARE: f64 = 0.1;
+
+/// What bends a rod.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum TipLoad {
+    /// Its own weight.
+    OneG,
+    /// The force on the ball.
+    ContactForce,
 }
 
 impl Shape {

@@ -14,6 +14,7 @@ use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 use super::{Evidence, Hypothesis, NominalEstimate};
 use crate::linalg::transposed_product;
+use crate::statistics::chi_squared_survival;
 
 /// Singular value, relative to the largest, below which a direction draws nothing.
 const NOTHING: f64 = 1e-6;
@@ -22,6 +23,10 @@ const NOTHING: f64 = 1e-6;
 const OFFSET: f64 = 1.5;
 /// A number has moved if it is off by so many of its standard uncertainties.
 const MOVED: f64 = 0.2;
+/// Uncertainties are often stated too small: by so much, as a factor, is still no contradiction.
+const UNDERSTATED: f64 = 2.0;
+/// Probability below which numbers are not those of the file even so.
+const IMPLAUSIBLE: f64 = 0.01;
 
 /// An evidence whose nominal numbers stand among its background, and how to get them back.
 pub(super) struct Folded {
@@ -82,6 +87,27 @@ impl Folded {
         let known = &self.basis * own * self.basis.transpose();
         let all = DMatrix::identity(factors.len(), factors.len());
         (factors, known + (all - &self.basis * self.basis.transpose()))
+    }
+
+    /// True where the numbers would have to be farther off than the file says they are known, even
+    /// if it says that twice too well:
+    ///
+    /// ```text
+    /// p(χ²_d > |z|²/4) < 0.01,   d = Σ (1 − var z)      directions that the data determine
+    /// ```
+    pub fn is_implausible(&self, hypothesis: &Hypothesis) -> bool {
+        let own = self.first..self.first + self.basis.ncols();
+        let square: f64 = own.clone().map(|k| hypothesis.background[k].powi(2)).sum();
+        let variance = |k: usize| hypothesis.background_covariance[(k, k)];
+        let determined: f64 = own.map(|k| (1.0 - variance(k)).max(0.0)).sum();
+        chi_squared_survival(square / UNDERSTATED.powi(2), determined.max(1.0))
+            .is_ok_and(|probability| probability < IMPLAUSIBLE)
+    }
+
+    /// What the numbers that moved change in the data.
+    pub fn response(&self, hypothesis: &Hypothesis) -> DVector<f64> {
+        let count = self.basis.ncols();
+        self.evidence.background.columns(self.first, count) * hypothesis.background.rows(self.first, count)
     }
 
     /// The numbers that moved, the farthest first.

@@ -117,6 +117,11 @@ fn diagnose_with(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
         let shown_by = ShownBy::Suspects;
         discrepancy = Some(Discrepancy { candidate: None, location: None, shown_by, rms, shape });
     }
+    if discrepancy.is_none() && folded.is_implausible(longest) {
+        let shape = folded.response(longest);
+        let (rms, shown_by) = (rms(&shape), ShownBy::Numbers);
+        discrepancy = Some(Discrepancy { candidate: None, location: None, shown_by, rms, shape });
+    }
     let coverage_factor = student_t_quantile(0.975, degrees_of_freedom).unwrap_or(1.96);
     let worth = longest.background_worth();
     let nominal = match worth > WORTH_SAYING {

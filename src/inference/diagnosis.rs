@@ -87,6 +87,8 @@ pub enum ShownBy {
     StatedNoise,
     /// It is more than any scatter of such a recording.
     Size,
+    /// The numbers of the model's file would have to be farther off than it says they are known.
+    Numbers,
 }
 
 /// A recording with its forward model and everything that was found: all that a report needs.

@@ -321,3 +321,24 @@ fn a_stated_noise_that_is_too_small_is_said_and_draws_nothing() {
         assert!(diagnose(&model, &stated(1.0)).discrepancy.is_none(), "seed {seed}");
     }
 }
+
+/// What only a number far from that of its file explains is said; within what the file says of it,
+/// or somewhat more, it is an agreement.
+#[test]
+fn numbers_far_from_those_of_the_file_are_no_agreement() {
+    let mut model = Columns::new(COUNT);
+    model.add("dent", "here", column(|x| (x - 0.5).powi(2)), false);
+    let (name, value, standard_uncertainty) = ("E of steel".into(), 1.0, 0.05);
+    let number = NominalParameter { name, unit: "%", si: 0.01, value, standard_uncertainty };
+    for (off, is_far) in [(1.0, false), (3.0, false), (8.0, true)] {
+        let evidence = Evidence {
+            nominal: column(|x| 10.0 * x),
+            nominal_numbers: vec![number.clone()],
+            ..evidence(3, |x| off * 10.0 * x)
+        };
+        let found = diagnose(&model, &evidence);
+        let left = found.discrepancy.as_ref().map(|left| left.shown_by);
+        assert_eq!((effects(&found), left), (vec![], is_far.then_some(ShownBy::Numbers)), "{off}");
+        assert!((found.nominal[0].moved() - off).abs() < 0.5, "{}", found.nominal[0].moved());
+    }
+}

@@ -4,6 +4,7 @@ use super::chart::{Axis, Chart, Mark, Range};
 use super::frame::NOTE;
 use super::labels::text_width_px;
 use super::marks;
+use super::prefix::prefixed;
 use super::scale::{Extent, Scale, drawable, extent};
 
 /// Both scales and the height of the plotting area. A drawing of things shows at least `least_unit`
@@ -54,7 +55,7 @@ fn scale(axis: &Axis, data: Extent, count: usize, snug: bool) -> Scale {
         Range::AutoWithZero => Scale::rounded(low.min(0.0), high.max(0.0), count),
         Range::Fixed(from, to) => Scale::fixed(from, to, count),
     };
-    scale.with_step(axis.step)
+    prefixed(scale.with_step(axis.step), &axis.label)
 }
 
 /// One unit of x as long as one unit of y: the height follows from the width, within reason.
@@ -66,9 +67,12 @@ fn equal_scales(chart: &Chart, xs: Extent, ys: Extent, width: f64, least_unit: f
     let (x, y) = (range(&chart.x, xs), range(&chart.y, ys));
     // Air around the drawing, where its notes go; a drawing without extent still gets a unit of it.
     let largest = (x.1 - x.0).max(y.1 - y.0);
-    let air = if largest > 0.0 { 0.1 * largest } else { 1.0 };
+    // What has no frame has its notes inside.
+    let share = if chart.frameless { 0.05 } else { 0.1 };
+    let air = if largest > 0.0 { share * largest } else { 1.0 };
+    let highest = if chart.frameless { 560.0 } else { 420.0 };
     let (span_x, span_y) = (x.1 - x.0 + 2.0 * air, y.1 - y.0 + 2.0 * air);
-    let height_of = |unit_per_px: f64| (span_y / unit_per_px).clamp(0.3 * width, 1.5 * width).min(420.0);
+    let height_of = |unit_per_px: f64| (span_y / unit_per_px).clamp(0.3 * width, 1.5 * width).min(highest);
     let unit_per_px = (span_x / width).max(span_y / height_of(span_x / width)).max(least_unit);
     let height = height_of(unit_per_px);
     let around = |(low, high): (f64, f64), length: f64| {
@@ -76,11 +80,14 @@ fn equal_scales(chart: &Chart, xs: Extent, ys: Extent, width: f64, least_unit: f
         (middle - half, middle + half)
     };
     let ((x0, x1), (y0, y1)) = (around(x, width), around(y, height));
-    let x = roomy(width, ((width / 45.0) as usize).clamp(2, 10), |count| Scale::fixed(x0, x1, count));
+    let x = roomy(width, ((width / 45.0) as usize).clamp(2, 10), |count| {
+        prefixed(Scale::fixed(x0, x1, count), &chart.x.label)
+    });
     // The same grid both ways, unless the drawing is too low for it.
     let step =
         x.ticks.windows(2).map(|pair| pair[1].0 - pair[0].0).next().filter(|step| y1 - y0 > 2.0 * step);
     let y = Scale::fixed(y0, y1, ((height / 50.0) as usize).max(2)).with_step(step);
+    let y = prefixed(y, &chart.y.label);
     (x, y, height)
 }
 

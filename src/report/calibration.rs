@@ -301,6 +301,7 @@ pub fn sections(
                 Block::Table(tables::groups(recording, calibration)),
                 Block::Figure(figures::workspace(recording, calibration)),
                 Block::Figure(figures::vectors(calibration)),
+                Block::Figure(figures::against(recording, calibration)),
             ],
         ),
         Section::new(

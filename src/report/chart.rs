@@ -16,6 +16,8 @@ pub struct Chart {
     pub y: Axis,
     /// One unit is as long along x as along y: for drawings of things.
     pub equal_aspect: bool,
+    /// Without grid, ticks and labels: what is drawn has its own.
+    pub frameless: bool,
     /// Height of the plotting area in CSS pixels; `None` follows from the width.
     pub height_px: Option<f64>,
     /// Drawn in this order, bands and bars first.
@@ -131,7 +133,7 @@ pub enum Mark {
         /// Colour and marker.
         style: Style,
     },
-    /// Bars from zero: a histogram, or amounts by category.
+    /// Bars: a histogram, amounts by category, or steps from one amount to the next.
     Bars {
         /// Name in the legend.
         label: String,
@@ -149,6 +151,15 @@ pub enum Mark {
         /// x, low y, high y.
         points: Vec<[f64; 3]>,
         /// Colour.
+        style: Style,
+    },
+    /// The area inside a closed line.
+    Area {
+        /// Name in the legend.
+        label: String,
+        /// x, y of its corners.
+        corners: Vec<[f64; 2]>,
+        /// Colour; solid is filled more darkly than any dash.
         style: Style,
     },
     /// A thin line across the whole chart at one y.
@@ -190,6 +201,15 @@ pub enum Mark {
         /// The note, one line.
         text: String,
     },
+    /// A text beside its point, whatever else is there.
+    Text {
+        /// x, y.
+        at: [f64; 2],
+        /// The text, one line.
+        text: String,
+        /// Where the text is, seen from its point.
+        align: Align,
+    },
     /// An arrow, for example a force, with a note at its tail.
     Arrow {
         /// x, y of the tail.
@@ -203,6 +223,17 @@ pub enum Mark {
     },
 }
 
+/// Where a text is, seen from its point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub enum Align {
+    /// It ends there.
+    Left,
+    /// It has its middle there.
+    Middle,
+    /// It begins there.
+    Right,
+}
+
 /// One point with an optional error bar.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Point {
@@ -214,13 +245,15 @@ pub struct Point {
     pub error: f64,
 }
 
-/// One bar from zero to `value`.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+/// One bar from `base` to `value`.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct Bar {
     /// Where the bar begins on the axis it stands on.
     pub from: f64,
     /// Where the bar ends on the axis it stands on.
     pub to: f64,
+    /// Where it begins; 0 for a bar that stands on its axis.
+    pub base: f64,
     /// How far the bar reaches.
     pub value: f64,
     /// Written at its end, so that a bar too short to see still shows its number; may be empty.

@@ -149,8 +149,9 @@ fn better_than(d: &Difference) -> String {
     )
 }
 
+/// For sentences, with the true minus.
 fn um(metres: f64) -> String {
-    significant(metres / UM, 3)
+    significant(metres / UM, 3).replace('-', "−")
 }
 
 /// The body of [`report`].

@@ -1,19 +1,24 @@
 //! What the `compliance` command says: JSON, tables and pictures of a [`Study`].
 
+mod numbers;
+pub(super) mod steps;
+
+pub use numbers::number;
+
 use nalgebra::{Matrix3, Vector3};
 use serde_json::{Value, json};
 
-use super::pictures::{Contributions, RodShape, ShapeCase, Station, StationKind, contributions, rod_shape};
+use super::pictures::{RodShape, ShapeCase, rod_shape};
+use super::rod_drawing::drawing;
 use super::sensitivities::{self, OnePercent};
 use super::table::{Column, Table};
 use super::{Block, Card, Report, Section};
 use crate::beam::{NaturalMode, settling_time};
-use crate::compliance::{Compliance, Mode, Sensitivity, Shape, StationResponse, Study};
+use crate::compliance::{
+    Compliance, LINEAR_SHARE, Mode, Sensitivity, Shape, StationResponse, Study, TipLoad,
+};
 use crate::rod::{NominalNumber, Rod};
 use crate::units::{GRAM, MM, UM, URAD, significant};
-
-/// Digits of a compliance in a table.
-const DIGITS: usize = 5;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
@@ -88,7 +93,6 @@ pub fn sections(study: &Study) -> Vec<Section> {
     }
     tables.push(matrices("fea", &format!("FEA: beam model, {}.", physics_name(study)), &study.fea));
     tables.extend(study.stations.as_ref().map(station_table));
-    let stations = stations(rod);
     let force_cases = AXES.map(|axis| format!("1 N along +{}", axis.to_uppercase()));
     let gravity_cases = AXES.map(|axis| format!("1 g along +{}", axis.to_uppercase()));
     let mut sections = vec![
@@ -101,9 +105,9 @@ pub fn sections(study: &Study) -> Vec<Section> {
                      so that the rows add up to FEA exactly."
                         .into(),
                 ),
-                Block::Table(steps_table(study)),
+                Block::Table(steps::table(study)),
                 Block::Figure(
-                    steps_figure(study)
+                    steps::figure(study)
                         .captioned(format!("Rod {}: what Calc leaves out, term by term.", rod.name)),
                 ),
             ],
@@ -111,21 +115,19 @@ pub fn sections(study: &Study) -> Vec<Section> {
         Section::new(
             format!("Shape, rod {}", rod.name),
             vec![
-                shape_figure(rod, &study.shape, &gravity_cases, &study.shape.under_gravity, &stations)
-                    .named_block(
-                        "shape-gravity",
-                        "Deflection under one g along each axis of the tool frame.",
-                    ),
-                shape_figure(rod, &study.shape, &force_cases, &study.shape.under_force, &stations)
-                    .named_block(
-                        "shape-force",
-                        "Deflection under 1 N at the tip along each axis of the tool frame.",
-                    ),
+                shape_figure(rod, &study.shape, &gravity_cases, &study.shape.under_gravity).named_block(
+                    "shape-gravity",
+                    "Deflection under one g along each axis of the tool frame.",
+                ),
+                shape_figure(rod, &study.shape, &force_cases, &study.shape.under_force).named_block(
+                    "shape-force",
+                    "Deflection under 1 N at the tip along each axis of the tool frame.",
+                ),
             ],
         ),
     ];
     sections.extend(what_counts(study));
-    sections.extend(swing(study, &stations));
+    sections.extend(swing(study));
     sections
 }
 
@@ -193,7 +195,7 @@ fn what_counts(study: &Study) -> Option<Section> {
 }
 
 /// How fast the rod swings, and in which shapes; nothing of a rod without mass.
-fn swing(study: &Study, stations: &[Station]) -> Option<Section> {
+fn swing(study: &Study) -> Option<Section> {
     /// What a swing dies down to, and damping ratios: of bare tubes, and with bonded or threaded
     /// joints.
     const SHARE: f64 = 0.02;
@@ -232,11 +234,9 @@ fn swing(study: &Study, stations: &[Station]) -> Option<Section> {
         deflection_um: shape.iter().map(|u| (u / UM).into()).collect(),
     });
     let figure = rod_shape(&RodShape {
-        title: format!("Rod {}", rod.name),
         centreline_mm: study.shape.centreline.iter().map(|p| (p / MM).into()).collect(),
         cases: cases.collect(),
-        stations: stations.to_vec(),
-        ..RodShape::default()
+        ..drawing(rod)
     });
     let words = "Exact flexibilities, consistent mass of Timoshenko beams with rotary inertia; the robot is taken as rigid. \
          Readings within the settling time of a move are readings of a swing.";
@@ -245,13 +245,16 @@ fn swing(study: &Study, stations: &[Station]) -> Option<Section> {
         vec![
             Block::Paragraph(words.into()),
             Block::Table(table),
-            Block::Figure(figure.named("natural-modes").captioned("Shapes of the slowest natural modes.")),
+            figure.named_block("natural-modes", "Shapes of the slowest natural modes."),
         ],
     ))
 }
 
 /// One sentence: how much the rod bends.
 pub fn headline(study: &Study) -> String {
+    if let Some(words) = beyond_linear(study) {
+        return words;
+    }
     let c = study.compliance();
     let mode = match study.mode {
         Mode::Calc => "the closed form".to_owned(),
@@ -266,7 +269,32 @@ pub fn headline(study: &Study) -> String {
     )
 }
 
+/// Why no number of this rod holds, where it bends too far.
+fn beyond_linear(study: &Study) -> Option<String> {
+    let (load, share) = study.beyond_linear()?;
+    let load = match load {
+        TipLoad::OneG => "its own weight".to_owned(),
+        TipLoad::ContactForce => format!("{} N", significant(study.contact_force, 3)),
+    };
+    let far = match share {
+        ..10.0 => format!("by {:.0} % of its length", 100.0 * share),
+        1e6.. => "by more than a million times its length".to_owned(),
+        _ => format!("by {share:.0} times its length"),
+    };
+    Some(format!(
+        "Rod {} is beyond this model: under {load} its tip would move {far}. Deflections are proportional to \
+         loads up to about {:.0} % of the length; beyond that the numbers below do not hold. Is a length, \
+         a diameter or a modulus in another unit?",
+        study.rod.name,
+        100.0 * LINEAR_SHARE
+    ))
+}
+
 fn cards(study: &Study) -> Vec<Card> {
+    if let Some((_, share)) = study.beyond_linear() {
+        let share = if share < 1e6 { format!("{:.0} %", 100.0 * share) } else { "> 100 million %".into() };
+        return vec![Card::new("Deflection over length", share, "beyond the linear model")];
+    }
     let c = study.compliance();
     let um = |length: f64| significant(length / UM, 4);
     let mode = match study.mode {
@@ -338,68 +366,6 @@ fn station_table(response: &StationResponse) -> Block {
     Block::Table(table)
 }
 
-/// A compliance in µm; what symmetry makes zero is shown as 0.
-pub fn number(value: f64) -> String {
-    significant(in_um(value), DIGITS)
-}
-
-/// In µm, without the rounding (1e-14) of what is zero by symmetry.
-fn in_um(value: f64) -> f64 {
-    if value.abs() < 1e-9 * UM { 0.0 } else { value / UM }
-}
-
-fn steps_table(study: &Study) -> Table {
-    let mut table = Table::new(
-        "left-out-terms",
-        format!("Rod {}: compliance added by each term, and where c_rod stands with it.", study.rod.name),
-        vec![
-            Column::text("term"),
-            Column::number("C^F 11", "µm/N"),
-            Column::number("C^F 22", "µm/N"),
-            Column::number("C^F 33", "µm/N"),
-            Column::number("C^g 11", "µm/g"),
-            Column::number("C^g 22", "µm/g"),
-            Column::number("C^g 33", "µm/g"),
-            Column::number("c_rod", "µm"),
-        ],
-    );
-    let row = |term: &str, c: &Compliance, index: f64| {
-        let diagonal = [c.force, c.gravity].map(|matrix| matrix.diagonal());
-        let mut cells = vec![term.to_owned()];
-        cells.extend(diagonal.iter().flat_map(|d| d.iter().map(|value| number(*value)).collect::<Vec<_>>()));
-        cells.push(significant(index / UM, DIGITS));
-        cells
-    };
-    for (i, step) in study.steps.iter().enumerate() {
-        let term = if i == 0 { step.term.to_owned() } else { format!("+ {}", step.term) };
-        table.row(row(&term, &step.added, step.total.index(study.contact_force)));
-    }
-    table.row(row("= FEA", &study.fea, study.fea.index(study.contact_force)));
-    table
-}
-
-fn steps_figure(study: &Study) -> super::chart::Figure {
-    type Entry = fn(&Compliance) -> f64;
-    let groups: [(&str, &str, Entry); 4] = [
-        ("C^F 22", "µm/N", |c| c.force[(1, 1)]),
-        ("C^F 33", "µm/N", |c| c.force[(2, 2)]),
-        ("C^g 22", "µm/g", |c| c.gravity[(1, 1)]),
-        ("C^g 33", "µm/g", |c| c.gravity[(2, 2)]),
-    ];
-    let groups = groups.map(|(title, unit, entry)| Contributions {
-        title: format!(
-            "{title}, to be added to {} {unit}",
-            significant(entry(&study.steps[0].total) / UM, 4)
-        ),
-        unit: unit.into(),
-        terms: study.steps[1..]
-            .iter()
-            .map(|step| (step.term.to_owned(), in_um(entry(&step.added))))
-            .collect(),
-    });
-    contributions(&groups)
-}
-
 /// A figure that becomes a block under its own name.
 trait NamedBlock {
     fn named_block(self, name: &str, caption: &str) -> Block;
@@ -407,7 +373,8 @@ trait NamedBlock {
 
 impl NamedBlock for super::chart::Figure {
     fn named_block(self, name: &str, caption: &str) -> Block {
-        Block::Figure(self.named(name).captioned(caption))
+        let caption = format!("{caption} {}", self.caption);
+        Block::Figure(self.named(name).captioned(caption.trim()))
     }
 }
 
@@ -416,44 +383,21 @@ fn shape_figure(
     shape: &Shape,
     labels: &[String; 3],
     displacements: &[Matrix3<f64>],
-    stations: &[Station],
 ) -> super::chart::Figure {
     let cases = labels.iter().enumerate().map(|(axis, label)| ShapeCase {
         label: label.clone(),
         deflection_um: displacements.iter().map(|d| (d.column(axis) / UM).into()).collect(),
     });
     rod_shape(&RodShape {
-        title: format!("Rod {}", rod.name),
         centreline_mm: shape.centreline.iter().map(|p| (p / MM).into()).collect(),
         cases: cases.collect(),
-        stations: stations.to_vec(),
-        ..RodShape::default()
+        ..drawing(rod)
     })
 }
 
-/// Where masses and joints sit.
-pub fn stations(rod: &Rod) -> Vec<Station> {
-    let at = |station: f64| (rod.point(station) / MM).into();
-    let mass = |m: &crate::rod::LumpedMass| Station {
-        label: format!("{}, {} g", m.name, significant(m.mass / GRAM, 3)),
-        at_mm: at(m.station),
-        kind: StationKind::Mass,
-    };
-    let joint = |j: &crate::rod::Joint| Station {
-        label: j.name.clone(),
-        at_mm: at(j.station),
-        kind: StationKind::Joint,
-    };
-    let tip = (rod.tip_mass > 0.0).then(|| Station {
-        label: format!("tip, {} g", significant(rod.tip_mass / GRAM, 3)),
-        at_mm: (rod.tip() / MM).into(),
-        kind: StationKind::Mass,
-    });
-    rod.masses.iter().map(mass).chain(rod.joints.iter().map(joint)).chain(tip).collect()
-}
-
 fn warnings(study: &Study) -> Vec<String> {
-    study.rod.warnings.iter().map(ToString::to_string).collect()
+    let beyond = beyond_linear(study).into_iter();
+    beyond.chain(study.rod.warnings.iter().map(ToString::to_string)).collect()
 }
 
 /// A matrix as JSON rows in the unit.

@@ -7,6 +7,7 @@ use super::labels::{Area, LabelPlacer, text_width_px, wrap};
 use super::legend::Legend;
 use super::marks;
 use super::plot::{Anchor, Canvas, Lettering, Rgb};
+use super::prefix::relabelled;
 use super::scale::Scale;
 
 /// Width of every figure: the text column of the page.
@@ -68,6 +69,7 @@ fn plan<'a>(figure: &'a Figure, columns: usize, width: f64) -> Vec<Plan<'a>> {
     let all = |least_unit: f64| -> Vec<Plan<'a>> {
         let plan = |(i, chart): (usize, &'a Chart)| {
             let letter = char::from(b'a' + (i % 26) as u8);
+            let lettered = lettered && !chart.title.is_empty();
             let title = if lettered { format!("({letter}) {}", chart.title) } else { chart.title.clone() };
             Plan::new(chart, &title, left(i % columns), width, least_unit, !figure.shared_legend)
         };
@@ -113,8 +115,19 @@ impl<'a> Plan<'a> {
         self.left = by_x;
     }
 
+    /// Of both axes, with the units of their ticks.
+    fn labels(&self) -> [String; 2] {
+        let Frame { x, y, .. } = &self.frame;
+        [relabelled(&self.chart.x.label, x.power), relabelled(&self.chart.y.label, y.power)]
+    }
+
     fn legend_top(&self) -> f64 {
-        self.frame.area.bottom + TICK_PX + 18.0 + if self.chart.x.label.is_empty() { 0.0 } else { 20.0 }
+        let bottom = self.frame.area.bottom;
+        match (self.chart.frameless, self.chart.x.label.is_empty()) {
+            (true, _) => bottom,
+            (false, true) => bottom + TICK_PX + 18.0,
+            (false, false) => bottom + TICK_PX + 38.0,
+        }
     }
 
     fn bottom(&self) -> f64 {
@@ -127,25 +140,31 @@ impl<'a> Plan<'a> {
             let y = area.top - TITLE_GAP_PX - (i as f64 + 0.5) * TITLE_LINE_PX;
             canvas.text([self.left, y], line, TITLE, Rgb::INK);
         }
+        if self.chart.frameless && self.chart.marks.is_empty() {
+            return;
+        }
         if marks::extents(self.chart, area.width()) == (None, None) {
             canvas.text(area.centre(), "no data", NOTE, Rgb::GREY);
-        } else {
+        } else if !self.chart.frameless {
             self.grid(canvas);
             let axis = |scale: &Scale, names: &[(f64, String)]| {
-                names.is_empty().then_some((scale.from, scale.to, scale.log))
+                let one = 10f64.powi(scale.power);
+                names.is_empty().then_some((scale.from / one, scale.to / one, scale.log))
             };
-            let chart = self.chart;
+            let (chart, [x_label, y_label]) = (self.chart, self.labels());
             canvas.panel(
                 [[area.left, area.top], [area.right, area.bottom]],
                 [
-                    (axis(&self.frame.x, &chart.x.names), &chart.x.label),
-                    (axis(&self.frame.y, &chart.y.names), &chart.y.label),
+                    (axis(&self.frame.x, &chart.x.names), &x_label),
+                    (axis(&self.frame.y, &chart.y.names), &y_label),
                 ],
             );
         }
         let mut labels = LabelPlacer::new(area);
         marks::draw(canvas, &self.frame, &self.chart.marks, &mut labels);
-        self.axes(canvas);
+        if !self.chart.frameless {
+            self.axes(canvas);
+        }
         if let Some(legend) = &self.legend {
             legend.draw(canvas, [area.left, self.legend_top()]);
         }
@@ -195,14 +214,18 @@ impl<'a> Plan<'a> {
             canvas.text([area.left - TICK_PX - 4.0, y], label, at_right, Rgb::INK);
         }
         let [middle_x, middle_y] = area.centre();
-        canvas.text([middle_x, area.bottom + TICK_PX + 28.0], &self.chart.x.label, LABEL, Rgb::INK);
+        let [x_label, y_label] = self.labels();
+        canvas.text([middle_x, area.bottom + TICK_PX + 28.0], &x_label, LABEL, Rgb::INK);
         let upwards = Lettering { upwards: true, ..LABEL };
-        canvas.text([self.left + 8.0, middle_y], &self.chart.y.label, upwards, Rgb::INK);
+        canvas.text([self.left + 8.0, middle_y], &y_label, upwards, Rgb::INK);
     }
 }
 
 /// Room left of the plotting area: axis label and tick labels.
 fn left_margin(chart: &Chart, width: f64) -> f64 {
+    if chart.frameless {
+        return 0.0;
+    }
     let (_, y, _) = scales(chart, 0.8 * width, 0.0);
     let widest = y.ticks.iter().map(|(_, label)| text_width_px(label, NOTE.size_px)).fold(0.0, f64::max);
     let label = if chart.y.label.is_empty() { 0.0 } else { 22.0 };
@@ -219,7 +242,7 @@ fn right_margin(chart: &Chart) -> f64 {
 mod tests {
     use roxmltree::Document;
 
-    use super::super::chart::{Bar, Direction, Mark, Marker, Point, Range, Style};
+    use super::super::chart::{Align, Bar, Direction, Mark, Marker, Point, Range, Style};
     use super::*;
 
     fn every_mark(values: [f64; 3]) -> Chart {
@@ -228,7 +251,7 @@ mod tests {
         let style = Style::nth(3);
         let bars = |direction| Mark::Bars {
             label: label(),
-            bars: vec![Bar { from: a, to: b, value: c, text: label() }],
+            bars: vec![Bar { from: a, to: b, base: b, value: c, text: label() }],
             direction,
             style,
         };
@@ -242,6 +265,8 @@ mod tests {
             .with(Mark::Vertical { at: b, text: label() })
             .with(Mark::Stretch { from: b, to: c, text: label() })
             .with(Mark::Event { at: c, text: label() })
+            .with(Mark::Area { label: label(), corners: vec![[a, b], [b, c], [c, a]], style })
+            .with(Mark::Text { at: [b, a], text: label(), align: Align::Left })
             .with(Mark::Note { at: [a, c], text: label() })
             .with(Mark::Arrow { from: [a, b], to: [b, c], text: label(), style })
     }
@@ -263,6 +288,7 @@ mod tests {
                 chart.y.step = Some(a);
                 chart.height_px = Some(b);
                 chart.y.names = vec![(a, "name".into()), (b, "other".into())];
+                chart.frameless = i % 2 == 0;
                 let svg = Figure::from(chart).svg();
                 assert!(Document::parse(&svg).is_ok() && !svg.contains("NaN"), "{a} {b}\n{svg}");
             }

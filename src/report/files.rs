@@ -3,6 +3,7 @@
 use super::document::Report;
 use super::file_name::{file_name, page_name};
 use super::html;
+use crate::delimited::visible_lines;
 use crate::error::Result;
 
 impl Report {
@@ -12,10 +13,12 @@ impl Report {
     /// # Errors
     /// [`crate::Error::Numerical`] where a table cannot be written as CSV.
     pub fn files(&self) -> Result<Vec<(String, Vec<u8>)>> {
-        let mut files = vec![(page_name(&self.page), html::page(self).into_bytes())];
+        // control characters of names are no HTML and no XML
+        let shown = |text: String| visible_lines(&text).into_owned().into_bytes();
+        let mut files = vec![(page_name(&self.page), shown(html::page(self)))];
         for (i, figure) in self.figures().enumerate() {
             let name = file_name(&self.page, "figure", i + 1, &figure.name);
-            files.push((format!("{name}.svg"), figure.svg().into_bytes()));
+            files.push((format!("{name}.svg"), shown(figure.svg())));
         }
         for (i, table) in self.tables().enumerate() {
             let name = file_name(&self.page, "table", i + 1, &table.name);

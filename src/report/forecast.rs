@@ -4,7 +4,7 @@ use serde_json::{Map, Value, json};
 
 use super::chart::{Axis, Bar, Chart, Colour, Dash, Direction, Figure, Mark, Range, Style};
 use super::table::{Column, Table};
-use super::{Block, Report, Section};
+use super::{Block, Card, Report, Section};
 use crate::calibration::Campaign;
 use crate::design::{Budget, Forecast, Part, RodForecast};
 use crate::units::{UM, significant};
@@ -35,22 +35,33 @@ fn parts(all: &[(String, &Forecast)]) -> Vec<Part> {
 pub fn table(name: &str, first: &str, all: &[(String, &Forecast)]) -> Table {
     let mut columns = vec![Column::text(first)];
     columns.extend(["mean", "95 %", "rms"].map(|name| Column::number(name, "µm")));
-    columns.extend(parts(all).into_iter().map(|part| Column::number(part.words(), "µm")));
     let caption = "Error of the tip at unseen poses. Mean: in brackets the interval that the mean of one campaign lies in with \
-                   95 %. 95 %: all but one pose in twenty are better. Then the root mean square, and that of each part alone: \
-                   their squares add up.";
+                   95 %. 95 %: all but one pose in twenty are better. Then the root mean square.";
     let mut table = Table::new(name, caption, columns);
     for (name, forecast) in all {
         let um = |size: f64| significant(size / UM, 3);
         let [low, high] = forecast.interval;
-        let mut cells = vec![
+        table.row([
             name.clone(),
             format!("{} ({} to {})", um(forecast.mean), um(low), um(high)),
             um(forecast.p95),
             um(forecast.rms),
-        ];
-        cells.extend(parts(all).into_iter().map(|part| um(forecast.parts[part as usize])));
-        table.row(cells);
+        ]);
+    }
+    table
+}
+
+/// The parts of the same forecasts, one per column: with the whole they would be too wide to read.
+pub fn parts_table(name: &str, first: &str, all: &[(String, &Forecast)]) -> Table {
+    let mut columns = vec![Column::text(first)];
+    columns.extend(parts(all).into_iter().map(|part| Column::number(part.words(), "µm")));
+    let caption =
+        "Root mean square of each part of the error alone: their squares add up to that of the whole.";
+    let mut table = Table::new(name, caption, columns);
+    for (name, forecast) in all {
+        let um = |part: Part| significant(forecast.parts[part as usize] / UM, 3);
+        let cells = parts(all).into_iter().map(um);
+        table.row(std::iter::once(name.clone()).chain(cells).collect::<Vec<_>>());
     }
     table
 }
@@ -91,6 +102,7 @@ pub fn stacked(all: &[(String, &Forecast)]) -> Figure {
                 to: at(k) + 0.3,
                 value: if forecast.rms > 0.0 { below / forecast.rms / UM } else { 0.0 },
                 text: if is_whole { significant(forecast.rms / UM, 3) } else { String::new() },
+                ..Bar::default()
             }
         };
         let (colour, dash) = COLOURS[*part as usize];
@@ -154,7 +166,7 @@ impl Basis {
         let clamps = match self.budget.clamps > 0.0 {
             _ if !self.has_clamps => String::new(),
             true => format!(", clamp places known to {} µm", um(self.budget.clamps)),
-            false => ", clamp places known exactly (state clamp_um in [noise] if they are not)".to_owned(),
+            false => ", clamp places known exactly (if they are not, the section [noise] of the campaign file can say how well)".to_owned(),
         };
         let instrument = match self.budget.instrument > 0.0 {
             true => format!(", an instrument that is wrong by {} µm", um(self.budget.instrument)),
@@ -190,6 +202,26 @@ fn named_rod(rod: &RodForecast) -> String {
 
 /// Means that differ by less than this share are as good as equal: a campaign's chance is larger.
 const EQUAL: f64 = 0.05;
+
+/// The best of all, and what it is wrong by most.
+fn cards(rods: &[RodForecast]) -> Vec<Card> {
+    let Some((rod, least)) = best(rods) else { return Vec::new() };
+    let um = |size: f64| format!("{} µm", significant(size / UM, 3));
+    let [low, high] = least.interval;
+    let largest =
+        Part::ALL.into_iter().max_by(|a, b| least.parts[*a as usize].total_cmp(&least.parts[*b as usize]));
+    let with = format!("{}, mode {}", named_rod(rod), least.mode.name());
+    let mut cards = vec![
+        Card::new(
+            "Mean error, smallest of all",
+            um(least.mean),
+            format!("95 % interval {} to {}; {with}", um(low), um(high)),
+        ),
+        Card::new("95 % of unseen poses are better than", um(least.p95), with),
+    ];
+    cards.extend(largest.map(|part| Card::new("Largest part", um(least.parts[part as usize]), part.words())));
+    cards
+}
 
 /// The report of `rodcal compare --forecast`.
 pub fn comparison(campaign: &Campaign, rods: &[RodForecast], basis: &Basis) -> Report {
@@ -246,6 +278,7 @@ pub fn comparison(campaign: &Campaign, rods: &[RodForecast], basis: &Basis) -> R
         Block::Paragraph(format!("Poses: {}.", poses.join("; "))),
         Block::Figure(stacked(&all)),
         Block::Table(table("forecast", "rod and mode", &all)),
+        Block::Table(parts_table("forecast-parts", "rod and mode", &all)),
     ];
     let assumed: Vec<&str> =
         rods.iter().filter(|rod| rod.is_rig_assumed).map(|rod| rod.rod.as_str()).collect();
@@ -258,10 +291,11 @@ pub fn comparison(campaign: &Campaign, rods: &[RodForecast], basis: &Basis) -> R
         )));
     }
     Report {
-        title: format!("Forecast for {}", campaign.file),
+        title: format!("Forecast for {}", campaign.robot.name),
         headline,
         warnings: Vec::new(),
         sections: vec![Section::new("What to expect", blocks)],
+        cards: cards(rods),
         ..Report::default()
     }
 }

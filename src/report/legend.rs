@@ -88,11 +88,17 @@ fn sample(canvas: &mut Canvas, mark: &Mark, [x, y]: Px) {
         Mark::Band { style, .. } => {
             canvas.fill(&patch.corners(), Rgb::from(style.colour).tint(marks::BAND_TINT))
         }
+        Mark::Area { style, .. } => {
+            canvas.fill(&patch.corners(), Rgb::from(style.colour).tint(marks::fill_tint(style)));
+            let [a, b, c, d] = patch.corners();
+            canvas.line(&[a, b, c, d, a], style.colour.into(), style.width_px, Dash::Solid);
+        }
         Mark::Horizontal { .. }
         | Mark::Vertical { .. }
         | Mark::Stretch { .. }
         | Mark::Event { .. }
-        | Mark::Note { .. } => {
+        | Mark::Note { .. }
+        | Mark::Text { .. } => {
             canvas.line(&[[x, y], [right, y]], Rgb::GREY, 1.0, Dash::Solid);
         }
     }

@@ -1,6 +1,6 @@
 //! Draws the marks of a chart inside its axes, and finds what the axes have to span.
 
-use super::chart::{Bar, Chart, Dash, Direction, Mark, Marker, Point, Style};
+use super::chart::{Align, Bar, Chart, Dash, Direction, Mark, Marker, Point, Style};
 use super::event_labels;
 use super::frame::{Frame, NOTE};
 use super::labels::{Area, LabelPlacer, text_width_px};
@@ -17,12 +17,14 @@ pub(super) fn label(mark: &Mark) -> &str {
         Mark::Line { label, .. }
         | Mark::Points { label, .. }
         | Mark::Bars { label, .. }
-        | Mark::Band { label, .. } => label,
+        | Mark::Band { label, .. }
+        | Mark::Area { label, .. } => label,
         Mark::Horizontal { .. }
         | Mark::Vertical { .. }
         | Mark::Stretch { .. }
         | Mark::Event { .. }
         | Mark::Note { .. }
+        | Mark::Text { .. }
         | Mark::Arrow { .. } => "",
     }
 }
@@ -59,7 +61,11 @@ pub(super) fn extents(chart: &Chart, width_px: f64) -> (Extent, Extent) {
             Mark::Horizontal { at, .. } => ys.push(*at),
             Mark::Vertical { at, .. } | Mark::Event { at, .. } => xs.push(*at),
             Mark::Stretch { from, to, .. } => xs.extend([*from, *to]),
-            Mark::Note { at: [x, y], .. } => {
+            Mark::Area { corners, .. } => corners.iter().filter(|p| is_drawable(p)).for_each(|[x, y]| {
+                xs.push(*x);
+                ys.push(*y);
+            }),
+            Mark::Note { at: [x, y], .. } | Mark::Text { at: [x, y], .. } => {
                 xs.push(*x);
                 ys.push(*y);
             }
@@ -75,7 +81,7 @@ pub(super) fn extents(chart: &Chart, width_px: f64) -> (Extent, Extent) {
 
 /// Zero and all values, with room for the texts beyond them as a part of the span.
 fn bar_extent(bars: &[Bar], text_part: f64) -> [f64; 2] {
-    let (low, high) = extent(bars.iter().map(|b| b.value)).unwrap_or((0.0, 0.0));
+    let (low, high) = extent(bars.iter().flat_map(|b| [b.base, b.value])).unwrap_or((0.0, 0.0));
     let (low, high) = (low.min(0.0), high.max(0.0));
     let room = text_part * (high - low);
     [if low < 0.0 { low - room } else { 0.0 }, if high > 0.0 { high + room } else { 0.0 }]
@@ -94,6 +100,7 @@ pub(super) fn draw(canvas: &mut Canvas, frame: &Frame, marks: &[Mark], labels: &
         for mark in marks {
             match (layer, mark) {
                 (0, Mark::Band { points, style, .. }) => band(canvas, frame, points, style),
+                (0, Mark::Area { corners, style, .. }) => filled(canvas, frame, corners, style, labels),
                 (0, Mark::Bars { bars, direction, style, .. }) => {
                     bars.iter().for_each(|b| whole_bar(canvas, frame, b, *direction, style, labels));
                 }
@@ -119,6 +126,14 @@ pub(super) fn draw(canvas: &mut Canvas, frame: &Frame, marks: &[Mark], labels: &
     event_labels::draw(canvas, frame, marks, labels);
     for mark in marks {
         match mark {
+            Mark::Text { at, text, align } if frame.places(*at) => {
+                let anchor = match align {
+                    Align::Left => Anchor::Right,
+                    Align::Middle => Anchor::Middle,
+                    Align::Right => Anchor::Left,
+                };
+                canvas.text(frame.px(*at), text, Lettering { anchor, ..NOTE }, Rgb::INK);
+            }
             Mark::Note { at, text } => note(canvas, frame, *at, text, labels),
             Mark::Arrow { from, text, .. } => note(canvas, frame, *from, text, labels),
             Mark::Horizontal { at, text } => note(canvas, frame, [frame.x.to, *at], text, labels),
@@ -265,6 +280,27 @@ fn band(canvas: &mut Canvas, frame: &Frame, points: &[[f64; 3]], style: &Style) 
     }
 }
 
+/// How much of its colour the inside of a closed line keeps.
+pub(super) fn fill_tint(style: &Style) -> f64 {
+    if style.dash == Dash::Solid { 0.6 } else { BAND_TINT }
+}
+
+/// A closed line and its inside.
+fn filled(canvas: &mut Canvas, frame: &Frame, corners: &[[f64; 2]], style: &Style, labels: &mut LabelPlacer) {
+    if corners.len() < 3 || !corners.iter().all(|corner| frame.places(*corner)) {
+        return;
+    }
+    let mut outline: Vec<Px> = corners.iter().map(|corner| frame.px(*corner)).collect();
+    canvas.fill(&outline, Rgb::from(style.colour).tint(fill_tint(style)));
+    outline.extend(outline.first().copied());
+    for pair in outline.windows(2) {
+        if let Some((a, b)) = frame.area.clip(pair[0], pair[1]) {
+            labels.add_line(a, b);
+        }
+    }
+    canvas.line(&outline, style.colour.into(), style.width_px, Dash::Solid);
+}
+
 fn reference(canvas: &mut Canvas, frame: &Frame, [x, y]: [f64; 2], labels: &mut LabelPlacer) {
     let ends = if frame.x.places(x) {
         [frame.px([x, frame.y.from]), frame.px([x, frame.y.to])]
@@ -336,14 +372,14 @@ fn whole_bar(
     style: &Style,
     labels: &mut LabelPlacer,
 ) {
-    if !is_drawable(&[b.from, b.to]) {
+    if !is_drawable(&[b.from, b.to, b.base]) {
         return;
     }
     // A value that is not finite has no bar, but its text still says so at the foot.
-    let value = if drawable(b.value) { b.value } else { 0.0 };
+    let value = if drawable(b.value) { b.value } else { b.base };
     let (one, other) = match direction {
-        Direction::Up => (frame.px([b.from, 0.0]), frame.px([b.to, value])),
-        Direction::Right => (frame.px([0.0, b.from]), frame.px([value, b.to])),
+        Direction::Up => (frame.px([b.from, b.base]), frame.px([b.to, value])),
+        Direction::Right => (frame.px([b.base, b.from]), frame.px([value, b.to])),
     };
     let within = |v: f64, low: f64, high: f64| v.clamp(low, high);
     let a = frame.area;

@@ -12,8 +12,11 @@
 use nalgebra::{DMatrix, Matrix3xX, Vector3};
 use serde_json::{Value, json};
 
+use super::chart::Figure;
+use super::length::length;
+use super::pictures::calibration::{PoseError, uncertainty_over_workspace};
 use super::table::{Column, Table};
-use super::{Block, Report, Section};
+use super::{Block, Card, Report, Section, Tone};
 use crate::error::Error;
 use crate::linalg::{thin_svd, transposed_product};
 use crate::robot::{Motion, PredictionQuery, Robot};
@@ -217,6 +220,42 @@ fn warnings(robot: &Robot, prediction: &Prediction) -> Vec<String> {
     warnings
 }
 
+/// How many poses, how well they are known at worst, and how far the model is asked beyond what it
+/// has seen.
+fn cards(robot: &Robot, prediction: &Prediction, most: Option<f64>) -> Vec<Card> {
+    let count = prediction.tips.len();
+    let mut cards = vec![Card::new("Poses", count.to_string(), format!("of {}", robot.name))];
+    cards.push(match most {
+        Some(sd) => Card::new("Largest standard deviation", length(sd), "of one coordinate of the tip"),
+        None => Card::new("Uncertainty", "not stated", "the model holds none").toned(Tone::Attention),
+    });
+    if prediction.ratios.is_some() {
+        let far = prediction.far();
+        let tone = if far == 0 && prediction.beyond.is_empty() { Tone::Good } else { Tone::Attention };
+        let detail = match prediction.beyond.len() {
+            0 => "all joints within their calibrated ranges".to_owned(),
+            1 => "1 joint beyond its calibrated range".to_owned(),
+            joints => format!("{joints} joints beyond their calibrated ranges"),
+        };
+        cards.push(Card::new("Poses that extrapolate", format!("{far} of {count}"), detail).toned(tone));
+    }
+    cards
+}
+
+/// Where in the workspace the tip is known how well; nothing where the model does not say.
+fn picture(prediction: &Prediction) -> Option<Figure> {
+    let known = prediction.tips.iter().filter_map(|(_, tip, sd)| {
+        Some(PoseError { at_mm: (tip / MM).into(), error_mm: sd.as_ref()?.norm() / MM })
+    });
+    let poses: Vec<PoseError> = known.collect();
+    (!poses.is_empty()).then(|| {
+        let figure = uncertainty_over_workspace(&poses);
+        let caption =
+            format!("{} Root of the sum of the three variances, in the base frame.", figure.caption);
+        figure.captioned(caption)
+    })
+}
+
 /// The report of `rodcal predict`.
 pub fn report(robot: &Robot, prediction: &Prediction) -> Report {
     let mut columns = vec![Column::text("pose")];
@@ -243,7 +282,7 @@ pub fn report(robot: &Robot, prediction: &Prediction) -> Report {
     }
     let most = prediction.tips.iter().filter_map(|(_, _, sd)| Some(sd.as_ref()?.amax())).reduce(f64::max);
     let known = match most {
-        Some(sd) => format!(", each coordinate to {:.3} mm or better (1 σ)", sd / MM),
+        Some(sd) => format!(", each coordinate to {} or better (1 σ)", length(sd)),
         None => "; the model states no uncertainty".into(),
     };
     let tips = match prediction.tips.len() {
@@ -254,7 +293,11 @@ pub fn report(robot: &Robot, prediction: &Prediction) -> Report {
         title: format!("Predicted tips of {}", robot.name),
         headline: format!("{}: {tips} predicted{known}.", robot.name),
         warnings: warnings(robot, prediction),
-        sections: vec![Section::new("Predicted tips", vec![Block::Table(table)])],
+        cards: cards(robot, prediction, most),
+        sections: vec![Section::new(
+            "Predicted tips",
+            picture(prediction).into_iter().map(Block::Figure).chain([Block::Table(table)]).collect(),
+        )],
         ..Report::default()
     }
 }
@@ -296,6 +339,21 @@ mod tests {
         let gear = 0.5 * 0.4e-3 * 0.5 / 3f64.sqrt();
         assert!((sd(&far) - known.hypot(gear)).abs() < 2e-7, "{} {}", sd(&far), known.hypot(gear));
         assert!(warnings(&arm(), &far)[0].contains("joint 2 goes from 68.8° to 68.8°"));
+    }
+
+    #[test]
+    fn the_page_says_in_short_how_well_tips_are_known_and_where() {
+        let far = predicted(&[[0.1, 1.2]], false).unwrap();
+        let report = report(&arm(), &far);
+        let said: Vec<&str> = report.cards.iter().map(|card| card.detail.as_str()).collect();
+        assert_eq!(said[2], "1 joint beyond its calibrated range");
+        assert_eq!(report.figures().count(), 1);
+        let mut silent = arm();
+        silent.tip = None;
+        let query = PredictionQuery { pose: "1".into(), joints: vec![0.1, 0.0] };
+        let unknown = Prediction::new(&silent, Vector3::zeros(), vec![query], false).unwrap();
+        let report = super::report(&silent, &unknown);
+        assert_eq!((report.cards[1].value.as_str(), report.figures().count()), ("not stated", 0));
     }
 
     #[test]

@@ -1,16 +1,15 @@
 //! What the `rig fit` command says: JSON, tables and pictures of a rig [`Fit`].
 
+mod figures;
+
 use serde_json::{Map, Value, json};
 
 use super::compliance::{matrices, rows};
-use super::pictures::{
-    LoadDeflection, LoadLine, LoadUnit, MeanReading, Residuals, load_deflection, residuals,
-};
 use super::table::{Column, Table};
 use super::{Block, Card, Report, Section, Tone};
 use crate::compliance::paper_contact_force;
-use crate::rig::line::{LackOfFit, Line, Point};
-use crate::rig::readings::{Phase, Readings};
+use crate::rig::line::{LackOfFit, Line};
+use crate::rig::readings::Readings;
 use crate::rig::{Fit, Measured};
 use crate::rod::Rod;
 use crate::statistics::Estimate;
@@ -191,13 +190,9 @@ pub fn sections(fit: &Fit, readings: &Readings, rod: Option<&Rod>) -> Vec<Sectio
     );
     lines.push(Block::Table(lines_table(fit)));
     lines.extend(quadratic_table(fit).map(Block::Table));
-    lines
-        .push(Block::Figure(load_deflection(&pictures(fit, rod), LoadUnit::Newton).captioned(
-            "Load and deflection: averages with standard errors, the fitted line and the models.",
-        )));
-    if let Some(figure) = residual_figure(fit) {
-        lines.push(Block::Figure(figure));
-    }
+    lines.push(Block::Figure(figures::load_deflection(fit, rod)));
+    lines.extend(figures::waterfall(fit, rod).map(Block::Figure));
+    lines.extend(figures::residuals(fit).map(Block::Figure));
     let mut sections = vec![Section::new(format!("Load–deflection lines, {name}"), lines)];
     if let (Some(measured), Some(rod)) = (&fit.measured, rod) {
         sections.push(measured_section(measured, readings, rod));
@@ -228,10 +223,10 @@ fn lines_table(fit: &Fit) -> Table {
     for line in &fit.lines {
         table.row([
             line.key.label(),
-            significant(line.slope.value / UM, 5),
+            known(&line.slope, UM),
             shown(line.slope.std_error, UM, 2),
             shown(line.slope.half_width_95(), UM, 2),
-            shown(line.load_offset.map(|e| e.value), 1.0, 3),
+            line.load_offset.map_or("–".into(), |offset| known(&offset, 1.0)),
             shown(line.load_offset.and_then(|e| e.std_error), 1.0, 2),
             shown(line.noise_sd, UM, 2),
             line.count.to_string(),
@@ -247,6 +242,11 @@ fn lines_table(fit: &Fit) -> Table {
         }
     }
     table
+}
+
+/// An estimate in its unit, with the digits that its standard error deserves.
+fn known(estimate: &Estimate, unit: f64) -> String {
+    estimate.show(unit).split(' ').next().unwrap_or_default().to_owned()
 }
 
 /// A number in its unit, or a dash where there is none.
@@ -285,84 +285,6 @@ fn quadratic_table(fit: &Fit) -> Option<Table> {
     (!table.rows.is_empty()).then_some(table)
 }
 
-/// One panel for each line along its load, in the manner of the paper's Fig. 8.
-fn pictures(fit: &Fit, rod: Option<&Rod>) -> Vec<LoadDeflection> {
-    let is_along = |line: &&(usize, &Line)| line.1.key.channel == line.1.key.direction.axis;
-    let lines: Vec<(usize, &Line)> = fit.lines.iter().enumerate().collect();
-    let chosen: Vec<&(usize, &Line)> = match lines.iter().filter(is_along).count() {
-        0 => lines.iter().collect(),
-        _ => lines.iter().filter(is_along).collect(),
-    };
-    chosen.into_iter().map(|(i, line)| picture(*i, line, fit, rod)).collect()
-}
-
-fn picture(index: usize, line: &Line, fit: &Fit, rod: Option<&Rod>) -> LoadDeflection {
-    let sign = f64::from(line.key.direction.sign);
-    let mut lines = Vec::new();
-    let mut model = |label: &str, slope: f64| {
-        lines.push(LoadLine {
-            label: label.into(),
-            slope_um_per_n: sign * slope / UM,
-            intercept_um: 0.0,
-            is_fit: false,
-        });
-    };
-    if let Some(measured) = &fit.measured {
-        let is_at_tip = line.key.load_station.is_none() && line.key.read_station.is_none();
-        if let Some(calc) = measured.calc.filter(|_| is_at_tip) {
-            model("Calc", calc.force[(line.key.channel.index(), line.key.direction.axis.index())]);
-        }
-        model("FEA", measured.predicted[index]);
-    }
-    let name = if rod.is_some() { "Meas" } else { "line" };
-    let fitted = |label: String, intercept: &Estimate, is_fit| LoadLine {
-        label,
-        slope_um_per_n: sign * line.slope.value / UM,
-        intercept_um: intercept.value / UM,
-        is_fit,
-    };
-    lines.push(fitted(name.into(), &line.intercept, true));
-    lines.extend(line.unload_intercept.map(|b| fitted(format!("{name}, unloading"), &b, false)));
-    let noise = line.noise_sd.unwrap_or(0.0);
-    let readings = |phase: Phase| {
-        let points = line.points.iter().filter(move |point| point.phase == phase);
-        let mean = |point: &Point| MeanReading {
-            load_n: point.load,
-            mean_um: point.mean / UM,
-            standard_error_um: noise / point.count.sqrt() / UM,
-        };
-        points.map(mean).collect()
-    };
-    let prefix = rod.map_or(String::new(), |rod| format!("rod {}, ", rod.name));
-    LoadDeflection {
-        title: format!("{prefix}{}", line.key.label()),
-        lines,
-        readings: readings(Phase::Load),
-        unloading: readings(Phase::Unload),
-    }
-}
-
-fn residual_figure(fit: &Fit) -> Option<super::chart::Figure> {
-    let noise = fit.lines.iter().filter_map(|line| {
-        let smallest = line.points.iter().map(|p| p.count).fold(f64::INFINITY, f64::min);
-        Some(2.0 * line.noise_sd? / smallest.sqrt() / UM)
-    });
-    let noise_um = noise.fold(0.0, f64::max);
-    let series = |line: &Line| {
-        let points = line.points.iter().map(|p| [p.load, p.residual / UM]).collect();
-        (line.key.label(), points)
-    };
-    (!fit.lines.is_empty()).then(|| {
-        residuals(&Residuals {
-            title: "Residuals of the lines".into(),
-            series: fit.lines.iter().map(series).collect(),
-            noise_um,
-            noise_label: "± 2 standard errors of an average, from repeats".into(),
-        })
-        .captioned("Averages less the fitted line. Pure noise would lie within the band and follow no curve.")
-    })
-}
-
 fn measured_section(measured: &Measured, readings: &Readings, rod: &Rod) -> Section {
     let mut table = Table::new(
         "ratios",
@@ -376,7 +298,7 @@ fn measured_section(measured: &Measured, readings: &Readings, rod: &Rod) -> Sect
     );
     let mut row = |name: String, estimate: &Estimate| {
         let (error, width) = (estimate.std_error, estimate.half_width_95());
-        table.row([name, significant(estimate.value, 5), shown(error, 1.0, 2), shown(width, 1.0, 2)]);
+        table.row([name, known(estimate, 1.0), shown(error, 1.0, 2), shown(width, 1.0, 2)]);
     };
     measured.ratios.iter().for_each(|ratio| row(format!("r{}", ratio.name()), &ratio.value));
     row("r_rod".into(), &measured.rod_ratio);

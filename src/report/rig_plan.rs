@@ -6,6 +6,7 @@ use serde_json::{Value, json};
 
 use super::diagnosis::load_plan;
 use super::pictures::{RodShape, ShapeCase, Station, StationKind, rod_shape};
+use super::rod_drawing::drawing;
 use super::table::{Column, Table};
 use super::{Block, Report, Section};
 use crate::beam::{Load, Physics, RodModel};
@@ -195,14 +196,14 @@ fn picture(plan: &RigPlan, rod: &Rod) -> Option<super::chart::Figure> {
         kind,
     };
     let figure = rod_shape(&RodShape {
-        title: format!("Rod {}", rod.name),
         centreline_mm: places().map(|p| (p / MM).into()).collect(),
         cases,
         stations: marks.into_iter().map(station).collect(),
-        ..RodShape::default()
+        ..drawing(rod)
     });
     let caption = "Where loads hang and sensors stand, by the number of the measurement, and how the rod bends under the largest \
                    load of each.";
+    let caption = format!("{caption} {}", figure.caption);
     Some(figure.named("rig-plan").captioned(caption))
 }
 
@@ -217,7 +218,9 @@ fn will_tell(plan: &RigPlan) -> Vec<Block> {
     let caption = "Odds to be expected of this plan, and of all measurements that the rig can make, each repeated twelve times: what is \
                    small there cannot be distinguished. Of each pair the places with the least and the largest odds.";
     let mut table = Table::new("odds", caption, heads);
+    // no model of noise is right so far out
     let odds = |ln: f64| match ln / std::f64::consts::LN_10 {
+        powers if powers > 6.0 => "over 10^6".to_owned(),
         powers if powers > 4.0 => format!("10^{powers:.0}"),
         _ => significant(ln.exp(), 2),
     };

@@ -7,6 +7,8 @@ use serde_json::{Value, json};
 
 pub use self::difference::{Change, Difference, Input, LEVEL, State};
 pub use self::run::{Quantity, Run};
+use super::chart::{Bar, Chart, Colour, Direction, Figure, Mark, Style};
+use super::scale::typeset;
 use super::table::{Align, Column, Table};
 use super::{Block, Card, Report, Section, Tone};
 use crate::error::{Error, Result};
@@ -121,7 +123,7 @@ pub fn report(runs: &Runs) -> Report {
         runs.compared().map(|(other, difference)| headline(runs, other, difference)).collect();
     let mut sections = vec![commands(runs)];
     for (other, difference) in runs.compared() {
-        sections.extend(of_pair(&runs.runs[0], other, difference));
+        sections.extend(of_pair(&runs.runs[0], other, difference, runs.runs.len() == 2));
     }
     Report {
         title: format!("Runs of rodcal {subcommand}"),
@@ -158,7 +160,9 @@ fn parameters_said(difference: &Difference) -> String {
     let said = match (differ.count(), difference.tested()) {
         (0, _) if difference.parameters.is_empty() => "no parameters to compare".to_owned(),
         (0, _) if alone == 0 => "no parameter differs".into(),
-        (differ, 0) => format!("{differ} of {} parameters differ (not tested)", difference.parameters.len()),
+        (differ, 0) => {
+            format!("{differ} of {} parameters differ, significance not tested", difference.parameters.len())
+        }
         (_, tested) => {
             format!("{} of {tested} tested parameters differ significantly", difference.significant())
         }
@@ -201,6 +205,12 @@ fn cards(runs: &Runs, other: &Run, difference: &Difference) -> Vec<Card> {
     let mut cards = vec![Card::new("Inputs", inputs, against.clone())];
     let significant = difference.significant();
     let parameters = match difference.tested() {
+        0 if difference.parameters.iter().any(|change| change.difference.is_some_and(|d| d != 0.0)) => {
+            let differ =
+                difference.parameters.iter().filter(|change| change.difference.is_some_and(|d| d != 0.0));
+            let value = format!("{} of {} differ", differ.count(), difference.parameters.len());
+            Card::new("Parameters", value, format!("significance not tested; {against}"))
+        }
         0 => Card::new("Parameters", parameters_said(difference), against.clone()),
         tested => {
             let tone = if significant == 0 { Tone::Neutral } else { Tone::Attention };
@@ -261,7 +271,7 @@ fn commands(runs: &Runs) -> Section {
     Section::new("The runs", vec![Block::Table(table)])
 }
 
-fn of_pair(first: &Run, other: &Run, difference: &Difference) -> Vec<Section> {
+fn of_pair(first: &Run, other: &Run, difference: &Difference, is_alone: bool) -> Vec<Section> {
     let names = [&first.folder, &other.folder];
     let pair = format!("{} against {}", other.folder, first.folder);
     let mut inputs = Table::new(
@@ -292,9 +302,54 @@ fn of_pair(first: &Run, other: &Run, difference: &Difference) -> Vec<Section> {
     let sections =
         [("Inputs", inputs), ("Parameters", parameters), ("Errors", errors), ("Findings", findings)];
     let with_rows = sections.into_iter().filter(|(_, table)| !table.rows.is_empty());
-    with_rows
-        .map(|(what, table)| Section::new(format!("{what}, {pair}"), vec![Block::Table(table)]))
-        .collect()
+    let mut picture = difference_picture(&difference.parameters);
+    let section = |(what, table): (&str, Table)| {
+        let figure = picture.take_if(|_| what == "Parameters");
+        let blocks = figure.map(Block::Figure).into_iter().chain([Block::Table(table)]).collect();
+        // of two runs there is one pair, which the captions name
+        let heading = if is_alone { what.to_owned() } else { format!("{what}, {pair}") };
+        Section::new(heading, blocks)
+    };
+    with_rows.map(section).collect()
+}
+
+/// Most parameters that a picture shows, the most changed ones.
+const MOST_SHOWN: usize = 16;
+
+/// How far each parameter moved, in its own standard errors; nothing where none has any.
+fn difference_picture(parameters: &[Change]) -> Option<Figure> {
+    let mut moved: Vec<(&str, f64)> =
+        parameters.iter().filter_map(|change| Some((change.name.as_str(), change.ratio()?))).collect();
+    let all = moved.len();
+    moved.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
+    moved.truncate(MOST_SHOWN);
+    if moved.is_empty() {
+        return None;
+    }
+    let row = |k: usize| -(k as f64);
+    let mut chart = Chart::new("", "difference over its standard error", "");
+    chart.y.names = moved.iter().enumerate().map(|(k, (name, _))| (row(k), (*name).to_owned())).collect();
+    chart.height_px = Some(22.0 * moved.len() as f64 + 10.0);
+    let bar = |(k, (_, ratio)): (usize, &(&str, f64))| Bar {
+        from: row(k) - 0.33,
+        to: row(k) + 0.33,
+        value: *ratio,
+        text: typeset(&signed(Some(*ratio), 1)),
+        ..Bar::default()
+    };
+    let chart = chart.with(Mark::Bars {
+        label: String::new(),
+        bars: moved.iter().enumerate().map(bar).collect(),
+        direction: Direction::Right,
+        style: Style::nth(0).colour(Colour::Blue),
+    });
+    let rest =
+        if all > moved.len() { format!(" The {} largest of {all}.", moved.len()) } else { String::new() };
+    let caption = format!(
+        "How far each parameter moved, in standard errors of the difference as of two recordings that have nothing in \
+         common.{rest}"
+    );
+    Some(Figure::from(chart).named("parameter-differences").captioned(caption))
 }
 
 /// Numbers of two runs; where none has a standard error, nothing is said of significance.
@@ -349,5 +404,28 @@ fn shown(quantity: &Option<Quantity>) -> String {
             }
         }
         None => significant(quantity.value, 4),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_most_changed_parameters_are_shown_and_what_has_no_error_is_not() {
+        let change = |k: usize| Change {
+            name: format!("p{k}"),
+            unit: "mm".into(),
+            values: [None, None],
+            difference: Some(-(k as f64)),
+            std_error: (k != 3).then_some(2.0),
+            is_significant: None,
+        };
+        let all: Vec<Change> = (1..=20).map(change).collect();
+        let figure = difference_picture(&all).expect("there are ratios");
+        let names: Vec<&str> = figure.panels[0].y.names.iter().map(|(_, name)| name.as_str()).collect();
+        assert_eq!((names.len(), names[0], names[15]), (MOST_SHOWN, "p20", "p5"));
+        assert!(figure.svg().contains("−10.0") && figure.caption.contains("16 largest of 19"));
+        assert!(difference_picture(&all[2..3]).is_none());
     }
 }

@@ -11,13 +11,15 @@ pub(super) struct Scale {
     pub(super) ticks: Vec<(f64, String)>,
     /// Whether equal ratios, not equal differences, are equally long; then `from` is above zero.
     pub(super) log: bool,
+    /// Tick labels are values over this power of ten.
+    pub(super) power: i32,
 }
 
 impl Scale {
     /// From `from` to `to` as they are, with about `count` ticks between them.
     pub(super) fn fixed(from: f64, to: f64, count: usize) -> Scale {
         let (from, to) = proper(from, to);
-        Scale { from, to, ticks: linear_ticks(from, to, step(to - from, count)), log: false }
+        Scale { from, to, ticks: linear_ticks(from, to, step(to - from, count)), log: false, power: 0 }
     }
 
     /// Rounded outwards to whole steps. A side whose data ends at zero ends at zero.
@@ -28,14 +30,14 @@ impl Scale {
         let air = 0.02 * (to - from);
         let lower = if from == 0.0 { 0.0 } else { ((from - air) / step).floor() * step };
         let upper = if to == 0.0 { 0.0 } else { ((to + air) / step).ceil() * step };
-        Scale { from: lower, to: upper, ticks: linear_ticks(lower, upper, step), log: false }
+        Scale { from: lower, to: upper, ticks: linear_ticks(lower, upper, step), log: false, power: 0 }
     }
 
     /// Logarithmic from `from` to `to` as they are, with at most about `count` ticks: at powers of
     /// ten, and at two and five times them where there are only few.
     pub(super) fn log(from: f64, to: f64, count: usize) -> Scale {
         let (from, to) = proper_ratio(from, to);
-        Scale { from, to, ticks: log_ticks(from, to, count), log: true }
+        Scale { from, to, ticks: log_ticks(from, to, count), log: true, power: 0 }
     }
 
     /// Logarithmic, rounded outwards to 1, 2 or 5 times a power of ten.

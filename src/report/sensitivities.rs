@@ -145,6 +145,7 @@ pub fn bars(title: impl Into<String>, rows: &[OnePercent], picked: &[(usize, &st
             to: top(row),
             value: of.percent[*k],
             text: signed(of.percent[*k]),
+            ..Bar::default()
         };
         chart = chart.with(Mark::Bars {
             label: (*label).to_owned(),

@@ -6,6 +6,7 @@ use maud::{Markup, html};
 use serde::Serialize;
 
 use super::scale::typeset;
+use crate::delimited::guarded;
 use crate::error::{Error, Result};
 
 /// Columns and rows of finished cells. Numbers are written as in a program, "-1.5e-3"; what is for
@@ -111,9 +112,11 @@ impl Table {
     pub fn csv(&self) -> Result<String> {
         let failed = |why: String| Error::Numerical { what: "a table as CSV", why };
         let mut writer = csv::Writer::from_writer(Vec::new());
-        writer.write_record(self.columns.iter().map(Column::heading)).map_err(|e| failed(e.to_string()))?;
+        writer
+            .write_record(self.columns.iter().map(|c| guarded(&c.heading()).into_owned()))
+            .map_err(|e| failed(e.to_string()))?;
         for row in 0..self.rows.len() {
-            let cells = (0..self.columns.len()).map(|i| self.cell(row, i));
+            let cells = (0..self.columns.len()).map(|i| guarded(self.cell(row, i)).into_owned());
             writer.write_record(cells).map_err(|e| failed(e.to_string()))?;
         }
         let bytes = writer.into_inner().map_err(|e| failed(e.to_string()))?;

@@ -29,6 +29,10 @@ pub struct Measured {
     pub compliance: Compliance,
     /// Standard errors of the entries of the Meas compliance; NaN where the readings give none.
     pub std_error: Compliance,
+    /// Physics of the model.
+    pub physics: Physics,
+    /// Number of elements of the model.
+    pub elements: usize,
     /// Entries of C^F that rest on readings of their own (by reciprocity also the transposed ones).
     pub is_measured: Matrix3<bool>,
 }
@@ -85,7 +89,7 @@ pub(super) fn compare(
         });
     };
     let calc = closed_form::compliance(rod).ok();
-    Ok(Measured { predicted, calc, ..measured(model, ratios, rod_ratio) })
+    Ok(Measured { predicted, calc, physics: *physics, elements, ..measured(model, ratios, rod_ratio) })
 }
 
 /// What the model says each line's slope is, m/N.
@@ -203,6 +207,8 @@ fn measured(model: Compliance, ratios: Vec<Ratio>, rod_ratio: Estimate) -> Measu
         model,
         predicted: Vec::new(),
         calc: None,
+        physics: Physics::default(),
+        elements: 0,
         is_measured,
     }
 }

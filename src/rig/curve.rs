@@ -69,6 +69,7 @@ impl Columns {
 }
 
 /// A polynomial through the averages, with its tests.
+#[derive(Debug, Clone)]
 pub(super) struct Curve {
     pub coefficients: DVector<f64>,
     /// Covariances that the coefficients may have, with their degrees of freedom; the larger one

@@ -62,6 +62,7 @@ pub struct Line {
     pub quadratic: Option<Quadratic>,
     /// Lines of the file whose readings a robust fit gives less than half their weight.
     pub downweighted: Vec<usize>,
+    curve: Curve,
 }
 
 /// ȳ = b0 + b1·F + b2·F².
@@ -156,8 +157,14 @@ impl Line {
                 lack_of_fit: curve.lack_of_fit,
             }),
             downweighted,
-            points: line.points,
+            points: line.points.clone(),
+            curve: line,
         }))
+    }
+
+    /// Offset of the loading line at a load (its magnitude, N), m, with its standard error.
+    pub fn at(&self, load: f64) -> Estimate {
+        self.curve.combination(&[1.0, load])
     }
 }
 

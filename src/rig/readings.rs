@@ -15,6 +15,7 @@ use std::path::Path;
 use crate::delimited::{Row, Table, nearest_name, renamed};
 use crate::error::{Error, Place, Result};
 use crate::files;
+use crate::limits;
 use crate::units::{MM, STANDARD_GRAVITY, UM};
 use columns::{LOAD_COLUMNS, OFFSET_COLUMNS, TEXT_COLUMNS, is_one_of};
 use reading::{loads_of, newtons, only_load};
@@ -139,6 +140,7 @@ impl Readings {
             is_one_of(column, &KNOWN_COLUMNS) && !is_one_of(column, &TEXT_COLUMNS)
         })?;
         check_columns(&table)?;
+        limits::check(file, table.rows().count(), limits::READINGS, "readings")?;
         let rows = table.rows().map(read_row).collect::<Result<Vec<_>>>()?;
         check_loads(file, &rows)?;
         let (header, source, misspelt) = header::read(file, text, table.dialect())?;
@@ -182,6 +184,7 @@ fn check_columns(table: &Table) -> Result<()> {
         let meant = table.columns().find_map(|column| Some((column, nearest_name(column, wanted)?)));
         let hint = meant.map(|(column, known)| format!("is the column {column} meant to be {known}?"));
         let hint = renamed(table.columns(), &KNOWN_COLUMNS, wanted).or(hint);
+        let hint = hint.or_else(|| Some(table.columns_found()));
         Err(table.header_error("", format!("there is no {what}"), expected.into(), hint))
     };
     if !table.has("axis") {

@@ -1,12 +1,13 @@
 //! Repeats of a reading: their averages, their scatter, and whether whole trials differ.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 use super::sample::{Point, Sample};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::least_squares::{self, Options};
+use crate::limits;
 use crate::statistics;
 use crate::units::UM;
 
@@ -17,22 +18,28 @@ const TRIALS_DIFFER: f64 = 0.05;
 /// Averages of the repeats.
 pub(super) fn average(samples: &[Sample]) -> Vec<Point> {
     let mut points: Vec<Point> = Vec::new();
-    for sample in samples {
-        match points.iter_mut().find(|point| point.has(sample)) {
-            Some(point) => {
-                point.count += 1.0;
-                point.mean += (sample.offset - point.mean) / point.count;
-            }
-            None => points.push(Point {
-                load: sample.load,
-                phase: sample.phase,
-                mean: sample.offset,
-                count: 1.0,
-                residual: 0.0,
-            }),
+    for (sample, place) in samples.iter().zip(places(samples)) {
+        if place == points.len() {
+            let (load, phase) = (sample.load, sample.phase);
+            points.push(Point { load, phase, mean: 0.0, count: 0.0, residual: 0.0 });
         }
+        let point = &mut points[place];
+        point.count += 1.0;
+        point.mean += (sample.offset - point.mean) / point.count;
     }
     points
+}
+
+/// Which average each sample belongs to, numbered as they come.
+fn places(samples: &[Sample]) -> Vec<usize> {
+    let mut known = HashMap::new();
+    samples
+        .iter()
+        .map(|sample| {
+            let next = known.len();
+            *known.entry(sample.repeated()).or_insert(next)
+        })
+        .collect()
 }
 
 /// A sum of squares with its degrees of freedom.
@@ -67,7 +74,7 @@ const MANY_TRIALS: usize = 50;
 
 impl Repeats {
     pub(super) fn new(samples: &[Sample], points: &[Point]) -> Result<Repeats> {
-        let place: Vec<usize> = samples.iter().filter_map(|s| points.iter().position(|p| p.has(s))).collect();
+        let place = places(samples);
         // what is left of one number per reading once its average over the repeats is taken off
         let centred = |value: &dyn Fn(&Sample) -> f64| {
             let mut averages = vec![0.0; points.len()];
@@ -85,6 +92,18 @@ impl Repeats {
         let mut repeats = Repeats { all, within_trials: all, trials: trials.len() };
         if trials.len() > 1 && 2 * (trials.len() - 1) < all.dof {
             if trials.len() > MANY_TRIALS {
+                if points.len() > limits::REPEATED_LOADS {
+                    return Err(Error::NotApplicable {
+                        what: "a comparison of trials".into(),
+                        why: format!(
+                            "{} trials at {} different loads need too much memory; the limit is {}",
+                            trials.len(),
+                            points.len(),
+                            limits::REPEATED_LOADS
+                        ),
+                        hint: "round the loads to what was hung on, so that repeats share one".into(),
+                    });
+                }
                 repeats.within_trials = within_trials(samples, &place, points.len(), &deviations);
                 return Ok(repeats);
             }

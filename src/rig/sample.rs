@@ -50,9 +50,10 @@ pub struct LackOfFit {
     pub p_value: f64,
 }
 
-impl Point {
-    pub(super) fn has(&self, sample: &Sample) -> bool {
-        self.load == sample.load && self.phase == sample.phase
+impl Sample {
+    /// What it shares with its repeats: the bits of the load (0 and −0 are one), and the phase.
+    pub(super) fn repeated(&self) -> (u64, Phase) {
+        ((self.load + 0.0).to_bits(), self.phase)
     }
 }
 

@@ -204,7 +204,7 @@ pub fn corrections_from_csv(file: &str, text: &str, joints: usize) -> Result<Vec
     let table = Table::parse(file, text, |column| COLUMNS.contains(&column))?;
     if let Some(column) = COLUMNS.into_iter().find(|column| !table.has(column)) {
         let found = format!("there is no column {column}");
-        return Err(table.header_error(column, found, COLUMNS.join(", "), None));
+        return Err(table.header_error(column, found, COLUMNS.join(", "), Some(table.columns_found())));
     }
     let mut rows: Vec<Vec<(f64, f64)>> = vec![Vec::new(); joints];
     for row in table.rows() {

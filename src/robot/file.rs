@@ -13,6 +13,7 @@ use super::uncertainty::{self, RawUncertainty};
 use super::write::joint_units;
 use super::{Body, Effect, Hayati, Joint, Motion, Robot, Tip, urdf};
 use crate::error::Result;
+use crate::limits;
 use crate::spatial::Pose;
 use crate::toml_text::{Number, Required, TomlText};
 use crate::units::{DEG, MM, URAD_PER_NM};
@@ -159,6 +160,8 @@ fn read_table(file: &str, text: &str) -> Result<Robot> {
         None => None,
     };
     let joint_count = raw.joint.get_ref().len();
+    limits::check(file, joint_count, limits::ROBOT_JOINTS, "joints")?;
+    limits::check(file, raw.effect.len(), limits::ROBOT_EFFECTS, "effects")?;
     let known = raw.uncertainty.as_ref().map(|known| uncertainty::read(&table.0, known, joint_count));
     let uncertainty = known.transpose()?;
     let effects: Vec<Effect> = raw

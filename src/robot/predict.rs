@@ -127,8 +127,11 @@ impl Robot {
         let table = Table::parse(file, text, |name| columns.iter().any(|(column, _)| column == name))?;
         let names: Vec<&str> = columns.iter().map(|(name, _)| name.as_str()).collect();
         if let Some(name) = names.iter().copied().find(|name| !table.has(name)) {
-            let expected = format!("pose, {}: one column for each joint of {}", names.join(", "), self.name);
-            return Err(table.header_error(name, format!("there is no column {name}"), expected, None));
+            let (first, last) = (names.first().unwrap_or(&""), names.last().unwrap_or(&""));
+            let columns = if names.len() > 12 { format!("{first} … {last}") } else { names.join(", ") };
+            let expected = format!("pose, {columns}: one column for each joint of {}", self.name);
+            let (found, hint) = (format!("there is no column {name}"), table.columns_found());
+            return Err(table.header_error(name, found, expected, Some(hint)));
         }
         let pose = |(at, row): (usize, crate::delimited::Row<'_>)| {
             let joints = columns.iter().map(|(name, unit)| Ok(row.required_number(name)? * unit));

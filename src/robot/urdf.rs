@@ -23,6 +23,7 @@ use self::xml::Source;
 use super::defaults::{DOWN, file_stem};
 use super::{Body, Hayati, Joint, Motion, Robot, StandardUncertainty, hayati};
 use crate::error::Result;
+use crate::limits;
 use crate::spatial::Pose;
 
 /// Links that are taken where no others are named.
@@ -34,6 +35,8 @@ pub(super) fn read(file: &str, text: &str, base_link: Option<&str>, tip_link: Op
     let document = source.parse()?;
     let tree = Tree::read(source, &document)?;
     let path = tree.path(base_link.unwrap_or(BASE_LINK), tip_link.unwrap_or(TIP_LINK))?;
+    let moving = path.iter().filter(|&&joint| matches!(tree.joints[joint].kind, Kind::Moving(..))).count();
+    limits::check(file, moving, limits::ROBOT_JOINTS, "moving joints from base_link to tip_link")?;
     let zero = Zero::new(&tree, &path);
 
     let (root, links) = zero.chain();

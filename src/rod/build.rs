@@ -186,9 +186,13 @@ fn check_section(section: &Section) -> Result<()> {
     Ok(())
 }
 
+/// What is smaller would be 0, or refused, in the unit that a file states it in.
+const SMALLEST: f64 = 1e-280;
+
 fn positive(name: &'static str, value: f64) -> Result<()> {
-    match value > 0.0 && value.is_finite() {
+    match value >= SMALLEST && value.is_finite() {
         true => Ok(()),
+        false if value > 0.0 => Err(wrong(name, value, "a number of at least 1e-280, in SI units")),
         false => Err(wrong(name, value, "a number > 0, in SI units")),
     }
 }

@@ -24,6 +24,7 @@ use self::uncertainty::RawUncertainty;
 use super::{Rod, Warning};
 use crate::error::Result;
 use crate::files;
+use crate::limits;
 use crate::toml_text::{Number, Required, TomlText};
 
 impl Rod {
@@ -156,6 +157,8 @@ impl Check<'_> {
             standard_uncertainty,
             warnings: Vec::new(),
         };
+        limits::check(self.toml.file(), raw.mass.len(), limits::ROD_PARTS, "masses")?;
+        limits::check(self.toml.file(), raw.joint.len(), limits::ROD_PARTS, "joints")?;
         for mass in &raw.mass {
             let mass = self.lumped_mass(mass, rod.length())?;
             rod.masses.push(mass);

@@ -176,19 +176,29 @@ proptest! {
 fn deep_and_long_files_are_read_or_refused() {
     let deep = format!("<robot>{}{}</robot>", "<a>".repeat(100_000), "</a>".repeat(100_000));
     assert!(Robot::from_text("f", &deep, None, None).is_err());
+    let refused = Robot::from_text("f", &chain(3000), None, None).expect_err("an arm that is too long");
+    assert_eq!(
+        refused.to_string(),
+        "f: it has 3000 moving joints from base_link to tip_link, expected at most 64"
+    );
+    let long = chain(64);
+    let robot = Robot::from_text("f", &long, None, None).expect("a long arm");
+    assert_eq!(robot.joints.len(), 64);
+    let written = robot.to_urdf("f", &long, None, None, Some(Vector3::z()), &["x".to_owned()]);
+    assert!(!written.expect("a URDF").has_tool);
+}
+
+/// So many joints, one on the other.
+fn chain(count: usize) -> String {
     let mut long = String::from("<robot><link name=\"base_link\"/>");
     let mut parent = "base_link".to_owned();
-    for i in 0..2000 {
-        let child = if i == 1999 { "tip_link".to_owned() } else { format!("l{i}") };
+    for i in 0..count {
+        let child = if i + 1 == count { "tip_link".to_owned() } else { format!("l{i}") };
         long += &format!(
             "<link name=\"{child}\"/><joint name=\"j{i}\" type=\"continuous\"><parent link=\"{parent}\"/>\
              <child link=\"{child}\"/><origin xyz=\"0.1 0 0.1\" rpy=\"0.1 0.2 0.3\"/></joint>"
         );
         parent = child;
     }
-    long += "</robot>";
-    let robot = Robot::from_text("f", &long, None, None).expect("a long arm");
-    assert_eq!(robot.joints.len(), 2000);
-    let written = robot.to_urdf("f", &long, None, None, Some(Vector3::z()), &["x".to_owned()]);
-    assert!(!written.expect("a URDF").has_tool);
+    long + "</robot>"
 }

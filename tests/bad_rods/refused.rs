@@ -45,6 +45,11 @@ fn a_value_that_is_no_number_says_how_to_write_it() {
     let cases = [
         (
             "l1_mm = 150.0",
+            "l1_mm = 5e-324",
+            "rod.toml:5:9: `geometry.l1_mm` is 5e-324, expected a number of at least 1e-290",
+        ),
+        (
+            "l1_mm = 150.0",
             "l1_mm = \"150\"",
             "rod.toml:5:9: `geometry.l1_mm` is \"150\", expected a number -> write 150.0",
         ),
@@ -621,7 +626,11 @@ fn text_that_is_no_rod_file_is_recognised() {
             "{\"geometry\": {\"l1_mm\": 150}}",
             "rod.toml:1:1: the line `{\"geometry\": {\"l1_mm\": 150}}`, expected key = value, or a [section]",
         ),
-        (GOOD, "\0\0\0\0", "rod.toml:1:5: the line `����`, expected key = value, or a [section]"),
+        (
+            GOOD,
+            "\0\0\0\0",
+            "rod.toml:1:5: the line `\\x00\\x00\\x00\\x00`, expected key = value, or a [section]",
+        ),
         (
             GOOD,
             "geometry:\n  l1_mm: 150\n",

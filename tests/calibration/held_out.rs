@@ -34,6 +34,25 @@ fn folds_share_out_the_poses() {
     }
 }
 
+/// As many folds as were asked for, also where a clamp has fewer poses than there are folds; never
+/// more than there are poses.
+#[test]
+fn folds_asked_for_are_folds_made() {
+    let clean = campaign();
+    let recording = &clean.measurements;
+    for folds in [2, 3, 5, 7, 24, 26, 31, 74, 75] {
+        let mut made = recording.folds(folds);
+        made.sort_unstable();
+        made.dedup();
+        assert_eq!(made.len(), folds);
+    }
+    let compensation = Compensation::new(&clean, Mode::Calc).unwrap();
+    let options = Options::default();
+    let calibration = calibrate(&clean, Mode::Calc, &options).unwrap();
+    let refused = cross_validate(&clean, &calibration, &compensation, 76, &options).unwrap_err();
+    assert!(refused.to_string().contains("at most 75"), "{refused}");
+}
+
 /// A pose held out may be anywhere: what the fit without it says of it does not move, and the
 /// others are predicted by fits that have seen it.
 #[test]

@@ -137,7 +137,7 @@ fn what_the_data_do_not_support_is_held() {
     let error = |found: &rodcal::calibration::Calibration| found.validation.as_ref().unwrap().summary.mean;
     assert!(error(&pruned) < 1.05 * error(&whole), "{:e} {:e}", error(&pruned), error(&whole));
     // and the nominal robot is far off at the same poses
-    let before = pruned.before.unwrap();
+    let before = pruned.before.as_ref().unwrap();
     assert!(before.validation.unwrap().mean > 10.0 * error(&pruned), "{before:?}");
     assert!(pruned.extrapolation.unwrap().ratio() < 2.0);
 }

@@ -51,6 +51,7 @@ fn what_changed_is_said_with_its_significance() {
     assert_eq!(along_z["difference"], 0.0);
     let page = sandbox.read("c/index.html");
     assert!(page.contains("3 of 5 differ significantly") && page.contains("Runs of rodcal rig fit"));
+    assert!(page.contains("<h2>Parameters</h2>") && page.contains("How far each parameter moved"));
     // results are read, not replaced
     let answer = sandbox.run("compare-runs a b --out a");
     assert_eq!(answer.status, Some(2));

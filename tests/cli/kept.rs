@@ -23,10 +23,14 @@ const SIMULATE: &str = "simulate sim --rod rods/5.toml --poses 6 --validation 4"
 
 /// Refused with one error and a hint; what is there stays.
 fn refused(sandbox: &Sandbox, line: &str, error: &str) {
+    let hint = "hint: write to another place, or replace what is there with --force";
+    refused_with(sandbox, line, error, hint);
+}
+
+fn refused_with(sandbox: &Sandbox, line: &str, error: &str, hint: &str) {
     let before = sandbox.listing();
     let Answer { status, stdout, stderr, .. } = sandbox.run(line);
     assert_eq!((status, stdout.as_str()), (Some(2), ""), "{line}\n{stderr}");
-    let hint = "hint: write to another place, or replace what is there with --force";
     assert_eq!(stderr, format!("error: {error}\n{hint}\n"), "{line}");
     assert!(sandbox.listing() == before, "{line}: something was written");
 }
@@ -74,7 +78,7 @@ fn files_beside_the_page_are_kept_too() {
     std::fs::create_dir(sandbox.path().join("own")).unwrap();
     for (name, line) in [
         ("own/5-diagnosed.toml", "diagnose rig rods/5.toml soft.csv --apply"),
-        ("own/figure-1-contributions.svg", "compliance rods/5.toml"),
+        ("own/figure-1-waterfall.svg", "compliance rods/5.toml"),
         ("own/design-001.toml", "design rod design.toml"),
     ] {
         let readings = sandbox.read("stiffness_data/5.csv");
@@ -110,16 +114,28 @@ fn a_simulation_replaces_its_own_files_alone() {
 fn a_trial_its_key_and_its_cases_are_made_once() {
     let sandbox = Sandbox::empty();
     let make = "trial make t --seed 3 --cases 2 --rig";
+    let once = |line: &str, error: &str| {
+        let hint =
+            "hint: take another name: what stands there is written once, and --force does not replace it";
+        for force in ["", " --force"] {
+            refused_with(&sandbox, &format!("{line}{force}"), error, hint);
+        }
+    };
     sandbox.write("t.key.jsonl", "mine");
-    refused(&sandbox, make, "t.key.jsonl is there already");
-    sandbox.run(&format!("{make} --force")).succeeded();
-    refused(&sandbox, "trial make t --seed 4 --cases 1 --key k", "t/manifest.json is there already");
-    // begun and cut off: the same cases go on, others do not replace them
-    std::fs::remove_file(sandbox.path().join("t/manifest.json")).unwrap();
+    once(make, "t.key.jsonl is there already");
     std::fs::remove_file(sandbox.path().join("t.key.jsonl")).unwrap();
-    let answer = sandbox.run("trial make t --seed 4 --cases 2 --rig");
-    assert!(answer.status == Some(2) && answer.stderr.contains("t/rig/case-0001/"), "{}", answer.stderr);
+    std::fs::create_dir(sandbox.path().join("t")).unwrap();
+    // an empty directory is no trial
     sandbox.run(make).succeeded();
+    once("trial make t --seed 4 --cases 1 --key k", "t/manifest.json is there already");
+    once("trial make u --seed 4 --cases 1 --key t.key.jsonl", "t.key.jsonl is there already");
+    sandbox.write("elsewhere", "mine");
+    std::os::unix::fs::symlink("elsewhere", sandbox.path().join("link")).unwrap();
+    once("trial make u --seed 4 --cases 1 --key link", "link is there already");
+    for key in ["t/k", "./t/k", "u/../t/k"] {
+        let answer = sandbox.run(&format!("trial make t --seed 4 --cases 1 --key {key}"));
+        assert!(answer.stderr.contains("which is in the trial's directory"), "{}", answer.stderr);
+    }
     // answers are added to answers
     sandbox.write("notes.txt", "mine, without an end");
     let answer = sandbox.run("trial answer t --answers notes.txt");

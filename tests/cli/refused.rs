@@ -124,3 +124,16 @@ fn errors_read_well() {
     let told = lines.map(|line| format!("$ rodcal {line}\n{}", sandbox.run(line).stderr));
     super::words::assert_reads("errors", &told.join("\n"));
 }
+
+/// A modulus in MPa where GPa is asked for: the first words say so, on stderr and on stdout.
+#[test]
+fn a_rod_that_bends_too_far_is_said_first() {
+    let sandbox = Sandbox::new();
+    let rod = sandbox.read("rods/5.toml");
+    sandbox.write("rods/soft.toml", &rod.replace("l2_mm = 525.0", "l2_mm = 525000.0"));
+    let answer = sandbox.run("compliance rods/soft.toml").succeeded();
+    let says = "Rod 5# is beyond this model: under its own weight its tip would move by";
+    assert!(answer.stdout.starts_with(says), "{}", answer.stdout);
+    assert!(answer.stderr.starts_with(&format!("warning: {says}")), "{}", answer.stderr);
+    assert!(!sandbox.run("compliance rods/5.toml").succeeded().stdout.contains("beyond this model"));
+}

@@ -19,6 +19,32 @@ fn warnings_go_to_stderr_and_with_json_also_into_it() {
     }
 }
 
+/// Quiet hides warnings from stderr and from nowhere else, and never an error; verbose says what
+/// was read and written. Neither changes the result.
+#[test]
+fn quiet_and_verbose_change_stderr_alone() {
+    let sandbox = Sandbox::new();
+    let line = "rig fit rods/2.toml stiffness_data/2.csv --json";
+    let plain = sandbox.run(line).succeeded();
+    let quiet = sandbox.run(&format!("-q {line}")).succeeded();
+    assert!(!plain.stderr.is_empty() && quiet.stderr.is_empty(), "{}", quiet.stderr);
+    assert_eq!(quiet.stdout, plain.stdout);
+    let verbose = sandbox.run(&format!("{line} -v")).succeeded();
+    assert_eq!(verbose.stdout, plain.stdout);
+    for words in ["read rods/2.toml, SHA-256 ", "read stiffness_data/2.csv, ", "calculated and rendered in "]
+    {
+        assert!(verbose.stderr.contains(words), "{}", verbose.stderr);
+    }
+    let written = sandbox.run("compliance rods/5.toml --out told --verbose").succeeded();
+    assert!(written.stderr.contains("wrote told/index.html, "), "{}", written.stderr);
+    let page = sandbox.read("told/index.html");
+    sandbox.run("-q compliance rods/5.toml --out told").succeeded();
+    assert!(sandbox.read("told/index.html") == page);
+    let refused = sandbox.run("-q compliance nowhere.toml");
+    assert!(refused.stderr.starts_with("error: "), "{}", refused.stderr);
+    assert!(sandbox.run("-q -v compliance rods/5.toml").stderr.contains("cannot be used with"));
+}
+
 #[test]
 fn there_are_warnings_where_there_is_something_to_warn_about() {
     for (line, word) in [

@@ -125,18 +125,56 @@ fn another_key_and_changed_recordings_are_refused() {
     sandbox.run("trial make t --seed 3 --cases 2 --rig").succeeded();
     sandbox.run("trial answer t").succeeded();
     let (key, rod) = (sandbox.read("t.key.jsonl"), sandbox.read("t/rig/case-0002/rod.toml"));
-    let refuses = |line: &str, file: &str| {
+    let refuses = |line: &str, says: &str| {
         let answer = sandbox.run(line);
         assert_eq!((answer.status, answer.stdout.as_str()), (Some(2), ""), "{line}");
-        assert!(answer.stderr.starts_with(&format!("error: {file}: its SHA-256 is")), "{}", answer.stderr);
+        assert!(answer.stderr.starts_with(&format!("error: {says}")), "{}", answer.stderr);
     };
     sandbox.write("t.key.jsonl", &key.replacen("case-0001", "case-0002", 1));
-    refuses("trial score t", "t.key.jsonl");
+    refuses("trial score t", "t.key.jsonl: its SHA-256 is");
     sandbox.write("t.key.jsonl", &key);
     sandbox.write("t/rig/case-0002/rod.toml", &rod.replacen("l1_mm = ", "l1_mm = 1", 1));
-    refuses("trial score t", "t/rig/case-0002/rod.toml");
-    assert_eq!(sandbox.run("trial make t --seed 4").status, Some(2));
-    assert_eq!(sandbox.run("trial make u --seed 4 --key u/key.jsonl").status, Some(2));
+    refuses("trial score t", "t/rig/case-0002/rod.toml: its SHA-256 is");
+    sandbox.write("t/rig/case-0002/rod.toml", &rod);
+    sandbox.write("t/rig/case-0002/rod-7.toml", &rod);
+    for line in ["trial score t", "trial answer t --answers again.jsonl"] {
+        refuses(line, "t/rig/case-0002/rod-7.toml: it is not in the manifest");
+    }
+    std::fs::remove_file(sandbox.path().join("t/rig/case-0002/rod-7.toml")).unwrap();
+    // a manifest that leads elsewhere, and one that says less than there is
+    let manifest = sandbox.read("t/manifest.json");
+    sandbox.write("t/manifest.json", &manifest.replacen("rig/case-0001/", "rig/case-0001/../", 1));
+    refuses("trial answer t --answers again.jsonl", "t/manifest.json: it names \"rig/case-0001/../");
+    sandbox.write("t/manifest.json", &manifest.replacen("\"cases\": 2", "\"cases\": 1000000000000000000", 1));
+    refuses("trial score t", "t/manifest.json: it has files of 2 cases, expected the 10");
+    sandbox.write("t/manifest.json", &(manifest.clone() + "\n"));
+    refuses("trial score t", "t/manifest.json: its SHA-256 is");
+    sandbox.write("t/manifest.json", &manifest);
+    // answers: to no case, and not to all
+    let answers = sandbox.read("t/answers.jsonl");
+    sandbox.write("t/answers.jsonl", &answers.replacen("rig/case-0001", "../case-0001", 1));
+    refuses("trial score t", "t/answers.jsonl: an answer to \"../case-0001\", which is no case");
+    sandbox.write("t/answers.jsonl", &answers.split_inclusive('\n').take(1).collect::<String>());
+    let score = sandbox.run("trial score t").succeeded().stdout;
+    assert!(score.starts_with("1 of 2 cases have no answer: the score is of the other 1.\n"), "{score}");
+    // of a former version
+    sandbox.write("t.key.jsonl", key.split_once('\n').unwrap().1);
+    let score = sandbox.run("trial score t").succeeded().stdout;
+    assert!(score.lines().nth(1).unwrap().starts_with("The key is of a former version"), "{score}");
+}
+
+#[test]
+fn a_seed_that_may_be_guessed_is_warned_about_and_none_is_needed() {
+    let sandbox = Sandbox::empty();
+    let warned = sandbox.run("trial make t --seed 3 --cases 1 --rig").succeeded().warnings();
+    assert!(warned.len() == 1 && warned[0].starts_with("the seed 3 has fewer"), "{warned:?}");
+    for (name, seed) in [("u", ""), ("v", ""), ("w", " --seed 0x123456789abcdef0123456789abcdef")] {
+        let made = sandbox.run(&format!("trial make {name} --cases 1 --rig{seed}")).succeeded();
+        assert_eq!(made.warnings(), [""; 0]);
+    }
+    let key = sandbox.read("w.key.jsonl");
+    assert!(key.contains("\"seed\":\"0x123456789abcdef0123456789abcdef\""), "{key}");
+    assert_ne!(sandbox.read("u/rig/case-0001/readings.csv"), sandbox.read("v/rig/case-0001/readings.csv"));
 }
 
 #[test]

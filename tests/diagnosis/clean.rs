@@ -9,8 +9,8 @@ use super::Answer;
 /// Recordings of each kind.
 const SEEDS: usize = 40;
 
-/// 300 recordings with normal noise and a display in steps. At most 2 % are to be found wrong: of
-/// 300 with that rate more than 12 are in one of 100 times (binomial, 99 %).
+/// 120 recordings with normal noise and a display in steps. At most 2 % are to be found wrong: of
+/// 120 with that rate more than 5 are in one of 28 times (binomial).
 #[test]
 fn clean_recordings_stay_clean() {
     let orders = [
@@ -42,4 +42,24 @@ fn clean_recordings_stay_clean() {
     .flatten()
     .collect();
     assert!(wrong.len() <= 5, "{} of 120: {wrong:#?}", wrong.len());
+}
+
+/// A modulus that is 40 % off is no agreement, however well the readings then fit: it is named, or
+/// the number is; one within what the file says is none.
+#[test]
+fn a_number_far_from_that_of_the_file_is_no_agreement() {
+    let order = Order { axes: vec![0, 1, 2], ..Order::default() };
+    let made = order.made(&[], 5);
+    let of = |times: f64| {
+        let scaled = |line: &str| match line.strip_prefix("youngs_modulus_gpa = ") {
+            Some(value) => format!("youngs_modulus_gpa = {}\n", times * value.parse::<f64>().unwrap()),
+            None => format!("{line}\n"),
+        };
+        let rod: String = made.rod.lines().map(scaled).collect();
+        Answer::of(Some(&rod), &made.readings)
+    };
+    let near = of(0.97);
+    assert!(near.is_consistent() && near.json["nominal"][0]["parameter"] == "E of steel", "{}", near.json);
+    let far = of(0.6);
+    assert!(!far.is_consistent(), "{}", far.json["headline"]);
 }

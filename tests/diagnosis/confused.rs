@@ -63,3 +63,18 @@ fn at_the_tip_along_one_axis_all_softness_is_alike() {
         }
     }
 }
+
+/// So large that columns at neutral values say little of what would do as well: a sensor that shows
+/// twice as much is none of it.
+#[test]
+fn what_is_twice_as_soft_may_still_be_a_joint_or_the_moduli() {
+    let order = Order { axes: vec![1], all_channels: false, ..Order::default() };
+    let bending = 1.5 * order.rotation()[0];
+    for effect in [Effect::StiffnessScale(0.45), Effect::Root { bending, torsion: 0.0 }] {
+        let answer = Answer::made(&order, &[effect], 6);
+        let class = answer.class(0);
+        for alike in ["stiffness_scale", "root_compliance", "joint_compliance"] {
+            assert!(class.contains(&alike), "{alike} is not in {class:?}");
+        }
+    }
+}

@@ -123,6 +123,9 @@ impl Error {
         match self {
             Error::Input { hint, .. } => hint.as_deref(),
             Error::NotApplicable { hint, .. } => Some(hint),
+            Error::InTheWay { whose: Whose::Kept, .. } => {
+                Some("take another name: what stands there is written once, and --force does not replace it")
+            }
             Error::InTheWay { .. } => Some("write to another place, or replace what is there with --force"),
             Error::SelfCheck { .. } => Some(
                 "check the stiffnesses near that station; numbers many orders of magnitude apart overflow double precision",

@@ -1,32 +1,33 @@
 //! Text in, whole files out. The only place that touches the file system.
 //!
-//! Nothing that somebody else wrote is lost: see [`Existing`].
+//! Nothing that somebody else wrote is lost: see [`Existing`]. A set of files is there as a whole or
+//! not at all: see [`Staged`]. What a killed run left behind goes with the next one that writes
+//! there.
 
 mod content;
+mod disk;
 mod encoding;
+mod existing;
+mod in_place;
+mod leftovers;
 mod marker;
+mod single;
+mod staged;
 
 use std::collections::BTreeMap;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
-pub use self::content::{read_bytes, sha256};
+pub use self::content::{names_in, read_bytes, read_inside, sha256};
+pub use self::disk::faults;
 pub use self::encoding::text_of_bytes;
+pub use self::existing::Existing;
 pub use self::marker::MARKER;
+pub use self::single::{append, move_to, remove_tree, write_new, write_whole};
+pub use self::staged::{Created, Staged, create_directories};
 
-use self::content::failed;
+use self::existing::{Known, Standing, refuse};
 use self::marker::Marker;
 use crate::error::{Error, Result, Whose};
-
-/// What happens to a file that stands where one is to be written.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Existing {
-    /// It stays, and nothing is written, unless the program wrote it and nobody has changed it
-    /// since ([`MARKER`] says so), or it has the very bytes that are to be written.
-    Keep,
-    /// It is replaced.
-    Replace,
-}
 
 /// The other files of the directory of `path` with the same extension, sorted; none where the
 /// directory cannot be read.
@@ -50,61 +51,12 @@ pub fn read_text(path: &Path) -> Result<String> {
     text_of_bytes(&path.display().to_string(), read_bytes(path)?)
 }
 
-/// Adds to the end of a file, which is made if missing, and waits until it is on the disk.
+/// Writes all files, given by name and contents, into `directory`, or none of them; see [`Staged`].
 ///
 /// # Errors
-/// [`Error::File`]; after a power cut a part of `contents` may be there.
-pub fn append(path: &Path, contents: &[u8]) -> Result<()> {
-    let written = std::fs::OpenOptions::new().create(true).append(true).open(path).and_then(|mut file| {
-        file.write_all(contents)?;
-        file.sync_data()
-    });
-    written.map_err(failed("write", path))
-}
-
-/// Writes a file whole or not at all: to a temporary file beside it, then renamed onto it. For a
-/// file that the caller has read and knows as its own: what stands there is replaced. Missing
-/// directories are created.
-///
-/// # Errors
-/// [`Error::File`]; the old file, if any, is then untouched.
-pub fn write_whole(path: &Path, contents: &[u8]) -> Result<()> {
-    write_new(path, contents, Existing::Replace)
-}
-
-/// The same for a file that may be somebody else's.
-///
-/// # Errors
-/// [`Error::File`], [`Error::InTheWay`]; the old file, if any, is then untouched.
-pub fn write_new(path: &Path, contents: &[u8], existing: Existing) -> Result<()> {
-    let (directory, name) = match (path.parent(), path.file_name()) {
-        (Some(parent), Some(name)) if !parent.as_os_str().is_empty() => (parent, name),
-        _ => (Path::new("."), path.as_os_str()),
-    };
-    write_once(directory, &[(name.to_string_lossy().into_owned(), contents.to_vec())], existing)
-}
-
-/// Writes all files, given by name and contents, into `directory`, or none of them: each to a
-/// temporary file first, and only when all of those are complete are they renamed. Missing
-/// directories are created. [`MARKER`] beside them says what was written, so that the program may
-/// replace it another time.
-///
-/// # Errors
-/// [`Error::InTheWay`], [`Error::File`]; old files are then untouched, unless a rename itself fails
-/// in the midst of the others.
+/// As [`Staged::new`] and [`Staged::commit`]; old files are then untouched.
 pub fn write_together(directory: &Path, files: &[(String, Vec<u8>)], existing: Existing) -> Result<()> {
-    let marker = Marker::read(directory)?;
-    // the marker comes last: if the power fails before it, the same files can be written again
-    let files: Vec<_> = files.iter().cloned().chain([(MARKER.to_owned(), marker.with(files))]).collect();
-    write(directory, &files, existing, &Known::By(marker))
-}
-
-/// The same without [`MARKER`], for what is written once: only the same bytes may stand there.
-///
-/// # Errors
-/// As [`write_together`].
-pub fn write_once(directory: &Path, files: &[(String, Vec<u8>)], existing: Existing) -> Result<()> {
-    write(directory, files, existing, &Known::Nothing)
+    Staged::new(directory, files, existing)?.commit()
 }
 
 /// Refuses files that [`write_together`] would refuse whatever their contents, before these are
@@ -113,12 +65,13 @@ pub fn write_once(directory: &Path, files: &[(String, Vec<u8>)], existing: Exist
 /// # Errors
 /// [`Error::InTheWay`], [`Error::File`].
 pub fn check_free(directory: &Path, names: &[&str], existing: Existing) -> Result<()> {
+    in_place::finish(directory)?;
     let known = Known::By(Marker::read(directory)?);
     let there = names.iter().map(|name| Ok((*name, Standing::at(&directory.join(name))?)));
     refuse(&there.collect::<Result<Vec<_>>>()?, existing, |name, there| known.whose(name, there))
 }
 
-/// Refuses a file that [`write_once`] would refuse, before its contents are known.
+/// Refuses a file that [`write_new`] would refuse, before its contents are known.
 ///
 /// # Errors
 /// [`Error::InTheWay`], [`Error::File`].
@@ -148,106 +101,6 @@ pub fn check_apart(
         true => Ok(()),
         false => Err(Error::InTheWay { files: lost, whose: Whose::Read }),
     }
-}
-
-fn write(directory: &Path, files: &[(String, Vec<u8>)], existing: Existing, known: &Known) -> Result<()> {
-    let there = files.iter().map(|(name, _)| Ok((name.as_str(), Standing::at(&directory.join(name))?)));
-    let there = there.collect::<Result<Vec<_>>>()?;
-    let hashes: BTreeMap<&str, String> =
-        files.iter().map(|(name, contents)| (name.as_str(), sha256(contents))).collect();
-    // the same bytes are no loss
-    refuse(&there, existing, |name, there| match hashes.get(name) == Some(&there.sha256) {
-        true => None,
-        false => known.whose(name, there),
-    })?;
-    std::fs::create_dir_all(directory).map_err(failed("create", directory))?;
-    let mut finished = Vec::with_capacity(files.len());
-    for ((name, contents), (_, there)) in files.iter().zip(there) {
-        let path = directory.join(name);
-        let mut temporary = tempfile::Builder::new()
-            .prefix(".rodcal-")
-            .permissions(readable_by_all())
-            .tempfile_in(directory)
-            .map_err(failed("write", &path))?;
-        temporary.write_all(contents).map_err(failed("write", &path))?;
-        finished.push((temporary, path, there.is_some()));
-    }
-    for (temporary, path, was_there) in finished {
-        // what has come there in the meantime is not replaced either
-        let renamed = match was_there || existing == Existing::Replace {
-            true => temporary.persist(&path),
-            false => temporary.persist_noclobber(&path),
-        };
-        renamed.map_err(|e| failed("write", &path)(e.error))?;
-    }
-    Ok(())
-}
-
-fn refuse(
-    there: &[(&str, Option<Standing>)],
-    existing: Existing,
-    whose: impl Fn(&str, &Standing) -> Option<Whose>,
-) -> Result<()> {
-    if existing == Existing::Replace {
-        return Ok(());
-    }
-    let standing = there.iter().filter_map(|(name, there)| Some((*name, there.as_ref()?)));
-    let kept: Vec<(Whose, &Path)> =
-        standing.filter_map(|(name, there)| Some((whose(name, there)?, there.path.as_path()))).collect();
-    // all of one kind in one error
-    match kept.first() {
-        None => Ok(()),
-        Some(&(whose, _)) => {
-            let files = kept.iter().filter(|kept| kept.0 == whose).map(|kept| kept.1.to_owned());
-            Err(Error::InTheWay { files: files.collect(), whose })
-        }
-    }
-}
-
-/// What is known of the files of a directory.
-enum Known {
-    By(Marker),
-    Nothing,
-}
-
-impl Known {
-    /// Whose a file is, where it must not be replaced.
-    fn whose(&self, name: &str, there: &Standing) -> Option<Whose> {
-        match self {
-            Known::Nothing => Some(Whose::Kept),
-            Known::By(marker) if marker.is_unchanged(name, &there.sha256) => None,
-            Known::By(marker) if marker.names(name) => Some(Whose::Changed),
-            Known::By(_) => Some(Whose::Unknown),
-        }
-    }
-}
-
-/// A file that stands where one is to be written.
-struct Standing {
-    path: PathBuf,
-    /// Of its content; empty for a link, which is not a copy of what it leads to.
-    sha256: String,
-}
-
-impl Standing {
-    fn at(path: &Path) -> Result<Option<Standing>> {
-        let kind = match path.symlink_metadata() {
-            Ok(metadata) => metadata.file_type(),
-            // not there, or below a file: creating the directory will say so
-            Err(_) => return Ok(None),
-        };
-        if kind.is_dir() {
-            let source = std::io::Error::from(std::io::ErrorKind::IsADirectory);
-            return Err(failed("write", path)(source));
-        }
-        let sha256 = if kind.is_file() { sha256(&read_bytes(path)?) } else { String::new() };
-        Ok(Some(Standing { path: path.to_owned(), sha256 }))
-    }
-}
-
-#[cfg(unix)]
-fn readable_by_all() -> std::fs::Permissions {
-    std::os::unix::fs::PermissionsExt::from_mode(0o644)
 }
 
 #[cfg(test)]
@@ -321,6 +174,117 @@ mod tests {
         let error = write_together(root, &all(&["a"], "new"), Existing::Keep).unwrap_err().to_string();
         assert!(error.contains("rodcal did not write them") && error.contains(MARKER), "{error}");
         assert_eq!(std::fs::read_to_string(root.join(MARKER)).unwrap(), own_list);
+    }
+
+    /// What stands below a directory, temporary names left out, and how many of those there are.
+    fn listing(directory: &Path) -> (BTreeMap<String, String>, usize) {
+        let (mut found, mut temporary) = (BTreeMap::new(), 0);
+        for entry in std::fs::read_dir(directory).into_iter().flatten().map(std::result::Result::unwrap) {
+            let name = entry.file_name().into_string().unwrap();
+            if name.starts_with(".rodcal-") {
+                temporary += 1;
+            } else if entry.file_type().unwrap().is_dir() {
+                let (inside, more) = listing(&entry.path());
+                temporary += more;
+                found.extend(inside.into_iter().map(|(inner, text)| (format!("{name}/{inner}"), text)));
+                found.insert(format!("{name}/"), String::new());
+            } else {
+                found.insert(name, std::fs::read_to_string(entry.path()).unwrap());
+            }
+        }
+        (found, temporary)
+    }
+
+    /// Every operation of writing a set fails once, and is the last one of a run that is killed.
+    #[test]
+    fn a_fault_at_any_operation_leaves_the_old_set_or_the_new_one() {
+        use super::faults::Fault;
+        // what is there before: nothing; a set; with somebody's file; with somebody's folder
+        for case in 0..4 {
+            let (set, changed) = (all(&["a", "b"], "old"), all(&["b", "c"], "new"));
+            let prepare = || {
+                let directory = tempfile::tempdir().unwrap();
+                let root = directory.path().join("x/y");
+                if case > 0 {
+                    write_together(&root, &set, Existing::Keep).unwrap();
+                }
+                if case == 2 {
+                    std::fs::write(root.join("notes"), "mine").unwrap();
+                }
+                if case == 3 {
+                    std::fs::create_dir(root.join("more")).unwrap();
+                    std::fs::write(root.join("more/notes"), "mine").unwrap();
+                }
+                (directory, root)
+            };
+            let (whole, root) = prepare();
+            let old = listing(whole.path()).0;
+            write_together(&root, &changed, Existing::Keep).unwrap();
+            let new = listing(whole.path()).0;
+            assert!(old != new && new.keys().any(|name| name.ends_with("/c")));
+            for kind in [Fault::Once, Fault::From] {
+                let mut count = 0;
+                loop {
+                    count += 1;
+                    let (directory, root) = prepare();
+                    let write = || write_together(&root, &changed, Existing::Keep);
+                    let (written, is_struck) = faults::with(kind(count), write);
+                    let (mut there, temporary) = listing(directory.path());
+                    let what = format!("case {case}, operation {count}, {kind:?}", kind = kind(count));
+                    if written.is_ok() {
+                        assert_eq!(there, new, "{what}");
+                    } else if kind(count) == Fault::Once(count) {
+                        assert!(there == old && temporary == 0, "{what}: {there:?}, {temporary} left");
+                    } else if case == 3 {
+                        // file by file: the next run that looks there completes it
+                        check_free(&root, &["a"], Existing::Keep).unwrap();
+                        there = listing(directory.path()).0;
+                    } else if case == 0 {
+                        // empty directories may have been made
+                        there.retain(|name, _| !name.ends_with('/'));
+                        assert!(there.is_empty(), "{what}: {there:?}");
+                        there = old.clone();
+                    }
+                    assert!(there == old || there == new, "{what}: {there:?}");
+                    write_together(&root, &changed, Existing::Keep).unwrap();
+                    assert_eq!(listing(directory.path()), (new.clone(), 0), "{what}, once more");
+                    if !is_struck {
+                        break;
+                    }
+                }
+                assert!(count > 8, "only {count} operations: are they still counted?");
+            }
+        }
+    }
+
+    #[test]
+    fn a_fault_at_any_operation_leaves_the_old_file_or_the_new_one() {
+        use super::faults::Fault;
+        for count in 1.. {
+            let directory = tempfile::tempdir().unwrap();
+            let path = directory.path().join("a");
+            std::fs::write(&path, "old").unwrap();
+            let (_, is_struck) = faults::with(Fault::From(count), || write_whole(&path, b"new"));
+            let text = std::fs::read_to_string(&path).unwrap();
+            assert!(text == if is_struck { "old" } else { "new" }, "operation {count}: {text}");
+            write_whole(&path, b"new").unwrap();
+            assert_eq!(listing(directory.path()).1, 0, "operation {count}");
+            if !is_struck {
+                assert!(count > 2);
+                break;
+            }
+        }
+    }
+
+    #[test]
+    fn what_a_live_run_is_about_to_write_is_not_swept() {
+        let directory = tempfile::tempdir().unwrap();
+        let root = directory.path().join("a");
+        let staged = Staged::new(&root, &all(&["a"], "new"), Existing::Keep).unwrap();
+        write_together(&directory.path().join("b"), &all(&["b"], "new"), Existing::Keep).unwrap();
+        assert!(!root.exists());
+        staged.commit().unwrap();
+        assert!(root.join("a").exists());
     }
 
     #[cfg(unix)]

@@ -2,6 +2,7 @@
 //!
 //! - [`error`]: the one error type · [`files`]: text in, whole files out · [`units`]: SI inside,
 //!   these at the boundary
+//! - [`limits`]: how much a file may hold
 //! - [`delimited`], [`toml_text`]: tables and TOML whose errors name file, line and column
 //! - [`linalg`], [`least_squares`], [`linear_program`], [`dual`], [`spatial`], [`statistics`]:
 //!   numbers
@@ -12,6 +13,7 @@ pub mod dual;
 pub mod error;
 pub mod files;
 pub mod least_squares;
+pub mod limits;
 pub mod linalg;
 pub mod linear_program;
 pub mod optimal_design;

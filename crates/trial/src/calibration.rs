@@ -88,7 +88,7 @@ struct Drawn {
 /// Case number `number` of a trial.
 pub fn case(source: &Source, number: usize) -> Case {
     let drawn = drawn(source, number);
-    let asked = asked::draw(&drawn.site, &mut Random::seeded(source.seed, ASKED + number as u64));
+    let asked = asked::draw(&drawn.site, &mut Random::of_seed(source.seed.0, ASKED + number as u64));
     let written = drawn.mistake.as_ref().map(|mistake| mistake.made(&drawn.right));
     let mut files = text::files(written.as_ref().unwrap_or(&drawn.right));
     files.extend(asked.files());
@@ -98,7 +98,7 @@ pub fn case(source: &Source, number: usize) -> Case {
 }
 
 fn drawn(source: &Source, number: usize) -> Drawn {
-    let mut random = Random::seeded(source.seed, STREAM + number as u64);
+    let mut random = Random::of_seed(source.seed.0, STREAM + number as u64);
     let random = &mut random;
     let conflict = (source.half == Half::Conflicts).then(|| Conflict::of(number));
     let kind = if conflict.is_some() { Kind::Single } else { drawn_kind(random) };
@@ -280,7 +280,7 @@ mod tests {
     use super::*;
 
     fn case(half: Half, number: usize) -> Case {
-        super::case(&Source { seed: 1, half, residuals: Vec::new() }, number)
+        super::case(&Source { seed: crate::Seed(1), half, residuals: Vec::new() }, number)
     }
 
     #[test]

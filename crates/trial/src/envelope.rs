@@ -8,29 +8,32 @@
 //! DIR/rig/case-0001/rod-2.toml   other rods, beside some of the cases
 //! DIR/calibration/case-0003/     a campaign: campaign.toml, robot.toml, measurements.csv, and rod.toml where there is a rod;
 //!                                asked.toml, asked.csv, asked_rod.toml: where would the ball be there?
-//! DIR.key.jsonl                  the key: one line for each case
+//! DIR.key.jsonl                  the key: what it belongs to, then one line for each case
 //! ```
 //!
-//! Whoever answers sees DIR alone. Whoever scores compares the hashes, so that neither the key nor
-//! a recording can have been changed since. The seed decides everything: draw one that nobody
-//! guesses and keep it with the key.
+//! Whoever answers sees DIR alone. Whoever scores compares the hashes: the manifest has that of the
+//! key's cases, and the first line of the key has that of the manifest, so that neither can have
+//! been changed since, nor can a case have been dropped, added or cut. The seed decides everything;
+//! it stands in the key.
+
+mod make;
 
 use std::collections::BTreeMap;
-use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::Source;
+pub use self::make::{Made, Plan, make};
+
 use super::truth::Truth;
 use rodcal_base::error::{Error, Place, Result};
-use rodcal_base::files::{self, Existing};
-use rodcal_base::parallel::in_parallel;
+use rodcal_base::files;
+use rodcal_base::limits;
 
 /// Name of the manifest in a trial's directory.
 pub const MANIFEST: &str = "manifest.json";
-/// Cases made before any of them is written.
-const BLOCK: usize = 32;
+/// The folders of cases in it.
+const HALVES: [&str; 2] = ["rig", "calibration"];
 
 /// What a trial's directory says about itself.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -39,7 +42,7 @@ pub struct Manifest {
     pub made_by: String,
     /// Number of cases.
     pub cases: usize,
-    /// SHA-256 of the key.
+    /// SHA-256 of the key's cases: all of it below its first line.
     pub key_sha256: String,
     /// SHA-256 of each file, by its name in the directory.
     pub files: BTreeMap<String, String>,
@@ -62,61 +65,6 @@ pub fn default_key(directory: &Path) -> Result<PathBuf> {
     Ok(directory.with_file_name(name))
 }
 
-/// Draws cases by number and seals them; `made` is called after each.
-///
-/// # Errors
-/// [`Error::Argument`] where the key would be in the trial's directory; [`Error::InTheWay`] where a
-/// trial or a key is there already; [`Error::File`].
-pub fn make(
-    directory: &Path,
-    key: &Path,
-    source: &Source,
-    range: Range<usize>,
-    existing: Existing,
-    made: impl Fn() + Sync + Send,
-) -> Result<Manifest> {
-    if key.starts_with(directory) {
-        return Err(Error::Argument {
-            name: "--key",
-            found: format!("{}, which is in the trial's directory", key.display()),
-            expected: "a place that whoever answers does not see".into(),
-        });
-    }
-    // the answers to a trial belong to its cases, and nothing else knows what its key knows
-    files::check_absent(&directory.join(MANIFEST), existing)?;
-    files::check_absent(key, existing)?;
-    let (mut hashes, mut lines) = (BTreeMap::new(), String::new());
-    let mut next = range.start;
-    while next < range.end {
-        let block = BLOCK.min(range.end - next);
-        let cases = in_parallel(block, |k| {
-            let case = source.case(next + k);
-            made();
-            case
-        });
-        for case in cases {
-            let named: Vec<(String, Vec<u8>)> =
-                case.files.into_iter().map(|(name, text)| (name, text.into_bytes())).collect();
-            for (name, bytes) in &named {
-                hashes.insert(format!("{}/{name}", case.truth.case), files::sha256(bytes));
-            }
-            files::write_once(&directory.join(&case.truth.case), &named, existing)?;
-            lines += &line(&case.truth)?;
-        }
-        next += block;
-    }
-    let manifest = Manifest {
-        made_by: concat!("rodcal ", env!("CARGO_PKG_VERSION")).into(),
-        cases: range.len(),
-        key_sha256: files::sha256(lines.as_bytes()),
-        files: hashes,
-    };
-    files::write_new(key, lines.as_bytes(), existing)?;
-    let text = serde_json::to_string_pretty(&manifest).map_err(unwritable)? + "\n";
-    files::write_new(&directory.join(MANIFEST), text.as_bytes(), existing)?;
-    Ok(manifest)
-}
-
 /// One line of JSON.
 ///
 /// # Errors
@@ -137,14 +85,64 @@ pub(super) fn parsed<T: serde::de::DeserializeOwned>(file: &Path, line: usize, t
     })
 }
 
+/// The first line of a key.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+struct Head {
+    trial: Seal,
+}
+
+/// What a key belongs to.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+struct Seal {
+    made_by: String,
+    cases: usize,
+    /// SHA-256 of the manifest.
+    manifest_sha256: String,
+}
+
+/// A manifest as text.
+fn text_of(manifest: &Manifest) -> Result<String> {
+    Ok(serde_json::to_string_pretty(manifest).map_err(unwritable)? + "\n")
+}
+
+/// The key's cases under what they belong to.
+fn key_of(manifest: &Manifest, cases: &str) -> Result<String> {
+    let seal = Seal {
+        made_by: manifest.made_by.clone(),
+        cases: manifest.cases,
+        manifest_sha256: files::sha256(text_of(manifest)?.as_bytes()),
+    };
+    Ok(line(&Head { trial: seal })? + cases)
+}
+
 impl Manifest {
     /// Of a trial's directory.
     ///
     /// # Errors
-    /// [`Error::File`], [`Error::Syntax`].
+    /// [`Error::File`], [`Error::Syntax`]; [`Error::Input`] where it names a file outside of its
+    /// cases, or has another number of cases than it says.
     pub fn read(directory: &Path) -> Result<Manifest> {
         let path = directory.join(MANIFEST);
-        parsed(&path, 1, &files::read_text(&path)?)
+        let bytes = files::read_inside(directory, MANIFEST)?;
+        let text = files::text_of_bytes(&path.display().to_string(), bytes)?;
+        let manifest: Manifest = parsed(&path, 1, &text)?;
+        let wrong = |found: String, expected: String| Error::Input {
+            at: Place::whole_file(&path.display().to_string()),
+            found,
+            expected,
+            hint: None,
+        };
+        if let Some(name) = manifest.files.keys().find(|name| !is_of_a_case(name)) {
+            let expected = "files of cases, such as rig/case-0001/rod.toml".to_owned();
+            return Err(wrong(format!("it names {name:?}"), expected));
+        }
+        let count = manifest.case_names().len();
+        limits::check(&path.display().to_string(), count, limits::TRIAL_CASES, "cases")?;
+        if count != manifest.cases {
+            let found = format!("it has files of {count} cases");
+            return Err(wrong(found, format!("the {} that it says", manifest.cases)));
+        }
+        Ok(manifest)
     }
 
     /// Names of the cases, in order: `rig/case-0001`.
@@ -166,23 +164,86 @@ impl Manifest {
     /// # Errors
     /// [`Error::File`], [`Error::Input`].
     pub fn check_case(&self, directory: &Path, case: &str) -> Result<()> {
-        for (name, sealed) in self.hashes_of(case) {
-            let path = directory.join(case).join(name);
-            compare(&path, &files::read_bytes(&path)?, &sealed)?;
+        let hashes = self.hashes_of(case);
+        for (name, sealed) in &hashes {
+            let name = format!("{case}/{name}");
+            compare(&directory.join(&name), &files::read_inside(directory, &name)?, sealed)?;
         }
-        Ok(())
+        let mut there = files::names_in(&directory.join(case));
+        there.retain(|name| !hashes.contains_key(name));
+        self.refuse_unsealed(&directory.join(case), &there)
     }
 
-    /// The key, if it is the one that was sealed.
+    /// Refuses a directory with cases that were not sealed.
     ///
     /// # Errors
-    /// [`Error::File`], [`Error::Input`] for another key, [`Error::Syntax`].
-    pub fn read_key(&self, key: &Path) -> Result<Vec<Truth>> {
-        let bytes = files::read_bytes(key)?;
-        compare(key, &bytes, &self.key_sha256)?;
-        let text = files::text_of_bytes(&key.display().to_string(), bytes)?;
-        text.lines().enumerate().map(|(number, line)| parsed(key, number + 1, line)).collect()
+    /// [`Error::Input`].
+    pub fn check_directory(&self, directory: &Path) -> Result<()> {
+        let sealed = self.case_names();
+        HALVES.iter().try_for_each(|half| {
+            let mut there = files::names_in(&directory.join(half));
+            there.retain(|name| !sealed.contains(&format!("{half}/{name}")));
+            self.refuse_unsealed(&directory.join(half), &there)
+        })
     }
+
+    fn refuse_unsealed(&self, directory: &Path, there: &[String]) -> Result<()> {
+        let Some(first) = there.first() else { return Ok(()) };
+        Err(Error::Input {
+            at: Place::whole_file(&directory.join(first).display().to_string()),
+            found: "it is not in the manifest".into(),
+            expected: "what was sealed and nothing else".into(),
+            hint: Some("remove it: it was put there after the trial was made".into()),
+        })
+    }
+
+    /// The key, if it is the one that was sealed with the manifest in `directory`, and whether it
+    /// says so: one of a former version says nothing of the manifest.
+    ///
+    /// # Errors
+    /// [`Error::File`], [`Error::Input`] for another key or other cases, [`Error::Syntax`].
+    pub fn read_key(&self, directory: &Path, key: &Path) -> Result<(Vec<Truth>, bool)> {
+        let name = key.display().to_string();
+        let text = files::text_of_bytes(&name, files::read_bytes(key)?)?;
+        let (first, rest) = text.split_once('\n').unwrap_or((&text, ""));
+        let head = serde_json::from_str::<Head>(first).ok();
+        let cases = if head.is_some() { rest } else { &text };
+        compare(key, cases.as_bytes(), &self.key_sha256)?;
+        let wrong = |found: String, expected: String| Error::Input {
+            at: Place::whole_file(&name),
+            found,
+            expected,
+            hint: Some("key and manifest are of different trials, or one was changed since".into()),
+        };
+        if let Some(Head { trial }) = &head {
+            let manifest = directory.join(MANIFEST);
+            compare(&manifest, &files::read_inside(directory, MANIFEST)?, &trial.manifest_sha256)?;
+        }
+        let above = usize::from(head.is_some());
+        let truths = cases.lines().enumerate().map(|(number, line)| parsed(key, number + 1 + above, line));
+        let truths: Vec<Truth> = truths.collect::<Result<_>>()?;
+        let mut named: Vec<&str> = truths.iter().map(|truth| truth.case.as_str()).collect();
+        named.sort_unstable();
+        if named != self.case_names() {
+            let (found, expected) = (named.len(), self.cases);
+            let found = format!("it has {found} cases, not all those of the manifest");
+            return Err(wrong(found, format!("the {expected} cases of the manifest, once each")));
+        }
+        Ok((truths, head.is_some()))
+    }
+}
+
+/// `rig/case-0001/rod.toml`.
+fn is_of_a_case(name: &str) -> bool {
+    let parts: Vec<&str> = name.split('/').collect();
+    let [half, case, file] = parts[..] else { return false };
+    let is_number = |text: &str| !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "._-".contains(c);
+    HALVES.contains(&half)
+        && case.strip_prefix("case-").is_some_and(is_number)
+        && !file.is_empty()
+        && !file.starts_with('.')
+        && file.chars().all(is_plain)
 }
 
 fn compare(path: &Path, bytes: &[u8], sealed: &str) -> Result<()> {
@@ -193,7 +254,7 @@ fn compare(path: &Path, bytes: &[u8], sealed: &str) -> Result<()> {
     Err(Error::Input {
         at: Place::whole_file(&path.display().to_string()),
         found: format!("its SHA-256 is {found}"),
-        expected: format!("{sealed}, as the manifest seals it"),
+        expected: format!("{sealed}, as it was sealed"),
         hint: Some("the file is of another trial, or was changed after the trial was made".into()),
     })
 }
@@ -201,17 +262,6 @@ fn compare(path: &Path, bytes: &[u8], sealed: &str) -> Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Half;
-
-    fn source(seed: u64) -> Source {
-        Source { seed, half: Half::Rig, residuals: Vec::new() }
-    }
-
-    fn trial(directory: &Path) -> (PathBuf, PathBuf) {
-        let (trial, key) = (directory.join("t"), directory.join("t.key.jsonl"));
-        make(&trial, &key, &source(5), 1..4, Existing::Keep, || {}).unwrap();
-        (trial, key)
-    }
 
     #[test]
     fn the_hash_is_that_of_the_standard() {
@@ -220,32 +270,25 @@ mod tests {
     }
 
     #[test]
-    fn the_same_seed_makes_the_same_bytes_and_the_manifest_says_nothing_of_it() {
-        let (a, b) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
-        let ((a, key_a), (b, key_b)) = (trial(a.path()), trial(b.path()));
-        for name in [MANIFEST, "rig/case-0001/readings.csv", "rig/case-0003/rod.toml"] {
-            assert_eq!(files::read_bytes(&a.join(name)).unwrap(), files::read_bytes(&b.join(name)).unwrap());
+    fn only_files_of_cases_are_files_of_a_trial() {
+        assert!(is_of_a_case("rig/case-0001/rod.toml") && is_of_a_case("calibration/case-12/rod-2.toml"));
+        for name in [
+            "../x",
+            "/etc/passwd",
+            "rig/../x",
+            "rig/case-0001/..",
+            "rig/case-0001",
+            "rig/case-1/a/b",
+            "rig/case-x/a",
+            "x/case-1/a",
+            "rig/case-1/",
+            "rig/case-1/.a",
+            "rig//a",
+            "rig/case-1/a\n",
+            "rig/case-1/a\\b",
+            "",
+        ] {
+            assert!(!is_of_a_case(name), "{name}");
         }
-        assert_eq!(files::read_bytes(&key_a).unwrap(), files::read_bytes(&key_b).unwrap());
-        let manifest = Manifest::read(&a).unwrap();
-        assert_eq!(manifest.case_names(), ["rig/case-0001", "rig/case-0002", "rig/case-0003"]);
-        assert!(!files::read_text(&a.join(MANIFEST)).unwrap().contains("seed"));
-        assert_eq!(manifest.read_key(&key_a).unwrap().len(), 3);
-        assert!(make(&a, &key_a, &source(6), 1..2, Existing::Keep, || {}).is_err());
-        assert!(make(&b.join("new"), &b.join("new/key"), &source(6), 1..2, Existing::Keep, || {}).is_err());
-        assert!(default_key(Path::new(".")).is_err());
-    }
-
-    #[test]
-    fn another_key_and_a_changed_recording_are_refused() {
-        let directory = tempfile::tempdir().unwrap();
-        let (trial, key) = trial(directory.path());
-        let manifest = Manifest::read(&trial).unwrap();
-        assert!(manifest.check_case(&trial, "rig/case-0002").is_ok());
-        files::append(&trial.join("rig/case-0002/readings.csv"), b"y,1,2\n").unwrap();
-        let error = manifest.check_case(&trial, "rig/case-0002").unwrap_err();
-        assert!(error.to_string().contains("readings.csv"), "{error}");
-        files::append(&key, b"{}\n").unwrap();
-        assert!(matches!(manifest.read_key(&key), Err(Error::Input { .. })));
     }
 }

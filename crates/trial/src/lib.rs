@@ -13,7 +13,10 @@ pub mod envelope;
 mod place;
 pub mod rig;
 pub mod score;
+mod seed;
 pub mod truth;
+
+pub use seed::Seed;
 
 /// A case: what is handed out and what is kept.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,7 +44,7 @@ pub enum Half {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Source {
     /// Every random number comes from it.
-    pub seed: u64,
+    pub seed: Seed,
     /// What is tried.
     pub half: Half,
     /// Residuals of a real recording that are the noise, in standard deviations; none: the noise is
@@ -64,8 +67,8 @@ impl Source {
 mod tests {
     use super::*;
 
-    fn case(seed: u64, half: Half, number: usize) -> Case {
-        Source { seed, half, residuals: Vec::new() }.case(number)
+    fn case(seed: u128, half: Half, number: usize) -> Case {
+        Source { seed: Seed(seed), half, residuals: Vec::new() }.case(number)
     }
 
     #[test]

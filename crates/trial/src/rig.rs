@@ -37,6 +37,7 @@ use self::noise::Noise;
 use self::oracle::Oracle;
 pub use self::protocol::Columns;
 use super::Case;
+use crate::Seed;
 use crate::chance::{happens, log_uniform};
 use crate::truth::{Concealed, Kind, Parameter, Truth};
 use rodcal_base::statistics::Random;
@@ -98,9 +99,9 @@ impl Drawn {
 
 /// Case number `number` of the trial that belongs to `seed`, with noise from `residuals` where
 /// there are any.
-pub fn case(seed: u64, number: usize, residuals: &[f64]) -> Case {
+pub fn case(seed: Seed, number: usize, residuals: &[f64]) -> Case {
     let drawn = drawn(seed, number, residuals);
-    let asked = asked::draw(&drawn.bench, &mut Random::seeded(seed, ASKED + number as u64));
+    let asked = asked::draw(&drawn.bench, &mut Random::of_seed(seed.0, ASKED + number as u64));
     let name = format!("case-{number:04}");
     let written = drawn.written();
     let mut files = vec![
@@ -116,8 +117,8 @@ pub fn case(seed: u64, number: usize, residuals: &[f64]) -> Case {
     Case { files, truth: Truth { seed: Some(seed), residuals: residuals.to_vec(), ..truth } }
 }
 
-fn drawn(seed: u64, number: usize, residuals: &[f64]) -> Drawn {
-    let mut random = Random::seeded(seed, number as u64);
+fn drawn(seed: Seed, number: usize, residuals: &[f64]) -> Drawn {
+    let mut random = Random::of_seed(seed.0, number as u64);
     let random = &mut random;
     let kind = kind(random);
     let library = |random: &mut Random| random.index(draw::LIBRARY);
@@ -333,7 +334,7 @@ mod tests {
         let mut kinds = std::collections::BTreeSet::new();
         let mut seen = Vec::new();
         for number in 0..24 {
-            let case = case(1, number, &[]);
+            let case = case(Seed(1), number, &[]);
             let (rod, truth) = (&case.files[0].1, &case.truth);
             let is_stiff = |line: &str| !line.contains("urad_per_nm") || line.ends_with(" = 0.0");
             assert!(rod.lines().all(is_stiff));
@@ -360,9 +361,9 @@ mod tests {
     #[test]
     fn residuals_of_a_recording_are_its_noise_and_the_key_has_them() {
         let residuals: Vec<f64> = (0..20).map(|k| f64::from(k % 4) - 1.5).collect();
-        let with = case(1, 3, &residuals);
-        assert!(with.files != case(1, 3, &[]).files);
-        assert_eq!(with, case(1, 3, &residuals));
+        let with = case(Seed(1), 3, &residuals);
+        assert!(with.files != case(Seed(1), 3, &[]).files);
+        assert_eq!(with, case(Seed(1), 3, &residuals));
         assert_eq!(with.truth.residuals, residuals);
         assert!(with.truth.noise_shape.starts_with("20 residuals of a recording"));
     }

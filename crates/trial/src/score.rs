@@ -37,6 +37,8 @@ use super::truth::{Kind, Truth};
 pub struct Sealed {
     truths: Vec<Truth>,
     given: Vec<Answer>,
+    /// False of a key that says nothing of the manifest.
+    names_manifest: bool,
 }
 
 impl Sealed {
@@ -47,7 +49,15 @@ impl Sealed {
 
     /// The score; `outcomes` are what the proposals led to, by case.
     pub fn score(&self, outcomes: &[(String, Outcome)]) -> Score {
-        score(&self.truths, &self.given, outcomes)
+        let mut score = score(&self.truths, &self.given, outcomes);
+        if !self.names_manifest {
+            score.remarks.push(
+                "The key is of a former version and does not say which manifest it belongs to: \
+                 changed recordings would not be noticed."
+                    .into(),
+            );
+        }
+        score
     }
 }
 
@@ -58,20 +68,33 @@ impl Sealed {
 /// [`Error::File`], [`Error::Syntax`].
 pub fn open(directory: &Path, key: &Path, answers: &Path) -> Result<Sealed> {
     let manifest = Manifest::read(directory)?;
-    let truths = manifest.read_key(key)?;
+    let (truths, names_manifest) = manifest.read_key(directory, key)?;
+    manifest.check_directory(directory)?;
+    let cases = manifest.case_names();
+    cases.iter().try_for_each(|case| manifest.check_case(directory, case))?;
     let given = answers::read(answers)?;
+    let wrong = |found: String, expected: &str, hint: &str| Error::Input {
+        at: Place::whole_file(&answers.display().to_string()),
+        found,
+        expected: expected.into(),
+        hint: Some(hint.into()),
+    };
     for answer in &given {
-        manifest.check_case(directory, &answer.case)?;
+        if cases.binary_search(&answer.case).is_err() {
+            let found = format!("an answer to {:?}, which is no case of this trial", answer.case);
+            return Err(wrong(
+                found,
+                "answers to the cases of the manifest",
+                "are these answers to another trial?",
+            ));
+        }
         if answer.sha256 != manifest.hashes_of(&answer.case) {
-            return Err(Error::Input {
-                at: Place::whole_file(&answers.display().to_string()),
-                found: format!("the answer to {} is to other files", answer.case),
-                expected: "the SHA-256 of each file as the manifest has it".into(),
-                hint: Some("answer this case again".into()),
-            });
+            let found = format!("the answer to {} is to other files", answer.case);
+            let expected = "the SHA-256 of each file as the manifest has it";
+            return Err(wrong(found, expected, "answer this case again"));
         }
     }
-    Ok(Sealed { truths, given })
+    Ok(Sealed { truths, given, names_manifest })
 }
 
 /// Answers beside their truths, by case.
@@ -95,9 +118,19 @@ fn score(truths: &[Truth], given: &[Answer], outcomes: &[(String, Outcome)]) -> 
         let cases: Vec<Judged<'_>> = cases.iter().filter(is_of_half).cloned().collect();
         (!cases.is_empty()).then(|| part(&cases, &outcomes))
     };
+    let unanswered = truths.len() - cases.len();
+    let remarks = match unanswered {
+        0 => Vec::new(),
+        _ => vec![format!(
+            "{unanswered} of {} cases have no answer: the score is of the other {}.",
+            truths.len(),
+            cases.len()
+        )],
+    };
     Score {
+        remarks,
         whole: part(&cases, &outcomes),
-        unanswered: truths.len() - cases.len(),
+        unanswered,
         rig: half("rig"),
         calibration: half("calibration"),
     }

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use crate::Seed;
 use crate::place::Place;
 
 /// One case of the key. Units are those of the names.
@@ -46,7 +47,7 @@ pub struct Truth {
     /// Seed of the trial, from which whoever scores makes the case once more. A key of before has
     /// none.
     #[serde(default)]
-    pub seed: Option<u64>,
+    pub seed: Option<Seed>,
     /// Residuals of a real recording from which the noise was drawn; empty where it was computed.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub residuals: Vec<f64>,

@@ -128,6 +128,7 @@ impl Columns {
         };
         let known: Vec<&str> = self.known().collect();
         let hint = renamed(table.columns(), &known, missing).or_else(|| self.meant(table, missing));
+        let hint = hint.or_else(|| Some(table.columns_found()));
         Err(table.header_error("", found, expected, hint))
     }
 

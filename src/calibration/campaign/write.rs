@@ -5,8 +5,10 @@ use std::fmt::Write as _;
 use nalgebra::Vector3;
 
 use super::{Campaign, Recording, Refit, Targets};
+use crate::delimited::cell;
 use crate::robot::{Motion, Robot};
 use crate::spatial::Pose;
+use crate::toml_text::comments;
 use crate::units::{DEG, MM, UM};
 
 /// Names of the files that a written campaign refers to.
@@ -29,7 +31,7 @@ pub struct FileNames {
 impl Campaign {
     /// The campaign file, with comments above it.
     pub fn to_toml(&self, names: &FileNames, above: &[String]) -> String {
-        let mut text: String = above.iter().map(|line| format!("# {line}\n")).collect();
+        let mut text: String = comments(above);
         let mut key = |key: &str, value: String| text += &format!("{key} = {value}\n");
         key("robot", quoted(&names.robot));
         names.effects.iter().for_each(|effects| key("effects", quoted(effects)));
@@ -183,7 +185,7 @@ impl Recording {
             if has_temperature {
                 cells.push(optional(entry.temperature));
             }
-            let cells: Vec<String> = cells.iter().map(|cell| csv_cell(cell)).collect();
+            let cells: Vec<String> = cells.iter().map(|text| cell(text)).collect();
             let _ = writeln!(text, "{}", cells.join(","));
         }
         text
@@ -205,12 +207,4 @@ fn three(vector: &Vector3<f64>, unit: f64) -> String {
 /// A TOML string.
 fn quoted(text: &str) -> String {
     toml::Value::from(text).to_string()
-}
-
-/// A cell that may hold commas or quotes.
-fn csv_cell(cell: &str) -> String {
-    match cell.contains([',', '"', '\n', ';']) {
-        true => format!("\"{}\"", cell.replace('"', "\"\"")),
-        false => cell.to_owned(),
-    }
 }

@@ -25,7 +25,11 @@ impl CaseFiles {
     fn text(&self, name: &str) -> Result<String> {
         match self.changed.iter().find(|(changed, _)| changed == name) {
             Some((_, text)) => Ok(text.clone()),
-            None => files::read_text(&self.directory.join(name)),
+            // a case names nothing outside of its folder
+            None => {
+                let bytes = files::read_inside(&self.directory, name)?;
+                files::text_of_bytes(&self.directory.join(name).display().to_string(), bytes)
+            }
         }
     }
 

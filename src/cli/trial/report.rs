@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 
 use rodcal::report::chart::{Axis, Chart, Colour, Figure, Mark, Marker, Point, Range, Style};
 use rodcal::report::table::{Column, Table};
-use rodcal::report::{Block, Report, Section};
+use rodcal::report::{Block, Card, Report, Section, Tone};
 use rodcal_trial::score::{Failure, Measured, Part, Rate, Reached, Score};
 
 /// Half the size of a circle that stands for all cases of a row, CSS pixels.
@@ -24,29 +24,59 @@ pub fn report(score: &Score) -> Report {
     let cases = score.whole.cases;
     let headline = match missed.len() {
         0 => format!("{cases} cases with concealed effects: every target is met."),
+        1 => format!("{cases} cases with concealed effects: 1 target is missed. {}.", missed.join(". ")),
         n => format!("{cases} cases with concealed effects: {n} targets are missed. {}.", missed.join(". ")),
     };
+    let headline = score.remarks.iter().cloned().chain([headline]).collect::<Vec<_>>().join(" ");
     Report {
         title: "Concealed-effect trial".into(),
         headline,
         warnings: Vec::new(),
+        cards: cards(score),
         sections: score.halves().map(|(half, part)| section(half, part)).collect(),
         provenance: vec![("program".into(), concat!("rodcal ", env!("CARGO_PKG_VERSION")).into())],
         ..Report::default()
     }
 }
 
-fn section(half: &str, part: &Part) -> Section {
-    let heading = match half {
+/// How many cases, and of each half how many targets are met and how often it is right when it
+/// names something.
+fn cards(score: &Score) -> Vec<Card> {
+    let mut cards =
+        vec![Card::new("Cases", score.whole.cases.to_string(), "with concealed effects, or with none")];
+    for (half, part) in score.halves() {
+        let (all, missed) = (part.targets.len(), part.missed_targets.len());
+        let tone = if missed == 0 { Tone::Good } else { Tone::Attention };
+        let right = part.right_when_named;
+        let detail = match right.share() {
+            Some(_) => format!("right in {} of {} cases in which it names an effect", right.count, right.of),
+            None => "no effect was named".into(),
+        };
+        let label = format!("Targets met: {}", heading(half).to_lowercase());
+        cards.push(Card::new(label, format!("{} of {all}", all - missed.min(all)), detail).toned(tone));
+    }
+    cards
+}
+
+fn heading(half: &str) -> &'static str {
+    match half {
         "rig" => "Rods at a stiffness rig",
         _ => "Calibrations of arms",
-    };
+    }
+}
+
+fn section(half: &str, part: &Part) -> Section {
     let mut blocks = vec![Block::Table(targets(half, part)), Block::Table(rates(half, part))];
     blocks.extend(conflicts(half, part).map(Block::Table));
-    let figures = [Some(confusion(half, part)), bins(half, part), power(half, part)];
+    // without a truth that can be named there is nothing to confuse
+    let confused = (!part.confusion.is_empty()).then(|| confusion(half, part));
+    let figures = [confused, bins(half, part), power(half, part)];
     blocks.extend(figures.into_iter().flatten().map(Block::Figure));
-    blocks.push(Block::Table(failures(half, &part.failures)));
-    Section::new(heading, blocks)
+    blocks.push(match part.failures.is_empty() {
+        true => Block::Paragraph("No case needs inspection.".into()),
+        false => Block::Table(failures(half, &part.failures)),
+    });
+    Section::new(heading(half), blocks)
 }
 
 /// What must be reached, missed targets first.
@@ -68,7 +98,7 @@ fn targets(half: &str, part: &Part) -> Table {
             "Targets with Wilson's 95 % intervals, missed ones first. A share meets its target by itself, \
                   not by its interval."
                 .into(),
-        columns: [rate_columns(), vec![Column::text("wanted"), Column::text("")]].concat(),
+        columns: [rate_columns(), vec![Column::text("wanted"), Column::text("target")]].concat(),
         rows: part.targets.iter().map(row).collect(),
         notes: Vec::new(),
     }

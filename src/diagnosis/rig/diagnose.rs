@@ -71,9 +71,9 @@ pub fn diagnose_among(
     if mended.has_data {
         for k in 0..diagnosis.findings.len() {
             let next = next::next_measurement(&model, &evidence, &diagnosis, &diagnosis.findings[k])?;
+            let units = mistakes::lookalikes(&model, &evidence, &diagnosis.findings, k);
             let finding = &mut diagnosis.findings[k];
             finding.next = next;
-            let units = mistakes::lookalikes(&model, finding);
             if !units.is_empty() {
                 // a unit is looked up, which is sooner done than any measurement
                 finding.next = finding.direct_check(&units.iter().collect::<Vec<_>>());

@@ -1,16 +1,16 @@
 //! The pictures of a calibration's report, from results to plain numbers.
 
-use crate::calibration::campaign::Recording;
+use crate::calibration::campaign::{Recording, Row};
 use crate::calibration::{Calibration, CrossValidation, Summary};
 use crate::report::chart::Figure;
 use crate::report::pictures::calibration::convergence as convergence_picture;
 use crate::report::pictures::calibration::{
-    Convergence, MethodErrors, ModeResiduals, ParameterCorrection, PoseError, PoseResidual, PoseVector,
-    ResidualGroup, error_distribution, error_over_workspace, parameter_corrections, residual_vectors,
-    residuals_by_group,
+    Abscissa, Convergence, MethodErrors, ModeResiduals, ParameterCorrection, PoseError, PoseResidual,
+    PoseVector, ResidualGroup, error_distribution, error_over_workspace, parameter_corrections,
+    residual_vectors, residuals_against, residuals_by_group,
 };
 use crate::robot::Parameter;
-use crate::units::{MM, UM};
+use crate::units::{DEG, MM, UM};
 
 /// Width of a 95 % interval in standard errors.
 const INTERVAL: f64 = 1.96;
@@ -21,21 +21,49 @@ fn errors_mm(errors: &[f64]) -> Vec<f64> {
     errors.iter().map(|error| error / MM).collect()
 }
 
-/// The paper's Figs 10 and 11 for one calibration.
+/// The paper's Figs 10 and 11 for one calibration, before and after on the same axes.
 pub(super) fn distribution(calibration: &Calibration, cross_validation: Option<&CrossValidation>) -> Figure {
-    let mut methods = vec![MethodErrors {
-        label: "residuals of the calibration".into(),
-        errors_mm: errors_mm(&calibration.residuals()),
-    }];
-    methods.extend(calibration.validation.as_ref().map(|validation| MethodErrors {
-        label: "validation".into(),
-        errors_mm: errors_mm(&validation.errors),
-    }));
-    methods.extend(
-        cross_validation
-            .map(|cv| MethodErrors { label: "held-out poses".into(), errors_mm: errors_mm(&cv.errors) }),
-    );
+    let method =
+        |label: &str, errors: &[f64]| MethodErrors { label: label.into(), errors_mm: errors_mm(errors) };
+    let before = calibration.before.as_ref();
+    let mut methods = Vec::new();
+    methods
+        .extend(before.map(|before| method("nominal robot at the calibration's poses", &before.residuals)));
+    methods.push(method("residuals of the calibration", &calibration.residuals()));
+    let validated = before.filter(|before| !before.validation_errors.is_empty());
+    methods.extend(validated.map(|before| method("nominal robot, validation", &before.validation_errors)));
+    methods.extend(calibration.validation.as_ref().map(|after| method("validation", &after.errors)));
+    methods.extend(cross_validation.map(|cv| method("held-out poses", &cv.errors)));
     error_distribution(&methods)
+}
+
+/// Residuals against reach, joint angles, order and, where they were recorded, time and
+/// temperature.
+pub(super) fn against(recording: &Recording, calibration: &Calibration) -> Figure {
+    let base = calibration.setup.base().origin;
+    let mut along = vec![Abscissa {
+        label: "reach / mm".into(),
+        values: calibration.tips.iter().map(|tip| (tip - base).norm() / MM).collect(),
+    }];
+    along.extend((0..recording.joint_count).map(|joint| Abscissa {
+        label: format!("q{} / °", joint + 1),
+        values: (0..recording.len()).map(|row| recording.joints(row)[joint] / DEG).collect(),
+    }));
+    let known = |label: &str, value: fn(&Row) -> Option<f64>| -> Option<Abscissa> {
+        let values: Vec<f64> = recording.rows.iter().map(|row| value(row).unwrap_or(f64::NAN)).collect();
+        let is_known = values.iter().any(|v| v.is_finite());
+        is_known.then(|| Abscissa { label: label.into(), values })
+    };
+    let time = known("time / s", |row| row.time);
+    let order = || Abscissa {
+        label: "pose, in recording order".into(),
+        values: (1..=recording.len()).map(|pose| pose as f64).collect(),
+    };
+    along.push(time.unwrap_or_else(order));
+    along.extend(known("temperature / °C", |row| row.temperature));
+    let residuals: Vec<[f64; 3]> =
+        calibration.deviations.iter().map(|deviation| (deviation / UM).into()).collect();
+    residuals_against(&residuals, &along)
 }
 
 /// Of one mode, for panels above one another.

@@ -36,8 +36,8 @@ pub(super) fn errors(calibration: &Calibration, cross_validation: Option<&CrossV
     }
     row("residuals of the calibration", residuals.len(), &Summary::of(&residuals));
     if let Some(validation) = &calibration.validation {
-        if let Some(before) = calibration.before.and_then(|before| before.validation) {
-            row("nominal robot, validation", validation.errors.len(), &before);
+        if let Some(before) = calibration.before.as_ref().and_then(|before| before.validation.as_ref()) {
+            row("nominal robot, validation", validation.errors.len(), before);
         }
         row("validation", validation.errors.len(), &validation.summary);
     }

@@ -13,7 +13,9 @@ use super::remainder::{Remainder, Sample};
 use super::subject::{Errors, Subject};
 use super::{json as whole_json, report as whole_report};
 use crate::diagnosis::rig::{Correction, Datum, RigDiagnosis};
-use crate::inference::{Discrepancy, ForwardModel, Location, Plan, Quantity, ShownBy, Variable, rms};
+use crate::inference::{
+    Discrepancy, ForwardModel, Location, NominalEstimate, Plan, Quantity, ShownBy, Variable, rms,
+};
 use crate::report::{Block, Report};
 use crate::units::{UM, significant};
 
@@ -95,13 +97,20 @@ fn subject<'a>(found: &'a RigDiagnosis, correction: Option<&Correction>) -> Subj
 /// What is left unexplained, as a share of the deflections, beside which nothing is said of the
 /// stiffness: readings that are not of this rod say nothing of its moduli.
 const NOT_OF_THE_ROD: f64 = 0.2;
-/// So many standard uncertainties of the stiffness are still within what the file says.
+/// So many standard uncertainties of the stiffness, or of a number, are still within what the file
+/// says.
 const FAR: f64 = 2.0;
+/// Numbers that a sentence lists.
+const FEW: usize = 3;
 
 /// `The stiffness is 0.4 ± 0.1 % above that of the rod file, within the stated uncertainty of E of
 /// steel (1 %).`
 fn nominal(found: &RigDiagnosis) -> Option<String> {
     let moved = found.diagnosis.nominal.first()?;
+    // said already
+    if found.diagnosis.discrepancy.as_ref().is_some_and(|left| left.shown_by == ShownBy::Numbers) {
+        return None;
+    }
     let (factors, covariance) = &found.diagnosis.nominal_factors;
     let predicted = found.model.data().iter().map(|datum| datum.predicted);
     let predicted = DVector::from_iterator(found.model.data().len(), predicted);
@@ -123,8 +132,8 @@ fn nominal(found: &RigDiagnosis) -> Option<String> {
     let others = if found.diagnosis.nominal.len() > 1 { " and of other numbers" } else { "" };
     if value.abs() > FAR * stated {
         return Some(format!(
-            "The stiffness is {share} {word} that of the rod file, {} times as far off as the file's numbers make likely \
-             ({} %): check {}.",
+            "This takes a stiffness {share} {word} that of the rod file, {} times as far off as the file's numbers make \
+             likely ({} %): check {}.",
             significant(value.abs() / stated, 2),
             significant(stated, 2),
             number.name
@@ -172,6 +181,7 @@ fn remainder(found: &RigDiagnosis) -> Option<Remainder> {
         Some(Location::Curve { label, follows, along }) => {
             of_curve(found, left, label, follows, along.unwrap_or(Variable::Load))
         }
+        _ if left.shown_by == ShownBy::Numbers => of_numbers(found, left),
         _ => of_conditions(found, left),
     })
 }
@@ -203,6 +213,42 @@ fn of_curve(
     }
 }
 
+/// Where only numbers far from those of the rod file explain the readings.
+fn of_numbers(found: &RigDiagnosis, left: &Discrepancy) -> Remainder {
+    let moved = &found.diagnosis.nominal;
+    let said = |moved: &NominalEstimate| {
+        let number = &moved.number;
+        let by = |value: f64| (value - number.value) / number.si;
+        let (value, low, high) = (by(moved.estimate), by(moved.low), by(moved.high));
+        let (off, word) = match value < 0.0 {
+            true => (Quantity { value: -value, low: -high, high: -low }, "below"),
+            false => (Quantity { value, low, high }, "above"),
+        };
+        let stated = significant(number.standard_uncertainty / number.si, 2);
+        let off = off.say(&number.unit);
+        format!("{} {off} {word} the file's (stated uncertainty {stated} {})", number.name, number.unit)
+    };
+    let is_far = |moved: &&NominalEstimate| moved.moved().abs() > FAR;
+    let far: Vec<String> = moved.iter().filter(is_far).take(FEW).map(said).collect();
+    let far = if far.is_empty() { moved.iter().take(1).map(said).collect() } else { far };
+    let data = found.model.data();
+    let loads: Vec<f64> = data.iter().map(|datum| datum.load).collect();
+    Remainder {
+        location: moved.first().map_or_else(String::new, |moved| moved.number.name.clone()),
+        sentence: format!(
+            "The model fits only with numbers farther from those of the rod file than it says they are known: {}. They change \
+             the readings by {} µm rms: check them; if they are right, something that acts like them is missing.",
+            far.join("; "),
+            um(left.rms)
+        ),
+        rms: left.rms,
+        along: Variable::Load,
+        of: "readings",
+        coordinates: &["left"],
+        samples: thinned(means(data, &loads, left)),
+    }
+}
+
 /// Where no curve describes it, the averages of the repeats say it.
 fn of_conditions(found: &RigDiagnosis, left: &Discrepancy) -> Remainder {
     let data = found.model.data();
@@ -229,7 +275,7 @@ fn of_conditions(found: &RigDiagnosis, left: &Discrepancy) -> Remainder {
         ShownBy::Size => "The readings differ from the model by more than such readings scatter, in a \
              shape that neither a smooth curve nor an effect of the library describes"
             .to_owned(),
-        ShownBy::Repeats | ShownBy::Curve => "Averages of repeated readings differ from the model by more \
+        ShownBy::Repeats | ShownBy::Curve | ShownBy::Numbers => "Averages of repeated readings differ from the model by more \
              than their scatter, in a shape that neither a smooth curve nor an effect of the library describes"
             .to_owned(),
     };

@@ -5,17 +5,22 @@
 //! finite are left out. Where there are too many to be seen one by one, they are summed up and the
 //! caption says how.
 
+mod against;
 mod convergence;
 mod errors;
 mod intervals;
+mod isometric;
 mod residuals;
+mod vectors;
 mod workspace;
 
+pub use against::{Abscissa, residuals_against};
 pub use convergence::{Convergence, convergence};
 pub use errors::{MethodErrors, cumulative_errors, error_distribution};
 pub use intervals::{ModeComparison, ParameterCorrection, mode_comparison, parameter_corrections};
 pub use residuals::{ModeResiduals, PoseResidual, ResidualGroup, residuals_by_group};
-pub use workspace::{PoseError, PoseVector, error_over_workspace, residual_vectors, residual_vectors_of};
+pub use vectors::{PoseVector, residual_vectors, residual_vectors_of};
+pub use workspace::{PoseError, error_over_workspace, uncertainty_over_workspace};
 
 use super::super::scale::label;
 use super::{significant, typeset};

@@ -68,6 +68,7 @@ pub fn ranking(candidates: &[Candidate], named_from: f64) -> Figure {
                 to: row(i) + 0.33,
                 value: c.log10_odds,
                 text: to_one(c.log10_odds),
+                ..Bar::default()
             })
             .collect();
         if !bars.is_empty() {
@@ -122,7 +123,13 @@ pub fn held_out(noun: &str, data: &HeldOut) -> Figure {
     chart.height_px = Some(110.0);
     let bar = |row: f64, value: f64, label: &str, style: Style| Mark::Bars {
         label: label.into(),
-        bars: vec![Bar { from: row - 0.3, to: row + 0.3, value, text: typeset(&significant(value, 3)) }],
+        bars: vec![Bar {
+            from: row - 0.3,
+            to: row + 0.3,
+            value,
+            text: typeset(&significant(value, 3)),
+            ..Bar::default()
+        }],
         direction: Direction::Right,
         style,
     };

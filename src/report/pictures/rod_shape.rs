@@ -1,10 +1,13 @@
-//! The rod from the side and from above, at rest and bent, with what is mounted on it.
+//! The rod from the side and from above, to scale, at rest and bent, with what is mounted on it.
+
+mod outline;
 
 use serde::Serialize;
 
 use super::super::chart::{Chart, Colour, Dash, Figure, Mark, Marker, Point, Range, Style};
 use super::super::scale::{drawable, extent, one_two_five_below, typeset};
 use crate::units::{MM, UM, significant};
+use outline::Outline;
 
 /// A rod and how it bends. Coordinates are X, Y, Z of the flange frame, its origin at the flange.
 #[derive(Debug, Clone, Default, Serialize)]
@@ -13,6 +16,8 @@ pub struct RodShape {
     pub title: String,
     /// Points of the undeformed centreline, from the flange to the tip, mm.
     pub centreline_mm: Vec<[f64; 3]>,
+    /// The tubes around the centreline; without any it is drawn as a line.
+    pub tubes: Vec<Tube>,
     /// The load cases to draw.
     pub cases: Vec<ShapeCase>,
     /// Places to mark.
@@ -30,6 +35,21 @@ pub struct ShapeCase {
     pub label: String,
     /// Deflection of each point of the centreline, µm.
     pub deflection_um: Vec<[f64; 3]>,
+}
+
+/// A part of the rod, cut open along its length. Sizes are in the rod's plane and across it.
+#[derive(Debug, Clone, Default, Serialize)]
+pub struct Tube {
+    /// Written beside it, for example "pipe I, Ø 32 × 1 mm".
+    pub label: String,
+    /// Where it begins, mm along the centreline.
+    pub from_mm: f64,
+    /// Where it ends, mm along the centreline.
+    pub to_mm: f64,
+    /// Outer sizes, mm.
+    pub outer_mm: [f64; 2],
+    /// Inner sizes, mm; 0 for what is solid.
+    pub inner_mm: [f64; 2],
 }
 
 /// A stretch of the rod that is marked.
@@ -67,6 +87,12 @@ pub enum StationKind {
     Located,
 }
 
+/// What ends this close to the tip ends there, mm.
+const END_MM: f64 = 1e-3;
+/// What the drawing's sizes are worth.
+const TO_SCALE: &str = "Tubes and walls are to scale, cut open along the centreline. Sleeves, joints, tip and clamp are \
+     symbols at their places, because the rod file gives no sizes of them.";
+
 /// Side view (X–Z) and top view (X–Y), the latter seen against Z, to the same scale. A case is
 /// drawn only in the views in which it moves anything; deflections are exaggerated as the title
 /// says.
@@ -85,7 +111,8 @@ pub fn rod_shape(rod: &RodShape) -> Figure {
     // An upright rod leaves room beside it.
     let upright = extent_mm(rod, 2) > extent_mm(rod, 0);
     let columns = if upright { 2 } else { 1 };
-    Figure { name: "rod-shape".into(), panels, columns, shared_legend: true, ..Figure::default() }
+    let caption = if rod.tubes.is_empty() { String::new() } else { TO_SCALE.into() };
+    Figure { name: "rod-shape".into(), caption, panels, columns, shared_legend: true }
 }
 
 /// The 1-2-5 factor with which the largest deflection becomes at most a fifth of the rod's size.
@@ -116,11 +143,18 @@ fn chart(rod: &RodShape, factor: f64, view: &str, name: &str, axis: usize) -> Ch
     let mut chart = Chart::new(format!("{title}{scale}"), "X / mm", format!("{name} / mm"));
     chart.equal_aspect = true;
     let seen = |p: &[f64; 3]| [p[0], p[axis]];
-    chart.marks.push(Mark::Line {
-        label: "undeformed".into(),
-        points: rod.centreline_mm.iter().map(seen).collect(),
-        style: Style::nth(0).colour(Colour::Grey).dash(Dash::Solid).width(4.0),
-    });
+    let stations = lengths(&rod.centreline_mm);
+    let undeformed = Outline::new(rod.centreline_mm.iter().map(seen).collect(), &stations);
+    match rod.tubes.is_empty() {
+        true => chart.marks.push(Mark::Line {
+            label: "undeformed".into(),
+            points: rod.centreline_mm.iter().map(seen).collect(),
+            style: Style::nth(0).colour(Colour::Grey).dash(Dash::Solid).width(4.0),
+        }),
+        false => {
+            rod.tubes.iter().for_each(|tube| chart.marks.extend(cut_open(tube, &undeformed, axis)));
+        }
+    }
     for stretch in &rod.stretches {
         chart.marks.push(Mark::Line {
             label: stretch.label.clone(),
@@ -136,32 +170,156 @@ fn chart(rod: &RodShape, factor: f64, view: &str, name: &str, axis: usize) -> Ch
         let points = rod.centreline_mm.iter().zip(&case.deflection_um).map(bent);
         // Without points it still stands in the legend, so that the legend keeps the order of the
         // cases.
-        let points = if moves(rod, case, axis) { points.collect() } else { Vec::new() };
+        let points: Vec<_> = if moves(rod, case, axis) { points.collect() } else { Vec::new() };
+        let deformed = undeformed.moved(points.clone());
+        for tube in rod.tubes.iter().filter(|_| !points.is_empty()) {
+            if undeformed.end_on(tube.from_mm, tube.to_mm).is_some() {
+                continue;
+            }
+            let mut outline = deformed.strip(tube.from_mm, tube.to_mm, -half(tube, axis), half(tube, axis));
+            let is_last = stations.last().is_some_and(|end| *end <= tube.to_mm + END_MM);
+            let right = if is_last { Vec::new() } else { outline.split_off(outline.len() / 2) };
+            for points in [outline, right] {
+                let style = Style::nth(i).dash(Dash::Solid).width(0.7);
+                chart.marks.push(Mark::Line { label: String::new(), points, style });
+            }
+        }
         chart.marks.push(Mark::Line { label: case.label.clone(), points, style: Style::nth(i) });
     }
     if axis == 2 && !rod.centreline_mm.is_empty() {
-        let half_mm = 0.03 * size_mm(rod);
-        chart.marks.push(Mark::Line {
-            label: String::new(),
-            points: vec![[-half_mm, 0.0], [half_mm, 0.0]],
-            style: Style::nth(0).width(5.0),
-        });
-        chart.marks.push(Mark::Note { at: [half_mm, 0.0], text: "flange".into() });
+        let half_mm = rod.tubes.first().map_or(0.03 * size_mm(rod), |tube| 1.2 * half(tube, axis));
+        chart.marks.extend(clamp(half_mm));
+        chart.marks.push(Mark::Note { at: [half_mm, 0.0], text: "clamped at the flange".into() });
+        for tube in rod.tubes.iter().filter(|tube| !tube.label.is_empty()) {
+            let middle = 0.5 * (tube.from_mm + tube.to_mm);
+            let outer = undeformed.strip(tube.from_mm, middle, 0.0, -half(tube, axis));
+            // the right edge of a stretch that ends in the middle: below a horizontal pipe
+            if let Some(at) = outer.get(outer.len() / 2 - usize::from(outer.len() > 1)) {
+                chart.marks.push(Mark::Note { at: *at, text: tube.label.clone() });
+            }
+        }
     }
     for station in &rod.stations {
         let (label, style) = look(station.kind);
         let [x, y] = seen(&station.at_mm);
-        chart.marks.push(Mark::Points {
-            label: label.into(),
-            points: vec![Point { x, y, error: 0.0 }],
-            style,
-        });
+        match collar(rod, station, &undeformed, &stations, axis) {
+            Some(points) => chart.marks.push(Mark::Line { label: label.into(), points, style }),
+            None => chart.marks.push(Mark::Points {
+                label: label.into(),
+                points: vec![Point { x, y, error: 0.0 }],
+                style,
+            }),
+        }
         // From above, stations on the upright part hide each other: the side view names them.
         if axis == 2 || station.kind == StationKind::Located {
             chart.marks.push(Mark::Note { at: [x, y], text: station.label.clone() });
         }
     }
     chart
+}
+
+/// Half of what a tube measures in a view, mm.
+fn half(tube: &Tube, axis: usize) -> f64 {
+    0.5 * tube.outer_mm[usize::from(axis == 1)]
+}
+
+/// Arc length at each point of a line, mm.
+fn lengths(points: &[[f64; 3]]) -> Vec<f64> {
+    let mut at = 0.0;
+    let step = |pair: &[[f64; 3]]| {
+        at += (0..3).map(|i| (pair[1][i] - pair[0][i]).powi(2)).sum::<f64>().sqrt();
+        at
+    };
+    let first = (!points.is_empty()).then_some(0.0);
+    first.into_iter().chain(points.windows(2).map(step)).collect()
+}
+
+/// Walls and bore of a tube; seen end on, its section.
+fn cut_open(tube: &Tube, line: &Outline, axis: usize) -> Vec<Mark> {
+    let wall = Style::nth(0).colour(Colour::Grey).dash(Dash::Solid).width(0.6);
+    let bore = Style::nth(0).colour(Colour::Grey).dash(Dash::Dashed).width(0.4);
+    let (outer, inner) = (half(tube, axis), 0.5 * tube.inner_mm[usize::from(axis == 1)]);
+    let area =
+        |label: &str, corners: Vec<[f64; 2]>, style| Mark::Area { label: label.into(), corners, style };
+    if let Some(centre) = line.end_on(tube.from_mm, tube.to_mm) {
+        let halves = |sizes: [f64; 2]| sizes.map(|size| 0.5 * size);
+        let mut marks = vec![area("wall", ring(centre, halves(tube.outer_mm)), wall)];
+        if inner > 0.0 {
+            marks.push(area("", ring(centre, halves(tube.inner_mm)), bore));
+        }
+        return marks;
+    }
+    let strip = |right: f64, left: f64| line.strip(tube.from_mm, tube.to_mm, right, left);
+    if inner <= 0.0 {
+        return vec![area("wall", strip(-outer, outer), wall)];
+    }
+    vec![
+        area("bore", strip(-inner, inner), bore),
+        area("wall", strip(inner, outer), wall),
+        area("wall", strip(-outer, -inner), wall),
+    ]
+}
+
+/// Points around a centre, at these half axes.
+fn ring(centre: [f64; 2], half: [f64; 2]) -> Vec<[f64; 2]> {
+    const POINTS: usize = 48;
+    let at = |k: usize| {
+        let (sin, cos) = (k as f64 / POINTS as f64 * std::f64::consts::TAU).sin_cos();
+        [centre[0] + half[0] * cos, centre[1] + half[1] * sin]
+    };
+    (0..POINTS).map(at).collect()
+}
+
+/// The rod ends here: the ground's hatching below a thick line, half as wide as `half_mm`.
+fn clamp(half_mm: f64) -> Vec<Mark> {
+    const STROKES: usize = 7;
+    let line = |points: Vec<[f64; 2]>, width: f64| Mark::Line {
+        label: String::new(),
+        points,
+        style: Style::nth(0).width(width),
+    };
+    let step = 2.0 * half_mm / STROKES as f64;
+    let stroke = |k: usize| {
+        let x = -half_mm + (k as f64 + 1.0) * step;
+        line(vec![[x, 0.0], [x - step, -1.5 * step]], 0.9)
+    };
+    std::iter::once(line(vec![[-half_mm, 0.0], [half_mm, 0.0]], 2.5))
+        .chain((0..STROKES).map(stroke))
+        .collect()
+}
+
+/// A sleeve or a joint as a collar around the tube that is there; `None` for what is not drawn as
+/// one.
+fn collar(
+    rod: &RodShape,
+    station: &Station,
+    line: &Outline,
+    stations: &[f64],
+    axis: usize,
+) -> Option<Vec<[f64; 2]>> {
+    let (long, thick) = match station.kind {
+        StationKind::Mass => (0.5, 1.35),
+        StationKind::Joint => (0.25, 1.2),
+        _ => return None,
+    };
+    let far = |p: &[f64; 3]| (0..3).map(|i| (p[i] - station.at_mm[i]).powi(2)).sum::<f64>();
+    let nearest = (0..rod.centreline_mm.len())
+        .min_by(|&a, &b| far(&rod.centreline_mm[a]).total_cmp(&far(&rod.centreline_mm[b])))?;
+    let (at, end) = (*stations.get(nearest)?, *stations.last()?);
+    let tube = rod.tubes.iter().find(|tube| tube.from_mm <= at && at <= tube.to_mm)?;
+    let half = half(tube, axis);
+    // the ball at the tip is none
+    if end - at < half {
+        return None;
+    }
+    let (from, to) = ((at - long * half).max(0.0), (at + long * half).min(end));
+    let mut outline = match line.turns(from, to) {
+        // around a sharp corner it would cross itself
+        Some(corner) => ring(corner, [thick * half; 2]),
+        None => line.strip(from, to, -thick * half, thick * half),
+    };
+    outline.extend(outline.first().copied());
+    (!outline.is_empty()).then_some(outline)
 }
 
 /// Whether a case moves the rod across itself in the view whose second axis is `axis`. Motion along
@@ -188,8 +346,10 @@ fn moves(rod: &RodShape, case: &ShapeCase, axis: usize) -> bool {
 fn look(kind: StationKind) -> (&'static str, Style) {
     let style = Style::nth(0);
     match kind {
-        StationKind::Mass => ("mass", style.marker(Marker::Circle)),
-        StationKind::Joint => ("joint or sleeve", style.marker(Marker::Square)),
+        StationKind::Mass => ("mass", style.marker(Marker::Circle).dash(Dash::Solid).width(1.4)),
+        StationKind::Joint => {
+            ("joint", style.marker(Marker::Square).colour(Colour::Orange).dash(Dash::Dashed).width(2.0))
+        }
         StationKind::Load => ("load", style.marker(Marker::Triangle).colour(Colour::Blue)),
         StationKind::Reading => ("gauge", style.marker(Marker::Diamond).colour(Colour::Green)),
         StationKind::Located => ("located mismatch", style.marker(Marker::Ring).colour(Colour::Vermilion)),
@@ -219,10 +379,45 @@ mod tests {
             panel
                 .marks
                 .iter()
-                .filter(|m| matches!(m, Mark::Line { points, .. } if !points.is_empty()))
+                .filter(|m| matches!(m, Mark::Line { points, label, .. } if !points.is_empty() && !label.is_empty()))
                 .count()
         };
-        assert_eq!(figure.panels.iter().map(drawn).collect::<Vec<_>>(), [2, 2]);
+        // from the side the rod alone, from above the case too
+        assert_eq!(figure.panels.iter().map(drawn).collect::<Vec<_>>(), [1, 2]);
+    }
+
+    #[test]
+    fn tubes_are_to_scale_and_what_is_around_them_is_not() {
+        let mut rod = bent_rod();
+        let tube = |from_mm, to_mm| Tube {
+            label: "Ø 32 × 1 mm".into(),
+            from_mm,
+            to_mm,
+            outer_mm: [32.0; 2],
+            inner_mm: [30.0; 2],
+        };
+        rod.tubes = vec![tube(0.0, 150.0), tube(150.0, 675.0)];
+        let at = |at_mm| Station { label: "ring".into(), at_mm, kind: StationKind::Mass };
+        rod.stations = vec![at([200.0, 0.0, 150.0]), at([525.0, 0.0, 150.0])];
+        let figure = rod_shape(&rod);
+        let areas = |panel: usize, name: &str| -> Vec<Vec<[f64; 2]>> {
+            let of = |mark: &Mark| match mark {
+                Mark::Area { label, corners, .. } if label == name => Some(corners.clone()),
+                _ => None,
+            };
+            figure.panels[panel].marks.iter().filter_map(of).collect()
+        };
+        // the wall of pipe I's left side: 1 mm thick, mitred at the corner
+        assert_eq!(areas(0, "wall")[0], [[-16.0, 0.0], [-16.0, 166.0], [-15.0, 165.0], [-15.0, 0.0]]);
+        // from above pipe I is its own section
+        let section = &areas(1, "wall")[0];
+        let widest = extent(section.iter().map(|p| p[0])).unwrap();
+        assert!((widest.1 - widest.0 - 32.0).abs() < 1e-9, "{widest:?}");
+        // the ring is a collar, the ball at the tip a point
+        let drawn = |mark: &&Mark| matches!(mark, Mark::Line { label, .. } if label == "mass");
+        assert_eq!(figure.panels[0].marks.iter().filter(drawn).count(), 1);
+        assert!(figure.caption.contains("to scale"));
+        figure.svg();
     }
 
     #[test]

@@ -3,6 +3,7 @@
 use serde_json::Value;
 
 use crate::error::{Error, Place, Result};
+use crate::limits;
 
 /// Commands that have commands of their own.
 const FAMILIES: [&str; 4] = ["rig", "design", "diagnose", "trial"];
@@ -56,6 +57,7 @@ impl Run {
     /// [`Error::Syntax`] where the text is no JSON, [`Error::Input`] where it is no result that
     /// says what it was made of.
     pub fn from_text(folder: &str, file: &str, text: &str) -> Result<Run> {
+        limits::check(file, text.len(), limits::RESULT_BYTES, "bytes")?;
         let json: Value = serde_json::from_str(text).map_err(|error| Error::Syntax {
             at: Place { file: file.into(), line: error.line(), column: error.column() },
             message: format!("no JSON: {error}"),

@@ -1,8 +1,10 @@
 //! XML whose every error names file, line and column: elements, attributes and the numbers in them.
 
-use roxmltree::{Document, Error as XmlError, Node};
+use roxmltree::{Document, Error as XmlError, Node, ParsingOptions};
 
+use crate::delimited::visible;
 use crate::error::{Error, Place, Result};
+use crate::limits;
 use crate::spatial::Pose;
 
 /// No robot is larger, and the products of such numbers still fit a double.
@@ -18,7 +20,15 @@ pub(super) struct Source<'t> {
 impl<'t> Source<'t> {
     /// The elements of the text.
     pub fn parse(&self) -> Result<Document<'t>> {
-        Document::parse(self.text).map_err(|error| {
+        limits::check(self.file, self.text.len(), limits::URDF_BYTES, "bytes")?;
+        limits::check(
+            self.file,
+            most_attributes(self.text),
+            limits::URDF_ATTRIBUTES,
+            "attributes in one element",
+        )?;
+        let options = ParsingOptions { nodes_limit: limits::URDF_NODES as u32, ..ParsingOptions::default() };
+        Document::parse_with_options(self.text, options).map_err(|error| {
             let message = error.to_string();
             let at = match error {
                 XmlError::NoRootNode
@@ -99,6 +109,26 @@ impl<'t> Source<'t> {
     }
 }
 
+/// So many attributes the element with the most of them has, or a few more.
+fn most_attributes(text: &str) -> usize {
+    let (mut most, mut count, mut quote, mut is_tag) = (0, 0, None, false);
+    for byte in text.bytes() {
+        match (byte, quote) {
+            (_, Some(open)) if byte == open => quote = None,
+            (_, Some(_)) => {}
+            (b'<', None) => (is_tag, count) = (true, 0),
+            (b'>', None) => is_tag = false,
+            (b'"' | b'\'', None) if is_tag => quote = Some(byte),
+            (b'=', None) if is_tag => {
+                count += 1;
+                most = most.max(count);
+            }
+            _ => {}
+        }
+    }
+    most
+}
+
 /// The first child element of that name.
 pub(super) fn child<'n, 't>(node: Node<'n, 't>, name: &str) -> Option<Node<'n, 't>> {
     node.children().find(|child| child.is_element() && child.has_tag_name(name))
@@ -127,5 +157,5 @@ fn tag_name(node: Node) -> String {
 }
 
 fn printable(text: &str) -> String {
-    text.chars().map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect()
+    visible(text).into_owned()
 }

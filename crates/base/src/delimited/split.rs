@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 
+use super::written::is_formula;
 use crate::error::{Error, Place, Result};
 
 /// Trimmed text and the place of its first character.
@@ -68,7 +69,10 @@ fn place_cells(
         if indent > 0 && field.trim_start().starts_with('"') {
             return Err(column + indent);
         }
-        cells.push(Cell { text: field.trim().to_owned(), line: number, column: column + indent });
+        // what keeps a spreadsheet from taking a text for a formula is no part of it
+        let bare = field.trim();
+        let bare = bare.strip_prefix('\'').filter(|rest| is_formula(rest)).unwrap_or(bare);
+        cells.push(Cell { text: bare.to_owned(), line: number, column: column + indent });
         column += written.chars().count();
     }
     if rest.is_empty() && !cells.is_empty() { Ok(cells) } else { Err(column) }

@@ -4,6 +4,7 @@ use super::numbers::{Dialect, LARGEST, number_hint, parse_number};
 use super::split::{Cell, separator_of, split};
 use super::written::quoted;
 use crate::error::{Error, Place, Result};
+use crate::limits;
 
 /// A header and rows of as many cells.
 #[derive(Debug, Clone)]
@@ -35,6 +36,7 @@ impl Table {
     pub fn parse(file: &str, text: &str, holds_numbers: impl Fn(&str) -> bool) -> Result<Table> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         refuse_binary(file, text)?;
+        limits::check(file, text.len(), limits::TABLE_BYTES, "bytes")?;
         let lines: Vec<(usize, &str)> = (1..)
             .zip(text.lines())
             .filter(|(_, line)| !line.trim().is_empty() && !line.trim_start().starts_with('#'))
@@ -50,6 +52,10 @@ impl Table {
             });
         };
         let separator = separator_of(header);
+        let columns = header.matches(separator).count() + 1;
+        limits::check(file, columns, limits::TABLE_COLUMNS, "columns")?;
+        limits::check(file, lines.len() - 1, limits::TABLE_ROWS, "rows")?;
+        limits::check(file, (lines.len() - 1) * columns, limits::TABLE_CELLS, "cells")?;
         let mut records = split(file, &lines, separator);
         let mut table = Table {
             file: file.to_owned(),
@@ -78,6 +84,21 @@ impl Table {
     /// The names of the columns as written, from left to right.
     pub fn columns(&self) -> impl Iterator<Item = &str> {
         self.header.iter().map(|cell| cell.text.as_str())
+    }
+
+    /// "the columns are x_mm, y_mm": for errors about one that is not there.
+    pub fn columns_found(&self) -> String {
+        /// More names than these hide what they are listed for.
+        const MOST: usize = 12;
+        let names: Vec<&str> = self.columns().take(MOST).collect();
+        let rest = match self.header.len().saturating_sub(MOST) {
+            0 => String::new(),
+            more => format!(" and {more} more"),
+        };
+        match names.as_slice() {
+            [one] if rest.is_empty() => format!("the only column is {one}"),
+            _ => format!("the columns are {}{rest}", names.join(", ")),
+        }
     }
 
     /// Whether there is a column of this name (upper and lower case are the same).
@@ -208,6 +229,7 @@ impl<'t> Row<'t> {
     /// An error about what stands in one cell; without such a column, about the row.
     pub fn error(&self, column: &str, expected: String, hint: Option<String>) -> Error {
         let Some(index) = self.table.position(column) else {
+            let hint = hint.or_else(|| Some(self.table.columns_found()));
             return self.row_error(format!("there is no column {column}"), expected, hint);
         };
         let name = &self.table.header[index].text;

@@ -8,6 +8,8 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;
 
+use crate::error::{Error, Result};
+
 /// A sequence of random numbers, determined by its seed and stream.
 #[derive(Debug, Clone)]
 pub struct Random(ChaCha8Rng);
@@ -18,6 +20,30 @@ impl Random {
         let mut generator = ChaCha8Rng::seed_from_u64(seed);
         generator.set_stream(stream);
         Random(generator)
+    }
+
+    /// The same for a seed of up to 128 bits; one of at most 64 is that of [`Random::seeded`].
+    pub fn of_seed(seed: u128, stream: u64) -> Self {
+        if let Ok(short) = u64::try_from(seed) {
+            return Random::seeded(short, stream);
+        }
+        let mut bytes = [0; 32];
+        bytes[..16].copy_from_slice(&seed.to_le_bytes());
+        let mut generator = ChaCha8Rng::from_seed(bytes);
+        generator.set_stream(stream);
+        Random(generator)
+    }
+
+    /// A seed that nobody guesses: 128 random bits of the operating system.
+    ///
+    /// # Errors
+    /// [`Error::Numerical`] where it has none.
+    pub fn secret_seed() -> Result<u128> {
+        let mut bytes = [0; 16];
+        let why =
+            |error: getrandom::Error| Error::Numerical { what: "a random seed", why: error.to_string() };
+        getrandom::fill(&mut bytes).map_err(why)?;
+        Ok(u128::from_le_bytes(bytes))
     }
 
     /// Uniform between `low` and `high`, in steps of 2⁻⁵³ of their distance.
@@ -59,6 +85,14 @@ mod tests {
         let first = |seed, stream| Random::seeded(seed, stream).uniform(0.0, 1.0);
         assert_eq!(first(7, 3), first(7, 3));
         assert!(first(7, 3) != first(7, 4) && first(7, 3) != first(8, 3));
+    }
+
+    #[test]
+    fn a_long_seed_is_another_sequence_and_a_short_one_is_not() {
+        let first = |seed| Random::of_seed(seed, 3).uniform(0.0, 1.0);
+        assert_eq!(first(7), Random::seeded(7, 3).uniform(0.0, 1.0));
+        assert!(first(7) != first(7 + (1 << 64)) && first(1 << 64) != first(1 << 65));
+        assert!(Random::secret_seed().unwrap() != Random::secret_seed().unwrap());
     }
 
     #[test]

@@ -3,7 +3,9 @@
 use serde::de::DeserializeOwned;
 use toml::Spanned;
 
+use crate::delimited::visible;
 use crate::error::{Error, Place, Result};
+use crate::limits;
 
 /// A number that knows where it stands.
 pub type Number = Spanned<f64>;
@@ -13,6 +15,9 @@ pub type Required = [(&'static str, &'static str)];
 
 /// No quantity of this world is larger, and its fourth power times another still fits a double.
 const LARGEST: f64 = 1e30;
+
+/// What is smaller and must not be 0 would be 0 in another unit.
+const SMALLEST: f64 = 1e-290;
 
 /// The text of a file, to find the line of whatever is wrong.
 #[derive(Debug, Clone, Copy)]
@@ -27,11 +32,17 @@ impl<'a> TomlText<'a> {
         TomlText { file, text }
     }
 
+    /// The file, as it is named in errors.
+    pub fn file(&self) -> &'a str {
+        self.file
+    }
+
     /// Reads the whole text; `required` has the words for keys that `T` cannot do without.
     ///
     /// # Errors
     /// [`Error::Input`] or [`Error::Syntax`] with line and column.
     pub fn parse<T: DeserializeOwned>(&self, required: &Required) -> Result<T> {
+        limits::check(self.file, self.text.len(), limits::TOML_BYTES, "bytes")?;
         toml::from_str(self.text).map_err(|error| self.reworded(&error, required))
     }
 
@@ -53,7 +64,11 @@ impl<'a> TomlText<'a> {
     /// The number, if it is above 0.
     pub fn positive(&self, key: &str, number: &Number) -> Result<f64> {
         let value = self.finite(key, number)?;
-        if value > 0.0 { Ok(value) } else { Err(self.is(key, number, "a number > 0")) }
+        match value {
+            SMALLEST.. => Ok(value),
+            _ if value > 0.0 => Err(self.is(key, number, &format!("a number of at least {SMALLEST:e}"))),
+            _ => Err(self.is(key, number, "a number > 0")),
+        }
     }
 
     /// The number, if it is 0 or above.
@@ -93,10 +108,9 @@ pub(super) fn cut(text: &str) -> String {
     const LONGEST: usize = 40;
     let line = text.trim().lines().next().unwrap_or_default();
     let mut characters = line.chars();
-    let mut short: String =
-        characters.by_ref().take(LONGEST).map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect();
+    let mut short: String = characters.by_ref().take(LONGEST).collect();
     if characters.next().is_some() {
         short.push_str(" …");
     }
-    short
+    visible(&short).into_owned()
 }

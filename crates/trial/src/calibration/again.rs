@@ -67,7 +67,7 @@ pub fn again(source: &Source, number: usize, proposed: &Proposed) -> Result<Agai
     let before = text::files(&right);
     let known = site.rows.len();
     append(&mut site, &effects, proposed)?;
-    let noise = site.errors(known, &mut Random::seeded(source.seed, AGAIN + number as u64));
+    let noise = site.errors(known, &mut Random::of_seed(source.seed.0, AGAIN + number as u64));
     let more = setup::measured(&mut site, &effects, known, &noise);
     let read: Vec<Vector3<f64>> = right.read.iter().copied().chain(more).collect();
     Ok(Again { before, after: text::files(&Written { site, read, ..right }) })
@@ -126,7 +126,7 @@ mod tests {
     use crate::calibration::case;
 
     fn source(seed: u64) -> Source {
-        Source { seed, half: crate::Half::Calibration, residuals: Vec::new() }
+        Source { seed: crate::Seed(seed.into()), half: crate::Half::Calibration, residuals: Vec::new() }
     }
 
     fn has_clamps(drawn: &Drawn) -> bool {

@@ -203,7 +203,8 @@ mod tests {
 
     #[test]
     fn an_oracle_is_misled_by_the_files_numbers_and_in_proportion_to_the_noise() {
-        for effect in (0..LIBRARY).filter(|effect| *effect != 15) {
+        // every third effect: 15 is the one that shows in no position
+        for effect in (0..LIBRARY).step_by(3).filter(|effect| *effect != 15) {
             let (mut site, effect) = site(effect, 3);
             let question = draw(&site, &mut Random::seeded(3, 1));
             let effects = [effect];

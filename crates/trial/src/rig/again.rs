@@ -9,6 +9,7 @@ use super::bench::Bench;
 use super::drawing::rounded;
 use super::protocol::{AXES, Columns, Loading, Protocol, Run, steps};
 use super::{AGAIN, drawn};
+use crate::Seed;
 use rodcal_base::statistics::Random;
 use rodcal_base::units::MM;
 
@@ -54,7 +55,7 @@ const DWELL: f64 = 30.0;
 /// are the same, the new ones have a noise of their own. Refuses, with the reason, what this rig
 /// cannot do.
 pub fn again(
-    seed: u64,
+    seed: Seed,
     number: usize,
     residuals: &[f64],
     proposed: &Proposed,
@@ -62,7 +63,7 @@ pub fn again(
     let drawn = drawn(seed, number, residuals);
     let recorded = &drawn.bench.protocol;
     let new = planned(&drawn.bench, proposed)?;
-    let mut random = Random::seeded(seed, AGAIN + number as u64);
+    let mut random = Random::of_seed(seed.0, AGAIN + number as u64);
     let more = new.loadings.iter().map(|_| random.uniform(-1.0, 1.0));
     let whole = Bench {
         protocol: Protocol {
@@ -182,25 +183,25 @@ mod tests {
     #[test]
     fn the_recording_is_the_sealed_one_and_the_new_rows_are_below_it() {
         for number in 1..12 {
-            let sealed = case(5, number, &[]);
+            let sealed = case(Seed(5), number, &[]);
             // where the files are wrong nothing is proposed
             if sealed.truth.kind == Kind::Mistake {
                 continue;
             }
             let sealed = sealed.files[1].1.clone();
-            let again = again(5, number, &[], &proposed()).unwrap();
+            let again = again(Seed(5), number, &[], &proposed()).unwrap();
             assert_eq!(again.before, sealed);
             let rows = |text: &str| text.lines().filter(|line| !line.starts_with('#')).count();
             assert_eq!(rows(&again.after), rows(&sealed) + 12);
             let last = again.after.lines().last().unwrap();
             assert!(last.starts_with("-x,") && last.contains("unload") && last.contains("60"), "{last}");
-            assert_eq!(again, super::again(5, number, &[], &proposed()).unwrap());
+            assert_eq!(again, super::again(Seed(5), number, &[], &proposed()).unwrap());
         }
     }
 
     #[test]
     fn what_no_rig_can_do_is_refused_with_the_reason() {
-        let refused = |proposed: Proposed| again(5, 1, &[], &proposed).unwrap_err();
+        let refused = |proposed: Proposed| again(Seed(5), 1, &[], &proposed).unwrap_err();
         assert_eq!(refused(Proposed { direction: "up".into(), ..proposed() }), "no such direction");
         assert_eq!(refused(Proposed { channels: vec![], ..proposed() }), "not a measurement");
         assert_eq!(refused(Proposed { loads_n: vec![f64::NAN], ..proposed() }), "not a measurement");

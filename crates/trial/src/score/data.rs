@@ -28,6 +28,9 @@ pub struct Score {
     /// Calibrations of arms.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub calibration: Option<Part>,
+    /// What limits it, to be said before anything else: cases without an answer.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub remarks: Vec<String>,
 }
 
 /// The score of some cases.
@@ -261,7 +264,7 @@ impl Score {
 
     /// For people: missed targets, all cases, then each half if there are both.
     pub fn text(&self) -> String {
-        let mut text = String::new();
+        let mut text: String = self.remarks.iter().map(|remark| format!("{remark}\n")).collect();
         for (half, part) in self.halves() {
             part.missed_targets.iter().for_each(|missed| text += &format!("MISSED {half}: {missed}\n"));
         }

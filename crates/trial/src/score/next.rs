@@ -13,7 +13,7 @@ use super::place;
 use super::rate::Rate;
 use crate::place::Place;
 use crate::truth::{Concealed, Kind, Truth};
-use crate::{Half, Source, calibration, rig};
+use crate::{Half, Seed, Source, calibration, rig};
 use rodcal_base::error::Result;
 use rodcal_base::files;
 
@@ -22,7 +22,7 @@ use rodcal_base::files;
 pub struct Due {
     /// `rig/case-0001`.
     pub case: String,
-    seed: Option<u64>,
+    seed: Option<Seed>,
     residuals: Vec<f64>,
     /// True for a case with effects that imitate each other.
     is_conflict: bool,

@@ -175,13 +175,16 @@ fn as_json_a_score_has_the_keys_that_it_always_had() {
         "targets",
         "missed_targets",
     ];
-    assert_eq!(keys(&json), [&part[..], &["unanswered", "rig"]].concat());
+    assert_eq!(keys(&json), [&part[..], &["unanswered", "rig", "remarks"]].concat());
     assert_eq!(keys(&json["rig"]), part);
     assert_eq!(json["single"]["identifiable"], 3);
     assert_eq!(json["clean"]["false_names_rate"]["share"], 0.5);
     let missed = "clean recordings without any finding: 50.0 %, wanted at least 98.0 %";
     assert_eq!(json["missed_targets"][0], missed);
-    assert!(score(&truths, &answers, &[]).text().starts_with(&format!("MISSED rig: {missed}\n")));
+    let text = score(&truths, &answers, &[]).text();
+    let (first, rest) = text.split_once('\n').unwrap();
+    assert!(first.contains("have no answer: the score is of the other"), "{first}");
+    assert!(rest.starts_with(&format!("MISSED rig: {missed}\n")), "{rest}");
 }
 
 #[test]
@@ -322,7 +325,7 @@ fn other_readings_are_scored_against_the_oracle() {
 #[test]
 fn what_was_measured_once_more_settles_or_does_not() {
     let (truths, answers) = example();
-    let sealed = Sealed { truths, given: answers };
+    let sealed = Sealed { truths, given: answers, names_manifest: true };
     let due: Vec<String> = sealed.due().into_iter().map(|due| due.case).collect();
     assert_eq!(due, [3, 4, 5, 7].map(|case| format!("rig/case-{case:04}")));
     let diagnosed = |effect: &str, place: &str, others: &[&str]| {

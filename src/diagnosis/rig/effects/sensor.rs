@@ -2,7 +2,9 @@
 
 use std::collections::HashMap;
 
-use super::entry::{Context, Entry, RigEffect, UNBOUNDED, along_the_load, candidate, entry, of, parameter};
+use super::entry::{
+    Context, Entry, RigEffect, SCALES, UNBOUNDED, along_the_load, candidate, entry, of, parameter,
+};
 use super::load::{ALIGNMENT, TURNS, WIDEST, misalignment, pairs, whole_turn};
 use super::places::measured_channels;
 use crate::diagnosis::rig::action::Action;
@@ -37,7 +39,7 @@ pub static SENSOR_SCALE: RigEffect = RigEffect {
     needs_rod: true,
     candidates: |context| {
         let of_channel = |channel: Axis| {
-            let factor = parameter("factor", 1.0, 1.0, SCALE, (0.2, 5.0));
+            let factor = parameter("factor", 1.0, 1.0, SCALE, SCALES);
             let location = Location::Channel { channel, form: None };
             entry(&SENSOR_SCALE, location, factor, Action::SensorScale(channel))
         };

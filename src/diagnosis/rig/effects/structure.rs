@@ -1,8 +1,8 @@
 //! What the rod is: moduli, joints, root, bend.
 
 use super::entry::{
-    Context, Entry, NOT_NEGATIVE, RigEffect, along_the_load, candidate, entry, of, parameter, preferring,
-    said,
+    Context, Entry, NOT_NEGATIVE, RigEffect, SCALES, along_the_load, candidate, entry, of, parameter,
+    preferring, said,
 };
 use super::places::{sessions, stations};
 use crate::diagnosis::rig::action::Action;
@@ -44,7 +44,7 @@ pub static STIFFNESS_SCALE: RigEffect = RigEffect {
     },
     needs_rod: true,
     candidates: |_| {
-        let factor = parameter("factor", 1.0, 1.0, SOFTNESS, (0.1, 10.0));
+        let factor = parameter("factor", 1.0, 1.0, SOFTNESS, SCALES);
         vec![entry(&STIFFNESS_SCALE, Location::Part(Part::Rod), factor, Action::Stiffness)]
     },
     missing: |_| NOT_YIELDING,
@@ -70,7 +70,7 @@ pub static SHEAR_MODULUS: RigEffect = RigEffect {
     },
     needs_rod: true,
     candidates: |_| {
-        let factor = parameter("factor", 1.0, 1.0, SOFTNESS, (0.1, 10.0));
+        let factor = parameter("factor", 1.0, 1.0, SOFTNESS, SCALES);
         vec![entry(&SHEAR_MODULUS, Location::Part(Part::Rod), factor, Action::ShearModulus)]
     },
     missing: |_| "the loads neither twist nor shear the rod",

@@ -8,38 +8,54 @@
 //! ŷ + Δ ≈ s·ŷ,   s = ŷᵀ(ŷ + Δ)/ŷᵀŷ        Δ the response of the finding's terms
 //! ```
 //!
-//! and s comes near a unit's, these readings cannot say which of the two it is.
+//! and s comes near a unit's, these readings cannot say which of the two it is. Nor can they where
+//! the readings themselves, without what the other findings do, are one factor of ŷ: a rod with a
+//! joint that is stiffer all over is not quite what a unit makes of it.
 
 use nalgebra::DVector;
 
 use super::super::effects::mistakes::UNIT_MISTAKE;
 use super::super::model::RigModel;
 use super::moves::{HARDLY_BESIDE, like_physics};
-use crate::inference::{Finding, ForwardModel, Location, Rival, Term};
+use crate::inference::{Evidence, Finding, ForwardModel, Location, Rival, Term};
+use crate::linalg::least_squares;
 
 /// What is left of a factor's response beside that factor, as a share of it (rms).
 const ONE_FACTOR: f64 = 0.1;
 
-/// The units of the loads that `finding` may be as well.
-pub fn lookalikes(model: &RigModel, finding: &Finding) -> Vec<Rival> {
-    let terms: Vec<Term> = finding.parts.iter().map(|part| part.term.clone()).collect();
-    let predicted = DVector::from_iterator(model.data.len(), model.data.iter().map(|datum| datum.predicted));
-    let squares = predicted.norm_squared();
-    if terms.is_empty() || squares == 0.0 || model.rod.is_none() {
+/// The units of the loads that the finding of this number may be as well.
+pub fn lookalikes(model: &RigModel, evidence: &Evidence, findings: &[Finding], number: usize) -> Vec<Rival> {
+    let of = |finding: &Finding| finding.parts.iter().map(|part| part.term.clone()).collect::<Vec<Term>>();
+    let own = of(&findings[number]);
+    if own.is_empty() || model.rod.is_none() {
         return Vec::new();
     }
-    let change = model.response(&terms);
-    let excess = predicted.dot(&change) / squares;
-    let beside = (&change - &predicted * excess).norm();
-    let scale = 1.0 + excess;
-    if scale <= 0.0 || beside > ONE_FACTOR * change.norm() {
-        return Vec::new();
-    }
+    let others: Vec<Term> =
+        findings.iter().enumerate().filter(|(k, _)| *k != number).flat_map(|(_, other)| of(other)).collect();
     let (column, units) = like_physics(model.readings.load_column);
-    let is_near = |factor: f64| (scale / factor).ln().abs() < HARDLY_BESIDE.ln();
+    let predicted = DVector::from_iterator(model.data.len(), model.data.iter().map(|datum| datum.predicted));
+    let fitted = factor_of(&predicted, &model.response(&own));
+    let beside_zeros = |of: &DVector<f64>| match least_squares(&evidence.nuisance, of) {
+        Ok(zeros) => of - &evidence.nuisance * zeros,
+        Err(_) => of.clone(),
+    };
+    let recorded = &evidence.residual - model.response(&others);
+    let recorded = factor_of(&beside_zeros(&predicted), &beside_zeros(&recorded));
+    let is_near = |factor: f64| {
+        [fitted, recorded].into_iter().flatten().any(|scale| (scale / factor).ln().abs() < HARDLY_BESIDE.ln())
+    };
     let near = units.into_iter().filter(|(_, factor)| is_near(*factor));
     near.map(|(unit, _)| {
         Rival::without_term(&UNIT_MISTAKE, Location::Key(format!("{column} in {unit}")), 1.0)
     })
     .collect()
+}
+
+/// s, where a change of all data is one factor.
+fn factor_of(predicted: &DVector<f64>, change: &DVector<f64>) -> Option<f64> {
+    let squares = predicted.norm_squared();
+    let excess = if squares > 0.0 { predicted.dot(change) / squares } else { 0.0 };
+    let beside = (change - predicted * excess).norm();
+    let scale = 1.0 + excess;
+    (scale > 0.0 && squares > 0.0 && beside <= ONE_FACTOR * change.norm()).then_some(scale)
 }

@@ -6,10 +6,10 @@ use super::lines::branch_name;
 use crate::diagnosis::rig::{Datum, RigDiagnosis};
 use crate::inference::{Covariate, Finding, Location, Part, Variable, rms};
 use crate::report::chart::Figure;
-use crate::report::compliance::stations;
 use crate::report::diagnosis::tables::covariates;
 use crate::report::pictures::diagnosis::{BeforeAfter, Residual, ResidualPoint, before_after};
 use crate::report::pictures::{RodShape, Station, StationKind, Stretch, rod_shape};
+use crate::report::rod_drawing::{drawing, stations};
 use crate::rod::Rod;
 use crate::spatial::Axis;
 use crate::units::{MM, UM};
@@ -159,6 +159,11 @@ pub fn places(found: &RigDiagnosis, rod: &Rod) -> Option<Figure> {
         let (from, to) = place.between?;
         Some(Stretch { label: "where it may be".into(), points_mm: line(from, to) })
     };
+    // pipe I, what there is of a bend, and pipe II: the corner is a point of the line
+    let (start, end) = (rod.bend_start(), rod.bend_end());
+    let mut whole = line(0.0, start);
+    whole.extend(line(start, end).into_iter().skip(1).filter(|_| end > start));
+    whole.extend(line(end, rod.length()).into_iter().skip(1));
     // a ring around a joint that is drawn already needs its name once
     let drawn =
         stations(rod).into_iter().map(|station| match located.iter().any(|l| l.label == station.label) {
@@ -166,18 +171,15 @@ pub fn places(found: &RigDiagnosis, rod: &Rod) -> Option<Figure> {
             false => station,
         });
     let figure = rod_shape(&RodShape {
-        title: format!("Rod {}", rod.name),
-        centreline_mm: line(0.0, rod.length()),
+        centreline_mm: whole,
         stations: drawn.chain(located.iter().map(ring)).collect(),
         stretches: located.iter().filter_map(stretch).collect(),
-        ..RodShape::default()
+        ..drawing(rod)
     });
     let names: Vec<&str> = located.iter().map(|place| place.label.as_str()).collect();
-    Some(
-        figure
-            .named("places")
-            .captioned(format!("Where the rod is more compliant than its model: {}.", names.join("; "))),
-    )
+    let caption =
+        format!("Where the rod is more compliant than its model: {}. {}", names.join("; "), figure.caption);
+    Some(figure.named("places").captioned(caption))
 }
 
 /// A place on the rod, m from the flange.

@@ -46,7 +46,7 @@ pub fn error_distribution(methods: &[MethodErrors]) -> Figure {
             from: bins.edge(k),
             to: bins.edge(k + 1),
             value: *count as f64,
-            text: String::new(),
+            ..Bar::default()
         };
         let bars = counts[i].iter().enumerate().filter(|(_, count)| **count > 0).map(bar).collect();
         chart = chart.with(Mark::Bars {

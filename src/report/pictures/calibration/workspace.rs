@@ -1,5 +1,4 @@
-//! Where in the workspace the errors are, and where to they point: seen from above and from the
-//! side.
+//! How large the errors are where in the workspace: seen from above and from the side.
 
 use std::collections::BTreeMap;
 
@@ -8,12 +7,7 @@ use serde::Serialize;
 use super::super::super::chart::{Chart, Colour, Dash, Figure, Mark, Marker, Point, Range, Style};
 use super::super::super::scale::{drawable, extent, one_two_five_below, typeset};
 use super::{MOST_POINTS, round_amount};
-use crate::units::{MM, UM, significant};
 
-/// More arrows than these hide each other.
-const MOST_ARROWS: usize = 400;
-/// How far below the poses the key to the arrows is, as a part of their extent.
-const KEY: f64 = 0.06;
 /// A view: name, label of the vertical axis and which coordinate it is.
 type View = (&'static str, &'static str, usize);
 /// From above and from the side.
@@ -31,23 +25,32 @@ pub struct PoseError {
 /// The poses in x–y and in x–z, as discs whose diameter is in proportion to the error, in steps
 /// that the legend shows.
 pub fn error_over_workspace(poses: &[PoseError]) -> Figure {
+    over_workspace(poses, "error")
+}
+
+/// The same for standard deviations that are expected, not errors that were measured.
+pub fn uncertainty_over_workspace(poses: &[PoseError]) -> Figure {
+    over_workspace(poses, "uncertainty")
+}
+
+/// `what` is "error", "uncertainty", …
+fn over_workspace(poses: &[PoseError], what: &str) -> Figure {
     let known =
         |p: &&PoseError| p.at_mm.iter().chain([&p.error_mm]).all(|v| drawable(*v)) && p.error_mm >= 0.0;
     let poses: Vec<PoseError> = poses.iter().filter(known).copied().collect();
     let room = Room::around(poses.iter().map(|p| p.at_mm));
     let cell_mm = one_two_five_below(room.size_mm() / 16.0);
-    let mut caption =
-        String::from("The poses in the workspace; the larger a disc, the larger the error there.");
+    let mut caption = format!("The poses in the workspace; the larger a disc, the larger the {what} there.");
     if poses.len() > MOST_POINTS {
         caption += &format!(
-            " Of {} poses the one with the largest error in each square of {} is drawn.",
+            " Of {} poses the one with the largest {what} in each square of {} is drawn.",
             typeset(&poses.len().to_string()),
             round_amount(cell_mm, cell_mm, "mm")
         );
     }
     let classes = Classes::new(&poses);
     let panel = |(view, label, axis): (&str, &str, usize)| {
-        let mut chart = room.chart(format!("error, {view}"), label, axis, 0.0);
+        let mut chart = room.chart(format!("{what}, {view}"), label, axis);
         // First for the legend, from small to large; then to be drawn, the small on top of the
         // large.
         for class in 0..classes.number {
@@ -62,87 +65,7 @@ pub fn error_over_workspace(poses: &[PoseError]) -> Figure {
         }
         chart
     };
-    room.figure("error-over-workspace", caption, VIEWS.map(panel).into())
-}
-
-/// What is left at one pose, as a vector.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
-pub struct PoseVector {
-    /// The measured position, mm.
-    pub at_mm: [f64; 3],
-    /// Measured minus calculated position, µm.
-    pub residual_um: [f64; 3],
-}
-
-/// The residuals in x–y and in x–z as arrows from the measured positions, exaggerated by the factor
-/// in the titles.
-pub fn residual_vectors(poses: &[PoseVector]) -> Figure {
-    residual_vectors_of(&[("", poses.to_vec())])
-}
-
-/// The same for several sets of residuals, each with its name, to one scale.
-pub fn residual_vectors_of(sets: &[(&str, Vec<PoseVector>)]) -> Figure {
-    let known = |p: &&PoseVector| p.at_mm.iter().chain(&p.residual_um).all(|v| drawable(*v));
-    let sets: Vec<(&str, Vec<PoseVector>)> =
-        sets.iter().map(|(name, poses)| (*name, poses.iter().filter(known).copied().collect())).collect();
-    let count = sets.iter().map(|(_, poses)| poses.len()).max().unwrap_or(0);
-    let positions = Room::around(sets.iter().flat_map(|(_, poses)| poses).map(|p| p.at_mm));
-    let mut caption =
-        String::from("Residuals as arrows from the measured positions, exaggerated as the titles say.");
-    let cell_mm = one_two_five_below(positions.size_mm() / 10.0);
-    let many = count > MOST_ARROWS;
-    if many {
-        caption += &format!(
-            " Each arrow is the mean over the poses in a square of {}; there are {} in all.",
-            round_amount(cell_mm, cell_mm, "mm"),
-            typeset(&count.to_string())
-        );
-    }
-    let drawn: Vec<Vec<PoseVector>> = sets
-        .iter()
-        .flat_map(|(_, poses)| {
-            VIEWS.map(|(_, _, axis)| if many { means_of_cells(poses, cell_mm, axis) } else { poses.clone() })
-        })
-        .collect();
-    let usual_mm = if many { 1.5 * cell_mm } else { 0.2 * positions.size_mm() };
-    let factor = exaggeration(drawn.iter().flatten(), usual_mm, 0.5 * positions.size_mm());
-    let tip = |p: &PoseVector| [0, 1, 2].map(|i| p.at_mm[i] + factor * p.residual_um[i] * UM / MM);
-    let ends = drawn.iter().flatten().flat_map(|p| [p.at_mm, tip(p)]);
-    let room = Room::around(ends.chain([positions.low, positions.high]));
-    let views = sets.iter().flat_map(|(name, _)| VIEWS.map(|view| (*name, view)));
-    let panel = |((name, (view, label, axis)), drawn): ((&str, View), &Vec<PoseVector>)| {
-        let name = if name.is_empty() { String::new() } else { format!("{name}, ") };
-        let title = format!("{name}{view}, residuals ×\u{a0}{}", typeset(&significant(factor, 1)));
-        let mut chart = room.chart(title, label, axis, KEY);
-        for p in drawn {
-            let (from, to) = (p.at_mm, tip(p));
-            chart.marks.push(arrow([from[0], from[axis]], [to[0], to[axis]], String::new()));
-        }
-        chart.marks.push(Mark::Points {
-            label: "measured position".into(),
-            points: drawn.iter().map(|p| Point { x: p.at_mm[0], y: p.at_mm[axis], error: 0.0 }).collect(),
-            style: Style::nth(0).size(1.3),
-        });
-        chart.marks.extend(room.key(drawn, factor, axis));
-        chart
-    };
-    room.figure("residual-vectors", caption, views.zip(&drawn).map(panel).collect())
-}
-
-fn arrow(from: [f64; 2], to: [f64; 2], text: String) -> Mark {
-    let style = Style::nth(1).width(1.3);
-    Mark::Arrow { from, to, text, style }
-}
-
-/// The 1-2-5 factor with which nine of ten residuals become at most `usual_mm` long, and the
-/// longest at most `longest_mm`.
-fn exaggeration<'a>(poses: impl Iterator<Item = &'a PoseVector>, usual_mm: f64, longest_mm: f64) -> f64 {
-    let length_um = |p: &PoseVector| p.residual_um.iter().fold(0.0, |sum, r| f64::hypot(sum, *r));
-    let mut lengths: Vec<f64> = poses.map(length_um).filter(|l| *l > 0.0).collect();
-    lengths.sort_by(f64::total_cmp);
-    let Some(longest) = lengths.last() else { return 1.0 };
-    let usual = lengths[(9 * lengths.len() / 10).min(lengths.len() - 1)];
-    one_two_five_below((usual_mm / usual).min(longest_mm / longest) * MM / UM)
+    room.figure(&format!("{what}-over-workspace"), caption, VIEWS.map(panel).into())
 }
 
 /// What both views span.
@@ -174,27 +97,13 @@ impl Room {
         Figure { name: name.into(), caption, panels, columns, shared_legend: true }
     }
 
-    /// An empty view; `below` is room for a key, as a part of the size.
-    fn chart(&self, title: String, y_label: &str, axis: usize, below: f64) -> Chart {
+    /// An empty view.
+    fn chart(&self, title: String, y_label: &str, axis: usize) -> Chart {
         let mut chart = Chart::new(title, "x / mm", y_label);
         chart.equal_aspect = true;
         chart.x.range = Range::Fixed(self.low[0], self.high[0]);
-        chart.y.range = Range::Fixed(self.low[axis] - below * self.size_mm(), self.high[axis]);
+        chart.y.range = Range::Fixed(self.low[axis], self.high[axis]);
         chart
-    }
-
-    /// An arrow of a round length with its value, below everything else.
-    fn key(&self, poses: &[PoseVector], factor: f64, axis: usize) -> Option<Mark> {
-        let components = poses.iter().flat_map(|p| p.residual_um).map(f64::abs);
-        let (_, largest_um) = extent(components).filter(|(_, high)| *high > 0.0)?;
-        let length_um = one_two_five_below(largest_um.min(0.3 * self.size_mm() * MM / (factor * UM)));
-        let y = self.low[axis] - KEY * self.size_mm();
-        let from = [self.low[0], y];
-        Some(arrow(
-            from,
-            [from[0] + factor * length_um * UM / MM, y],
-            round_amount(length_um, length_um, "µm"),
-        ))
     }
 }
 
@@ -219,6 +128,14 @@ impl Classes {
         Classes { step_mm, number, largest_px }
     }
 
+    /// So many steps: in µm where all of them are below a millimetre.
+    fn size(&self, steps: f64) -> String {
+        match self.number as f64 * self.step_mm < 1.0 {
+            true => round_amount(steps * self.step_mm * 1e3, self.step_mm * 1e3, "µm"),
+            false => round_amount(steps * self.step_mm, self.step_mm, "mm"),
+        }
+    }
+
     fn class(&self, error_mm: f64) -> usize {
         ((error_mm / self.step_mm - 1e-9).ceil() as usize).clamp(1, self.number.max(1)) - 1
     }
@@ -233,7 +150,7 @@ impl Classes {
         };
         let style = Style::nth(0).colour(colour).dash(Dash::Solid).marker(Marker::Circle);
         Mark::Points {
-            label: format!("up to {}", round_amount((class + 1) as f64 * self.step_mm, self.step_mm, "mm")),
+            label: format!("up to {}", self.size((class + 1) as f64)),
             points,
             style: style.size((self.largest_px * part).max(1.2)),
         }
@@ -257,26 +174,12 @@ fn worst_of_cells(poses: &[PoseError], cell_mm: f64, axis: usize) -> Vec<PoseErr
     worst.into_values().collect()
 }
 
-fn means_of_cells(poses: &[PoseVector], cell_mm: f64, axis: usize) -> Vec<PoseVector> {
-    let mut cells: BTreeMap<(i64, i64), Vec<&PoseVector>> = BTreeMap::new();
-    for pose in poses {
-        cells.entry(cell(&pose.at_mm, cell_mm, axis)).or_default().push(pose);
-    }
-    let mean = |poses: &Vec<&PoseVector>| {
-        let mean_of = |part: fn(&PoseVector) -> [f64; 3]| {
-            [0, 1, 2].map(|i| poses.iter().map(|p| part(p)[i] / poses.len() as f64).sum())
-        };
-        PoseVector { at_mm: mean_of(|p| p.at_mm), residual_um: mean_of(|p| p.residual_um) }
-    };
-    cells.values().map(mean).collect()
-}
-
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
 
     /// A spiral of `count` poses.
-    fn places(count: usize) -> Vec<[f64; 3]> {
+    pub fn places(count: usize) -> Vec<[f64; 3]> {
         let place = |i: usize| {
             let t = i as f64;
             [800.0 + 300.0 * f64::sin(2.4 * t), 400.0 * f64::cos(1.7 * t), 500.0 + 200.0 * f64::sin(0.37 * t)]
@@ -289,17 +192,9 @@ mod tests {
         places(count).into_iter().enumerate().map(pose).collect()
     }
 
-    fn vectors(count: usize) -> Vec<PoseVector> {
-        places(count).into_iter().map(|at_mm| PoseVector { at_mm, residual_um: [30.0, -40.0, 0.0] }).collect()
-    }
-
     fn dots(chart: &Chart) -> usize {
         let count = |mark: &Mark| if let Mark::Points { points, .. } = mark { points.len() } else { 0 };
         chart.marks.iter().map(count).sum()
-    }
-
-    fn arrows(chart: &Chart) -> usize {
-        chart.marks.iter().filter(|mark| matches!(mark, Mark::Arrow { .. })).count()
     }
 
     #[test]
@@ -309,19 +204,9 @@ mod tests {
         let figure = error_over_workspace(&poses);
         assert_eq!(figure.panels.iter().map(dots).collect::<Vec<_>>(), [150, 150]);
         let svg = figure.svg();
-        for text in ["x / mm", "y / mm", "z / mm", "up to 0.02\u{a0}mm", "up to 0.10\u{a0}mm"] {
+        for text in ["x / mm", "y / mm", "z / mm", "up to 20\u{a0}µm", "up to 100\u{a0}µm"] {
             assert!(svg.contains(text), "{text}\n{svg}");
         }
-    }
-
-    #[test]
-    fn arrows_start_at_the_measured_positions_and_have_a_key() {
-        let figure = residual_vectors(&vectors(30));
-        assert_eq!(figure.panels.iter().map(arrows).collect::<Vec<_>>(), [31, 31]);
-        assert_eq!(figure.panels[0].title, "from above, residuals ×\u{a0}2000");
-        let Mark::Arrow { from, to, .. } = &figure.panels[0].marks[0] else { panic!("no arrow") };
-        approx::assert_relative_eq!(to[0] - from[0], 60.0, max_relative = 1e-9);
-        assert!(figure.svg().contains("20\u{a0}µm"));
     }
 
     #[test]
@@ -333,13 +218,6 @@ mod tests {
             figure.panels.iter().map(dots).collect::<Vec<_>>()
         );
         assert!(figure.caption.contains("100\u{2009}000 poses") && figure.caption.contains("50\u{a0}mm"));
-        let figure = residual_vectors(&vectors(100_000));
-        assert!(
-            figure.panels.iter().all(|c| (50..=700).contains(&arrows(c))),
-            "{:?}",
-            figure.panels.iter().map(arrows).collect::<Vec<_>>()
-        );
-        assert!(figure.caption.contains("mean over the poses"));
     }
 
     #[test]
@@ -352,14 +230,10 @@ mod tests {
                     let errors: Vec<_> = (0..count)
                         .map(|i| PoseError { at_mm: at(i), error_mm: if i == 0 { a } else { b } })
                         .collect();
-                    let vectors: Vec<_> =
-                        (0..count).map(|i| PoseVector { at_mm: at(i), residual_um: [a, b, 0.0] }).collect();
                     assert!(!error_over_workspace(&errors).svg().contains("NaN"));
-                    assert!(!residual_vectors(&vectors).svg().contains("NaN"));
                 }
             }
         }
         error_over_workspace(&[]).svg();
-        residual_vectors(&[]).svg();
     }
 }

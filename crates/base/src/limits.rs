@@ -1,0 +1,56 @@
+//! How much a file may hold. What is beyond is refused with one error, before memory is taken for
+//! it: no input ends in an abort, and none needs more than 2 GB.
+//!
+//! `docs/limits.md` lists these for users, and a test compares the two.
+
+use crate::error::{Error, Place, Result};
+
+/// Bytes of any file.
+pub const FILE_BYTES: usize = 256_000_000;
+/// Bytes of a table (CSV).
+pub const TABLE_BYTES: usize = 128_000_000;
+/// Rows of a table: readings, poses, tubes.
+pub const TABLE_ROWS: usize = 1_000_000;
+/// Columns of a table.
+pub const TABLE_COLUMNS: usize = 1_000;
+/// Cells of a table.
+pub const TABLE_CELLS: usize = 10_000_000;
+/// Readings of one rod.
+pub const READINGS: usize = 20_000;
+/// Different loads of a line that was measured in more than 50 trials.
+pub const REPEATED_LOADS: usize = 2_000;
+/// Bytes of a TOML file: rod, robot, campaign, design.
+pub const TOML_BYTES: usize = 8_000_000;
+/// Bytes of a URDF.
+pub const URDF_BYTES: usize = 16_000_000;
+/// Attributes of one element of a URDF: each is compared with all others.
+pub const URDF_ATTRIBUTES: usize = 1_000;
+/// Elements, texts and comments of a URDF.
+pub const URDF_NODES: usize = 1_000_000;
+/// Joints of a robot that move.
+pub const ROBOT_JOINTS: usize = 64;
+/// Effects of a robot file.
+pub const ROBOT_EFFECTS: usize = 1_000;
+/// Masses and joints on a rod, of each: every one is a node of its beam, and a number whose part in
+/// the uncertainty is found by a beam of its own.
+pub const ROD_PARTS: usize = 100;
+/// Bytes of a result (result.json) that is read again.
+pub const RESULT_BYTES: usize = 64_000_000;
+/// Cases of a trial.
+pub const TRIAL_CASES: usize = 9_999;
+
+/// Refuses more than `most` of something in `file`.
+///
+/// # Errors
+/// [`Error::Input`].
+pub fn check(file: &str, found: usize, most: usize, what: &str) -> Result<()> {
+    if found <= most {
+        return Ok(());
+    }
+    Err(Error::Input {
+        at: Place::whole_file(file),
+        found: format!("it has {found} {what}"),
+        expected: format!("at most {most}"),
+        hint: Some("docs/limits.md lists how much a file may hold".into()),
+    })
+}

@@ -1,0 +1,16 @@
+//! Compliances as numbers in µm.
+
+use crate::units::{UM, significant};
+
+/// Digits of a compliance in a table.
+pub(super) const DIGITS: usize = 5;
+
+/// A compliance in µm; what symmetry makes zero is shown as 0.
+pub fn number(value: f64) -> String {
+    significant(in_um(value), DIGITS)
+}
+
+/// In µm, without the rounding (1e-14) of what is zero by symmetry.
+pub(super) fn in_um(value: f64) -> f64 {
+    if value.abs() < 1e-9 * UM { 0.0 } else { value / UM }
+}

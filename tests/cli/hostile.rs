@@ -1,0 +1,113 @@
+//! Names of rods, robots, clamps, poses and files that would do something if anybody obeyed them.
+
+use super::{Answer, Sandbox};
+
+/// A tag, an attribute's end, a formula, a colour of the terminal and a turn of the writing.
+const NAME: &str = "=cmd()<script>alert(1)</script>\"><img src=x onerror=1>\u{1b}[31m\u{202e}\u{9b}2J";
+
+/// As a TOML text.
+const WRITTEN: &str = r#""=cmd()<script>alert(1)</script>\"><img src=x onerror=1>\u001B[31m\u202E\u009B2J""#;
+
+fn is_obeyed(c: char) -> bool {
+    rodcal::delimited::is_obeyed(c) && c != '\n' && c != '\t'
+}
+
+fn assert_shown(answer: &Answer) {
+    for text in [&answer.stdout, &answer.stderr] {
+        assert!(!text.contains(is_obeyed), "{}: {text:?}", answer.line);
+    }
+}
+
+#[test]
+fn hostile_names_are_data_everywhere() {
+    let sandbox = Sandbox::new();
+    let rename = |file: &str, key: &str| {
+        let text = sandbox.read(file);
+        let is_key = |line: &str| line.split_once(" = ").is_some_and(|(name, _)| name == key);
+        let lines = text.lines().map(|line| match is_key(line) {
+            true => format!("{key} = {WRITTEN}\n"),
+            false => format!("{line}\n"),
+        });
+        let renamed: String = lines.collect();
+        assert!(renamed.contains("onerror"), "{file} has no {key}");
+        sandbox.write(file, &renamed);
+    };
+    // the rod, its masses and materials by name; the robot and its joints; trials; clamps and poses
+    rename("rods/5.toml", "name");
+    rename("robots/tx90.toml", "name");
+    let readings = sandbox.read("stiffness_data/5.csv");
+    sandbox.write("stiffness_data/5.csv", &format!("# source = {NAME}\n{readings}"));
+    let campaign = "campaigns/tx90-5/campaign.toml";
+    sandbox.write(campaign, &sandbox.read(campaign).replace("builtin:tx90", "../../robots/tx90.toml"));
+    let quoted = format!("\"{}\"", NAME.replace('"', "\"\""));
+    let measurements = sandbox.read("campaigns/tx90-5/measurements.csv");
+    let renamed = measurements.replace("\n1,1,", &format!("\n{quoted},1,"));
+    assert_ne!(renamed, measurements);
+    sandbox.write("campaigns/tx90-5/measurements.csv", &renamed);
+    sandbox.write(
+        "poses.csv",
+        &format!("pose,q1_deg,q2_deg,q3_deg,q4_deg,q5_deg,q6_deg\n{quoted},0,10,80,5,6,7\n"),
+    );
+    for (k, line) in [
+        "compliance rods/5.toml",
+        "rig fit rods/5.toml stiffness_data/5.csv",
+        "diagnose rig rods/5.toml stiffness_data/5.csv --apply",
+        "calibrate campaigns/tx90-5/campaign.toml",
+        "predict robots/tx90.toml poses.csv",
+        "design rig rods/5.toml --r-rod-width-percent 1",
+        "compare-runs out0 out1 --json",
+        "compare-runs out1 out1",
+        "simulate out8 --rod rods/5.toml --robot robots/tx90.toml --poses 6 --validation 4",
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let out = if line.starts_with("simulate") { String::new() } else { format!(" --out out{k}") };
+        let answer = sandbox.run(&format!("{line}{out}"));
+        assert_shown(&answer);
+        if line.contains("out0") {
+            // of different commands: an error that names both
+            continue;
+        }
+        let answer = answer.succeeded();
+        if !line.starts_with("simulate") {
+            let json = sandbox.run(&format!("{line} --json"));
+            assert_shown(&json);
+            json.json();
+        }
+        let prefix = format!("out{k}/");
+        for (name, bytes) in sandbox.listing().iter().filter(|(name, _)| name.starts_with(&prefix)) {
+            let text = String::from_utf8_lossy(bytes);
+            if name.ends_with(".html") || name.ends_with(".svg") {
+                assert!(!text.contains("<script>alert") && !text.contains("<img src=x"), "{name}");
+                assert!(!text.contains('\u{1b}'), "{name}");
+            }
+            if name.ends_with(".csv") {
+                for line in text.lines().filter(|line| !line.starts_with('#')) {
+                    let is_formula = |cell: &str| cell.trim_start_matches('"').starts_with(['=', '@']);
+                    assert!(!line.split(',').any(is_formula), "{name}: {line}");
+                }
+            }
+        }
+        assert!(k > 1 || answer.stdout.contains("onerror") || answer.stdout.len() > 100);
+    }
+}
+
+/// A file's own name, in an error, in a warning and in what the arguments may be.
+#[test]
+fn names_of_files_are_shown() {
+    let sandbox = Sandbox::new();
+    let name = "\u{1b}[31mred\nerror: fake\u{202e}.toml";
+    sandbox.write(name, "nonsense");
+    for arguments in [
+        &["compliance", name][..],
+        &["compliance", "no\u{1b}such.toml"],
+        &["rig", "fit", name, name, "--out", "\u{1b}"],
+    ] {
+        let output = sandbox.command(arguments).output().unwrap();
+        let stderr = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        assert!(stderr.contains("\\x1b") && !stderr.contains(is_obeyed), "{stderr:?}");
+        assert!(!stderr.lines().any(|line| line.starts_with("error: fake")), "{stderr:?}");
+    }
+}

@@ -1,0 +1,120 @@
+//! Every reader, fed with what a file may hold after everything has gone wrong: it reads or refuses,
+//! with a place inside the file, within a second, and what it has read it writes and reads again.
+//!
+//! Two seconds within `cargo test`; a minute, or an hour, with
+//! `RODCAL_FUZZ_SECONDS=3600 cargo test --test all -- fuzz::`. Input number n is the same in every
+//! run, whatever the time; a failure prints n, and `RODCAL_FUZZ_FROM=n` begins there.
+
+#![allow(clippy::unwrap_used)]
+
+mod corpus;
+mod mutation;
+mod round_trips;
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::time::{Duration, Instant};
+
+use rodcal::calibration::Campaign;
+use rodcal::design::Wish;
+use rodcal::files::text_of_bytes;
+use rodcal::report::runs::Run;
+use rodcal::rig::readings::Readings;
+use rodcal::robot::{Robot, corrections_from_csv};
+use rodcal::rod::Rod;
+use rodcal::{Error, Result};
+
+use self::corpus::CORPUS;
+use self::mutation::mutated;
+
+/// A reader by its name: what it says of bytes.
+type Reader = (&'static str, fn(Vec<u8>) -> Result<()>);
+
+const READERS: [Reader; 8] = [
+    ("rod", |bytes| {
+        let rod = Rod::from_toml("f", &text_of_bytes("f", bytes)?)?;
+        let written = rod.to_toml(&[]);
+        Rod::from_toml("f", &written).unwrap_or_else(|e| panic!("what was written: {e}\n{written}"));
+        Ok(())
+    }),
+    ("robot", |bytes| {
+        let robot = Robot::from_text("f", &text_of_bytes("f", bytes)?, None, None)?;
+        if let Ok(written) = robot.to_toml(&[]) {
+            Robot::from_text("f", &written, None, None)
+                .unwrap_or_else(|e| panic!("what was written: {e}\n{written}"));
+        }
+        Ok(())
+    }),
+    ("campaign", |bytes| {
+        let poses = |name: &str| match name {
+            "readings.csv" => Ok(corpus::READINGS.to_owned()),
+            "rod.toml" => Ok(corpus::ROD.to_owned()),
+            _ => Ok(corpus::POSES.to_owned()),
+        };
+        Campaign::from_texts("f", &text_of_bytes("f", bytes)?, &poses).map(drop)
+    }),
+    ("measurements", |bytes| {
+        let text = text_of_bytes("f", bytes)?;
+        Campaign::from_texts("c", corpus::CAMPAIGN, &|name| match name {
+            "readings.csv" => Ok(corpus::READINGS.to_owned()),
+            "rod.toml" => Ok(corpus::ROD.to_owned()),
+            _ => Ok(text.clone()),
+        })
+        .map(drop)
+    }),
+    ("readings", |bytes| {
+        let readings = Readings::from_text("f", &text_of_bytes("f", bytes)?)?;
+        let written = readings.to_csv(&[]);
+        Readings::from_text("f", &written).unwrap_or_else(|e| panic!("what was written: {e}\n{written}"));
+        Ok(())
+    }),
+    ("design", |bytes| {
+        let open = |name: &str| Ok((name.to_owned(), corpus::TUBES.to_owned()));
+        Wish::from_toml("f", &text_of_bytes("f", bytes)?, &open).map(drop)
+    }),
+    ("corrections", |bytes| corrections_from_csv("f", &text_of_bytes("f", bytes)?, 6).map(drop)),
+    ("result", |bytes| Run::from_text("d", "f", &text_of_bytes("f", bytes)?).map(drop)),
+];
+
+/// Reads input number `n`; what is said of it lies in a file that it names.
+fn read(n: u64) {
+    let bytes = mutated(&CORPUS, n);
+    let lines = bytes.iter().filter(|&&byte| byte == b'\n').count() + 1;
+    for (name, read) in READERS {
+        let start = Instant::now();
+        let result = catch_unwind(AssertUnwindSafe(|| read(bytes.clone())));
+        let what = || format!("input {n} to the reader of a {name}: {}", String::from_utf8_lossy(&bytes));
+        let Ok(result) = result else { panic!("{}", what()) };
+        assert!(start.elapsed() < Duration::from_secs(5), "{:?} for {}", start.elapsed(), what());
+        if let Err(error) = result {
+            let said = error.to_string();
+            assert!(said.len() < 2000 && !said.contains('\u{1b}'), "{said}\n{}", what());
+            if let Error::Input { at, .. } | Error::Syntax { at, .. } = &error
+                && at.file == "f"
+            {
+                assert!(at.line <= lines + 1, "{said}\n{}", what());
+            }
+        }
+    }
+}
+
+#[test]
+fn whatever_a_file_holds_it_is_read_or_refused() {
+    let number = |name: &str| std::env::var(name).ok().and_then(|text| text.parse::<u64>().ok());
+    let time = Duration::from_secs(number("RODCAL_FUZZ_SECONDS").unwrap_or(2));
+    let (start, mut n) = (Instant::now(), number("RODCAL_FUZZ_FROM").unwrap_or(0));
+    let first = n;
+    while start.elapsed() < time {
+        read(n);
+        n += 1;
+    }
+    assert!(n - first > 20, "only {} inputs", n - first);
+}
+
+/// The corpus itself is read: mutations begin at what goes deep.
+#[test]
+fn every_reader_reads_some_of_the_corpus() {
+    for (name, read) in READERS {
+        let count = CORPUS.iter().filter(|text| read(text.as_bytes().to_vec()).is_ok()).count();
+        assert!(count > 0, "the reader of a {name} refuses all of it");
+    }
+}

@@ -98,6 +98,12 @@ def test_predictions_and_their_robot(command: Command, tmp_path: pathlib.Path) -
         tips = [[pose[f"{axis}_mm"] for axis in "xyz"] for pose in expected["poses"]]
         assert np.array_equal(predicted.tips_mm, tips)
         assert predicted.sd_mm is not None and predicted.sd_mm.shape == (3, 3)
+    # so are many, which are looked at in blocks
+    many = np.random.default_rng(2).uniform(-90, 90, (9000, 6))
+    together, alone = rodcal.predict(robot, many), rodcal.predict(robot, many[8990:])
+    for whole, part in [(together.tips_mm, alone.tips_mm), (together.sd_mm, alone.sd_mm), (together.ratios, alone.ratios)]:
+        assert whole is not None and part is not None and len(whole) == 9000
+        assert np.allclose(whole[8990:], part, rtol=1e-12, atol=0)
     # any strides will do
     assert np.array_equal(rodcal.predict(robot, np.asfortranarray(q)[::-1]).tips_mm, np.array(tips)[::-1])
 

@@ -19,6 +19,7 @@ use super::table::{Column, Table};
 use super::{Block, Card, Report, Section, Tone};
 use crate::error::Error;
 use crate::linalg::{thin_svd, transposed_product};
+use crate::parallel::in_parallel;
 use crate::robot::{Motion, PredictionQuery, Robot};
 use crate::units::{DEG, MM, significant};
 
@@ -71,49 +72,21 @@ impl Prediction {
                 ),
             });
         }
-        let predicted: Vec<_> = poses.iter().map(|query| robot.predicted_at(tool, &query.joints)).collect();
-        let slopes: Option<Vec<&Matrix3xX<f64>>> =
-            predicted.iter().map(|predicted| predicted.slopes.as_ref()).collect();
-        let own = slopes.zip(robot.uncertainty.as_ref());
-        let rows = 3 * predicted.len();
-        let mut variance = vec![Vector3::zeros(); predicted.len()];
-        let mut ratios = None;
-        if let Some((slopes, known)) = own {
-            let mut jacobian = DMatrix::zeros(rows, known.parameters.len());
-            for (row, slopes) in slopes.iter().enumerate() {
-                jacobian.rows_mut(3 * row, 3).copy_from(*slopes);
-            }
-            let of_robot: Vec<usize> =
-                (0..known.parameters.len()).filter(|&k| !known.parameters[k].is_placement()).collect();
-            let covariance = known.covariance.select_rows(&of_robot).select_columns(&of_robot);
-            let by_row = variances(&jacobian.select_columns(&of_robot), &covariance);
-            let at_ease = robot.calibrated.as_ref().map(|range| range.sd).filter(|sd| *sd > 0.0);
-            ratios = at_ease.map(|sd| by_row.iter().map(|of| of.sum().sqrt() / sd).collect());
-            if is_aligned {
-                let mut placement = DMatrix::zeros(rows, 9);
-                for (row, predicted) in predicted.iter().enumerate() {
-                    placement.rows_mut(3 * row, 3).copy_from(&predicted.placement);
-                }
-                let svd = thin_svd(&placement)?;
-                let basis = svd.u.columns(0, svd.rank(1e-9)).into_owned();
-                jacobian -= &basis * transposed_product(&basis, &jacobian);
-            }
-            variance = variances(&jacobian, &known.covariance);
+        // an alignment is of all poses together; else each stands for itself
+        let size = if is_aligned { poses.len() } else { BLOCK };
+        let blocks: Vec<&[PredictionQuery]> = poses.chunks(size.max(1)).collect();
+        let each = in_parallel(blocks.len(), |k| tips_of(robot, tool, blocks[k], is_aligned));
+        let (mut tips, mut ratios) = (Vec::with_capacity(poses.len()), Some(Vec::new()));
+        for block in each {
+            let (of_block, ratios_of_block) = block?;
+            tips.extend(of_block);
+            ratios = ratios.zip(ratios_of_block).map(|(mut all, own): (Vec<f64>, Vec<f64>)| {
+                all.extend(own);
+                all
+            });
         }
-        // a gear is known where it was seen turn
-        let sizes = robot.effect_sizes();
-        for ((query, predicted), variance) in poses.iter().zip(&predicted).zip(&mut variance) {
-            for (joint, range) in robot.calibrated.iter().flat_map(|known| known.joints.iter().enumerate()) {
-                if !(range.0..=range.1).contains(&query.joints[joint]) {
-                    *variance += predicted.joints.column(joint).map(|lever| (lever * sizes[joint]).powi(2));
-                }
-            }
-        }
-        let sd = robot.tip.and_then(|tip| tip.sd);
-        let of = |own: &Vector3<f64>| sd.map(|sd| own.map(|own| (sd * sd + own).sqrt()));
         let beyond = beyond(robot, &poses);
-        let tips = poses.into_iter().zip(&predicted).zip(&variance);
-        let tips = tips.map(|((query, predicted), own)| (query, predicted.tip, of(own))).collect();
+        let tips = poses.into_iter().zip(tips).map(|(query, (tip, sd))| (query, tip, sd)).collect();
         Ok(Prediction { tool, is_aligned, tips, ratios, beyond })
     }
 
@@ -127,6 +100,63 @@ impl Prediction {
     pub fn far(&self) -> usize {
         self.ratios.iter().flatten().filter(|ratio| **ratio > FAR).count()
     }
+}
+
+/// So many poses are looked at together: some megabytes.
+const BLOCK: usize = 4096;
+
+/// Tips with their standard deviations, and how many times more uncertain they are than where the
+/// robot was calibrated.
+type Tips = (Vec<(Vector3<f64>, Option<Vector3<f64>>)>, Option<Vec<f64>>);
+
+fn tips_of(
+    robot: &Robot,
+    tool: Vector3<f64>,
+    poses: &[PredictionQuery],
+    is_aligned: bool,
+) -> crate::Result<Tips> {
+    let predicted: Vec<_> = poses.iter().map(|query| robot.predicted_at(tool, &query.joints)).collect();
+    let slopes: Option<Vec<&Matrix3xX<f64>>> =
+        predicted.iter().map(|predicted| predicted.slopes.as_ref()).collect();
+    let own = slopes.zip(robot.uncertainty.as_ref());
+    let rows = 3 * predicted.len();
+    let mut variance = vec![Vector3::zeros(); predicted.len()];
+    let mut ratios = None;
+    if let Some((slopes, known)) = own {
+        let mut jacobian = DMatrix::zeros(rows, known.parameters.len());
+        for (row, slopes) in slopes.iter().enumerate() {
+            jacobian.rows_mut(3 * row, 3).copy_from(*slopes);
+        }
+        let of_robot: Vec<usize> =
+            (0..known.parameters.len()).filter(|&k| !known.parameters[k].is_placement()).collect();
+        let covariance = known.covariance.select_rows(&of_robot).select_columns(&of_robot);
+        let by_row = variances(&jacobian.select_columns(&of_robot), &covariance);
+        let at_ease = robot.calibrated.as_ref().map(|range| range.sd).filter(|sd| *sd > 0.0);
+        ratios = at_ease.map(|sd| by_row.iter().map(|of| of.sum().sqrt() / sd).collect());
+        if is_aligned {
+            let mut placement = DMatrix::zeros(rows, 9);
+            for (row, predicted) in predicted.iter().enumerate() {
+                placement.rows_mut(3 * row, 3).copy_from(&predicted.placement);
+            }
+            let svd = thin_svd(&placement)?;
+            let basis = svd.u.columns(0, svd.rank(1e-9)).into_owned();
+            jacobian -= &basis * transposed_product(&basis, &jacobian);
+        }
+        variance = variances(&jacobian, &known.covariance);
+    }
+    // a gear is known where it was seen turn
+    let sizes = robot.effect_sizes();
+    for ((query, predicted), variance) in poses.iter().zip(&predicted).zip(&mut variance) {
+        for (joint, range) in robot.calibrated.iter().flat_map(|known| known.joints.iter().enumerate()) {
+            if !(range.0..=range.1).contains(&query.joints[joint]) {
+                *variance += predicted.joints.column(joint).map(|lever| (lever * sizes[joint]).powi(2));
+            }
+        }
+    }
+    let sd = robot.tip.and_then(|tip| tip.sd);
+    let of = |own: &Vector3<f64>| sd.map(|sd| own.map(|own| (sd * sd + own).sqrt()));
+    let tips = predicted.iter().zip(&variance).map(|(predicted, own)| (predicted.tip, of(own))).collect();
+    Ok((tips, ratios))
 }
 
 /// diag J·Σ·Jᵀ, three by three.

@@ -97,14 +97,13 @@ impl Calibrate {
         let cross_validation = cross_validation.as_ref();
         let mut report = report::calibration::report(&campaign, &calibrated, cross_validation);
         report.provenance = provenance(&campaign);
-        if let (Some(asked), Some(held_out)) = (self.folds, cross_validation) {
-            if held_out.folds != usize::from(asked) {
-                report.warnings.push(format!(
-                    "{} folds in place of {asked}: with sockets whole placements are held out, for poses of one \
-                     placement share its unknown points",
-                    held_out.folds
-                ));
-            }
+        let other = cross_validation.filter(|held_out| self.folds != u16::try_from(held_out.folds).ok());
+        if let (Some(asked), Some(held_out)) = (self.folds, other) {
+            report.warnings.push(format!(
+                "{} folds in place of {asked}: with sockets whole placements are held out, for poses of one \
+                 placement share its unknown points",
+                held_out.folds
+            ));
         }
         let suspicions = suspected(&campaign, mode, &neighbours(&campaign))?;
         let is_plausible =

@@ -7,7 +7,6 @@ from collections.abc import Mapping
 from typing import Any, Union
 
 import numpy as np
-from numpy.typing import NDArray
 
 from . import _rodcal, _text
 from ._errors import InputError
@@ -17,7 +16,7 @@ PathLike = Union[str, "os.PathLike[str]"]
 #: A dict of columns, a structured array or a pandas DataFrame.
 Table = Any
 #: An array of numbers.
-Array = NDArray[np.float64]
+Array = np.ndarray[tuple[Any, ...], np.dtype[np.float64]]
 
 
 class Rod:

@@ -55,7 +55,7 @@ def _as(kind: Any, value: Any, name: str) -> Any:
         return value
     if value is None:
         raise TypeError(f"the answer has no {name}")
-    if origin is np.ndarray:
+    if kind == Array:
         return np.array(value, dtype=np.float64)
     if origin is list:
         return [_as(arguments[0], item, name) for item in value]

@@ -290,7 +290,10 @@ fn filled(canvas: &mut Canvas, frame: &Frame, corners: &[[f64; 2]], style: &Styl
     if corners.len() < 3 || !corners.iter().all(|corner| frame.places(*corner)) {
         return;
     }
-    let mut outline: Vec<Px> = corners.iter().map(|corner| frame.px(*corner)).collect();
+    // what is beyond the frame ends at it
+    let area = frame.area;
+    let inside = |[x, y]: Px| [x.clamp(area.left, area.right), y.clamp(area.top, area.bottom)];
+    let mut outline: Vec<Px> = corners.iter().map(|corner| inside(frame.px(*corner))).collect();
     canvas.fill(&outline, Rgb::from(style.colour).tint(fill_tint(style)));
     outline.extend(outline.first().copied());
     for pair in outline.windows(2) {
@@ -391,10 +394,12 @@ fn whole_bar(
     };
     bar(canvas, &area, style);
     let [middle_x, middle_y] = area.centre();
+    // what would stand on the names of the axis stands on the other side
+    let has_room = area.left - 5.0 - text_width_px(&b.text, NOTE.size_px) > a.left;
     let (at, anchor) = match direction {
         Direction::Up if value < 0.0 => ([middle_x, area.bottom + 9.0], Anchor::Middle),
         Direction::Up => ([middle_x, area.top - 9.0], Anchor::Middle),
-        Direction::Right if value < 0.0 => ([area.left - 5.0, middle_y], Anchor::Right),
+        Direction::Right if value < 0.0 && has_room => ([area.left - 5.0, middle_y], Anchor::Right),
         Direction::Right => ([area.right + 5.0, middle_y], Anchor::Left),
     };
     canvas.text(at, &b.text, Lettering { anchor, ..NOTE }, Rgb::INK);

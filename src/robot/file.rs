@@ -282,7 +282,8 @@ impl Table<'_> {
         };
         let Some(list) = list else { return Ok(None) };
         match self.numbers(key, list)?.as_slice() {
-            &[lower, upper] if lower < upper => Ok(Some([lower * si, upper * si])),
+            // also where the unit makes 0 of both
+            &[lower, upper] if lower * si < upper * si => Ok(Some([lower * si, upper * si])),
             _ => Err(self.0.is(key, list, "two numbers [lower, upper], the lower one first")),
         }
     }

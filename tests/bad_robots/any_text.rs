@@ -188,6 +188,14 @@ fn deep_and_long_files_are_read_or_refused() {
     assert!(!written.expect("a URDF").has_tool);
 }
 
+/// Found by `fuzz::`: a parser repeats what a file holds, however long it is.
+#[test]
+fn a_message_is_short_whatever_the_file_repeats() {
+    let text = format!("<robot><a{}></b></robot>", "9".repeat(10_000));
+    let error = Robot::from_text("f", &text, None, None).expect_err("tags that do not match");
+    assert!(error.to_string().len() < 300, "{error}");
+}
+
 /// So many joints, one on the other.
 fn chain(count: usize) -> String {
     let mut long = String::from("<robot><link name=\"base_link\"/>");

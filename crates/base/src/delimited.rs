@@ -17,7 +17,7 @@ pub use foreign::renamed;
 pub use names::nearest_name;
 pub use numbers::Dialect;
 pub use table::{Row, Table};
-pub use written::{cell, comments_above, guarded, is_obeyed, quoted, visible, visible_lines};
+pub use written::{cell, comments_above, guarded, is_obeyed, message, quoted, visible, visible_lines};
 
 #[cfg(test)]
 mod tests {

@@ -1,5 +1,5 @@
 //! How much a file may hold. What is beyond is refused with one error, before memory is taken for
-//! it: no input ends in an abort, and none needs more than 2 GB.
+//! it: no input ends in an abort, and reading needs no more than 2 GB.
 //!
 //! `docs/limits.md` lists these for users, and a test compares the two.
 

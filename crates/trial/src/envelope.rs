@@ -81,7 +81,7 @@ pub(super) fn unwritable(error: serde_json::Error) -> Error {
 pub(super) fn parsed<T: serde::de::DeserializeOwned>(file: &Path, line: usize, text: &str) -> Result<T> {
     serde_json::from_str(text).map_err(|error| Error::Syntax {
         at: Place { file: file.display().to_string(), line: line + error.line() - 1, column: error.column() },
-        message: error.to_string(),
+        message: rodcal_base::delimited::message(&error.to_string()),
     })
 }
 

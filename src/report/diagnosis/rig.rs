@@ -225,7 +225,7 @@ fn of_numbers(found: &RigDiagnosis, left: &Discrepancy) -> Remainder {
             false => (Quantity { value, low, high }, "above"),
         };
         let stated = significant(number.standard_uncertainty / number.si, 2);
-        let off = off.say(&number.unit);
+        let off = off.say(number.unit);
         format!("{} {off} {word} the file's (stated uncertainty {stated} {})", number.name, number.unit)
     };
     let is_far = |moved: &&NominalEstimate| moved.moved().abs() > FAR;

@@ -160,6 +160,22 @@ mod tests {
         assert!(ranking(&[candidate], 20.0).svg().contains("creep"));
     }
 
+    /// A bar to the left edge has its number on the right: on the left are the names.
+    #[test]
+    fn a_number_never_stands_on_a_name() {
+        let candidate = |log10_odds| Candidate { name: "creep".into(), log10_odds, class: Class::Rejected };
+        let svg = ranking(&[candidate(-132.0), candidate(-40.0)], 20.0).svg();
+        let document = roxmltree::Document::parse(&svg).expect("is XML");
+        // of two texts that say so one is the tick
+        let anchors = |text: &str| -> Vec<Option<&str>> {
+            let is_it =
+                |node: &roxmltree::Node| node.is_element() && node.text().is_some_and(|t| t.trim() == text);
+            document.descendants().filter(is_it).map(|node| node.attribute("text-anchor")).collect()
+        };
+        assert!(!anchors(&to_one(-132.0)).contains(&Some("end")), "{:?}", anchors(&to_one(-132.0)));
+        assert_eq!(anchors(&to_one(-40.0)), [Some("end")]);
+    }
+
     #[test]
     fn nothing_to_show_is_shown_as_nothing() {
         ranking(&[], 20.0).svg();

@@ -102,7 +102,9 @@ pub fn rod_shape(rod: &RodShape) -> Figure {
     let mut panels: Vec<Chart> = views.map(|(view, name, axis)| chart(rod, factor, view, name, axis)).into();
     // Both views span the same X, so that they stand below one another point by point.
     let range = extent(panels.iter().flat_map(|c| &c.marks).flat_map(|mark| match mark {
-        Mark::Line { points, .. } => points.iter().map(|p| p[0]).collect(),
+        Mark::Line { points, .. } | Mark::Area { corners: points, .. } => {
+            points.iter().map(|p| p[0]).collect()
+        }
         _ => Vec::new(),
     }));
     if let Some((low, high)) = range {
@@ -176,10 +178,13 @@ fn chart(rod: &RodShape, factor: f64, view: &str, name: &str, axis: usize) -> Ch
             if undeformed.end_on(tube.from_mm, tube.to_mm).is_some() {
                 continue;
             }
-            let mut outline = deformed.strip(tube.from_mm, tube.to_mm, -half(tube, axis), half(tube, axis));
-            let is_last = stations.last().is_some_and(|end| *end <= tube.to_mm + END_MM);
-            let right = if is_last { Vec::new() } else { outline.split_off(outline.len() / 2) };
-            for points in [outline, right] {
+            let [right, mut left] =
+                deformed.edges(tube.from_mm, tube.to_mm, -half(tube, axis), half(tube, axis));
+            // the tip closes the last tube
+            if stations.last().is_some_and(|end| *end <= tube.to_mm + END_MM) {
+                left.extend(right.last().copied());
+            }
+            for points in [left, right] {
                 let style = Style::nth(i).dash(Dash::Solid).width(0.7);
                 chart.marks.push(Mark::Line { label: String::new(), points, style });
             }
@@ -192,9 +197,9 @@ fn chart(rod: &RodShape, factor: f64, view: &str, name: &str, axis: usize) -> Ch
         chart.marks.push(Mark::Note { at: [half_mm, 0.0], text: "clamped at the flange".into() });
         for tube in rod.tubes.iter().filter(|tube| !tube.label.is_empty()) {
             let middle = 0.5 * (tube.from_mm + tube.to_mm);
-            let outer = undeformed.strip(tube.from_mm, middle, 0.0, -half(tube, axis));
-            // the right edge of a stretch that ends in the middle: below a horizontal pipe
-            if let Some(at) = outer.get(outer.len() / 2 - usize::from(outer.len() > 1)) {
+            // below a horizontal pipe
+            let [right, _] = undeformed.edges(tube.from_mm, middle, -half(tube, axis), 0.0);
+            if let Some(at) = right.last() {
                 chart.marks.push(Mark::Note { at: *at, text: tube.label.clone() });
             }
         }
@@ -417,6 +422,10 @@ mod tests {
         let drawn = |mark: &&Mark| matches!(mark, Mark::Line { label, .. } if label == "mass");
         assert_eq!(figure.panels[0].marks.iter().filter(drawn).count(), 1);
         assert!(figure.caption.contains("to scale"));
+        // also without a load case all of it is in the frame
+        rod.cases.clear();
+        let Range::Fixed(low, high) = rod_shape(&rod).panels[0].x.range else { panic!("fixed") };
+        assert!(low <= -16.0 && high >= 525.0, "{low} {high}");
         figure.svg();
     }
 

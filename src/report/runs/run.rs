@@ -60,7 +60,7 @@ impl Run {
         limits::check(file, text.len(), limits::RESULT_BYTES, "bytes")?;
         let json: Value = serde_json::from_str(text).map_err(|error| Error::Syntax {
             at: Place { file: file.into(), line: error.line(), column: error.column() },
-            message: format!("no JSON: {error}"),
+            message: format!("no JSON: {}", crate::delimited::message(&error.to_string())),
         })?;
         let provenance = &json["provenance"];
         let (Some(command), Some(program)) = (provenance["command"].as_str(), provenance["program"].as_str())

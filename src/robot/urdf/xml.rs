@@ -2,7 +2,7 @@
 
 use roxmltree::{Document, Error as XmlError, Node, ParsingOptions};
 
-use crate::delimited::visible;
+use crate::delimited::{message as shortened, visible};
 use crate::error::{Error, Place, Result};
 use crate::limits;
 use crate::spatial::Pose;
@@ -42,7 +42,7 @@ impl<'t> Source<'t> {
             };
             // the place stands in front already
             let message = message.replace(&format!(" at {}", error.pos()), "");
-            Error::Syntax { at, message: format!("no valid XML: {}", printable(&message)) }
+            Error::Syntax { at, message: format!("no valid XML: {}", shortened(&message)) }
         })
     }
 

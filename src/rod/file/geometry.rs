@@ -65,7 +65,8 @@ impl Check<'_> {
     fn angle(&mut self, number: &Number) -> Result<f64> {
         let key = "geometry.gamma_deg";
         let degrees = self.toml.finite(key, number)?;
-        if !(degrees > 0.0 && degrees <= 180.0) {
+        // also what is 0 in radians
+        if !(degrees.to_radians() > 0.0 && degrees <= 180.0) {
             let expected =
                 "the inside angle between the pipes in degrees, 0 < gamma_deg <= 180 (180 is a straight rod)";
             return Err(self.toml.is(key, number, expected));

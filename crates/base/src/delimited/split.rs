@@ -71,7 +71,7 @@ fn place_cells(
         }
         // what keeps a spreadsheet from taking a text for a formula is no part of it
         let bare = field.trim();
-        let bare = bare.strip_prefix('\'').filter(|rest| is_formula(rest)).unwrap_or(bare);
+        let bare = bare.strip_prefix('\'').filter(|rest| is_formula(rest)).map_or(bare, str::trim);
         cells.push(Cell { text: bare.to_owned(), line: number, column: column + indent });
         column += written.chars().count();
     }

@@ -20,6 +20,15 @@ pub fn cell(text: &str) -> String {
     }
 }
 
+/// What a parser says, as one printable line of a length that fits a message: it may repeat what
+/// the file holds.
+pub fn message(text: &str) -> String {
+    const LONGEST: usize = 200;
+    let short: String = text.chars().take(LONGEST).collect();
+    let more = if text.chars().nth(LONGEST).is_some() { " …" } else { "" };
+    format!("{}{more}", visible(&short.replace('\n', ", ")))
+}
+
 /// `text` with control characters escaped, and behind a `'` where a spreadsheet would take it for a
 /// formula; the reader of tables takes that away again.
 pub fn guarded(text: &str) -> Cow<'_, str> {
@@ -101,6 +110,8 @@ mod tests {
         assert_eq!(visible_lines("a\tb\nc\r\u{7f}"), "a\tb\nc\\r\\x7f");
         assert!(matches!(visible("plain – µm²"), Cow::Borrowed(_)));
         assert_eq!(quoted("\u{1b}"), "\"\\x1b\"");
+        assert_eq!(message("a\nb\u{1b}"), "a, b\\x1b");
+        assert_eq!(message(&"9".repeat(5000)).chars().count(), 202);
     }
 
     #[test]

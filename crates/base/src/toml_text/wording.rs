@@ -21,7 +21,7 @@ impl TomlText<'_> {
             .or_else(|| self.no_statement(message, &span));
         known.unwrap_or_else(|| Error::Syntax {
             at: Place::of_offset(self.file, self.text, span.start),
-            message: message.replace('\n', ", "),
+            message: crate::delimited::message(message),
         })
     }
 

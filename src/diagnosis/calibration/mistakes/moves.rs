@@ -1,9 +1,13 @@
 //! Every mistake that a campaign's files may hold, as a list of what undoes each.
 
+mod conventions;
+
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use nalgebra::{Matrix3, Vector3};
 
+pub(super) use self::conventions::turn;
+use self::conventions::{SAME, Said, TURN_IN_RADIANS, is_same, readings};
 use super::super::effects::mistakes::{
     FRAME_MISTAKE, OFFSET_MISTAKE, ROBOT_MISTAKE, ROD_MISTAKE, ROW_MISTAKE, SIGN_MISTAKE, SWAP_MISTAKE,
     UNIT_MISTAKE,
@@ -12,7 +16,7 @@ use super::draft::{Change, Draft};
 use crate::calibration::campaign::Campaign;
 use crate::inference::{Effect, Estimate};
 use crate::robot::Motion;
-use crate::spatial::{Pose, exponential};
+use crate::spatial::Pose;
 use crate::statistics::median;
 use crate::units::{DEG, MM, significant};
 
@@ -23,13 +27,9 @@ const MOST_CLAMPS: usize = 12;
 /// A ball in a clamp is displaced by less, m: by larger numbers it may be that they are in a
 /// smaller unit.
 const DISPLACEMENT: f64 = 10.0 * MM;
-/// Angles in radians are no larger than a turn and some play, in what should be degrees.
-const TURN_IN_RADIANS: f64 = 6.6;
 /// Ln of how much rarer some mistakes are.
 const UNUSUAL: f64 = -1.0;
 const RARE: f64 = -2.0;
-/// Two frames that differ by less, rad and m, are one.
-const SAME: (f64, f64) = (1.0 * DEG, 1e-3);
 
 /// A mistake that may have been made, with what is said of it.
 #[derive(Clone)]
@@ -476,91 +476,6 @@ impl List<'_> {
             let cure = format!("Write {what} = \"{file}\"");
             let why = format!("the poses are those of {what} {name}");
             self.add(effect, file, change, &cure, &why).log_prior = UNUSUAL;
-        }
-    }
-}
-
-/// How a rotation was given instead of as roll, pitch and yaw.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Said {
-    cure: &'static str,
-    why: &'static str,
-}
-
-impl Said {
-    fn cure(&self, key: &str) -> String {
-        self.cure.replace("{}", key)
-    }
-}
-
-/// What three angles (rad) mean in other conventions, as far as that is another rotation.
-fn readings(angles: [f64; 3], as_read: &Matrix3<f64>) -> Vec<(Matrix3<f64>, Said)> {
-    let [a, b, c] = angles;
-    let rpy = |r: f64, p: f64, y: f64| Pose::from_xyz_rpy([0.0; 3], [r, p, y]).rotation;
-    let mut all = vec![
-        (rpy(c, b, a), Said { cure: "Turn the order of {} round", why: "it is given as yaw, pitch, roll" }),
-        (
-            rpy(-a, -b, -c).transpose(),
-            Said {
-                cure: "Convert {} to Rz(yaw)·Ry(pitch)·Rx(roll)",
-                why: "its angles turn about x, y and z in the other order, Rx·Ry·Rz",
-            },
-        ),
-        (
-            as_read.transpose(),
-            Said { cure: "Invert the rotation of {}", why: "it is given the other way round" },
-        ),
-        (
-            exponential(&Vector3::new(a, b, c)),
-            Said { cure: "Convert {} from a rotation vector", why: "it holds a rotation vector" },
-        ),
-    ];
-    if angles.iter().all(|angle| angle.abs() / DEG < TURN_IN_RADIANS) {
-        let [a, b, c] = angles.map(|angle| angle / DEG);
-        let why = "it is in radians, not in degrees";
-        all.push((rpy(a, b, c), Said { cure: "Multiply {} by 180/π", why }));
-    }
-    let mut others: Vec<(Matrix3<f64>, Said)> = Vec::new();
-    for (rotation, said) in all {
-        let differs = |known: &Matrix3<f64>| turn(known, &rotation) > SAME.0;
-        if differs(as_read) && others.iter().all(|(known, _)| differs(known)) {
-            others.push((rotation, said));
-        }
-    }
-    others
-}
-
-/// Angle between two rotations, rad.
-pub(super) fn turn(a: &Matrix3<f64>, b: &Matrix3<f64>) -> f64 {
-    // accurate for small angles too: |A − B| = 2√2·sin(φ/2)
-    2.0 * ((a - b).norm() / 8.0f64.sqrt()).clamp(0.0, 1.0).asin()
-}
-
-fn is_same(a: &Pose, b: &Pose) -> bool {
-    turn(&a.rotation, &b.rotation) < SAME.0 && (a.origin - b.origin).norm() < SAME.1
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn turns_about_moved_axes_are_the_other_order() {
-        let [a, b, c] = [0.3, -0.4, 1.1];
-        let x = Pose::from_xyz_rpy([0.0; 3], [a, 0.0, 0.0]).rotation;
-        let y = Pose::from_xyz_rpy([0.0; 3], [0.0, b, 0.0]).rotation;
-        let z = Pose::from_xyz_rpy([0.0; 3], [0.0, 0.0, c]).rotation;
-        let as_read = z * y * x;
-        let all = readings([a, b, c], &as_read);
-        assert!(all.iter().any(|(rotation, _)| (rotation - x * y * z).norm() < 1e-12));
-        assert!(all.iter().any(|(rotation, _)| (rotation - as_read.transpose()).norm() < 1e-12));
-    }
-
-    #[test]
-    fn the_angle_between_rotations_is_that_of_the_turn_between_them() {
-        for angle in [1e-6, 0.3, 3.0] {
-            let turned = exponential(&(Vector3::new(1.0, 2.0, -2.0) / 3.0 * angle));
-            assert!((turn(&Matrix3::identity(), &turned) - angle).abs() < 1e-9, "{angle}");
         }
     }
 }

@@ -39,16 +39,22 @@ impl Outline {
     /// From one station to another (mm), between two distances from the centreline (mm, to the
     /// left of its direction); empty where that is seen end on.
     pub(super) fn strip(&self, from: f64, to: f64, right: f64, left: f64) -> Vec<[f64; 2]> {
+        let [right, mut left] = self.edges(from, to, right, left);
+        left.extend(right.into_iter().rev());
+        left
+    }
+
+    /// Both edges of such a strip, the right one first, each in the direction of the line.
+    pub(super) fn edges(&self, from: f64, to: f64, right: f64, left: f64) -> [Vec<[f64; 2]>; 2] {
         let along = self.between(from, to);
         let length: f64 = along
             .windows(2)
             .map(|pair| f64::hypot(pair[1].0[0] - pair[0].0[0], pair[1].0[1] - pair[0].0[1]))
             .sum();
         if !drawable(length) || length <= END_ON {
-            return Vec::new();
+            return [Vec::new(), Vec::new()];
         }
-        let beside = |by: f64| move |(p, n): &([f64; 2], [f64; 2])| [p[0] + by * n[0], p[1] + by * n[1]];
-        along.iter().map(beside(left)).chain(along.iter().rev().map(beside(right))).collect()
+        [edge(&along, right), edge(&along, left)]
     }
 
     /// Where the line turns by more than a little within a stretch, at its sharpest.
@@ -85,8 +91,28 @@ impl Outline {
         let share = (station - self.stations[before]) / (self.stations[after] - self.stations[before]);
         let (a, b) = (self.points[before], self.points[after]);
         let point = [a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])];
-        Some((point, normal(a, b).unwrap_or([0.0, 0.0])))
+        Some((point, normal(a, b).unwrap_or(self.across[after])))
     }
+}
+
+/// One edge, at a distance from the line. Points that lie behind a mitred end have no part in it:
+/// the edge would run back to them.
+fn edge(along: &[([f64; 2], [f64; 2])], by: f64) -> Vec<[f64; 2]> {
+    let beside = |(p, n): &([f64; 2], [f64; 2])| [p[0] + by * n[0], p[1] + by * n[1]];
+    let [first, inner @ .., last] = along else { return along.iter().map(beside).collect() };
+    let (second, before) = (inner.first().unwrap_or(last), inner.last().unwrap_or(first));
+    let (start, end) = (beside(first), beside(last));
+    let is_near = |a: [f64; 2], b: [f64; 2]| f64::hypot(a[0] - b[0], a[1] - b[1]) <= LONGEST_MITRE * by.abs();
+    let ahead = |a: [f64; 2], b: [f64; 2], way: [[f64; 2]; 2]| {
+        (0..2).map(|i| (b[i] - a[i]) * (way[1][i] - way[0][i])).sum::<f64>() > 0.0
+    };
+    let has_part = |place: &&([f64; 2], [f64; 2])| {
+        let q = beside(place);
+        (!is_near(place.0, first.0) || ahead(start, q, [first.0, second.0]))
+            && (!is_near(place.0, last.0) || ahead(q, end, [before.0, last.0]))
+    };
+    let kept = inner.iter().filter(has_part).map(beside);
+    std::iter::once(start).chain(kept).chain([end]).collect()
 }
 
 /// To the left of the way from one point to another; `None` where there is none.
@@ -130,6 +156,20 @@ mod tests {
         assert_eq!(upright, [[-10.0, 0.0], [-10.0, 110.0], [10.0, 90.0], [10.0, 0.0]]);
         let across = corner().strip(100.0, 300.0, -10.0, 10.0);
         assert_eq!(across, [[-10.0, 110.0], [200.0, 110.0], [200.0, 90.0], [10.0, 90.0]]);
+    }
+
+    #[test]
+    fn an_edge_does_not_run_back_behind_its_mitre() {
+        let line = Outline::new(
+            vec![[0.0, 0.0], [0.0, 95.0], [0.0, 100.0], [4.0, 100.0], [50.0, 100.0]],
+            &[0.0, 95.0, 100.0, 104.0, 150.0],
+        );
+        // the inner corner is at (10, 90): what lies before it along x, or above it, is left out
+        let [right, _] = line.edges(100.0, 150.0, -10.0, 10.0);
+        assert_eq!(right, [[10.0, 90.0], [50.0, 90.0]]);
+        let [right, left] = line.edges(0.0, 100.0, -10.0, 10.0);
+        assert_eq!(right, [[10.0, 0.0], [10.0, 90.0]]);
+        assert_eq!(left, [[-10.0, 0.0], [-10.0, 95.0], [-10.0, 110.0]]);
     }
 
     #[test]

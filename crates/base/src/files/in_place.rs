@@ -1,5 +1,5 @@
-//! A set that goes file by file into a directory that cannot be exchanged as a whole: somebody works
-//! in it, or it holds more than files.
+//! A set that goes file by file into a directory that cannot be exchanged as a whole: somebody
+//! works in it, or it holds more than files.
 //!
 //! The complete set is renamed to [`COMMIT`] in one step; from there on it is what will be there.
 //! What fails is undone; what is killed is completed by the next run that writes there.

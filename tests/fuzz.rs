@@ -1,5 +1,6 @@
-//! Every reader, fed with what a file may hold after everything has gone wrong: it reads or refuses,
-//! with a place inside the file, within a second, and what it has read it writes and reads again.
+//! Every reader, fed with what a file may hold after everything has gone wrong: it reads or
+//! refuses, with a place inside the file, within a second, and what it has read it writes and reads
+//! again.
 //!
 //! Two seconds within `cargo test`; a minute, or an hour, with
 //! `RODCAL_FUZZ_SECONDS=3600 cargo test --test all -- fuzz::`. Input number n is the same in every

@@ -13,19 +13,22 @@
 //! less ½·k·ln(number of groups) for the k numbers of what is taken out (G. Schwarz, *Ann. Stat.* 6
 //! (1978) 461–464).
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 
 use nalgebra::{DMatrix, DVector};
 
 use super::linearised::Linearised;
 use super::whitening::Whitening;
-use super::{Evidence, ForwardModel, Kind, Term};
+use super::{Evidence, ForwardModel, Kind, Step, Term};
 use crate::linalg::least_squares;
 
 /// Ln of the odds at which ρ is found without a step: a thousand, and a hundred places.
 const HIDDEN: f64 = 11.5;
 /// Groups on either side of a step, at least: one zero that is far out is a zero.
 const GROUPS: usize = 2;
+
+/// So many steps are looked at in full: those that take most of the scatter of the groups' means.
+const LOOKED: usize = 8;
 
 /// Ratios among which the likeliest is looked for.
 const RATIOS: [f64; 8] = [0.0, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0];
@@ -129,8 +132,7 @@ fn hidden_course(model: &Linearised<'_>, evidence: &Evidence, left: &DVector<f64
 fn hidden_step(model: &Linearised<'_>, evidence: &Evidence, left: &DVector<f64>) -> Option<Hidden> {
     let log_density = |left: &DVector<f64>| log_density(evidence, left);
     let candidates = model.candidates();
-    let stepped = (0..candidates.len()).filter_map(|candidate| {
-        let step = model.step(candidate)?;
+    let stepped = most_likely_steps(model, evidence, left).into_iter().filter_map(|(candidate, step)| {
         let (before, after) = step.data.split_at(step.from);
         let mean = |rows: &[usize]| mean_of_groups(evidence, left, rows);
         let (level, level_before, level_after) = (mean(&step.data)?, mean(before)?, mean(after)?);
@@ -150,6 +152,72 @@ fn hidden_step(model: &Linearised<'_>, evidence: &Evidence, left: &DVector<f64>)
     let neutral = candidates[candidate].neutral(candidate);
     let values = neutral.values.iter().map(|value| value + by).collect();
     Some(Hidden { log_odds, price: 0.0, term: Term { values, ..neutral }, rest })
+}
+
+/// The steps that take most of the scatter of the groups' means, as a share of what they leave.
+fn most_likely_steps(model: &Linearised<'_>, evidence: &Evidence, left: &DVector<f64>) -> Vec<(usize, Step)> {
+    let mut levels: HashMap<*const usize, Levels> = HashMap::new();
+    let mut steps: Vec<(f64, usize, Step)> = Vec::new();
+    for candidate in 0..model.candidates().len() {
+        let Some(step) = model.step(candidate) else { continue };
+        let of_sequence =
+            levels.entry(step.data.as_ptr()).or_insert_with(|| Levels::of(evidence, left, &step.data));
+        steps.push((of_sequence.taken_by_step(step.from), candidate, step));
+    }
+    steps.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+    steps.truncate(LOOKED);
+    steps.sort_by_key(|(_, candidate, _)| *candidate);
+    steps.into_iter().map(|(_, candidate, step)| (candidate, step)).collect()
+}
+
+/// Means of the groups along a sequence.
+struct Levels {
+    /// How many groups have begun before each datum of the sequence.
+    begun: Vec<usize>,
+    /// Sums of the means of so many groups, from none to all.
+    sums: Vec<f64>,
+    /// Sum of the squares of the means.
+    square: f64,
+}
+
+impl Levels {
+    fn of(evidence: &Evidence, left: &DVector<f64>, data: &[usize]) -> Levels {
+        let mut number: HashMap<usize, usize> = HashMap::new();
+        let mut of_group: Vec<(f64, f64)> = Vec::new();
+        let mut begun = Vec::with_capacity(data.len());
+        for &row in data {
+            begun.push(of_group.len());
+            let number = *number.entry(evidence.shared[row]).or_insert_with(|| {
+                of_group.push((0.0, 0.0));
+                of_group.len() - 1
+            });
+            of_group[number].0 += evidence.weight[row] * left[row];
+            of_group[number].1 += evidence.weight[row];
+        }
+        let means = of_group.iter().map(|(sum, weight)| sum / weight.max(f64::MIN_POSITIVE));
+        let mut sums = vec![0.0];
+        let mut square = 0.0;
+        for mean in means {
+            sums.push(sums[sums.len() - 1] + mean);
+            square += mean * mean;
+        }
+        Levels { begun, sums, square }
+    }
+
+    /// What a step before datum `from` takes of the squares of the means about their own mean, over
+    /// what it leaves: with levels b of n before and a of m after it, n·m/(n + m)·(a − b)².
+    fn taken_by_step(&self, from: usize) -> f64 {
+        let all = self.sums.len() - 1;
+        let before = self.begun.get(from).copied().unwrap_or(all);
+        if before == 0 || before == all {
+            return 0.0;
+        }
+        let (n, m) = (before as f64, (all - before) as f64);
+        let (sum, whole) = (self.sums[before], self.sums[all]);
+        let taken = n * m / (n + m) * ((whole - sum) / m - sum / n).powi(2);
+        let scatter = (self.square - whole * whole / (n + m)).max(0.0);
+        taken / (scatter - taken).max(f64::EPSILON * scatter).max(f64::MIN_POSITIVE)
+    }
 }
 
 /// The mean of the means of the groups; `None` of fewer than [`GROUPS`].

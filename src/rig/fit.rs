@@ -1,5 +1,7 @@
 //! From readings to lines, and from lines to what they say about the rod.
 
+use std::collections::HashMap;
+
 use super::comparison::{Measured, compare};
 use super::line::{Line, LineKey, Sample};
 use super::readings::{Axis, Phase, Reading, Readings};
@@ -106,6 +108,7 @@ fn keys(rows: &[Reading]) -> Vec<LineKey> {
 
 fn samples(rows: &[Reading], key: &LineKey) -> Vec<Sample> {
     let is_of_line = |row: &&Reading| LineKey::of_reading(row, key.channel) == *key;
+    let mut trials: HashMap<Option<&str>, usize> = HashMap::new();
     rows.iter()
         .filter(is_of_line)
         .filter_map(|row| {
@@ -113,7 +116,10 @@ fn samples(rows: &[Reading], key: &LineKey) -> Vec<Sample> {
                 load: row.load,
                 offset: row.offset[key.channel.index()]?,
                 phase: row.phase.unwrap_or(Phase::Load),
-                trial: rows.iter().position(|first| first.trial == row.trial)?,
+                trial: {
+                    let next = trials.len();
+                    *trials.entry(row.trial.as_deref()).or_insert(next)
+                },
                 line: row.line,
             })
         })

@@ -269,8 +269,8 @@ fn a_calibrated_urdf_with_what_stands_beside_it_predicts_as_it_was_calibrated() 
         let q = dice.angles(6);
         let (expected, _) = calibrated.tip_at(calibration.setup.tool, &q);
         let (found, _) = again.tip_at(tip, &q);
-        // the links' masses hang on the calibrated frames now, 1 mm and 1 mrad from the drawing's: some
-        // 0.1 N·m more or less on joints of 3 to 400 µrad/(N·m)
+        // the links' masses hang on the calibrated frames now, 1 mm and 1 mrad from the drawing's:
+        // some 0.1 N·m more or less on joints of 3 to 400 µrad/(N·m)
         assert!((found - expected).norm() < 1e-6, "{found} {expected}");
     }
 }

@@ -203,8 +203,8 @@ fn vpcs_tube() -> Profile {
 
 /// AFNOR/SFM, *Guide de validation des progiciels de calcul de structures* (VPCS, 1990), SSLL06:
 /// quarter circle of R = 3 m clamped at one end; at the other F1 = 10 N across the tangent there,
-/// F2 = 5 N along it, and Mz = 8 N·m in the plane: u = 0.3791 m along F1, v = 0.2417 m along F2, θ =
-/// 0.1654 rad, all in the sense of the loads.
+/// F2 = 5 N along it, and Mz = 8 N·m in the plane: u = 0.3791 m along F1, v = 0.2417 m along F2,
+/// θ = 0.1654 rad, all in the sense of the loads.
 #[test]
 fn vpcs_ssll06_arc_in_plane() {
     let mut chain = Chain::clamped_at(Vector3::zeros(), Rotation3::identity());

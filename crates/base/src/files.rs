@@ -1,7 +1,7 @@
 //! Text in, whole files out. The only place that touches the file system.
 //!
-//! Nothing that somebody else wrote is lost: see [`Existing`]. A set of files is there as a whole or
-//! not at all: see [`Staged`]. What a killed run left behind goes with the next one that writes
+//! Nothing that somebody else wrote is lost: see [`Existing`]. A set of files is there as a whole
+//! or not at all: see [`Staged`]. What a killed run left behind goes with the next one that writes
 //! there.
 
 mod content;

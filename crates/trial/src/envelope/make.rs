@@ -300,8 +300,8 @@ mod tests {
         assert!(default_key(Path::new(".")).is_err());
     }
 
-    /// Every operation fails once, or is the last one of a run that is killed; the same command then
-    /// makes the same trial.
+    /// Every operation fails once, or is the last one of a run that is killed; the same command
+    /// then makes the same trial.
     #[test]
     fn a_fault_at_any_operation_leaves_nothing_or_what_is_gone_on_with() {
         use rodcal_base::files::faults::{Fault, with};

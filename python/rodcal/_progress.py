@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable
 from typing import Union
 
-#: ``True`` for a bar, or who is told how many tasks are done, and of how many (``None``: unknown).
+#: ``True`` for a bar, or what is called with how many tasks are done, and of how many (``None``: unknown).
 Progress = Union[bool, Callable[[int, Union[int, None]], object], None]
 
 _WIDTH = 40

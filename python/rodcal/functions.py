@@ -2,7 +2,7 @@
 
 Rods, readings, robots and campaigns may be objects of this package, names of files, or dicts and
 tables with the files' keys. Whatever takes long runs without Python's lock and stops at Ctrl-C;
-``progress=True`` draws a bar, and a function is told ``(done, total)``.
+``progress=True`` draws a bar, and a function is called with ``(done, total)``.
 """
 
 from __future__ import annotations

@@ -16,7 +16,7 @@ pub const TABLE_COLUMNS: usize = 1_000;
 /// Cells of a table.
 pub const TABLE_CELLS: usize = 10_000_000;
 /// Readings of one rod.
-pub const READINGS: usize = 20_000;
+pub const READINGS: usize = 100_000;
 /// Different loads of a line that was measured in more than 50 trials.
 pub const REPEATED_LOADS: usize = 2_000;
 /// Bytes of a TOML file: rod, robot, campaign, design.

@@ -320,7 +320,9 @@ type Condition = (i8, u64, Option<Phase>, [Option<u64>; 2]);
 struct OpenRun {
     /// How many runs the axis had before this one.
     ordinal: usize,
-    seen: Vec<(Condition, [bool; 3])>,
+    /// The channels that were read at each.
+    seen: HashMap<Condition, [bool; 3]>,
+    last: Option<Condition>,
 }
 
 impl OpenRun {
@@ -333,12 +335,13 @@ impl OpenRun {
         let condition = (row.direction.sign, set.to_bits(), row.phase, stations);
         let channels = row.offset.map(|offset| offset.is_some());
         let overlaps = |other: &[bool; 3]| channels.iter().zip(other).any(|(a, b)| *a && *b);
-        let is_same_load = self.seen.last().is_some_and(|(last, _)| *last == condition);
-        let is_repeat = self.seen.iter().any(|(seen, read)| *seen == condition && overlaps(read));
-        if is_repeat && !is_same_load {
-            *self = OpenRun { ordinal: self.ordinal + 1, seen: Vec::new() };
+        let is_same_load = self.last == Some(condition);
+        if self.seen.get(&condition).is_some_and(overlaps) && !is_same_load {
+            *self = OpenRun { ordinal: self.ordinal + 1, ..OpenRun::default() };
         }
-        self.seen.push((condition, channels));
+        let read = self.seen.entry(condition).or_default();
+        (0..3).for_each(|k| read[k] |= channels[k]);
+        self.last = Some(condition);
         self.ordinal
     }
 }

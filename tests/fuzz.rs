@@ -4,7 +4,8 @@
 //!
 //! Two seconds within `cargo test`; a minute, or an hour, with
 //! `RODCAL_FUZZ_SECONDS=3600 cargo test --test all -- fuzz::`. Input number n is the same in every
-//! run, whatever the time; a failure prints n, and `RODCAL_FUZZ_FROM=n` begins there.
+//! run, whatever the time; a failure prints n, and `RODCAL_FUZZ_FROM=n` begins there;
+//! `RODCAL_FUZZ_INPUTS=N` ends after so many.
 
 #![allow(clippy::unwrap_used)]
 
@@ -103,8 +104,8 @@ fn whatever_a_file_holds_it_is_read_or_refused() {
     let number = |name: &str| std::env::var(name).ok().and_then(|text| text.parse::<u64>().ok());
     let time = Duration::from_secs(number("RODCAL_FUZZ_SECONDS").unwrap_or(2));
     let (start, mut n) = (Instant::now(), number("RODCAL_FUZZ_FROM").unwrap_or(0));
-    let first = n;
-    while start.elapsed() < time {
+    let (first, most) = (n, number("RODCAL_FUZZ_INPUTS").unwrap_or(u64::MAX));
+    while start.elapsed() < time && n - first < most {
         read(n);
         n += 1;
     }

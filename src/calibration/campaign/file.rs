@@ -18,6 +18,8 @@ use crate::spatial::Pose;
 use crate::toml_text::{Number, Required, TomlText};
 use crate::units::{DEG, MM, UM};
 
+/// Bytes of the name of a file, at most.
+const LONGEST_NAME: usize = 1000;
 /// Of the known distance between two sockets, unless the file states it, m: what a milled plate
 /// keeps easily.
 const DISTANCE_SD: f64 = 0.1 * MM;
@@ -343,6 +345,11 @@ impl Reader<'_> {
 
     /// The file that `name`, the value of `key`, stands for.
     fn named(&self, key: &str, name: &Spanned<String>) -> Result<Named> {
+        // every error of that file repeats it
+        if name.get_ref().len() > LONGEST_NAME {
+            let found = format!("`{key}` has {} bytes", name.get_ref().len());
+            return Err(self.toml.wrong(name, found, "the name of a file, of at most 1000 bytes"));
+        }
         let directory = Path::new(self.file).parent().unwrap_or(Path::new(""));
         let file = directory.join(name.get_ref()).display().to_string();
         let text = (self.open)(name.get_ref()).map_err(|error| match error {

@@ -54,7 +54,7 @@ pub fn calibrate<'c>(
 }
 
 /// Every mode of compensation that the campaign allows, and which differences are significant.
-/// `progress` is told of every draw.
+/// `progress` is called at every draw.
 ///
 /// # Errors
 /// As [`calibration::compare`].

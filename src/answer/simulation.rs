@@ -51,7 +51,7 @@ pub fn named_robot(robot: &str) -> Result<(String, String)> {
 
 /// Simulates a campaign of `robot`, whose file the campaign calls `named.0` and whose text is
 /// `named.1`, with a rod and the text of its file. `campaign` is where it will stand; `progress` is
-/// told of every candidate and every pose.
+/// called at every candidate and every pose.
 ///
 /// # Errors
 /// As [`simulate_telling`].

@@ -56,8 +56,8 @@ pub(super) struct Sum {
     pub nearest: Nearest,
 }
 
-/// Looks at the rods of `wish` and keeps those that nobody betters. `progress` is told how many
-/// more were looked at. The result does not depend on the number of threads.
+/// Looks at the rods of `wish` and keeps those that nobody betters. `progress` is called with how
+/// many more were looked at. The result does not depend on the number of threads.
 ///
 /// # Errors
 /// As [`Search::new`] and [`Search::go_on`].

@@ -18,12 +18,12 @@ const CHANCE: f64 = 3.0;
 const MOST: usize = 10;
 /// Of how many candidates, the likeliest by their columns at neutral values, the values are fitted.
 const REFITTED: usize = 6;
+/// And how many of them may be of one effect, of the forms of a law with as many parameters.
+const OF_ONE_EFFECT: usize = 2;
 /// Ln of the odds within which a first look at their values decides nothing.
 const NEAR: f64 = 1.0;
 /// Ln of the odds that an exchange has to gain: less is where the values were looked for from.
 const NO_GAIN: f64 = 1e-3;
-/// And how many of them may be of one effect, of the forms of a law with as many parameters.
-const OF_ONE_EFFECT: usize = 2;
 
 /// Odds against chance that make an effect, or a second one beside it, worth a try.
 const HOPELESS: f64 = 1.0 / 400.0;

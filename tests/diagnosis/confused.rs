@@ -7,7 +7,7 @@ use rodcal::rod::Rod;
 use rodcal::units::UM;
 use rodcal_trial::rig::{Effect, Order};
 
-use super::Answer;
+use super::{Answer, interval};
 
 #[test]
 fn without_unloading_friction_is_a_load_offset_as_well() {
@@ -77,4 +77,19 @@ fn what_is_twice_as_soft_may_still_be_a_joint_or_the_moduli() {
             assert!(class.contains(&alike), "{alike} is not in {class:?}");
         }
     }
+}
+
+/// Moduli eight times those that fit: the whole rod is softer, and that a root or a joint may be as
+/// soft is said beside it.
+#[test]
+fn a_rod_twelve_times_softer_is_no_root_alone() {
+    let rod = std::fs::read_to_string("rods/2.toml").unwrap();
+    let stiffer = rod.replace("modulus_gpa = 240.0", "modulus_gpa = 1920.0");
+    let stiffer = stiffer.replace("modulus_gpa = 92.0", "modulus_gpa = 736.0");
+    let readings = std::fs::read_to_string("stiffness_data/2.csv").unwrap();
+    let answer = Answer::of(Some(&stiffer), &readings);
+    assert_eq!(answer.effects()[0], "stiffness_scale", "{}", answer.json["headline"]);
+    let [low, factor, high] = interval(answer.finding("stiffness_scale"), "factor");
+    assert!(low < factor && factor < high && (0.06..0.1).contains(&factor), "{low} {factor} {high}");
+    assert!(answer.class(0).contains(&"root_compliance"), "{:?}", answer.class(0));
 }

@@ -96,7 +96,7 @@ pub struct PlannedLoads {
     pub minutes: f64,
 }
 
-/// How well one effect is told from another.
+/// How well one effect is distinguished from another.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Told {

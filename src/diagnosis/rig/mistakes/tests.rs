@@ -209,8 +209,8 @@ fn no_physics_is_a_mistake_however_large() {
             }
             for times in [3.0f64, 10.0, -10.0] {
                 let value = |p: &crate::inference::Parameter| {
-                    // a joint that alone yields twice as much as the whole rod could not be told
-                    // from pounds
+                    // a joint that alone yields twice as much as the whole rod could not be
+                    // distinguished from pounds
                     let most = if candidate.effect.name == "joint_compliance" { 5.0 } else { 10.0 };
                     let value = p.neutral + times.min(most) * p.size;
                     let value = match (candidate.effect.name, p.name.as_str()) {

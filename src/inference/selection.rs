@@ -3,7 +3,7 @@
 
 use super::priors::PRIOR;
 use super::search::Search;
-use super::{ForwardModel, Hypothesis, Term};
+use super::{ForwardModel, Hypothesis, Kind, Term};
 use crate::parallel::in_parallel_outside_of_jobs;
 
 /// Odds against chance from which on an effect is named.
@@ -145,6 +145,12 @@ impl Search<'_> {
                 None => break,
             }
         }
+        // one of the names may be that of something unknown, which the others hid on the way
+        for rest in self.with_one_name_less(&path[path.len() - 1]) {
+            let last = path.len() - 1;
+            remainders.insert(last, self.remainder(&rest, &self.additions(&rest)));
+            path.insert(last, rest);
+        }
         let whole = |(hypothesis, remainder): (&Hypothesis, &Option<(f64, DiscrepancyModel)>)| {
             remainder.as_ref().map_or(hypothesis.log_probability, |(log_probability, _)| *log_probability)
         };
@@ -159,8 +165,24 @@ impl Search<'_> {
         {
             return (path.swap_remove(last), None, most);
         }
+        // beside something unknown a name needs its odds like any other
+        let has_less = |&k: &usize| {
+            remainders[named].is_some()
+                && remainders[k].is_some()
+                && wholes[k] + NAMED.ln() > most
+                && path[k].terms.len() < path[named].terms.len()
+        };
+        let named = (0..path.len()).filter(has_less).min_by_key(|&k| path[k].terms.len()).unwrap_or(named);
         let remainder = remainders.swap_remove(named).map(|(_, remainder)| remainder);
         (path.swap_remove(named), remainder, most)
+    }
+
+    /// A hypothesis of several effects without each of those that are physics.
+    fn with_one_name_less(&self, hypothesis: &Hypothesis) -> Vec<Hypothesis> {
+        let kind = |term: &Term| self.model.candidates()[term.candidate].effect.kind;
+        let count = hypothesis.terms.len();
+        let named = (0..count).filter(|&k| count > 1 && kind(&hypothesis.terms[k]) == Kind::Physics);
+        named.map(|position| self.without(hypothesis, position)).collect()
     }
 
     /// Does a hypothesis leave as little, per degree of freedom, as a curve with more of them does?

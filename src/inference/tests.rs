@@ -2,6 +2,9 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::linearised::Linearised;
+use super::search::Search;
+use super::selection::{DiscrepancyModel, Pairs};
 use super::*;
 use crate::statistics::Random;
 
@@ -307,6 +310,27 @@ fn an_effect_is_named_beside_what_nobody_has_named() {
 }
 
 /// Noise of more than twice the stated size is no shape.
+#[test]
+fn a_name_that_hides_something_unknown_is_given_up() {
+    let wave = |x: f64| (3.0 * std::f64::consts::TAU * x).sin();
+    let kink = |x: f64| 4.0 * (x - 0.5).max(0.0);
+    let mut model = Columns::new(COUNT);
+    model.add("wave", "here", column(wave), false);
+    model.add("curvature", "here", column(|x| x * x), false);
+    model.add("kink", "x", column(kink), true);
+    let linear = Linearised::new(&model);
+    // the curvature explains most, the wave is seen beside it, and both leave something
+    let is_right = |&seed: &u64| {
+        let evidence = evidence(seed, |x| 4.0 * wave(x) + 6.5 * kink(x));
+        let (hypothesis, left) = Search::new(&linear, &evidence, &[]).best(Pairs::LeftOut);
+        let names: Vec<&str> =
+            hypothesis.terms.iter().map(|t| model.candidates[t.candidate].effect.name).collect();
+        names == ["wave"] && matches!(left, Some(DiscrepancyModel::Curve(_)))
+    };
+    let right = (0..20).filter(is_right).count();
+    assert!(right >= 19, "{right} of 20");
+}
+
 #[test]
 fn a_stated_noise_that_is_too_small_is_said_and_draws_nothing() {
     let model = model();

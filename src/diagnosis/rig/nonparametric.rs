@@ -14,11 +14,13 @@
 //! that acts on all lines alike, such as relaxation with one time constant or a seat that gives
 //! way, is one rival and not many.
 //!
-//! What comes and goes in time has finer curves besides, of [`FINE`] columns of which the first
+//! What sets in at a load, or acts one way, has rivals of one number ([`kink`]). What comes and
+//! goes in time has finer curves besides, of [`FINE`] columns of which the first
 //! half are of one size.
 
 mod along;
 mod before;
+mod kink;
 mod swing;
 
 use std::f64::consts::PI;
@@ -94,6 +96,7 @@ pub(super) fn all(data: &[Datum], deflections: &[f64], has_rod: bool) -> Vec<Ent
         ));
     }
     entries.extend(along_the_load(data));
+    entries.extend(kink::all(data, deflections));
     if has_rod {
         entries.extend(slopes(data, deflections, &lines));
     }

@@ -151,7 +151,7 @@ def calibrate(
     46.1
     """
     native = as_campaign(campaign)._native
-    answer, arrays = _rodcal.calibrate(native, mode, robust, prune, folds)
+    answer, arrays = _rodcal.calibrate(native, mode, robust, prune, folds, None)
     warn(answer.warnings)
     return CalibrationResult(answer, arrays, native)
 
@@ -172,7 +172,7 @@ def compare(
     """
     native = as_campaign(campaign)._native
     with Told(progress, "comparing modes") as tell:
-        answer = _rodcal.compare(native, robust, draws, seed, tell)
+        answer = _rodcal.compare(native, robust, draws, seed, None, tell)
     warn(answer.warnings)
     return ComparisonResult(answer)
 
@@ -293,21 +293,26 @@ def design_rod(
     >>> result.front[0].c_rod_um < result.front[-1].c_rod_um, result.evaluated > result.feasible
     (True, True)
     """
-    wish: str | tuple[str, str | None]
-    if isinstance(design, Mapping):
-        tubes = None if catalogue is None else _text.csv_text(catalogue, "<catalogue>")
-        own = dict(design)
-        if tubes is not None:
-            own["catalogue"] = {**own.get("catalogue", {}), "file": "<catalogue>"}
-        wish = _text.toml(own), tubes
-    else:
-        wish = os.fspath(design)
+    wish = wish_of(design, catalogue)
     native = None if campaign is None else as_campaign(campaign, plan=True)._native
     other = None if base is None else as_rod(base)._native
     with Told(progress, "looking at rods") as tell:
-        answer = _rodcal.design_rod(wish, other, samples, refine, seed, native, count, tell)
+        answer = _rodcal.design_rod(wish, other, samples, refine, seed, native, count, None, tell)
     warn(answer.warnings)
     return RodDesignResult(answer)
+
+
+def wish_of(
+    design: Mapping[str, Any] | PathLike, catalogue: Table | None
+) -> str | tuple[str, str | None]:
+    """A design file's name, or the text of a design with that of its catalogue."""
+    if not isinstance(design, Mapping):
+        return os.fspath(design)
+    tubes = None if catalogue is None else _text.csv_text(catalogue, "<catalogue>")
+    own = dict(design)
+    if tubes is not None:
+        own["catalogue"] = {**own.get("catalogue", {}), "file": "<catalogue>"}
+    return _text.toml(own), tubes
 
 
 def design_poses(

@@ -8,7 +8,9 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rodcal::answer;
 use rodcal::calibration::simulate::{Plan, planned_poses};
-use rodcal::calibration::{CompareOptions, Mode, Options, Robust, default_mode};
+use rodcal::calibration::{
+    Calibration, CompareOptions, CrossValidation, Draws, Mode, Options, Robust, default_mode,
+};
 use rodcal::diagnosis::calibration::Neighbours;
 use rodcal::files::{self, Existing};
 use rodcal::report::prediction::{self, Prediction};
@@ -27,7 +29,7 @@ pub fn mode_named(py: Python<'_>, mode: Option<&str>) -> PyResult<Option<Mode>> 
     mode.map(|mode| choice(py, "mode", mode, &modes)).transpose()
 }
 
-fn robust_named(py: Python<'_>, robust: &str) -> PyResult<Robust> {
+pub fn robust_named(py: Python<'_>, robust: &str) -> PyResult<Robust> {
     let weights = [("none", Robust::None), ("huber", Robust::Huber), ("tukey", Robust::Tukey)];
     choice(py, "robust", robust, &weights)
 }
@@ -47,7 +49,6 @@ fn rows<'py>(py: Python<'py>, rows: &[Vector3<f64>], unit: f64) -> PyResult<Boun
 }
 
 #[pyfunction]
-#[pyo3(signature = (campaign, mode, robust, prune, folds))]
 pub fn calibrate<'py>(
     py: Python<'py>,
     campaign: &Bound<'py, Campaign>,
@@ -55,14 +56,20 @@ pub fn calibrate<'py>(
     robust: &str,
     prune: bool,
     folds: Option<usize>,
+    held_out: Option<Vec<(usize, [f64; 3])>>,
 ) -> PyResult<(Answer, Bound<'py, PyDict>)> {
     let own = campaign.get();
     let campaign = &own.campaign;
     let mode = mode_named(py, mode)?.unwrap_or_else(|| default_mode(campaign));
     let options = Options { robust: robust_named(py, robust)?, prune };
     let folds = folds.map(|folds| within(py, "folds", folds, 2, 1000)).transpose()?;
-    let (answer, calibration) = run(py, None, Progress::default(), |_| {
-        answer::calibrate(campaign, mode, &options, folds, &neighbours(own))
+    let (answer, calibration) = run(py, None, Progress::default(), |_| match &held_out {
+        None => answer::calibrate(campaign, mode, &options, folds, &neighbours(own)),
+        Some(predicted) => {
+            let predicted = predicted.iter().map(|(row, m)| (*row, Vector3::from(*m))).collect::<Vec<_>>();
+            let of = |_: &Calibration, folds| CrossValidation::of(campaign, folds, predicted.clone());
+            answer::calibrate_held_out(campaign, mode, &options, folds, &neighbours(own), &of)
+        }
     })?;
     let arrays = PyDict::new(py);
     arrays.set_item("deviations_um", rows(py, &calibration.deviations, UM)?)?;
@@ -78,18 +85,30 @@ pub fn compare(
     robust: &str,
     draws: usize,
     seed: u64,
+    drawn: Option<Vec<Option<Vec<f64>>>>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Answer> {
     let campaign = &campaign.get().campaign;
-    let options = CompareOptions {
+    let options = compared(py, robust, draws, seed)?;
+    if let Some(drawn) = drawn.as_ref().filter(|drawn| drawn.len() != draws) {
+        return Err(wrong(py, "drawn", format!("{} draws", drawn.len()), draws.to_string()));
+    }
+    let counted = Progress::of(options.draws as u64);
+    run(py, progress, counted, |progress| match drawn {
+        None => answer::compare(campaign, &options, &|_| progress.more(1)),
+        Some(drawn) => Ok(answer::compare_drawn(campaign, Draws::new(campaign, &options)?, drawn)),
+    })
+    .map(Answer)
+}
+
+/// How modes are compared.
+pub fn compared(py: Python<'_>, robust: &str, draws: usize, seed: u64) -> PyResult<CompareOptions> {
+    Ok(CompareOptions {
         calibration: Options { robust: robust_named(py, robust)?, ..Options::default() },
         draws: within(py, "draws", draws, 50, 100_000)?,
         seed,
         ..CompareOptions::default()
-    };
-    let counted = Progress::of(options.draws as u64);
-    run(py, progress, counted, |progress| answer::compare(campaign, &options, &|_| progress.more(1)))
-        .map(Answer)
+    })
 }
 
 #[pyfunction]

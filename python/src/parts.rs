@@ -79,8 +79,8 @@ pub fn take_in<'w>(
     }
 }
 
-/// Mean error of every mode in the draws from `first` to below `last`, m; nothing of a draw in which
-/// a fit fails.
+/// Mean error of every mode in the draws from `first` to below `last`, m; nothing of a draw in
+/// which a fit fails.
 #[pyfunction]
 pub fn compare_part(
     py: Python<'_>,

@@ -196,8 +196,8 @@ impl<'c> Draws<'c> {
                     against,
                     mean: difference,
                     interval,
-                    // two-sided 5 % over all pairs (Bonferroni), by the normal distribution of a mean
-                    // of many errors
+                    // two-sided 5 % over all pairs (Bonferroni), by the normal distribution of a
+                    // mean of many errors
                     is_significant: sd > 0.0 && two_sided_normal(difference / sd) * pairs as f64 <= 0.05,
                 });
             }

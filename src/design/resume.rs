@@ -1,6 +1,6 @@
 //! A search that stopped, as text: what it is a search of, how far it came, and what it has found
-//! so far; and parts of a search, which many machines look at. Numbers are written as their bits, so that a search that goes on is the one that never
-//! stopped.
+//! so far; and parts of a search, which many machines look at. Numbers are written as their bits,
+//! so that a search that goes on is the one that never stopped.
 
 use std::ops::Range;
 

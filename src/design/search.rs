@@ -117,15 +117,15 @@ impl<'w> Search<'w> {
         Ok(Search { wish, searched, count, part: 0..count, done: 0, total: Sum::new(wish) })
     }
 
-    /// Before any rod of a part of the search: of those from `part.start` to below `part.end` in the
-    /// order in which the whole search looks at its [`Search::count`] rods.
+    /// Before any rod of a part of the search: of those from `part.start` to below `part.end` in
+    /// the order in which the whole search looks at its [`Search::count`] rods.
     ///
     /// # Errors
     /// As [`Search::new`]; [`Error::Argument`] for a part that begins or ends within what is looked
     /// at together ([`PART`]), or that is none of the search.
     pub fn part(wish: &'w Wish, searched: Searched, part: Range<u64>) -> Result<Search<'w>> {
         let whole = Search::new(wish, searched)?;
-        let is_bound = |at: u64| at % PART == 0 || at == whole.count;
+        let is_bound = |at: u64| at.is_multiple_of(PART) || at == whole.count;
         if part.is_empty() || part.end > whole.count || !is_bound(part.start) || !is_bound(part.end) {
             return Err(Error::Argument {
                 name: "part",

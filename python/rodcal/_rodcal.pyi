@@ -176,7 +176,7 @@ def compliance(
     read_station_mm: float | None,
 ) -> Answer: ...
 def rig_fit(rod: Rod | None, readings: Readings, theory: str, elements: int, robust: str) -> Answer: ...
-def diagnose_rig(rod: Rod | None, readings: Readings, apply: bool) -> Answer: ...
+def diagnose_rig(rod: Rod | None, readings: Readings, apply: bool, progress: _Tell) -> Answer: ...
 def calibrate(
     campaign: Campaign,
     mode: str | None,
@@ -184,6 +184,7 @@ def calibrate(
     prune: bool,
     folds: int | None,
     held_out: list[tuple[int, list[float]]] | None,
+    progress: _Tell,
 ) -> tuple[Answer, dict[str, NDArray[np.float64]]]: ...
 def compare(
     campaign: Campaign,
@@ -193,9 +194,13 @@ def compare(
     drawn: list[list[float] | None] | None,
     progress: _Tell,
 ) -> Answer: ...
-def diagnose_calibration(campaign: Campaign, mode: str | None, apply: bool) -> Answer: ...
+def diagnose_calibration(campaign: Campaign, mode: str | None, apply: bool, progress: _Tell) -> Answer: ...
 def predict(
-    robot: Robot, joints: NDArray[np.float64], tool_mm: list[float] | None, aligned: bool
+    robot: Robot,
+    joints: NDArray[np.float64],
+    tool_mm: list[float] | None,
+    aligned: bool,
+    progress: _Tell,
 ) -> Predicted: ...
 def simulate(
     robot: Robot,
@@ -242,7 +247,12 @@ def design_rig(
     at_tip: bool,
 ) -> Answer: ...
 def forecast(
-    campaign: Campaign, rods: list[Rod], count: int | None, expected: dict[str, Any], seed: int
+    campaign: Campaign,
+    rods: list[Rod],
+    count: int | None,
+    expected: dict[str, Any],
+    seed: int,
+    progress: _Tell,
 ) -> Answer: ...
 def design_parts(
     design: _Design, samples: int | None, seed: int

@@ -129,7 +129,7 @@ def calibrate(
         asked = (mode, robust, prune, folds)
         parts = _in_order(client, _calibrate_part, shared, asked, _parts(number, size), tell, number)
         held_out = [predicted for _, part in parts for predicted in part]
-        answer, arrays = _rodcal.calibrate(native, mode, robust, prune, folds, held_out)
+        answer, arrays = _rodcal.calibrate(native, mode, robust, prune, folds, held_out, None)
     warn(answer.warnings)
     return CalibrationResult(answer, arrays, native)
 

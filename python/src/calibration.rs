@@ -13,6 +13,7 @@ use rodcal::calibration::{
 };
 use rodcal::diagnosis::calibration::Neighbours;
 use rodcal::files::{self, Existing};
+use rodcal::limits;
 use rodcal::report::prediction::{self, Prediction};
 use rodcal::robot::PredictionQuery;
 use rodcal::units::{MM, UM};
@@ -49,6 +50,7 @@ fn rows<'py>(py: Python<'py>, rows: &[Vector3<f64>], unit: f64) -> PyResult<Boun
 }
 
 #[pyfunction]
+#[allow(clippy::too_many_arguments)]
 pub fn calibrate<'py>(
     py: Python<'py>,
     campaign: &Bound<'py, Campaign>,
@@ -57,13 +59,14 @@ pub fn calibrate<'py>(
     prune: bool,
     folds: Option<usize>,
     held_out: Option<Vec<(usize, [f64; 3])>>,
+    progress: Option<Py<PyAny>>,
 ) -> PyResult<(Answer, Bound<'py, PyDict>)> {
     let own = campaign.get();
     let campaign = &own.campaign;
     let mode = mode_named(py, mode)?.unwrap_or_else(|| default_mode(campaign));
     let options = Options { robust: robust_named(py, robust)?, prune };
     let folds = folds.map(|folds| within(py, "folds", folds, 2, 1000)).transpose()?;
-    let (answer, calibration) = run(py, None, Progress::default(), |_| match &held_out {
+    let (answer, calibration) = run(py, progress, Progress::of_jobs(), |_| match &held_out {
         None => answer::calibrate(campaign, mode, &options, folds, &neighbours(own)),
         Some(predicted) => {
             let predicted = predicted.iter().map(|(row, m)| (*row, Vector3::from(*m))).collect::<Vec<_>>();
@@ -117,6 +120,7 @@ pub fn diagnose_calibration(
     campaign: &Bound<'_, Campaign>,
     mode: Option<&str>,
     apply: bool,
+    progress: Option<Py<PyAny>>,
 ) -> PyResult<Answer> {
     let own = campaign.get();
     if apply && !own.is_file {
@@ -129,7 +133,7 @@ pub fn diagnose_calibration(
     }
     let campaign = &own.campaign;
     let mode = mode_named(py, mode)?.unwrap_or_else(|| default_mode(campaign));
-    run(py, None, Progress::default(), |_| {
+    run(py, progress, Progress::of_jobs(), |_| {
         answer::diagnose_calibration(campaign, mode, &neighbours(own), apply)
     })
     .map(Answer)
@@ -180,6 +184,7 @@ pub fn predict(
     joints: PyReadonlyArray2<'_, f64>,
     tool_mm: Option<[f64; 3]>,
     aligned: bool,
+    progress: Option<Py<PyAny>>,
 ) -> PyResult<Predicted> {
     let robot = &robot.get().robot;
     let units: Vec<f64> = robot.joints.iter().zip(1..).map(|(joint, n)| joint.column(n).1).collect();
@@ -187,6 +192,10 @@ pub fn predict(
     if width != units.len() || count == 0 {
         let expected = format!("an array of shape (n, {}), n ≥ 1", units.len());
         return Err(wrong(py, "joints", format!("of shape ({count}, {width})"), expected));
+    }
+    // what is aligned is held whole: as many poses as a file may have
+    if aligned {
+        limits::check("<joints>", count, limits::TABLE_ROWS, "rows").or_raise(py)?;
     }
     // a view of the caller's array, whatever its strides
     let view = joints.as_array();
@@ -199,7 +208,7 @@ pub fn predict(
     if !is_finite {
         return Err(wrong(py, "joints", "not finite".into(), "finite numbers".into()));
     }
-    run(py, None, Progress::default(), |_| {
+    run(py, progress, Progress::of_jobs(), |_| {
         let moved = robot.after_moves(&values);
         let query = |(row, joints): (usize, &[f64])| PredictionQuery {
             pose: (row + 1).to_string(),

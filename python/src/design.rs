@@ -233,13 +233,14 @@ pub fn forecast(
     count: Option<usize>,
     expected: Expected,
     seed: u64,
+    progress: Option<Py<PyAny>>,
 ) -> PyResult<Answer> {
     expected.check(py)?;
     let at = expected.place(py)?;
     let count = count.map(|count| within(py, "count", count, 1, 20_000)).transpose()?;
     let rods: Vec<rodcal::rod::Rod> = rods.iter().map(|rod| rod.get().rod.clone()).collect();
     let campaign = &campaign.get().campaign;
-    run(py, None, Progress::default(), |_| {
+    run(py, progress, Progress::of_jobs(), |_| {
         let budget = Budget { seed, ..expected.budget(campaign)? };
         answer::forecast(campaign, &rods, budget, &at, count)
     })

@@ -324,12 +324,12 @@ fn cards(study: &Study) -> Vec<Card> {
         return vec![Card::new("Deflection over length", share, "beyond the linear model")];
     }
     if let (Some(found), Some(_)) = (&study.overload, overloaded(study)) {
-        let share = format!("{} %", significant(100.0 * found.stress / found.limit, 3));
-        let of = match found.kind {
-            Strength::Material(_) => "of the yield strength",
-            Strength::Wall(..) => "of what the wall bears",
+        let megapascals = |stress: f64| format!("{} MPa", significant(stress / MPA, 3));
+        let limit = match &found.kind {
+            Strength::Material(material) => format!("{material} yields at {}", megapascals(found.limit)),
+            Strength::Wall(..) => format!("the wall bears about {}", megapascals(found.limit)),
         };
-        return vec![Card::new("Largest stress", share, of)];
+        return vec![Card::new("Largest stress", megapascals(found.stress), limit)];
     }
     let c = study.compliance();
     let um = |length: f64| significant(length / UM, 4);

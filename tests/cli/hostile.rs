@@ -57,7 +57,9 @@ fn hostile_names_are_data_everywhere() {
     // tubes, their material and what hangs on them
     sandbox.write(
         "tubes.csv",
-        &format!("name,material,outer_diameter_mm,inner_diameter_mm\n{quoted},{quoted},32,30\nb,steel,20,16\n"),
+        &format!(
+            "name,material,outer_diameter_mm,inner_diameter_mm\n{quoted},{quoted},32,30\nb,steel,20,16\n"
+        ),
     );
     let design = sandbox.read("examples/design.toml").replace("\"builtin\"", "\"tubes.csv\"");
     sandbox.write(

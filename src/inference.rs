@@ -32,6 +32,7 @@ mod limit;
 mod linearised;
 mod locate;
 mod location;
+mod memory;
 mod misread;
 mod moments;
 
@@ -52,6 +53,7 @@ mod sessions;
 mod shared_ratio;
 mod sketch;
 mod stored_column;
+mod table;
 mod untested;
 mod variable;
 mod whitening;

@@ -14,7 +14,7 @@ mod robot;
 mod rod;
 mod simulation;
 
-pub use calibration::{calibrate, calibrated_robot, compare, provenance};
+pub use calibration::{calibrate, calibrate_held_out, calibrated_robot, compare, compare_drawn, provenance};
 pub use design::{DesignRod, design_poses, design_rig, design_rod};
 pub use diagnosis::{diagnose_calibration, diagnose_rig};
 pub use forecast::forecast;

@@ -9,6 +9,7 @@ mod demo;
 mod design;
 mod diagnose;
 mod embedded;
+mod man;
 pub mod output;
 mod predict;
 mod progress;
@@ -107,6 +108,8 @@ enum Command {
     Trial(trial::Trial),
     /// Print a completion script for your shell.
     Completions(completions::Completions),
+    /// Print the man page of the program or of a command.
+    Man(man::ManPage),
 }
 
 /// Runs the command that was asked for.
@@ -131,5 +134,6 @@ pub fn run(arguments: &Arguments) -> Result<Outcome> {
         Some(Command::Simulate(command)) => command.run(options.existing()),
         Some(Command::Trial(command)) => command.run(),
         Some(Command::Completions(command)) => Ok(command.run(Arguments::command())),
+        Some(Command::Man(command)) => command.run(Arguments::command()),
     }
 }

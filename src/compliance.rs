@@ -7,10 +7,12 @@
 pub mod closed_form;
 mod sensitivity;
 mod steps;
+mod strength;
 mod study;
 
 pub use sensitivity::{Sensitivity, sensitivities, standard_uncertainty};
 pub use steps::{Step, steps};
+pub use strength::{Overload, Strength, overload};
 pub use study::{LINEAR_SHARE, Mode, Shape, StationResponse, Study, TipLoad};
 
 use nalgebra::Matrix3;

@@ -48,7 +48,7 @@ pub use poses::{
 };
 pub use refine::{Better, Refined, refine};
 pub use rods_and_modes::{RodForecast, rods_and_modes};
-pub use search::{Found, Search, Searched, search};
+pub use search::{Found, PART, Search, Searched, search};
 pub use study::{Base, Shown, Study};
 pub use values::MOST_VALUES;
 pub use wish::{MOST_RODS, Wish};

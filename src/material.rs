@@ -19,6 +19,8 @@ pub struct Material<T = f64> {
     /// Poisson's ratio ν, contraction across the pipe per extension along it, dimensionless. Only
     /// the shear coefficient depends on it.
     pub poisson_ratio: T,
+    /// Stress up to which it springs back, Pa, where it is stated.
+    pub yield_strength: Option<T>,
     /// What the section's shear coefficient is multiplied with, dimensionless; 1 unless stated.
     pub shear_coefficient_factor: T,
     /// How well these numbers are known.
@@ -115,6 +117,7 @@ impl Material {
             shear_modulus,
             density,
             poisson_ratio,
+            yield_strength: None,
             shear_coefficient_factor: 1.0,
             standard_uncertainty: MaterialUncertainty::ISOTROPIC,
         };

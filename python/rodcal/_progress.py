@@ -24,7 +24,7 @@ class Bar:
     def __call__(self, done: int, total: int | None) -> None:
         elapsed = time.monotonic() - self.start
         if total is None:
-            line = f"{self.what}: {done} looked at, {elapsed:.0f} s"
+            line = f"{self.what}: {done} done, {elapsed:.0f} s"
         else:
             share = min(1.0, done / total) if total else 1.0
             bar = ("█" * round(_WIDTH * share)).ljust(_WIDTH)

@@ -1,7 +1,7 @@
 """The part of the package that is written in Rust; use what `rodcal` exports."""
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any, final
 
 import numpy as np
@@ -28,12 +28,18 @@ __all__ = [
     "design_poses",
     "design_rig",
     "forecast",
+    "design_parts",
+    "design_part",
+    "compare_part",
+    "folds",
+    "calibrate_part",
 ]
 
 __version__: str
 
 _Tell = Callable[[int, int | None], object] | None
 _Path = str | os.PathLike[str]
+_Design = str | tuple[str, str | None]
 
 @final
 class Answer:
@@ -122,6 +128,10 @@ class Robot:
     @property
     def links(self) -> tuple[str | None, str | None]: ...
     @property
+    def texts(
+        self,
+    ) -> tuple[str, str, str | None, str | None, tuple[str, str] | None, tuple[str, str] | None]: ...
+    @property
     def columns(self) -> list[str]: ...
 
 @final
@@ -151,6 +161,8 @@ class Campaign:
     @property
     def has_points(self) -> bool: ...
     @property
+    def texts(self) -> tuple[str, str, dict[str, str], bool]: ...
+    @property
     def warnings(self) -> list[str]: ...
 
 def read_text(path: _Path) -> str: ...
@@ -164,14 +176,31 @@ def compliance(
     read_station_mm: float | None,
 ) -> Answer: ...
 def rig_fit(rod: Rod | None, readings: Readings, theory: str, elements: int, robust: str) -> Answer: ...
-def diagnose_rig(rod: Rod | None, readings: Readings, apply: bool) -> Answer: ...
+def diagnose_rig(rod: Rod | None, readings: Readings, apply: bool, progress: _Tell) -> Answer: ...
 def calibrate(
-    campaign: Campaign, mode: str | None, robust: str, prune: bool, folds: int | None
+    campaign: Campaign,
+    mode: str | None,
+    robust: str,
+    prune: bool,
+    folds: int | None,
+    held_out: list[tuple[int, list[float]]] | None,
+    progress: _Tell,
 ) -> tuple[Answer, dict[str, NDArray[np.float64]]]: ...
-def compare(campaign: Campaign, robust: str, draws: int, seed: int, progress: _Tell) -> Answer: ...
-def diagnose_calibration(campaign: Campaign, mode: str | None, apply: bool) -> Answer: ...
+def compare(
+    campaign: Campaign,
+    robust: str,
+    draws: int,
+    seed: int,
+    drawn: list[list[float] | None] | None,
+    progress: _Tell,
+) -> Answer: ...
+def diagnose_calibration(campaign: Campaign, mode: str | None, apply: bool, progress: _Tell) -> Answer: ...
 def predict(
-    robot: Robot, joints: NDArray[np.float64], tool_mm: list[float] | None, aligned: bool
+    robot: Robot,
+    joints: NDArray[np.float64],
+    tool_mm: list[float] | None,
+    aligned: bool,
+    progress: _Tell,
 ) -> Predicted: ...
 def simulate(
     robot: Robot,
@@ -186,13 +215,14 @@ def simulate(
     progress: _Tell,
 ) -> tuple[dict[str, Any], dict[str, bytes]]: ...
 def design_rod(
-    design: str | tuple[str, str | None],
+    design: _Design,
     base: Rod | None,
     samples: int | None,
     refine: int | None,
     seed: int,
     campaign: Campaign | None,
     count: int | None,
+    parts: Iterable[tuple[int, int, str]] | None,
     progress: _Tell,
 ) -> Answer: ...
 def design_poses(
@@ -217,5 +247,21 @@ def design_rig(
     at_tip: bool,
 ) -> Answer: ...
 def forecast(
-    campaign: Campaign, rods: list[Rod], count: int | None, expected: dict[str, Any], seed: int
+    campaign: Campaign,
+    rods: list[Rod],
+    count: int | None,
+    expected: dict[str, Any],
+    seed: int,
+    progress: _Tell,
 ) -> Answer: ...
+def design_parts(
+    design: _Design, samples: int | None, seed: int
+) -> tuple[str, str | None, int, int]: ...
+def design_part(design: _Design, samples: int | None, seed: int, first: int, last: int) -> str: ...
+def compare_part(
+    campaign: Campaign, robust: str, draws: int, seed: int, first: int, last: int
+) -> list[list[float] | None]: ...
+def folds(campaign: Campaign, folds: int) -> int: ...
+def calibrate_part(
+    campaign: Campaign, mode: str | None, robust: str, prune: bool, folds: int, first: int, last: int
+) -> list[tuple[int, list[float]]]: ...

@@ -113,7 +113,7 @@ def rig_fit(
     return RigFitResult(answer)
 
 
-def diagnose_rig(rod: RodLike | None, readings: ReadingsLike, *, apply: bool = False) -> DiagnosisResult:
+def diagnose_rig(rod: RodLike | None, readings: ReadingsLike, *, apply: bool = False, progress: Progress = False) -> DiagnosisResult:
     """Which physics the model of a rod leaves out; without a rod, what a straight line leaves out.
 
     With ``apply`` rod and readings with what was found are among ``files``. Rods whose files stand
@@ -126,7 +126,9 @@ def diagnose_rig(rod: RodLike | None, readings: ReadingsLike, *, apply: bool = F
     0.65
     """
     model = None if rod is None else as_rod(rod)._native
-    answer = _rodcal.diagnose_rig(model, as_readings(readings)._native, apply)
+    native = as_readings(readings)._native
+    with Told(progress, "diagnosing") as tell:
+        answer = _rodcal.diagnose_rig(model, native, apply, tell)
     warn(answer.warnings)
     return DiagnosisResult(answer)
 
@@ -138,6 +140,7 @@ def calibrate(
     robust: Weights = "none",
     prune: bool = False,
     folds: int | None = None,
+    progress: Progress = False,
 ) -> CalibrationResult:
     """How accurate a robot is once its rod's deflection is compensated: kinematic calibration.
 
@@ -151,7 +154,8 @@ def calibrate(
     46.1
     """
     native = as_campaign(campaign)._native
-    answer, arrays = _rodcal.calibrate(native, mode, robust, prune, folds)
+    with Told(progress, "calibrating") as tell:
+        answer, arrays = _rodcal.calibrate(native, mode, robust, prune, folds, None, tell)
     warn(answer.warnings)
     return CalibrationResult(answer, arrays, native)
 
@@ -172,13 +176,17 @@ def compare(
     """
     native = as_campaign(campaign)._native
     with Told(progress, "comparing modes") as tell:
-        answer = _rodcal.compare(native, robust, draws, seed, tell)
+        answer = _rodcal.compare(native, robust, draws, seed, None, tell)
     warn(answer.warnings)
     return ComparisonResult(answer)
 
 
 def diagnose_calibration(
-    campaign: CampaignLike, mode: CompensationMode | None = None, *, apply: bool = False
+    campaign: CampaignLike,
+    mode: CompensationMode | None = None,
+    *,
+    apply: bool = False,
+    progress: Progress = False,
 ) -> DiagnosisResult:
     """Which physics of robot, rod, fixture or procedure a calibration leaves out.
 
@@ -189,7 +197,9 @@ def diagnose_calibration(
     >>> found.verdict, round(found.noise_um, 1)
     ('consistent', 16.7)
     """
-    answer = _rodcal.diagnose_calibration(as_campaign(campaign)._native, mode, apply)
+    native = as_campaign(campaign)._native
+    with Told(progress, "diagnosing") as tell:
+        answer = _rodcal.diagnose_calibration(native, mode, apply, tell)
     warn(answer.warnings)
     return DiagnosisResult(answer)
 
@@ -200,11 +210,13 @@ def predict(
     *,
     tool_mm: Sequence[float] | None = None,
     aligned: bool = False,
+    progress: Progress = False,
 ) -> PredictionResult:
     """Where a robot's tip is at poses of shape (n, joints), in degrees (mm of prismatic joints).
 
     ``tool_mm`` is the tip in {T}, mm (the one that the robot was calibrated with, else the flange).
-    ``aligned`` states the uncertainty that is left after base and tool were aligned to these poses.
+    ``aligned`` states the uncertainty that is left after base and tool were aligned to these poses, of
+    which there may be as many as a file may hold (a million).
     An array of ``float64`` is read where it is, and not copied.
 
     >>> link = {"d_mm": 0.0, "alpha_deg": 0.0, "beta_deg": 0.0, "theta_offset_deg": 0.0}
@@ -217,7 +229,9 @@ def predict(
         found, expected = f"of shape {joints.shape}", "an array of shape (n, joints)"
         raise InputError(f"`joints_deg` is {found}, expected {expected}", found=found, expected=expected)
     tool = None if tool_mm is None else [float(x) for x in tool_mm]
-    return PredictionResult(_rodcal.predict(as_robot(robot)._native, joints, tool, aligned))
+    native = as_robot(robot)._native
+    with Told(progress, "predicting") as tell:
+        return PredictionResult(_rodcal.predict(native, joints, tool, aligned, tell))
 
 
 def simulate(
@@ -293,21 +307,26 @@ def design_rod(
     >>> result.front[0].c_rod_um < result.front[-1].c_rod_um, result.evaluated > result.feasible
     (True, True)
     """
-    wish: str | tuple[str, str | None]
-    if isinstance(design, Mapping):
-        tubes = None if catalogue is None else _text.csv_text(catalogue, "<catalogue>")
-        own = dict(design)
-        if tubes is not None:
-            own["catalogue"] = {**own.get("catalogue", {}), "file": "<catalogue>"}
-        wish = _text.toml(own), tubes
-    else:
-        wish = os.fspath(design)
+    wish = wish_of(design, catalogue)
     native = None if campaign is None else as_campaign(campaign, plan=True)._native
     other = None if base is None else as_rod(base)._native
     with Told(progress, "looking at rods") as tell:
-        answer = _rodcal.design_rod(wish, other, samples, refine, seed, native, count, tell)
+        answer = _rodcal.design_rod(wish, other, samples, refine, seed, native, count, None, tell)
     warn(answer.warnings)
     return RodDesignResult(answer)
+
+
+def wish_of(
+    design: Mapping[str, Any] | PathLike, catalogue: Table | None
+) -> str | tuple[str, str | None]:
+    """A design file's name, or the text of a design with that of its catalogue."""
+    if not isinstance(design, Mapping):
+        return os.fspath(design)
+    tubes = None if catalogue is None else _text.csv_text(catalogue, "<catalogue>")
+    own = dict(design)
+    if tubes is not None:
+        own["catalogue"] = {**own.get("catalogue", {}), "file": "<catalogue>"}
+    return _text.toml(own), tubes
 
 
 def design_poses(
@@ -392,6 +411,7 @@ def forecast(
     at: ArrayLike | Table | PathLike | None = None,
     volume_mm: Sequence[float] | None = None,
     seed: int = 1,
+    progress: Progress = False,
 ) -> ForecastResult:
     """What error to expect of every mode, before anything is recorded: the budget of ``rods``.
 
@@ -405,7 +425,8 @@ def forecast(
     native = as_campaign(campaign, plan=True)._native
     expected = _expected(native, noise_um, repeatability_um, instrument_um, at, volume_mm)
     natives = [as_rod(rod)._native for rod in rods]
-    answer = _rodcal.forecast(native, natives, count, expected, seed)
+    with Told(progress, "forecasting") as tell:
+        answer = _rodcal.forecast(native, natives, count, expected, seed, tell)
     warn(answer.warnings)
     return ForecastResult(answer)
 

@@ -59,6 +59,10 @@ class Rod:
         rod._native = native
         return rod
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickled with its text; where it is read again it needs no file."""
+        return _rod_of_text, (self._native.path or "<rod>", self._native.text)
+
     @property
     def name(self) -> str:
         """Its name."""
@@ -131,6 +135,10 @@ class Readings:
         readings._native = native
         return readings
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickled with their text; where they are read again they need no file."""
+        return _readings_of_text, (self._native.file, self._native.text)
+
     def __len__(self) -> int:
         return len(self._native)
 
@@ -200,6 +208,10 @@ class Robot:
         robot = cls.__new__(cls)
         robot._native = native
         return robot
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickled with its texts; where it is read again it needs no file."""
+        return _robot_of_texts, self._native.texts
 
     @property
     def name(self) -> str:
@@ -278,6 +290,10 @@ class Campaign:
         campaign._native = native
         return campaign
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickled with all texts that it was read from; where it is read again it needs no file."""
+        return _campaign_of_texts, self._native.texts
+
     @property
     def file(self) -> str:
         """Its file, ``<campaign>`` where it was built in memory."""
@@ -323,6 +339,25 @@ class Campaign:
         return f"<Campaign {self.file}: {self.robot_name}{rod}, {self.poses} poses>"
 
 
+# By which inputs are unpickled.
+
+
+def _rod_of_text(file: str, text: str) -> Rod:
+    return Rod._of(_rodcal.Rod.from_text(file, text))
+
+
+def _readings_of_text(file: str, text: str) -> Readings:
+    return Readings._of(_rodcal.Readings.from_text(file, text))
+
+
+def _robot_of_texts(*texts: Any) -> Robot:
+    return Robot._of(_rodcal.Robot.from_text(*texts))
+
+
+def _campaign_of_texts(file: str, text: str, texts: dict[str, str], plan: bool) -> Campaign:
+    return Campaign._of(_rodcal.Campaign.from_texts(file, text, texts, plan))
+
+
 def _name_robot(keys: dict[str, Any], texts: dict[str, str]) -> None:
     """Puts the name of the robot into the keys, and its text beside the others."""
     robot = keys.get("robot")
@@ -331,6 +366,9 @@ def _name_robot(keys: dict[str, Any], texts: dict[str, str]) -> None:
     if not isinstance(robot, Robot):
         return
     native = robot._native
+    if native.texts[-1] is not None:
+        found, expected = "a robot with a table of corrections", "a robot without: a campaign has no place for one"
+        raise InputError(f"`robot` is {found}, expected {expected}", found=found, expected=expected)
     keys["robot"] = native.file
     texts[native.file] = native.text
     for key, link in zip(("base_link", "tip_link"), native.links):

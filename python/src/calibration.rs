@@ -8,9 +8,12 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rodcal::answer;
 use rodcal::calibration::simulate::{Plan, planned_poses};
-use rodcal::calibration::{CompareOptions, Mode, Options, Robust, default_mode};
+use rodcal::calibration::{
+    Calibration, CompareOptions, CrossValidation, Draws, Mode, Options, Robust, default_mode,
+};
 use rodcal::diagnosis::calibration::Neighbours;
 use rodcal::files::{self, Existing};
+use rodcal::limits;
 use rodcal::report::prediction::{self, Prediction};
 use rodcal::robot::PredictionQuery;
 use rodcal::units::{MM, UM};
@@ -27,7 +30,7 @@ pub fn mode_named(py: Python<'_>, mode: Option<&str>) -> PyResult<Option<Mode>> 
     mode.map(|mode| choice(py, "mode", mode, &modes)).transpose()
 }
 
-fn robust_named(py: Python<'_>, robust: &str) -> PyResult<Robust> {
+pub fn robust_named(py: Python<'_>, robust: &str) -> PyResult<Robust> {
     let weights = [("none", Robust::None), ("huber", Robust::Huber), ("tukey", Robust::Tukey)];
     choice(py, "robust", robust, &weights)
 }
@@ -47,7 +50,7 @@ fn rows<'py>(py: Python<'py>, rows: &[Vector3<f64>], unit: f64) -> PyResult<Boun
 }
 
 #[pyfunction]
-#[pyo3(signature = (campaign, mode, robust, prune, folds))]
+#[allow(clippy::too_many_arguments)]
 pub fn calibrate<'py>(
     py: Python<'py>,
     campaign: &Bound<'py, Campaign>,
@@ -55,14 +58,21 @@ pub fn calibrate<'py>(
     robust: &str,
     prune: bool,
     folds: Option<usize>,
+    held_out: Option<Vec<(usize, [f64; 3])>>,
+    progress: Option<Py<PyAny>>,
 ) -> PyResult<(Answer, Bound<'py, PyDict>)> {
     let own = campaign.get();
     let campaign = &own.campaign;
     let mode = mode_named(py, mode)?.unwrap_or_else(|| default_mode(campaign));
     let options = Options { robust: robust_named(py, robust)?, prune };
     let folds = folds.map(|folds| within(py, "folds", folds, 2, 1000)).transpose()?;
-    let (answer, calibration) = run(py, None, Progress::default(), |_| {
-        answer::calibrate(campaign, mode, &options, folds, &neighbours(own))
+    let (answer, calibration) = run(py, progress, Progress::of_jobs(), |_| match &held_out {
+        None => answer::calibrate(campaign, mode, &options, folds, &neighbours(own)),
+        Some(predicted) => {
+            let predicted = predicted.iter().map(|(row, m)| (*row, Vector3::from(*m))).collect::<Vec<_>>();
+            let of = |_: &Calibration, folds| CrossValidation::of(campaign, folds, predicted.clone());
+            answer::calibrate_held_out(campaign, mode, &options, folds, &neighbours(own), &of)
+        }
     })?;
     let arrays = PyDict::new(py);
     arrays.set_item("deviations_um", rows(py, &calibration.deviations, UM)?)?;
@@ -78,18 +88,30 @@ pub fn compare(
     robust: &str,
     draws: usize,
     seed: u64,
+    drawn: Option<Vec<Option<Vec<f64>>>>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Answer> {
     let campaign = &campaign.get().campaign;
-    let options = CompareOptions {
+    let options = compared(py, robust, draws, seed)?;
+    if let Some(drawn) = drawn.as_ref().filter(|drawn| drawn.len() != draws) {
+        return Err(wrong(py, "drawn", format!("{} draws", drawn.len()), draws.to_string()));
+    }
+    let counted = Progress::of(options.draws as u64);
+    run(py, progress, counted, |progress| match drawn {
+        None => answer::compare(campaign, &options, &|_| progress.more(1)),
+        Some(drawn) => Ok(answer::compare_drawn(campaign, Draws::new(campaign, &options)?, drawn)),
+    })
+    .map(Answer)
+}
+
+/// How modes are compared.
+pub fn compared(py: Python<'_>, robust: &str, draws: usize, seed: u64) -> PyResult<CompareOptions> {
+    Ok(CompareOptions {
         calibration: Options { robust: robust_named(py, robust)?, ..Options::default() },
         draws: within(py, "draws", draws, 50, 100_000)?,
         seed,
         ..CompareOptions::default()
-    };
-    let counted = Progress::of(options.draws as u64);
-    run(py, progress, counted, |progress| answer::compare(campaign, &options, &|_| progress.more(1)))
-        .map(Answer)
+    })
 }
 
 #[pyfunction]
@@ -98,6 +120,7 @@ pub fn diagnose_calibration(
     campaign: &Bound<'_, Campaign>,
     mode: Option<&str>,
     apply: bool,
+    progress: Option<Py<PyAny>>,
 ) -> PyResult<Answer> {
     let own = campaign.get();
     if apply && !own.is_file {
@@ -110,7 +133,7 @@ pub fn diagnose_calibration(
     }
     let campaign = &own.campaign;
     let mode = mode_named(py, mode)?.unwrap_or_else(|| default_mode(campaign));
-    run(py, None, Progress::default(), |_| {
+    run(py, progress, Progress::of_jobs(), |_| {
         answer::diagnose_calibration(campaign, mode, &neighbours(own), apply)
     })
     .map(Answer)
@@ -161,6 +184,7 @@ pub fn predict(
     joints: PyReadonlyArray2<'_, f64>,
     tool_mm: Option<[f64; 3]>,
     aligned: bool,
+    progress: Option<Py<PyAny>>,
 ) -> PyResult<Predicted> {
     let robot = &robot.get().robot;
     let units: Vec<f64> = robot.joints.iter().zip(1..).map(|(joint, n)| joint.column(n).1).collect();
@@ -168,6 +192,10 @@ pub fn predict(
     if width != units.len() || count == 0 {
         let expected = format!("an array of shape (n, {}), n ≥ 1", units.len());
         return Err(wrong(py, "joints", format!("of shape ({count}, {width})"), expected));
+    }
+    // what is aligned is held whole: as many poses as a file may have
+    if aligned {
+        limits::check("<joints>", count, limits::TABLE_ROWS, "rows").or_raise(py)?;
     }
     // a view of the caller's array, whatever its strides
     let view = joints.as_array();
@@ -180,7 +208,7 @@ pub fn predict(
     if !is_finite {
         return Err(wrong(py, "joints", "not finite".into(), "finite numbers".into()));
     }
-    run(py, None, Progress::default(), |_| {
+    run(py, progress, Progress::of_jobs(), |_| {
         let moved = robot.after_moves(&values);
         let query = |(row, joints): (usize, &[f64])| PredictionQuery {
             pose: (row + 1).to_string(),

@@ -1,5 +1,6 @@
 //! What is asked about rods, poses and loads that do not exist yet.
 
+use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 
 use pyo3::prelude::*;
@@ -16,6 +17,7 @@ use crate::arguments::{choice, finite, positive, within};
 use crate::calibration::mode_named;
 use crate::errors::{IntoPython, wrong};
 use crate::inputs::{Campaign, Rod};
+use crate::parts::take_in;
 use crate::work::{Progress, run};
 
 /// A design file, or the text of one with what it calls its catalogue.
@@ -26,15 +28,37 @@ pub enum Design {
 }
 
 impl Design {
-    fn wish(self, py: Python<'_>) -> PyResult<Wish> {
-        match self {
-            Design::File(path) => Wish::read(&path),
-            Design::Text(text, tubes) => Wish::from_toml("<design>", &text, &|name| match &tubes {
-                Some(tubes) => Ok(("<catalogue>".into(), tubes.clone())),
-                None => Ok((name.to_owned(), files::read_text(Path::new(name))?)),
-            }),
-        }
-        .or_raise(py)
+    pub fn wish(self, py: Python<'_>) -> PyResult<Wish> {
+        self.read(py).map(|(wish, ..)| wish)
+    }
+
+    /// What is searched, with the text that says so and that of the catalogue that it names.
+    pub fn read(self, py: Python<'_>) -> PyResult<(Wish, String, Option<String>)> {
+        let tubes = RefCell::new(None);
+        let opened = |path: PathBuf| -> rodcal::Result<(String, String)> {
+            let text = files::read_text(&path)?;
+            *tubes.borrow_mut() = Some(text.clone());
+            Ok((path.display().to_string(), text))
+        };
+        let (text, wish) = match self {
+            Design::File(path) => {
+                let folder = path.parent().unwrap_or(Path::new(""));
+                let text = files::read_text(&path).or_raise(py)?;
+                let file = path.display().to_string();
+                let wish = Wish::from_toml(&file, &text, &|name| opened(folder.join(name)));
+                (text, wish)
+            }
+            Design::Text(text, Some(known)) => {
+                let named = |_: &str| Ok(("<catalogue>".to_owned(), known.clone()));
+                let wish = Wish::from_toml("<design>", &text, &named).or_raise(py)?;
+                return Ok((wish, text, Some(known)));
+            }
+            Design::Text(text, None) => {
+                let wish = Wish::from_toml("<design>", &text, &|name| opened(name.into()));
+                (text, wish)
+            }
+        };
+        Ok((wish.or_raise(py)?, text, tubes.into_inner()))
     }
 }
 
@@ -49,6 +73,7 @@ pub fn design_rod(
     seed: u64,
     campaign: Option<&Bound<'_, Campaign>>,
     count: Option<usize>,
+    parts: Option<&Bound<'_, PyAny>>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Answer> {
     let wish = design.wish(py)?;
@@ -60,10 +85,12 @@ pub fn design_rod(
         seed,
     };
     let searched = asked.searched(&wish, samples).or_raise(py)?;
-    let all = wish.combinations();
-    let counted = Progress::of(samples.map_or(all, |samples| samples.min(all)));
+    let mut search = Search::new(&wish, searched).or_raise(py)?;
+    if let Some(parts) = parts {
+        take_in(py, &mut search, searched, &wish, parts)?;
+    }
+    let counted = Progress::of(search.count());
     run(py, progress, counted, |progress| {
-        let mut search = Search::new(&wish, searched)?;
         while !search.is_done() {
             search.go_on(&|more| progress.more(more))?;
         }
@@ -206,13 +233,14 @@ pub fn forecast(
     count: Option<usize>,
     expected: Expected,
     seed: u64,
+    progress: Option<Py<PyAny>>,
 ) -> PyResult<Answer> {
     expected.check(py)?;
     let at = expected.place(py)?;
     let count = count.map(|count| within(py, "count", count, 1, 20_000)).transpose()?;
     let rods: Vec<rodcal::rod::Rod> = rods.iter().map(|rod| rod.get().rod.clone()).collect();
     let campaign = &campaign.get().campaign;
-    run(py, None, Progress::default(), |_| {
+    run(py, progress, Progress::of_jobs(), |_| {
         let budget = Budget { seed, ..expected.budget(campaign)? };
         answer::forecast(campaign, &rods, budget, &at, count)
     })

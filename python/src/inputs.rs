@@ -1,5 +1,6 @@
 //! Rods, readings, robots and campaigns as Python holds them.
 
+use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -122,8 +123,8 @@ pub struct Robot {
     pub file: String,
     pub text: String,
     pub links: [Option<String>; 2],
-    /// What stands beside a URDF, where it was read too.
-    pub beside: Option<String>,
+    /// Names and texts of what stands beside a URDF: effects and corrections.
+    pub beside: [Option<(String, String)>; 2],
 }
 
 #[pymethods]
@@ -150,8 +151,7 @@ impl Robot {
             let more = corrections_from_csv(name, text, robot.joints.len()).or_raise(py)?;
             robot.effects.extend(more);
         }
-        let beside = effects.map(|(_, text)| text);
-        Ok(Robot { robot, file, text, links: [base_link, tip_link], beside })
+        Ok(Robot { robot, file, text, links: [base_link, tip_link], beside: [effects, corrections] })
     }
 
     #[staticmethod]
@@ -177,7 +177,18 @@ impl Robot {
 
     #[getter]
     fn beside(&self) -> Option<&str> {
-        self.beside.as_deref()
+        self.beside[0].as_ref().map(|(_, text)| text.as_str())
+    }
+
+    /// What [`Robot::from_text`] makes the same robot from, on another machine too.
+    #[getter]
+    #[allow(clippy::type_complexity)]
+    fn texts(
+        &self,
+    ) -> (&str, &str, Option<&str>, Option<&str>, Option<(String, String)>, Option<(String, String)>) {
+        let ([base, tip], [effects, corrections]) = (&self.links, self.beside.clone());
+        let (base, tip) = (base.as_deref(), tip.as_deref());
+        (&self.file, &self.text, base, tip, effects, corrections)
     }
 
     #[getter]
@@ -208,17 +219,43 @@ pub struct Campaign {
     pub campaign: rodcal::calibration::Campaign,
     /// Read from a file of its own, beside which others may stand.
     pub is_file: bool,
+    /// What it was read from: its text, the texts that it names, and whether it is a plan.
+    text: String,
+    texts: BTreeMap<String, String>,
+    is_plan: bool,
+}
+
+impl Campaign {
+    fn of(
+        file: &str,
+        text: String,
+        open: &dyn Fn(&str) -> Result<String>,
+        is_plan: bool,
+        is_file: bool,
+    ) -> Result<Campaign> {
+        let texts = RefCell::new(BTreeMap::new());
+        let opened = |name: &str| -> Result<String> {
+            let text = open(name)?;
+            texts.borrow_mut().insert(name.to_owned(), text.clone());
+            Ok(text)
+        };
+        let campaign = match is_plan {
+            true => rodcal::calibration::Campaign::plan_from_texts(file, &text, &opened),
+            false => rodcal::calibration::Campaign::from_texts(file, &text, &opened),
+        }?;
+        Ok(Campaign { campaign, is_file, text, texts: texts.into_inner(), is_plan })
+    }
 }
 
 #[pymethods]
 impl Campaign {
     #[staticmethod]
     fn read(py: Python<'_>, path: PathBuf, is_plan: bool) -> PyResult<Campaign> {
-        let campaign = match is_plan {
-            true => rodcal::calibration::Campaign::read_plan(&path),
-            false => rodcal::calibration::Campaign::read(&path),
-        };
-        Ok(Campaign { campaign: campaign.or_raise(py)?, is_file: true })
+        let directory = path.parent().unwrap_or(Path::new(""));
+        let open = |name: &str| files::read_text(&directory.join(name));
+        let file = path.display().to_string();
+        let read = files::read_text(&path).and_then(|text| Campaign::of(&file, text, &open, is_plan, true));
+        read.or_raise(py)
     }
 
     /// Of a campaign's text and the texts that it names; what is none of those is a file.
@@ -233,11 +270,13 @@ impl Campaign {
         let open = |name: &str| -> Result<String> {
             texts.get(name).cloned().map_or_else(|| files::read_text(Path::new(name)), Ok)
         };
-        let campaign = match is_plan {
-            true => rodcal::calibration::Campaign::plan_from_texts(file, text, &open),
-            false => rodcal::calibration::Campaign::from_texts(file, text, &open),
-        };
-        Ok(Campaign { campaign: campaign.or_raise(py)?, is_file: false })
+        Campaign::of(file, text.to_owned(), &open, is_plan, false).or_raise(py)
+    }
+
+    /// What [`Campaign::from_texts`] makes the same campaign from, on another machine too.
+    #[getter]
+    fn texts(&self) -> (&str, &str, BTreeMap<String, String>, bool) {
+        (&self.campaign.file, &self.text, self.texts.clone(), self.is_plan)
     }
 
     #[getter]

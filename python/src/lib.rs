@@ -10,6 +10,7 @@ mod calibration;
 mod design;
 mod errors;
 mod inputs;
+mod parts;
 mod rods;
 mod work;
 
@@ -38,5 +39,10 @@ fn _rodcal(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(design::design_poses, module)?)?;
     module.add_function(wrap_pyfunction!(design::design_rig, module)?)?;
     module.add_function(wrap_pyfunction!(design::forecast, module)?)?;
+    module.add_function(wrap_pyfunction!(parts::design_parts, module)?)?;
+    module.add_function(wrap_pyfunction!(parts::design_part, module)?)?;
+    module.add_function(wrap_pyfunction!(parts::compare_part, module)?)?;
+    module.add_function(wrap_pyfunction!(parts::folds, module)?)?;
+    module.add_function(wrap_pyfunction!(parts::calibrate_part, module)?)?;
     Ok(())
 }

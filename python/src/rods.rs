@@ -82,12 +82,13 @@ pub fn diagnose_rig(
     rod: Option<&Bound<'_, Rod>>,
     readings: &Bound<'_, Readings>,
     apply: bool,
+    progress: Option<Py<PyAny>>,
 ) -> PyResult<Answer> {
     let rod = rod.map(Bound::get);
     // a rod in memory stands beside nothing
     let beside = rod.and_then(|rod| rod.path.as_deref());
     let readings = &readings.get().readings;
-    run(py, None, Progress::default(), |_| {
+    run(py, progress, Progress::of_jobs(), |_| {
         let others = beside.map(rods_beside).unwrap_or_default();
         let named = |what: &str| match what {
             "rod" => "rod-diagnosed.toml".to_owned(),

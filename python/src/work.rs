@@ -21,17 +21,23 @@ const TICK: Duration = Duration::from_millis(100);
 /// Of the thread that works: what a program's first thread usually has.
 const STACK: usize = 8 << 20;
 
-/// How far the work is.
+/// How far the work is: what it counts itself, else the library's jobs.
 #[derive(Default)]
 pub struct Progress {
     done: AtomicU64,
     total: AtomicU64,
+    is_of_jobs: bool,
 }
 
 impl Progress {
     /// Of so many tasks.
     pub fn of(total: u64) -> Progress {
-        Progress { done: AtomicU64::new(0), total: AtomicU64::new(total) }
+        Progress { total: AtomicU64::new(total), ..Progress::default() }
+    }
+
+    /// Of work that counts nothing: the jobs that are done say that it goes on.
+    pub fn of_jobs() -> Progress {
+        Progress { is_of_jobs: true, ..Progress::default() }
     }
 
     /// So many more are done. Loops without jobs of their own count too, and can be stopped here.
@@ -53,6 +59,7 @@ pub fn run<T: Send>(
     let tell = |py: Python<'_>| -> PyResult<()> {
         let Some(progress) = &progress else { return Ok(()) };
         let [done, total] = [&counted.done, &counted.total].map(|count| count.load(Ordering::Relaxed));
+        let done = if counted.is_of_jobs { stop.jobs() } else { done };
         progress.call1(py, (done, (total > 0).then_some(total))).map(drop)
     };
     let done = py.detach(|| {

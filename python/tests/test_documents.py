@@ -21,8 +21,10 @@ def test_docstrings(name: str) -> None:
     assert found.attempted > 0 or name == "rodcal.results"
 
 
-@pytest.mark.parametrize("page", ["README.md", "docs/python.md", "python/README.md"])
+@pytest.mark.parametrize("page", ["README.md", "docs/python.md", "docs/distributed.md", "python/README.md"])
 def test_what_the_pages_show(page: str) -> None:
+    if page == "docs/distributed.md":
+        pytest.importorskip("distributed")
     text = (PROJECT / page).read_text(encoding="utf-8")
     blocks = [block.split("```")[0] for block in text.split("```python\n")[1:]]
     shown = "\n\n".join(block for block in blocks if ">>>" in block)

@@ -106,6 +106,28 @@ def test_progress_counts_up_to_all() -> None:
     assert told == sorted(told)
 
 
+def test_what_nobody_can_count_says_that_it_goes_on() -> None:
+    arm = rodcal.Robot.read("builtin:tx90")
+    asked: list[tuple[str, Callable[..., object]]] = [
+        ("calibrate", lambda tell: rodcal.calibrate(TX90, folds=5, progress=tell)),
+        ("diagnose_calibration", lambda tell: rodcal.diagnose_calibration(TX90, progress=tell)),
+        ("diagnose_rig", lambda tell: rodcal.diagnose_rig("rods/5.toml", "stiffness_data/5.csv", progress=tell)),
+        ("forecast", lambda tell: rodcal.forecast(TX90, progress=tell)),
+        ("predict", lambda tell: rodcal.predict(arm, np.zeros((9000, 6)), progress=tell)),
+    ]
+    for name, ask in asked:
+        told: list[tuple[int, int | None]] = []
+        ask(lambda done, total: told.append((done, total)))
+        assert told[-1][0] > 0 and told[-1][1] is None, name
+        assert told == sorted(told), name
+
+
+def test_what_is_held_whole_is_no_more_than_a_file_may_have() -> None:
+    arm = rodcal.Robot.read("builtin:tx90")
+    with pytest.raises(rodcal.InputError, match="at most 1000000"):
+        rodcal.predict(arm, np.zeros((1_000_001, 6)), aligned=True)
+
+
 def test_a_bar_is_drawn_and_wiped(capsys: pytest.CaptureFixture[str]) -> None:
     rodcal.compare(TX90, draws=50, progress=True)
     assert "comparing modes" in capsys.readouterr().err

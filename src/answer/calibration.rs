@@ -3,7 +3,8 @@
 use super::Answer;
 use crate::calibration::campaign::Recording;
 use crate::calibration::{
-    self, Calibration, Campaign, CompareOptions, Compensation, Mode, Options, write_back, write_beside,
+    self, Calibration, Campaign, CompareOptions, Compensation, CrossValidation, Draws, Mode, Options,
+    write_back, write_beside,
 };
 use crate::diagnosis::calibration::{Neighbours, suspected};
 use crate::error::Result;
@@ -21,14 +22,27 @@ pub fn calibrate<'c>(
     folds: Option<usize>,
     others: &Neighbours,
 ) -> Result<(Answer, Calibration<'c>)> {
+    calibrate_held_out(campaign, mode, options, folds, others, &|calibrated, folds| {
+        let compensation = Compensation::new(campaign, mode)?;
+        calibration::cross_validate(campaign, calibrated, &compensation, folds, options)
+    })
+}
+
+/// As [`calibrate`], with `held_out` for what predicts every pose from a calibration without it:
+/// others may have done that.
+///
+/// # Errors
+/// As [`calibrate`], and what `held_out` says.
+pub fn calibrate_held_out<'c>(
+    campaign: &'c Campaign,
+    mode: Mode,
+    options: &Options,
+    folds: Option<usize>,
+    others: &Neighbours,
+    held_out: &dyn Fn(&Calibration, usize) -> Result<CrossValidation>,
+) -> Result<(Answer, Calibration<'c>)> {
     let calibrated = calibration::calibrate(campaign, mode, options)?;
-    let cross_validation = match folds {
-        Some(folds) => {
-            let compensation = Compensation::new(campaign, mode)?;
-            Some(calibration::cross_validate(campaign, &calibrated, &compensation, folds, options)?)
-        }
-        None => None,
-    };
+    let cross_validation = folds.map(|folds| held_out(&calibrated, folds)).transpose()?;
     let cross_validation = cross_validation.as_ref();
     let mut report = report::calibration::report(campaign, &calibrated, cross_validation);
     report.provenance = provenance(campaign);
@@ -63,10 +77,17 @@ pub fn compare(
     options: &CompareOptions,
     progress: &(dyn Fn(usize) + Sync),
 ) -> Result<Answer> {
-    let comparison = calibration::compare(campaign, options, progress)?;
+    let draws = Draws::new(campaign, options)?;
+    let drawn = draws.means(0..options.draws, progress);
+    Ok(compare_drawn(campaign, draws, drawn))
+}
+
+/// As [`compare`], from draws that others may have made: the means of all of them, in order.
+pub fn compare_drawn(campaign: &Campaign, draws: Draws<'_>, drawn: Vec<Option<Vec<f64>>>) -> Answer {
+    let comparison = draws.comparison(drawn);
     let mut report = report::comparison::report(campaign, &comparison);
     report.provenance = provenance(campaign);
-    Ok(Answer::new(report::comparison::json(campaign, &comparison), report))
+    Answer::new(report::comparison::json(campaign, &comparison), report)
 }
 
 /// Where it all comes from.

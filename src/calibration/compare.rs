@@ -6,6 +6,8 @@
 //! included (B. Efron, R. Tibshirani, *An Introduction to the Bootstrap*, 1993, ch. 13). Without a
 //! validation file the held-out errors of a cross-validation are compared.
 
+use std::ops::Range;
+
 use super::calibrate::calibrate;
 use super::calibrate_from::calibrate_from;
 use super::campaign::Campaign;
@@ -110,60 +112,98 @@ pub fn compare<'c>(
     options: &CompareOptions,
     progress: &(dyn Fn(usize) + Sync),
 ) -> Result<Comparison<'c>> {
-    let modes = modes(campaign);
-    let compensations =
-        modes.iter().map(|&mode| Compensation::new(campaign, mode)).collect::<Result<Vec<_>>>()?;
-    let calibrations = modes
-        .iter()
-        .map(|&mode| calibrate(campaign, mode, &options.calibration))
-        .collect::<Result<Vec<_>>>()?;
-    let cross_validations = match &campaign.validation {
-        Some(_) => None,
-        None => Some(
-            calibrations
-                .iter()
-                .zip(&compensations)
-                .map(|(c, with)| cross_validate(campaign, c, with, options.folds, &options.calibration))
-                .collect::<Result<Vec<_>>>()?,
-        ),
-    };
-    let mut comparison = Comparison {
-        calibrations,
-        cross_validations,
-        intervals: Vec::new(),
-        differences: Vec::new(),
-        draws: options.draws,
-    };
-    let drawn = in_parallel(options.draws, |draw| {
-        let mut random = Random::seeded(options.seed, draw as u64);
-        let means = mean_errors(campaign, &comparison, &compensations, options, &mut random);
-        progress(draw + 1);
-        means
-    });
-    // a draw in which a fit fails says nothing about any mode
-    let drawn: Vec<Vec<f64>> = drawn.into_iter().filter_map(Result::ok).collect();
-    comparison.draws = drawn.len();
-    comparison.intervals = (0..modes.len())
-        .map(|m| interval(comparison.summary(m).mean, drawn.iter().map(|means| means[m]).collect()).0)
-        .collect();
-    let pairs = modes.len() * modes.len().saturating_sub(1) / 2;
-    for (m, &mode) in modes.iter().enumerate() {
-        for (k, &against) in modes.iter().enumerate().take(m) {
-            let difference = comparison.summary(m).mean - comparison.summary(k).mean;
-            let samples: Vec<f64> = drawn.iter().map(|means| means[m] - means[k]).collect();
-            let (interval, sd) = interval(difference, samples);
-            comparison.differences.push(Difference {
-                mode,
-                against,
-                mean: difference,
-                interval,
-                // two-sided 5 % over all pairs (Bonferroni), by the normal distribution of a mean
-                // of many errors
-                is_significant: sd > 0.0 && two_sided_normal(difference / sd) * pairs as f64 <= 0.05,
-            });
-        }
+    let draws = Draws::new(campaign, options)?;
+    let drawn = draws.means(0..options.draws, progress);
+    Ok(draws.comparison(drawn))
+}
+
+/// A comparison before its draws, which may be made in parts, by others: what a draw gives depends
+/// on its number alone.
+pub struct Draws<'c> {
+    campaign: &'c Campaign,
+    options: CompareOptions,
+    compensations: Vec<Compensation>,
+    comparison: Comparison<'c>,
+}
+
+impl<'c> Draws<'c> {
+    /// Calibrates in every mode.
+    ///
+    /// # Errors
+    /// As [`compare`].
+    pub fn new(campaign: &'c Campaign, options: &CompareOptions) -> Result<Draws<'c>> {
+        let modes = modes(campaign);
+        let compensations =
+            modes.iter().map(|&mode| Compensation::new(campaign, mode)).collect::<Result<Vec<_>>>()?;
+        let calibrations = modes
+            .iter()
+            .map(|&mode| calibrate(campaign, mode, &options.calibration))
+            .collect::<Result<Vec<_>>>()?;
+        let cross_validations = match &campaign.validation {
+            Some(_) => None,
+            None => Some(
+                calibrations
+                    .iter()
+                    .zip(&compensations)
+                    .map(|(c, with)| cross_validate(campaign, c, with, options.folds, &options.calibration))
+                    .collect::<Result<Vec<_>>>()?,
+            ),
+        };
+        let comparison = Comparison {
+            calibrations,
+            cross_validations,
+            intervals: Vec::new(),
+            differences: Vec::new(),
+            draws: options.draws,
+        };
+        Ok(Draws { campaign, options: *options, compensations, comparison })
     }
-    Ok(comparison)
+
+    /// Mean error of every mode in each of these draws, m; nothing of a draw in which a fit fails.
+    /// `progress` is called after each with its number, from 1.
+    pub fn means(&self, draws: Range<usize>, progress: &(dyn Fn(usize) + Sync)) -> Vec<Option<Vec<f64>>> {
+        in_parallel(draws.len(), |k| {
+            let draw = draws.start + k;
+            let mut random = Random::seeded(self.options.seed, draw as u64);
+            let means =
+                mean_errors(self.campaign, &self.comparison, &self.compensations, &self.options, &mut random);
+            progress(draw + 1);
+            means.ok()
+        })
+    }
+
+    /// The comparison by the means of all draws, in order.
+    pub fn comparison(self, drawn: Vec<Option<Vec<f64>>>) -> Comparison<'c> {
+        let mut comparison = self.comparison;
+        // a draw in which a fit fails says nothing about any mode
+        let drawn: Vec<Vec<f64>> = drawn.into_iter().flatten().collect();
+        comparison.draws = drawn.len();
+        let modes: Vec<Mode> = comparison.calibrations.iter().map(|calibration| calibration.mode).collect();
+        comparison.intervals = (0..modes.len())
+            .map(|m| {
+                let samples = drawn.iter().filter_map(|means| means.get(m).copied()).collect();
+                interval(comparison.summary(m).mean, samples).0
+            })
+            .collect();
+        let pairs = modes.len() * modes.len().saturating_sub(1) / 2;
+        for (m, &mode) in modes.iter().enumerate() {
+            for (k, &against) in modes.iter().enumerate().take(m) {
+                let difference = comparison.summary(m).mean - comparison.summary(k).mean;
+                let of_draw = |means: &Vec<f64>| Some(means.get(m)? - means.get(k)?);
+                let (interval, sd) = interval(difference, drawn.iter().filter_map(of_draw).collect());
+                comparison.differences.push(Difference {
+                    mode,
+                    against,
+                    mean: difference,
+                    interval,
+                    // two-sided 5 % over all pairs (Bonferroni), by the normal distribution of a
+                    // mean of many errors
+                    is_significant: sd > 0.0 && two_sided_normal(difference / sd) * pairs as f64 <= 0.05,
+                });
+            }
+        }
+        comparison
+    }
 }
 
 /// Mean error of every mode in one draw, m.

@@ -1,5 +1,7 @@
 //! How well a campaign predicts its own poses, each from a calibration that has not seen it.
 
+use std::ops::Range;
+
 use nalgebra::Vector3;
 
 use super::calibrate_from::calibrate_from;
@@ -58,6 +60,17 @@ pub fn cross_validate(
     folds: usize,
     options: &Options,
 ) -> Result<CrossValidation> {
+    let fold = folds_of(campaign, folds)?;
+    let all = fold.iter().max().map_or(0, |last| last + 1);
+    let predicted = predict_held_out(campaign, calibration, compensation, folds, 0..all, options)?;
+    CrossValidation::of(campaign, folds, predicted)
+}
+
+/// Fold of each row where so many are asked for, numbered from 0.
+///
+/// # Errors
+/// [`Error::Argument`] for more folds than poses.
+pub fn folds_of(campaign: &Campaign, folds: usize) -> Result<Vec<usize>> {
     let recording = &campaign.measurements;
     if folds > recording.len() {
         return Err(Error::Argument {
@@ -66,10 +79,26 @@ pub fn cross_validate(
             expected: format!("at most {}: so many poses were recorded", recording.len()),
         });
     }
-    let fold = recording.folds(folds);
-    let folds = fold.iter().max().map_or(0, |last| last + 1);
+    Ok(recording.folds(folds))
+}
+
+/// Row and deviation of every pose of these folds, each from a calibration without its fold, m: a
+/// part of a cross-validation.
+///
+/// # Errors
+/// As [`cross_validate`].
+pub fn predict_held_out(
+    campaign: &Campaign,
+    calibration: &Calibration,
+    compensation: &Compensation,
+    folds: usize,
+    held_out: Range<usize>,
+    options: &Options,
+) -> Result<Vec<(usize, Vector3<f64>)>> {
+    let (recording, fold) = (&campaign.measurements, folds_of(campaign, folds)?);
     let free: Vec<_> = calibration.parameters.iter().map(|p| p.parameter).collect();
-    let predictions = in_parallel(folds, |held_out| -> Result<Vec<(usize, Vector3<f64>)>> {
+    let predictions = in_parallel(held_out.len(), |k| -> Result<Vec<(usize, Vector3<f64>)>> {
+        let held_out = held_out.start + k;
         let rows_where = |wanted: bool| -> Vec<usize> {
             (0..recording.len()).filter(|&row| (fold[row] == held_out) == wanted).collect()
         };
@@ -80,14 +109,36 @@ pub fn cross_validate(
         let deviations = predict(&trained, &training, &recording.subset(&rows), compensation);
         Ok(rows.into_iter().zip(deviations).collect())
     });
-    let mut deviations = vec![Vector3::zeros(); recording.len()];
-    for prediction in predictions {
-        for (row, deviation) in prediction? {
-            deviations[row] = deviation;
-        }
+    Ok(predictions.into_iter().collect::<Result<Vec<_>>>()?.concat())
+}
+
+impl CrossValidation {
+    /// Of what was predicted of every pose, in parts and in any order.
+    ///
+    /// # Errors
+    /// [`Error::Argument`] for more folds than poses, and unless each row is predicted once.
+    pub fn of(
+        campaign: &Campaign,
+        folds: usize,
+        predicted: Vec<(usize, Vector3<f64>)>,
+    ) -> Result<CrossValidation> {
+        let fold = folds_of(campaign, folds)?;
+        let mut known = vec![None; fold.len()];
+        let is_once = predicted.iter().all(|(row, deviation)| {
+            known.get_mut(*row).is_some_and(|place| place.replace(*deviation).is_none())
+        });
+        let deviations: Option<Vec<Vector3<f64>>> = known.into_iter().collect();
+        let Some(deviations) = deviations.filter(|_| is_once) else {
+            return Err(Error::Argument {
+                name: "predicted",
+                found: format!("{} predictions", predicted.len()),
+                expected: format!("one of each of the {} poses", fold.len()),
+            });
+        };
+        let errors: Vec<f64> = deviations.iter().map(|d| d.norm()).collect();
+        let folds = fold.iter().max().map_or(0, |last| last + 1);
+        Ok(CrossValidation { fold, folds, summary: Summary::of(&errors), errors, deviations })
     }
-    let errors: Vec<f64> = deviations.iter().map(|d| d.norm()).collect();
-    Ok(CrossValidation { fold, folds, summary: Summary::of(&errors), errors, deviations })
 }
 
 /// Deflected tips of a recording as a calibration on `training` predicts them, less what was

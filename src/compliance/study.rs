@@ -4,6 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::sensitivity::{Sensitivity, sensitivities};
 use super::steps::{Step, steps};
+use super::strength::{Overload, overload};
 use super::{Compliance, closed_form};
 use crate::beam::{Load, Motion, NaturalMode, Physics, RodModel};
 use crate::error::Result;
@@ -55,6 +56,8 @@ pub struct Study {
     /// How all of it follows the numbers of the rod; none where numbers are beyond double
     /// precision.
     pub sensitivities: Vec<Sensitivity>,
+    /// What breaks it, or bends it for good, under one g and the contact force.
+    pub overload: Option<Overload>,
     /// What one station does under a force at another, where that was asked for.
     pub stations: Option<StationResponse>,
 }
@@ -100,6 +103,8 @@ impl Study {
             fea: Compliance::of_model(&rod, &physics, elements)?,
             steps: steps(&rod, &physics, elements)?,
             shape: Shape::new(&rod, &physics)?,
+            // numbers beyond double precision bend too far before they break
+            overload: overload(&rod, contact_force).unwrap_or_default(),
             sensitivities: sensitivities(&rod, &physics, contact_force).unwrap_or_default(),
             rod,
             mode,

@@ -1,6 +1,8 @@
 //! A search that stopped, as text: what it is a search of, how far it came, and what it has found
-//! so far. Numbers are written as their bits, so that a search that goes on is the one that never
-//! stopped.
+//! so far; and parts of a search, which many machines look at. Numbers are written as their bits,
+//! so that a search that goes on is the one that never stopped.
+
+use std::ops::Range;
 
 use super::figure::Figures;
 use super::front::{Design, Front};
@@ -23,7 +25,7 @@ impl<'w> Search<'w> {
             let bits: Vec<u64> = design.figures.0.iter().map(|figure| figure.to_bits()).collect();
             format!("{} {}", design.index, list(&bits))
         };
-        let mut lines = vec![HEAD.to_owned(), searched(self.searched)];
+        let mut lines = vec![HEAD.to_owned(), self.asked()];
         lines.push(list(&[self.done, total.feasible]));
         lines.push(list(&total.broken));
         lines.push(list(&total.impossible));
@@ -46,13 +48,45 @@ impl<'w> Search<'w> {
         lines.join("\n")
     }
 
+    /// Which rods are looked at: `all`, `samples 5000 seed 1`, `all part 0 4096`.
+    fn asked(&self) -> String {
+        let asked = match self.searched {
+            Searched::All => "all".to_owned(),
+            Searched::Samples(samples, seed) => format!("samples {samples} seed {seed}"),
+        };
+        match self.part == (0..self.count()) {
+            true => asked,
+            false => format!("{asked} part {} {}", self.part.start, self.part.end),
+        }
+    }
+
     /// The search that was kept in `file`, whose text this is.
     ///
     /// # Errors
     /// [`Error::Input`] where it is another search (another program, design file, catalogue or
     /// sample), or no search.
     pub fn from_text(wish: &'w Wish, of: Searched, file: &str, text: &str) -> Result<Search<'w>> {
-        let mut search = Search::new(wish, of)?;
+        Search::new(wish, of)?.known(file, text)
+    }
+
+    /// The part of a search whose text this is.
+    ///
+    /// # Errors
+    /// As [`Search::from_text`] and [`Search::part`].
+    pub fn part_from_text(
+        wish: &'w Wish,
+        of: Searched,
+        part: Range<u64>,
+        file: &str,
+        text: &str,
+    ) -> Result<Search<'w>> {
+        Search::part(wish, of, part)?.known(file, text)
+    }
+
+    /// This search, which has looked at nothing yet, as a text has it.
+    fn known(mut self, file: &str, text: &str) -> Result<Search<'w>> {
+        let (wish, asked) = (self.wish, self.asked());
+        let search = &mut self;
         let mut lines = Lines { file, lines: text.lines(), number: 0 };
         let another = |line: usize, found: String, expected: &str| Error::Input {
             at: Place { file: file.to_owned(), line, column: 1 },
@@ -65,12 +99,9 @@ impl<'w> Search<'w> {
             return Err(another(1, format!("{head:?}"), &format!("a search kept by this program, {HEAD:?}")));
         }
         let sampled = lines.next()?;
-        if sampled != searched(of) {
-            return Err(another(
-                2,
-                format!("{sampled:?}"),
-                &format!("the same rods to look at, {:?}", searched(of)),
-            ));
+        if sampled != asked {
+            let expected = format!("the same rods to look at, {asked:?}");
+            return Err(another(2, format!("{sampled:?}"), &expected));
         }
         let content = text.split_once(&format!("\n{CONTENT}\n")).map_or("", |(_, content)| content);
         if content != wish.content {
@@ -99,18 +130,11 @@ impl<'w> Search<'w> {
             nearest.all_limits = Some((design_of(&all[1..]), f64::from_bits(all[0])));
         }
         total.nearest = nearest;
-        if total.broken.len() != wish.limits.len() || done > search.count() {
+        if total.broken.len() != wish.limits.len() || done < search.part.start || done > search.part.end {
             return Err(lines.error());
         }
         search.done = done;
-        Ok(search)
-    }
-}
-
-fn searched(of: Searched) -> String {
-    match of {
-        Searched::All => "all".into(),
-        Searched::Samples(samples, seed) => format!("samples {samples} seed {seed}"),
+        Ok(self)
     }
 }
 
@@ -196,6 +220,41 @@ mod tests {
             assert_eq!((found.evaluated, found.feasible), (whole.evaluated, whole.feasible));
             assert_eq!((&found.front, &found.broken), (&whole.front, &whole.broken));
             assert_eq!(found.nearest, whole.nearest);
+        }
+    }
+
+    /// Also where the last part is short, where nothing keeps all limits, and of samples.
+    #[test]
+    fn parts_that_others_looked_at_are_the_search() {
+        for (limit, of) in
+            [("700", Searched::All), ("10", Searched::All), ("700", Searched::Samples(20_000, 3))]
+        {
+            let wish = wish(limit);
+            let mut all = Search::new(&wish, of).unwrap();
+            let (count, size) = (all.count(), 3 * super::super::PART);
+            for from in (0..count).step_by(size as usize) {
+                let part = from..count.min(from + size);
+                let mut one = Search::part(&wish, of, part.clone()).unwrap();
+                let unfinished = Search::part(&wish, of, part.clone()).unwrap();
+                assert!(all.take_in(unfinished).is_err());
+                while !one.is_done() {
+                    one.go_on(&|_| {}).unwrap();
+                }
+                let again = Search::part_from_text(&wish, of, part.clone(), "part", &one.to_text()).unwrap();
+                assert_eq!(again.to_text(), one.to_text());
+                all.take_in(again).unwrap();
+                // once is enough
+                assert!(all.take_in(one).is_err());
+            }
+            let whole = super::super::search(&wish, of, &|_| {}).unwrap();
+            let found = all.found().unwrap();
+            assert_eq!((found.evaluated, found.feasible), (whole.evaluated, whole.feasible));
+            assert_eq!((&found.front, &found.broken), (&whole.front, &whole.broken));
+            assert_eq!((&found.impossible, &found.nearest), (&whole.impossible, &whole.nearest));
+        }
+        let wish = wish("700");
+        for part in [0..0, 1..4096, 0..5000, 0..u64::MAX, 4096..1 << 40] {
+            assert!(Search::part(&wish, Searched::All, part).is_err());
         }
     }
 

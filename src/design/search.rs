@@ -1,4 +1,6 @@
-//! All combinations, or a sample of them, on all processors.
+//! All combinations, or a sample of them, on all processors, or in parts on many machines.
+
+use std::ops::Range;
 
 use super::figure::{Figure, Figures};
 use super::front::{Design, Front};
@@ -14,6 +16,8 @@ use crate::statistics::Random;
 /// Rods of one task, and tasks that are waited for together: memory is that of so many fronts.
 const TASK: u64 = 4096;
 const TASKS_AT_ONCE: u64 = 64;
+/// A part of a search begins and ends at multiples of so many rods.
+pub const PART: u64 = TASK;
 /// Most designs of a front: beyond, too many goals pull in too many directions to choose from.
 const MOST_DESIGNS: usize = 200_000;
 /// The stream of random numbers of the first task.
@@ -71,10 +75,16 @@ pub fn search(wish: &Wish, searched: Searched, progress: &(dyn Fn(u64) + Sync)) 
 
 /// A search on its way, block by block: it may stop between two of them, be kept as text
 /// ([`Search::to_text`]) and go on later. Where it stops changes nothing.
+///
+/// It may be done in parts too ([`Search::part`]), by others, and put together
+/// ([`Search::take_in`]): the front of the parts' fronts is the front, and all counts are sums of
+/// theirs.
 pub struct Search<'w> {
     pub(super) wish: &'w Wish,
     pub(super) searched: Searched,
+    /// Rods that the whole search looks at, and those of them that this one does.
     count: u64,
+    pub(super) part: Range<u64>,
     pub(super) done: u64,
     pub(super) total: Sum,
 }
@@ -104,7 +114,45 @@ impl<'w> Search<'w> {
                 expected: format!("at most {} rods: take larger steps, or a sample", super::MOST_RODS),
             });
         }
-        Ok(Search { wish, searched, count, done: 0, total: Sum::new(wish) })
+        Ok(Search { wish, searched, count, part: 0..count, done: 0, total: Sum::new(wish) })
+    }
+
+    /// Before any rod of a part of the search: of those from `part.start` to below `part.end` in
+    /// the order in which the whole search looks at its [`Search::count`] rods.
+    ///
+    /// # Errors
+    /// As [`Search::new`]; [`Error::Argument`] for a part that begins or ends within what is looked
+    /// at together ([`PART`]), or that is none of the search.
+    pub fn part(wish: &'w Wish, searched: Searched, part: Range<u64>) -> Result<Search<'w>> {
+        let whole = Search::new(wish, searched)?;
+        let is_bound = |at: u64| at.is_multiple_of(PART) || at == whole.count;
+        if part.is_empty() || part.end > whole.count || !is_bound(part.start) || !is_bound(part.end) {
+            return Err(Error::Argument {
+                name: "part",
+                found: format!("rods {} to {}", part.start, part.end),
+                expected: format!("multiples of {PART}, and {} at most", whole.count),
+            });
+        }
+        Ok(Search { done: part.start, part, ..whole })
+    }
+
+    /// Takes in what another search found, of the rods that come next.
+    ///
+    /// # Errors
+    /// [`Error::Argument`] for one that is not done, or not of the rods that come next, or of
+    /// another search; for a front of more than 200 000 designs.
+    pub fn take_in(&mut self, next: Search<'_>) -> Result<()> {
+        let is_same = next.searched == self.searched && next.wish.content == self.wish.content;
+        if !is_same || !next.is_done() || next.part.start != self.done || next.part.end > self.part.end {
+            return Err(Error::Argument {
+                name: "part",
+                found: format!("rods {} to {} of {}", next.part.start, next.done, next.wish.file),
+                expected: format!("all rods of a part of {} that begins at {}", self.wish.file, self.done),
+            });
+        }
+        self.total.merge(next.total);
+        self.done = next.done;
+        self.check_front()
     }
 
     /// Rods to look at in all.
@@ -119,7 +167,7 @@ impl<'w> Search<'w> {
 
     /// True where nothing is left to look at.
     pub fn is_done(&self) -> bool {
-        self.done == self.count
+        self.done == self.part.end
     }
 
     /// Looks at the next block of rods.
@@ -132,7 +180,7 @@ impl<'w> Search<'w> {
             Searched::Samples(samples, seed) if samples < all => Some(seed),
             _ => None,
         };
-        let end = count.min(done + TASK * TASKS_AT_ONCE);
+        let end = self.part.end.min(done + TASK * TASKS_AT_ONCE);
         let tasks = (end - done).div_ceil(TASK);
         let sums = in_parallel(tasks as usize, |task| {
             let from = done + task as u64 * TASK;
@@ -153,6 +201,11 @@ impl<'w> Search<'w> {
         for sum in sums {
             self.total.merge(sum?);
         }
+        self.done = end;
+        self.check_front()
+    }
+
+    fn check_front(&self) -> Result<()> {
         if self.total.front.len() > MOST_DESIGNS {
             return Err(Error::Argument {
                 name: "objectives",
@@ -160,7 +213,6 @@ impl<'w> Search<'w> {
                 expected: "fewer goals, or some of them as limits".into(),
             });
         }
-        self.done = end;
         Ok(())
     }
 
@@ -179,7 +231,7 @@ impl<'w> Search<'w> {
             }
         });
         Ok(Found {
-            evaluated: self.done,
+            evaluated: self.done - self.part.start,
             feasible: total.feasible,
             front: whole.into_iter().collect::<Result<_>>()?,
             broken: total.broken,

@@ -15,10 +15,10 @@ use super::table::{Column, Table};
 use super::{Block, Card, Report, Section};
 use crate::beam::{NaturalMode, settling_time};
 use crate::compliance::{
-    Compliance, LINEAR_SHARE, Mode, Sensitivity, Shape, StationResponse, Study, TipLoad,
+    Compliance, LINEAR_SHARE, Mode, Sensitivity, Shape, StationResponse, Strength, Study, TipLoad,
 };
 use crate::rod::{NominalNumber, Rod};
-use crate::units::{GRAM, MM, UM, URAD, significant};
+use crate::units::{GRAM, MM, MPA, UM, URAD, significant};
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
@@ -255,6 +255,9 @@ pub fn headline(study: &Study) -> String {
     if let Some(words) = beyond_linear(study) {
         return words;
     }
+    if let Some(words) = overloaded(study) {
+        return words;
+    }
     let c = study.compliance();
     let mode = match study.mode {
         Mode::Calc => "the closed form".to_owned(),
@@ -290,10 +293,43 @@ fn beyond_linear(study: &Study) -> Option<String> {
     ))
 }
 
+/// What the rod does not bear, where it bends little enough.
+fn overloaded(study: &Study) -> Option<String> {
+    let found = study.overload.as_ref()?;
+    let three = |number: f64| significant(number, 3);
+    let stress = format!(
+        "under its own weight and {} N, each along its worst axis, the stress reaches {} MPa at station {} mm",
+        three(study.contact_force),
+        three(found.stress / MPA),
+        significant(found.station / MM, 4)
+    );
+    let (name, limit) = (&study.rod.name, three(found.limit / MPA));
+    Some(match &found.kind {
+        Strength::Material(material) => format!(
+            "Rod {name} would stay bent: {stress}, and {material} yields at {limit} MPa. The numbers below are those of a rod \
+             that springs back."
+        ),
+        Strength::Wall(diameter, wall) => format!(
+            "The wall of rod {name} would buckle: {stress}, and a tube of {} mm with a wall of {} mm bears about {limit} MPa. The \
+             numbers below are those of a tube that keeps its shape. Is a diameter wrong?",
+            three(diameter / MM),
+            three(wall / MM)
+        ),
+    })
+}
+
 fn cards(study: &Study) -> Vec<Card> {
     if let Some((_, share)) = study.beyond_linear() {
         let share = if share < 1e6 { format!("{:.0} %", 100.0 * share) } else { "> 100 million %".into() };
         return vec![Card::new("Deflection over length", share, "beyond the linear model")];
+    }
+    if let (Some(found), Some(_)) = (&study.overload, overloaded(study)) {
+        let megapascals = |stress: f64| format!("{} MPa", significant(stress / MPA, 3));
+        let limit = match &found.kind {
+            Strength::Material(material) => format!("{material} yields at {}", megapascals(found.limit)),
+            Strength::Wall(..) => format!("the wall bears about {}", megapascals(found.limit)),
+        };
+        return vec![Card::new("Largest stress", megapascals(found.stress), limit)];
     }
     let c = study.compliance();
     let um = |length: f64| significant(length / UM, 4);
@@ -396,7 +432,7 @@ fn shape_figure(
 }
 
 fn warnings(study: &Study) -> Vec<String> {
-    let beyond = beyond_linear(study).into_iter();
+    let beyond = beyond_linear(study).or_else(|| overloaded(study)).into_iter();
     beyond.chain(study.rod.warnings.iter().map(ToString::to_string)).collect()
 }
 

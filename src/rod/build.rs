@@ -103,6 +103,9 @@ impl Rod {
                 return Err(wrong("poisson_ratio", material.poisson_ratio, "-1 < ν <= 1"));
             }
             positive("shear_coefficient_factor", material.shear_coefficient_factor)?;
+            if let Some(strength) = material.yield_strength {
+                positive("yield_strength", strength)?;
+            }
             let MaterialUncertainty { youngs_modulus, shear_modulus, density, shear_coefficient } =
                 material.standard_uncertainty;
             for uncertainty in [youngs_modulus, shear_modulus, density, shear_coefficient] {

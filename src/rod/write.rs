@@ -4,7 +4,7 @@ use super::{BendFlexibility, Pipe, Rod, StandardUncertainty};
 use crate::material::Material;
 use crate::section::Section;
 use crate::toml_text::{comments, in_unit, quoted};
-use crate::units::{DEG, GPA, GRAM, MM, URAD_PER_NM};
+use crate::units::{DEG, GPA, GRAM, MM, MPA, URAD_PER_NM};
 
 impl Rod {
     /// This rod as a file, the format of [`Rod::from_toml`], below `above`, lines of comments.
@@ -98,6 +98,9 @@ fn material_details(material: &Material) -> Vec<String> {
     }
     if material.shear_coefficient_factor != 1.0 {
         lines.push(format!("shear_coefficient_factor = {:?}", material.shear_coefficient_factor));
+    }
+    if let Some(strength) = material.yield_strength {
+        lines.push(format!("yield_strength_mpa = {:?}", in_unit(strength, MPA)));
     }
     let (own, usual) = (&material.standard_uncertainty, &read.standard_uncertainty);
     for (key, own, usual) in [
@@ -208,6 +211,7 @@ mod tests {
         rod.bend.section = Rectangle::solid(0.01, 0.02).into();
         rod.pipe2.material = Material::anisotropic("carbon", 118e9, 9.5e9, 0.35, 1600.0);
         rod.pipe2.material.shear_coefficient_factor = 1.07;
+        rod.pipe2.material.yield_strength = Some(205e6);
         rod.pipe2.material.standard_uncertainty.youngs_modulus = 0.03;
         rod.pipe1.material.standard_uncertainty.density = 0.0;
         rod.standard_uncertainty.length = 0.1 * MM;
@@ -220,6 +224,7 @@ mod tests {
                 (b.section, b.material.standard_uncertainty)
             );
             assert_eq!(a.material.shear_coefficient_factor, b.material.shear_coefficient_factor);
+            assert_eq!(a.material.yield_strength, b.material.yield_strength);
             assert!((a.material.poisson_ratio - b.material.poisson_ratio).abs() < 1e-12);
         }
         assert_eq!(rod.standard_uncertainty, written.standard_uncertainty);

@@ -38,15 +38,36 @@ fn hostile_names_are_data_everywhere() {
     let readings = sandbox.read("stiffness_data/5.csv");
     sandbox.write("stiffness_data/5.csv", &format!("# source = {NAME}\n{readings}"));
     let campaign = "campaigns/tx90-5/campaign.toml";
-    sandbox.write(campaign, &sandbox.read(campaign).replace("builtin:tx90", "../../robots/tx90.toml"));
+    let text = sandbox.read(campaign).replace("builtin:tx90", "../../robots/tx90.toml");
+    sandbox.write(campaign, &text.replace("id = \"1\"", &format!("id = {WRITTEN}")));
     let quoted = format!("\"{}\"", NAME.replace('"', "\"\""));
     let measurements = sandbox.read("campaigns/tx90-5/measurements.csv");
-    let renamed = measurements.replace("\n1,1,", &format!("\n{quoted},1,"));
-    assert_ne!(renamed, measurements);
+    let renamed = measurements.lines().map(|line| match line.split_once(",1,") {
+        Some(("1", rest)) => format!("{quoted},{quoted},{rest}\n"),
+        Some((pose, rest)) if pose.parse::<u32>().is_ok() => format!("{pose},{quoted},{rest}\n"),
+        _ => format!("{line}\n"),
+    });
+    let renamed: String = renamed.collect();
+    assert!(renamed.matches("onerror").count() > 10);
     sandbox.write("campaigns/tx90-5/measurements.csv", &renamed);
     sandbox.write(
         "poses.csv",
         &format!("pose,q1_deg,q2_deg,q3_deg,q4_deg,q5_deg,q6_deg\n{quoted},0,10,80,5,6,7\n"),
+    );
+    // tubes, their material and what hangs on them
+    sandbox.write(
+        "tubes.csv",
+        &format!(
+            "name,material,outer_diameter_mm,inner_diameter_mm\n{quoted},{quoted},32,30\nb,steel,20,16\n"
+        ),
+    );
+    let design = sandbox.read("examples/design.toml").replace("\"builtin\"", "\"tubes.csv\"");
+    sandbox.write(
+        "design.toml",
+        &format!(
+            "{design}\n[material.{WRITTEN}]\nyoungs_modulus_gpa = 193\npoisson_ratio = 0.3\ndensity_kg_m3 = 7930\n\
+             [[mass]]\nname = {WRITTEN}\nstation_mm = 100\nmass_g = 20\n"
+        ),
     );
     for (k, line) in [
         "compliance rods/5.toml",
@@ -57,7 +78,11 @@ fn hostile_names_are_data_everywhere() {
         "design rig rods/5.toml --r-rod-width-percent 1",
         "compare-runs out0 out1 --json",
         "compare-runs out1 out1",
-        "simulate out8 --rod rods/5.toml --robot robots/tx90.toml --poses 6 --validation 4",
+        "compare campaigns/tx90-5/campaign.toml --draws 50",
+        "diagnose calibration campaigns/tx90-5/campaign.toml --mode fea",
+        "design rod design.toml --base rods/5.toml",
+        "design poses campaigns/tx90-5/campaign.toml --count 20 --generate 200",
+        "simulate out12 --rod rods/5.toml --robot robots/tx90.toml --poses 6 --validation 4",
     ]
     .into_iter()
     .enumerate()
@@ -70,7 +95,8 @@ fn hostile_names_are_data_everywhere() {
             continue;
         }
         let answer = answer.succeeded();
-        if !line.starts_with("simulate") {
+        let is_long = ["compare campaigns", "diagnose calibration", "design poses", "simulate"];
+        if !is_long.iter().any(|start| line.starts_with(start)) {
             let json = sandbox.run(&format!("{line} --json"));
             assert_shown(&json);
             json.json();

@@ -137,3 +137,34 @@ fn a_rod_that_bends_too_far_is_said_first() {
     assert!(answer.stderr.starts_with(&format!("warning: {says}")), "{}", answer.stderr);
     assert!(!sandbox.run("compliance rods/5.toml").succeeded().stdout.contains("beyond this model"));
 }
+
+/// What a rod does not bear is said before how much it bends: its material where that states a
+/// strength, its wall where it is a foil.
+#[test]
+fn a_rod_that_breaks_is_said_first() {
+    let sandbox = Sandbox::new();
+    let text = sandbox.read("rods/5.toml");
+    let density = "density_kg_m3 =";
+    let rods = [
+        (
+            text.replace(density, &format!("yield_strength_mpa = 5\n{density}")),
+            "Rod 5# would stay bent: under",
+        ),
+        (
+            text.replace("inner_diameter_mm = 30.0", "inner_diameter_mm = 31.984"),
+            "The wall of rod 5# would buckle: under",
+        ),
+    ];
+    for (rod, says) in rods {
+        assert_ne!(rod, text);
+        sandbox.write("rod.toml", &rod);
+        let answer = sandbox.run("compliance rod.toml --contact-force 10").succeeded();
+        assert!(answer.stdout.starts_with(says), "{}", answer.stdout);
+        assert!(answer.stderr.starts_with(&format!("warning: {says}")), "{}", answer.stderr);
+        assert!(answer.stdout.contains("at station 0 mm"));
+    }
+    sandbox.write("rod.toml", &text.replace(density, &format!("yield_strength_mpa = 205\n{density}")));
+    assert!(!sandbox.run("compliance rod.toml").succeeded().stdout.contains("MPa"));
+    sandbox.write("rod.toml", &text.replace(density, &format!("yield_strength_mpa = -1\n{density}")));
+    assert!(sandbox.run("compliance rod.toml").stderr.contains("yield_strength_mpa"));
+}

@@ -131,6 +131,28 @@ fn completions_know_the_commands() {
     }
 }
 
+/// Of the program and of every command: its name, its options, nothing on stderr.
+#[test]
+fn man_pages_have_every_command() {
+    let sandbox = Sandbox::empty();
+    let page = |command: &str| {
+        let answer = sandbox.run(&format!("man {command}")).succeeded();
+        assert_eq!(answer.stderr, "");
+        assert!(answer.stdout.contains(".TH rodcal") && answer.stdout.contains(".SH SYNOPSIS"), "{command}");
+        answer.stdout.replace("\\-", "-")
+    };
+    assert!(page("").contains("rodcal-diagnose(1)") && page("").contains("--json"));
+    assert!(page("rig").contains("rodcal-rig-fit(1)"));
+    let fit = page("rig fit");
+    assert!(fit.contains("rodcal-rig-fit") && fit.contains("--robust") && fit.contains("axis,"), "{fit}");
+    for (command, expected) in
+        [("man rig fly", "fly, expected one of fit"), ("man rig fit fit", "nothing after fit")]
+    {
+        let answer = sandbox.run(command);
+        assert!(answer.status == Some(2) && answer.stderr.contains(expected), "{}", answer.stderr);
+    }
+}
+
 #[test]
 fn version() {
     let answer = Sandbox::empty().run("--version").succeeded();

@@ -4,7 +4,7 @@
 use std::cell::RefCell;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use rayon::prelude::*;
 
@@ -33,14 +33,25 @@ pub fn both<A: Send, B: Send>(first: impl FnOnce() -> A + Send, second: impl FnO
     rayon::join(|| under(&stop, first), || under(&stop, second))
 }
 
-/// By which somebody outside stops work ([`stoppable`]).
+/// By which somebody outside stops work ([`stoppable`]), and sees that it goes on.
 #[derive(Debug, Clone, Default)]
-pub struct Stop(Arc<AtomicBool>);
+pub struct Stop(Arc<State>);
+
+#[derive(Debug, Default)]
+struct State {
+    is_asked: AtomicBool,
+    done: AtomicU64,
+}
 
 impl Stop {
     /// Work under it ends at its next job or [`checkpoint`].
     pub fn now(&self) {
-        self.0.store(true, Ordering::Relaxed);
+        self.0.is_asked.store(true, Ordering::Relaxed);
+    }
+
+    /// Jobs that are done, also those within others: how many there will be, nobody knows.
+    pub fn jobs(&self) -> u64 {
+        self.0.done.load(Ordering::Relaxed)
     }
 }
 
@@ -75,7 +86,7 @@ pub fn stoppable<T>(stop: &Stop, work: impl FnOnce() -> T) -> Option<T> {
 /// Ends the work here where it is to be stopped: for long loops without jobs.
 pub fn checkpoint() {
     let is_asked =
-        CURRENT.with_borrow(|stop| stop.as_ref().is_some_and(|stop| stop.0.load(Ordering::Relaxed)));
+        CURRENT.with_borrow(|stop| stop.as_ref().is_some_and(|stop| stop.0.is_asked.load(Ordering::Relaxed)));
     if is_asked {
         resume_unwind(Box::new(Stopped));
     }
@@ -95,7 +106,11 @@ fn under<T>(stop: &Option<Stop>, job: impl FnOnce() -> T) -> T {
     }
     let _before = Before(CURRENT.replace(stop.clone()));
     checkpoint();
-    job()
+    let result = job();
+    if let Some(Stop(state)) = stop {
+        state.done.fetch_add(1, Ordering::Relaxed);
+    }
+    result
 }
 
 #[cfg(test)]
@@ -135,7 +150,10 @@ mod tests {
         assert!(stopped.is_none());
         // nothing is left of it on any thread
         assert_eq!(rows(100).len(), 100);
-        assert_eq!(stoppable(&Stop::default(), || both(|| rows(2).len(), || 7)), Some((2, 7)));
+        let stop_two = Stop::default();
+        assert_eq!(stoppable(&stop_two, || both(|| rows(2).len(), || 7)), Some((2, 7)));
+        // all of it, both sides, two rows of four columns
+        assert_eq!(stop_two.jobs(), 1 + 2 + 2 * (1 + 4));
         // a loop without jobs asks itself
         assert!(
             stoppable(&stop, || loop {

@@ -15,6 +15,8 @@ pub const UM: f64 = 1e-6;
 pub const GRAM: f64 = 1e-3;
 /// Gigapascal in pascals.
 pub const GPA: f64 = 1e9;
+/// Pascals in a megapascal.
+pub const MPA: f64 = 1e6;
 /// Degree in radians.
 pub const DEG: f64 = std::f64::consts::PI / 180.0;
 /// Microradian in radians.

@@ -11,7 +11,7 @@ use crate::error::{Error, Result};
 use crate::material::{Material, MaterialUncertainty, isotropic_poisson_ratio, laminate};
 use crate::rod::Warning;
 use crate::toml_text::Number;
-use crate::units::{GPA, MM, significant};
+use crate::units::{GPA, MM, MPA, significant};
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a section [material.NAME], NAME being any name")]
@@ -26,6 +26,7 @@ pub(super) struct RawMaterial {
     ply_nu12: Option<Number>,
     ply_thickness_mm: Option<Number>,
     ply_angles_deg: Option<Spanned<Vec<Number>>>,
+    yield_strength_mpa: Option<Number>,
     shear_coefficient_factor: Option<Number>,
     youngs_modulus_percent: Option<Number>,
     shear_modulus_percent: Option<Number>,
@@ -86,6 +87,12 @@ impl Check<'_> {
         if let Some(factor) = &fields.shear_coefficient_factor {
             material.shear_coefficient_factor =
                 self.toml.positive(&key("shear_coefficient_factor"), factor)?;
+        }
+        if let Some(strength) = &fields.yield_strength_mpa {
+            let (key, unit) = (key("yield_strength_mpa"), MPA);
+            let megapascals = self.toml.positive(&key, strength)?;
+            self.usual(&key, megapascals, "MPa", 5.0, 10_000.0);
+            material.yield_strength = Some(megapascals * unit);
         }
         let known = &mut material.standard_uncertainty;
         for (field, own, file, target) in [

@@ -102,6 +102,7 @@ impl Pipe {
             shear_modulus: of(material.shear_modulus),
             density: of(material.density),
             poisson_ratio: of(material.poisson_ratio),
+            yield_strength: material.yield_strength.map(of),
             shear_coefficient_factor: of(material.shear_coefficient_factor),
             standard_uncertainty: material.standard_uncertainty,
         };

@@ -46,10 +46,12 @@ mod nonparametric;
 mod numbering;
 pub mod planned;
 mod response;
+mod sites;
 mod slide;
 mod structure;
 #[cfg(test)]
 mod tests;
+mod textbook;
 mod transfer;
 mod wanted;
 
@@ -58,3 +60,4 @@ pub use datum::Datum;
 pub use diagnose::{diagnose, diagnose_among};
 pub use mistakes::suspected;
 pub use model::{RigDiagnosis, RigModel};
+pub use textbook::remark;

@@ -3,8 +3,9 @@
 use super::mistakes::Mended;
 use super::model::{AsRecorded, RigDiagnosis, RigModel};
 use super::wanted::Wanted;
-use super::{another_rod, as_measured, correction, limits, mistakes, next};
+use super::{another_rod, as_measured, correction, limits, mistakes, next, sites};
 use crate::error::{Error, Place, Result};
+use crate::inference::law::propose;
 use crate::inference::{Diagnosed, Diagnosis, diagnose as infer, rms};
 use crate::rig::readings::Readings;
 use crate::rod::Rod;
@@ -85,12 +86,17 @@ pub fn diagnose_among(
         diagnosis.findings.clear();
         diagnosis.discrepancy = None;
     }
+    // of readings that a mistake has spoilt nobody knows what it has left
+    let law = match mended.found.is_empty() {
+        true => propose(&model, &diagnosis, &|terms| sites::sites(&model, terms)),
+        false => None,
+    };
     if !mended.found.is_empty() {
         diagnosis.findings.splice(0..0, mended.found);
         model.as_recorded = Some(Box::new(as_recorded(readings, rod)));
     }
     let limits = limits::limits(&model, &evidence);
-    Ok(Diagnosed { absorbed: Vec::new(), not_testable, limits, diagnosis, evidence, model })
+    Ok(Diagnosed { absorbed: Vec::new(), not_testable, limits, law, diagnosis, evidence, model })
 }
 
 /// The rod as it was found, where its deflections are so large that those of `bent` miss what

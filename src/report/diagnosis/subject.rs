@@ -2,6 +2,7 @@
 
 use serde_json::Value;
 
+use super::law::Told;
 use super::remainder::Remainder;
 use crate::inference::{Absorbed, Candidate, Diagnosis, Evidence, Limit, NotTestable, Plan};
 use crate::report::Block;
@@ -39,6 +40,8 @@ pub struct Subject<'a> {
     pub suspect: Box<dyn Fn(usize) -> Value + 'a>,
     /// What no effect explains.
     pub remainder: Option<Remainder>,
+    /// A law for that, or why there is none; `None` where nobody looked for one.
+    pub law: Option<Told<'a>>,
     /// Warnings of the input files and of the base model.
     pub warnings: Vec<String>,
     /// Head of the JSON: what was diagnosed.

@@ -1,0 +1,134 @@
+//! What data say of a number that is not linear: its evidence on a grid that grows where the
+//! posterior is.
+
+/// Most times that the grid is made finer, and most points that are added at once.
+const ROUNDS: usize = 8;
+const MOST: usize = 160;
+/// Ln of the density below its largest from which on a stretch counts for nothing.
+const NOTHING: f64 = 5.0;
+/// Ln of the density by which two neighbours may differ.
+const STEP: f64 = 0.5;
+/// Parts that a stretch is cut into.
+const PARTS: usize = 3;
+
+/// Evidence over a coordinate whose prior is even between its ends.
+#[derive(Debug, Clone)]
+pub(super) struct Posterior {
+    /// Coordinate and ln of the evidence there, ascending.
+    points: Vec<(f64, f64)>,
+}
+
+impl Posterior {
+    /// On a grid, ascending.
+    pub fn new(grid: &[f64], evidence: &dyn Fn(f64) -> f64) -> Posterior {
+        Posterior { points: grid.iter().map(|&u| (u, evidence(u))).collect() }
+    }
+
+    /// The likeliest coordinate and the ln of the evidence there.
+    pub fn best(&self) -> (f64, f64) {
+        let best = self.points.iter().copied().reduce(|a, b| if b.1 > a.1 { b } else { a });
+        best.unwrap_or((0.0, f64::NEG_INFINITY))
+    }
+
+    /// With a finer grid where it counts.
+    pub fn refine(&mut self, evidence: &dyn Fn(f64) -> f64) {
+        for _ in 0..ROUNDS {
+            let (_, most) = self.best();
+            let is_coarse = |pair: &[(f64, f64)]| {
+                let (one, other) = (pair[0].1, pair[1].1);
+                one.max(other) > most - NOTHING && (one - other).abs() > STEP
+            };
+            let mut more = Vec::new();
+            for pair in self.points.windows(2).filter(|pair| is_coarse(pair)) {
+                let (a, b) = (pair[0].0, pair[1].0);
+                more.extend((1..PARTS).map(|k| a + (b - a) * k as f64 / PARTS as f64));
+            }
+            if more.is_empty() || more.len() > MOST {
+                return;
+            }
+            self.points.extend(more.into_iter().map(|u| (u, evidence(u))));
+            self.points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        }
+    }
+
+    /// Ln of the evidence, averaged over the prior.
+    pub fn log_evidence(&self) -> f64 {
+        let (_, most) = self.best();
+        let [first, .., last] = &self.points[..] else { return most };
+        if most == f64::NEG_INFINITY {
+            return most;
+        }
+        most + (self.masses().map(|(_, mass)| mass).sum::<f64>() / (last.0 - first.0)).ln()
+    }
+
+    /// Each stretch with its mass, relative.
+    fn masses(&self) -> impl Iterator<Item = ((f64, f64), f64)> + '_ {
+        let (_, most) = self.best();
+        let density = move |point: (f64, f64)| (point.1 - most).exp();
+        self.points.windows(2).map(move |pair| {
+            let mass = 0.5 * (density(pair[0]) + density(pair[1])) * (pair[1].0 - pair[0].0);
+            ((pair[0].0, pair[1].0), mass)
+        })
+    }
+
+    /// The coordinate below which so much of the posterior is.
+    pub fn quantile(&self, p: f64) -> f64 {
+        let whole: f64 = self.masses().map(|(_, mass)| mass).sum();
+        let mut below = 0.0;
+        for ((a, b), mass) in self.masses() {
+            if below + mass >= p * whole && mass > 0.0 {
+                return a + (b - a) * (p * whole - below) / mass;
+            }
+            below += mass;
+        }
+        self.best().0
+    }
+
+    /// Coordinates that count, each with its share of the posterior.
+    pub fn shares(&self) -> Vec<(f64, f64)> {
+        let count = self.points.len();
+        let (_, most) = self.best();
+        let share = |k: usize| {
+            let width = if count == 1 {
+                1.0
+            } else {
+                self.points[(k + 1).min(count - 1)].0 - self.points[k.saturating_sub(1)].0
+            };
+            (self.points[k].0, (self.points[k].1 - most).exp() * width)
+        };
+        let all: Vec<(f64, f64)> = (0..count).map(share).collect();
+        let whole: f64 = all.iter().map(|(_, share)| share).sum();
+        let counts = all.into_iter().map(|(u, share)| (u, share / whole));
+        counts.filter(|(_, share)| *share > 1e-4).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A narrow normal density between the points of a coarse grid.
+    #[test]
+    fn a_narrow_peak_is_found_and_measured() {
+        let (mean, sd) = (0.437, 0.004);
+        let evidence = |u: f64| -0.5 * ((u - mean) / sd).powi(2);
+        let grid: Vec<f64> = (0..=20).map(|k| f64::from(k) / 20.0).collect();
+        let mut posterior = Posterior::new(&grid, &evidence);
+        posterior.refine(&evidence);
+        let (low, high) = (posterior.quantile(0.025), posterior.quantile(0.975));
+        assert!((posterior.best().0 - mean).abs() < 0.2 * sd, "{:?}", posterior.best());
+        assert!(
+            (low - (mean - 1.96 * sd)).abs() < 0.15 * sd && (high - (mean + 1.96 * sd)).abs() < 0.15 * sd
+        );
+        // √(2π)·σ over a prior of width 1
+        let expected = ((2.0 * std::f64::consts::PI).sqrt() * sd).ln();
+        assert!((posterior.log_evidence() - expected).abs() < 0.02);
+    }
+
+    #[test]
+    fn one_point_is_its_own_posterior() {
+        let posterior = Posterior::new(&[0.0], &|_| 3.0);
+        assert_eq!((posterior.log_evidence(), posterior.quantile(0.3)), (3.0, 0.0));
+        assert_eq!(posterior.shares(), [(0.0, 1.0)]);
+    }
+}

@@ -8,6 +8,7 @@ mod clean;
 mod confused;
 mod effects;
 mod labs;
+mod laws;
 mod poor;
 mod same;
 

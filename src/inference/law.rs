@@ -22,9 +22,11 @@
 mod choice;
 mod folds;
 mod form;
+mod measured;
 mod memory;
 mod posterior;
 mod proposal;
+mod proposed;
 mod remainder;
 mod scan;
 mod site;
@@ -34,5 +36,6 @@ mod tests;
 
 pub use form::{Constant, Form, FormConstant};
 pub use memory::Memory;
-pub use proposal::{Law, LawRival, NextRecord, Point, Proposed, Refusal, propose};
+pub use proposal::propose;
+pub use proposed::{Law, LawRival, NextRecord, Point, Proposed, Refusal};
 pub use site::{Course, Measure, Site};

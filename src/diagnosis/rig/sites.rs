@@ -32,6 +32,7 @@ const OF_TIME: &[Form] = &[
     Form::Threshold,
     Form::Step,
     Form::Approach,
+    Form::Decay,
     Form::Logarithm,
     Form::Harmonic,
     Form::Polynomial(1),
@@ -42,7 +43,7 @@ const OF_TIME: &[Form] = &[
 const OF_A_LEVEL: &[Form] =
     &[Form::Threshold, Form::Step, Form::Polynomial(1), Form::Polynomial(2), Form::Polynomial(3)];
 /// Times since: they fade.
-const FADING: &[Form] = &[Form::Approach, Form::Logarithm, Form::Power, Form::Polynomial(1)];
+const FADING: &[Form] = &[Form::Approach, Form::Decay, Form::Logarithm, Form::Power, Form::Polynomial(1)];
 
 /// All places, given what was found. Nothing where the displacement was imposed.
 pub(super) fn sites(model: &RigModel, terms: &[Term]) -> Vec<Site> {
@@ -59,7 +60,7 @@ pub(super) fn sites(model: &RigModel, terms: &[Term]) -> Vec<Site> {
     let loads: Vec<f64> = data.iter().map(|d| d.load).collect();
     let recording = Recording { data, moves: moves(data), by_load: courses(data, |_| 0.0) };
     let mut sites = vec![recording.of_load(
-        (Location::Part(Part::Rod), measure("ΔF", "load", "N", 1.0)),
+        (Location::Part(Part::Rod), measure("ΔF", "effective load", "N", 1.0)),
         measure("F", "load", "N", 1.0),
         (slopes, loads.clone()),
     )];
@@ -201,9 +202,13 @@ impl Recording<'_> {
         let own = || known.to_vec();
         let mut sites = Vec::new();
         if data.iter().any(|d| d.drive() < 0.0) && data.iter().any(|d| d.drive() > 0.0) {
-            let values = data.iter().map(Datum::drive).collect();
-            let variable = measure("F", "load with its sign", "N", 1.0);
-            sites.push(share(Part::Rod, variable, own(), values, OF_A_SIDE));
+            // what is softer one way may be so either way
+            for (sign, symbol, name) in
+                [(1.0, "F", "load along the positive axes"), (-1.0, "F", "load along the negative axes")]
+            {
+                let values = data.iter().map(|d| sign * d.drive()).collect();
+                sites.push(share(Part::Rod, measure(symbol, name, "N", 1.0), own(), values, OF_A_SIDE));
+            }
         }
         if before.loads(data).is_some() {
             let variable = measure("F'", "load that hung before", "N", 1.0);
@@ -216,8 +221,9 @@ impl Recording<'_> {
             sites.push(share(Part::Slide, variable.clone(), changes, wait.clone(), FADING));
             sites.push(share(Part::Rod, variable, own(), wait.clone(), FADING));
         }
-        for (variable, values, forms) in self.common() {
-            sites.push(share(Part::Rod, variable, own(), values, forms));
+        for common in self.common() {
+            let site = share(Part::Rod, common.variable, own(), common.values, common.forms);
+            sites.push(Site { courses: common.courses, ..site });
         }
         sites
     }
@@ -226,7 +232,7 @@ impl Recording<'_> {
     fn drifts(&self) -> Vec<Site> {
         let channels: Vec<Axis> =
             Axis::ALL.into_iter().filter(|axis| self.data.iter().any(|d| d.channel == *axis)).collect();
-        let of = |(variable, values, forms): (Measure, Vec<f64>, &'static [Form])| {
+        let of = |common: Common| {
             let direction = |&channel: &Axis| {
                 let name = if channels.len() > 1 { format!("d{channel}") } else { String::new() };
                 let weight = |d: &Datum| f64::from(u8::from(d.channel == channel));
@@ -235,29 +241,56 @@ impl Recording<'_> {
             Site {
                 location: Location::Part(Part::Sensors),
                 result: measure("Δy", "reading", "µm", UM),
-                variable,
+                variable: common.variable,
                 directions: channels.iter().map(direction).collect(),
-                values,
+                values: common.values,
                 moves: Vec::new(),
-                courses: Vec::new(),
-                forms,
+                courses: common.courses,
+                forms: common.forms,
             }
         };
         self.common().into_iter().map(of).collect()
     }
 
     /// What all data have in common, as far as the recording has it: time, temperature, order.
-    fn common(&self) -> Vec<(Measure, Vec<f64>, &'static [Form])> {
+    fn common(&self) -> Vec<Common> {
         let all = |of: &dyn Fn(&Datum) -> Option<f64>| -> Option<Vec<f64>> {
             let values: Vec<f64> = self.data.iter().map(of).collect::<Option<_>>()?;
-            let first = values.iter().copied().fold(f64::INFINITY, f64::min);
-            Some(values.into_iter().map(|value| value - first).collect())
+            let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+            Some(values.into_iter().map(|value| value - least).collect())
         };
-        let time = all(&|d| d.time).map(|t| (measure("t", "time", "s", 1.0), t, OF_TIME));
-        let order = all(&|d| Some(d.order as f64))
-            .map(|n| (measure("n", "number of readings before", "", 1.0), n, OF_TIME));
-        let warm = |values| (measure("T", "temperature above the lowest", "K", 1.0), values, OF_A_LEVEL);
-        let temperature = all(&|d| d.temperature).map(warm);
-        time.or(order).into_iter().chain(temperature).collect()
+        let plain = |variable, values, forms| Common { variable, values, forms, courses: Vec::new() };
+        let time = all(&|d| d.time).map(|t| plain(measure("t", "time", "s", 1.0), t, OF_TIME));
+        let order = all(&|d| Some(d.order as f64));
+        let order = order.map(|n| plain(measure("n", "number of readings before", "", 1.0), n, OF_TIME));
+        let temperature = all(&|d| d.temperature).map(|values| Common {
+            courses: self.whole(values.first().copied().unwrap_or_default()).into_iter().collect(),
+            ..plain(measure("T", "temperature above the lowest", "K", 1.0), values, OF_A_LEVEL)
+        });
+        time.into_iter().chain(order).chain(temperature).collect()
     }
+
+    /// The recording as one course, where its times are known.
+    fn whole(&self, start: f64) -> Option<Course> {
+        let mut before: Option<f64> = None;
+        let by_instant = self.data.chunk_by(|a, b| a.order == b.order);
+        let mut first = 0;
+        let instant = |part: &[Datum]| {
+            let own: Vec<usize> = (first..first + part.len()).collect();
+            first += part.len();
+            let now = part[0].time?;
+            let elapsed = before.map_or(0.0, |before| now - before);
+            before = Some(now);
+            Some((own, elapsed))
+        };
+        Some(Course { instants: by_instant.map(instant).collect::<Option<_>>()?, start })
+    }
+}
+
+/// What all data have in common.
+struct Common {
+    variable: Measure,
+    values: Vec<f64>,
+    forms: &'static [Form],
+    courses: Vec<Course>,
 }

@@ -33,8 +33,8 @@ pub fn remark(law: &Law) -> Option<String> {
         (_, Memory::Stop, _) => {
             "A stop operator is what a spring with a dry slider in series does (Jenkins)."
         }
-        (Form::Approach, _, "t") => {
-            "An exponential approach in time is what one relaxation time does (Maxwell)."
+        (Form::Approach | Form::Decay, _, "t") => {
+            "An exponential in time is what one relaxation time does (Maxwell)."
         }
         (Form::Logarithm, _, "t") => "A logarithm of time is what primary creep often follows.",
         (Form::Harmonic, _, "y") => {

@@ -85,10 +85,12 @@ impl Choice {
         let s = self.at(coordinate);
         let (followed, sign) = self.memory.remembered(site, s);
         let (largest, count) = (site.largest(), self.form.count());
-        let functions: Vec<[f64; 3]> = followed
-            .iter()
-            .map(|x| if x.is_finite() { self.form.functions(x / largest, s) } else { [0.0; 3] })
-            .collect();
+        let acts = |i: usize| site.directions.iter().any(|(_, weights)| weights[i] != 0.0);
+        let at = |(i, x): (usize, &f64)| match x.is_finite() && acts(i) {
+            true => self.form.functions(x / largest, s),
+            false => [0.0; 3],
+        };
+        let functions: Vec<[f64; 3]> = followed.iter().enumerate().map(at).collect();
         let mut columns = DMatrix::zeros(followed.len(), site.directions.len() * count);
         let mut amplitudes = Vec::with_capacity(columns.ncols());
         for (d, (_, weights)) in site.directions.iter().enumerate() {

@@ -51,7 +51,7 @@ pub(super) fn hold_out(
         let found = scan(&remainder, sites, size).laws;
         let none = remainder.fit(&nalgebra::DMatrix::zeros(n, 0)).predicted;
         let of = |law: &Scanned| {
-            let columns = law.choice.columns(&sites[law.choice.site], law.posterior.best().0, size);
+            let columns = law.choice.columns(&sites[law.choice.site], law.at, size);
             remainder.fit(&columns.columns).predicted
         };
         let best = found.first().map_or(f64::NEG_INFINITY, |law| law.log_odds);

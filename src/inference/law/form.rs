@@ -17,9 +17,11 @@ pub enum Form {
     Step,
     /// a·(1 − e^(−ξ/ξ₀)).
     Approach,
+    /// a·e^(−ξ/ξ₀).
+    Decay,
     /// a·ln(1 + ξ/ξ₀).
     Logarithm,
-    /// a·cos(2πf·ξ) + b·sin(2πf·ξ).
+    /// a·(cos(2πf·ξ) − 1) + b·sin(2πf·ξ): readings are offsets from what was read at zero.
     Harmonic,
     /// a₁·ξ + … of this degree, 1 to 3.
     Polynomial(u8),
@@ -32,7 +34,7 @@ pub enum FormConstant {
     Exponent,
     /// ξ₀ of a saturation, a threshold or a step: a value of the variable.
     Corner,
-    /// ξ₀ of an approach or a logarithm: a length along the variable.
+    /// ξ₀ of an approach, a decay or a logarithm: a length along the variable.
     Scale,
     /// 1/f.
     Period,
@@ -57,11 +59,14 @@ pub struct Constant {
     pub low: f64,
     /// Upper end.
     pub high: f64,
+    /// Other values within the interval that these data do not distinguish from it, each apart from
+    /// the rest: periods that every reading meets alike.
+    pub also: Vec<f64>,
 }
 
 /// Exponents that a law may have: roots to fourth powers.
 const EXPONENTS: (f64, f64) = (0.2, 4.0);
-/// Scale of an approach, as a share of X: below it is a step, above a straight line.
+/// Scale of an approach or a decay, as a share of X: below it is a step, above a straight line.
 const APPROACH: (f64, f64) = (0.03, 2.0);
 /// That of a logarithm.
 const LOGARITHM: (f64, f64) = (1e-3, 1.0);
@@ -74,17 +79,18 @@ const CYCLES: (f64, f64) = (0.75, 60.0);
 /// Distance of two frequencies in cycles over the range: a wave of one is still half in step with
 /// that of the other.
 const APART: f64 = 0.2;
-/// Levels of the variable for each cycle.
-const LEVELS_OF_A_CYCLE: f64 = 3.0;
+/// Levels of the variable from which on waves are looked for.
+const LEVELS_OF_A_WAVE: usize = 6;
 
 impl Form {
     /// All of them.
-    pub const ALL: [Form; 10] = [
+    pub const ALL: [Form; 11] = [
         Form::Power,
         Form::Saturation,
         Form::Threshold,
         Form::Step,
         Form::Approach,
+        Form::Decay,
         Form::Logarithm,
         Form::Harmonic,
         Form::Polynomial(1),
@@ -100,6 +106,7 @@ impl Form {
             Form::Threshold => "threshold with slope",
             Form::Step => "step",
             Form::Approach => "exponential approach",
+            Form::Decay => "exponential decay",
             Form::Logarithm => "logarithm",
             Form::Harmonic => "harmonic",
             Form::Polynomial(1) => "straight line",
@@ -122,7 +129,7 @@ impl Form {
         match self {
             Form::Power => Some(FormConstant::Exponent),
             Form::Saturation | Form::Threshold | Form::Step => Some(FormConstant::Corner),
-            Form::Approach | Form::Logarithm => Some(FormConstant::Scale),
+            Form::Approach | Form::Decay | Form::Logarithm => Some(FormConstant::Scale),
             Form::Harmonic => Some(FormConstant::Period),
             Form::Polynomial(_) => None,
         }
@@ -138,10 +145,11 @@ impl Form {
             Form::Threshold => one((xi - s).max(0.0)),
             Form::Step => one(if xi > s { 1.0 } else { 0.0 }),
             Form::Approach => one(odd(&|xi| -(-xi / s).exp_m1())),
+            Form::Decay => one(odd(&|xi| (-xi / s).exp())),
             Form::Logarithm => one(odd(&|xi| (xi / s).ln_1p())),
             Form::Harmonic => {
                 let (sin, cos) = (TAU * s * xi).sin_cos();
-                [cos, sin, 0.0]
+                [cos - 1.0, sin, 0.0]
             }
             Form::Polynomial(_) => [xi, xi * xi, xi * xi * xi],
         }
@@ -158,7 +166,7 @@ impl Form {
     }
 
     fn is_log(self) -> bool {
-        matches!(self, Form::Power | Form::Approach | Form::Logarithm | Form::Harmonic)
+        matches!(self, Form::Power | Form::Approach | Form::Decay | Form::Logarithm | Form::Harmonic)
     }
 
     /// Coordinates of a first look at s over a variable from `low` to `high` (shares of X) with so
@@ -174,7 +182,7 @@ impl Form {
         }
         match self {
             Form::Power => logs(EXPONENTS),
-            Form::Approach => logs(APPROACH),
+            Form::Approach | Form::Decay => logs(APPROACH),
             Form::Logarithm => logs(LOGARITHM),
             Form::Saturation => between(SATURATION, POINTS),
             Form::Threshold | Form::Step => {
@@ -182,11 +190,11 @@ impl Form {
                 between((low + inset, high - inset), POINTS)
             }
             Form::Harmonic => {
-                let most = (levels as f64 / LEVELS_OF_A_CYCLE).min(CYCLES.1);
-                let count = ((most - CYCLES.0) / APART).floor();
+                // levels at even distances show one wave as well as another: all of them compete
+                let count = ((CYCLES.1 - CYCLES.0) / APART) as usize;
                 let frequency = |k: usize| (CYCLES.0 + APART * k as f64) / (high - low);
-                match count >= 1.0 {
-                    true => (0..=count as usize).map(|k| frequency(k).ln()).collect(),
+                match levels >= LEVELS_OF_A_WAVE {
+                    true => (0..=count).map(|k| frequency(k).ln()).collect(),
                     false => Vec::new(),
                 }
             }
@@ -210,9 +218,10 @@ mod tests {
         assert_eq!((at(Form::Step, 0.5, 0.5), at(Form::Step, 0.6, 0.5)), (0.0, 1.0));
         assert!((at(Form::Approach, 1.0, 1.0) - (1.0 - (-1.0f64).exp())).abs() < 1e-15);
         assert!((at(Form::Logarithm, 1.0, 0.5) - 3.0f64.ln()).abs() < 1e-15);
+        assert!((at(Form::Decay, 1.0, 0.5) - (-2.0f64).exp()).abs() < 1e-15);
         // a quarter of a period on, the cosine is gone and the sine whole
         let [cos, sin, _] = Form::Harmonic.functions(0.25, 1.0);
-        assert!(cos.abs() < 1e-15 && (sin - 1.0).abs() < 1e-15);
+        assert!((cos + 1.0).abs() < 1e-15 && (sin - 1.0).abs() < 1e-15);
         assert_eq!(Form::Polynomial(3).functions(2.0, 0.0), [2.0, 4.0, 8.0]);
     }
 

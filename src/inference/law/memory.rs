@@ -41,7 +41,8 @@ impl Memory {
         match self {
             Memory::None => Some((0.0, 0.0)),
             Memory::Side => site.moves.iter().any(|way| *way < 0.0).then_some((0.0, 0.0)),
-            Memory::Stop if site.courses.is_empty() => None,
+            // what has no way up and down has no width
+            Memory::Stop if site.courses.is_empty() || site.moves.is_empty() => None,
             Memory::Stop => Some((0.02, 0.5)),
             Memory::Lag => {
                 let waits = || site.courses.iter().flat_map(|course| course.instants.iter().map(|i| i.1));

@@ -1,13 +1,13 @@
 //! What data say of a number that is not linear: its evidence on a grid that grows where the
 //! posterior is.
 
-/// Most times that the grid is made finer, and most points that are added at once.
+/// Most times that the grid is made finer, and most points of it.
 const ROUNDS: usize = 8;
-const MOST: usize = 160;
+const MOST: usize = 2000;
 /// Ln of the density below its largest from which on a stretch counts for nothing.
 const NOTHING: f64 = 5.0;
 /// Ln of the density by which two neighbours may differ.
-const STEP: f64 = 0.5;
+const STEP: f64 = 0.2;
 /// Parts that a stretch is cut into.
 const PARTS: usize = 3;
 
@@ -43,7 +43,7 @@ impl Posterior {
                 let (a, b) = (pair[0].0, pair[1].0);
                 more.extend((1..PARTS).map(|k| a + (b - a) * k as f64 / PARTS as f64));
             }
-            if more.is_empty() || more.len() > MOST {
+            if more.is_empty() || self.points.len() + more.len() > MOST {
                 return;
             }
             self.points.extend(more.into_iter().map(|u| (u, evidence(u))));
@@ -84,22 +84,29 @@ impl Posterior {
         self.best().0
     }
 
-    /// Coordinates that count, each with its share of the posterior.
-    pub fn shares(&self) -> Vec<(f64, f64)> {
-        let count = self.points.len();
+    /// Peaks that are at most `times` lower than the highest, each apart from higher ones by a
+    /// valley `times` below its own height; the highest first. Coordinate and ln of the evidence.
+    pub fn peaks(&self, times: f64) -> Vec<(f64, f64)> {
+        let deep = times.ln();
         let (_, most) = self.best();
-        let share = |k: usize| {
-            let width = if count == 1 {
-                1.0
-            } else {
-                self.points[(k + 1).min(count - 1)].0 - self.points[k.saturating_sub(1)].0
+        let mut by_height: Vec<usize> = (0..self.points.len()).collect();
+        by_height.sort_by(|&a, &b| self.points[b].1.total_cmp(&self.points[a].1));
+        let mut peaks: Vec<usize> = Vec::new();
+        for k in by_height.into_iter().take_while(|&k| self.points[k].1 > most - deep) {
+            let is_apart = |&other: &usize| {
+                let between = &self.points[k.min(other)..=k.max(other)];
+                between.iter().any(|point| point.1 < self.points[k].1 - deep)
             };
-            (self.points[k].0, (self.points[k].1 - most).exp() * width)
-        };
-        let all: Vec<(f64, f64)> = (0..count).map(share).collect();
-        let whole: f64 = all.iter().map(|(_, share)| share).sum();
-        let counts = all.into_iter().map(|(u, share)| (u, share / whole));
-        counts.filter(|(_, share)| *share > 1e-4).collect()
+            if peaks.iter().all(is_apart) {
+                peaks.push(k);
+            }
+        }
+        peaks.into_iter().map(|k| self.points[k]).collect()
+    }
+
+    /// So many coordinates, each of which stands for as much of the posterior.
+    pub fn even(&self, count: usize) -> Vec<f64> {
+        (0..count).map(|k| self.quantile((k as f64 + 0.5) / count as f64)).collect()
     }
 }
 
@@ -126,9 +133,20 @@ mod tests {
     }
 
     #[test]
+    fn peaks_that_are_nearly_as_high_are_others() {
+        let peak = |u: f64, at: f64| -0.5 * ((u - at) / 0.02).powi(2);
+        let evidence = |u: f64| peak(u, 0.2).max(peak(u, 0.7) - 1.0).max(peak(u, 0.9) - 9.0);
+        let grid: Vec<f64> = (0..=20).map(|k| f64::from(k) / 20.0).collect();
+        let mut posterior = Posterior::new(&grid, &evidence);
+        posterior.refine(&evidence);
+        let peaks = posterior.peaks(20.0);
+        assert!(peaks.len() == 2 && (peaks[1].0 - 0.7).abs() < 0.005, "{peaks:?}");
+    }
+
+    #[test]
     fn one_point_is_its_own_posterior() {
         let posterior = Posterior::new(&[0.0], &|_| 3.0);
         assert_eq!((posterior.log_evidence(), posterior.quantile(0.3)), (3.0, 0.0));
-        assert_eq!(posterior.shares(), [(0.0, 1.0)]);
+        assert_eq!(posterior.even(2), [0.0, 0.0]);
     }
 }

@@ -7,8 +7,8 @@
 //! G' = CᵀC − CᵀB·(BᵀB + σ²K⁻²)⁻¹·BᵀC      b' = Cᵀr − CᵀB·(BᵀB + σ²K⁻²)⁻¹·Bᵀr
 //! ```
 //!
-//! is the problem of a law's columns C alone: many laws are compared on it. What a law amounts to is
-//! fitted together with B.
+//! is the problem of a law's columns C alone: many laws are compared on it. What a law amounts to
+//! is fitted together with B.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -45,9 +45,8 @@ pub(super) struct Fitted {
     pub gain: f64,
     /// Noise of a datum.
     pub sigma: f64,
-    /// Factors of the columns, with their covariance.
+    /// Factors of the columns.
     pub factors: DVector<f64>,
-    pub covariance: DMatrix<f64>,
     /// All data as predicted, and what the columns are of that.
     pub predicted: DVector<f64>,
     pub own: DVector<f64>,
@@ -108,6 +107,25 @@ impl<'a> Remainder<'a> {
     /// Ln of what the data are likelier with these columns of all data, about; each times a factor
     /// of the standard normal, all of one unknown size.
     pub fn gain(&self, columns: &DMatrix<f64>) -> f64 {
+        let (gram, product) = self.alone(columns);
+        let count = gram.ncols();
+        let bounds = vec![UNBOUNDED; count];
+        let block = ColumnBlock { gram: &gram, cross: DMatrix::zeros(0, count), product, bounds };
+        let (rest, score) = &self.rest;
+        let gain = rest.about(score, &block);
+        if gain.is_finite() { gain } else { f64::NEG_INFINITY }
+    }
+
+    /// Factors of the columns and their covariance, with all else out of them.
+    pub fn factors(&self, columns: &DMatrix<f64>) -> (DVector<f64>, DMatrix<f64>) {
+        let (gram, product) = self.alone(columns);
+        let (bounds, effects) = (vec![UNBOUNDED; gram.ncols()], vec![gram.ncols()]);
+        let scored = Moments { gram, product, bounds, effects, ..self.rest.0.clone() }.score();
+        (scored.estimate, scored.covariance)
+    }
+
+    /// G' and b'.
+    fn alone(&self, columns: &DMatrix<f64>) -> (DMatrix<f64>, DVector<f64>) {
         let own = self.own(columns);
         let beside = transposed_product(&self.own_base, &own);
         let reduced = &self.inverse * &beside;
@@ -117,16 +135,7 @@ impl<'a> Remainder<'a> {
         for k in 0..gram.ncols() {
             gram[(k, k)] = gram[(k, k)].max(0.0);
         }
-        let count = gram.ncols();
-        let block = ColumnBlock {
-            gram: &gram,
-            cross: DMatrix::zeros(0, count),
-            product,
-            bounds: vec![UNBOUNDED; count],
-        };
-        let (rest, score) = &self.rest;
-        let gain = rest.about(score, &block);
-        if gain.is_finite() { gain } else { f64::NEG_INFINITY }
+        (gram, product)
     }
 
     /// The columns fitted together with findings and background; none for what is there without.
@@ -154,7 +163,6 @@ impl<'a> Remainder<'a> {
         Fitted {
             gain: scored.log_evidence - self.moments.score().log_evidence,
             sigma: scored.sigma,
-            covariance: scored.covariance.view((first, first), (count, count)).into_owned(),
             factors: own_factors,
             predicted,
             own,

@@ -4,10 +4,12 @@ use nalgebra::DMatrix;
 use std::f64::consts::PI;
 
 use super::choice::Choice;
+use super::form::Form;
 use super::posterior::Posterior;
 use super::remainder::Remainder;
 use super::site::Site;
 use crate::inference::priors::PRIOR;
+use crate::inference::selection::APART;
 use crate::parallel::in_parallel;
 
 /// Columns of a smooth curve.
@@ -20,6 +22,8 @@ const BEHIND: f64 = 12.0;
 pub(super) struct Scanned {
     pub choice: Choice,
     pub posterior: Posterior,
+    /// Coordinate of the number that is not linear where most of its posterior is.
+    pub at: f64,
     /// Ln of its odds against nothing, prior included.
     pub log_odds: f64,
 }
@@ -33,9 +37,18 @@ pub(super) struct Scan {
 
 /// Ln of the prior odds of a law, or of a curve, against nothing, before it is shared among `sites`
 /// places and the `fellows` there.
-fn prior(sites: usize, fellows: usize) -> f64 {
+pub(super) fn prior(sites: usize, fellows: usize) -> f64 {
     let unknown = 0.5 * PRIOR.2 / PRIOR.0;
     (unknown / (sites.max(1) * fellows.max(1)) as f64).ln()
+}
+
+/// Where a law is likeliest. Of waves that explain the same the slowest has the widest peak in
+/// ln f, and so the most of the posterior.
+fn middle(choice: Choice, posterior: &Posterior) -> f64 {
+    let width = |u: f64| if choice.form == Form::Harmonic { -u } else { 0.0 };
+    let peaks = posterior.peaks(APART).into_iter();
+    let highest = peaks.max_by(|a, b| (a.1 + width(a.0)).total_cmp(&(b.1 + width(b.0))));
+    highest.unwrap_or_else(|| posterior.best()).0
 }
 
 /// All laws on a remainder; `size` is how large, about, what is left is.
@@ -74,7 +87,8 @@ pub(super) fn scan(remainder: &Remainder, sites: &[Site], size: f64) -> Scan {
             posterior.refine(&|u| evidence(choice, u));
         }
         let log_odds = posterior.log_evidence() + prior;
-        Scanned { choice, posterior, log_odds }
+        let at = middle(choice, &posterior);
+        Scanned { choice, posterior, at, log_odds }
     });
     laws.retain(|law| law.log_odds > f64::NEG_INFINITY);
     laws.sort_by(|a, b| b.log_odds.total_cmp(&a.log_odds));

@@ -40,8 +40,8 @@ pub struct Site {
     pub directions: Vec<(String, Vec<f64>)>,
     /// The variable at each datum, SI; NaN where the law has nothing to say.
     pub values: Vec<f64>,
-    /// For each datum 1 where the load went up to it, −1 where it came down; nothing where no
-    /// datum came down.
+    /// For each datum 1 where the load went up to it, −1 where it came down; nothing where the
+    /// variable is no load.
     pub moves: Vec<f64>,
     /// See [`Course`]; nothing where a law can not remember.
     pub courses: Vec<Course>,

@@ -7,19 +7,13 @@ use serde_json::{Value, json};
 use self::expression::{Expression, expression};
 use super::headline::um;
 use super::place::place;
+use super::subject::Told;
 use crate::inference::law::{Constant, Law, LawRival, Memory, Proposed, Refusal, Site};
 use crate::inference::{Location, Quantity};
 use crate::report::pictures::diagnosis::{LawPanel, law_picture};
 use crate::report::table::{Column, Table};
 use crate::report::{Block, Section};
 use crate::units::{UM, significant};
-
-/// What was made of the remainder, with a textbook's word on it.
-pub struct Told<'a> {
-    pub proposed: &'a Proposed,
-    /// The nearest mechanism of a textbook, in a sentence.
-    pub remark: Option<String>,
-}
 
 /// Rivals that are said.
 const SAID: usize = 2;
@@ -100,6 +94,7 @@ fn constant(constant: &Constant) -> Value {
         "value": constant.value,
         "lo": constant.low,
         "hi": constant.high,
+        "also": constant.also,
     })
 }
 
@@ -127,7 +122,11 @@ fn at(site: &Site) -> String {
 
 fn quantity(constant: &Constant) -> String {
     let Constant { value, low, high, unit, .. } = constant;
-    Quantity { value: *value, low: *low, high: *high }.say(unit)
+    if constant.also.is_empty() {
+        return Quantity { value: *value, low: *low, high: *high }.say(unit);
+    }
+    let others: Vec<String> = constant.also.iter().map(|other| significant(*other, 3)).collect();
+    format!("{} (or {}) {unit}", significant(*value, 3), others.join(", "))
 }
 
 /// The law, its numbers and what it is worth.
@@ -139,7 +138,8 @@ fn summary(law: &Law, proposed: &Proposed) -> String {
         format!(" With it, the held-out error falls from {} to {} µm.", um(without), um(with))
     });
     format!(
-        "A law is proposed for the unexplained error: {text} ({} over {}, {}), with {}. It explains {} µm rms.{worth}",
+        "A law is proposed for the unexplained error: {text}, the {} as a function of the {}, {}, with {}. It \
+         explains {} µm rms.{worth}",
         law.site.result.name,
         law.site.variable.name,
         at(&law.site),

@@ -9,9 +9,8 @@ use serde_json::{Value, json};
 
 use self::lines::{branch_name, line_name};
 use super::headline::um;
-use super::law::Told;
 use super::remainder::{Remainder, Sample};
-use super::subject::{Errors, Subject};
+use super::subject::{Errors, Subject, Told};
 use super::{json as whole_json, report as whole_report};
 use crate::diagnosis::rig::{Correction, Datum, RigDiagnosis, remark};
 use crate::inference::{

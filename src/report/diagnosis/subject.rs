@@ -2,8 +2,8 @@
 
 use serde_json::Value;
 
-use super::law::Told;
 use super::remainder::Remainder;
+use crate::inference::law::Proposed;
 use crate::inference::{Absorbed, Candidate, Diagnosis, Evidence, Limit, NotTestable, Plan};
 use crate::report::Block;
 use crate::report::Section;
@@ -76,6 +76,14 @@ impl Subject<'_> {
         let limits = self.limits.iter().map(ToString::to_string);
         self.warnings.iter().cloned().chain(limits).collect()
     }
+}
+
+/// What was made of the remainder.
+pub struct Told<'a> {
+    /// A law, or why there is none.
+    pub proposed: &'a Proposed,
+    /// The nearest mechanism of a textbook, in a sentence.
+    pub remark: Option<String>,
 }
 
 /// Errors that a headline compares, m.

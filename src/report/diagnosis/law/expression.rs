@@ -27,8 +27,9 @@ pub fn expression(site: &Site, form: Form, memory: Memory) -> Expression {
         Form::Threshold => format!("k·max({x} − {corner}, 0)"),
         Form::Step => format!("a·[{x} > {corner}]"),
         Form::Approach => format!("a·(1 − exp(−{x}/{corner}))"),
+        Form::Decay => format!("a·exp(−{x}/{corner})"),
         Form::Logarithm => format!("a·ln(1 + {x}/{corner})"),
-        Form::Harmonic => format!("a·cos(2π·{x}/P) + b·sin(2π·{x}/P)"),
+        Form::Harmonic => format!("a·(cos(2π·{x}/P) − 1) + b·sin(2π·{x}/P)"),
         Form::Polynomial(1) => format!("c1·{x}"),
         Form::Polynomial(2) => format!("c1·{x} + c2·{x}²"),
         _ => format!("c1·{x} + c2·{x}² + c3·{x}³"),
@@ -52,8 +53,11 @@ pub fn expression(site: &Site, form: Form, memory: Memory) -> Expression {
         Form::Threshold => format!(r"k\,\max({x} - {corner}, 0)"),
         Form::Step => format!(r"a\,[{x} > {corner}]"),
         Form::Approach => format!(r"a\left(1 - e^{{-{x}/{corner}}}\right)"),
+        Form::Decay => format!(r"a\,e^{{-{x}/{corner}}}"),
         Form::Logarithm => format!(r"a\,\ln\left(1 + \frac{{{x}}}{{{corner}}}\right)"),
-        Form::Harmonic => format!(r"a\cos\frac{{2\pi {x}}}{{P}} + b\sin\frac{{2\pi {x}}}{{P}}"),
+        Form::Harmonic => {
+            format!(r"a\left(\cos\frac{{2\pi {x}}}{{P}} - 1\right) + b\sin\frac{{2\pi {x}}}{{P}}")
+        }
         Form::Polynomial(1) => format!("c_1 {x}"),
         Form::Polynomial(2) => format!("c_1 {x} + c_2 {x}^2"),
         _ => format!("c_1 {x} + c_2 {x}^2 + c_3 {x}^3"),

@@ -9,6 +9,7 @@ mod confused;
 mod effects;
 mod labs;
 mod laws;
+mod own;
 mod poor;
 mod same;
 

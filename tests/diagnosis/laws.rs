@@ -7,7 +7,7 @@ use serde_json::Value;
 use super::Answer;
 
 /// Ten loads along y and z.
-fn order() -> Order {
+pub fn order() -> Order {
     Order {
         axes: vec![1, 2],
         loads: (1..=10).map(f64::from).collect(),
@@ -18,39 +18,47 @@ fn order() -> Order {
 }
 
 /// A row of readings as a law sees it.
-struct Row {
-    load: f64,
-    is_unloading: bool,
+pub struct Row {
+    pub axis: String,
+    pub load: f64,
+    /// 1 on the way up, −1 on the way down.
+    pub side: f64,
+    /// What was read along the load without the law, µm.
+    pub predicted: f64,
 }
 
-/// A recording with `along`, µm, added to what is read along each load.
-fn concealed(order: &Order, seed: u64, along: impl Fn(&Row) -> f64) -> Answer {
+/// Rod and readings with `along`, µm, added to what is read along each load.
+pub fn written(order: &Order, seed: u64, along: impl Fn(&Row) -> f64) -> (String, String) {
     let made = order.made(&[], seed);
-    let mut lines = made.readings.lines();
     let mut text = String::new();
     let mut header: Vec<&str> = Vec::new();
-    for line in lines.by_ref() {
-        text += &format!("{line}\n");
-        if !line.starts_with('#') {
-            header = line.split(',').collect();
-            break;
-        }
-    }
-    let column = |name: &str| header.iter().position(|own| *own == name);
-    for line in lines {
+    for line in made.readings.lines() {
         let mut cells: Vec<String> = line.split(',').map(str::to_owned).collect();
-        let axis = cells[0].clone();
-        let row = Row {
-            load: cells[column("load_n").unwrap()].parse().unwrap(),
-            is_unloading: column("phase").is_some_and(|k| cells[k] == "unload"),
-        };
-        let own = column(&format!("d{}_um", axis.trim_start_matches('-'))).unwrap();
-        let sign = if axis.starts_with('-') { -1.0 } else { 1.0 };
+        if line.starts_with('#') || header.is_empty() {
+            header = if line.starts_with('#') { header } else { line.split(',').collect() };
+            text += &format!("{line}\n");
+            continue;
+        }
+        let column = |name: &str| header.iter().position(|own| *own == name);
+        let axis = cells[0].trim_start_matches('-').to_owned();
+        let own = column(&format!("d{axis}_um")).unwrap();
         let reading: f64 = cells[own].parse().unwrap();
-        cells[own] = format!("{}", reading + sign * along(&row));
+        let is_down = column("phase").is_some_and(|k| cells[k] == "unload");
+        let row = Row {
+            axis,
+            load: cells[column("load_n").unwrap()].parse().unwrap(),
+            side: if is_down { -1.0 } else { 1.0 },
+            predicted: reading,
+        };
+        cells[own] = format!("{}", reading + along(&row));
         text += &format!("{}\n", cells.join(","));
     }
-    Answer::of(Some(&made.rod), &text)
+    (made.rod, text)
+}
+
+fn concealed(order: &Order, seed: u64, along: impl Fn(&Row) -> f64) -> Answer {
+    let (rod, readings) = written(order, seed, along);
+    Answer::of(Some(&rod), &readings)
 }
 
 fn law(answer: &Answer) -> &Value {
@@ -113,9 +121,8 @@ fn a_part_that_comes_to_a_stop() {
 /// µm/N: felt on the way up and the way down.
 #[test]
 fn friction_that_falls_with_the_load() {
-    let side = |row: &Row| if row.is_unloading { 1.0 } else { -1.0 };
     let order = Order { unloading: true, axes: vec![1], ..order() };
-    let answer = concealed(&order, 34, |row| 12.0 * side(row) * (0.3 + 0.7 * (-row.load / 3.0).exp()));
+    let answer = concealed(&order, 34, |row| -12.0 * row.side * (0.3 + 0.7 * (-row.load / 3.0).exp()));
     let said = &answer.json["law"];
     // where the library's hysteresis and friction leave nothing there is no law to look for
     if said.is_null() {

@@ -2,6 +2,7 @@
 
 use super::mistakes::Mended;
 use super::model::{AsRecorded, RigDiagnosis, RigModel};
+use super::own_effect::OwnEffect;
 use super::wanted::Wanted;
 use super::{another_rod, as_measured, correction, limits, mistakes, next, sites};
 use crate::error::{Error, Place, Result};
@@ -39,6 +40,19 @@ pub fn diagnose_among(
     rod: Option<&Rod>,
     others: &[(String, Rod)],
 ) -> Result<RigDiagnosis> {
+    diagnose_with(readings, rod, others, &[])
+}
+
+/// The same, with effects that a lab describes itself: they compete with those of the library.
+///
+/// # Errors
+/// As [`diagnose_among`]; [`Error::Input`] for an effect that readings and rod do not fit.
+pub fn diagnose_with(
+    readings: &Readings,
+    rod: Option<&Rod>,
+    others: &[(String, Rod)],
+    own: &[OwnEffect],
+) -> Result<RigDiagnosis> {
     check_size(readings)?;
     let mut mended = mistakes::mended(readings, rod, others)?;
     let inferred = |mended: &Mended, bent: Option<&Rod>| {
@@ -47,7 +61,7 @@ pub fn diagnose_among(
             false => (readings, rod),
         };
         let (model, evidence, not_testable) =
-            RigModel::bent_as(mended_readings, mended_rod, &Wanted::All, bent.or(mended_rod))?;
+            RigModel::bent_as(mended_readings, mended_rod, &Wanted::AllAnd(own), bent.or(mended_rod))?;
         let diagnosis = infer(&model, &evidence);
         Ok::<_, Error>((model, evidence, not_testable, diagnosis))
     };

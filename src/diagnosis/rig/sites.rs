@@ -294,3 +294,6 @@ struct Common {
     forms: &'static [Form],
     courses: Vec<Course>,
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,20 +1,21 @@
 //! Held-out proof of a law: the whole search is repeated without a fold, and predicts that fold.
 //!
-//! The folds are those of the diagnosis, and so are the findings that each is predicted with.
+//! The folds are those of the diagnosis. The findings are those of all data, fitted anew without
+//! each fold: it is what the law adds to them that is asked.
 
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 
 use super::choice::Choice;
 use super::remainder::Remainder;
 use super::scan::{Scanned, scan};
 use super::site::Site;
 use crate::inference::selection::{APART, NAMED};
-use crate::inference::{Evidence, ForwardModel, HeldOut, Term};
+use crate::inference::{Evidence, ForwardModel, Term};
 use crate::parallel::in_parallel;
 
 /// Root mean squares of what is left of held-out data.
 pub(super) struct Folds {
-    /// With the findings of each fold alone.
+    /// With the findings alone.
     pub without: f64,
     /// With the law that is found without each fold as well.
     pub with: f64,
@@ -22,7 +23,8 @@ pub(super) struct Folds {
     pub of: Vec<f64>,
 }
 
-/// What a fold is predicted with: findings, number of the fold.
+/// All data as predicted with the findings alone, with the law that is found besides, and with each
+/// of some laws.
 type Predicted = (DVector<f64>, DVector<f64>, Vec<DVector<f64>>);
 
 /// Predicts each fold; `None` where nothing could be held out. `choices` are compared besides what
@@ -30,8 +32,8 @@ type Predicted = (DVector<f64>, DVector<f64>, Vec<DVector<f64>>);
 pub(super) fn hold_out(
     model: &dyn ForwardModel,
     evidence: &Evidence,
-    held_out: &HeldOut,
-    sites: &(dyn Fn(&[Term]) -> Vec<Site> + Sync),
+    terms: &[Term],
+    sites: &[Site],
     choices: &[Choice],
     (size, sigma): (f64, f64),
 ) -> Option<Folds> {
@@ -39,17 +41,15 @@ pub(super) fn hold_out(
     folds.sort_unstable();
     folds.dedup();
     folds.retain(|&fold| fold != Evidence::NONE);
-    if folds.len() != held_out.hypotheses.len() || folds.is_empty() {
+    if folds.len() < 2 {
         return None;
     }
     let n = evidence.residual.len();
     let kept = |fold: usize| (0..n).filter(|&row| evidence.fold[row] != fold).collect::<Vec<_>>();
     let by_fold: Vec<Predicted> = in_parallel(folds.len(), |k| {
-        let terms = &held_out.hypotheses[k];
         let remainder = Remainder::new(model, evidence, terms, kept(folds[k]), sigma);
-        let sites = &sites(terms)[..];
         let found = scan(&remainder, sites, size).laws;
-        let none = remainder.fit(&nalgebra::DMatrix::zeros(n, 0)).predicted;
+        let none = remainder.fit(&DMatrix::zeros(n, 0)).predicted;
         let of = |law: &Scanned| {
             let columns = law.choice.columns(&sites[law.choice.site], law.at, size);
             remainder.fit(&columns.columns).predicted

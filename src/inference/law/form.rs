@@ -78,7 +78,7 @@ const POINTS: usize = 21;
 const CYCLES: (f64, f64) = (0.75, 60.0);
 /// Distance of two frequencies in cycles over the range: a wave of one is still half in step with
 /// that of the other.
-const APART: f64 = 0.2;
+const APART: f64 = 0.15;
 /// Levels of the variable from which on waves are looked for.
 const LEVELS_OF_A_WAVE: usize = 6;
 

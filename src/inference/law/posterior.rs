@@ -8,6 +8,8 @@ const MOST: usize = 2000;
 const NOTHING: f64 = 5.0;
 /// Ln of the density by which two neighbours may differ.
 const STEP: f64 = 0.2;
+/// For so many rounds every peak counts that is so far below the highest.
+const FLANKS: (usize, f64) = (3, 40.0);
 /// Parts that a stretch is cut into.
 const PARTS: usize = 3;
 
@@ -32,15 +34,24 @@ impl Posterior {
 
     /// With a finer grid where it counts.
     pub fn refine(&mut self, evidence: &dyn Fn(f64) -> f64) {
-        for _ in 0..ROUNDS {
+        for round in 0..ROUNDS {
             let (_, most) = self.best();
-            let is_coarse = |pair: &[(f64, f64)]| {
-                let (one, other) = (pair[0].1, pair[1].1);
-                one.max(other) > most - NOTHING && (one - other).abs() > STEP
+            let at = |k: usize| self.points.get(k).map_or(f64::NEG_INFINITY, |point| point.1);
+            // what looks low may be the flank of a narrow peak
+            let is_flank = |k: usize| {
+                round < FLANKS.0
+                    && at(k) > most - FLANKS.1
+                    && at(k) >= at(k + 1)
+                    && (k == 0 || at(k) >= at(k - 1))
+            };
+            let is_coarse = |k: &usize| {
+                let (one, other) = (at(*k), at(k + 1));
+                let counts = one.max(other) > most - NOTHING || is_flank(*k) || is_flank(k + 1);
+                counts && (one - other).abs() > STEP
             };
             let mut more = Vec::new();
-            for pair in self.points.windows(2).filter(|pair| is_coarse(pair)) {
-                let (a, b) = (pair[0].0, pair[1].0);
+            for k in (0..self.points.len().saturating_sub(1)).filter(is_coarse) {
+                let (a, b) = (self.points[k].0, self.points[k + 1].0);
                 more.extend((1..PARTS).map(|k| a + (b - a) * k as f64 / PARTS as f64));
             }
             if more.is_empty() || self.points.len() + more.len() > MOST {

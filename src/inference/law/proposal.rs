@@ -30,12 +30,11 @@ const REFITTED: usize = 16;
 const MOST_RIVALS: usize = 8;
 
 /// A law for what `diagnosis` left unexplained; `None` where nothing was, or where what is left is
-/// no law's: single readings, numbers of a file. `sites` are all places for it, given the findings;
-/// always as many in the same order.
+/// no law's: single readings, numbers of a file. `sites` are all places for it, given the findings.
 pub fn propose(
     model: &dyn ForwardModel,
     diagnosis: &Diagnosis,
-    sites: &(dyn Fn(&[Term]) -> Vec<Site> + Sync),
+    sites: &dyn Fn(&[Term]) -> Vec<Site>,
 ) -> Option<Proposed> {
     let left = diagnosis.discrepancy.as_ref()?;
     if matches!(left.shown_by, ShownBy::Suspects | ShownBy::Numbers) {
@@ -66,9 +65,8 @@ pub fn propose(
         return refused(Refusal::Curve(curve_odds - best.log_odds), None);
     }
     let class = alike(&found, best);
-    let Some(held_out) = &diagnosis.held_out else { return refused(Refusal::NoFolds, None) };
     let choices: Vec<Choice> = class.iter().map(|law| law.choice).collect();
-    let folds = hold_out(model, evidence, held_out, sites, &choices, (size, sigma));
+    let folds = hold_out(model, evidence, terms, &all, &choices, (size, sigma));
     let Some(folds) = folds else { return refused(Refusal::NoFolds, None) };
     let errors = Some((folds.without, folds.with));
     if folds.with >= folds.without || folds.of[0] >= folds.without {

@@ -16,6 +16,8 @@ use crate::parallel::in_parallel;
 const CURVE: usize = 6;
 /// Laws whose evidence at the best point is so far (ln) behind the best need no closer look.
 const BEHIND: f64 = 12.0;
+/// And waves, whose narrow peaks a first look may miss.
+const WAVE_BEHIND: f64 = 40.0;
 
 /// A law with what data say of it.
 #[derive(Debug, Clone)]
@@ -80,7 +82,13 @@ pub(super) fn scan(remainder: &Remainder, sites: &[Site], size: f64) -> Scan {
     }
     let peak = |(_, posterior, prior): &(Choice, Posterior, f64)| posterior.best().1 + prior;
     let highest = first.iter().map(peak).fold(f64::NEG_INFINITY, f64::max);
-    let closer: Vec<bool> = first.iter().map(|law| peak(law) > highest - BEHIND).collect();
+    let closer: Vec<bool> = first
+        .iter()
+        .map(|law| {
+            let behind = if law.0.form == Form::Harmonic { WAVE_BEHIND } else { BEHIND };
+            peak(law) > highest - behind
+        })
+        .collect();
     let mut laws = in_parallel(first.len(), |k| {
         let (choice, mut posterior, prior) = first[k].clone();
         if closer[k] {

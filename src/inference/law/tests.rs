@@ -116,7 +116,7 @@ fn of_noise_and_of_what_is_explained_there_is_no_law() {
 #[test]
 fn what_parts_from_its_rivals_beyond_the_data_is_said_to() {
     let found = |size: f64| {
-        let (_, found) = proposed(4, |f| size * (f / 12.0f64).powf(0.5));
+        let (_, found) = proposed(4, |f| size * (f / 12.0f64).powi(2));
         found.and_then(|found| found.law.ok()).filter(|law| law.next.is_some())
     };
     let law = [6.0, 9.0, 14.0, 20.0, 30.0, 45.0].into_iter().find_map(found).unwrap();

@@ -126,7 +126,11 @@ fn quantity(constant: &Constant) -> String {
         return Quantity { value: *value, low: *low, high: *high }.say(unit);
     }
     let others: Vec<String> = constant.also.iter().map(|other| significant(*other, 3)).collect();
-    format!("{} (or {}) {unit}", significant(*value, 3), others.join(", "))
+    with_unit(format!("{} (or {})", significant(*value, 3), others.join(", ")), unit)
+}
+
+fn with_unit(number: String, unit: &str) -> String {
+    if unit.is_empty() { number } else { format!("{number} {unit}") }
 }
 
 /// The law, its numbers and what it is worth.
@@ -155,8 +159,7 @@ fn called(rival: &LawRival, law: &Law) -> String {
             let (low, high) = (significant(own.low, digits), significant(own.high, digits));
             if low == high { low } else { format!("{low} to {high}") }
         };
-        let unit = if own.unit.is_empty() { String::new() } else { format!(" {}", own.unit) };
-        format!(", {} {}{unit}", own.name, range(2))
+        format!(", {} {}", own.name, with_unit(range(2), &own.unit))
     });
     let memory =
         if rival.memory == Memory::None { String::new() } else { format!(" with a {}", rival.memory.name()) };
@@ -182,14 +185,13 @@ fn alternatives(law: &Law) -> Option<String> {
 fn next(law: &Law) -> Option<String> {
     let next = law.next?;
     let variable = &law.site.variable;
-    let value = significant(next.at / variable.si, 2);
+    let value = with_unit(significant(next.at / variable.si, 2), variable.unit);
     let rival = law.rivals.get(next.rival)?;
     let where_to = if next.is_beyond { "beyond" } else { "at" };
     Some(format!(
-        "To distinguish it from {}: record the {} {where_to} {value} {}, where the two are {} µm apart.",
+        "To distinguish it from {}: record the {} {where_to} {value}, where the two are {} µm apart.",
         called(rival, law),
         variable.name,
-        variable.unit,
         um(next.apart)
     ))
 }
@@ -197,11 +199,10 @@ fn next(law: &Law) -> Option<String> {
 fn range(law: &Law) -> String {
     let ((low, high), variable) = (law.site.range(), &law.site.variable);
     let show = |value: f64| significant(value / variable.si, 3);
-    let unit = if variable.unit.is_empty() { String::new() } else { format!(" {}", variable.unit) };
     format!(
-        "It is a proposal from readings between {} and {}{unit}; beyond that it is an extrapolation. It changes no finding.",
+        "It is a proposal from readings between {} and {}; beyond that it is an extrapolation. It changes no finding.",
         show(low),
-        show(high)
+        with_unit(show(high), variable.unit)
     )
 }
 

@@ -1,5 +1,7 @@
 //! Laws that no library has, concealed in recordings: place, variable, constants, and refusal.
 
+use rodcal::report;
+use rodcal::report::chart::Mark;
 use rodcal::units::UM;
 use rodcal_trial::rig::{Effect, Order};
 use serde_json::Value;
@@ -71,6 +73,13 @@ fn constant(law: &Value, symbol: &str) -> [f64; 3] {
     let all = law["constants"].as_array().unwrap();
     let own = all.iter().find(|own| own["symbol"] == symbol).unwrap_or_else(|| panic!("{symbol}: {law}"));
     ["lo", "value", "hi"].map(|key| own[key].as_f64().unwrap())
+}
+
+fn label(mark: &Mark) -> &str {
+    match mark {
+        Mark::Points { label, .. } | Mark::Line { label, .. } => label,
+        _ => "",
+    }
 }
 
 /// True for the form of the law or of one that the readings do not distinguish from it.
@@ -158,10 +167,16 @@ fn clean_recordings_have_no_law() {
     }
 }
 
-/// A law stands beside what is unexplained: findings and verdict are those without it.
+/// A law stands beside what is unexplained: findings and verdict are those without it. Its section
+/// has words, constants and a picture in which what was not recorded is another line.
 #[test]
-fn a_law_changes_no_finding() {
+fn a_law_changes_no_finding_and_has_its_section() {
     let answer = Answer::made(&order(), &[Effect::GapCloses { load: 5.6, share: 0.7 }], 31);
+    let report = report::diagnosis::rig::report(&answer.found, None);
+    let section = report.sections.iter().find(|section| section.heading == "A law for it").unwrap();
+    assert_eq!(section.tables().map(|table| table.name.as_str()).collect::<Vec<_>>(), ["law"]);
+    let labels: Vec<&str> = section.figures().flat_map(|figure| &figure.panels[0].marks).map(label).collect();
+    assert_eq!(labels, ["readings", "smooth curve", "law", "law, extrapolated"]);
     assert_eq!(answer.effects(), [""; 0]);
     assert_eq!(answer.json["verdict"], "mismatch");
     assert!(answer.json["unexplained"]["location"].is_string());

@@ -102,7 +102,7 @@ pub fn diagnose_with(
     }
     // of readings that a mistake has spoilt nobody knows what it has left
     let law = match mended.found.is_empty() {
-        true => propose(&model, &diagnosis, &|terms| sites::sites(&model, terms)),
+        true => propose(&model, &diagnosis, &|change| sites::sites(&model, change)),
         false => None,
     };
     if !mended.found.is_empty() {

@@ -9,6 +9,8 @@
 
 use std::sync::Arc;
 
+use nalgebra::DVector;
+
 use super::action::Action;
 use super::effects::entry::{Entry, candidate};
 use super::model::RigModel;
@@ -25,7 +27,7 @@ use crate::inference::{Location, Part};
 /// [`Error::Input`] for a place that rod and readings do not have, and for a law that is not 0
 /// at its neutral values, or no number beside them.
 pub(super) fn entry(effect: &OwnEffect, model: &RigModel) -> Result<Option<Entry>> {
-    let all = sites(model, &[]);
+    let all = sites(model, &DVector::zeros(model.data().len()));
     let at_place = |site: &&Site| is_at(effect, &site.location);
     if !all.iter().any(|site| at_place(&site)) && !all.is_empty() {
         let mut known: Vec<String> = all.iter().map(|site| site.location.to_string()).collect();

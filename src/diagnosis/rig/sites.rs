@@ -10,14 +10,14 @@
 //! | sensor | what a channel shows | what it should show |
 //! | sensors | offsets of all channels | time, temperature, order |
 
-use nalgebra::Vector3;
+use nalgebra::{DVector, Vector3};
 
 use super::datum::Datum;
 use super::load_history::{instants, runs};
 use super::model::{Body, RigModel};
 use super::nonparametric::Before;
 use crate::inference::law::{Course, Form, Measure, Site};
-use crate::inference::{ForwardModel, Location, Part, Term};
+use crate::inference::{Location, Part};
 use crate::rod::Rod;
 use crate::spatial::Axis;
 use crate::units::UM;
@@ -45,13 +45,13 @@ const OF_A_LEVEL: &[Form] =
 /// Times since: they fade.
 const FADING: &[Form] = &[Form::Approach, Form::Decay, Form::Logarithm, Form::Power, Form::Polynomial(1)];
 
-/// All places, given what was found. Nothing where the displacement was imposed.
-pub(super) fn sites(model: &RigModel, terms: &[Term]) -> Vec<Site> {
+/// All places, given what is known to change each datum, m. Nothing where the displacement was
+/// imposed.
+pub(super) fn sites(model: &RigModel, change: &DVector<f64>) -> Vec<Site> {
     let data = &model.data;
     if data.iter().any(|d| d.imposed.is_some()) {
         return Vec::new();
     }
-    let change = model.response(terms);
     let bare = model.deflections();
     // what each datum shows by what is known
     let known: Vec<f64> = bare.iter().zip(change.iter()).map(|(u, more)| u + more).collect();
@@ -91,6 +91,7 @@ pub(super) fn sites(model: &RigModel, terms: &[Term]) -> Vec<Site> {
             variable: measure("y", "reading", "µm", UM),
             directions: vec![(String::new(), data.iter().map(weight).collect())],
             values: known.clone(),
+            recorded: Some(data.iter().map(|d| d.measured).collect()),
             moves: Vec::new(),
             courses: Vec::new(),
             forms: OF_A_LOAD,
@@ -179,6 +180,7 @@ impl Recording<'_> {
             variable,
             directions: vec![(String::new(), weights)],
             values,
+            recorded: None,
             moves: self.moves.clone(),
             courses,
             forms: OF_A_LOAD,
@@ -195,6 +197,7 @@ impl Recording<'_> {
             variable,
             directions: vec![(String::new(), weights)],
             values,
+            recorded: None,
             moves: Vec::new(),
             courses: Vec::new(),
             forms,
@@ -244,6 +247,7 @@ impl Recording<'_> {
                 variable: common.variable,
                 directions: channels.iter().map(direction).collect(),
                 values: common.values,
+                recorded: None,
                 moves: Vec::new(),
                 courses: common.courses,
                 forms: common.forms,

@@ -94,8 +94,7 @@ impl Choice {
         let mut columns = DMatrix::zeros(followed.len(), site.directions.len() * count);
         let mut amplitudes = Vec::with_capacity(columns.ncols());
         for (d, (_, weights)) in site.directions.iter().enumerate() {
-            for j in 0..count {
-                let mut column = columns.column_mut(d * count + j);
+            for (j, mut column) in columns.columns_mut(d * count, count).column_iter_mut().enumerate() {
                 let (mut square, mut concerned) = (0.0, 0.0f64);
                 for (i, value) in column.iter_mut().enumerate() {
                     let way = sign.map_or(1.0, |moves| moves[i]);

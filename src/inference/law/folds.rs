@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::choice::Choice;
 use super::remainder::Remainder;
-use super::scan::{Scanned, scan};
+use super::scan::{Scanned, scan_some};
 use super::site::Site;
 use crate::inference::selection::{APART, NAMED};
 use crate::inference::{Evidence, ForwardModel, Term};
@@ -27,14 +27,14 @@ pub(super) struct Folds {
 /// of some laws.
 type Predicted = (DVector<f64>, DVector<f64>, Vec<DVector<f64>>);
 
-/// Predicts each fold; `None` where nothing could be held out. `choices` are compared besides what
-/// each fold's own search finds.
+/// Predicts each fold; `None` where nothing could be held out. Each fold's own search is among
+/// `tried`; `choices` are compared besides.
 pub(super) fn hold_out(
     model: &dyn ForwardModel,
     evidence: &Evidence,
     terms: &[Term],
     sites: &[Site],
-    choices: &[Choice],
+    (choices, tried): (&[Choice], &[Choice]),
     (size, sigma): (f64, f64),
 ) -> Option<Folds> {
     let mut folds: Vec<usize> = evidence.fold.clone();
@@ -48,7 +48,7 @@ pub(super) fn hold_out(
     let kept = |fold: usize| (0..n).filter(|&row| evidence.fold[row] != fold).collect::<Vec<_>>();
     let by_fold: Vec<Predicted> = in_parallel(folds.len(), |k| {
         let remainder = Remainder::new(model, evidence, terms, kept(folds[k]), sigma);
-        let found = scan(&remainder, sites, size).laws;
+        let found = scan_some(&remainder, sites, size, |choice| tried.contains(choice)).laws;
         let none = remainder.fit(&DMatrix::zeros(n, 0)).predicted;
         let of = |law: &Scanned| {
             let columns = law.choice.columns(&sites[law.choice.site], law.at, size);

@@ -75,7 +75,7 @@ const SATURATION: (f64, f64) = (0.05, 0.98);
 /// Points of a first look at a number that is not linear.
 const POINTS: usize = 21;
 /// Cycles over the range of the variable: fewer are a bend, more than so many nobody looks for.
-const CYCLES: (f64, f64) = (0.75, 60.0);
+const CYCLES: (f64, f64) = (0.3, 60.0);
 /// Distance of two frequencies in cycles over the range: a wave of one is still half in step with
 /// that of the other.
 const APART: f64 = 0.15;

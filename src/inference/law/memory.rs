@@ -110,6 +110,7 @@ mod tests {
             variable: measure("F"),
             directions: vec![(String::new(), vec![1.0; values.len()])],
             values: values.to_vec(),
+            recorded: None,
             moves: vec![1.0; values.len()],
             courses: vec![Course {
                 instants: (0..values.len()).map(|i| (vec![i], 2.0)).collect(),

@@ -1,6 +1,6 @@
 //! A law for what is left, or why none is proposed.
 
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 
 use super::choice::Choice;
 use super::folds::hold_out;
@@ -11,8 +11,9 @@ use super::remainder::Remainder;
 use super::scan::{Scan, Scanned, curve, prior, scan};
 use super::site::Site;
 use crate::inference::evidence::rms;
+use crate::inference::scatter::weighted;
 use crate::inference::selection::{APART, NAMED};
-use crate::inference::{Diagnosis, ForwardModel, ShownBy, Term};
+use crate::inference::{Diagnosis, Evidence, ForwardModel, ShownBy, Term};
 
 /// How far beyond the data a law is asked to part from its rivals.
 const BEYOND: f64 = 2.0;
@@ -26,27 +27,49 @@ const POINTS: usize = 60;
 const DRAWN: f64 = 0.2;
 /// Of so many laws, the likeliest, all else is fitted anew.
 const REFITTED: usize = 16;
+/// Laws whose ln odds are so far behind the best are not tried again without each fold.
+const REACH: f64 = 30.0;
+/// So many times the noise a recorded variable ranges over at least.
+const ABOVE_NOISE: f64 = 30.0;
 /// Most rivals that are reported.
 const MOST_RIVALS: usize = 8;
 
 /// A law for what `diagnosis` left unexplained; `None` where nothing was, or where what is left is
-/// no law's: single readings, numbers of a file. `sites` are all places for it, given the findings.
+/// no law's: single readings, numbers of a file. `sites` are all places for it, given what
+/// findings, nominal numbers and zeros change of each datum.
 pub fn propose(
     model: &dyn ForwardModel,
     diagnosis: &Diagnosis,
-    sites: &dyn Fn(&[Term]) -> Vec<Site>,
+    sites: &dyn Fn(&DVector<f64>) -> Vec<Site>,
 ) -> Option<Proposed> {
     let left = diagnosis.discrepancy.as_ref()?;
     if matches!(left.shown_by, ShownBy::Suspects | ShownBy::Numbers) {
         return None;
     }
-    let (evidence, sigma) = (&diagnosis.settled.0, diagnosis.settled.1);
+    let (settled, sigma) = (&diagnosis.settled.0, diagnosis.settled.1);
     let (terms, size) =
         (&diagnosis.hypothesis.terms[..], rms(&diagnosis.after).max(f64::MIN_POSITIVE.sqrt()));
-    let rows: Vec<usize> = (0..evidence.residual.len()).collect();
+    let rows: Vec<usize> = (0..settled.residual.len()).collect();
+    let response = model.response(terms);
+    let known = known(model, diagnosis, left.candidate);
+    let mut all = sites(&(response + known));
+    // where no curve was taken out what is left has counted as scatter, and the data that show it
+    // most hardly count
+    let evidence = &match left.shown_by == ShownBy::Curve || !settled.is_robust {
+        true => settled.as_ref().clone(),
+        false => {
+            let even =
+                Evidence { weight: vec![1.0; rows.len()], information: 1.0, ..settled.as_ref().clone() };
+            reweighted(model, &even, terms, &all, (size, sigma)).unwrap_or(even)
+        }
+    };
     let remainder = Remainder::new(model, evidence, terms, rows, sigma);
-    let all = sites(terms);
     let mut found = scan(&remainder, &all, size);
+    if as_recorded(&mut all, &remainder, &found, (size, sigma)) {
+        found = scan(&remainder, &all, size);
+    }
+    let within_reach = found.laws.iter().take_while(|law| law.log_odds > found.laws[0].log_odds - REACH);
+    let tried: Vec<Choice> = within_reach.map(|law| law.choice).collect();
     refit(&mut found, &remainder, &all, size);
     let lives = found.curve.map(|(site, _)| (all[site].location.clone(), all[site].variable.clone()));
     let refused = |refusal, held_out| Some(Proposed { law: Err(refusal), lives: lives.clone(), held_out });
@@ -66,7 +89,7 @@ pub fn propose(
     }
     let class = alike(&found, best);
     let choices: Vec<Choice> = class.iter().map(|law| law.choice).collect();
-    let folds = hold_out(model, evidence, terms, &all, &choices, (size, sigma));
+    let folds = hold_out(model, evidence, terms, &all, (&choices, &tried), (size, sigma));
     let Some(folds) = folds else { return refused(Refusal::NoFolds, None) };
     let errors = Some((folds.without, folds.with));
     if folds.with >= folds.without || folds.of[0] >= folds.without {
@@ -111,6 +134,50 @@ pub fn propose(
     law.curve = smooth(&remainder, &law, best.choice, size);
     law.next = next(&law);
     Some(Proposed { law: Ok(law), lives, held_out: errors })
+}
+
+/// Puts what was recorded, without the likeliest law, in the place of what was predicted, where that
+/// law is a function of it; false where it is none, or where noise would be as large as the
+/// variable: it would explain itself.
+fn as_recorded(sites: &mut [Site], remainder: &Remainder, found: &Scan, (size, sigma): (f64, f64)) -> bool {
+    let Some(best) = found.laws.first() else { return false };
+    let site = &sites[best.choice.site];
+    let (low, high) = site.range();
+    let Some(recorded) = site.recorded.as_ref().filter(|_| high - low > ABOVE_NOISE * sigma) else {
+        return false;
+    };
+    let own = remainder.fit(&best.choice.columns(site, best.at, size).columns).own;
+    let values = recorded.iter().zip(own.iter()).map(|(value, own)| value - own).collect();
+    sites[best.choice.site].values = values;
+    true
+}
+
+/// What nominal numbers and zeros are, once a curve stands for what is left.
+fn known(model: &dyn ForwardModel, diagnosis: &Diagnosis, curve: Option<usize>) -> DVector<f64> {
+    let (evidence, sigma) = (&diagnosis.settled.0, diagnosis.settled.1);
+    let rows: Vec<usize> = (0..evidence.residual.len()).collect();
+    let columns = match curve {
+        Some(curve) => model.columns(&[model.candidates()[curve].neutral(curve)], 0),
+        None => DMatrix::zeros(rows.len(), 0),
+    };
+    Remainder::new(model, evidence, &diagnosis.hypothesis.terms, rows, sigma).fit(&columns).background
+}
+
+/// An evidence with the weights that its data have once the likeliest law is taken out.
+fn reweighted(
+    model: &dyn ForwardModel,
+    even: &Evidence,
+    terms: &[Term],
+    sites: &[Site],
+    (size, sigma): (f64, f64),
+) -> Option<Evidence> {
+    let remainder = Remainder::new(model, even, terms, (0..even.residual.len()).collect(), sigma);
+    let found = scan(&remainder, sites, size);
+    let best = found.laws.first()?;
+    let columns = best.choice.columns(&sites[best.choice.site], best.at, size);
+    let left = &even.residual - remainder.fit(&columns.columns).predicted;
+    let (weight, information) = weighted(&remainder.without_shared(&left));
+    Some(Evidence { weight, information, ..even.clone() })
 }
 
 /// The likeliest laws and the curve, all else fitted anew with each at its best; the others go.

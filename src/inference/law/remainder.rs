@@ -50,7 +50,9 @@ pub(super) struct Fitted {
     /// All data as predicted, and what the columns are of that.
     pub predicted: DVector<f64>,
     pub own: DVector<f64>,
-    /// Numbers that the data do not determine.
+    /// What the background is of it: nominal numbers and zeros.
+    pub background: DVector<f64>,
+    /// Data less the numbers that they determine.
     pub degrees_of_freedom: f64,
 }
 
@@ -98,6 +100,11 @@ impl<'a> Remainder<'a> {
         };
         let (inverse, rest) = without_base(&moments, first, sigma);
         Remainder { whole, rows, learned, whitening, left, base, own_left, own_base, moments, inverse, rest }
+    }
+
+    /// A residual of all data, where these are learned from, without the errors that data share.
+    pub fn without_shared(&self, residual: &DVector<f64>) -> DVector<f64> {
+        self.whitening.without_shared(residual)
     }
 
     fn own(&self, columns: &DMatrix<f64>) -> DMatrix<f64> {
@@ -158,6 +165,8 @@ impl<'a> Remainder<'a> {
         let scored = moments.score();
         let own_factors = scored.estimate.rows(first, count).into_owned();
         let own = columns * &own_factors;
+        let known = self.whole.background.ncols();
+        let background = &self.whole.background * scored.estimate.rows(0, known);
         let explained = &self.base * scored.estimate.rows(0, first) + &own;
         let predicted = &self.whole.residual - &self.left + self.with_nuisance(explained);
         Fitted {
@@ -166,6 +175,7 @@ impl<'a> Remainder<'a> {
             factors: own_factors,
             predicted,
             own,
+            background,
             degrees_of_freedom: (moments.degrees_of_freedom as f64 - scored.determined).max(1.0),
         }
     }

@@ -55,6 +55,16 @@ fn middle(choice: Choice, posterior: &Posterior) -> f64 {
 
 /// All laws on a remainder; `size` is how large, about, what is left is.
 pub(super) fn scan(remainder: &Remainder, sites: &[Site], size: f64) -> Scan {
+    scan_some(remainder, sites, size, |_| true)
+}
+
+/// The same of some laws, each with the prior that it has among all.
+pub(super) fn scan_some(
+    remainder: &Remainder,
+    sites: &[Site],
+    size: f64,
+    is_tried: impl Fn(&Choice) -> bool + Sync,
+) -> Scan {
     let all: Vec<Vec<Choice>> =
         sites.iter().enumerate().map(|(number, site)| Choice::all(number, site)).collect();
     let places = all.iter().filter(|choices| !choices.is_empty()).count();
@@ -66,9 +76,9 @@ pub(super) fn scan(remainder: &Remainder, sites: &[Site], size: f64) -> Scan {
             let posterior = Posterior::new(&choice.grid(&sites[number]), &|u| evidence(choice, u));
             (choice, posterior)
         };
-        let laws: Vec<(Choice, Posterior)> = choices.iter().map(of).collect();
+        let laws: Vec<(Choice, Posterior)> = choices.iter().filter(|c| is_tried(c)).map(of).collect();
         let curve =
-            (!choices.is_empty()).then(|| remainder.gain(&curve(&sites[number], size)) + prior(places, 1));
+            (!laws.is_empty()).then(|| remainder.gain(&curve(&sites[number], size)) + prior(places, 1));
         (laws, curve)
     });
     let mut best_curve: Option<(usize, f64)> = None;

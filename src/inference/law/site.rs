@@ -40,6 +40,9 @@ pub struct Site {
     pub directions: Vec<(String, Vec<f64>)>,
     /// The variable at each datum, SI; NaN where the law has nothing to say.
     pub values: Vec<f64>,
+    /// Where the variable is what was recorded, without what the law adds to it: the recorded
+    /// values, SI. `values` are the predicted ones, whose scale is as uncertain as the model's.
+    pub recorded: Option<Vec<f64>>,
     /// For each datum 1 where the load went up to it, −1 where it came down; nothing where the
     /// variable is no load.
     pub moves: Vec<f64>,

@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::*;
 use crate::inference::tests::Columns;
-use crate::inference::{Diagnosis, Evidence, Location, Part, Term, diagnose};
+use crate::inference::{Diagnosis, Evidence, Location, Part, diagnose};
 use crate::statistics::Random;
 
 const TRIALS: usize = 5;
@@ -16,7 +16,7 @@ fn load(row: usize) -> f64 {
     1.0 + (row % LEVELS) as f64
 }
 
-fn site(_: &[Term]) -> Vec<Site> {
+fn site(_: &DVector<f64>) -> Vec<Site> {
     let measure = |symbol, unit| Measure { symbol, name: symbol.into(), unit, si: 1.0 };
     vec![Site {
         location: Location::Part(Part::Clamp),
@@ -24,6 +24,7 @@ fn site(_: &[Term]) -> Vec<Site> {
         variable: measure("F", "N"),
         directions: vec![(String::new(), vec![1.0; COUNT])],
         values: (0..COUNT).map(load).collect(),
+        recorded: None,
         moves: vec![1.0; COUNT],
         courses: Vec::new(),
         forms: &Form::ALL,

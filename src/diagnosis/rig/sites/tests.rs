@@ -6,7 +6,7 @@ use crate::inference::diagnose;
 use crate::inference::law::propose;
 use crate::rig::readings::Readings;
 
-/// NIST StRD Pontius, certified: B1 = 7.32059160401003e-7, B2 = −3.16081871345029e-15 (inches, lbf).
+/// NIST StRD Pontius, and its certified B1 and B2 (inches, lbf).
 const LOAD_CELL: &str = include_str!("../../../../stiffness_data/nist-load-cell.csv");
 const CERTIFIED: (f64, f64) = (7.32059160401003e-7, -3.16081871345029e-15);
 const POUND_FORCE: f64 = 4.4482216152605;
@@ -17,7 +17,7 @@ fn the_load_cell_of_nist_is_quadratic_in_its_load() {
     let (model, evidence, _) = RigModel::with_effects(&readings, None, &Wanted::Like(&[])).unwrap();
     let diagnosis = diagnose(&model, &evidence);
     assert!(diagnosis.findings.is_empty() && diagnosis.discrepancy.is_some());
-    let found = propose(&model, &diagnosis, &|terms| sites(&model, terms)).unwrap();
+    let found = propose(&model, &diagnosis, &|change| sites(&model, change)).unwrap();
     let law = found.law.unwrap();
     // one axis and one sensor: what follows the load follows the reading, and the place is open
     let of_load = |site: &Site| site.variable.name == "load" && site.result.unit == "N";

@@ -1,7 +1,7 @@
 //! Laws that no library has, concealed in recordings: place, variable, constants, and refusal.
 
-use rodcal::report;
 use rodcal::report::chart::Mark;
+use rodcal::report::{self, Block};
 use rodcal::units::UM;
 use rodcal_trial::rig::{Effect, Order};
 use serde_json::Value;
@@ -174,8 +174,11 @@ fn a_law_changes_no_finding_and_has_its_section() {
     let answer = Answer::made(&order(), &[Effect::GapCloses { load: 5.6, share: 0.7 }], 31);
     let report = report::diagnosis::rig::report(&answer.found, None);
     let section = report.sections.iter().find(|section| section.heading == "A law for it").unwrap();
-    assert_eq!(section.tables().map(|table| table.name.as_str()).collect::<Vec<_>>(), ["law"]);
-    let labels: Vec<&str> = section.figures().flat_map(|figure| &figure.panels[0].marks).map(label).collect();
+    let [Block::List(_), Block::Table(table), Block::Figure(figure)] = &section.blocks[..] else {
+        panic!("{:?}", section.blocks);
+    };
+    assert_eq!((table.name.as_str(), figure.name.as_str()), ("law", "law"));
+    let labels: Vec<&str> = figure.panels[0].marks.iter().map(label).collect();
     assert_eq!(labels, ["readings", "smooth curve", "law", "law, extrapolated"]);
     assert_eq!(answer.effects(), [""; 0]);
     assert_eq!(answer.json["verdict"], "mismatch");

@@ -22,8 +22,20 @@ use crate::rod::Rod;
 use crate::spatial::Axis;
 use crate::units::UM;
 
-/// From zero on: loads, moments, readings.
+/// From zero on, of what is measured or hung: loads, readings. They may ripple.
 const OF_A_LOAD: &[Form] = &Form::ALL;
+/// Of what gives way under them.
+const OF_A_CONTACT: &[Form] = &[
+    Form::Power,
+    Form::Saturation,
+    Form::Threshold,
+    Form::Step,
+    Form::Approach,
+    Form::Logarithm,
+    Form::Polynomial(1),
+    Form::Polynomial(2),
+    Form::Polynomial(3),
+];
 /// With two signs, of which each may be another case.
 const OF_A_SIDE: &[Form] =
     &[Form::Threshold, Form::Step, Form::Polynomial(1), Form::Polynomial(2), Form::Polynomial(3)];
@@ -63,12 +75,14 @@ pub(super) fn sites(model: &RigModel, change: &DVector<f64>) -> Vec<Site> {
         (Location::Part(Part::Rod), measure("ΔF", "effective load", "N", 1.0)),
         measure("F", "load", "N", 1.0),
         (slopes, loads.clone()),
+        OF_A_LOAD,
     )];
     let sign = |d: &Datum| if d.channel == d.direction.axis { f64::from(d.direction.sign) } else { 0.0 };
     sites.push(recording.of_load(
         (Location::Part(Part::Clamp), measure("Δu", "displacement along the load", "µm", UM)),
         measure("F", "load", "N", 1.0),
         (data.iter().map(sign).collect(), loads),
+        OF_A_CONTACT,
     ));
     if let (Some(rod), Body::Rod(_)) = (&model.rod, &model.body) {
         let declared = rod.joints.iter().map(|joint| (Location::Named(joint.name.clone()), joint.station));
@@ -79,6 +93,7 @@ pub(super) fn sites(model: &RigModel, change: &DVector<f64>) -> Vec<Site> {
                 (location, measure("Δθ", "turn", "µrad", 1e-6)),
                 measure("M", "moment", "N·m", 1.0),
                 (weights, moments),
+                OF_A_CONTACT,
             ));
         }
     }
@@ -166,6 +181,7 @@ impl Recording<'_> {
         (location, result): (Location, Measure),
         variable: Measure,
         (weights, values): (Vec<f64>, Vec<f64>),
+        forms: &'static [Form],
     ) -> Site {
         // loads that change their direction have no common course
         let of_run = |course: &Course| {
@@ -183,7 +199,8 @@ impl Recording<'_> {
             recorded: None,
             moves: self.moves.clone(),
             courses,
-            forms: OF_A_LOAD,
+            // nothing that gives way does so in waves
+            forms,
         }
     }
 

@@ -1,11 +1,12 @@
 //! A law for what is left, or why none is proposed.
 
+use std::f64::consts::PI;
+
 use nalgebra::{DMatrix, DVector};
 
 use super::choice::Choice;
 use super::folds::hold_out;
 use super::measured::Measured;
-use super::memory::Memory;
 use super::proposed::{Law, LawRival, NextRecord, Point, Proposed, Refusal};
 use super::remainder::Remainder;
 use super::scan::{Scan, Scanned, curve, prior, scan};
@@ -14,6 +15,7 @@ use crate::inference::evidence::rms;
 use crate::inference::scatter::weighted;
 use crate::inference::selection::{APART, NAMED};
 use crate::inference::{Diagnosis, Evidence, ForwardModel, ShownBy, Term};
+use crate::linalg::least_squares;
 
 /// How far beyond the data a law is asked to part from its rivals.
 const BEYOND: f64 = 2.0;
@@ -21,6 +23,8 @@ const BEYOND: f64 = 2.0;
 const PARTED: f64 = 4.0;
 /// Points between nothing and [`BEYOND`].
 const STEPS: usize = 80;
+/// Cosines of a smooth curve in a picture.
+const CURVE: usize = 6;
 /// Points of a curve in a picture.
 const POINTS: usize = 60;
 /// Data that the law moves by less than this share of the largest are not drawn.
@@ -131,13 +135,13 @@ pub fn propose(
     };
     let residual = &evidence.residual - &fitted.predicted;
     law.points = points(&law, best.choice, &residual);
-    law.curve = smooth(&remainder, &law, best.choice, size);
+    law.curve = smooth(&law.points, law.site.directions.len());
     law.next = next(&law);
     Some(Proposed { law: Ok(law), lives, held_out: errors })
 }
 
-/// Puts what was recorded, without the likeliest law, in the place of what was predicted, where that
-/// law is a function of it; false where it is none, or where noise would be as large as the
+/// Puts what was recorded, without the likeliest law, in the place of what was predicted, where
+/// that law is a function of it; false where it is none, or where noise would be as large as the
 /// variable: it would explain itself.
 fn as_recorded(sites: &mut [Site], remainder: &Remainder, found: &Scan, (size, sigma): (f64, f64)) -> bool {
     let Some(best) = found.laws.first() else { return false };
@@ -216,31 +220,27 @@ fn points(law: &Law, choice: Choice, residual: &DVector<f64>) -> Vec<Point> {
     points
 }
 
-/// A smooth curve in the law's place: what it says at the points of the data, in order.
-fn smooth(remainder: &Remainder, law: &Law, choice: Choice, size: f64) -> Vec<Point> {
-    if choice.memory != Memory::None {
-        return Vec::new();
-    }
-    let fitted = remainder.fit(&curve(&law.site, size));
-    let (low, high) = law.site.range();
-    let mut points = Vec::new();
-    for (direction, (_, weights)) in law.site.directions.iter().enumerate() {
-        let largest = weights.iter().fold(0.0, |most: f64, w| most.max(w.abs()));
-        let count = fitted.factors.len() / law.site.directions.len();
+/// A smooth curve through the points of each direction: Σ a_j·cos(πjx) by least squares.
+fn smooth(points: &[Point], directions: usize) -> Vec<Point> {
+    let mut curve = Vec::new();
+    for direction in 0..directions {
+        let own: Vec<&Point> = points.iter().filter(|point| point.direction == direction).collect();
+        let ends = own.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), p| (a.min(p.x), b.max(p.x)));
+        let wave = |x: f64, j: usize| (PI * j as f64 * (x - ends.0) / (ends.1 - ends.0)).cos();
+        let mut xs: Vec<f64> = own.iter().map(|point| point.x).collect();
+        xs.sort_by(f64::total_cmp);
+        xs.dedup();
+        let count = xs.len().min(CURVE);
+        let columns = DMatrix::from_fn(own.len(), count, |i, j| wave(own[i].x, j));
+        let values = DVector::from_iterator(own.len(), own.iter().map(|point| point.value));
+        let Ok(factors) = least_squares(&columns, &values) else { continue };
         for k in 0..=POINTS {
-            let share = k as f64 / POINTS as f64;
-            let wave = |j: usize| {
-                let angle = std::f64::consts::PI * j as f64 * share;
-                fitted.factors[direction * count + j] * size / (1 + j) as f64 / largest * angle.cos()
-            };
-            points.push(Point {
-                direction,
-                x: low + share * (high - low),
-                value: (0..count).map(wave).sum(),
-            });
+            let x = ends.0 + (ends.1 - ends.0) * k as f64 / POINTS as f64;
+            let value = (0..count).map(|j| factors[j] * wave(x, j)).sum();
+            curve.push(Point { direction, x, value });
         }
     }
-    points
+    curve
 }
 
 /// Where the law and a rival at its place part first: between the data if they do, or else beyond

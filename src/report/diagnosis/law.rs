@@ -237,7 +237,7 @@ fn table(law: &Law) -> Table {
     ];
     let mut table = Table::new("law", "The constants of the proposed law.", columns);
     for own in constants(law) {
-        let show = |value: f64| significant(value, 3);
+        let show = |value: f64| shown(value, 0.5 * (own.high - own.low));
         let unit = own.unit.clone();
         table.row([
             own.symbol.clone(),
@@ -249,6 +249,17 @@ fn table(law: &Law) -> Table {
         ]);
     }
     table
+}
+
+/// A number with as many digits as half of its interval has, and one more.
+fn shown(value: f64, half: f64) -> String {
+    const MOST: i32 = 6;
+    let decimals = if half > 0.0 { 1 - half.log10().floor() as i32 } else { MOST + 1 };
+    match decimals {
+        ..=0 => format!("{value:.0}"),
+        1..=MOST => format!("{value:.0$}", decimals as usize),
+        _ => significant(value, 4),
+    }
 }
 
 /// Data, smooth curve and law, direction by direction.
@@ -274,7 +285,7 @@ fn picture(law: &Law) -> crate::report::chart::Figure {
         LawPanel {
             title: name.clone(),
             x: label(&variable.name, variable.unit),
-            y: label(&result.name, result.unit),
+            y: label(&format!("change of the {}", result.name), result.unit),
             data,
             curve: own(&law.curve),
             law: line(ends.0, ends.1),

@@ -36,8 +36,7 @@ impl Choice {
             for &form in site.forms {
                 let is_of = match memory {
                     Memory::None => true,
-                    // what resists a move does so from zero on
-                    Memory::Side => !matches!(form, Form::Threshold | Form::Step | Form::Harmonic),
+                    Memory::Side => !matches!(form, Form::Threshold | Form::Harmonic),
                     Memory::Stop | Memory::Lag => form == Form::Polynomial(1),
                 };
                 let choice = Choice { site: number, form, memory };

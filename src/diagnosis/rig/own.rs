@@ -31,6 +31,8 @@ pub(super) fn entry(effect: &OwnEffect, model: &RigModel) -> Result<Option<Entry
     let at_place = |site: &&Site| is_at(effect, &site.location);
     if !all.iter().any(|site| at_place(&site)) && !all.is_empty() {
         let mut known: Vec<String> = all.iter().map(|site| site.location.to_string()).collect();
+        // its channels are places, each by itself
+        known.retain(|place| *place != Part::Sensors.to_string());
         known.sort();
         known.dedup();
         return Err(wrong(&effect.at.0, format!("`place` is \"{}\"", effect.place), known.join(", ")));

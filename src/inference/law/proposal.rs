@@ -243,8 +243,8 @@ fn smooth(points: &[Point], directions: usize) -> Vec<Point> {
     curve
 }
 
-/// Where the law and a rival at its place part first: between the data if they do, or else beyond
-/// them.
+/// Where the law and a rival at its place part first, what zeros and stiffnesses take up apart:
+/// between the data if they do, or else beyond them.
 fn next(law: &Law) -> Option<NextRecord> {
     let (low, high) = law.site.range();
     let per_result =
@@ -255,9 +255,15 @@ fn next(law: &Law) -> Option<NextRecord> {
             && rival.site.variable == law.site.variable
     };
     let (number, rival) = law.rivals.iter().enumerate().find(|(_, rival)| is_alike(rival))?;
+    let directions = 0..law.site.directions.len();
+    let lines: Vec<(f64, f64)> =
+        directions.clone().map(|direction| taken_up(law, rival, direction)).collect();
     let apart = |x: f64| {
-        let of = |direction| (law.at(direction, x) - rival.at(direction, x)).abs() * per_result;
-        (0..law.site.directions.len()).map(of).fold(0.0, f64::max)
+        let of = |direction: usize| {
+            let (level, slope) = lines[direction];
+            (law.at(direction, x) - rival.at(direction, x) - level - slope * x).abs() * per_result
+        };
+        directions.clone().map(of).fold(0.0, f64::max)
     };
     let least = low.min(0.0);
     let x = |k: usize| least + (BEYOND * high - least) * k as f64 / STEPS as f64;
@@ -265,4 +271,14 @@ fn next(law: &Law) -> Option<NextRecord> {
     let far = |x: &f64| apart(*x) > PARTED * law.noise;
     let at = within.filter(far).or_else(|| (0..=STEPS).map(x).filter(|x| *x > high).find(far))?;
     Some(NextRecord { rival: number, at, is_beyond: at > high, apart: apart(at) })
+}
+
+/// What zeros and stiffnesses take up of the difference of two laws: the straight line through it at
+/// the data. Level and slope.
+fn taken_up(law: &Law, rival: &LawRival, direction: usize) -> (f64, f64) {
+    let own: Vec<f64> = law.points.iter().filter(|p| p.direction == direction).map(|p| p.x).collect();
+    let columns = DMatrix::from_fn(own.len(), 2, |i, j| if j == 0 { 1.0 } else { own[i] });
+    let differences = own.iter().map(|&x| law.at(direction, x) - rival.at(direction, x));
+    let values = DVector::from_iterator(own.len(), differences);
+    least_squares(&columns, &values).map_or((0.0, 0.0), |line| (line[0], line[1]))
 }

@@ -95,7 +95,7 @@ pub struct NextRecord {
     pub at: f64,
     /// True where it is beyond what was recorded.
     pub is_beyond: bool,
-    /// How far they are apart there, m.
+    /// How far they are apart there, m, but for a straight line that zeros and stiffnesses take up.
     pub apart: f64,
 }
 

@@ -8,7 +8,7 @@
 //!
 //! w what one unit of the law does to a datum (the place says it), x the variable, X its largest
 //! size, g the functions of the form, s its one number that is not linear (an exponent, a corner,
-//! a period, a lag). The amplitudes a are integrated in closed form ([`super::score`]), s on a grid
+//! a period, a lag). The amplitudes a are integrated in closed form (`score.rs`), s on a grid
 //! with its prior, both beside the findings, the numbers of the files and the zeros, which are
 //! fitted anew with every law. What a form costs is in that integral; its prior is the share that
 //! its place and its fellows leave it.

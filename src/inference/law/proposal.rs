@@ -273,8 +273,8 @@ fn next(law: &Law) -> Option<NextRecord> {
     Some(NextRecord { rival: number, at, is_beyond: at > high, apart: apart(at) })
 }
 
-/// What zeros and stiffnesses take up of the difference of two laws: the straight line through it at
-/// the data. Level and slope.
+/// What zeros and stiffnesses take up of the difference of two laws: the straight line through it
+/// at the data. Level and slope.
 fn taken_up(law: &Law, rival: &LawRival, direction: usize) -> (f64, f64) {
     let own: Vec<f64> = law.points.iter().filter(|p| p.direction == direction).map(|p| p.x).collect();
     let columns = DMatrix::from_fn(own.len(), 2, |i, j| if j == 0 { 1.0 } else { own[i] });

@@ -33,6 +33,7 @@ mod limit;
 mod linearised;
 mod locate;
 mod location;
+mod memory;
 mod misread;
 mod moments;
 
@@ -53,6 +54,7 @@ mod sessions;
 mod shared_ratio;
 mod sketch;
 mod stored_column;
+mod table;
 mod untested;
 mod variable;
 mod whitening;

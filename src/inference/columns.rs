@@ -16,6 +16,7 @@ use std::sync::{Arc, OnceLock};
 
 use nalgebra::DMatrix;
 
+use super::table::Table;
 use super::{Candidate, ForwardModel};
 use crate::linalg::transposed_product;
 
@@ -37,7 +38,7 @@ pub(super) struct Columns {
     sequences: Vec<Arc<[usize]>>,
     columns: Vec<Column>,
     /// The first column of each candidate, and the number of all.
-    first: Vec<usize>,
+    first: Arc<[usize]>,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -100,7 +101,7 @@ impl Columns {
             listed: building.listed,
             sequences: building.sequences,
             columns: building.columns,
-            first,
+            first: first.into(),
         }
     }
 
@@ -160,7 +161,7 @@ impl Columns {
 
     /// The same for many vectors, some at a time, lest all that is computed for them stands in
     /// memory.
-    pub fn table(&self, vectors: &DMatrix<f64>, rows: Option<&[usize]>) -> Table<'_> {
+    pub fn table(&self, vectors: &DMatrix<f64>, rows: Option<&[usize]>) -> Table {
         let at_once = (AT_ONCE / self.data.max(1)).max(1);
         let mut all = DMatrix::zeros(vectors.ncols(), self.columns.len());
         for first in (0..vectors.ncols()).step_by(at_once) {
@@ -171,7 +172,7 @@ impl Columns {
                 all.view_mut((first, self.first[candidate]), own.shape()).copy_from(&own);
             }
         }
-        Table { columns: self, all }
+        Table::new(Arc::clone(&self.first), all)
     }
 
     /// The square of a candidate that is a step, by the `squares` of steps of size 1 at each datum
@@ -244,21 +245,6 @@ impl Products<'_> {
             }
         }
         products
-    }
-}
-
-/// The same, kept: without the vectors.
-pub(super) struct Table<'a> {
-    columns: &'a Columns,
-    /// Vectors × all columns.
-    all: DMatrix<f64>,
-}
-
-impl Table<'_> {
-    /// Vectors × columns of a candidate.
-    pub fn of(&self, candidate: usize) -> DMatrix<f64> {
-        let (first, next) = (self.columns.first[candidate], self.columns.first[candidate + 1]);
-        self.all.columns(first, next - first).into_owned()
     }
 }
 

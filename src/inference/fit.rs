@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::score::Score;
-use super::search::{Search, remembered};
+use super::search::Search;
 use super::{ForwardModel, Hypothesis, Term};
 
 /// Most Gauss–Newton steps to the values of a hypothesis.
@@ -21,11 +21,15 @@ impl Search<'_> {
     /// Fits the values of `terms` together, by Gauss–Newton steps from where they are, and scores
     /// them.
     pub fn fit(&self, terms: &[Term]) -> Hypothesis {
-        remembered(&self.fitted, terms, || self.fit_until(terms, SETTLED.0))
+        self.fitted.answer(terms, || self.fit_until(terms, SETTLED.0))
     }
 
-    /// The same for a first look: values within a tenth of their standard deviations.
+    /// The same for a first look: values within a tenth of their standard deviations, where there
+    /// is more than one step to them.
     pub(super) fn fit_roughly(&self, terms: &[Term]) -> Hypothesis {
+        if self.model.is_linear_in(terms) {
+            return self.fit(terms);
+        }
         self.fit_until(terms, SETTLED.1)
     }
 

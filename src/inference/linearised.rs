@@ -4,9 +4,10 @@ use std::sync::{Arc, OnceLock};
 
 use nalgebra::{DMatrix, DVector};
 
-use super::columns::{Columns, Products, Table};
+use super::columns::{Columns, Products};
 use super::part_products::{PartProducts, Training};
 use super::stored_column::dense;
+use super::table::Table;
 use super::whitening::Whitening;
 use super::{
     Candidate, Description, Estimate, Evidence, Finding, FindingPart, ForwardModel, Hypothesis, Location,
@@ -89,7 +90,7 @@ impl<'a> Linearised<'a> {
     }
 
     /// The same for many vectors, to be kept.
-    pub(super) fn table(&self, vectors: &DMatrix<f64>) -> Table<'_> {
+    pub(super) fn table(&self, vectors: &DMatrix<f64>) -> Table {
         self.stored().table(vectors, self.rows)
     }
 

@@ -3,15 +3,16 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::gram_cache::{GramCache, stacked};
+use super::gram_cache::GramCache;
 use super::score::Moments;
 use super::search::Search;
+use super::table::{Table, stacked};
 use super::{ForwardModel, Hypothesis, Term};
 use crate::linalg::transposed_product;
 
-/// For a candidate, the inner products of its columns with those of a hypothesis (rows), and with a
-/// residual.
-pub(super) type CrossProducts<'a> = dyn Fn(usize) -> (DMatrix<f64>, DVector<f64>) + 'a;
+/// For some candidates, the inner products of their columns with those of a hypothesis (rows), and
+/// with a residual.
+pub(super) type CrossProducts<'a> = dyn Fn(&[usize]) -> (DMatrix<f64>, DVector<f64>) + Sync + 'a;
 
 impl Search<'_> {
     /// Residual and columns of a hypothesis, background first, whitened; the residual without what
@@ -73,29 +74,36 @@ impl Search<'_> {
             let mut with_residual = own.resize_horizontally(count + 1, 0.0);
             with_residual.set_column(count, &r);
             let products = self.model.products(self.whitening.transposed(&with_residual));
-            let of = move |index: usize| {
-                let all = products.of(index);
-                let effects = all.rows(0, count).into_owned();
-                let background = self.beside_background.as_ref().map(|table| table.of(index));
-                let cross = stacked(&background.unwrap_or_default(), std::iter::once(&effects));
-                (cross, all.row(count).transpose())
+            let of = move |candidates: &[usize]| {
+                let background: Vec<&Table> = self.beside_background.iter().collect();
+                let mut cross = stacked(&background, candidates);
+                let (first, all) = (cross.nrows(), candidates.iter().map(|&k| self.grams[k].ncols()).sum());
+                cross = cross.resize(first + count, all, 0.0);
+                let mut product = DVector::zeros(all);
+                let mut next = 0;
+                for block in candidates.iter().map(|&candidate| products.of(candidate)) {
+                    cross.view_mut((first, next), (count, block.ncols())).copy_from(&block.rows(0, count));
+                    product.rows_mut(next, block.ncols()).tr_copy_from(&block.row(count));
+                    next += block.ncols();
+                }
+                (cross, product)
             };
             return (moments, Box::new(of));
         };
         let effects: Vec<usize> = terms.iter().map(|c| c.candidate).collect();
         let cross = kept.hypothesis(&effects, &|effect| self.beside_effect(effect));
         let moments = self.kept_moments(kept, terms);
-        (moments, Box::new(move |index| (cross(index), kept.residual(index).clone())))
+        let of_residual = |candidates: &[usize]| kept.residual(candidates).row(0).transpose();
+        (moments, Box::new(move |candidates| (cross(candidates), of_residual(candidates))))
     }
 
-    /// Inner products of an effect's columns (rows) with those of each candidate.
-    fn beside_effect(&self, effect: usize) -> Vec<DMatrix<f64>> {
+    /// Inner products of an effect's columns (rows) with those of all candidates.
+    fn beside_effect(&self, effect: usize) -> Table {
         if let Some(training) = &self.training {
             return training.between(effect);
         }
         let own = self.whitening.apply_columns(&self.model.neutral(effect));
-        let products = self.model.table(&self.whitening.transposed(&own));
-        (0..self.grams.len()).map(|index| products.of(index)).collect()
+        self.model.table(&self.whitening.transposed(&own))
     }
 
     pub(super) fn moments(&self, terms: &[Term]) -> Moments {
@@ -120,13 +128,13 @@ impl Search<'_> {
         product.rows_mut(0, first).copy_from(&self.background.0.tr_mul(&self.residual));
         let mut next = first;
         for (&effect, &own) in effects.iter().zip(&counts) {
-            let block = cross(effect);
+            let block = cross(&[effect]);
             // symmetric to the last bit
             let above = next.min(block.nrows());
             gram.view_mut((0, next), (above, own)).copy_from(&block.rows(0, above));
             gram.view_mut((next, 0), (own, above)).copy_from(&block.rows(0, above).transpose());
             gram.view_mut((next, next), (own, own)).copy_from(&self.grams[effect]);
-            product.rows_mut(next, own).copy_from(kept.residual(effect));
+            product.rows_mut(next, own).tr_copy_from(&kept.residual(&[effect]));
             next += own;
         }
         Moments {

@@ -77,7 +77,7 @@ impl Search<'_> {
                         let products = training.between(paired[k]);
                         for (other, &index) in paired.iter().enumerate() {
                             let (at, size) = ((starts[k], starts[other]), (counts[k], counts[other]));
-                            gram.view_mut(at, size).copy_from(&products[index]);
+                            gram.view_mut(at, size).copy_from(&products.of(index));
                         }
                     }
                 }

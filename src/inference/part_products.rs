@@ -24,19 +24,20 @@ use std::sync::{Arc, Mutex, PoisonError};
 use nalgebra::{DMatrix, DVector};
 
 use super::stored_column::{DataParts, StoredColumn, dense, fit, grams, products};
+use super::table::Table;
 use super::whitening::Whitening;
 use super::{Evidence, ForwardModel};
 use crate::linalg::transposed_product;
 use crate::parallel::in_parallel;
 
-/// Numbers of the products between candidates that are kept: 64 MB.
-const KEPT: usize = 1 << 23;
+/// Numbers of the products between candidates that are kept: 32 MB.
+const KEPT: usize = 1 << 22;
 
 /// Of all candidates over all parts of a recording.
 pub(super) struct PartProducts<'a> {
     columns: Vec<StoredColumn<'a>>,
     /// The first column of each candidate, and the number of all.
-    first: Vec<usize>,
+    first: Arc<[usize]>,
     /// Numbers of the parts as the evidence has them.
     names: Vec<usize>,
     parts: DataParts,
@@ -98,6 +99,7 @@ impl<'a> PartProducts<'a> {
             columns.extend(model.stored(candidate));
             first.push(columns.len());
         }
+        let first: Arc<[usize]> = first.into();
         if !fit(&columns, &parts) {
             return None;
         }
@@ -218,39 +220,38 @@ impl<'a> Training<'a> {
         (0..self.all.first.len() - 1).map(gram).collect()
     }
 
-    /// BᵀMC of each candidate, `of_background` being QᵀB.
-    pub fn beside_background(&self, of_background: &DMatrix<f64>) -> Vec<DMatrix<f64>> {
+    /// BᵀMC of all candidates, `of_background` being QᵀB.
+    pub fn beside_background(&self, of_background: &DMatrix<f64>) -> Table {
         let (first, count) = self.all.counts;
         self.beside(first, count, of_background)
     }
 
-    /// CᵀMr of each candidate, `of_residual` being Qᵀr.
-    pub fn beside_residual(&self, of_residual: &DVector<f64>) -> Vec<DVector<f64>> {
+    /// rᵀMC of all candidates, `of_residual` being Qᵀr.
+    pub fn beside_residual(&self, of_residual: &DVector<f64>) -> Table {
         let (nuisance, background) = self.all.counts;
         let along = DMatrix::from_column_slice(of_residual.len(), 1, of_residual.as_slice());
-        let rows = self.beside(nuisance + background, 1, &along);
-        rows.iter().map(|row| row.row(0).transpose()).collect()
+        self.beside(nuisance + background, 1, &along)
     }
 
-    fn beside(&self, first: usize, count: usize, along: &DMatrix<f64>) -> Vec<DMatrix<f64>> {
+    fn beside(&self, first: usize, count: usize, along: &DMatrix<f64>) -> Table {
         let mut sum = -along.tr_mul(&self.absorbed);
         if let Some(data) = &self.own {
-            return self.apart(&(sum + data.beside.rows(first, count)));
+            return self.table(sum + data.beside.rows(first, count));
         }
         self.held.iter().for_each(|&part| sum += self.all.beside[part].rows(first, count));
-        self.apart(&sum)
+        self.table(sum)
     }
 
-    /// CₑᵀMC of a candidate e with each candidate.
-    pub fn between(&self, candidate: usize) -> Vec<DMatrix<f64>> {
+    /// CₑᵀMC of a candidate e with all candidates.
+    pub fn between(&self, candidate: usize) -> Table {
         let mut sum = -self.own(candidate).tr_mul(&self.absorbed);
         if let Some(data) = &self.own {
             let whitened = data.whitened(self.all.of(candidate), self.all.parts.count());
-            return self.apart(&(sum + data.products(&self.all, &whitened)));
+            return self.table(sum + data.products(&self.all, &whitened));
         }
         let between = self.all.between(candidate);
         self.held.iter().for_each(|&part| sum += &between[part]);
-        self.apart(&sum)
+        self.table(sum)
     }
 
     fn own(&self, candidate: usize) -> DMatrix<f64> {
@@ -258,9 +259,7 @@ impl<'a> Training<'a> {
         self.absorbed.columns(first, next - first).into_owned()
     }
 
-    /// The columns of each candidate.
-    fn apart(&self, all: &DMatrix<f64>) -> Vec<DMatrix<f64>> {
-        let own = |pair: &[usize]| all.columns(pair[0], pair[1] - pair[0]).into_owned();
-        self.all.first.windows(2).map(own).collect()
+    fn table(&self, all: DMatrix<f64>) -> Table {
+        Table::new(Arc::clone(&self.all.first), all)
     }
 }

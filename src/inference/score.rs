@@ -21,7 +21,7 @@ mod tests;
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::linalg::{positive_definite_inverse, transposed_product};
+use crate::linalg::{InverseRoot, transposed_product};
 use crate::statistics::{ln_normal_mass, student_t_quantile};
 
 /// Least noise variance relative to that of the residual.
@@ -74,8 +74,10 @@ pub struct Moments {
 pub struct ColumnBlock<'a> {
     /// Their inner products with each other.
     pub gram: &'a DMatrix<f64>,
-    /// Those of the hypothesis's columns (rows) with them (columns).
+    /// Those of the hypothesis's columns (rows) with them (columns), X.
     pub cross: DMatrix<f64>,
+    /// What [`Score::solved`] makes of X.
+    pub solved: DMatrix<f64>,
     /// Those with r.
     pub product: DVector<f64>,
     /// Bounds of the scaled parameters.
@@ -103,6 +105,24 @@ pub struct Score {
     pub determined: f64,
     /// κ of every effect.
     pub scales: Vec<f64>,
+}
+
+impl Score {
+    /// (G + σ²)⁻¹X of cross products X, by the posterior covariance over σ².
+    pub fn solved(&self, cross: &DMatrix<f64>) -> DMatrix<f64> {
+        let per_square = self.sigma.powi(2).recip();
+        if cross.len() >= FEW {
+            return transposed_product(&self.covariance, cross) * per_square;
+        }
+        // so few columns are sooner multiplied one by one
+        let mut solved = DMatrix::zeros(cross.nrows(), cross.ncols());
+        for (mut solved, cross) in solved.column_iter_mut().zip(cross.column_iter()) {
+            for (covariance, cross) in self.covariance.column_iter().zip(cross.iter()) {
+                solved.axpy(cross * per_square, &covariance, 1.0);
+            }
+        }
+        solved
+    }
 }
 
 impl Moments {
@@ -135,7 +155,9 @@ impl Moments {
         let (p, nu) = (self.gram.ncols(), (self.degrees_of_freedom as f64).max(1.0));
         let (count, believed) = self.believed();
         let all = (self.square + believed) / (nu + count);
-        let lowest = self.floor.powi(2).max(LEAST * all).max(f64::MIN_POSITIVE.sqrt());
+        // G itself is rounded
+        let rounding = p as f64 * f64::EPSILON * self.gram.diagonal().iter().fold(0.0, |a: f64, &b| a.max(b));
+        let lowest = self.floor.powi(2).max(LEAST * all).max(rounding).max(f64::MIN_POSITIVE.sqrt());
         let highest = all.max(lowest);
         let (mut s, mut scales) = (highest, vec![1.0; self.effects.len()]);
         let mut sizes = self.sizes(&scales);
@@ -161,7 +183,7 @@ impl Moments {
         let room: f64 = (0..p)
             .map(|k| {
                 let (low, high) = self.bounds[k];
-                let sd = (s * solved.inverse[(k, k)]).sqrt() / sizes[k];
+                let sd = (s * solved.variance[k]).sqrt() / sizes[k];
                 room((low / sizes[k], high / sizes[k]), solved.solution[k] / sizes[k], sd)
             })
             .sum();
@@ -175,7 +197,7 @@ impl Moments {
             log_evidence: -0.5 * fit + room - price,
             sigma: s.sqrt(),
             determined: solved.determined(&sizes, s),
-            covariance: solved.inverse * s,
+            covariance: solved.inverse() * s,
             estimate: solved.solution,
             scales,
         }
@@ -209,7 +231,7 @@ impl Moments {
         if sizes == before {
             return score.covariance.clone();
         }
-        Ridge::new(&self.gram, &self.product, |k| square / sizes[k].powi(2)).inverse * square
+        Ridge::new(&self.gram, &self.product, |k| square / sizes[k].powi(2)).inverse() * square
     }
 
     /// What the stated noise counts, and what it adds to the squares.
@@ -233,7 +255,7 @@ impl Moments {
         let mut next = Vec::with_capacity(scales.len());
         for &count in &self.effects {
             let own = first..first + count;
-            let square: f64 = own.map(|k| solved.solution[k].powi(2) + s * solved.inverse[(k, k)]).sum();
+            let square: f64 = own.map(|k| solved.solution[k].powi(2) + s * solved.variance[k]).sum();
             next.push((square / count as f64).sqrt().clamp(SCALES.0, SCALES.1));
             first += count;
         }
@@ -272,7 +294,7 @@ impl Moments {
         loop {
             let ridge = left / scale.powi(2) + rounding;
             let solved = Ridge::new(&gram, &product, |_| ridge);
-            let square = solved.solution.norm_squared() + left * solved.inverse.trace();
+            let square = solved.solution.norm_squared() + left * solved.variance.sum();
             let next = (square / k as f64).sqrt().clamp(SCALES.0, SCALES.1);
             let explained = (product.dot(&solved.solution) / squares).clamp(0.0, 1.0 - 1e-12);
             let less = (s * (1.0 - explained)).max(self.floor.powi(2)).max(f64::MIN_POSITIVE.sqrt());
@@ -281,7 +303,7 @@ impl Moments {
                 let room: f64 = (0..k)
                     .map(|i| {
                         let (low, high) = more.bounds[i];
-                        let sd = (left * solved.inverse[(i, i)]).sqrt() / scale;
+                        let sd = (left * solved.variance[i]).sqrt() / scale;
                         room((low / scale, high / scale), solved.solution[i] / scale, sd)
                     })
                     .sum();
@@ -302,14 +324,9 @@ impl Moments {
     fn about_one(&self, score: &Score, more: &ColumnBlock, nu: f64) -> f64 {
         let s = score.sigma.powi(2);
         let squares = self.squares(score, nu);
-        let (mut gram, mut product) = (more.gram[0], more.product[0]);
-        let cross = more.cross.as_slice();
-        let columns = score.covariance.as_slice().chunks_exact(cross.len().max(1));
-        for ((covariance, x), estimate) in columns.zip(cross).zip(score.estimate.as_slice()) {
-            let along: f64 = covariance.iter().zip(cross).map(|(c, x)| c * x).sum();
-            gram -= x * along / s;
-            product -= x * estimate;
-        }
+        let gram = more.gram[0] - more.cross.dot(&more.solved);
+        // (G + σ²)⁻¹b is the estimate
+        let product = more.product[0] - more.cross.column(0).dot(&score.estimate);
         let rounding = ROUNDING * more.gram[0].abs();
         let moment = (product * product - s * gram) / (gram * gram).max(f64::MIN_POSITIVE);
         let (mut scale, mut left) = (moment.max(0.0).sqrt().clamp(SCALES.0, SCALES.1), s);
@@ -337,23 +354,8 @@ impl Moments {
     /// Inner products of `more` columns with each other and with r, the hypothesis's columns out of
     /// them.
     fn reduced(&self, score: &Score, more: &ColumnBlock) -> (DMatrix<f64>, DVector<f64>) {
-        // (G + σ²)⁻¹ is the posterior covariance over σ²
-        let per_square = score.sigma.powi(2).recip();
-        let reduced = match more.cross.len() < FEW {
-            // so few columns are sooner multiplied one by one
-            true => {
-                let mut reduced = DMatrix::zeros(more.cross.nrows(), more.cross.ncols());
-                for (mut reduced, cross) in reduced.column_iter_mut().zip(more.cross.column_iter()) {
-                    for (covariance, cross) in score.covariance.column_iter().zip(cross.iter()) {
-                        reduced.axpy(cross * per_square, &covariance, 1.0);
-                    }
-                }
-                reduced
-            }
-            false => transposed_product(&score.covariance, &more.cross) * per_square,
-        };
-        let gram = more.gram - more.cross.tr_mul(&reduced);
-        (gram, &more.product - reduced.tr_mul(&self.product))
+        let gram = more.gram - more.cross.tr_mul(&more.solved);
+        (gram, &more.product - more.cross.tr_mul(&score.estimate))
     }
 
     /// What a hypothesis of this score leaves, as a problem of its own: its columns are taken out
@@ -388,8 +390,10 @@ impl Moments {
 /// The solution x = A⁻¹b of A = G + a diagonal.
 struct Ridge {
     solution: DVector<f64>,
-    inverse: DMatrix<f64>,
+    /// The diagonal of A⁻¹.
+    variance: DVector<f64>,
     ln_determinant: f64,
+    root: Option<InverseRoot>,
 }
 
 impl Ridge {
@@ -402,8 +406,9 @@ impl Ridge {
         }
         let mut more = f64::EPSILON * a.diagonal().amax();
         for _ in 0..TRIES {
-            if let Some((inverse, ln_determinant)) = positive_definite_inverse(&a) {
-                return Ridge { solution: &inverse * product, inverse, ln_determinant };
+            if let Some(root) = InverseRoot::new(&a) {
+                let (solution, variance) = (root.solve(product), root.diagonal_of_inverse());
+                return Ridge { solution, variance, ln_determinant: root.ln_determinant, root: Some(root) };
             }
             for k in 0..p {
                 a[(k, k)] += more;
@@ -411,12 +416,19 @@ impl Ridge {
             more *= 10.0;
         }
         // nothing but numbers that are not finite
-        Ridge { solution: DVector::zeros(p), inverse: DMatrix::zeros(p, p), ln_determinant: f64::INFINITY }
+        let (solution, variance) = (DVector::zeros(p), DVector::zeros(p));
+        Ridge { solution, variance, ln_determinant: f64::INFINITY, root: None }
+    }
+
+    /// A⁻¹.
+    fn inverse(&self) -> DMatrix<f64> {
+        let none = || DMatrix::zeros(self.variance.len(), self.variance.len());
+        self.root.as_ref().map_or_else(none, InverseRoot::inverse)
     }
 
     /// γ = p − σ²·Σ(A⁻¹)ₖₖ/κₖ².
     fn determined(&self, sizes: &[f64], s: f64) -> f64 {
-        let shares = sizes.iter().enumerate().map(|(k, size)| s * self.inverse[(k, k)] / size.powi(2));
+        let shares = sizes.iter().zip(&self.variance).map(|(size, own)| s * own / size.powi(2));
         sizes.len() as f64 - shares.sum::<f64>()
     }
 }

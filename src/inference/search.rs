@@ -3,31 +3,32 @@
 //! A hypothesis is a few candidates that act together. Its probability is that of the recording
 //! ([`super::score`]) times its prior ([`super::priors`]).
 
-use std::collections::BTreeMap;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::columns::Table;
 use super::gram_cache::GramCache;
 use super::lack_of_fit::{LackOfFit, Replicates};
 use super::linearised::Linearised;
+use super::memory::Memory;
 use super::part_products::Training;
 use super::priors::priors;
 use super::score::ColumnBlock;
+use super::table::Table;
 use super::whitening::Whitening;
 use super::{Candidate, Effect, Evidence, ForwardModel, Hypothesis, Kind, Term};
 use crate::linalg::transposed_product;
+use crate::parallel::in_parallel_outside_of_jobs;
 
 /// A mistake is so many times as large as what readings scatter by.
 const MISTAKEN: f64 = 10.0;
 /// Of how many candidates, the likeliest, and the likeliest of each effect besides, the evidence is
 /// computed exactly.
 const SCORED: usize = 6;
+/// Candidates whose products are computed at once.
+const AT_ONCE: usize = 64;
 /// Steps of one sequence are so many data apart at least.
 const NO_STEP: usize = 3;
-/// Answers that are remembered; a hypothesis of a dozen effects has some 100 kB.
-const REMEMBERED: usize = 256;
 
 /// Looks for the most probable hypothesis.
 pub struct Search<'a> {
@@ -38,7 +39,7 @@ pub struct Search<'a> {
     pub(super) background: (DMatrix<f64>, DMatrix<f64>),
     /// Those of the background with each candidate's columns at neutral values; not of a linear
     /// model in parts.
-    pub(super) beside_background: Option<Table<'a>>,
+    pub(super) beside_background: Option<Table>,
     /// Of a linear model in parts.
     pub(super) training: Option<Training<'a>>,
     /// Inner products of each candidate's columns, whitened and projected, with each other. Those
@@ -52,13 +53,10 @@ pub struct Search<'a> {
     pub(super) prior: Vec<f64>,
     /// What repeats have in common; `None` without repeats.
     replicates: Option<Replicates>,
-    /// What was fitted and asked before: a search comes to the same hypothesis by several ways.
+    /// What was fitted and asked before.
     pub(super) fitted: Memory<Hypothesis>,
     added: Memory<Arc<Vec<f64>>>,
 }
-
-/// Answers by the terms that they are of, values to the last bit.
-pub(super) type Memory<T> = Mutex<BTreeMap<Vec<(usize, Vec<u64>)>, T>>;
 
 impl<'a> Search<'a> {
     /// On an evidence, with the scatter of what `adopted` leaves.
@@ -75,17 +73,18 @@ impl<'a> Search<'a> {
                 let of_residual = DMatrix::from_columns(std::slice::from_ref(&evidence.residual));
                 let of_residual = training.beside_residual(&along(&of_residual).column(0).into_owned());
                 let of_background = training.beside_background(&along(&evidence.background));
-                (training.grams(), None, Some(GramCache::of_products(of_residual, of_background)))
+                (training.grams(), None, Some(GramCache::new(of_residual, of_background)))
             }
             None => {
                 let grams = grams(model, &whitening);
-                let beside_background = model.table(&whitening.transposed(&background));
+                let beside_background = || model.table(&whitening.transposed(&background));
                 let kept = model.is_linear().then(|| {
                     let of_residual = DMatrix::from_column_slice(residual.len(), 1, residual.as_slice());
                     let of_residual = model.table(&whitening.transposed(&of_residual));
-                    GramCache::new(grams.len(), &of_residual, &beside_background)
+                    GramCache::new(of_residual, beside_background())
                 });
-                (grams, Some(beside_background), kept)
+                let beside_background = kept.is_none().then(beside_background);
+                (grams, beside_background, kept)
             }
         };
         Search {
@@ -100,8 +99,8 @@ impl<'a> Search<'a> {
             beside_background,
             prior: priors(model.candidates()),
             replicates: Replicates::new(&whitening, &evidence.replicate_group),
-            fitted: Memory::default(),
-            added: Memory::default(),
+            fitted: Memory::new(|fitted| fitted.covariance.len() + fitted.background_covariance.len()),
+            added: Memory::new(|added| added.len()),
             model,
             evidence,
             whitening,
@@ -125,36 +124,65 @@ impl<'a> Search<'a> {
     /// and for the likeliest place of every effect, lest one effect with many places leaves the
     /// others out; −∞ for those that are in it already.
     pub fn additions(&self, hypothesis: &Hypothesis) -> Arc<Vec<f64>> {
-        remembered(&self.added, &hypothesis.terms, || Arc::new(self.additions_anew(hypothesis)))
+        self.added.answer(&hypothesis.terms, || Arc::new(self.additions_anew(hypothesis)))
     }
 
     fn additions_anew(&self, hypothesis: &Hypothesis) -> Vec<f64> {
         let (present, products) = self.crossed(&hypothesis.terms);
         let before = present.score();
-        let more = |index: usize| {
-            let (cross, product) = products(index);
-            let bounds = self.model.candidates()[index].scaled_bounds().map(one_sided).collect();
-            ColumnBlock { gram: &self.grams[index], cross, product, bounds }
+        let bounds = |index: usize| self.model.candidates()[index].scaled_bounds().map(one_sided).collect();
+        let is_open = |&index: &usize| !hypothesis.terms.iter().any(|term| self.excludes(term, index));
+        let open: Vec<usize> = (0..self.grams.len()).filter(is_open).collect();
+        let about = |part: &[usize]| -> Vec<f64> {
+            let (cross, product) = products(part);
+            let solved = before.solved(&cross);
+            let mut next = 0;
+            let of = |&index: &usize| {
+                let gram = &self.grams[index];
+                let own = next..next + gram.ncols();
+                next = own.end;
+                let more = ColumnBlock {
+                    gram,
+                    cross: cross.columns_range(own.clone()).into_owned(),
+                    solved: solved.columns_range(own.clone()).into_owned(),
+                    product: product.rows_range(own).into_owned(),
+                    bounds: bounds(index),
+                };
+                present.about(&before, &more) + self.prior[index]
+            };
+            part.iter().map(of).collect()
         };
+        let parts: Vec<&[usize]> = open.chunks(AT_ONCE).collect();
+        let of_parts = in_parallel_outside_of_jobs(parts.len(), |k| about(parts[k]));
+        let mut additions = vec![f64::NEG_INFINITY; self.grams.len()];
+        for (&index, about) in open.iter().zip(of_parts.into_iter().flatten()) {
+            additions[index] = about;
+        }
         let alone = present.rest(&before).score().log_evidence;
-        let about = |index: usize| match hypothesis.terms.iter().any(|term| self.excludes(term, index)) {
-            true => f64::NEG_INFINITY,
-            false => present.about(&before, &more(index)) + self.prior[index],
+        let exact = |index: usize| {
+            let (cross, product) = products(&[index]);
+            let solved = before.solved(&cross);
+            let more =
+                ColumnBlock { gram: &self.grams[index], cross, solved, product, bounds: bounds(index) };
+            let with = present.beyond(&before, &more).score();
+            with.log_evidence - alone + self.prior[index]
         };
-        let mut additions: Vec<f64> = (0..self.grams.len()).map(about).collect();
         for unknown in [false, true] {
             let mut effects: Vec<&Effect> = Vec::new();
-            for (rank, index) in self.likeliest(&additions, unknown).into_iter().enumerate() {
+            let mut likeliest = self.likeliest(&additions, unknown);
+            let mut rank = 0;
+            likeliest.retain(|&index| {
                 let effect = self.model.candidates()[index].effect;
                 let is_first = !effects.contains(&effect);
                 if is_first {
                     effects.push(effect);
                 }
-                if rank >= SCORED && !is_first {
-                    continue;
-                }
-                let with = present.beyond(&before, &more(index)).score();
-                additions[index] = with.log_evidence - alone + self.prior[index];
+                rank += 1;
+                rank <= SCORED || is_first
+            });
+            let scored = in_parallel_outside_of_jobs(likeliest.len(), |k| exact(likeliest[k]));
+            for (index, exact) in likeliest.into_iter().zip(scored) {
+                additions[index] = exact;
             }
         }
         additions
@@ -290,20 +318,4 @@ fn grams(model: &Linearised<'_>, whitening: &Whitening) -> Vec<DMatrix<f64>> {
         None => whitening.projected_gram(&whitening.whitened_columns(&model.neutral(candidate))),
     };
     (0..model.candidates().len()).map(gram).collect()
-}
-
-/// What is known of these terms, or else is found out.
-pub(super) fn remembered<T: Clone>(memory: &Memory<T>, terms: &[Term], find: impl FnOnce() -> T) -> T {
-    let bits = |term: &Term| (term.candidate, term.values.iter().map(|value| value.to_bits()).collect());
-    let key: Vec<(usize, Vec<u64>)> = terms.iter().map(bits).collect();
-    let known = memory.lock().unwrap_or_else(PoisonError::into_inner).get(&key).cloned();
-    known.unwrap_or_else(|| {
-        let found = find();
-        let mut known = memory.lock().unwrap_or_else(PoisonError::into_inner);
-        if known.len() >= REMEMBERED {
-            known.clear();
-        }
-        known.insert(key, found.clone());
-        found
-    })
 }

@@ -4,6 +4,7 @@
 use super::priors::PRIOR;
 use super::search::Search;
 use super::{ForwardModel, Hypothesis, Term};
+use crate::parallel::in_parallel_outside_of_jobs;
 
 /// Odds against chance from which on an effect is named.
 pub const NAMED: f64 = 50.0;
@@ -190,11 +191,12 @@ impl Search<'_> {
     /// each of them alone; see [`super::pairs`].
     fn best_pair(&self, none: &Hypothesis, additions: &[f64]) -> Option<Hypothesis> {
         let screened = self.pairs(none, additions);
-        let refitted = screened.into_iter().map(|(first, second)| {
-            let both = [first, second].map(|index| self.model.candidates()[index].neutral(index));
-            self.fit(&both)
+        let refitted = in_parallel_outside_of_jobs(screened.len(), |k| {
+            let (first, second) = screened[k];
+            self.fit(&[first, second].map(|index| self.model.candidates()[index].neutral(index)))
         });
         let best = refitted
+            .into_iter()
             .reduce(|best, other| if other.log_probability > best.log_probability { other } else { best })?;
         if best.log_probability < none.log_probability + 2.0 * NAMED.ln() {
             return None;
@@ -287,20 +289,22 @@ impl Search<'_> {
                 break;
             }
         }
-        let rough: Vec<Hypothesis> = tried
-            .into_iter()
-            .map(|index| {
-                let mut terms = hypothesis.terms.clone();
-                terms.push(self.model.candidates()[index].neutral(index));
-                self.fit_roughly(&terms)
-            })
-            .collect();
+        let rough = in_parallel_outside_of_jobs(tried.len(), |k| {
+            let mut terms = hypothesis.terms.clone();
+            terms.push(self.model.candidates()[tried[k]].neutral(tried[k]));
+            self.fit_roughly(&terms)
+        });
         let best = rough.iter().fold(least, |best, other| best.max(other.log_probability));
-        let refitted = rough
-            .iter()
-            .filter(|other| other.log_probability > best - NEAR)
-            .map(|other| self.fit(&other.terms));
-        refitted.reduce(|best, other| if other.log_probability > best.log_probability { other } else { best })
+        let near: Vec<Hypothesis> =
+            rough.into_iter().filter(|other| other.log_probability > best - NEAR).collect();
+        let refitted =
+            in_parallel_outside_of_jobs(near.len(), |k| match self.model.is_linear_in(&near[k].terms) {
+                true => near[k].clone(),
+                false => self.fit(&near[k].terms),
+            });
+        refitted
+            .into_iter()
+            .reduce(|best, other| if other.log_probability > best.log_probability { other } else { best })
     }
 
     /// Single effects exchanged for others and taken away while the hypothesis gets more probable.

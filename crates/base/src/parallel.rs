@@ -18,6 +18,15 @@ pub fn in_parallel<T: Send>(count: usize, job: impl Fn(usize) -> T + Sync + Send
     (0..count).into_par_iter().map(|index| under(&stop, || job(index))).collect()
 }
 
+/// The same for jobs that are too small for others to be taken up in between: where processors are
+/// at work already, inside a job of [`in_parallel`], they are done one after another.
+pub fn in_parallel_outside_of_jobs<T: Send>(count: usize, job: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
+    match rayon::current_thread_index() {
+        Some(_) => (0..count).map(job).collect(),
+        None => in_parallel(count, job),
+    }
+}
+
 /// Both jobs at once. Either may call [`in_parallel`].
 pub fn both<A: Send, B: Send>(first: impl FnOnce() -> A + Send, second: impl FnOnce() -> B + Send) -> (A, B) {
     let stop = current();

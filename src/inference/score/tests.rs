@@ -44,7 +44,9 @@ fn an_effect_is_as_large_as_it_is_and_screening_says_so_too() {
         assert!((wide.estimate[0] * size / fitted - 1.0).abs() < 0.05, "size {size}: {}", wide.estimate[0]);
         let none = Moments::new(&recorded, &DMatrix::zeros(80, 0), vec![], vec![], 80, 0.0);
         let (gram, product) = (columns.tr_mul(&columns), columns.tr_mul(&recorded));
-        let more = ColumnBlock { gram: &gram, cross: DMatrix::zeros(0, 1), product, bounds: vec![FREE] };
+        let none_of_them = || DMatrix::zeros(0, 1);
+        let (cross, solved) = (none_of_them(), none_of_them());
+        let more = ColumnBlock { gram: &gram, cross, solved, product, bounds: vec![FREE] };
         let before = none.score();
         let about = none.about(&before, &more);
         let exact = none.beyond(&before, &more).score().log_evidence - before.log_evidence;
@@ -108,9 +110,11 @@ fn worth(r: &DVector<f64>, columns: &DMatrix<f64>, own: &DMatrix<f64>) -> (f64, 
     let hypothesis = Moments::new(r, columns, bounds, effects, r.len(), 0.0);
     let score = hypothesis.score();
     let gram = own.tr_mul(own);
+    let cross = columns.tr_mul(own);
     let more = ColumnBlock {
         gram: &gram,
-        cross: columns.tr_mul(own),
+        solved: score.solved(&cross),
+        cross,
         product: own.tr_mul(r),
         bounds: vec![FREE; own.ncols()],
     };

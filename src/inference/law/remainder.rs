@@ -117,7 +117,9 @@ impl<'a> Remainder<'a> {
         let (gram, product) = self.alone(columns);
         let count = gram.ncols();
         let bounds = vec![UNBOUNDED; count];
-        let block = ColumnBlock { gram: &gram, cross: DMatrix::zeros(0, count), product, bounds };
+        // nothing is beside them any more
+        let nothing = DMatrix::zeros(0, count);
+        let block = ColumnBlock { gram: &gram, cross: nothing.clone(), solved: nothing, product, bounds };
         let (rest, score) = &self.rest;
         let gain = rest.about(score, &block);
         if gain.is_finite() { gain } else { f64::NEG_INFINITY }

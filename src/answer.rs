@@ -16,7 +16,7 @@ mod simulation;
 
 pub use calibration::{calibrate, calibrate_held_out, calibrated_robot, compare, compare_drawn, provenance};
 pub use design::{DesignRod, design_poses, design_rig, design_rod};
-pub use diagnosis::{diagnose_calibration, diagnose_rig};
+pub use diagnosis::{diagnose_calibration, diagnose_rig, diagnose_rig_with};
 pub use forecast::forecast;
 pub use neighbours::{neighbours, rods_beside};
 pub use rig::rig_fit;

@@ -28,6 +28,7 @@ mod held_out;
 mod hidden_in_groups;
 mod hypothesis;
 mod lack_of_fit;
+pub mod law;
 mod limit;
 mod linearised;
 mod locate;

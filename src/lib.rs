@@ -97,8 +97,8 @@ pub mod section;
 pub use rodcal_base::units;
 #[doc(hidden)]
 pub use rodcal_base::{
-    delimited, dual, error, files, least_squares, limits, linalg, linear_program, optimal_design, parallel,
-    spatial, statistics, toml_text,
+    delimited, dual, error, expression, files, least_squares, limits, linalg, linear_program, optimal_design,
+    parallel, spatial, statistics, toml_text,
 };
 
 pub use error::{Error, Result};

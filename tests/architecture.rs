@@ -14,6 +14,7 @@ const FLOORS: &[&[&str]] = &[
     // no domain words: crates/base
     &[
         "error",
+        "expression",
         "limits",
         "files",
         "units",

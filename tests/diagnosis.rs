@@ -8,6 +8,8 @@ mod clean;
 mod confused;
 mod effects;
 mod labs;
+mod laws;
+mod own;
 mod poor;
 mod same;
 

@@ -6,7 +6,7 @@ use super::{Answer, provenance};
 use crate::calibration::campaign::FileNames;
 use crate::calibration::{Campaign, Mode, Options};
 use crate::diagnosis::calibration::{Neighbours, check_memory, mend};
-use crate::diagnosis::rig::diagnose_among;
+use crate::diagnosis::rig::{OwnEffect, diagnose_with};
 use crate::error::Result;
 use crate::files;
 use crate::report::diagnosis as reports;
@@ -18,14 +18,28 @@ use crate::rod::Rod;
 /// found are its files, where something can be applied.
 ///
 /// # Errors
-/// As [`diagnose_among`].
+/// As [`diagnose_with`].
 pub fn diagnose_rig(
     readings: &Readings,
     rod: Option<&Rod>,
     others: &[(String, Rod)],
     apply: Option<&dyn Fn(&str) -> String>,
 ) -> Result<Answer> {
-    let found = diagnose_among(readings, rod, others)?;
+    diagnose_rig_with(readings, rod, others, &[], apply)
+}
+
+/// The same, with effects that the lab describes itself.
+///
+/// # Errors
+/// As [`diagnose_with`].
+pub fn diagnose_rig_with(
+    readings: &Readings,
+    rod: Option<&Rod>,
+    others: &[(String, Rod)],
+    own: &[OwnEffect],
+    apply: Option<&dyn Fn(&str) -> String>,
+) -> Result<Answer> {
+    let found = diagnose_with(readings, rod, others, own)?;
     let correction = found.correction()?;
     let report = reports::rig::report(&found, correction.as_ref());
     let json = reports::rig::json(&found, correction.as_ref());

@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, Subcommand};
 use rodcal::Result;
 use rodcal::answer::{self, rods_beside};
+use rodcal::diagnosis::rig::OwnEffect;
 use rodcal::diagnosis::rig::effects::registry;
 use rodcal::rig::readings::Readings;
 use rodcal::rod::Rod;
@@ -37,6 +38,10 @@ pub struct Rig {
     /// reports/diagnosed].
     #[arg(long)]
     apply: bool,
+    /// Effects of your own (TOML), which compete with those of the library: docs/laws.md shows
+    /// three.
+    #[arg(long, value_name = "FILE")]
+    effects: Option<PathBuf>,
 }
 
 fn notes() -> String {
@@ -73,7 +78,8 @@ impl Rig {
         let others = if rod.is_some() { rods_beside(&self.rod) } else { Vec::new() };
         let named = |what: &str| self.named(what);
         let apply = self.apply.then_some(&named as &dyn Fn(&str) -> String);
-        let mut answer = answer::diagnose_rig(&readings, rod.as_ref(), &others, apply)?;
+        let own = self.effects.as_deref().map(OwnEffect::read).transpose()?.unwrap_or_default();
+        let mut answer = answer::diagnose_rig_with(&readings, rod.as_ref(), &others, &own, apply)?;
         let model = rod.as_ref().map_or("none, straight lines".into(), |_| self.rod.display().to_string());
         answer.report.provenance = vec![
             ("rod file".into(), model),

@@ -44,17 +44,24 @@ mod next;
 mod nominal;
 mod nonparametric;
 mod numbering;
+mod own;
+mod own_effect;
+mod own_law;
 pub mod planned;
 mod response;
+mod sites;
 mod slide;
 mod structure;
 #[cfg(test)]
 mod tests;
+mod textbook;
 mod transfer;
 mod wanted;
 
 pub use correction::Correction;
 pub use datum::Datum;
-pub use diagnose::{diagnose, diagnose_among};
+pub use diagnose::{diagnose, diagnose_among, diagnose_with};
 pub use mistakes::suspected;
 pub use model::{RigDiagnosis, RigModel};
+pub use own_effect::OwnEffect;
+pub use textbook::remark;

@@ -1,6 +1,7 @@
 //! The diagnosis: is there a mismatch, what is it, what could it be as well, and what remains.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use nalgebra::DVector;
 
@@ -152,6 +153,7 @@ fn diagnose_with(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
         taken: evidence.residual.len() as f64 - degrees_of_freedom,
         before,
         after,
+        settled: (Arc::new(evidence.clone()), longest.sigma),
         hypothesis,
     }
 }

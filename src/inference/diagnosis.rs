@@ -1,11 +1,13 @@
 //! What a recording says about the physics that its model left out.
 
+use std::sync::Arc;
+
 use nalgebra::{DMatrix, DVector};
 
 use super::evidence::rms;
 use super::{
-    Absorbed, Finding, HeldOut, Hypothesis, LackOfFit, LeftOutSession, Location, NoiseTest, NominalEstimate,
-    NotTestable, Structure, Suspect,
+    Absorbed, Evidence, Finding, HeldOut, Hypothesis, LackOfFit, LeftOutSession, Location, NoiseTest,
+    NominalEstimate, NotTestable, Structure, Suspect,
 };
 
 /// The answer of the engine.
@@ -56,6 +58,9 @@ pub struct Diagnosis {
     pub sessions: Vec<LeftOutSession>,
     /// All findings together, fitted.
     pub hypothesis: Hypothesis,
+    /// The recording with its nominal numbers and zeros in the background and the weights and
+    /// shared errors that were found, and the noise of a datum apart from these.
+    pub(super) settled: (Arc<Evidence>, f64),
 }
 
 /// A structured remainder that no effect of the library explains.
@@ -98,7 +103,7 @@ pub struct Diagnosed<M> {
     /// The physics that was asked about, and the recording.
     pub model: M,
     /// The recording as numbers.
-    pub evidence: super::Evidence,
+    pub evidence: Evidence,
     /// What was found.
     pub diagnosis: Diagnosis,
     /// Effects that this recording has no data for.
@@ -107,6 +112,8 @@ pub struct Diagnosed<M> {
     pub absorbed: Vec<Absorbed>,
     /// What makes every claim weaker, for people.
     pub limits: Vec<super::Limit>,
+    /// Where something is left unexplained, a law for it, or why there is none.
+    pub law: Option<super::law::Proposed>,
 }
 
 impl Diagnosis {

@@ -8,6 +8,7 @@ mod cards;
 mod headline;
 mod hidden;
 mod json;
+mod law;
 
 pub(super) use json::load_plan;
 mod place;

@@ -33,7 +33,9 @@ fn the_json_has_its_keys() {
         for key in ["heldout_gain_95", "locate", "ranking", "not_testable", "warnings"] {
             assert!(json[key].is_array(), "{line}: {key}");
         }
-        assert!(json.as_object().unwrap().contains_key("unexplained"));
+        for key in ["unexplained", "law"] {
+            assert!(json.as_object().unwrap().contains_key(key), "{line}: {key}");
+        }
         for finding in json["findings"].as_array().unwrap() {
             for key in ["effect", "location"] {
                 assert!(finding[key].is_string(), "{line}: {key}");
@@ -51,6 +53,23 @@ fn the_json_has_its_keys() {
             }
         }
     }
+}
+
+/// An effect of one's own competes with the library's: friction of the same recording keeps its
+/// name. A fault in the file has its place.
+#[test]
+fn effects_of_ones_own_are_read_and_refused() {
+    let sandbox = Sandbox::new();
+    let text = "[[effect]]\nname = \"foot\"\nwords = \"a foot\"\nplace = \"clamp\"\nvariable = \"load\"\n\
+                law = \"a*tanh(F/3)\"\nparameter = [{ name = \"a\", size = 20 }]\n";
+    std::fs::write(sandbox.path().join("mine.toml"), text).unwrap();
+    let json = sandbox.run(&format!("{ROD} --effects mine.toml --json")).json();
+    assert_eq!(effects(&json)[0], "friction");
+    assert!(json["ranking"].as_array().unwrap().iter().any(|ranked| ranked["effect"] == "foot"));
+    std::fs::write(sandbox.path().join("mine.toml"), text.replace("tanh(", "tang(")).unwrap();
+    let answer = sandbox.run(&format!("{ROD} --effects mine.toml"));
+    assert_eq!(answer.status, Some(2));
+    assert!(answer.stderr.contains("mine.toml:6:10: \"tang\" in the formula"), "{}", answer.stderr);
 }
 
 /// Friction by itself cannot be told from a tare, for nothing was read while unloading.

@@ -6,11 +6,13 @@
 //! - [`delimited`], [`toml_text`]: tables and TOML whose errors name file, line and column
 //! - [`linalg`], [`least_squares`], [`linear_program`], [`dual`], [`spatial`], [`statistics`]:
 //!   numbers
+//! - [`expression`]: formulas that people write
 //! - [`parallel`]: jobs side by side whose results do not depend on it
 
 pub mod delimited;
 pub mod dual;
 pub mod error;
+pub mod expression;
 pub mod files;
 pub mod least_squares;
 pub mod limits;

@@ -31,6 +31,14 @@ pub const URDF_NODES: usize = 1_000_000;
 pub const ROBOT_JOINTS: usize = 64;
 /// Effects of a robot file.
 pub const ROBOT_EFFECTS: usize = 1_000;
+/// Effects of a lab's own file.
+pub const OWN_EFFECTS: usize = 100;
+/// Parameters of one of them.
+pub const OWN_PARAMETERS: usize = 8;
+/// Bytes of its name.
+pub const NAME_BYTES: usize = 60;
+/// Bytes of its words.
+pub const WORDS_BYTES: usize = 200;
 /// Masses and joints on a rod, of each: every one is a node of its beam, and a number whose part in
 /// the uncertainty is found by a beam of its own.
 pub const ROD_PARTS: usize = 100;

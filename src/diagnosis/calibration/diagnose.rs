@@ -84,7 +84,7 @@ pub fn diagnose_calibrated<'c>(
     limits.extend(scatter.iter().flat_map(|noise| noisy(campaign, noise)));
     let of_neighbours = evidence.correlated_noise;
     limits.extend(of_neighbours.map(|noise| Limit::CorrelatedPoses(noise.share, noise.length)));
-    Ok(Diagnosed { model, evidence, diagnosis, not_testable, absorbed, limits })
+    Ok(Diagnosed { model, evidence, diagnosis, not_testable, absorbed, limits, law: None })
 }
 
 /// So many times a search begins anew about the robot that is left beside what was found, with the

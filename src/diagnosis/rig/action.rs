@@ -25,6 +25,7 @@ use nalgebra::{Rotation3, Unit, Vector3};
 
 use super::datum::Datum;
 use super::load_history::{Clock, History, Memory, Onset};
+use super::own_law::OwnLaw;
 use super::slide::{Course, Hung, Met, Slide};
 use super::structure::{Nodes, Softening};
 use crate::spatial::Axis;
@@ -75,6 +76,8 @@ pub(super) enum Action {
     Shift(Weights),
     /// Adds to the readings of this sequence of data, from one of them on \[0\].
     Step(Arc<[usize]>, usize),
+    /// The parameter of this number of a lab's own effect, which adds to readings \[its own\].
+    Own(Arc<OwnLaw>, usize),
 }
 
 /// What is added to readings per unit of a parameter.
@@ -187,6 +190,8 @@ pub(super) struct State<'a> {
     play: Scoped,
     /// Joints that are compliant in one session: session, number of the joint, rad/(N·m).
     pub of_sessions: Vec<(usize, usize, f64)>,
+    /// Parameters of a lab's own effects, those of one effect together.
+    own: Vec<(&'a Arc<OwnLaw>, usize, f64)>,
     /// What only adds to readings, with its values.
     pub additions: Vec<(&'a Action, f64)>,
     /// False while nothing else is there.
@@ -221,6 +226,7 @@ impl Default for State<'_> {
             scale: [1.0; 3],
             play: Scoped::default(),
             of_sessions: Vec::new(),
+            own: Vec::new(),
             additions: Vec::new(),
             is_changed: false,
         }
@@ -240,7 +246,7 @@ impl<'a> State<'a> {
 
     /// Adds what `action` does at `value`. Turns are done in the order in which they are added.
     pub(super) fn act(&mut self, action: &'a Action, value: f64) {
-        self.is_changed |= !action.only_adds();
+        self.is_changed |= !action.only_adds() && !matches!(action, Action::Own(..));
         match action {
             Action::Friction(scope) => self.friction.0.push((*scope, value)),
             Action::Presliding => self.presliding += value,
@@ -272,6 +278,7 @@ impl<'a> State<'a> {
                 self.sensor.iter_mut().for_each(|sensor| *sensor = turn * *sensor);
             }
             Action::Play(scope) => self.play.0.push((*scope, value)),
+            Action::Own(law, k) => self.own.push((law, *k, value)),
             Action::Shift(_) | Action::Step(..) => self.additions.push((action, value)),
         }
     }
@@ -292,6 +299,13 @@ impl<'a> State<'a> {
             }
         }
         pulls
+    }
+
+    /// Adds what a lab's own effects do to readings, m.
+    pub(super) fn add_own(&self, readings: &mut [f64]) {
+        for of_one in self.own.chunk_by(|a, b| Arc::ptr_eq(a.0, b.0)) {
+            of_one[0].0.add_to(readings, of_one.iter().map(|(_, k, value)| (*k, *value)), 1.0);
+        }
     }
 
     fn hanging(&self, datum: &Datum) -> f64 {

@@ -46,7 +46,8 @@ pub(super) fn others(
         return Ok(found);
     }
     for (number, (_, rod)) in mended.others.iter().enumerate() {
-        let (other, of_other, _) = RigModel::with_effects(&mended.readings, Some(rod), &Wanted::All)?;
+        let (other, of_other, _) =
+            RigModel::with_effects(&mended.readings, Some(rod), &Wanted::AllAnd(&model.own))?;
         if of_other.residual.len() != evidence.residual.len() {
             continue;
         }

@@ -85,7 +85,8 @@ impl RigModel {
             | Action::Station(_)
             | Action::Play(_)
             | Action::Shift(_)
-            | Action::Step(..) => false,
+            | Action::Step(..)
+            | Action::Own(..) => false,
         })
     }
 }

@@ -6,7 +6,7 @@ use nalgebra::{DMatrix, DVector};
 use super::action::{Action, State};
 use super::cases::Cases;
 use super::datum::Datum;
-use super::effects::entry::Context;
+use super::effects::entry::{Context, Entry};
 use super::effects::registry;
 use super::effects::zeros::ZERO_NOT_TAKEN;
 use super::model::{Body, RigModel, is_dependent};
@@ -14,7 +14,7 @@ use super::numbering::numbered;
 use super::slide::Course;
 use super::structure::Structure;
 use super::wanted::Wanted;
-use super::{datum, evidence, nominal, nonparametric, slide, structure};
+use super::{datum, evidence, nominal, nonparametric, own, slide, structure};
 use crate::error::Result;
 use crate::inference::{Candidate, Effect, Evidence, NotTestable, Parameter, UNKNOWN};
 use crate::rig::readings::Readings;
@@ -86,6 +86,7 @@ impl RigModel {
             place,
             candidates: Vec::new(),
             actions: Vec::new(),
+            own: wanted.own().to_vec(),
         };
         let nuisance = match &model.body {
             Body::Rod(structure) => {
@@ -107,7 +108,7 @@ impl RigModel {
             let (numbers, columns) = nominal::all(&model.data, rod, &readings.header, &stations)?;
             (evidence.nominal_numbers, evidence.nominal) = (numbers, columns);
         }
-        let not_testable = model.add_candidates(wanted);
+        let not_testable = model.add_candidates(wanted)?;
         Ok((model, evidence, not_testable))
     }
 
@@ -128,8 +129,15 @@ impl RigModel {
 
     /// Fills in the effects and their nonparametric rivals, without what can do nothing to these
     /// readings; the effects that then have no candidate.
-    fn add_candidates(&mut self, wanted: &Wanted<'_>) -> Vec<NotTestable> {
+    ///
+    /// # Errors
+    /// As [`own::entry`].
+    fn add_candidates(&mut self, wanted: &Wanted<'_>) -> Result<Vec<NotTestable>> {
         let deflections = self.deflections();
+        let mut of_own = Vec::new();
+        for effect in &self.own {
+            of_own.push((effect.effect, own::entry(effect, self)?));
+        }
         let mut context = Context { data: &self.data, body: &mut self.body, rod: self.rod.as_ref() };
         let has_rod = context.rod.is_some();
         let mut entries = Vec::new();
@@ -143,6 +151,10 @@ impl RigModel {
             true => (effect.missing)(&context),
             false => "it needs a rod file",
         });
+        let is_without = |(_, entry): &&(_, Option<Entry>)| entry.is_none();
+        let without: Vec<&'static Effect> =
+            of_own.iter().filter(is_without).map(|(effect, _)| *effect).collect();
+        entries.extend(of_own.into_iter().filter_map(|(_, entry)| entry));
         if wanted.includes(&UNKNOWN) {
             entries.extend(nonparametric::all(&self.data, &deflections, has_rod));
             nonparametric::retain_predictive(&mut entries, &self.data, &deflections);
@@ -170,13 +182,17 @@ impl RigModel {
             }
         }
         let is_candidate = |effect: &Effect| self.candidates.iter().any(|known| known.effect == effect);
-        registry::ALL
+        let own_missing = "the readings do not have what it is a function of, at its place";
+        let own_missing = without.into_iter().map(|effect| (effect, own_missing));
+        let not_testable = registry::ALL
             .into_iter()
             .zip(missing)
             .map(|(effect, reason)| (&effect.effect, reason))
             .filter(|(effect, _)| !is_candidate(effect))
+            .chain(own_missing)
             .map(|(effect, reason)| NotTestable { effect, reason: reason.into() })
-            .collect()
+            .collect();
+        Ok(not_testable)
     }
 
     /// False for what changes nothing (m) to first order: a twist under loads that do not twist.

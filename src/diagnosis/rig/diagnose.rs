@@ -2,9 +2,11 @@
 
 use super::mistakes::Mended;
 use super::model::{AsRecorded, RigDiagnosis, RigModel};
+use super::own_effect::OwnEffect;
 use super::wanted::Wanted;
-use super::{another_rod, as_measured, correction, limits, mistakes, next};
+use super::{another_rod, as_measured, correction, limits, mistakes, next, sites};
 use crate::error::{Error, Place, Result};
+use crate::inference::law::propose;
 use crate::inference::{Diagnosed, Diagnosis, diagnose as infer, rms};
 use crate::rig::readings::Readings;
 use crate::rod::Rod;
@@ -38,6 +40,19 @@ pub fn diagnose_among(
     rod: Option<&Rod>,
     others: &[(String, Rod)],
 ) -> Result<RigDiagnosis> {
+    diagnose_with(readings, rod, others, &[])
+}
+
+/// The same, with effects that a lab describes itself: they compete with those of the library.
+///
+/// # Errors
+/// As [`diagnose_among`]; [`Error::Input`] for an effect that readings and rod do not fit.
+pub fn diagnose_with(
+    readings: &Readings,
+    rod: Option<&Rod>,
+    others: &[(String, Rod)],
+    own: &[OwnEffect],
+) -> Result<RigDiagnosis> {
     check_size(readings)?;
     let mut mended = mistakes::mended(readings, rod, others)?;
     let inferred = |mended: &Mended, bent: Option<&Rod>| {
@@ -46,7 +61,7 @@ pub fn diagnose_among(
             false => (readings, rod),
         };
         let (model, evidence, not_testable) =
-            RigModel::bent_as(mended_readings, mended_rod, &Wanted::All, bent.or(mended_rod))?;
+            RigModel::bent_as(mended_readings, mended_rod, &Wanted::AllAnd(own), bent.or(mended_rod))?;
         let diagnosis = infer(&model, &evidence);
         Ok::<_, Error>((model, evidence, not_testable, diagnosis))
     };
@@ -85,12 +100,17 @@ pub fn diagnose_among(
         diagnosis.findings.clear();
         diagnosis.discrepancy = None;
     }
+    // of readings that a mistake has spoilt nobody knows what it has left
+    let law = match mended.found.is_empty() {
+        true => propose(&model, &diagnosis, &|change| sites::sites(&model, change)),
+        false => None,
+    };
     if !mended.found.is_empty() {
         diagnosis.findings.splice(0..0, mended.found);
         model.as_recorded = Some(Box::new(as_recorded(readings, rod)));
     }
     let limits = limits::limits(&model, &evidence);
-    Ok(Diagnosed { absorbed: Vec::new(), not_testable, limits, diagnosis, evidence, model })
+    Ok(Diagnosed { absorbed: Vec::new(), not_testable, limits, law, diagnosis, evidence, model })
 }
 
 /// The rod as it was found, where its deflections are so large that those of `bent` miss what

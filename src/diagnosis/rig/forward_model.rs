@@ -59,6 +59,22 @@ impl ForwardModel for RigModel {
                 action.add_to(column.as_mut_slice(), parameter.size);
                 continue;
             }
+            if let Action::Own(law, own) = action
+                && is_sum
+            {
+                let mut values = term.values.clone();
+                if *own > 0 && values[0] == parameters[0].neutral {
+                    values[0] += parameters[0].size;
+                }
+                let h = DERIVATIVE_STEP * parameter.size;
+                for sign in [1.0, -1.0] {
+                    let numbers = own_numbers(&self.actions[term.candidate]);
+                    let moved = |j: usize| values[j] + if j == k { sign * h } else { 0.0 };
+                    let given = numbers.into_iter().enumerate().map(|(j, number)| (number, moved(j)));
+                    law.add_to(column.as_mut_slice(), given, 0.5 * sign / DERIVATIVE_STEP);
+                }
+                continue;
+            }
             let mut moved = terms.to_vec();
             if is_dependent(action) && term.values[0] == parameters[0].neutral {
                 moved[position].values[0] += parameters[0].size;
@@ -123,6 +139,9 @@ impl ForwardModel for RigModel {
     }
 
     fn describe(&self, finding: &Finding) -> Description {
+        if let Some(own) = self.own.iter().find(|own| own.effect == finding.effect) {
+            return Description { observed: own.observed(finding), cause: finding.effect.cause.to_owned() };
+        }
         let mut all = registry::ALL.into_iter().chain([&ZERO_NOT_TAKEN]);
         let own = all.find(|known| &known.effect == finding.effect);
         let observed = own.map_or_else(
@@ -133,6 +152,15 @@ impl ForwardModel for RigModel {
         let cause = if finding.kind() == Kind::Mistake { "" } else { finding.effect.cause };
         Description { observed, cause: cause.to_owned() }
     }
+}
+
+/// Which parameters of its file the actions of a lab's own effect are.
+fn own_numbers(actions: &[Action]) -> Vec<usize> {
+    let number = |action: &Action| match action {
+        Action::Own(_, k) => *k,
+        _ => 0,
+    };
+    actions.iter().map(number).collect()
 }
 
 impl RigModel {

@@ -4,6 +4,7 @@
 use super::action::Action;
 use super::cases::Cases;
 use super::datum::Datum;
+use super::own_effect::OwnEffect;
 use super::slide::Course;
 use super::structure::Structure;
 use crate::inference::{Candidate, Diagnosed};
@@ -33,6 +34,8 @@ pub struct RigModel {
     pub(super) candidates: Vec<Candidate>,
     /// For each candidate what its parameters do.
     pub(super) actions: Vec<Vec<Action>>,
+    /// Effects that the lab describes itself.
+    pub(super) own: Vec<OwnEffect>,
 }
 
 /// Readings and rod before mistakes were undone, where there were any.
@@ -110,5 +113,9 @@ impl RigModel {
 
 /// True for a parameter that does nothing where the first of its effect does nothing.
 pub(super) fn is_dependent(action: &Action) -> bool {
-    matches!(action, Action::Onset(_) | Action::Presliding | Action::SliderPlay)
+    match action {
+        Action::Onset(_) | Action::Presliding | Action::SliderPlay => true,
+        Action::Own(_, k) => *k > 0,
+        _ => false,
+    }
 }

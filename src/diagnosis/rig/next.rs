@@ -101,8 +101,11 @@ struct Future {
 impl Future {
     /// `None` where the measurement is none for this model.
     fn new(measurement: &Measurement, present: &RigModel, involved: &[&Candidate]) -> Result<Option<Future>> {
-        let (model, evidence, _) =
-            RigModel::with_effects(&measurement.readings, present.rod(), &Wanted::Like(involved))?;
+        let (model, evidence, _) = RigModel::with_effects(
+            &measurement.readings,
+            present.rod(),
+            &Wanted::LikeAnd(involved, &present.own),
+        )?;
         let rows: Vec<usize> =
             (0..model.data.len()).filter(|&i| model.data[i].row > measurement.known_rows).collect();
         let is_none = rows.is_empty()

@@ -31,7 +31,7 @@ use std::collections::HashMap;
 use nalgebra::{DMatrix, DVector};
 
 use self::along::*;
-use self::before::Before;
+pub(super) use self::before::Before;
 use super::action::{Action, Weights};
 use super::datum::Datum;
 use super::effects::entry::Entry;

@@ -113,6 +113,7 @@ impl RigModel {
         for (action, value) in &state.additions {
             action.add_to(change.as_mut_slice(), *value);
         }
+        state.add_own(change.as_mut_slice());
         match &self.body {
             _ if !state.is_changed => {}
             Body::Rod(structure) => {

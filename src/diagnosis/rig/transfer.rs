@@ -78,7 +78,8 @@ impl RigDiagnosis {
         let found: Vec<Term> = parts.map(|part| part.term.clone()).collect();
         let found_ones: Vec<&Candidate> =
             found.iter().map(|term| &self.model.candidates[term.candidate]).collect();
-        let (model, evidence, _) = RigModel::with_effects(asked, Some(rod), &Wanted::Like(&found_ones))?;
+        let (model, evidence, _) =
+            RigModel::with_effects(asked, Some(rod), &Wanted::LikeAnd(&found_ones, &self.model.own))?;
         let change = model.response(&model.transferred(&self.model, &found).terms);
         // what large deflections add is known of the rod as it was found: nobody fits it
         let as_found = correction::as_found(&self.model, rod, &self.diagnosis.findings);

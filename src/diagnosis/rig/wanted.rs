@@ -1,27 +1,44 @@
 //! Which candidates a model has: all that its readings allow, or those of another model.
 
+use super::own_effect::OwnEffect;
 use crate::inference::{Candidate, Effect, Kind};
 
 /// Which candidates a model shall have.
 pub(super) enum Wanted<'a> {
     All,
+    /// And these, which a lab describes itself.
+    AllAnd(&'a [OwnEffect]),
     /// Those that are the same things at the same places as these.
     Like(&'a [&'a Candidate]),
+    /// The same, where some may be a lab's own.
+    LikeAnd(&'a [&'a Candidate], &'a [OwnEffect]),
 }
 
 impl Wanted<'_> {
     /// False where no candidate of an effect is wanted.
     pub(super) fn includes(&self, effect: &Effect) -> bool {
         match self {
-            Wanted::All => true,
-            Wanted::Like(these) => these.iter().any(|candidate| candidate.effect == effect),
+            Wanted::All | Wanted::AllAnd(_) => true,
+            Wanted::Like(these) | Wanted::LikeAnd(these, _) => {
+                these.iter().any(|candidate| candidate.effect == effect)
+            }
+        }
+    }
+
+    /// Effects that a lab describes itself.
+    pub(super) fn own(&self) -> &[OwnEffect] {
+        match self {
+            Wanted::All | Wanted::Like(_) => &[],
+            Wanted::AllAnd(own) | Wanted::LikeAnd(_, own) => own,
         }
     }
 
     pub(super) fn has(&self, candidate: &Candidate) -> bool {
         match self {
-            Wanted::All => true,
-            Wanted::Like(these) => these.iter().any(|known| is_same(candidate, known)),
+            Wanted::All | Wanted::AllAnd(_) => true,
+            Wanted::Like(these) | Wanted::LikeAnd(these, _) => {
+                these.iter().any(|known| is_same(candidate, known))
+            }
         }
     }
 }

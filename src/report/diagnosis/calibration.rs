@@ -99,6 +99,7 @@ fn subject<'a>(found: &'a CalibrationDiagnosis<'_>) -> Subject<'a> {
             let row = &campaign.measurements.rows[datum / 3];
             json!({ "pose": row.pose, "channel": AXES[datum % 3] })
         }),
+        law: None,
         remainder: remainder(found),
         warnings: of_calibration(campaign, &model.calibration),
         head: vec![

@@ -4,6 +4,7 @@ use serde_json::{Map, Value, json};
 
 use super::headline::{headline, sentence};
 use super::hidden::hidden;
+use super::law;
 use super::place::place;
 use super::subject::Subject;
 use crate::inference::{
@@ -72,6 +73,7 @@ pub fn json(subject: &Subject) -> Value {
             held_out.and_then(|held_out| held_out.gain_interval).map(|(low, high)| [low, high]),
         "findings": findings,
         "unexplained": subject.remainder.as_ref().map(|left| left.json()),
+        "law": law::json(subject.law.as_ref()),
         "replication": replication.collect::<Vec<_>>(),
         "locate": locate(subject),
         "lack_of_fit_before": diagnosis.lack_of_fit_before.as_ref().map(test),

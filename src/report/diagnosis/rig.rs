@@ -10,9 +10,9 @@ use serde_json::{Value, json};
 use self::lines::{branch_name, line_name};
 use super::headline::um;
 use super::remainder::{Remainder, Sample};
-use super::subject::{Errors, Subject};
+use super::subject::{Errors, Subject, Told};
 use super::{json as whole_json, report as whole_report};
-use crate::diagnosis::rig::{Correction, Datum, RigDiagnosis};
+use crate::diagnosis::rig::{Correction, Datum, RigDiagnosis, remark};
 use crate::inference::{
     Discrepancy, ForwardModel, Location, NominalEstimate, Plan, Quantity, ShownBy, Variable, rms,
 };
@@ -68,6 +68,10 @@ fn subject<'a>(found: &'a RigDiagnosis, correction: Option<&Correction>) -> Subj
             json!({ "row": datum.row, "channel": format!("d{}", datum.channel) })
         }),
         remainder: remainder(found),
+        law: found
+            .law
+            .as_ref()
+            .map(|proposed| Told { proposed, remark: proposed.law.as_ref().ok().and_then(remark) }),
         warnings: of_rod.chain(of_readings).collect(),
         head: vec![("rod", json!(rod.map(|rod| &rod.name))), ("readings", json!(readings.file))],
         more: vec![

@@ -2,6 +2,7 @@
 
 use super::headline::{RIVALS_SAID, sentence, um};
 use super::hidden::hidden;
+use super::law;
 use super::subject::Subject;
 use super::tables::{alternatives, evidence, locate, parameters, proof, replication};
 use crate::inference::{Finding, Kind};
@@ -18,6 +19,7 @@ pub fn all(subject: &mut Subject) -> Vec<Section> {
     sections.push(evidence(subject));
     sections.extend(subject.consequences.take());
     sections.push(remains(subject));
+    sections.extend(subject.law.as_ref().map(law::section));
     sections.extend(not_seen(subject));
     sections
 }

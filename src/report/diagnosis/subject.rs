@@ -3,6 +3,7 @@
 use serde_json::Value;
 
 use super::remainder::Remainder;
+use crate::inference::law::Proposed;
 use crate::inference::{Absorbed, Candidate, Diagnosis, Evidence, Limit, NotTestable, Plan};
 use crate::report::Block;
 use crate::report::Section;
@@ -39,6 +40,8 @@ pub struct Subject<'a> {
     pub suspect: Box<dyn Fn(usize) -> Value + 'a>,
     /// What no effect explains.
     pub remainder: Option<Remainder>,
+    /// A law for that, or why there is none; `None` where nobody looked for one.
+    pub law: Option<Told<'a>>,
     /// Warnings of the input files and of the base model.
     pub warnings: Vec<String>,
     /// Head of the JSON: what was diagnosed.
@@ -73,6 +76,14 @@ impl Subject<'_> {
         let limits = self.limits.iter().map(ToString::to_string);
         self.warnings.iter().cloned().chain(limits).collect()
     }
+}
+
+/// What was made of the remainder.
+pub struct Told<'a> {
+    /// A law, or why there is none.
+    pub proposed: &'a Proposed,
+    /// The nearest mechanism of a textbook, in a sentence.
+    pub remark: Option<String>,
 }
 
 /// Errors that a headline compares, m.

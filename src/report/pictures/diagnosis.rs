@@ -2,9 +2,11 @@
 //! held-out readings.
 
 mod angle;
+mod law;
 mod residual;
 
 pub use angle::{AngleError, angle_errors};
+pub use law::{LawPanel, law_picture};
 pub use residual::{BeforeAfter, Event, Residual, ResidualPoint, before_after};
 
 use serde::Serialize;

@@ -19,11 +19,11 @@ use super::along::Coordinate;
 const SAME_WAIT: f64 = 1.1;
 
 /// The change of the load before each datum.
-pub(super) struct Before {
+pub(in crate::diagnosis::rig) struct Before {
     /// F′ of each datum, as [`Datum::drive`] counts it; 0 at the first of a run.
-    load: Vec<f64>,
+    pub load: Vec<f64>,
     /// Time since the load was changed, s: as the file says, or else since the reading before.
-    wait: Option<Vec<f64>>,
+    pub wait: Option<Vec<f64>>,
 }
 
 impl Before {

@@ -1,0 +1,34 @@
+//! Effects that a lab describes itself, as its file has them.
+
+mod file;
+
+use crate::error::Place;
+use crate::expression::Expression;
+use crate::inference::{Effect, Finding, Parameter};
+
+/// An effect that a lab describes itself.
+#[derive(Debug, Clone)]
+pub struct OwnEffect {
+    pub(super) effect: &'static Effect,
+    pub(super) place: String,
+    /// As the sites call it.
+    pub(super) variable: &'static str,
+    pub(super) law: Expression,
+    pub(super) parameters: Vec<Parameter>,
+    /// Where place and law stand in the file.
+    pub(super) at: (Place, Place),
+}
+
+impl OwnEffect {
+    /// `A rubber foot under the clamp: a_um = 12 ± 2, b_n = 4.0 ± 0.5`.
+    pub(super) fn observed(&self, finding: &Finding) -> String {
+        let said = |parameter: &Parameter| {
+            let quantity = finding.quantity(&parameter.name)?;
+            Some(format!("{} = {}", parameter.name, quantity.say("")))
+        };
+        let numbers: Vec<String> = self.parameters.iter().filter_map(said).collect();
+        let mut letters = self.effect.summary.chars();
+        let first: String = letters.next().into_iter().flat_map(char::to_uppercase).collect();
+        format!("{first}{} ({}): {}", letters.as_str(), self.place, numbers.join(", "))
+    }
+}

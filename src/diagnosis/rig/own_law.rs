@@ -1,0 +1,30 @@
+//! What a lab's own effect does to the data of a recording.
+
+use crate::expression::Expression;
+
+/// A formula at a place.
+#[derive(Debug)]
+pub(super) struct OwnLaw {
+    /// Of the variable, the side, and the parameters.
+    pub law: Expression,
+    /// Of the parameters.
+    pub neutral: Vec<f64>,
+    /// Of each datum that it concerns: its number, variable, side, and weight, m per unit of the
+    /// result.
+    pub data: Vec<(usize, f64, f64, f64)>,
+}
+
+impl OwnLaw {
+    /// Adds what it does with these of its parameters, the others at their neutral values.
+    pub fn add_to(&self, readings: &mut [f64], given: impl Iterator<Item = (usize, f64)>, times: f64) {
+        let mut values = vec![0.0; 2 + self.neutral.len()];
+        values[2..].copy_from_slice(&self.neutral);
+        given.for_each(|(k, value)| values[2 + k] = value);
+        for &(i, x, side, weight) in &self.data {
+            (values[0], values[1]) = (x, side);
+            let change = times * weight * self.law.at(&values);
+            // what is not a number at some values of its parameters is no effect there
+            readings[i] += if change.is_finite() { change } else { 0.0 };
+        }
+    }
+}

@@ -1,0 +1,320 @@
+//! Where on a rig a law may act that nobody has listed, and what it may be a function of.
+//!
+//! | place | what the law changes | functions of |
+//! |---|---|---|
+//! | rod | the load F that the rod follows, y = C·(F + ΔF) | load |
+//! | clamp | displacement along the load | load |
+//! | root, declared joints | turn θ about the moment there, y = (θ·M/\|M\|) × lever | moment |
+//! | rod | the deflection, by a share of it | load with its sign, load before, temperature, time, order |
+//! | slide | the share of the last change of the load that shows | time since |
+//! | sensor | what a channel shows | what it should show |
+//! | sensors | offsets of all channels | time, temperature, order |
+
+use nalgebra::{DVector, Vector3};
+
+use super::datum::Datum;
+use super::load_history::{instants, runs};
+use super::model::{Body, RigModel};
+use super::nonparametric::Before;
+use crate::inference::law::{Course, Form, Measure, Site};
+use crate::inference::{Location, Part};
+use crate::rod::Rod;
+use crate::spatial::Axis;
+use crate::units::UM;
+
+/// From zero on, of what is measured or hung: loads, readings. They may ripple.
+const OF_A_LOAD: &[Form] = &Form::ALL;
+/// Of what gives way under them.
+const OF_A_CONTACT: &[Form] = &[
+    Form::Power,
+    Form::Saturation,
+    Form::Threshold,
+    Form::Step,
+    Form::Approach,
+    Form::Logarithm,
+    Form::Polynomial(1),
+    Form::Polynomial(2),
+    Form::Polynomial(3),
+];
+/// With two signs, of which each may be another case.
+const OF_A_SIDE: &[Form] =
+    &[Form::Threshold, Form::Step, Form::Polynomial(1), Form::Polynomial(2), Form::Polynomial(3)];
+/// From the first reading on: time, order.
+const OF_TIME: &[Form] = &[
+    Form::Threshold,
+    Form::Step,
+    Form::Approach,
+    Form::Decay,
+    Form::Logarithm,
+    Form::Harmonic,
+    Form::Polynomial(1),
+    Form::Polynomial(2),
+    Form::Polynomial(3),
+];
+/// From anywhere on: temperature.
+const OF_A_LEVEL: &[Form] =
+    &[Form::Threshold, Form::Step, Form::Polynomial(1), Form::Polynomial(2), Form::Polynomial(3)];
+/// Times since: they fade.
+const FADING: &[Form] = &[Form::Approach, Form::Decay, Form::Logarithm, Form::Power, Form::Polynomial(1)];
+
+/// All places, given what is known to change each datum, m. Nothing where the displacement was
+/// imposed.
+pub(super) fn sites(model: &RigModel, change: &DVector<f64>) -> Vec<Site> {
+    let data = &model.data;
+    if data.iter().any(|d| d.imposed.is_some()) {
+        return Vec::new();
+    }
+    let bare = model.deflections();
+    // what each datum shows by what is known
+    let known: Vec<f64> = bare.iter().zip(change.iter()).map(|(u, more)| u + more).collect();
+    let slope = |i: usize| if data[i].load > 0.0 { known[i] / data[i].load } else { 0.0 };
+    let slopes: Vec<f64> = (0..data.len()).map(slope).collect();
+    let loads: Vec<f64> = data.iter().map(|d| d.load).collect();
+    let recording = Recording { data, moves: moves(data), by_load: courses(data, |_| 0.0) };
+    let mut sites = vec![recording.of_load(
+        (Location::Part(Part::Rod), measure("ΔF", "effective load", "N", 1.0)),
+        measure("F", "load", "N", 1.0),
+        (slopes, loads.clone()),
+        OF_A_LOAD,
+    )];
+    let sign = |d: &Datum| if d.channel == d.direction.axis { f64::from(d.direction.sign) } else { 0.0 };
+    sites.push(recording.of_load(
+        (Location::Part(Part::Clamp), measure("Δu", "displacement along the load", "µm", UM)),
+        measure("F", "load", "N", 1.0),
+        (data.iter().map(sign).collect(), loads),
+        OF_A_CONTACT,
+    ));
+    if let (Some(rod), Body::Rod(_)) = (&model.rod, &model.body) {
+        let declared = rod.joints.iter().map(|joint| (Location::Named(joint.name.clone()), joint.station));
+        let places = std::iter::once((Location::Part(Part::Root), 0.0)).chain(declared);
+        for (location, station) in places {
+            let (weights, moments) = data.iter().map(|d| turned(d, rod, station)).unzip();
+            sites.push(recording.of_load(
+                (location, measure("Δθ", "turn", "µrad", 1e-6)),
+                measure("M", "moment", "N·m", 1.0),
+                (weights, moments),
+                OF_A_CONTACT,
+            ));
+        }
+    }
+    sites.extend(recording.shares(&known));
+    for channel in Axis::ALL {
+        let weight = |d: &Datum| f64::from(u8::from(d.channel == channel));
+        let site = Site {
+            location: Location::Channel { channel, form: None },
+            result: measure("Δy", "reading", "µm", UM),
+            variable: measure("y", "reading", "µm", UM),
+            directions: vec![(String::new(), data.iter().map(weight).collect())],
+            values: known.clone(),
+            recorded: Some(data.iter().map(|d| d.measured).collect()),
+            moves: Vec::new(),
+            courses: Vec::new(),
+            forms: OF_A_LOAD,
+        };
+        sites.push(site);
+    }
+    sites.extend(recording.drifts());
+    sites
+}
+
+fn measure(symbol: &'static str, name: &str, unit: &'static str, si: f64) -> Measure {
+    Measure { symbol, name: name.into(), unit, si }
+}
+
+/// How far a datum moves by a turn of 1 rad at a station about the moment there, and that moment,
+/// N·m.
+fn turned(datum: &Datum, rod: &Rod, station: f64) -> (f64, f64) {
+    let tip = rod.length();
+    let at = |s: Option<f64>| s.unwrap_or(tip).min(tip);
+    let (load, read) = (at(datum.load_station), at(datum.read_station));
+    if station > load.min(read) {
+        return (0.0, 0.0);
+    }
+    let lever = |s: f64| rod.point(s) - rod.point(station);
+    let force = Vector3::ith(datum.direction.axis.index(), datum.signed_load());
+    let moment = lever(load).cross(&force);
+    let size = moment.norm();
+    match size > 0.0 {
+        true => ((moment / size).cross(&lever(read))[datum.channel.index()], size),
+        false => (0.0, 0.0),
+    }
+}
+
+/// 1 for what was reached on the way up, −1 on the way down.
+fn moves(data: &[Datum]) -> Vec<f64> {
+    data.iter().map(|d| if d.is_unloading() { -1.0 } else { 1.0 }).collect()
+}
+
+/// Runs, with what was waited before each reading.
+fn courses(data: &[Datum], start: impl Fn(&[usize]) -> f64) -> Vec<Course> {
+    let waits = Before::of(data).wait;
+    let of_run = |run: Vec<usize>| {
+        let mut before: Option<usize> = None;
+        let instants = instants(data, &run).into_iter().map(|instant| {
+            let own = instant[0];
+            let is_same = |k: &usize| data[*k].drive() == data[own].drive();
+            // at the same load it waits on since the reading before
+            let elapsed = match before.filter(is_same).and_then(|k| data[own].time.zip(data[k].time)) {
+                Some((now, then)) => now - then,
+                None => waits.as_ref().map_or(f64::NAN, |waits| waits[own]),
+            };
+            before = Some(own);
+            (instant, elapsed)
+        });
+        let instants = instants.collect();
+        Course { instants, start: start(&run) }
+    };
+    runs(data).into_iter().map(of_run).collect()
+}
+
+/// A recording with what laws of several places need of it.
+struct Recording<'a> {
+    data: &'a [Datum],
+    moves: Vec<f64>,
+    by_load: Vec<Course>,
+}
+
+impl Recording<'_> {
+    /// A law of a load or of what grows with it.
+    fn of_load(
+        &self,
+        (location, result): (Location, Measure),
+        variable: Measure,
+        (weights, values): (Vec<f64>, Vec<f64>),
+        forms: &'static [Form],
+    ) -> Site {
+        // loads that change their direction have no common course
+        let of_run = |course: &Course| {
+            let mut signs = course.instants.iter().map(|(data, _)| self.data[data[0]].direction);
+            let first = signs.next();
+            signs.all(|direction| Some(direction) == first)
+        };
+        let courses = if self.by_load.iter().all(of_run) { self.by_load.clone() } else { Vec::new() };
+        Site {
+            location,
+            result,
+            variable,
+            directions: vec![(String::new(), weights)],
+            values,
+            recorded: None,
+            moves: self.moves.clone(),
+            courses,
+            // nothing that gives way does so in waves
+            forms,
+        }
+    }
+
+    /// Laws that change the deflection by a share of it.
+    fn shares(&self, known: &[f64]) -> Vec<Site> {
+        let data = self.data;
+        let before = Before::of(data);
+        let share = |part: Part, variable: Measure, weights: Vec<f64>, values: Vec<f64>, forms| Site {
+            location: Location::Part(part),
+            result: measure("Δu/u", "deflection", "%", 0.01),
+            variable,
+            directions: vec![(String::new(), weights)],
+            values,
+            recorded: None,
+            moves: Vec::new(),
+            courses: Vec::new(),
+            forms,
+        };
+        let own = || known.to_vec();
+        let mut sites = Vec::new();
+        if data.iter().any(|d| d.drive() < 0.0) && data.iter().any(|d| d.drive() > 0.0) {
+            // what is softer one way may be so either way
+            for (sign, symbol, name) in
+                [(1.0, "F", "load along the positive axes"), (-1.0, "F", "load along the negative axes")]
+            {
+                let values = data.iter().map(|d| sign * d.drive()).collect();
+                sites.push(share(Part::Rod, measure(symbol, name, "N", 1.0), own(), values, OF_A_SIDE));
+            }
+        }
+        if before.loads(data).is_some() {
+            let variable = measure("F'", "load that hung before", "N", 1.0);
+            let values = before.load.iter().map(|load| load.abs()).collect();
+            sites.push(share(Part::Rod, variable, own(), values, OF_A_LOAD));
+        }
+        if let (Some(wait), Some(_)) = (&before.wait, before.waits()) {
+            let variable = measure("t", "time since the load was changed", "s", 1.0);
+            let changes = before.changes(data, known);
+            sites.push(share(Part::Slide, variable.clone(), changes, wait.clone(), FADING));
+            sites.push(share(Part::Rod, variable, own(), wait.clone(), FADING));
+        }
+        for common in self.common() {
+            let site = share(Part::Rod, common.variable, own(), common.values, common.forms);
+            sites.push(Site { courses: common.courses, ..site });
+        }
+        sites
+    }
+
+    /// Laws that add to all channels, each with its own size.
+    fn drifts(&self) -> Vec<Site> {
+        let channels: Vec<Axis> =
+            Axis::ALL.into_iter().filter(|axis| self.data.iter().any(|d| d.channel == *axis)).collect();
+        let of = |common: Common| {
+            let direction = |&channel: &Axis| {
+                let name = if channels.len() > 1 { format!("d{channel}") } else { String::new() };
+                let weight = |d: &Datum| f64::from(u8::from(d.channel == channel));
+                (name, self.data.iter().map(weight).collect::<Vec<f64>>())
+            };
+            Site {
+                location: Location::Part(Part::Sensors),
+                result: measure("Δy", "reading", "µm", UM),
+                variable: common.variable,
+                directions: channels.iter().map(direction).collect(),
+                values: common.values,
+                recorded: None,
+                moves: Vec::new(),
+                courses: common.courses,
+                forms: common.forms,
+            }
+        };
+        self.common().into_iter().map(of).collect()
+    }
+
+    /// What all data have in common, as far as the recording has it: time, temperature, order.
+    fn common(&self) -> Vec<Common> {
+        let all = |of: &dyn Fn(&Datum) -> Option<f64>| -> Option<Vec<f64>> {
+            let values: Vec<f64> = self.data.iter().map(of).collect::<Option<_>>()?;
+            let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+            Some(values.into_iter().map(|value| value - least).collect())
+        };
+        let plain = |variable, values, forms| Common { variable, values, forms, courses: Vec::new() };
+        let time = all(&|d| d.time).map(|t| plain(measure("t", "time", "s", 1.0), t, OF_TIME));
+        let order = all(&|d| Some(d.order as f64));
+        let order = order.map(|n| plain(measure("n", "number of readings before", "", 1.0), n, OF_TIME));
+        let temperature = all(&|d| d.temperature).map(|values| Common {
+            courses: self.whole(values.first().copied().unwrap_or_default()).into_iter().collect(),
+            ..plain(measure("T", "temperature above the lowest", "K", 1.0), values, OF_A_LEVEL)
+        });
+        time.into_iter().chain(order).chain(temperature).collect()
+    }
+
+    /// The recording as one course, where its times are known.
+    fn whole(&self, start: f64) -> Option<Course> {
+        let mut before: Option<f64> = None;
+        let by_instant = self.data.chunk_by(|a, b| a.order == b.order);
+        let mut first = 0;
+        let instant = |part: &[Datum]| {
+            let own: Vec<usize> = (first..first + part.len()).collect();
+            first += part.len();
+            let now = part[0].time?;
+            let elapsed = before.map_or(0.0, |before| now - before);
+            before = Some(now);
+            Some((own, elapsed))
+        };
+        Some(Course { instants: by_instant.map(instant).collect::<Option<_>>()?, start })
+    }
+}
+
+/// What all data have in common.
+struct Common {
+    variable: Measure,
+    values: Vec<f64>,
+    forms: &'static [Form],
+    courses: Vec<Course>,
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,52 @@
+//! What textbooks call a law that looks like the one that was found: a remark, never a name.
+
+use crate::inference::law::{Form, FormConstant, Law, Memory};
+
+/// Exponents over a load or a moment, each with what has it.
+const EXPONENTS: [(f64, &str, &str); 3] = [
+    (
+        2.0 / 3.0,
+        "2/3",
+        "that of a Hertzian contact of two curved bodies (K. L. Johnson, Contact Mechanics, 1985, ch. 4)",
+    ),
+    (2.0, "2", "that of a deflection to second order in the load"),
+    (3.0, "3", "that of a spring with a cubic term (Duffing)"),
+];
+/// An exponent is known well enough for a remark within so much.
+const KNOWN: f64 = 0.15;
+
+/// The nearest mechanism, in a sentence.
+pub fn remark(law: &Law) -> Option<String> {
+    if let Some((FormConstant::Exponent, p)) = &law.constant {
+        let half = 0.5 * (p.high - p.low);
+        let is_load = ["N", "N·m"].contains(&law.site.variable.unit);
+        if !is_load || half > KNOWN * p.value {
+            return None;
+        }
+        let near = EXPONENTS.iter().find(|(exponent, ..)| p.low <= *exponent && *exponent <= p.high)?;
+        return Some(format!("The exponent {:.2} ± {half:.2} agrees with {}: {}.", p.value, near.1, near.2));
+    }
+    let remark = match (law.form, law.memory, law.site.variable.symbol) {
+        (_, Memory::Lag, _) => {
+            "A first-order lag is what a spring with a dashpot beside it does (Kelvin and Voigt)."
+        }
+        (_, Memory::Stop, _) => {
+            "A stop operator is what a spring with a dry slider in series does (Jenkins)."
+        }
+        (Form::Approach | Form::Decay, _, "t") => {
+            "An exponential in time is what one relaxation time does (Maxwell)."
+        }
+        (Form::Logarithm, _, "t") => "A logarithm of time is what primary creep often follows.",
+        (Form::Harmonic, _, "y") => {
+            "A wave over the reading is what an encoder or an interferometer adds when it interpolates."
+        }
+        (Form::Threshold, _, "F" | "M") => {
+            "A slope from one load on is what a contact does that opens or closes there."
+        }
+        (Form::Saturation, _, "F" | "M") => {
+            "Growth up to one load is what a part does that comes to a stop there."
+        }
+        _ => return None,
+    };
+    Some(remark.to_owned())
+}

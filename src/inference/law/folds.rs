@@ -1,0 +1,102 @@
+//! Held-out proof of a law: the whole search is repeated without a fold, and predicts that fold.
+//!
+//! The folds are those of the diagnosis. The findings are those of all data, fitted anew without
+//! each fold: it is what the law adds to them that is asked.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::choice::Choice;
+use super::remainder::Remainder;
+use super::scan::{Scanned, scan_some};
+use super::site::Site;
+use crate::inference::selection::{APART, NAMED};
+use crate::inference::{Evidence, ForwardModel, Term};
+use crate::parallel::in_parallel;
+
+/// Root mean squares of what is left of held-out data.
+pub(super) struct Folds {
+    /// With the findings alone.
+    pub without: f64,
+    /// With the law that is found without each fold as well.
+    pub with: f64,
+    /// With each of some laws, fitted without each fold.
+    pub of: Vec<f64>,
+}
+
+/// All data as predicted with the findings alone, with the law that is found besides, and with each
+/// of some laws.
+type Predicted = (DVector<f64>, DVector<f64>, Vec<DVector<f64>>);
+
+/// Predicts each fold; `None` where nothing could be held out. Each fold's own search is among
+/// `tried`; `choices` are compared besides.
+pub(super) fn hold_out(
+    model: &dyn ForwardModel,
+    evidence: &Evidence,
+    terms: &[Term],
+    sites: &[Site],
+    (choices, tried): (&[Choice], &[Choice]),
+    (size, sigma): (f64, f64),
+) -> Option<Folds> {
+    let mut folds: Vec<usize> = evidence.fold.clone();
+    folds.sort_unstable();
+    folds.dedup();
+    folds.retain(|&fold| fold != Evidence::NONE);
+    if folds.len() < 2 {
+        return None;
+    }
+    let n = evidence.residual.len();
+    let kept = |fold: usize| (0..n).filter(|&row| evidence.fold[row] != fold).collect::<Vec<_>>();
+    let by_fold: Vec<Predicted> = in_parallel(folds.len(), |k| {
+        let remainder = Remainder::new(model, evidence, terms, kept(folds[k]), sigma);
+        let found = scan_some(&remainder, sites, size, |choice| tried.contains(choice)).laws;
+        let none = remainder.fit(&DMatrix::zeros(n, 0)).predicted;
+        let of = |law: &Scanned| {
+            let columns = law.choice.columns(&sites[law.choice.site], law.at, size);
+            remainder.fit(&columns.columns).predicted
+        };
+        let best = found.first().map_or(f64::NEG_INFINITY, |law| law.log_odds);
+        let with = match best > NAMED.ln() {
+            true => averaged(found.iter().take_while(|law| law.log_odds > best - APART.ln()), of),
+            false => none.clone(),
+        };
+        let own = choices.iter().map(|choice| {
+            let law = found.iter().find(|law| law.choice == *choice);
+            law.map_or_else(|| none.clone(), of)
+        });
+        let own = own.collect();
+        (none, with, own)
+    });
+    let rms = |of: &dyn Fn(&Predicted) -> &DVector<f64>| {
+        let (mut square, mut count) = (0.0, 0.0);
+        for (k, predicted) in by_fold.iter().enumerate() {
+            let predicted = of(predicted);
+            for row in (0..n).filter(|&row| evidence.fold[row] == folds[k]) {
+                square += evidence.weight[row] * (evidence.residual[row] - predicted[row]).powi(2);
+                count += evidence.weight[row];
+            }
+        }
+        (square / f64::max(count, f64::MIN_POSITIVE)).sqrt()
+    };
+    Some(Folds {
+        without: rms(&|predicted| &predicted.0),
+        with: rms(&|predicted| &predicted.1),
+        of: (0..choices.len()).map(|k| rms(&|predicted| &predicted.2[k])).collect(),
+    })
+}
+
+/// What laws predict on average, each by its probability.
+fn averaged<'a>(
+    laws: impl Iterator<Item = &'a Scanned>,
+    predicted: impl Fn(&Scanned) -> DVector<f64>,
+) -> DVector<f64> {
+    let mut whole = 0.0;
+    let mut sum = DVector::zeros(0);
+    let mut most = None;
+    for law in laws {
+        let share = (law.log_odds - *most.get_or_insert(law.log_odds)).exp();
+        let own = predicted(law) * share;
+        whole += share;
+        sum = if sum.is_empty() { own } else { sum + own };
+    }
+    sum / f64::max(whole, f64::MIN_POSITIVE)
+}

@@ -1,0 +1,235 @@
+//! Forms of a law: functions of a scaled variable, with one number at most that is not linear.
+
+use std::f64::consts::TAU;
+
+/// What a law looks like over its variable. ξ = x/X; functions of a variable with two signs are
+/// odd.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Form {
+    /// a·ξᵖ.
+    Power,
+    /// a·min(ξ/ξ₀, 1): it grows up to ξ₀ and no further.
+    Saturation,
+    /// a·max(ξ − ξ₀, 0): it grows from ξ₀ on.
+    Threshold,
+    /// a where ξ > ξ₀.
+    Step,
+    /// a·(1 − e^(−ξ/ξ₀)).
+    Approach,
+    /// a·e^(−ξ/ξ₀).
+    Decay,
+    /// a·ln(1 + ξ/ξ₀).
+    Logarithm,
+    /// a·(cos(2πf·ξ) − 1) + b·sin(2πf·ξ): readings are offsets from what was read at zero.
+    Harmonic,
+    /// a₁·ξ + … of this degree, 1 to 3.
+    Polynomial(u8),
+}
+
+/// The number of a form that is not linear, in the form's own scale.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FormConstant {
+    /// p.
+    Exponent,
+    /// ξ₀ of a saturation, a threshold or a step: a value of the variable.
+    Corner,
+    /// ξ₀ of an approach, a decay or a logarithm: a length along the variable.
+    Scale,
+    /// 1/f.
+    Period,
+    /// Half the width of a play, of the variable.
+    Play,
+    /// Time of a lag, s.
+    Lag,
+}
+
+/// A number of a law with its 95 % interval.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Constant {
+    /// In formulas.
+    pub symbol: String,
+    /// In sentences.
+    pub name: String,
+    /// Unit for people; nothing for a plain number.
+    pub unit: String,
+    /// Estimate, in the unit.
+    pub value: f64,
+    /// Lower end.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
+    /// Other values within the interval that these data do not distinguish from it, each apart from
+    /// the rest: periods that every reading meets alike.
+    pub also: Vec<f64>,
+}
+
+/// Exponents that a law may have: roots to fourth powers.
+const EXPONENTS: (f64, f64) = (0.2, 4.0);
+/// Scale of an approach or a decay, as a share of X: below it is a step, above a straight line.
+const APPROACH: (f64, f64) = (0.03, 2.0);
+/// That of a logarithm.
+const LOGARITHM: (f64, f64) = (1e-3, 1.0);
+/// Where a saturation may begin.
+const SATURATION: (f64, f64) = (0.05, 0.98);
+/// Points of a first look at a number that is not linear.
+const POINTS: usize = 21;
+/// Cycles over the range of the variable: fewer are a bend, more than so many nobody looks for.
+const CYCLES: (f64, f64) = (0.3, 60.0);
+/// Distance of two frequencies in cycles over the range: a wave of one is still half in step with
+/// that of the other.
+const APART: f64 = 0.15;
+/// Levels of the variable from which on waves are looked for.
+const LEVELS_OF_A_WAVE: usize = 6;
+
+impl Form {
+    /// All of them.
+    pub const ALL: [Form; 11] = [
+        Form::Power,
+        Form::Saturation,
+        Form::Threshold,
+        Form::Step,
+        Form::Approach,
+        Form::Decay,
+        Form::Logarithm,
+        Form::Harmonic,
+        Form::Polynomial(1),
+        Form::Polynomial(2),
+        Form::Polynomial(3),
+    ];
+
+    /// For people and JSON.
+    pub fn name(self) -> &'static str {
+        match self {
+            Form::Power => "power",
+            Form::Saturation => "saturation",
+            Form::Threshold => "threshold with slope",
+            Form::Step => "step",
+            Form::Approach => "exponential approach",
+            Form::Decay => "exponential decay",
+            Form::Logarithm => "logarithm",
+            Form::Harmonic => "harmonic",
+            Form::Polynomial(1) => "straight line",
+            Form::Polynomial(2) => "polynomial of the second degree",
+            Form::Polynomial(_) => "polynomial of the third degree",
+        }
+    }
+
+    /// How many functions it has.
+    pub fn count(self) -> usize {
+        match self {
+            Form::Harmonic => 2,
+            Form::Polynomial(degree) => degree as usize,
+            _ => 1,
+        }
+    }
+
+    /// Its number that is not linear.
+    pub fn constant(self) -> Option<FormConstant> {
+        match self {
+            Form::Power => Some(FormConstant::Exponent),
+            Form::Saturation | Form::Threshold | Form::Step => Some(FormConstant::Corner),
+            Form::Approach | Form::Decay | Form::Logarithm => Some(FormConstant::Scale),
+            Form::Harmonic => Some(FormConstant::Period),
+            Form::Polynomial(_) => None,
+        }
+    }
+
+    /// Its functions at ξ, those that there are.
+    pub fn functions(self, xi: f64, s: f64) -> [f64; 3] {
+        let odd = |of: &dyn Fn(f64) -> f64| if xi < 0.0 { -of(-xi) } else { of(xi) };
+        let one = |value: f64| [value, 0.0, 0.0];
+        match self {
+            Form::Power => one(odd(&|xi| if xi == 0.0 { 0.0 } else { xi.powf(s) })),
+            Form::Saturation => one(odd(&|xi| (xi / s).min(1.0))),
+            Form::Threshold => one((xi - s).max(0.0)),
+            Form::Step => one(if xi > s { 1.0 } else { 0.0 }),
+            Form::Approach => one(odd(&|xi| -(-xi / s).exp_m1())),
+            Form::Decay => one(odd(&|xi| (-xi / s).exp())),
+            Form::Logarithm => one(odd(&|xi| (xi / s).ln_1p())),
+            Form::Harmonic => {
+                let (sin, cos) = (TAU * s * xi).sin_cos();
+                [cos - 1.0, sin, 0.0]
+            }
+            Form::Polynomial(_) => [xi, xi * xi, xi * xi * xi],
+        }
+    }
+
+    /// The coordinate in which the prior of s is even, and back: a logarithm where s is a scale.
+    pub fn coordinate(self, s: f64) -> f64 {
+        if self.is_log() { s.ln() } else { s }
+    }
+
+    /// See [`Form::coordinate`].
+    pub fn at_coordinate(self, u: f64) -> f64 {
+        if self.is_log() { u.exp() } else { u }
+    }
+
+    fn is_log(self) -> bool {
+        matches!(self, Form::Power | Form::Approach | Form::Decay | Form::Logarithm | Form::Harmonic)
+    }
+
+    /// Coordinates of a first look at s over a variable from `low` to `high` (shares of X) with so
+    /// many levels; nothing where the form cannot be told there.
+    pub fn grid(self, (low, high): (f64, f64), levels: usize) -> Vec<f64> {
+        let between = |(a, b): (f64, f64), count: usize| -> Vec<f64> {
+            (0..count).map(|k| a + (b - a) * k as f64 / (count - 1) as f64).collect()
+        };
+        let logs = |(a, b): (f64, f64)| between((a.ln(), b.ln()), POINTS);
+        let constants = self.count() + usize::from(self.constant().is_some());
+        if levels <= constants {
+            return Vec::new();
+        }
+        match self {
+            Form::Power => logs(EXPONENTS),
+            Form::Approach | Form::Decay => logs(APPROACH),
+            Form::Logarithm => logs(LOGARITHM),
+            Form::Saturation => between(SATURATION, POINTS),
+            Form::Threshold | Form::Step => {
+                let inset = 0.5 / levels.min(POINTS) as f64 * (high - low);
+                between((low + inset, high - inset), POINTS)
+            }
+            Form::Harmonic => {
+                // levels at even distances show one wave as well as another: all of them compete
+                let count = ((CYCLES.1 - CYCLES.0) / APART) as usize;
+                let frequency = |k: usize| (CYCLES.0 + APART * k as f64) / (high - low);
+                match levels >= LEVELS_OF_A_WAVE {
+                    true => (0..=count).map(|k| frequency(k).ln()).collect(),
+                    false => Vec::new(),
+                }
+            }
+            Form::Polynomial(_) => vec![0.0],
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_form_is_what_its_formula_says() {
+        let at = |form: Form, xi: f64, s: f64| form.functions(xi, s)[0];
+        assert_eq!(at(Form::Power, 0.25, 0.5), 0.5);
+        assert_eq!(at(Form::Power, -0.25, 0.5), -0.5);
+        assert_eq!(at(Form::Power, 0.0, 0.5), 0.0);
+        assert_eq!((at(Form::Saturation, 0.2, 0.4), at(Form::Saturation, 0.9, 0.4)), (0.5, 1.0));
+        assert_eq!((at(Form::Threshold, 0.2, 0.5), at(Form::Threshold, 0.75, 0.5)), (0.0, 0.25));
+        assert_eq!((at(Form::Step, 0.5, 0.5), at(Form::Step, 0.6, 0.5)), (0.0, 1.0));
+        assert!((at(Form::Approach, 1.0, 1.0) - (1.0 - (-1.0f64).exp())).abs() < 1e-15);
+        assert!((at(Form::Logarithm, 1.0, 0.5) - 3.0f64.ln()).abs() < 1e-15);
+        assert!((at(Form::Decay, 1.0, 0.5) - (-2.0f64).exp()).abs() < 1e-15);
+        // a quarter of a period on, the cosine is gone and the sine whole
+        let [cos, sin, _] = Form::Harmonic.functions(0.25, 1.0);
+        assert!((cos + 1.0).abs() < 1e-15 && (sin - 1.0).abs() < 1e-15);
+        assert_eq!(Form::Polynomial(3).functions(2.0, 0.0), [2.0, 4.0, 8.0]);
+    }
+
+    #[test]
+    fn a_form_needs_more_levels_than_it_has_constants() {
+        let is_tried = |form: Form, levels: usize| !form.grid((0.0, 1.0), levels).is_empty();
+        assert!(!is_tried(Form::Power, 2) && is_tried(Form::Power, 3));
+        assert!(!is_tried(Form::Polynomial(3), 3) && is_tried(Form::Polynomial(3), 4));
+        assert!(!is_tried(Form::Harmonic, 3) && is_tried(Form::Harmonic, 12));
+    }
+}

@@ -1,0 +1,284 @@
+//! A law for what is left, or why none is proposed.
+
+use std::f64::consts::PI;
+
+use nalgebra::{DMatrix, DVector};
+
+use super::choice::Choice;
+use super::folds::hold_out;
+use super::measured::Measured;
+use super::proposed::{Law, LawRival, NextRecord, Point, Proposed, Refusal};
+use super::remainder::Remainder;
+use super::scan::{Scan, Scanned, curve, prior, scan};
+use super::site::Site;
+use crate::inference::evidence::rms;
+use crate::inference::scatter::weighted;
+use crate::inference::selection::{APART, NAMED};
+use crate::inference::{Diagnosis, Evidence, ForwardModel, ShownBy, Term};
+use crate::linalg::least_squares;
+
+/// How far beyond the data a law is asked to part from its rivals.
+const BEYOND: f64 = 2.0;
+/// How far apart they have to be, in standard deviations of a reading.
+const PARTED: f64 = 4.0;
+/// Points between nothing and [`BEYOND`].
+const STEPS: usize = 80;
+/// Cosines of a smooth curve in a picture.
+const CURVE: usize = 6;
+/// Points of a curve in a picture.
+const POINTS: usize = 60;
+/// Data that the law moves by less than this share of the largest are not drawn.
+const DRAWN: f64 = 0.2;
+/// Of so many laws, the likeliest, all else is fitted anew.
+const REFITTED: usize = 16;
+/// Laws whose ln odds are so far behind the best are not tried again without each fold.
+const REACH: f64 = 30.0;
+/// So many times the noise a recorded variable ranges over at least.
+const ABOVE_NOISE: f64 = 30.0;
+/// Most rivals that are reported.
+const MOST_RIVALS: usize = 8;
+
+/// A law for what `diagnosis` left unexplained; `None` where nothing was, or where what is left is
+/// no law's: single readings, numbers of a file. `sites` are all places for it, given what
+/// findings, nominal numbers and zeros change of each datum.
+pub fn propose(
+    model: &dyn ForwardModel,
+    diagnosis: &Diagnosis,
+    sites: &dyn Fn(&DVector<f64>) -> Vec<Site>,
+) -> Option<Proposed> {
+    let left = diagnosis.discrepancy.as_ref()?;
+    if matches!(left.shown_by, ShownBy::Suspects | ShownBy::Numbers) {
+        return None;
+    }
+    let (settled, sigma) = (&diagnosis.settled.0, diagnosis.settled.1);
+    let (terms, size) =
+        (&diagnosis.hypothesis.terms[..], rms(&diagnosis.after).max(f64::MIN_POSITIVE.sqrt()));
+    let rows: Vec<usize> = (0..settled.residual.len()).collect();
+    let response = model.response(terms);
+    let known = known(model, diagnosis, left.candidate);
+    let mut all = sites(&(response + known));
+    // where no curve was taken out what is left has counted as scatter, and the data that show it
+    // most hardly count
+    let evidence = &match left.shown_by == ShownBy::Curve || !settled.is_robust {
+        true => settled.as_ref().clone(),
+        false => {
+            let even =
+                Evidence { weight: vec![1.0; rows.len()], information: 1.0, ..settled.as_ref().clone() };
+            reweighted(model, &even, terms, &all, (size, sigma)).unwrap_or(even)
+        }
+    };
+    let remainder = Remainder::new(model, evidence, terms, rows, sigma);
+    let mut found = scan(&remainder, &all, size);
+    if as_recorded(&mut all, &remainder, &found, (size, sigma)) {
+        found = scan(&remainder, &all, size);
+    }
+    let within_reach = found.laws.iter().take_while(|law| law.log_odds > found.laws[0].log_odds - REACH);
+    let tried: Vec<Choice> = within_reach.map(|law| law.choice).collect();
+    refit(&mut found, &remainder, &all, size);
+    let lives = found.curve.map(|(site, _)| (all[site].location.clone(), all[site].variable.clone()));
+    let refused = |refusal, held_out| Some(Proposed { law: Err(refusal), lives: lives.clone(), held_out });
+    // the curve that the diagnosis has found competes too
+    let own_curve = left.candidate.map_or(f64::NEG_INFINITY, |curve| {
+        let term = model.candidates()[curve].neutral(curve);
+        let curves = model.candidates().iter().filter(|candidate| candidate.is_nonparametric);
+        remainder.fit(&model.columns(&[term], 0)).gain + prior(curves.count(), 1)
+    });
+    let curve_odds = found.curve.map_or(own_curve, |(_, odds)| odds.max(own_curve));
+    let Some(best) = found.laws.first() else { return refused(Refusal::Chance, None) };
+    if best.log_odds < NAMED.ln() {
+        return refused(Refusal::Chance, None);
+    }
+    if best.log_odds < curve_odds {
+        return refused(Refusal::Curve(curve_odds - best.log_odds), None);
+    }
+    let class = alike(&found, best);
+    let choices: Vec<Choice> = class.iter().map(|law| law.choice).collect();
+    let folds = hold_out(model, evidence, terms, &all, (&choices, &tried), (size, sigma));
+    let Some(folds) = folds else { return refused(Refusal::NoFolds, None) };
+    let errors = Some((folds.without, folds.with));
+    if folds.with >= folds.without || folds.of[0] >= folds.without {
+        return refused(Refusal::HeldOut, errors);
+    }
+    let measured: Vec<Measured> =
+        class.iter().map(|law| Measured::of(&remainder, &all[law.choice.site], law, size)).collect();
+    let rivals = class.iter().zip(&measured).zip(&folds.of).skip(1);
+    let rivals: Vec<LawRival> = rivals
+        .map(|((law, measured), &held_out)| LawRival {
+            site: all[law.choice.site].clone(),
+            form: law.choice.form,
+            memory: law.choice.memory,
+            constant: measured.constant.clone(),
+            values: measured.values.clone(),
+            odds: (best.log_odds - law.log_odds).exp(),
+            held_out: Some(held_out),
+        })
+        .collect();
+    let site = all[best.choice.site].clone();
+    let columns = best.choice.columns(&site, best.at, size);
+    let fitted = remainder.fit(&columns.columns);
+    let Measured { amplitudes, constant, values } = measured.into_iter().next()?;
+    let mut law = Law {
+        form: best.choice.form,
+        memory: best.choice.memory,
+        amplitudes,
+        constant,
+        values,
+        log_odds: (best.log_odds, best.log_odds - curve_odds),
+        held_out: folds.of.first().copied(),
+        explains: rms(&fitted.own),
+        noise: fitted.sigma,
+        rivals,
+        next: None,
+        points: Vec::new(),
+        curve: Vec::new(),
+        site,
+    };
+    let residual = &evidence.residual - &fitted.predicted;
+    law.points = points(&law, best.choice, &residual);
+    law.curve = smooth(&law.points, law.site.directions.len());
+    law.next = next(&law);
+    Some(Proposed { law: Ok(law), lives, held_out: errors })
+}
+
+/// Puts what was recorded, without the likeliest law, in the place of what was predicted, where
+/// that law is a function of it; false where it is none, or where noise would be as large as the
+/// variable: it would explain itself.
+fn as_recorded(sites: &mut [Site], remainder: &Remainder, found: &Scan, (size, sigma): (f64, f64)) -> bool {
+    let Some(best) = found.laws.first() else { return false };
+    let site = &sites[best.choice.site];
+    let (low, high) = site.range();
+    let Some(recorded) = site.recorded.as_ref().filter(|_| high - low > ABOVE_NOISE * sigma) else {
+        return false;
+    };
+    let own = remainder.fit(&best.choice.columns(site, best.at, size).columns).own;
+    let values = recorded.iter().zip(own.iter()).map(|(value, own)| value - own).collect();
+    sites[best.choice.site].values = values;
+    true
+}
+
+/// What nominal numbers and zeros are, once a curve stands for what is left.
+fn known(model: &dyn ForwardModel, diagnosis: &Diagnosis, curve: Option<usize>) -> DVector<f64> {
+    let (evidence, sigma) = (&diagnosis.settled.0, diagnosis.settled.1);
+    let rows: Vec<usize> = (0..evidence.residual.len()).collect();
+    let columns = match curve {
+        Some(curve) => model.columns(&[model.candidates()[curve].neutral(curve)], 0),
+        None => DMatrix::zeros(rows.len(), 0),
+    };
+    Remainder::new(model, evidence, &diagnosis.hypothesis.terms, rows, sigma).fit(&columns).background
+}
+
+/// An evidence with the weights that its data have once the likeliest law is taken out.
+fn reweighted(
+    model: &dyn ForwardModel,
+    even: &Evidence,
+    terms: &[Term],
+    sites: &[Site],
+    (size, sigma): (f64, f64),
+) -> Option<Evidence> {
+    let remainder = Remainder::new(model, even, terms, (0..even.residual.len()).collect(), sigma);
+    let found = scan(&remainder, sites, size);
+    let best = found.laws.first()?;
+    let columns = best.choice.columns(&sites[best.choice.site], best.at, size);
+    let left = &even.residual - remainder.fit(&columns.columns).predicted;
+    let (weight, information) = weighted(&remainder.without_shared(&left));
+    Some(Evidence { weight, information, ..even.clone() })
+}
+
+/// The likeliest laws and the curve, all else fitted anew with each at its best; the others go.
+fn refit(found: &mut Scan, remainder: &Remainder, sites: &[Site], size: f64) {
+    found.laws.truncate(REFITTED);
+    for law in &mut found.laws {
+        let columns = law.choice.columns(&sites[law.choice.site], law.at, size).columns;
+        law.log_odds += remainder.fit(&columns).gain - remainder.gain(&columns);
+    }
+    found.laws.sort_by(|a, b| b.log_odds.total_cmp(&a.log_odds));
+    if let Some((site, log_odds)) = &mut found.curve {
+        let columns = curve(&sites[*site], size);
+        *log_odds += remainder.fit(&columns).gain - remainder.gain(&columns);
+    }
+}
+
+/// The best law and all that are not 20 times less likely.
+fn alike<'a>(found: &'a Scan, best: &Scanned) -> Vec<&'a Scanned> {
+    let near = found.laws.iter().take_while(|law| law.log_odds > best.log_odds - APART.ln());
+    near.take(1 + MOST_RIVALS).collect()
+}
+
+/// What the law follows, and what each datum says of its result there.
+fn points(law: &Law, choice: Choice, residual: &DVector<f64>) -> Vec<Point> {
+    let (followed, sign) = choice.memory.remembered(&law.site, law.values.1);
+    let mut points = Vec::new();
+    for (direction, (_, weights)) in law.site.directions.iter().enumerate() {
+        let largest = weights.iter().fold(0.0, |most: f64, w| most.max(w.abs()));
+        for (i, &x) in followed.iter().enumerate() {
+            let weight = weights[i] * sign.map_or(1.0, |moves| moves[i]);
+            if x.is_finite() && weight.abs() > DRAWN * largest && weight != 0.0 {
+                points.push(Point { direction, x, value: law.at(direction, x) + residual[i] / weight });
+            }
+        }
+    }
+    points
+}
+
+/// A smooth curve through the points of each direction: Σ a_j·cos(πjx) by least squares.
+fn smooth(points: &[Point], directions: usize) -> Vec<Point> {
+    let mut curve = Vec::new();
+    for direction in 0..directions {
+        let own: Vec<&Point> = points.iter().filter(|point| point.direction == direction).collect();
+        let ends = own.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), p| (a.min(p.x), b.max(p.x)));
+        let wave = |x: f64, j: usize| (PI * j as f64 * (x - ends.0) / (ends.1 - ends.0)).cos();
+        let mut xs: Vec<f64> = own.iter().map(|point| point.x).collect();
+        xs.sort_by(f64::total_cmp);
+        xs.dedup();
+        let count = xs.len().min(CURVE);
+        let columns = DMatrix::from_fn(own.len(), count, |i, j| wave(own[i].x, j));
+        let values = DVector::from_iterator(own.len(), own.iter().map(|point| point.value));
+        let Ok(factors) = least_squares(&columns, &values) else { continue };
+        for k in 0..=POINTS {
+            let x = ends.0 + (ends.1 - ends.0) * k as f64 / POINTS as f64;
+            let value = (0..count).map(|j| factors[j] * wave(x, j)).sum();
+            curve.push(Point { direction, x, value });
+        }
+    }
+    curve
+}
+
+/// Where the law and a rival at its place part first, what zeros and stiffnesses take up apart:
+/// between the data if they do, or else beyond them.
+fn next(law: &Law) -> Option<NextRecord> {
+    let (low, high) = law.site.range();
+    let per_result =
+        law.site.directions.iter().flat_map(|(_, w)| w).fold(0.0, |most: f64, w| most.max(w.abs()));
+    let is_alike = |rival: &&LawRival| {
+        rival.memory == law.memory
+            && rival.site.location == law.site.location
+            && rival.site.variable == law.site.variable
+    };
+    let (number, rival) = law.rivals.iter().enumerate().find(|(_, rival)| is_alike(rival))?;
+    let directions = 0..law.site.directions.len();
+    let lines: Vec<(f64, f64)> =
+        directions.clone().map(|direction| taken_up(law, rival, direction)).collect();
+    let apart = |x: f64| {
+        let of = |direction: usize| {
+            let (level, slope) = lines[direction];
+            (law.at(direction, x) - rival.at(direction, x) - level - slope * x).abs() * per_result
+        };
+        directions.clone().map(of).fold(0.0, f64::max)
+    };
+    let least = low.min(0.0);
+    let x = |k: usize| least + (BEYOND * high - least) * k as f64 / STEPS as f64;
+    let within = (0..=STEPS).map(x).filter(|x| *x <= high).max_by(|a, b| apart(*a).total_cmp(&apart(*b)));
+    let far = |x: &f64| apart(*x) > PARTED * law.noise;
+    let at = within.filter(far).or_else(|| (0..=STEPS).map(x).filter(|x| *x > high).find(far))?;
+    Some(NextRecord { rival: number, at, is_beyond: at > high, apart: apart(at) })
+}
+
+/// What zeros and stiffnesses take up of the difference of two laws: the straight line through it
+/// at the data. Level and slope.
+fn taken_up(law: &Law, rival: &LawRival, direction: usize) -> (f64, f64) {
+    let own: Vec<f64> = law.points.iter().filter(|p| p.direction == direction).map(|p| p.x).collect();
+    let columns = DMatrix::from_fn(own.len(), 2, |i, j| if j == 0 { 1.0 } else { own[i] });
+    let differences = own.iter().map(|&x| law.at(direction, x) - rival.at(direction, x));
+    let values = DVector::from_iterator(own.len(), differences);
+    least_squares(&columns, &values).map_or((0.0, 0.0), |line| (line[0], line[1]))
+}

@@ -1,0 +1,131 @@
+//! A law that is proposed, as data, or why none is.
+
+use super::form::{Constant, Form, FormConstant};
+use super::memory::Memory;
+use super::site::{Measure, Site};
+use crate::inference::Location;
+
+/// What was made of what is left.
+#[derive(Debug, Clone)]
+#[non_exhaustive]
+pub struct Proposed {
+    /// The law, if there is one.
+    pub law: std::result::Result<Law, Refusal>,
+    /// Along which variable, and where, a smooth curve explains most.
+    pub lives: Option<(Location, Measure)>,
+    /// Held-out error with the findings alone, and with what the search for a law finds without
+    /// each fold besides, m; `None` where nothing was held out.
+    pub held_out: Option<(f64, f64)>,
+}
+
+/// Why there is no law.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum Refusal {
+    /// None is likelier than chance by the odds of a name.
+    Chance,
+    /// A smooth curve is likelier than the likeliest of all laws, by so many times (ln).
+    Curve(f64),
+    /// Held-out errors are not lowered.
+    HeldOut,
+    /// Nothing could be held out.
+    NoFolds,
+}
+
+/// A law with its numbers.
+#[derive(Debug, Clone)]
+#[non_exhaustive]
+pub struct Law {
+    /// Where, and the number it is a function of.
+    pub site: Site,
+    /// What it looks like.
+    pub form: Form,
+    /// What it remembers.
+    pub memory: Memory,
+    /// Its amplitudes, one for each function and direction, direction by direction.
+    pub amplitudes: Vec<Constant>,
+    /// Its number that is not linear.
+    pub constant: Option<(FormConstant, Constant)>,
+    /// The same as numbers: amplitudes (SI) of each direction's functions, s.
+    pub values: (Vec<f64>, f64),
+    /// Ln of its odds against nothing, and against the likeliest smooth curve.
+    pub log_odds: (f64, f64),
+    /// Its own held-out error, m.
+    pub held_out: Option<f64>,
+    /// Root mean square of what it explains, m.
+    pub explains: f64,
+    /// Noise of a datum beside it, m.
+    pub noise: f64,
+    /// Laws that these data do not distinguish from it, the likeliest first.
+    pub rivals: Vec<LawRival>,
+    /// What would distinguish it from the likeliest rival at its place.
+    pub next: Option<NextRecord>,
+    /// Data as it sees them: what is left but for the law.
+    pub points: Vec<Point>,
+    /// A smooth curve through them.
+    pub curve: Vec<Point>,
+}
+
+/// A law that may be there instead.
+#[derive(Debug, Clone)]
+#[non_exhaustive]
+pub struct LawRival {
+    /// Where.
+    pub site: Site,
+    /// What it looks like.
+    pub form: Form,
+    /// What it remembers.
+    pub memory: Memory,
+    /// Its number that is not linear.
+    pub constant: Option<(FormConstant, Constant)>,
+    /// Amplitudes (SI) and s.
+    pub values: (Vec<f64>, f64),
+    /// How many times the law is likelier.
+    pub odds: f64,
+    /// Its own held-out error, m.
+    pub held_out: Option<f64>,
+}
+
+/// Where two laws part.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NextRecord {
+    /// Number of the rival.
+    pub rival: usize,
+    /// The variable there, SI.
+    pub at: f64,
+    /// True where it is beyond what was recorded.
+    pub is_beyond: bool,
+    /// How far they are apart there, m, but for a straight line that zeros and stiffnesses take up.
+    pub apart: f64,
+}
+
+/// A point of a picture.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Point {
+    /// Number of the direction.
+    pub direction: usize,
+    /// What the law follows, SI.
+    pub x: f64,
+    /// The result there, SI.
+    pub value: f64,
+}
+
+impl Law {
+    /// The law at x (SI) in a direction, SI; what a memory makes of the variable is x.
+    pub fn at(&self, direction: usize, x: f64) -> f64 {
+        at(self.form, &self.values, self.site.largest(), direction, x)
+    }
+}
+
+impl LawRival {
+    /// See [`Law::at`].
+    pub fn at(&self, direction: usize, x: f64) -> f64 {
+        at(self.form, &self.values, self.site.largest(), direction, x)
+    }
+}
+
+fn at(form: Form, (amplitudes, s): &(Vec<f64>, f64), largest: f64, direction: usize, x: f64) -> f64 {
+    let functions = form.functions(x / largest, *s);
+    let own = amplitudes.iter().skip(direction * form.count()).take(form.count());
+    own.zip(functions).map(|(amplitude, function)| amplitude * function).sum()
+}

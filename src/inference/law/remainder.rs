@@ -1,0 +1,222 @@
+//! What the findings leave, and what columns explain of it.
+//!
+//! Findings, nominal numbers and zeros are columns B with priors K (their own sizes), linear about
+//! the values that were found. With them out, at the noise σ,
+//!
+//! ```text
+//! G' = CᵀC − CᵀB·(BᵀB + σ²K⁻²)⁻¹·BᵀC      b' = Cᵀr − CᵀB·(BᵀB + σ²K⁻²)⁻¹·Bᵀr
+//! ```
+//!
+//! is the problem of a law's columns C alone: many laws are compared on it. What a law amounts to
+//! is fitted together with B.
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::inference::score::{ColumnBlock, Moments, Score};
+use crate::inference::whitening::Whitening;
+use crate::inference::{Evidence, ForwardModel, Term};
+use crate::linalg::{positive_definite_inverse, transposed_product};
+
+const UNBOUNDED: (f64, f64) = (f64::NEG_INFINITY, f64::INFINITY);
+
+/// What findings leave of all data, learned from some of them.
+pub(super) struct Remainder<'a> {
+    whole: &'a Evidence,
+    /// Data that are learned from; the others are only predicted.
+    rows: Vec<usize>,
+    learned: Evidence,
+    whitening: Whitening,
+    /// Recorded less what the findings do at their values, plus their columns' part of it; and the
+    /// columns, background first. Of all data.
+    left: DVector<f64>,
+    base: DMatrix<f64>,
+    /// Of what is learned from, whitened.
+    own_left: DVector<f64>,
+    own_base: DMatrix<f64>,
+    moments: Moments,
+    /// (BᵀB + σ²K⁻²)⁻¹, and what is left without B.
+    inverse: DMatrix<f64>,
+    rest: (Moments, Score),
+}
+
+/// A law's columns fitted together with all else.
+pub(super) struct Fitted {
+    /// Ln of what the data are likelier with them.
+    pub gain: f64,
+    /// Noise of a datum.
+    pub sigma: f64,
+    /// Factors of the columns.
+    pub factors: DVector<f64>,
+    /// All data as predicted, and what the columns are of that.
+    pub predicted: DVector<f64>,
+    pub own: DVector<f64>,
+    /// What the background is of it: nominal numbers and zeros.
+    pub background: DVector<f64>,
+    /// Data less the numbers that they determine.
+    pub degrees_of_freedom: f64,
+}
+
+impl<'a> Remainder<'a> {
+    /// What `terms` leave of a settled evidence with its background in place, learned from `rows`;
+    /// `sigma` is the noise of a datum, about.
+    pub fn new(
+        model: &dyn ForwardModel,
+        whole: &'a Evidence,
+        terms: &[Term],
+        rows: Vec<usize>,
+        sigma: f64,
+    ) -> Remainder<'a> {
+        let learned = whole.part(&rows);
+        let candidates = model.candidates();
+        let first = whole.background.ncols();
+        let (mut base, mut offsets) = (whole.background.clone(), Vec::new());
+        let (mut bounds, mut effects) = (vec![UNBOUNDED; first], Vec::new());
+        for (position, term) in terms.iter().enumerate() {
+            let own = model.columns(terms, position);
+            let next = base.ncols();
+            base = base.resize_horizontally(next + own.ncols(), 0.0);
+            base.columns_mut(next, own.ncols()).copy_from(&own);
+            let candidate = &candidates[term.candidate];
+            let parameters = candidate.parameters.iter().zip(&term.values);
+            offsets.extend(parameters.map(|(p, value)| (value - p.neutral) / p.size));
+            bounds.extend(candidate.scaled_bounds());
+            effects.push(own.ncols());
+        }
+        let findings = base.columns(first, base.ncols() - first);
+        let left = &whole.residual - model.response(terms) + findings * DVector::from_vec(offsets);
+        let whitening = Whitening::new(&learned, &left.select_rows(&rows));
+        let own_left = whitening.apply(&left.select_rows(&rows));
+        let own_base = whitening.apply_columns(&base.select_rows(&rows));
+        let information = whitening.degrees_of_freedom as f64 * whole.information;
+        let moments = Moments {
+            square: own_left.norm_squared(),
+            gram: transposed_product(&own_base, &own_base),
+            product: own_base.tr_mul(&own_left),
+            bounds,
+            effects,
+            degrees_of_freedom: information.round() as usize,
+            floor: whole.resolution / 12.0f64.sqrt(),
+            stated: whole.stated_noise,
+        };
+        let (inverse, rest) = without_base(&moments, first, sigma);
+        Remainder { whole, rows, learned, whitening, left, base, own_left, own_base, moments, inverse, rest }
+    }
+
+    /// A residual of all data, where these are learned from, without the errors that data share.
+    pub fn without_shared(&self, residual: &DVector<f64>) -> DVector<f64> {
+        self.whitening.without_shared(residual)
+    }
+
+    fn own(&self, columns: &DMatrix<f64>) -> DMatrix<f64> {
+        self.whitening.apply_columns(&columns.select_rows(&self.rows))
+    }
+
+    /// Ln of what the data are likelier with these columns of all data, about; each times a factor
+    /// of the standard normal, all of one unknown size.
+    pub fn gain(&self, columns: &DMatrix<f64>) -> f64 {
+        let (gram, product) = self.alone(columns);
+        let count = gram.ncols();
+        let bounds = vec![UNBOUNDED; count];
+        // nothing is beside them any more
+        let nothing = DMatrix::zeros(0, count);
+        let block = ColumnBlock { gram: &gram, cross: nothing.clone(), solved: nothing, product, bounds };
+        let (rest, score) = &self.rest;
+        let gain = rest.about(score, &block);
+        if gain.is_finite() { gain } else { f64::NEG_INFINITY }
+    }
+
+    /// Factors of the columns and their covariance, with all else out of them.
+    pub fn factors(&self, columns: &DMatrix<f64>) -> (DVector<f64>, DMatrix<f64>) {
+        let (gram, product) = self.alone(columns);
+        let (bounds, effects) = (vec![UNBOUNDED; gram.ncols()], vec![gram.ncols()]);
+        let scored = Moments { gram, product, bounds, effects, ..self.rest.0.clone() }.score();
+        (scored.estimate, scored.covariance)
+    }
+
+    /// G' and b'.
+    fn alone(&self, columns: &DMatrix<f64>) -> (DMatrix<f64>, DVector<f64>) {
+        let own = self.own(columns);
+        let beside = transposed_product(&self.own_base, &own);
+        let reduced = &self.inverse * &beside;
+        let mut gram = transposed_product(&own, &own) - beside.tr_mul(&reduced);
+        let product = own.tr_mul(&self.own_left) - reduced.tr_mul(&self.moments.product);
+        // what the base holds already leaves rounding
+        for k in 0..gram.ncols() {
+            gram[(k, k)] = gram[(k, k)].max(0.0);
+        }
+        (gram, product)
+    }
+
+    /// The columns fitted together with findings and background; none for what is there without.
+    pub fn fit(&self, columns: &DMatrix<f64>) -> Fitted {
+        let own = self.own(columns);
+        let (first, count) = (self.own_base.ncols(), own.ncols());
+        let cross = transposed_product(&self.own_base, &own);
+        let mut moments = self.moments.clone();
+        let mut gram = moments.gram.resize(first + count, first + count, 0.0);
+        gram.view_mut((0, first), (first, count)).copy_from(&cross);
+        gram.view_mut((first, 0), (count, first)).copy_from(&cross.transpose());
+        gram.view_mut((first, first), (count, count)).copy_from(&transposed_product(&own, &own));
+        moments.gram = gram;
+        moments.product = moments.product.resize_vertically(first + count, 0.0);
+        moments.product.rows_mut(first, count).copy_from(&own.tr_mul(&self.own_left));
+        moments.bounds.resize(first + count, UNBOUNDED);
+        if count > 0 {
+            moments.effects.push(count);
+        }
+        let scored = moments.score();
+        let own_factors = scored.estimate.rows(first, count).into_owned();
+        let own = columns * &own_factors;
+        let known = self.whole.background.ncols();
+        let background = &self.whole.background * scored.estimate.rows(0, known);
+        let explained = &self.base * scored.estimate.rows(0, first) + &own;
+        let predicted = &self.whole.residual - &self.left + self.with_nuisance(explained);
+        Fitted {
+            gain: scored.log_evidence - self.moments.score().log_evidence,
+            sigma: scored.sigma,
+            factors: own_factors,
+            predicted,
+            own,
+            background,
+            degrees_of_freedom: (moments.degrees_of_freedom as f64 - scored.determined).max(1.0),
+        }
+    }
+
+    /// With what the base model takes up by itself.
+    fn with_nuisance(&self, explained: DVector<f64>) -> DVector<f64> {
+        if self.whole.nuisance.ncols() == 0 {
+            return explained;
+        }
+        let rest = (&self.left - &explained).select_rows(&self.rows);
+        explained + &self.whole.nuisance * self.whitening.nuisance(&self.learned.nuisance, &rest)
+    }
+}
+
+/// (BᵀB + σ²K⁻²)⁻¹, and the problem of what is left.
+fn without_base(moments: &Moments, first: usize, sigma: f64) -> (DMatrix<f64>, (Moments, Score)) {
+    let scales = moments.score().scales;
+    let square = sigma.powi(2).max(f64::MIN_POSITIVE.sqrt());
+    let mut sum = moments.gram.clone();
+    let of_effects = scales.iter().zip(&moments.effects);
+    let of_effects = of_effects.flat_map(|(scale, &count)| std::iter::repeat_n(*scale, count));
+    for (k, size) in std::iter::repeat_n(1.0, first).chain(of_effects).enumerate() {
+        sum[(k, k)] += square / size.powi(2);
+    }
+    let count = sum.ncols();
+    let inverse = positive_definite_inverse(&sum).map_or_else(|| DMatrix::zeros(count, count), |(i, _)| i);
+    let determined = count as f64
+        - (0..count).map(|k| (sum[(k, k)] - moments.gram[(k, k)]) * inverse[(k, k)]).sum::<f64>();
+    let explained = moments.product.dot(&(&inverse * &moments.product));
+    let rest = Moments {
+        square: (moments.square - explained).max(0.0),
+        gram: DMatrix::zeros(0, 0),
+        product: DVector::zeros(0),
+        bounds: Vec::new(),
+        effects: Vec::new(),
+        degrees_of_freedom: moments.degrees_of_freedom.saturating_sub(determined.round() as usize),
+        floor: moments.floor,
+        stated: moments.stated,
+    };
+    let score = rest.score();
+    (inverse, (rest, score))
+}

@@ -1,0 +1,85 @@
+//! Places where a law may act, each with the number that it may be a function of.
+
+use super::form::Form;
+use crate::inference::Location;
+
+/// A quantity: how it is written and said, and its unit.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Measure {
+    /// In formulas: `F`.
+    pub symbol: &'static str,
+    /// In sentences: `load`.
+    pub name: String,
+    /// Unit for people; nothing for a plain number.
+    pub unit: &'static str,
+    /// What one unit is in SI.
+    pub si: f64,
+}
+
+/// Data that follow one another, for laws that remember.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Course {
+    /// The data of each instant, and the time since the variable was changed to what it is, s; NaN
+    /// where nobody knows.
+    pub instants: Vec<(Vec<usize>, f64)>,
+    /// The variable before the first of them.
+    pub start: f64,
+}
+
+/// A place with a variable.
+#[derive(Debug, Clone)]
+pub struct Site {
+    /// Where.
+    pub location: Location,
+    /// What the law changes there: `displacement along the load`.
+    pub result: Measure,
+    /// What it is a function of.
+    pub variable: Measure,
+    /// A name (nothing where there is one only), and what one SI unit of the result does to each
+    /// datum: an amplitude each.
+    pub directions: Vec<(String, Vec<f64>)>,
+    /// The variable at each datum, SI; NaN where the law has nothing to say.
+    pub values: Vec<f64>,
+    /// Where the variable is what was recorded, without what the law adds to it: the recorded
+    /// values, SI. `values` are the predicted ones, whose scale is as uncertain as the model's.
+    pub recorded: Option<Vec<f64>>,
+    /// For each datum 1 where the load went up to it, −1 where it came down; nothing where the
+    /// variable is no load.
+    pub moves: Vec<f64>,
+    /// See [`Course`]; nothing where a law can not remember.
+    pub courses: Vec<Course>,
+    /// Forms that have a meaning there.
+    pub forms: &'static [Form],
+}
+
+/// Values of a variable that differ by less than this share of its range are the same.
+const SAME: f64 = 1e-6;
+
+impl Site {
+    /// Data that the law concerns.
+    pub fn concerned(&self) -> impl Iterator<Item = usize> + '_ {
+        let acts = |i: usize| self.directions.iter().any(|(_, weights)| weights[i] != 0.0);
+        (0..self.values.len()).filter(move |&i| self.values[i].is_finite() && acts(i))
+    }
+
+    /// Least and largest value.
+    pub fn range(&self) -> (f64, f64) {
+        let values = self.concerned().map(|i| self.values[i]);
+        values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), value| (a.min(value), b.max(value)))
+    }
+
+    /// X, the largest size.
+    pub fn largest(&self) -> f64 {
+        let (low, high) = self.range();
+        low.abs().max(high.abs())
+    }
+
+    /// How many different values there are.
+    pub fn levels(&self) -> usize {
+        let mut values: Vec<f64> = self.concerned().map(|i| self.values[i]).collect();
+        values.sort_by(f64::total_cmp);
+        let (low, high) = self.range();
+        values.dedup_by(|a, b| (*a - *b).abs() <= SAME * (high - low));
+        values.len()
+    }
+}

@@ -1,0 +1,300 @@
+//! The law of what is left, as a section and as JSON.
+
+mod expression;
+
+use serde_json::{Value, json};
+
+use self::expression::{Expression, expression};
+use super::headline::um;
+use super::place::place;
+use super::subject::Told;
+use crate::inference::law::{Constant, Law, LawRival, Memory, Proposed, Refusal, Site};
+use crate::inference::{Location, Quantity};
+use crate::report::pictures::diagnosis::{LawPanel, law_picture};
+use crate::report::table::{Column, Table};
+use crate::report::{Block, Section};
+use crate::units::{UM, significant};
+
+/// Rivals that are said.
+const SAID: usize = 2;
+/// Points of a line in a picture, and how far beyond the data it is drawn, as a share of them.
+const DRAWN: (usize, f64) = (160, 0.3);
+
+/// The section of the report.
+pub fn section(told: &Told) -> Section {
+    let heading = "A law for it";
+    let law = match &told.proposed.law {
+        Err(refusal) => {
+            return Section::new(heading, vec![Block::Paragraph(refused(*refusal, told.proposed))]);
+        }
+        Ok(law) => law,
+    };
+    let mut points = vec![summary(law, told.proposed)];
+    points.extend(alternatives(law));
+    points.extend(next(law));
+    points.extend(told.remark.clone());
+    points.push(range(law));
+    let blocks = vec![Block::List(points), Block::Table(table(law)), Block::Figure(picture(law))];
+    Section::new(heading, blocks)
+}
+
+/// The key `law` of the JSON; null where nothing is left to look for one in.
+pub fn json(told: Option<&Told>) -> Value {
+    let Some(told) = told else { return Value::Null };
+    let proposed = told.proposed;
+    let um = |error: f64| error / UM;
+    let lives = proposed.lives.as_ref().map(|(location, variable)| {
+        json!({ "location": location.to_string(), "place": place(location), "variable": variable.name, "unit": variable.unit })
+    });
+    let mut json = json!({
+        "proposed": proposed.law.is_ok(),
+        "refused": proposed.law.as_ref().err().map(|refusal| refused(*refusal, proposed)),
+        "lives": lives,
+        "heldout_without_um": proposed.held_out.map(|(without, _)| um(without)),
+        "heldout_with_um": proposed.held_out.map(|(_, with)| um(with)),
+    });
+    let Ok(law) = &proposed.law else { return json };
+    let Expression { text, latex } = expression(&law.site, law.form, law.memory);
+    let (low, high) = law.site.range();
+    let variable = &law.site.variable;
+    let more = json!({
+        "words": summary(law, proposed),
+        "expression": { "text": text, "latex": latex },
+        "location": law.site.location.to_string(),
+        "place": place(&law.site.location),
+        "changes": { "symbol": law.site.result.symbol, "name": law.site.result.name, "unit": law.site.result.unit },
+        "variable": { "symbol": variable.symbol, "name": variable.name, "unit": variable.unit },
+        "form": law.form.name(),
+        "memory": law.memory.name(),
+        "constants": constants(law).map(constant).collect::<Vec<_>>(),
+        "range": [low / variable.si, high / variable.si],
+        "explains_rms_um": um(law.explains),
+        "heldout_um": law.held_out.map(um),
+        "log_odds": law.log_odds.0,
+        "log_odds_over_curve": law.log_odds.1,
+        "rivals": law.rivals.iter().map(rival).collect::<Vec<_>>(),
+        "next_record": next(law),
+        "remark": told.remark,
+    });
+    if let (Value::Object(json), Value::Object(more)) = (&mut json, more) {
+        json.extend(more);
+    }
+    json
+}
+
+fn constants(law: &Law) -> impl Iterator<Item = &Constant> {
+    law.amplitudes.iter().chain(law.constant.iter().map(|(_, constant)| constant))
+}
+
+fn constant(constant: &Constant) -> Value {
+    json!({
+        "symbol": constant.symbol,
+        "name": constant.name,
+        "unit": constant.unit,
+        "value": constant.value,
+        "lo": constant.low,
+        "hi": constant.high,
+        "also": constant.also,
+    })
+}
+
+fn rival(rival: &LawRival) -> Value {
+    let Expression { text, .. } = expression(&rival.site, rival.form, rival.memory);
+    json!({
+        "expression": text,
+        "location": rival.site.location.to_string(),
+        "place": place(&rival.site.location),
+        "variable": rival.site.variable.name,
+        "form": rival.form.name(),
+        "memory": rival.memory.name(),
+        "constant": rival.constant.as_ref().map(|(_, own)| constant(own)),
+        "odds": rival.odds,
+        "heldout_um": rival.held_out.map(|error| error / UM),
+    })
+}
+
+/// `at the clamp`, `at dz`.
+fn at(site: &Site) -> String {
+    let article = if matches!(site.location, Location::Part(_)) { "the " } else { "" };
+    let plain = site.location.to_string();
+    format!("at {article}{plain}")
+}
+
+fn quantity(constant: &Constant) -> String {
+    let Constant { value, low, high, unit, .. } = constant;
+    if constant.also.is_empty() {
+        return Quantity { value: *value, low: *low, high: *high }.say(unit);
+    }
+    let others: Vec<String> = constant.also.iter().map(|other| significant(*other, 3)).collect();
+    with_unit(format!("{} (or {})", significant(*value, 3), others.join(", ")), unit)
+}
+
+fn with_unit(number: String, unit: &str) -> String {
+    if unit.is_empty() { number } else { format!("{number} {unit}") }
+}
+
+/// The law, its numbers and what it is worth.
+fn summary(law: &Law, proposed: &Proposed) -> String {
+    let Expression { text, .. } = expression(&law.site, law.form, law.memory);
+    let numbers: Vec<String> =
+        constants(law).map(|own| format!("{} = {}", own.symbol, quantity(own))).collect();
+    let worth = proposed.held_out.map_or_else(String::new, |(without, with)| {
+        format!(" With it, the held-out error falls from {} to {} µm.", um(without), um(with))
+    });
+    format!(
+        "A law is proposed for the unexplained error: {text}, the {} as a function of the {}, {}, with {}. It \
+         explains {} µm rms.{worth}",
+        law.site.result.name,
+        law.site.variable.name,
+        at(&law.site),
+        numbers.join(", "),
+        um(law.explains)
+    )
+}
+
+/// `saturation at 14 N`.
+fn called(rival: &LawRival, law: &Law) -> String {
+    let number = rival.constant.as_ref().map_or_else(String::new, |(_, own)| {
+        let range = |digits| {
+            let (low, high) = (significant(own.low, digits), significant(own.high, digits));
+            if low == high { low } else { format!("{low} to {high}") }
+        };
+        format!(", {} {}", own.name, with_unit(range(2), &own.unit))
+    });
+    let memory =
+        if rival.memory == Memory::None { String::new() } else { format!(" with a {}", rival.memory.name()) };
+    let elsewhere = match rival.site.location == law.site.location && rival.site.variable == law.site.variable
+    {
+        true => String::new(),
+        false => format!(" over {} {}", rival.site.variable.name, at(&rival.site)),
+    };
+    format!("{}{memory}{elsewhere}{number}", rival.form.name())
+}
+
+/// What these readings do not distinguish from it.
+fn alternatives(law: &Law) -> Option<String> {
+    if law.rivals.is_empty() {
+        return None;
+    }
+    let said: Vec<String> = law.rivals.iter().take(SAID).map(|rival| called(rival, law)).collect();
+    let more = if law.rivals.len() > SAID { ", or others" } else { "" };
+    Some(format!("It may as well be: {}{more}. These readings cannot distinguish them.", said.join("; or ")))
+}
+
+/// What would.
+fn next(law: &Law) -> Option<String> {
+    let next = law.next?;
+    let variable = &law.site.variable;
+    let value = with_unit(significant(next.at / variable.si, 2), variable.unit);
+    let rival = law.rivals.get(next.rival)?;
+    let where_to = if next.is_beyond { "beyond" } else { "at" };
+    Some(format!(
+        "To distinguish it from {}: record the {} {where_to} {value}, where the two are {} µm apart.",
+        called(rival, law),
+        variable.name,
+        um(next.apart)
+    ))
+}
+
+fn range(law: &Law) -> String {
+    let ((low, high), variable) = (law.site.range(), &law.site.variable);
+    let show = |value: f64| significant(value / variable.si, 3);
+    format!(
+        "It is a proposal from readings between {} and {}; beyond that it is an extrapolation. It changes no finding.",
+        show(low),
+        with_unit(show(high), variable.unit)
+    )
+}
+
+/// Why there is none.
+fn refused(refusal: Refusal, proposed: &Proposed) -> String {
+    let why = match refusal {
+        Refusal::Chance => "none is 50 times more probable than chance".to_owned(),
+        Refusal::Curve(by) => format!(
+            "a smooth curve is {} more probable than any form that was tried, so that none of them is the law",
+            match by.exp() {
+                times if times < 1e4 => format!("{} times", significant(times, 2)),
+                _ => format!("10^{:.0} times", by / std::f64::consts::LN_10),
+            }
+        ),
+        Refusal::HeldOut => "held-out readings are predicted no better with it".to_owned(),
+        Refusal::NoFolds => "no readings could be held out to confirm one".to_owned(),
+    };
+    let lives = proposed.lives.as_ref().map_or_else(String::new, |(location, variable)| {
+        format!(" A smooth curve explains most over {} ({location}).", variable.name)
+    });
+    format!("No law is proposed for the unexplained error: {why}.{lives}")
+}
+
+fn table(law: &Law) -> Table {
+    let columns = vec![
+        Column::text("constant"),
+        Column::text(""),
+        Column::number("value", ""),
+        Column::number("95 % from", ""),
+        Column::number("to", ""),
+        Column::text("unit"),
+    ];
+    let mut table = Table::new("law", "The constants of the proposed law.", columns);
+    for own in constants(law) {
+        let show = |value: f64| shown(value, 0.5 * (own.high - own.low));
+        let unit = own.unit.clone();
+        table.row([
+            own.symbol.clone(),
+            own.name.clone(),
+            show(own.value),
+            show(own.low),
+            show(own.high),
+            unit,
+        ]);
+    }
+    table
+}
+
+/// A number with as many digits as half of its interval has, and one more.
+fn shown(value: f64, half: f64) -> String {
+    const MOST: i32 = 6;
+    let decimals = if half > 0.0 { 1 - half.log10().floor() as i32 } else { MOST + 1 };
+    match decimals {
+        ..=0 => format!("{value:.0}"),
+        1..=MOST => format!("{value:.0$}", decimals as usize),
+        _ => significant(value, 4),
+    }
+}
+
+/// Data, smooth curve and law, direction by direction.
+fn picture(law: &Law) -> crate::report::chart::Figure {
+    let (variable, result) = (&law.site.variable, &law.site.result);
+    let label = |name: &str, unit: &str| {
+        if unit.is_empty() { name.to_owned() } else { format!("{name} / {unit}") }
+    };
+    let panel = |(direction, (name, _)): (usize, &(String, Vec<f64>))| {
+        let own = |points: &[crate::inference::law::Point]| -> Vec<[f64; 2]> {
+            let of = points.iter().filter(|point| point.direction == direction);
+            of.map(|point| [point.x / variable.si, point.value / result.si]).collect()
+        };
+        let data = own(&law.points);
+        let ends =
+            data.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), p| (a.min(p[0]), b.max(p[0])));
+        let line = |from: f64, to: f64| -> Vec<[f64; 2]> {
+            let at = |k: usize| from + (to - from) * k as f64 / DRAWN.0 as f64;
+            let value = |x: f64| [x, law.at(direction, x * variable.si) / result.si];
+            (0..=DRAWN.0).map(at).map(value).collect()
+        };
+        let beyond = ends.1 + DRAWN.1 * (ends.1 - ends.0);
+        LawPanel {
+            title: name.clone(),
+            x: label(&variable.name, variable.unit),
+            y: label(&format!("change of the {}", result.name), result.unit),
+            data,
+            curve: own(&law.curve),
+            law: line(ends.0, ends.1),
+            extrapolated: line(ends.1, beyond),
+        }
+    };
+    let panels: Vec<LawPanel> = law.site.directions.iter().enumerate().map(panel).collect();
+    law_picture(&panels).captioned(
+        "What the findings leave, as the law sees it. Points: readings; dashed: a smooth curve through them; solid: \
+         the law; dotted: the law beyond the readings.",
+    )
+}

@@ -1,0 +1,73 @@
+//! A law in symbols.
+
+use crate::inference::law::{Form, Memory, Site};
+use crate::units::significant;
+
+/// A law as plain text and as LaTeX.
+pub struct Expression {
+    pub text: String,
+    pub latex: String,
+}
+
+/// `Δu = a·(F/14 N)^p` and `\Delta u = a\,(F/14\,\mathrm{N})^{p}`.
+pub fn expression(site: &Site, form: Form, memory: Memory) -> Expression {
+    let (result, variable) = (site.result.symbol, site.variable.symbol);
+    let argument = match memory {
+        Memory::Stop => format!("({variable} − P_r[{variable}])"),
+        Memory::Lag => format!("({variable} − {variable}_lag)"),
+        _ => variable.to_owned(),
+    };
+    let x = &argument;
+    let largest = significant(site.largest() / site.variable.si, 3);
+    let (unit, corner) = (site.variable.unit, format!("{variable}_0"));
+    let scale = if unit.is_empty() { largest.clone() } else { format!("{largest} {unit}") };
+    let text = match form {
+        Form::Power => format!("a·({x}/{scale})^p"),
+        Form::Saturation => format!("a·min({x}/{corner}, 1)"),
+        Form::Threshold => format!("k·max({x} − {corner}, 0)"),
+        Form::Step => format!("a·[{x} > {corner}]"),
+        Form::Approach => format!("a·(1 − exp(−{x}/{corner}))"),
+        Form::Decay => format!("a·exp(−{x}/{corner})"),
+        Form::Logarithm => format!("a·ln(1 + {x}/{corner})"),
+        Form::Harmonic => format!("a·(cos(2π·{x}/P) − 1) + b·sin(2π·{x}/P)"),
+        Form::Polynomial(1) => format!("c1·{x}"),
+        Form::Polynomial(2) => format!("c1·{x} + c2·{x}²"),
+        _ => format!("c1·{x} + c2·{x}² + c3·{x}³"),
+    };
+    let side = if memory == Memory::Side { ("±", r"\pm ") } else { ("", "") };
+    let latex_of = |symbol: &str| {
+        let symbol = symbol.replace("Δ", r"\Delta ").replace("θ", r"\theta");
+        symbol.replace("F'", "F^{\\prime}")
+    };
+    let x = match memory {
+        Memory::Stop => format!(r"\left({0} - \mathcal{{P}}_r[{0}]\right)", latex_of(variable)),
+        Memory::Lag => format!(r"\left({0} - \tilde{{{0}}}_{{\tau}}\right)", latex_of(variable)),
+        _ => latex_of(variable),
+    };
+    let corner = format!("{}_0", latex_of(variable));
+    let unit = unit.replace('·', r"{\cdot}").replace('µ', r"\mu ");
+    let scale = if unit.is_empty() { largest } else { format!(r"{largest}\,\mathrm{{{unit}}}") };
+    let latex = match form {
+        Form::Power => format!(r"a\left(\frac{{{x}}}{{{scale}}}\right)^{{p}}"),
+        Form::Saturation => format!(r"a\,\min\left(\frac{{{x}}}{{{corner}}}, 1\right)"),
+        Form::Threshold => format!(r"k\,\max({x} - {corner}, 0)"),
+        Form::Step => format!(r"a\,[{x} > {corner}]"),
+        Form::Approach => format!(r"a\left(1 - e^{{-{x}/{corner}}}\right)"),
+        Form::Decay => format!(r"a\,e^{{-{x}/{corner}}}"),
+        Form::Logarithm => format!(r"a\,\ln\left(1 + \frac{{{x}}}{{{corner}}}\right)"),
+        Form::Harmonic => {
+            format!(r"a\left(\cos\frac{{2\pi {x}}}{{P}} - 1\right) + b\sin\frac{{2\pi {x}}}{{P}}")
+        }
+        Form::Polynomial(1) => format!("c_1 {x}"),
+        Form::Polynomial(2) => format!("c_1 {x} + c_2 {x}^2"),
+        _ => format!("c_1 {x} + c_2 {x}^2 + c_3 {x}^3"),
+    };
+    let bracketed = |side: &str, of: String| match side.is_empty() {
+        true => of,
+        false => format!("{side}[{of}]"),
+    };
+    Expression {
+        text: format!("{result} = {}", bracketed(side.0, text)),
+        latex: format!("{} = {}", latex_of(result), bracketed(side.1, latex)),
+    }
+}

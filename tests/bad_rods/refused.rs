@@ -172,12 +172,12 @@ fn a_key_or_section_that_is_not_known_is_named_with_its_neighbour() {
         (
             "density_kg_m3 = 7930.0",
             "density_g_cm3 = 7.93",
-            "rod.toml:12:1: unknown key `density_g_cm3`, expected one of density_kg_m3, youngs_modulus_gpa, shear_modulus_gpa, poisson_ratio, ply_e1_gpa, ply_e2_gpa, ply_g12_gpa, ply_nu12, ply_thickness_mm, ply_angles_deg, shear_coefficient_factor, youngs_modulus_percent, shear_modulus_percent, density_percent, shear_coefficient_percent -> did you mean density_kg_m3?",
+            "rod.toml:12:1: unknown key `density_g_cm3`, expected one of density_kg_m3, youngs_modulus_gpa, shear_modulus_gpa, poisson_ratio, ply_e1_gpa, ply_e2_gpa, ply_g12_gpa, ply_nu12, ply_thickness_mm, ply_angles_deg, yield_strength_mpa, shear_coefficient_factor, youngs_modulus_percent, shear_modulus_percent, density_percent, shear_coefficient_percent -> did you mean density_kg_m3?",
         ),
         (
             "poisson_ratio = 0.29",
             "poissons_ratio = 0.29",
-            "rod.toml:11:1: unknown key `poissons_ratio`, expected one of density_kg_m3, youngs_modulus_gpa, shear_modulus_gpa, poisson_ratio, ply_e1_gpa, ply_e2_gpa, ply_g12_gpa, ply_nu12, ply_thickness_mm, ply_angles_deg, shear_coefficient_factor, youngs_modulus_percent, shear_modulus_percent, density_percent, shear_coefficient_percent -> did you mean poisson_ratio?",
+            "rod.toml:11:1: unknown key `poissons_ratio`, expected one of density_kg_m3, youngs_modulus_gpa, shear_modulus_gpa, poisson_ratio, ply_e1_gpa, ply_e2_gpa, ply_g12_gpa, ply_nu12, ply_thickness_mm, ply_angles_deg, yield_strength_mpa, shear_coefficient_factor, youngs_modulus_percent, shear_modulus_percent, density_percent, shear_coefficient_percent -> did you mean poisson_ratio?",
         ),
         (
             "[geometry]",

@@ -49,7 +49,6 @@ const MOST_LEVELS: usize = 30;
 /// Share by which the slope of a line may be off, and share of the steepest line's slope that a
 /// flat one may have: as large as the known effects on a rod.
 const SLOPE: (f64, f64) = (0.27, 0.02);
-const PERCENT: f64 = 0.01;
 
 /// All curves for these readings. `deflections`: how far the rod yields at each datum by the base
 /// model, m.

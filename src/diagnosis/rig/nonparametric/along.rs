@@ -3,6 +3,7 @@
 use crate::diagnosis::rig::datum::Datum;
 use crate::inference::{Candidate, Location, Parameter, UNKNOWN, Variable};
 
+pub(super) const PERCENT: f64 = 0.01;
 /// Size of a curve as a share of the largest reading, or of the deflection.
 pub(super) const SHARE: f64 = 0.05;
 /// The same, as a share of the largest of all readings: a sensor and its holder are a little wrong

@@ -13,11 +13,11 @@ use std::sync::Arc;
 
 use super::super::action::{Action, Weights};
 use super::super::datum::Datum;
-use super::along::{ALL_DEFLECTIONS, LEAST_SHIFT, LOAD, SHARE, largest_reading, rival};
-use super::{PERCENT, UM};
+use super::along::{ALL_DEFLECTIONS, LEAST_SHIFT, LOAD, PERCENT, SHARE, largest_reading, rival};
 use crate::diagnosis::rig::effects::entry::{Entry, UNBOUNDED, parameter};
 use crate::inference::{Location, Variable};
 use crate::spatial::Axis;
+use crate::units::UM;
 
 /// Loads at which a slope may change.
 const MOST_KNOTS: usize = 12;

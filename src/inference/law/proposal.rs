@@ -77,8 +77,9 @@ pub fn propose(
     refit(&mut found, &remainder, &all, size);
     let lives = found.curve.map(|(site, _)| (all[site].location.clone(), all[site].variable.clone()));
     let refused = |refusal, held_out| Some(Proposed { law: Err(refusal), lives: lives.clone(), held_out });
-    // the curve that the diagnosis has found competes too
-    let own_curve = left.candidate.map_or(f64::NEG_INFINITY, |curve| {
+    // the curve that the diagnosis has found competes too; of one number it is a law itself
+    let is_curve = |&candidate: &usize| model.candidates()[candidate].parameters.len() > 1;
+    let own_curve = left.candidate.filter(is_curve).map_or(f64::NEG_INFINITY, |curve| {
         let term = model.candidates()[curve].neutral(curve);
         let curves = model.candidates().iter().filter(|candidate| candidate.is_nonparametric);
         remainder.fit(&model.columns(&[term], 0)).gain + prior(curves.count(), 1)

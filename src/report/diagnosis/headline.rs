@@ -1,13 +1,15 @@
 //! The first lines of a diagnosis: what was found, and what it is worth.
 
 use super::subject::Subject;
-use crate::inference::{Finding, Kind};
+use crate::inference::{Diagnosis, Finding, Kind};
 use crate::units::{UM, significant};
 
 /// So many findings are said in full; more are named.
 const IN_FULL: usize = 2;
 /// So many more are named; the others are counted.
 const NAMED: usize = 3;
+/// From so many times the scatter of readings on the scatter of zeros is said.
+const FAR_APART: f64 = 4.0;
 /// So many rivals are said at once.
 pub const RIVALS_SAID: usize = 2;
 
@@ -21,7 +23,7 @@ pub fn headline(subject: &Subject) -> String {
         return match remains {
             Some(remains) => format!("{remains}{nominal} {}", capital(&scatter(subject))),
             None => format!(
-                "{}: {}the residual, {} µm{}, is {}.",
+                "{}: {}the residual, {} µm{}, is {}.{}",
                 subject.agrees,
                 match nominal.trim() {
                     "" => String::new(),
@@ -29,7 +31,8 @@ pub fn headline(subject: &Subject) -> String {
                 },
                 um(diagnosis.error_of_others()),
                 subject.per,
-                scatter_of(subject)
+                scatter_of(subject),
+                zeros(diagnosis).unwrap_or_default()
             ),
         };
     }
@@ -75,6 +78,21 @@ fn scatter_of(subject: &Subject) -> String {
         (None, Some(_)) => format!("as large as the scatter of the repeats ({noise} µm){without}"),
         (None, None) => "unexplained scatter (nothing was repeated)".to_owned(),
     }
+}
+
+/// Zeros that differ far more than readings do: nothing that was looked for, and no agreement
+/// either.
+fn zeros(diagnosis: &Diagnosis) -> Option<String> {
+    let ratio = diagnosis.shared_ratio;
+    (ratio > FAR_APART * FAR_APART).then_some(())?;
+    // σ² of a reading is that of its run's zero and its own
+    let own = diagnosis.noise / (1.0 + ratio).sqrt();
+    Some(format!(
+        " Most of it is from run to run: the zeros of the runs scatter by {} µm, readings within a run by {} µm. \
+         Look for what moves between runs.",
+        um(own * ratio.sqrt()),
+        um(own)
+    ))
 }
 
 /// What follows a colon.

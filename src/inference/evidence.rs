@@ -106,6 +106,15 @@ impl Evidence {
         }
     }
 
+    /// Numbers of the folds, ascending.
+    pub(super) fn folds(&self) -> Vec<usize> {
+        let mut folds: Vec<usize> =
+            self.fold.iter().copied().filter(|&fold| fold != Evidence::NONE).collect();
+        folds.sort_unstable();
+        folds.dedup();
+        folds
+    }
+
     /// The data of these rows.
     pub fn part(&self, rows: &[usize]) -> Evidence {
         let pick = |of: &[usize]| rows.iter().map(|&row| of[row]).collect();

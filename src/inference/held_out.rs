@@ -185,10 +185,7 @@ fn averaged(hypotheses: &[Hypothesis], left: impl Fn(&Hypothesis) -> DVector<f64
 /// Selects without each fold in turn, and predicts it; `whole` are the terms that all data support.
 /// `None` with fewer than two folds. Data that hardly count for the fit hardly count here.
 pub fn hold_out(model: &Linearised<'_>, evidence: &Evidence, whole: &[Term]) -> Option<HeldOut> {
-    let mut folds: Vec<usize> = evidence.fold.clone();
-    folds.sort_unstable();
-    folds.dedup();
-    folds.retain(|&fold| fold != Evidence::NONE);
+    let folds = evidence.folds();
     if folds.len() < 2 {
         return None;
     }

@@ -37,10 +37,7 @@ pub(super) fn hold_out(
     (choices, tried): (&[Choice], &[Choice]),
     (size, sigma): (f64, f64),
 ) -> Option<Folds> {
-    let mut folds: Vec<usize> = evidence.fold.clone();
-    folds.sort_unstable();
-    folds.dedup();
-    folds.retain(|&fold| fold != Evidence::NONE);
+    let folds = evidence.folds();
     if folds.len() < 2 {
         return None;
     }

@@ -38,7 +38,8 @@ impl ManPage {
             })?;
         }
         let mut page = Vec::new();
-        Man::new(found.clone()).render(&mut page).map_err(|source| Error::File {
+        let program = concat!("rodcal ", env!("CARGO_PKG_VERSION"));
+        Man::new(found.clone()).source(program).render(&mut page).map_err(|source| Error::File {
             path: "stdout".into(),
             action: "write",
             source,

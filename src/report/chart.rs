@@ -269,7 +269,7 @@ pub enum Direction {
     Right,
 }
 
-/// How a mark looks. Marks that are to be told apart differ in colour *and* in dash or marker,
+/// How a mark looks. Marks that are to be distinguished differ in colour *and* in dash or marker,
 /// so that they still differ for a colour-blind reader and on a grey print.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Style {

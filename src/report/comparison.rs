@@ -102,7 +102,7 @@ fn judged_by(campaign: &Campaign, comparison: &Comparison) -> String {
     }
 }
 
-/// One or two sentences: which mode is better, if any can be told from chance.
+/// One or two sentences: which mode is better, if any differs by more than chance.
 pub fn verdict(campaign: &Campaign, comparison: &Comparison) -> String {
     let name = &campaign.robot.name;
     let on = judged_by(campaign, comparison);

@@ -1,4 +1,4 @@
-//! What to measure on a rig that has measured nothing yet, so that some effects can be told apart.
+//! What to measure on a rig that has measured nothing yet, so that some effects can be distinguished.
 //!
 //! An effect a of its usual size adds C_a·θ, θ ~ N(0, 1), to readings that scatter by Σ₀: noise,
 //! the zero of each run, the rod's nominal numbers. Where a is what there is, the ln of the odds
@@ -131,7 +131,7 @@ pub fn plan(rod: &Rod, between: &[&'static Effect], odds: f64, bench: &Bench) ->
     let menu = Menu::new(rod, between, bench)?;
     let wanted = odds.ln();
     let all = menu.told(&vec![MOST_REPEATS; menu.measurements.len()]);
-    // what cannot be told with reasonable effort is not asked for
+    // what cannot be distinguished with reasonable effort is not asked for
     let aims: Vec<f64> =
         all.iter().map(|best| if *best < REASONABLE * wanted { 0.0 } else { wanted }).collect();
     let mut counts = vec![0; menu.measurements.len()];

@@ -52,8 +52,7 @@ const OF_TIME: &[Form] = &[
     Form::Polynomial(3),
 ];
 /// From anywhere on: temperature.
-const OF_A_LEVEL: &[Form] =
-    &[Form::Threshold, Form::Step, Form::Polynomial(1), Form::Polynomial(2), Form::Polynomial(3)];
+const OF_A_LEVEL: &[Form] = OF_A_SIDE;
 /// Times since: they fade.
 const FADING: &[Form] = &[Form::Approach, Form::Decay, Form::Logarithm, Form::Power, Form::Polynomial(1)];
 

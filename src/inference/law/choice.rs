@@ -25,7 +25,7 @@ pub(super) struct LawColumns {
 }
 
 impl Choice {
-    /// All that can be told at a site.
+    /// All that the data of a site determine.
     pub fn all(number: usize, site: &Site) -> Vec<Choice> {
         let (levels, largest) = (site.levels(), site.largest());
         if levels < 3 || !(largest > 0.0 && largest.is_finite()) {

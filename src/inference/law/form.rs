@@ -170,7 +170,7 @@ impl Form {
     }
 
     /// Coordinates of a first look at s over a variable from `low` to `high` (shares of X) with so
-    /// many levels; nothing where the form cannot be told there.
+    /// many levels; nothing where these levels do not determine the form.
     pub fn grid(self, (low, high): (f64, f64), levels: usize) -> Vec<f64> {
         let between = |(a, b): (f64, f64), count: usize| -> Vec<f64> {
             (0..count).map(|k| a + (b - a) * k as f64 / (count - 1) as f64).collect()

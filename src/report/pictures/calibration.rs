@@ -25,7 +25,7 @@ pub use workspace::{PoseError, error_over_workspace, uncertainty_over_workspace}
 use super::super::scale::label;
 use super::{significant, typeset};
 
-/// As many points of one panel can still be told apart.
+/// As many points of one panel can still be distinguished.
 const MOST_POINTS: usize = 2000;
 
 /// A round number, or the multiple of one, with its unit.

@@ -27,7 +27,7 @@ pub(super) fn measured_channels(data: &[Datum]) -> Vec<Axis> {
     Axis::ALL.into_iter().filter(|channel| data.iter().any(|d| d.channel == *channel)).collect()
 }
 
-/// Most sessions that are told apart.
+/// Most sessions that are distinguished.
 const MOST_SESSIONS: usize = 12;
 
 /// Number and name of each session, where there are several.

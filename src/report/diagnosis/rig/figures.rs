@@ -18,9 +18,9 @@ use crate::units::{MM, UM};
 const NOUN: &str = "readings";
 /// Points of a centreline.
 const POINTS: usize = 120;
-/// So many lines of readings are told apart in one picture.
+/// So many lines of readings are distinguished in one picture.
 const MOST_SERIES: usize = 6;
-/// Of many lines those are told apart that are off by so many times the noise.
+/// Of many lines those are distinguished that are off by so many times the noise.
 const OFF: f64 = 1.5;
 /// Name of all others.
 const OTHERS: &str = "all other readings";
@@ -94,7 +94,7 @@ pub fn residuals(found: &RigDiagnosis) -> Figure {
     ))
 }
 
-/// The lines of readings that are told apart: those that are off by more than noise, the worst if
+/// The lines of readings that are distinguished: those that are off by more than noise, the worst if
 /// they are many; all of a few lines.
 fn series(names: &[String], residual: &DVector<f64>, noise: f64) -> Vec<String> {
     let labels = distinct(names);

@@ -1,4 +1,5 @@
-//! What to measure on a rig that has measured nothing yet, so that some effects can be distinguished.
+//! What to measure on a rig that has measured nothing yet, so that some effects can be
+//! distinguished.
 //!
 //! An effect a of its usual size adds C_a·θ, θ ~ N(0, 1), to readings that scatter by Σ₀: noise,
 //! the zero of each run, the rod's nominal numbers. Where a is what there is, the ln of the odds

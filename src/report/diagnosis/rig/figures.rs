@@ -94,8 +94,8 @@ pub fn residuals(found: &RigDiagnosis) -> Figure {
     ))
 }
 
-/// The lines of readings that are distinguished: those that are off by more than noise, the worst if
-/// they are many; all of a few lines.
+/// The lines of readings that are distinguished: those that are off by more than noise, the worst
+/// if they are many; all of a few lines.
 fn series(names: &[String], residual: &DVector<f64>, noise: f64) -> Vec<String> {
     let labels = distinct(names);
     let rms_of = |label: &String| {

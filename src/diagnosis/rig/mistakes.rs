@@ -30,7 +30,7 @@ mod tests;
 
 use self::change::Move;
 use self::lines::{Line, lines};
-pub(super) use self::lookalikes::lookalikes;
+pub(super) use self::lookalikes::{is_one_factor, lookalikes};
 use self::moves::Labels;
 use self::part::Part;
 use self::physics::Physics;

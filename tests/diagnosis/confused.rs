@@ -116,3 +116,16 @@ fn a_rod_a_hundred_times_stiffer_is_no_slide_that_holds_every_load() {
     assert_eq!(answer.effects()[0], "unit_mistake", "{}", answer.json["headline"]);
     assert!(answer.class(0).contains(&"stiffness_scale"), "{:?}", answer.class(0));
 }
+
+/// Lengths exchanged in the file of a rod that is 2.2 times as soft as its file besides: seen along
+/// z and x they are those of an L-shape whose axes are exchanged, and which is three times softer.
+#[test]
+fn lengths_exchanged_are_no_axes_exchanged() {
+    let rod = std::fs::read_to_string("rods/2.toml").unwrap();
+    let exchanged = rod.replace("l1_mm = 150.0", "l1_mm = 525.0").replace("l2_mm = 525.0", "l2_mm = 150.0");
+    assert!(exchanged.contains("l1_mm = 525.0") && exchanged.contains("l2_mm = 150.0"));
+    let readings = std::fs::read_to_string("stiffness_data/2.csv").unwrap();
+    let answer = Answer::of(Some(&exchanged), &readings);
+    assert_eq!(answer.effects(), ["swap_mistake", "stiffness_scale"], "{}", answer.json["headline"]);
+    assert_eq!(answer.findings()[0]["location"], "l1_mm and l2_mm");
+}

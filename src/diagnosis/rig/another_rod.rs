@@ -65,7 +65,8 @@ pub(super) fn add_rivals(mended: &Mended, others: &[Other], model: &RigModel, di
             let meant = &mended.others[other.number];
             let location = Location::Key(meant.location.clone());
             let odds = (-other.log_odds).exp().max(1.0);
-            finding.rivals.push(Rival::without_term(meant.effect, location, odds));
+            // a file is sooner looked at than anything is measured
+            finding.rivals.insert(0, Rival::without_term(meant.effect, location, odds));
         }
     }
 }

@@ -36,7 +36,7 @@ pub(in crate::diagnosis::rig) const UNBOUNDED: (f64, f64) = (f64::NEG_INFINITY, 
 pub(in crate::diagnosis::rig) const NOT_NEGATIVE: (f64, f64) = (0.0, f64::INFINITY);
 /// Of a factor: wider than what anybody mistakes. A factor that is refused leaves its place to
 /// another effect that is none, and that one would be named as if nothing else could be.
-pub(in crate::diagnosis::rig) const SCALES: (f64, f64) = (0.001, 1000.0);
+pub(in crate::diagnosis::rig) const SCALES: (f64, f64) = (0.01, 100.0);
 
 impl Context<'_> {
     /// The largest load, N.

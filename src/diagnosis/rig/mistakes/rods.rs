@@ -96,7 +96,12 @@ pub(super) fn all(rod: &Rod, others: &[(String, Rod)], has_stations: [bool; 2]) 
             _ => format!("the readings look like those of {location}"),
         };
         let change = Change::body(found.len() + 1);
-        let within = if effect == &ROD_MISTAKE { OTHER } else { BESIDE };
+        let within = match effect {
+            effect if effect == &ROD_MISTAKE => OTHER,
+            // there is no number in it that anything had to come near to
+            effect if effect == &SWAP_MISTAKE => f64::INFINITY,
+            _ => BESIDE,
+        };
         let estimates = factor.map(|factor| exact("factor", factor)).into_iter().collect();
         found.push((
             body,
@@ -154,8 +159,10 @@ pub(super) fn likely(
     let known = all.chain(others.iter().map(of_file)).filter(|other| !is_alike(&other.rod, rod));
     let known = known.filter_map(|other| {
         let verdict = of(&other.rod)?;
+        // of one file's numbers none is nearer by chance
+        let within: f64 = if other.effect == &ROD_MISTAKE { OTHER } else { BESIDE };
         let is_likely =
-            verdict.log_scale.abs() <= OTHER.ln() && verdict.log_evidence > own.log_evidence - FAR_BEHIND;
+            verdict.log_scale.abs() <= within.ln() && verdict.log_evidence > own.log_evidence - FAR_BEHIND;
         is_likely.then_some((verdict.log_evidence, other))
     });
     let mut known: Vec<(f64, OtherRod)> = known.collect();

@@ -106,10 +106,13 @@ pub(super) fn all(context: &Context) -> Vec<Entry> {
     for j in context.revolute() {
         let came_from = |row: usize| context.configurations[row].approach[j];
         entries.extend(reversal(context, j, Way::Approach, &came_from));
+        entries.extend(loose::windows(context, j, "its direction of approach", &came_from));
         let is_known = context.has_masses && context.largest(|there| there.torque[j]) > LEAST_TORQUE;
         let loaded = |row: usize| context.configurations[row].torque[j].signum();
-        let by_load = is_known.then(|| reversal(context, j, Way::Load, &loaded));
-        entries.extend(by_load.flatten());
+        if is_known {
+            entries.extend(reversal(context, j, Way::Load, &loaded));
+            entries.extend(loose::windows(context, j, "the sign of its torque", &loaded));
+        }
     }
     entries.extend(pairs(context));
     entries.extend(links(context));

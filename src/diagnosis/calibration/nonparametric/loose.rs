@@ -6,10 +6,14 @@
 //!                                                 which gravity g presses it
 //! a bearing that runs out     a·sin(nθ) + b·cos(nθ), n = 1 and 2, of all beyond a joint
 //!                             along its axis, or, n = 2, across it, or about lines across it
+//! a worn tooth                a·s·½·(1 + cos(π·(θ − θ₀)/w)) within w of θ₀, which are scanned; s is the
+//!                             direction of approach of a joint, or the sign of its torque
 //! ```
 //!
 //! Once per turn across its axis is a link of another length, once per turn about lines across it
 //! another direction of the axis: calibrations find these.
+
+use std::f64::consts::PI;
 
 use nalgebra::Vector3;
 
@@ -19,9 +23,12 @@ use crate::diagnosis::calibration::configuration::Configuration;
 use crate::diagnosis::calibration::context::Context;
 use crate::diagnosis::calibration::entry::{Column, Entry, linear};
 use crate::inference::Parameter;
-use crate::units::{UM, URAD};
+use crate::units::{DEG, UM, URAD};
 
-/// All of them; those of each kind have the prior of one curve together.
+/// Half of the range over which a tooth may be worn, rad.
+const WIDTHS: [f64; 3] = [20.0 * DEG, 35.0 * DEG, 60.0 * DEG];
+
+/// All that is no joint's reversal; those of each kind have the prior of one curve together.
 pub(super) fn all(context: &Context) -> Vec<Entry> {
     let mut tools: Vec<Entry> = SIDES.iter().map(|side| tool(context, side)).collect();
     let joints = context.revolute();
@@ -101,6 +108,41 @@ fn bearing(context: &Context, joint: usize) -> Vec<Entry> {
         shape(2, "across", shifted),
         shape(2, "about lines across", tilted),
     ]
+}
+
+/// What a joint does one way and not the other over a part of its range; `sign` is 1 or −1, 0 where
+/// nobody knows.
+pub(super) fn windows(
+    context: &Context,
+    joint: usize,
+    with: &str,
+    sign: &dyn Fn(usize) -> f64,
+) -> Vec<Entry> {
+    let (low, high) = context.range(joint);
+    let of_width = |width: f64| {
+        // neighbours overlap by half
+        let count = ((high - low) / width).floor() as usize;
+        let first = 0.5 * (low + high - width * count as f64);
+        (0..=count).map(move |k| (first + width * k as f64, width))
+    };
+    let places: Vec<(f64, f64)> =
+        WIDTHS.into_iter().filter(|width| high - low > 2.0 * width).flat_map(of_width).collect();
+    let share = 1.0 / places.len().max(1) as f64;
+    let of = |(middle, width): (f64, f64)| {
+        let column = context.turn(joint, |row, there| {
+            let away = (there.joints[joint] - middle).abs() / width;
+            if away < 1.0 { sign(row) * 0.5 * (1.0 + (PI * away).cos()) } else { 0.0 }
+        });
+        let number = joint + 1;
+        let (middle, width) = (middle / DEG, width / DEG);
+        let label = format!("joint {number}, about {middle:.0}° ± {width:.0}°, with {with}");
+        let follows = format!("appears near {middle:.0}° of joint {number}, and changes with {with}");
+        let parameters = vec![(linear("reversed_urad", URAD, TURN), column)];
+        let mut entry = curve(label, follows, Some(super::angle_of(joint)), parameters);
+        entry.candidate.weight = share;
+        entry
+    };
+    places.into_iter().map(of).collect()
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! What the `compliance` command says: JSON, tables and pictures of a [`Study`].
 
-mod numbers;
+pub(super) mod numbers;
 pub(super) mod steps;
 
 pub use numbers::number;

@@ -139,6 +139,7 @@ fn what_counts(study: &Study) -> Section {
         panels,
         columns: 1,
         shared_legend: true,
+        ..Picture::default()
     };
     blocks.insert(1, Block::Figure(figure));
     Section::new("What counts", blocks)

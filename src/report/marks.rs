@@ -402,7 +402,18 @@ fn whole_bar(
         Direction::Right if value < 0.0 && has_room => ([area.left - 5.0, middle_y], Anchor::Right),
         Direction::Right => ([area.right + 5.0, middle_y], Anchor::Left),
     };
+    let unit = match direction {
+        Direction::Up => &frame.units[1],
+        Direction::Right => &frame.units[0],
+    };
+    let is_number = !unit.is_empty() && !b.text.is_empty();
+    if is_number {
+        canvas.begin_number(unit);
+    }
     canvas.text(at, &b.text, Lettering { anchor, ..NOTE }, Rgb::INK);
+    if is_number {
+        canvas.end_group();
+    }
     labels.add_text(area);
 }
 

@@ -232,7 +232,7 @@ fn nearest(wish: &Wish, had: [[usize; 2]; 2], rod: &Rod) -> Vec<[usize; 2]> {
 mod tests {
     use super::*;
     use crate::beam::TipSolver;
-    use crate::design::{Searched, search};
+    use crate::design::{Goal, Searched, search};
     use crate::section::Round;
 
     const TUBES: &str = "name,material,outer_diameter_mm,inner_diameter_mm\nthin,steel,30,28\nmiddle,steel,32,29\n\
@@ -293,6 +293,39 @@ mod tests {
             }
         }
         assert!(checked > 500, "{checked}");
+    }
+
+    /// Goals that are weighed may make up for one another: then other designs of the front count
+    /// too.
+    #[test]
+    fn no_rod_of_the_grid_is_better_by_any_weights() {
+        let wish = wish("{ from = 100, to = 250, step = 50 }", "max_mass_g = 700");
+        let front = search(&wish, Searched::All, &|_| {}).unwrap().front;
+        for (asked, given) in
+            [("c_rod_um", [1.0, 0.0]), ("reach_mm", [0.0, 1.0]), ("c_rod_um=3,reach_mm=1", [0.75, 0.25])]
+        {
+            let weights = weights(&wish, Some(asked)).unwrap();
+            assert_eq!(weights, given);
+            let start = &front[3];
+            let refined = refine(&wish, &front, 3, &weights).unwrap().unwrap();
+            let score = |figures: &Figures| {
+                let ln = |figure: Figure| figures.get(figure).unwrap().ln();
+                weights[0] * ln(Figure::CRod) - weights[1] * ln(Figure::Reach)
+            };
+            let may_be = |design: &&Design| {
+                let is_no_worse = |goal: &Goal| goal.cost(&design.figures) <= goal.cost(&start.figures);
+                wish.goals.iter().zip(&weights).all(|(goal, weight)| *weight > 0.0 || is_no_worse(goal))
+            };
+            let best = front.iter().filter(may_be).map(|d| score(&d.figures)).fold(f64::INFINITY, f64::min);
+            let (any, bought) = (refined.continuous.unwrap(), refined.catalogue.unwrap());
+            assert!(score(&any.figures) <= score(&bought.figures), "{asked}");
+            assert!(score(&bought.figures) <= best + 1e-9, "{asked}: {} {best}", score(&bought.figures));
+            assert!(refined.is_every_tube && refined.starts.0 > 3 && refined.starts.1 > 0);
+        }
+        for wrong in ["mass_g", "c_rod_um=0", "c_rod_um=x", "c_rod_um,c_rod_um", ""] {
+            let error = weights(&wish, Some(wrong)).unwrap_err().to_string();
+            assert!(error.contains("refine-goal"), "{error}");
+        }
     }
 
     #[test]

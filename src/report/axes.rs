@@ -51,7 +51,8 @@ pub(super) fn has_bars(chart: &Chart) -> bool {
     chart.marks.iter().any(|mark| matches!(mark, Mark::Bars { .. }))
 }
 
-/// The scale with every second of its names, or third …, so that all have room; zero keeps its name.
+/// The scale with every second of its names, or third …, so that all have room; zero keeps its
+/// name.
 fn thinned(scale: Scale, width: f64) -> Scale {
     let zero = scale.ticks.iter().position(|(at, _)| *at == 0.0).unwrap_or(0);
     let every = |step: usize| -> Vec<(f64, String)> {

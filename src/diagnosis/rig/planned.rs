@@ -12,8 +12,8 @@
 //! the Kullback–Leibler divergence of the two (D. V. Lindley, *Ann. Math. Statist.* 27 (1956)
 //! 986–1005). Measurements are those that a diagnosis proposes from (`feasible.rs`), chosen one
 //! after another as it does (`experiment_design.rs`): the least laborious one that leaves least of
-//! the rivals; then whatever is not needed is given up again, and plans of less effort are ruled out
-//! (`least.rs`).
+//! the rivals; then whatever is not needed is given up again, and plans of less effort are ruled
+//! out (`least.rs`).
 
 #[cfg(test)]
 mod tests;
@@ -179,8 +179,8 @@ pub fn plan(rod: &Rod, between: &[&'static Effect], odds: f64, bench: &Bench) ->
         (counts, now) = (best, told);
     }
     if !is_enough(&now) {
-        // some are distinguished by several measurements together only: from all of them, as many as can be
-        // left out
+        // some are distinguished by several measurements together only: from all of them, as many
+        // as can be left out
         counts = vec![MOST_REPEATS; counts.len()];
         now.clone_from(&all);
         let mut order: Vec<usize> = (0..counts.len()).collect();

@@ -90,6 +90,10 @@ pub fn section(study: &Study, found: &Refined) -> Section {
             gained(any)
         ),
     };
+    let said = match said.strip_prefix("the ") {
+        Some(rest) => format!("The {rest}"),
+        None => said,
+    };
     Section::new(
         "Between the grid's values",
         vec![Block::Paragraph(format!("{said} {}", proven(study, found))), Block::Table(table)],
@@ -114,7 +118,7 @@ fn goal_words(study: &Study, found: &Refined) -> String {
 /// What is sure of the optimum and what is not.
 fn proven(study: &Study, found: &Refined) -> String {
     let grid = match study.found.evaluated == study.wish.combinations() {
-        true => "No rod of the grid is better than these: all were looked at.",
+        true => "No rod of the grid is better: all were looked at.",
         false => "Of the grid only some rods were looked at.",
     };
     let (count, led) = found.starts;

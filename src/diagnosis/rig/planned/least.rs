@@ -2,8 +2,9 @@
 //!
 //! More readings, or more repeats of them, never tell less: what they add can be left out of
 //! account, and the divergence of two models never grows by that (data processing inequality: S.
-//! Kullback, R. A. Leibler, *Ann. Math. Statist.* 22 (1951) 79–86). So where some measurements, each
-//! with as many repeats as the effort allows, are not enough, no plan of these measurements is.
+//! Kullback, R. A. Leibler, *Ann. Math. Statist.* 22 (1951) 79–86). So where some measurements,
+//! each with as many repeats as the effort allows, are not enough, no plan of these measurements
+//! is.
 
 /// Repeats of each measurement.
 pub(super) type Counts = Vec<usize>;

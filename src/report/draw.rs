@@ -21,6 +21,8 @@ const TICK_PX: f64 = 4.0;
 const LABEL: Lettering = Lettering { size_px: 12.5, ..NOTE };
 const TITLE: Lettering = Lettering { size_px: 13.5, bold: true, anchor: Anchor::Left, upwards: false };
 const TITLE_LINE_PX: f64 = 18.0;
+/// Of names that need several lines.
+const NAME_LINE_PX: f64 = 13.0;
 /// Between title and axes, where half of the topmost tick label stands.
 const TITLE_GAP_PX: f64 = 9.0;
 
@@ -302,7 +304,17 @@ impl<'a> Plan<'a> {
                 if self.chart.y.names.is_empty() {
                     canvas.line(&[[area.left - TICK_PX, y], [area.left, y]], Rgb::INK, 1.0, Dash::Solid);
                 }
-                canvas.text([area.left - TICK_PX - 4.0, y], label, at_right, Rgb::INK);
+                // a name that is too long for one line stands on several
+                let lines = if self.chart.y.names.is_empty() {
+                    vec![label.clone()]
+                } else {
+                    wrap(label, NOTE.size_px, area.left - self.left - TICK_PX - 4.0)
+                };
+                let first = y - 0.5 * NAME_LINE_PX * (lines.len() as f64 - 1.0);
+                for (i, line) in lines.iter().enumerate() {
+                    let at = [area.left - TICK_PX - 4.0, first + i as f64 * NAME_LINE_PX];
+                    canvas.text(at, line, at_right, Rgb::INK);
+                }
             }
             if self.labelled[1] {
                 canvas.text([self.left + 8.0, middle_y], &set.label, upwards, Rgb::INK);

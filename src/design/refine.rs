@@ -301,6 +301,7 @@ mod tests {
     fn no_rod_of_the_grid_is_better_by_any_weights() {
         let wish = wish("{ from = 100, to = 250, step = 50 }", "max_mass_g = 700");
         let front = search(&wish, Searched::All, &|_| {}).unwrap().front;
+        let mut gained = 0;
         for (asked, given) in
             [("c_rod_um", [1.0, 0.0]), ("reach_mm", [0.0, 1.0]), ("c_rod_um=3,reach_mm=1", [0.75, 0.25])]
         {
@@ -317,11 +318,16 @@ mod tests {
                 wish.goals.iter().zip(&weights).all(|(goal, weight)| *weight > 0.0 || is_no_worse(goal))
             };
             let best = front.iter().filter(may_be).map(|d| score(&d.figures)).fold(f64::INFINITY, f64::min);
-            let (any, bought) = (refined.continuous.unwrap(), refined.catalogue.unwrap());
-            assert!(score(&any.figures) <= score(&bought.figures), "{asked}");
-            assert!(score(&bought.figures) <= best + 1e-9, "{asked}: {} {best}", score(&bought.figures));
+            // where nothing is gained the design stays
+            let reached = |better: &Option<Better>| {
+                score(better.as_ref().map_or(&start.figures, |better| &better.figures))
+            };
+            let (any, bought) = (reached(&refined.continuous), reached(&refined.catalogue));
+            assert!(any <= bought && bought <= best + 1e-4, "{asked}: {any} {bought} {best}");
+            gained += usize::from(refined.continuous.is_some());
             assert!(refined.is_every_tube && refined.starts.0 > 3 && refined.starts.1 > 0);
         }
+        assert!(gained >= 2, "{gained}");
         for wrong in ["mass_g", "c_rod_um=0", "c_rod_um=x", "c_rod_um,c_rod_um", ""] {
             let error = weights(&wish, Some(wrong)).unwrap_err().to_string();
             assert!(error.contains("refine-goal"), "{error}");

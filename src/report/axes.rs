@@ -56,7 +56,7 @@ pub(super) fn has_bars(chart: &Chart) -> bool {
 fn thinned(scale: Scale, width: f64) -> Scale {
     let zero = scale.ticks.iter().position(|(at, _)| *at == 0.0).unwrap_or(0);
     let every = |step: usize| -> Vec<(f64, String)> {
-        scale.ticks.iter().cloned().skip(zero % step).step_by(step).collect()
+        scale.ticks.iter().skip(zero % step).step_by(step).cloned().collect()
     };
     let found = (1..=scale.ticks.len()).map(every).find(|ticks| has_room(ticks, width));
     Scale { ticks: found.unwrap_or_default(), ..scale }

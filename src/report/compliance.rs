@@ -1,8 +1,9 @@
 //! What the `compliance` command says: JSON, tables and pictures of a [`Study`].
 
-pub(super) mod numbers;
+mod numbers;
 pub(super) mod steps;
 
+pub(super) use numbers::in_um;
 pub use numbers::number;
 
 use nalgebra::{Matrix3, Vector3};

@@ -131,7 +131,8 @@ impl Wish {
     ///
     /// # Errors
     /// [`crate::Error::Syntax`] or [`crate::Error::Input`] with line and column: keys and values
-    /// that are none, limits that contradict one another, more than [`MOST_RODS`] combinations, no
+    /// that are none, limits that contradict one another, more than
+    /// [`MOST_RODS`](super::MOST_RODS) combinations, no
     /// goal, prices that the catalogue does not have, what is wrong with the catalogue.
     pub fn from_toml(
         file: &str,

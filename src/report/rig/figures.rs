@@ -3,7 +3,7 @@
 use crate::beam::Physics;
 use crate::compliance::{Compliance, Step, standard_uncertainty, steps};
 use crate::report::chart::Figure;
-use crate::report::compliance::numbers::in_um;
+use crate::report::compliance::in_um;
 use crate::report::compliance::steps::ladder;
 use crate::report::pictures::{self, LoadDeflection, LoadLine, LoadUnit, MeanReading, Residuals, Waterfall};
 use crate::rig::line::{Line, Point};

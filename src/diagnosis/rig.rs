@@ -35,6 +35,7 @@ mod diagnose;
 pub mod effects;
 mod evidence;
 mod feasible;
+mod first_sight;
 mod forward_model;
 mod limits;
 mod load_history;

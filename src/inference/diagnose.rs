@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use nalgebra::DVector;
 
-use super::background;
+use super::background::{self, Folded};
 use super::effect::Reported;
 use super::evidence::rms;
 use super::held_out::{Theme, hold_out};
@@ -56,7 +56,8 @@ fn diagnose_with(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
     let model = &model.in_parts(evidence, &evidence.fold);
     let (search, hypothesis, left_over) = infer(model, evidence, Pairs::Screened, known);
     let held_out = hold_out(model, evidence, &hypothesis.terms);
-    let (hypothesis, left_over) = confirmed(model, &search, hypothesis, left_over, held_out.as_ref());
+    let (hypothesis, left_over) =
+        confirmed(model, &search, &folded, hypothesis, left_over, held_out.as_ref());
     let (hypothesis, left_over) = apart_from_curve(model, &search, hypothesis, left_over);
     let none = search.fit(&[]);
     let by_base = search.predicted(&none, evidence, &DVector::zeros(evidence.residual.len()));
@@ -180,10 +181,12 @@ fn suspects_at_most(count: usize) -> usize {
 
 /// A hypothesis without physics that held-out data do not confirm: where they are predicted no
 /// worse without it, nor without it and another one that it undoes, it has no name. What happened
-/// once says nothing of other data.
+/// once says nothing of other data. Nor do they speak against an effect in whose place the numbers
+/// of the file would be as far off as they cannot be: these predict as well as it does.
 fn confirmed(
     model: &Linearised<'_>,
     search: &Search,
+    folded: &Folded,
     hypothesis: Hypothesis,
     left_over: Option<DiscrepancyModel>,
     held_out: Option<&HeldOut>,
@@ -191,11 +194,16 @@ fn confirmed(
     let Some(held_out) = held_out else { return (hypothesis, left_over) };
     let needless: Vec<&[Theme]> =
         held_out.losses_together().filter(|(_, loss)| *loss <= 0.0).map(|(themes, _)| themes).collect();
+    let takes_numbers_place = |own: Theme| {
+        let is_other = |term: &&Term| Theme::new(&model.candidates()[term.candidate]) != own;
+        let others: Vec<Term> = hypothesis.terms.iter().filter(is_other).cloned().collect();
+        folded.is_implausible(&search.fit(&others)) && !folded.is_implausible(&hypothesis)
+    };
     let is_confirmed = |term: &Term| {
         let candidate = &model.candidates()[term.candidate];
         let own = Theme::new(candidate);
         let is_needed = held_out.loss(own) > 0.0 && !needless.iter().any(|themes| themes.contains(&own));
-        candidate.effect.kind == Kind::Event || is_needed
+        candidate.effect.kind == Kind::Event || is_needed || takes_numbers_place(own)
     };
     let kept: Vec<Term> = hypothesis.terms.iter().filter(|term| is_confirmed(term)).cloned().collect();
     if kept.len() == hypothesis.terms.len() {

@@ -10,6 +10,7 @@ use super::linearised::Linearised;
 use super::pruning::infer;
 use super::search::Search;
 use super::selection::{APART, Pairs};
+use super::whitening::Whitening;
 use super::{Candidate, Effect, Evidence, ForwardModel, Hypothesis, Kind, Location, Term};
 use crate::parallel::in_parallel;
 use crate::statistics::{Random, percentile_interval};
@@ -69,7 +70,9 @@ impl HeldOut {
         (count, self.hypotheses.len())
     }
 
-    /// Share of the squares of the errors before that comes back without a theme.
+    /// Share of the squares of the errors before that comes back without a theme: of errors that
+    /// are independent, (e'ᵀΣ⁻¹e' − eᵀΣ⁻¹e)/e₀ᵀΣ⁻¹e₀. The zero of a held-out run is as unknown with
+    /// an effect as without it; squares of errors that have it in them would be its lottery.
     pub fn loss(&self, theme: Theme) -> f64 {
         self.loss_of(&[theme])
     }
@@ -202,12 +205,19 @@ pub fn hold_out(model: &Linearised<'_>, evidence: &Evidence, whole: &[Term]) -> 
     let square = |errors: &DVector<f64>, rows: &[usize]| -> f64 {
         rows.iter().map(|&row| evidence.weight[row] * errors[row].powi(2)).sum()
     };
+    let mut independent_before = 0.0;
     for (held_out, trained) in by_fold {
+        let part = evidence.part(&held_out);
+        let whitening = Whitening::new(&part, &part.residual);
+        // what a run's zero is says nothing for or against an effect
+        let independent =
+            |errors: &DVector<f64>| whitening.whitened(&errors.select_rows(&held_out)).norm_squared();
+        independent_before += independent(&trained.before);
         let count: f64 = held_out.iter().map(|&row| evidence.weight[row]).sum();
         let (before, after) = (square(&trained.before, &held_out), square(&trained.after, &held_out));
         squares.push((before, after, count));
         for (themes, left) in trained.without {
-            losses.push((themes, square(&left, &held_out) - square(&trained.with, &held_out)));
+            losses.push((themes, independent(&left) - independent(&trained.with)));
         }
         hypotheses.push(trained.terms);
         for &row in &held_out {
@@ -217,7 +227,8 @@ pub fn hold_out(model: &Linearised<'_>, evidence: &Evidence, whole: &[Term]) -> 
     let total = |of_fold: &dyn Fn(&Squares) -> f64| squares.iter().map(of_fold).sum::<f64>();
     let (all_before, all_after, count) = (total(&|s| s.0), total(&|s| s.1), total(&|s| s.2));
     let per_square = 1.0 / all_before.max(f64::MIN_POSITIVE);
-    losses.iter_mut().for_each(|(_, loss)| *loss *= per_square);
+    let per_independent = 1.0 / independent_before.max(f64::MIN_POSITIVE);
+    losses.iter_mut().for_each(|(_, loss)| *loss *= per_independent);
     Some(HeldOut {
         before: (all_before / count).sqrt(),
         after: (all_after / count).sqrt(),

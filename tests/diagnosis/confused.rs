@@ -93,3 +93,39 @@ fn a_rod_twelve_times_softer_is_no_root_alone() {
     assert!(low < factor && factor < high && (0.06..0.1).contains(&factor), "{low} {factor} {high}");
     assert!(answer.class(0).contains(&"root_compliance"), "{:?}", answer.class(0));
 }
+
+/// A modulus of 2 GPa for 193: one percent of what that rod would bend is all that was read, so that
+/// the numbers of the file and a slide that holds each load would explain everything.
+#[test]
+fn a_rod_a_hundred_times_stiffer_is_no_slide_that_holds_every_load() {
+    let rod = std::fs::read_to_string("rods/5.toml").unwrap();
+    let readings = std::fs::read_to_string("stiffness_data/5.csv").unwrap();
+    let with = |gpa: &str| {
+        let softer = rod.replace("youngs_modulus_gpa = 193.0", &format!("youngs_modulus_gpa = {gpa}"));
+        assert_ne!(softer, rod);
+        Answer::of(Some(&softer), &readings)
+    };
+    let answer = with("2.0");
+    assert_eq!(answer.effects(), ["stiffness_scale", "friction"], "{}", answer.json["headline"]);
+    let [low, factor, high] = interval(answer.finding("stiffness_scale"), "factor");
+    assert!(low < factor && factor < high && (90.0..100.0).contains(&factor), "{low} {factor} {high}");
+    let [low, force, high] = interval(answer.finding("friction"), "force_n");
+    assert!((0.6..1.2).contains(&force) && high - low < 0.5, "{low} {force} {high}");
+    // radii for diameters would leave a rod that is 14 % stiffer: one that is 77 times stiffer is no worse
+    let answer = with("2.5");
+    assert_eq!(answer.effects()[0], "unit_mistake", "{}", answer.json["headline"]);
+    assert!(answer.class(0).contains(&"stiffness_scale"), "{:?}", answer.class(0));
+}
+
+/// Lengths exchanged in the file of a rod that is 2.2 times as soft as its file besides: seen along
+/// z and x they are those of an L-shape whose axes are exchanged, and which is three times softer.
+#[test]
+fn lengths_exchanged_are_no_axes_exchanged() {
+    let rod = std::fs::read_to_string("rods/2.toml").unwrap();
+    let exchanged = rod.replace("l1_mm = 150.0", "l1_mm = 525.0").replace("l2_mm = 525.0", "l2_mm = 150.0");
+    assert!(exchanged.contains("l1_mm = 525.0") && exchanged.contains("l2_mm = 150.0"));
+    let readings = std::fs::read_to_string("stiffness_data/2.csv").unwrap();
+    let answer = Answer::of(Some(&exchanged), &readings);
+    assert_eq!(answer.effects(), ["swap_mistake", "stiffness_scale"], "{}", answer.json["headline"]);
+    assert_eq!(answer.findings()[0]["location"], "l1_mm and l2_mm");
+}

@@ -36,7 +36,7 @@ use super::effects::mistakes::FRAME_MISTAKE;
 use crate::calibration::campaign::{Campaign, FileNames, Recording};
 use crate::calibration::{Calibration, Compensation, Mode, Options, Summary, calibrate};
 use crate::error::Result;
-use crate::inference::{Description, Effect, Estimate, Finding, Kind, Location, Rival};
+use crate::inference::{Description, Effect, Estimate, Finding, Location, Rival};
 use crate::robot::Robot;
 use crate::rod::Rod;
 use crate::spatial::Pose;
@@ -44,6 +44,10 @@ use crate::units::{DEG, MM, UM, URAD, significant};
 
 /// Half of a 95 % interval in standard deviations.
 const COVERAGE: f64 = 1.96;
+
+/// What a base or a tip that is not where it was said to be costs where it spoils the calibration,
+/// times what a rough guess costs.
+const NO_GUESS: f64 = 10.0;
 
 /// Files of the same folders that may have been meant.
 #[derive(Debug, Clone, Default)]
@@ -132,8 +136,8 @@ impl Mended {
         let diagnosis = &mut found.diagnosis;
         let has_failed = found.evidence.most_scatter.is_some_and(|most| diagnosis.noise > most);
         if has_failed || !self.has_data {
-            // laws that are fitted to what is no robot's error mean nothing
-            diagnosis.findings.retain(|finding| finding.kind() == Kind::Event && self.has_data);
+            // whatever is fitted to what is no robot's error means nothing
+            diagnosis.findings.clear();
         }
         if !self.has_data {
             diagnosis.discrepancy = None;
@@ -255,8 +259,17 @@ fn search(campaign: &Campaign, mode: Mode, others: &Neighbours) -> Result<Mended
     let silent = columns::silent(campaign, &draft);
     let is_sure = silent.iter().any(|silent| !silent.only_if_failed);
     let moves = moves::all(campaign, &draft, &meant);
-    let search = Search { draft, bodies, moves };
-    let result = if is_sure { None } else { search.found() };
+    let mut search = Search { draft, bodies, moves, guess_weight: 1.0 };
+    let mut result = if is_sure { None } else { search.found() };
+    let is_rough = |(_, best, _): &(State, State, Vec<Found>)| {
+        best.steps.is_empty() && !search.has_failed(best) && search.is_rough_guess(best)
+    };
+    if result.as_ref().is_some_and(is_rough)
+        && !calibrate(campaign, mode, &Options::default()).is_ok_and(|fit| fit.is_plausible())
+    {
+        search.guess_weight = NO_GUESS;
+        result = search.found();
+    }
     let has_failed = result.as_ref().is_none_or(|(_, best, _)| search.has_failed(best));
     for silent in silent.into_iter().filter(|silent| has_failed || !silent.only_if_failed) {
         mended.has_data = false;

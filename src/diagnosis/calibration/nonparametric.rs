@@ -17,12 +17,14 @@
 //! of a link             all beyond a joint turns about any axis of its link by products of two
 //!                       joints' angles
 //! of each clamp         a vector in {W}, or in {T}
+//! of a loose tool, of a bearing that runs out   `loose.rs`
 //! of the last moves     `moves.rs`
 //! ```
 //!
 //! for every shape is more likely to be smooth than not.
 
 mod curve;
+mod loose;
 mod moves;
 
 use std::f64::consts::TAU;
@@ -112,6 +114,7 @@ pub(super) fn all(context: &Context) -> Vec<Entry> {
     entries.extend(pairs(context));
     entries.extend(links(context));
     entries.extend(clamps(context));
+    entries.extend(loose::all(context));
     entries.extend(moves::all(context));
     entries
 }

@@ -1,11 +1,10 @@
 //! Readings that another rod explains better than the given one with all that may be wrong with it.
 //!
 //! Slopes alone tell rods apart that differ by a fifth ([`super::mistakes`]). Where physics had to
-//! be added to the given rod, or something is left, those of the other files that come near are
-//! compared in full: each with all effects, by the probability that the recording then has.
+//! be added to the given rod, or something is left, those of the other files that come near, and
+//! the given one with its lengths or pipes exchanged, are compared in full: each with all effects, by the probability that the recording then has.
 
-use super::effects::mistakes::ROD_MISTAKE;
-use super::mistakes::{Mended, ODDS, OTHER_ROD, RARE};
+use super::mistakes::{Mended, ODDS, RARE};
 use super::model::RigModel;
 use super::wanted::Wanted;
 use crate::error::Result;
@@ -45,13 +44,13 @@ pub(super) fn others(
     {
         return Ok(found);
     }
-    for (number, (_, rod)) in mended.others.iter().enumerate() {
+    for (number, meant) in mended.others.iter().enumerate() {
         let (other, of_other, _) =
-            RigModel::with_effects(&mended.readings, Some(rod), &Wanted::AllAnd(&model.own))?;
+            RigModel::with_effects(&mended.readings, Some(&meant.rod), &Wanted::AllAnd(&model.own))?;
         if of_other.residual.len() != evidence.residual.len() {
             continue;
         }
-        let log_odds = log_odds((model, evidence), (&other, &of_other)) + OTHER_ROD + RARE;
+        let log_odds = log_odds((model, evidence), (&other, &of_other)) + meant.log_prior + RARE;
         let explains = rms(&(&evidence.residual - &of_other.residual));
         found.push(Other { number, log_odds, explains });
     }
@@ -63,8 +62,11 @@ pub(super) fn others(
 pub(super) fn add_rivals(mended: &Mended, others: &[Other], model: &RigModel, diagnosis: &mut Diagnosis) {
     for finding in diagnosis.findings.iter_mut().filter(|finding| is_of_the_rod(model, finding)) {
         for other in others.iter().filter(|other| other.log_odds > -ALIKE) {
-            let file = Location::Key(mended.others[other.number].0.clone());
-            finding.rivals.push(Rival::without_term(&ROD_MISTAKE, file, (-other.log_odds).exp().max(1.0)));
+            let meant = &mended.others[other.number];
+            let location = Location::Key(meant.location.clone());
+            let odds = (-other.log_odds).exp().max(1.0);
+            // a file is sooner looked at than anything is measured
+            finding.rivals.insert(0, Rival::without_term(meant.effect, location, odds));
         }
     }
 }

@@ -37,6 +37,7 @@ pub(super) fn resize(model: &RigModel, evidence: &Evidence, diagnosis: &mut Diag
     let count: usize = terms.iter().map(|term| term.values.len()).sum();
     let (mut jacobian, mut more) =
         (DMatrix::zeros(model.data.len(), count), DVector::zeros(model.data.len()));
+    let all = model.response(terms);
     let mut at = 0;
     for (position, term) in terms.iter().enumerate() {
         let factor = if model.is_of_compliance(term) { 1.0 } else { 0.0 };
@@ -46,7 +47,9 @@ pub(super) fn resize(model: &RigModel, evidence: &Evidence, diagnosis: &mut Diag
             jacobian.set_column(at, &scaled);
             at += 1;
         }
-        let own = model.response(std::slice::from_ref(term));
+        // what it does beside the others: a rod ten times stiffer moves a tenth as far
+        let others: Vec<Term> = terms.iter().filter(|other| *other != term).cloned().collect();
+        let own = &all - model.response(&others);
         more += own.zip_map(&shares, |own, share| own * factor * share);
     }
     let mut gram = jacobian.tr_mul(&jacobian);
@@ -115,7 +118,7 @@ fn stiffness(
     diagnosis: &Diagnosis,
 ) -> Option<(DVector<f64>, f64, f64)> {
     let (factors, covariance) = &diagnosis.nominal_factors;
-    let predicted = DVector::from_iterator(model.data.len(), model.data.iter().map(|datum| datum.predicted));
+    let predicted = DVector::from_column_slice(&model.bent);
     let square = predicted.norm_squared();
     if square == 0.0 || factors.is_empty() {
         return None;

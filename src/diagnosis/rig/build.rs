@@ -14,7 +14,7 @@ use super::numbering::numbered;
 use super::slide::Course;
 use super::structure::Structure;
 use super::wanted::Wanted;
-use super::{datum, evidence, nominal, nonparametric, own, slide, structure};
+use super::{correction, datum, evidence, first_sight, nominal, nonparametric, own, slide, structure};
 use crate::error::Result;
 use crate::inference::{Candidate, Effect, Evidence, NotTestable, Parameter, UNKNOWN};
 use crate::rig::readings::Readings;
@@ -43,8 +43,9 @@ impl RigModel {
         RigModel::bent_as(readings, rod, wanted, rod)
     }
 
-    /// The same, where deflections are as large as those of the rod `bent`: this one with what is
-    /// known to yield.
+    /// The same, where the rod bends as `bent` does: this one with what is known to yield. Large
+    /// deflections and what a nominal number is worth are those of that rod; where nothing is known
+    /// yet, of one as stiff as the readings are at first sight.
     pub(super) fn bent_as(
         readings: &Readings,
         rod: Option<&Rod>,
@@ -80,6 +81,7 @@ impl RigModel {
             readings: readings.clone(),
             rod: rod.cloned(),
             as_recorded: None,
+            bent: Vec::new(),
             cases: Cases::of(&data, &place),
             data,
             body,
@@ -96,7 +98,12 @@ impl RigModel {
             }
             Body::Lines(_) => evidence::slopes(&model.data, &model.place),
         };
-        let large = bent.map(|bent| model.large_deflections(bent)).transpose()?;
+        let stiffness = first_sight::stiffness(&model.data);
+        let bent = bent.map(|bent| match rod {
+            Some(rod) if bent == rod && stiffness != 1.0 => correction::scaled(rod, stiffness),
+            _ => bent.clone(),
+        });
+        let large = bent.as_ref().map(|bent| model.large_deflections(bent)).transpose()?;
         let mut evidence = evidence::of(&model.data, nuisance, large);
         evidence.stated_noise = model.stated_noise();
         if let Some(rod) = rod {
@@ -105,7 +112,10 @@ impl RigModel {
                 let at = |station: Option<f64>| station.unwrap_or(tip).min(tip);
                 (at(d.load_station), at(d.read_station))
             };
-            let (numbers, columns) = nominal::all(&model.data, rod, &readings.header, &stations)?;
+            let bent = bent.as_ref().unwrap_or(rod);
+            let (numbers, columns, deflections) =
+                nominal::all(&model.data, rod, bent, &readings.header, &stations)?;
+            model.bent = deflections;
             (evidence.nominal_numbers, evidence.nominal) = (numbers, columns);
         }
         let not_testable = model.add_candidates(wanted)?;
@@ -138,7 +148,9 @@ impl RigModel {
         for effect in &self.own {
             of_own.push((effect.effect, own::entry(effect, self)?));
         }
-        let mut context = Context { data: &self.data, body: &mut self.body, rod: self.rod.as_ref() };
+        let stiffness = first_sight::stiffness(&self.data);
+        let mut context =
+            Context { data: &self.data, body: &mut self.body, rod: self.rod.as_ref(), stiffness };
         let has_rod = context.rod.is_some();
         let mut entries = Vec::new();
         let all = registry::ALL.into_iter().chain([&ZERO_NOT_TAKEN]);

@@ -206,6 +206,13 @@ fn enter(rod: &mut Rod, model: &RigModel, term: &Term) {
 }
 
 /// Factors on E and G of all pipes.
+/// A rod whose moduli are `factor` times as large.
+pub(super) fn scaled(rod: &Rod, factor: f64) -> Rod {
+    let mut rod = rod.clone();
+    scale(&mut rod, factor, factor);
+    rod
+}
+
 fn scale(rod: &mut Rod, e: f64, g: f64) {
     for pipe in [&mut rod.pipe1, &mut rod.bend, &mut rod.pipe2] {
         pipe.material.youngs_modulus *= e;

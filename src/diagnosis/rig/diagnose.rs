@@ -1,5 +1,7 @@
 //! From readings to findings: mistakes first, then the physics of what is left.
 
+use super::effects::mistakes::UNIT_MISTAKE;
+use super::effects::structure::STIFFNESS_SCALE;
 use super::mistakes::Mended;
 use super::model::{AsRecorded, RigDiagnosis, RigModel};
 use super::own_effect::OwnEffect;
@@ -7,7 +9,9 @@ use super::wanted::Wanted;
 use super::{another_rod, as_measured, correction, limits, mistakes, next, sites};
 use crate::error::{Error, Place, Result};
 use crate::inference::law::propose;
-use crate::inference::{Diagnosed, Diagnosis, diagnose as infer, rms};
+use crate::inference::{
+    Diagnosed, Diagnosis, Evidence, Finding, Location, Part, Rival, ShownBy, diagnose as infer, rms,
+};
 use crate::rig::readings::Readings;
 use crate::rod::Rod;
 
@@ -15,6 +19,8 @@ use crate::rod::Rod;
 pub(super) const MOST_ROWS: usize = 100_000;
 /// Times that a rod is bent anew as it was found.
 const MOST_BENT: usize = 3;
+/// A number of the file that is so many standard uncertainties off is hardly what was meant.
+const FAR: f64 = 2.0;
 /// Part of the noise that a systematic error shows from.
 const SHOWN: f64 = 0.3;
 
@@ -106,8 +112,14 @@ pub fn diagnose_with(
         false => None,
     };
     if !mended.found.is_empty() {
+        let recorded = RigModel::with_effects(readings, rod, &Wanted::Like(&[])).ok();
+        if let Some((recorded, evidence, _)) = &recorded {
+            add_stiffness(&mut mended.found, recorded, evidence, &diagnosis);
+        }
         diagnosis.findings.splice(0..0, mended.found);
-        model.as_recorded = Some(Box::new(as_recorded(readings, rod)));
+        let error = recorded.map(|(_, evidence, _)| rms(&evidence.residual));
+        model.as_recorded =
+            Some(Box::new(AsRecorded { readings: readings.clone(), rod: rod.cloned(), error }));
     }
     let limits = limits::limits(&model, &evidence);
     Ok(Diagnosed { absorbed: Vec::new(), not_testable, limits, law, diagnosis, evidence, model })
@@ -125,6 +137,22 @@ fn bends_farther(model: &RigModel, bent: Option<&Rod>, diagnosis: &Diagnosis) ->
     Ok((more.amax() > SHOWN * diagnosis.noise).then_some(found))
 }
 
+/// A unit that leaves a rod of another stiffness than its file's is less sure than one that leaves
+/// nothing: one rod that is so much softer or stiffer explains both.
+fn add_stiffness(mistakes: &mut [Finding], recorded: &RigModel, evidence: &Evidence, left: &Diagnosis) {
+    let is_stiffness = |finding: &Finding| *finding.effect == STIFFNESS_SCALE.effect;
+    let is_left = left.findings.iter().any(is_stiffness)
+        || left.discrepancy.as_ref().is_some_and(|left| left.shown_by == ShownBy::Numbers)
+        || left.nominal.iter().any(|number| number.moved().abs() > FAR);
+    if !is_left || !mistakes::is_one_factor(recorded, evidence) {
+        return;
+    }
+    for mistake in mistakes.iter_mut().filter(|mistake| *mistake.effect == UNIT_MISTAKE) {
+        let rod = Location::Part(Part::Rod);
+        mistake.rivals.push(Rival::without_term(&STIFFNESS_SCALE.effect, rod, 1.0));
+    }
+}
+
 /// Refuses what would take more memory or time than anybody has.
 fn check_size(readings: &Readings) -> Result<()> {
     match readings.rows.get(MOST_ROWS) {
@@ -136,10 +164,4 @@ fn check_size(readings: &Readings) -> Result<()> {
             hint: Some("diagnose some of the trials at a time".into()),
         }),
     }
-}
-
-fn as_recorded(readings: &Readings, rod: Option<&Rod>) -> AsRecorded {
-    let error = RigModel::with_effects(readings, rod, &Wanted::Like(&[]));
-    let error = error.ok().map(|(_, evidence, _)| rms(&evidence.residual));
-    AsRecorded { readings: readings.clone(), rod: rod.cloned(), error }
 }

@@ -30,17 +30,16 @@ mod tests;
 
 use self::change::Move;
 use self::lines::{Line, lines};
-pub(super) use self::lookalikes::lookalikes;
+pub(super) use self::lookalikes::{is_one_factor, lookalikes};
 use self::moves::Labels;
 use self::part::Part;
 use self::physics::Physics;
 use self::rods::Body;
-pub(super) use self::rods::OTHER_ROD;
+pub(super) use self::rods::OtherRod;
 use self::search::{Found, Search, Trial};
 pub(super) use self::search::{ODDS, RARE};
 use self::sensors::Expected;
 use super::datum;
-use super::effects::mistakes::ROD_MISTAKE;
 use super::structure::check_stations;
 use crate::error::Result;
 use crate::inference::{Description, Effect, Estimate, Finding, Location, Rival};
@@ -60,9 +59,8 @@ pub(super) struct Mended {
     pub rod: Option<Rod>,
     /// For each of them one line: what it looks like.
     pub suspicions: Vec<String>,
-    /// Rods of other files that may have been meant, the likeliest first; none where that was
-    /// decided.
-    pub others: Vec<(String, Rod)>,
+    /// Rods that may have been meant, the likeliest first; none where that was decided.
+    pub others: Vec<OtherRod>,
     /// False where nothing that could be compared is left of the readings.
     pub has_data: bool,
 }
@@ -228,14 +226,13 @@ impl Mended {
     /// Takes another rod for the one that was meant: what it says of the readings is `explains` (m,
     /// rms) from what was said before.
     pub fn take(&mut self, number: usize, log_odds: f64, explains: f64) {
-        let (file, other) = self.others.swap_remove(number);
-        let Some(rod) = self.rod.replace(other.clone()) else { return };
-        let words = rods::meant(&file, &other, &rod);
+        let OtherRod { rod, effect, location, words, .. } = self.others.swap_remove(number);
+        self.rod = Some(rod);
         self.others.clear();
         self.found.push(Finding {
             explains,
             p_value: (-log_odds).exp(),
-            ..finding(&ROD_MISTAKE, file, Vec::new(), words, Vec::new())
+            ..finding(effect, location, Vec::new(), words, Vec::new())
         });
     }
 

@@ -24,6 +24,9 @@ pub struct RigModel {
     pub(super) rod: Option<Rod>,
     pub(super) as_recorded: Option<Box<AsRecorded>>,
     pub(super) data: Vec<Datum>,
+    /// What the rod as it bends would show, without the rig's effects, m: what the columns of the
+    /// nominal numbers are shares of.
+    pub(super) bent: Vec<f64>,
     pub(super) body: Body,
     /// For each datum the pair of stations (with a rod) or the line (without).
     pub(super) place: Vec<usize>,

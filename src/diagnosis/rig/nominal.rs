@@ -22,13 +22,15 @@ use crate::units::MM;
 
 const PERCENT: f64 = 0.01;
 
-/// The numbers and their columns; `stations` are the load and read stations of a datum on a rod.
+/// The numbers of `rod`, their columns by the rod as it bends (`bent`), and what that one would
+/// show, m; `stations` are the load and read stations of a datum on a rod.
 pub(super) fn all(
     data: &[Datum],
     rod: &Rod,
+    bent: &Rod,
     header: &RigHeader,
     stations: &dyn Fn(&Rod, &Datum) -> (f64, f64),
-) -> Result<(Vec<NominalParameter>, DMatrix<f64>)> {
+) -> Result<(Vec<NominalParameter>, DMatrix<f64>, Vec<f64>)> {
     let mut numbers = Vec::new();
     let mut columns: Vec<Vec<f64>> = Vec::new();
     let mut add = |number: NominalParameter, column: Vec<f64>| {
@@ -37,11 +39,18 @@ pub(super) fn all(
             columns.push(column);
         }
     };
-    let pairs = Pairs::new(data, rod, stations);
+    let pairs = Pairs::new(data, bent, stations);
+    let deflections = match bent == rod {
+        true => data.iter().map(|d| d.predicted).collect(),
+        false => pairs.read(data, &responses(bent, &pairs.on(bent))?),
+    };
+    let as_bent = bent.nominal_numbers();
     for nominal in rod.nominal_numbers() {
         let u = nominal.standard_uncertainty;
+        let of_bent = as_bent.iter().find(|own| own.number == nominal.number).unwrap_or(&nominal);
+        let by = of_bent.standard_uncertainty;
         let Some(changed) = [1.0, -1.0]
-            .map(|sign| pairs.predicted(data, &rod.with(&nominal.number, nominal.value + sign * u)))
+            .map(|sign| pairs.predicted(data, &bent.with(&nominal.number, of_bent.value + sign * by)))
             .into_iter()
             .collect::<Option<Vec<_>>>()
         else {
@@ -62,22 +71,22 @@ pub(super) fn all(
         standard_uncertainty,
     };
     let (loads, sensors) = (header.load_scale, header.sensor_scale);
-    let column = data.iter().map(|d| loads * d.predicted).collect();
+    let column = deflections.iter().map(|bent| loads * bent).collect();
     add(scale("scale of the loads".into(), loads), column);
     for channel in Axis::ALL {
-        let of_channel = |d: &Datum| if d.channel == channel { sensors * d.predicted } else { 0.0 };
+        let of_channel = |(d, bent): (&Datum, &f64)| if d.channel == channel { sensors * bent } else { 0.0 };
         let name = format!("scale of sensor d{channel}");
-        add(scale(name, sensors), data.iter().map(of_channel).collect());
+        add(scale(name, sensors), data.iter().zip(&deflections).map(of_channel).collect());
     }
     let length = rod.standard_uncertainty.length;
     for station in pairs.stated(data) {
-        let Some(column) = pairs.moved(data, rod, station, length) else { continue };
+        let Some(column) = pairs.moved(data, bent, station, length) else { continue };
         let name = format!("station {:.1} mm", station / MM);
         let (unit, si) = ("mm", MM);
         add(NominalParameter { name, unit, si, value: station, standard_uncertainty: length }, column);
     }
     let matrix = DMatrix::from_fn(data.len(), columns.len(), |i, k| columns[k][i]);
-    Ok((numbers, matrix))
+    Ok((numbers, matrix, deflections))
 }
 
 /// Which pair of load and read station each datum has.

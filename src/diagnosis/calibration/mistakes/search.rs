@@ -93,6 +93,9 @@ pub(super) struct Search<'a> {
     pub draft: Draft,
     pub bodies: Vec<Body<'a>>,
     pub moves: Vec<Move>,
+    /// Times that it costs more than usual that base or tip was a rough guess: where a calibration
+    /// that begins with it does not arrive, it was no guess.
+    pub guess_weight: f64,
 }
 
 impl Search<'_> {
@@ -138,6 +141,11 @@ impl Search<'_> {
         }
         let found = (0..best.steps.len()).filter_map(|k| self.judged(&best, k)).collect();
         Some((base, best, found))
+    }
+
+    /// True where base or tip are not where they were said to be.
+    pub fn is_rough_guess(&self, state: &State) -> bool {
+        state.guess < -0.5 * TOOL.2 * self.guess_weight
     }
 
     /// True where even the best fit leaves what no robot leaves.
@@ -231,7 +239,11 @@ impl Search<'_> {
         let prior = self.log_prior(&steps);
         let reach = self.bodies[thin.body].reach;
         // where nothing fits, base and tip are anywhere
-        let guess = if is_failed(&fit, reach) { -BASE.2 - TOOL.2 } else { guess(&thin, &fit, reach) };
+        let most = [BASE.2, TOOL.2].map(|most| most * self.guess_weight);
+        let guess = match is_failed(&fit, reach) {
+            true => -most[0] - most[1],
+            false => guess(&thin, &fit, reach, most),
+        };
         State { score: fit.log_likelihood + guess + prior, steps, thin, fit, guess }
     }
 
@@ -441,18 +453,18 @@ pub(super) fn moved(from: &Pose, to: &Pose) -> (f64, f64) {
     ((to.origin - from.origin).norm(), turn(&from.rotation, &to.rotation))
 }
 
-/// Ln of how well the stated base and tip agree with those found, at most a rough guess' price.
-fn guess(draft: &Draft, fit: &Fit, reach: f64) -> f64 {
+/// Ln of how well the stated base and tip agree with those found; `most` is what each may cost.
+fn guess(draft: &Draft, fit: &Fit, reach: f64, most: [f64; 2]) -> f64 {
     let saturated = |square: f64, most: f64| -most * -(-square / (2.0 * most)).exp_m1();
     let mut sum = 0.0;
     if let (Some(stated), Some(found)) = (&draft.base, fit.bases.first()) {
         let (way, angle) = moved(stated, found);
         let square = (way / (BASE.0 * reach)).powi(2) + (angle / BASE.1).powi(2);
-        sum += saturated(square, BASE.2);
+        sum += saturated(square, most[0]);
     }
     if let Some(stated) = draft.tool.filter(|_| !draft.has_sockets()) {
         let square = ((stated - fit.tool).norm() / (TOOL.0 + TOOL.1 * stated.norm())).powi(2);
-        sum += saturated(square, TOOL.2);
+        sum += saturated(square, most[1]);
     }
     sum
 }

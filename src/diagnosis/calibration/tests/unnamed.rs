@@ -73,6 +73,12 @@ fn links_turn_and_joints_err_together() {
         ),
         (
             "unknown",
+            "joint 4, twice per turn along its axis",
+            "along_um_cos_2",
+            Box::new(move |r, row, v| r.setup.links[3].d += v * (2.0 * recording.joints(row)[3]).cos()),
+        ),
+        (
+            "unknown",
             "joint 3, a curve in the tool",
             "y_cosine_2_um",
             Box::new(|r, row, v| r.setup.tool.y += v * (TAU * y[row]).cos()),
@@ -144,6 +150,17 @@ fn places_and_ways_to_hold_the_tool_move_it() {
         ),
         (
             "unknown",
+            "orientation, loose along x − z of the tool",
+            "clearance_um",
+            Box::new(move |r, _, v| {
+                // gravity is along −z of {W}
+                let side = Vector3::new(0.5f64.sqrt(), 0.0, -0.5f64.sqrt());
+                let pressed = -seen(r, 2).dot(&side).signum();
+                r.setup.tool += side * (v * pressed);
+            }),
+        ),
+        (
+            "unknown",
             "order, again every 5.0 poses",
             "z_sin_um",
             Box::new(|r, row, v| r.setup.base_position.z += v * (TAU * row as f64 / 5.0).sin()),
@@ -176,6 +193,26 @@ fn places_and_ways_to_hold_the_tool_move_it() {
         ),
     ];
     assert_changes(&campaign, &calibration, cases);
+}
+
+/// A tool that rests on the side to which gravity presses it, along x of {T}: most of it is a tip
+/// that is lighter, a rod that is stiffer or a link that bends.
+#[test]
+fn a_loose_tool_is_no_mass() {
+    let campaign = clamps(20);
+    let calibration = calibrate(&campaign, Mode::Fea, &Options::default()).unwrap();
+    let context = Context::new(&campaign, &calibration).unwrap();
+    let by = |row: usize| {
+        let there = &context.configurations[row];
+        let held: Vector3<f64> = there.flange.rotation.column(0).into();
+        held * (80.0 * UM * held.dot(&there.gravity).signum())
+    };
+    let recorded = recorded(&campaign, &by, 30.0 * UM, 3);
+    let found = diagnose(&recorded, Mode::Fea, &Options::default()).unwrap();
+    let names: Vec<&str> = found.diagnosis.findings.iter().map(|f| f.effect.name).collect();
+    assert!(names.is_empty(), "{names:?}");
+    let left = found.diagnosis.discrepancy.and_then(|left| left.location).map(|at| at.to_string());
+    assert_eq!(left.as_deref(), Some("orientation, loose along x of the tool"));
 }
 
 /// Joints that keep a share of the move before the last one: that runs against the last move on

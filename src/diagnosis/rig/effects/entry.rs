@@ -25,6 +25,8 @@ pub(in crate::diagnosis::rig) struct Context<'a> {
     pub data: &'a [Datum],
     pub body: &'a mut Body,
     pub rod: Option<&'a Rod>,
+    /// How many times as stiff as its file the rod is at first sight; 1 unless far off.
+    pub stiffness: f64,
 }
 
 /// A candidate with what its parameters do.

@@ -12,6 +12,9 @@ use crate::units::{DEG, UM, significant};
 
 /// Friction of a slide as a share of the largest load.
 const SLIDE: f64 = 0.05;
+/// What friction holds back of a hung load, or a tare takes away from it, at most, as a share of the
+/// largest load: of what a slide holds whole nothing is known, and any rod would fit it.
+const MOST_OF_LOAD: f64 = 0.5;
 /// Weight of a hanger that was forgotten, or error of a tare, as a share of the largest load.
 const TARE: f64 = 0.05;
 /// Travel over which friction turns round as a share of the largest displacement.
@@ -56,7 +59,9 @@ pub static FRICTION: RigEffect = RigEffect {
     needs_rod: false,
     candidates: |context| {
         let largest = context.largest_load();
-        let force = || parameter("force_n", 1.0, 0.0, SLIDE * largest, (0.0, largest));
+        let is_imposed = context.data.iter().any(|d| d.imposed.is_some());
+        let most = if is_imposed { largest } else { MOST_OF_LOAD * largest };
+        let force = || parameter("force_n", 1.0, 0.0, SLIDE * largest, (0.0, most));
         let mut entries = of_axes(context.data, Part::Slide, &|location, scope| {
             entry(&FRICTION, location, force(), Action::Friction(scope))
         });
@@ -109,7 +114,8 @@ pub static LOAD_OFFSET: RigEffect = RigEffect {
     candidates: |context| {
         let largest = context.largest_load();
         of_axes(context.data, Part::Hanger, &|location, scope| {
-            let force = parameter("force_n", 1.0, 0.0, TARE * largest, (-largest, largest));
+            let most = MOST_OF_LOAD * largest;
+            let force = parameter("force_n", 1.0, 0.0, TARE * largest, (-most, largest));
             entry(&LOAD_OFFSET, location, force, Action::LoadOffset(scope))
         })
     },

@@ -2,9 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::entry::{
-    Context, Entry, RigEffect, SCALES, UNBOUNDED, along_the_load, candidate, entry, of, parameter,
-};
+use super::entry::{Context, Entry, RigEffect, UNBOUNDED, along_the_load, candidate, entry, of, parameter};
 use super::load::{ALIGNMENT, TURNS, WIDEST, misalignment, pairs, whole_turn};
 use super::places::measured_channels;
 use crate::diagnosis::rig::action::Action;
@@ -15,6 +13,8 @@ use crate::units::{DEG, UM};
 
 /// Scale error of a displacement sensor that was not calibrated in place.
 const SCALE: f64 = 0.03;
+/// Beyond that a channel is in another unit, or it shows something else.
+const NO_UNIT: (f64, f64) = (0.5, 2.0);
 /// Drift over the whole recording as a share of its largest reading.
 const DRIFT: f64 = 0.02;
 const HOUR: f64 = 3600.0;
@@ -39,7 +39,7 @@ pub static SENSOR_SCALE: RigEffect = RigEffect {
     needs_rod: true,
     candidates: |context| {
         let of_channel = |channel: Axis| {
-            let factor = parameter("factor", 1.0, 1.0, SCALE, SCALES);
+            let factor = parameter("factor", 1.0, 1.0, SCALE, NO_UNIT);
             let location = Location::Channel { channel, form: None };
             entry(&SENSOR_SCALE, location, factor, Action::SensorScale(channel))
         };

@@ -43,8 +43,12 @@ pub static STIFFNESS_SCALE: RigEffect = RigEffect {
         direct_check: None,
     },
     needs_rod: true,
-    candidates: |_| {
-        let factor = parameter("factor", 1.0, 1.0, SOFTNESS, SCALES);
+    candidates: |context| {
+        // a share of the stiffness that there is: a rod is softer or stiffer by a factor
+        let size = SOFTNESS * context.stiffness.max(1.0);
+        let far = context.stiffness;
+        let bounds = (SCALES.0 * far.min(1.0), SCALES.1 * far.max(1.0));
+        let factor = parameter("factor", 1.0, 1.0, size, bounds);
         vec![entry(&STIFFNESS_SCALE, Location::Part(Part::Rod), factor, Action::Stiffness)]
     },
     missing: |_| NOT_YIELDING,

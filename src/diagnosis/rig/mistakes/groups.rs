@@ -181,10 +181,15 @@ pub(super) fn offsets(data: &[Datum], lines: &[Line]) -> Vec<Part> {
         if found.last().is_some_and(|part: &Part| part.location == column(channel)) {
             continue;
         }
-        for line in own {
+        let zeros: Vec<Vec<RunZero>> = own.iter().map(|line| zeros_of_runs(data, line)).collect();
+        for (k, line) in own.iter().enumerate() {
+            let is_same = |other: &usize| own[*other].stations[1] == line.stations[1];
+            let of_sensor: Vec<&RunZero> =
+                (0..own.len()).filter(is_same).flat_map(|other| &zeros[other]).collect();
             // along an axis on which the rod hardly moves a zero is off by more than that in any
             // run
-            found.extend(of_run(data, line, moved(line.axis).max(FAR * most)));
+            let moved = moved(line.axis).max(FAR * most);
+            found.extend(of_run(data, line, &zeros[k], &of_sensor, moved));
         }
     }
     found
@@ -243,51 +248,74 @@ fn part(location: String, zero: f64, error: f64, data: Vec<usize>) -> Part {
     }
 }
 
-/// Runs that start elsewhere than most runs of their line; what stays until the end has slipped. Of
-/// the last run alone nobody can say which.
-fn of_run(data: &[Datum], line: &Line, moved: f64) -> Vec<Part> {
+/// The zero of a run of one line.
+struct RunZero {
+    /// Number of the run, in the order of recording.
+    run: usize,
+    data: Vec<usize>,
+    /// Beyond the usual zero of the line, m.
+    distance: f64,
+    scatter: f64,
+    /// Farthest reading from it, m.
+    most: f64,
+}
+
+/// Those of all runs of a line; none where nobody knows which zero is usual.
+fn zeros_of_runs(data: &[Datum], line: &Line) -> Vec<RunZero> {
     let runs = split(data, line, |d| d.run as i64);
     if runs.len() < 3 {
         return Vec::new();
     }
-    let zero_of = |group: &Group| {
+    let zero_of = |(run, group): (i64, Group)| {
         // play and friction change sides with the load
         let play = |i: usize| line.fit.play * f64::from(data[i].direction.sign);
         let values: Vec<f64> = group.data.iter().map(|&i| off(data, line, i) - play(i)).collect();
         let zero = median(&values)?;
         let most = values.iter().fold(0.0, |most: f64, v| most.max((v - zero).abs()));
-        Some((zero, spread(&values, zero)?, most))
+        let scatter = spread(&values, zero)?;
+        Some(RunZero { run: run as usize, data: group.data, distance: zero, scatter, most })
     };
-    let Some(zeros) = runs.iter().map(|(_, group)| zero_of(group)).collect::<Option<Vec<_>>>() else {
+    let Some(mut zeros) = runs.into_iter().map(zero_of).collect::<Option<Vec<_>>>() else {
         return Vec::new();
     };
-    let Some(usual) = median(&zeros.iter().map(|(zero, ..)| *zero).collect::<Vec<_>>()) else {
-        return Vec::new();
-    };
-    let is_far = |k: usize| (zeros[k].0 - usual).abs() > FAR_FOR_A_RUN * moved && moved > 0.0;
-    let far: Vec<usize> = (0..runs.len()).filter(|&k| is_far(k)).collect();
-    let stays = far.len() > 1 && far.iter().enumerate().all(|(n, &k)| k == runs.len() - far.len() + n);
-    if far.len() * 3 > runs.len() || stays {
+    let usual = median(&zeros.iter().map(|zero| zero.distance).collect::<Vec<_>>()).unwrap_or_default();
+    zeros.iter_mut().for_each(|zero| zero.distance -= usual);
+    zeros
+}
+
+/// Runs that start elsewhere than most runs (`own`) of their line; what stays until the end has
+/// slipped. Of the last run alone nobody can say which. Where the run before or after it among all
+/// those `of_sensor`, along whatever axis, is off as far, it is no zero of one run.
+fn of_run(data: &[Datum], line: &Line, own: &[RunZero], of_sensor: &[&RunZero], moved: f64) -> Vec<Part> {
+    let is_far = |k: usize| own[k].distance.abs() > FAR_FOR_A_RUN * moved && moved > 0.0;
+    let far: Vec<usize> = (0..own.len()).filter(|&k| is_far(k)).collect();
+    let stays = far.len() > 1 && far.iter().enumerate().all(|(n, &k)| k == own.len() - far.len() + n);
+    if far.len() * 3 > own.len() || stays {
         return Vec::new();
     }
+    let goes_on = |zero: &RunZero| {
+        let is_alike = |other: &&&RunZero| {
+            other.run.abs_diff(zero.run) == 1
+                && (other.distance - zero.distance).abs() < CONSTANT * zero.distance.abs()
+        };
+        of_sensor.iter().any(|other| is_alike(&other))
+    };
     let mut found = Vec::new();
     for k in far {
-        let (zero, scatter, most) = zeros[k];
-        let group = &runs[k].1;
-        let distance = zero - usual;
-        if most > 2.0 * CONSTANT * distance.abs() || group.data.len() < 2 {
+        let zero = &own[k];
+        if zero.most > 2.0 * CONSTANT * zero.distance.abs() || zero.data.len() < 2 || goes_on(zero) {
             continue;
         }
-        let first = &data[group.data[0]];
-        let rows = (first.row, group.data.last().map_or(first.row, |&i| data[i].row));
+        let first = &data[zero.data[0]];
+        let rows = (first.row, zero.data.last().map_or(first.row, |&i| data[i].row));
         let name = column(line.channel);
         let location = match &first.trial {
             Some(trial) => format!("{name}, axis {}, trial {trial}", line.axis),
             None => format!("{name}, axis {}, rows {} to {}", line.axis, rows.0, rows.1),
         };
-        let error = scatter / (group.data.len() as f64).sqrt();
-        let mut part = part(location, distance, error, group.data.clone());
-        if k + 1 == runs.len() {
+        let error = zero.scatter / (zero.data.len() as f64).sqrt();
+        let mut part = part(location, zero.distance, error, zero.data.clone());
+        if k + 1 == own.len() {
             part.rivals.push((&SLIP.effect, part.location.clone()));
         }
         found.push(part);

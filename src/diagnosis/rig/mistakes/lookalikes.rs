@@ -51,6 +51,14 @@ pub fn lookalikes(model: &RigModel, evidence: &Evidence, findings: &[Finding], n
     .collect()
 }
 
+/// True where the readings as they were `recorded`, beside the rod file as it is, are one factor of
+/// what that rod would show: then a rod that is softer or stiffer by that factor explains them too.
+pub fn is_one_factor(recorded: &RigModel, evidence: &Evidence) -> bool {
+    let of = recorded.data.iter().map(|datum| datum.predicted);
+    let predicted = DVector::from_iterator(recorded.data.len(), of);
+    recorded.rod.is_some() && factor_of(&predicted, &evidence.residual).is_some()
+}
+
 /// s, where a change of all data is one factor.
 fn factor_of(predicted: &DVector<f64>, change: &DVector<f64>) -> Option<f64> {
     let squares = predicted.norm_squared();

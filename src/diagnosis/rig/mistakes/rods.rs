@@ -31,7 +31,7 @@ const KEY: f64 = -0.5;
 /// Another rod is no unit: what remains must be as files are.
 const OTHER: f64 = 1.1;
 /// Ln of the prior of another rod.
-pub(in crate::diagnosis::rig) const OTHER_ROD: f64 = -2.0;
+const OTHER_ROD: f64 = -2.0;
 /// Of the rods that are tried in full, how many there are at most, and how far behind the given one
 /// the slopes may see them.
 const MOST_OTHERS: usize = 4;
@@ -42,6 +42,40 @@ pub(super) struct Body {
     pub rod: Rod,
     /// Factors on the stations of load and sensor.
     pub stations: [f64; 2],
+}
+
+/// A rod that may have been meant, tried in full: one of another file, or the given one with two of
+/// its parts exchanged.
+#[derive(Debug, Clone)]
+pub(in crate::diagnosis::rig) struct OtherRod {
+    pub rod: Rod,
+    pub effect: &'static Effect,
+    /// The file, or the keys that are exchanged.
+    pub location: String,
+    /// What is said of it, with the correction.
+    pub words: String,
+    pub log_prior: f64,
+}
+
+/// The given rod with its lengths, or its pipes, exchanged.
+fn exchanged(rod: &Rod) -> Vec<OtherRod> {
+    let of = |location: &str, meant: Rod, log_prior: f64| OtherRod {
+        rod: meant,
+        effect: &SWAP_MISTAKE,
+        location: location.into(),
+        words: format!("{location} are swapped in the rod file: exchange them"),
+        log_prior,
+    };
+    let mut found = Vec::new();
+    if rod.l1 != rod.l2 {
+        let meant = Rod { l1: rod.l2, l2: rod.l1, ..rod.clone() };
+        found.push(of("l1_mm and l2_mm", meant, 0.0));
+    }
+    if rod.pipe1 != rod.pipe2 {
+        let meant = Rod { pipe1: rod.pipe2.clone(), pipe2: rod.pipe1.clone(), ..rod.clone() };
+        found.push(of("pipe1 and pipe2", meant, -1.0));
+    }
+    found
 }
 
 /// Moves with their rods: the body of the k-th is number k + 1.
@@ -62,7 +96,12 @@ pub(super) fn all(rod: &Rod, others: &[(String, Rod)], has_stations: [bool; 2]) 
             _ => format!("the readings look like those of {location}"),
         };
         let change = Change::body(found.len() + 1);
-        let within = if effect == &ROD_MISTAKE { OTHER } else { BESIDE };
+        let within = match effect {
+            effect if effect == &ROD_MISTAKE => OTHER,
+            // there is no number in it that anything had to come near to
+            effect if effect == &SWAP_MISTAKE => f64::INFINITY,
+            _ => BESIDE,
+        };
         let estimates = factor.map(|factor| exact("factor", factor)).into_iter().collect();
         found.push((
             body,
@@ -70,15 +109,8 @@ pub(super) fn all(rod: &Rod, others: &[(String, Rod)], has_stations: [bool; 2]) 
         ));
     };
     let own = |rod: Rod| Body { rod, stations: [1.0; 2] };
-    if rod.l1 != rod.l2 {
-        let swapped = Rod { l1: rod.l2, l2: rod.l1, ..rod.clone() };
-        let words = "l1_mm and l2_mm are swapped in the rod file: exchange them".to_owned();
-        add(own(swapped), &SWAP_MISTAKE, "l1_mm and l2_mm".into(), words, None, 0.0);
-    }
-    if rod.pipe1 != rod.pipe2 {
-        let swapped = Rod { pipe1: rod.pipe2.clone(), pipe2: rod.pipe1.clone(), ..rod.clone() };
-        let words = "pipe1 and pipe2 are swapped in the rod file: exchange them".to_owned();
-        add(own(swapped), &SWAP_MISTAKE, "pipe1 and pipe2".into(), words, None, -1.0);
+    for OtherRod { rod, effect, location, words, log_prior } in exchanged(rod) {
+        add(own(rod), effect, location, words, None, log_prior);
     }
     for (keys, factor, unit, prior, meant) in in_other_units(rod) {
         let words = format!("{keys} {}: {}", is_in(unit, &keys), cure(factor, &keys));
@@ -114,21 +146,32 @@ pub(super) fn likely(
     rod: &Rod,
     others: &[(String, Rod)],
     of: impl Fn(&Rod) -> Option<Verdict>,
-) -> Vec<(String, Rod)> {
+) -> Vec<OtherRod> {
     let Some(own) = of(rod) else { return Vec::new() };
-    let known = others.iter().filter(|(_, other)| !is_alike(other, rod)).filter_map(|other| {
-        let verdict = of(&other.1)?;
+    let of_file = |(file, other): &(String, Rod)| OtherRod {
+        rod: other.clone(),
+        effect: &ROD_MISTAKE,
+        location: file.clone(),
+        words: meant(file, other, rod),
+        log_prior: OTHER_ROD,
+    };
+    let all = exchanged(rod).into_iter().filter(|other| is_possible(&other.rod));
+    let known = all.chain(others.iter().map(of_file)).filter(|other| !is_alike(&other.rod, rod));
+    let known = known.filter_map(|other| {
+        let verdict = of(&other.rod)?;
+        // of one file's numbers none is nearer by chance
+        let within: f64 = if other.effect == &ROD_MISTAKE { OTHER } else { BESIDE };
         let is_likely =
-            verdict.log_scale.abs() <= OTHER.ln() && verdict.log_evidence > own.log_evidence - FAR_BEHIND;
+            verdict.log_scale.abs() <= within.ln() && verdict.log_evidence > own.log_evidence - FAR_BEHIND;
         is_likely.then_some((verdict.log_evidence, other))
     });
-    let mut known: Vec<(f64, &(String, Rod))> = known.collect();
+    let mut known: Vec<(f64, OtherRod)> = known.collect();
     known.sort_by(|a, b| b.0.total_cmp(&a.0));
-    known.into_iter().take(MOST_OTHERS).map(|(_, other)| other.clone()).collect()
+    known.into_iter().take(MOST_OTHERS).map(|(_, other)| other).collect()
 }
 
 /// What is said of readings of another rod.
-pub(super) fn meant(file: &str, other: &Rod, rod: &Rod) -> String {
+fn meant(file: &str, other: &Rod, rod: &Rod) -> String {
     format!("The readings are those of rod {} ({file}), not of rod {}: use {file}", other.name, rod.name)
 }
 

@@ -126,7 +126,7 @@ fn proven(study: &Study, found: &Refined) -> String {
         1 => "The search began at this design alone".to_owned(),
         _ => format!("The search began at {count} designs of the front, and {led} of them led to this rod"),
     };
-    format!("{grid} {starts}: that no better one exists between the grid's values is likely, not proven.")
+    format!("{grid} {starts}: that no better one exists between the grid's values is not proven.")
 }
 
 /// `32.4x1.13`: outer diameter and wall of the tubes, mm.

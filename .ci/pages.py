@@ -4,7 +4,7 @@
     .ci/pages.py PAGE.html ...
 
 A page fails where the console has an error, something is fetched, the page is wider than the window, a text lies
-over another one, or a text has less contrast than WCAG AA asks for. Without Chromium it says so and passes.
+over another one in any unit, or a text has less contrast than WCAG AA asks for. Without Chromium it says so and passes.
 """
 
 import json
@@ -25,7 +25,9 @@ CHECK = r"""
   if (root.scrollWidth > innerWidth + 1) complaints.push(`the page is ${root.scrollWidth} px wide`);
   if (document.title === '' || root.lang === '') complaints.push('no title or no language');
 
-  const shown = element => element.checkVisibility({ visibilityProperty: true, contentVisibilityAuto: true });
+  // the first alone believes in parts of a picture that are not drawn
+  const shown = element => element.checkVisibility({ visibilityProperty: true, contentVisibilityAuto: true })
+    && element.getClientRects().length > 0;
   const channel = c => (c /= 255) <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4;
   const light = ([r, g, b]) => 0.2126 * channel(r) + 0.7152 * channel(g) + 0.0722 * channel(b);
   const colour = text => (text.match(/[\d.]+/g) ?? [0, 0, 0]).map(Number);
@@ -41,40 +43,52 @@ CHECK = r"""
     return [255, 255, 255];
   };
 
-  const texts = [];
-  const walk = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
-  for (let node = walk.nextNode(); node; node = walk.nextNode()) {
-    const element = node.parentElement;
-    if (!node.data.trim() || ['SCRIPT', 'STYLE', 'TITLE', 'DESC', 'CAPTION'].includes(element.tagName.toUpperCase())) continue;
-    if (element.closest('title, desc, caption, .skip') || !shown(element)) continue;
-    const range = document.createRange();
-    range.selectNodeContents(node);
-    const style = getComputedStyle(element);
-    const svg = element.closest('svg');
-    const [ink, on] = svg ? [colour(style.fill), [255, 255, 255]] : [colour(style.color), paper(element)];
-    const size = parseFloat(style.fontSize);
-    const large = size >= 24 || (size >= 18.66 && Number(style.fontWeight) >= 700);
-    const ratio = contrast(ink, on);
-    if (!svg && ratio < (large ? 3 : 4.5)) complaints.push(`contrast ${ratio.toFixed(2)}: ${node.data.trim().slice(0, 40)}`);
-    if (svg && ratio < 3) complaints.push(`contrast ${ratio.toFixed(2)} in a picture: ${node.data.trim().slice(0, 40)}`);
-    for (const box of range.getClientRects()) {
-      if (box.width > 0 && box.height > 0) texts.push({ text: node.data.trim(), box, scroller: element.closest('.wide') });
+  const look = () => {
+    const texts = [];
+    const walk = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+    for (let node = walk.nextNode(); node; node = walk.nextNode()) {
+      const element = node.parentElement;
+      if (!node.data.trim() || ['SCRIPT', 'STYLE', 'TITLE', 'DESC', 'CAPTION'].includes(element.tagName.toUpperCase())) continue;
+      if (element.closest('title, desc, caption, .skip') || !shown(element)) continue;
+      const range = document.createRange();
+      range.selectNodeContents(node);
+      const style = getComputedStyle(element);
+      const svg = element.closest('svg');
+      const [ink, on] = svg ? [colour(style.fill), [255, 255, 255]] : [colour(style.color), paper(element)];
+      const size = parseFloat(style.fontSize);
+      const large = size >= 24 || (size >= 18.66 && Number(style.fontWeight) >= 700);
+      const ratio = contrast(ink, on);
+      if (!svg && ratio < (large ? 3 : 4.5)) complaints.push(`contrast ${ratio.toFixed(2)}: ${node.data.trim().slice(0, 40)}`);
+      if (svg && ratio < 3) complaints.push(`contrast ${ratio.toFixed(2)} in a picture: ${node.data.trim().slice(0, 40)}`);
+      for (const box of range.getClientRects()) {
+        if (box.width > 0 && box.height > 0) texts.push({ text: node.data.trim(), box, scroller: element.closest('.wide') });
+      }
     }
-  }
-  texts.sort((a, b) => a.box.top - b.box.top);
-  const over = (a, b) => {
-    // letters fill the middle of their boxes
-    const inner = ({ box }) => [box.left + 1, box.top + 0.28 * box.height, box.right - 1, box.bottom - 0.28 * box.height];
-    const [p, q] = [inner(a), inner(b)];
-    return Math.min(p[2], q[2]) - Math.max(p[0], q[0]) > 1 && Math.min(p[3], q[3]) - Math.max(p[1], q[1]) > 1;
+    texts.sort((a, b) => a.box.top - b.box.top);
+    const over = (a, b) => {
+      // letters fill the middle of their boxes
+      const inner = ({ box }) => [box.left + 1, box.top + 0.28 * box.height, box.right - 1, box.bottom - 0.28 * box.height];
+      const [p, q] = [inner(a), inner(b)];
+      return Math.min(p[2], q[2]) - Math.max(p[0], q[0]) > 1 && Math.min(p[3], q[3]) - Math.max(p[1], q[1]) > 1;
+    };
+    texts.forEach((a, k) => {
+      for (const b of texts.slice(k + 1)) {
+        if (b.box.top > a.box.bottom) break;
+        // what is scrolled away lies behind nothing
+        if (a.scroller === b.scroller && over(a, b)) complaints.push(`"${a.text.slice(0, 30)}" over "${b.text.slice(0, 30)}"`);
+      }
+    });
   };
-  texts.forEach((a, k) => {
-    for (const b of texts.slice(k + 1)) {
-      if (b.box.top > a.box.bottom) break;
-      // what is scrolled away lies behind nothing
-      if (a.scroller === b.scroller && over(a, b)) complaints.push(`"${a.text.slice(0, 30)}" over "${b.text.slice(0, 30)}"`);
+  look();
+  // the same in every other unit; what was wrong before is said once
+  const units = [...document.querySelectorAll('.units select')];
+  for (let k = 1; units.some(select => k < select.options.length); k += 1) {
+    for (const select of units.filter(select => k < select.options.length)) {
+      select.selectedIndex = k;
+      select.dispatchEvent(new Event('change'));
     }
-  });
+    look();
+  }
   return [...new Set(complaints)];
 })()
 """

@@ -219,6 +219,7 @@ fn joint_angles() -> Figure {
         panels,
         columns: 3,
         shared_legend: true,
+        ..Figure::default()
     }
 }
 

@@ -46,7 +46,7 @@ pub use poses::{
     Beside, Candidates, Known, Obstacle, PoseCriterion, PoseLimits, PoseStep, PoseStudy, Source, TableHeight,
     Wanted,
 };
-pub use refine::{Better, Refined, refine};
+pub use refine::{Better, Refined, refine, weights};
 pub use rods_and_modes::{RodForecast, rods_and_modes};
 pub use search::{Found, PART, Search, Searched, search};
 pub use study::{Base, Shown, Study};

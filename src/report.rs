@@ -41,6 +41,7 @@ mod rod_drawing;
 pub mod runs;
 mod scale;
 mod sensitivities;
+mod switch;
 pub mod table;
 pub mod text;
 

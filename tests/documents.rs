@@ -90,3 +90,39 @@ fn the_page_of_limits_lists_those_of_the_code() {
         assert!(row.starts_with(&stated), "{row}: the code has {stated}");
     }
 }
+
+/// What a page links within the project: targets of Markdown's links, and of `href` and `src`.
+fn linked(page: &str) -> Vec<&str> {
+    let between = |start: &str, end: char| -> Vec<&str> {
+        page.split(start).skip(1).filter_map(|rest| Some(rest.split_once(end)?.0)).collect()
+    };
+    let all = [between("](", ')'), between("href=\"", '"'), between("src=\"", '"')].concat();
+    let path = |target: &'_ str| target.split('#').next().unwrap_or_default().len();
+    let is_file = |target: &&str| !target.contains("://") && !target.contains(['<', ' ', '{']);
+    all.into_iter().filter(is_file).map(|target| &target[..path(target)]).filter(|t| !t.is_empty()).collect()
+}
+
+#[test]
+fn what_is_linked_exists() {
+    assert_eq!(linked("[a](b.md#c) <a href=\"#x\"> [d](https://e) <img src=\"f.png\">"), ["b.md", "f.png"]);
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let (mut folders, mut count) = (vec![root.to_owned()], 0);
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(&folder).unwrap() {
+            let path = entry.unwrap().path();
+            let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            // what a build or a run leaves behind is not the project's
+            let is_made = name == "target" || path == root.join("reports/demo") || name.starts_with('.');
+            if path.is_dir() && !is_made {
+                folders.push(path);
+            } else if name.ends_with(".md") || name.ends_with(".html") {
+                let page = std::fs::read_to_string(&path).unwrap();
+                for target in linked(&page) {
+                    count += 1;
+                    assert!(folder.join(target).exists(), "{}: there is no {target}", path.display());
+                }
+            }
+        }
+    }
+    assert!(count > 100, "{count}");
+}

@@ -219,6 +219,7 @@ def design_rod(
     base: Rod | None,
     samples: int | None,
     refine: int | None,
+    refine_goal: str | None,
     seed: int,
     campaign: Campaign | None,
     count: int | None,

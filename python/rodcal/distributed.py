@@ -50,6 +50,7 @@ def design_rod(
     base: RodLike | None = None,
     samples: int | None = None,
     refine: int | None = None,
+    refine_goal: str | None = None,
     seed: int = 1,
     campaign: CampaignLike | None = None,
     count: int | None = None,
@@ -71,7 +72,7 @@ def design_rod(
         shared = _shared(client, (text, tubes))
         looked_at = _in_order(client, _design_part, shared, (samples, seed), _parts(rods, size), tell, rods)
         found = ((first, last, kept) for (first, last), kept in looked_at)
-        answer = _rodcal.design_rod(wish, other, samples, refine, seed, native, count, found, None)
+        answer = _rodcal.design_rod(wish, other, samples, refine, refine_goal, seed, native, count, found, None)
     warn(answer.warnings)
     return RodDesignResult(answer)
 

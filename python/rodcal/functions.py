@@ -286,6 +286,7 @@ def design_rod(
     base: RodLike | None = None,
     samples: int | None = None,
     refine: int | None = None,
+    refine_goal: str | None = None,
     seed: int = 1,
     campaign: CampaignLike | None = None,
     count: int | None = None,
@@ -295,7 +296,8 @@ def design_rod(
 
     ``catalogue`` is a table of tubes in place of a file. ``base`` is a rod to compare with,
     ``samples`` looks at so many combinations only, ``refine`` betters a design of the front (from 1)
-    between the grid's values; with ``campaign`` the designs are ranked for its robot, with ``count``
+    between the grid's values, for one objective or for several by ``refine_goal`` ("c_rod_um=2,mass_g=1");
+    with ``campaign`` the designs are ranked for its robot, with ``count``
     poses each.
 
     >>> result = design_rod({
@@ -311,7 +313,7 @@ def design_rod(
     native = None if campaign is None else as_campaign(campaign, plan=True)._native
     other = None if base is None else as_rod(base)._native
     with Told(progress, "looking at rods") as tell:
-        answer = _rodcal.design_rod(wish, other, samples, refine, seed, native, count, None, tell)
+        answer = _rodcal.design_rod(wish, other, samples, refine, refine_goal, seed, native, count, None, tell)
     warn(answer.warnings)
     return RodDesignResult(answer)
 

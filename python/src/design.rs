@@ -70,6 +70,7 @@ pub fn design_rod(
     base: Option<&Bound<'_, Rod>>,
     samples: Option<u64>,
     refine: Option<usize>,
+    refine_goal: Option<String>,
     seed: u64,
     campaign: Option<&Bound<'_, Campaign>>,
     count: Option<usize>,
@@ -81,6 +82,7 @@ pub fn design_rod(
     let asked = answer::DesignRod {
         base: base.map(|rod| rod.get().rod.clone()),
         refine: refine.map(|number| within(py, "refine", number, 1, u32::MAX as usize)).transpose()?,
+        refine_goal,
         campaign: campaign.map(|campaign| (&campaign.get().campaign, count)),
         seed,
     };

@@ -18,6 +18,9 @@ pub struct DesignRod<'c> {
     pub base: Option<Rod>,
     /// The design of the front, from 1, that is bettered between the grid's values.
     pub refine: Option<usize>,
+    /// What is bettered then: an objective of the design file, or several with their weights, as
+    /// "c_rod_um=2,mass_g=1"; without it the first one.
+    pub refine_goal: Option<String>,
     /// The robot that they are ranked for, and how many poses are chosen for each rod.
     pub campaign: Option<(&'c Campaign, Option<usize>)>,
     /// Every random number comes from this seed.
@@ -49,7 +52,7 @@ impl DesignRod<'_> {
 pub fn design_rod(wish: Wish, found: Found, asked: &DesignRod<'_>) -> Result<Answer> {
     let study = Study::of_found(wish, found, asked.base.clone())?;
     let study = match asked.refine {
-        Some(number) => study.with_refined(number.saturating_sub(1))?,
+        Some(number) => study.with_refined(number.saturating_sub(1), asked.refine_goal.as_deref())?,
         None => study,
     };
     let mut answer = Answer::new(report::design::json(&study), report::design::report(&study));

@@ -138,15 +138,20 @@ fn links() -> Vec<PageLink> {
     PAGES.into_iter().map(of).collect()
 }
 
-/// The sections that have one of these pictures, with the first of each and with their tables.
+/// The sections that have one of these pictures, with the first of each and with their tables,
+/// folded.
 fn shown(sections: Vec<Section>, pictures: &[&str]) -> Vec<Section> {
     let mut left: Vec<&str> = pictures.to_vec();
     let mut kept = Vec::new();
     for mut section in sections {
-        section.blocks.retain(|block| match block {
+        section.blocks.retain_mut(|block| match block {
             Block::Figure(figure) => {
                 let at = left.iter().position(|name| *name == figure.name);
                 at.map(|at| left.remove(at)).is_some()
+            }
+            Block::Table(table) => {
+                table.is_folded = true;
+                true
             }
             _ => true,
         });

@@ -41,11 +41,15 @@ pub struct DesignRod {
     /// that take long. Stop it whenever you like; what it says in the end is the same.
     #[arg(long, value_name = "FILE")]
     resume: Option<PathBuf>,
-    /// Better design N of the front between the values of the ranges and of the tubes, then take
-    /// the nearest tubes of the catalogue [without N: design 1].
+    /// Better design N of the front between the values of the ranges and of the tubes, then with
+    /// tubes of the catalogue [without N: design 1].
     #[arg(long, value_name = "N", num_args = 0..=1, default_missing_value = "1",
           value_parser = clap::value_parser!(u32).range(1..))]
     refine: Option<u32>,
+    /// What --refine betters: one of the objectives, or several with their weights, as
+    /// c_rod_um=2,mass_g=1; the others may not lose [default: the first objective].
+    #[arg(long, value_name = "GOAL", requires = "refine")]
+    refine_goal: Option<String>,
     /// Every random number comes from this seed.
     #[arg(long, default_value_t = 1)]
     seed: u64,
@@ -142,6 +146,7 @@ impl DesignRod {
         let asked = answer::DesignRod {
             base,
             refine: self.refine.map(|number| number as usize),
+            refine_goal: self.refine_goal.clone(),
             campaign: campaign.as_ref().map(|campaign| (campaign, self.count.map(|count| count as usize))),
             seed: self.seed,
         };

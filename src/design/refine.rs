@@ -1,45 +1,38 @@
 //! From a design of the front to the best one between the grid's values, and back to tubes that can
 //! be bought.
 //!
-//! The first goal is bettered while no other goal loses and all limits are kept. What the design
-//! file gives as a range may take any value between its ends, what it gives as a list stays; outer
-//! diameter and wall may take any value between those of the catalogue's tubes of that material.
-//! Figures of rods are near products of powers of their numbers, so that their logarithms are near
-//! linear in those of the numbers: each step solves the linear program
-//!
-//! ```text
-//! min s₀·Δ + M·t,   ln f_i + s_i·Δ ≤ ln b_i + t,   |Δ_j| ≤ r,   s_ij = ∂ln f_i/∂ln x_j
-//! ```
-//!
-//! with exact derivatives, and the region r shrinks where the step promises more than it keeps
-//! (sequential linear programming with an exact penalty: R. Fletcher, E. Sainz de la Maza, *Math.
-//! Program.* 43 (1989) 235–256). The optimum is a local one. Then the nearest tubes of the
-//! catalogue are tried in turn, and everything else once more with each.
+//! The goal, or a weighted geometric mean of several, is bettered while no other goal loses and all
+//! limits are kept. What the design file gives as a range may take any value between its ends, what
+//! it gives as a list stays; outer diameter and wall may take any value between those of the
+//! catalogue's tubes of that material (`variable`). A sequence of linear programs leads to a local
+//! optimum (`sequence`), from this and from other designs of the front: the best is taken, and how
+//! many came to it is said. Then the tubes of the catalogue are tried in turn, and everything else
+//! once more with each.
 
-use nalgebra::DMatrix;
+mod sequence;
+mod variable;
+mod weights;
 
+use self::sequence::Search;
+use self::variable::{diameters, lengths};
+pub use self::weights::weights;
 use super::figure::{Figure, Figures};
 use super::front::Design;
 use super::wish::Wish;
-use crate::beam::TipSolver;
 use crate::error::Result;
-use crate::linear_program;
 use crate::parallel::in_parallel;
-use crate::rod::{NominalNumber, Part, Rod};
-use crate::section::{Round, Section};
+use crate::rod::Rod;
+use crate::section::Section;
 
-/// Tubes that are tried for a pipe: the nearest ones.
+/// Other designs of the front that the search starts from, evenly from end to end.
+const STARTS: usize = 15;
+/// So many tubes are all tried; of more the nearest ones, of pairs of tubes the nearest to each.
+const ALL_TUBES: usize = 200;
 const TUBES: usize = 8;
 const TUBES_OF_TWO: usize = 4;
-/// What breaking a limit by a share weighs against bettering the goal by that share.
-const PENALTY: f64 = 100.0;
-/// Shares: first and last size of a step, by how much limits are kept at least, and a gain that is
-/// none.
-const FIRST_STEP: f64 = 0.1;
-const LAST_STEP: f64 = 1e-6;
-const MARGIN: f64 = 1e-7;
+/// A gain that is none, and a share by which one end is as good as another.
 const NOTHING: f64 = 1e-5;
-const MOST_STEPS: usize = 80;
+const SAME: f64 = 1e-4;
 
 /// A design between the values of the grid.
 #[derive(Debug, Clone)]
@@ -52,7 +45,8 @@ pub struct Better {
     pub tubes: Vec<String>,
     /// Its figures.
     pub figures: Figures,
-    /// By which share its first goal is better than that of the design it came from.
+    /// By which share its goal, or the weighted geometric mean of its goals, is better than that of
+    /// the design it came from.
     pub gained: f64,
 }
 
@@ -64,135 +58,148 @@ pub struct Refined {
     pub place: usize,
     /// Its figures.
     pub from: Figures,
+    /// What each goal weighed, 1 in all; those of no weight might not lose.
+    pub weights: Vec<f64>,
     /// The best with any tube; none where nothing is gained.
     pub continuous: Option<Better>,
     /// The best with tubes of the catalogue; none where nothing is gained.
     pub catalogue: Option<Better>,
+    /// Designs of the front from which the best with any tube was looked for, and how many of them
+    /// led to it.
+    pub starts: (usize, usize),
+    /// Whether every tube of the catalogue was tried.
+    pub is_every_tube: bool,
 }
 
-/// What may vary.
-#[derive(Debug, Clone, PartialEq)]
-struct Variable {
-    /// The numbers of the rod that it moves, each by how much.
-    moves: Vec<(NominalNumber, f64)>,
-    low: f64,
-    high: f64,
-}
-
-/// Refines the design at `place` of a front.
+/// Refines the design at `place` of a front, bettering its goals by their [`weights`].
 ///
 /// # Errors
 /// What the beam model refuses.
-pub fn refine(wish: &Wish, place: usize, design: &Design) -> Result<Refined> {
-    let mut refined = Refined { place, from: design.figures, continuous: None, catalogue: None };
-    let Ok(rod) = wish.rod(design.index) else { return Ok(refined) };
-    let tubes = wish.choice(design.index).tubes;
-    let is_priced = wish.goals.iter().any(|goal| goal.figure == Figure::Price);
-    let lengths = lengths(wish, &rod);
-    let of_start = Search { wish, from: &design.figures, price: prices(wish, tubes) };
-    // a tube that nobody sells has no price
-    let all = match is_priced {
-        true => lengths.clone(),
-        false => [lengths.clone(), diameters(wish, &rod)].concat(),
+pub fn refine(wish: &Wish, front: &[Design], place: usize, weights: &[f64]) -> Result<Option<Refined>> {
+    let Some(design) = front.get(place) else { return Ok(None) };
+    let mut refined = Refined {
+        place,
+        from: design.figures,
+        weights: weights.to_vec(),
+        continuous: None,
+        catalogue: None,
+        starts: (0, 0),
+        is_every_tube: wish.is_one_tube && wish.tubes.len() <= ALL_TUBES,
     };
-    let (best, figures) = of_start.best(&rod, &all)?;
-    let is_kept = best.pipe1.section == rod.pipe1.section && best.pipe2.section == rod.pipe2.section;
-    let names = |tubes: [usize; 2]| {
-        let mut names = tubes.map(|tube| wish.tubes[tube].name.clone()).to_vec();
-        names.dedup();
-        names
+    let search =
+        |tubes: [usize; 2]| Search { wish, from: &design.figures, weights, price: prices(wish, tubes) };
+    let own = search(wish.choice(design.index).tubes);
+    let worth = |figures: &Figures| if own.is_kept(figures) { own.gain(figures) } else { f64::NEG_INFINITY };
+
+    // no rod of the grid is better than the best of its front
+    let of_grid = (0..front.len()).fold(place, |best, k| {
+        let (new, known) = (worth(&front[k].figures), worth(&front[best].figures));
+        if new > known { k } else { best }
+    });
+    let starts = starts(front, [place, of_grid]);
+    let found = in_parallel(starts.len(), |k| from_design(wish, &front[starts[k]], &search));
+    let mut ends = Vec::new();
+    for found in found {
+        ends.extend(found?);
+    }
+    // the first of equal ones is the design's own
+    let gains: Vec<f64> = ends.iter().map(|end: &End| worth(&end.figures)).collect();
+    let most = gains.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let Some(best) = ends.iter().zip(&gains).find(|(_, gain)| **gain >= most - SAME).map(|(end, _)| end)
+    else {
+        return Ok(Some(refined));
     };
+    refined.starts = (ends.len(), gains.iter().filter(|gain| **gain >= most - SAME).count());
+
     let better = |rod: Rod, tubes: Vec<String>, figures: Figures| {
-        let gained = of_start.gain(&figures);
-        (gained > NOTHING && of_start.is_kept(&figures)).then_some(Better { rod, tubes, figures, gained })
+        let gained = worth(&figures);
+        (gained > NOTHING).then_some(Better { rod, tubes, figures, gained })
     };
-    let of_catalogue = nearest(wish, tubes, &best);
+    let of_catalogue = if refined.is_every_tube {
+        (0..wish.tubes.len()).map(|tube| [tube; 2]).collect()
+    } else {
+        nearest(wish, [wish.choice(design.index).tubes, best.tubes], &best.rod)
+    };
     let tried = in_parallel(of_catalogue.len(), |k| {
         let [first, second] = of_catalogue[k].map(|tube| wish.tubes[tube].pipe.clone());
-        let with = Rod { pipe1: first.clone(), bend: first, pipe2: second, ..best.clone() };
-        let search = Search { price: prices(wish, of_catalogue[k]), ..of_start };
-        search.best(&with, &lengths)
+        let with = Rod { pipe1: first.clone(), bend: first, pipe2: second, ..best.rod.clone() };
+        search(of_catalogue[k]).best(&with, &lengths(wish, &with))
     });
     for (tubes, found) in of_catalogue.iter().zip(tried) {
         let (rod, figures) = found?;
         let known = refined.catalogue.as_ref().map_or(0.0, |known| known.gained);
-        let new = better(rod, names(*tubes), figures);
+        let new = better(rod, names(wish, *tubes), figures);
         if new.as_ref().is_some_and(|new| new.gained > known) {
             refined.catalogue = new;
         }
     }
-    refined.continuous = better(best, if is_kept { names(tubes) } else { Vec::new() }, figures);
+    let grid = &front[of_grid];
+    if worth(&grid.figures) > refined.catalogue.as_ref().map_or(0.0, |known| known.gained)
+        && let Ok(rod) = wish.rod(grid.index)
+    {
+        refined.catalogue = better(rod, names(wish, wish.choice(grid.index).tubes), grid.figures);
+    }
+    let tubes = if best.is_of_catalogue { names(wish, best.tubes) } else { Vec::new() };
+    refined.continuous = better(best.rod.clone(), tubes, best.figures);
     // what can be bought is one of those that could be
     let known = refined.continuous.as_ref().map_or(0.0, |known| known.gained);
     if refined.catalogue.as_ref().is_some_and(|bought| bought.gained > known) {
         refined.continuous.clone_from(&refined.catalogue);
     }
-    Ok(refined)
+    Ok(Some(refined))
 }
 
-/// Lengths, angle, bend and tip, where they are ranges.
-fn lengths(wish: &Wish, rod: &Rod) -> Vec<Variable> {
-    let all = [
-        (NominalNumber::LengthL1, &wish.l1, rod.l1),
-        (NominalNumber::LengthL2, &wish.l2, rod.l2),
-        (NominalNumber::Angle, &wish.gamma, rod.gamma),
-        (NominalNumber::BendRadius, &wish.bend_radius, rod.bend_radius),
-        (NominalNumber::TipMass, &wish.tip_mass, rod.tip_mass),
-    ];
-    let varies = |(k, (number, values, now)): (usize, (NominalNumber, &Vec<f64>, f64))| {
-        let positive = || values.iter().copied().filter(|value| *value > 0.0);
-        let (low, high) = (positive().fold(f64::INFINITY, f64::min), positive().fold(0.0, f64::max));
-        (wish.is_range[k] && low < high && now > 0.0).then(|| Variable {
-            moves: vec![(number, 1.0)],
-            low,
-            high,
-        })
-    };
-    all.into_iter().enumerate().filter_map(varies).collect()
+/// Where a search ended.
+struct End {
+    rod: Rod,
+    figures: Figures,
+    /// Those that it began with, and whether it still has them.
+    tubes: [usize; 2],
+    is_of_catalogue: bool,
 }
 
-/// Outer diameter (at its wall) and wall (at its outer diameter) of the tubes.
-fn diameters(wish: &Wish, rod: &Rod) -> Vec<Variable> {
-    let of = |parts: &[Part], material: &str| -> Vec<Variable> {
-        let rounds: Vec<&Round> = (wish.tubes.iter())
-            .filter(|tube| tube.pipe.material.name == material)
-            .filter_map(|tube| tube.pipe.section.as_round())
-            .filter(|round| round.inner_diameter > 0.0)
-            .collect();
-        let between = |value: fn(&Round) -> f64| {
-            let all = || rounds.iter().map(|round| value(round));
-            (all().fold(f64::INFINITY, f64::min), all().fold(0.0, f64::max))
-        };
-        let outer = parts
-            .iter()
-            .flat_map(|part| {
-                [(NominalNumber::OuterDiameter(*part), 1.0), (NominalNumber::InnerDiameter(*part), 1.0)]
-            })
-            .collect();
-        let wall = parts.iter().map(|part| (NominalNumber::InnerDiameter(*part), -2.0)).collect();
-        let all = [(outer, between(|round| round.outer_diameter)), (wall, between(Round::wall))];
-        let varies = |(moves, (low, high))| (low < high).then_some(Variable { moves, low, high });
-        all.into_iter().filter_map(varies).collect()
+fn from_design<'a>(
+    wish: &Wish,
+    design: &Design,
+    search: &impl Fn([usize; 2]) -> Search<'a>,
+) -> Result<Option<End>> {
+    let Ok(rod) = wish.rod(design.index) else { return Ok(None) };
+    let tubes = wish.choice(design.index).tubes;
+    let mut all = lengths(wish, &rod);
+    // a tube that nobody sells has no price
+    if !wish.goals.iter().any(|goal| goal.figure == Figure::Price) {
+        all.extend(diameters(wish, &rod));
+    }
+    let (best, figures) = search(tubes).best(&rod, &all)?;
+    let is_kept = best.pipe1.section == rod.pipe1.section && best.pipe2.section == rod.pipe2.section;
+    Ok(Some(End { rod: best, figures, tubes, is_of_catalogue: is_kept }))
+}
+
+/// Places on the front: these, then others evenly from end to end.
+fn starts(front: &[Design], first: [usize; 2]) -> Vec<usize> {
+    let last = front.len() - 1;
+    let others: Vec<usize> = match front.len() {
+        count if count <= STARTS + 1 => (0..count).collect(),
+        _ => (0..STARTS).map(|k| k * last / (STARTS - 1)).collect(),
     };
-    let is_tube = |section: &Section| section.as_round().is_some_and(|round| round.inner_diameter > 0.0);
-    if !is_tube(&rod.pipe1.section) || !is_tube(&rod.pipe2.section) {
-        return Vec::new();
-    }
-    match wish.is_one_tube {
-        true => of(&[Part::Pipe1, Part::Pipe2], &rod.pipe1.material.name),
-        false => [(Part::Pipe1, &rod.pipe1), (Part::Pipe2, &rod.pipe2)]
-            .iter()
-            .flat_map(|(part, pipe)| of(&[*part], &pipe.material.name))
-            .collect(),
-    }
+    let mut all = first.to_vec();
+    all.extend(others.into_iter().filter(|other| !first.contains(other)));
+    all.dedup();
+    all
+}
+
+fn names(wish: &Wish, tubes: [usize; 2]) -> Vec<String> {
+    let mut names = tubes.map(|tube| wish.tubes[tube].name.clone()).to_vec();
+    names.dedup();
+    names
 }
 
 fn prices(wish: &Wish, tubes: [usize; 2]) -> [f64; 2] {
     tubes.map(|tube| wish.tubes[tube].price_per_m.unwrap_or(f64::NAN))
 }
 
-/// Combinations of tubes near those of `rod`, and the ones that the design had.
-fn nearest(wish: &Wish, had: [usize; 2], rod: &Rod) -> Vec<[usize; 2]> {
+/// Combinations of tubes near those of `rod`, and the ones that designs had.
+fn nearest(wish: &Wish, had: [[usize; 2]; 2], rod: &Rod) -> Vec<[usize; 2]> {
     let near = |pipe: &crate::rod::Pipe, count: usize| -> Vec<usize> {
         let ln = |section: &Section| {
             section.as_round().map_or([f64::NAN; 2], |round| [round.outer_diameter.ln(), round.wall().ln()])
@@ -208,7 +215,7 @@ fn nearest(wish: &Wish, had: [usize; 2], rod: &Rod) -> Vec<[usize; 2]> {
         tubes.truncate(count);
         tubes
     };
-    let mut all = vec![had];
+    let mut all = had.to_vec();
     match wish.is_one_tube {
         true => all.extend(near(&rod.pipe1, TUBES).into_iter().map(|tube| [tube; 2])),
         false => {
@@ -217,209 +224,16 @@ fn nearest(wish: &Wish, had: [usize; 2], rod: &Rod) -> Vec<[usize; 2]> {
             all.extend(near(&rod.pipe1, TUBES_OF_TWO).into_iter().flat_map(pairs));
         }
     }
+    all.dedup();
     all
-}
-
-/// What must hold and what counts, beside a design.
-#[derive(Clone, Copy)]
-struct Search<'a> {
-    wish: &'a Wish,
-    from: &'a Figures,
-    /// Per metre of each pipe.
-    price: [f64; 2],
-}
-
-impl Search<'_> {
-    /// The rod from which no step betters the first goal.
-    fn best(&self, from: &Rod, variables: &[Variable]) -> Result<(Rod, Figures)> {
-        let mut solver = TipSolver::default();
-        let mut figures = |rod: &Rod| -> Result<Option<Figures>> {
-            if self.wish.possible(rod).is_err() || !is_tube(rod) {
-                return Ok(None);
-            }
-            let mut figures = Figures::of(rod, &mut solver)?.with_frequency(rod)?;
-            figures.set(Figure::Price, self.price[0] * rod.l1 + self.price[1] * rod.l2);
-            Ok(Some(figures))
-        };
-        let (mut rod, mut region) = (from.clone(), FIRST_STEP);
-        let Some(mut here) = figures(&rod)? else { return Ok((rod, *self.from)) };
-        for _ in 0..MOST_STEPS {
-            if region < LAST_STEP || variables.is_empty() {
-                break;
-            }
-            let terms = self.terms(&rod, &here, variables)?;
-            // within this region until a step betters
-            while region >= LAST_STEP {
-                let Some((step, promised)) = terms.step(region, &rod, variables) else {
-                    return Ok((rod, here));
-                };
-                if promised < 1e-3 * LAST_STEP {
-                    return Ok((rod, here));
-                }
-                let moved = moved(&rod, variables, &step);
-                let kept = match figures(&moved)? {
-                    Some(there) => (self.merit(&here) - self.merit(&there), Some((moved, there))),
-                    None => (f64::NEG_INFINITY, None),
-                };
-                match kept {
-                    (gain, Some((moved, there))) if gain > 0.1 * promised => {
-                        (rod, here) = (moved, there);
-                        if gain > 0.75 * promised {
-                            region = (2.0 * region).min(0.5);
-                        }
-                        break;
-                    }
-                    _ => region *= 0.4,
-                }
-            }
-        }
-        Ok((rod, here))
-    }
-
-    /// ln of the first goal, such that less is better, and of every other figure over what it may
-    /// be.
-    fn logarithms(&self, figures: &Figures) -> (f64, Vec<f64>) {
-        let ln = |figure: Figure| figures.get(figure).unwrap_or(f64::NAN).ln();
-        let sign = |is_large: bool| if is_large { -1.0 } else { 1.0 };
-        let goal = self.wish.goals[0];
-        let others = self.wish.goals[1..].iter().map(|goal| {
-            let least = self.from.get(goal.figure).unwrap_or(f64::NAN).ln();
-            sign(goal.is_maximised) * (ln(goal.figure) - least)
-        });
-        let limits = self.wish.limits.iter();
-        let limits = limits.map(|limit| sign(limit.is_least) * (ln(limit.figure) - limit.value.ln()));
-        (sign(goal.is_maximised) * ln(goal.figure), others.chain(limits).collect())
-    }
-
-    fn merit(&self, figures: &Figures) -> f64 {
-        let (goal, others) = self.logarithms(figures);
-        let worst = others.iter().map(|over| over + MARGIN).fold(0.0, f64::max);
-        goal + PENALTY * worst
-    }
-
-    fn gain(&self, figures: &Figures) -> f64 {
-        let (goal, from) = (self.logarithms(figures).0, self.logarithms(self.from).0);
-        1.0 - (goal - from).exp()
-    }
-
-    fn is_kept(&self, figures: &Figures) -> bool {
-        self.logarithms(figures).1.iter().all(|over| *over <= 1e-12)
-    }
-
-    /// The linear program about `rod`.
-    fn terms(&self, rod: &Rod, figures: &Figures, variables: &[Variable]) -> Result<Terms> {
-        let mut numbers: Vec<NominalNumber> = Vec::new();
-        for (number, _) in variables.iter().flat_map(|variable| &variable.moves) {
-            if !numbers.contains(number) {
-                numbers.push(number.clone());
-            }
-        }
-        let is_frequency = |figure: Figure| figure == Figure::FirstFrequency;
-        let swings = self.wish.goals.iter().any(|goal| is_frequency(goal.figure))
-            || self.wish.limits.iter().any(|limit| is_frequency(limit.figure));
-        let slopes = Figures::slopes_by(rod, &numbers, swings)?;
-        // ∂ln f/∂ln x
-        let slope = |figure: Figure, variable: &Variable| {
-            let of = |(number, by): &(NominalNumber, f64)| {
-                let known = slopes.iter().find(|(known, _)| known == number);
-                let slope = match (figure, number) {
-                    (Figure::Price, NominalNumber::LengthL1) => self.price[0],
-                    (Figure::Price, NominalNumber::LengthL2) => self.price[1],
-                    (Figure::Price, _) => 0.0,
-                    _ => known.map_or(0.0, |(_, slopes)| slopes.get(figure).unwrap_or(0.0)),
-                };
-                by * slope
-            };
-            let value = figures.get(figure).unwrap_or(f64::NAN);
-            let slope = variable.moves.iter().map(of).sum::<f64>() * variable.value(rod) / value;
-            if slope.is_finite() { slope } else { 0.0 }
-        };
-        let row = |figure: Figure, is_large: bool| -> Vec<f64> {
-            let sign = if is_large { -1.0 } else { 1.0 };
-            variables.iter().map(|variable| sign * slope(figure, variable)).collect()
-        };
-        let goals = self.wish.goals.iter().map(|goal| row(goal.figure, goal.is_maximised));
-        let mut rows: Vec<Vec<f64>> = goals.collect();
-        let goal = rows.remove(0);
-        rows.extend(self.wish.limits.iter().map(|limit| row(limit.figure, limit.is_least)));
-        let over: Vec<f64> = self.logarithms(figures).1.iter().map(|over| over + MARGIN).collect();
-        Ok(Terms { goal, rows, over })
-    }
-}
-
-/// s₀, s_i and ln f_i − ln b_i.
-struct Terms {
-    goal: Vec<f64>,
-    rows: Vec<Vec<f64>>,
-    over: Vec<f64>,
-}
-
-impl Terms {
-    /// The step Δ within `region`, and how much it betters the merit if everything is as linear as
-    /// assumed.
-    fn step(&self, region: f64, rod: &Rod, variables: &[Variable]) -> Option<(Vec<f64>, f64)> {
-        let n = variables.len();
-        // the last one is t
-        let mut goal = self.goal.clone();
-        goal.push(PENALTY);
-        let a = DMatrix::from_fn(self.rows.len(), n + 1, |i, j| if j < n { self.rows[i][j] } else { -1.0 });
-        let b: Vec<f64> = self.over.iter().map(|over| -over).collect();
-        let (mut low, mut high) = (Vec::new(), Vec::new());
-        for variable in variables {
-            let now = variable.value(rod);
-            low.push((variable.low / now).ln().max(-region).min(0.0));
-            high.push((variable.high / now).ln().min(region).max(0.0));
-        }
-        low.push(0.0);
-        high.push(self.over.iter().copied().fold(0.0, f64::max) + 10.0);
-        let mut best = linear_program::minimise(&goal, &a, &b, &low, &high)?;
-        let worst = best.pop()?;
-        let before = PENALTY * self.over.iter().copied().fold(0.0, f64::max);
-        let gain = -self.goal.iter().zip(&best).map(|(s, step)| s * step).sum::<f64>();
-        Some((best, gain + before - PENALTY * worst))
-    }
-}
-
-impl Variable {
-    /// Its value on `rod`: that of its first number, or of the wall.
-    fn value(&self, rod: &Rod) -> f64 {
-        let number = match &self.moves[0] {
-            (NominalNumber::InnerDiameter(part), by) if *by < 0.0 => NominalNumber::Wall(*part),
-            (number, _) => number.clone(),
-        };
-        rod.value_of(&number).unwrap_or(f64::NAN)
-    }
-}
-
-/// `rod` after a step in the logarithms of the variables.
-fn moved(rod: &Rod, variables: &[Variable], step: &[f64]) -> Rod {
-    let mut moved = rod.clone();
-    for (variable, step) in variables.iter().zip(step) {
-        let now = variable.value(rod);
-        let change = (now * step.exp()).clamp(variable.low, variable.high) - now;
-        for (number, by) in &variable.moves {
-            let value = moved.value_of(number).unwrap_or(f64::NAN) + by * change;
-            moved = moved.with(number, value);
-        }
-    }
-    // what sits along the rod stays where the design file has it
-    moved.masses.clone_from(&rod.masses);
-    moved.joints.clone_from(&rod.joints);
-    moved
-}
-
-/// Walls that are no more than the tube.
-fn is_tube(rod: &Rod) -> bool {
-    [&rod.pipe1, &rod.pipe2].iter().all(|pipe| {
-        let round = pipe.section.as_round();
-        round.is_none_or(|round| round.inner_diameter >= 0.0 && round.inner_diameter < round.outer_diameter)
-    })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::design::{Searched, search};
+    use crate::beam::TipSolver;
+    use crate::design::{Goal, Searched, search};
+    use crate::section::Round;
 
     const TUBES: &str = "name,material,outer_diameter_mm,inner_diameter_mm\nthin,steel,30,28\nmiddle,steel,32,29\n\
                          wide,steel,36,34\n";
@@ -441,7 +255,7 @@ mod tests {
         let front = search(&wish, Searched::All, &|_| {}).unwrap().front;
         let place = 7;
         let start = front[place];
-        let refined = refine(&wish, place, &start).unwrap();
+        let refined = refine(&wish, &front, place, &[1.0, 0.0]).unwrap().unwrap();
         let (any, bought) = (refined.continuous.unwrap(), refined.catalogue.unwrap());
         assert!(any.gained >= bought.gained && bought.gained > 0.002, "{} {}", any.gained, bought.gained);
         for better in [&any, &bought] {
@@ -481,6 +295,45 @@ mod tests {
         assert!(checked > 500, "{checked}");
     }
 
+    /// Goals that are weighed may make up for one another: then other designs of the front count
+    /// too.
+    #[test]
+    fn no_rod_of_the_grid_is_better_by_any_weights() {
+        let wish = wish("{ from = 100, to = 250, step = 50 }", "max_mass_g = 700");
+        let front = search(&wish, Searched::All, &|_| {}).unwrap().front;
+        let mut gained = 0;
+        for (asked, given) in
+            [("c_rod_um", [1.0, 0.0]), ("reach_mm", [0.0, 1.0]), ("c_rod_um=3,reach_mm=1", [0.75, 0.25])]
+        {
+            let weights = weights(&wish, Some(asked)).unwrap();
+            assert_eq!(weights, given);
+            let start = &front[3];
+            let refined = refine(&wish, &front, 3, &weights).unwrap().unwrap();
+            let score = |figures: &Figures| {
+                let ln = |figure: Figure| figures.get(figure).unwrap().ln();
+                weights[0] * ln(Figure::CRod) - weights[1] * ln(Figure::Reach)
+            };
+            let may_be = |design: &&Design| {
+                let is_no_worse = |goal: &Goal| goal.cost(&design.figures) <= goal.cost(&start.figures);
+                wish.goals.iter().zip(&weights).all(|(goal, weight)| *weight > 0.0 || is_no_worse(goal))
+            };
+            let best = front.iter().filter(may_be).map(|d| score(&d.figures)).fold(f64::INFINITY, f64::min);
+            // where nothing is gained the design stays
+            let reached = |better: &Option<Better>| {
+                score(better.as_ref().map_or(&start.figures, |better| &better.figures))
+            };
+            let (any, bought) = (reached(&refined.continuous), reached(&refined.catalogue));
+            assert!(any <= bought && bought <= best + 1e-4, "{asked}: {any} {bought} {best}");
+            gained += usize::from(refined.continuous.is_some());
+            assert!(refined.is_every_tube && refined.starts.0 > 3 && refined.starts.1 > 0);
+        }
+        assert!(gained >= 2, "{gained}");
+        for wrong in ["mass_g", "c_rod_um=0", "c_rod_um=x", "c_rod_um,c_rod_um", ""] {
+            let error = weights(&wish, Some(wrong)).unwrap_err().to_string();
+            assert!(error.contains("refine-goal"), "{error}");
+        }
+    }
+
     #[test]
     fn where_nothing_may_vary_nothing_is_gained() {
         let text = "[geometry]\nl1_mm = 150\nl2_mm = 500\n[catalogue]\nfile = \"t.csv\"\n[objectives]\n\
@@ -488,7 +341,7 @@ mod tests {
         let one = &TUBES[..TUBES.find("middle").unwrap()];
         let wish = Wish::from_toml("d.toml", text, &|name| Ok((name.to_owned(), one.to_owned()))).unwrap();
         let front = search(&wish, Searched::All, &|_| {}).unwrap().front;
-        let refined = refine(&wish, 0, &front[0]).unwrap();
+        let refined = refine(&wish, &front, 0, &[1.0]).unwrap().unwrap();
         assert!(refined.continuous.is_none() && refined.catalogue.is_none());
     }
 }

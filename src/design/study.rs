@@ -3,7 +3,7 @@
 use super::figure::{Figure, Figures, Goal};
 use super::front::Design;
 use super::intervals::{Intervals, indistinguishable};
-use super::refine::{Refined, refine};
+use super::refine::{Refined, refine, weights};
 use super::search::{Found, Searched, search};
 use super::wish::Wish;
 use crate::beam::TipSolver;
@@ -121,20 +121,21 @@ impl Study {
         Ok(Study { wish, found, shown, base, refined: None })
     }
 
-    /// Refines the design at `place` of the front, from 0.
+    /// Refines the design at `place` of the front, from 0, for `goal`: as [`weights`] reads it.
     ///
     /// # Errors
-    /// [`Error::Argument`] for a place beyond the front; as [`refine`].
-    pub fn with_refined(mut self, place: usize) -> Result<Study> {
-        let Some(design) = self.found.front.get(place) else {
-            return Err(Error::Argument {
+    /// [`Error::Argument`] for a place beyond the front; as [`refine`] and [`weights`].
+    pub fn with_refined(mut self, place: usize, goal: Option<&str>) -> Result<Study> {
+        let weights = weights(&self.wish, goal)?;
+        self.refined = refine(&self.wish, &self.found.front, place, &weights)?;
+        match self.refined {
+            Some(_) => Ok(self),
+            None => Err(Error::Argument {
                 name: "refine",
                 found: format!("design {}", place + 1),
                 expected: format!("one of the {} designs of the front", self.found.front.len()),
-            });
-        };
-        self.refined = Some(refine(&self.wish, place, design)?);
-        Ok(self)
+            }),
+        }
     }
 
     /// The first goal, and the second where there is one.

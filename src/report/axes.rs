@@ -1,10 +1,10 @@
 //! What the axes of a chart span, and how high it is.
 
-use super::chart::{Axis, Chart, Mark, Range};
+use super::chart::{Axis, Chart, Direction, Mark, Range};
 use super::frame::NOTE;
 use super::labels::text_width_px;
 use super::marks;
-use super::prefix::prefixed;
+use super::prefix::{micrometres, prefixed};
 use super::scale::{Extent, Scale, drawable, extent};
 
 /// Both scales and the height of the plotting area. A drawing of things shows at least `least_unit`
@@ -21,23 +21,53 @@ pub(super) fn scales(chart: &Chart, width: f64, least_unit: f64) -> (Scale, Scal
         return equal_scales(chart, xs, ys, width, least_unit);
     }
     let snug = has_bars(chart);
-    let x = roomy(width, count(width, 62.0), |count| scale(&chart.x, xs, count, snug));
-    (x, scale(&chart.y, ys, count(height, 36.0), snug), height)
+    // numbers at the ends of bars are in the unit of their axis, which then stays
+    let prefixed = |axis: &Axis, scale: Scale, direction: Direction| match has_numbers(chart, direction) {
+        true => scale,
+        false => micrometres(&scale, &axis.label).unwrap_or_else(|| prefixed(scale, &axis.label)),
+    };
+    let x = roomy(width, count(width, 62.0), |count| {
+        prefixed(&chart.x, scale(&chart.x, xs, count, snug), Direction::Right)
+    });
+    let x = if chart.x.names.is_empty() { x } else { thinned(x, width) };
+    let y = prefixed(&chart.y, scale(&chart.y, ys, count(height, 36.0), snug), Direction::Up);
+    (x, y, height)
 }
 
 /// The scale along x with at most about `count` ticks, and no more than there is room for their
 /// labels.
 fn roomy(width: f64, count: usize, scale: impl Fn(usize) -> Scale) -> Scale {
-    let room = |x: &Scale| {
-        let widest = x.ticks.iter().map(|(_, label)| text_width_px(label, NOTE.size_px)).fold(0.0, f64::max);
-        (widest + 10.0) * x.ticks.len().saturating_sub(1) as f64 <= width
-    };
-    (2..=count).rev().map(&scale).find(room).unwrap_or_else(|| scale(1))
+    (2..=count).rev().map(&scale).find(|x| has_room(&x.ticks, width)).unwrap_or_else(|| scale(1))
+}
+
+/// Whether the texts of ticks along x stand beside one another.
+pub(super) fn has_room(ticks: &[(f64, String)], width: f64) -> bool {
+    let widest = ticks.iter().map(|(_, label)| text_width_px(label, NOTE.size_px)).fold(0.0, f64::max);
+    (widest + 10.0) * ticks.len().saturating_sub(1) as f64 <= width
 }
 
 /// Whether any bars stand on the chart.
 pub(super) fn has_bars(chart: &Chart) -> bool {
     chart.marks.iter().any(|mark| matches!(mark, Mark::Bars { .. }))
+}
+
+/// The scale with every second of its names, or third …, so that all have room; zero keeps its
+/// name.
+fn thinned(scale: Scale, width: f64) -> Scale {
+    let zero = scale.ticks.iter().position(|(at, _)| *at == 0.0).unwrap_or(0);
+    let every = |step: usize| -> Vec<(f64, String)> {
+        scale.ticks.iter().skip(zero % step).step_by(step).cloned().collect()
+    };
+    let found = (1..=scale.ticks.len()).map(every).find(|ticks| has_room(ticks, width));
+    Scale { ticks: found.unwrap_or_default(), ..scale }
+}
+
+/// Whether bars that grow this way have their numbers at their ends.
+fn has_numbers(chart: &Chart, way: Direction) -> bool {
+    chart.marks.iter().any(|mark| match mark {
+        Mark::Bars { bars, direction, .. } => *direction == way && bars.iter().any(|b| !b.text.is_empty()),
+        _ => false,
+    })
 }
 
 /// The scale of one axis; `snug` does without rounding to whole ticks, which bars do not need.
@@ -47,15 +77,15 @@ fn scale(axis: &Axis, data: Extent, count: usize, snug: bool) -> Scale {
         let named = axis.names.iter().filter(|(at, _)| drawable(*at)).cloned().collect();
         return Scale { ticks: named, ..Scale::fixed(first - 0.6, last + 0.6, count) };
     }
-    let scale = match axis.range {
+    match axis.range {
         Range::Auto | Range::AutoWithZero if axis.log => Scale::log_rounded(low, high, count),
         Range::Fixed(from, to) if axis.log => Scale::log(from, to, count),
         Range::Auto | Range::AutoWithZero if snug => Scale::fixed(low, high, count),
         Range::Auto => Scale::rounded(low, high, count),
         Range::AutoWithZero => Scale::rounded(low.min(0.0), high.max(0.0), count),
         Range::Fixed(from, to) => Scale::fixed(from, to, count),
-    };
-    prefixed(scale.with_step(axis.step), &axis.label)
+    }
+    .with_step(axis.step)
 }
 
 /// One unit of x as long as one unit of y: the height follows from the width, within reason.

@@ -50,6 +50,9 @@ pub struct Figure {
     pub columns: usize,
     /// One legend below all panels in place of one below each.
     pub shared_legend: bool,
+    /// Panels of one column belong together, and stay together where there is room for one column
+    /// alone.
+    pub by_column: bool,
 }
 
 impl Figure {
@@ -77,6 +80,8 @@ impl From<Chart> for Figure {
 pub struct Axis {
     /// Quantity and unit, for example "deflection / µm".
     pub label: String,
+    /// The label is not written: the panel below, or the one to the left, has it on the same axis.
+    pub is_label_hidden: bool,
     /// What the axis spans.
     pub range: Range,
     /// Distance between ticks, for example 90 for angles in degrees; `None` chooses a 1-2-5 number.

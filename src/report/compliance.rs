@@ -3,6 +3,7 @@
 mod numbers;
 pub(super) mod steps;
 
+pub(super) use numbers::in_um;
 pub use numbers::number;
 
 use nalgebra::{Matrix3, Vector3};

@@ -13,6 +13,8 @@ pub(super) struct Frame {
     pub(super) area: Area,
     pub(super) x: Scale,
     pub(super) y: Scale,
+    /// Units of x and y that a reader may switch; empty where there are none.
+    pub(super) units: [String; 2],
 }
 
 impl Frame {

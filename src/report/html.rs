@@ -4,7 +4,9 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::chart::Figure;
 use super::document::{Block, Card, Report, Section, Tone};
+use super::draw::{Medium, draw};
 use super::file_name::{file_name, page_name};
+use super::switch::UNITS;
 use super::table::Table;
 
 /// The whole page: style sheet, pictures and what little script there is are inside it, and it may
@@ -30,7 +32,7 @@ pub fn page(report: &Report) -> String {
                 title { (report.title) }
                 style { (PreEscaped(include_str!("html/page.css"))) }
             }
-            body {
+            body data-units=(units()) {
                 a.skip href="#result" { "To the result" }
                 header {
                     h1 { (report.title) }
@@ -83,6 +85,12 @@ fn fragment_style() -> String {
 const NOTHING_FETCHED: &str = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'";
 /// By which the program knows its own pages.
 pub const GENERATOR: &str = "rodcal";
+
+/// The units that the script switches between, as JSON.
+fn units() -> String {
+    let units = UNITS.iter().map(|(unit, all)| ((*unit).to_owned(), serde_json::json!(all)));
+    serde_json::Value::Object(units.collect()).to_string()
+}
 
 fn cards(cards: &[Card]) -> Markup {
     let class = |tone: Tone| match tone {
@@ -192,8 +200,16 @@ fn section_markup(
 fn figure_markup(beside: Beside, figure: &Figure, number: usize) -> Markup {
     html! {
         figure {
-            // Our own SVG: its texts are escaped where it is drawn, and it holds no ids.
-            div.wide tabindex="0" role="group" aria-label=(format!("Figure {number}")) { (PreEscaped(figure.svg())) }
+            // Our own SVG: its texts are escaped where it is drawn, and it holds no ids. One of the
+            // two is seen.
+            div.picture role="group" aria-label=(format!("Figure {number}")) {
+                @if let Beside::Files(_) = beside {
+                    (PreEscaped(draw(figure, Medium::Page)))
+                    (PreEscaped(draw(figure, Medium::Telephone)))
+                } @else {
+                    (PreEscaped(figure.svg()))
+                }
+            }
             figcaption {
                 b { "Figure " (number) } ". " (figure.caption) " "
                 @if let Beside::Files(page) = beside {
@@ -212,7 +228,7 @@ const FEW_ROWS: usize = 8;
 fn table_markup(beside: Beside, table: &Table, number: usize) -> Markup {
     let file = |page: &str, kind: &str| format!("{}.{kind}", file_name(page, "table", number, &table.name));
     html! {
-        details open[table.rows.len() <= FEW_ROWS] {
+        details open[table.rows.len() <= FEW_ROWS && !table.is_folded] {
             summary { b { "Table " (number) } ". " (table.caption) }
             div {
                 (table.html(number))
@@ -230,7 +246,7 @@ fn anchor(section: usize) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::chart::{Chart, Mark};
+    use super::super::chart::{Bar, Chart, Direction, Mark, Style};
     use super::super::{Report, Section};
     use super::*;
 
@@ -276,6 +292,30 @@ mod tests {
         }
         assert!(fragment.starts_with("<div class=\"rodcal\">") && fragment.ends_with("</div>"));
         assert!(fragment.contains("<svg") && fragment.contains("Table 1"));
+    }
+
+    #[test]
+    fn a_page_has_its_pictures_in_every_unit_and_its_files_in_one() {
+        let bar = Bar { from: 0.0, to: 1.0, value: 30.0, text: "30.0".into(), ..Bar::default() };
+        let mark = Mark::Bars {
+            label: "b".into(),
+            bars: vec![bar],
+            direction: Direction::Right,
+            style: Style::nth(0),
+        };
+        let figure = Figure::from(Chart::new("t", "deflection / µm", "row").with(mark));
+        let file = figure.svg();
+        let section = Section::new("S", vec![Block::Figure(figure)]);
+        let page = page(&Report { sections: vec![section], ..Report::default() });
+        let label = |unit: &str| format!(">\ndeflection / {unit}\n");
+        for unit in ["mm", "mil"] {
+            assert!(page.contains(&label(unit)) && !file.contains(&label(unit)), "{unit}");
+            let hidden = format!("<g data-of=\"µm\" data-unit=\"{unit}\" display=\"none\">");
+            // grid and ticks, wide and narrow
+            assert_eq!(page.matches(&hidden).count(), 4);
+        }
+        assert!(page.contains("<g data-number=\"µm\">") && !file.contains("<g "));
+        assert!(page.contains("data-units=\"{&quot;µm&quot;:[[&quot;µm&quot;,1.0]"));
     }
 
     #[test]

@@ -51,13 +51,9 @@ pub(super) fn extents(chart: &Chart, width_px: f64) -> (Extent, Extent) {
             }
             Mark::Bars { bars, direction: Direction::Up, .. } => {
                 xs.extend(foot_extent(bars));
-                ys.extend(bar_extent(bars, 0.06));
+                ys.extend(bar_extent(bars.iter(), 0.06));
             }
-            Mark::Bars { bars, direction: Direction::Right, .. } => {
-                let text_px = bars.iter().map(|b| text_width_px(&b.text, NOTE.size_px)).fold(0.0, f64::max);
-                xs.extend(bar_extent(bars, (text_px + 8.0) / (width_px - 2.0 * text_px).max(40.0)));
-                ys.extend(foot_extent(bars));
-            }
+            Mark::Bars { bars, direction: Direction::Right, .. } => ys.extend(foot_extent(bars)),
             Mark::Horizontal { at, .. } => ys.push(*at),
             Mark::Vertical { at, .. } | Mark::Event { at, .. } => xs.push(*at),
             Mark::Stretch { from, to, .. } => xs.extend([*from, *to]),
@@ -75,13 +71,24 @@ pub(super) fn extents(chart: &Chart, width_px: f64) -> (Extent, Extent) {
             }
         }
     }
+    // the numbers of one kind of bar need room beyond those of another
+    let to_the_right = || {
+        chart.marks.iter().flat_map(|mark| match mark {
+            Mark::Bars { bars, direction: Direction::Right, .. } => bars.as_slice(),
+            _ => &[],
+        })
+    };
+    if to_the_right().next().is_some() {
+        let text_px = to_the_right().map(|b| text_width_px(&b.text, NOTE.size_px)).fold(0.0, f64::max);
+        xs.extend(bar_extent(to_the_right(), (text_px + 8.0) / (width_px - 2.0 * text_px).max(40.0)));
+    }
     let seen = |log: bool| move |v: &f64| !log || *v > 0.0;
     (extent(xs.into_iter().filter(seen(chart.x.log))), extent(ys.into_iter().filter(seen(chart.y.log))))
 }
 
 /// Zero and all values, with room for the texts beyond them as a part of the span.
-fn bar_extent(bars: &[Bar], text_part: f64) -> [f64; 2] {
-    let (low, high) = extent(bars.iter().flat_map(|b| [b.base, b.value])).unwrap_or((0.0, 0.0));
+fn bar_extent<'a>(bars: impl Iterator<Item = &'a Bar>, text_part: f64) -> [f64; 2] {
+    let (low, high) = extent(bars.flat_map(|b| [b.base, b.value])).unwrap_or((0.0, 0.0));
     let (low, high) = (low.min(0.0), high.max(0.0));
     let room = text_part * (high - low);
     [if low < 0.0 { low - room } else { 0.0 }, if high > 0.0 { high + room } else { 0.0 }]
@@ -402,8 +409,29 @@ fn whole_bar(
         Direction::Right if value < 0.0 && has_room => ([area.left - 5.0, middle_y], Anchor::Right),
         Direction::Right => ([area.right + 5.0, middle_y], Anchor::Left),
     };
+    let unit = match direction {
+        Direction::Up => &frame.units[1],
+        Direction::Right => &frame.units[0],
+    };
+    let is_number = !unit.is_empty() && !b.text.is_empty();
+    if is_number {
+        canvas.begin_number(unit);
+    }
     canvas.text(at, &b.text, Lettering { anchor, ..NOTE }, Rgb::INK);
+    if is_number {
+        canvas.end_group();
+    }
     labels.add_text(area);
+    let width = text_width_px(&b.text, NOTE.size_px);
+    let left = match anchor {
+        Anchor::Left => at[0],
+        Anchor::Middle => at[0] - 0.5 * width,
+        Anchor::Right => at[0] - width,
+    };
+    let (top, bottom) = (at[1] - 0.5 * NOTE_LINE_PX, at[1] + 0.5 * NOTE_LINE_PX);
+    if !b.text.is_empty() {
+        labels.add_text(Area { left, top, right: left + width, bottom });
+    }
 }
 
 /// A note beside its point, with a thin leader where it had to move away from it.

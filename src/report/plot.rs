@@ -19,8 +19,15 @@ const FAR_PX: f64 = 1e5;
 /// Plotters divides font sizes by this number on their way into the SVG.
 const PLOTTERS_FONT_FACTOR: f64 = 1.24;
 
-/// Where an axis begins and ends, and whether it is logarithmic.
-pub(super) type AxisEnds = (f64, f64, bool);
+/// What a cursor reads on an axis.
+pub(super) struct PanelAxis {
+    /// Where it begins and ends, and whether it is logarithmic; `None` where it has names and no
+    /// numbers.
+    pub(super) ends: Option<(f64, f64, bool)>,
+    pub(super) label: String,
+    /// Its unit where a reader may switch it; else empty.
+    pub(super) unit: String,
+}
 
 /// An SVG in the making.
 pub(super) struct Canvas {
@@ -91,6 +98,9 @@ impl Canvas {
 
     /// One line of text, centred on the height of its point.
     pub(super) fn text(&mut self, at: Px, text: &str, lettering: Lettering, colour: Rgb) {
+        if text.is_empty() {
+            return;
+        }
         let transform = if lettering.upwards { FontTransform::Rotate270 } else { FontTransform::None };
         let style = if lettering.bold { FontStyle::Bold } else { FontStyle::Normal };
         let anchor = match lettering.anchor {
@@ -106,15 +116,37 @@ impl Canvas {
         self.with(|b| b.draw_text(&printable(text), &look, fine(&at)));
     }
 
-    /// Remembers where a panel's axes are: its corners in units of the SVG, and each axis as its
-    /// ends and whether it is logarithmic, with its label; `None` where it has names and no
-    /// numbers.
-    pub(super) fn panel(&mut self, corners: [Px; 2], axes: [(Option<AxisEnds>, &str); 2]) {
+    /// What follows, until [`end_group`](Self::end_group), belongs to an axis in `unit` and is seen
+    /// while that is chosen; at first it is `is_seen`. `first` is the unit of the axis without a
+    /// choice.
+    pub(super) fn begin_unit(&mut self, first: &str, unit: &str, is_seen: bool) {
+        let (first, unit) = (attribute(first), attribute(unit));
+        let hidden = if is_seen { "" } else { " display=\"none\"" };
+        self.body += &format!("<g data-of=\"{first}\" data-unit=\"{unit}\"{hidden}>");
+    }
+
+    /// What follows is one text, a number in this unit, which changes with it.
+    pub(super) fn begin_number(&mut self, unit: &str) {
+        self.body += &format!("<g data-number=\"{}\">", attribute(unit));
+    }
+
+    /// Ends what was begun last.
+    pub(super) fn end_group(&mut self) {
+        self.body += "</g>";
+    }
+
+    /// Remembers where a panel's axes are: its corners in units of the SVG, and x and y.
+    pub(super) fn panel(&mut self, corners: [Px; 2], [x, y]: [PanelAxis; 2]) {
         let [(left, top), (right, bottom)] = corners.map(|corner| fine(&corner));
-        let [(x, xlabel), (y, ylabel)] = axes;
-        self.panels.push(serde_json::json!({
-            "box": [left, top, right, bottom], "x": x, "y": y, "xlabel": xlabel, "ylabel": ylabel,
-        }));
+        let mut panel = serde_json::json!({
+            "box": [left, top, right, bottom], "x": x.ends, "y": y.ends, "xlabel": x.label, "ylabel": y.label,
+        });
+        for (name, unit) in [("xunit", x.unit), ("yunit", y.unit)] {
+            if !unit.is_empty() {
+                panel[name] = unit.into();
+            }
+        }
+        self.panels.push(panel);
     }
 
     /// The whole document.
@@ -202,6 +234,10 @@ fn shape(colour: Rgb, width_px: f64, filled: bool) -> ShapeStyle {
 fn fine(px: &Px) -> (i32, i32) {
     let unit = |v: f64| (v.clamp(-FAR_PX, FAR_PX) * FINE).round() as i32;
     (unit(px[0]), unit(px[1]))
+}
+
+fn attribute(text: &str) -> String {
+    printable(text).replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;")
 }
 
 /// Control characters have no place in XML, not even escaped.

@@ -24,26 +24,34 @@ pub(super) fn prefixed(scale: Scale, axis_label: &str) -> Scale {
     if scale.log || scale.ticks.iter().all(|(_, text)| is_short(text)) {
         return scale;
     }
-    let steps = scale.ticks.windows(2).map(|pair| pair[1].0 - pair[0].0);
-    let step = steps.fold(f64::INFINITY, f64::min);
-    if !step.is_finite() {
-        return scale;
-    }
-    let in_power = |power: i32| {
-        let one = 10f64.powi(power);
-        let ticks: Vec<_> = scale.ticks.iter().map(|(v, _)| (*v, label(v / one, step / one))).collect();
-        ticks.iter().all(|(_, text)| is_short(text)).then_some((power, ticks))
-    };
+    let short =
+        |power| in_power(&scale, power).filter(|other| other.ticks.iter().all(|(_, text)| is_short(text)));
     // the nearest first; a prefix rather than a power of ten
     let powers = || [3, -3, 6, -6, 9, -9, 12, -12].into_iter();
     let found = powers()
         .filter(|power| with_prefix(axis_label, *power).is_some())
-        .find_map(in_power)
-        .or_else(|| powers().filter(|power| with_power(axis_label, *power).is_some()).find_map(in_power));
-    match found {
-        Some((power, ticks)) => Scale { ticks, power, ..scale },
-        None => scale,
+        .find_map(short)
+        .or_else(|| powers().filter(|power| with_power(axis_label, *power).is_some()).find_map(short));
+    found.unwrap_or(scale)
+}
+
+/// A scale of millimetres in micrometres, as all lengths below 1 mm are given; `None` where it goes
+/// beyond that, or is none of lengths.
+pub(super) fn micrometres(scale: &Scale, axis_label: &str) -> Option<Scale> {
+    let largest = scale.from.abs().max(scale.to.abs());
+    if scale.log || largest > 1.0 || with_prefix(axis_label, -3)?.rsplit_once(" / ")?.1 != "µm" {
+        return None;
     }
+    in_power(scale, -3).filter(|scale| scale.ticks.iter().all(|(_, text)| is_short(text)))
+}
+
+/// The same scale with the texts of values over a power of ten; `None` where ticks are none.
+fn in_power(scale: &Scale, power: i32) -> Option<Scale> {
+    let steps = scale.ticks.windows(2).map(|pair| pair[1].0 - pair[0].0);
+    let step = steps.fold(f64::INFINITY, f64::min);
+    let one = 10f64.powi(power);
+    let ticks = scale.ticks.iter().map(|(v, _)| (*v, label(v / one, step / one))).collect();
+    step.is_finite().then(|| Scale { ticks, power, ..scale.clone() })
 }
 
 /// The label of an axis whose ticks are divided by this power of ten.
@@ -126,6 +134,17 @@ mod tests {
                 (texts.split(' ').map(str::to_owned).collect(), expected.into())
             );
         }
+    }
+
+    #[test]
+    fn lengths_below_a_millimetre_are_in_micrometres() {
+        let shown = |to: f64, label: &str| {
+            let scale = Scale::fixed(0.0, to, 4);
+            micrometres(&scale, label).map(|s| (s.ticks[1].1.clone(), relabelled(label, s.power)))
+        };
+        assert_eq!(shown(0.04, "error / mm"), Some(("10".into(), "error / µm".into())));
+        assert_eq!(shown(4.0, "error / mm"), None);
+        assert_eq!((shown(0.04, "error / mrad"), shown(0.04, "slope / (mm/N)")), (None, None));
     }
 
     #[test]

@@ -10,7 +10,7 @@ use super::rod_drawing::drawing;
 use super::table::{Column, Table};
 use super::{Block, Report, Section};
 use crate::beam::{Load, Physics, RodModel};
-use crate::diagnosis::rig::planned::{Bench, PlannedLoads, RigPlan, Told};
+use crate::diagnosis::rig::planned::{Bench, Distinguished, PlannedLoads, RigPlan};
 use crate::inference::LoadPlan;
 use crate::rod::Rod;
 use crate::units::{MM, UM, significant};
@@ -23,7 +23,7 @@ pub fn json(plan: &RigPlan, rod: &Rod, bench: &Bench) -> Value {
         object["minutes"] = one.minutes.into();
         object
     };
-    let told = plan.told.iter().map(|told| {
+    let distinguished = plan.distinguished.iter().map(|told| {
         let places = told.places.iter().map(|(place, now, best)| {
             json!({ "location": place.to_string(), "log_odds": now, "log_odds_of_everything": best })
         });
@@ -39,8 +39,9 @@ pub fn json(plan: &RigPlan, rod: &Rod, bench: &Bench) -> Value {
         "noise_um": bench.noise / UM,
         "measurements": plan.measurements.iter().map(measurement).collect::<Vec<_>>(),
         "minutes": plan.minutes,
+        "is_least_proven": plan.is_least,
         "log_odds_wanted": plan.wanted.is_finite().then_some(plan.wanted),
-        "told": told.collect::<Vec<_>>(),
+        "distinguished": distinguished.collect::<Vec<_>>(),
         "r_rod": plan.ratio.map(|ratio| json!({
             "width_asked_percent": 100.0 * ratio.asked,
             "width_expected_percent": 100.0 * ratio.expected,
@@ -51,7 +52,7 @@ pub fn json(plan: &RigPlan, rod: &Rod, bench: &Bench) -> Value {
 /// The report of `rodcal design rig`.
 pub fn report(plan: &RigPlan, rod: &Rod, bench: &Bench) -> Report {
     let mut sections = vec![Section::new("What to measure", measurements(plan, rod))];
-    if !plan.told.is_empty() {
+    if !plan.distinguished.is_empty() {
         sections.push(Section::new("What it will show", will_tell(plan)));
     }
     let assumed = format!(
@@ -66,7 +67,7 @@ pub fn report(plan: &RigPlan, rod: &Rod, bench: &Bench) -> Report {
     Report {
         title: format!("Rig measurements for rod {}", rod.name),
         headline: headline(plan),
-        warnings: not_told(plan),
+        warnings: not_distinguished(plan),
         sections,
         ..Report::default()
     }
@@ -86,7 +87,7 @@ fn headline(plan: &RigPlan) -> String {
         );
     }
     let odds = significant(plan.wanted.exp(), 3);
-    let all = plan.told.iter().flat_map(|told| &told.places);
+    let all = plan.distinguished.iter().flat_map(|told| &told.places);
     let (count, short) = all.fold((0, 0), |(count, short), (_, now, _)| {
         (count + 1, short + usize::from(*now < plan.wanted * (1.0 - 1e-9)))
     });
@@ -101,13 +102,13 @@ fn headline(plan: &RigPlan) -> String {
     }
 }
 
-/// What stays untold, in words.
-fn not_told(plan: &RigPlan) -> Vec<String> {
-    let short = |told: &Told| -> Vec<String> {
+/// What is not distinguished, in words.
+fn not_distinguished(plan: &RigPlan) -> Vec<String> {
+    let short = |told: &Distinguished| -> Vec<String> {
         let is_short = |now: f64| now < plan.wanted * (1.0 - 1e-9);
         told.places.iter().filter(|(_, now, _)| is_short(*now)).map(|(place, ..)| place.to_string()).collect()
     };
-    let words = |told: &Told| {
+    let words = |told: &Distinguished| {
         let short = short(told);
         let from = told.against.map_or("nothing".to_owned(), |other| spoken(other.name));
         let places = match short.len() {
@@ -121,7 +122,7 @@ fn not_told(plan: &RigPlan) -> Vec<String> {
             spoken(told.effect.name)
         ))
     };
-    plan.told.iter().filter_map(words).collect()
+    plan.distinguished.iter().filter_map(words).collect()
 }
 
 fn spoken(name: &str) -> String {
@@ -144,7 +145,20 @@ fn measurements(plan: &RigPlan, rod: &Rod) -> Vec<Block> {
             format!("{:.0}", one.minutes),
         ]);
     }
+    let least = match (plan.ratio, plan.is_least) {
+        _ if plan.measurements.is_empty() => "",
+        (Some(_), _) => "Fewer repeats would not be enough.",
+        (None, true) => {
+            "Proven to be the least effort: no plan of less, of the measurements that were thought of, is enough."
+        }
+        (None, false) => {
+            "Nothing of this can be left out. That no other plan takes less effort is not proven: there are too many to try."
+        }
+    };
     let mut blocks = vec![Block::Table(table)];
+    if !least.is_empty() {
+        blocks.push(Block::Paragraph(least.into()));
+    }
     blocks.extend(picture(plan, rod).map(Block::Figure));
     blocks
 }
@@ -224,7 +238,7 @@ fn will_tell(plan: &RigPlan) -> Vec<Block> {
         powers if powers > 4.0 => format!("10^{powers:.0}"),
         _ => significant(ln.exp(), 2),
     };
-    for told in &plan.told {
+    for told in &plan.distinguished {
         let mut places: Vec<_> = told.places.iter().collect();
         places.sort_by(|a, b| a.1.total_cmp(&b.1));
         let last = places.len().saturating_sub(1);

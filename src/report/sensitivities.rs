@@ -132,8 +132,6 @@ pub fn bars(title: impl Into<String>, rows: &[OnePercent], picked: &[(usize, &st
     let mut chart = Chart::new(title, "change by 1 % more / %", "");
     chart.y.names = rows.iter().enumerate().map(|(k, row)| (-(k as f64), row.number.clone())).collect();
     chart.y.range = Range::Fixed(-(rows.len() as f64) + 0.4, 0.6);
-    let reach = rows.first().map_or(1.0, |row| 1.25 * most(row));
-    chart.x.range = Range::Fixed(-reach, reach);
     chart.height_px = Some(30.0 + 14.0 * (picked.len() * rows.len()) as f64);
     let looks =
         [(Colour::Vermilion, Dash::Solid), (Colour::Blue, Dash::Dashed), (Colour::Green, Dash::Dotted)];

@@ -23,6 +23,8 @@ pub struct Table {
     pub rows: Vec<Vec<String>>,
     /// Remarks below the table.
     pub notes: Vec<String>,
+    /// Folded on a page, however short it is.
+    pub is_folded: bool,
 }
 
 /// One column of a table.

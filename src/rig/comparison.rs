@@ -37,6 +37,14 @@ pub struct Measured {
     pub is_measured: Matrix3<bool>,
 }
 
+impl Measured {
+    /// The ratios that r_rod is made of: the paper's two directions y and z, as far as they were
+    /// read, else x.
+    pub fn ratios_of_rod(&self) -> Vec<&Ratio> {
+        ratios_of_rod(&self.ratios)
+    }
+}
+
 /// r_mn = c_mn / c'_mn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]

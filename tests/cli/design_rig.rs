@@ -38,7 +38,7 @@ fn a_plan_tells_what_it_says_and_its_readings_are_read() {
         measurements.iter().all(|one| one["load_station_mm"].is_null() && one["repeats"].as_u64() > Some(0))
     );
     let least = |effect: &str, against: Value| {
-        let told = json["told"].as_array().unwrap();
+        let told = json["distinguished"].as_array().unwrap();
         let pair = told.iter().find(|pair| pair["effect"] == effect && pair["against"] == against).unwrap();
         pair["places"][0]["log_odds"].as_f64().unwrap()
     };

@@ -205,6 +205,7 @@ fn the_answers_in_the_guides_are_current() {
     for (name, command) in [
         ("why-they-disagree.md", "diagnose rig linear stiffness_data/nist-load-cell.csv"),
         ("why-they-disagree.md", "diagnose rig rods/5.toml stiffness_data/5.csv"),
+        ("../README.md", "diagnose rig rods/5.toml stiffness_data/5.csv"),
         ("from-readings-to-compliance.md", "rig fit rods/5.toml stiffness_data/5.csv"),
         ("calibrate-your-robot.md", "calibrate my-robot/campaign.toml --folds 5"),
         ("calibrate-your-robot.md", "diagnose calibration my-robot/campaign.toml"),

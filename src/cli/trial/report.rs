@@ -100,7 +100,7 @@ fn targets(half: &str, part: &Part) -> Table {
                 .into(),
         columns: [rate_columns(), vec![Column::text("wanted"), Column::text("target")]].concat(),
         rows: part.targets.iter().map(row).collect(),
-        notes: Vec::new(),
+        ..Table::default()
     }
 }
 
@@ -175,7 +175,7 @@ fn rates(half: &str, part: &Part) -> Table {
         caption: "Rates with Wilson's 95 % intervals.".into(),
         columns: rate_columns(),
         rows,
-        notes: Vec::new(),
+        ..Table::default()
     }
 }
 
@@ -249,7 +249,7 @@ fn conflicts(half: &str, part: &Part) -> Option<Table> {
             Column::text("answers"),
         ],
         rows,
-        notes: Vec::new(),
+        ..Table::default()
     })
 }
 
@@ -332,5 +332,6 @@ fn failures(half: &str, failures: &[Failure]) -> Table {
         columns: ["case", "what", "truth", "said"].map(Column::text).to_vec(),
         rows: failures.iter().take(MOST_FAILURES).map(row).collect(),
         notes: (left_out > 0).then(|| format!("{left_out} more are in the JSON.")).into_iter().collect(),
+        ..Table::default()
     }
 }

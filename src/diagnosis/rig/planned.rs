@@ -12,15 +12,18 @@
 //! the Kullback–Leibler divergence of the two (D. V. Lindley, *Ann. Math. Statist.* 27 (1956)
 //! 986–1005). Measurements are those that a diagnosis proposes from (`feasible.rs`), chosen one
 //! after another as it does (`experiment_design.rs`): the least laborious one that leaves least of
-//! the rivals; then whatever is not needed is given up again.
+//! the rivals; then whatever is not needed is given up again, and plans of less effort are ruled
+//! out (`least.rs`).
 
 #[cfg(test)]
 mod tests;
 
+mod least;
 mod ratio;
 
 use nalgebra::DMatrix;
 
+use self::least::least;
 pub use self::ratio::plan_ratio;
 use super::effects::registry;
 use super::feasible::{Measurement, feasible};
@@ -47,6 +50,8 @@ const MOST_ROUNDS: usize = 24;
 /// What all measurements together would have to tell, in ln odds, times what is asked for: less
 /// would take nearly all of them.
 const REASONABLE: f64 = 2.0;
+/// Plans of less effort that are tried at most.
+const MOST_PLANS: usize = 1000;
 /// Share of the rivals that a measurement has to take away.
 const WORTH: f64 = 0.98;
 
@@ -71,8 +76,11 @@ pub struct RigPlan {
     pub minutes: f64,
     /// ln of the odds that were asked for.
     pub wanted: f64,
+    /// Whether it is proven that no plan of less effort is enough; else it is known only that
+    /// nothing of this one can be left out.
+    pub is_least: bool,
     /// Each effect beside each other one, and beside nothing.
-    pub told: Vec<Told>,
+    pub distinguished: Vec<Distinguished>,
     /// The interval of r_rod, where that is what was asked for.
     pub ratio: Option<Ratio>,
 }
@@ -100,7 +108,7 @@ pub struct PlannedLoads {
 /// How well one effect is distinguished from another.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
-pub struct Told {
+pub struct Distinguished {
     /// What there is.
     pub effect: &'static Effect,
     /// What it may be taken for; `None` is nothing at all.
@@ -121,9 +129,10 @@ pub fn effect_names() -> Vec<&'static str> {
     registry::ALL.into_iter().map(|effect| effect.effect.name).collect()
 }
 
-/// The least laborious plan that tells effects of their usual sizes apart, `odds` to 1, and from
+/// A plan of little effort that distinguishes effects of their usual sizes, `odds` to 1, and from
 /// nothing; as far as the rig can do that with reasonable effort: where all measurements together
-/// tell less than odds², nearly all of them would be needed.
+/// tell less than odds², nearly all of them would be needed. Where few plans take less effort, all
+/// of them are looked at, and it is the least laborious one ([`RigPlan::is_least`]).
 ///
 /// # Errors
 /// [`Error::NotApplicable`] for an effect that no such measurement shows; what the beam model
@@ -131,7 +140,7 @@ pub fn effect_names() -> Vec<&'static str> {
 pub fn plan(rod: &Rod, between: &[&'static Effect], odds: f64, bench: &Bench) -> Result<RigPlan> {
     let menu = Menu::new(rod, between, bench)?;
     let wanted = odds.ln();
-    let all = menu.told(&vec![MOST_REPEATS; menu.measurements.len()]);
+    let all = menu.log_odds(&vec![MOST_REPEATS; menu.measurements.len()]);
     // what cannot be distinguished with reasonable effort is not asked for
     let aims: Vec<f64> =
         all.iter().map(|best| if *best < REASONABLE * wanted { 0.0 } else { wanted }).collect();
@@ -157,7 +166,7 @@ pub fn plan(rod: &Rod, between: &[&'static Effect], odds: f64, bench: &Bench) ->
             }
         }
         offers.sort_by(|a, b| menu.minutes(a).total_cmp(&menu.minutes(b)));
-        let told = in_parallel(offers.len(), |k| menu.told(&offers[k]));
+        let told = in_parallel(offers.len(), |k| menu.log_odds(&offers[k]));
         let mut design = ExperimentDesign::default();
         for (offer, told) in offers.into_iter().zip(told) {
             let useful: Vec<f64> = told.iter().zip(&aims).map(|(told, aim)| told.min(*aim)).collect();
@@ -170,8 +179,8 @@ pub fn plan(rod: &Rod, between: &[&'static Effect], odds: f64, bench: &Bench) ->
         (counts, now) = (best, told);
     }
     if !is_enough(&now) {
-        // some are told by several measurements together only: from all of them, as many as can be
-        // left out
+        // some are distinguished by several measurements together only: from all of them, as many
+        // as can be left out
         counts = vec![MOST_REPEATS; counts.len()];
         now.clone_from(&all);
         let mut order: Vec<usize> = (0..counts.len()).collect();
@@ -179,7 +188,7 @@ pub fn plan(rod: &Rod, between: &[&'static Effect], odds: f64, bench: &Bench) ->
         for k in order {
             let mut fewer = counts.clone();
             fewer[k] = 0;
-            let told = menu.told(&fewer);
+            let told = menu.log_odds(&fewer);
             if is_enough(&told) {
                 (counts, now) = (fewer, told);
             }
@@ -193,14 +202,21 @@ pub fn plan(rod: &Rod, between: &[&'static Effect], odds: f64, bench: &Bench) ->
     for k in order {
         while counts[k] > 0 {
             let fewer = one_less(&counts, k);
-            let told = menu.told(&fewer);
+            let told = menu.log_odds(&fewer);
             if !is_kept(&told) {
                 break;
             }
             (counts, now) = (fewer, told);
         }
     }
-    Ok(menu.plan(&counts, wanted, &now, &all))
+    let labour: Vec<Vec<f64>> = (0..counts.len()).map(|k| menu.labours(k)).collect();
+    let found =
+        least(&labour, menu.minutes(&counts), MOST_PLANS, &|counts| is_enough(&menu.log_odds(counts)));
+    if let Some(better) = found.better {
+        now = menu.log_odds(&better);
+        counts = better;
+    }
+    Ok(menu.plan(&counts, wanted, [&now, &all], found.is_proven))
 }
 
 /// One repeat less of a measurement, or none.
@@ -296,7 +312,7 @@ impl Menu {
     }
 
     /// For each candidate, beside each other effect and beside nothing, the least ln of the odds.
-    fn told(&self, counts: &[usize]) -> Vec<f64> {
+    fn log_odds(&self, counts: &[usize]) -> Vec<f64> {
         let rows: Vec<usize> = (0..self.owner.len()).filter(|&i| counts[self.owner[i]] > 0).collect();
         let others = self.between.len();
         if rows.is_empty() {
@@ -349,11 +365,20 @@ impl Menu {
         }
     }
 
+    /// Minutes of each number of repeats, as far as they make a measurement.
+    fn labours(&self, k: usize) -> Vec<f64> {
+        let minutes = |repeats: usize| match repeats {
+            1..FEWEST => f64::INFINITY,
+            _ => self.labour(k, repeats),
+        };
+        (0..=MOST_REPEATS).map(minutes).collect()
+    }
+
     fn minutes(&self, counts: &[usize]) -> f64 {
         counts.iter().enumerate().map(|(k, repeats)| self.labour(k, *repeats)).sum()
     }
 
-    fn plan(&self, counts: &[usize], wanted: f64, now: &[f64], all: &[f64]) -> RigPlan {
+    fn plan(&self, counts: &[usize], wanted: f64, [now, all]: [&[f64]; 2], is_least: bool) -> RigPlan {
         let chosen = counts.iter().enumerate().filter(|(_, repeats)| **repeats > 0);
         let measurements = chosen.map(|(k, &repeats)| {
             let plan = LoadPlan { repeats, ..self.measurements[k].plan.clone() };
@@ -367,22 +392,25 @@ impl Menu {
             }
         });
         let others = self.between.len();
-        let mut told: Vec<Told> = Vec::new();
+        let mut distinguished: Vec<Distinguished> = Vec::new();
         for (i, (effect, place, _)) in self.candidates.iter().enumerate() {
             let rivals = self.between.iter().filter(|other| *other != effect).map(|other| Some(*other));
             for (k, against) in [None].into_iter().chain(rivals).enumerate() {
                 let entry = (place.clone(), now[i * others + k], all[i * others + k]);
-                match told.iter_mut().find(|known| known.effect == *effect && known.against == against) {
+                let is_known =
+                    |known: &&mut Distinguished| (known.effect, known.against) == (*effect, against);
+                match distinguished.iter_mut().find(is_known) {
                     Some(known) => known.places.push(entry),
-                    None => told.push(Told { effect, against, places: vec![entry] }),
+                    None => distinguished.push(Distinguished { effect, against, places: vec![entry] }),
                 }
             }
         }
         RigPlan {
             measurements: measurements.collect(),
             minutes: self.minutes(counts),
+            is_least,
             wanted,
-            told,
+            distinguished,
             ratio: None,
         }
     }

@@ -11,6 +11,6 @@ pub fn number(value: f64) -> String {
 }
 
 /// In µm, without the rounding (1e-14) of what is zero by symmetry.
-pub(super) fn in_um(value: f64) -> f64 {
+pub(in crate::report) fn in_um(value: f64) -> f64 {
     if value.abs() < 1e-9 * UM { 0.0 } else { value / UM }
 }

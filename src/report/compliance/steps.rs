@@ -48,35 +48,37 @@ pub(super) fn figure(study: &Study) -> Figure {
         ("C^g 22", "µm/g", |c| c.gravity[(1, 1)]),
         ("C^g 33", "µm/g", |c| c.gravity[(2, 2)]),
     ];
-    let of = |(title, unit, entry): (&str, &str, Entry)| ladder(title, unit, &study.steps, entry, None);
+    let of = |(title, unit, entry): (&str, &str, Entry)| {
+        ladder(title, unit, &study.steps, |c| in_um(entry(c)), None)
+    };
     waterfall(&quantities.map(of))
 }
 
-/// One entry of a compliance: Calc, what each term adds to it, FEA, and where it was measured what
-/// the readings add to that.
+/// One quantity: by Calc, what each term adds to it, by FEA, and where it was measured what the
+/// readings add to that. `quantity`, linear in the compliance, and `measured` are in `unit`.
 pub(in crate::report) fn ladder(
     title: &str,
     unit: &str,
     steps: &[Step],
-    entry: impl Fn(&Compliance) -> f64,
+    quantity: impl Fn(&Compliance) -> f64,
     measured: Option<&Estimate>,
 ) -> Waterfall {
     let total = |name: &str, value: f64, half_width: Option<f64>| Rung::Total {
         name: name.into(),
-        value: in_um(value),
-        half_width: half_width.map(|w| w / UM),
+        value,
+        half_width,
     };
     let mut rungs = Vec::new();
     for (i, step) in steps.iter().enumerate() {
         rungs.push(match i {
-            0 => total(step.term, entry(&step.total), None),
-            _ => Rung::Term { name: step.term.into(), added: in_um(entry(&step.added)) },
+            0 => total(step.term, quantity(&step.total), None),
+            _ => Rung::Term { name: step.term.into(), added: quantity(&step.added) },
         });
     }
-    let model = steps.last().map_or(0.0, |step| entry(&step.total));
+    let model = steps.last().map_or(0.0, |step| quantity(&step.total));
     rungs.push(total("FEA", model, None));
     if let Some(measured) = measured {
-        rungs.push(Rung::Remainder { name: "not in the model".into(), added: in_um(measured.value - model) });
+        rungs.push(Rung::Remainder { name: "not in the model".into(), added: measured.value - model });
         rungs.push(total("Meas", measured.value, measured.half_width_95()));
     }
     Waterfall { title: title.into(), unit: unit.into(), rungs }

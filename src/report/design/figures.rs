@@ -117,7 +117,7 @@ pub fn to_scale(study: &Study) -> Figure {
             .into(),
         panels: panels.collect(),
         columns: 3,
-        shared_legend: false,
+        ..Figure::default()
     }
 }
 

@@ -1,9 +1,9 @@
 //! What became of a design between the values of the grid: JSON, a table and rod files.
 
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
 use super::cells::{DIGITS, columns, figures_json, shape_cells, shape_columns};
-use crate::design::{Better, Design, Figures, Refined, Study};
+use crate::design::{Better, Design, Figures, Goal, Refined, Study, Wish};
 use crate::report::table::{Column, Table};
 use crate::report::{Block, Section};
 use crate::rod::Rod;
@@ -11,7 +11,7 @@ use crate::section::Section as Shape;
 use crate::units::{MM, significant};
 
 /// What the JSON has of it.
-pub fn json(found: &Refined) -> Value {
+pub fn json(wish: &Wish, found: &Refined) -> Value {
     let of = |better: &Option<Better>| {
         better.as_ref().map(|better| {
             let mut object = figures_json(&Design { index: 0, figures: better.figures });
@@ -22,8 +22,15 @@ pub fn json(found: &Refined) -> Value {
             object
         })
     };
+    let weights = wish.goals.iter().zip(&found.weights).filter(|(_, weight)| **weight > 0.0);
+    let goal: Map<String, Value> =
+        weights.map(|(goal, weight)| (goal.figure.key().to_owned(), (*weight).into())).collect();
     json!({
         "from_design": found.place + 1,
+        "goal": goal,
+        "starts": found.starts.0,
+        "starts_that_led_there": found.starts.1,
+        "every_tube_tried": found.is_every_tube,
         "continuous": of(&found.continuous),
         "catalogue": of(&found.catalogue),
     })
@@ -38,10 +45,12 @@ pub fn section(study: &Study, found: &Refined) -> Section {
         let (name, unit) = figure.words();
         Column::number(name, unit)
     }));
+    let word = goal_words(study, found);
     let caption = format!(
-        "From design {}: its first goal is bettered, no other goal loses, all limits are kept. Ranges of the design file and \
-         sizes of tubes may take any value between their ends; then the nearest tubes of the catalogue are tried.",
-        found.place + 1
+        "From design {}: {word} is bettered, no other goal loses, all limits are kept. Ranges of the design file and \
+         sizes of tubes may take any value between their ends; then {} of the catalogue are tried.",
+        found.place + 1,
+        if found.is_every_tube { "all tubes" } else { "the nearest tubes" }
     );
     let mut table = Table::new("refined", caption, heads);
     let mut row = |name: &str, rod: &Rod, tube: String, values: &Figures| {
@@ -66,29 +75,58 @@ pub fn section(study: &Study, found: &Refined) -> Section {
             row(name, &better.rod, named(better), &better.figures);
         }
     }
-    let (goal, _) = study.axes();
-    let (word, _) = goal.figure.words();
     let gained = |better: &Better| format!("{} %", significant(100.0 * better.gained, 2));
-    let change = if goal.is_maximised { "larger" } else { "smaller" };
     let said = match (&found.continuous, &found.catalogue) {
-        (None, _) => format!(
-            "Nothing is gained: no step between the values of the ranges makes {word} {change} without a loss elsewhere."
-        ),
+        (None, _) => {
+            format!("Nothing is gained: no rod was found that betters {word} without a loss elsewhere.")
+        }
         (Some(any), Some(bought)) => format!(
-            "{word} becomes {} {change} with tubes of the catalogue, {} if tubes of any size could be had.",
+            "{word} becomes {} better with tubes of the catalogue, {} if tubes of any size could be had.",
             gained(bought),
             gained(any)
         ),
         (Some(any), None) => format!(
-            "{word} would become {} {change} with a tube that the catalogue does not have; with its tubes nothing is gained.",
+            "{word} would become {} better with a tube that the catalogue does not have; with its tubes nothing is gained.",
             gained(any)
         ),
     };
-    let note = "The optimum is a local one: another design of the front may lead to another.";
+    let said = match said.strip_prefix("the ") {
+        Some(rest) => format!("The {rest}"),
+        None => said,
+    };
     Section::new(
         "Between the grid's values",
-        vec![Block::Paragraph(format!("{said} {note}")), Block::Table(table)],
+        vec![Block::Paragraph(format!("{said} {}", proven(study, found))), Block::Table(table)],
     )
+}
+
+/// What is bettered: "c_rod", or "the mean of c_rod (weight 0.67) and mass (weight 0.33)".
+fn goal_words(study: &Study, found: &Refined) -> String {
+    let weighed = study.wish.goals.iter().zip(&found.weights).filter(|(_, weight)| **weight > 0.0);
+    let words = |(goal, weight): (&Goal, &f64)| (goal.figure.words().0, significant(*weight, 2));
+    let all: Vec<(&str, String)> = weighed.map(words).collect();
+    match &all[..] {
+        [(only, _)] => (*only).to_owned(),
+        several => {
+            let each: Vec<String> =
+                several.iter().map(|(word, weight)| format!("{word} (weight {weight})")).collect();
+            format!("the weighted geometric mean of {}", each.join(" and "))
+        }
+    }
+}
+
+/// What is sure of the optimum and what is not.
+fn proven(study: &Study, found: &Refined) -> String {
+    let grid = match study.found.evaluated == study.wish.combinations() {
+        true => "No rod of the grid is better: all were looked at.",
+        false => "Of the grid only some rods were looked at.",
+    };
+    let (count, led) = found.starts;
+    let starts = match count {
+        1 => "The search began at this design alone".to_owned(),
+        _ => format!("The search began at {count} designs of the front, and {led} of them led to this rod"),
+    };
+    format!("{grid} {starts}: that no better one exists between the grid's values is not proven.")
 }
 
 /// `32.4x1.13`: outer diameter and wall of the tubes, mm.

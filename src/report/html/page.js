@@ -30,29 +30,29 @@
     body.append(...rows);
   };
 
-  // units that people switch between, as factors
-  const UNITS = {
-    '\u00b5m': [['\u00b5m', 1], ['mm', 1e-3], ['mil', 1 / 25.4]],
-    '\u00b5rad': [['\u00b5rad', 1], ['mrad', 1e-3], ['\u00b0', 1.8e-4 / Math.PI]],
-    'mm': [['mm', 1], ['in', 1 / 25.4]],
-    'N': [['N', 1], ['lbf', 1 / 4.4482216152605]],
+  // units: of all tables and pictures at once. One of 'a' in units of its choice, and 'a/b' part by part
+  const UNITS = JSON.parse(document.body.dataset.units);
+  const chosen = {};
+  const choice = part => UNITS[part]?.[chosen[part] ?? 0] ?? [part, 1];
+  const now = unit => unit.split('/').map(part => choice(part)[0]).join('/');
+  const factor = unit => unit.split('/').map(part => choice(part)[1]).reduce((above, below) => above / below);
+  const bases = unit => unit.split('/').filter(part => UNITS[part]);
+  // every number of a text, with as many digits as it had
+  const inUnit = (text, unit) => factor(unit) === 1 ? text
+    : text.replace(/\d[\d\u2009]*(\.\d+)?(e[-\u2212]?\d+)?/gi, found => {
+      const digits = found.replace(/e.*$/i, '').replace(/[^\d]/g, '').replace(/^0+/, '').length || 1;
+      const value = Number(found.replaceAll('\u2009', '').replace('\u2212', '-')) * factor(unit);
+      const short = value.toPrecision(Math.min(digits, 15));
+      return (/e/.test(short) ? String(Number(short)) : short).replace('e-', 'e\u2212');
+    });
+  const switched = [];
+  const changes = (element, unit) => {
+    const text = element.textContent;
+    switched.push(() => { element.textContent = inUnit(text, unit); });
   };
-  const digits = text => text.replace(/e.*$/i, '').replace(/[^\d]/g, '').replace(/^0+/, '').length || 1;
-  const switchUnit = (table, column, button) => {
-    const units = UNITS[button.dataset.unit];
-    const at = (Number(button.dataset.at ?? 0) + 1) % units.length;
-    button.dataset.at = at;
-    button.textContent = units[at][0];
-    for (const row of table.tBodies[0].rows) {
-      const cell = row.cells[column];
-      if (!cell) continue;
-      cell.dataset.text ??= cell.textContent;
-      cell.dataset.value ??= number(cell);
-      const value = Number(cell.dataset.value);
-      if (Number.isNaN(value)) continue;
-      const scaled = Number((value * units[at][1]).toPrecision(digits(cell.dataset.text)));
-      cell.textContent = at === 0 ? cell.dataset.text : String(scaled).replace('-', '\u2212');
-    }
+  const choose = (unit, at) => {
+    chosen[unit] = at % UNITS[unit].length;
+    switched.forEach(change => change());
   };
 
   const csv = table => [...table.rows].map(row => [...row.cells].map(cell => {
@@ -69,11 +69,13 @@
       button.addEventListener('click', () => sort(table, column, button));
       cell.firstChild?.remove();
       cell.prepend(button);
-      if (unit && UNITS[unit.textContent]) {
+      const [base] = bases(unit?.textContent ?? '');
+      if (base) {
         const own = make('button', unit.textContent, 'unit');
-        own.dataset.unit = unit.textContent;
         own.title = 'Another unit';
-        own.addEventListener('click', () => switchUnit(table, column, own));
+        own.addEventListener('click', () => choose(base, (chosen[base] ?? 0) + 1));
+        switched.push(() => { own.textContent = now(unit.textContent); });
+        for (const row of table.tBodies[0].rows) if (row.cells[column]) changes(row.cells[column], unit.textContent);
         unit.replaceWith(own);
       }
     });
@@ -86,6 +88,28 @@
       });
       files.append(' \u00b7 ', copy);
     }
+  }
+
+  for (const group of document.querySelectorAll('g[data-of]')) {
+    const { of, unit } = group.dataset;
+    switched.push(() => group.setAttribute('display', now(of) === unit ? 'inline' : 'none'));
+  }
+  for (const group of document.querySelectorAll('g[data-number]')) changes(group.firstElementChild, group.dataset.number);
+
+  // one choice for each unit of the page, after its contents
+  const present = new Set([...document.querySelectorAll('button.unit')].flatMap(unit => bases(unit.textContent)));
+  for (const group of document.querySelectorAll('g[data-of]')) bases(group.dataset.of).forEach(unit => present.add(unit));
+  if (present.size) {
+    const bar = make('p', 'Units ', 'units');
+    for (const unit of Object.keys(UNITS).filter(unit => present.has(unit))) {
+      const select = make('select', '');
+      select.setAttribute('aria-label', `${unit} in`);
+      UNITS[unit].forEach(([name]) => select.append(make('option', name)));
+      select.addEventListener('change', () => choose(unit, select.selectedIndex));
+      switched.push(() => { select.selectedIndex = chosen[unit] ?? 0; });
+      bar.append(select, ' ');
+    }
+    document.querySelector('main > section').before(bar);
   }
 
   // a cursor that reads the axes, in all pictures with the same abscissa
@@ -119,8 +143,10 @@
       const x = panel.x && at(...panel.x, (px - left) / (right - left));
       const y = panel.y && at(...panel.y, (bottom - py) / (bottom - top));
       if (panel.y) rule(picture.svg, left, py, right, py);
-      picture.output.textContent = [[panel.xlabel, x], [panel.ylabel, y]].filter(([, value]) => value !== null)
-        .map(([label, value]) => `${label}: ${short(value)}`).join('   ');
+      const read = (label, value, unit) => unit
+        ? `${label.replace(unit, now(unit))}: ${short(value * factor(unit))}` : `${label}: ${short(value)}`;
+      picture.output.textContent = [[panel.xlabel, x, panel.xunit], [panel.ylabel, y, panel.yunit]]
+        .filter(([, value]) => value !== null).map(axis => read(...axis)).join('   ');
       if (x === null) return;
       for (const other of pictures) for (const p of other.panels) {
         if (!p.x || p.xlabel !== panel.xlabel) continue;

@@ -74,7 +74,7 @@ pub fn load_deflection(rods: &[LoadDeflection], unit: LoadUnit) -> Figure {
         panels.extend((row.len()..columns).map(|_| empty()));
         panels.extend(row.iter().map(|rod| strip(rod, unit)));
     }
-    Figure { name: "load-deflection".into(), panels, columns, ..Figure::default() }
+    Figure { name: "load-deflection".into(), panels, columns, by_column: true, ..Figure::default() }
 }
 
 /// What the bands are, in the legend.

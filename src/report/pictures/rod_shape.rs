@@ -114,7 +114,7 @@ pub fn rod_shape(rod: &RodShape) -> Figure {
     let upright = extent_mm(rod, 2) > extent_mm(rod, 0);
     let columns = if upright { 2 } else { 1 };
     let caption = if rod.tubes.is_empty() { String::new() } else { TO_SCALE.into() };
-    Figure { name: "rod-shape".into(), caption, panels, columns, shared_legend: true }
+    Figure { name: "rod-shape".into(), caption, panels, columns, shared_legend: true, ..Figure::default() }
 }
 
 /// The 1-2-5 factor with which the largest deflection becomes at most a fifth of the rod's size.

@@ -11,7 +11,7 @@ use crate::units::significant;
 pub struct Waterfall {
     /// The quantity, for example "C^F 22".
     pub title: String,
-    /// Unit of the values, for example "µm/N".
+    /// Unit of the values, for example "µm/N"; empty where they are over FEA's.
     pub unit: String,
     /// Amounts and what leads from each to the next, top to bottom.
     pub rungs: Vec<Rung>,
@@ -62,6 +62,7 @@ pub fn waterfall(quantities: &[Waterfall]) -> Figure {
         panels: quantities.iter().map(panel).collect(),
         columns: quantities.len().clamp(1, 2),
         shared_legend: true,
+        ..Figure::default()
     }
 }
 
@@ -69,10 +70,13 @@ fn panel(quantity: &Waterfall) -> Chart {
     let row = |i: usize| -(i as f64);
     let ends = ends(&quantity.rungs);
     let range = range(&quantity.rungs, &ends);
-    let unit =
-        if quantity.unit.contains('/') { format!("({})", quantity.unit) } else { quantity.unit.clone() };
+    let label = match quantity.unit.as_str() {
+        "" => "compliance, FEA = 1".into(),
+        unit if unit.contains('/') => format!("compliance / ({unit})"),
+        unit => format!("compliance / {unit}"),
+    };
     let cut = if range.0 > 0.0 { ", not from 0" } else { "" };
-    let mut chart = Chart::new(&quantity.title, format!("compliance / {unit}{cut}"), "");
+    let mut chart = Chart::new(&quantity.title, format!("{label}{cut}"), "");
     let names = quantity.rungs.iter().enumerate().map(|(i, rung)| (row(i), name(rung).to_owned()));
     chart.y = Axis { names: names.collect(), ..Axis::default() };
     chart.x.range = Range::Fixed(range.0, range.1);

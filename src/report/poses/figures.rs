@@ -77,6 +77,7 @@ pub fn plan(study: &PoseStudy) -> Figure {
         panels: views.map(panel).into(),
         columns: 2,
         shared_legend: true,
+        ..Figure::default()
     }
 }
 

@@ -1,13 +1,14 @@
 //! The pictures of a rig's fit, from results to plain numbers.
 
 use crate::beam::Physics;
-use crate::compliance::{Compliance, standard_uncertainty, steps};
+use crate::compliance::{Compliance, Step, standard_uncertainty, steps};
 use crate::report::chart::Figure;
+use crate::report::compliance::in_um;
 use crate::report::compliance::steps::ladder;
-use crate::report::pictures::{self, LoadDeflection, LoadLine, LoadUnit, MeanReading, Residuals};
-use crate::rig::Fit;
+use crate::report::pictures::{self, LoadDeflection, LoadLine, LoadUnit, MeanReading, Residuals, Waterfall};
 use crate::rig::line::{Line, Point};
 use crate::rig::readings::Phase;
+use crate::rig::{Fit, Measured};
 use crate::rod::Rod;
 use crate::statistics::Estimate;
 use crate::units::UM;
@@ -43,18 +44,31 @@ pub(super) fn waterfall(fit: &Fit, rod: Option<&Rod>) -> Option<Figure> {
     // readings that were taken stay shown where the steps cannot be computed
     let steps = steps(rod, &measured.physics, measured.elements).ok()?;
     let along = measured.ratios.iter().filter(|ratio| ratio.channel == ratio.load);
-    let quantities: Vec<_> = along
+    let mut quantities: Vec<_> = along
         .map(|ratio| {
             let at = (ratio.channel.index(), ratio.load.index());
-            let slope = ratio.value.times(measured.model.force[at]);
-            ladder(&format!("C^F {}", ratio.name()), "µm/N", &steps, |c| c.force[at], Some(&slope))
+            let slope = ratio.value.times(measured.model.force[at] / UM);
+            ladder(&format!("C^F {}", ratio.name()), "µm/N", &steps, |c| in_um(c.force[at]), Some(&slope))
         })
         .collect();
     (!quantities.is_empty()).then(|| {
+        quantities.push(rod_ratio(measured, &steps));
         let figure = pictures::waterfall(&quantities);
         let caption = format!("From the closed form over the model to the readings. {}", figure.caption);
         figure.captioned(caption)
     })
+}
+
+/// Eq 21: the entries that r_rod is made of, over what they are by FEA.
+fn rod_ratio(measured: &Measured, steps: &[Step]) -> Waterfall {
+    let ratios = measured.ratios_of_rod();
+    let sum = |c: &Compliance| -> f64 {
+        ratios.iter().map(|ratio| c.force[(ratio.channel.index(), ratio.load.index())]).sum()
+    };
+    let names: Vec<String> = ratios.iter().map(|ratio| format!("C^F {}", ratio.name())).collect();
+    let title = format!("r_rod: {}, over FEA", names.join(" + "));
+    let fea = sum(&measured.model);
+    ladder(&title, "", steps, |c| sum(c) / fea, Some(&measured.rod_ratio))
 }
 
 /// Residuals of all lines, where not each of them has a strip of its own.

@@ -92,8 +92,10 @@ pub fn plan_ratio(rod: &Rod, width: f64, bench: &Bench) -> Result<RigPlan> {
     Ok(RigPlan {
         minutes: measurements.iter().map(|one| one.minutes).sum(),
         measurements,
+        // of its form: more repeats never make the interval wider
+        is_least: true,
         wanted: f64::NAN,
-        told: Vec::new(),
+        distinguished: Vec::new(),
         ratio: Some(Ratio { asked: width, expected: of(repeats)? }),
     })
 }

@@ -12,13 +12,24 @@ fn effects(names: [&str; 2]) -> [&'static Effect; 2] {
     names.map(|name| effect_named(name).unwrap())
 }
 
+/// Repeats of each measurement of the menu.
+fn counts(plan: &RigPlan, menu: &Menu) -> Vec<usize> {
+    let planned = |one: &Measurement| {
+        let same = |planned: &&PlannedLoads| {
+            LoadPlan { repeats: one.plan.repeats, ..planned.loads.clone() } == one.plan
+        };
+        plan.measurements.iter().find(same).map_or(0, |planned| planned.loads.repeats)
+    };
+    menu.measurements.iter().map(planned).collect()
+}
+
 /// Where a joint is near the flange it takes several measurements together.
 #[test]
-fn what_can_be_told_is_told() {
+fn what_can_be_distinguished_is() {
     let rod = Rod::read("rods/5.toml".as_ref()).unwrap();
     let between = effects(["joint_compliance", "root_compliance"]);
     let plan = plan(&rod, &between, 20.0, &BENCH).unwrap();
-    let all = || plan.told.iter().flat_map(|told| &told.places);
+    let all = || plan.distinguished.iter().flat_map(|told| &told.places);
     assert!(all().any(|(_, _, best)| *best < plan.wanted) && all().any(|(_, now, _)| *now > plan.wanted));
     for (place, now, best) in all() {
         let is_hard = *best < REASONABLE * plan.wanted;
@@ -32,29 +43,66 @@ fn a_plan_is_no_more_than_is_needed_and_keeps_what_it_promises() {
     let rod = rod();
     let plan = plan(&rod, &between, 20.0, &BENCH).unwrap();
     assert!(!plan.measurements.is_empty() && plan.minutes > 0.0);
-    for told in &plan.told {
+    for told in &plan.distinguished {
         for (place, now, best) in &told.places {
             assert!(*now >= plan.wanted.min(*best) - 1e-9 || *best < plan.wanted, "{place}: {now} {best}");
         }
     }
     // one repeat less of anything tells less than was asked for
     let menu = Menu::new(&rod, &between, &BENCH).unwrap();
-    let counts: Vec<usize> = menu
-        .measurements
-        .iter()
-        .map(|one| {
-            let same = |planned: &&PlannedLoads| {
-                LoadPlan { repeats: one.plan.repeats, ..planned.loads.clone() } == one.plan
-            };
-            plan.measurements.iter().find(same).map_or(0, |planned| planned.loads.repeats)
-        })
-        .collect();
+    let counts = counts(&plan, &menu);
     for k in (0..counts.len()).filter(|&k| counts[k] > 0) {
         let fewer = one_less(&counts, k);
-        let all = menu.told(&vec![MOST_REPEATS; counts.len()]);
+        let all = menu.log_odds(&vec![MOST_REPEATS; counts.len()]);
         let is_missed = |(told, best): (&f64, &f64)| *best >= REASONABLE * plan.wanted && *told < plan.wanted;
-        assert!(menu.told(&fewer).iter().zip(&all).any(is_missed), "{k}");
+        assert!(menu.log_odds(&fewer).iter().zip(&all).any(is_missed), "{k}");
     }
+}
+
+/// Beside every plan of three measurements at the tip; and more of any never tells less.
+#[test]
+fn the_least_plan_is_that_of_all() {
+    let between = effects(["friction", "root_compliance"]);
+    let bench = Bench { is_at_tip: true, ..BENCH };
+    let menu = Menu::new(&rod(), &between, &bench).unwrap();
+    let count = menu.measurements.len();
+    let found = plan(&rod(), &between, 20.0, &bench).unwrap();
+    assert!(found.is_least);
+    let wanted = 20f64.ln();
+    let all = menu.log_odds(&vec![MOST_REPEATS; count]);
+    let is_asked: Vec<bool> = all.iter().map(|best| *best >= REASONABLE * wanted).collect();
+    let is_enough = |counts: &[usize]| {
+        menu.log_odds(counts).iter().zip(&is_asked).all(|(odds, is_asked)| !is_asked || *odds >= wanted)
+    };
+    let planned = counts(&found, &menu);
+    let mut used: Vec<usize> = (0..count).filter(|&k| planned[k] > 0).collect();
+    used.extend((0..count).filter(|&k| planned[k] == 0).take(3 - used.len().min(3)));
+    let mut best = f64::INFINITY;
+    let numbers: Vec<usize> = [0].into_iter().chain((FEWEST..=MOST_REPEATS).step_by(3)).collect();
+    let mut counts = vec![0; count];
+    for code in 0..numbers.len().pow(used.len() as u32) {
+        for (place, &k) in used.iter().enumerate() {
+            counts[k] = numbers[code / numbers.len().pow(place as u32) % numbers.len()];
+        }
+        let now = menu.log_odds(&counts);
+        if let Some(&k) = used.iter().find(|&&k| counts[k] > FEWEST) {
+            let fewer = menu.log_odds(&one_less(&counts, k));
+            assert!(fewer.iter().zip(&now).all(|(fewer, now)| *fewer <= now + 1e-6), "{counts:?}");
+        }
+        if is_enough(&counts) {
+            best = best.min(menu.minutes(&counts));
+        }
+    }
+    let labour: Vec<Vec<f64>> = (0..count)
+        .map(|k| {
+            let is_used = |repeats: &usize| *repeats == 0 || used.contains(&k) && numbers.contains(repeats);
+            let minutes = menu.labours(k).into_iter().enumerate();
+            minutes.map(|(r, minutes)| if is_used(&r) { minutes } else { f64::INFINITY }).collect()
+        })
+        .collect();
+    let found = least(&labour, 1e9, 100_000, &is_enough);
+    assert!(found.is_proven && best.is_finite());
+    assert_eq!(menu.minutes(&found.better.unwrap()), best);
 }
 
 /// Recorded as planned with a root that gives way, the diagnosis names it.

@@ -29,8 +29,8 @@ pub fn residuals_against(residuals_um: &[[f64; 3]], along: &[Abscissa]) -> Figur
     let all = residuals_um.iter().flatten().copied();
     let largest = extent(all.map(f64::abs)).map_or(1.0, |(_, high)| high);
     let panel = |(k, abscissa): (usize, &Abscissa)| {
-        let y_label = if k % COLUMNS == 0 { "residual / µm" } else { "" };
-        let mut chart = Chart::new("", &abscissa.label, y_label);
+        let mut chart = Chart::new("", &abscissa.label, "residual / µm");
+        chart.y.is_label_hidden = k % COLUMNS != 0;
         chart.height_px = Some(HEIGHT_PX);
         chart.y.range = Range::Fixed(-1.08 * largest, 1.08 * largest);
         let (low, high) = extent(abscissa.values.iter().copied()).unwrap_or((0.0, 1.0));
@@ -67,6 +67,7 @@ pub fn residuals_against(residuals_um: &[[f64; 3]], along: &[Abscissa]) -> Figur
         panels: along.iter().enumerate().map(panel).collect(),
         columns: COLUMNS.min(along.len()),
         shared_legend: true,
+        ..Figure::default()
     }
 }
 

@@ -39,6 +39,7 @@ pub fn convergence(loops: &[Convergence]) -> Figure {
         columns: loops.len().clamp(1, 2),
         // Curves look by their position: one legend only where all panels have the same ones.
         shared_legend: loops.windows(2).all(|pair| names(&pair[0]).eq(names(&pair[1]))),
+        ..Figure::default()
     }
 }
 

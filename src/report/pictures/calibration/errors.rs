@@ -15,6 +15,7 @@ const BARS_PER_DECADE: f64 = 10.0;
 /// Steps of a cumulative curve; with more poses it goes through so many quantiles.
 const MOST_STEPS: usize = 400;
 const HEIGHT_PX: f64 = 84.0;
+const UM_PER_MM: f64 = 1e3;
 
 /// The positioning errors under one method.
 #[derive(Debug, Clone, Default, Serialize)]
@@ -28,14 +29,16 @@ pub struct MethodErrors {
 /// A histogram of the errors for each method, below one another over the same bins and on the same
 /// axes, with mean and maximum marked. The axis is logarithmic where the methods differ too much.
 pub fn error_distribution(methods: &[MethodErrors]) -> Figure {
-    let sorted: Vec<Vec<f64>> = methods.iter().map(sorted).collect();
+    let mut sorted: Vec<Vec<f64>> = methods.iter().map(sorted).collect();
+    let unit = unit(&mut sorted);
     let bins = Bins::new(&sorted);
     let counts: Vec<Vec<usize>> = sorted.iter().map(|errors| bins.count(errors)).collect();
     let highest = counts.iter().flatten().copied().max().unwrap_or(0).max(1) as f64;
     let panel = |i: usize| {
         let errors = &sorted[i];
-        let x_label = if i + 1 == methods.len() { "positioning error / mm" } else { "" };
-        let mut chart = Chart::new(title(&methods[i].label, errors), x_label, "poses");
+        let label = format!("positioning error / {unit}");
+        let mut chart = Chart::new(title(&methods[i], errors.len()), label, "poses");
+        chart.x.is_label_hidden = i + 1 < methods.len();
         chart.height_px = Some(HEIGHT_PX);
         chart.x.log = bins.log;
         chart.x.range = Range::Fixed(bins.edge(0), bins.edge(bins.number));
@@ -72,17 +75,18 @@ pub fn error_distribution(methods: &[MethodErrors]) -> Figure {
         caption,
         panels: (0..methods.len()).map(panel).collect(),
         columns: 1,
-        shared_legend: false,
+        ..Figure::default()
     }
 }
 
 /// For each method the share of poses whose error is at most x. The axis is logarithmic where the
 /// methods differ too much.
 pub fn cumulative_errors(methods: &[MethodErrors]) -> Figure {
-    let sorted: Vec<Vec<f64>> = methods.iter().map(sorted).collect();
+    let mut sorted: Vec<Vec<f64>> = methods.iter().map(sorted).collect();
+    let unit = unit(&mut sorted);
     let bins = Bins::new(&sorted);
     let (first, last) = (bins.edge(0), bins.edge(bins.number));
-    let mut chart = Chart::new("", "positioning error / mm", "share of poses / %");
+    let mut chart = Chart::new("", format!("positioning error / {unit}"), "share of poses / %");
     chart.x.log = bins.log;
     chart.x.range = Range::Fixed(first, last);
     chart.y.range = Range::Fixed(0.0, 104.0);
@@ -111,14 +115,27 @@ pub fn cumulative_errors(methods: &[MethodErrors]) -> Figure {
     Figure::from(chart).named("cumulative-errors").captioned(caption)
 }
 
-/// "rigid rod, 150 poses: mean 0.086 mm, max 0.21 mm"
-fn title(label: &str, errors: &[f64]) -> String {
-    let poses = if errors.len() == 1 { "pose" } else { "poses" };
-    let count = typeset(&errors.len().to_string());
+/// Micrometres while all errors have at most four digits in them: then errors from millimetres on
+/// are multiplied. On a linear axis only below 1 mm.
+fn unit(sorted_mm: &mut [Vec<f64>]) -> &'static str {
+    let largest_mm = sorted_mm.iter().filter_map(|errors| errors.last()).copied().fold(0.0, f64::max);
+    let limit_mm = if Bins::new(sorted_mm).log { 10.0 } else { 1.0 };
+    if largest_mm > limit_mm {
+        return "mm";
+    }
+    sorted_mm.iter_mut().flatten().for_each(|error| *error *= UM_PER_MM);
+    "µm"
+}
+
+/// "rigid rod, 150 poses: mean 86 µm, max 210 µm"
+fn title(method: &MethodErrors, count: usize) -> String {
+    let errors = sorted(method);
+    let poses = if count == 1 { "pose" } else { "poses" };
+    let (label, count) = (&method.label, typeset(&count.to_string()));
+    let length = |mm: f64| if mm < 1.0 { amount(mm * UM_PER_MM, "µm") } else { amount(mm, "mm") };
     match errors.last() {
         Some(max) => {
-            let (mean, max) = (amount(mean(errors), "mm"), amount(*max, "mm"));
-            format!("{label}, {count} {poses}: mean {mean}, max {max}")
+            format!("{label}, {count} {poses}: mean {}, max {}", length(mean(&errors)), length(*max))
         }
         None => format!("{label}, no poses"),
     }
@@ -203,15 +220,12 @@ mod tests {
         assert_eq!(figure.panels.iter().map(bars).collect::<Vec<_>>(), [vec![2.0, 1.0], vec![1.0]]);
         assert_eq!(figure.panels[0].x.range, figure.panels[1].x.range);
         let svg = figure.svg();
-        for text in [
-            "nominal, 3 poses: mean 0.17\u{a0}mm, max 0.30\u{a0}mm",
-            "rigid, 1 pose",
-            ">\nmean\n",
-            ">\nmax\n",
-        ] {
+        for text in
+            ["nominal, 3 poses: mean 170\u{a0}µm, max 300\u{a0}µm", "rigid, 1 pose", ">\nmean\n", ">\nmax\n"]
+        {
             assert!(svg.contains(text), "{text}\n{svg}");
         }
-        assert_eq!(svg.matches(">\npositioning error / mm\n").count(), 1);
+        assert_eq!(svg.matches(">\npositioning error / µm\n").count(), 1);
     }
 
     #[test]
@@ -227,7 +241,7 @@ mod tests {
     fn a_cumulative_curve_steps_up_to_all_poses() {
         let figure = cumulative_errors(&[method("rigid", &[0.2, 0.1])]);
         let Mark::Line { points, .. } = &figure.panels[0].marks[0] else { panic!("no line") };
-        assert_eq!(points[..4], [[0.0, 0.0], [0.1, 0.0], [0.1, 50.0], [0.2, 50.0]]);
+        assert_eq!(points[..4], [[0.0, 0.0], [100.0, 0.0], [100.0, 50.0], [200.0, 50.0]]);
         assert_eq!(points.last().map(|p| p[1]), Some(100.0));
         let errors: Vec<f64> = (1..=100_000).map(|i| f64::from(i) * 1e-6).collect();
         let figure = cumulative_errors(&[method("many", &errors)]);

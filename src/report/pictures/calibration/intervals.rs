@@ -49,7 +49,14 @@ pub fn parameter_corrections(
         panels.push(forest(title, label, "correction, 95 % interval", &rows, row_px, &mut caption));
     }
     let columns = panels.len().clamp(1, 2);
-    Figure { name: "parameter-corrections".into(), caption, panels, columns, shared_legend: true }
+    Figure {
+        name: "parameter-corrections".into(),
+        caption,
+        panels,
+        columns,
+        shared_legend: true,
+        ..Figure::default()
+    }
 }
 
 /// How one mode of calibration did on poses it had not seen.
@@ -95,7 +102,14 @@ pub fn mode_comparison(modes: &[ModeComparison]) -> Figure {
         panels.push(forest(&first, "difference / mm", legend, &differences, row_px, &mut caption));
     }
     let columns = panels.len();
-    Figure { name: "mode-comparison".into(), caption, panels, columns, shared_legend: true }
+    Figure {
+        name: "mode-comparison".into(),
+        caption,
+        panels,
+        columns,
+        shared_legend: true,
+        ..Figure::default()
+    }
 }
 
 /// One row of a forest plot.
@@ -219,7 +233,8 @@ mod tests {
         let figure = parameter_corrections(&lengths, &[parameter("α1", 0.2, 0.1)]);
         assert_eq!(figure.panels.iter().map(dots).collect::<Vec<_>>(), [[1, 1], [1, 0]]);
         let svg = figure.svg();
-        for text in ["correction / mm", "correction / mrad", "not identified", "a1", "α1", "95 % interval"] {
+        for text in ["correction / µm", "correction / mrad", "not identified", "a1", "α1", "95 % interval"]
+        {
             assert!(svg.contains(text), "{text}\n{svg}");
         }
     }
@@ -244,7 +259,7 @@ mod tests {
         let figure = mode_comparison(&[mode("rigid", 0.12, f64::NAN), mode("FEA", 0.09, -0.03)]);
         assert_eq!(figure.panels.iter().map(dots).collect::<Vec<_>>(), [[2, 0], [1, 1]]);
         let svg = figure.svg();
-        for text in ["mean error / mm", "difference / mm", "difference to rigid", "reference", "FEA"] {
+        for text in ["mean error / µm", "difference / µm", "difference to rigid", "reference", "FEA"] {
             assert!(svg.contains(text), "{text}\n{svg}");
         }
     }

@@ -76,6 +76,7 @@ pub fn residuals_by_group(modes: &[ModeResiduals]) -> Figure {
         panels: shown.iter().enumerate().map(|(i, m)| panel(m, &scale, i + 1 == shown.len())).collect(),
         columns: 1,
         shared_legend: true,
+        ..Figure::default()
     }
 }
 

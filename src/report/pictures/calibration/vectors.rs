@@ -83,6 +83,7 @@ pub fn residual_vectors_of(sets: &[(&str, Vec<PoseVector>)]) -> Figure {
         panels: sets.iter().zip(&drawn).map(panel).collect(),
         columns: sets.len().clamp(1, 2),
         shared_legend: true,
+        ..Figure::default()
     }
 }
 

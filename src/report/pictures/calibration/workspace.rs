@@ -94,7 +94,7 @@ impl Room {
     fn figure(&self, name: &str, caption: String, panels: Vec<Chart>) -> Figure {
         let size = [0, 1, 2].map(|i| self.high[i] - self.low[i]);
         let columns = if size[0] > 1.5 * size[1].max(size[2]) { 1 } else { 2 };
-        Figure { name: name.into(), caption, panels, columns, shared_legend: true }
+        Figure { name: name.into(), caption, panels, columns, shared_legend: true, ..Figure::default() }
     }
 
     /// An empty view.

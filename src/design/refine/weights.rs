@@ -1,0 +1,32 @@
+//! What is bettered: one goal, or several by their weights.
+
+use crate::design::wish::Wish;
+use crate::error::{Error, Result};
+
+/// What each goal of `wish` weighs, 1 in all, as somebody wrote it: "mass_g", or
+/// "c_rod_um=2,mass_g=1"; without a word the first goal alone.
+///
+/// # Errors
+/// [`Error::Argument`] for what is no goal of the design file, and for what is no weight.
+pub fn weights(wish: &Wish, asked: Option<&str>) -> Result<Vec<f64>> {
+    let mut weights = vec![0.0; wish.goals.len()];
+    let Some(asked) = asked else {
+        weights.iter_mut().take(1).for_each(|weight| *weight = 1.0);
+        return Ok(weights);
+    };
+    for one in asked.split(',') {
+        let (key, weight) = one.split_once('=').unwrap_or((one, "1"));
+        let refused = |expected: String| Error::Argument { name: "refine-goal", found: one.into(), expected };
+        let Some(at) = wish.goals.iter().position(|goal| goal.figure.key() == key.trim()) else {
+            let keys: Vec<&str> = wish.goals.iter().map(|goal| goal.figure.key()).collect();
+            return Err(refused(format!("an objective of the design file: {}", keys.join(", "))));
+        };
+        weights[at] = match weight.trim().parse::<f64>() {
+            Ok(weight) if weight > 0.0 && weight < 1e6 && weights[at] == 0.0 => weight,
+            Ok(_) if weights[at] > 0.0 => return Err(refused("each objective once".into())),
+            _ => return Err(refused("a weight above 0, as in c_rod_um=2,mass_g=1".into())),
+        };
+    }
+    let sum: f64 = weights.iter().sum();
+    Ok(weights.into_iter().map(|weight| weight / sum).collect())
+}

@@ -31,40 +31,19 @@ use std::f64::consts::TAU;
 
 use nalgebra::{Matrix3, Vector3};
 
-use self::curve::{cosine, curve, scaled};
+use self::curve::{SIDES, SIZE, TURN, angle_of, cosine, curve, scaled};
 use super::context::Context;
 use super::entry::{Column, Entry, linear};
 use super::law::Frame;
-use crate::inference::{JointVariable, Parameter, Variable};
+use crate::inference::{Parameter, Variable};
 use crate::units::{UM, URAD};
 
-/// Size of a displacement, m: what calibrated arms of 1 m reach miss by.
-const SIZE: f64 = 100.0 * UM;
-/// Size of a turn, rad: as large at 1 m.
-const TURN: f64 = 100e-6;
 /// Cosines along one number, beside the constant.
 const MOST: usize = 6;
 /// The same where a joint turns back: a tooth is worn over a part of a turn.
 const MOST_OF_REVERSAL: usize = 12;
 /// Largest torque below which a joint is not loaded, N·m.
 const LEAST_TORQUE: f64 = 0.1;
-/// Lines through the middle of a cube: of its faces, edges and corners. None is farther than 27°
-/// from any other line.
-const SIDES: [[f64; 3]; 13] = [
-    [1.0, 0.0, 0.0],
-    [0.0, 1.0, 0.0],
-    [0.0, 0.0, 1.0],
-    [1.0, 1.0, 0.0],
-    [1.0, -1.0, 0.0],
-    [1.0, 0.0, 1.0],
-    [1.0, 0.0, -1.0],
-    [0.0, 1.0, 1.0],
-    [0.0, 1.0, -1.0],
-    [1.0, 1.0, 1.0],
-    [1.0, 1.0, -1.0],
-    [1.0, -1.0, 1.0],
-    [-1.0, 1.0, 1.0],
-];
 /// Highest order of a product of cosines over the workspace, along each of two joints, and in a
 /// link.
 const ORDER: (usize, usize, usize) = (3, 3, 1);
@@ -120,10 +99,6 @@ pub(super) fn all(context: &Context) -> Vec<Entry> {
     entries.extend(loose::all(context));
     entries.extend(moves::all(context));
     entries
-}
-
-fn angle_of(joint: usize) -> Variable {
-    Variable::Joint(joint, JointVariable::Angle)
 }
 
 /// A vector in {W} or in {T} times a weight for each row.

@@ -4,7 +4,7 @@
 //! Residuals z in noises, of n rows:
 //!
 //! ```text
-//! misread   Σ ln N(z; s) of the other rows + Σ ln N(z; s_m) of those − k·ln n        s_m what a misreading is off by
+//! misread   Σ ln N(z; s) of the other rows + Σ ln N(z; s_m) of those − k·ln n        s_m what a misreading is off by, ½ mm at least
 //! tails     Σ ln t_ν(z; s) of all                                                    ν of a list, s by maximum likelihood
 //! ```
 //!
@@ -63,7 +63,10 @@ fn ln_misread(all: &[f64], rows: &[usize], misread: f64) -> f64 {
     };
     let own = squares(&others) / others.len().max(1) as f64;
     let which = rows.len() as f64 * (all.len() as f64 / 3.0).ln();
-    normal(&others, own.max(f64::MIN_POSITIVE)) + normal(&off, own + misread * misread) - which
+    // a reading is off by millimetres as well as by a fraction of one: by what these are
+    let by = misread.powi(2).max(squares(&off) / off.len().max(1) as f64);
+    let price = if by > misread.powi(2) { 0.5 * (off.len() as f64).ln() } else { 0.0 };
+    normal(&others, own.max(f64::MIN_POSITIVE)) + normal(&off, own + by) - which - price
 }
 
 /// Student's t for all.
@@ -106,8 +109,10 @@ mod tests {
     use crate::statistics::Random;
 
     /// How much more heavy tails explain than a misread last row.
-    fn tails_over_misread(all: &[f64]) -> f64 {
-        Tails::of(all).ln_likelihood - ln_misread(all, &[all.len() / 3 - 1], 25.0)
+    /// With the last `count` rows misread.
+    fn tails_over_misread(all: &[f64], count: usize) -> f64 {
+        let rows: Vec<usize> = (all.len() / 3 - count..all.len() / 3).collect();
+        Tails::of(all).ln_likelihood - ln_misread(all, &rows, 25.0)
     }
 
     #[test]
@@ -120,9 +125,13 @@ mod tests {
                 random.normal() * (2.0 / squares).sqrt()
             })
             .collect();
+        // two poses that are off by millimetres where the others scatter by hundredths of one
+        let mut far = normal.clone();
+        far.extend([90.0, -70.0, 60.0, 40.0, 80.0, -50.0]);
+        assert!(tails_over_misread(&far, 2) < -10.0, "{}", tails_over_misread(&far, 2));
         normal.extend([12.0, -9.0, 7.0]);
         heavy.extend([5.0, 0.3, -1.0]);
-        assert!(tails_over_misread(&normal) < -10.0, "{}", tails_over_misread(&normal));
-        assert!(tails_over_misread(&heavy) > 5.0, "{}", tails_over_misread(&heavy));
+        assert!(tails_over_misread(&normal, 1) < -10.0, "{}", tails_over_misread(&normal, 1));
+        assert!(tails_over_misread(&heavy, 1) > 5.0, "{}", tails_over_misread(&heavy, 1));
     }
 }

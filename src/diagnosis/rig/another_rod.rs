@@ -2,7 +2,8 @@
 //!
 //! Slopes alone tell rods apart that differ by a fifth ([`super::mistakes`]). Where physics had to
 //! be added to the given rod, or something is left, those of the other files that come near, and
-//! the given one with its lengths or pipes exchanged, are compared in full: each with all effects, by the probability that the recording then has.
+//! the given one with its lengths or pipes exchanged, are compared in full: each with all effects,
+//! by the probability that the recording then has.
 
 use super::mistakes::{Mended, ODDS, RARE};
 use super::model::RigModel;

@@ -3,8 +3,30 @@
 use std::f64::consts::PI;
 
 use crate::diagnosis::calibration::entry::{Column, Entry};
-use crate::inference::{Location, Parameter, UNKNOWN, Variable};
+use crate::inference::{JointVariable, Location, Parameter, UNKNOWN, Variable};
+use crate::units::UM;
 
+/// Size of a displacement, m: what calibrated arms of 1 m reach miss by.
+pub(super) const SIZE: f64 = 100.0 * UM;
+/// Size of a turn, rad: as large at 1 m.
+pub(super) const TURN: f64 = 100e-6;
+/// Lines through the middle of a cube: of its faces, edges and corners. None is farther than 27°
+/// from any other line.
+pub(super) const SIDES: [[f64; 3]; 13] = [
+    [1.0, 0.0, 0.0],
+    [0.0, 1.0, 0.0],
+    [0.0, 0.0, 1.0],
+    [1.0, 1.0, 0.0],
+    [1.0, -1.0, 0.0],
+    [1.0, 0.0, 1.0],
+    [1.0, 0.0, -1.0],
+    [0.0, 1.0, 1.0],
+    [0.0, 1.0, -1.0],
+    [1.0, 1.0, 1.0],
+    [1.0, 1.0, -1.0],
+    [1.0, -1.0, 1.0],
+    [-1.0, 1.0, 1.0],
+];
 /// A curve: its name in tables, what is said of it, and the number that it is a function of.
 pub(super) fn curve(
     label: impl Into<String>,
@@ -16,6 +38,11 @@ pub(super) fn curve(
     let mut entry = Entry::new(&UNKNOWN, location, parameters);
     entry.candidate.is_nonparametric = true;
     entry
+}
+
+/// The angle of a joint.
+pub(super) fn angle_of(joint: usize) -> Variable {
+    Variable::Joint(joint, JointVariable::Angle)
 }
 
 /// From 0 to 1; `None` where the values do not differ.

@@ -17,8 +17,7 @@ use std::f64::consts::PI;
 
 use nalgebra::Vector3;
 
-use super::curve::curve;
-use super::{SIDES, SIZE, TURN};
+use super::curve::{SIDES, SIZE, TURN, angle_of, curve};
 use crate::diagnosis::calibration::configuration::Configuration;
 use crate::diagnosis::calibration::context::Context;
 use crate::diagnosis::calibration::entry::{Column, Entry, linear};
@@ -92,16 +91,12 @@ fn bearing(context: &Context, joint: usize) -> Vec<Entry> {
         let (number, times) = (joint + 1, if n == 1 { "once" } else { "twice" });
         let label = format!("joint {number}, {times} per turn {where_to} its axis");
         let follows = format!("comes back {times} per turn of joint {number}, {where_to} its axis");
-        curve(label, follows, Some(super::angle_of(joint)), parameters)
+        curve(label, follows, Some(angle_of(joint)), parameters)
     };
     let along = |n: usize| waves("along_um", UM, SIZE, n, &|there| there.axis[joint]).into();
-    let of_both =
-        |name: [&str; 2], unit: f64, size: f64, moved: [&dyn Fn(&Configuration) -> Vector3<f64>; 2]| {
-            let [x, y] = [0, 1].map(|k| waves(name[k], unit, size, 2, moved[k]));
-            x.into_iter().chain(y).collect()
-        };
-    let shifted = of_both(["x_um", "y_um"], UM, SIZE, [&across(0), &across(1)]);
-    let tilted = of_both(["about_x_urad", "about_y_urad"], URAD, TURN, [&about(0), &about(1)]);
+    let shifted = (0..2).flat_map(|k| waves(["x_um", "y_um"][k], UM, SIZE, 2, &across(k))).collect();
+    let names = ["about_x_urad", "about_y_urad"];
+    let tilted = (0..2).flat_map(|k| waves(names[k], URAD, TURN, 2, &about(k))).collect();
     vec![
         shape(1, "along", along(1)),
         shape(2, "along", along(2)),
@@ -138,7 +133,7 @@ pub(super) fn windows(
         let label = format!("joint {number}, about {middle:.0}° ± {width:.0}°, with {with}");
         let follows = format!("appears near {middle:.0}° of joint {number}, and changes with {with}");
         let parameters = vec![(linear("reversed_urad", URAD, TURN), column)];
-        let mut entry = curve(label, follows, Some(super::angle_of(joint)), parameters);
+        let mut entry = curve(label, follows, Some(angle_of(joint)), parameters);
         entry.candidate.weight = share;
         entry
     };

@@ -12,8 +12,8 @@ use crate::units::{DEG, UM, significant};
 
 /// Friction of a slide as a share of the largest load.
 const SLIDE: f64 = 0.05;
-/// What friction holds back of a hung load, or a tare takes away from it, at most, as a share of the
-/// largest load: of what a slide holds whole nothing is known, and any rod would fit it.
+/// What friction holds back of a hung load, or a tare takes away from it, at most, as a share of
+/// the largest load: of what a slide holds whole nothing is known, and any rod would fit it.
 const MOST_OF_LOAD: f64 = 0.5;
 /// Weight of a hanger that was forgotten, or error of a tare, as a share of the largest load.
 const TARE: f64 = 0.05;

@@ -3,6 +3,7 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod applied_laws;
 mod beyond;
 mod clean;
 mod confused;

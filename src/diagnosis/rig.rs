@@ -35,6 +35,7 @@ mod diagnose;
 pub mod effects;
 mod evidence;
 mod feasible;
+mod file_laws;
 mod forward_model;
 mod limits;
 mod load_history;
@@ -57,6 +58,7 @@ mod tests;
 mod textbook;
 mod transfer;
 mod wanted;
+mod written_law;
 
 pub use correction::Correction;
 pub use datum::Datum;

@@ -14,7 +14,7 @@ use super::numbering::numbered;
 use super::slide::Course;
 use super::structure::Structure;
 use super::wanted::Wanted;
-use super::{datum, evidence, nominal, nonparametric, own, slide, structure};
+use super::{datum, evidence, file_laws, nominal, nonparametric, own, slide, structure};
 use crate::error::Result;
 use crate::inference::{Candidate, Effect, Evidence, NotTestable, Parameter, UNKNOWN};
 use crate::rig::readings::Readings;
@@ -86,6 +86,7 @@ impl RigModel {
             place,
             candidates: Vec::new(),
             actions: Vec::new(),
+            unused_laws: Vec::new(),
             own: wanted.own().to_vec(),
         };
         let nuisance = match &model.body {
@@ -107,6 +108,7 @@ impl RigModel {
             };
             let (numbers, columns) = nominal::all(&model.data, rod, &readings.header, &stations)?;
             (evidence.nominal_numbers, evidence.nominal) = (numbers, columns);
+            model.unused_laws = file_laws::take_out(&mut model, &mut evidence, rod);
         }
         let not_testable = model.add_candidates(wanted)?;
         Ok((model, evidence, not_testable))

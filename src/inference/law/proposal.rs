@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, DVector};
 use super::choice::Choice;
 use super::folds::hold_out;
 use super::measured::Measured;
-use super::proposed::{Law, LawRival, NextRecord, Point, Proposed, Refusal};
+use super::proposed::{Beside, Law, LawRival, NextRecord, Point, Proposed, Refusal};
 use super::remainder::Remainder;
 use super::scan::{Scan, Scanned, curve, prior, scan};
 use super::site::Site;
@@ -128,6 +128,8 @@ pub fn propose(
         held_out: folds.of.first().copied(),
         explains: rms(&fitted.own),
         noise: fitted.sigma,
+        adds: fitted.own.iter().copied().collect(),
+        beside: beside(model, evidence, terms, &fitted.base),
         rivals,
         next: None,
         points: Vec::new(),
@@ -139,6 +141,23 @@ pub fn propose(
     law.curve = smooth(&law.points, law.site.directions.len());
     law.next = next(&law);
     Some(Proposed { law: Ok(law), lives, held_out: errors })
+}
+
+/// Findings and background once a law stands beside them: x = neutral + size × factor, within its
+/// bounds.
+fn beside(model: &dyn ForwardModel, evidence: &Evidence, terms: &[Term], base: &DVector<f64>) -> Beside {
+    let mut next = evidence.background.ncols();
+    let background = base.rows(0, next).iter().copied().collect();
+    let mut terms = terms.to_vec();
+    for term in &mut terms {
+        let parameters = &model.candidates()[term.candidate].parameters;
+        for (value, parameter) in term.values.iter_mut().zip(parameters) {
+            let (low, high) = parameter.bounds;
+            *value = (parameter.neutral + parameter.size * base[next]).clamp(low, high);
+            next += 1;
+        }
+    }
+    Beside { terms, background }
 }
 
 /// Puts what was recorded, without the likeliest law, in the place of what was predicted, where

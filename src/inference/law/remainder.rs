@@ -52,6 +52,8 @@ pub(super) struct Fitted {
     pub own: DVector<f64>,
     /// What the background is of it: nominal numbers and zeros.
     pub background: DVector<f64>,
+    /// Factors of the background, and of the findings' columns about their values.
+    pub base: DVector<f64>,
     /// Data less the numbers that they determine.
     pub degrees_of_freedom: f64,
 }
@@ -178,6 +180,7 @@ impl<'a> Remainder<'a> {
             predicted,
             own,
             background,
+            base: scored.estimate.rows(0, first).into_owned(),
             degrees_of_freedom: (moments.degrees_of_freedom as f64 - scored.determined).max(1.0),
         }
     }

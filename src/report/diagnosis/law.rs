@@ -200,7 +200,8 @@ fn range(law: &Law) -> String {
     let ((low, high), variable) = (law.site.range(), &law.site.variable);
     let show = |value: f64| significant(value / variable.si, 3);
     format!(
-        "It is a proposal from readings between {} and {}; beyond that it is an extrapolation. It changes no finding.",
+        "It is a proposal from readings between {} and {}; beyond that it is an extrapolation. It changes no \
+         finding; --apply writes it.",
         show(low),
         with_unit(show(high), variable.unit)
     )

@@ -14,7 +14,7 @@ use crate::expression::{Expression, Fault};
 
 /// 1 on the way up, −1 on the way down, in formulas.
 pub(crate) const SIDE: &str = "side";
-/// What the formula is called that a law is written as.
+/// A number that was read again is no other.
 const BEYOND: f64 = 1.0 + 1e-9;
 
 /// What a law is a function of.
@@ -252,20 +252,24 @@ impl RodLaw {
         x > self.range.1 * BEYOND || x < self.range.0.min(0.0) * BEYOND
     }
 
-    /// `ΔF = k*max(F - F_0, 0) N at the rod, F 1 to 10 N`.
+    /// `ΔF = k*max(F - F_0, 0) in N at the rod, k = −0.34 N/N, F_0 = 7.7 N, for F from 1 to 10 N`.
     pub fn words(&self) -> String {
         let (low, high) = self.range;
         let significant = |x: f64| crate::units::significant(x, 3);
-        let [result, unit, symbol] = [self.result(), self.unit(), self.variable.symbol()];
         let memory = match self.memory {
             Some(LawMemory::Stop) => ", of what a play leaves of it",
             Some(LawMemory::Lag) => ", of what it lacks of its lagged self",
             None => "",
         };
+        let number = |own: &LawConstant| format!(", {} = {} {}", own.name, significant(own.value), own.unit);
+        let numbers: String = self.constants.iter().map(|own| number(own).trim_end().to_owned()).collect();
         format!(
-            "{result} = {} (in {unit}) at {}, {symbol} {} to {} {}{memory}",
+            "{} = {} in {} at {}{numbers}, for {} from {} to {} {}{memory}",
+            self.result(),
             self.formula,
+            self.unit(),
             self.at_place(),
+            self.variable.symbol(),
             significant(low),
             significant(high),
             self.variable.unit()

@@ -736,7 +736,10 @@ fn a_law_says_what_is_wrong_where_in_its_formula() {
         [tip]";
     let with_law = changed(&[("[tip]", LAW)]);
     let rod = read(&with_law).expect(&with_law);
-    assert_eq!(rod.laws[0].words(), "Δθ = k*max(M - M_0, 0) (in µrad) at the root, M 0.500 to 6.00 N·m");
+    assert_eq!(
+        rod.laws[0].words(),
+        "Δθ = k*max(M - M_0, 0) in µrad at the root, k = 12.0, M_0 = 2.00, for M from 0.500 to 6.00 N·m"
+    );
     for (piece, wrong, expected) in [
         (
             "M - M_0",

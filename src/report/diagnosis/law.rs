@@ -25,15 +25,15 @@ pub fn section(told: &Told) -> Section {
     let heading = "A law for it";
     let law = match &told.proposed.law {
         Err(refusal) => {
-            return Section::new(heading, vec![Block::Paragraph(refused(*refusal, told.proposed))]);
+            return Section::new(heading, vec![Block::Paragraph(refused(*refusal, told))]);
         }
         Ok(law) => law,
     };
     let mut points = vec![summary(law, told.proposed)];
-    points.extend(alternatives(law));
+    points.extend(alternatives(law, told));
     points.extend(next(law));
     points.extend(told.remark.clone());
-    points.push(range(law));
+    points.push(range(law, told));
     let blocks = vec![Block::List(points), Block::Table(table(law)), Block::Figure(picture(law))];
     Section::new(heading, blocks)
 }
@@ -48,7 +48,7 @@ pub fn json(told: Option<&Told>) -> Value {
     });
     let mut json = json!({
         "proposed": proposed.law.is_ok(),
-        "refused": proposed.law.as_ref().err().map(|refusal| refused(*refusal, proposed)),
+        "refused": proposed.law.as_ref().err().map(|refusal| refused(*refusal, told)),
         "lives": lives,
         "heldout_without_um": proposed.held_out.map(|(without, _)| um(without)),
         "heldout_with_um": proposed.held_out.map(|(_, with)| um(with)),
@@ -172,13 +172,14 @@ fn called(rival: &LawRival, law: &Law) -> String {
 }
 
 /// What these readings do not distinguish from it.
-fn alternatives(law: &Law) -> Option<String> {
+fn alternatives(law: &Law, told: &Told) -> Option<String> {
     if law.rivals.is_empty() {
         return None;
     }
     let said: Vec<String> = law.rivals.iter().take(SAID).map(|rival| called(rival, law)).collect();
     let more = if law.rivals.len() > SAID { ", or others" } else { "" };
-    Some(format!("It may as well be: {}{more}. These readings cannot distinguish them.", said.join("; or ")))
+    let these = told.noun;
+    Some(format!("It may as well be: {}{more}. These {these} cannot distinguish them.", said.join("; or ")))
 }
 
 /// What would.
@@ -196,19 +197,21 @@ fn next(law: &Law) -> Option<String> {
     ))
 }
 
-fn range(law: &Law) -> String {
+fn range(law: &Law, told: &Told) -> String {
     let ((low, high), variable) = (law.site.range(), &law.site.variable);
     let show = |value: f64| significant(value / variable.si, 3);
+    let written = if told.is_written { "; --apply writes it" } else { "" };
     format!(
-        "It is a proposal from readings between {} and {}; beyond that it is an extrapolation. It changes no \
-         finding; --apply writes it.",
+        "It is a proposal from {} between {} and {}; beyond that it is an extrapolation. It changes no finding{written}.",
+        told.noun,
         show(low),
         with_unit(show(high), variable.unit)
     )
 }
 
 /// Why there is none.
-fn refused(refusal: Refusal, proposed: &Proposed) -> String {
+fn refused(refusal: Refusal, told: &Told) -> String {
+    let (proposed, noun) = (told.proposed, told.noun);
     let why = match refusal {
         Refusal::Chance => "none is 50 times more probable than chance".to_owned(),
         Refusal::Curve(by) => format!(
@@ -218,8 +221,8 @@ fn refused(refusal: Refusal, proposed: &Proposed) -> String {
                 _ => format!("10^{:.0} times", by / std::f64::consts::LN_10),
             }
         ),
-        Refusal::HeldOut => "held-out readings are predicted no better with it".to_owned(),
-        Refusal::NoFolds => "no readings could be held out to confirm one".to_owned(),
+        Refusal::HeldOut => format!("held-out {noun} are predicted no better with it"),
+        Refusal::NoFolds => format!("no {noun} could be held out to confirm one"),
     };
     let lives = proposed.lives.as_ref().map_or_else(String::new, |(location, variable)| {
         format!(" A smooth curve explains most over {} ({location}).", variable.name)

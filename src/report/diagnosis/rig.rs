@@ -71,10 +71,12 @@ fn subject<'a>(found: &'a RigDiagnosis, correction: Option<&Correction>) -> Subj
             json!({ "row": datum.row, "channel": format!("d{}", datum.channel) })
         }),
         remainder: remainder(found),
-        law: found
-            .law
-            .as_ref()
-            .map(|proposed| Told { proposed, remark: proposed.law.as_ref().ok().and_then(remark) }),
+        law: found.law.as_ref().map(|proposed| Told {
+            proposed,
+            remark: proposed.law.as_ref().ok().and_then(remark),
+            noun: "readings",
+            is_written: rod.is_some(),
+        }),
         warnings: of_rod.chain(of_readings).chain(unused).collect(),
         head: vec![("rod", json!(rod.map(|rod| &rod.name))), ("readings", json!(readings.file))],
         more: vec![

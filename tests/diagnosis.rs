@@ -5,6 +5,7 @@
 
 mod applied_laws;
 mod beyond;
+mod beyond_the_data;
 mod clean;
 mod confused;
 mod effects;

@@ -19,15 +19,6 @@ use crate::inference::law::{Course, Form, Measure, Site};
 use crate::robot::Motion;
 use crate::units::{DEG, MM, STANDARD_GRAVITY, UM, URAD};
 
-/// Of an angle: zero is where its encoder has it, and nothing happens there.
-const OF_AN_ANGLE: &[Form] = &[
-    Form::Threshold,
-    Form::Step,
-    Form::Harmonic,
-    Form::Polynomial(1),
-    Form::Polynomial(2),
-    Form::Polynomial(3),
-];
 /// Of what gives way under a load.
 const OF_A_LOAD: &[Form] = &[
     Form::Power,
@@ -52,7 +43,8 @@ const OF_TIME: &[Form] = &[
     Form::Polynomial(2),
     Form::Polynomial(3),
 ];
-/// From anywhere on: temperature, products, positions.
+/// From anywhere on: temperature, positions, angles, whose zero is where the encoder has it. Waves
+/// over an angle are the library's (`transmission_error`, `wrist_coupling`).
 const OF_A_LEVEL: &[Form] =
     &[Form::Threshold, Form::Step, Form::Polynomial(1), Form::Polynomial(2), Form::Polynomial(3)];
 /// Where an axis goes as its joint turns.
@@ -140,7 +132,7 @@ impl Robot<'_> {
     fn of_itself(&self, joint: usize) -> Vec<Site> {
         let context = self.context;
         let own = |there: &Configuration| there.joints[joint];
-        let turn = self.of_joint(joint, self.angle(joint), &own, OF_AN_ANGLE);
+        let turn = self.of_joint(joint, self.angle(joint), &own, OF_A_LEVEL);
         // a bearing moves the axis in the frame that carries it
         let carried = |there: &Configuration, k: usize| {
             let carrier = if joint == 0 { there.base } else { there.link[joint - 1] };
@@ -167,7 +159,7 @@ impl Robot<'_> {
         let mut sites = Vec::new();
         for other in (0..count).filter(|&other| other != joint) {
             let angle = self.angle(other);
-            sites.push(self.of_joint(joint, angle, &|there| there.joints[other], OF_AN_ANGLE));
+            sites.push(self.of_joint(joint, angle, &|there| there.joints[other], OF_A_LEVEL));
         }
         for first in 0..count.saturating_sub(1) {
             for (sign, words) in [(1.0, "sum"), (-1.0, "difference")] {

@@ -86,6 +86,7 @@ impl RigModel {
             place,
             candidates: Vec::new(),
             actions: Vec::new(),
+            law_adds: Vec::new(),
             unused_laws: Vec::new(),
             own: wanted.own().to_vec(),
         };
@@ -112,6 +113,20 @@ impl RigModel {
         }
         let not_testable = model.add_candidates(wanted)?;
         Ok((model, evidence, not_testable))
+    }
+
+    /// What the rod's file says of each datum: beam model, large deflections and laws, m.
+    ///
+    /// # Errors
+    /// What the beam model refuses.
+    pub fn by_file(&self) -> Result<Vec<f64>> {
+        let large = match &self.rod {
+            Some(rod) => self.large_deflections(rod)?,
+            None => DVector::zeros(self.data.len()),
+        };
+        let laws = self.law_adds.iter().copied().chain(std::iter::repeat(0.0));
+        let parts = self.data.iter().zip(large.iter()).zip(laws);
+        Ok(parts.map(|((datum, large), law)| datum.predicted + large + law).collect())
     }
 
     /// What large deflections of `rod` add to each datum, m.

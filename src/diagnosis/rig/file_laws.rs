@@ -21,6 +21,7 @@ pub(super) fn take_out(model: &mut RigModel, evidence: &mut Evidence, rod: &Rod)
     let all = sites(model, &DVector::zeros(model.data.len()));
     let mut unused = Vec::new();
     let mut adds = DVector::zeros(model.data.len());
+    let mut predicted = adds.clone();
     for law in &rod.laws {
         let is_its =
             |site: &&Site| is_at(&law.place, &site.location) && site.variable.name == law.variable.words();
@@ -28,17 +29,18 @@ pub(super) fn take_out(model: &mut RigModel, evidence: &mut Evidence, rod: &Rod)
             unused.push(law.words());
             continue;
         };
-        let added = |changed: Option<(usize, f64)>| {
+        let added = |changed: Option<(usize, f64)>, of: Of| {
             let value = |k: usize, own: &LawConstant| match changed {
                 Some((other, by)) if other == k => own.value + by,
                 _ => own.value,
             };
-            added(law, site, &value)
+            added(law, site, &value, of)
         };
-        adds += added(None);
+        adds += added(None, Of::Recorded);
+        predicted += added(None, Of::Predicted);
         for (k, own) in law.constants.iter().enumerate().filter(|(_, own)| own.standard_uncertainty > 0.0) {
             let u = own.standard_uncertainty;
-            let column = 0.5 * (added(Some((k, u))) - added(Some((k, -u))));
+            let column = 0.5 * (added(Some((k, u)), Of::Recorded) - added(Some((k, -u)), Of::Recorded));
             if column.iter().all(|value| value.is_finite()) && column.amax() > 0.0 {
                 let unit = if own.unit.is_empty() { String::new() } else { format!(", {}", own.unit) };
                 evidence.nominal_numbers.push(NominalParameter {
@@ -56,10 +58,22 @@ pub(super) fn take_out(model: &mut RigModel, evidence: &mut Evidence, rod: &Rod)
         }
     }
     // a formula may be no number where it was not recorded
-    adds.iter_mut().filter(|add| !add.is_finite()).for_each(|add| *add = 0.0);
+    for add in adds.iter_mut().chain(predicted.iter_mut()).filter(|add| !add.is_finite()) {
+        *add = 0.0;
+    }
+    model.law_adds = predicted.iter().copied().collect();
     model.data.iter_mut().zip(adds.iter()).for_each(|(datum, add)| datum.measured -= add);
     evidence.residual -= adds;
     unused
+}
+
+/// What a sensor's law is a function of.
+#[derive(Clone, Copy, PartialEq)]
+enum Of {
+    /// What was recorded, without the law itself.
+    Recorded,
+    /// What is predicted.
+    Predicted,
 }
 
 fn is_at(place: &str, location: &Location) -> bool {
@@ -70,7 +84,7 @@ fn is_at(place: &str, location: &Location) -> bool {
 }
 
 /// What a law adds to each datum, m.
-fn added(law: &RodLaw, site: &Site, value: &dyn Fn(usize, &LawConstant) -> f64) -> DVector<f64> {
+fn added(law: &RodLaw, site: &Site, value: &dyn Fn(usize, &LawConstant) -> f64, of: Of) -> DVector<f64> {
     let values: Vec<f64> = law.constants.iter().enumerate().map(|(k, own)| value(k, own)).collect();
     let at = |x: f64, side: f64| {
         let named = |own: &LawConstant| {
@@ -88,12 +102,12 @@ fn added(law: &RodLaw, site: &Site, value: &dyn Fn(usize, &LawConstant) -> f64) 
         Some(memory @ LawMemory::Lag) => Memory::Lag.remembered(site, own(memory)).0,
     };
     let weights = &site.directions[0].1;
-    let of = |i: usize| {
+    let at_datum = |i: usize| {
         let side = site.moves.get(i).copied().unwrap_or(1.0);
         if weights[i] == 0.0 || !followed[i].is_finite() {
             return 0.0;
         }
-        match &site.recorded {
+        match site.recorded.as_ref().filter(|_| of == Of::Recorded) {
             // y of y + Δy(y) = what was recorded
             Some(recorded) => {
                 let mut y = recorded[i];
@@ -105,5 +119,5 @@ fn added(law: &RodLaw, site: &Site, value: &dyn Fn(usize, &LawConstant) -> f64) 
             None => weights[i] * at(followed[i] / si, side),
         }
     };
-    DVector::from_fn(followed.len(), |i, _| of(i))
+    DVector::from_fn(followed.len(), |i, _| at_datum(i))
 }

@@ -34,6 +34,8 @@ pub struct RigModel {
     pub(super) candidates: Vec<Candidate>,
     /// For each candidate what its parameters do.
     pub(super) actions: Vec<Vec<Action>>,
+    /// What laws of the rod's file add to each datum as predicted, m; nothing without any.
+    pub(super) law_adds: Vec<f64>,
     /// Laws of the rod's file that the readings have no data for, in words.
     pub(super) unused_laws: Vec<String>,
     /// Effects that the lab describes itself.

@@ -19,6 +19,8 @@ use crate::linalg::least_squares;
 
 /// How far beyond the data a law is asked to part from its rivals.
 const BEYOND: f64 = 2.0;
+/// How far beyond the data it is said how far laws are apart.
+const FURTHER: f64 = 1.5;
 /// How far apart they have to be, in standard deviations of a reading.
 const PARTED: f64 = 4.0;
 /// Points between nothing and [`BEYOND`].
@@ -33,6 +35,10 @@ const DRAWN: f64 = 0.2;
 const REFITTED: usize = 16;
 /// Laws whose ln odds are so far behind the best are not tried again without each fold.
 const REACH: f64 = 30.0;
+/// Nor those whose ln odds against nothing are below this: without a fold they are no better.
+const UNLIKELY: f64 = -5.0;
+/// By this share of its square a held-out error is lowered at least.
+const WORTH: f64 = 0.05;
 /// So many times the noise a recorded variable ranges over at least.
 const ABOVE_NOISE: f64 = 30.0;
 /// Most rivals that are reported.
@@ -72,7 +78,9 @@ pub fn propose(
     if as_recorded(&mut all, &remainder, &found, (size, sigma)) {
         found = scan(&remainder, &all, size);
     }
-    let within_reach = found.laws.iter().take_while(|law| law.log_odds > found.laws[0].log_odds - REACH);
+    let best_odds = found.laws.first().map_or(0.0, |law| law.log_odds);
+    let reach = (best_odds - REACH).max(UNLIKELY);
+    let within_reach = found.laws.iter().take_while(|law| law.log_odds > reach);
     let tried: Vec<Choice> = within_reach.map(|law| law.choice).collect();
     refit(&mut found, &remainder, &all, size);
     let lives = found.curve.map(|(site, _)| (all[site].location.clone(), all[site].variable.clone()));
@@ -97,7 +105,8 @@ pub fn propose(
     let folds = hold_out(model, evidence, terms, &all, (&choices, &tried), (size, sigma));
     let Some(folds) = folds else { return refused(Refusal::NoFolds, None) };
     let errors = Some((folds.without, folds.with));
-    if folds.with >= folds.without || folds.of[0] >= folds.without {
+    let enough = folds.without * (1.0 - WORTH).sqrt();
+    if folds.with >= enough || folds.of[0] >= enough {
         return refused(Refusal::HeldOut, errors);
     }
     let measured: Vec<Measured> =
@@ -132,6 +141,7 @@ pub fn propose(
         beside: beside(model, evidence, terms, &fitted.base),
         rivals,
         next: None,
+        further: None,
         points: Vec::new(),
         curve: Vec::new(),
         site,
@@ -140,6 +150,7 @@ pub fn propose(
     law.points = points(&law, best.choice, &residual);
     law.curve = smooth(&law.points, law.site.directions.len());
     law.next = next(&law);
+    law.further = further(&law);
     Some(Proposed { law: Ok(law), lives, held_out: errors })
 }
 
@@ -267,30 +278,44 @@ fn smooth(points: &[Point], directions: usize) -> Vec<Point> {
 /// between the data if they do, or else beyond them.
 fn next(law: &Law) -> Option<NextRecord> {
     let (low, high) = law.site.range();
-    let per_result =
-        law.site.directions.iter().flat_map(|(_, w)| w).fold(0.0, |most: f64, w| most.max(w.abs()));
-    let is_alike = |rival: &&LawRival| {
-        rival.memory == law.memory
-            && rival.site.location == law.site.location
-            && rival.site.variable == law.site.variable
-    };
-    let (number, rival) = law.rivals.iter().enumerate().find(|(_, rival)| is_alike(rival))?;
-    let directions = 0..law.site.directions.len();
-    let lines: Vec<(f64, f64)> =
-        directions.clone().map(|direction| taken_up(law, rival, direction)).collect();
-    let apart = |x: f64| {
-        let of = |direction: usize| {
-            let (level, slope) = lines[direction];
-            (law.at(direction, x) - rival.at(direction, x) - level - slope * x).abs() * per_result
-        };
-        directions.clone().map(of).fold(0.0, f64::max)
-    };
+    let (number, rival) = comparable(law).next()?;
+    let apart = |x: f64| apart(law, rival, x);
     let least = low.min(0.0);
     let x = |k: usize| least + (BEYOND * high - least) * k as f64 / STEPS as f64;
     let within = (0..=STEPS).map(x).filter(|x| *x <= high).max_by(|a, b| apart(*a).total_cmp(&apart(*b)));
     let far = |x: &f64| apart(*x) > PARTED * law.noise;
     let at = within.filter(far).or_else(|| (0..=STEPS).map(x).filter(|x| *x > high).find(far))?;
     Some(NextRecord { rival: number, at, is_beyond: at > high, apart: apart(at) })
+}
+
+/// How far the law and its rivals at its place are apart beyond the data: the variable there, and
+/// the largest distance, m.
+fn further(law: &Law) -> Option<(f64, f64)> {
+    let at = FURTHER * law.site.range().1;
+    let distances = comparable(law).map(|(_, rival)| apart(law, rival, at));
+    distances.reduce(f64::max).map(|most| (at, most))
+}
+
+/// Rivals with their numbers that differ from the law in nothing but form and constants.
+fn comparable(law: &Law) -> impl Iterator<Item = (usize, &LawRival)> {
+    let is_alike = |rival: &LawRival| {
+        rival.memory == law.memory
+            && rival.site.location == law.site.location
+            && rival.site.result == law.site.result
+            && rival.site.variable == law.site.variable
+    };
+    law.rivals.iter().enumerate().filter(move |(_, rival)| is_alike(rival))
+}
+
+/// How far two laws are apart at x, m, but for what zeros and stiffnesses take up.
+fn apart(law: &Law, rival: &LawRival, x: f64) -> f64 {
+    let per_result =
+        law.site.directions.iter().flat_map(|(_, w)| w).fold(0.0, |most: f64, w| most.max(w.abs()));
+    let of = |direction: usize| {
+        let (level, slope) = taken_up(law, rival, direction);
+        (law.at(direction, x) - rival.at(direction, x) - level - slope * x).abs() * per_result
+    };
+    (0..law.site.directions.len()).map(of).fold(0.0, f64::max)
 }
 
 /// What zeros and stiffnesses take up of the difference of two laws: the straight line through it

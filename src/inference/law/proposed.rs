@@ -26,7 +26,7 @@ pub enum Refusal {
     Chance,
     /// A smooth curve is likelier than the likeliest of all laws, by so many times (ln).
     Curve(f64),
-    /// Held-out errors are not lowered.
+    /// Held-out errors are not lowered, or by less than 5 % of their square.
     HeldOut,
     /// Nothing could be held out.
     NoFolds,
@@ -64,6 +64,9 @@ pub struct Law {
     pub rivals: Vec<LawRival>,
     /// What would distinguish it from the likeliest rival at its place.
     pub next: Option<NextRecord>,
+    /// Half again beyond the data: the variable there (SI), and how far law and rivals at its place
+    /// are apart, m, but for a straight line; `None` without such rivals.
+    pub further: Option<(f64, f64)>,
     /// Data as it sees them: what is left but for the law.
     pub points: Vec<Point>,
     /// A smooth curve through them.
@@ -148,6 +151,7 @@ impl Law {
             beside: Beside::default(),
             rivals: Vec::new(),
             next: None,
+            further: None,
             points: Vec::new(),
             curve: Vec::new(),
         }

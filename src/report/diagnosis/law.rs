@@ -74,6 +74,11 @@ pub fn json(told: Option<&Told>) -> Value {
         "log_odds_over_curve": law.log_odds.1,
         "rivals": law.rivals.iter().map(rival).collect::<Vec<_>>(),
         "next_record": next(law),
+        "beyond": law.further.map(|(at, apart)| json!({
+            "at": at / variable.si,
+            "rivals_apart_um": um(apart),
+            "may_be_used": apart <= law.noise,
+        })),
         "remark": told.remark,
     });
     if let (Value::Object(json), Value::Object(more)) = (&mut json, more) {
@@ -201,8 +206,16 @@ fn range(law: &Law, told: &Told) -> String {
     let ((low, high), variable) = (law.site.range(), &law.site.variable);
     let show = |value: f64| significant(value / variable.si, 3);
     let written = if told.is_written { "; --apply writes it" } else { "" };
+    let beyond =
+        law.further.filter(|(_, apart)| *apart > law.noise).map_or_else(String::new, |(at, apart)| {
+            let at = with_unit(significant(at / variable.si, 2), variable.unit);
+            format!(
+                ": at {at} it and the other forms are up to {} µm apart, so do not use it there",
+                um(apart)
+            )
+        });
     format!(
-        "It is a proposal from {} between {} and {}; beyond that it is an extrapolation. It changes no finding{written}.",
+        "It is a proposal from {} between {} and {}; beyond that it is an extrapolation{beyond}. It changes no finding{written}.",
         told.noun,
         show(low),
         with_unit(show(high), variable.unit)
@@ -221,7 +234,7 @@ fn refused(refusal: Refusal, told: &Told) -> String {
                 _ => format!("10^{:.0} times", by / std::f64::consts::LN_10),
             }
         ),
-        Refusal::HeldOut => format!("held-out {noun} are predicted no better with it"),
+        Refusal::HeldOut => format!("held-out {noun} are predicted no better with it, or hardly"),
         Refusal::NoFolds => format!("no {noun} could be held out to confirm one"),
     };
     let lives = proposed.lives.as_ref().map_or_else(String::new, |(location, variable)| {

@@ -151,6 +151,10 @@ impl Acting {
     ) -> Vector3<f64> {
         let Some(x) = self.variable(force, gravity) else { return Vector3::zeros() };
         let value = self.law.at(x, 1.0);
+        // a formula may be no number where it was not recorded, which `beyond` says
+        if !value.is_finite() {
+            return Vector3::zeros();
+        }
         let along = |vector: Vector3<f64>| vector.try_normalize(0.0).unwrap_or_default();
         match (self.levers, self.law.unit()) {
             (Some([_, read]), _) => (along(self.moment(force, gravity)) * (value * URAD)).cross(&read),

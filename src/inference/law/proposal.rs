@@ -6,6 +6,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::choice::Choice;
 use super::folds::hold_out;
+use super::form::FormConstant;
 use super::measured::Measured;
 use super::proposed::{Beside, Law, LawRival, NextRecord, Point, Proposed, Refusal};
 use super::remainder::Remainder;
@@ -288,12 +289,30 @@ fn next(law: &Law) -> Option<NextRecord> {
     Some(NextRecord { rival: number, at, is_beyond: at > high, apart: apart(at) })
 }
 
-/// How far the law and its rivals at its place are apart beyond the data: the variable there, and
-/// the largest distance, m.
+/// How far the law is apart beyond the data from its rivals at its place, and a wave from itself
+/// with another period: the variable there, and the largest distance, m.
 fn further(law: &Law) -> Option<(f64, f64)> {
     let at = FURTHER * law.site.range().1;
     let distances = comparable(law).map(|(_, rival)| apart(law, rival, at));
-    distances.reduce(f64::max).map(|most| (at, most))
+    distances.chain(out_of_step(law)).reduce(f64::max).map(|most| (at, most))
+}
+
+/// How far a wave may be from what goes on half again beyond its data, m. Its phase is known in
+/// their middle: from there on it is out of step by φ = 2π·X·(1/P_low − 1/P_high)/2, and by a
+/// distance 2·A·sin(φ/2); of several periods by as much as there is.
+fn out_of_step(law: &Law) -> Option<f64> {
+    let Some((FormConstant::Period, period)) = &law.constant else { return None };
+    let count = law.form.count();
+    let amplitudes = law.values.0.chunks(count).zip(&law.site.directions).map(|(own, (_, weights))| {
+        let largest = weights.iter().fold(0.0, |most: f64, w| most.max(w.abs()));
+        own.iter().map(|a| a * a).sum::<f64>().sqrt() * largest
+    });
+    let largest = law.site.largest() / law.site.variable.si;
+    let phase = match period.also.is_empty() {
+        true => PI * largest * (1.0 / period.low - 1.0 / period.high),
+        false => PI,
+    };
+    amplitudes.reduce(f64::max).map(|amplitude| 2.0 * amplitude * (0.5 * phase.min(PI)).sin())
 }
 
 /// Rivals with their numbers that differ from the law in nothing but form and constants.

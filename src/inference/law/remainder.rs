@@ -244,6 +244,10 @@ impl<'a> Remainder<'a> {
 /// Z = [Q, B·L], Q the basis of the nuisance and L·Lᵀ the inverse.
 fn taken(whitening: &Whitening, base: &DMatrix<f64>, inverse: DMatrix<f64>) -> DMatrix<f64> {
     let nuisance = whitening.basis();
+    // of nothing there are no eigenvalues, and of no numbers none that are found
+    if inverse.is_empty() || inverse.iter().any(|value| !value.is_finite()) {
+        return nuisance;
+    }
     let eigen = SymmetricEigen::new(inverse);
     let mut root = eigen.eigenvectors;
     for (mut column, value) in root.column_iter_mut().zip(eigen.eigenvalues.iter()) {

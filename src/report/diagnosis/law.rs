@@ -76,7 +76,7 @@ pub fn json(told: Option<&Told>) -> Value {
         "next_record": next(law),
         "beyond": law.further.map(|(at, apart)| json!({
             "at": at / variable.si,
-            "rivals_apart_um": um(apart),
+            "apart_um": um(apart),
             "may_be_used": apart <= law.noise,
         })),
         "remark": told.remark,
@@ -209,10 +209,7 @@ fn range(law: &Law, told: &Told) -> String {
     let beyond =
         law.further.filter(|(_, apart)| *apart > law.noise).map_or_else(String::new, |(at, apart)| {
             let at = with_unit(significant(at / variable.si, 2), variable.unit);
-            format!(
-                ": at {at} it and the other forms are up to {} µm apart, so do not use it there",
-                um(apart)
-            )
+            format!(": at {at} these {} leave up to {} µm open, so do not use it there", told.noun, um(apart))
         });
     format!(
         "It is a proposal from {} between {} and {}; beyond that it is an extrapolation{beyond}. It changes no finding{written}.",

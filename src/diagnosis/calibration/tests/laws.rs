@@ -40,8 +40,6 @@ fn a_cable_that_pulls_with_two_joints_is_a_product() {
         assert_holds(&law.amplitudes[0], 500.0 * DEG);
         assert!(with < 1.3 * NOISE && without > 3.0 * with, "{without} {with}");
         assert!(found.diagnosis.findings.is_empty() && found.diagnosis.is_mismatch());
-        let json = crate::report::diagnosis::calibration::json(found);
-        assert_eq!(json["law"]["expression"]["text"], "Δq/q' = c1·q", "{}", json["law"]);
     });
 }
 
@@ -61,7 +59,8 @@ fn a_hose_that_gets_taut_is_a_threshold() {
     });
 }
 
-/// What calibration and library explain, nothing or warming up, leaves nothing to look for a law in.
+/// Nothing, and warming up: what calibration and library explain leaves nothing to look for a law
+/// in.
 #[test]
 fn where_nothing_is_left_there_is_no_law() {
     let clean = clamps(16);

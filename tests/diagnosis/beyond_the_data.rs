@@ -82,7 +82,10 @@ const HIDDEN: [Hidden; 7] = [
 
 /// Root mean squares along the loads beyond the data, µm: without a law, with it and whether it is
 /// said to be of use there (nothing where none is proposed), by the oracle.
-fn errors(hidden: &Hidden, seed: u64) -> Option<(f64, Option<(f64, bool)>, f64)> {
+type Errors = (f64, Option<(f64, bool)>, f64);
+
+/// Those of one recording; nothing where the library names something.
+fn errors(hidden: &Hidden, seed: u64) -> Option<Errors> {
     let mut random = Random::seeded(seed, 1);
     let (amplitudes, s) = (hidden.drawn)(&mut random);
     let adds =
@@ -206,7 +209,7 @@ fn table() {
         let worse_said = proposed.iter().filter(|e| !e.3 && e.1 > e.0).count();
         let near = proposed.iter().filter(|e| e.1 < 2.0f64.max(1.5 * e.2)).count();
         let most = of_use.iter().map(|e| e.1).fold(0.0, f64::max);
-        println!(
+        eprintln!(
             "| {} | {} | {} | {without:.1} | {with:.1} | {oracle:.1} | {near} | {} | {most:.1} | {worse} | {worse_said} |",
             hidden.name,
             all.len(),

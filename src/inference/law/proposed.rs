@@ -65,8 +65,8 @@ pub struct Law {
     /// What would distinguish it from the likeliest rival at its place.
     pub next: Option<NextRecord>,
     /// Half again beyond the data: the variable there (SI), and how far law and rivals at its place
-    /// are apart, m, but for a straight line, or a wave and itself with another of its periods; `None`
-    /// where there is neither.
+    /// are apart, m, but for a straight line, or a wave and itself with another of its periods;
+    /// `None` where there is neither.
     pub further: Option<(f64, f64)>,
     /// Data as it sees them: what is left but for the law.
     pub points: Vec<Point>,

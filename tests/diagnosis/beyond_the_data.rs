@@ -194,6 +194,7 @@ fn a_law_beyond_its_data_is_better_than_none() {
 
 #[test]
 #[ignore = "prints the table of docs/laws.md"]
+#[allow(clippy::print_stderr)]
 fn table() {
     for hidden in &HIDDEN {
         let all: Vec<_> = (90_000..90_040).filter_map(|seed| errors(hidden, seed)).collect();

@@ -17,6 +17,8 @@ use crate::units::{UM, significant};
 
 /// Rivals that are said.
 const SAID: usize = 2;
+/// Letters of a result's name that fit beside a picture.
+const LONGEST: usize = 28;
 /// Points of a line in a picture, and how far beyond the data it is drawn, as a share of them.
 const DRAWN: (usize, f64) = (160, 0.3);
 
@@ -282,6 +284,11 @@ fn picture(law: &Law) -> crate::report::chart::Figure {
     let label = |name: &str, unit: &str| {
         if unit.is_empty() { name.to_owned() } else { format!("{name} / {unit}") }
     };
+    // what is too long for the side of a picture has its symbol
+    let changed = match result.name.chars().count() {
+        ..=LONGEST => format!("change of the {}", result.name),
+        _ => result.symbol.to_owned(),
+    };
     let panel = |(direction, (name, _)): (usize, &(String, Vec<f64>))| {
         let own = |points: &[crate::inference::law::Point]| -> Vec<[f64; 2]> {
             let of = points.iter().filter(|point| point.direction == direction);
@@ -299,7 +306,7 @@ fn picture(law: &Law) -> crate::report::chart::Figure {
         LawPanel {
             title: name.clone(),
             x: label(&variable.name, variable.unit),
-            y: label(&format!("change of the {}", result.name), result.unit),
+            y: label(&changed, result.unit),
             data,
             curve: own(&law.curve),
             law: line(ends.0, ends.1),

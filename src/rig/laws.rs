@@ -6,11 +6,9 @@ use super::readings::{Axis, Readings};
 use crate::beam::{Physics, RodModel};
 use crate::compliance::StaticLaws;
 use crate::error::Result;
+use crate::rod::law::should_show;
 use crate::rod::{LawVariable, Rod, RodLaw};
 use crate::units::UM;
-
-/// Times that a reading is computed from itself less its sensor's law.
-const ROUNDS: usize = 20;
 
 /// The readings less all laws that the load alone decides on.
 ///
@@ -25,7 +23,7 @@ pub fn without_laws(readings: &Readings, rod: &Rod, physics: &Physics, elements:
         for channel in Axis::ALL {
             let laws = rod.laws.iter().filter(|law| is_of(law, channel));
             if let Some(offset) = &mut row.offset[channel.index()] {
-                laws.for_each(|law| *offset = shown(law, *offset));
+                laws.for_each(|law| *offset = UM * should_show(*offset / UM, |y| law.at(y, 1.0)));
             }
         }
         let pair = (at(row.load_station), at(row.read_station));
@@ -50,14 +48,4 @@ pub fn without_laws(readings: &Readings, rod: &Rod, physics: &Physics, elements:
 
 fn is_of(law: &RodLaw, channel: Axis) -> bool {
     law.variable == LawVariable::Reading && law.is_static() && law.place == format!("d{channel}")
-}
-
-/// What a sensor should have shown: y of y + Δy(y) = what it showed, m.
-fn shown(law: &RodLaw, recorded: f64) -> f64 {
-    let mut y = recorded;
-    for _ in 0..ROUNDS {
-        y = recorded - UM * law.at(y / UM, 1.0);
-    }
-    // a law that grows faster than what it is of has no such y
-    if y.is_finite() { y } else { recorded }
 }

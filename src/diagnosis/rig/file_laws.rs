@@ -10,10 +10,8 @@ use super::model::RigModel;
 use super::sites::sites;
 use crate::inference::law::{Memory, Site};
 use crate::inference::{Evidence, Location, NominalParameter};
+use crate::rod::law::should_show;
 use crate::rod::{LawConstant, LawMemory, Rod, RodLaw};
-
-/// Times that a reading is computed from itself less its sensor's law.
-const ROUNDS: usize = 20;
 
 /// Takes what the laws of the rod's file add out of the data; which of them these readings have no
 /// data for, in words.
@@ -110,11 +108,8 @@ fn added(law: &RodLaw, site: &Site, value: &dyn Fn(usize, &LawConstant) -> f64, 
         match site.recorded.as_ref().filter(|_| of == Of::Recorded) {
             // y of y + Δy(y) = what was recorded
             Some(recorded) => {
-                let mut y = recorded[i];
-                for _ in 0..ROUNDS {
-                    y = recorded[i] - weights[i] * at(y / si, side);
-                }
-                weights[i] * at(y / si, side)
+                let y = should_show(recorded[i] / si, |y| weights[i] * at(y, side) / si);
+                weights[i] * at(y, side)
             }
             None => weights[i] * at(followed[i] / si, side),
         }

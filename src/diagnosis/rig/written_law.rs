@@ -3,6 +3,7 @@
 use crate::inference::Location;
 use crate::inference::law::{Constant, Form, Law, Memory};
 use crate::rod::{LawConstant, LawMemory, LawVariable, RodLaw};
+use crate::units::significant;
 
 /// Half of a 95 % interval, in standard deviations.
 const HALF: f64 = 1.96;
@@ -19,7 +20,11 @@ pub(super) fn written(law: &Law, source: &str) -> Option<RodLaw> {
     let own = |constant: &Constant| LawConstant {
         name: constant.symbol.clone(),
         value: digits(constant.value),
-        standard_uncertainty: rounded((constant.high - constant.low) / (2.0 * HALF)),
+        // several values apart have no standard deviation: the source says which they are
+        standard_uncertainty: match constant.also.is_empty() {
+            true => rounded((constant.high - constant.low) / (2.0 * HALF)),
+            false => 0.0,
+        },
         unit: constant.unit.clone(),
     };
     let constants = law.amplitudes.iter().chain(law.constant.iter().map(|(_, constant)| constant));
@@ -33,7 +38,13 @@ pub(super) fn written(law: &Law, source: &str) -> Option<RodLaw> {
         Memory::Lag => Some(LawMemory::Lag),
         _ => None,
     };
-    written.source = Some(source.to_owned());
+    let also = |constant: &Constant| {
+        let others: Vec<String> = constant.also.iter().map(|other| significant(*other, 3)).collect();
+        let Constant { symbol, unit, .. } = constant;
+        (!others.is_empty()).then(|| format!("; {symbol} may as well be {} {unit}", others.join(", ")))
+    };
+    let also = law.constant.as_ref().and_then(|(_, constant)| also(constant)).unwrap_or_default();
+    written.source = Some(format!("{source}{also}"));
     Some(written)
 }
 

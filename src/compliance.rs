@@ -5,11 +5,13 @@
 //! axis m, load along axis n.
 
 pub mod closed_form;
+mod laws;
 mod sensitivity;
 mod steps;
 mod strength;
 mod study;
 
+pub use laws::StaticLaws;
 pub use sensitivity::{Sensitivity, sensitivities, standard_uncertainty};
 pub use steps::{Step, steps};
 pub use strength::{Overload, Strength, overload};

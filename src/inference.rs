@@ -9,7 +9,7 @@
 //! evidence + forward model → search (score) → selection → pruning → held out, sessions → findings
 //! ```
 
-mod background;
+pub(crate) mod background;
 mod columns;
 mod compared;
 mod correlated_noise;

@@ -13,6 +13,7 @@
 mod comparison;
 mod curve;
 mod fit;
+mod laws;
 pub mod line;
 pub mod readings;
 mod repeats;

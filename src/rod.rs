@@ -5,11 +5,13 @@
 
 mod build;
 pub(crate) mod file;
+pub mod law;
 mod nominal;
 mod uncertainty;
 mod warnings;
 mod write;
 
+pub use law::{LawConstant, LawMemory, LawVariable, RodLaw};
 pub use nominal::{Feature, Nominal, NominalNumber, Part, SectionConstant};
 pub use uncertainty::StandardUncertainty;
 pub use warnings::Warning;
@@ -53,6 +55,8 @@ pub struct Rod<T = f64> {
     pub masses: Vec<LumpedMass<T>>,
     /// Bonded or threaded connections.
     pub joints: Vec<Joint<T>>,
+    /// What the beam model leaves out of it, as formulas.
+    pub laws: Vec<RodLaw>,
     /// Largest load up to which the rod's maker or user calls it linear, N.
     pub linear_range: Option<f64>,
     /// How well the dimensions are known; each material carries its own.

@@ -3,7 +3,9 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod applied_laws;
 mod beyond;
+mod beyond_the_data;
 mod clean;
 mod confused;
 mod effects;

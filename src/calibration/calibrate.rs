@@ -50,6 +50,8 @@ pub fn calibrate<'c>(campaign: &'c Campaign, mode: Mode, options: &Options) -> R
     if options.prune {
         calibration = pruned(campaign, calibration, &compensation, options)?;
     }
+    let laws = compensation.use_of_laws(&calibration.setup, recording);
+    calibration.warnings.extend(laws.map(|(most, beyond)| Warning::RodLaws { most, beyond }));
     if let Some(recording) = &campaign.validation {
         let recording = match campaign.refit {
             Refit::Nothing => &recording.seen_from(&campaign.measurements, &calibration)?,

@@ -5,13 +5,13 @@ use nalgebra::Vector3;
 use super::campaign::{Campaign, Recording};
 use super::problem::Pass;
 use crate::beam::Physics;
-use crate::compliance::{Compliance, DEFAULT_ELEMENTS, closed_form};
+use crate::compliance::{Compliance, DEFAULT_ELEMENTS, StaticLaws, closed_form};
 use crate::error::{Error, Result};
 use crate::rig;
 use crate::robot::{Body, Kinematics, Loads, Robot, Setup};
 use crate::spatial::times;
 use crate::statistics::Random;
-use crate::units::STANDARD_GRAVITY;
+use crate::units::{STANDARD_GRAVITY, significant};
 
 /// Times that torques and the joints that they turn are computed from each other; each time their
 /// error falls by the share by which a joint yields, below 10⁻³.
@@ -53,6 +53,8 @@ pub struct Compensation {
     pub mode: Mode,
     /// C^F and C^g of the rod; `None` for a rigid one.
     pub compliance: Option<Compliance>,
+    /// What the laws of the rod's file add; `None` where there are none, and in Calc mode.
+    pub laws: Option<StaticLaws>,
     /// The rod as a body on the flange.
     pub payload: Option<Body>,
     /// Force on the ball in the device frame, N.
@@ -97,9 +99,12 @@ impl Compensation {
                 fit.measured.map(|measured| measured.compliance)
             }
         };
+        let is_whole = matches!(mode, Mode::Fea | Mode::Meas);
+        let laws = campaign.rod.as_ref().filter(|_| is_whole).map(StaticLaws::of_tip);
         Ok(Compensation {
             mode,
             compliance,
+            laws: laws.filter(|laws| !laws.is_empty()),
             payload: campaign.rod.as_ref().map(|rod| Body { mass: rod.mass(), centre: rod.centre_of_mass() }),
             contact_force: campaign.contact_force.unwrap_or_default(),
             displaced: Vec::new(),
@@ -112,6 +117,7 @@ impl Compensation {
         Compensation {
             mode: Mode::None,
             compliance: None,
+            laws: None,
             payload: None,
             contact_force: Vector3::zeros(),
             displaced: Vec::new(),
@@ -130,6 +136,32 @@ impl Compensation {
             kinematics.flange.rotation * pass.deflection[row]
         };
         (0..recording.len()).map(in_world).collect()
+    }
+
+    /// What the laws of the rod's file add at most (m) over a recording, and those that are beyond
+    /// what they were recorded with, in words; `None` without laws.
+    pub fn use_of_laws(&self, setup: &Setup, recording: &Recording) -> Option<(f64, Vec<String>)> {
+        let (laws, compliance) = (self.laws.as_ref()?, self.compliance.as_ref()?);
+        let mut kinematics = Kinematics::new(setup);
+        let gravity = setup.base().rotation * setup.robot.gravity / STANDARD_GRAVITY;
+        let mut most = 0.0f64;
+        let mut beyond: Vec<(String, f64)> = Vec::new();
+        for row in 0..recording.len() {
+            kinematics.update(recording.joints(row), &[]);
+            let r = &kinematics.flange.rotation;
+            let force = r.tr_mul(&times(&recording.device(row).rotation, &self.contact_force));
+            let gravity = r.tr_mul(&gravity);
+            most = most.max(laws.displacement(&compliance.force, &force, &gravity).norm());
+            for (law, x) in laws.beyond(&force, &gravity) {
+                let (words, x) = (law.words(), x.abs());
+                match beyond.iter_mut().find(|(known, _)| *known == words) {
+                    Some((_, largest)) => *largest = largest.max(x),
+                    None => beyond.push((words, x)),
+                }
+            }
+        }
+        let said = |(law, x): (String, f64)| format!("{law}, at {}", significant(x, 3));
+        Some((most, beyond.into_iter().map(said).collect()))
     }
 
     /// Fills in deflection and torque of every row for the present `setup`; gives the largest
@@ -155,7 +187,8 @@ impl Compensation {
         change
     }
 
-    /// C^g·g_T + C^F·F_T, m in {T}, under gravity (m/s²) and a force on the tip (N), both in {W}.
+    /// C^g·g_T + C^F·F_T and what laws add to it, m in {T}, under gravity (m/s²) and a force on the
+    /// tip (N), both in {W}.
     fn deflection(
         &self,
         kinematics: &Kinematics,
@@ -166,7 +199,12 @@ impl Compensation {
         let r = &kinematics.flange.rotation;
         // g_T = Rᵀ·g, F_T = Rᵀ·F (Eqs 12–14); C^g is per g (Eq 19)
         let gravity = r.tr_mul(gravity) / STANDARD_GRAVITY;
-        times(&compliance.gravity, &gravity) + times(&compliance.force, &r.tr_mul(force))
+        let force = r.tr_mul(force);
+        let linear = times(&compliance.gravity, &gravity) + times(&compliance.force, &force);
+        match &self.laws {
+            Some(laws) => linear + laws.displacement(&compliance.force, &force, &gravity),
+            None => linear,
+        }
     }
 }
 
@@ -200,5 +238,46 @@ pub fn default_mode(campaign: &Campaign) -> Mode {
         (Some(_), Some(_)) => Mode::Meas,
         (Some(_), None) => Mode::Fea,
         _ => Mode::None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::calibration::simulate::{Plan, campaign_files, simulate};
+    use crate::calibration::{Options, calibrate};
+    use crate::rod::Rod;
+    use crate::units::UM;
+
+    /// A root that gives way until it comes to a stop, at the robot under weight and contact force:
+    /// with the law nothing is left, and what it does is said.
+    #[test]
+    fn a_law_of_the_root_bends_the_rod_at_the_robot() {
+        const LAW: &str = "\n[[law]]\nplace = \"root\"\nvariable = \"moment\"\nrange = [0.0, 8.0]\n\
+            formula = \"a*min(M/1.5, 1)\"\n[[law.constant]]\nname = \"a\"\nvalue = 400.0\n";
+        let plain = include_str!("../../rods/5.toml");
+        let text = plain.to_owned() + LAW;
+        let robot =
+            Robot::from_text("tx90.toml", include_str!("../../robots/tx90.toml"), None, None).unwrap();
+        let rod = Rod::from_toml("rod", &text).unwrap();
+        let model = Compliance::of_model(&rod, &Physics::default(), DEFAULT_ELEMENTS).unwrap();
+        let plan = Plan { poses_per_clamp: 8, sensor_noise: 0.0, repeatability: 0.0, ..Plan::default() };
+        let simulation = simulate(&robot, &rod, &model, &plan).unwrap();
+        let files = campaign_files(&simulation, "builtin:tx90", "rod.toml");
+        let rms = |rod: &str| {
+            let find = |wanted: &str| match wanted {
+                "rod.toml" => rod.to_owned(),
+                _ => files.iter().find(|(name, _)| name == wanted).unwrap().1.clone(),
+            };
+            let campaign =
+                Campaign::from_texts("campaign.toml", &find("campaign.toml"), &|name| Ok(find(name)))
+                    .unwrap();
+            let calibration = calibrate(&campaign, Mode::Fea, &Options::default()).unwrap();
+            let said =
+                calibration.warnings.iter().any(|warning| warning.to_string().contains("laws of the rod"));
+            (calibration.rms() / UM, said)
+        };
+        let ((with, is_said), (without, _)) = (rms(&text), rms(plain));
+        assert!(with < 0.5 && without > 5.0 && is_said, "{with} {without} µm");
     }
 }

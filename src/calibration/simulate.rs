@@ -22,7 +22,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::campaign::{Group, Recording, Row, Station, Targets};
 use super::compensation::{Compensation, Mode};
 use super::problem::Pass;
-use crate::compliance::{Compliance, PAPER_CONTACT_FORCE};
+use crate::compliance::{Compliance, PAPER_CONTACT_FORCE, StaticLaws};
 use crate::error::Result;
 use crate::robot::postures::{anywhere, is_above_table};
 use crate::robot::{Body, Kinematics, Parameter, Robot, Setup, minimal_parameters};
@@ -101,6 +101,7 @@ pub fn simulate_telling<'r>(
     let compensation = Compensation {
         mode: Mode::Fea,
         compliance: Some(compliance),
+        laws: Some(StaticLaws::of_tip(rod)).filter(|laws| !laws.is_empty()),
         payload: Some(payload),
         contact_force: Vector3::from(PAPER_CONTACT_FORCE),
         displaced: Vec::new(),

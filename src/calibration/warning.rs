@@ -25,6 +25,13 @@ pub enum Warning {
         /// The arm's reach, m.
         reach: f64,
     },
+    /// The rod's file has laws, which are part of its deflection.
+    RodLaws {
+        /// What they add at most, m.
+        most: f64,
+        /// Those beyond what they were recorded with, in words.
+        beyond: Vec<String>,
+    },
     /// The robot's file has no masses, so that the torques on its joints are unknown.
     NoMasses,
     /// A combination of parameters that the data do not identify.
@@ -114,6 +121,17 @@ impl fmt::Display for Warning {
                 significant(100.0 * rms / reach, 2),
                 100.0 * MOST_SCATTER
             ),
+            Warning::RodLaws { most, beyond } => {
+                write!(
+                    f,
+                    "the laws of the rod's file are part of its deflection here, up to {} µm, under contact force and weight",
+                    significant(most / UM, 2)
+                )?;
+                match &beyond[..] {
+                    [] => Ok(()),
+                    beyond => write!(f, "; beyond what was recorded: {}", beyond.join("; ")),
+                }
+            }
             Warning::NoMasses => f.write_str(
                 "the robot's file has no masses, so the torques on its joints are unknown: joint compliances are off",
             ),

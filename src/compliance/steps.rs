@@ -17,6 +17,16 @@ pub struct Step {
     pub added: Compliance,
 }
 
+impl Step {
+    /// The laws of the rod's file, after all others.
+    pub(super) fn of_laws(before: &Compliance, total: Compliance) -> Step {
+        Step { term: LAWS, total, added: total.minus(before) }
+    }
+}
+
+/// What the laws of the rod's file are among the terms.
+const LAWS: &str = "laws of its file, at the contact force and 1 g";
+
 /// From bending and torsion alone (Calc, where the closed form applies) to the whole model, one
 /// term after another: what each term adds to the ones before it. The terms add up to the whole
 /// exactly.

@@ -2,6 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::laws::StaticLaws;
 use super::sensitivity::{Sensitivity, sensitivities};
 use super::steps::{Step, steps};
 use super::strength::{Overload, overload};
@@ -47,8 +48,12 @@ pub struct Study {
     pub contact_force: f64,
     /// Calc mode, or why it does not apply to this rod.
     pub calc: Result<Compliance>,
-    /// FEA mode.
+    /// FEA mode. With laws of the rod's file: at the contact force and 1 g.
     pub fea: Compliance,
+    /// FEA mode without these laws.
+    pub linear: Compliance,
+    /// The laws of the rod's file that its tip follows.
+    pub laws: StaticLaws,
     /// From Calc to FEA, one left-out term after another.
     pub steps: Vec<Step>,
     /// The rod undeformed and deformed.
@@ -99,9 +104,21 @@ impl Study {
             (Mode::Calc, Err(why)) => return Err(why),
             (_, calc) => calc,
         };
+        let linear = Compliance::of_model(&rod, &physics, elements)?;
+        let mut steps = steps(&rod, &physics, elements)?;
+        let laws = StaticLaws::of_tip(&rod);
+        let fea = match laws.is_empty() || contact_force <= 0.0 {
+            true => linear,
+            false => laws.secant(&linear, contact_force),
+        };
+        if fea != linear {
+            steps.push(Step::of_laws(&linear, fea));
+        }
         Ok(Study {
-            fea: Compliance::of_model(&rod, &physics, elements)?,
-            steps: steps(&rod, &physics, elements)?,
+            fea,
+            linear,
+            laws,
+            steps,
             shape: Shape::new(&rod, &physics)?,
             // numbers beyond double precision bend too far before they break
             overload: overload(&rod, contact_force).unwrap_or_default(),

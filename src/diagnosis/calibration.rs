@@ -35,9 +35,11 @@ mod nominal;
 mod nonparametric;
 mod patterns;
 mod prepared;
+mod sites;
 mod tails;
 #[cfg(test)]
 mod tests;
+mod textbook;
 mod torque_uncertainty;
 mod transfer;
 mod vector;
@@ -50,3 +52,4 @@ pub use law::{Course, Frame, Law, Power, RodLoad, TakenUp};
 pub use memory::{MEMORY_LIMIT, check_memory, memory_needed};
 pub use mistakes::{Mended, Neighbours, Suspicion, mend, suspected};
 pub use model::CalibrationModel;
+pub use textbook::remark;

@@ -35,6 +35,7 @@ mod diagnose;
 pub mod effects;
 mod evidence;
 mod feasible;
+mod file_laws;
 mod first_sight;
 mod forward_model;
 mod limits;
@@ -58,6 +59,7 @@ mod tests;
 mod textbook;
 mod transfer;
 mod wanted;
+mod written_law;
 
 pub use correction::Correction;
 pub use datum::Datum;

@@ -53,6 +53,16 @@ pub(super) fn folded(evidence: &Evidence) -> Folded {
     Folded { evidence, basis, first }
 }
 
+/// Factors of all nominal numbers, in standard uncertainties, given those of the background of the
+/// folded evidence.
+pub fn nominal_factors(evidence: &Evidence, background: &[f64]) -> DVector<f64> {
+    let basis = basis(&evidence.nominal);
+    let first = evidence.background.ncols();
+    let own = |k: usize, _| background.get(first + k).copied().unwrap_or(0.0);
+    let own = DVector::from_fn(basis.ncols(), own);
+    basis * own
+}
+
 /// V without the directions that draw nothing.
 fn basis(nominal: &DMatrix<f64>) -> DMatrix<f64> {
     if nominal.ncols() == 0 {

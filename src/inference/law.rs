@@ -37,5 +37,5 @@ mod tests;
 pub use form::{Constant, Form, FormConstant};
 pub use memory::Memory;
 pub use proposal::propose;
-pub use proposed::{Law, LawRival, NextRecord, Point, Proposed, Refusal};
+pub use proposed::{Beside, Law, LawRival, NextRecord, Point, Proposed, Refusal};
 pub use site::{Course, Measure, Site};

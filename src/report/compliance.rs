@@ -1,5 +1,6 @@
 //! What the `compliance` command says: JSON, tables and pictures of a [`Study`].
 
+mod laws;
 mod numbers;
 pub(super) mod steps;
 
@@ -54,6 +55,7 @@ pub fn json(study: &Study) -> Value {
         "contributions": steps,
         "sensitivities": study.sensitivities.iter().map(sensitivity_json).collect::<Vec<_>>(),
         "one_percent_more": sensitivities::json(&one_percent_more(study), &PERCENTS),
+        "laws": laws::json(study),
         "stations": study.stations.map(|stations| json!({
             "load_station_mm": stations.load / MM,
             "read_station_mm": stations.read / MM,
@@ -93,6 +95,7 @@ pub fn sections(study: &Study) -> Vec<Section> {
         Err(why) => tables.push(Block::Paragraph(format!("{why}."))),
     }
     tables.push(matrices("fea", &format!("FEA: beam model, {}.", physics_name(study)), &study.fea));
+    tables.extend(laws::blocks(study));
     tables.extend(study.stations.as_ref().map(station_table));
     let force_cases = AXES.map(|axis| format!("1 N along +{}", axis.to_uppercase()));
     let gravity_cases = AXES.map(|axis| format!("1 g along +{}", axis.to_uppercase()));
@@ -265,11 +268,13 @@ pub fn headline(study: &Study) -> String {
         Mode::Fea => format!("the beam model ({})", physics_name(study)),
     };
     format!(
-        "Rod {} bends at its tip by up to {} µm per newton and {} µm under one g; its compliance index c_rod is {} µm by {mode}.",
+        "Rod {} bends at its tip by up to {} µm per newton and {} µm under one g; its compliance index c_rod is {} µm by \
+         {mode}.{}",
         study.rod.name,
         significant(largest_column(&c.force) / UM, 4),
         significant(largest_column(&c.gravity) / UM, 4),
         significant(study.index() / UM, 4),
+        laws::sentence(study)
     )
 }
 

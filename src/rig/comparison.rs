@@ -108,6 +108,23 @@ fn predictions(
     physics: &Physics,
     elements: usize,
 ) -> Result<Vec<f64>> {
+    check_stations(readings, rod)?;
+    let tip = rod.length();
+    let at = |station: Option<f64>| station.unwrap_or(tip).min(tip);
+    lines
+        .iter()
+        .map(|line| {
+            let key = &line.key;
+            let (load, read) = (at(key.load_station), at(key.read_station));
+            let model = RodModel::new(rod, physics, elements, &[load, read])?;
+            let motion = model.force_response(load, read)?;
+            Ok(motion.translation[(key.channel.index(), key.direction.axis.index())])
+        })
+        .collect()
+}
+
+/// Refuses stations that are not on the rod.
+pub(super) fn check_stations(readings: &Readings, rod: &Rod) -> Result<()> {
     let tip = rod.length();
     for row in &readings.rows {
         for (name, station) in [("load_station_mm", row.load_station), ("read_station_mm", row.read_station)]
@@ -126,17 +143,7 @@ fn predictions(
             }
         }
     }
-    let at = |station: Option<f64>| station.unwrap_or(tip).min(tip);
-    lines
-        .iter()
-        .map(|line| {
-            let key = &line.key;
-            let (load, read) = (at(key.load_station), at(key.read_station));
-            let model = RodModel::new(rod, physics, elements, &[load, read])?;
-            let motion = model.force_response(load, read)?;
-            Ok(motion.translation[(key.channel.index(), key.direction.axis.index())])
-        })
-        .collect()
+    Ok(())
 }
 
 /// An entry this small beside the largest is zero by symmetry.

@@ -2,7 +2,8 @@
 
 use std::collections::HashMap;
 
-use super::comparison::{Measured, compare};
+use super::comparison::{Measured, check_stations, compare};
+use super::laws::without_laws;
 use super::line::{Line, LineKey, Sample};
 use super::readings::{Axis, Phase, Reading, Readings};
 use super::warning::{self, Warning};
@@ -60,12 +61,21 @@ pub struct Fit {
 /// ```
 ///
 /// Shapes: one [`Line`](crate::rig::line::Line) for each direction, channel and pair of stations;
-/// C^F and C^g are 3 × 3 in {T}, m/N and m per g.
+/// C^F and C^g are 3 × 3 in {T}, m/N and m per g. Laws of the rod's file are taken out of the
+/// readings: lines and compliance are those of the linear rest.
 ///
 /// # Errors
 /// [`Error::Input`] for stations off the rod, offsets against the load, or readings that measure
 /// nothing the rod's model has; what the beam model and the fits refuse.
 pub fn fit(readings: &Readings, rod: Option<&Rod>, options: &Options) -> Result<Fit> {
+    if let Some(rod) = rod.filter(|rod| !rod.laws.is_empty()) {
+        check_stations(readings, rod)?;
+        let linear = without_laws(readings, rod, &options.physics, options.elements)?;
+        let mut fit = fit(&linear, Some(&Rod { laws: Vec::new(), ..rod.clone() }), options)?;
+        let laws = rod.laws.iter().filter(|law| law.is_static()).map(|law| law.words());
+        fit.warnings.splice(0..0, laws.map(|law| Warning::WithoutLaw { law }));
+        return Ok(fit);
+    }
     let mut lines = Vec::new();
     for key in keys(&readings.rows) {
         lines.extend(Line::fit(key, &samples(&readings.rows, &key), options.robust)?);

@@ -69,6 +69,11 @@ pub enum Warning {
         /// The direction.
         axis: Axis,
     },
+    /// What a law of the rod's file adds was taken out of the readings.
+    WithoutLaw {
+        /// The law in words.
+        law: String,
+    },
     /// A robust fit set readings aside.
     Downweighted {
         /// Which line.
@@ -141,6 +146,11 @@ pub(super) fn about_ratios(measured: &Measured, lines: &[Line]) -> Vec<Warning> 
 impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            Warning::WithoutLaw { law } => write!(
+                f,
+                "the rod file has a law, {law}: what it adds was taken out of the readings, and these slopes are \
+                 those of what is left"
+            ),
             Warning::NotStraight { line, f: value, p_value, largest } => write!(
                 f,
                 "{line} is not a straight line: lack of fit F = {} (p = {}), up to {} µm beside it; a slope alone does not describe these readings",

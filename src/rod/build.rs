@@ -40,6 +40,7 @@ impl Rod {
             tip_mass: 0.0,
             masses: Vec::new(),
             joints: Vec::new(),
+            laws: Vec::new(),
             linear_range: None,
             standard_uncertainty: StandardUncertainty::default(),
             warnings: Vec::new(),

@@ -3,6 +3,7 @@
 
 mod check;
 mod geometry;
+mod laws;
 mod materials;
 mod parts;
 mod sections;
@@ -17,6 +18,7 @@ use toml::Spanned;
 pub use self::check::Check;
 pub use self::geometry::RawFlexibility;
 use self::geometry::RawGeometry;
+use self::laws::RawLaw;
 pub use self::materials::MaterialTable;
 pub use self::parts::{RawJoint, RawMass};
 use self::parts::{RawPipe, RawTip};
@@ -92,6 +94,8 @@ struct RawRod {
     #[serde(default)]
     joint: Vec<RawJoint>,
     #[serde(default)]
+    law: Vec<RawLaw>,
+    #[serde(default)]
     standard_uncertainty: RawUncertainty,
 }
 
@@ -107,6 +111,11 @@ const REQUIRED: &Required = &[
     ("material", "the name of one of the file's materials"),
     ("mass_g", "the mass in g"),
     ("name", "a name in quotes"),
+    ("place", "where a law acts: rod, clamp, root, slide, a joint's name, dx, dy or dz"),
+    ("variable", "what a law is a function of"),
+    ("formula", "a formula in quotes"),
+    ("range", "where a law was recorded: [from, to], in the unit of its variable"),
+    ("value", "the number, in its unit"),
     ("station_mm", "the distance from the flange along the centreline in mm"),
 ];
 
@@ -150,6 +159,7 @@ impl Check<'_> {
             },
             masses: Vec::new(),
             joints: Vec::new(),
+            laws: Vec::new(),
             linear_range: match &raw.linear_range_n {
                 Some(range) => Some(self.toml.positive("linear_range_n", range)?),
                 None => None,
@@ -167,6 +177,7 @@ impl Check<'_> {
             let joint = self.joint(joint, &rod.joints, rod.length())?;
             rod.joints.push(joint);
         }
+        self.laws(&raw.law, &mut rod)?;
         Ok(rod)
     }
 }
@@ -247,6 +258,7 @@ torsion_urad_per_nm = 3.0
                 bending: 2.0 * URAD_PER_NM,
                 torsion: 3.0 * URAD_PER_NM,
             }],
+            laws: vec![],
             linear_range: None,
             standard_uncertainty: StandardUncertainty::default(),
             warnings: vec![],

@@ -58,6 +58,13 @@ pub enum Warning {
         /// E/2G − 1.
         ratio: f64,
     },
+    /// A law that is not the rod's alone, or that follows what went before.
+    LawOfRig {
+        /// The law in words.
+        law: String,
+        /// True where the load that hangs now is all it takes.
+        is_static: bool,
+    },
     /// Young's and shear modulus leave the isotropic range and Poisson's ratio is not stated: it is
     /// taken as [`crate::material::TYPICAL_POISSON_RATIO`].
     Anisotropic {
@@ -96,6 +103,15 @@ impl fmt::Display for Warning {
             Warning::PoissonRatio { material, stated, ratio } => write!(
                 f,
                 "material `{material}` states Poisson's ratio {stated}, and E/2G − 1 = {ratio:.2} were it isotropic: it is taken as anisotropic, with standard uncertainties of 5 % for E and 10 % for G"
+            ),
+            Warning::LawOfRig { law, is_static: true } => write!(
+                f,
+                "the law {law} is the rig's and not the rod's: `rig fit` and `diagnose rig` take it out of readings, \
+                 nothing else uses it"
+            ),
+            Warning::LawOfRig { law, is_static: false } => write!(
+                f,
+                "the law {law} follows what went before: `diagnose rig` uses it, and nothing else does"
             ),
             Warning::Anisotropic { material, ratio } => write!(
                 f,

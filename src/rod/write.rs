@@ -1,6 +1,6 @@
 //! Writes a rod as a file, such that reading it gives the same rod.
 
-use super::{BendFlexibility, Pipe, Rod, StandardUncertainty};
+use super::{BendFlexibility, Pipe, Rod, RodLaw, StandardUncertainty};
 use crate::material::Material;
 use crate::section::Section;
 use crate::toml_text::{comments, in_unit, quoted};
@@ -67,6 +67,7 @@ impl Rod {
             line(format!("bending_urad_per_nm = {:?}", in_unit(joint.bending, URAD_PER_NM)));
             line(format!("torsion_urad_per_nm = {:?}", in_unit(joint.torsion, URAD_PER_NM)));
         }
+        self.laws.iter().flat_map(law).for_each(&mut line);
         let (own, usual) = (&self.standard_uncertainty, StandardUncertainty::default());
         let known = [
             ("diameter_mm", own.diameter, usual.diameter, MM),
@@ -112,6 +113,25 @@ fn material_details(material: &Material) -> Vec<String> {
         if own != usual {
             lines.push(format!("{key} = {:?}", in_unit(own, PERCENT)));
         }
+    }
+    lines
+}
+
+/// The lines of a law.
+fn law(law: &RodLaw) -> Vec<String> {
+    let mut lines = vec![
+        format!("\n[[law]]\nplace = {}", quoted(&law.place)),
+        format!("variable = {}", quoted(law.variable.key())),
+        format!("formula = {}", quoted(&law.formula)),
+    ];
+    lines.extend(law.memory.map(|memory| format!("memory = {}", quoted(memory.key()))));
+    lines.push(format!("range = [{:?}, {:?}]", law.range.0, law.range.1));
+    lines.extend(law.source.iter().map(|source| format!("source = {}", quoted(source))));
+    for own in &law.constants {
+        lines.push(format!("[[law.constant]]\nname = {}", quoted(&own.name)));
+        lines.push(format!("value = {:?}", own.value));
+        lines.push(format!("standard_uncertainty = {:?}", own.standard_uncertainty));
+        lines.push(format!("unit = {}", quoted(&own.unit)));
     }
     lines
 }

@@ -142,12 +142,12 @@ fn a_key_or_section_that_is_not_known_is_named_with_its_neighbour() {
         (
             "name = \"5#\"",
             "nmae = \"5#\"",
-            "rod.toml:1:1: unknown key `nmae`, expected one of name, source, linear_range_n, geometry, material, pipe1, pipe2, bend, tip, mass, joint, standard_uncertainty -> if it belongs to a section, write it below that section's [header]",
+            "rod.toml:1:1: unknown key `nmae`, expected one of name, source, linear_range_n, geometry, material, pipe1, pipe2, bend, tip, mass, joint, law, standard_uncertainty -> if it belongs to a section, write it below that section's [header]",
         ),
         (
             "name = \"5#\"",
             "operator = \"Ann\"",
-            "rod.toml:1:1: unknown key `operator`, expected one of name, source, linear_range_n, geometry, material, pipe1, pipe2, bend, tip, mass, joint, standard_uncertainty -> if it belongs to a section, write it below that section's [header]",
+            "rod.toml:1:1: unknown key `operator`, expected one of name, source, linear_range_n, geometry, material, pipe1, pipe2, bend, tip, mass, joint, law, standard_uncertainty -> if it belongs to a section, write it below that section's [header]",
         ),
         (
             "l1_mm = 150.0",
@@ -182,27 +182,27 @@ fn a_key_or_section_that_is_not_known_is_named_with_its_neighbour() {
         (
             "[geometry]",
             "[geometri]",
-            "rod.toml:4:2: unknown section [geometri], expected one of name, source, linear_range_n, geometry, material, pipe1, pipe2, bend, tip, mass, joint, standard_uncertainty -> did you mean [geometry]?",
+            "rod.toml:4:2: unknown section [geometri], expected one of name, source, linear_range_n, geometry, material, pipe1, pipe2, bend, tip, mass, joint, law, standard_uncertainty -> did you mean [geometry]?",
         ),
         (
             "[geometry]\n",
             "",
-            "rod.toml:6:1: unknown key `gamma_deg`, expected one of name, source, linear_range_n, geometry, material, pipe1, pipe2, bend, tip, mass, joint, standard_uncertainty -> if it belongs to a section, write it below that section's [header]",
+            "rod.toml:6:1: unknown key `gamma_deg`, expected one of name, source, linear_range_n, geometry, material, pipe1, pipe2, bend, tip, mass, joint, law, standard_uncertainty -> if it belongs to a section, write it below that section's [header]",
         ),
         (
             "[tip]",
             "[Tip]",
-            "rod.toml:33:2: unknown section [Tip], expected one of name, source, linear_range_n, geometry, material, pipe1, pipe2, bend, tip, mass, joint, standard_uncertainty -> did you mean [tip]?",
+            "rod.toml:33:2: unknown section [Tip], expected one of name, source, linear_range_n, geometry, material, pipe1, pipe2, bend, tip, mass, joint, law, standard_uncertainty -> did you mean [tip]?",
         ),
         (
             "[pipe2]",
             "[pipe3]",
-            "rod.toml:28:2: unknown section [pipe3], expected one of name, source, linear_range_n, geometry, material, pipe1, pipe2, bend, tip, mass, joint, standard_uncertainty -> did you mean [pipe1]?",
+            "rod.toml:28:2: unknown section [pipe3], expected one of name, source, linear_range_n, geometry, material, pipe1, pipe2, bend, tip, mass, joint, law, standard_uncertainty -> did you mean [pipe1]?",
         ),
         (
             "[material.steel]",
             "[materials.steel]",
-            "rod.toml:9:2: unknown section [materials], expected one of name, source, linear_range_n, geometry, material, pipe1, pipe2, bend, tip, mass, joint, standard_uncertainty -> did you mean [material]?",
+            "rod.toml:9:2: unknown section [materials], expected one of name, source, linear_range_n, geometry, material, pipe1, pipe2, bend, tip, mass, joint, law, standard_uncertainty -> did you mean [material]?",
         ),
         (
             "station_mm = 300.0",
@@ -320,7 +320,7 @@ fn a_key_or_section_that_is_misplaced_or_repeated_is_named() {
         (
             "[geometry]",
             "geometry = 5\n[geometri]",
-            "rod.toml:5:2: unknown section [geometri], expected one of name, source, linear_range_n, geometry, material, pipe1, pipe2, bend, tip, mass, joint, standard_uncertainty -> did you mean [geometry]?",
+            "rod.toml:5:2: unknown section [geometri], expected one of name, source, linear_range_n, geometry, material, pipe1, pipe2, bend, tip, mass, joint, law, standard_uncertainty -> did you mean [geometry]?",
         ),
         (
             "[tip]\nmass_g = 55.0",
@@ -726,4 +726,64 @@ fn a_cross_section_is_stated_whole_and_in_one_way() {
         in_words(&read(&text).expect_err(&text)),
         "rod.toml:8:20: `geometry.bend_flexibility` is \"von-karman\", expected \"beam\" or a factor > 0: \"von-karman\" and \"asme-b31.3\" are for round tubes, and the bend is none"
     );
+}
+
+/// A law has its formula, and its mistakes have the place of the formula's own letter.
+#[test]
+fn a_law_says_what_is_wrong_where_in_its_formula() {
+    const LAW: &str = "[[law]]\nplace = \"root\"\nvariable = \"moment\"\nformula = \"k*max(M - M_0, 0)\"\n\
+        range = [0.5, 6]\n[[law.constant]]\nname = \"k\"\nvalue = 12\n[[law.constant]]\nname = \"M_0\"\nvalue = 2\n\
+        [tip]";
+    let with_law = changed(&[("[tip]", LAW)]);
+    let rod = read(&with_law).expect(&with_law);
+    assert_eq!(
+        rod.laws[0].words(),
+        "Δθ = k*max(M - M_0, 0) in µrad at the root, k = 12.0, M_0 = 2.00, for M from 0.500 to 6.00 N·m"
+    );
+    for (piece, wrong, expected) in [
+        (
+            "M - M_0",
+            "M - N_0",
+            "rod.toml:36:22: \"N_0\" in the formula, expected one of M, side, k, M_0, or a function \
+          (abs, sign, step, sqrt, exp, ln, log10, sin, cos, tan, atan, tanh of one number, min and max of two)",
+        ),
+        (
+            "\"root\"",
+            "\"foot\"",
+            "rod.toml:34:9: `law.place` is \"foot\", expected one of rod, clamp, root, slide, dx, \
+          dy, dz, sleeve-a, sleeve-b",
+        ),
+        (
+            "\"moment\"",
+            "\"load\"",
+            "rod.toml:35:12: `law.variable` is \"load\", expected a variable of root: moment",
+        ),
+        (
+            "[0.5, 6]",
+            "[6, 0.5]",
+            "rod.toml:37:9: `law.range` is [6, 0.5], expected two numbers, [from, to]: where it was \
+          recorded",
+        ),
+        (
+            "name = \"k\"",
+            "name = \"ln\"",
+            "rod.toml:39:8: `law.constant.name` is \"ln\", expected a name of its own: letters, \
+          digits and _, no variable and no function",
+        ),
+        (
+            "k*max",
+            "k/max",
+            "rod.toml:36:11: `law.formula` is no number at M = 0.5, expected a formula that is defined in \
+          its range",
+        ),
+        (
+            "range = ",
+            "memory = \"stop\"\nrange = ",
+            "rod.toml:37:10: `law.memory` is \"stop\", expected with it a constant \
+          r > 0",
+        ),
+    ] {
+        let text = with_law.replacen(piece, wrong, 1);
+        assert_eq!(in_words(&read(&text).expect_err(&text)), expected, "{wrong}");
+    }
 }

@@ -87,6 +87,35 @@ fn compliance_in_every_mode_and_theory() {
 
 /// Rows are offsets, columns are loads; µm per newton, µm per g, grams, millimetres: one bare tube
 /// by hand.
+/// A gap that closes at 4 N: C^F is what it was up to there, and less beyond.
+#[test]
+fn compliance_with_a_law_says_at_which_load() {
+    const LAW: &str = "\n[[law]]\nplace = \"rod\"\nvariable = \"load\"\nformula = \"-0.5*max(F - 4, 0)\"\nrange = [1, 12]\n";
+    let sandbox = Sandbox::new();
+    let text = std::fs::read_to_string(sandbox.path().join("rods/5.toml")).unwrap();
+    std::fs::write(sandbox.path().join("law.toml"), text + LAW).unwrap();
+    let plain = sandbox.run("compliance rods/5.toml --json").json();
+    let json = sandbox.run("compliance law.toml --json").json();
+    assert!(plain["laws"].is_null());
+    assert_eq!(json["cf_um_per_n"], plain["cf_um_per_n"], "the contact force is below 4 N");
+    let at = json["laws"]["at_loads"].as_array().unwrap();
+    let loads: Vec<f64> = at.iter().map(|own| own["load_n"].as_f64().unwrap()).collect();
+    assert!(loads.len() == 4 && loads[3] == 12.0, "{loads:?}");
+    // (12 − 0.5·8)/12
+    let expected = matrix(&plain["cf_um_per_n"]) * (2.0 / 3.0);
+    assert_relative_eq!(matrix(&at[3]["cf_um_per_n"]), expected, max_relative = 1e-9);
+    let beyond = sandbox.run("compliance law.toml --contact-force 20 --json").json();
+    assert_relative_eq!(
+        matrix(&beyond["cf_um_per_n"]),
+        matrix(&plain["cf_um_per_n"]) * 0.6,
+        max_relative = 1e-9
+    );
+    assert_eq!(beyond["laws"]["at_loads"][3]["beyond_what_was_recorded"], true);
+    let words = sandbox.run("compliance law.toml").stdout;
+    let words = words.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(words.contains("makes C^F depend on the load: these numbers are those at 1.97 N"), "{words}");
+}
+
 #[test]
 fn compliance_is_in_its_units() {
     let sandbox = Sandbox::empty();

@@ -33,6 +33,11 @@ enum Node {
     With(fn(f64, f64) -> f64, Box<Node>, Box<Node>),
 }
 
+/// True for a name that a formula reads as something else than a variable.
+pub fn is_reserved(name: &str) -> bool {
+    one(name).is_some() || matches!(name, "pi" | "min" | "max")
+}
+
 /// What is wrong with a formula, and where: bytes from its beginning.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Fault {
@@ -290,6 +295,7 @@ mod tests {
         assert!((value("sin(pi/2) + exp(0) + ln(1)") - 2.0).abs() < 1e-15);
         assert_eq!(value("max(x, y) - min(x, y)"), 1.0);
         assert_eq!(value("sign(-x)*step(y)*abs(-x)"), -2.0);
+        assert!(is_reserved("max") && is_reserved("pi") && is_reserved("ln") && !is_reserved("a"));
     }
 
     #[test]

@@ -8,10 +8,12 @@ use super::memory::check_memory;
 use super::model::CalibrationModel;
 use super::next::next_poses;
 use super::prepared::Prepared;
+use super::sites::sites;
 use super::tails;
 use crate::calibration::campaign::Campaign;
 use crate::calibration::{Calibration, Mode, Options, calibrate};
 use crate::error::Result;
+use crate::inference::law::propose;
 use crate::inference::{Diagnosed, Finding, Limit, Location, Sketch, diagnose as infer, sketch};
 use crate::parallel::in_parallel;
 
@@ -80,11 +82,12 @@ pub fn diagnose_calibrated<'c>(
     for (finding, next) in diagnosis.findings.iter_mut().zip(next) {
         finding.next = next?;
     }
+    let law = propose(&model, &diagnosis, &|change| sites(&context, change.len()));
     let mut limits = limits(&context, &model.calibration, &evidence);
     limits.extend(scatter.iter().flat_map(|noise| noisy(campaign, noise)));
     let of_neighbours = evidence.correlated_noise;
     limits.extend(of_neighbours.map(|noise| Limit::CorrelatedPoses(noise.share, noise.length)));
-    Ok(Diagnosed { model, evidence, diagnosis, not_testable, absorbed, limits, law: None })
+    Ok(Diagnosed { model, evidence, diagnosis, not_testable, absorbed, limits, law })
 }
 
 /// So many times a search begins anew about the robot that is left beside what was found, with the

@@ -142,6 +142,10 @@ impl Mended {
         if !self.has_data {
             diagnosis.discrepancy = None;
         }
+        // of poses that a mistake has spoilt nobody knows what it has left
+        if has_failed || !self.has_data || !self.found.is_empty() {
+            found.law = None;
+        }
         let mut mistakes = self.found.clone();
         self.measure_moves(&found.model.calibration, &mut mistakes);
         diagnosis.findings.splice(0..0, mistakes);

@@ -7,6 +7,7 @@ mod descriptions;
 mod evidence;
 mod finding;
 mod happened;
+mod laws;
 mod next;
 mod recorded;
 mod transfer;

@@ -14,7 +14,9 @@ use super::numbering::numbered;
 use super::slide::Course;
 use super::structure::Structure;
 use super::wanted::Wanted;
-use super::{correction, datum, evidence, first_sight, nominal, nonparametric, own, slide, structure};
+use super::{
+    correction, datum, evidence, file_laws, first_sight, nominal, nonparametric, own, slide, structure,
+};
 use crate::error::Result;
 use crate::inference::{Candidate, Effect, Evidence, NotTestable, Parameter, UNKNOWN};
 use crate::rig::readings::Readings;
@@ -88,6 +90,8 @@ impl RigModel {
             place,
             candidates: Vec::new(),
             actions: Vec::new(),
+            law_adds: Vec::new(),
+            unused_laws: Vec::new(),
             own: wanted.own().to_vec(),
         };
         let nuisance = match &model.body {
@@ -117,9 +121,24 @@ impl RigModel {
                 nominal::all(&model.data, rod, bent, &readings.header, &stations)?;
             model.bent = deflections;
             (evidence.nominal_numbers, evidence.nominal) = (numbers, columns);
+            model.unused_laws = file_laws::take_out(&mut model, &mut evidence, rod);
         }
         let not_testable = model.add_candidates(wanted)?;
         Ok((model, evidence, not_testable))
+    }
+
+    /// What the rod's file says of each datum: beam model, large deflections and laws, m.
+    ///
+    /// # Errors
+    /// What the beam model refuses.
+    pub fn by_file(&self) -> Result<Vec<f64>> {
+        let large = match &self.rod {
+            Some(rod) => self.large_deflections(rod)?,
+            None => DVector::zeros(self.data.len()),
+        };
+        let laws = self.law_adds.iter().copied().chain(std::iter::repeat(0.0));
+        let parts = self.data.iter().zip(large.iter()).zip(laws);
+        Ok(parts.map(|((datum, large), law)| datum.predicted + large + law).collect())
     }
 
     /// What large deflections of `rod` add to each datum, m.

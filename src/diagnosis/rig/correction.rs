@@ -4,9 +4,12 @@ use nalgebra::DVector;
 
 use super::action::Action;
 use super::model::{Body, RigDiagnosis, RigModel};
+use super::written_law::written;
 use crate::beam::Physics;
 use crate::compliance::{Compliance, DEFAULT_ELEMENTS};
 use crate::error::Result;
+use crate::inference::background::nominal_factors;
+use crate::inference::law::Law;
 use crate::inference::{Finding, ForwardModel, Kind, Location, NominalParameter, Term, WrittenTo};
 use crate::rig::{self, readings::Readings};
 use crate::rod::{BendFlexibility, Joint, NominalNumber, Rod};
@@ -52,17 +55,19 @@ impl RigDiagnosis {
     /// # Errors
     /// What the beam model refuses of the corrected rod.
     pub fn correction(&self) -> Result<Option<Correction>> {
+        let proposed = self.law.as_ref().and_then(|proposed| proposed.law.as_ref().ok());
         match self.model.rod() {
             Some(rod) => {
                 // several numbers share what they explain: together they are as stiff as the
                 // readings
-                let moved = match self.diagnosis.nominal.is_empty() {
+                let moved = match self.diagnosis.nominal.is_empty() && proposed.is_none() {
                     true => Vec::new(),
-                    false => self.moved(rod),
+                    false => self.moved(rod, proposed),
                 };
-                match self.diagnosis.findings.is_empty() && moved.is_empty() {
+                let found = Found { findings: &self.diagnosis.findings, moved: &moved, law: proposed };
+                match found.findings.is_empty() && moved.is_empty() && proposed.is_none() {
                     true => Ok(None),
-                    false => corrected(&self.model, rod, &self.diagnosis.findings, &moved).map(Some),
+                    false => corrected(&self.model, rod, &found).map(Some),
                 }
             }
             None => Ok(None),
@@ -71,8 +76,12 @@ impl RigDiagnosis {
 
     /// Those of the nominal numbers that stand in the file of `rod` and are off by more than a
     /// trace; the others are the rig's.
-    fn moved(&self, rod: &Rod) -> Vec<Moved> {
-        let (factors, _) = &self.diagnosis.nominal_factors;
+    fn moved(&self, rod: &Rod, proposed: Option<&Law>) -> Vec<Moved> {
+        let factors = match proposed {
+            // with a law beside them they are others
+            Some(law) => nominal_factors(&self.evidence, &law.beside.background),
+            None => self.diagnosis.nominal_factors.0.clone(),
+        };
         let numbers = rod.nominal_numbers();
         let known = self.evidence.nominal_numbers.iter().zip(factors.iter());
         let of = |(own, factor): (&NominalParameter, &f64)| {
@@ -89,7 +98,23 @@ type Moved = (NominalNumber, f64);
 /// Standard uncertainties below which a nominal number has not moved.
 const TRACE: f64 = 0.05;
 
-fn corrected(model: &RigModel, rod: &Rod, findings: &[Finding], moved: &[Moved]) -> Result<Correction> {
+/// What a diagnosis has to write.
+struct Found<'a> {
+    findings: &'a [Finding],
+    moved: &'a [Moved],
+    law: Option<&'a Law>,
+}
+
+impl Found<'_> {
+    /// A finding's part as it is beside the law, where there is one.
+    fn term(&self, own: &Term) -> Term {
+        let beside = self.law.map_or(&[][..], |law| &law.beside.terms);
+        beside.iter().find(|term| term.candidate == own.candidate).unwrap_or(own).clone()
+    }
+}
+
+fn corrected(model: &RigModel, rod: &Rod, found: &Found) -> Result<Correction> {
+    let findings = found.findings;
     let readings = model.readings();
     let mut corrected = rod.clone();
     let is_mistake = |finding: &&Finding| finding.kind() == Kind::Mistake;
@@ -100,7 +125,8 @@ fn corrected(model: &RigModel, rod: &Rod, findings: &[Finding], moved: &[Moved])
     for part in findings.iter().flat_map(|finding| &finding.parts) {
         let effect = model.candidates()[part.term.candidate].effect;
         let words = format!("{effect}, {}", part.location);
-        all.push(part.term.clone());
+        let term = found.term(&part.term);
+        all.push(term.clone());
         // a rod file has no sessions
         let is_of_session = matches!(part.location, Location::InSession { .. });
         match effect.written_to {
@@ -108,20 +134,34 @@ fn corrected(model: &RigModel, rod: &Rod, findings: &[Finding], moved: &[Moved])
             _ if effect.kind == Kind::Mistake => {}
             WrittenTo::Model if is_of_session => removed.push(words),
             WrittenTo::Model => {
-                enter(&mut corrected, model, &part.term);
-                of_rod.push(part.term.clone());
+                enter(&mut corrected, model, &term);
+                of_rod.push(term);
                 entered.push(words);
             }
             WrittenTo::Recording => removed.push(words),
             WrittenTo::Nowhere => left_out.push(words),
         }
     }
-    for (number, change) in moved {
+    for (number, change) in found.moved {
         // a finding may have scaled it already
         let (Some(nominal), Some(now)) = (rod.value_of(number), corrected.value_of(number)) else { continue };
         let relative = if nominal == 0.0 { now + change } else { now * (1.0 + change / nominal) };
         corrected = corrected.with(number, relative);
         entered.push(format!("{number}, within its standard uncertainty"));
+    }
+    let mut of_rig = DVector::zeros(model.data().len());
+    if let Some(law) = found.law {
+        match written(law, &format!("diagnose rig, {}", readings.file)) {
+            Some(law) => {
+                entered.push(format!("law, {}", law.words()));
+                corrected.laws.push(law);
+            }
+            // another recording has another time
+            None => {
+                removed.push(format!("law over the {}, {}", law.site.variable.name, law.site.location));
+                of_rig += DVector::from_column_slice(&law.adds);
+            }
+        }
     }
     let provenance = format!("Rod {} with what its rig readings ({}) show", rod.name, readings.file);
     let mut above = vec![provenance + ":"];
@@ -136,7 +176,7 @@ fn corrected(model: &RigModel, rod: &Rod, findings: &[Finding], moved: &[Moved])
     let physics = Physics::default();
     let fit = rig::fit(readings, Some(rod), &rig::Options::default()).ok();
     let by_ratio = fit.and_then(|fit| fit.measured).map(|m| (m.rod_ratio.value, m.compliance));
-    let of_rig = model.response(&all) - model.response(&of_rod);
+    of_rig += model.response(&all) - model.response(&of_rod);
     Ok(Correction {
         readings_csv: without(readings, model, &of_rig, [&undone, &removed, &left_out]),
         before: of_file(model, rod, &physics)?,

@@ -37,6 +37,10 @@ pub struct RigModel {
     pub(super) candidates: Vec<Candidate>,
     /// For each candidate what its parameters do.
     pub(super) actions: Vec<Vec<Action>>,
+    /// What laws of the rod's file add to each datum as predicted, m; nothing without any.
+    pub(super) law_adds: Vec<f64>,
+    /// Laws of the rod's file that the readings have no data for, in words.
+    pub(super) unused_laws: Vec<String>,
     /// Effects that the lab describes itself.
     pub(super) own: Vec<OwnEffect>,
 }
@@ -89,6 +93,12 @@ impl RigModel {
     /// The rod as its file gives it, mistakes included.
     pub fn rod_of_file(&self) -> Option<&Rod> {
         self.as_recorded.as_ref().map_or(self.rod.as_ref(), |given| given.rod.as_ref())
+    }
+
+    /// Laws of the rod's file that are not used, because the readings have no data for them, in
+    /// words.
+    pub fn unused_laws(&self) -> &[String] {
+        &self.unused_laws
     }
 
     /// Root mean square of what the model of the file leaves of the readings as they were given, m;

@@ -85,7 +85,9 @@ impl RigDiagnosis {
         let as_found = correction::as_found(&self.model, rod, &self.diagnosis.findings);
         let large = model.large_deflections(&as_found)?;
         let nominal = &evidence.nominal * self.nominal_factors(&evidence);
-        let of_datum = |(i, datum): (usize, &Datum)| datum.predicted + large[i] + nominal[i] + change[i];
+        let law = |i: usize| model.law_adds.get(i).copied().unwrap_or(0.0);
+        let of_datum =
+            |(i, datum): (usize, &Datum)| datum.predicted + large[i] + nominal[i] + change[i] + law(i);
         // in the order of the file that asks
         let mut rows: Vec<(usize, Datum)> = model.data.iter().cloned().enumerate().collect();
         rows.sort_by_key(|(_, datum)| (datum.row, datum.channel));

@@ -13,6 +13,9 @@ use crate::inference::selection::{APART, NAMED};
 use crate::inference::{Evidence, ForwardModel, Term};
 use crate::parallel::in_parallel;
 
+/// Most laws that predict together.
+const TOGETHER: usize = 12;
+
 /// Root mean squares of what is left of held-out data.
 pub(super) struct Folds {
     /// With the findings alone.
@@ -53,7 +56,9 @@ pub(super) fn hold_out(
         };
         let best = found.first().map_or(f64::NEG_INFINITY, |law| law.log_odds);
         let with = match best > NAMED.ln() {
-            true => averaged(found.iter().take_while(|law| law.log_odds > best - APART.ln()), of),
+            true => {
+                averaged(found.iter().take(TOGETHER).take_while(|law| law.log_odds > best - APART.ln()), of)
+            }
             false => none.clone(),
         };
         let own = choices.iter().map(|choice| {

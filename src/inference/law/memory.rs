@@ -41,8 +41,9 @@ impl Memory {
         match self {
             Memory::None => Some((0.0, 0.0)),
             Memory::Side => site.moves.iter().any(|way| *way < 0.0).then_some((0.0, 0.0)),
-            // what has no way up and down has no width
-            Memory::Stop if site.courses.is_empty() || site.moves.is_empty() => None,
+            // what never turns round remembers nothing that the variable itself does not say
+            Memory::Stop | Memory::Lag if !site.moves.is_empty() && !turns(site) => None,
+            Memory::Stop if site.moves.is_empty() => None,
             Memory::Stop => Some((0.02, 0.5)),
             Memory::Lag => {
                 let waits = || site.courses.iter().flat_map(|course| course.instants.iter().map(|i| i.1));
@@ -80,6 +81,17 @@ impl Memory {
             }
         }
     }
+}
+
+/// True where the variable goes up and down along some course.
+fn turns(site: &Site) -> bool {
+    let turns = |course: &Course| {
+        let values = course.instants.iter().filter_map(|(data, _)| data.first().map(|&i| site.values[i]));
+        let all: Vec<f64> = std::iter::once(course.start).chain(values.filter(|x| x.is_finite())).collect();
+        let goes = |sign: f64| all.windows(2).any(|pair| sign * (pair[1] - pair[0]) > 0.0);
+        goes(1.0) && goes(-1.0)
+    };
+    site.courses.iter().any(turns)
 }
 
 /// What an operator makes of the variable along each course.

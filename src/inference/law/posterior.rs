@@ -21,9 +21,9 @@ pub(super) struct Posterior {
 }
 
 impl Posterior {
-    /// On a grid, ascending.
-    pub fn new(grid: &[f64], evidence: &dyn Fn(f64) -> f64) -> Posterior {
-        Posterior { points: grid.iter().map(|&u| (u, evidence(u))).collect() }
+    /// On a grid, ascending; `evidence` of many coordinates at once.
+    pub fn new(grid: &[f64], evidence: &dyn Fn(&[f64]) -> Vec<f64>) -> Posterior {
+        Posterior { points: grid.iter().copied().zip(evidence(grid)).collect() }
     }
 
     /// The likeliest coordinate and the ln of the evidence there.
@@ -33,7 +33,7 @@ impl Posterior {
     }
 
     /// With a finer grid where it counts.
-    pub fn refine(&mut self, evidence: &dyn Fn(f64) -> f64) {
+    pub fn refine(&mut self, evidence: &dyn Fn(&[f64]) -> Vec<f64>) {
         for round in 0..ROUNDS {
             let (_, most) = self.best();
             let at = |k: usize| self.points.get(k).map_or(f64::NEG_INFINITY, |point| point.1);
@@ -57,7 +57,8 @@ impl Posterior {
             if more.is_empty() || self.points.len() + more.len() > MOST {
                 return;
             }
-            self.points.extend(more.into_iter().map(|u| (u, evidence(u))));
+            let values = evidence(&more);
+            self.points.extend(more.into_iter().zip(values));
             self.points.sort_by(|a, b| a.0.total_cmp(&b.0));
         }
     }
@@ -129,7 +130,7 @@ mod tests {
     #[test]
     fn a_narrow_peak_is_found_and_measured() {
         let (mean, sd) = (0.437, 0.004);
-        let evidence = |u: f64| -0.5 * ((u - mean) / sd).powi(2);
+        let evidence = |us: &[f64]| us.iter().map(|u| -0.5 * ((u - mean) / sd).powi(2)).collect::<Vec<_>>();
         let grid: Vec<f64> = (0..=20).map(|k| f64::from(k) / 20.0).collect();
         let mut posterior = Posterior::new(&grid, &evidence);
         posterior.refine(&evidence);
@@ -146,7 +147,8 @@ mod tests {
     #[test]
     fn peaks_that_are_nearly_as_high_are_others() {
         let peak = |u: f64, at: f64| -0.5 * ((u - at) / 0.02).powi(2);
-        let evidence = |u: f64| peak(u, 0.2).max(peak(u, 0.7) - 1.0).max(peak(u, 0.9) - 9.0);
+        let one = |&u: &f64| peak(u, 0.2).max(peak(u, 0.7) - 1.0).max(peak(u, 0.9) - 9.0);
+        let evidence = |us: &[f64]| us.iter().map(one).collect::<Vec<_>>();
         let grid: Vec<f64> = (0..=20).map(|k| f64::from(k) / 20.0).collect();
         let mut posterior = Posterior::new(&grid, &evidence);
         posterior.refine(&evidence);
@@ -156,7 +158,7 @@ mod tests {
 
     #[test]
     fn one_point_is_its_own_posterior() {
-        let posterior = Posterior::new(&[0.0], &|_| 3.0);
+        let posterior = Posterior::new(&[0.0], &|_| vec![3.0]);
         assert_eq!((posterior.log_evidence(), posterior.quantile(0.3)), (3.0, 0.0));
         assert_eq!(posterior.even(2), [0.0, 0.0]);
     }

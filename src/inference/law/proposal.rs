@@ -6,8 +6,9 @@ use nalgebra::{DMatrix, DVector};
 
 use super::choice::Choice;
 use super::folds::hold_out;
+use super::form::FormConstant;
 use super::measured::Measured;
-use super::proposed::{Law, LawRival, NextRecord, Point, Proposed, Refusal};
+use super::proposed::{Beside, Law, LawRival, NextRecord, Point, Proposed, Refusal};
 use super::remainder::Remainder;
 use super::scan::{Scan, Scanned, curve, prior, scan};
 use super::site::Site;
@@ -19,6 +20,8 @@ use crate::linalg::least_squares;
 
 /// How far beyond the data a law is asked to part from its rivals.
 const BEYOND: f64 = 2.0;
+/// How far beyond the data it is said how far laws are apart.
+const FURTHER: f64 = 1.5;
 /// How far apart they have to be, in standard deviations of a reading.
 const PARTED: f64 = 4.0;
 /// Points between nothing and [`BEYOND`].
@@ -33,6 +36,10 @@ const DRAWN: f64 = 0.2;
 const REFITTED: usize = 16;
 /// Laws whose ln odds are so far behind the best are not tried again without each fold.
 const REACH: f64 = 30.0;
+/// Nor those whose ln odds against nothing are below this: without a fold they are no better.
+const UNLIKELY: f64 = -5.0;
+/// By this share of its square a held-out error is lowered at least.
+const WORTH: f64 = 0.05;
 /// So many times the noise a recorded variable ranges over at least.
 const ABOVE_NOISE: f64 = 30.0;
 /// Most rivals that are reported.
@@ -72,7 +79,9 @@ pub fn propose(
     if as_recorded(&mut all, &remainder, &found, (size, sigma)) {
         found = scan(&remainder, &all, size);
     }
-    let within_reach = found.laws.iter().take_while(|law| law.log_odds > found.laws[0].log_odds - REACH);
+    let best_odds = found.laws.first().map_or(0.0, |law| law.log_odds);
+    let reach = (best_odds - REACH).max(UNLIKELY);
+    let within_reach = found.laws.iter().take_while(|law| law.log_odds > reach);
     let tried: Vec<Choice> = within_reach.map(|law| law.choice).collect();
     refit(&mut found, &remainder, &all, size);
     let lives = found.curve.map(|(site, _)| (all[site].location.clone(), all[site].variable.clone()));
@@ -97,7 +106,8 @@ pub fn propose(
     let folds = hold_out(model, evidence, terms, &all, (&choices, &tried), (size, sigma));
     let Some(folds) = folds else { return refused(Refusal::NoFolds, None) };
     let errors = Some((folds.without, folds.with));
-    if folds.with >= folds.without || folds.of[0] >= folds.without {
+    let enough = folds.without * (1.0 - WORTH).sqrt();
+    if folds.with >= enough || folds.of[0] >= enough {
         return refused(Refusal::HeldOut, errors);
     }
     let measured: Vec<Measured> =
@@ -128,8 +138,11 @@ pub fn propose(
         held_out: folds.of.first().copied(),
         explains: rms(&fitted.own),
         noise: fitted.sigma,
+        adds: fitted.own.iter().copied().collect(),
+        beside: beside(model, evidence, terms, &fitted.base),
         rivals,
         next: None,
+        further: None,
         points: Vec::new(),
         curve: Vec::new(),
         site,
@@ -138,7 +151,25 @@ pub fn propose(
     law.points = points(&law, best.choice, &residual);
     law.curve = smooth(&law.points, law.site.directions.len());
     law.next = next(&law);
+    law.further = further(&law);
     Some(Proposed { law: Ok(law), lives, held_out: errors })
+}
+
+/// Findings and background once a law stands beside them: x = neutral + size × factor, within its
+/// bounds.
+fn beside(model: &dyn ForwardModel, evidence: &Evidence, terms: &[Term], base: &DVector<f64>) -> Beside {
+    let mut next = evidence.background.ncols();
+    let background = base.rows(0, next).iter().copied().collect();
+    let mut terms = terms.to_vec();
+    for term in &mut terms {
+        let parameters = &model.candidates()[term.candidate].parameters;
+        for (value, parameter) in term.values.iter_mut().zip(parameters) {
+            let (low, high) = parameter.bounds;
+            *value = (parameter.neutral + parameter.size * base[next]).clamp(low, high);
+            next += 1;
+        }
+    }
+    Beside { terms, background }
 }
 
 /// Puts what was recorded, without the likeliest law, in the place of what was predicted, where
@@ -248,30 +279,62 @@ fn smooth(points: &[Point], directions: usize) -> Vec<Point> {
 /// between the data if they do, or else beyond them.
 fn next(law: &Law) -> Option<NextRecord> {
     let (low, high) = law.site.range();
-    let per_result =
-        law.site.directions.iter().flat_map(|(_, w)| w).fold(0.0, |most: f64, w| most.max(w.abs()));
-    let is_alike = |rival: &&LawRival| {
-        rival.memory == law.memory
-            && rival.site.location == law.site.location
-            && rival.site.variable == law.site.variable
-    };
-    let (number, rival) = law.rivals.iter().enumerate().find(|(_, rival)| is_alike(rival))?;
-    let directions = 0..law.site.directions.len();
-    let lines: Vec<(f64, f64)> =
-        directions.clone().map(|direction| taken_up(law, rival, direction)).collect();
-    let apart = |x: f64| {
-        let of = |direction: usize| {
-            let (level, slope) = lines[direction];
-            (law.at(direction, x) - rival.at(direction, x) - level - slope * x).abs() * per_result
-        };
-        directions.clone().map(of).fold(0.0, f64::max)
-    };
+    let (number, rival) = comparable(law).next()?;
+    let apart = |x: f64| apart(law, rival, x);
     let least = low.min(0.0);
     let x = |k: usize| least + (BEYOND * high - least) * k as f64 / STEPS as f64;
     let within = (0..=STEPS).map(x).filter(|x| *x <= high).max_by(|a, b| apart(*a).total_cmp(&apart(*b)));
     let far = |x: &f64| apart(*x) > PARTED * law.noise;
     let at = within.filter(far).or_else(|| (0..=STEPS).map(x).filter(|x| *x > high).find(far))?;
     Some(NextRecord { rival: number, at, is_beyond: at > high, apart: apart(at) })
+}
+
+/// How far the law is apart beyond the data from its rivals at its place, and a wave from itself
+/// with another period: the variable there, and the largest distance, m.
+fn further(law: &Law) -> Option<(f64, f64)> {
+    let at = FURTHER * law.site.range().1;
+    let distances = comparable(law).map(|(_, rival)| apart(law, rival, at));
+    distances.chain(out_of_step(law)).reduce(f64::max).map(|most| (at, most))
+}
+
+/// How far a wave may be from what goes on half again beyond its data, m. Its phase is known in
+/// their middle: from there on it is out of step by φ = 2π·X·(1/P_low − 1/P_high)/2, and by a
+/// distance 2·A·sin(φ/2); of several periods by as much as there is.
+fn out_of_step(law: &Law) -> Option<f64> {
+    let Some((FormConstant::Period, period)) = &law.constant else { return None };
+    let count = law.form.count();
+    let amplitudes = law.values.0.chunks(count).zip(&law.site.directions).map(|(own, (_, weights))| {
+        let largest = weights.iter().fold(0.0, |most: f64, w| most.max(w.abs()));
+        own.iter().map(|a| a * a).sum::<f64>().sqrt() * largest
+    });
+    let largest = law.site.largest() / law.site.variable.si;
+    let phase = match period.also.is_empty() {
+        true => PI * largest * (1.0 / period.low - 1.0 / period.high),
+        false => PI,
+    };
+    amplitudes.reduce(f64::max).map(|amplitude| 2.0 * amplitude * (0.5 * phase.min(PI)).sin())
+}
+
+/// Rivals with their numbers that differ from the law in nothing but form and constants.
+fn comparable(law: &Law) -> impl Iterator<Item = (usize, &LawRival)> {
+    let is_alike = |rival: &LawRival| {
+        rival.memory == law.memory
+            && rival.site.location == law.site.location
+            && rival.site.result == law.site.result
+            && rival.site.variable == law.site.variable
+    };
+    law.rivals.iter().enumerate().filter(move |(_, rival)| is_alike(rival))
+}
+
+/// How far two laws are apart at x, m, but for what zeros and stiffnesses take up.
+fn apart(law: &Law, rival: &LawRival, x: f64) -> f64 {
+    let per_result =
+        law.site.directions.iter().flat_map(|(_, w)| w).fold(0.0, |most: f64, w| most.max(w.abs()));
+    let of = |direction: usize| {
+        let (level, slope) = taken_up(law, rival, direction);
+        (law.at(direction, x) - rival.at(direction, x) - level - slope * x).abs() * per_result
+    };
+    (0..law.site.directions.len()).map(of).fold(0.0, f64::max)
 }
 
 /// What zeros and stiffnesses take up of the difference of two laws: the straight line through it

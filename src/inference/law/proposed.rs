@@ -3,7 +3,7 @@
 use super::form::{Constant, Form, FormConstant};
 use super::memory::Memory;
 use super::site::{Measure, Site};
-use crate::inference::Location;
+use crate::inference::{Location, Term};
 
 /// What was made of what is left.
 #[derive(Debug, Clone)]
@@ -26,7 +26,7 @@ pub enum Refusal {
     Chance,
     /// A smooth curve is likelier than the likeliest of all laws, by so many times (ln).
     Curve(f64),
-    /// Held-out errors are not lowered.
+    /// Held-out errors are not lowered, or by less than 5 % of their square.
     HeldOut,
     /// Nothing could be held out.
     NoFolds,
@@ -56,14 +56,32 @@ pub struct Law {
     pub explains: f64,
     /// Noise of a datum beside it, m.
     pub noise: f64,
+    /// What it adds to each datum, m.
+    pub adds: Vec<f64>,
+    /// All else, as it is beside it.
+    pub beside: Beside,
     /// Laws that these data do not distinguish from it, the likeliest first.
     pub rivals: Vec<LawRival>,
     /// What would distinguish it from the likeliest rival at its place.
     pub next: Option<NextRecord>,
+    /// Half again beyond the data: the variable there (SI), and how far law and rivals at its place
+    /// are apart, m, but for a straight line, or a wave and itself with another of its periods;
+    /// `None` where there is neither.
+    pub further: Option<(f64, f64)>,
     /// Data as it sees them: what is left but for the law.
     pub points: Vec<Point>,
     /// A smooth curve through them.
     pub curve: Vec<Point>,
+}
+
+/// Findings and numbers of files as they are beside a law.
+#[derive(Debug, Clone, Default)]
+#[non_exhaustive]
+pub struct Beside {
+    /// The findings.
+    pub terms: Vec<Term>,
+    /// Factors of the background of the settled evidence, among which nominal numbers are.
+    pub background: Vec<f64>,
 }
 
 /// A law that may be there instead.
@@ -111,6 +129,35 @@ pub struct Point {
 }
 
 impl Law {
+    /// Of its numbers alone, for tests of what becomes of them.
+    #[cfg(test)]
+    pub fn of_numbers(
+        site: Site,
+        form: Form,
+        (amplitudes, constant): (Vec<Constant>, Option<(FormConstant, Constant)>),
+        values: (Vec<f64>, f64),
+    ) -> Law {
+        Law {
+            site,
+            form,
+            memory: Memory::None,
+            amplitudes,
+            constant,
+            values,
+            log_odds: (0.0, 0.0),
+            held_out: None,
+            explains: 0.0,
+            noise: 0.0,
+            adds: Vec::new(),
+            beside: Beside::default(),
+            rivals: Vec::new(),
+            next: None,
+            further: None,
+            points: Vec::new(),
+            curve: Vec::new(),
+        }
+    }
+
     /// The law at x (SI) in a direction, SI; what a memory makes of the variable is x.
     pub fn at(&self, direction: usize, x: f64) -> f64 {
         at(self.form, &self.values, self.site.largest(), direction, x)

@@ -10,13 +10,15 @@
 //! is the problem of a law's columns C alone: many laws are compared on it. What a law amounts to
 //! is fitted together with B.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 use crate::inference::score::{ColumnBlock, Moments, Score};
 use crate::inference::whitening::Whitening;
 use crate::inference::{Evidence, ForwardModel, Term};
 use crate::linalg::{positive_definite_inverse, transposed_product};
 
+/// Sets of columns that are looked at together.
+const TOGETHER: usize = 64;
 const UNBOUNDED: (f64, f64) = (f64::NEG_INFINITY, f64::INFINITY);
 
 /// What findings leave of all data, learned from some of them.
@@ -34,9 +36,13 @@ pub(super) struct Remainder<'a> {
     own_left: DVector<f64>,
     own_base: DMatrix<f64>,
     moments: Moments,
-    /// (BᵀB + σ²K⁻²)⁻¹, and what is left without B.
-    inverse: DMatrix<f64>,
+    /// What takes nuisance and B out of whitened columns c: G' = cᵀc − (Zᵀc)ᵀ(Zᵀc), b' = cᵀr'.
+    taken: DMatrix<f64>,
+    rest_left: DVector<f64>,
+    /// What is left without B.
     rest: (Moments, Score),
+    /// Ln of the evidence without a law.
+    log_evidence: f64,
 }
 
 /// A law's columns fitted together with all else.
@@ -52,6 +58,8 @@ pub(super) struct Fitted {
     pub own: DVector<f64>,
     /// What the background is of it: nominal numbers and zeros.
     pub background: DVector<f64>,
+    /// Factors of the background, and of the findings' columns about their values.
+    pub base: DVector<f64>,
     /// Data less the numbers that they determine.
     pub degrees_of_freedom: f64,
 }
@@ -99,7 +107,24 @@ impl<'a> Remainder<'a> {
             stated: whole.stated_noise,
         };
         let (inverse, rest) = without_base(&moments, first, sigma);
-        Remainder { whole, rows, learned, whitening, left, base, own_left, own_base, moments, inverse, rest }
+        let rest_left = &own_left - &own_base * (&inverse * &moments.product);
+        let taken = taken(&whitening, &own_base, inverse);
+        let log_evidence = moments.score().log_evidence;
+        Remainder {
+            whole,
+            rows,
+            learned,
+            whitening,
+            left,
+            base,
+            own_left,
+            own_base,
+            moments,
+            taken,
+            rest_left,
+            rest,
+            log_evidence,
+        }
     }
 
     /// A residual of all data, where these are learned from, without the errors that data share.
@@ -114,12 +139,25 @@ impl<'a> Remainder<'a> {
     /// Ln of what the data are likelier with these columns of all data, about; each times a factor
     /// of the standard normal, all of one unknown size.
     pub fn gain(&self, columns: &DMatrix<f64>) -> f64 {
-        let (gram, product) = self.alone(columns);
+        self.gains(1, |_| columns.clone())[0]
+    }
+
+    /// The same of many sets of columns, of as many each.
+    pub fn gains(&self, count: usize, columns: impl Fn(usize) -> DMatrix<f64>) -> Vec<f64> {
+        let mut gains = Vec::with_capacity(count);
+        for first in (0..count).step_by(TOGETHER) {
+            let sets: Vec<DMatrix<f64>> = (first..count.min(first + TOGETHER)).map(&columns).collect();
+            gains.extend(self.alone(&sets).into_iter().map(|(gram, product)| self.gain_of(&gram, product)));
+        }
+        gains
+    }
+
+    fn gain_of(&self, gram: &DMatrix<f64>, product: DVector<f64>) -> f64 {
         let count = gram.ncols();
         let bounds = vec![UNBOUNDED; count];
         // nothing is beside them any more
         let nothing = DMatrix::zeros(0, count);
-        let block = ColumnBlock { gram: &gram, cross: nothing.clone(), solved: nothing, product, bounds };
+        let block = ColumnBlock { gram, cross: nothing.clone(), solved: nothing, product, bounds };
         let (rest, score) = &self.rest;
         let gain = rest.about(score, &block);
         if gain.is_finite() { gain } else { f64::NEG_INFINITY }
@@ -127,24 +165,34 @@ impl<'a> Remainder<'a> {
 
     /// Factors of the columns and their covariance, with all else out of them.
     pub fn factors(&self, columns: &DMatrix<f64>) -> (DVector<f64>, DMatrix<f64>) {
-        let (gram, product) = self.alone(columns);
+        let (gram, product) = self.alone(std::slice::from_ref(columns)).swap_remove(0);
         let (bounds, effects) = (vec![UNBOUNDED; gram.ncols()], vec![gram.ncols()]);
         let scored = Moments { gram, product, bounds, effects, ..self.rest.0.clone() }.score();
         (scored.estimate, scored.covariance)
     }
 
-    /// G' and b'.
-    fn alone(&self, columns: &DMatrix<f64>) -> (DMatrix<f64>, DVector<f64>) {
-        let own = self.own(columns);
-        let beside = transposed_product(&self.own_base, &own);
-        let reduced = &self.inverse * &beside;
-        let mut gram = transposed_product(&own, &own) - beside.tr_mul(&reduced);
-        let product = own.tr_mul(&self.own_left) - reduced.tr_mul(&self.moments.product);
-        // what the base holds already leaves rounding
-        for k in 0..gram.ncols() {
-            gram[(k, k)] = gram[(k, k)].max(0.0);
+    /// G' and b' of each set of columns.
+    fn alone(&self, sets: &[DMatrix<f64>]) -> Vec<(DMatrix<f64>, DVector<f64>)> {
+        let count: usize = sets.iter().map(DMatrix::ncols).sum();
+        let mut all = DMatrix::zeros(self.rows.len(), count);
+        let all_columns = sets.iter().flat_map(|set| set.column_iter());
+        for (mut column, own) in all.column_iter_mut().zip(all_columns) {
+            column.iter_mut().zip(&self.rows).for_each(|(value, &row)| *value = own[row]);
         }
-        (gram, product)
+        let whitened = self.whitening.whitened_columns(&all);
+        let taken = transposed_product(&self.taken, &whitened);
+        let mut first = 0;
+        let of_set = |set: &DMatrix<f64>| {
+            let (own, taken) = (whitened.columns(first, set.ncols()), taken.columns(first, set.ncols()));
+            first += set.ncols();
+            let mut gram = own.tr_mul(&own) - taken.tr_mul(&taken);
+            // what the base holds already leaves rounding
+            for k in 0..gram.ncols() {
+                gram[(k, k)] = gram[(k, k)].max(0.0);
+            }
+            (gram, own.tr_mul(&self.rest_left))
+        };
+        sets.iter().map(of_set).collect()
     }
 
     /// The columns fitted together with findings and background; none for what is there without.
@@ -172,12 +220,13 @@ impl<'a> Remainder<'a> {
         let explained = &self.base * scored.estimate.rows(0, first) + &own;
         let predicted = &self.whole.residual - &self.left + self.with_nuisance(explained);
         Fitted {
-            gain: scored.log_evidence - self.moments.score().log_evidence,
+            gain: scored.log_evidence - self.log_evidence,
             sigma: scored.sigma,
             factors: own_factors,
             predicted,
             own,
             background,
+            base: scored.estimate.rows(0, first).into_owned(),
             degrees_of_freedom: (moments.degrees_of_freedom as f64 - scored.determined).max(1.0),
         }
     }
@@ -190,6 +239,24 @@ impl<'a> Remainder<'a> {
         let rest = (&self.left - &explained).select_rows(&self.rows);
         explained + &self.whole.nuisance * self.whitening.nuisance(&self.learned.nuisance, &rest)
     }
+}
+
+/// Z = [Q, B·L], Q the basis of the nuisance and L·Lᵀ the inverse.
+fn taken(whitening: &Whitening, base: &DMatrix<f64>, inverse: DMatrix<f64>) -> DMatrix<f64> {
+    let nuisance = whitening.basis();
+    // of nothing there are no eigenvalues, and of no numbers none that are found
+    if inverse.is_empty() || inverse.iter().any(|value| !value.is_finite()) {
+        return nuisance;
+    }
+    let eigen = SymmetricEigen::new(inverse);
+    let mut root = eigen.eigenvectors;
+    for (mut column, value) in root.column_iter_mut().zip(eigen.eigenvalues.iter()) {
+        column *= value.max(0.0).sqrt();
+    }
+    let mut taken = DMatrix::zeros(base.nrows(), nuisance.ncols() + base.ncols());
+    taken.columns_mut(0, nuisance.ncols()).copy_from(&nuisance);
+    taken.columns_mut(nuisance.ncols(), base.ncols()).copy_from(&(base * root));
+    taken
 }
 
 /// (BᵀB + σ²K⁻²)⁻¹, and the problem of what is left.

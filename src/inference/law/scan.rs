@@ -16,8 +16,8 @@ use crate::parallel::in_parallel;
 const CURVE: usize = 6;
 /// Laws whose evidence at the best point is so far (ln) behind the best need no closer look.
 const BEHIND: f64 = 12.0;
-/// And waves, whose narrow peaks a first look may miss.
-const WAVE_BEHIND: f64 = 40.0;
+/// Part of the evidence of a wave that a first look may miss: its peak is narrow.
+const MISSED: f64 = 0.25;
 
 /// A law with what data say of it.
 #[derive(Debug, Clone)]
@@ -68,12 +68,13 @@ pub(super) fn scan_some(
     let all: Vec<Vec<Choice>> =
         sites.iter().enumerate().map(|(number, site)| Choice::all(number, site)).collect();
     let places = all.iter().filter(|choices| !choices.is_empty()).count();
-    let evidence =
-        |choice: Choice, u: f64| remainder.gain(&choice.columns(&sites[choice.site], u, size).columns);
+    let evidence = |choice: Choice, us: &[f64]| {
+        remainder.gains(us.len(), |k| choice.columns(&sites[choice.site], us[k], size).columns)
+    };
     let by_site = in_parallel(sites.len(), |number| {
         let choices = &all[number];
         let of = |&choice: &Choice| {
-            let posterior = Posterior::new(&choice.grid(&sites[number]), &|u| evidence(choice, u));
+            let posterior = Posterior::new(&choice.grid(&sites[number]), &|us| evidence(choice, us));
             (choice, posterior)
         };
         let laws: Vec<(Choice, Posterior)> = choices.iter().filter(|c| is_tried(c)).map(of).collect();
@@ -90,19 +91,20 @@ pub(super) fn scan_some(
             best_curve = Some((number, curve));
         }
     }
-    let peak = |(_, posterior, prior): &(Choice, Posterior, f64)| posterior.best().1 + prior;
-    let highest = first.iter().map(peak).fold(f64::NEG_INFINITY, f64::max);
-    let closer: Vec<bool> = first
-        .iter()
-        .map(|law| {
-            let behind = if law.0.form == Form::Harmonic { WAVE_BEHIND } else { BEHIND };
-            peak(law) > highest - behind
-        })
-        .collect();
+    // at most so much its odds may be
+    let peak = |(choice, posterior, prior): &(Choice, Posterior, f64)| {
+        let most = posterior.best().1;
+        let missed = if choice.form == Form::Harmonic { MISSED * most.max(0.0) } else { 0.0 };
+        most + missed + prior
+    };
+    let sure = |law: &(Choice, Posterior, f64)| law.1.best().1 + law.2;
+    let highest = first.iter().map(sure).fold(f64::NEG_INFINITY, f64::max);
+    // what is less likely than nothing is neither proposed nor a rival of what is
+    let closer: Vec<bool> = first.iter().map(|law| peak(law) > (highest - BEHIND).max(0.0)).collect();
     let mut laws = in_parallel(first.len(), |k| {
         let (choice, mut posterior, prior) = first[k].clone();
         if closer[k] {
-            posterior.refine(&|u| evidence(choice, u));
+            posterior.refine(&|us| evidence(choice, us));
         }
         let log_odds = posterior.log_evidence() + prior;
         let at = middle(choice, &posterior);

@@ -10,11 +10,11 @@ use self::distances::{Distances, distances_json, mean};
 use self::joints::gear_of;
 use super::headline::um;
 use super::remainder::{Remainder, Sample};
-use super::subject::{Errors, Subject};
+use super::subject::{Errors, Subject, Told};
 use super::{json as whole_json, report as whole_report};
 use crate::calibration::campaign::Targets;
 use crate::calibration::{MOST_SCATTER, Warning};
-use crate::diagnosis::calibration::{Applied, CalibrationDiagnosis, Gear, destination as written_to};
+use crate::diagnosis::calibration::{Applied, CalibrationDiagnosis, Gear, destination as written_to, remark};
 use crate::inference::{Finding, ForwardModel, Kind, Location, Plan, PosePlan, ShownBy, Variable, WrittenTo};
 use crate::report::calibration::warnings as of_calibration;
 use crate::report::{Block, Report, Section};
@@ -99,7 +99,12 @@ fn subject<'a>(found: &'a CalibrationDiagnosis<'_>) -> Subject<'a> {
             let row = &campaign.measurements.rows[datum / 3];
             json!({ "pose": row.pose, "channel": AXES[datum % 3] })
         }),
-        law: None,
+        law: found.law.as_ref().map(|proposed| Told {
+            proposed,
+            remark: proposed.law.as_ref().ok().and_then(remark),
+            noun: "poses",
+            is_written: false,
+        }),
         remainder: remainder(found),
         warnings: of_calibration(campaign, &model.calibration),
         head: vec![

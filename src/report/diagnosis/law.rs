@@ -17,6 +17,8 @@ use crate::units::{UM, significant};
 
 /// Rivals that are said.
 const SAID: usize = 2;
+/// Letters of a result's name that fit beside a picture.
+const LONGEST: usize = 28;
 /// Points of a line in a picture, and how far beyond the data it is drawn, as a share of them.
 const DRAWN: (usize, f64) = (160, 0.3);
 
@@ -25,15 +27,15 @@ pub fn section(told: &Told) -> Section {
     let heading = "A law for it";
     let law = match &told.proposed.law {
         Err(refusal) => {
-            return Section::new(heading, vec![Block::Paragraph(refused(*refusal, told.proposed))]);
+            return Section::new(heading, vec![Block::Paragraph(refused(*refusal, told))]);
         }
         Ok(law) => law,
     };
     let mut points = vec![summary(law, told.proposed)];
-    points.extend(alternatives(law));
+    points.extend(alternatives(law, told));
     points.extend(next(law));
     points.extend(told.remark.clone());
-    points.push(range(law));
+    points.push(range(law, told));
     let blocks = vec![Block::List(points), Block::Table(table(law)), Block::Figure(picture(law))];
     Section::new(heading, blocks)
 }
@@ -48,7 +50,7 @@ pub fn json(told: Option<&Told>) -> Value {
     });
     let mut json = json!({
         "proposed": proposed.law.is_ok(),
-        "refused": proposed.law.as_ref().err().map(|refusal| refused(*refusal, proposed)),
+        "refused": proposed.law.as_ref().err().map(|refusal| refused(*refusal, told)),
         "lives": lives,
         "heldout_without_um": proposed.held_out.map(|(without, _)| um(without)),
         "heldout_with_um": proposed.held_out.map(|(_, with)| um(with)),
@@ -74,6 +76,11 @@ pub fn json(told: Option<&Told>) -> Value {
         "log_odds_over_curve": law.log_odds.1,
         "rivals": law.rivals.iter().map(rival).collect::<Vec<_>>(),
         "next_record": next(law),
+        "beyond": law.further.map(|(at, apart)| json!({
+            "at": at / variable.si,
+            "apart_um": um(apart),
+            "may_be_used": apart <= law.noise,
+        })),
         "remark": told.remark,
     });
     if let (Value::Object(json), Value::Object(more)) = (&mut json, more) {
@@ -172,13 +179,14 @@ fn called(rival: &LawRival, law: &Law) -> String {
 }
 
 /// What these readings do not distinguish from it.
-fn alternatives(law: &Law) -> Option<String> {
+fn alternatives(law: &Law, told: &Told) -> Option<String> {
     if law.rivals.is_empty() {
         return None;
     }
     let said: Vec<String> = law.rivals.iter().take(SAID).map(|rival| called(rival, law)).collect();
     let more = if law.rivals.len() > SAID { ", or others" } else { "" };
-    Some(format!("It may as well be: {}{more}. These readings cannot distinguish them.", said.join("; or ")))
+    let these = told.noun;
+    Some(format!("It may as well be: {}{more}. These {these} cannot distinguish them.", said.join("; or ")))
 }
 
 /// What would.
@@ -196,18 +204,26 @@ fn next(law: &Law) -> Option<String> {
     ))
 }
 
-fn range(law: &Law) -> String {
+fn range(law: &Law, told: &Told) -> String {
     let ((low, high), variable) = (law.site.range(), &law.site.variable);
     let show = |value: f64| significant(value / variable.si, 3);
+    let written = if told.is_written { "; --apply writes it" } else { "" };
+    let beyond =
+        law.further.filter(|(_, apart)| *apart > law.noise).map_or_else(String::new, |(at, apart)| {
+            let at = with_unit(significant(at / variable.si, 2), variable.unit);
+            format!(": at {at} these {} leave up to {} µm open, so do not use it there", told.noun, um(apart))
+        });
     format!(
-        "It is a proposal from readings between {} and {}; beyond that it is an extrapolation. It changes no finding.",
+        "It is a proposal from {} between {} and {}; beyond that it is an extrapolation{beyond}. It changes no finding{written}.",
+        told.noun,
         show(low),
         with_unit(show(high), variable.unit)
     )
 }
 
 /// Why there is none.
-fn refused(refusal: Refusal, proposed: &Proposed) -> String {
+fn refused(refusal: Refusal, told: &Told) -> String {
+    let (proposed, noun) = (told.proposed, told.noun);
     let why = match refusal {
         Refusal::Chance => "none is 50 times more probable than chance".to_owned(),
         Refusal::Curve(by) => format!(
@@ -217,8 +233,8 @@ fn refused(refusal: Refusal, proposed: &Proposed) -> String {
                 _ => format!("10^{:.0} times", by / std::f64::consts::LN_10),
             }
         ),
-        Refusal::HeldOut => "held-out readings are predicted no better with it".to_owned(),
-        Refusal::NoFolds => "no readings could be held out to confirm one".to_owned(),
+        Refusal::HeldOut => format!("held-out {noun} are predicted no better with it, or hardly"),
+        Refusal::NoFolds => format!("no {noun} could be held out to confirm one"),
     };
     let lives = proposed.lives.as_ref().map_or_else(String::new, |(location, variable)| {
         format!(" A smooth curve explains most over {} ({location}).", variable.name)
@@ -268,6 +284,11 @@ fn picture(law: &Law) -> crate::report::chart::Figure {
     let label = |name: &str, unit: &str| {
         if unit.is_empty() { name.to_owned() } else { format!("{name} / {unit}") }
     };
+    // what is too long for the side of a picture has its symbol
+    let changed = match result.name.chars().count() {
+        ..=LONGEST => format!("change of the {}", result.name),
+        _ => result.symbol.to_owned(),
+    };
     let panel = |(direction, (name, _)): (usize, &(String, Vec<f64>))| {
         let own = |points: &[crate::inference::law::Point]| -> Vec<[f64; 2]> {
             let of = points.iter().filter(|point| point.direction == direction);
@@ -285,7 +306,7 @@ fn picture(law: &Law) -> crate::report::chart::Figure {
         LawPanel {
             title: name.clone(),
             x: label(&variable.name, variable.unit),
-            y: label(&format!("change of the {}", result.name), result.unit),
+            y: label(&changed, result.unit),
             data,
             curve: own(&law.curve),
             law: line(ends.0, ends.1),

@@ -43,6 +43,9 @@ fn subject<'a>(found: &'a RigDiagnosis, correction: Option<&Correction>) -> Subj
     let name = rod.map_or("a straight line".to_owned(), |rod| format!("rod {}", rod.name));
     let of_rod = rod.map_or(&[][..], |rod| &rod.warnings).iter().map(ToString::to_string);
     let of_readings = readings.warnings.iter().map(|warning| format!("{}: {warning}", readings.file));
+    let unused = model.unused_laws().iter().map(|law| {
+        format!("the rod file's law {law} is not used: the readings do not have what it is a function of")
+    });
     let places = rod.and_then(|rod| figures::places(found, rod)).map(Block::Figure);
     Subject {
         evidence: &found.evidence,
@@ -68,11 +71,13 @@ fn subject<'a>(found: &'a RigDiagnosis, correction: Option<&Correction>) -> Subj
             json!({ "row": datum.row, "channel": format!("d{}", datum.channel) })
         }),
         remainder: remainder(found),
-        law: found
-            .law
-            .as_ref()
-            .map(|proposed| Told { proposed, remark: proposed.law.as_ref().ok().and_then(remark) }),
-        warnings: of_rod.chain(of_readings).collect(),
+        law: found.law.as_ref().map(|proposed| Told {
+            proposed,
+            remark: proposed.law.as_ref().ok().and_then(remark),
+            noun: "readings",
+            is_written: rod.is_some(),
+        }),
+        warnings: of_rod.chain(of_readings).chain(unused).collect(),
         head: vec![("rod", json!(rod.map(|rod| &rod.name))), ("readings", json!(readings.file))],
         more: vec![
             ("correction", json!(correction.map(correction::json))),

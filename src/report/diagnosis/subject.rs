@@ -82,6 +82,10 @@ impl Subject<'_> {
 pub struct Told<'a> {
     /// A law, or why there is none.
     pub proposed: &'a Proposed,
+    /// What was recorded: `readings`.
+    pub noun: &'static str,
+    /// True where --apply writes a law.
+    pub is_written: bool,
     /// The nearest mechanism of a textbook, in a sentence.
     pub remark: Option<String>,
 }

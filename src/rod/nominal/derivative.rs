@@ -68,6 +68,7 @@ impl Rod {
             tip_mass: of(self.tip_mass),
             masses: self.masses.iter().map(mass).collect(),
             joints: self.joints.iter().map(joint).collect(),
+            laws: self.laws.clone(),
             linear_range: self.linear_range,
             standard_uncertainty: self.standard_uncertainty,
             warnings: self.warnings.clone(),

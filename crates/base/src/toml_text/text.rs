@@ -5,6 +5,7 @@ use toml::Spanned;
 
 use crate::delimited::visible;
 use crate::error::{Error, Place, Result};
+use crate::expression::Fault;
 use crate::limits;
 
 /// A number that knows where it stands.
@@ -85,6 +86,15 @@ impl<'a> TomlText<'a> {
     /// The error that something is wrong where `place` stands.
     pub fn wrong<T>(&self, place: &Spanned<T>, found: String, expected: &str) -> Error {
         self.input(place.span().start, found, expected.to_owned(), None)
+    }
+
+    /// A fault of a formula, at its own place in the file where the formula stands on one line in
+    /// plain quotes.
+    pub fn in_formula(&self, formula: &Spanned<String>, fault: Fault) -> Error {
+        let span = formula.span();
+        let is_plain = self.text.get(span.start + 1..span.end.saturating_sub(1)) == Some(formula.get_ref());
+        let offset = if is_plain { span.start + 1 + fault.at } else { span.start };
+        self.input(offset, format!("{} in the formula", fault.found), fault.expected, None)
     }
 
     /// A value as the file has it, cut where it gets long.

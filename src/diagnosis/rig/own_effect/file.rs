@@ -8,27 +8,24 @@ use toml::Spanned;
 
 use super::OwnEffect;
 use crate::diagnosis::rig::effects::registry;
-use crate::error::{Error, Place, Result};
-use crate::expression::{Expression, Fault};
+use crate::error::{Place, Result};
+use crate::expression::{Expression, is_reserved};
 use crate::files;
 use crate::inference::{Effect, Kind, Parameter, Reported, UNKNOWN, Variable, WrittenTo};
 use crate::limits;
+use crate::rod::LawVariable;
+use crate::rod::law::SIDE;
 use crate::toml_text::{Number, Required, TomlText};
 
-/// Variables of a file, by what the sites call them: name of the file, name of the site.
-const VARIABLES: [(&str, &str, &str); 9] = [
-    ("load", "F", "load"),
-    ("load_along_positive_axes", "F", "load along the positive axes"),
-    ("load_along_negative_axes", "F", "load along the negative axes"),
-    ("load_before", "F'", "load that hung before"),
-    ("moment", "M", "moment"),
-    ("reading", "y", "reading"),
-    ("time_s", "t", "time"),
-    ("time_since_change_s", "t", "time since the load was changed"),
-    ("temperature_k", "T", "temperature above the lowest"),
-];
-/// 1 on the way up, −1 on the way down.
-const SIDE: &str = "side";
+/// Variables of a recording that no rod has: name of the file, symbol, name of the site.
+const OF_RECORDING: [(&str, &str, &str); 2] =
+    [("time_s", "t", "time"), ("temperature_k", "T", "temperature above the lowest")];
+
+/// Variables of a file, by what the sites call them: name of the file, symbol, name of the site.
+fn variables() -> impl Iterator<Item = (&'static str, &'static str, &'static str)> {
+    let of_rod = |variable: LawVariable| (variable.key(), variable.symbol(), variable.words());
+    LawVariable::ALL.into_iter().map(of_rod).chain(OF_RECORDING)
+}
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -135,9 +132,8 @@ fn of_raw(toml: TomlText, text: &str, raw: &RawEffect) -> Result<OwnEffect> {
     if words.is_empty() || words.len() > limits::WORDS_BYTES || words.contains(char::is_control) {
         return Err(toml.is("words", &raw.words, "some words on one line"));
     }
-    let Some(&(_, symbol, variable)) = VARIABLES.iter().find(|(key, ..)| key == raw.variable.get_ref())
-    else {
-        let keys: Vec<&str> = VARIABLES.iter().map(|(key, ..)| *key).collect();
+    let Some((_, symbol, variable)) = variables().find(|(key, ..)| key == raw.variable.get_ref()) else {
+        let keys: Vec<&str> = variables().map(|(key, ..)| key).collect();
         return Err(toml.is("variable", &raw.variable, &format!("one of {}", keys.join(", "))));
     };
     let raw_parameters = raw.parameter.get_ref();
@@ -149,14 +145,14 @@ fn of_raw(toml: TomlText, text: &str, raw: &RawEffect) -> Result<OwnEffect> {
     let mut parameters = Vec::new();
     for own in raw_parameters {
         let name = own.name.get_ref();
-        if !is_word(name) || names.contains(&name.as_str()) || Expression::new(name, &[]).is_ok() {
+        if !is_word(name) || names.contains(&name.as_str()) || is_reserved(name) {
             let expected = "a name of its own: lower-case letters, digits and _, no variable of the law";
             return Err(toml.is("name", &own.name, expected));
         }
         names.push(name);
         parameters.push(parameter(toml, own)?);
     }
-    let law = Expression::new(raw.law.get_ref(), &names).map_err(|fault| in_law(toml, text, raw, fault))?;
+    let law = Expression::new(raw.law.get_ref(), &names).map_err(|fault| toml.in_formula(&raw.law, fault))?;
     let seen_along: fn(&crate::inference::Location) -> Vec<Variable> = match symbol {
         "t" => |_| vec![Variable::Time, Variable::TimeInRun],
         "T" => |_| vec![Variable::Temperature],
@@ -191,20 +187,6 @@ fn parameter(toml: TomlText, raw: &RawParameter) -> Result<Parameter> {
         return Err(toml.is("size", &raw.size, "`low` below `high`"));
     }
     Ok(Parameter { name: raw.name.get_ref().clone(), unit: 1.0, neutral, size, bounds: (low, high) })
-}
-
-/// A fault of a formula, at its own place in the file where the formula stands on one line in
-/// plain quotes.
-fn in_law(toml: TomlText, text: &str, raw: &RawEffect, fault: Fault) -> Error {
-    let span = raw.law.span();
-    let is_plain = text.get(span.start + 1..span.end.saturating_sub(1)) == Some(raw.law.get_ref());
-    let offset = if is_plain { span.start + 1 + fault.at } else { span.start };
-    Error::Input {
-        at: Place::of_offset(toml.file(), text, offset),
-        found: format!("{} in the formula", fault.found),
-        expected: fault.expected,
-        hint: None,
-    }
 }
 
 /// Records of effects are statics. Those of files are kept for as long as the program runs, each

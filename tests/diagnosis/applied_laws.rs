@@ -1,0 +1,68 @@
+//! A law that was proposed, written into the rod file, and read again.
+
+use rodcal::rig;
+use rodcal::rig::readings::Readings;
+use rodcal::rod::Rod;
+use rodcal::units::UM;
+use rodcal_trial::rig::{Effect, Made};
+
+use super::Answer;
+use super::laws::{order, written};
+
+/// Diagnosed, applied, and diagnosed again: rod file and readings as `--apply` writes them.
+fn applied(rod: &str, readings: &str) -> (Answer, Answer, Rod) {
+    let before = Answer::of(Some(rod), readings);
+    assert_eq!(before.json["law"]["proposed"], true, "{}", before.json["headline"]);
+    let correction = before.found.correction().unwrap().unwrap();
+    let again = Rod::from_toml("rod.toml", &correction.rod_toml).unwrap();
+    assert_eq!(again.to_toml(&[]), correction.rod.to_toml(&[]), "read as it was written");
+    let after = Answer::of(Some(&correction.rod_toml), &correction.readings_csv);
+    (before, after, again)
+}
+
+fn assert_settled(before: &Answer, after: &Answer, noise_um: f64) {
+    let rms = |answer: &Answer| answer.json["rms_before_um"].as_f64().unwrap();
+    assert!(after.is_consistent(), "{}", after.json["headline"]);
+    assert!(after.json["law"].is_null(), "{}", after.json["law"]);
+    assert!(rms(after) < 1.6 * noise_um && rms(after) < 0.5 * rms(before), "{} {}", rms(before), rms(after));
+}
+
+/// Of the load: C is what the rod has besides, and `rig fit` finds it in what is left.
+#[test]
+fn a_gap_that_closes_is_written_and_read() {
+    let Made { rod, readings, .. } = order().made(&[Effect::GapCloses { load: 5.6, share: 0.7 }], 31);
+    let (before, after, again) = applied(&rod, &readings);
+    assert_settled(&before, &after, 1.0);
+    let [law] = &again.laws[..] else { panic!("{:?}", again.laws) };
+    assert_eq!((law.place.as_str(), law.unit()), ("rod", "N"));
+    assert!(law.at(4.0, 1.0) == 0.0 && (law.at(10.0, 1.0) + 0.3 * 4.4).abs() < 0.1, "{}", law.words());
+    let fit = |rod: &Rod| {
+        let readings = Readings::from_text("f", &readings).unwrap();
+        rig::fit(&readings, Some(rod), &rig::Options::default()).unwrap()
+    };
+    let mut without = again.clone();
+    without.laws.clear();
+    let (linear, bent) = (fit(&again), fit(&without));
+    assert!(linear.warnings[0].to_string().contains("taken out of the readings"));
+    let off = |fit: &rig::Fit| (fit.measured.as_ref().unwrap().rod_ratio.value - 1.0).abs();
+    assert!(off(&linear) < 0.01 && off(&bent) > 0.05, "{} {}", off(&linear), off(&bent));
+}
+
+/// Of a sensor: it stays the rig's.
+#[test]
+fn the_ripple_of_a_sensor_is_written_and_read() {
+    let ripple = Effect::Ripple { channel: 1, amplitude: 12.0 * UM, period: 130.0 * UM, phase: 0.4 };
+    let Made { rod, readings, .. } = order().made(&[ripple], 32);
+    let (before, after, again) = applied(&rod, &readings);
+    assert_settled(&before, &after, 1.0);
+    assert_eq!(again.laws[0].place, "dy");
+    assert!(again.warnings.iter().any(|warning| warning.to_string().contains("the rig's")));
+}
+
+/// Of something that gives way.
+#[test]
+fn a_stop_is_written_and_read() {
+    let (rod, readings) = written(&order(), 33, |row| 25.0 * (row.load / 4.0).min(1.0));
+    let (before, after, _) = applied(&rod, &readings);
+    assert_settled(&before, &after, 1.0);
+}

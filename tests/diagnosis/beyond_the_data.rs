@@ -175,7 +175,7 @@ fn oracle(hidden: &Hidden, rod: &str, readings: &str, truth: &str) -> f64 {
 }
 
 /// Two of each form: never worse than without the law, and most as near as readings of 1 µm can be.
-/// The table of docs/laws.md is that of forty.
+/// The table of docs/laws.md is that of the seeds 90 000 to 90 039.
 #[test]
 fn a_law_beyond_its_data_is_better_than_none() {
     const SEEDS: std::ops::Range<u64> = 71_000..71_002;
@@ -190,32 +190,4 @@ fn a_law_beyond_its_data_is_better_than_none() {
         }
     }
     assert!(all >= 8 && 4 * near >= 3 * all, "{near} of {all}");
-}
-
-#[test]
-#[ignore = "prints the table of docs/laws.md"]
-#[allow(clippy::print_stderr)]
-fn table() {
-    for hidden in &HIDDEN {
-        let all: Vec<_> = (90_000..90_040).filter_map(|seed| errors(hidden, seed)).collect();
-        let proposed: Vec<_> = all.iter().filter_map(|e| Some((e.0, e.1?.0, e.2, e.1?.1))).collect();
-        let median = |of: fn(&(f64, f64, f64, bool)) -> f64| {
-            let mut values: Vec<f64> = proposed.iter().map(of).collect();
-            values.sort_by(f64::total_cmp);
-            values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
-        };
-        let [without, with, oracle] = [median(|e| e.0), median(|e| e.1), median(|e| e.2)];
-        let of_use: Vec<_> = proposed.iter().filter(|e| e.3).collect();
-        let worse = of_use.iter().filter(|e| e.1 > e.0).count();
-        let worse_said = proposed.iter().filter(|e| !e.3 && e.1 > e.0).count();
-        let near = proposed.iter().filter(|e| e.1 < 2.0f64.max(1.5 * e.2)).count();
-        let most = of_use.iter().map(|e| e.1).fold(0.0, f64::max);
-        eprintln!(
-            "| {} | {} | {} | {without:.1} | {with:.1} | {oracle:.1} | {near} | {} | {most:.1} | {worse} | {worse_said} |",
-            hidden.name,
-            all.len(),
-            proposed.len(),
-            of_use.len()
-        );
-    }
 }

@@ -40,6 +40,8 @@ const REACH: f64 = 30.0;
 const UNLIKELY: f64 = -5.0;
 /// By this share of its square a held-out error is lowered at least.
 const WORTH: f64 = 0.05;
+/// A smooth curve may miss so much of what a law explains, as a share of squares.
+const LITTLE: f64 = 0.5;
 /// So many times the noise a recorded variable ranges over at least.
 const ABOVE_NOISE: f64 = 30.0;
 /// Most rivals that are reported.
@@ -56,6 +58,11 @@ pub fn propose(
     let left = diagnosis.discrepancy.as_ref()?;
     if matches!(left.shown_by, ShownBy::Suspects | ShownBy::Numbers) {
         return None;
+    }
+    // a curve draws what any law would
+    let most = left.rms.powi(2) / rms(&diagnosis.after).powi(2).max(f64::MIN_POSITIVE);
+    if left.shown_by == ShownBy::Curve && most < LITTLE * WORTH {
+        return Some(Proposed { law: Err(Refusal::Little), lives: None, held_out: None });
     }
     let (settled, sigma) = (&diagnosis.settled.0, diagnosis.settled.1);
     let (terms, size) =

@@ -30,6 +30,9 @@ pub enum Refusal {
     HeldOut,
     /// Nothing could be held out.
     NoFolds,
+    /// What is left unexplained is so little beside the scatter that no law could lower held-out
+    /// errors by enough.
+    Little,
 }
 
 /// A law with its numbers.

@@ -234,6 +234,7 @@ fn refused(refusal: Refusal, told: &Told) -> String {
             }
         ),
         Refusal::HeldOut => format!("held-out {noun} are predicted no better with it, or hardly"),
+        Refusal::Little => format!("what is left is too little beside the scatter of the {noun}"),
         Refusal::NoFolds => format!("no {noun} could be held out to confirm one"),
     };
     let lives = proposed.lives.as_ref().map_or_else(String::new, |(location, variable)| {

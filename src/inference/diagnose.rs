@@ -202,7 +202,8 @@ fn confirmed(
     let is_confirmed = |term: &Term| {
         let candidate = &model.candidates()[term.candidate];
         let own = Theme::new(candidate);
-        let is_needed = held_out.loss(own) > 0.0 && !needless.iter().any(|themes| themes.contains(&own));
+        let is_needed =
+            held_out.independent_loss(own) > 0.0 && !needless.iter().any(|themes| themes.contains(&own));
         candidate.effect.kind == Kind::Event || is_needed || takes_numbers_place(own)
     };
     let kept: Vec<Term> = hypothesis.terms.iter().filter(|term| is_confirmed(term)).cloned().collect();

@@ -35,8 +35,8 @@ pub struct HeldOut {
     pub gain_interval: Option<(f64, f64)>,
     /// Hypotheses of the folds.
     pub hypotheses: Vec<Vec<Term>>,
-    /// What themes of all data are worth in each fold; see [`HeldOut::loss`].
-    losses: Vec<(Vec<Theme>, f64)>,
+    /// What themes of all data are worth in each fold.
+    losses: Vec<(Vec<Theme>, Loss)>,
     /// What the base model leaves of each datum while it is held out; NaN for data that never are.
     pub errors_before: DVector<f64>,
     /// And what the hypothesis of its fold leaves.
@@ -70,11 +70,16 @@ impl HeldOut {
         (count, self.hypotheses.len())
     }
 
-    /// Share of the squares of the errors before that comes back without a theme: of errors that
-    /// are independent, (e'ᵀΣ⁻¹e' − eᵀΣ⁻¹e)/e₀ᵀΣ⁻¹e₀. The zero of a held-out run is as unknown with
-    /// an effect as without it; squares of errors that have it in them would be its lottery.
+    /// Share of the squares of the errors before that comes back without a theme.
     pub fn loss(&self, theme: Theme) -> f64 {
-        self.loss_of(&[theme])
+        self.losses.iter().filter(|(of, _)| *of == [theme]).map(|(_, loss)| loss.plain).sum()
+    }
+
+    /// The same of errors that are independent, (e'ᵀΣ⁻¹e' − eᵀΣ⁻¹e)/e₀ᵀΣ⁻¹e₀. The zero of a
+    /// held-out run is as unknown with an effect as without it; squares of errors that have it in
+    /// them would be its lottery.
+    pub fn independent_loss(&self, theme: Theme) -> f64 {
+        self.independent_loss_of(&[theme])
     }
 
     /// The same without two of them, or without all that are physics.
@@ -85,12 +90,20 @@ impl HeldOut {
                 together.push(themes);
             }
         }
-        together.into_iter().map(|themes| (themes, self.loss_of(themes)))
+        together.into_iter().map(|themes| (themes, self.independent_loss_of(themes)))
     }
 
-    fn loss_of(&self, themes: &[Theme]) -> f64 {
-        self.losses.iter().filter(|(of, _)| of == themes).map(|(_, loss)| loss).sum()
+    fn independent_loss_of(&self, themes: &[Theme]) -> f64 {
+        self.losses.iter().filter(|(of, _)| of == themes).map(|(_, loss)| loss.independent).sum()
     }
+}
+
+/// Squares of errors that come back without some themes, as shares of those before.
+#[derive(Debug, Clone, Copy)]
+struct Loss {
+    plain: f64,
+    /// Of errors freed of what data share.
+    independent: f64,
 }
 
 /// What some of the data, `kept`, say of all data.
@@ -201,7 +214,7 @@ pub fn hold_out(model: &Linearised<'_>, evidence: &Evidence, whole: &[Term]) -> 
     });
     let (mut errors_before, mut errors_after) = (DVector::repeat(n, f64::NAN), DVector::repeat(n, f64::NAN));
     let (mut squares, mut hypotheses) = (Vec::<Squares>::new(), Vec::new());
-    let mut losses: Vec<(Vec<Theme>, f64)> = Vec::new();
+    let mut losses: Vec<(Vec<Theme>, Loss)> = Vec::new();
     let square = |errors: &DVector<f64>, rows: &[usize]| -> f64 {
         rows.iter().map(|&row| evidence.weight[row] * errors[row].powi(2)).sum()
     };
@@ -217,7 +230,9 @@ pub fn hold_out(model: &Linearised<'_>, evidence: &Evidence, whole: &[Term]) -> 
         let (before, after) = (square(&trained.before, &held_out), square(&trained.after, &held_out));
         squares.push((before, after, count));
         for (themes, left) in trained.without {
-            losses.push((themes, independent(&left) - independent(&trained.with)));
+            let plain = square(&left, &held_out) - square(&trained.with, &held_out);
+            let independent = independent(&left) - independent(&trained.with);
+            losses.push((themes, Loss { plain, independent }));
         }
         hypotheses.push(trained.terms);
         for &row in &held_out {
@@ -228,7 +243,10 @@ pub fn hold_out(model: &Linearised<'_>, evidence: &Evidence, whole: &[Term]) -> 
     let (all_before, all_after, count) = (total(&|s| s.0), total(&|s| s.1), total(&|s| s.2));
     let per_square = 1.0 / all_before.max(f64::MIN_POSITIVE);
     let per_independent = 1.0 / independent_before.max(f64::MIN_POSITIVE);
-    losses.iter_mut().for_each(|(_, loss)| *loss *= per_independent);
+    for (_, loss) in &mut losses {
+        loss.plain *= per_square;
+        loss.independent *= per_independent;
+    }
     Some(HeldOut {
         before: (all_before / count).sqrt(),
         after: (all_after / count).sqrt(),
@@ -284,7 +302,9 @@ mod tests {
             joints: None,
         };
         let (a, b) = (of("a"), of("b"));
-        let losses = vec![(vec![a], 0.5), (vec![a, b], 0.1), (vec![a], 0.2), (vec![a, b], -0.3)];
+        let of = |share: f64| Loss { plain: 2.0 * share, independent: share };
+        let losses =
+            vec![(vec![a], of(0.5)), (vec![a, b], of(0.1)), (vec![a], of(0.2)), (vec![a, b], of(-0.3))];
         let held_out = HeldOut {
             before: 1.0,
             after: 1.0,
@@ -296,7 +316,8 @@ mod tests {
             errors_after: DVector::zeros(0),
         };
         // each seems worth a name, both together are worth less than nothing
-        assert!((held_out.loss(a) - 0.7).abs() < 1e-12);
+        assert!((held_out.independent_loss(a) - 0.7).abs() < 1e-12);
+        assert!((held_out.loss(a) - 1.4).abs() < 1e-12);
         let together: Vec<(&[Theme], f64)> = held_out.losses_together().collect();
         assert!(together.len() == 1 && together[0].0 == [a, b] && (together[0].1 + 0.2).abs() < 1e-12);
     }

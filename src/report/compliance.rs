@@ -5,7 +5,7 @@ mod numbers;
 pub(super) mod steps;
 
 pub(super) use numbers::in_um;
-pub use numbers::number;
+pub use numbers::{number, rows};
 
 use nalgebra::{Matrix3, Vector3};
 use serde_json::{Value, json};
@@ -440,11 +440,6 @@ fn shape_figure(
 fn warnings(study: &Study) -> Vec<String> {
     let beyond = beyond_linear(study).or_else(|| overloaded(study)).into_iter();
     beyond.chain(study.rod.warnings.iter().map(ToString::to_string)).collect()
-}
-
-/// A matrix as JSON rows in the unit.
-pub fn rows(matrix: &Matrix3<f64>, unit: f64) -> Vec<Vec<f64>> {
-    matrix.row_iter().map(|row| row.iter().map(|x| x / unit).collect()).collect()
 }
 
 fn mode_name(mode: Mode) -> &'static str {

@@ -184,7 +184,10 @@ fn a_soft_root_bends_the_rod_farther_than_its_file() {
     let made = order.made(&[soft], SEED);
     let answer = Answer::of_made(&made);
     assert_eq!(answer.effects(), ["root_compliance"], "{}", answer.json["headline"]);
-    let (rod, readings) = (Rod::from_toml("rod", &made.rod), Readings::from_text("readings", &made.readings));
+    // readings that agree with the file bend the rod as the file says
+    let clean = order.made(&[], SEED);
+    let (rod, readings) =
+        (Rod::from_toml("rod", &clean.rod), Readings::from_text("readings", &clean.readings));
     let (_, of_file) = RigModel::new(&readings.unwrap(), Some(&rod.unwrap())).unwrap();
     // ∝ the square of how far it yields
     let large = |evidence: &Evidence| evidence.background.column(0).norm();

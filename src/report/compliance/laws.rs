@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use serde_json::{Value, json};
 
-use super::{number, rows};
+use super::numbers::{number, rows};
 use crate::compliance::{Mode, Study};
 use crate::report::Block;
 use crate::report::table::{Column, Table};

@@ -1,9 +1,16 @@
 //! Compliances as numbers in µm.
 
+use nalgebra::Matrix3;
+
 use crate::units::{UM, significant};
 
 /// Digits of a compliance in a table.
 pub(super) const DIGITS: usize = 5;
+
+/// A matrix as JSON rows in the unit.
+pub fn rows(matrix: &Matrix3<f64>, unit: f64) -> Vec<Vec<f64>> {
+    matrix.row_iter().map(|row| row.iter().map(|x| x / unit).collect()).collect()
+}
 
 /// A compliance in µm; what symmetry makes zero is shown as 0.
 pub fn number(value: f64) -> String {

@@ -317,9 +317,9 @@ fn a_base_that_moved_is_found_at_its_row_and_becomes_a_station() {
     }
 }
 
-/// A tip 36 mm beside the last axis: with that joint's zero off by 90° it may stand elsewhere on its
-/// circle by a rough guess, at a price that leaves the mistake less than 1000 : 1, but a calibration
-/// does not go there.
+/// A tip 36 mm beside the last axis: with that joint's zero off by 90° it may stand elsewhere on
+/// its circle by a rough guess, at a price that leaves the mistake less than 1000 : 1, but a
+/// calibration does not go there.
 #[test]
 fn a_zero_of_the_last_joint_is_no_tip_that_stands_elsewhere() {
     let right = tracked_with([0.035, 0.01, 0.12], 60, 4);

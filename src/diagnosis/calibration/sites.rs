@@ -20,33 +20,12 @@ use crate::robot::Motion;
 use crate::units::{DEG, MM, STANDARD_GRAVITY, UM, URAD};
 
 /// Of what gives way under a load.
-const OF_A_LOAD: &[Form] = &[
-    Form::Power,
-    Form::Saturation,
-    Form::Threshold,
-    Form::Step,
-    Form::Approach,
-    Form::Logarithm,
-    Form::Polynomial(1),
-    Form::Polynomial(2),
-    Form::Polynomial(3),
-];
+const OF_A_LOAD: &[Form] = Form::GIVING_WAY;
 /// From the first pose on: time, order.
-const OF_TIME: &[Form] = &[
-    Form::Threshold,
-    Form::Step,
-    Form::Approach,
-    Form::Decay,
-    Form::Logarithm,
-    Form::Harmonic,
-    Form::Polynomial(1),
-    Form::Polynomial(2),
-    Form::Polynomial(3),
-];
+const OF_TIME: &[Form] = Form::SINCE_A_START;
 /// From anywhere on: temperature, positions, angles, whose zero is where the encoder has it. Waves
 /// over an angle are the library's (`transmission_error`, `wrist_coupling`).
-const OF_A_LEVEL: &[Form] =
-    &[Form::Threshold, Form::Step, Form::Polynomial(1), Form::Polynomial(2), Form::Polynomial(3)];
+const OF_A_LEVEL: &[Form] = Form::FROM_ANYWHERE;
 /// Where an axis goes as its joint turns.
 const OF_A_BEARING: &[Form] = &[Form::Harmonic];
 /// One factor of a product: the other one's place says it.

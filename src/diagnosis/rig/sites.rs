@@ -25,32 +25,11 @@ use crate::units::UM;
 /// From zero on, of what is measured or hung: loads, readings. They may ripple.
 const OF_A_LOAD: &[Form] = &Form::ALL;
 /// Of what gives way under them.
-const OF_A_CONTACT: &[Form] = &[
-    Form::Power,
-    Form::Saturation,
-    Form::Threshold,
-    Form::Step,
-    Form::Approach,
-    Form::Logarithm,
-    Form::Polynomial(1),
-    Form::Polynomial(2),
-    Form::Polynomial(3),
-];
+const OF_A_CONTACT: &[Form] = Form::GIVING_WAY;
 /// With two signs, of which each may be another case.
-const OF_A_SIDE: &[Form] =
-    &[Form::Threshold, Form::Step, Form::Polynomial(1), Form::Polynomial(2), Form::Polynomial(3)];
+const OF_A_SIDE: &[Form] = Form::FROM_ANYWHERE;
 /// From the first reading on: time, order.
-const OF_TIME: &[Form] = &[
-    Form::Threshold,
-    Form::Step,
-    Form::Approach,
-    Form::Decay,
-    Form::Logarithm,
-    Form::Harmonic,
-    Form::Polynomial(1),
-    Form::Polynomial(2),
-    Form::Polynomial(3),
-];
+const OF_TIME: &[Form] = Form::SINCE_A_START;
 /// From anywhere on: temperature.
 const OF_A_LEVEL: &[Form] = OF_A_SIDE;
 /// Times since: they fade.

@@ -98,6 +98,36 @@ impl Form {
         Form::Polynomial(3),
     ];
 
+    /// What gives way from zero on.
+    pub const GIVING_WAY: &[Form] = &[
+        Form::Power,
+        Form::Saturation,
+        Form::Threshold,
+        Form::Step,
+        Form::Approach,
+        Form::Logarithm,
+        Form::Polynomial(1),
+        Form::Polynomial(2),
+        Form::Polynomial(3),
+    ];
+
+    /// From a start on: time, order.
+    pub const SINCE_A_START: &[Form] = &[
+        Form::Threshold,
+        Form::Step,
+        Form::Approach,
+        Form::Decay,
+        Form::Logarithm,
+        Form::Harmonic,
+        Form::Polynomial(1),
+        Form::Polynomial(2),
+        Form::Polynomial(3),
+    ];
+
+    /// From anywhere on, or with two signs.
+    pub const FROM_ANYWHERE: &[Form] =
+        &[Form::Threshold, Form::Step, Form::Polynomial(1), Form::Polynomial(2), Form::Polynomial(3)];
+
     /// For people and JSON.
     pub fn name(self) -> &'static str {
         match self {

@@ -36,7 +36,7 @@ pub fn section(told: &Told) -> Section {
     points.extend(next(law));
     points.extend(told.remark.clone());
     points.push(range(law, told));
-    let blocks = vec![Block::List(points), Block::Table(table(law)), Block::Figure(picture(law))];
+    let blocks = vec![Block::List(points), Block::Table(table(law)), Block::Figure(picture(law, told.noun))];
     Section::new(heading, blocks)
 }
 
@@ -280,7 +280,7 @@ fn shown(value: f64, half: f64) -> String {
 }
 
 /// Data, smooth curve and law, direction by direction.
-fn picture(law: &Law) -> crate::report::chart::Figure {
+fn picture(law: &Law, noun: &str) -> crate::report::chart::Figure {
     let (variable, result) = (&law.site.variable, &law.site.result);
     let label = |name: &str, unit: &str| {
         if unit.is_empty() { name.to_owned() } else { format!("{name} / {unit}") }
@@ -315,8 +315,8 @@ fn picture(law: &Law) -> crate::report::chart::Figure {
         }
     };
     let panels: Vec<LawPanel> = law.site.directions.iter().enumerate().map(panel).collect();
-    law_picture(&panels).captioned(
-        "What the findings leave, as the law sees it. Points: readings; dashed: a smooth curve through them; solid: \
-         the law; dotted: the law beyond the readings.",
-    )
+    law_picture(&panels, noun).captioned(format!(
+        "What the findings leave, as the law sees it. Points: {noun}; dashed: a smooth curve through them; \
+         solid: the law; dotted: the law beyond the {noun}."
+    ))
 }

@@ -26,8 +26,8 @@ pub struct LawPanel {
 /// Most panels side by side.
 const COLUMNS: usize = 2;
 
-/// All directions of a law.
-pub fn law_picture(panels: &[LawPanel]) -> Figure {
+/// All directions of a law; `noun` is what the data are called.
+pub fn law_picture(panels: &[LawPanel], noun: &str) -> Figure {
     let chart = |panel: &LawPanel| {
         let line = |label: &str, points: &[[f64; 2]], dash: Dash, colour: Colour| Mark::Line {
             label: label.into(),
@@ -37,7 +37,7 @@ pub fn law_picture(panels: &[LawPanel]) -> Figure {
         let points = panel.data.iter().map(|&[x, y]| Point { x, y, error: 0.0 }).collect();
         let style = Style::nth(0).colour(Colour::Grey).marker(Marker::Dot);
         let mut chart = Chart::new(panel.title.clone(), panel.x.clone(), panel.y.clone());
-        chart = chart.with(Mark::Points { label: "readings".into(), points, style });
+        chart = chart.with(Mark::Points { label: noun.into(), points, style });
         if !panel.curve.is_empty() {
             chart = chart.with(line("smooth curve", &panel.curve, Dash::Dashed, Colour::Blue));
         }

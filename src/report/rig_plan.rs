@@ -23,13 +23,13 @@ pub fn json(plan: &RigPlan, rod: &Rod, bench: &Bench) -> Value {
         object["minutes"] = one.minutes.into();
         object
     };
-    let distinguished = plan.distinguished.iter().map(|told| {
-        let places = told.places.iter().map(|(place, now, best)| {
+    let distinguished = plan.distinguished.iter().map(|one| {
+        let places = one.places.iter().map(|(place, now, best)| {
             json!({ "location": place.to_string(), "log_odds": now, "log_odds_of_everything": best })
         });
         json!({
-            "effect": told.effect.name,
-            "against": told.against.map(|effect| effect.name),
+            "effect": one.effect.name,
+            "against": one.against.map(|effect| effect.name),
             "places": places.collect::<Vec<_>>(),
         })
     });
@@ -87,7 +87,7 @@ fn headline(plan: &RigPlan) -> String {
         );
     }
     let odds = significant(plan.wanted.exp(), 3);
-    let all = plan.distinguished.iter().flat_map(|told| &told.places);
+    let all = plan.distinguished.iter().flat_map(|one| &one.places);
     let (count, short) = all.fold((0, 0), |(count, short), (_, now, _)| {
         (count + 1, short + usize::from(*now < plan.wanted * (1.0 - 1e-9)))
     });
@@ -104,22 +104,22 @@ fn headline(plan: &RigPlan) -> String {
 
 /// What is not distinguished, in words.
 fn not_distinguished(plan: &RigPlan) -> Vec<String> {
-    let short = |told: &Distinguished| -> Vec<String> {
+    let short = |one: &Distinguished| -> Vec<String> {
         let is_short = |now: f64| now < plan.wanted * (1.0 - 1e-9);
-        told.places.iter().filter(|(_, now, _)| is_short(*now)).map(|(place, ..)| place.to_string()).collect()
+        one.places.iter().filter(|(_, now, _)| is_short(*now)).map(|(place, ..)| place.to_string()).collect()
     };
-    let words = |told: &Distinguished| {
-        let short = short(told);
-        let from = told.against.map_or("nothing".to_owned(), |other| spoken(other.name));
+    let words = |one: &Distinguished| {
+        let short = short(one);
+        let from = one.against.map_or("nothing".to_owned(), |other| spoken(other.name));
         let places = match short.len() {
             0 => return None,
-            count if count == told.places.len() => String::new(),
+            count if count == one.places.len() => String::new(),
             1..=4 => format!(" at {}", short.join(", ")),
             count => format!(" at {}, {} and {} more places", short[0], short[1], count - 2),
         };
         Some(format!(
             "{}{places} cannot be distinguished from {from} with reasonable effort",
-            spoken(told.effect.name)
+            spoken(one.effect.name)
         ))
     };
     plan.distinguished.iter().filter_map(words).collect()
@@ -238,16 +238,16 @@ fn will_tell(plan: &RigPlan) -> Vec<Block> {
         powers if powers > 4.0 => format!("10^{powers:.0}"),
         _ => significant(ln.exp(), 2),
     };
-    for told in &plan.distinguished {
-        let mut places: Vec<_> = told.places.iter().collect();
+    for one in &plan.distinguished {
+        let mut places: Vec<_> = one.places.iter().collect();
         places.sort_by(|a, b| a.1.total_cmp(&b.1));
         let last = places.len().saturating_sub(1);
         let mut picked = vec![0, last];
         picked.dedup();
         for (place, now, best) in picked.into_iter().filter_map(|k| places.get(k)) {
             table.row(vec![
-                spoken(told.effect.name),
-                told.against.map_or("nothing".into(), |other| spoken(other.name)),
+                spoken(one.effect.name),
+                one.against.map_or("nothing".into(), |other| spoken(other.name)),
                 place.to_string(),
                 odds(*now),
                 odds(*best),

@@ -145,11 +145,12 @@ pub fn plan(rod: &Rod, between: &[&'static Effect], odds: f64, bench: &Bench) ->
     let aims: Vec<f64> =
         all.iter().map(|best| if *best < REASONABLE * wanted { 0.0 } else { wanted }).collect();
     let mut counts = vec![0; menu.measurements.len()];
-    let left = |told: &[f64]| -> f64 {
-        let short = |(told, aim): (&f64, &f64)| if *aim > 0.0 { (-told.min(*aim)).exp() } else { 0.0 };
-        told.iter().zip(&aims).map(short).sum()
+    let left = |log_odds: &[f64]| -> f64 {
+        let short =
+            |(log_odds, aim): (&f64, &f64)| if *aim > 0.0 { (-log_odds.min(*aim)).exp() } else { 0.0 };
+        log_odds.iter().zip(&aims).map(short).sum()
     };
-    let is_enough = |told: &[f64]| told.iter().zip(&aims).all(|(told, aim)| told >= aim);
+    let is_enough = |log_odds: &[f64]| log_odds.iter().zip(&aims).all(|(log_odds, aim)| log_odds >= aim);
     let mut now = vec![0.0; aims.len()];
     for _ in 0..MOST_ROUNDS {
         if is_enough(&now) {
@@ -166,17 +167,19 @@ pub fn plan(rod: &Rod, between: &[&'static Effect], odds: f64, bench: &Bench) ->
             }
         }
         offers.sort_by(|a, b| menu.minutes(a).total_cmp(&menu.minutes(b)));
-        let told = in_parallel(offers.len(), |k| menu.log_odds(&offers[k]));
+        let log_odds = in_parallel(offers.len(), |k| menu.log_odds(&offers[k]));
         let mut design = ExperimentDesign::default();
-        for (offer, told) in offers.into_iter().zip(told) {
-            let useful: Vec<f64> = told.iter().zip(&aims).map(|(told, aim)| told.min(*aim)).collect();
-            design.offer((offer, told), useful, &vec![1.0; aims.len()]);
+        for (offer, log_odds) in offers.into_iter().zip(log_odds) {
+            let useful: Vec<f64> =
+                log_odds.iter().zip(&aims).map(|(log_odds, aim)| log_odds.min(*aim)).collect();
+            design.offer((offer, log_odds), useful, &vec![1.0; aims.len()]);
         }
-        let Some(((best, told), _)) = design.best().filter(|((_, told), _)| left(told) < WORTH * left(&now))
+        let Some(((best, log_odds), _)) =
+            design.best().filter(|((_, log_odds), _)| left(log_odds) < WORTH * left(&now))
         else {
             break;
         };
-        (counts, now) = (best, told);
+        (counts, now) = (best, log_odds);
     }
     if !is_enough(&now) {
         // some are distinguished by several measurements together only: from all of them, as many
@@ -188,25 +191,26 @@ pub fn plan(rod: &Rod, between: &[&'static Effect], odds: f64, bench: &Bench) ->
         for k in order {
             let mut fewer = counts.clone();
             fewer[k] = 0;
-            let told = menu.log_odds(&fewer);
-            if is_enough(&told) {
-                (counts, now) = (fewer, told);
+            let log_odds = menu.log_odds(&fewer);
+            if is_enough(&log_odds) {
+                (counts, now) = (fewer, log_odds);
             }
         }
     }
     // the most laborious first
     let reached: Vec<f64> = now.iter().zip(&aims).map(|(now, aim)| now.min(*aim)).collect();
-    let is_kept = |told: &[f64]| told.iter().zip(&reached).all(|(told, reached)| told >= reached);
+    let is_kept =
+        |log_odds: &[f64]| log_odds.iter().zip(&reached).all(|(log_odds, reached)| log_odds >= reached);
     let mut order: Vec<usize> = (0..counts.len()).filter(|&k| counts[k] > 0).collect();
     order.sort_by(|&a, &b| menu.labour(b, counts[b]).total_cmp(&menu.labour(a, counts[a])).then(a.cmp(&b)));
     for k in order {
         while counts[k] > 0 {
             let fewer = one_less(&counts, k);
-            let told = menu.log_odds(&fewer);
-            if !is_kept(&told) {
+            let log_odds = menu.log_odds(&fewer);
+            if !is_kept(&log_odds) {
                 break;
             }
-            (counts, now) = (fewer, told);
+            (counts, now) = (fewer, log_odds);
         }
     }
     let labour: Vec<Vec<f64>> = (0..counts.len()).map(|k| menu.labours(k)).collect();
@@ -341,9 +345,9 @@ impl Menu {
             })
             .collect();
         let alone: Vec<Alone> = white.iter().map(Alone::new).collect();
-        let mut told = Vec::with_capacity(self.candidates.len() * others);
+        let mut log_odds = Vec::with_capacity(self.candidates.len() * others);
         for (i, (effect, ..)) in self.candidates.iter().enumerate() {
-            told.push(0.5 * (alone[i].gram.trace() - alone[i].ln));
+            log_odds.push(0.5 * (alone[i].gram.trace() - alone[i].ln));
             for other in self.between.iter().filter(|other| other != &effect) {
                 let rivals = (0..self.candidates.len()).filter(|&j| self.candidates[j].0 == *other);
                 let apart = |j: usize| {
@@ -351,10 +355,10 @@ impl Menu {
                     let taken = &alone[j].inverse * (&alone[j].gram + &shared * shared.transpose());
                     0.5 * (alone[i].gram.trace() - taken.trace() + alone[j].ln - alone[i].ln)
                 };
-                told.push(rivals.map(apart).fold(f64::INFINITY, f64::min).max(0.0));
+                log_odds.push(rivals.map(apart).fold(f64::INFINITY, f64::min).max(0.0));
             }
         }
-        told
+        log_odds
     }
 
     /// Minutes of one measurement.

@@ -10,7 +10,7 @@ use self::distances::{Distances, distances_json, mean};
 use self::joints::gear_of;
 use super::headline::um;
 use super::remainder::{Remainder, Sample};
-use super::subject::{Errors, Subject, Told};
+use super::subject::{Errors, LawSubject, Subject};
 use super::{json as whole_json, report as whole_report};
 use crate::calibration::campaign::Targets;
 use crate::calibration::{MOST_SCATTER, Warning};
@@ -99,7 +99,7 @@ fn subject<'a>(found: &'a CalibrationDiagnosis<'_>) -> Subject<'a> {
             let row = &campaign.measurements.rows[datum / 3];
             json!({ "pose": row.pose, "channel": AXES[datum % 3] })
         }),
-        law: found.law.as_ref().map(|proposed| Told {
+        law: found.law.as_ref().map(|proposed| LawSubject {
             proposed,
             remark: proposed.law.as_ref().ok().and_then(remark),
             noun: "poses",

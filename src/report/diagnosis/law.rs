@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use self::expression::{Expression, expression};
 use super::headline::um;
 use super::place::place;
-use super::subject::Told;
+use super::subject::LawSubject;
 use crate::inference::law::{Constant, Law, LawRival, Memory, Proposed, Refusal, Site};
 use crate::inference::{Location, Quantity};
 use crate::report::pictures::diagnosis::{LawPanel, law_picture};
@@ -23,34 +23,35 @@ const LONGEST: usize = 28;
 const DRAWN: (usize, f64) = (160, 0.3);
 
 /// The section of the report.
-pub fn section(told: &Told) -> Section {
+pub fn section(subject: &LawSubject) -> Section {
     let heading = "A law for it";
-    let law = match &told.proposed.law {
+    let law = match &subject.proposed.law {
         Err(refusal) => {
-            return Section::new(heading, vec![Block::Paragraph(refused(*refusal, told))]);
+            return Section::new(heading, vec![Block::Paragraph(refused(*refusal, subject))]);
         }
         Ok(law) => law,
     };
-    let mut points = vec![summary(law, told.proposed)];
-    points.extend(alternatives(law, told));
+    let mut points = vec![summary(law, subject.proposed)];
+    points.extend(alternatives(law, subject));
     points.extend(next(law));
-    points.extend(told.remark.clone());
-    points.push(range(law, told));
-    let blocks = vec![Block::List(points), Block::Table(table(law)), Block::Figure(picture(law, told.noun))];
+    points.extend(subject.remark.clone());
+    points.push(range(law, subject));
+    let blocks =
+        vec![Block::List(points), Block::Table(table(law)), Block::Figure(picture(law, subject.noun))];
     Section::new(heading, blocks)
 }
 
 /// The key `law` of the JSON; null where nothing is left to look for one in.
-pub fn json(told: Option<&Told>) -> Value {
-    let Some(told) = told else { return Value::Null };
-    let proposed = told.proposed;
+pub fn json(subject: Option<&LawSubject>) -> Value {
+    let Some(subject) = subject else { return Value::Null };
+    let proposed = subject.proposed;
     let um = |error: f64| error / UM;
     let lives = proposed.lives.as_ref().map(|(location, variable)| {
         json!({ "location": location.to_string(), "place": place(location), "variable": variable.name, "unit": variable.unit })
     });
     let mut json = json!({
         "proposed": proposed.law.is_ok(),
-        "refused": proposed.law.as_ref().err().map(|refusal| refused(*refusal, told)),
+        "refused": proposed.law.as_ref().err().map(|refusal| refused(*refusal, subject)),
         "lives": lives,
         "heldout_without_um": proposed.held_out.map(|(without, _)| um(without)),
         "heldout_with_um": proposed.held_out.map(|(_, with)| um(with)),
@@ -81,7 +82,7 @@ pub fn json(told: Option<&Told>) -> Value {
             "apart_um": um(apart),
             "may_be_used": apart <= law.noise,
         })),
-        "remark": told.remark,
+        "remark": subject.remark,
     });
     if let (Value::Object(json), Value::Object(more)) = (&mut json, more) {
         json.extend(more);
@@ -179,13 +180,13 @@ fn called(rival: &LawRival, law: &Law) -> String {
 }
 
 /// What these readings do not distinguish from it.
-fn alternatives(law: &Law, told: &Told) -> Option<String> {
+fn alternatives(law: &Law, subject: &LawSubject) -> Option<String> {
     if law.rivals.is_empty() {
         return None;
     }
     let said: Vec<String> = law.rivals.iter().take(SAID).map(|rival| called(rival, law)).collect();
     let more = if law.rivals.len() > SAID { ", or others" } else { "" };
-    let these = told.noun;
+    let these = subject.noun;
     Some(format!("It may as well be: {}{more}. These {these} cannot distinguish them.", said.join("; or ")))
 }
 
@@ -204,26 +205,30 @@ fn next(law: &Law) -> Option<String> {
     ))
 }
 
-fn range(law: &Law, told: &Told) -> String {
+fn range(law: &Law, subject: &LawSubject) -> String {
     let ((low, high), variable) = (law.site.range(), &law.site.variable);
     let show = |value: f64| significant(value / variable.si, 3);
-    let written = if told.is_written { "; --apply writes it" } else { "" };
+    let written = if subject.is_written { "; --apply writes it" } else { "" };
     let beyond =
         law.further.filter(|(_, apart)| *apart > law.noise).map_or_else(String::new, |(at, apart)| {
             let at = with_unit(significant(at / variable.si, 2), variable.unit);
-            format!(": at {at} these {} leave up to {} µm open, so do not use it there", told.noun, um(apart))
+            format!(
+                ": at {at} these {} leave up to {} µm open, so do not use it there",
+                subject.noun,
+                um(apart)
+            )
         });
     format!(
         "It is a proposal from {} between {} and {}; beyond that it is an extrapolation{beyond}. It changes no finding{written}.",
-        told.noun,
+        subject.noun,
         show(low),
         with_unit(show(high), variable.unit)
     )
 }
 
 /// Why there is none.
-fn refused(refusal: Refusal, told: &Told) -> String {
-    let (proposed, noun) = (told.proposed, told.noun);
+fn refused(refusal: Refusal, subject: &LawSubject) -> String {
+    let (proposed, noun) = (subject.proposed, subject.noun);
     let why = match refusal {
         Refusal::Chance => "none is 50 times more probable than chance".to_owned(),
         Refusal::Curve(by) => format!(

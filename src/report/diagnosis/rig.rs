@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 use self::lines::{branch_name, line_name};
 use super::headline::um;
 use super::remainder::{Remainder, Sample};
-use super::subject::{Errors, Subject, Told};
+use super::subject::{Errors, LawSubject, Subject};
 use super::{json as whole_json, report as whole_report};
 use crate::diagnosis::rig::{Correction, Datum, RigDiagnosis, remark};
 use crate::inference::{
@@ -71,7 +71,7 @@ fn subject<'a>(found: &'a RigDiagnosis, correction: Option<&Correction>) -> Subj
             json!({ "row": datum.row, "channel": format!("d{}", datum.channel) })
         }),
         remainder: remainder(found),
-        law: found.law.as_ref().map(|proposed| Told {
+        law: found.law.as_ref().map(|proposed| LawSubject {
             proposed,
             remark: proposed.law.as_ref().ok().and_then(remark),
             noun: "readings",

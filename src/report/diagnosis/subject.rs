@@ -41,7 +41,7 @@ pub struct Subject<'a> {
     /// What no effect explains.
     pub remainder: Option<Remainder>,
     /// A law for that, or why there is none; `None` where nobody looked for one.
-    pub law: Option<Told<'a>>,
+    pub law: Option<LawSubject<'a>>,
     /// Warnings of the input files and of the base model.
     pub warnings: Vec<String>,
     /// Head of the JSON: what was diagnosed.
@@ -79,7 +79,7 @@ impl Subject<'_> {
 }
 
 /// What was made of the remainder.
-pub struct Told<'a> {
+pub struct LawSubject<'a> {
     /// A law, or why there is none.
     pub proposed: &'a Proposed,
     /// What was recorded: `readings`.

@@ -29,7 +29,7 @@ fn what_can_be_distinguished_is() {
     let rod = Rod::read("rods/5.toml".as_ref()).unwrap();
     let between = effects(["joint_compliance", "root_compliance"]);
     let plan = plan(&rod, &between, 20.0, &BENCH).unwrap();
-    let all = || plan.distinguished.iter().flat_map(|told| &told.places);
+    let all = || plan.distinguished.iter().flat_map(|one| &one.places);
     assert!(all().any(|(_, _, best)| *best < plan.wanted) && all().any(|(_, now, _)| *now > plan.wanted));
     for (place, now, best) in all() {
         let is_hard = *best < REASONABLE * plan.wanted;
@@ -43,8 +43,8 @@ fn a_plan_is_no_more_than_is_needed_and_keeps_what_it_promises() {
     let rod = rod();
     let plan = plan(&rod, &between, 20.0, &BENCH).unwrap();
     assert!(!plan.measurements.is_empty() && plan.minutes > 0.0);
-    for told in &plan.distinguished {
-        for (place, now, best) in &told.places {
+    for one in &plan.distinguished {
+        for (place, now, best) in &one.places {
             assert!(*now >= plan.wanted.min(*best) - 1e-9 || *best < plan.wanted, "{place}: {now} {best}");
         }
     }
@@ -54,7 +54,8 @@ fn a_plan_is_no_more_than_is_needed_and_keeps_what_it_promises() {
     for k in (0..counts.len()).filter(|&k| counts[k] > 0) {
         let fewer = one_less(&counts, k);
         let all = menu.log_odds(&vec![MOST_REPEATS; counts.len()]);
-        let is_missed = |(told, best): (&f64, &f64)| *best >= REASONABLE * plan.wanted && *told < plan.wanted;
+        let is_missed =
+            |(log_odds, best): (&f64, &f64)| *best >= REASONABLE * plan.wanted && *log_odds < plan.wanted;
         assert!(menu.log_odds(&fewer).iter().zip(&all).any(is_missed), "{k}");
     }
 }
@@ -72,7 +73,10 @@ fn the_least_plan_is_that_of_all() {
     let all = menu.log_odds(&vec![MOST_REPEATS; count]);
     let is_asked: Vec<bool> = all.iter().map(|best| *best >= REASONABLE * wanted).collect();
     let is_enough = |counts: &[usize]| {
-        menu.log_odds(counts).iter().zip(&is_asked).all(|(odds, is_asked)| !is_asked || *odds >= wanted)
+        menu.log_odds(counts)
+            .iter()
+            .zip(&is_asked)
+            .all(|(log_odds, is_asked)| !is_asked || *log_odds >= wanted)
     };
     let planned = counts(&found, &menu);
     let mut used: Vec<usize> = (0..count).filter(|&k| planned[k] > 0).collect();

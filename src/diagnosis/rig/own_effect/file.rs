@@ -69,8 +69,8 @@ impl OwnEffect {
     /// Reads the effects of a file.
     ///
     /// # Errors
-    /// [`Error::File`] where it cannot be read; [`Error::Syntax`] or [`Error::Input`] with line and
-    /// column otherwise.
+    /// [`File`](crate::Error::File) where it cannot be read; [`Syntax`](crate::Error::Syntax) or
+    /// [`Input`](crate::Error::Input) with line and column otherwise.
     pub fn read(path: &Path) -> Result<Vec<OwnEffect>> {
         OwnEffect::from_toml(&path.display().to_string(), &files::read_text(path)?)
     }

@@ -7,7 +7,7 @@ use rodcal::Error;
 /// their lines, for those are their rows.
 const DICTS: [&str; 4] = ["<rod>", "<robot>", "<campaign>", "<design>"];
 
-/// What becomes of an error.
+/// The Python exception for an error.
 pub trait IntoPython<T> {
     /// The same result with Python's exception.
     fn or_raise(self, py: Python<'_>) -> PyResult<T>;

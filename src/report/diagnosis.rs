@@ -1,7 +1,7 @@
 //! What `diagnose` says: JSON, words, tables and pictures, written once for every diagnosis.
 //!
 //! What differs between a rig and a calibration is data (`subject::Subject`): its nouns, its
-//! pictures, its remainder, and what becomes of the model.
+//! pictures, its remainder, and the corrected model.
 
 pub mod calibration;
 mod cards;

@@ -109,10 +109,10 @@ mod tests {
     use crate::statistics::Random;
 
     /// How much more heavy tails explain than a misread last row.
-    /// With the last `count` rows misread.
-    fn tails_over_misread(all: &[f64], count: usize) -> f64 {
+    /// With the last `count` rows misread, by `by` noises at least.
+    fn tails_over_misread(all: &[f64], count: usize, by: f64) -> f64 {
         let rows: Vec<usize> = (all.len() / 3 - count..all.len() / 3).collect();
-        Tails::of(all).ln_likelihood - ln_misread(all, &rows, 25.0)
+        Tails::of(all).ln_likelihood - ln_misread(all, &rows, by)
     }
 
     #[test]
@@ -128,10 +128,10 @@ mod tests {
         // two poses that are off by millimetres where the others scatter by hundredths of one
         let mut far = normal.clone();
         far.extend([90.0, -70.0, 60.0, 40.0, 80.0, -50.0]);
-        assert!(tails_over_misread(&far, 2) < -10.0, "{}", tails_over_misread(&far, 2));
+        assert!(tails_over_misread(&far, 2, 11.0) < -10.0, "{}", tails_over_misread(&far, 2, 11.0));
         normal.extend([12.0, -9.0, 7.0]);
         heavy.extend([5.0, 0.3, -1.0]);
-        assert!(tails_over_misread(&normal, 1) < -10.0, "{}", tails_over_misread(&normal, 1));
-        assert!(tails_over_misread(&heavy, 1) > 5.0, "{}", tails_over_misread(&heavy, 1));
+        assert!(tails_over_misread(&normal, 1, 25.0) < -10.0, "{}", tails_over_misread(&normal, 1, 25.0));
+        assert!(tails_over_misread(&heavy, 1, 25.0) > 5.0, "{}", tails_over_misread(&heavy, 1, 25.0));
     }
 }

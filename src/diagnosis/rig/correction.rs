@@ -1,4 +1,4 @@
-//! A rod with what was found in it, and what becomes of its compliance.
+//! A rod with what was found in it, and its compliance then.
 
 use nalgebra::DVector;
 

@@ -132,7 +132,7 @@ pub struct Point {
 }
 
 impl Law {
-    /// Of its numbers alone, for tests of what becomes of them.
+    /// Of its numbers alone, for tests of what is made of them.
     #[cfg(test)]
     pub fn of_numbers(
         site: Site,

@@ -22,7 +22,7 @@ use crate::units::{UM, significant};
 /// Most samples of the shape along one line.
 const SAMPLES: usize = 12;
 
-/// The report of `rodcal diagnose rig`; with what becomes of the rod, where something does.
+/// The report of `rodcal diagnose rig`; with the corrected rod, where there is one.
 pub fn report(found: &RigDiagnosis, correction: Option<&Correction>) -> Report {
     whole_report(subject(found, correction))
 }

@@ -245,3 +245,26 @@ fn no_physics_is_a_mistake_however_large() {
     });
     assert!(wrong.is_empty(), "{} of them: {wrong:#?}", wrong.len());
 }
+
+/// Four runs along y and four along z in turn; from the seventh run on, or in it alone, dz stands
+/// 2 mm off.
+#[test]
+fn a_slip_over_runs_along_other_axes_is_no_zero_that_was_not_taken() {
+    let rod = Rod::from_toml("rod", include_str!("../../../../rods/5.toml")).unwrap();
+    let found = |off: &[usize]| {
+        let mut text = "axis,load_n,trial,dy_um,dz_um\n".to_owned();
+        for run in 0..8 {
+            let (axis, [dy, dz]) = if run % 2 == 0 { ("y", [45.0, 0.0]) } else { ("z", [0.0, 40.0]) };
+            let zero = if off.contains(&run) { 2000.0 } else { 0.0 };
+            for load in [5.0, 10.0, 15.0, 20.0] {
+                let trial = run / 2 + 1;
+                text += &format!("{axis},{load},{trial},{:.0},{:.0}\n", dy * load, dz * load + zero);
+            }
+        }
+        let readings = Readings::from_text("f", &text).unwrap();
+        let mended = mended(&readings, Some(&rod), &[]).unwrap();
+        mended.found.iter().map(|found| found.effect.name).collect::<Vec<_>>()
+    };
+    assert_eq!(found(&[6]), ["offset_mistake"]);
+    assert_eq!(found(&[6, 7]), [""; 0]);
+}

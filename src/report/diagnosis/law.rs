@@ -18,7 +18,7 @@ use crate::units::{UM, significant};
 /// Rivals that are said.
 const SAID: usize = 2;
 /// Letters of a result's name that fit beside a picture.
-const LONGEST: usize = 28;
+const LONGEST: usize = 20;
 /// Points of a line in a picture, and how far beyond the data it is drawn, as a share of them.
 const DRAWN: (usize, f64) = (160, 0.3);
 

@@ -25,6 +25,7 @@ mod fit;
 mod forward_model;
 mod gram_cache;
 mod held_out;
+mod hidden_in_correlation;
 mod hidden_in_groups;
 mod hypothesis;
 mod lack_of_fit;

@@ -7,6 +7,7 @@ use nalgebra::DVector;
 use super::Hypothesis;
 use super::background::size_offsets;
 use super::evidence::rms;
+use super::hidden_in_correlation::hidden_in_correlation;
 use super::hidden_in_groups::hidden;
 use super::linearised::Linearised;
 use super::misread::unlike_repeats;
@@ -79,7 +80,11 @@ pub fn settled(model: &Linearised<'_>, evidence: &Evidence) -> (Evidence, Option
             // a curve would draw it
             let response = model.response(&hypothesis.terms);
             let left = &evidence.residual - search.predicted(&hypothesis, &evidence, &response);
-            known.extend(hidden(model, &evidence, &left));
+            let found = hidden(model, &evidence, &left);
+            known.extend(found.filter(|new| known.iter().all(|old| old.candidate != new.candidate)));
+        }
+        if pass == 0 && correlation > 0.0 && evidence.correlation.is_none() {
+            known = hidden_in_correlation(model, &evidence, &known).unwrap_or(known);
         }
         let has_shared = search.whitening.is_of_shared_errors();
         evidence.weight = if is_same_weight { evidence.weight } else { weight };

@@ -4,7 +4,12 @@
 //! y + a·cos(2πt/T) + b·sin(2πt/T)      a, b vectors: a number for each channel
 //! ```
 //!
-//! T is the length of the recording over 1, 1½, 2 … [`MOST_SWINGS`].
+//! or, where runs have zeros of their own, what has come since the zero was taken: each wave less
+//! its value at the first reading of the run.
+//!
+//! T is the length of the recording over 1, 1½, 2 … [`MOST_SWINGS`]: half-way between two of them
+//! the waves are an eighth of a swing off at the ends of the recording, and 0.97 of the true one is
+//! seen.
 
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -18,6 +23,8 @@ use crate::inference::Location;
 use crate::units::UM;
 
 const MOST_SWINGS: usize = 8;
+/// Periods that are tried for each swing more.
+const FOR_EACH: usize = 2;
 /// Times from which on as many swings are seen.
 const FEWEST: usize = 4 * MOST_SWINGS;
 
@@ -39,17 +46,27 @@ pub(super) fn all(along: Along, coordinate: &Coordinate, data: &[Datum]) -> Vec<
         let largest = own.iter().fold(0.0, |most: f64, &i| most.max(data[i].measured.abs()));
         0.5 * (SHARE * largest).max(LEAST_SHIFT * largest_reading(data))
     };
-    let swings = |half: usize| {
-        let turns = half as f64 / 2.0;
+    let started = starts(coordinate, data);
+    let swings = |(half, since): (usize, Since)| {
+        let turns = half as f64 / FOR_EACH as f64;
         let of = |(own, wave): (&Arc<[usize]>, Wave)| {
-            let at = |&i: &usize| coordinate[i].map_or(0.0, |x| wave(TAU * turns * x));
+            let at = |&i: &usize| {
+                let now = coordinate[i].map_or(0.0, |x| wave(TAU * turns * x));
+                match since {
+                    Since::Always => now,
+                    Since::Zero => now - started[i].map_or(0.0, |x| wave(TAU * turns * x)),
+                }
+            };
             let weights = Weights { data: Arc::clone(own), values: own.iter().map(at).collect() };
             (parameter("um", UM, 0.0, size(own), UNBOUNDED), Action::Shift(weights))
         };
         let waves: [Wave; 2] = [f64::cos, f64::sin];
         let all = own.iter().flat_map(|own| waves.map(|wave| (own, wave)));
         let (parameters, actions) = all.map(of).unzip();
-        let place = format!("{turns} swings, all sensors");
+        let place = match since {
+            Since::Always => format!("{turns} swings, all sensors"),
+            Since::Zero => format!("{turns} swings, all sensors, since the zero of each run"),
+        };
         let location = Location::Curve {
             label: format!("{}, {place}", along.name),
             follows: along.follows(&place),
@@ -57,7 +74,31 @@ pub(super) fn all(along: Along, coordinate: &Coordinate, data: &[Datum]) -> Vec<
         };
         (rival(location, parameters), actions)
     };
-    (2..=2 * MOST_SWINGS).map(swings).collect()
+    let has_zeros = known.iter().any(|&i| data[i].run != data[known[0]].run);
+    let since = if has_zeros { vec![Since::Always, Since::Zero] } else { vec![Since::Always] };
+    let halves = FOR_EACH..=FOR_EACH * MOST_SWINGS;
+    halves.flat_map(|half| since.iter().map(move |&since| (half, since))).map(swings).collect()
+}
+
+/// From where on a wave counts.
+#[derive(Clone, Copy)]
+enum Since {
+    Always,
+    Zero,
+}
+
+/// The coordinate of the first reading of each datum's run.
+fn starts(coordinate: &Coordinate, data: &[Datum]) -> Coordinate {
+    let runs = data.iter().map(|d| d.run + 1).max().unwrap_or(0);
+    let mut first: Coordinate = vec![None; runs];
+    for (datum, x) in data.iter().zip(coordinate) {
+        let known = &mut first[datum.run];
+        *known = match (*known, *x) {
+            (Some(known), Some(x)) => Some(x.min(known)),
+            (known, x) => known.or(x),
+        };
+    }
+    data.iter().map(|d| first[d.run]).collect()
 }
 
 #[cfg(test)]
@@ -74,11 +115,33 @@ mod tests {
         let data = datum::all(&Readings::from_text("f", &text).unwrap().rows);
         let coordinate: Coordinate = data.iter().map(|d| d.time.map(|t| t / 390.0)).collect();
         let entries = all(TIME, &coordinate, &data);
-        assert_eq!(entries.len(), 15);
+        // 1, 1½ … 8 swings, each always and since the zeros of the runs
+        assert_eq!(entries.len(), 30);
         assert!(
             entries.iter().all(|(candidate, actions)| candidate.parameters.len() == 4 && actions.len() == 4)
         );
         // of too few times none
         assert!(all(TIME, &coordinate, &data[..60]).is_empty());
+    }
+    #[test]
+    fn what_has_come_since_the_zero_is_nothing_at_the_first_reading_of_a_run() {
+        let row = |i: usize| format!("y,{},{},{},1,2\n", 1 + i % 10, 1 + i / 10, 10 * i);
+        let text =
+            "axis,load_n,trial,time_s,dy_um,dz_um\n".to_owned() + &(0..40).map(row).collect::<String>();
+        let data = datum::all(&Readings::from_text("f", &text).unwrap().rows);
+        let coordinate: Coordinate = data.iter().map(|d| d.time.map(|t| t / 390.0)).collect();
+        let entries = all(TIME, &coordinate, &data);
+        assert_eq!(entries.len(), 30);
+        let label = |of: &Entry| of.0.location.to_string();
+        let (_, actions) = entries
+            .iter()
+            .find(|of| label(of) == "time, 2 swings, all sensors, since the zero of each run")
+            .unwrap();
+        let Action::Shift(weights) = &actions[1] else { panic!("a shift") };
+        for (i, weight) in weights.iter() {
+            let at = |reading: usize| (TAU * 2.0 * reading as f64 / 39.0).sin();
+            let reading = i / 2;
+            assert!((weight - (at(reading) - at(reading / 10 * 10))).abs() < 1e-12, "{i}: {weight}");
+        }
     }
 }

@@ -37,6 +37,10 @@ const HARDLY: f64 = 0.5;
 const SCALE: f64 = 0.1;
 /// How far beyond a limit the readings would lie, as a share of it.
 const BEYOND: f64 = 0.05;
+/// So many readings that are the largest to the last digit are cut off, wherever they would lie,
+/// where noise is more than so many steps of the display: of readings that merely end there about
+/// an eighth of one more lies within a step of the largest, and four more by a chance of 1e-5.
+const TIED: (usize, f64) = (5, 20.0);
 
 /// What the rod says of each line.
 pub(super) struct Expected {
@@ -151,7 +155,10 @@ pub(super) fn saturated(data: &[Datum], lines: &[Line], by_rod: Option<&Expected
             let beyond = |expected: Vec<(f64, f64)>| {
                 let beyond = expected.iter().map(|(value, _)| side * value - limit).collect::<Vec<_>>();
                 let scatter = expected.iter().fold(0.0, |most: f64, (_, scatter)| most.max(*scatter));
-                cut_off(&beyond, scatter, limit, step.max(SAME * most))
+                let least = expected.iter().fold(f64::INFINITY, |least, (_, scatter)| least.min(*scatter));
+                let is_tied = at.len() >= TIED.0 && step > 0.0 && least > TIED.1 * step;
+                let most_beyond = beyond.iter().fold(0.0, |most: f64, beyond| most.max(*beyond));
+                cut_off(&beyond, scatter, limit, step.max(SAME * most)).or(is_tied.then_some(most_beyond))
             };
             let Some(high) = [of_lines, of_rod].into_iter().flatten().find_map(beyond) else { continue };
             let name = column(channel);

@@ -15,7 +15,7 @@ use super::parts::{coverage_factor_of, estimates, explained, part};
 use super::pruning::{infer, settled};
 use super::scatter::{NoiseTest, Suspect, Tails};
 use super::search::Search;
-use super::selection::{DiscrepancyModel, Pairs};
+use super::selection::{DiscrepancyModel, NAMED, Pairs};
 use super::sessions::leave_one_session_out;
 use super::{
     Covariate, Diagnosis, Discrepancy, Evidence, Finding, FindingPart, ForwardModel, HeldOut, Hypothesis,
@@ -188,10 +188,10 @@ fn confirmed(
     search: &Search,
     folded: &Folded,
     hypothesis: Hypothesis,
-    left_over: Option<DiscrepancyModel>,
+    before_that: Option<DiscrepancyModel>,
     held_out: Option<&HeldOut>,
 ) -> (Hypothesis, Option<DiscrepancyModel>) {
-    let Some(held_out) = held_out else { return (hypothesis, left_over) };
+    let Some(held_out) = held_out else { return (hypothesis, before_that) };
     let needless: Vec<&[Theme]> =
         held_out.losses_together().filter(|(_, loss)| *loss <= 0.0).map(|(themes, _)| themes).collect();
     let takes_numbers_place = |own: Theme| {
@@ -208,10 +208,18 @@ fn confirmed(
     };
     let kept: Vec<Term> = hypothesis.terms.iter().filter(|term| is_confirmed(term)).cloned().collect();
     if kept.len() == hypothesis.terms.len() {
-        return (hypothesis, left_over);
+        return (hypothesis, before_that);
     }
     let shorter = search.fit(&kept);
     let left_over = search.remains(&shorter);
+    // something is there then: a name that is so much likelier than the curve in its place stays
+    let is_likelier = |longer: &Hypothesis| hypothesis.log_probability > longer.log_probability + NAMED.ln();
+    if let Some(DiscrepancyModel::Curve(longer)) = &left_over
+        && before_that.is_none()
+        && is_likelier(longer)
+    {
+        return (hypothesis, None);
+    }
     (shorter, left_over)
 }
 

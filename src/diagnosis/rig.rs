@@ -50,6 +50,7 @@ mod own;
 mod own_effect;
 mod own_law;
 pub mod planned;
+mod recovery;
 mod response;
 mod sites;
 mod slide;

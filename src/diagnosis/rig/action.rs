@@ -308,6 +308,13 @@ impl<'a> State<'a> {
         }
     }
 
+    /// Adds what is left of the loads of other runs, Σ v·D, m.
+    pub(super) fn add_recovery(&self, readings: &mut [f64]) {
+        for (memory, _, value) in &self.memories {
+            readings.iter_mut().zip(&memory.recovery).for_each(|(reading, left)| *reading += value * left);
+        }
+    }
+
     fn hanging(&self, datum: &Datum) -> f64 {
         if datum.load > 0.0 { datum.load + self.load_offset.of(datum) } else { 0.0 }
     }

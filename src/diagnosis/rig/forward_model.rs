@@ -120,6 +120,10 @@ impl ForwardModel for RigModel {
                 let changes: Vec<f64> = (0..shown[0].len()).map(|case| of_case(case, plain(case))).collect();
                 cases.for_each(|(value, &case)| *value = changes[case]);
             }
+            if let Action::Memory(memory, _) = action {
+                let of_others = column.iter_mut().zip(&memory.recovery);
+                of_others.for_each(|(value, left)| *value += parameter.size * left);
+            }
         }
         columns
     }

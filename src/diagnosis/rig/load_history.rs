@@ -12,6 +12,8 @@ pub(super) struct Memory {
     pub relative: Vec<f64>,
     /// W, N: the load v·W is felt besides the one that acts.
     pub lingering: Vec<f64>,
+    /// D, m: readings show v·D besides, of loads of other runs; nothing where none counts.
+    pub recovery: Vec<f64>,
 }
 
 /// Which law a memory follows.
@@ -42,6 +44,8 @@ pub(super) enum Clock {
     /// superposition); a load is taken to change right after the reading before, half way to the
     /// reading at it, or when it was first read, unless the file says when it was hung.
     EachLoad(Changed),
+    /// The same, and what hung in the runs before goes on recovering (`recovery.rs`).
+    AllLoads(Changed),
     /// t is the file's own time.
     File,
 }
@@ -59,7 +63,7 @@ pub(super) enum Changed {
 
 impl Changed {
     /// The time of the change between readings at two times, s.
-    fn between(self, before: f64, after: f64) -> f64 {
+    pub(super) fn between(self, before: f64, after: f64) -> f64 {
         match self {
             Changed::Early => before,
             Changed::Midway => 0.5 * (before + after),
@@ -69,19 +73,21 @@ impl Changed {
 }
 
 impl Clock {
-    pub(super) const ALL: [Clock; 8] = [
+    pub(super) const ALL: [Clock; 10] = [
         Clock::FirstReading,
         Clock::FirstLoad,
         Clock::EachLoad(Changed::Early),
         Clock::EachLoad(Changed::Midway),
         Clock::EachLoad(Changed::Late),
+        Clock::AllLoads(Changed::Early),
+        Clock::AllLoads(Changed::Late),
         Clock::ThisLoad,
         Clock::File,
         Clock::UnknownOnset,
     ];
     /// Where the file says when each load was hung.
-    pub(super) const STATED: [Clock; 3] =
-        [Clock::ThisLoad, Clock::EachLoad(Changed::Early), Clock::FirstLoad];
+    pub(super) const STATED: [Clock; 4] =
+        [Clock::ThisLoad, Clock::EachLoad(Changed::Early), Clock::AllLoads(Changed::Early), Clock::FirstLoad];
 
     /// For people.
     pub(super) fn name(self) -> &'static str {
@@ -93,6 +99,11 @@ impl Clock {
             Clock::EachLoad(Changed::Early) => "since each load",
             Clock::EachLoad(Changed::Midway) => "since each load, hung between two readings",
             Clock::EachLoad(Changed::Late) => "since each load, hung as it was read",
+            Clock::AllLoads(Changed::Early) => "since each load, of earlier runs too",
+            Clock::AllLoads(Changed::Midway) => {
+                "since each load, of earlier runs too, hung between two readings"
+            }
+            Clock::AllLoads(Changed::Late) => "since each load, of earlier runs too, hung as it was read",
             Clock::File => "since time 0",
         }
     }
@@ -148,14 +159,15 @@ pub(super) fn is_stated(data: &[Datum]) -> bool {
 
 /// An instant of a run: its load along the positive axis (N), its time and when that load was hung
 /// (s).
-struct Moment {
-    load: f64,
-    time: f64,
-    hung: f64,
-    data: Vec<usize>,
+pub(super) struct Moment {
+    pub load: f64,
+    pub time: f64,
+    /// NaN where the file does not say.
+    pub hung: f64,
+    pub data: Vec<usize>,
 }
 
-fn moments(data: &[Datum], run: &[usize], times: &[f64]) -> Vec<Moment> {
+pub(super) fn moments(data: &[Datum], run: &[usize], times: &[f64]) -> Vec<Moment> {
     let of_instant = |instant: Vec<usize>| {
         // of an imposed displacement the one that is largest counts, as the load that it would need
         let load =
@@ -199,7 +211,7 @@ pub(super) fn creep(data: &[Datum], clock: Clock, t0: f64) -> Option<Memory> {
                     grown(moment.time, known(moment.hung).unwrap_or(this_load))
                 }
                 Clock::File => grown(moment.time, zero),
-                Clock::EachLoad(when) => {
+                Clock::EachLoad(when) | Clock::AllLoads(when) => {
                     if moments.len() > MOST_CHANGES {
                         return None;
                     }
@@ -358,7 +370,7 @@ fn turning(data: &[Datum]) -> Option<Memory> {
 }
 
 fn none(data: &[Datum]) -> Memory {
-    Memory { relative: vec![0.0; data.len()], lingering: vec![0.0; data.len()] }
+    Memory { relative: vec![0.0; data.len()], lingering: vec![0.0; data.len()], recovery: Vec::new() }
 }
 
 /// Indices of the data of each run, in the order of recording.

@@ -114,6 +114,7 @@ impl RigModel {
             action.add_to(change.as_mut_slice(), *value);
         }
         state.add_own(change.as_mut_slice());
+        state.add_recovery(change.as_mut_slice());
         match &self.body {
             _ if !state.is_changed => {}
             Body::Rod(structure) => {

@@ -6,6 +6,7 @@ use crate::diagnosis::rig::load_history::{
     Clock, History, Loop, Memory, Onset, creep, hysteresis, is_stated, onsets, warmth,
 };
 use crate::diagnosis::rig::model::{Body, RigModel};
+use crate::diagnosis::rig::recovery::recovery;
 use crate::inference::{Effect, Finding, Kind, Location, Part, Reported, Variable, WrittenTo};
 use crate::units::significant;
 
@@ -187,7 +188,11 @@ fn creeping(context: &mut Context) -> Vec<Entry> {
     for t0 in CREEP_STARTS {
         // with an onset of its own for each run t₀ is a part of that
         for &clock in clocks.iter().filter(|clock| **clock != Clock::UnknownOnset || t0 == ONSET_START) {
-            let Some(memory) = creep(context.data, clock, t0) else { continue };
+            let Some(mut memory) = creep(context.data, clock, t0) else { continue };
+            if let Clock::AllLoads(when) = clock {
+                let Some(left) = recovery(context.data, when, t0, context.stiffness) else { continue };
+                memory.recovery = left;
+            }
             // two clocks that show the same time are one
             let is_free = clock == Clock::UnknownOnset;
             if known.contains(&memory) && !is_free {

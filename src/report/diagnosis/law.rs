@@ -9,7 +9,7 @@ use super::headline::um;
 use super::place::place;
 use super::subject::LawSubject;
 use crate::inference::law::{Constant, Law, LawRival, Memory, Proposed, Refusal, Site};
-use crate::inference::{Location, Quantity};
+use crate::inference::{Location, Quantity, WrittenTo};
 use crate::report::pictures::diagnosis::{LawPanel, law_picture};
 use crate::report::table::{Column, Table};
 use crate::report::{Block, Section};
@@ -83,6 +83,11 @@ pub fn json(subject: Option<&LawSubject>) -> Value {
             "may_be_used": apart <= law.noise,
         })),
         "remark": subject.remark,
+        "written_to": match subject.written_to {
+            WrittenTo::Model => Some(subject.files[0]),
+            WrittenTo::Recording => Some(subject.files[1]),
+            WrittenTo::Nowhere => None,
+        },
     });
     if let (Value::Object(json), Value::Object(more)) = (&mut json, more) {
         json.extend(more);
@@ -208,7 +213,14 @@ fn next(law: &Law) -> Option<String> {
 fn range(law: &Law, subject: &LawSubject) -> String {
     let ((low, high), variable) = (law.site.range(), &law.site.variable);
     let show = |value: f64| significant(value / variable.si, 3);
-    let written = if subject.is_written { "; --apply writes it" } else { "" };
+    let written = match subject.written_to {
+        WrittenTo::Model => "; --apply writes it".to_owned(),
+        WrittenTo::Recording => format!(
+            "; --apply takes it out of the {}, and no file gets it: its {} is known in this recording only",
+            subject.files[1], variable.name
+        ),
+        WrittenTo::Nowhere => String::new(),
+    };
     let beyond =
         law.further.filter(|(_, apart)| *apart > law.noise).map_or_else(String::new, |(at, apart)| {
             let at = with_unit(significant(at / variable.si, 2), variable.unit);

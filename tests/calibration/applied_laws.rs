@@ -211,3 +211,37 @@ fn a_law_of_a_robot_is_said_with_its_units() {
         insta::assert_snapshot!("law-of-a-robot", section(&found));
     });
 }
+
+/// Both a link that twists and a loose tool: one is proposed and says that it is not all, the other
+/// is found once that one is written.
+#[test]
+fn of_two_laws_one_comes_after_the_other() {
+    let both = |built: &Robot, q: &[f64], k: usize| {
+        let flange = built.flange_at(q);
+        let loose = flange.rotation * Vector3::x() * (100e-6 * -flange.rotation.column(0).z.signum());
+        twisted(built, q, k) + loose
+    };
+    let campaign = tracked(11, &both);
+    let found = diagnosed(&campaign);
+    let law = found.law.as_ref().unwrap().law.as_ref().unwrap();
+    assert!(law.more.is_some());
+    assert!(
+        section(&found).contains("It may not be all: beside it something follows the "),
+        "{}",
+        section(&found)
+    );
+    let json = report::diagnosis::calibration::json(&found);
+    assert!(json["law"]["more_left"]["variable"].is_string(), "{}", json["law"]);
+    let first = written(&applied(&found), "");
+    let then = diagnosed(&first);
+    let law = then.law.as_ref().unwrap().law.as_ref().unwrap();
+    assert!(law.more.is_none(), "{:?}", law.more);
+    let last = written(&applied(&then), "");
+    let mut laws: Vec<(LawPlace, JointLawVariable)> =
+        last.robot.laws.iter().map(|law| (law.place, law.variable)).collect();
+    laws.sort_by_key(|(place, _)| *place == LawPlace::Tool);
+    let truth =
+        [(LawPlace::Link(2), JointLawVariable::Angle(4)), (LawPlace::Tool, JointLawVariable::Weight(0))];
+    assert_eq!(laws, truth);
+    assert!(diagnosed(&last).diagnosis.discrepancy.is_none());
+}

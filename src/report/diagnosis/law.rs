@@ -35,6 +35,7 @@ pub fn section(subject: &LawSubject) -> Section {
     points.extend(alternatives(law, subject));
     points.extend(next(law));
     points.extend(subject.remark.clone());
+    points.extend(more(law, subject));
     points.push(range(law, subject));
     let blocks =
         vec![Block::List(points), Block::Table(table(law)), Block::Figure(picture(law, subject.noun))];
@@ -82,6 +83,9 @@ pub fn json(subject: Option<&LawSubject>) -> Value {
             "apart_um": um(apart),
             "may_be_used": apart <= law.noise,
         })),
+        "more_left": law.more.as_ref().map(|(location, variable)| {
+            json!({ "location": location.to_string(), "place": place(location), "variable": variable.name, "unit": variable.unit })
+        }),
         "remark": subject.remark,
         "written_to": match subject.written_to {
             WrittenTo::Model => Some(subject.files[0]),
@@ -236,6 +240,21 @@ fn range(law: &Law, subject: &LawSubject) -> String {
         show(low),
         with_unit(show(high), variable.unit)
     )
+}
+
+/// What may be left beside it.
+fn more(law: &Law, subject: &LawSubject) -> Option<String> {
+    let (location, variable) = law.more.as_ref()?;
+    let advice = match subject.written_to {
+        WrittenTo::Nowhere => "",
+        WrittenTo::Model | WrittenTo::Recording => {
+            " Write this law with --apply and diagnose again: that says whether there is another."
+        }
+    };
+    Some(format!(
+        "It may not be all: beside it something follows the {} ({location}).{advice}",
+        variable.name
+    ))
 }
 
 /// Why there is none.

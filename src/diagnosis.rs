@@ -5,4 +5,5 @@
 //! effects for each world (`rig/effects`, `calibration/effects`), and the model in which they act.
 
 pub mod calibration;
+mod law_formula;
 pub mod rig;

@@ -20,6 +20,9 @@ mod effects_file;
 mod file;
 mod hayati;
 mod kinematics;
+mod law;
+mod law_file;
+mod laws;
 mod minimal;
 mod moves;
 mod parameter;
@@ -37,6 +40,7 @@ pub use effect::Effect;
 pub use effects_file::{corrections_csv, corrections_from_csv};
 pub use file::is_urdf;
 pub use kinematics::{JointFrames, Kinematics};
+pub use law::{JointLawVariable, LawPlace, RobotLaw};
 pub use minimal::minimal_parameters;
 pub use parameter::{Parameter, Unit};
 pub use predict::{PredictedTip, PredictionQuery};
@@ -70,6 +74,8 @@ pub struct Robot {
     pub flange: Pose,
     /// Errors and deflections of the joints that their geometry does not describe.
     pub effects: Vec<Effect>,
+    /// What else geometry does not describe, as formulas.
+    pub laws: Vec<RobotLaw>,
     /// The tip that it was calibrated with, where its file states it.
     pub tip: Option<Tip>,
     /// How well its numbers are known before anybody measures it.
@@ -181,6 +187,7 @@ impl Robot {
             joints,
             flange: Pose::IDENTITY,
             effects: Vec::new(),
+            laws: Vec::new(),
             tip: None,
             standard_uncertainty: StandardUncertainty::default(),
             uncertainty: None,

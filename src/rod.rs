@@ -4,6 +4,7 @@
 //! A *station* is the arc length along the centreline from the flange; the tip is the largest one.
 
 mod build;
+pub(crate) mod constants;
 pub(crate) mod file;
 pub mod law;
 mod nominal;

@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod applied;
+mod applied_laws;
 mod arms;
 mod forecast;
 mod frames;

@@ -25,6 +25,7 @@ mod feasible_poses;
 mod forward_model;
 mod gear;
 mod law;
+mod law_measures;
 mod limits;
 mod linear_terms;
 mod memory;
@@ -43,8 +44,9 @@ mod textbook;
 mod torque_uncertainty;
 mod transfer;
 mod vector;
+mod written_law;
 
-pub use apply::{Applied, apply, destination};
+pub use apply::{Applied, apply, destination, law_destination};
 pub use diagnose::{CalibrationDiagnosis, Happened, diagnose, diagnose_calibrated};
 pub use effects::CalibrationEffect;
 pub use gear::{Curve, Gear};

@@ -22,6 +22,7 @@
 mod choice;
 mod folds;
 mod form;
+mod left;
 mod measured;
 mod memory;
 mod posterior;

@@ -50,6 +50,9 @@ pub struct Prediction {
     /// Joints beyond their calibrated ranges: number from 0, range asked for, range calibrated (rad
     /// or m).
     pub beyond: Vec<JointBeyond>,
+    /// Laws of the model beyond what was recorded: number, and from where to where their variable
+    /// goes there, in its unit.
+    pub laws_beyond: Vec<(usize, (f64, f64))>,
 }
 
 impl Prediction {
@@ -77,9 +80,11 @@ impl Prediction {
         let blocks: Vec<&[PredictionQuery]> = poses.chunks(size.max(1)).collect();
         let each = in_parallel(blocks.len(), |k| tips_of(robot, tool, blocks[k], is_aligned));
         let (mut tips, mut ratios) = (Vec::with_capacity(poses.len()), Some(Vec::new()));
+        let mut of_laws = Vec::new();
         for block in each {
-            let (of_block, ratios_of_block) = block?;
+            let (of_block, ratios_of_block, laws_of_block) = block?;
             tips.extend(of_block);
+            of_laws.extend(laws_of_block);
             ratios = ratios.zip(ratios_of_block).map(|(mut all, own): (Vec<f64>, Vec<f64>)| {
                 all.extend(own);
                 all
@@ -87,7 +92,8 @@ impl Prediction {
         }
         let beyond = beyond(robot, &poses);
         let tips = poses.into_iter().zip(tips).map(|(query, (tip, sd))| (query, tip, sd)).collect();
-        Ok(Prediction { tool, is_aligned, tips, ratios, beyond })
+        let laws_beyond = (0..robot.laws.len()).filter_map(|law| Some((law, ends(&of_laws, law)?))).collect();
+        Ok(Prediction { tool, is_aligned, tips, ratios, beyond, laws_beyond })
     }
 
     /// The root mean square of the ratios.
@@ -105,9 +111,15 @@ impl Prediction {
 /// So many poses are looked at together: some megabytes.
 const BLOCK: usize = 4096;
 
-/// Tips with their standard deviations, and how many times more uncertain they are than where the
-/// robot was calibrated.
-type Tips = (Vec<(Vector3<f64>, Option<Vector3<f64>>)>, Option<Vec<f64>>);
+/// Tips with their standard deviations, how many times more uncertain they are than where the
+/// robot was calibrated, and laws that are beyond what was recorded.
+type Tips = (Vec<(Vector3<f64>, Option<Vector3<f64>>)>, Option<Vec<f64>>, Vec<(usize, f64)>);
+
+/// From where to where a law's variable goes.
+fn ends(of_laws: &[(usize, f64)], law: usize) -> Option<(f64, f64)> {
+    let own = of_laws.iter().filter(|(own, _)| *own == law).map(|&(_, x)| (x, x));
+    own.reduce(|(low, high), (x, _)| (low.min(x), high.max(x)))
+}
 
 fn tips_of(
     robot: &Robot,
@@ -156,7 +168,8 @@ fn tips_of(
     let sd = robot.tip.and_then(|tip| tip.sd);
     let of = |own: &Vector3<f64>| sd.map(|sd| own.map(|own| (sd * sd + own).sqrt()));
     let tips = predicted.iter().zip(&variance).map(|(predicted, own)| (predicted.tip, of(own))).collect();
-    Ok((tips, ratios))
+    let laws = predicted.iter().flat_map(|predicted| predicted.laws_beyond.iter().copied()).collect();
+    Ok((tips, ratios, laws))
 }
 
 /// diag J·Σ·Jᵀ, three by three.
@@ -202,6 +215,16 @@ pub fn json(robot: &Robot, prediction: &Prediction) -> Value {
             "calibrated": [own.0 / unit, own.1 / unit],
         })
     });
+    let laws = prediction.laws_beyond.iter().map(|&(law, asked)| {
+        let law = &robot.laws[law];
+        json!({
+            "place": law.place.to_string(),
+            "variable": law.variable.to_string(),
+            "unit": law.variable.unit().0,
+            "asked_beyond": [asked.0, asked.1],
+            "recorded": [law.range.0, law.range.1],
+        })
+    });
     json!({
         "robot": robot.name,
         "tool_mm": (prediction.tool / MM).as_slice(),
@@ -210,6 +233,7 @@ pub fn json(robot: &Robot, prediction: &Prediction) -> Value {
             "ratio": prediction.ratio(),
             "poses": prediction.far(),
             "joints_beyond": beyond.collect::<Vec<_>>(),
+            "laws_beyond": laws.collect::<Vec<_>>(),
         },
         "poses": poses.collect::<Vec<_>>(),
     })
@@ -236,6 +260,20 @@ fn warnings(robot: &Robot, prediction: &Prediction) -> Vec<String> {
             at(asked.1),
             at(own.0),
             at(own.1)
+        ));
+    }
+    for &(law, asked) in &prediction.laws_beyond {
+        let law = &robot.laws[law];
+        let at = |value: f64| significant(value, 3);
+        warnings.push(format!(
+            "Extrapolation: the law of the {} was recorded with the {} from {} to {} {unit}; some poses are beyond, from {} to {} {unit}.",
+            law.place.changes(law.per_joint),
+            law.variable,
+            at(law.range.0),
+            at(law.range.1),
+            at(asked.0),
+            at(asked.1),
+            unit = law.variable.unit().0
         ));
     }
     let far = prediction.far();
@@ -335,7 +373,10 @@ pub fn report(robot: &Robot, prediction: &Prediction) -> Report {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::robot::{CalibratedRange, Effect, Hayati, Joint, Parameter, Tip, Uncertainty};
+    use crate::robot::{
+        CalibratedRange, Effect, Hayati, Joint, JointLawVariable, LawPlace, Parameter, RobotLaw, Tip,
+        Uncertainty,
+    };
 
     /// A joint of 0.5 m whose zero is known to 0.1 mrad, calibrated from −30° to 30°.
     fn arm() -> Robot {
@@ -369,6 +410,25 @@ mod tests {
         let gear = 0.5 * 0.4e-3 * 0.5 / 3f64.sqrt();
         assert!((sd(&far) - known.hypot(gear)).abs() < 2e-7, "{} {}", sd(&far), known.hypot(gear));
         assert!(warnings(&arm(), &far)[0].contains("joint 2 goes from 68.8° to 68.8°"));
+    }
+
+    #[test]
+    fn a_law_beyond_what_was_recorded_is_said() {
+        let (variable, range) = (JointLawVariable::Angle(1), (-30.0, 30.0));
+        let formulas = vec!["3*q".to_owned()];
+        let law = RobotLaw::new(LawPlace::Joint(0), None, variable, formulas, Vec::new(), range).unwrap();
+        let robot = Robot { laws: vec![law], ..arm() };
+        let asked = |angles: &[f64]| {
+            let query = |q: &f64| PredictionQuery { pose: String::new(), joints: vec![0.0, q * DEG] };
+            let poses = angles.iter().map(query).collect();
+            Prediction::new(&robot, Vector3::new(0.1, 0.0, 0.0), poses, false).unwrap()
+        };
+        assert!(asked(&[-30.0, 12.0, 30.0]).laws_beyond.is_empty());
+        let prediction = asked(&[10.0, 35.0, 40.0]);
+        let said = warnings(&robot, &prediction).join("\n");
+        assert!(said.contains("from -30.0 to 30.0 °; some poses are beyond, from 35.0 to 40.0 °"), "{said}");
+        let beyond = &json(&robot, &prediction)["extrapolation"]["laws_beyond"][0];
+        assert_eq!((&beyond["place"], &beyond["unit"]), (&"joint 1".into(), &"°".into()));
     }
 
     #[test]

@@ -1,5 +1,5 @@
-//! What a URDF has no place for, in a file beside it (TOML): tip, uncertainty, calibrated ranges
-//! and effects, in the sections that a robot file has.
+//! What a URDF has no place for, in a file beside it (TOML): tip, uncertainty, calibrated ranges,
+//! effects and laws, in the sections that a robot file has.
 
 use serde::Deserialize;
 use toml::Spanned;
@@ -7,8 +7,9 @@ use toml::Spanned;
 use super::calibrated::{self, RawCalibrated};
 use super::effects_file::{self, RawEffect};
 use super::file::{self, RawTip};
+use super::law_file::{self, RawLaw};
 use super::uncertainty::{self, RawUncertainty};
-use super::write::joint_units;
+use super::write::{are_prismatic, joint_units};
 use super::{Effect, Robot, Uncertainty};
 use crate::error::Result;
 use crate::toml_text::{self, TomlText, in_unit};
@@ -22,6 +23,8 @@ struct RawBeside {
     calibrated: Option<RawCalibrated>,
     #[serde(default)]
     effect: Vec<Spanned<RawEffect>>,
+    #[serde(default)]
+    law: Vec<Spanned<RawLaw>>,
 }
 
 impl Robot {
@@ -38,7 +41,8 @@ impl Robot {
             .calibrated
             .as_ref()
             .map_or_else(String::new, |range| range.written(&joint_units(&self.joints)));
-        text + &self.effects.iter().map(effects_file::written).collect::<String>()
+        text += &self.effects.iter().map(effects_file::written).collect::<String>();
+        text + &self.laws.iter().map(law_file::written).collect::<String>()
     }
 
     /// Adds what stands in a file beside the robot's own.
@@ -70,6 +74,7 @@ impl Robot {
         }
         let read = |effect: &Spanned<RawEffect>| effects_file::read(&toml, effect, count);
         let effects: Vec<Effect> = raw.effect.iter().map(read).collect::<Result<_>>()?;
+        self.laws.extend(law_file::read(&toml, &raw.law, &are_prismatic(&self.joints))?);
         self.effects.extend(effects);
         Ok(())
     }

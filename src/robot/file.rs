@@ -8,9 +8,10 @@ use toml::Spanned;
 use super::calibrated::{self, RawCalibrated};
 use super::defaults::{DOWN, default_name, file_stem};
 use super::effects_file::{self, RawEffect};
+use super::law_file::{self, RawLaw};
 use super::standard_uncertainty::{self, RawStandardUncertainty};
 use super::uncertainty::{self, RawUncertainty};
-use super::write::joint_units;
+use super::write::{are_prismatic, joint_units};
 use super::{Body, Effect, Hayati, Joint, Motion, Robot, Tip, urdf};
 use crate::error::Result;
 use crate::limits;
@@ -103,6 +104,8 @@ struct RawRobot {
     calibrated: Option<RawCalibrated>,
     #[serde(default)]
     effect: Vec<Spanned<RawEffect>>,
+    #[serde(default)]
+    law: Vec<Spanned<RawLaw>>,
 }
 
 #[derive(Deserialize)]
@@ -173,6 +176,7 @@ fn read_table(file: &str, text: &str) -> Result<Robot> {
     let joints: Vec<Joint> = joints.map(|(index, joint)| table.joint(index, joint)).collect::<Result<_>>()?;
     let calibrated =
         raw.calibrated.as_ref().map(|range| calibrated::read(&table.0, range, &joint_units(&joints)));
+    let laws = law_file::read(&table.0, &raw.law, &are_prismatic(&joints))?;
     Ok(Robot {
         calibrated: calibrated.transpose()?,
         name: raw.name.unwrap_or_else(|| file_stem(file)),
@@ -182,6 +186,7 @@ fn read_table(file: &str, text: &str) -> Result<Robot> {
         joints,
         flange: Pose::IDENTITY,
         effects,
+        laws,
         tip,
         standard_uncertainty: standard_uncertainty::read(&table.0, &raw.standard_uncertainty)?,
         uncertainty,

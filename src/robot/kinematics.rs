@@ -5,6 +5,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::{Effect, Hayati, Motion, Parameter, Robot, Setup};
 use crate::spatial::{Pose, left_jacobian, turned_about_x, turned_about_y, turned_about_z};
+use crate::units::STANDARD_GRAVITY;
 
 /// One configuration of a [`Setup`] in {W}. Made once and moved from pose to pose without
 /// allocation.
@@ -121,7 +122,9 @@ impl<'s> Kinematics<'s> {
     fn place(&mut self, q: &[f64], torque: &[f64], turns: &[f64]) {
         let setup = self.setup;
         let mut frame = self.root;
+        let mut carrier = self.base.rotation;
         for (j, frames) in self.joints.iter_mut().enumerate() {
+            frame.origin += carrier * setup.robot.axis_shift(j, q);
             // θ = offset + q + c·τ + effects
             let compliant_turn = torque.get(j).map_or(0.0, |torque| setup.compliance[j] * torque);
             let by_weights = turns.get(j).copied().unwrap_or(0.0);
@@ -137,10 +140,16 @@ impl<'s> Kinematics<'s> {
                 rotation: turned_about_y(&tilted, frames.beta),
                 origin: frame.origin + frames.axis * link.d + frames.x * link.a,
             };
+            if let Some(turn) = setup.robot.link_turn(j, q) {
+                frames.distal.rotation *= turn;
+            }
             frame = frames.distal;
+            carrier = frame.rotation;
         }
         self.flange = frame.then(&setup.robot.flange);
-        self.tip = self.flange.point(&setup.tool);
+        let gravity = self.base.rotation * (setup.robot.gravity / STANDARD_GRAVITY);
+        let shift = setup.robot.tool_shift(q, &(self.flange.rotation.transpose() * gravity));
+        self.tip = self.flange.point(&(setup.tool + shift));
     }
 
     /// ∂tip/∂parameter in {W}, m per unit of the parameter (SI). `torque` as for
@@ -215,17 +224,26 @@ impl Hayati {
 }
 
 impl Robot {
-    /// How much farther a joint turns than it reads, rad; see [`super::Effect::turn`].
+    /// How much farther a joint turns than it reads by its effects and laws, rad; see
+    /// [`super::Effect::turn`].
     pub fn correction(&self, joint: usize, q: &[f64], torque: &[f64]) -> f64 {
         let own = self.effects.iter().filter(|effect| effect.joint() == Some(joint));
-        own.map(|effect| effect.turn(q, torque)).sum()
+        own.map(|effect| effect.turn(q, torque)).sum::<f64>() + self.law_turn(joint, q, torque)
     }
 
     /// {T} in {0} at the joint values `q` (rad or m, one per joint), with no torque on the joints.
     pub fn flange_at(&self, q: &[f64]) -> Pose {
         let value = |j: usize| q[j] + self.correction(j, q, &[]);
-        let joints = self.joints.iter().enumerate().take(q.len());
-        let links = joints.map(|(j, joint)| joint.link.moved(joint.motion, value(j)));
-        links.fold(self.root, |frame, link| link.beyond(&frame)).then(&self.flange)
+        let mut frame = self.root;
+        let mut carrier = Matrix3::identity();
+        for (j, joint) in self.joints.iter().enumerate().take(q.len()) {
+            frame.origin += carrier * self.axis_shift(j, q);
+            frame = joint.link.moved(joint.motion, value(j)).beyond(&frame);
+            if let Some(turn) = self.link_turn(j, q) {
+                frame.rotation *= turn;
+            }
+            carrier = frame.rotation;
+        }
+        frame.then(&self.flange)
     }
 }

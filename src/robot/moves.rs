@@ -4,9 +4,10 @@
 //! ```text
 //! q + ½·b·(direction of approach)     play that friction holds open, to the side that it was driven to
 //! q + f·(q − q before)                f of the last move was still to come when q was read
+//! q + law(q, direction of approach)   a formula with `side`
 //! ```
 
-use super::{Effect, Robot};
+use super::{Effect, LawPlace, Robot, RobotLaw};
 
 /// A move of a joint below which it did not move, rad or m: a readout's last digit.
 pub const STANDSTILL: f64 = 1e-7;
@@ -15,6 +16,7 @@ impl Robot {
     /// True where the joints' values depend on the order of the poses.
     pub fn has_moves(&self) -> bool {
         self.effects.iter().any(|e| matches!(e, Effect::PlayByApproach { .. } | Effect::Lag { .. }))
+            || self.sided_laws().next().is_some()
     }
 
     /// Joint values (rad or m, one per joint, pose after pose) with what the moves between them
@@ -40,6 +42,9 @@ impl Robot {
                     *approach = step.signum();
                 }
             }
+            for (joint, law) in self.sided_laws() {
+                turned[row * n + joint] += law.turn(&values[row * n..][..n], &[], approach[joint]);
+            }
             for effect in &self.effects {
                 match effect {
                     Effect::PlayByApproach { joint, play } => {
@@ -54,6 +59,15 @@ impl Robot {
             }
         }
         turned
+    }
+
+    /// Laws of a joint that follow the way that it came.
+    fn sided_laws(&self) -> impl Iterator<Item = (usize, &RobotLaw)> {
+        let of_joint = |law: &'_ RobotLaw| match law.place {
+            LawPlace::Joint(joint) if law.is_sided() => Some(joint),
+            _ => None,
+        };
+        self.laws.iter().filter_map(move |law| Some((of_joint(law)?, law)))
     }
 }
 

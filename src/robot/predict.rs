@@ -2,10 +2,11 @@
 
 use nalgebra::{Matrix3xX, Vector3};
 
-use super::{Effect, Kinematics, Loads, Parameter, Robot, Setup};
+use super::{Effect, Kinematics, Loads, Parameter, Robot, RobotLaw, Setup};
 use crate::delimited::Table;
 use crate::error::{Error, Place, Result};
 use crate::spatial::Pose;
+use crate::units::STANDARD_GRAVITY;
 
 /// Times that torques and the joints that they turn are computed from each other.
 const ROUNDS: usize = 3;
@@ -30,6 +31,8 @@ pub struct PredictedTip {
     pub placement: Matrix3xX<f64>,
     /// ∂tip/∂q, m/rad or m/m.
     pub joints: Matrix3xX<f64>,
+    /// Laws of the file beyond what was recorded: number, and its variable in its unit.
+    pub laws_beyond: Vec<(usize, f64)>,
 }
 
 impl Robot {
@@ -83,7 +86,13 @@ impl Robot {
         let placement = Matrix3xX::from_columns(&placement.iter().map(column).collect::<Vec<_>>());
         let jacobian: Vec<_> = (0..self.joints.len()).map(|j| kinematics.joint_jacobian(j)).collect();
         let joints = Matrix3xX::from_columns(&jacobian);
-        PredictedTip { tip: kinematics.tip, slopes, placement, joints }
+        let weight = kinematics.flange.rotation.transpose() * (self.gravity / STANDARD_GRAVITY);
+        let beyond = |(k, law): (usize, &RobotLaw)| {
+            let x = law.variable.value(q, &torque, weight.as_slice())? / law.variable.unit().1;
+            law.is_beyond(x).then_some((k, x))
+        };
+        let laws_beyond = self.laws.iter().enumerate().filter_map(beyond).collect();
+        PredictedTip { tip: kinematics.tip, slopes, placement, joints, laws_beyond }
     }
 
     /// Root mean square of what the effects of each joint's own angle add over its calibrated

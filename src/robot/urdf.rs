@@ -63,6 +63,7 @@ pub(super) fn read(file: &str, text: &str, base_link: Option<&str>, tip_link: Op
         joints,
         flange: distal.inverse().then(&zero.tip),
         effects: Vec::new(),
+        laws: Vec::new(),
         tip: None,
         standard_uncertainty: StandardUncertainty::default(),
         uncertainty: None,

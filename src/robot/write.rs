@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::defaults::default_name;
-use super::{Joint, Motion, Robot, Uncertainty, effects_file};
+use super::{Joint, Motion, Robot, Uncertainty, effects_file, law_file};
 use crate::error::{Error, Result};
 use crate::spatial::Pose;
 use crate::toml_text::{self, in_unit, quoted};
@@ -60,6 +60,7 @@ impl Robot {
             .as_ref()
             .map_or_else(String::new, |range| range.written(&joint_units(&self.joints)));
         text += &self.effects.iter().map(effects_file::written).collect::<String>();
+        text += &self.laws.iter().map(law_file::written).collect::<String>();
         Ok(text)
     }
 }
@@ -67,6 +68,11 @@ impl Robot {
 /// What a joint's values are in, in files.
 pub(super) fn joint_units(joints: &[Joint]) -> Vec<f64> {
     joints.iter().map(|joint| if joint.motion == Motion::Revolute { DEG } else { MM }).collect()
+}
+
+/// Which joints are prismatic.
+pub(super) fn are_prismatic(joints: &[Joint]) -> Vec<bool> {
+    joints.iter().map(|joint| joint.motion == Motion::Prismatic).collect()
 }
 
 fn write_joint(text: &mut String, index: usize, joint: &Joint) -> std::fmt::Result {

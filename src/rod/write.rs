@@ -1,5 +1,6 @@
 //! Writes a rod as a file, such that reading it gives the same rod.
 
+use super::constants;
 use super::{BendFlexibility, Pipe, Rod, RodLaw, StandardUncertainty};
 use crate::material::Material;
 use crate::section::Section;
@@ -125,14 +126,7 @@ fn law(law: &RodLaw) -> Vec<String> {
         format!("formula = {}", quoted(&law.formula)),
     ];
     lines.extend(law.memory.map(|memory| format!("memory = {}", quoted(memory.key()))));
-    lines.push(format!("range = [{:?}, {:?}]", law.range.0, law.range.1));
-    lines.extend(law.source.iter().map(|source| format!("source = {}", quoted(source))));
-    for own in &law.constants {
-        lines.push(format!("[[law.constant]]\nname = {}", quoted(&own.name)));
-        lines.push(format!("value = {:?}", own.value));
-        lines.push(format!("standard_uncertainty = {:?}", own.standard_uncertainty));
-        lines.push(format!("unit = {}", quoted(&own.unit)));
-    }
+    lines.extend(constants::written(law.range, law.source.as_deref(), &law.constants));
     lines
 }
 

@@ -32,18 +32,18 @@ fn a_mistake_in_a_table_is_named() {
             (
                 "gravity_m_s2",
                 "gravity_ms2",
-                "robot:3:1: unknown key `gravity_ms2`, expected one of name, source, convention, gravity_m_s2, joint, tip, standard_uncertainty, uncertainty, calibrated, effect -> did you mean gravity_m_s2?",
+                "robot:3:1: unknown key `gravity_ms2`, expected one of name, source, convention, gravity_m_s2, joint, tip, standard_uncertainty, uncertainty, calibrated, effect, law -> did you mean gravity_m_s2?",
             ),
             ("[[joint]]", "[joint]", "robot:15:3: a second section [joint], expected every section once"),
             (
                 "[[joint]]",
                 "[[joints]]",
-                "robot:5:3: unknown section [joints], expected one of name, source, convention, gravity_m_s2, joint, tip, standard_uncertainty, uncertainty, calibrated, effect -> did you mean [joint]?",
+                "robot:5:3: unknown section [joints], expected one of name, source, convention, gravity_m_s2, joint, tip, standard_uncertainty, uncertainty, calibrated, effect, law -> did you mean [joint]?",
             ),
             (
                 "name = \"arm\"",
                 "[effects]\nname = 1",
-                "robot:1:2: unknown section [effects], expected one of name, source, convention, gravity_m_s2, joint, tip, standard_uncertainty, uncertainty, calibrated, effect -> did you mean [effect]?",
+                "robot:1:2: unknown section [effects], expected one of name, source, convention, gravity_m_s2, joint, tip, standard_uncertainty, uncertainty, calibrated, effect, law -> did you mean [effect]?",
             ),
             (
                 "d_mm = 150.0",

@@ -12,7 +12,7 @@ use rodcal::robot::Effect;
 
 use super::lab::Dice;
 
-fn names(robot: &str, validation: Option<&str>) -> FileNames {
+pub fn names(robot: &str, validation: Option<&str>) -> FileNames {
     FileNames {
         robot: robot.into(),
         effects: None,
@@ -25,7 +25,7 @@ fn names(robot: &str, validation: Option<&str>) -> FileNames {
 
 /// The campaign that was written; `robot` is what stood in its robot file, where that was not
 /// written.
-fn written(applied: &Applied, robot: &str) -> Campaign {
+pub fn written(applied: &Applied, robot: &str) -> Campaign {
     let files: BTreeMap<&str, &str> = applied.files.iter().map(|(a, b)| (a.as_str(), b.as_str())).collect();
     let open = |name: &str| Ok((*files.get(name).unwrap_or(&robot)).to_owned());
     Campaign::from_texts("campaign.toml", files["campaign.toml"], &open).unwrap()

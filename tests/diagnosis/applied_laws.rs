@@ -4,7 +4,7 @@ use rodcal::rig;
 use rodcal::rig::readings::Readings;
 use rodcal::rod::Rod;
 use rodcal::units::UM;
-use rodcal_trial::rig::{Effect, Made};
+use rodcal_trial::rig::{Effect, Made, Order};
 
 use super::Answer;
 use super::laws::{order, written};
@@ -65,4 +65,43 @@ fn a_stop_is_written_and_read() {
     let (rod, readings) = written(&order(), 33, |row| 25.0 * (row.load / 4.0).min(1.0));
     let (before, after, _) = applied(&rod, &readings);
     assert_settled(&before, &after, 1.0);
+}
+
+/// Channel of the ripple, or the load: which of two laws one is.
+fn kind(answer: &Answer) -> &str {
+    let law = &answer.json["law"];
+    match (&law["proposed"] == true, law["location"].as_str(), law["variable"]["name"].as_str()) {
+        (true, Some("dy"), Some("reading")) => "ripple",
+        (true, Some("rod" | "clamp" | "root"), Some("load" | "moment")) => "load",
+        (true, ..) => "another",
+        _ => "none",
+    }
+}
+
+/// A gap that closes and the ripple of a sensor at once: the stronger one is proposed, with the
+/// word that it is not all, and the other one once that is written. Neither is a third thing.
+#[test]
+fn of_two_laws_one_comes_after_the_other() {
+    let ripple = Effect::Ripple { channel: 1, amplitude: 12.0 * UM, period: 130.0 * UM, phase: 0.4 };
+    let order = Order { loads: (1..=20).map(|k| 0.5 * f64::from(k)).collect(), ..order() };
+    let mut found = Vec::new();
+    for seed in 31..37 {
+        let Made { rod, readings, .. } =
+            order.made(&[Effect::GapCloses { load: 5.6, share: 0.7 }, ripple.clone()], seed);
+        let first = Answer::of(Some(&rod), &readings);
+        if kind(&first) == "none" {
+            found.push(("none".to_owned(), "none".to_owned(), false));
+            continue;
+        }
+        let is_said = !first.json["law"]["more_left"].is_null();
+        let correction = first.found.correction().unwrap().unwrap();
+        let then = Answer::of(Some(&correction.rod_toml), &correction.readings_csv);
+        found.push((kind(&first).to_owned(), kind(&then).to_owned(), is_said));
+    }
+    let is_right = |(a, b, _): &&(String, String, bool)| {
+        (a == "load" && b == "ripple") || (a == "ripple" && b == "load")
+    };
+    assert!(found.iter().all(|(a, b, _)| a != "another" && b != "another"), "{found:?}");
+    assert!(found.iter().filter(is_right).count() >= 4, "{found:?}");
+    assert!(found.iter().filter(is_right).all(|(_, _, is_said)| *is_said), "{found:?}");
 }

@@ -31,6 +31,10 @@ pub const URDF_NODES: usize = 1_000_000;
 pub const ROBOT_JOINTS: usize = 64;
 /// Effects of a robot file.
 pub const ROBOT_EFFECTS: usize = 1_000;
+/// Laws of a robot file.
+pub const ROBOT_LAWS: usize = 100;
+/// Constants of a law.
+pub const LAW_CONSTANTS: usize = 12;
 /// Effects of a lab's own file.
 pub const OWN_EFFECTS: usize = 100;
 /// Parameters of one of them.

@@ -6,13 +6,17 @@
 //! that `calibrate` finds base and geometry anew beside them; the calibrated robot is for
 //! `predict`. What neither can hold is said, and before.
 
+use nalgebra::DVector;
+
 use super::correction_table;
 use super::diagnose::CalibrationDiagnosis;
-use super::effects::{out_of_the_points, registry};
+use super::effects::{move_points, out_of_the_points, registry};
 use super::model::CalibrationModel;
+use super::written_law::written;
 use crate::calibration::campaign::{Campaign, FileNames, Recording};
 use crate::calibration::{Options, Summary, calibrate, write_back_with, write_beside};
 use crate::error::Result;
+use crate::inference::law::Law;
 use crate::inference::{Finding, WrittenTo};
 use crate::robot::{Effect, Robot, corrections_csv, is_urdf};
 use crate::units::UM;
@@ -48,6 +52,40 @@ fn write(finding: &Finding, model: &CalibrationModel, extended: &mut Campaign) -
     }
 }
 
+/// Where a law would be written: into the robot's file where that knows its variable, or out of
+/// the measured points.
+pub fn law_destination(law: &Law, model: &CalibrationModel) -> WrittenTo {
+    write_law(law, model, &mut model.campaign.clone()).0
+}
+
+/// The same, done; and what was done in words.
+fn write_law(law: &Law, model: &CalibrationModel, extended: &mut Campaign) -> (WrittenTo, String) {
+    let source = format!("diagnose calibration, {}", model.campaign.file);
+    if let Some(law) = written(law, &extended.robot, &source) {
+        let words = format!("law, {}", law.words());
+        extended.robot.laws.push(law);
+        return (WrittenTo::Model, words);
+    }
+    let words = format!(
+        "law of the {} over the {}, which this recording alone has",
+        law.site.result.name, law.site.variable.name
+    );
+    let moved = model.by_row(&DVector::from_column_slice(&law.adds));
+    (move_points(extended, &moved), words)
+}
+
+/// A finding as it is beside the law.
+fn beside(law: Option<&Law>, finding: &Finding) -> Finding {
+    let mut finding = finding.clone();
+    let terms = law.map_or(&[][..], |law| &law.beside.terms);
+    for part in &mut finding.parts {
+        if let Some(term) = terms.iter().find(|term| term.candidate == part.term.candidate) {
+            part.term = term.clone();
+        }
+    }
+    finding
+}
+
 /// Robot and campaign with what `found` says; `None` where nothing of it could be written. `names`
 /// are those of the campaign's files; `above` is said on top of them.
 ///
@@ -57,14 +95,22 @@ pub fn apply(found: &CalibrationDiagnosis, names: &FileNames, above: &[String]) 
     let model = &found.model;
     let mut extended = model.campaign.clone();
     let (mut entered, mut removed, mut left_out) = (Vec::new(), Vec::new(), Vec::new());
+    let mut put = |destination: WrittenTo, words: String| match destination {
+        WrittenTo::Model => entered.push(words),
+        WrittenTo::Recording => removed.push(words),
+        WrittenTo::Nowhere => left_out.push(words),
+    };
+    let proposed = found.law.as_ref().filter(|proposed| proposed.law.is_ok());
+    let law = proposed.and_then(|proposed| proposed.law.as_ref().ok());
     // what was undone before there was a model is nothing to write into it
     for finding in found.diagnosis.findings.iter().filter(|finding| !finding.parts.is_empty()) {
         let words = (finding.effect.cause_at)(&finding.location);
-        match write(finding, model, &mut extended) {
-            WrittenTo::Model => entered.push(words),
-            WrittenTo::Recording => removed.push(words),
-            WrittenTo::Nowhere => left_out.push(words),
-        }
+        let finding = beside(law, finding);
+        put(write(&finding, model, &mut extended), words);
+    }
+    if let Some(law) = law {
+        let (destination, words) = write_law(law, model, &mut extended);
+        put(destination, words);
     }
     if entered.is_empty() && removed.is_empty() {
         return Ok(None);
@@ -75,6 +121,7 @@ pub fn apply(found: &CalibrationDiagnosis, names: &FileNames, above: &[String]) 
     let calibration = calibrate(&extended, model.calibration.mode, &Options::default())?;
     let held_out = found.diagnosis.held_out.as_ref();
     let sd = held_out.map_or(found.diagnosis.noise, |held_out| held_out.after);
+    let sd = proposed.and_then(|proposed| proposed.held_out).map_or(sd, |(_, with_law)| with_law);
     let mut comments = Vec::new();
     let mut say = |what: &str, list: &[String]| {
         if !list.is_empty() {

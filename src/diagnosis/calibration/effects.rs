@@ -139,7 +139,11 @@ pub(super) fn out_of_the_points(
     model: &CalibrationModel,
     extended: &mut Campaign,
 ) -> WrittenTo {
-    let moved = model.by_row(&model.response_of(finding));
+    move_points(extended, &model.by_row(&model.response_of(finding)))
+}
+
+/// The measured points without a displacement of each row, m; sockets have none.
+pub(super) fn move_points(extended: &mut Campaign, moved: &[Vector3<f64>]) -> WrittenTo {
     match &mut extended.measurements.targets {
         Targets::Sockets(_) => WrittenTo::Nowhere,
         Targets::Points(points) => {

@@ -13,11 +13,12 @@ use nalgebra::Vector3;
 
 use super::configuration::Configuration;
 use super::context::Context;
+use super::law_measures::{changes, location, variable};
 use crate::inference::Location;
 use crate::inference::Part;
 use crate::inference::law::{Course, Form, Measure, Site};
-use crate::robot::Motion;
-use crate::units::{DEG, MM, STANDARD_GRAVITY, UM, URAD};
+use crate::robot::{JointLawVariable, LawPlace, Motion};
+use crate::units::{MM, STANDARD_GRAVITY, UM};
 
 /// Of what gives way under a load.
 const OF_A_LOAD: &[Form] = Form::GIVING_WAY;
@@ -118,14 +119,14 @@ impl Robot<'_> {
             carrier.rotation.column(k).into_owned()
         };
         let wobble = Site {
-            result: measure("Δx", format!("displacement of the axis of joint {}", joint + 1), "µm", UM),
+            result: changes(LawPlace::Axis(joint), None, &context.motions),
             directions: self.directions(&carried),
             forms: OF_A_BEARING,
             ..turn.clone()
         };
         let mut sites = vec![Site { moves: self.moves(joint), ..turn }, wobble];
         if context.has_masses && context.largest(|there| there.torque[joint]) > LEAST_TORQUE {
-            let torque = measure("τ", format!("torque of joint {}", joint + 1), "N·m", 1.0);
+            let torque = variable(JointLawVariable::Torque(joint));
             let site = self.of_joint(joint, torque, &|there| there.torque[joint], OF_A_LOAD);
             sites.push(Site { moves: self.moves(joint), ..site });
         }
@@ -141,10 +142,11 @@ impl Robot<'_> {
             sites.push(self.of_joint(joint, angle, &|there| there.joints[other], OF_A_LEVEL));
         }
         for first in 0..count.saturating_sub(1) {
-            for (sign, words) in [(1.0, "sum"), (-1.0, "difference")] {
-                let name = format!("{words} of the angles of joints {} and {}", first + 1, first + 2);
+            for (sign, own) in
+                [(1.0, JointLawVariable::Sum(first)), (-1.0, JointLawVariable::Difference(first))]
+            {
                 let both = |there: &Configuration| there.joints[first] + sign * there.joints[first + 1];
-                sites.push(self.of_joint(joint, measure("q", name, "°", DEG), &both, OF_A_LEVEL));
+                sites.push(self.of_joint(joint, variable(own), &both, OF_A_LEVEL));
             }
         }
         sites
@@ -157,13 +159,11 @@ impl Robot<'_> {
         for first in 0..count {
             for second in first + 1..count {
                 let times = |there: &Configuration| there.joints[first];
-                let variable = || self.angle(second);
-                let by = format!("per radian of joint {}", first + 1);
-                let turn = self.of_joint(joint, variable(), &|there| there.joints[second], OF_A_PRODUCT);
+                let of_second = self.angle(second);
+                let turn = self.of_joint(joint, of_second, &|there| there.joints[second], OF_A_PRODUCT);
                 let weights = self.weights(&|there| there.tip_jacobian[joint] * times(there));
-                let name = format!("turn of joint {} {by}", joint + 1);
                 sites.push(Site {
-                    result: measure("Δq/q'", name, "µrad/rad", URAD),
+                    result: changes(LawPlace::Joint(joint), Some(first), &self.context.motions),
                     directions: vec![(String::new(), weights)],
                     ..turn.clone()
                 });
@@ -174,13 +174,8 @@ impl Robot<'_> {
                         about.cross(&(there.tip - there.link[joint].origin)) * times(there)
                     };
                     sites.push(Site {
-                        location: Location::Key(format!("link {}", joint + 1)),
-                        result: measure(
-                            "Δφ/q'",
-                            format!("turn of link {} {by}", joint + 1),
-                            "µrad/rad",
-                            URAD,
-                        ),
+                        location: location(LawPlace::Link(joint)),
+                        result: changes(LawPlace::Link(joint), Some(first), &self.context.motions),
                         directions: self.directions(&twist),
                         ..turn
                     });
@@ -193,12 +188,13 @@ impl Robot<'_> {
     /// Displacements in {T}.
     fn of_tool(&self, clocks: &[Clock]) -> Vec<Site> {
         let axis = |there: &Configuration, k: usize| there.flange.rotation.column(k).into_owned();
-        let site = self.of_frame(Part::Tool, "displacement of the tool", &axis);
+        let changed = changes(LawPlace::Tool, None, &self.context.motions);
+        let site = self.of_frame(Part::Tool, changed, &axis);
         let weight = |k: usize| {
             let along = move |there: &Configuration| {
                 there.flange.rotation.column(k).dot(&there.gravity) / STANDARD_GRAVITY
             };
-            let variable = measure("g", format!("weight along {} of the tool", AXES[k]), "g", 1.0);
+            let variable = variable(JointLawVariable::Weight(k));
             Site { variable, values: self.values(&along), forms: OF_A_LOAD, ..site.clone() }
         };
         (0..3).map(weight).chain(clocks.iter().map(|clock| clock.over(&site))).collect()
@@ -206,7 +202,8 @@ impl Robot<'_> {
 
     /// Displacements in {W}.
     fn of_base(&self, clocks: &[Clock]) -> Vec<Site> {
-        let site = self.of_frame(Part::Base, "displacement of the base", &|_, k| Vector3::ith(k, 1.0));
+        let changed = measure("Δx", "displacement of the base", "µm", UM);
+        let site = self.of_frame(Part::Base, changed, &|_, k| Vector3::ith(k, 1.0));
         let position = |k: usize| {
             let variable = measure("x", format!("position along {}", AXES[k]), "mm", MM);
             Site { variable, values: self.values(&|there| there.tip[k]), forms: OF_A_LEVEL, ..site.clone() }
@@ -218,12 +215,12 @@ impl Robot<'_> {
     fn of_frame(
         &self,
         part: Part,
-        words: &str,
+        result: Measure,
         axis: &dyn Fn(&Configuration, usize) -> Vector3<f64>,
     ) -> Site {
         Site {
             location: Location::Part(part),
-            result: measure("Δx", words, "µm", UM),
+            result,
             variable: measure("", "", "", 1.0),
             directions: self.directions(axis),
             values: Vec::new(),
@@ -240,11 +237,10 @@ impl Robot<'_> {
     }
 
     fn angle(&self, joint: usize) -> Measure {
-        let (words, unit, si) = match self.context.motions[joint] {
-            Motion::Revolute => ("angle", "°", DEG),
-            Motion::Prismatic => ("position", "mm", MM),
-        };
-        measure("q", format!("{words} of joint {}", joint + 1), unit, si)
+        variable(match self.context.motions[joint] {
+            Motion::Revolute => JointLawVariable::Angle(joint),
+            Motion::Prismatic => JointLawVariable::Position(joint),
+        })
     }
 
     fn of_joint(
@@ -254,13 +250,9 @@ impl Robot<'_> {
         value: &dyn Fn(&Configuration) -> f64,
         forms: &'static [Form],
     ) -> Site {
-        let (words, unit, si) = match self.context.motions[joint] {
-            Motion::Revolute => ("angle", "µrad", URAD),
-            Motion::Prismatic => ("position", "µm", UM),
-        };
         Site {
-            location: Location::Joint { joint, form: None },
-            result: measure("Δq", format!("{words} of joint {}", joint + 1), unit, si),
+            location: location(LawPlace::Joint(joint)),
+            result: changes(LawPlace::Joint(joint), None, &self.context.motions),
             variable,
             directions: vec![(String::new(), self.weights(&|there| there.tip_jacobian[joint]))],
             values: self.values(value),

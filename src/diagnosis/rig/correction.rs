@@ -74,6 +74,17 @@ impl RigDiagnosis {
         }
     }
 
+    /// Where `--apply` writes the law: into the rod file where that knows its variable, or out of
+    /// the readings.
+    pub fn law_destination(&self) -> WrittenTo {
+        let law = self.law.as_ref().and_then(|proposed| proposed.law.as_ref().ok());
+        match law.filter(|_| self.model.rod().is_some()) {
+            None => WrittenTo::Nowhere,
+            Some(law) if written(law, "").is_some() => WrittenTo::Model,
+            Some(_) => WrittenTo::Recording,
+        }
+    }
+
     /// Those of the nominal numbers that stand in the file of `rod` and are off by more than a
     /// trace; the others are the rig's.
     fn moved(&self, rod: &Rod, proposed: Option<&Law>) -> Vec<Moved> {

@@ -1,95 +1,35 @@
 //! A proposed law as one of the rod's file.
 
+use super::super::law_formula::{constants, formula, range, source};
 use crate::inference::Location;
-use crate::inference::law::{Constant, Form, Law, Memory};
-use crate::rod::{LawConstant, LawMemory, LawVariable, RodLaw};
-use crate::units::significant;
-
-/// Half of a 95 % interval, in standard deviations.
-const HALF: f64 = 1.96;
+use crate::inference::law::{Law, Memory};
+use crate::rod::{LawMemory, LawVariable, RodLaw};
 
 /// The law as the rod's file holds it; `None` for one that only this recording has: over its time,
 /// its order, its temperatures.
-pub(super) fn written(law: &Law, source: &str) -> Option<RodLaw> {
+pub(super) fn written(law: &Law, from: &str) -> Option<RodLaw> {
     let place = match &law.site.location {
         Location::Channel { channel, .. } => format!("d{channel}"),
         other => other.to_string(),
     };
     let name = &law.site.variable.name;
     let variable = LawVariable::ALL.into_iter().find(|v| v.words() == name && v.is_at(&place))?;
-    let own = |constant: &Constant| LawConstant {
-        name: constant.symbol.clone(),
-        value: digits(constant.value),
-        // several values apart have no standard deviation: the source says which they are
-        standard_uncertainty: match constant.also.is_empty() {
-            true => rounded((constant.high - constant.low) / (2.0 * HALF)),
-            false => 0.0,
-        },
-        unit: constant.unit.clone(),
-    };
-    let constants = law.amplitudes.iter().chain(law.constant.iter().map(|(_, constant)| constant));
-    let si = law.site.variable.si;
-    let (low, high) = law.site.range();
-    let range = (digits(low / si), digits(high / si));
-    let formula = formula(law, variable);
-    let mut written = RodLaw::new(place, variable, formula, constants.map(own).collect(), range).ok()?;
+    // functions of a variable with two signs are odd
+    let formula = formula(law, variable.symbol(), variable == LawVariable::Reading, 0);
+    let mut written = RodLaw::new(place, variable, formula, constants(law), range(law)).ok()?;
     written.memory = match law.memory {
         Memory::Stop => Some(LawMemory::Stop),
         Memory::Lag => Some(LawMemory::Lag),
         _ => None,
     };
-    let also = |constant: &Constant| {
-        let others: Vec<String> = constant.also.iter().map(|other| significant(*other, 3)).collect();
-        let Constant { symbol, unit, .. } = constant;
-        (!others.is_empty()).then(|| format!("; {symbol} may as well be {} {unit}", others.join(", ")))
-    };
-    let also = law.constant.as_ref().and_then(|(_, constant)| also(constant)).unwrap_or_default();
-    written.source = Some(format!("{source}{also}"));
+    written.source = Some(source(law, from));
     Some(written)
-}
-
-/// In the syntax of [`crate::expression`].
-fn formula(law: &Law, variable: LawVariable) -> String {
-    let x = variable.symbol();
-    // functions of a variable with two signs are odd
-    let is_signed = variable == LawVariable::Reading;
-    let (sign, size) =
-        if is_signed { (format!("sign({x})*"), format!("abs({x})")) } else { (String::new(), x.to_owned()) };
-    let largest = digits(law.site.largest() / law.site.variable.si);
-    let corner = format!("{x}_0");
-    let plain = match law.form {
-        Form::Power => format!("a*{sign}({size}/{largest:?})^p"),
-        Form::Saturation => format!("a*{sign}min({size}/{corner}, 1)"),
-        Form::Threshold => format!("k*max({x} - {corner}, 0)"),
-        Form::Step => format!("a*step({x} - {corner})"),
-        Form::Approach => format!("a*{sign}(1 - exp(-{size}/{corner}))"),
-        Form::Decay => format!("a*{sign}exp(-{size}/{corner})"),
-        Form::Logarithm => format!("a*{sign}ln(1 + {size}/{corner})"),
-        Form::Harmonic => format!("a*(cos(2*pi*{x}/P) - 1) + b*sin(2*pi*{x}/P)"),
-        Form::Polynomial(1) => format!("c1*{x}"),
-        Form::Polynomial(2) => format!("c1*{x} + c2*{x}^2"),
-        Form::Polynomial(_) => format!("c1*{x} + c2*{x}^2 + c3*{x}^3"),
-    };
-    match law.memory {
-        Memory::Side => format!("side*({plain})"),
-        _ => plain,
-    }
-}
-
-/// As many digits as change nothing that anybody reads.
-fn digits(value: f64) -> f64 {
-    format!("{value:.8e}").parse().unwrap_or(value)
-}
-
-/// Two digits, as uncertainties have (GUM 7.2.6).
-fn rounded(value: f64) -> f64 {
-    format!("{value:.1e}").parse().unwrap_or(value)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::inference::law::{FormConstant, Measure, Site};
+    use crate::inference::law::{Constant, Form, FormConstant, Measure, Site};
 
     /// Each form, written and read as a formula, is the law itself.
     #[test]

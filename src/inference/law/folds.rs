@@ -13,6 +13,8 @@ use crate::inference::selection::{APART, NAMED};
 use crate::inference::{Evidence, ForwardModel, Term};
 use crate::parallel::in_parallel;
 
+/// By this share of its square a held-out error is lowered at least.
+pub(super) const WORTH: f64 = 0.05;
 /// Most laws that predict together.
 const TOGETHER: usize = 12;
 
@@ -24,6 +26,13 @@ pub(super) struct Folds {
     pub with: f64,
     /// With each of some laws, fitted without each fold.
     pub of: Vec<f64>,
+}
+
+impl Folds {
+    /// True for a held-out error that is lower than without a law by enough.
+    pub fn is_lower(&self, error: f64) -> bool {
+        error < self.without * (1.0 - WORTH).sqrt()
+    }
 }
 
 /// All data as predicted with the findings alone, with the law that is found besides, and with each

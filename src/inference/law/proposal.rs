@@ -5,12 +5,13 @@ use std::f64::consts::PI;
 use nalgebra::{DMatrix, DVector};
 
 use super::choice::Choice;
-use super::folds::hold_out;
+use super::folds::{WORTH, hold_out};
 use super::form::FormConstant;
+use super::left::most_left;
 use super::measured::Measured;
 use super::proposed::{Beside, Law, LawRival, NextRecord, Point, Proposed, Refusal};
 use super::remainder::Remainder;
-use super::scan::{Scan, Scanned, curve, prior, scan};
+use super::scan::{Scan, Scanned, curve, prior, scan, scan_as_recorded};
 use super::site::Site;
 use crate::inference::evidence::rms;
 use crate::inference::scatter::weighted;
@@ -38,12 +39,8 @@ const REFITTED: usize = 16;
 const REACH: f64 = 30.0;
 /// Nor those whose ln odds against nothing are below this: without a fold they are no better.
 const UNLIKELY: f64 = -5.0;
-/// By this share of its square a held-out error is lowered at least.
-const WORTH: f64 = 0.05;
 /// A smooth curve may miss so much of what a law explains, as a share of squares.
 const LITTLE: f64 = 0.5;
-/// So many times the noise a recorded variable ranges over at least.
-const ABOVE_NOISE: f64 = 30.0;
 /// Most rivals that are reported.
 const MOST_RIVALS: usize = 8;
 
@@ -67,25 +64,26 @@ pub fn propose(
     let (settled, sigma) = (&diagnosis.settled.0, diagnosis.settled.1);
     let (terms, size) =
         (&diagnosis.hypothesis.terms[..], rms(&diagnosis.after).max(f64::MIN_POSITIVE.sqrt()));
-    let rows: Vec<usize> = (0..settled.residual.len()).collect();
+    let rows = || (0..settled.residual.len()).collect::<Vec<usize>>();
     let response = model.response(terms);
     let known = known(model, diagnosis, left.candidate);
-    let mut all = sites(&(response + known));
+    let change = response + known;
+    let mut all = sites(&change);
     // where no curve was taken out what is left has counted as scatter, and the data that show it
     // most hardly count
     let evidence = &match left.shown_by == ShownBy::Curve || !settled.is_robust {
         true => settled.as_ref().clone(),
         false => {
-            let even =
-                Evidence { weight: vec![1.0; rows.len()], information: 1.0, ..settled.as_ref().clone() };
+            let even = Evidence {
+                weight: vec![1.0; settled.residual.len()],
+                information: 1.0,
+                ..settled.as_ref().clone()
+            };
             reweighted(model, &even, terms, &all, (size, sigma)).unwrap_or(even)
         }
     };
-    let remainder = Remainder::new(model, evidence, terms, rows, sigma);
-    let mut found = scan(&remainder, &all, size);
-    if as_recorded(&mut all, &remainder, &found, (size, sigma)) {
-        found = scan(&remainder, &all, size);
-    }
+    let remainder = Remainder::new(model, evidence, terms, rows(), sigma);
+    let mut found = scan_as_recorded(&remainder, &mut all, (size, sigma));
     let best_odds = found.laws.first().map_or(0.0, |law| law.log_odds);
     let reach = (best_odds - REACH).max(UNLIKELY);
     let within_reach = found.laws.iter().take_while(|law| law.log_odds > reach);
@@ -113,8 +111,7 @@ pub fn propose(
     let folds = hold_out(model, evidence, terms, &all, (&choices, &tried), (size, sigma));
     let Some(folds) = folds else { return refused(Refusal::NoFolds, None) };
     let errors = Some((folds.without, folds.with));
-    let enough = folds.without * (1.0 - WORTH).sqrt();
-    if folds.with >= enough || folds.of[0] >= enough {
+    if !(folds.is_lower(folds.with) && folds.is_lower(folds.of[0])) {
         return refused(Refusal::HeldOut, errors);
     }
     let measured: Vec<Measured> =
@@ -131,6 +128,7 @@ pub fn propose(
             held_out: Some(held_out),
         })
         .collect();
+    let data = (model, evidence, terms, (size, sigma));
     let site = all[best.choice.site].clone();
     let columns = best.choice.columns(&site, best.at, size);
     let fitted = remainder.fit(&columns.columns);
@@ -152,6 +150,7 @@ pub fn propose(
         further: None,
         points: Vec::new(),
         curve: Vec::new(),
+        more: most_left(data, &all, best, |own| sites(&(&change + own))),
         site,
     };
     let residual = &evidence.residual - &fitted.predicted;
@@ -177,22 +176,6 @@ fn beside(model: &dyn ForwardModel, evidence: &Evidence, terms: &[Term], base: &
         }
     }
     Beside { terms, background }
-}
-
-/// Puts what was recorded, without the likeliest law, in the place of what was predicted, where
-/// that law is a function of it; false where it is none, or where noise would be as large as the
-/// variable: it would explain itself.
-fn as_recorded(sites: &mut [Site], remainder: &Remainder, found: &Scan, (size, sigma): (f64, f64)) -> bool {
-    let Some(best) = found.laws.first() else { return false };
-    let site = &sites[best.choice.site];
-    let (low, high) = site.range();
-    let Some(recorded) = site.recorded.as_ref().filter(|_| high - low > ABOVE_NOISE * sigma) else {
-        return false;
-    };
-    let own = remainder.fit(&best.choice.columns(site, best.at, size).columns).own;
-    let values = recorded.iter().zip(own.iter()).map(|(value, own)| value - own).collect();
-    sites[best.choice.site].values = values;
-    true
 }
 
 /// What nominal numbers and zeros are, once a curve stands for what is left.

@@ -75,6 +75,8 @@ pub struct Law {
     pub points: Vec<Point>,
     /// A smooth curve through them.
     pub curve: Vec<Point>,
+    /// Where, and along which variable, another law is named beside it.
+    pub more: Option<(Location, Measure)>,
 }
 
 /// Findings and numbers of files as they are beside a law.
@@ -158,6 +160,7 @@ impl Law {
             further: None,
             points: Vec::new(),
             curve: Vec::new(),
+            more: None,
         }
     }
 

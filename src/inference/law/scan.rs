@@ -12,6 +12,8 @@ use crate::inference::priors::PRIOR;
 use crate::inference::selection::APART;
 use crate::parallel::in_parallel;
 
+/// So many times the noise a recorded variable ranges over at least.
+const ABOVE_NOISE: f64 = 30.0;
 /// Columns of a smooth curve.
 const CURVE: usize = 6;
 /// Laws whose evidence at the best point is so far (ln) behind the best need no closer look.
@@ -56,6 +58,23 @@ fn middle(choice: Choice, posterior: &Posterior) -> f64 {
 /// All laws on a remainder; `size` is how large, about, what is left is.
 pub(super) fn scan(remainder: &Remainder, sites: &[Site], size: f64) -> Scan {
     scan_some(remainder, sites, size, |_| true)
+}
+
+/// The same where the likeliest law may be a function of what was recorded: that stands, without
+/// the law, in the place of what was predicted then, unless noise would be as large as the
+/// variable: it would explain itself.
+pub(super) fn scan_as_recorded(remainder: &Remainder, sites: &mut [Site], (size, sigma): (f64, f64)) -> Scan {
+    let found = scan(remainder, sites, size);
+    let Some(best) = found.laws.first() else { return found };
+    let site = &sites[best.choice.site];
+    let (low, high) = site.range();
+    let Some(recorded) = site.recorded.as_ref().filter(|_| high - low > ABOVE_NOISE * sigma) else {
+        return found;
+    };
+    let own = remainder.fit(&best.choice.columns(site, best.at, size).columns).own;
+    sites[best.choice.site].values =
+        recorded.iter().zip(own.iter()).map(|(value, own)| value - own).collect();
+    scan(remainder, sites, size)
 }
 
 /// The same of some laws, each with the prior that it has among all.

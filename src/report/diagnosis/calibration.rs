@@ -14,7 +14,9 @@ use super::subject::{Errors, LawSubject, Subject};
 use super::{json as whole_json, report as whole_report};
 use crate::calibration::campaign::Targets;
 use crate::calibration::{MOST_SCATTER, Warning};
-use crate::diagnosis::calibration::{Applied, CalibrationDiagnosis, Gear, destination as written_to, remark};
+use crate::diagnosis::calibration::{
+    Applied, CalibrationDiagnosis, Gear, destination as written_to, law_destination, remark,
+};
 use crate::inference::{Finding, ForwardModel, Kind, Location, Plan, PosePlan, ShownBy, Variable, WrittenTo};
 use crate::report::calibration::warnings as of_calibration;
 use crate::report::{Block, Report, Section};
@@ -103,7 +105,8 @@ fn subject<'a>(found: &'a CalibrationDiagnosis<'_>) -> Subject<'a> {
             proposed,
             remark: proposed.law.as_ref().ok().and_then(remark),
             noun: "poses",
-            is_written: false,
+            written_to: proposed.law.as_ref().map_or(WrittenTo::Nowhere, |law| law_destination(law, model)),
+            files: ["robot", "measurements"],
         }),
         remainder: remainder(found),
         warnings: of_calibration(campaign, &model.calibration),
@@ -197,7 +200,21 @@ pub fn announced(report: &mut Report, found: &CalibrationDiagnosis) {
             None => format!("Nowhere, because no file has a place for it: {what}"),
         }
     };
-    let lines: Vec<String> = found.diagnosis.findings.iter().map(line).collect();
+    let law = found.law.as_ref().and_then(|proposed| proposed.law.as_ref().ok()).map(|law| {
+        let what = format!("the law of the {} over the {}", law.site.result.name, law.site.variable.name);
+        match law_destination(law, &found.model) {
+            WrittenTo::Model if is_urdf => {
+                format!("Into a file beside the URDF, for calibrate and predict: {what}")
+            }
+            WrittenTo::Model => format!("Into the robot file, for calibrate and predict: {what}"),
+            WrittenTo::Recording => format!(
+                "Out of the measurements, for these poses only, because this recording alone has the {}: {what}",
+                law.site.variable.name
+            ),
+            WrittenTo::Nowhere => format!("Nowhere, because no file has a place for it: {what}"),
+        }
+    });
+    let lines: Vec<String> = found.diagnosis.findings.iter().map(line).chain(law).collect();
     if !lines.is_empty() {
         report.sections.push(Section::new("What --apply would write", vec![Block::List(lines)]));
     }

@@ -9,7 +9,7 @@ use super::headline::um;
 use super::place::place;
 use super::subject::LawSubject;
 use crate::inference::law::{Constant, Law, LawRival, Memory, Proposed, Refusal, Site};
-use crate::inference::{Location, Quantity};
+use crate::inference::{Location, Quantity, WrittenTo};
 use crate::report::pictures::diagnosis::{LawPanel, law_picture};
 use crate::report::table::{Column, Table};
 use crate::report::{Block, Section};
@@ -35,6 +35,7 @@ pub fn section(subject: &LawSubject) -> Section {
     points.extend(alternatives(law, subject));
     points.extend(next(law));
     points.extend(subject.remark.clone());
+    points.extend(more(law, subject));
     points.push(range(law, subject));
     let blocks =
         vec![Block::List(points), Block::Table(table(law)), Block::Figure(picture(law, subject.noun))];
@@ -82,7 +83,15 @@ pub fn json(subject: Option<&LawSubject>) -> Value {
             "apart_um": um(apart),
             "may_be_used": apart <= law.noise,
         })),
+        "more_left": law.more.as_ref().map(|(location, variable)| {
+            json!({ "location": location.to_string(), "place": place(location), "variable": variable.name, "unit": variable.unit })
+        }),
         "remark": subject.remark,
+        "written_to": match subject.written_to {
+            WrittenTo::Model => Some(subject.files[0]),
+            WrittenTo::Recording => Some(subject.files[1]),
+            WrittenTo::Nowhere => None,
+        },
     });
     if let (Value::Object(json), Value::Object(more)) = (&mut json, more) {
         json.extend(more);
@@ -208,7 +217,14 @@ fn next(law: &Law) -> Option<String> {
 fn range(law: &Law, subject: &LawSubject) -> String {
     let ((low, high), variable) = (law.site.range(), &law.site.variable);
     let show = |value: f64| significant(value / variable.si, 3);
-    let written = if subject.is_written { "; --apply writes it" } else { "" };
+    let written = match subject.written_to {
+        WrittenTo::Model => "; --apply writes it".to_owned(),
+        WrittenTo::Recording => format!(
+            "; --apply takes it out of the {}, and no file gets it: its {} is known in this recording only",
+            subject.files[1], variable.name
+        ),
+        WrittenTo::Nowhere => String::new(),
+    };
     let beyond =
         law.further.filter(|(_, apart)| *apart > law.noise).map_or_else(String::new, |(at, apart)| {
             let at = with_unit(significant(at / variable.si, 2), variable.unit);
@@ -224,6 +240,21 @@ fn range(law: &Law, subject: &LawSubject) -> String {
         show(low),
         with_unit(show(high), variable.unit)
     )
+}
+
+/// What may be left beside it.
+fn more(law: &Law, subject: &LawSubject) -> Option<String> {
+    let (location, variable) = law.more.as_ref()?;
+    let advice = match subject.written_to {
+        WrittenTo::Nowhere => "",
+        WrittenTo::Model | WrittenTo::Recording => {
+            " Write this law with --apply and diagnose again: that says whether there is another."
+        }
+    };
+    Some(format!(
+        "It may not be all: beside it something follows the {} ({location}).{advice}",
+        variable.name
+    ))
 }
 
 /// Why there is none.

@@ -4,7 +4,7 @@ use serde_json::Value;
 
 use super::remainder::Remainder;
 use crate::inference::law::Proposed;
-use crate::inference::{Absorbed, Candidate, Diagnosis, Evidence, Limit, NotTestable, Plan};
+use crate::inference::{Absorbed, Candidate, Diagnosis, Evidence, Limit, NotTestable, Plan, WrittenTo};
 use crate::report::Block;
 use crate::report::Section;
 
@@ -84,8 +84,10 @@ pub struct LawSubject<'a> {
     pub proposed: &'a Proposed,
     /// What was recorded: `readings`.
     pub noun: &'static str,
-    /// True where --apply writes a law.
-    pub is_written: bool,
+    /// Where --apply writes a law.
+    pub written_to: WrittenTo,
+    /// What the model's file and the recording's are called.
+    pub files: [&'static str; 2],
     /// The nearest mechanism of a textbook, in a sentence.
     pub remark: Option<String>,
 }

@@ -5,9 +5,9 @@ use toml::Spanned;
 
 use super::check::Check;
 use crate::error::Result;
-use crate::expression::is_reserved;
 use crate::limits;
-use crate::rod::{LawConstant, LawMemory, LawVariable, Rod, RodLaw, Warning};
+use crate::rod::constants::{self, RawConstant};
+use crate::rod::{LawMemory, LawVariable, Rod, RodLaw, Warning};
 use crate::toml_text::Number;
 
 #[derive(Deserialize)]
@@ -24,16 +24,6 @@ pub(super) struct RawLaw {
     source: Option<String>,
     #[serde(default)]
     constant: Vec<RawConstant>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields, expecting = "a section [[law.constant]] with name and value")]
-struct RawConstant {
-    name: Spanned<String>,
-    value: Number,
-    standard_uncertainty: Option<Number>,
-    #[serde(default)]
-    unit: String,
 }
 
 /// Places of a rod file besides its joints.
@@ -69,33 +59,8 @@ impl Check<'_> {
             let expected = format!("a variable of {place}: {}", known.join(", "));
             return Err(toml.is("law.variable", &raw.variable, &expected));
         };
-        limits::check(toml.file(), raw.constant.len(), limits::OWN_PARAMETERS, "constants of a law")?;
-        let mut constants: Vec<LawConstant> = Vec::new();
-        for own in &raw.constant {
-            let name = own.name.get_ref();
-            let is_taken = name == variable.symbol() || constants.iter().any(|other| other.name == *name);
-            // what is read as something else is no name
-            if is_taken || !is_name(name) || is_reserved(name) {
-                let expected = "a name of its own: letters, digits and _, no variable and no function";
-                return Err(toml.is("law.constant.name", &own.name, expected));
-            }
-            constants.push(LawConstant {
-                name: name.clone(),
-                value: toml.finite("law.constant.value", &own.value)?,
-                standard_uncertainty: match &own.standard_uncertainty {
-                    Some(number) => toml.not_negative("law.constant.standard_uncertainty", number)?,
-                    None => 0.0,
-                },
-                unit: own.unit.clone(),
-            });
-        }
-        let range = match &raw.range.get_ref()[..] {
-            [low, high] => (toml.finite("law.range", low)?, toml.finite("law.range", high)?),
-            _ => (0.0, 0.0),
-        };
-        if range.0 >= range.1 {
-            return Err(toml.is("law.range", &raw.range, "two numbers, [from, to]: where it was recorded"));
-        }
+        let constants = constants::read(&toml, &raw.constant, variable.symbol())?;
+        let range = constants::range(&toml, &raw.range)?;
         let mut law = RodLaw::new(place, variable, raw.formula.get_ref(), constants, range)
             .map_err(|fault| toml.in_formula(&raw.formula, fault))?;
         law.source.clone_from(&raw.source);
@@ -120,12 +85,4 @@ impl Check<'_> {
         }
         Ok(law)
     }
-}
-
-fn is_name(name: &str) -> bool {
-    let is_part = |c: char| c.is_alphanumeric() || c == '_' || c == '\'';
-    name.len() <= limits::NAME_BYTES
-        && name.starts_with(|c: char| c.is_alphabetic() || c == '_')
-        && name.chars().all(is_part)
-        && name != crate::rod::law::SIDE
 }

@@ -36,8 +36,9 @@ pub fn expression(site: &Site, form: Form, memory: Memory) -> Expression {
     };
     let side = if memory == Memory::Side { ("±", r"\pm ") } else { ("", "") };
     let latex_of = |symbol: &str| {
-        let symbol = symbol.replace("Δ", r"\Delta ").replace("θ", r"\theta");
-        symbol.replace("F'", "F^{\\prime}")
+        let greek = [("Δ", r"\Delta "), ("θ", r"\theta"), ("φ", r"\varphi"), ("τ", r"\tau")];
+        let symbol = greek.iter().fold(symbol.to_owned(), |symbol, (letter, of)| symbol.replace(letter, of));
+        symbol.replace('\'', r"^{\prime}")
     };
     let x = match memory {
         Memory::Stop => format!(r"\left({0} - \mathcal{{P}}_r[{0}]\right)", latex_of(variable)),

@@ -1,0 +1,86 @@
+//! A proposed law as what a file holds: a formula in the syntax of [`crate::expression`], with its
+//! constants.
+
+use crate::inference::law::{Constant, Form, Law, Memory};
+use crate::rod::LawConstant;
+use crate::units::significant;
+
+/// Half of a 95 % interval, in standard deviations.
+const HALF: f64 = 1.96;
+
+/// The law along one of its directions, in `x`; a formula of a variable with two signs is odd where
+/// its form is.
+pub(super) fn formula(law: &Law, x: &str, is_signed: bool, direction: usize) -> String {
+    let (sign, size) =
+        if is_signed { (format!("sign({x})*"), format!("abs({x})")) } else { (String::new(), x.to_owned()) };
+    let largest = digits(law.site.largest() / law.site.variable.si);
+    let corner = format!("{x}_0");
+    // amplitudes are called as the law's are, `a_x`
+    let named = |k: usize| law.amplitudes[direction * law.form.count() + k].symbol.as_str();
+    let (a, waves) = (named(0), law.form == Form::Harmonic);
+    let powers = || {
+        let term = |k: usize| match k {
+            0 => format!("{}*{x}", named(k)),
+            _ => format!("{}*{x}^{}", named(k), k + 1),
+        };
+        (0..law.form.count()).map(term).collect::<Vec<_>>().join(" + ")
+    };
+    let b = if waves { named(1) } else { "" };
+    let plain = match law.form {
+        Form::Power => format!("{a}*{sign}({size}/{largest:?})^p"),
+        Form::Saturation => format!("{a}*{sign}min({size}/{corner}, 1)"),
+        Form::Threshold => format!("{a}*max({x} - {corner}, 0)"),
+        Form::Step => format!("{a}*step({x} - {corner})"),
+        Form::Approach => format!("{a}*{sign}(1 - exp(-{size}/{corner}))"),
+        Form::Decay => format!("{a}*{sign}exp(-{size}/{corner})"),
+        Form::Logarithm => format!("{a}*{sign}ln(1 + {size}/{corner})"),
+        Form::Harmonic => format!("{a}*(cos(2*pi*{x}/P) - 1) + {b}*sin(2*pi*{x}/P)"),
+        Form::Polynomial(_) => powers(),
+    };
+    match law.memory {
+        Memory::Side => format!("side*({plain})"),
+        _ => plain,
+    }
+}
+
+/// The constants of a law.
+pub(super) fn constants(law: &Law) -> Vec<LawConstant> {
+    let own = |constant: &Constant| LawConstant {
+        name: constant.symbol.clone(),
+        value: digits(constant.value),
+        // several values apart have no standard deviation: the source says which they are
+        standard_uncertainty: match constant.also.is_empty() {
+            true => rounded((constant.high - constant.low) / (2.0 * HALF)),
+            false => 0.0,
+        },
+        unit: constant.unit.clone(),
+    };
+    law.amplitudes.iter().chain(law.constant.iter().map(|(_, constant)| constant)).map(own).collect()
+}
+
+/// From where to where its variable was recorded, in its unit.
+pub(super) fn range(law: &Law) -> (f64, f64) {
+    let (si, (low, high)) = (law.site.variable.si, law.site.range());
+    (digits(low / si), digits(high / si))
+}
+
+/// Where a law comes from, with other values of its constant that fit as well.
+pub(super) fn source(law: &Law, source: &str) -> String {
+    let also = |constant: &Constant| {
+        let others: Vec<String> = constant.also.iter().map(|other| significant(*other, 3)).collect();
+        let Constant { symbol, unit, .. } = constant;
+        (!others.is_empty()).then(|| format!("; {symbol} may as well be {} {unit}", others.join(", ")))
+    };
+    let also = law.constant.as_ref().and_then(|(_, constant)| also(constant)).unwrap_or_default();
+    format!("{source}{also}")
+}
+
+/// As many digits as change nothing that anybody reads.
+fn digits(value: f64) -> f64 {
+    format!("{value:.8e}").parse().unwrap_or(value)
+}
+
+/// Two digits, as uncertainties have (GUM 7.2.6).
+fn rounded(value: f64) -> f64 {
+    format!("{value:.1e}").parse().unwrap_or(value)
+}

@@ -355,7 +355,7 @@ impl Moments {
     /// them.
     fn reduced(&self, score: &Score, more: &ColumnBlock) -> (DMatrix<f64>, DVector<f64>) {
         let gram = more.gram - more.cross.tr_mul(&more.solved);
-        (gram, &more.product - more.cross.tr_mul(&score.estimate))
+        (gram, more.product - more.cross.tr_mul(&score.estimate))
     }
 
     /// What a hypothesis of this score leaves, as a problem of its own: its columns are taken out

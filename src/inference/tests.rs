@@ -283,13 +283,13 @@ fn chance_is_that_of_the_effect_beside_a_large_background() {
 #[test]
 fn an_effect_is_confirmed_where_the_number_in_its_place_cannot_be_so_far_off() {
     let mut model = Columns::new(COUNT);
-    model.add("slope", "here", column(|x| x), false);
+    model.add("slope", "here", column(|x| 10.0 * x), false);
     let number =
         NominalParameter { name: "E".into(), unit: "GPa", si: 1e9, value: 193e9, standard_uncertainty: 2e9 };
     let found = |seed: u64, times: f64| {
         let nominal_numbers = vec![number.clone()];
-        let plain = evidence(seed, |x| 5.0 * times * x);
-        diagnose(&model, &Evidence { nominal: column(|x| 5.0 * x), nominal_numbers, ..plain })
+        let plain = evidence(seed, |x| 50.0 * times * x);
+        diagnose(&model, &Evidence { nominal: column(|x| 50.0 * x), nominal_numbers, ..plain })
     };
     for seed in 0..10 {
         assert_eq!(effects(&found(seed, 8.0)), ["slope"], "seed {seed}");

@@ -41,9 +41,15 @@ impl Front {
             return;
         }
         let beats = |a: &Design, b: &Design| {
-            let costs = |goal: &Goal| (goal.cost(&a.figures), goal.cost(&b.figures));
-            goals.iter().all(|goal| costs(goal).0 <= costs(goal).1)
-                && goals.iter().any(|goal| costs(goal).0 < costs(goal).1)
+            let mut is_better = false;
+            for goal in goals {
+                let (own, other) = (goal.cost(&a.figures), goal.cost(&b.figures));
+                if own > other {
+                    return false;
+                }
+                is_better |= own < other;
+            }
+            is_better
         };
         if let Some(better) = self.designs.iter().position(|known| beats(known, &design)) {
             // who bettered one design is likely to better the next

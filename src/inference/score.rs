@@ -19,7 +19,7 @@
 #[cfg(test)]
 mod tests;
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DMatrixView, DVector, DVectorView};
 
 use crate::linalg::{InverseRoot, transposed_product};
 use crate::statistics::{ln_normal_mass, student_t_quantile};
@@ -75,11 +75,11 @@ pub struct ColumnBlock<'a> {
     /// Their inner products with each other.
     pub gram: &'a DMatrix<f64>,
     /// Those of the hypothesis's columns (rows) with them (columns), X.
-    pub cross: DMatrix<f64>,
+    pub cross: DMatrixView<'a, f64>,
     /// What [`Score::solved`] makes of X.
-    pub solved: DMatrix<f64>,
+    pub solved: DMatrixView<'a, f64>,
     /// Those with r.
-    pub product: DVector<f64>,
+    pub product: DVectorView<'a, f64>,
     /// Bounds of the scaled parameters.
     pub bounds: Vec<(f64, f64)>,
 }
@@ -355,7 +355,7 @@ impl Moments {
     /// them.
     fn reduced(&self, score: &Score, more: &ColumnBlock) -> (DMatrix<f64>, DVector<f64>) {
         let gram = more.gram - more.cross.tr_mul(&more.solved);
-        (gram, &more.product - more.cross.tr_mul(&score.estimate))
+        (gram, more.product - more.cross.tr_mul(&score.estimate))
     }
 
     /// What a hypothesis of this score leaves, as a problem of its own: its columns are taken out

@@ -143,9 +143,9 @@ impl<'a> Search<'a> {
                 next = own.end;
                 let more = ColumnBlock {
                     gram,
-                    cross: cross.columns_range(own.clone()).into_owned(),
-                    solved: solved.columns_range(own.clone()).into_owned(),
-                    product: product.rows_range(own).into_owned(),
+                    cross: cross.columns_range(own.clone()),
+                    solved: solved.columns_range(own.clone()),
+                    product: product.rows_range(own),
                     bounds: bounds(index),
                 };
                 present.about(&before, &more) + self.prior[index]
@@ -162,8 +162,13 @@ impl<'a> Search<'a> {
         let exact = |index: usize| {
             let (cross, product) = products(&[index]);
             let solved = before.solved(&cross);
-            let more =
-                ColumnBlock { gram: &self.grams[index], cross, solved, product, bounds: bounds(index) };
+            let more = ColumnBlock {
+                gram: &self.grams[index],
+                cross: cross.as_view(),
+                solved: solved.as_view(),
+                product: product.as_view(),
+                bounds: bounds(index),
+            };
             let with = present.beyond(&before, &more).score();
             with.log_evidence - alone + self.prior[index]
         };

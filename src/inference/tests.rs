@@ -277,6 +277,26 @@ fn chance_is_that_of_the_effect_beside_a_large_background() {
     }
 }
 
+/// A number of the file draws what the effect does, and predicts data that it has not seen as well:
+/// held-out data are the same without the effect, by chance better or worse. Where the number would
+/// be off by eight of its uncertainties it is the effect all the same; where by one, the number.
+#[test]
+fn an_effect_is_confirmed_where_the_number_in_its_place_cannot_be_so_far_off() {
+    let mut model = Columns::new(COUNT);
+    model.add("slope", "here", column(|x| 10.0 * x), false);
+    let number =
+        NominalParameter { name: "E".into(), unit: "GPa", si: 1e9, value: 193e9, standard_uncertainty: 2e9 };
+    let found = |seed: u64, times: f64| {
+        let nominal_numbers = vec![number.clone()];
+        let plain = evidence(seed, |x| 50.0 * times * x);
+        diagnose(&model, &Evidence { nominal: column(|x| 50.0 * x), nominal_numbers, ..plain })
+    };
+    for seed in 0..10 {
+        assert_eq!(effects(&found(seed, 8.0)), ["slope"], "seed {seed}");
+        assert_eq!(effects(&found(seed, 1.0)), [""; 0], "seed {seed}");
+    }
+}
+
 /// A slope that the base model has, and a column that is nearly the same: what it explains is what
 /// the base model could not.
 #[test]

@@ -38,7 +38,7 @@ fn what_was_measured_beats_what_was_modelled_beats_nothing() {
     let simulator = soft();
     let (_, campaign) = simulator.run(7);
     assert_eq!(modes(&campaign), Mode::ALL);
-    let options = CompareOptions { draws: 60, ..CompareOptions::default() };
+    let options = CompareOptions { draws: 30, ..CompareOptions::default() };
     let comparison = compare(&campaign, &options, &|_| ()).unwrap();
     let mean = |mode| comparison.summary(of_mode(&comparison, mode).0).mean;
     let residual = |mode| {

@@ -10,7 +10,7 @@ use rodcal::statistics::student_t_quantile;
 
 use super::simulated::Simulator;
 
-const SEEDS: usize = 80;
+const SEEDS: usize = 40;
 /// Coordinates of 70 poses less 32 parameters.
 const DOF: f64 = 178.0;
 
@@ -75,8 +75,8 @@ fn coverage(said: &[Said]) -> f64 {
     100.0 * said.iter().map(|s| s.holds).sum::<usize>() as f64 / intervals as f64
 }
 
-/// Parameters of one seed share their noise: 80 seeds are worth some 800 independent intervals, 95
-/// ± 0.8 %.
+/// Parameters of one seed share their noise: 40 seeds are worth some 400 independent intervals, 95
+/// ± 1.1 %.
 #[test]
 fn intervals_hold_the_truth_19_times_in_20() {
     for (said, kind) in SAID.iter().zip(["estimated", "stated", "huber"]) {
@@ -85,7 +85,7 @@ fn intervals_hold_the_truth_19_times_in_20() {
     }
 }
 
-/// One seed's estimate has a standard deviation of 1/√(2·178) = 5.3 %, the mean of 80 one of 0.6 %;
+/// One seed's estimate has a standard deviation of 1/√(2·178) = 5.3 %, the mean of 40 one of 0.8 %;
 /// Huber's, from a median, half as much again.
 #[test]
 fn the_noise_is_what_it_was() {
@@ -97,13 +97,13 @@ fn the_noise_is_what_it_was() {
 }
 
 /// Outliers are those beyond what one clean recording in a hundred has, unequal noises likewise: of
-/// 80 seeds more than four, with 1 % each, happen once in a thousand.
+/// 40 seeds more than three, with 1 % each, happen once in a thousand.
 #[test]
 fn clean_data_are_called_clean() {
     for (said, kind) in SAID.iter().zip(["estimated", "stated", "huber"]) {
         let with_outliers = said.iter().filter(|s| s.outliers > 0).count();
         let unequal = said.iter().filter(|s| s.noises_differ).count();
-        assert!(with_outliers <= 4, "noise {kind}: outliers in {with_outliers} of {SEEDS} seeds");
-        assert!(unequal <= 4, "noise {kind}: unequal noises in {unequal} of {SEEDS} seeds");
+        assert!(with_outliers <= 3, "noise {kind}: outliers in {with_outliers} of {SEEDS} seeds");
+        assert!(unequal <= 3, "noise {kind}: unequal noises in {unequal} of {SEEDS} seeds");
     }
 }

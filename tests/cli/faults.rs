@@ -51,10 +51,10 @@ fn a_fault_leaves_the_old_files_or_the_new_ones() {
         return;
     }
     for (line, step) in [
-        ("compliance rods/2.toml --out old", 11),
-        (SIMULATE, 9),
-        ("design rod design.toml --resume kept --out designs", 23),
-        ("trial make t --seed 3 --cases 1 --rig", 19),
+        ("compliance rods/2.toml --out old", 17),
+        (SIMULATE, 17),
+        ("design rod design.toml --resume kept --out designs", 41),
+        ("trial make t --seed 3 --cases 1 --rig", 31),
     ] {
         let words: Vec<&str> = line.split_whitespace().collect();
         let prepared = || {

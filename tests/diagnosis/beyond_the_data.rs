@@ -174,11 +174,11 @@ fn oracle(hidden: &Hidden, rod: &str, readings: &str, truth: &str) -> f64 {
     rms(asked.iter().zip(predicted.iter()).map(|((row, read), more)| read - row.predicted - more))
 }
 
-/// Two of each form: never worse than without the law, and most as near as readings of 1 µm can be.
+/// One of each form: never worse than without the law, and most as near as readings of 1 µm can be.
 /// The table of docs/laws.md is that of the seeds 90 000 to 90 039.
 #[test]
 fn a_law_beyond_its_data_is_better_than_none() {
-    const SEEDS: std::ops::Range<u64> = 71_000..71_002;
+    const SEEDS: std::ops::Range<u64> = 71_000..71_001;
     let (mut all, mut near) = (0, 0);
     for hidden in &HIDDEN {
         let errors: Vec<_> = SEEDS.filter_map(|seed| errors(hidden, seed)).collect();
@@ -189,5 +189,5 @@ fn a_law_beyond_its_data_is_better_than_none() {
             near += u32::from(with < 2.0f64.max(1.5 * oracle));
         }
     }
-    assert!(all >= 8 && 4 * near >= 3 * all, "{near} of {all}");
+    assert!(all >= 4 && 4 * near >= 3 * all, "{near} of {all}");
 }

@@ -151,7 +151,7 @@ fn the_chain_of_any_arm_is_the_product_of_its_file() {
 #[test]
 fn random_arms_are_their_products() {
     let mut dice = Dice(7);
-    for _ in 0..60 {
+    for _ in 0..25 {
         let three = |dice: &mut Dice, scale: f64| {
             let v = dice.vector(scale);
             format!("{} {} {}", v.x, v.y, v.z)

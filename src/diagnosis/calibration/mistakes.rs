@@ -17,6 +17,7 @@
 
 mod columns;
 mod draft;
+mod motion;
 mod moves;
 mod quick;
 mod search;
@@ -26,6 +27,7 @@ mod tests;
 use nalgebra::Vector3;
 
 use self::draft::{Change, Draft, change_joints};
+use self::motion::{measure_moves, motion_estimates};
 use self::moves::{Move, Other};
 use self::quick::{Body, Worthwhile};
 use self::search::{Found, Search, State, Step};
@@ -34,16 +36,13 @@ use super::diagnose::{CalibrationDiagnosis, diagnose_calibrated};
 use super::effects::fixture::{BASE_SHIFT, CLAMP_POSE};
 use super::effects::mistakes::FRAME_MISTAKE;
 use crate::calibration::campaign::{Campaign, FileNames, Recording};
-use crate::calibration::{Calibration, Compensation, Mode, Options, Summary, calibrate};
+use crate::calibration::{Compensation, Mode, Options, Summary, calibrate};
 use crate::error::Result;
 use crate::inference::{Description, Effect, Estimate, Finding, Location, Rival};
 use crate::robot::Robot;
 use crate::rod::Rod;
 use crate::spatial::Pose;
-use crate::units::{DEG, MM, UM, URAD, significant};
-
-/// Half of a 95 % interval in standard deviations.
-const COVERAGE: f64 = 1.96;
+use crate::units::{DEG, MM, UM, significant};
 
 /// What a base or a tip that is not where it was said to be costs where it spoils the calibration,
 /// times what a rough guess costs.
@@ -147,51 +146,10 @@ impl Mended {
             found.law = None;
         }
         let mut mistakes = self.found.clone();
-        self.measure_moves(&found.model.calibration, &mut mistakes);
+        measure_moves(&self.campaign.measurements, &found.model.calibration, &mut mistakes);
         diagnosis.findings.splice(0..0, mistakes);
         found.model.recorded = self.recorded;
         Ok(found)
-    }
-}
-
-impl Mended {
-    /// How far the base moved by the calibration, with 95 % intervals: the frame of a station is
-    /// six of its unknowns. Of several moves the order is that of the rows.
-    fn measure_moves(&self, calibration: &Calibration, findings: &mut [Finding]) {
-        let recording = &self.campaign.measurements;
-        let rows = recording.rows.windows(2).filter(|pair| pair[0].station != pair[1].station);
-        let places: Vec<(usize, usize)> = rows.map(|pair| (pair[0].station, pair[1].station)).collect();
-        let row_of = |finding: &Finding| match (&finding.location, finding.effect == &BASE_SHIFT.effect) {
-            (Location::Shift { row, .. }, true) => Some(*row),
-            _ => None,
-        };
-        let mut moves: Vec<&mut Finding> =
-            findings.iter_mut().filter(|finding| row_of(finding).is_some()).collect();
-        moves.sort_by_key(|finding| row_of(finding));
-        if moves.len() != places.len() {
-            return;
-        }
-        let base = calibration.setup.base();
-        let base_at = |station: usize| {
-            let frame = calibration.stations[station].then(&recording.stations[station].frame);
-            frame.inverse().then(&base)
-        };
-        let free = calibration.parameters.len();
-        let variance = |station: usize, k: usize| match station {
-            0 => 0.0,
-            station => {
-                let at = free + 6 * (station - 1) + k;
-                calibration.fit.covariance.matrix.get((at, at)).copied().unwrap_or(0.0)
-            }
-        };
-        for (finding, (before, after)) in moves.into_iter().zip(places) {
-            let mut estimates = motion_estimates(&base_at(before), &base_at(after));
-            for (k, estimate) in estimates.iter_mut().enumerate() {
-                let half = COVERAGE * (variance(before, k) + variance(after, k)).max(0.0).sqrt();
-                (estimate.low, estimate.high) = (estimate.value - half, estimate.value + half);
-            }
-            finding.estimates = estimates;
-        }
     }
 
     /// Robot and campaign as corrected: the robot with what `found` says, and the campaign
@@ -498,19 +456,6 @@ fn turn_joints(validation: &mut Recording, robot: &Robot, tool: Vector3<f64>, ch
     if left(&turned) > left(validation) {
         *validation = turned;
     }
-}
-
-fn motion_estimates(from: &Pose, to: &Pose) -> Vec<Estimate> {
-    let way = to.origin - from.origin;
-    let turn =
-        nalgebra::Rotation3::from_matrix_unchecked(to.rotation * from.rotation.transpose()).scaled_axis();
-    let names = ["dx_um", "dy_um", "dz_um", "rx_urad", "ry_urad", "rz_urad"];
-    let values = [way.x, way.y, way.z, turn.x, turn.y, turn.z];
-    let estimate = |(k, name): (usize, &&str)| {
-        let unit = if k < 3 { UM } else { URAD };
-        Estimate { name: (*name).into(), unit, value: values[k], low: values[k], high: values[k] }
-    };
-    names.iter().enumerate().map(estimate).collect()
 }
 
 /// `pose 7`, with its clamp where several poses have that name.

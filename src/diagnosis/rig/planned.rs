@@ -18,11 +18,15 @@
 #[cfg(test)]
 mod tests;
 
+mod information;
 mod least;
 mod ratio;
 
-use nalgebra::DMatrix;
+use std::ops::Range;
 
+use nalgebra::{DMatrix, DVector};
+
+use self::information::Information;
 use self::least::least;
 pub use self::ratio::plan_ratio;
 use super::effects::registry;
@@ -31,7 +35,7 @@ use super::model::RigModel;
 use super::wanted::Wanted;
 use crate::beam::{Physics, RodModel};
 use crate::error::{Error, Result};
-use crate::inference::{Effect, Evidence, ExperimentDesign, ForwardModel, LoadPlan, Location};
+use crate::inference::{Effect, ExperimentDesign, ForwardModel, LoadPlan, Location};
 use crate::parallel::in_parallel;
 use crate::rig::readings::{Axis, Direction, Reading, Readings};
 use crate::rod::Rod;
@@ -242,13 +246,17 @@ pub fn minutes(loads: &LoadPlan) -> f64 {
 /// Readings that might be made, once each, as one model.
 struct Menu {
     measurements: Vec<Measurement>,
-    /// For each datum the measurement that it belongs to.
-    owner: Vec<usize>,
-    evidence: Evidence,
-    noise: f64,
     between: Vec<&'static Effect>,
-    /// Of each candidate its effect, its place and its columns.
-    candidates: Vec<(&'static Effect, Location, DMatrix<f64>)>,
+    candidates: Vec<Placed>,
+    information: Information,
+}
+
+/// A candidate.
+struct Placed {
+    effect: &'static Effect,
+    place: Location,
+    /// Which columns of all candidates' are its own.
+    columns: Range<usize>,
 }
 
 impl Menu {
@@ -288,15 +296,22 @@ impl Menu {
             readings.rows[datum.row - 1].offset[datum.channel.index()] = Some(datum.predicted);
         }
         let (model, evidence, not_testable) = RigModel::with_effects(&readings, Some(rod), &Wanted::All)?;
-        let mut candidates = Vec::new();
+        let (mut candidates, mut columns): (Vec<Placed>, Vec<DVector<f64>>) = Default::default();
         for (k, candidate) in model.candidates().iter().enumerate() {
             if between.contains(&candidate.effect) && !candidate.is_nonparametric {
-                let columns = model.columns(&[candidate.neutral(k)], 0);
-                candidates.push((candidate.effect, candidate.location.clone(), columns));
+                let first = columns.len();
+                columns.extend(
+                    model.columns(&[candidate.neutral(k)], 0).column_iter().map(|one| one.into_owned()),
+                );
+                candidates.push(Placed {
+                    effect: candidate.effect,
+                    place: candidate.location.clone(),
+                    columns: first..columns.len(),
+                });
             }
         }
         for effect in between {
-            if candidates.iter().all(|(known, ..)| known != effect) {
+            if candidates.iter().all(|known| known.effect != *effect) {
                 let reason = not_testable.iter().find(|one| one.effect == *effect);
                 return Err(Error::NotApplicable {
                     what: format!("a plan that shows {}", effect.name),
@@ -305,54 +320,36 @@ impl Menu {
                 });
             }
         }
-        Ok(Menu {
-            owner: model.data().iter().map(|datum| of_row[datum.row - 1]).collect(),
-            measurements,
-            evidence,
-            noise: bench.noise,
-            between: between.to_vec(),
-            candidates,
-        })
+        let owner: Vec<usize> = model.data().iter().map(|datum| of_row[datum.row - 1]).collect();
+        let zeros = evidence.least_offset.iter().zip(evidence.offsets.column_iter());
+        let zeros = zeros.map(|(least, column)| column * least.max(bench.noise));
+        let all = evidence.nominal.column_iter().chain(evidence.background.column_iter());
+        let unknown: Vec<DVector<f64>> = all.map(|column| column.into_owned()).chain(zeros).collect();
+        let [unknown, columns] = [unknown, columns].map(|columns| match columns.is_empty() {
+            true => DMatrix::zeros(owner.len(), 0),
+            false => DMatrix::from_columns(&columns),
+        });
+        let of = [&owner[..], &evidence.shared[..]];
+        let information = Information::new(&unknown, &columns, bench.noise, of, measurements.len());
+        Ok(Menu { measurements, between: between.to_vec(), candidates, information })
     }
 
     /// For each candidate, beside each other effect and beside nothing, the least ln of the odds.
     fn log_odds(&self, counts: &[usize]) -> Vec<f64> {
-        let rows: Vec<usize> = (0..self.owner.len()).filter(|&i| counts[self.owner[i]] > 0).collect();
         let others = self.between.len();
-        if rows.is_empty() {
-            return vec![0.0; self.candidates.len() * others];
-        }
-        let part = self.evidence.part(&rows);
-        let variance = self.noise * self.noise;
-        let mut scatter = DMatrix::from_fn(rows.len(), rows.len(), |i, j| {
-            let repeats = counts[self.owner[rows[i]]] as f64;
-            let own = f64::from(u8::from(i == j)) + f64::from(u8::from(part.shared[i] == part.shared[j]));
-            own * variance / repeats
-        });
-        scatter += &part.nominal * part.nominal.transpose();
-        scatter += &part.background * part.background.transpose();
-        let zeros: Vec<f64> = part.least_offset.iter().map(|least| least.max(self.noise)).collect();
-        let offsets = DMatrix::from_fn(rows.len(), zeros.len(), |i, j| part.offsets[(i, j)] * zeros[j]);
-        scatter += &offsets * offsets.transpose();
-        let Some(root) = scatter.cholesky() else { return vec![0.0; self.candidates.len() * others] };
-        // Σ₀^(−½)·C, and what each pair has in common
-        let white: Vec<DMatrix<f64>> = self
-            .candidates
-            .iter()
-            .map(|(_, _, columns)| {
-                let columns = columns.select_rows(&rows);
-                root.l_dirty().solve_lower_triangular(&columns).unwrap_or(columns * 0.0)
-            })
-            .collect();
-        let alone: Vec<Alone> = white.iter().map(Alone::new).collect();
+        let gram = self.information.of(counts);
+        let of = |i: usize| self.candidates[i].columns.clone();
+        let shared = |j: usize, i: usize| gram.view((of(j).start, of(i).start), (of(j).len(), of(i).len()));
+        let alone: Vec<Alone> =
+            (0..self.candidates.len()).map(|i| Alone::new(shared(i, i).into_owned())).collect();
         let mut log_odds = Vec::with_capacity(self.candidates.len() * others);
-        for (i, (effect, ..)) in self.candidates.iter().enumerate() {
+        for (i, Placed { effect, .. }) in self.candidates.iter().enumerate() {
             log_odds.push(0.5 * (alone[i].gram.trace() - alone[i].ln));
             for other in self.between.iter().filter(|other| other != &effect) {
-                let rivals = (0..self.candidates.len()).filter(|&j| self.candidates[j].0 == *other);
+                let rivals = (0..self.candidates.len()).filter(|&j| self.candidates[j].effect == *other);
                 let apart = |j: usize| {
-                    let shared = white[j].tr_mul(&white[i]);
-                    let taken = &alone[j].inverse * (&alone[j].gram + &shared * shared.transpose());
+                    let shared = shared(j, i);
+                    let taken = &alone[j].inverse * (&alone[j].gram + shared * shared.transpose());
                     0.5 * (alone[i].gram.trace() - taken.trace() + alone[j].ln - alone[i].ln)
                 };
                 log_odds.push(rivals.map(apart).fold(f64::INFINITY, f64::min).max(0.0));
@@ -397,7 +394,7 @@ impl Menu {
         });
         let others = self.between.len();
         let mut distinguished: Vec<Distinguished> = Vec::new();
-        for (i, (effect, place, _)) in self.candidates.iter().enumerate() {
+        for (i, Placed { effect, place, .. }) in self.candidates.iter().enumerate() {
             let rivals = self.between.iter().filter(|other| *other != effect).map(|other| Some(*other));
             for (k, against) in [None].into_iter().chain(rivals).enumerate() {
                 let entry = (place.clone(), now[i * others + k], all[i * others + k]);
@@ -428,8 +425,7 @@ struct Alone {
 }
 
 impl Alone {
-    fn new(white: &DMatrix<f64>) -> Alone {
-        let gram = white.tr_mul(white);
+    fn new(gram: DMatrix<f64>) -> Alone {
         let whole = &gram + DMatrix::identity(gram.nrows(), gram.ncols());
         match whole.clone().cholesky() {
             Some(root) => Alone {

@@ -69,6 +69,40 @@ fn assert_all(found: &[f64], expected: &[f64]) {
     }
 }
 
+/// A sensor that shows almost twice as much may do so, beside the shear of rod 5#, which its dy
+/// follows; one that shows nearly three times as much is in another unit, or shows something else.
+#[test]
+fn a_sensor_has_no_scale_beyond_two() {
+    let rod = rod("");
+    let mut text = "axis,load_n,trial,dx_um,dy_um,dz_um\n".to_owned();
+    for axis in ["x", "y", "z"] {
+        for trial in 1..4 {
+            for load in [5, 10, 15, 20] {
+                text += &format!("{axis},{load},{trial},0,0,0\n");
+            }
+        }
+    }
+    let empty = readings(&text);
+    let (base, _) = RigModel::new(&empty, Some(&rod)).unwrap();
+    let may_be_scale = |shows: f64| {
+        let mut random = crate::statistics::Random::seeded(2, 6);
+        let mut shown = empty.clone();
+        for datum in base.data() {
+            let factor = if datum.channel == Axis::Y { shows } else { 1.0 };
+            let value = factor * datum.predicted + UM * random.normal();
+            shown.rows[datum.row - 1].offset[datum.channel.index()] = Some(value);
+        }
+        let (model, evidence) = RigModel::new(&shown, Some(&rod)).unwrap();
+        let findings = infer(&model, &evidence).findings;
+        assert!(!findings.is_empty(), "{shows}");
+        findings.iter().any(|finding| {
+            let rivals = finding.rivals.iter().map(|rival| rival.effect.name);
+            rivals.chain([finding.effect.name]).any(|name| name == "sensor_scale")
+        })
+    };
+    assert!(may_be_scale(1.8) && !may_be_scale(2.7));
+}
+
 #[test]
 fn the_base_prediction_is_the_beam_model() {
     let rod = rod("");

@@ -157,7 +157,8 @@ impl<'a> Remainder<'a> {
         let bounds = vec![UNBOUNDED; count];
         // nothing is beside them any more
         let nothing = DMatrix::zeros(0, count);
-        let block = ColumnBlock { gram, cross: nothing.clone(), solved: nothing, product, bounds };
+        let (cross, solved) = (nothing.as_view(), nothing.as_view());
+        let block = ColumnBlock { gram, cross, solved, product: product.as_view(), bounds };
         let (rest, score) = &self.rest;
         let gain = rest.about(score, &block);
         if gain.is_finite() { gain } else { f64::NEG_INFINITY }

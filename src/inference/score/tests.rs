@@ -44,9 +44,9 @@ fn an_effect_is_as_large_as_it_is_and_screening_says_so_too() {
         assert!((wide.estimate[0] * size / fitted - 1.0).abs() < 0.05, "size {size}: {}", wide.estimate[0]);
         let none = Moments::new(&recorded, &DMatrix::zeros(80, 0), vec![], vec![], 80, 0.0);
         let (gram, product) = (columns.tr_mul(&columns), columns.tr_mul(&recorded));
-        let none_of_them = || DMatrix::zeros(0, 1);
-        let (cross, solved) = (none_of_them(), none_of_them());
-        let more = ColumnBlock { gram: &gram, cross, solved, product, bounds: vec![FREE] };
+        let none_of_them = DMatrix::zeros(0, 1);
+        let (cross, solved) = (none_of_them.as_view(), none_of_them.as_view());
+        let more = ColumnBlock { gram: &gram, cross, solved, product: product.as_view(), bounds: vec![FREE] };
         let before = none.score();
         let about = none.about(&before, &more);
         let exact = none.beyond(&before, &more).score().log_evidence - before.log_evidence;
@@ -111,11 +111,12 @@ fn worth(r: &DVector<f64>, columns: &DMatrix<f64>, own: &DMatrix<f64>) -> (f64, 
     let score = hypothesis.score();
     let gram = own.tr_mul(own);
     let cross = columns.tr_mul(own);
+    let (solved, product) = (score.solved(&cross), own.tr_mul(r));
     let more = ColumnBlock {
         gram: &gram,
-        solved: score.solved(&cross),
-        cross,
-        product: own.tr_mul(r),
+        solved: solved.as_view(),
+        cross: cross.as_view(),
+        product: product.as_view(),
         bounds: vec![FREE; own.ncols()],
     };
     let exact =

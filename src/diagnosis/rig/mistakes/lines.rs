@@ -135,10 +135,11 @@ pub(super) fn fit(points: &[(f64, f64)]) -> Fit {
         found.zero = values[1];
         found.play = values[2];
         let mut sizes: Vec<f64> = points.iter().map(|&(x, y)| (y - found.at(x)).abs()).collect();
-        sizes.sort_by(f64::total_cmp);
+        let middle = sizes.len() / 2;
+        let (_, &mut median, _) = sizes.select_nth_unstable_by(middle, f64::total_cmp);
         // the parameters take up some of the scatter of few points
         let few = (points.len() as f64 / (points.len() as f64 - 2.0).max(1.0)).sqrt();
-        scatter = (1.4826 * few * sizes[sizes.len() / 2]).max(floor);
+        scatter = (1.4826 * few * median).max(floor);
         found.scatter = scatter;
         found.error = (scatter * inverse[(0, 0)].max(0.0).sqrt() / load).max(0.002 * found.slope.abs());
         for (&(x, y), weight) in points.iter().zip(&mut weights) {

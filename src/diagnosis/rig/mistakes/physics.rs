@@ -285,13 +285,27 @@ impl Seen<'_> {
         let part = |is_of: &dyn Fn(&View) -> bool| {
             column(&|k| if is_of(&self.views[k]) { expected[k] } else { 0.0 })
         };
+        let whole = column(&|k| expected[k]);
+        let shear = column(&|k| self.of(k, &self.physics.shear));
+        let joints: Vec<_> = self.physics.joints.iter().map(|joint| column(&|k| self.of(k, joint))).collect();
+        let axes: Vec<_> = Axis::ALL.map(|axis| part(&|view| view.axis == axis)).into();
+        let channels: Vec<_> = Axis::ALL.map(|channel| part(&|view| view.channel == channel)).into();
+        let squares = |of: &[DVector<f64>]| {
+            let mut sum = DMatrix::zeros(n, n);
+            of.iter().for_each(|column| sum.ger(1.0, column, column, 1.0));
+            sum
+        };
+        let of_whole = squares(std::slice::from_ref(&whole));
+        let of_shear = squares(std::slice::from_ref(&shear));
+        let squares =
+            [of_whole, of_shear, squares(&joints), squares(&axes), squares(&channels), squares(&turns)];
         Columns {
-            whole: column(&|k| expected[k]),
-            shear: column(&|k| self.of(k, &self.physics.shear)),
-            joints: self.physics.joints.iter().map(|joint| column(&|k| self.of(k, joint))).collect(),
-            axes: Axis::ALL.map(|axis| part(&|view| view.axis == axis)).into(),
-            channels: Axis::ALL.map(|channel| part(&|view| view.channel == channel)).into(),
+            shear,
+            joints,
+            axes,
+            channels,
             turns,
+            squares,
             own: DVector::from_vec(self.largest(expected)),
         }
     }
@@ -313,14 +327,11 @@ impl Seen<'_> {
         for (k, line) in self.lines.iter().enumerate() {
             covariance[(k, k)] = line.fit.error.powi(2) + (factor * mood.own * columns.own[k]).powi(2);
         }
-        let mut add =
-            |column: &DVector<f64>, size: f64| covariance.ger((factor * size).powi(2), column, column, 1.0);
-        add(&columns.whole, mood.scale.0);
-        add(&columns.shear, mood.shear);
-        columns.joints.iter().for_each(|joint| add(joint, mood.joint));
-        columns.axes.iter().for_each(|axis| add(axis, mood.axis));
-        columns.channels.iter().for_each(|channel| add(channel, mood.channel));
-        columns.turns.iter().for_each(|turn| add(turn, mood.turn));
+        let sizes = [mood.scale.0, mood.shear, mood.joint, mood.axis, mood.channel, mood.turn];
+        for (squares, size) in columns.squares.iter().zip(sizes) {
+            let weight = (factor * size).powi(2);
+            covariance.zip_apply(squares, |sum, square| *sum += weight * square);
+        }
         let off = DVector::from_fn(n, |k, _| self.lines[k].fit.slope - scale * expected[k]);
         let root = Cholesky::new(covariance)?;
         let log_root: f64 = root.l_dirty().diagonal().iter().map(|d| d.ln()).sum();
@@ -332,11 +343,13 @@ impl Seen<'_> {
     fn singles(&self, columns: &Columns, with: &Solved) -> Vec<f64> {
         let mut terms = Vec::new();
         let mut single = |column: &DVector<f64>, size: f64, weight: f64, only_softer: bool| {
-            let along = with.root.solve(column);
-            let (own, projection) = (column.dot(&along), column.dot(&with.solved));
+            let projection = column.dot(&with.solved);
             if only_softer && projection <= 0.0 {
                 return;
             }
+            // cᵀΣ⁻¹c = |L⁻¹c|²
+            let Some(along) = with.root.l_dirty().solve_lower_triangular(column) else { return };
+            let own = along.norm_squared();
             let grown = 1.0 + size * size * own;
             let gained = 0.5 * (size * projection).powi(2) / grown - 0.5 * grown.ln();
             terms.push(weight + with.log_density + gained);
@@ -360,12 +373,13 @@ impl Seen<'_> {
 }
 
 struct Columns {
-    whole: DVector<f64>,
     shear: DVector<f64>,
     joints: Vec<DVector<f64>>,
     axes: Vec<DVector<f64>>,
     channels: Vec<DVector<f64>>,
     turns: Vec<DVector<f64>>,
+    /// Σ c·cᵀ of the whole rod, shear, joints, axes, channels and turns: the same for all moods.
+    squares: [DMatrix<f64>; 6],
     own: DVector<f64>,
 }
 

@@ -157,7 +157,7 @@ fn with_loads(readings: &Readings, factor: f64) -> Readings {
 #[test]
 fn two_mistakes_are_found_together() {
     let mut cases = Cases::default();
-    recordings(&[Bench::Full, Bench::Own, Bench::OneLine], 3, |what, file, clean| {
+    recordings(&[Bench::Full, Bench::Own, Bench::OneLine], 2, |what, file, clean| {
         let mut both = with_loads(&clean, 1.0 / G);
         scaled(&mut both, Axis::Y, -1.0);
         let expected = ["sign_mistake dy_um", "unit_mistake load_n"];
@@ -174,7 +174,7 @@ fn two_mistakes_are_found_together() {
 #[test]
 fn clean_recordings_have_no_mistakes() {
     let mut cases = Cases::default();
-    recordings(&BENCHES, 25, |what, file, clean| {
+    recordings(&BENCHES, 10, |what, file, clean| {
         cases.expect(&what, &clean, file, &[]);
         assert!(found(&clean, None).is_empty(), "{what}");
         for factor in [1.0 / 0.3, 2.3, 0.6] {
@@ -207,7 +207,7 @@ fn no_physics_is_a_mistake_however_large() {
             if candidate.is_nonparametric || is_mistake || is_one_of_many {
                 continue;
             }
-            for times in [3.0f64, 10.0, -10.0] {
+            for times in [if index % 2 == 0 { 3.0f64 } else { 10.0 }, -10.0] {
                 let value = |p: &crate::inference::Parameter| {
                     // a joint that alone yields twice as much as the whole rod could not be
                     // distinguished from pounds

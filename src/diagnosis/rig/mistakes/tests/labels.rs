@@ -5,7 +5,7 @@ use super::*;
 #[test]
 fn units_of_loads_are_named() {
     let mut cases = Cases::default();
-    recordings(&[Bench::Full, Bench::Own], 4, |what, file, clean| {
+    recordings(&[Bench::Full, Bench::Own], 2, |what, file, clean| {
         for factor in [G, POUND, 1e-3 * G, POUND / 16.0, 1.0 / G] {
             let expected = ["unit_mistake load_n"];
             cases.expect(&format!("{what} × {factor}"), &with_loads(&clean, 1.0 / factor), file, &expected);
@@ -18,7 +18,7 @@ fn units_of_loads_are_named() {
         of_axis.for_each(|row| row.load /= G);
         cases.expect(&format!("{what} z in kg"), &one_axis, file, &["unit_mistake load_n, axis z"]);
     });
-    recordings(&[Bench::OneAxis, Bench::OneLine], 4, |what, file, clean| {
+    recordings(&[Bench::OneAxis, Bench::OneLine], 2, |what, file, clean| {
         cases.expect(&format!("{what} kg"), &with_loads(&clean, 1.0 / G), file, &["unit_mistake load_n"]);
     });
     cases.check();
@@ -45,7 +45,7 @@ fn a_unit_is_named_beside_a_modulus_that_is_off() {
 #[test]
 fn units_of_readings_are_named_in_one_channel_and_in_all() {
     let mut cases = Cases::default();
-    recordings(&[Bench::Full, Bench::Own], 3, |what, file, clean| {
+    recordings(&[Bench::Full, Bench::Own], 1, |what, file, clean| {
         for factor in [1e3, 25.4e3, 25.4, 1e-3, 1e6] {
             let all = all_scaled(&clean, 1.0 / factor);
             cases.expect(&format!("{what} {factor}"), &all, file, &["unit_mistake dx_um, dy_um, dz_um"]);
@@ -62,7 +62,7 @@ fn units_of_readings_are_named_in_one_channel_and_in_all() {
 #[test]
 fn signs_are_named_where_they_can_be_seen() {
     let mut cases = Cases::default();
-    recordings(&[Bench::Full, Bench::Own, Bench::OneLine], 3, |what, file, clean| {
+    recordings(&[Bench::Full, Bench::Own, Bench::OneLine], 2, |what, file, clean| {
         for (channel, expected) in [(Axis::Y, "sign_mistake dy_um"), (Axis::Z, "sign_mistake dz_um")] {
             if clean.rows.iter().all(|row| row.offset[channel.index()].is_none()) {
                 continue;
@@ -74,7 +74,7 @@ fn signs_are_named_where_they_can_be_seen() {
             cases.expect(&format!("{what} {channel}, soft"), &soft, file, &[expected]);
         }
     });
-    recordings(&[Bench::Full], 3, |what, file, clean| {
+    recordings(&[Bench::Full], 2, |what, file, clean| {
         let expected = ["sign_mistake dx_um, dy_um, dz_um"];
         cases.expect(&format!("{what} all"), &all_scaled(&clean, -1.0), file, &expected);
         let mut axis = clean.clone();
@@ -97,7 +97,7 @@ fn signs_are_named_where_they_can_be_seen() {
 #[test]
 fn names_that_were_exchanged_are_found() {
     let mut cases = Cases::default();
-    recordings(&[Bench::Full, Bench::Own], 3, |what, file, clean| {
+    recordings(&[Bench::Full, Bench::Own], 1, |what, file, clean| {
         for (a, b, channels, axes) in [
             (0, 1, "swap_mistake dx_um and dy_um", "swap_mistake axis x and y"),
             (1, 2, "swap_mistake dy_um and dz_um", "swap_mistake axis y and z"),

@@ -156,7 +156,8 @@ pub(super) fn saturated(data: &[Datum], lines: &[Line], by_rod: Option<&Expected
                 let beyond = expected.iter().map(|(value, _)| side * value - limit).collect::<Vec<_>>();
                 let scatter = expected.iter().fold(0.0, |most: f64, (_, scatter)| most.max(*scatter));
                 let least = expected.iter().fold(f64::INFINITY, |least, (_, scatter)| least.min(*scatter));
-                let is_tied = at.len() >= TIED.0 && step > 0.0 && least > TIED.1 * step;
+                let is_tied =
+                    at.len() >= TIED.0 && step > 0.0 && least > TIED.1 * step && trembles(data, &own);
                 let most_beyond = beyond.iter().fold(0.0, |most: f64, beyond| most.max(*beyond));
                 cut_off(&beyond, scatter, limit, step.max(SAME * most)).or(is_tied.then_some(most_beyond))
             };
@@ -180,6 +181,15 @@ pub(super) fn saturated(data: &[Datum], lines: &[Line], by_rod: Option<&Expected
         }
     }
     found
+}
+
+/// True where most readings of a channel differ: displacements that were set are the same again and
+/// again.
+fn trembles(data: &[Datum], own: &[usize]) -> bool {
+    let mut values: Vec<f64> = own.iter().map(|&i| data[i].measured).collect();
+    values.sort_by(f64::total_cmp);
+    values.dedup();
+    2 * values.len() > own.len()
 }
 
 /// How far beyond a limit the farthest of some readings would lie, where they show that they are

@@ -109,6 +109,8 @@ fn readings_that_all_end_at_one_value_are_cut_off_wherever_the_line_goes() {
     // the line reaches the limit, and goes no farther
     assert_eq!(found(&text(&|y| y.min(20.0)), None), ["saturated_sensor dy_um"]);
     assert!(found(&text(&|y| y), None).is_empty());
+    // displacements that were set are the same wherever they are
+    assert!(found(&text(&|y| (y / 7.0).round() * 7.0), None).is_empty());
     // a display with steps of a quarter of the noise ends so by chance
     assert!(found(&text(&|y| y.round()), None).is_empty());
 }

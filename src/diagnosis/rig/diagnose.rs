@@ -72,6 +72,9 @@ pub fn diagnose_with(
         Ok::<_, Error>((model, evidence, not_testable, diagnosis))
     };
     let (mut model, mut evidence, mut not_testable, mut diagnosis) = inferred(&mended, None)?;
+    if mended.take_zeros_back(&diagnosis.findings) {
+        (model, evidence, not_testable, diagnosis) = inferred(&mended, None)?;
+    }
     let others = another_rod::others(&mended, &model, &evidence, &diagnosis)?;
     match others.first() {
         Some(meant) if meant.is_meant() => {

@@ -40,6 +40,7 @@ use self::search::{Found, Search, Trial};
 pub(super) use self::search::{ODDS, RARE};
 use self::sensors::Expected;
 use super::datum;
+use super::effects::mistakes::OFFSET_MISTAKE;
 use super::structure::check_stations;
 use crate::error::Result;
 use crate::inference::{Description, Effect, Estimate, Finding, Location, Rival};
@@ -63,6 +64,8 @@ pub(super) struct Mended {
     pub others: Vec<OtherRod>,
     /// False where nothing that could be compared is left of the readings.
     pub has_data: bool,
+    /// The readings before zeros were taken off, where some were.
+    before_zeros: Option<Readings>,
 }
 
 /// One line for each mistake that `readings` seem to hold, for those who do not ask for a
@@ -84,6 +87,7 @@ pub(super) fn mended(readings: &Readings, rod: Option<&Rod>, others: &[(String, 
         suspicions: Vec::new(),
         others: Vec::new(),
         has_data: true,
+        before_zeros: None,
     };
     mended.sensors()?;
     if mended.has_data {
@@ -213,6 +217,7 @@ impl Mended {
             return;
         }
         let data = datum::all(&self.readings.rows);
+        let before = (self.readings.clone(), self.found.len());
         for part in groups::offsets(&data, &lines(&data, |_| true)) {
             let zero = part.estimates.first().map_or(0.0, |estimate| estimate.value);
             for &i in &part.data {
@@ -221,6 +226,23 @@ impl Mended {
             }
             self.add_part(part);
         }
+        self.before_zeros = (self.found.len() > before.1).then_some(before.0);
+    }
+
+    /// Takes zeros back that `findings` of the corrected readings undo: they were none. True where
+    /// there were such.
+    pub fn take_zeros_back(&mut self, findings: &[Finding]) -> bool {
+        let is_zero = |found: &Finding| *found.effect == OFFSET_MISTAKE;
+        let is_undone = |zero: &Finding| {
+            is_zero(zero) && findings.iter().any(|other| is_zero(other) && other.location == zero.location)
+        };
+        if !self.found.iter().any(is_undone) {
+            return false;
+        }
+        let Some(readings) = self.before_zeros.take() else { return false };
+        self.readings = readings;
+        self.found.retain(|found| !is_zero(found));
+        true
     }
 
     /// Takes another rod for the one that was meant: what it says of the readings is `explains` (m,

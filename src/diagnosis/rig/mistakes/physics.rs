@@ -84,6 +84,8 @@ const SINGLE_TURN: f64 = 0.09;
 /// 2.
 const COMMON: f64 = 0.8;
 const NEAR: f64 = 0.693;
+/// A slope that is known no better than to this share counts half.
+const KNOWN: f64 = 0.05;
 
 /// What it costs to say that a rod moves against its load: a passive structure cannot.
 const AGAINST_THE_LOAD: f64 = 30.0;
@@ -163,6 +165,13 @@ pub(super) struct Verdict {
     pub log_evidence: f64,
     /// Ln of the factor that all lines have in common, measured over expected.
     pub log_scale: f64,
+    /// The same, where a line counts as far as its slope is known.
+    pub log_scale_of_known: f64,
+}
+
+/// How much a line counts whose slope has this relative error.
+fn known(line: &Line) -> f64 {
+    1.0 / (1.0 + (line.fit.error / (KNOWN * line.fit.slope)).powi(2))
 }
 
 impl Seen<'_> {
@@ -176,16 +185,17 @@ impl Seen<'_> {
         view.factor * parts[self.pair[line]][(view.channel.index(), view.axis.index())]
     }
 
-    /// Ln of the common factor: the weighted median of the lines' own, which some wrong ones do not
-    /// move; and whether nearly all lines have it.
-    fn log_scale(&self, expected: &[f64]) -> (f64, bool) {
+    /// Ln of the common factor: the median of the lines' own, weighted by what each shows of its
+    /// load and by what it `counts`, which some wrong ones do not move; and whether nearly all lines
+    /// have it.
+    fn log_scale(&self, expected: &[f64], counts: impl Fn(&Line) -> f64) -> (f64, bool) {
         let most = self.largest(expected);
         let mut ratios: Vec<(f64, f64)> = Vec::new();
         for (k, line) in self.lines.iter().enumerate() {
             let (b, e) = (line.fit.slope, expected[k]);
             let relative = e.abs() * line.largest_load / (most[k] * line.largest_load).max(f64::MIN_POSITIVE);
             if relative > 0.1 && b != 0.0 && b.abs() > 3.0 * line.fit.error {
-                ratios.push(((b / e).abs().ln(), relative));
+                ratios.push(((b / e).abs().ln(), relative * counts(line)));
             }
         }
         ratios.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -220,7 +230,8 @@ impl Seen<'_> {
     /// How well the slopes are explained, with all that ordinary physics may add.
     pub fn verdict(&self) -> Verdict {
         let expected = self.expected();
-        let (log_scale, is_common) = self.log_scale(&expected);
+        let (log_scale, is_common) = self.log_scale(&expected, |_| 1.0);
+        let (log_scale_of_known, _) = self.log_scale(&expected, known);
         let columns = self.columns(&expected);
         let mut terms = Vec::new();
         for (mood, is_first) in MOODS.iter().zip([true, false, false, false]) {
@@ -242,6 +253,7 @@ impl Seen<'_> {
         Verdict {
             log_evidence: if log_evidence.is_nan() { f64::NEG_INFINITY } else { log_evidence },
             log_scale,
+            log_scale_of_known,
         }
     }
 

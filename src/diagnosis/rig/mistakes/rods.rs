@@ -161,8 +161,8 @@ pub(super) fn likely(
         let verdict = of(&other.rod)?;
         // of one file's numbers none is nearer by chance
         let within: f64 = if other.effect == &ROD_MISTAKE { OTHER } else { BESIDE };
-        let is_likely =
-            verdict.log_scale.abs() <= within.ln() && verdict.log_evidence > own.log_evidence - FAR_BEHIND;
+        let is_likely = verdict.log_scale_of_known.abs() <= within.ln()
+            && verdict.log_evidence > own.log_evidence - FAR_BEHIND;
         is_likely.then_some((verdict.log_evidence, other))
     });
     let mut known: Vec<(f64, OtherRod)> = known.collect();

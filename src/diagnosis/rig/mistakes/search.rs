@@ -172,7 +172,8 @@ impl Trial<'_> {
             let score = f64::NEG_INFINITY;
             return moves.is_empty().then_some(State { moves, change, log_scale: 0.0, score });
         }
-        let Verdict { log_evidence, log_scale } = self.search.seen(self.physics(&change)?, &change).verdict();
+        let Verdict { log_evidence, log_scale, .. } =
+            self.search.seen(self.physics(&change)?, &change).verdict();
         let is_within = moves.iter().all(|&number| log_scale.abs() <= self.moves[number].within.ln());
         let prior: f64 = moves.iter().map(|&number| RARE + self.moves[number].log_prior).sum();
         let score = log_evidence + prior - self.search.bent_too_far(&change);
@@ -286,7 +287,8 @@ impl Trial<'_> {
         for &number in moves {
             change = change.and(&self.moves[number].change)?;
         }
-        let Verdict { log_evidence, log_scale } = self.search.seen(self.physics(&change)?, &change).verdict();
+        let Verdict { log_evidence, log_scale, .. } =
+            self.search.seen(self.physics(&change)?, &change).verdict();
         let prior: f64 = moves.iter().map(|&number| RARE + self.moves[number].log_prior).sum();
         let score = log_evidence + prior - self.search.bent_too_far(&change);
         Some(State { moves: moves.to_vec(), change, log_scale, score })

@@ -38,8 +38,9 @@ const SCALE: f64 = 0.1;
 /// How far beyond a limit the readings would lie, as a share of it.
 const BEYOND: f64 = 0.05;
 /// So many readings that are the largest to the last digit are cut off, wherever they would lie,
-/// where noise is more than so many steps of the display: of readings that merely end there about
-/// an eighth of one more lies within a step of the largest, and four more by a chance of 1e-5.
+/// where noise, and what the line goes on by between them, is more than so many steps of the
+/// display: of readings that merely end there about an eighth of one more lies within a step of the
+/// largest, and four more by a chance of 1e-5. Repeats of one load may well be the same.
 const TIED: (usize, f64) = (5, 20.0);
 
 /// What the rod says of each line.
@@ -156,10 +157,12 @@ pub(super) fn saturated(data: &[Datum], lines: &[Line], by_rod: Option<&Expected
                 let beyond = expected.iter().map(|(value, _)| side * value - limit).collect::<Vec<_>>();
                 let scatter = expected.iter().fold(0.0, |most: f64, (_, scatter)| most.max(*scatter));
                 let least = expected.iter().fold(f64::INFINITY, |least, (_, scatter)| least.min(*scatter));
-                let is_tied =
-                    at.len() >= TIED.0 && step > 0.0 && least > TIED.1 * step && trembles(data, &own);
-                let most_beyond = beyond.iter().fold(0.0, |most: f64, beyond| most.max(*beyond));
-                cut_off(&beyond, scatter, limit, step.max(SAME * most)).or(is_tied.then_some(most_beyond))
+                let (low, high) = range(&beyond);
+                let is_tied = at.len() >= TIED.0
+                    && step > 0.0
+                    && least.min(high - low) > TIED.1 * step
+                    && trembles(data, &own);
+                cut_off(&beyond, scatter, limit, step.max(SAME * most)).or(is_tied.then_some(high.max(0.0)))
             };
             let Some(high) = [of_lines, of_rod].into_iter().flatten().find_map(beyond) else { continue };
             let name = column(channel);
@@ -183,6 +186,10 @@ pub(super) fn saturated(data: &[Datum], lines: &[Line], by_rod: Option<&Expected
     found
 }
 
+fn range(values: &[f64]) -> (f64, f64) {
+    values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), of| (low.min(*of), high.max(*of)))
+}
+
 /// True where most readings of a channel differ: displacements that were set are the same again and
 /// again.
 fn trembles(data: &[Datum], own: &[usize]) -> bool {
@@ -195,9 +202,7 @@ fn trembles(data: &[Datum], own: &[usize]) -> bool {
 /// How far beyond a limit the farthest of some readings would lie, where they show that they are
 /// cut off there; `beyond` is what is expected of each, with its scatter.
 fn cut_off(beyond: &[f64], scatter: f64, limit: f64, step: f64) -> Option<f64> {
-    let (low, high) = beyond
-        .iter()
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), of| (low.min(*of), high.max(*of)));
+    let (low, high) = range(beyond);
     let mean = beyond.iter().sum::<f64>() / beyond.len() as f64;
     // the same value to the last digit at loads that differ, all of them beyond; friction holds
     // a rod on the way down, but not all of these

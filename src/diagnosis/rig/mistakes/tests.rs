@@ -268,3 +268,44 @@ fn a_slip_over_runs_along_other_axes_is_no_zero_that_was_not_taken() {
     assert_eq!(found(&[6]), ["offset_mistake"]);
     assert_eq!(found(&[6, 7]), [""; 0]);
 }
+
+/// A zero of dz in one run of eight, taken off at first.
+#[test]
+fn a_zero_that_the_model_undoes_was_none() {
+    let rod = rod(ROD_5);
+    let mut text = "axis,load_n,trial,dy_um,dz_um\n".to_owned();
+    for run in 0..8 {
+        let (axis, [dy, dz]) = if run % 2 == 0 { ("y", [45.0, 0.0]) } else { ("z", [0.0, 40.0]) };
+        let zero = if run == 6 { 2000.0 } else { 0.0 };
+        for load in [5.0, 10.0, 15.0, 20.0] {
+            text += &format!("{axis},{load},{},{:.0},{:.0}\n", run / 2 + 1, dy * load, dz * load + zero);
+        }
+    }
+    let readings = Readings::from_text("f", &text).unwrap();
+    let mut mended = mended(&readings, Some(&rod), &[]).unwrap();
+    let [zero] = &mended.found[..] else { panic!("{:?}", mended.found) };
+    let elsewhere = Finding { location: Location::Key("dx_um".into()), ..zero.clone() };
+    let undone = zero.clone();
+    assert!(!mended.take_zeros_back(&[elsewhere]) && mended.found.len() == 1);
+    assert!(mended.readings.rows != readings.rows);
+    assert!(mended.take_zeros_back(std::slice::from_ref(&undone)) && mended.found.is_empty());
+    assert!(mended.readings.rows == readings.rows);
+    assert!(!mended.take_zeros_back(&[undone]));
+}
+
+/// A straight rod along its own axis: nothing of that can be read, but a drift with the load.
+#[test]
+fn a_rod_is_known_by_the_lines_that_show_it() {
+    let (file, meant) = (rod(ROD_5), straight());
+    let mut readings = recorded(&meant, Bench::Own, 3);
+    readings.rows.retain(|row| row.direction.axis != Axis::X);
+    for row in readings.rows.iter_mut().filter(|row| row.direction.axis == Axis::Z) {
+        let drift = 0.2 * UM * row.load * f64::from(row.direction.sign);
+        row.offset[2].iter_mut().for_each(|z| *z += drift);
+    }
+    let others = [("straight.toml".to_owned(), meant)];
+    let known = mended(&readings, Some(&file), &others).unwrap();
+    let named = known.found.iter().map(|found| found.location.to_string());
+    let tried = known.others.iter().map(|other| other.location.clone());
+    assert!(named.chain(tried).any(|at| at == "straight.toml"), "{:?}", known.found);
+}

@@ -186,8 +186,8 @@ impl Seen<'_> {
     }
 
     /// Ln of the common factor: the median of the lines' own, weighted by what each shows of its
-    /// load and by what it `counts`, which some wrong ones do not move; and whether nearly all lines
-    /// have it.
+    /// load and by what it `counts`, which some wrong ones do not move; and whether nearly all have
+    /// it.
     fn log_scale(&self, expected: &[f64], counts: impl Fn(&Line) -> f64) -> (f64, bool) {
         let most = self.largest(expected);
         let mut ratios: Vec<(f64, f64)> = Vec::new();

@@ -183,6 +183,9 @@ fn suspects_at_most(count: usize) -> usize {
 /// worse without it, nor without it and another one that it undoes, it has no name. What happened
 /// once says nothing of other data. Nor do they speak against an effect in whose place the numbers
 /// of the file would be as far off as they cannot be: these predict as well as it does.
+///
+/// Where a curve would then be left that is less likely than what it takes the place of, by the
+/// odds of a name, the names stay: something is there, and this is likelier.
 fn confirmed(
     model: &Linearised<'_>,
     search: &Search,
@@ -212,7 +215,6 @@ fn confirmed(
     }
     let shorter = search.fit(&kept);
     let left_over = search.remains(&shorter);
-    // something is there then: a name that is so much likelier than the curve in its place stays
     let is_likelier = |longer: &Hypothesis| hypothesis.log_probability > longer.log_probability + NAMED.ln();
     if let Some(DiscrepancyModel::Curve(longer)) = &left_over
         && before_that.is_none()

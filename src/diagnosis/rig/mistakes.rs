@@ -64,8 +64,16 @@ pub(super) struct Mended {
     pub others: Vec<OtherRod>,
     /// False where nothing that could be compared is left of the readings.
     pub has_data: bool,
-    /// The readings before zeros were taken off, where some were.
-    before_zeros: Option<Readings>,
+    /// The zeros that were taken off.
+    zeros: Vec<Zero>,
+}
+
+/// A zero that was taken off.
+#[derive(Debug, Clone)]
+struct Zero {
+    location: Location,
+    /// Row, channel and what stood there, m.
+    before: Vec<(usize, usize, Option<f64>)>,
 }
 
 /// One line for each mistake that `readings` seem to hold, for those who do not ask for a
@@ -87,7 +95,7 @@ pub(super) fn mended(readings: &Readings, rod: Option<&Rod>, others: &[(String, 
         suspicions: Vec::new(),
         others: Vec::new(),
         has_data: true,
-        before_zeros: None,
+        zeros: Vec::new(),
     };
     mended.sensors()?;
     if mended.has_data {
@@ -217,32 +225,36 @@ impl Mended {
             return;
         }
         let data = datum::all(&self.readings.rows);
-        let before = (self.readings.clone(), self.found.len());
         for part in groups::offsets(&data, &lines(&data, |_| true)) {
             let zero = part.estimates.first().map_or(0.0, |estimate| estimate.value);
+            let mut before = Vec::with_capacity(part.data.len());
             for &i in &part.data {
-                let offset = &mut self.readings.rows[data[i].row - 1].offset[data[i].channel.index()];
+                let (row, channel) = (data[i].row - 1, data[i].channel.index());
+                let offset = &mut self.readings.rows[row].offset[channel];
+                before.push((row, channel, *offset));
                 *offset = offset.map(|offset| offset - zero);
             }
+            self.zeros.push(Zero { location: Location::Key(part.location.clone()), before });
             self.add_part(part);
         }
-        self.before_zeros = (self.found.len() > before.1).then_some(before.0);
     }
 
-    /// Takes zeros back that `findings` of the corrected readings undo: they were none. True where
-    /// there were such.
+    /// Takes the zeros back that `findings` of the corrected readings undo: they were none. True
+    /// where there were such.
     pub fn take_zeros_back(&mut self, findings: &[Finding]) -> bool {
-        let is_zero = |found: &Finding| *found.effect == OFFSET_MISTAKE;
-        let is_undone = |zero: &Finding| {
-            is_zero(zero) && findings.iter().any(|other| is_zero(other) && other.location == zero.location)
+        let is_zero_at = |found: &Finding, location: &Location| {
+            *found.effect == OFFSET_MISTAKE && found.location == *location
         };
-        if !self.found.iter().any(is_undone) {
-            return false;
+        let is_undone = |zero: &Zero| findings.iter().any(|found| is_zero_at(found, &zero.location));
+        let (undone, kept): (Vec<Zero>, Vec<Zero>) = self.zeros.drain(..).partition(is_undone);
+        self.zeros = kept;
+        for zero in &undone {
+            for &(row, channel, before) in &zero.before {
+                self.readings.rows[row].offset[channel] = before;
+            }
+            self.found.retain(|found| !is_zero_at(found, &zero.location));
         }
-        let Some(readings) = self.before_zeros.take() else { return false };
-        self.readings = readings;
-        self.found.retain(|found| !is_zero(found));
-        true
+        !undone.is_empty()
     }
 
     /// Takes another rod for the one that was meant: what it says of the readings is `explains` (m,

@@ -12,7 +12,7 @@
 //!
 //! for a growth of 1 per decade, c (m/N) what the channel shows per newton of such a load.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
 use super::datum::Datum;
 use super::load_history::{Changed, dwell, moments, runs};
@@ -61,7 +61,8 @@ pub(super) fn recovery(data: &[Datum], when: Changed, t0: f64, stiffness: f64) -
         }
         let before: Vec<&Change> = changes.iter().filter(|change| change.session == session).collect();
         for moment in &own {
-            let mut felt: HashMap<usize, f64> = HashMap::new();
+            // in the order of the places: a sum must not depend on that of a hash
+            let mut felt: BTreeMap<usize, f64> = BTreeMap::new();
             for change in &before {
                 let since = grown(moment.time, change.time) - grown(zero, change.time);
                 *felt.entry(change.place).or_default() += change.force * since;
@@ -108,7 +109,7 @@ mod tests {
     use crate::diagnosis::rig::datum;
     use crate::rig::readings::Readings;
 
-    /// Two runs along y and one along z after them; 1 µm/N along the load, 0.1 across.
+    /// 1 µm/N along the load, 0.1 across.
     fn data(text: &str) -> Vec<Datum> {
         let mut data = datum::all(&Readings::from_text("f", text).unwrap().rows);
         for datum in &mut data {
@@ -118,6 +119,7 @@ mod tests {
         data
     }
 
+    /// A run along y, one along z, and another along y.
     const TEXT: &str = "axis,load_n,trial,time_s,dy_um,dz_um
 y,10,1,100,0,0
 y,20,1,200,0,0

@@ -123,6 +123,7 @@ mod tests {
         // of too few times none
         assert!(all(TIME, &coordinate, &data[..60]).is_empty());
     }
+
     #[test]
     fn what_has_come_since_the_zero_is_nothing_at_the_first_reading_of_a_run() {
         let row = |i: usize| format!("y,{},{},{},1,2\n", 1 + i % 10, 1 + i / 10, 10 * i);

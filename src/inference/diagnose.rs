@@ -98,7 +98,7 @@ fn diagnose_with(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
     let noise = (weighted / degrees_of_freedom).sqrt();
     let residual = search.plain_residual(longest);
     let suspects = match evidence.is_robust {
-        true => Tails::of(&residual).suspects(&residual),
+        true => Tails::of(&residual, evidence.rounding()).suspects(&residual),
         false => Vec::new(),
     };
     let noise_test = noise_test(evidence.stated_noise, longest.sigma, degrees_of_freedom);

@@ -71,6 +71,11 @@ pub struct Evidence {
 }
 
 impl Evidence {
+    /// Standard deviation that rounding to the resolution q makes by itself: q/√12.
+    pub(super) fn rounding(&self) -> f64 {
+        self.resolution / 12.0f64.sqrt()
+    }
+
     /// Number of no fold, session or intercept: of what is known besides the recording, or has
     /// none.
     pub const NONE: usize = usize::MAX;

@@ -10,6 +10,7 @@
 
 use nalgebra::DVector;
 
+use super::evidence::Evidence;
 use super::whitening::Whitening;
 use crate::statistics::f_survival;
 
@@ -51,11 +52,14 @@ pub(super) struct Replicates {
     group: Vec<usize>,
     /// Diagonal of AᵀWᵀWA without the errors that data share: it preconditions.
     diagonal: DVector<f64>,
+    /// Standard deviation of rounding alone.
+    rounding: f64,
 }
 
 impl Replicates {
     /// `None` without repeats.
-    pub(super) fn new(whitening: &Whitening, replicate_group: &[usize]) -> Option<Replicates> {
+    pub(super) fn new(whitening: &Whitening, evidence: &Evidence) -> Option<Replicates> {
+        let replicate_group = &evidence.replicate_group;
         // a recording of some conditions may lack others
         let mut numbers: Vec<usize> = replicate_group.to_vec();
         numbers.sort_unstable();
@@ -67,7 +71,8 @@ impl Replicates {
         let group: Vec<usize> = replicate_group.iter().map(number).collect();
         let mut diagonal = DVector::zeros(numbers.len());
         group.iter().zip(whitening.weights()).for_each(|(&group, weight)| diagonal[group] += weight);
-        Some(Replicates { whitening: whitening.clone(), group, diagonal })
+        let rounding = evidence.rounding();
+        Some(Replicates { whitening: whitening.clone(), group, diagonal, rounding })
     }
 
     /// Aᵀv.
@@ -119,7 +124,11 @@ impl Replicates {
         if repeats <= f64::EPSILON * all {
             return None;
         }
-        let f = (means / dof_fit as f64) / (repeats / dof_repeats as f64);
+        // rounding moves a mean by as much however often it is repeated: n/c readings share one
+        // error, which their scatter does not show
+        let weight = self.diagonal.sum() / replicates as f64;
+        let scatter = (repeats / dof_repeats as f64).max(weight * self.rounding.powi(2));
+        let f = (means / dof_fit as f64) / scatter;
         let p_value = f_survival(f, dof_fit as f64, dof_repeats as f64).ok()?;
         Some(LackOfFit { f, p_value, dof_fit, dof_repeats })
     }
@@ -130,11 +139,10 @@ mod tests {
     use nalgebra::DMatrix;
 
     use super::*;
-    use crate::inference::Evidence;
     use crate::statistics::Random;
 
     fn replicates(evidence: &Evidence) -> Replicates {
-        Replicates::new(&Whitening::new(evidence, &evidence.residual), &evidence.replicate_group).unwrap()
+        Replicates::new(&Whitening::new(evidence, &evidence.residual), evidence).unwrap()
     }
 
     /// The same by an orthonormal basis of the whitened indicators.

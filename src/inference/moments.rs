@@ -144,7 +144,7 @@ impl Search<'_> {
             bounds: self.bounds(terms),
             effects: counts,
             degrees_of_freedom: self.informative(),
-            floor: self.floor(),
+            floor: self.evidence.rounding(),
             stated: self.evidence.stated_noise,
         }
     }
@@ -168,7 +168,7 @@ impl Search<'_> {
             bounds: self.bounds(terms),
             effects: terms.iter().map(|c| c.values.len()).collect(),
             degrees_of_freedom: self.informative(),
-            floor: self.floor(),
+            floor: self.evidence.rounding(),
             stated: self.evidence.stated_noise,
         }
     }
@@ -180,10 +180,5 @@ impl Search<'_> {
             bounds.extend(self.model.candidates()[c.candidate].scaled_bounds());
         }
         bounds
-    }
-
-    /// Noise that rounding alone makes.
-    fn floor(&self) -> f64 {
-        self.evidence.resolution / 12.0f64.sqrt()
     }
 }

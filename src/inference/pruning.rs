@@ -58,7 +58,7 @@ pub fn settled(model: &Linearised<'_>, evidence: &Evidence) -> (Evidence, Option
         };
         let residual = search.plain_residual(longest);
         let (mut weight, information) = match evidence.is_robust {
-            true => weighted(&residual),
+            true => weighted(&residual, evidence.rounding()),
             false => (evidence.weight.clone(), 1.0),
         };
         if evidence.is_robust {

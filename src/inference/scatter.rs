@@ -69,8 +69,11 @@ pub(super) struct Tails {
 }
 
 impl Tails {
-    /// The likeliest; normal ones where the data do not say otherwise.
-    pub fn of(residual: &DVector<f64>) -> Tails {
+    /// The likeliest; normal ones where the data do not say otherwise. `rounding` is the standard
+    /// deviation that rounding makes by itself: residuals that a coarse display shows as none are no
+    /// smaller.
+    pub fn of(residual: &DVector<f64>, rounding: f64) -> Tails {
+        let residual = &residual.map(|r| r.hypot(rounding));
         let normal = Tails { scale: rms(residual), freedom: f64::INFINITY };
         if residual.len() < FEWEST || normal.scale <= 0.0 {
             return normal;
@@ -137,8 +140,8 @@ impl Tails {
 
 /// How much each datum counts, and what it then says over what a normal one does. A few data far
 /// off beside normal ones are no heavy tails: they hardly count, and the others all alike.
-pub(super) fn weighted(residual: &DVector<f64>) -> (Vec<f64>, f64) {
-    let tails = Tails::of(residual);
+pub(super) fn weighted(residual: &DVector<f64>, rounding: f64) -> (Vec<f64>, f64) {
+    let tails = Tails::of(residual, rounding);
     if tails.freedom.is_infinite() {
         return (vec![1.0; residual.len()], 1.0);
     }
@@ -146,7 +149,7 @@ pub(super) fn weighted(residual: &DVector<f64>) -> (Vec<f64>, f64) {
     let few = (residual.len() / FEW).max(MOST_ALONE);
     if far.len() <= few {
         let kept: Vec<usize> = (0..residual.len()).filter(|i| !far.contains(i)).collect();
-        if Tails::of(&residual.select_rows(&kept)).freedom.is_infinite() {
+        if Tails::of(&residual.select_rows(&kept), rounding).freedom.is_infinite() {
             let mut weights = vec![1.0; residual.len()];
             far.iter().for_each(|&i| weights[i] = OFF);
             return (weights, 1.0);
@@ -185,10 +188,10 @@ mod tests {
 
     #[test]
     fn normal_noise_has_normal_tails_and_no_suspects() {
-        let tails = Tails::of(&noise(&[]));
+        let tails = Tails::of(&noise(&[]), 0.0);
         assert!(tails.freedom.is_infinite() && (tails.scale - 1.0).abs() < 0.1, "{tails:?}");
         assert!(tails.suspects(&noise(&[])).is_empty());
-        assert!(weighted(&noise(&[])) == (vec![1.0; 200], 1.0));
+        assert!(weighted(&noise(&[]), 0.0) == (vec![1.0; 200], 1.0));
     }
 
     #[test]
@@ -221,10 +224,10 @@ mod tests {
     #[test]
     fn a_misread_datum_is_a_suspect_and_hardly_counts() {
         let with = noise(&[(7, 30.0), (90, -12.0)]);
-        let tails = Tails::of(&with);
+        let tails = Tails::of(&with, 0.0);
         let suspects = tails.suspects(&with);
         assert_eq!(suspects.iter().map(|s| s.datum).collect::<Vec<_>>(), [7, 90]);
-        let (weights, information) = weighted(&with);
+        let (weights, information) = weighted(&with, 0.0);
         assert!(weights[7] < 0.02 && weights[8] == 1.0 && information == 1.0, "{:?}", weights[7]);
         assert!((tails.scale - 1.0).abs() < 0.15, "{tails:?}");
     }

@@ -98,7 +98,7 @@ impl<'a> Search<'a> {
             },
             beside_background,
             prior: priors(model.candidates()),
-            replicates: Replicates::new(&whitening, &evidence.replicate_group),
+            replicates: Replicates::new(&whitening, evidence),
             fitted: Memory::new(|fitted| fitted.covariance.len() + fitted.background_covariance.len()),
             added: Memory::new(|added| added.len()),
             model,

@@ -122,7 +122,7 @@ fn log_probability_of_none(evidence: &Evidence, noise: CorrelatedNoise) -> f64 {
         bounds: vec![(f64::NEG_INFINITY, f64::INFINITY); columns.ncols()],
         effects: Vec::new(),
         degrees_of_freedom: whitening.degrees_of_freedom,
-        floor: evidence.resolution / 12.0f64.sqrt(),
+        floor: evidence.rounding(),
         stated: None,
     };
     moments.score().log_evidence + whitening.log_jacobian()

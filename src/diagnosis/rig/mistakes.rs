@@ -16,6 +16,9 @@
 //! what remains is a factor of 0.8 to 1.25.
 
 mod change;
+mod copies;
+mod displaced;
+mod entries;
 mod groups;
 mod lines;
 mod lookalikes;
@@ -27,6 +30,7 @@ mod search;
 mod sensors;
 #[cfg(test)]
 mod tests;
+mod trials;
 
 use self::change::Move;
 use self::lines::{Line, lines};
@@ -97,6 +101,10 @@ pub(super) fn mended(readings: &Readings, rod: Option<&Rod>, others: &[(String, 
         has_data: true,
         zeros: Vec::new(),
     };
+    mended.copies();
+    mended.displaced();
+    mended.trials()?;
+    mended.entries();
     mended.sensors()?;
     if mended.has_data {
         mended.labels(others)?;
@@ -112,6 +120,63 @@ fn has_slope(readings: &Readings) -> bool {
 }
 
 impl Mended {
+    /// Trials that are copies.
+    fn copies(&mut self) {
+        let data = datum::all(&self.readings.rows);
+        for part in copies::found(&data) {
+            self.leave_out(&data, &part);
+            self.add_part(part);
+        }
+    }
+
+    fn leave_out(&mut self, data: &[datum::Datum], part: &Part) {
+        for &i in &part.data {
+            self.readings.rows[data[i].row - 1].offset[data[i].channel.index()] = None;
+        }
+    }
+
+    /// Loads that were typed wrongly.
+    fn entries(&mut self) {
+        let data = datum::all(&self.readings.rows);
+        for entry in entries::found(&data, &lines(&data, |_| true), self.readings.load_column) {
+            match entry.load {
+                Some(load) => self.readings.rows[entry.row].load = load,
+                None => self.leave_out(&data, &entry.part),
+            }
+            self.add_part(entry.part);
+        }
+    }
+
+    /// Readings and loads in other rows than those where they belong.
+    fn displaced(&mut self) {
+        if let Some(found) = displaced::found(&self.readings.rows, self.readings.load_column) {
+            self.readings.rows = found.rows;
+            self.add_part(found.part);
+        }
+    }
+
+    /// Units, signs and names of some trials.
+    fn trials(&mut self) -> Result<()> {
+        let data = datum::all(&self.readings.rows);
+        let all = lines(&data, |_| true);
+        let trials = trials::Table::of(&data, &all);
+        if trials.is_alike() {
+            return Ok(());
+        }
+        let by_rod = self.expected(&all)?;
+        let by_rod: Option<Vec<f64>> =
+            by_rod.map(|rod| rod.slopes.iter().map(|slope| slope / rod.scale).collect());
+        let moves = moves::in_trials(&Labels::of(&all, self.readings.load_column));
+        for found in trials.found(&moves, by_rod.as_deref()) {
+            let mut rows: Vec<usize> = found.part.data.iter().map(|&i| data[i].row - 1).collect();
+            rows.sort_unstable();
+            rows.dedup();
+            rows.into_iter().for_each(|row| found.change.undo_in(&mut self.readings.rows[row]));
+            self.add_part(found.part);
+        }
+        Ok(())
+    }
+
     /// Sensors that are stuck or cut off, and signs of single runs.
     fn sensors(&mut self) -> Result<()> {
         // a limit first: what stays at it looks frozen, and what is frozen for long looks stuck
@@ -124,9 +189,7 @@ impl Mended {
                 _ => sensors::stuck(&data, &all, self.expected(&all)?.as_ref()),
             };
             for part in parts {
-                for &i in &part.data {
-                    self.readings.rows[data[i].row - 1].offset[data[i].channel.index()] = None;
-                }
+                self.leave_out(&data, &part);
                 self.add_part(part);
             }
         }

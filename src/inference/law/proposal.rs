@@ -202,7 +202,7 @@ fn reweighted(
     let best = found.laws.first()?;
     let columns = best.choice.columns(&sites[best.choice.site], best.at, size);
     let left = &even.residual - remainder.fit(&columns.columns).predicted;
-    let (weight, information) = weighted(&remainder.without_shared(&left));
+    let (weight, information) = weighted(&remainder.without_shared(&left), even.rounding());
     Some(Evidence { weight, information, ..even.clone() })
 }
 

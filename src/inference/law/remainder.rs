@@ -103,7 +103,7 @@ impl<'a> Remainder<'a> {
             bounds,
             effects,
             degrees_of_freedom: information.round() as usize,
-            floor: whole.resolution / 12.0f64.sqrt(),
+            floor: whole.rounding(),
             stated: whole.stated_noise,
         };
         let (inverse, rest) = without_base(&moments, first, sigma);

@@ -47,6 +47,46 @@ pub static SWAP_MISTAKE: Effect = Effect {
     ..NONE
 };
 
+/// Readings, or loads, in other rows than those where they belong.
+pub static ROW_MISTAKE: Effect = Effect {
+    name: "row_mistake",
+    summary: "readings, or loads, stand some rows away from where they belong",
+    formula: "readings of row i = recorded readings of row i + rows",
+    parameters: &[("rows", "how many rows further down they stand; 0: the ways down the other way round")],
+    needs: "loads that differ from row to row",
+    cause: "rows displaced",
+    cause_at: |location| at("rows displaced", location),
+    direct_check: Some("Compare these rows with the protocol that was written at the rig."),
+    ..NONE
+};
+
+/// A load that was typed wrongly in one row.
+pub static ENTRY_MISTAKE: Effect = Effect {
+    name: "entry_mistake",
+    summary: "the load of a row is not the one that all its readings show",
+    formula: "load = Σ w·s·(y − a)/Σ w·s² of the row's readings",
+    parameters: &[("n", "the load by its readings")],
+    prior: "in rows where that is 8 σ and a tenth of the largest load away",
+    needs: "six readings of a line; two channels that show the load, or a number that it may be",
+    cause: "a number typed wrongly",
+    cause_at: |location| at("a number typed wrongly", location),
+    direct_check: Some("Compare the row with the protocol that was written at the rig."),
+    ..NONE
+};
+
+/// A trial that is another one once more.
+pub static COPY_MISTAKE: Effect = Effect {
+    name: "copy_mistake",
+    summary: "a trial repeats another one to the last digit",
+    formula: "all readings equal, where those of other trials scatter",
+    prior: "odds of 1000 against chance, by the scatter and the step of the display",
+    needs: "three trials through the same loads",
+    cause: "a trial copied",
+    cause_at: |location| at("a trial copied", location),
+    direct_check: Some("Compare the trial with the protocol that was written at the rig."),
+    ..NONE
+};
+
 /// A zero that was not taken.
 pub const OFFSET_MISTAKE: Effect = Effect {
     name: "offset_mistake",

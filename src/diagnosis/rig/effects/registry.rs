@@ -27,10 +27,13 @@ pub static ALL: [&RigEffect; 17] = [
 
 /// Every mistake that the diagnosis of a rig knows. They are no terms of a model: they are undone
 /// before there is one.
-pub static MISTAKES: [&Effect; 7] = [
+pub static MISTAKES: [&Effect; 10] = [
     &mistakes::UNIT_MISTAKE,
     &mistakes::SIGN_MISTAKE,
     &mistakes::SWAP_MISTAKE,
+    &mistakes::ROW_MISTAKE,
+    &mistakes::ENTRY_MISTAKE,
+    &mistakes::COPY_MISTAKE,
     &mistakes::OFFSET_MISTAKE,
     &mistakes::ROD_MISTAKE,
     &mistakes::STUCK_SENSOR,

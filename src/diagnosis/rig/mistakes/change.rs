@@ -1,7 +1,7 @@
 //! What a mistake did to a file, as something that can be undone.
 
 use crate::inference::{Effect, Estimate};
-use crate::rig::readings::Readings;
+use crate::rig::readings::{Reading, Readings};
 use crate::spatial::Axis;
 
 /// What undoes mistakes; everything by the labels of the file.
@@ -65,20 +65,23 @@ impl Change {
 
     /// The readings without the mistakes.
     pub fn undo(&self, readings: &mut Readings) {
-        for row in &mut readings.rows {
-            let axis = row.direction.axis.index();
-            let mut offset = [None; 3];
-            for channel in 0..3 {
-                offset[self.channel[channel]] =
-                    row.offset[channel].map(|offset| offset * self.reading[axis][channel]);
-            }
-            row.offset = offset;
-            row.load *= self.load[axis].abs();
-            if self.load[axis] < 0.0 {
-                row.direction.sign = -row.direction.sign;
-            }
-            row.direction.axis = Axis::ALL[self.axis[axis]];
+        readings.rows.iter_mut().for_each(|row| self.undo_in(row));
+    }
+
+    /// One row without them.
+    pub fn undo_in(&self, row: &mut Reading) {
+        let axis = row.direction.axis.index();
+        let mut offset = [None; 3];
+        for channel in 0..3 {
+            offset[self.channel[channel]] =
+                row.offset[channel].map(|offset| offset * self.reading[axis][channel]);
         }
+        row.offset = offset;
+        row.load *= self.load[axis].abs();
+        if self.load[axis] < 0.0 {
+            row.direction.sign = -row.direction.sign;
+        }
+        row.direction.axis = Axis::ALL[self.axis[axis]];
     }
 }
 

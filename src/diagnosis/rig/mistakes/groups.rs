@@ -29,13 +29,14 @@ const FAR_FOR_PLAY: f64 = 3.0;
 const CONSTANT: f64 = 0.15;
 
 /// Some data of a line.
-struct Group {
-    data: Vec<usize>,
-    fit: Fit,
-    has_slope: bool,
+pub(super) struct Group {
+    pub data: Vec<usize>,
+    pub fit: Fit,
+    /// True where its loads differ by a fifth of the largest.
+    pub has_slope: bool,
 }
 
-fn group(data: &[Datum], of: Vec<usize>) -> Group {
+pub(super) fn group(data: &[Datum], of: Vec<usize>) -> Group {
     let points: Vec<(f64, f64)> = of.iter().map(|&i| (data[i].signed_load(), data[i].measured)).collect();
     let largest = points.iter().fold(0.0, |most: f64, (x, _)| most.max(x.abs()));
     let has_slope = of.len() >= 3 && points.iter().any(|(x, _)| (x - points[0].0).abs() > 0.2 * largest);

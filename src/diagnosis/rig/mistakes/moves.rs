@@ -133,14 +133,25 @@ const ALL: [bool; 3] = [true; 3];
 
 /// Every mistake of labels and units that these lines could show.
 pub(super) fn all(labels: &Labels) -> Vec<Move> {
-    let mut moves = load_units(labels);
+    let mut moves = load_units(labels, false);
     moves.extend(reading_units(labels));
     moves.extend(signs(labels));
     moves.extend(swaps(labels));
     moves
 }
 
-fn load_units(labels: &Labels) -> Vec<Move> {
+/// Every one that some trials could show which others are compared with: what softer or stiffer rods
+/// look like too, and decimal places.
+pub(super) fn in_trials(labels: &Labels) -> Vec<Move> {
+    let mut moves = load_units(labels, true);
+    moves.extend(reading_units(labels));
+    moves.extend(decimals(labels));
+    moves.extend(signs(labels));
+    moves.extend(swaps(labels));
+    moves
+}
+
+fn load_units(labels: &Labels, is_in_trials: bool) -> Vec<Move> {
     let (name, own, units): (_, _, &[Unit]) = match labels.column {
         LoadColumn::Newtons => ("load_n", "newtons", &FOR_NEWTONS),
         LoadColumn::Kilograms => ("load_kg", "kilograms", &FOR_KILOGRAMS),
@@ -149,7 +160,7 @@ fn load_units(labels: &Labels) -> Vec<Move> {
     for unit in units {
         // loads along one axis cannot separate a pound from a joint that yields, nor can sensors
         // along the loads only, unless it comes very near
-        let is_near_physics = unit.within < BESIDE;
+        let is_near_physics = unit.within < BESIDE && !is_in_trials;
         let within = if is_near_physics && !labels.has_cross { VERY_NEAR } else { unit.within };
         let mut add = |axes: [bool; 3], location: String, whose: String, log_prior: f64, rows: &str| {
             moves.push(Move {
@@ -215,6 +226,54 @@ fn reading_units(labels: &Labels) -> Vec<Move> {
         }
     }
     moves
+}
+
+/// A decimal point that slipped, or a display in another range.
+fn decimals(labels: &Labels) -> Vec<Move> {
+    const DECIMALS: [(f64, f64, &str); 4] = [
+        (10.0, -1.0, "multiply them by 10"),
+        (0.1, -1.0, "divide them by 10"),
+        (100.0, -2.0, "multiply them by 100"),
+        (0.01, -2.0, "divide them by 100"),
+    ];
+    let mut moves = Vec::new();
+    for (factor, log_prior, cure) in DECIMALS {
+        let size = if factor > 1.0 { "small" } else { "large" };
+        let times = if !(0.05..50.0).contains(&factor) { 100 } else { 10 };
+        let mut add = |location: String, change: Change, whose: &str, log_prior: f64| {
+            moves.push(Move {
+                effect: &UNIT_MISTAKE,
+                looks_like: format!("{location} looks {times} times too {size}"),
+                observed: format!(
+                    "{whose} are {times} times too {size} (a decimal point, or another range): {cure}"
+                ),
+                location,
+                change,
+                log_prior,
+                estimates: vec![exact("factor", factor)],
+                within: HARDLY_BESIDE,
+            });
+        };
+        add(load_column(labels.column).into(), Change::load(ALL, factor), "the loads", log_prior + UNUSUAL);
+        let mut of = |channels: &[Axis]| {
+            let names = columns(channels);
+            let change = Change::reading(ALL, mask(channels), factor);
+            add(names.clone(), change, &format!("the readings {names}"), log_prior);
+        };
+        of(&labels.channels);
+        if labels.channels.len() > 1 {
+            labels.channels.iter().for_each(|&channel| of(&[channel]));
+        }
+    }
+    moves
+}
+
+/// `load_n` or `load_kg`.
+pub(super) fn load_column(column: LoadColumn) -> &'static str {
+    match column {
+        LoadColumn::Newtons => "load_n",
+        LoadColumn::Kilograms => "load_kg",
+    }
 }
 
 /// A sign or a name: there is no number in it, so that nothing has to come near to one.

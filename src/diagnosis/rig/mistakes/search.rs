@@ -13,7 +13,7 @@ use crate::spatial::Axis;
 /// A mistake is named at these odds against all else, physics included: ln 1000.
 pub(in crate::diagnosis::rig) const ODDS: f64 = 6.907_755;
 /// Another mistake within these odds explains alike: ln 20.
-const ALIKE: f64 = 2.995_732;
+pub(super) const ALIKE: f64 = 2.995_732;
 /// A rod is never bent by more than this share of its length, and what it costs to say so: ln.
 const BENT: f64 = 0.05;
 const BENT_TOO_FAR: f64 = 15.0;

@@ -1,0 +1,87 @@
+//! Trials that are a copy of another one.
+//!
+//! Readings of the same loads in two trials are the same to the last digit now and then: with a
+//! scatter of s and a display of step q in a share of p = q/(2·√π·s) of them. All n of a trial are
+//! by a chance of pⁿ. A recording without noise repeats itself in every trial; only where others
+//! scatter is one a copy.
+
+use std::collections::BTreeMap;
+
+use super::super::datum::Datum;
+use super::super::effects::mistakes::COPY_MISTAKE;
+use super::super::evidence::resolution;
+use super::super::numbering::numbered;
+use super::part::Part;
+use super::search::ODDS;
+use crate::statistics::median;
+
+/// Scatter that hardly any display rounds away, in steps.
+const STEPS: f64 = 0.5;
+
+/// What a trial shows: direction, stations, load, phase and channel of each reading, in turn, with
+/// the reading, m.
+type Key = (i8, usize, [u64; 2], u64, bool, usize);
+
+/// Trials whose readings are those of an earlier one; `data` of the copies.
+pub(super) fn found(data: &[Datum]) -> Vec<Part> {
+    let trial = numbered(data.iter().map(|datum| (datum.session_number, datum.trial_number)));
+    let mut readings: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    trial.iter().enumerate().for_each(|(i, &trial)| readings.entry(trial).or_default().push(i));
+    let key = |&i: &usize| -> Key {
+        let d = &data[i];
+        let axis = d.direction.axis.index();
+        (d.direction.sign, axis, d.stations(), d.load.to_bits(), d.is_unloading(), d.channel.index())
+    };
+    let protocols = numbered(readings.values().map(|own| own.iter().map(key).collect::<Vec<_>>()));
+    let trials: Vec<&Vec<usize>> = readings.values().collect();
+    // the same protocol and the same readings
+    let values = |own: &Vec<usize>| own.iter().map(|&i| data[i].measured.to_bits()).collect::<Vec<_>>();
+    let same = numbered(trials.iter().zip(&protocols).map(|(own, protocol)| (*protocol, values(own))));
+    let mut found = Vec::new();
+    for (t, own) in trials.iter().enumerate() {
+        let Some(first) = (0..t).find(|&other| same[other] == same[t]) else { continue };
+        let others = (0..trials.len()).filter(|&o| protocols[o] == protocols[t] && same[o] != same[t]);
+        let apart =
+            |other: usize| own.iter().zip(trials[other]).map(|(&a, &b)| data[a].measured - data[b].measured);
+        let apart: Vec<f64> = others.flat_map(apart).collect();
+        let Some(middle) = median(&apart) else { continue };
+        let away: Vec<f64> = apart.iter().map(|apart| (apart - middle).abs()).collect();
+        let scatter = 1.4826 / 2f64.sqrt() * median(&away).unwrap_or(0.0);
+        let step = resolution(&own.iter().map(|&i| data[i].clone()).collect::<Vec<_>>());
+        let moving = own.iter().filter(|&&i| data[i].measured != 0.0).count();
+        if scatter <= STEPS * step {
+            continue;
+        }
+        let chance = step.max(1e-3 * scatter) / (2.0 * std::f64::consts::PI.sqrt() * scatter);
+        if moving as f64 * -chance.min(1.0).ln() < ODDS + (trials.len() as f64).ln() {
+            continue;
+        }
+        let (name, original) = (name(data, own), name(data, trials[first]));
+        found.push(Part {
+            effect: &COPY_MISTAKE,
+            observed: format!(
+                "The {} readings of {name} are those of {original} to the last digit, where others scatter: {name} is left out; copy it again from its protocol",
+                own.len()
+            ),
+            looks_like: format!("{name} looks like a copy of {original}"),
+            location: name,
+            estimates: Vec::new(),
+            explains: 0.0,
+            data: (*own).clone(),
+            rivals: Vec::new(),
+        });
+    }
+    found
+}
+
+/// `trial 3`, `rows 7 to 12`.
+fn name(data: &[Datum], own: &[usize]) -> String {
+    let rows =
+        own.iter().fold((usize::MAX, 0), |(low, high), &i| (low.min(data[i].row), high.max(data[i].row)));
+    let first = &data[own[0]];
+    match (&first.trial, &first.session) {
+        (Some(trial), Some(session)) => format!("trial {trial} of session {session}"),
+        (Some(trial), None) => format!("trial {trial}"),
+        _ => format!("rows {} to {}", rows.0, rows.1),
+    }
+}

@@ -1,0 +1,371 @@
+//! Readings, or loads, that stand some rows away from where they belong: a cell that was inserted
+//! or lost, a list of loads that was pasted once more, a way down that was written upwards.
+//!
+//! Every row has an owner of its readings: the row whose direction, and the row whose load, they
+//! belong to. The lines are fitted through the readings at their owners, and
+//!
+//! ```text
+//! q = Σ min(|y − line(F)|/D, 0.7)²      over the channels of a row, D the largest deflection of the
+//!                                       rod under loads of this direction
+//! ```
+//!
+//! says how far off a row is. The stretch of rows in which another owner takes off the most is found
+//! in one pass; lines and stretch in turn. Friction keeps readings off by as much on the way up as
+//! on the way down, so that without displaced rows each way may have a zero of its own.
+
+use super::super::effects::mistakes::ROW_MISTAKE;
+use super::super::numbering::numbered;
+use super::change::exact;
+use super::lines::{Fit, fit};
+use super::moves::{column, load_column};
+use super::part::Part;
+use super::search::ODDS;
+use crate::rig::readings::{LoadColumn, Phase, Reading};
+use crate::spatial::Axis;
+use crate::statistics::median;
+
+/// A row that is off by less than this share of the deflection is where it belongs.
+const SHOWN: f64 = 0.1;
+const CAP: f64 = 0.7;
+/// What a row that is said to be displaced must gain.
+const PRICE: f64 = 1e-3;
+/// Displaced rows, at least; what they are off by, and may be off by afterwards, rms.
+const LEAST: usize = 4;
+const OFF: f64 = 0.14;
+const LEFT: f64 = 0.05;
+/// At most this share of what was left before, rms.
+const CURED: f64 = 0.3;
+/// Another displacement that leaves no more than so many times as much explains alike.
+const NO_WORSE: f64 = 1.1;
+const ROUNDS: usize = 3;
+
+/// What stands elsewhere.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Kind {
+    /// The readings of a row belong so many rows further down.
+    Readings(isize),
+    /// The load of a row stands so many rows further down.
+    Loads(isize),
+    /// The loads of the way down stand in the order of the way up.
+    WayDown,
+}
+
+const KINDS: [Kind; 9] = [
+    Kind::Readings(-1),
+    Kind::Readings(1),
+    Kind::Loads(1),
+    Kind::Loads(-1),
+    Kind::WayDown,
+    Kind::Readings(-2),
+    Kind::Readings(2),
+    Kind::Loads(2),
+    Kind::Loads(-2),
+];
+
+/// The rows of the direction and of the load to which the readings of a row belong; `None` where
+/// they belong to none.
+type Owner = Option<(usize, usize)>;
+
+/// What was found, with the rows as they should be.
+pub(super) struct Displaced {
+    pub part: Part,
+    pub rows: Vec<Reading>,
+}
+
+/// Rows that are displaced against their readings.
+pub(super) fn found(rows: &[Reading], load: LoadColumn) -> Option<Displaced> {
+    let sheet = Sheet::of(rows);
+    let own: Vec<Owner> = (0..rows.len()).map(|i| Some((i, i))).collect();
+    let (left, is_off) = sheet.left_where_it_is(&own);
+    if !is_off {
+        return None;
+    }
+    let tried: Vec<Tried> = KINDS.iter().filter_map(|&kind| sheet.tried(kind, &own)).collect();
+    let best = tried.iter().fold(None, |best: Option<&Tried>, one| match best {
+        Some(best) if one.left * NO_WORSE > best.left => Some(best),
+        _ => Some(one),
+    })?;
+    // the rows that it could start and end at are choices too
+    let odds = rows.len() as f64 * (left / best.left.max(f64::MIN_POSITIVE)).sqrt().ln();
+    if best.left.sqrt() > CURED * left.sqrt() || odds < ODDS + 2.0 * (rows.len() as f64).ln() {
+        return None;
+    }
+    let place = |one: &Tried| sheet.place(one, load);
+    let near = tried.iter().filter(|one| one.kind != best.kind && one.left < NO_WORSE * best.left);
+    let channels = sheet.channels();
+    let (from, to) = (best.stretch.0 + 1, best.stretch.1 + 1);
+    let (what, it) = match best.kind {
+        Kind::Readings(_) => ("the readings", channels.as_str()),
+        Kind::Loads(_) | Kind::WayDown => ("the loads", load_column(load)),
+    };
+    let (observed, rows_away) = match best.kind {
+        Kind::WayDown => (
+            format!(
+                "The loads of the way down stand in the wrong order: write {it} the other way round in the rows of each way down"
+            ),
+            0.0,
+        ),
+        Kind::Readings(by) | Kind::Loads(by) => {
+            // a load that stands further down has to go up
+            let by = if matches!(best.kind, Kind::Loads(_)) { -by } else { by };
+            let (stand, go) = if by < 0 { ("low", "up") } else { ("high", "down") };
+            let count = match by.unsigned_abs() {
+                1 => "one row".to_owned(),
+                by => format!("{by} rows"),
+            };
+            (
+                format!(
+                    "In the rows {from} to {to}, {what} stand {count} too {stand}: move {it} {go} by {count}"
+                ),
+                -by as f64,
+            )
+        }
+    };
+    let part = Part {
+        effect: &ROW_MISTAKE,
+        location: place(best),
+        estimates: vec![exact("rows", rows_away)],
+        looks_like: format!("{} look displaced against the rest", place(best)),
+        observed,
+        explains: best.explains,
+        data: Vec::new(),
+        rivals: near.map(|one| (&ROW_MISTAKE, place(one))).collect(),
+    };
+    Some(Displaced { part, rows: sheet.mended(best) })
+}
+
+/// One displacement in the stretch of rows in which it takes off the most.
+struct Tried {
+    kind: Kind,
+    /// The first and the last row, from 0.
+    stretch: (usize, usize),
+    owners: Vec<Owner>,
+    /// Mean of q.
+    left: f64,
+    /// What it moves the readings of its rows by, m rms.
+    explains: f64,
+}
+
+/// The lines of a hypothesis.
+struct Fits {
+    /// By label and channel.
+    lines: Vec<Option<Fit>>,
+    /// The largest deflection by label, m.
+    deflection: Vec<f64>,
+}
+
+/// The rows of a file in their order.
+struct Sheet<'a> {
+    rows: &'a [Reading],
+    /// For each row the number of its axis and stations.
+    label: Vec<usize>,
+    /// For each row the one whose load it would have, were the ways down the other way round.
+    turned: Vec<usize>,
+}
+
+impl<'a> Sheet<'a> {
+    fn of(rows: &'a [Reading]) -> Sheet<'a> {
+        let at = |station: Option<f64>| station.map(f64::to_bits);
+        let label = numbered(
+            rows.iter().map(|row| (row.direction.axis.index(), at(row.load_station), at(row.read_station))),
+        );
+        let run = numbered(rows.iter().zip(&label).map(|(row, label)| {
+            (&row.session, &row.trial, row.direction.sign, label, row.phase == Some(Phase::Unload))
+        }));
+        let mut of_run: Vec<Vec<usize>> = vec![Vec::new(); run.iter().max().map_or(0, |last| last + 1)];
+        run.iter().enumerate().for_each(|(i, &run)| of_run[run].push(i));
+        let mut turned: Vec<usize> = (0..rows.len()).collect();
+        for own in of_run.iter().filter(|own| rows[own[0]].phase == Some(Phase::Unload)) {
+            own.iter().zip(own.iter().rev()).for_each(|(&i, &other)| turned[i] = other);
+        }
+        Sheet { rows, label, turned }
+    }
+
+    fn owner(&self, kind: Kind, i: usize) -> Owner {
+        let further = |by: isize| i.checked_add_signed(by).filter(|&other| other < self.rows.len());
+        match kind {
+            Kind::Readings(by) => further(by).map(|other| (other, other)),
+            Kind::Loads(by) => further(by).map(|other| (i, other)),
+            Kind::WayDown => Some((i, self.turned[i])),
+        }
+    }
+
+    /// The load of an owner along the positive axis, N.
+    fn load(&self, owner: (usize, usize)) -> f64 {
+        f64::from(self.rows[owner.0].direction.sign) * self.rows[owner.1].load
+    }
+
+    fn fits(&self, owners: &[Owner]) -> Fits {
+        let labels = self.label.iter().max().map_or(0, |last| last + 1);
+        let mut points: Vec<Vec<(f64, f64)>> = vec![Vec::new(); 3 * labels];
+        for (row, owner) in self.rows.iter().zip(owners) {
+            let Some(owner) = *owner else { continue };
+            for (channel, offset) in row.offset.iter().enumerate() {
+                if let Some(offset) = offset {
+                    points[3 * self.label[owner.0] + channel].push((self.load(owner), *offset));
+                }
+            }
+        }
+        let line = |points: &Vec<(f64, f64)>| (points.len() >= LEAST).then(|| fit(points));
+        let lines: Vec<Option<Fit>> = points.iter().map(line).collect();
+        let largest = |line: usize| {
+            let load = points[line].iter().fold(0.0, |most: f64, (load, _)| most.max(load.abs()));
+            lines[line].map_or(0.0, |fit| fit.slope.abs() * load)
+        };
+        let of_label = |label: usize| (0..3).map(|k| largest(3 * label + k)).fold(0.0, f64::max);
+        Fits { deflection: (0..labels).map(of_label).collect(), lines }
+    }
+
+    /// What each channel of a row is off its line by at an owner, as a share of the deflection.
+    fn off(&self, fits: &Fits, i: usize, owner: (usize, usize)) -> [Option<f64>; 3] {
+        let label = self.label[owner.0];
+        Axis::ALL.map(|channel| {
+            let k = channel.index();
+            let (offset, line) = (self.rows[i].offset[k]?, fits.lines[3 * label + k]?);
+            let deflection = fits.deflection[label];
+            (deflection > 0.0).then(|| (offset - line.at(self.load(owner))) / deflection)
+        })
+    }
+
+    fn q(&self, fits: &Fits, i: usize, owner: (usize, usize)) -> f64 {
+        self.off(fits, i, owner).iter().flatten().map(|off| off.abs().min(CAP).powi(2)).sum()
+    }
+
+    /// Mean of q where nothing is displaced and each way has its own zero, and whether any row is
+    /// off at all.
+    fn left_where_it_is(&self, own: &[Owner]) -> (f64, bool) {
+        let fits = self.fits(own);
+        let way = |i: usize| usize::from(self.rows[i].phase == Some(Phase::Unload));
+        let mut off: Vec<[Vec<f64>; 2]> = vec![Default::default(); fits.lines.len()];
+        for i in 0..self.rows.len() {
+            for (k, off_line) in self.off(&fits, i, (i, i)).into_iter().enumerate() {
+                off[3 * self.label[i] + k][way(i)].extend(off_line);
+            }
+        }
+        let zeros: Vec<[f64; 2]> =
+            off.iter().map(|ways| [0, 1].map(|k| median(&ways[k]).unwrap_or(0.0))).collect();
+        let q = |i: usize| -> f64 {
+            let off = self.off(&fits, i, (i, i)).into_iter().enumerate();
+            let off = off.filter_map(|(k, off)| Some(off? - zeros[3 * self.label[i] + k][way(i)]));
+            off.map(|off| off.abs().min(CAP).powi(2)).sum()
+        };
+        let all: Vec<f64> = (0..self.rows.len()).map(q).collect();
+        let mean = all.iter().sum::<f64>() / all.len().max(1) as f64;
+        (mean, all.iter().filter(|&&q| q > SHOWN * SHOWN).count() >= LEAST)
+    }
+
+    fn tried(&self, kind: Kind, own: &[Owner]) -> Option<Tried> {
+        let everywhere: Vec<Owner> = (0..own.len()).map(|i| self.owner(kind, i)).collect();
+        let mut best: Option<Tried> = None;
+        for start in [own, &everywhere[..]] {
+            let mut tried = self.stretch(kind, start, own)?;
+            for _ in 1..ROUNDS {
+                tried = self.stretch(kind, &tried.owners, own)?;
+            }
+            if best.as_ref().is_none_or(|best| tried.left < best.left) {
+                best = Some(tried);
+            }
+        }
+        let mut best = best?;
+        best.explains = self.shown(&best)?;
+        Some(best)
+    }
+
+    /// The stretch by the lines through `owners`.
+    fn stretch(&self, kind: Kind, owners: &[Owner], own: &[Owner]) -> Option<Tried> {
+        let fits = self.fits(owners);
+        let gain = |i: usize| match self.owner(kind, i) {
+            Some(owner) => self.q(&fits, i, (i, i)) - self.q(&fits, i, owner) - PRICE,
+            None => 0.0,
+        };
+        let (mut best, mut sum, mut from) = ((0, 0, 0.0), 0.0, 0);
+        for i in 0..own.len() {
+            if sum <= 0.0 {
+                (sum, from) = (0.0, i);
+            }
+            sum += gain(i);
+            if sum > best.2 {
+                best = (from, i, sum);
+            }
+        }
+        // what lies beyond either end of the file belongs to nothing that there is
+        let (mut from, mut to, _) = best;
+        while from > 0 && self.owner(kind, from - 1).is_none() {
+            from -= 1;
+        }
+        while to + 1 < own.len() && self.owner(kind, to + 1).is_none() {
+            to += 1;
+        }
+        let stretch = match kind {
+            Kind::WayDown => (0, own.len().checked_sub(1)?),
+            _ => (from, to),
+        };
+        let is_inside = |i: usize| i >= stretch.0 && i <= stretch.1;
+        let owner = |i: usize| match is_inside(i) {
+            true => self.owner(kind, i).filter(|owner| is_inside(owner.1)),
+            false => own[i],
+        };
+        let owners: Vec<Owner> = (0..own.len()).map(owner).collect();
+        let fits = self.fits(&owners);
+        let (mut left, mut count) = (0.0, 0);
+        for (i, owner) in owners.iter().enumerate() {
+            if let Some(owner) = *owner {
+                left += self.q(&fits, i, owner);
+                count += 1;
+            }
+        }
+        Some(Tried { kind, stretch, owners, left: left / f64::from(count.max(1)), explains: 0.0 })
+    }
+
+    /// What the rows are off by without it, m rms; `None` where too few are, or still with it.
+    fn shown(&self, tried: &Tried) -> Option<f64> {
+        let fits = self.fits(&tried.owners);
+        let (mut before, mut after, mut count, mut moved, mut squares) = (0.0, 0.0, 0, 0, 0.0);
+        for i in tried.stretch.0..=tried.stretch.1 {
+            let Some(owner) = tried.owners[i].filter(|owner| *owner != (i, i)) else { continue };
+            let q = self.q(&fits, i, (i, i));
+            before += q;
+            after += self.q(&fits, i, owner);
+            squares += q * fits.deflection[self.label[i]].powi(2);
+            count += 1;
+            moved += usize::from(q > SHOWN * SHOWN);
+        }
+        let count = f64::from(count);
+        let is_shown = moved >= LEAST && before > OFF * OFF * count && after < LEFT * LEFT * count;
+        is_shown.then(|| (squares / count).sqrt())
+    }
+
+    fn mended(&self, tried: &Tried) -> Vec<Reading> {
+        let mut rows = self.rows.to_vec();
+        let (from, to) = tried.stretch;
+        for (i, row) in rows.iter_mut().enumerate().take(to + 1).skip(from) {
+            match tried.kind {
+                Kind::Readings(by) => {
+                    // the row whose readings belong here
+                    let source = i.checked_add_signed(-by).filter(|&other| other >= from && other <= to);
+                    row.offset = source.map_or([None; 3], |other| self.rows[other].offset);
+                }
+                _ => match tried.owners[i] {
+                    Some((_, other)) => row.load = self.rows[other].load,
+                    None => row.offset = [None; 3],
+                },
+            }
+        }
+        rows
+    }
+
+    fn channels(&self) -> String {
+        let is_read = |channel: &Axis| self.rows.iter().any(|row| row.offset[channel.index()].is_some());
+        Axis::ALL.into_iter().filter(is_read).map(column).collect::<Vec<_>>().join(", ")
+    }
+
+    /// `dy_um, dz_um, rows 21 to 56`.
+    fn place(&self, tried: &Tried, load: LoadColumn) -> String {
+        let rows = format!("rows {} to {}", tried.stretch.0 + 1, tried.stretch.1 + 1);
+        match tried.kind {
+            Kind::Readings(_) => format!("{}, {rows}", self.channels()),
+            Kind::Loads(_) => format!("{}, {rows}", load_column(load)),
+            Kind::WayDown => format!("{}, way down", load_column(load)),
+        }
+    }
+}

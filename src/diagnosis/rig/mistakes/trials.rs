@@ -1,0 +1,326 @@
+//! Mistakes in some of the trials: the others show what is right.
+//!
+//! Trials whose lines have the same slopes within a quarter are one class. Where there are several,
+//! one of them is right: the one that the rod file says, else the largest. Each of the others is
+//! compared with that one under every change of units, signs and names
+//!
+//! ```text
+//! χ² = Σ ((s·G − r)/σ)²,   σ² = (G·s_e)² + r_e² + (0.01·r_max)²
+//! ```
+//!
+//! s the slope of a line in one trial, with its error; r that of the line which the change makes of
+//! it, in the trials that are right; r_max the largest under the same load. The scatter about the
+//! lines counts too: it is that of the others times the factor on the readings.
+
+use super::super::datum::Datum;
+use super::super::effects::mistakes::SIGN_MISTAKE;
+use super::super::numbering::numbered;
+use super::change::{Change, Move};
+use super::groups::group;
+use super::lines::{Fit, Line};
+use super::part::Part;
+use super::search::{ALIKE as NO_WORSE, ODDS, RARE};
+use crate::statistics::median;
+
+/// Slopes that differ by less than this share, or by so many standard errors, may be one.
+const ALIKE: f64 = 0.25;
+const ERRORS: f64 = 6.0;
+/// Lines that show less than this share of the most that a trial shows say nothing.
+const SHOWN: f64 = 0.1;
+/// More classes than these are none.
+const MOST_CLASSES: usize = 4;
+/// Slopes of one rod on one rig are the same within this share of the largest.
+const REPEATS: f64 = 0.01;
+/// How far the scatter of one trial may be from that of others, ln.
+const SCATTERS: f64 = 0.7;
+/// Share of the squares of the deflections that a change must find, and that it may leave.
+const OFF: f64 = 0.05;
+const LEFT: f64 = 0.02;
+/// What a rod file may leave of a class that it confirms.
+const CONFIRMED: f64 = 0.1;
+
+/// A change of the rows of some trials.
+pub(super) struct InTrials {
+    pub part: Part,
+    pub change: Change,
+}
+
+/// A line in one trial.
+#[derive(Clone, Copy)]
+struct Cell {
+    fit: Fit,
+    /// The largest load, N.
+    load: f64,
+}
+
+impl Cell {
+    /// What it shows at the largest load, m.
+    fn size(&self) -> f64 {
+        self.fit.slope.abs() * self.load
+    }
+
+    fn is_like(&self, other: &Cell) -> bool {
+        let apart = (self.fit.slope - other.fit.slope).abs();
+        let larger = self.fit.slope.abs().max(other.fit.slope.abs());
+        apart < ALIKE * larger || apart < ERRORS * self.fit.error.hypot(other.fit.error)
+    }
+}
+
+/// A line in the trials that are right: m/N, m/N and m.
+struct Right {
+    slope: f64,
+    error: f64,
+    scatter: f64,
+}
+
+/// Trials by the lines of a recording.
+pub(super) struct Table<'a> {
+    data: &'a [Datum],
+    lines: &'a [Line],
+    /// For each datum its trial, in the order of recording.
+    trial: Vec<usize>,
+    /// By trial and line.
+    cells: Vec<Vec<Option<Cell>>>,
+    /// Trials that agree in all lines which they have in common.
+    classes: Vec<Vec<usize>>,
+}
+
+impl<'a> Table<'a> {
+    /// What is written otherwise in some trials than in the others, by `moves`; `by_rod` are the
+    /// slopes of the rod file, m/N.
+    pub fn found(&self, moves: &[Move], by_rod: Option<&[f64]>) -> Vec<InTrials> {
+        let classes = &self.classes;
+        if classes.len() < 2 || classes.len() > MOST_CLASSES {
+            return Vec::new();
+        }
+        let count = |class: &[usize]| self.trial.iter().filter(|trial| class.contains(trial)).count();
+        // of those that are as large, the first
+        let largest = |of: &mut dyn Iterator<Item = usize>| {
+            of.fold(None, |best: Option<usize>, class| match best {
+                Some(best) if count(&classes[best]) >= count(&classes[class]) => Some(best),
+                _ => Some(class),
+            })
+        };
+        let is_confirmed = |class: &usize| by_rod.is_some_and(|rod| self.is_confirmed(&classes[*class], rod));
+        let confirmed = largest(&mut (0..classes.len()).filter(is_confirmed));
+        let Some(right) = confirmed.or_else(|| largest(&mut (0..classes.len()))) else { return Vec::new() };
+        let reference = self.lines_of(&classes[right]);
+        let others = classes.iter().enumerate().filter(|(class, _)| *class != right);
+        others.filter_map(|(_, class)| self.explained(class, &reference, moves)).collect()
+    }
+
+    /// True where all trials agree with each other.
+    pub fn is_alike(&self) -> bool {
+        self.classes.len() < 2
+    }
+
+    pub fn of(data: &'a [Datum], lines: &'a [Line]) -> Table<'a> {
+        let trial = numbered(data.iter().map(|datum| (datum.session_number, datum.trial_number)));
+        let trials = trial.iter().max().map_or(0, |last| last + 1);
+        let mut cells = vec![vec![None; lines.len()]; trials];
+        for (k, line) in lines.iter().enumerate() {
+            let mut of_trial: Vec<Vec<usize>> = vec![Vec::new(); trials];
+            line.data.iter().for_each(|&i| of_trial[trial[i]].push(i));
+            for (cells, own) in cells.iter_mut().zip(of_trial) {
+                let load = own.iter().fold(0.0, |most: f64, &i| most.max(data[i].load));
+                let group = group(data, own);
+                cells[k] = group.has_slope.then_some(Cell { fit: group.fit, load });
+            }
+        }
+        let mut table = Table { data, lines, trial, cells, classes: Vec::new() };
+        table.classes = table.classes();
+        table
+    }
+
+    fn classes(&self) -> Vec<Vec<usize>> {
+        let mut classes: Vec<Vec<usize>> = Vec::new();
+        for trial in 0..self.cells.len() {
+            if self.cells[trial].iter().all(Option::is_none) {
+                continue;
+            }
+            match classes.iter().position(|class| self.is_of(trial, class)) {
+                Some(class) => classes[class].push(trial),
+                None if classes.len() > MOST_CLASSES => break,
+                None => classes.push(vec![trial]),
+            }
+        }
+        classes
+    }
+
+    fn is_of(&self, trial: usize, class: &[usize]) -> bool {
+        let most = |trial: usize| self.cells[trial].iter().flatten().map(Cell::size).fold(0.0, f64::max);
+        (0..self.lines.len()).all(|k| {
+            let Some(own) = self.cells[trial][k] else { return true };
+            let first = class.iter().find_map(|&other| Some((other, self.cells[other][k]?)));
+            let Some((other, cell)) = first else { return true };
+            let shown = (own.size() / most(trial)).max(cell.size() / most(other));
+            shown < SHOWN || own.is_like(&cell)
+        })
+    }
+
+    /// Each line in some trials.
+    fn lines_of(&self, class: &[usize]) -> Vec<Option<Right>> {
+        let of_line = |k: usize| {
+            let of = |value: &dyn Fn(&Fit) -> f64| {
+                let cells = class.iter().filter_map(|&trial| self.cells[trial][k]);
+                median(&cells.map(|cell| value(&cell.fit)).collect::<Vec<_>>())
+            };
+            Some(Right {
+                slope: of(&|fit| fit.slope)?,
+                error: of(&|fit| fit.error)?,
+                scatter: of(&|fit| fit.scatter)?,
+            })
+        };
+        (0..self.lines.len()).map(of_line).collect()
+    }
+
+    fn is_confirmed(&self, class: &[usize], by_rod: &[f64]) -> bool {
+        let right = |&slope: &f64| Some(Right { slope, error: 0.0, scatter: 0.0 });
+        let right: Vec<_> = by_rod.iter().map(right).collect();
+        let compared = self.compared(class, &right, &Change::default(), |_| true);
+        compared.is_some_and(|compared| compared.left < CONFIRMED)
+    }
+
+    /// Some trials under a change against the lines that are right, and what is left of the lines
+    /// that `counts`; `None` where there is nothing to compare.
+    fn compared(
+        &self,
+        class: &[usize],
+        right: &[Option<Right>],
+        change: &Change,
+        counts: impl Fn(&Line) -> bool,
+    ) -> Option<Compared> {
+        let (mut misfit, mut off, mut all) = (0.0, 0.0, 0.0);
+        for &trial in class {
+            let mut scatters = Vec::new();
+            for (k, line) in self.lines.iter().enumerate() {
+                let Some(cell) = self.cells[trial][k] else { continue };
+                let (axis, channel) = (line.axis.index(), line.channel.index());
+                let (load, reading) = (change.load[axis], change.reading[axis][channel]);
+                let is_of =
+                    |other: &Line| other.stations == line.stations && other.axis.index() == change.axis[axis];
+                let is_it = |other: &Line| is_of(other) && other.channel.index() == change.channel[channel];
+                let of_load = self.lines.iter().zip(right).filter(|(other, _)| is_of(other));
+                let largest =
+                    of_load.filter_map(|(_, is)| Some(is.as_ref()?.slope.abs())).fold(0.0, f64::max);
+                let factor = reading / load;
+                let (own, error, load) =
+                    (factor * cell.fit.slope, factor * cell.fit.error, load.abs() * cell.load);
+                let meant = self.lines.iter().zip(right).find(|(other, _)| is_it(other));
+                let Some(right) = meant.and_then(|(_, right)| right.as_ref()) else {
+                    // a line that nothing else shows confirms nothing
+                    let shows = own / error.hypot(REPEATS * own).max(f64::MIN_POSITIVE);
+                    misfit += shows.powi(2);
+                    if counts(line) {
+                        off += (own * load).powi(2);
+                        all += (own * load).powi(2);
+                    }
+                    continue;
+                };
+                let sigma = error.hypot(right.error).hypot(REPEATS * largest);
+                misfit += ((own - right.slope) / sigma.max(f64::MIN_POSITIVE)).powi(2);
+                if counts(line) {
+                    off += ((own - right.slope) * load).powi(2);
+                    all += (own.abs().max(right.slope.abs()) * load).powi(2);
+                }
+                let scatter = reading.abs() * cell.fit.scatter;
+                if scatter > 0.0 && right.scatter > 0.0 {
+                    scatters.push((scatter / right.scatter).ln());
+                }
+            }
+            misfit += (median(&scatters).unwrap_or(0.0) / SCATTERS).powi(2);
+        }
+        (all > 0.0).then(|| Compared { misfit, left: off / all })
+    }
+
+    /// What some trials hold instead, where one change brings them back to the others.
+    fn explained<'m>(&self, class: &[usize], right: &[Option<Right>], moves: &'m [Move]) -> Option<InTrials> {
+        let tried = |one: &'m Move| {
+            let compared = self.compared(class, right, &one.change, |line| acts_on(&one.change, line))?;
+            Some((one, RARE + one.log_prior - 0.5 * compared.misfit, compared.left))
+        };
+        let mut tried: Vec<(&Move, f64, f64)> = moves.iter().filter_map(tried).collect();
+        tried.sort_by(|a, b| b.1.total_cmp(&a.1));
+        let &(best, score, left) = tried.first()?;
+        let before = Change::default();
+        let before = self.compared(class, right, &before, |line| acts_on(&best.change, line))?;
+        // signs of single lines are looked at reading by reading
+        let is_of_a_line = best.effect == &SIGN_MISTAKE && best.change.reading != [[-1.0; 3]; 3];
+        if before.left < OFF || left > LEFT || score < ODDS - 0.5 * before.misfit || is_of_a_line {
+            return None;
+        }
+        let place = self.place(class);
+        let near = tried.iter().skip(1).take_while(|(_, other, _)| *other > score - NO_WORSE);
+        let rivals = near.map(|(other, ..)| (other.effect, format!("{}, {place}", other.location)));
+        let data: Vec<usize> = (0..self.data.len()).filter(|&i| class.contains(&self.trial[i])).collect();
+        let most = class.iter().flat_map(|&trial| self.cells[trial].iter().flatten());
+        let location = format!("{}, {place}", best.location);
+        let part = Part {
+            effect: best.effect,
+            estimates: best.estimates.clone(),
+            observed: format!("In {place}, {}", in_a_part(&best.observed)),
+            looks_like: format!("in {place}, {}", best.looks_like),
+            explains: most.map(Cell::size).fold(0.0, f64::max),
+            rivals: rivals.filter(|(_, at)| *at != location).collect(),
+            location,
+            data,
+        };
+        Some(InTrials { part, change: best.change.clone() })
+    }
+
+    /// `trial 3`, `trials 3 and 4`, `rows 7 to 12`.
+    fn place(&self, class: &[usize]) -> String {
+        let own: Vec<&Datum> = class
+            .iter()
+            .filter_map(|trial| Some(&self.data[self.trial.iter().position(|of| of == trial)?]))
+            .collect();
+        let names: Option<Vec<String>> = own
+            .iter()
+            .map(|datum| {
+                let trial = datum.trial.as_ref()?;
+                Some(match &datum.session {
+                    Some(session) => format!("{trial} of session {session}"),
+                    None => trial.clone(),
+                })
+            })
+            .collect();
+        match names {
+            Some(names) if names.len() == 1 => format!("trial {}", names[0]),
+            Some(names) => {
+                let (last, first) = names.split_last().map_or(("", &[][..]), |(l, f)| (l.as_str(), f));
+                format!("trials {} and {last}", first.join(", "))
+            }
+            None => {
+                let rows = self.data.iter().zip(&self.trial).filter(|(_, of)| class.contains(of));
+                let rows = rows.fold((usize::MAX, 0), |(low, high), (datum, _)| {
+                    (low.min(datum.row), high.max(datum.row))
+                });
+                format!("rows {} to {}", rows.0, rows.1)
+            }
+        }
+    }
+}
+
+/// True where a change makes something else of a line.
+fn acts_on(change: &Change, line: &Line) -> bool {
+    let (axis, channel) = (line.axis.index(), line.channel.index());
+    let is_as_it_was = change.load[axis] == 1.0 && change.reading[axis][channel] == 1.0;
+    !is_as_it_was || change.axis[axis] != axis || change.channel[channel] != channel
+}
+
+struct Compared {
+    misfit: f64,
+    /// Share of the squares of the deflections that is left.
+    left: f64,
+}
+
+/// A sentence of a whole file said of some rows: what else the whole column could be named does not
+/// apply.
+fn in_a_part(observed: &str) -> String {
+    let without = match (observed.find(" (or name"), observed.ends_with(')')) {
+        (Some(at), true) => &observed[..at],
+        _ => observed,
+    };
+    let mut letters = without.chars();
+    letters.next().map_or_else(String::new, |first| first.to_lowercase().chain(letters).collect())
+}

@@ -16,6 +16,12 @@ const BELIEF: f64 = 10.0;
 const FEWEST_GROUPS: usize = 6;
 const FAR: f64 = 3.0;
 
+/// Where so large a share of the mean square is shared, zeros scatter three times as far as
+/// readings: with so many degrees of freedom within the groups nothing needs to be believed of
+/// those.
+const CLEARLY: f64 = 0.9;
+const ENOUGH: f64 = 20.0;
+
 /// ρ from repeats: the mean product of two deviations of one group, over what the mean square has
 /// beyond it.
 ///
@@ -50,9 +56,11 @@ pub(super) fn shared_ratio(evidence: &Evidence, left: &DVector<f64>, correlation
         }
         false => f64::INFINITY,
     };
-    let (mut product, mut pairs) = (0.0, 0.0);
+    let (mut product, mut pairs, mut within, mut shares) = (0.0, 0.0, 0.0, 0.0);
     for (total, squares, members) in groups.into_values() {
         let mean = total / members;
+        within += squares - members * mean * mean;
+        shares += 1.0;
         let clipped = mean.clamp(-limit, limit);
         let squares = squares - members * (mean * mean - clipped * clipped);
         product += (clipped * members).powi(2) - squares;
@@ -63,6 +71,12 @@ pub(super) fn shared_ratio(evidence: &Evidence, left: &DVector<f64>, correlation
     }
     let mean_square = square / count;
     let shared = (product / pairs).clamp(0.0, 0.999 * mean_square);
+    let freedom = count - shares;
+    if shared > CLEARLY * mean_square && freedom >= ENOUGH && within > 0.0 {
+        // what is a small part of the square is no difference of large ones
+        let own = within / freedom;
+        return (shared / own * count + RATIO_BEFORE * BELIEF) / (count + BELIEF);
+    }
     let own = mean_square - shared;
     believed(shared, own, count)
 }

@@ -140,7 +140,7 @@ impl Mended {
         let data = datum::all(&self.readings.rows);
         for entry in entries::found(&data, &lines(&data, |_| true), self.readings.load_column) {
             match entry.load {
-                Some(load) => self.readings.rows[entry.row].load = load,
+                Some(load) => entry.rows.iter().for_each(|&row| self.readings.rows[row].load = load),
                 None => self.leave_out(&data, &entry.part),
             }
             self.add_part(entry.part);

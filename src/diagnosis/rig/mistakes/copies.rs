@@ -3,7 +3,7 @@
 //! Readings of the same loads in two trials are the same to the last digit now and then: with a
 //! scatter of s and a display of step q in a share of p = q/(2·√π·s) of them. All n of a trial are
 //! by a chance of pⁿ. A recording without noise repeats itself in every trial; only where others
-//! scatter is one a copy.
+//! scatter, beside zeros and slopes of their own, is one a copy.
 
 use std::collections::BTreeMap;
 
@@ -11,8 +11,10 @@ use super::super::datum::Datum;
 use super::super::effects::mistakes::COPY_MISTAKE;
 use super::super::evidence::resolution;
 use super::super::numbering::numbered;
+use super::lines::fit;
 use super::part::Part;
 use super::search::ODDS;
+use crate::spatial::Axis;
 use crate::statistics::median;
 
 /// Scatter that hardly any display rounds away, in steps.
@@ -41,12 +43,8 @@ pub(super) fn found(data: &[Datum]) -> Vec<Part> {
     for (t, own) in trials.iter().enumerate() {
         let Some(first) = (0..t).find(|&other| same[other] == same[t]) else { continue };
         let others = (0..trials.len()).filter(|&o| protocols[o] == protocols[t] && same[o] != same[t]);
-        let apart =
-            |other: usize| own.iter().zip(trials[other]).map(|(&a, &b)| data[a].measured - data[b].measured);
-        let apart: Vec<f64> = others.flat_map(apart).collect();
-        let Some(middle) = median(&apart) else { continue };
-        let away: Vec<f64> = apart.iter().map(|apart| (apart - middle).abs()).collect();
-        let scatter = 1.4826 / 2f64.sqrt() * median(&away).unwrap_or(0.0);
+        let scatters: Vec<f64> = others.flat_map(|other| scatters(data, own, trials[other])).collect();
+        let scatter = median(&scatters).unwrap_or(0.0);
         let step = resolution(&own.iter().map(|&i| data[i].clone()).collect::<Vec<_>>());
         let moving = own.iter().filter(|&&i| data[i].measured != 0.0).count();
         if scatter <= STEPS * step {
@@ -72,6 +70,17 @@ pub(super) fn found(data: &[Datum]) -> Vec<Part> {
         });
     }
     found
+}
+
+/// Scatter of the readings of each line of two trials through the same loads, m: of what they differ
+/// by beside a zero and a slope, which need no noise.
+fn scatters(data: &[Datum], first: &[usize], second: &[usize]) -> Vec<f64> {
+    let mut lines: BTreeMap<(Axis, Axis, [u64; 2]), Vec<(f64, f64)>> = BTreeMap::new();
+    for (&a, &b) in first.iter().zip(second) {
+        let apart = (data[a].signed_load(), data[a].measured - data[b].measured);
+        lines.entry(data[a].line_key()).or_default().push(apart);
+    }
+    lines.values().filter(|points| points.len() > 2).map(|points| fit(points).scatter / 2f64.sqrt()).collect()
 }
 
 /// `trial 3`, `rows 7 to 12`.

@@ -5,13 +5,16 @@
 //! belong to. The lines are fitted through the readings at their owners, and
 //!
 //! ```text
-//! q = Σ min(|y − line(F)|/D, 0.7)²      over the channels of a row, D the largest deflection of the
-//!                                       rod under loads of this direction
+//! q = Σ min(|y − line(F)|/D, 0.7)²      over the channels of a row, D the largest reading under
+//!                                       loads of this direction, and a third of the largest of all
+//!                                       at least
 //! ```
 //!
 //! says how far off a row is. The stretch of rows in which another owner takes off the most is found
 //! in one pass; lines and stretch in turn. Friction keeps readings off by as much on the way up as
-//! on the way down, so that without displaced rows each way may have a zero of its own.
+//! on the way down, and zeros differ: without displaced rows each way of each run may have its own.
+
+use std::collections::BTreeMap;
 
 use super::super::effects::mistakes::ROW_MISTAKE;
 use super::super::numbering::numbered;
@@ -31,10 +34,10 @@ const CAP: f64 = 0.7;
 const PRICE: f64 = 1e-3;
 /// Displaced rows, at least; what they are off by, and may be off by afterwards, rms.
 const LEAST: usize = 4;
-const OFF: f64 = 0.14;
-const LEFT: f64 = 0.05;
+const OFF: f64 = 0.2;
+const LEFT: f64 = 0.1;
 /// At most this share of what was left before, rms.
-const CURED: f64 = 0.3;
+const CURED: f64 = 0.5;
 /// Another displacement that leaves no more than so many times as much explains alike.
 const NO_WORSE: f64 = 1.1;
 const ROUNDS: usize = 3;
@@ -146,19 +149,18 @@ struct Tried {
     explains: f64,
 }
 
-/// The lines of a hypothesis.
-struct Fits {
-    /// By label and channel.
-    lines: Vec<Option<Fit>>,
-    /// The largest deflection by label, m.
-    deflection: Vec<f64>,
-}
+/// The lines of a hypothesis, by label and channel.
+type Lines = Vec<Option<Fit>>;
 
 /// The rows of a file in their order.
 struct Sheet<'a> {
     rows: &'a [Reading],
     /// For each row the number of its axis and stations.
     label: Vec<usize>,
+    /// And of its run and way.
+    way: Vec<usize>,
+    /// D by label, m.
+    deflection: Vec<f64>,
     /// For each row the one whose load it would have, were the ways down the other way round.
     turned: Vec<usize>,
 }
@@ -169,16 +171,23 @@ impl<'a> Sheet<'a> {
         let label = numbered(
             rows.iter().map(|row| (row.direction.axis.index(), at(row.load_station), at(row.read_station))),
         );
-        let run = numbered(rows.iter().zip(&label).map(|(row, label)| {
+        let way = numbered(rows.iter().zip(&label).map(|(row, label)| {
             (&row.session, &row.trial, row.direction.sign, label, row.phase == Some(Phase::Unload))
         }));
-        let mut of_run: Vec<Vec<usize>> = vec![Vec::new(); run.iter().max().map_or(0, |last| last + 1)];
-        run.iter().enumerate().for_each(|(i, &run)| of_run[run].push(i));
+        let mut of_run: Vec<Vec<usize>> = vec![Vec::new(); way.iter().max().map_or(0, |last| last + 1)];
+        way.iter().enumerate().for_each(|(i, &way)| of_run[way].push(i));
         let mut turned: Vec<usize> = (0..rows.len()).collect();
         for own in of_run.iter().filter(|own| rows[own[0]].phase == Some(Phase::Unload)) {
             own.iter().zip(own.iter().rev()).for_each(|(&i, &other)| turned[i] = other);
         }
-        Sheet { rows, label, turned }
+        let mut deflection = vec![0.0f64; label.iter().max().map_or(0, |last| last + 1)];
+        for (row, &label) in rows.iter().zip(&label) {
+            let largest = row.offset.iter().flatten().fold(0.0, |most: f64, offset| most.max(offset.abs()));
+            deflection[label] = deflection[label].max(largest);
+        }
+        let most = deflection.iter().copied().fold(0.0, f64::max);
+        deflection.iter_mut().for_each(|of| *of = of.max(most / 3.0));
+        Sheet { rows, label, way, deflection, turned }
     }
 
     fn owner(&self, kind: Kind, i: usize) -> Owner {
@@ -195,7 +204,7 @@ impl<'a> Sheet<'a> {
         f64::from(self.rows[owner.0].direction.sign) * self.rows[owner.1].load
     }
 
-    fn fits(&self, owners: &[Owner]) -> Fits {
+    fn fits(&self, owners: &[Owner]) -> Lines {
         let labels = self.label.iter().max().map_or(0, |last| last + 1);
         let mut points: Vec<Vec<(f64, f64)>> = vec![Vec::new(); 3 * labels];
         for (row, owner) in self.rows.iter().zip(owners) {
@@ -207,46 +216,39 @@ impl<'a> Sheet<'a> {
             }
         }
         let line = |points: &Vec<(f64, f64)>| (points.len() >= LEAST).then(|| fit(points));
-        let lines: Vec<Option<Fit>> = points.iter().map(line).collect();
-        let largest = |line: usize| {
-            let load = points[line].iter().fold(0.0, |most: f64, (load, _)| most.max(load.abs()));
-            lines[line].map_or(0.0, |fit| fit.slope.abs() * load)
-        };
-        let of_label = |label: usize| (0..3).map(|k| largest(3 * label + k)).fold(0.0, f64::max);
-        Fits { deflection: (0..labels).map(of_label).collect(), lines }
+        points.iter().map(line).collect()
     }
 
     /// What each channel of a row is off its line by at an owner, as a share of the deflection.
-    fn off(&self, fits: &Fits, i: usize, owner: (usize, usize)) -> [Option<f64>; 3] {
+    fn off(&self, lines: &Lines, i: usize, owner: (usize, usize)) -> [Option<f64>; 3] {
         let label = self.label[owner.0];
         Axis::ALL.map(|channel| {
             let k = channel.index();
-            let (offset, line) = (self.rows[i].offset[k]?, fits.lines[3 * label + k]?);
-            let deflection = fits.deflection[label];
+            let (offset, line) = (self.rows[i].offset[k]?, lines[3 * label + k]?);
+            let deflection = self.deflection[label];
             (deflection > 0.0).then(|| (offset - line.at(self.load(owner))) / deflection)
         })
     }
 
-    fn q(&self, fits: &Fits, i: usize, owner: (usize, usize)) -> f64 {
-        self.off(fits, i, owner).iter().flatten().map(|off| off.abs().min(CAP).powi(2)).sum()
+    fn q(&self, lines: &Lines, i: usize, owner: (usize, usize)) -> f64 {
+        self.off(lines, i, owner).iter().flatten().map(|off| off.abs().min(CAP).powi(2)).sum()
     }
 
     /// Mean of q where nothing is displaced and each way has its own zero, and whether any row is
     /// off at all.
     fn left_where_it_is(&self, own: &[Owner]) -> (f64, bool) {
-        let fits = self.fits(own);
-        let way = |i: usize| usize::from(self.rows[i].phase == Some(Phase::Unload));
-        let mut off: Vec<[Vec<f64>; 2]> = vec![Default::default(); fits.lines.len()];
+        let lines = self.fits(own);
+        let mut off: BTreeMap<(usize, usize), Vec<f64>> = BTreeMap::new();
         for i in 0..self.rows.len() {
-            for (k, off_line) in self.off(&fits, i, (i, i)).into_iter().enumerate() {
-                off[3 * self.label[i] + k][way(i)].extend(off_line);
+            for (k, channel) in self.off(&lines, i, (i, i)).into_iter().enumerate() {
+                off.entry((self.way[i], k)).or_default().extend(channel);
             }
         }
-        let zeros: Vec<[f64; 2]> =
-            off.iter().map(|ways| [0, 1].map(|k| median(&ways[k]).unwrap_or(0.0))).collect();
+        let zero: BTreeMap<(usize, usize), f64> =
+            off.iter().map(|(key, off)| (*key, median(off).unwrap_or(0.0))).collect();
         let q = |i: usize| -> f64 {
-            let off = self.off(&fits, i, (i, i)).into_iter().enumerate();
-            let off = off.filter_map(|(k, off)| Some(off? - zeros[3 * self.label[i] + k][way(i)]));
+            let off = self.off(&lines, i, (i, i)).into_iter().enumerate();
+            let off = off.filter_map(|(k, off)| Some(off? - zero[&(self.way[i], k)]));
             off.map(|off| off.abs().min(CAP).powi(2)).sum()
         };
         let all: Vec<f64> = (0..self.rows.len()).map(q).collect();
@@ -273,9 +275,9 @@ impl<'a> Sheet<'a> {
 
     /// The stretch by the lines through `owners`.
     fn stretch(&self, kind: Kind, owners: &[Owner], own: &[Owner]) -> Option<Tried> {
-        let fits = self.fits(owners);
+        let lines = self.fits(owners);
         let gain = |i: usize| match self.owner(kind, i) {
-            Some(owner) => self.q(&fits, i, (i, i)) - self.q(&fits, i, owner) - PRICE,
+            Some(owner) => self.q(&lines, i, (i, i)) - self.q(&lines, i, owner) - PRICE,
             None => 0.0,
         };
         let (mut best, mut sum, mut from) = ((0, 0, 0.0), 0.0, 0);
@@ -306,11 +308,11 @@ impl<'a> Sheet<'a> {
             false => own[i],
         };
         let owners: Vec<Owner> = (0..own.len()).map(owner).collect();
-        let fits = self.fits(&owners);
+        let lines = self.fits(&owners);
         let (mut left, mut count) = (0.0, 0);
         for (i, owner) in owners.iter().enumerate() {
             if let Some(owner) = *owner {
-                left += self.q(&fits, i, owner);
+                left += self.q(&lines, i, owner);
                 count += 1;
             }
         }
@@ -319,14 +321,14 @@ impl<'a> Sheet<'a> {
 
     /// What the rows are off by without it, m rms; `None` where too few are, or still with it.
     fn shown(&self, tried: &Tried) -> Option<f64> {
-        let fits = self.fits(&tried.owners);
+        let lines = self.fits(&tried.owners);
         let (mut before, mut after, mut count, mut moved, mut squares) = (0.0, 0.0, 0, 0, 0.0);
         for i in tried.stretch.0..=tried.stretch.1 {
             let Some(owner) = tried.owners[i].filter(|owner| *owner != (i, i)) else { continue };
-            let q = self.q(&fits, i, (i, i));
+            let q = self.q(&lines, i, (i, i));
             before += q;
-            after += self.q(&fits, i, owner);
-            squares += q * fits.deflection[self.label[i]].powi(2);
+            after += self.q(&lines, i, owner);
+            squares += q * self.deflection[self.label[i]].powi(2);
             count += 1;
             moved += usize::from(q > SHOWN * SHOWN);
         }

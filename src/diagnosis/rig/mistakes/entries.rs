@@ -1,35 +1,41 @@
 //! Loads that were typed wrongly in single rows.
 //!
-//! All channels of a row know its load:
+//! All channels of an instant know its load:
 //!
 //! ```text
 //! F = Σ w·s·(y − a) / Σ w·s²,   w = 1/σ²
 //! ```
 //!
 //! s, a and σ slope, zero and scatter of the line of each channel. Where that is far from the load in
-//! the file, and every channel agrees with it, the load is wrong and not a reading. With a single
-//! channel nobody can distinguish the two; then the number itself must say so: another load of the
-//! recording, its digits exchanged, or its decimal point elsewhere.
+//! the file, two channels or more contradict the file and all agree with it, the load is wrong and
+//! not a reading; a single channel is a suspect reading like any other. Which number was meant:
+//! another load of the recording, its digits exchanged, or its decimal point elsewhere.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use super::super::datum::Datum;
 use super::super::effects::mistakes::ENTRY_MISTAKE;
 use super::change::exact;
-use super::lines::Line;
+use super::lines::{Line, fit};
 use super::moves::{column, load_column};
 use super::part::Part;
 use crate::inference::Estimate;
 use crate::rig::readings::LoadColumn;
+use crate::statistics::median;
 use crate::units::{STANDARD_GRAVITY, significant};
 
-/// A load is wrong that its readings are so far from: in scatters, and as a share of the largest.
+/// A load is wrong that its readings are so far from: in scatters, and as a share of a usual one.
 const SCATTERS: f64 = 8.0;
 const FAR: f64 = 0.1;
 /// How well the channels of a row agree about its load, in scatters, and how near it must come to
 /// a number that it may be, as a share.
 const AGREE: f64 = 4.0;
 const NEAR: f64 = 0.02;
+/// A load so many times the others' largest would draw its line after it.
+const BEYOND: f64 = 1.3;
+/// Loads may be so many times a usual one.
+const MOST: f64 = 150.0;
 /// Lines of fewer readings say nothing of one of them.
 const LEAST: usize = 6;
 /// At most this share of the rows.
@@ -38,8 +44,8 @@ const FEW: f64 = 0.1;
 /// A load that was typed wrongly.
 pub(super) struct Entry {
     pub part: Part,
-    /// From 0.
-    pub row: usize,
+    /// Its rows, from 0.
+    pub rows: Vec<usize>,
     /// What it is, N, along the axis; `None` where that is not known.
     pub load: Option<f64>,
 }
@@ -49,12 +55,10 @@ struct Said {
     /// N, with its standard error.
     load: f64,
     error: f64,
-    /// Channels that show loads along this axis.
-    channels: usize,
-    /// How far the reading that agrees the least is off it, and off the load in the file, in
-    /// scatters.
+    /// How far those are off the load in the file that contradict it most, in scatters.
+    against: [f64; 2],
+    /// How far the reading that agrees the least is off it, in scatters.
     off: f64,
-    off_before: f64,
 }
 
 /// Loads of single rows that all their readings contradict.
@@ -63,32 +67,34 @@ pub(super) fn found(data: &[Datum], lines: &[Line], unit: LoadColumn) -> Vec<Ent
     for (k, line) in lines.iter().enumerate().filter(|(_, line)| line.data.len() >= LEAST) {
         line.data.iter().for_each(|&i| line_of[i] = Some(k));
     }
-    let mut rows: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
-    data.iter().enumerate().for_each(|(i, datum)| rows.entry(datum.row).or_default().push(i));
+    let mut instants: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    data.iter().enumerate().for_each(|(i, datum)| instants.entry(datum.order).or_default().push(i));
     let levels: Vec<f64> = data.iter().map(|datum| datum.load).collect();
-    let largest = levels.iter().copied().fold(0.0, f64::max);
+    let usual = median(&levels).unwrap_or(0.0);
     let in_file = match unit {
         LoadColumn::Newtons => 1.0,
         LoadColumn::Kilograms => STANDARD_GRAVITY,
     };
     let mut found = Vec::new();
-    for (&row, own) in &rows {
+    for own in instants.values() {
         let Some(said) = said(data, lines, &line_of, own) else { continue };
         let datum = &data[own[0]];
+        let row = datum.row;
         let apart = (said.load - datum.signed_load()).abs();
-        let is_wrong = apart > FAR * largest && apart > SCATTERS * said.error;
-        if !is_wrong || said.off > AGREE || said.off_before < SCATTERS {
+        let is_wrong = apart > FAR * usual && apart > SCATTERS * said.error;
+        if !is_wrong || said.off > AGREE || said.against[0] < SCATTERS || said.against[1] < AGREE {
             continue;
         }
         let along = f64::from(datum.direction.sign) * said.load;
+        // no load is below none, and nobody hangs more than a rig bears
+        if along < 0.0 || along > MOST * usual {
+            continue;
+        }
         let tolerance = (NEAR * along.abs()).max(2.0 * said.error);
         let meant = meant(datum.load / in_file, &levels, in_file);
         let meant =
             meant.into_iter().map(|load| load * in_file).filter(|load| (load - along).abs() < tolerance);
         let meant = meant.min_by(|a, b| (a - along).abs().total_cmp(&(b - along).abs()));
-        if meant.is_none() && said.channels < 2 {
-            continue;
-        }
         let name = load_column(unit);
         let unit_name = if unit == LoadColumn::Newtons { "N" } else { "kg" };
         let written = number(datum.load / in_file);
@@ -102,21 +108,13 @@ pub(super) fn found(data: &[Datum], lines: &[Line], unit: LoadColumn) -> Vec<Ent
         };
         let location = format!("{name}, row {row}");
         let readings: Vec<String> = own.iter().map(|&i| column(data[i].channel)).collect();
-        let (rivals, or) = match said.channels {
-            1 => {
-                let shown = own.iter().find(|&&i| line_of[i].is_some_and(|k| is_shown(&lines[k])));
-                let other = shown.map(|&i| format!("{}, row {row}", column(data[i].channel)));
-                (other.into_iter().map(|at| (&ENTRY_MISTAKE, at)).collect(), ", unless the reading is wrong")
-            }
-            _ => (Vec::new(), ""),
-        };
         let line = datum.line;
         let verb = if readings.len() == 1 { "is" } else { "are" };
         found.push(Entry {
             part: Part {
                 effect: &ENTRY_MISTAKE,
                 observed: format!(
-                    "The load in row {row} (line {line}) is {written} {unit_name}, but {} {verb} of {is} {unit_name}: write that instead, or leave the row out{or}",
+                    "The load in row {row} (line {line}) is {written} {unit_name}, but {} {verb} of {is} {unit_name}: write that instead, or leave the row out",
                     readings.join(", ")
                 ),
                 looks_like: format!("{location} looks mistyped"),
@@ -133,13 +131,13 @@ pub(super) fn found(data: &[Datum], lines: &[Line], unit: LoadColumn) -> Vec<Ent
                 }],
                 explains: apart * most_slope(lines, &line_of, own),
                 data: own.clone(),
-                rivals,
+                rivals: Vec::new(),
             },
-            row: row - 1,
-            load: meant.filter(|_| said.channels > 1),
+            rows: own.iter().map(|&i| data[i].row - 1).collect(),
+            load: meant,
         });
     }
-    if found.len() as f64 > (FEW * rows.len() as f64).max(1.0) { Vec::new() } else { found }
+    if found.len() as f64 > (FEW * instants.len() as f64).max(1.0) { Vec::new() } else { found }
 }
 
 /// As it stands in a file: without what conversions leave in the last digits.
@@ -157,39 +155,48 @@ fn most_slope(lines: &[Line], line_of: &[Option<usize>], own: &[usize]) -> f64 {
 }
 
 fn said(data: &[Datum], lines: &[Line], line_of: &[Option<usize>], own: &[usize]) -> Option<Said> {
-    let known: Vec<(&Datum, &Line)> = own
-        .iter()
-        .filter_map(|&i| Some((&data[i], &lines[line_of[i]?])))
-        .filter(|(_, line)| line.has_slope)
-        .collect();
+    let line = |&i: &usize| Some((&data[i], without(data, &lines[line_of[i]?], i)));
+    let known: Vec<(&Datum, Cow<'_, Line>)> =
+        own.iter().filter_map(line).filter(|(_, line)| line.has_slope).collect();
     let scatter = |line: &Line| line.fit.scatter.max(1e-4 * line.fit.slope.abs() * line.largest_load);
     let without_play = |datum: &Datum, line: &Line| {
         datum.measured - line.fit.zero - line.fit.play * f64::from(datum.direction.sign)
     };
-    let (mut top, mut bottom, mut channels) = (0.0, 0.0, 0);
+    let (mut top, mut bottom) = (0.0, 0.0);
     for (datum, line) in &known {
         let weight = scatter(line).powi(-2);
         top += weight * line.fit.slope * without_play(datum, line);
         bottom += weight * line.fit.slope.powi(2);
-        channels += usize::from(is_shown(line));
     }
     let load = top / bottom;
-    let off = |load: f64| {
-        let of = |(datum, line): &(&Datum, &Line)| {
-            // the slope is known to its error only
-            let sigma = scatter(line).hypot(line.fit.error * load);
-            ((without_play(datum, line) - line.fit.slope * load) / sigma).abs()
-        };
-        known.iter().map(of).fold(0.0, f64::max)
+    let off = |load: f64, (datum, line): &(&Datum, Cow<'_, Line>)| {
+        // the slope is known to its error only
+        let sigma = scatter(line).hypot(line.fit.error * load);
+        ((without_play(datum, line) - line.fit.slope * load) / sigma).abs()
     };
-    let before = known.first().map(|(datum, _)| datum.signed_load())?;
-    (channels > 0 && load.is_finite()).then(|| Said {
+    let in_file = known.first().map(|(datum, _)| datum.signed_load())?;
+    let shown = known.iter().filter(|(_, line)| is_shown(line));
+    let mut against: Vec<f64> = shown.map(|one| off(in_file, one)).chain([0.0; 2]).collect();
+    against.sort_by(|a, b| b.total_cmp(a));
+    load.is_finite().then(|| Said {
         load,
         error: bottom.powf(-0.5),
-        channels,
-        off: off(load),
-        off_before: off(before),
+        against: [against[0], against[1]],
+        off: known.iter().map(|one| off(load, one)).fold(0.0, f64::max),
     })
+}
+
+/// A line, without a datum whose load is so far beyond all others that it would follow that.
+fn without<'a>(data: &[Datum], line: &'a Line, own: usize) -> Cow<'a, Line> {
+    let others: Vec<usize> =
+        line.data.iter().copied().filter(|&i| data[i].order != data[own].order).collect();
+    let largest = others.iter().fold(0.0, |most: f64, &i| most.max(data[i].load));
+    if data[own].load < BEYOND * largest {
+        return Cow::Borrowed(line);
+    }
+    let points: Vec<(f64, f64)> = others.iter().map(|&i| (data[i].signed_load(), data[i].measured)).collect();
+    let has_slope = points.iter().any(|(load, _)| (load - points[0].0).abs() > 1e-6 * largest);
+    Cow::Owned(Line { fit: fit(&points), largest_load: largest, has_slope, data: others, ..line.clone() })
 }
 
 /// Numbers that may have been meant, in the unit of the file: other loads of the recording, the

@@ -2,6 +2,7 @@
 
 mod labels;
 mod named;
+mod parts;
 mod sensors;
 
 use super::*;

@@ -25,6 +25,8 @@ use crate::statistics::{chi_squared_survival, student_t_quantile};
 
 /// So many times what a recording may scatter it may, where repeats show that it does.
 const SHOWN_BY_REPEATS: f64 = 3.0;
+/// Zeros that scatter so many times as far as readings are something of their own.
+pub(crate) const ZEROS_APART: f64 = 4.0;
 /// Ln odds from which on it is said what the nominal numbers explain.
 const WORTH_SAYING: f64 = 3.0;
 
@@ -105,7 +107,10 @@ fn diagnose_with(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
     let is_contradicted = noise_test.is_contradicted();
     // repeats that scatter as much show that it is scatter, up to a point
     let times = if lack_of_fit_after.is_some() { SHOWN_BY_REPEATS } else { 1.0 };
-    let is_too_much = evidence.most_scatter.is_some_and(|most| noise > times * most);
+    // zeros that were not taken scatter as far as they like: readings within a run do not
+    let ratio = search.shared_ratio();
+    let own = if ratio > ZEROS_APART * ZEROS_APART { noise / (1.0 + ratio).sqrt() } else { noise };
+    let is_too_much = evidence.most_scatter.is_some_and(|most| own > times * most);
     if discrepancy.is_none() && (is_contradicted || is_too_much) {
         let (rms, shape) = (rms(&after), after.clone());
         let shown_by = if is_contradicted { ShownBy::StatedNoise } else { ShownBy::Size };

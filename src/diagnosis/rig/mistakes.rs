@@ -20,6 +20,7 @@ mod copies;
 mod displaced;
 mod entries;
 mod groups;
+mod increments;
 mod lines;
 mod lookalikes;
 mod moves;
@@ -102,6 +103,7 @@ pub(super) fn mended(readings: &Readings, rod: Option<&Rod>, others: &[(String, 
         zeros: Vec::new(),
     };
     mended.copies();
+    mended.increments()?;
     mended.displaced();
     mended.trials()?;
     mended.entries();
@@ -127,6 +129,21 @@ impl Mended {
             self.leave_out(&data, &part);
             self.add_part(part);
         }
+    }
+
+    /// Readings that are increments.
+    fn increments(&mut self) -> Result<()> {
+        let data = datum::all(&self.readings.rows);
+        let all = lines(&data, |_| true);
+        let Some(rod) = self.expected(&all)? else { return Ok(()) };
+        let by_rod: Vec<f64> = rod.slopes.iter().map(|slope| slope / rod.scale).collect();
+        if let Some(found) = increments::found(&data, &all, &by_rod) {
+            for (datum, offset) in data.iter().zip(&found.offsets) {
+                self.readings.rows[datum.row - 1].offset[datum.channel.index()] = Some(*offset);
+            }
+            self.add_part(found.part);
+        }
+        Ok(())
     }
 
     fn leave_out(&mut self, data: &[datum::Datum], part: &Part) {

@@ -60,6 +60,18 @@ pub static ROW_MISTAKE: Effect = Effect {
     ..NONE
 };
 
+/// Readings of what each load added.
+pub static INCREMENT_MISTAKE: Effect = Effect {
+    name: "increment_mistake",
+    summary: "readings are what each load added to the one before",
+    formula: "reading = c·(F − load before it in its run)",
+    prior: "where that leaves 1 % of the squares, offsets leave 10 %, and the slope is the rod's",
+    cause: "increments instead of offsets",
+    cause_at: |location| at("increments instead of offsets", location),
+    direct_check: Some("Compare the largest reading with the display under the largest load."),
+    ..NONE
+};
+
 /// A load that was typed wrongly in one row.
 pub static ENTRY_MISTAKE: Effect = Effect {
     name: "entry_mistake",

@@ -27,11 +27,12 @@ pub static ALL: [&RigEffect; 17] = [
 
 /// Every mistake that the diagnosis of a rig knows. They are no terms of a model: they are undone
 /// before there is one.
-pub static MISTAKES: [&Effect; 10] = [
+pub static MISTAKES: [&Effect; 11] = [
     &mistakes::UNIT_MISTAKE,
     &mistakes::SIGN_MISTAKE,
     &mistakes::SWAP_MISTAKE,
     &mistakes::ROW_MISTAKE,
+    &mistakes::INCREMENT_MISTAKE,
     &mistakes::ENTRY_MISTAKE,
     &mistakes::COPY_MISTAKE,
     &mistakes::OFFSET_MISTAKE,

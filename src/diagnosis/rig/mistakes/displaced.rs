@@ -224,7 +224,9 @@ impl<'a> Sheet<'a> {
         let label = self.label[owner.0];
         Axis::ALL.map(|channel| {
             let k = channel.index();
-            let (offset, line) = (self.rows[i].offset[k]?, lines[3 * label + k]?);
+            let offset = self.rows[i].offset[k]?;
+            // what nothing else is read with is not where it belongs
+            let Some(line) = lines[3 * label + k] else { return Some(CAP) };
             let deflection = self.deflection[label];
             (deflection > 0.0).then(|| (offset - line.at(self.load(owner))) / deflection)
         })

@@ -37,6 +37,8 @@ const HARDLY: f64 = 0.5;
 const SCALE: f64 = 0.1;
 /// How far beyond a limit the readings would lie, as a share of it.
 const BEYOND: f64 = 0.05;
+/// Ln of the chance by which readings at one load may be the same.
+const BY_CHANCE: f64 = -5.0;
 /// So many readings that are the largest to the last digit are cut off, wherever they would lie,
 /// where noise, and what the line goes on by between them, is more than so many steps of the
 /// display: of readings that merely end there about an eighth of one more lies within a step of the
@@ -208,8 +210,11 @@ fn cut_off(beyond: &[f64], scatter: f64, limit: f64, step: f64) -> Option<f64> {
     // a rod on the way down, but not all of these
     let goes_on = mean > 2.0 * scatter || (high - low > 3.0 * scatter && beyond.len() >= 2 * AT_LIMIT);
     let is_flat = high - low > (BEYOND * limit).max(scatter) && low > -scatter && goes_on;
-    // or, at one load, well beyond, with noise in all other readings
-    let is_still = low > 3.0 * scatter && scatter > 3.0 * step;
+    // or, at one load, well beyond, with noise in all other readings: so many are the same by a
+    // chance of step/(2·√π·scatter) each
+    let tie = (step / (2.0 * std::f64::consts::PI.sqrt() * scatter)).ln();
+    let is_noisy = scatter > 3.0 * step || (beyond.len() as f64 - 1.0) * tie < BY_CHANCE;
+    let is_still = low > 3.0 * scatter && is_noisy;
     (mean > BEYOND * limit && (is_flat || is_still)).then_some(high)
 }
 

@@ -149,6 +149,20 @@ impl<'a> Table<'a> {
 
     fn is_of(&self, trial: usize, class: &[usize]) -> bool {
         let most = |trial: usize| self.cells[trial].iter().flatten().map(Cell::size).fold(0.0, f64::max);
+        let is_in_class = |k: usize| class.iter().any(|&other| self.cells[other][k].is_some());
+        let own = |k: &usize| self.cells[trial][*k].is_some();
+        // the same loads, and other channels only
+        let is_read_elsewhere = |k: usize| {
+            let is_of = |other: &usize| {
+                let (line, other) = (&self.lines[k], &self.lines[*other]);
+                line.axis == other.axis && line.stations == other.stations
+            };
+            let of_loads = || (0..self.lines.len()).filter(is_of);
+            of_loads().any(is_in_class) && !of_loads().filter(own).any(is_in_class)
+        };
+        if (0..self.lines.len()).filter(own).any(is_read_elsewhere) {
+            return false;
+        }
         (0..self.lines.len()).all(|k| {
             let Some(own) = self.cells[trial][k] else { return true };
             let first = class.iter().find_map(|&other| Some((other, self.cells[other][k]?)));

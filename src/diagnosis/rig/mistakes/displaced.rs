@@ -226,7 +226,7 @@ impl<'a> Sheet<'a> {
             let k = channel.index();
             let offset = self.rows[i].offset[k]?;
             // what nothing else is read with is not where it belongs
-            let Some(line) = lines[3 * label + k] else { return Some(CAP) };
+            let Some(line) = lines[3 * label + k] else { return Some(f64::INFINITY) };
             let deflection = self.deflection[label];
             (deflection > 0.0).then(|| (offset - line.at(self.load(owner))) / deflection)
         })
@@ -243,7 +243,7 @@ impl<'a> Sheet<'a> {
         let mut off: BTreeMap<(usize, usize), Vec<f64>> = BTreeMap::new();
         for i in 0..self.rows.len() {
             for (k, channel) in self.off(&lines, i, (i, i)).into_iter().enumerate() {
-                off.entry((self.way[i], k)).or_default().extend(channel);
+                off.entry((self.way[i], k)).or_default().extend(channel.filter(|off| off.is_finite()));
             }
         }
         let zero: BTreeMap<(usize, usize), f64> =

@@ -19,7 +19,7 @@ use super::Evidence;
 /// φ that are tried.
 const CORRELATIONS: [f64; 7] = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7];
 /// ρ that are tried.
-const RATIOS: [f64; 10] = [0.0, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 30.0, 100.0];
+const RATIOS: [f64; 13] = [0.0, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 30.0, 100.0, 1e3, 1e4, 1e5];
 /// Ln of the likelihood ratio from which on neighbours resemble each other.
 const WORTH: f64 = 3.0;
 /// What a datum far off counts at most.

@@ -60,7 +60,7 @@ fn diagnose_with(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
     let held_out = hold_out(model, evidence, &hypothesis.terms);
     let (hypothesis, left_over) =
         confirmed(model, &search, &folded, hypothesis, left_over, held_out.as_ref());
-    let (hypothesis, left_over) = apart_from_curve(model, &search, hypothesis, left_over);
+    let (hypothesis, left_over) = apart_from_nothing(model, &search, hypothesis, left_over);
     let none = search.fit(&[]);
     let by_base = search.predicted(&none, evidence, &DVector::zeros(evidence.residual.len()));
     let predicted = search.predicted(&hypothesis, evidence, &model.response(&hypothesis.terms));
@@ -230,9 +230,9 @@ fn confirmed(
     (shorter, left_over)
 }
 
-/// A hypothesis without physics that the curve beside it may be as well: where, with all else that
-/// may be there, nothing of it is an estimate like any other.
-fn apart_from_curve(
+/// A hypothesis without effects of which, with all else that may be there, nothing is as good an
+/// estimate as any other: the curve beside it may be as well, or zeros that differ from run to run.
+fn apart_from_nothing(
     model: &Linearised<'_>,
     search: &Search,
     hypothesis: Hypothesis,
@@ -244,22 +244,22 @@ fn apart_from_curve(
         let candidate = &model.candidates()[hypothesis.terms[*position].candidate];
         let estimates = estimates(model, search, &hypothesis, *position, beside, coverage_factor);
         let parameters = estimates.iter().zip(&candidate.parameters);
-        candidate.effect.kind == Kind::Event
+        let is_event_beside_curve = candidate.effect.kind == Kind::Event && beside.is_some();
+        is_event_beside_curve
             || parameters.into_iter().any(|(own, p)| p.neutral < own.low || p.neutral > own.high)
     };
-    if beside.is_none() {
-        return (hypothesis, left_over);
-    }
     let kept: Vec<usize> = (0..hypothesis.terms.len()).filter(is_apart).collect();
     let terms: Vec<Term> = kept.iter().map(|&position| hypothesis.terms[position].clone()).collect();
     if terms.len() == hypothesis.terms.len() {
         return (hypothesis, left_over);
     }
     let shorter = search.fit(&terms);
-    // where nothing would be left to be explained it is better named than not
-    match search.remains(&shorter) {
-        Some(rest) => (shorter, Some(rest)),
-        None => (hypothesis, left_over),
+    // where nothing but the curve would be left, or nothing but the effect, it is better named than
+    // not
+    match (search.remains(&shorter), beside.is_some()) {
+        (Some(rest), true) => (shorter, Some(rest)),
+        (None, false) => (shorter, None),
+        _ => (hypothesis, left_over),
     }
 }
 

@@ -33,7 +33,10 @@ pub(super) fn shared_ratio(evidence: &Evidence, left: &DVector<f64>, correlation
     if correlation > 0.0 {
         let count = deviations.iter().flatten().count() as f64;
         let (ratio, _) = likeliest(&by_group(evidence, &deviations), correlation);
-        return believed(ratio / (1.0 + ratio), 1.0 / (1.0 + ratio), count);
+        return match ratio > CLEARLY / (1.0 - CLEARLY) && count >= ENOUGH {
+            true => clearly(ratio, count),
+            false => believed(ratio / (1.0 + ratio), 1.0 / (1.0 + ratio), count),
+        };
     }
     let (mut square, mut count) = (0.0, 0.0);
     let mut groups: BTreeMap<usize, (f64, f64, f64)> = BTreeMap::new();
@@ -74,11 +77,15 @@ pub(super) fn shared_ratio(evidence: &Evidence, left: &DVector<f64>, correlation
     let freedom = count - shares;
     if shared > CLEARLY * mean_square && freedom >= ENOUGH && within > 0.0 {
         // what is a small part of the square is no difference of large ones
-        let own = within / freedom;
-        return (shared / own * count + RATIO_BEFORE * BELIEF) / (count + BELIEF);
+        return clearly(shared * freedom / within, count);
     }
     let own = mean_square - shared;
     believed(shared, own, count)
+}
+
+/// A ρ that `count` data clearly show, beside the belief.
+fn clearly(ratio: f64, count: f64) -> f64 {
+    (ratio * count + RATIO_BEFORE * BELIEF) / (count + BELIEF)
 }
 
 /// ρ of two variances that `count` data show, beside the belief: that counts as [`BELIEF`] data of
@@ -87,4 +94,36 @@ fn believed(shared: f64, own: f64, count: f64) -> f64 {
     let split = RATIO_BEFORE / (1.0 + RATIO_BEFORE);
     let belief = BELIEF * (shared + own);
     (shared * count + split * belief) / (own * count + (1.0 - split) * belief)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::statistics::Random;
+
+    /// Twelve runs of fourteen readings, all of the same fourteen loads, whose zeros scatter so many
+    /// times as far as the readings.
+    fn evidence(times: f64) -> Evidence {
+        let mut random = Random::seeded(5, 0);
+        let zeros: Vec<f64> = (0..12).map(|_| times * random.normal()).collect();
+        let residual = DVector::from_fn(168, |i, _| zeros[i / 14] + random.normal());
+        Evidence {
+            replicate_group: (0..168).map(|i| i % 14).collect(),
+            shared: (0..168).map(|i| i / 14).collect(),
+            ..Evidence::new(residual)
+        }
+    }
+
+    #[test]
+    fn zeros_far_apart_leave_the_scatter_of_readings_what_it_is() {
+        for times in [0.0, 1.0, 3.0, 10.0, 150.0] {
+            let evidence = evidence(times);
+            for correlation in [0.0, 0.1] {
+                let ratio = shared_ratio(&evidence, &evidence.residual, correlation);
+                // the scatter of twelve zeros is known to a fifth, and half of small ones is belief
+                let (low, high) = (0.5 * times - 0.2, 1.6 * times + 0.4);
+                assert!((low..high).contains(&ratio.sqrt()), "{times} at {correlation}: {}", ratio.sqrt());
+            }
+        }
+    }
 }

@@ -30,57 +30,104 @@ const ENOUGH: f64 = 20.0;
 /// Beside a correlation the likeliest, drawn towards the same belief.
 pub(super) fn shared_ratio(evidence: &Evidence, left: &DVector<f64>, correlation: f64) -> f64 {
     let deviations = deviations(evidence, left);
+    let squares = Squares::of(evidence, &deviations);
+    let clear = || squares.clear().filter(|_| squares.is_clear_without_farthest(evidence, left));
     if correlation > 0.0 {
-        let count = deviations.iter().flatten().count() as f64;
         let (ratio, _) = likeliest(&by_group(evidence, &deviations), correlation);
-        return match ratio > CLEARLY / (1.0 - CLEARLY) && count >= ENOUGH {
-            true => clearly(ratio, count),
-            false => believed(ratio / (1.0 + ratio), 1.0 / (1.0 + ratio), count),
+        return match ratio > CLEARLY / (1.0 - CLEARLY) && clear().is_some() {
+            true => clearly(ratio, squares.count),
+            false => believed(ratio / (1.0 + ratio), 1.0 / (1.0 + ratio), squares.count),
         };
     }
-    let (mut square, mut count) = (0.0, 0.0);
-    let mut groups: BTreeMap<usize, (f64, f64, f64)> = BTreeMap::new();
-    for (row, deviation) in deviations.iter().enumerate() {
-        let Some(deviation) = deviation else { continue };
-        square += deviation * deviation;
-        count += 1.0;
-        let (total, squares, members) = groups.entry(evidence.shared[row]).or_default();
-        *total += deviation;
-        *squares += deviation * deviation;
-        *members += 1.0;
-    }
-    // a step between two runs is no scatter of their zeros: a mean far out counts as far as usual
-    let limit = match groups.len() >= FEWEST_GROUPS {
-        true => {
-            let mut means: Vec<f64> =
-                groups.values().map(|(total, _, members)| (total / members).abs()).collect();
-            means.sort_by(f64::total_cmp);
-            FAR * 1.4826 * means[means.len() / 2]
-        }
-        false => f64::INFINITY,
-    };
-    let (mut product, mut pairs, mut within, mut shares) = (0.0, 0.0, 0.0, 0.0);
-    for (total, squares, members) in groups.into_values() {
-        let mean = total / members;
-        within += squares - members * mean * mean;
-        shares += 1.0;
-        let clipped = mean.clamp(-limit, limit);
-        let squares = squares - members * (mean * mean - clipped * clipped);
-        product += (clipped * members).powi(2) - squares;
-        pairs += members * (members - 1.0);
-    }
-    if count == 0.0 || pairs == 0.0 || square == 0.0 {
+    if squares.count == 0.0 || squares.pairs == 0.0 || squares.square == 0.0 {
         return RATIO_BEFORE;
     }
-    let mean_square = square / count;
-    let shared = (product / pairs).clamp(0.0, 0.999 * mean_square);
-    let freedom = count - shares;
-    if shared > CLEARLY * mean_square && freedom >= ENOUGH && within > 0.0 {
-        // what is a small part of the square is no difference of large ones
-        return clearly(shared * freedom / within, count);
+    match clear() {
+        Some(ratio) => clearly(ratio, squares.count),
+        None => believed(squares.shared(), squares.mean() - squares.shared(), squares.count),
     }
-    let own = mean_square - shared;
-    believed(shared, own, count)
+}
+
+/// Sums over the groups of deviations.
+#[derive(Default)]
+struct Squares {
+    count: f64,
+    square: f64,
+    /// Products of two deviations of one group, and how many pairs there are.
+    product: f64,
+    pairs: f64,
+    /// Squares about the means of the groups, and how many groups there are.
+    within: f64,
+    groups: f64,
+    /// The group whose mean is the farthest out.
+    farthest: Option<usize>,
+}
+
+impl Squares {
+    fn of(evidence: &Evidence, deviations: &[Option<f64>]) -> Squares {
+        let mut all = Squares::default();
+        let mut groups: BTreeMap<usize, (f64, f64, f64)> = BTreeMap::new();
+        for (row, deviation) in deviations.iter().enumerate() {
+            let Some(deviation) = deviation else { continue };
+            all.square += deviation * deviation;
+            all.count += 1.0;
+            let (total, squares, members) = groups.entry(evidence.shared[row]).or_default();
+            *total += deviation;
+            *squares += deviation * deviation;
+            *members += 1.0;
+        }
+        // a step between two runs is no scatter of their zeros: a mean far out counts as far as usual
+        let limit = match groups.len() >= FEWEST_GROUPS {
+            true => {
+                let mut means: Vec<f64> =
+                    groups.values().map(|(total, _, members)| (total / members).abs()).collect();
+                means.sort_by(f64::total_cmp);
+                FAR * 1.4826 * means[means.len() / 2]
+            }
+            false => f64::INFINITY,
+        };
+        let mut far = 0.0;
+        for (group, (total, squares, members)) in groups {
+            let mean = total / members;
+            all.within += squares - members * mean * mean;
+            all.groups += 1.0;
+            if mean.abs() > far {
+                (far, all.farthest) = (mean.abs(), Some(group));
+            }
+            let clipped = mean.clamp(-limit, limit);
+            let squares = squares - members * (mean * mean - clipped * clipped);
+            all.product += (clipped * members).powi(2) - squares;
+            all.pairs += members * (members - 1.0);
+        }
+        all
+    }
+
+    fn mean(&self) -> f64 {
+        self.square / self.count
+    }
+
+    fn shared(&self) -> f64 {
+        (self.product / self.pairs).clamp(0.0, 0.999 * self.mean())
+    }
+
+    /// ρ where nearly all of the square is shared: what is a small part of it is no difference of
+    /// large ones.
+    fn clear(&self) -> Option<f64> {
+        let freedom = self.count - self.groups;
+        let is_clear = self.pairs > 0.0
+            && self.shared() > CLEARLY * self.mean()
+            && freedom >= ENOUGH
+            && self.within > 0.0;
+        is_clear.then(|| self.shared() * freedom / self.within)
+    }
+
+    /// False where it is one group that is far out: that is no scatter of zeros but one of them.
+    fn is_clear_without_farthest(&self, evidence: &Evidence, left: &DVector<f64>) -> bool {
+        let rows: Vec<usize> =
+            (0..left.len()).filter(|&row| Some(evidence.shared[row]) != self.farthest).collect();
+        let rest = evidence.part(&rows);
+        Squares::of(&rest, &deviations(&rest, &left.select_rows(&rows))).clear().is_some()
+    }
 }
 
 /// A ρ that `count` data clearly show, beside the belief.

@@ -70,8 +70,8 @@ pub(super) struct Tails {
 
 impl Tails {
     /// The likeliest; normal ones where the data do not say otherwise. `rounding` is the standard
-    /// deviation that rounding makes by itself: residuals that a coarse display shows as none are no
-    /// smaller.
+    /// deviation that rounding makes by itself: residuals that a coarse display shows as none are
+    /// no smaller.
     pub fn of(residual: &DVector<f64>, rounding: f64) -> Tails {
         let residual = &residual.map(|r| r.hypot(rounding));
         let normal = Tails { scale: rms(residual), freedom: f64::INFINITY };

@@ -76,7 +76,8 @@ impl Squares {
             *squares += deviation * deviation;
             *members += 1.0;
         }
-        // a step between two runs is no scatter of their zeros: a mean far out counts as far as usual
+        // a step between two runs is no scatter of their zeros: a mean far out counts as far as
+        // usual
         let limit = match groups.len() >= FEWEST_GROUPS {
             true => {
                 let mut means: Vec<f64> =
@@ -148,8 +149,8 @@ mod tests {
     use super::*;
     use crate::statistics::Random;
 
-    /// Twelve runs of fourteen readings, all of the same fourteen loads, whose zeros scatter so many
-    /// times as far as the readings.
+    /// Twelve runs of fourteen readings, all of the same fourteen loads, whose zeros scatter so
+    /// many times as far as the readings.
     fn evidence(times: f64) -> Evidence {
         let mut random = Random::seeded(5, 0);
         let zeros: Vec<f64> = (0..12).map(|_| times * random.normal()).collect();

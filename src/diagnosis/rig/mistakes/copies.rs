@@ -72,8 +72,8 @@ pub(super) fn found(data: &[Datum]) -> Vec<Part> {
     found
 }
 
-/// Scatter of the readings of each line of two trials through the same loads, m: of what they differ
-/// by beside a zero and a slope, which need no noise.
+/// Scatter of the readings of each line of two trials through the same loads, m: of what they
+/// differ by beside a zero and a slope, which need no noise.
 fn scatters(data: &[Datum], first: &[usize], second: &[usize]) -> Vec<f64> {
     let mut lines: BTreeMap<(Axis, Axis, [u64; 2]), Vec<(f64, f64)>> = BTreeMap::new();
     for (&a, &b) in first.iter().zip(second) {

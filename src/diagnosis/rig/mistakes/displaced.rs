@@ -10,9 +10,10 @@
 //!                                       at least
 //! ```
 //!
-//! says how far off a row is. The stretch of rows in which another owner takes off the most is found
-//! in one pass; lines and stretch in turn. Friction keeps readings off by as much on the way up as
-//! on the way down, and zeros differ: without displaced rows each way of each run may have its own.
+//! says how far off a row is. The stretch of rows in which another owner takes off the most is
+//! found in one pass; lines and stretch in turn. Friction keeps readings off by as much on the way
+//! up as on the way down, and zeros differ: without displaced rows each way of each run may have
+//! its own.
 
 use std::collections::BTreeMap;
 

@@ -6,10 +6,10 @@
 //! F = Σ w·s·(y − a) / Σ w·s²,   w = 1/σ²
 //! ```
 //!
-//! s, a and σ slope, zero and scatter of the line of each channel. Where that is far from the load in
-//! the file, two channels or more contradict the file and all agree with it, the load is wrong and
-//! not a reading; a single channel is a suspect reading like any other. Which number was meant:
-//! another load of the recording, its digits exchanged, or its decimal point elsewhere.
+//! s, a and σ slope, zero and scatter of the line of each channel. Where that is far from the load
+//! in the file, two channels or more contradict the file and all agree with it, the load is wrong
+//! and not a reading; a single channel is a suspect reading like any other. Which number was
+//! meant: another load of the recording, its digits exchanged, or its decimal point elsewhere.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;

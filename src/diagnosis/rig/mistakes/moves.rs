@@ -140,8 +140,8 @@ pub(super) fn all(labels: &Labels) -> Vec<Move> {
     moves
 }
 
-/// Every one that some trials could show which others are compared with: what softer or stiffer rods
-/// look like too, and decimal places.
+/// Every one that some trials could show which others are compared with: what softer or stiffer
+/// rods look like too, and decimal places.
 pub(super) fn in_trials(labels: &Labels) -> Vec<Move> {
     let mut moves = load_units(labels, true);
     moves.extend(reading_units(labels));

@@ -25,8 +25,8 @@ fn what_one_trial_is_written_in_the_others_show() {
         for row in of_trial(&mut range, "2") {
             row.offset[1].iter_mut().for_each(|y| *y *= 10.0);
         }
-        // along one axis, loads that were divided by g are 2 % from that: more than the lines of 5# are
-        // uncertain
+        // along one axis, loads that were divided by g are 2 % from that: more than the lines of
+        // 5# are uncertain
         if what.contains("5#") {
             cases.expect(&format!("{what} range"), &range, file, &["unit_mistake dy_um, trial 2"]);
         }

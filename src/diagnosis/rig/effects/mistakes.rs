@@ -65,7 +65,7 @@ pub static INCREMENT_MISTAKE: Effect = Effect {
     name: "increment_mistake",
     summary: "readings are what each load added to the one before",
     formula: "reading = c·(F − load before it in its run)",
-    prior: "where that leaves 1 % of the squares, offsets leave 10 %, and the slope is the rod's",
+    prior: "where that leaves 3 % of the squares, offsets leave 10 %, and the slope is the rod's",
     cause: "increments instead of offsets",
     cause_at: |location| at("increments instead of offsets", location),
     direct_check: Some("Compare the largest reading with the display under the largest load."),

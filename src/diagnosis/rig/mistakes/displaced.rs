@@ -35,7 +35,7 @@ const CAP: f64 = 0.7;
 const PRICE: f64 = 1e-3;
 /// Displaced rows, at least; what they are off by, and may be off by afterwards, rms.
 const LEAST: usize = 4;
-const OFF: f64 = 0.2;
+const OFF: f64 = 0.12;
 const LEFT: f64 = 0.1;
 /// At most this share of what was left before, rms.
 const CURED: f64 = 0.5;
@@ -336,7 +336,8 @@ impl<'a> Sheet<'a> {
             moved += usize::from(q > SHOWN * SHOWN);
         }
         let count = f64::from(count);
-        let is_shown = moved >= LEAST && before > OFF * OFF * count && after < LEFT * LEFT * count;
+        let is_cured = after < LEFT * LEFT * count && after < CURED * CURED * before;
+        let is_shown = moved >= LEAST && before > OFF * OFF * count && is_cured;
         is_shown.then(|| (squares / count).sqrt())
     }
 

@@ -16,7 +16,7 @@ use super::moves::column;
 use super::part::Part;
 
 /// Share of the squares that increments may leave, and that offsets must.
-const LEFT: f64 = 0.01;
+const LEFT: f64 = 0.03;
 const OFF: f64 = 0.1;
 /// How near to the rod's own the slope must be, as a ratio.
 const LIKE_THE_ROD: f64 = 1.5;

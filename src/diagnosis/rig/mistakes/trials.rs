@@ -115,7 +115,11 @@ impl<'a> Table<'a> {
     }
 
     pub fn of(data: &'a [Datum], lines: &'a [Line]) -> Table<'a> {
-        let trial = numbered(data.iter().map(|datum| (datum.session_number, datum.trial_number)));
+        let visit = visits(data);
+        let trial = numbered(data.iter().zip(&visit).map(|(datum, visit)| {
+            let is_named = datum.trial.is_some();
+            (datum.session_number, datum.trial_number, if is_named { 0 } else { *visit })
+        }));
         let trials = trial.iter().max().map_or(0, |last| last + 1);
         let mut cells = vec![vec![None; lines.len()]; trials];
         for (k, line) in lines.iter().enumerate() {
@@ -313,6 +317,22 @@ impl<'a> Table<'a> {
             }
         }
     }
+}
+
+/// For each datum how often its axis was loaded before, with another one since: where trials have no
+/// names, other loads are no reason to begin a new one, but coming back to an axis is.
+fn visits(data: &[Datum]) -> Vec<usize> {
+    let mut visits = [0usize; 3];
+    let mut last = None;
+    let visit = |datum: &Datum| {
+        let axis = datum.direction.axis;
+        if last != Some(axis) {
+            visits[axis.index()] += 1;
+            last = Some(axis);
+        }
+        visits[axis.index()]
+    };
+    data.iter().map(visit).collect()
 }
 
 /// True where a change makes something else of a line.

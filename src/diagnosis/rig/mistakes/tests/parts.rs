@@ -171,3 +171,57 @@ fn a_trial_that_repeats_another_one_is_a_copy() {
     });
     cases.check();
 }
+
+/// Where trials have no names a run ends where a load comes again, which kilograms do not.
+#[test]
+fn trials_without_names_begin_where_an_axis_comes_back() {
+    let file = rod(ROD_5);
+    let mut readings = recorded(&file, Bench::Full, 9);
+    // trial by trial, each along all axes
+    readings.rows.sort_by_key(|row| row.trial.clone());
+    let last = readings.rows.len();
+    for row in &mut readings.rows {
+        if row.trial.as_deref() == Some("3") {
+            row.load /= G;
+        }
+        (row.trial, row.time) = (None, None);
+    }
+    let expected = format!("unit_mistake load_n, rows {} to {last}", last * 2 / 3 + 1);
+    assert_eq!(found(&readings, Some(&file)), [expected]);
+}
+
+#[test]
+fn increments_are_added_up() {
+    let file = rod(ROD_5);
+    let clean = recorded(&file, Bench::Full, 11);
+    let mut increments = clean.clone();
+    for (i, row) in increments.rows.iter_mut().enumerate().skip(1) {
+        let before = &clean.rows[i - 1];
+        if before.trial == row.trial && before.direction == row.direction {
+            for (own, before) in row.offset.iter_mut().zip(before.offset) {
+                *own = own.zip(before).map(|(own, before)| own - before);
+            }
+        }
+    }
+    let mended = mended(&increments, Some(&file), &[]).unwrap();
+    assert_eq!(names(&mended), ["increment_mistake dx_um, dy_um, dz_um"]);
+    for (row, clean) in mended.readings.rows.iter().zip(&clean.rows) {
+        for (own, right) in row.offset.iter().flatten().zip(clean.offset.iter().flatten()) {
+            assert!((own - right).abs() < 1e-12);
+        }
+    }
+    // without the rod's file they are a zero as well
+    assert_eq!(found(&increments, None), [""; 0]);
+}
+
+/// Three repeats of one load that stop at one value, where noise is two steps of the display.
+#[test]
+fn readings_at_one_load_that_are_the_same_are_cut_off() {
+    let file = rod(ROD_5);
+    let mut readings = recorded(&file, Bench::Full, 13);
+    for offset in readings.rows.iter_mut().filter_map(|row| row.offset[2].as_mut()) {
+        *offset = ((*offset / UM).round() * UM).min(640.0 * UM);
+    }
+    let mended = mended(&readings, Some(&file), &[]).unwrap();
+    assert_eq!(names(&mended), ["saturated_sensor dz_um"]);
+}

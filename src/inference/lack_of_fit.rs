@@ -176,6 +176,26 @@ mod tests {
         replicates(&evidence).test(&residual, 0).unwrap()
     }
 
+    /// Values of noise 0.2 on a display of steps of 1: most repeats agree to the digit, their
+    /// averages are off by what is rounded away.
+    #[test]
+    fn what_a_display_rounds_is_no_lack_of_fit() {
+        let mut random = Random::seeded(6, 0);
+        let exact: Vec<f64> = (0..16).map(|_| 10.0 * random.normal()).collect();
+        let residual =
+            DVector::from_fn(80, |i, _| (exact[i % 16] + 0.2 * random.normal()).round() - exact[i % 16]);
+        let replicate_group: Vec<usize> = (0..80).map(|i| i % 16).collect();
+        let p_value = |resolution: f64| {
+            let evidence = Evidence {
+                replicate_group: replicate_group.clone(),
+                resolution,
+                ..Evidence::new(residual.clone())
+            };
+            replicates(&evidence).test(&residual, 0).unwrap().p_value
+        };
+        assert!(p_value(0.0) < 1e-4 && p_value(1.0) > 0.05, "{} {}", p_value(0.0), p_value(1.0));
+    }
+
     #[test]
     fn one_cell_that_is_off_is_seen_and_chance_is_not() {
         assert!(test(1, 4.0).p_value < 1e-4);

@@ -319,8 +319,8 @@ impl<'a> Table<'a> {
     }
 }
 
-/// For each datum how often its axis was loaded before, with another one since: where trials have no
-/// names, other loads are no reason to begin a new one, but coming back to an axis is.
+/// For each datum how often its axis was loaded before, with another one since: where trials have
+/// no names, other loads are no reason to begin a new one, but coming back to an axis is.
 fn visits(data: &[Datum]) -> Vec<usize> {
     let mut visits = [0usize; 3];
     let mut last = None;

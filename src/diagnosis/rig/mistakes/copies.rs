@@ -14,7 +14,6 @@ use super::super::numbering::numbered;
 use super::lines::fit;
 use super::part::Part;
 use super::search::ODDS;
-use crate::spatial::Axis;
 use crate::statistics::median;
 
 /// Scatter that hardly any display rounds away, in steps.
@@ -75,12 +74,12 @@ pub(super) fn found(data: &[Datum]) -> Vec<Part> {
 /// Scatter of the readings of each line of two trials through the same loads, m: of what they
 /// differ by beside a zero and a slope, which need no noise.
 fn scatters(data: &[Datum], first: &[usize], second: &[usize]) -> Vec<f64> {
-    let mut lines: BTreeMap<(Axis, Axis, [u64; 2]), Vec<(f64, f64)>> = BTreeMap::new();
-    for (&a, &b) in first.iter().zip(second) {
-        let apart = (data[a].signed_load(), data[a].measured - data[b].measured);
-        lines.entry(data[a].line_key()).or_default().push(apart);
+    let line = numbered(first.iter().map(|&i| data[i].line_key()));
+    let mut points: Vec<Vec<(f64, f64)>> = vec![Vec::new(); line.iter().max().map_or(0, |last| last + 1)];
+    for ((&a, &b), line) in first.iter().zip(second).zip(line) {
+        points[line].push((data[a].signed_load(), data[a].measured - data[b].measured));
     }
-    lines.values().filter(|points| points.len() > 2).map(|points| fit(points).scatter / 2f64.sqrt()).collect()
+    points.iter().filter(|points| points.len() > 2).map(|points| fit(points).scatter / 2f64.sqrt()).collect()
 }
 
 /// `trial 3`, `rows 7 to 12`.

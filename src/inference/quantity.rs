@@ -33,6 +33,10 @@ impl Quantity {
     pub fn compared(self, above: &str, below: &str) -> String {
         let is_above = self.value >= 1.0;
         let (ratio, word) = if is_above { (self, above) } else { (self.map(|ratio| 1.0 / ratio), below) };
+        // as good as rigid, or as nothing: no number says more
+        if ratio.value.is_nan() || ratio.value > 1e3 {
+            return format!("over 1000 times {word}");
+        }
         match ratio.value <= 2.0 {
             true => format!("{} {word}", ratio.map(|ratio| 100.0 * (ratio - 1.0)).say("%")),
             false => format!("{} times {word}", ratio.say("")),
@@ -77,6 +81,7 @@ mod tests {
         };
         assert_eq!(words(1.12), "12 ± 2 % softer");
         assert_eq!(words(9.8), "9.80 ± 0.20 times softer");
+        assert_eq!(words(0.0), "over 1000 times stiffer");
         assert_eq!(words(0.5), "100 ± 4 % stiffer");
         assert_eq!(words(1.0 / 7.0), "7.00 ± 0.14 times stiffer");
     }

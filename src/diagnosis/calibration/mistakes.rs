@@ -17,20 +17,28 @@
 
 mod columns;
 mod draft;
+mod elsewhere;
 mod motion;
 mod moves;
+mod names;
+mod part;
+mod partial;
 mod quick;
 mod search;
+mod slips;
 #[cfg(test)]
 mod tests;
+mod typed;
 
 use nalgebra::Vector3;
 
 use self::draft::{Change, Draft, change_joints};
-use self::motion::{measure_moves, motion_estimates};
-use self::moves::{Move, Other};
+use self::motion::{measure_moves, motion_estimates, moved};
+use self::moves::Other;
+use self::names::{place, pose_name};
 use self::quick::{Body, Worthwhile};
 use self::search::{Found, Search, State, Step};
+use self::slips::Slip;
 use super::apply::{Applied, apply};
 use super::diagnose::{CalibrationDiagnosis, diagnose_calibrated};
 use super::effects::fixture::{BASE_SHIFT, CLAMP_POSE};
@@ -132,8 +140,8 @@ impl Mended {
     /// As [`super::diagnose()`].
     pub fn diagnose(&self, options: &Options) -> Result<CalibrationDiagnosis<'_>> {
         let mut found = diagnose_calibrated(&self.campaign, calibrate(&self.campaign, self.mode, options)?)?;
+        let has_failed = found.is_implausible();
         let diagnosis = &mut found.diagnosis;
-        let has_failed = found.evidence.most_scatter.is_some_and(|most| diagnosis.noise > most);
         if has_failed || !self.has_data {
             // whatever is fitted to what is no robot's error means nothing
             diagnosis.findings.clear();
@@ -221,7 +229,8 @@ fn search(campaign: &Campaign, mode: Mode, others: &Neighbours) -> Result<Mended
     let silent = columns::silent(campaign, &draft);
     let is_sure = silent.iter().any(|silent| !silent.only_if_failed);
     let moves = moves::all(campaign, &draft, &meant);
-    let mut search = Search { draft, bodies, moves, guess_weight: 1.0 };
+    let of_rows = moves::of_rows(campaign, &draft);
+    let mut search = Search { draft, bodies, moves, of_rows, guess_weight: 1.0 };
     let mut result = if is_sure { None } else { search.found() };
     let is_rough = |(_, best, _): &(State, State, Vec<Found>)| {
         best.steps.is_empty() && !search.has_failed(best) && search.is_rough_guess(best)
@@ -243,9 +252,13 @@ fn search(campaign: &Campaign, mode: Mode, others: &Neighbours) -> Result<Mended
             &silent.why,
         );
     }
-    let Some((_, best, found)) = result.filter(|_| mended.has_data) else { return Ok(mended) };
+    let Some((_, mut best, found)) = result.filter(|_| mended.has_data) else { return Ok(mended) };
     for found in &found {
         mended.add_found(&search, &best, found);
+    }
+    for slip in search.slips(&best, &campaign.measurements) {
+        best.steps.push(Step::Slip(slip.change.clone()));
+        mended.add_slip(slip);
     }
     if !best.steps.is_empty() {
         mended.is_changed = true;
@@ -291,14 +304,24 @@ impl Mended {
                 }
             }
             Step::Elsewhere(change) => self.add_elsewhere(search, best, found, change),
+            Step::Part(number, Change::Within(rows, change)) => {
+                let mut own = search.of_rows[*number].clone();
+                if let Change::Zero { joint, by } = **change {
+                    own.say_zero(&self.campaign.robot, joint, by);
+                }
+                let there = place(&self.campaign.measurements, *rows);
+                let location = Location::Key(format!("{}, {there}", own.location));
+                let cure = format!("{} {there}", own.cure);
+                self.add(own.effect, location, own.estimates, &cure, &own.why);
+            }
+            Step::Part(..) | Step::Slip(_) => return,
         }
         let Some(finding) = self.found.last_mut() else { return };
         finding.p_value = (-found.log_odds).exp();
         finding.explains = found.explains;
         let mut rivals: Vec<Rival> = Vec::new();
-        for &(number, odds) in &found.rivals {
-            let Move { effect, location, .. } = &search.moves[number];
-            let location = Location::Key(location.clone());
+        for (effect, location, odds) in &found.rivals {
+            let (location, odds) = (Location::Key(location.clone()), *odds);
             let is_it = |e: &Effect, at: &Location| e == *effect && *at == location;
             if !is_it(finding.effect, &finding.location)
                 && !rivals.iter().any(|r| is_it(r.effect, &r.location))
@@ -318,6 +341,16 @@ impl Mended {
         finding.next = finding.direct_check(&finding.rivals.iter().collect::<Vec<_>>());
     }
 
+    /// What happened to a single row, or to a few.
+    fn add_slip(&mut self, slip: Slip) {
+        let Slip { effect, location, estimates, cure, why, log_odds, explains, rivals, .. } = slip;
+        self.add(effect, Location::Key(location), estimates, &cure, &why);
+        let Some(finding) = self.found.last_mut() else { return };
+        (finding.p_value, finding.explains) = ((-log_odds).exp(), explains);
+        let rival = |(effect, place)| Rival::without_term(effect, Location::Key(place), 1.0);
+        finding.rivals = rivals.into_iter().map(rival).collect();
+    }
+
     /// A frame that moved, with how far.
     fn add_elsewhere(&mut self, search: &Search, best: &State, found: &Found, change: &Change) {
         // its number among the stations: those of the file, then one for each such step
@@ -335,7 +368,7 @@ impl Mended {
             _ => 0,
         };
         let (Some(from), Some(to)) = (bases.get(old), bases.get(number)) else { return };
-        let (way, angle) = search::moved(from, to);
+        let (way, angle) = moved(from, to);
         let said = format!("{} mm and {}°", significant(way / MM, 4), significant(angle / DEG, 3));
         match change {
             Change::Moved(first) => {
@@ -358,7 +391,7 @@ impl Mended {
                     "Give {name} xyz_mm = [{:.2}, {:.2}, {:.2}] and rpy_deg = [{roll}, {pitch}, {yaw}]",
                     said.x, said.y, said.z
                 );
-                let (way, _) = search::moved(&device, &there);
+                let (way, _) = moved(&device, &there);
                 let why = format!("it stands {} mm from where the campaign says", significant(way / MM, 3));
                 let estimates = motion_estimates(&device, &there);
                 self.add(&FRAME_MISTAKE, Location::Key(name), estimates, &cure, &why);
@@ -455,15 +488,6 @@ fn turn_joints(validation: &mut Recording, robot: &Robot, tool: Vector3<f64>, ch
     };
     if left(&turned) > left(validation) {
         *validation = turned;
-    }
-}
-
-/// `pose 7`, with its clamp where several poses have that name.
-fn pose_name(recording: &Recording, row: usize) -> String {
-    let own = &recording.rows[row].pose;
-    match recording.rows.iter().filter(|other| &other.pose == own).count() {
-        1 => format!("pose {own}"),
-        _ => format!("pose {}", recording.pose_name(row)),
     }
 }
 

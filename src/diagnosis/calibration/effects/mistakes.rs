@@ -133,3 +133,28 @@ pub static COPIED_COLUMN: Effect = Effect {
     written_to: WrittenTo::Nowhere,
     ..NONE
 };
+
+/// One number of one row.
+pub static TYPING_MISTAKE: Effect = Effect {
+    name: "typing_mistake",
+    summary: "one number of one row was typed wrongly",
+    formula: "true = recorded with another sign, decimal point or digit",
+    prior: "one of some hundred slips of that row, at odds of 1000 against any disturbance",
+    parameters: &[("meant", "the number that was meant, in the unit of its column")],
+    needs: "a row that is far out, and others that fit",
+    cause: "a number that was typed wrongly",
+    cause_at: |location| at("a number that was typed wrongly", location),
+    ..NONE
+};
+
+/// Rows that stand twice.
+pub static COPIED_ROWS: Effect = Effect {
+    name: "copied_rows",
+    summary: "rows repeat other rows, or their positions",
+    formula: "row i = row k, to the last digit",
+    prior: "digits that are five times finer than the scatter; three neighbours, or a row that is far out",
+    needs: "measured points",
+    cause: "rows that stand twice",
+    cause_at: |location| at("rows that stand twice", location),
+    ..NONE
+};

@@ -58,6 +58,42 @@ pub(super) enum Change {
     Moved(usize),
     /// A clamp stands somewhere else.
     Apart(usize),
+    /// Another change, of some rows alone.
+    Within(Rows, Box<Change>),
+    /// true joint = recorded + by, an angle (or a length) that the poses must say.
+    Zero { joint: usize, by: f64 },
+    /// The number of row i is the one that stands in row i + k.
+    Column { of: Cell, by: isize },
+    /// Another number in one row of the recording, rad or m.
+    Number { row: usize, of: Cell, value: f64 },
+    /// Rows of the recording that are left out.
+    Without(Vec<usize>),
+}
+
+/// Some rows, by their numbers in the recording.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Rows {
+    /// From one to another, both included.
+    Between(usize, usize),
+    /// Those of a clamp.
+    OfClamp(usize),
+}
+
+impl Rows {
+    pub fn contain(&self, row: usize, group: usize) -> bool {
+        match *self {
+            Rows::Between(first, last) => (first..=last).contains(&row),
+            Rows::OfClamp(clamp) => clamp == group,
+        }
+    }
+}
+
+/// A number of a row.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Cell {
+    Joint(usize),
+    /// Along an axis of the device.
+    Axis(usize),
 }
 
 impl Change {
@@ -198,7 +234,88 @@ impl Draft {
                 }
                 self.stations += 1;
             }
+            Change::Within(rows, change) => self.apply_within(*rows, change),
+            Change::Zero { joint, by } => {
+                self.joints.iter_mut().skip(*joint).step_by(self.joint_count).for_each(|q| *q += by);
+            }
+            Change::Column { of, by } => {
+                let all: Vec<usize> = (0..self.len()).collect();
+                self.displace_column(&all, *of, *by);
+            }
+            Change::Number { row, of, value } => {
+                let Some(at) = self.rows.iter().position(|known| known == row) else { return };
+                *self.number_mut(at, *of) = *value;
+            }
+            Change::Without(rows) => {
+                let kept: Vec<usize> =
+                    (0..self.len()).filter(|&at| !rows.contains(&self.rows[at])).collect();
+                *self = self.part(&kept);
+            }
         }
+    }
+
+    /// What acts on rows one by one, or displaces them, in some rows alone.
+    fn apply_within(&mut self, rows: Rows, change: &Change) {
+        let is_within = |at: usize| rows.contain(self.rows[at], self.group[at]);
+        let inside: Vec<usize> = (0..self.len()).filter(|&at| is_within(at)).collect();
+        if let Change::Rows { by, with_clamps } = change {
+            return self.displace_some(&inside, *by, *with_clamps);
+        }
+        if let Change::Column { of, by } = change {
+            return self.displace_column(&inside, *of, *by);
+        }
+        let mut changed = self.part(&inside);
+        changed.apply(change);
+        for (k, &at) in inside.iter().enumerate() {
+            self.joints[at * self.joint_count..][..self.joint_count].copy_from_slice(changed.joints(k));
+            self.group[at] = changed.group[k];
+            if let Some(seen) = changed.seen.get(k) {
+                self.seen[at] = *seen;
+            }
+        }
+    }
+
+    fn number_mut(&mut self, at: usize, of: Cell) -> &mut f64 {
+        match of {
+            Cell::Joint(joint) => &mut self.joints[at * self.joint_count + joint],
+            Cell::Axis(axis) => &mut self.seen[at][axis],
+        }
+    }
+
+    /// Rows whose number has none to be taken from, and rows outside whose number is another row's
+    /// now, have none of their own, and go.
+    fn displace_column(&mut self, inside: &[usize], of: Cell, by: isize) {
+        let recorded: Vec<f64> = (0..self.len()).map(|at| *self.number_mut(at, of)).collect();
+        let (mut is_kept, mut is_inside) = (vec![true; self.len()], vec![false; self.len()]);
+        inside.iter().for_each(|&at| is_inside[at] = true);
+        for &at in inside {
+            let Some(from) = at.checked_add_signed(by).filter(|&from| from < recorded.len()) else {
+                is_kept[at] = false;
+                continue;
+            };
+            *self.number_mut(at, of) = recorded[from];
+            is_kept[from] &= is_inside[from];
+        }
+        let kept: Vec<usize> = (0..self.len()).filter(|&at| is_kept[at]).collect();
+        *self = self.part(&kept);
+    }
+
+    /// Rows outside whose position is another row's now have none of their own, and go.
+    fn displace_some(&mut self, inside: &[usize], by: isize, with_clamps: bool) {
+        let source = |at: usize| at.checked_add_signed(by).filter(|&at| at < self.len());
+        let mut taken = vec![false; self.len()];
+        let mut from: Vec<Option<usize>> = (0..self.len()).map(Some).collect();
+        for &at in inside {
+            from[at] = source(at);
+            from[at].into_iter().for_each(|at| taken[at] = true);
+        }
+        let is_elsewhere = |(at, from): &(usize, &mut Option<usize>)| taken[*at] && **from == Some(*at);
+        from.iter_mut().enumerate().filter(is_elsewhere).for_each(|(_, from)| *from = None);
+        let kept: Vec<usize> = (0..self.len()).filter(|&at| from[at].is_some()).collect();
+        let there = |&at: &usize| from[at].unwrap_or(at);
+        let seen = kept.iter().map(|at| self.seen[there(at)]).collect();
+        let group = kept.iter().map(|at| self.group[if with_clamps { there(at) } else { *at }]).collect();
+        *self = Draft { seen, group, ..self.part(&kept) };
     }
 
     /// The station of a row of the recording, or of the next that is here.

@@ -12,10 +12,11 @@ use super::super::effects::mistakes::{
     FRAME_MISTAKE, OFFSET_MISTAKE, ROBOT_MISTAKE, ROD_MISTAKE, ROW_MISTAKE, SIGN_MISTAKE, SWAP_MISTAKE,
     UNIT_MISTAKE,
 };
-use super::draft::{Change, Draft};
+use super::draft::{Cell, Change, Draft};
+use super::names::{AXES, column};
 use crate::calibration::campaign::Campaign;
 use crate::inference::{Effect, Estimate};
-use crate::robot::Motion;
+use crate::robot::{Motion, Robot};
 use crate::spatial::Pose;
 use crate::statistics::median;
 use crate::units::{DEG, MM, significant};
@@ -30,6 +31,9 @@ const DISPLACEMENT: f64 = 10.0 * MM;
 /// Ln of how much rarer some mistakes are.
 const UNUSUAL: f64 = -1.0;
 const RARE: f64 = -2.0;
+
+/// Ln of the share of all angles that a step of a joint's zero agrees with.
+const ANY_ANGLE: f64 = -6.0;
 
 /// A mistake that may have been made, with what is said of it.
 #[derive(Clone)]
@@ -46,6 +50,28 @@ pub(super) struct Move {
     pub why: String,
 }
 
+impl Move {
+    /// What to do where a joint's zero was found to be another one.
+    pub fn say_zero(&mut self, robot: &Robot, joint: usize, by: f64) {
+        let (unit, symbol, name) = match robot.joints[joint].motion {
+            Motion::Revolute => (DEG, "°", "deg"),
+            Motion::Prismatic => (MM, " mm", "mm"),
+        };
+        let value = by / unit;
+        let size = significant(value.abs(), 4);
+        self.cure = match value > 0.0 {
+            true => format!("Add {size}{symbol} to {}", self.location),
+            false => format!("Subtract {size}{symbol} from {}", self.location),
+        };
+        self.estimates = exact(name, value);
+    }
+
+    /// What explains poses as well, at such odds.
+    pub fn with_odds(&self, odds: f64) -> (&'static Effect, String, f64) {
+        (self.effect, self.location.clone(), odds)
+    }
+}
+
 /// A robot or rod of another file.
 pub(super) struct Other {
     pub file: String,
@@ -59,7 +85,7 @@ pub(super) struct Other {
 
 /// All that these files could show.
 pub(super) fn all(campaign: &Campaign, draft: &Draft, others: &[Other]) -> Vec<Move> {
-    let mut list = List { campaign, draft, moves: Vec::new() };
+    let mut list = List { campaign, draft, moves: Vec::new(), is_of_rows: false };
     list.joints();
     list.positions();
     list.rows();
@@ -70,10 +96,26 @@ pub(super) fn all(campaign: &Campaign, draft: &Draft, others: &[Other]) -> Vec<M
     list.moves
 }
 
+/// All that may have gone wrong with some rows alone: what the others show decides, not how large
+/// the numbers are.
+pub(super) fn of_rows(campaign: &Campaign, draft: &Draft) -> Vec<Move> {
+    let mut list = List { campaign, draft, moves: Vec::new(), is_of_rows: true };
+    list.joints();
+    list.positions();
+    list.single_units();
+    list.rows();
+    list.exchanged();
+    list.displaced_columns();
+    list.steps();
+    list.moves
+}
+
 struct List<'a> {
     campaign: &'a Campaign,
     draft: &'a Draft,
     moves: Vec<Move>,
+    /// True for what some rows hold and others do not.
+    is_of_rows: bool,
 }
 
 /// An exact number.
@@ -104,10 +146,7 @@ impl List<'_> {
     }
 
     fn column(&self, joint: usize) -> String {
-        match self.campaign.robot.joints[joint].motion {
-            Motion::Revolute => format!("q{}_deg", joint + 1),
-            Motion::Prismatic => format!("q{}_mm", joint + 1),
-        }
+        column(&self.campaign.robot, joint)
     }
 
     fn joints(&mut self) {
@@ -206,8 +245,9 @@ impl List<'_> {
             of_joint.fold(0.0, |most: f64, q| most.max(q.abs())) / DEG
         };
         let largest: Vec<f64> = (0..count).map(largest).collect();
-        let are_small = |joints: &[usize]| joints.iter().all(|&j| largest[j] < TURN_IN_RADIANS);
-        let are_huge = |joints: &[usize]| joints.iter().any(|&j| largest[j] > 720.0);
+        let is_of_rows = self.is_of_rows;
+        let are_small = |joints: &[usize]| is_of_rows || joints.iter().all(|&j| largest[j] < TURN_IN_RADIANS);
+        let are_huge = |joints: &[usize]| is_of_rows || joints.iter().any(|&j| largest[j] > 720.0);
         let mut all = Vec::new();
         if turns.len() > 1 {
             all.push((turns.to_vec(), every.to_owned(), UNUSUAL + 1.0));
@@ -250,7 +290,7 @@ impl List<'_> {
             (1e-3, "micrometres", UNUSUAL),
             (0.1, "tenths of a millimetre", RARE),
         ] {
-            if factor < 1.0 && !is_far {
+            if factor < 1.0 && !is_far && !self.is_of_rows {
                 continue;
             }
             let by = if factor < 1.0 {
@@ -263,7 +303,7 @@ impl List<'_> {
                 self.add(&UNIT_MISTAKE, ALL, change, &by, &format!("they are in {unit}, not in millimetres"));
             (unit.estimates, unit.log_prior) = (exact("factor", factor), log_prior);
         }
-        let names = ["x_mm", "y_mm", "z_mm"];
+        let names = AXES;
         for order in [[0, 1, 2], [1, 0, 2], [0, 2, 1], [2, 1, 0], [1, 2, 0], [2, 0, 1]] {
             for signs in 0..8u8 {
                 let sign = [0, 1, 2].map(|axis| if signs >> axis & 1 == 1 { -1.0 } else { 1.0 });
@@ -336,7 +376,59 @@ impl List<'_> {
         }
     }
 
-    fn clamps(&mut self) {
+    /// A number that was left out of a column, or stands twice there.
+    fn displaced_columns(&mut self) {
+        let joints = (0..self.draft.joint_count).map(|joint| (Cell::Joint(joint), self.column(joint)));
+        let mut cells: Vec<(Cell, String)> = joints.collect();
+        if !self.draft.has_sockets() {
+            cells.extend(AXES.into_iter().enumerate().map(|(axis, name)| (Cell::Axis(axis), name.into())));
+        }
+        for (of, name) in cells {
+            for (by, way, there) in [(1, "up", "above"), (-1, "down", "below")] {
+                let cure = format!("Move {name} 1 row {way}");
+                let why = format!("each number belongs to the row {there}");
+                let change = Change::Column { of, by };
+                let shift = self.add(&ROW_MISTAKE, &name, change, &cure, &why);
+                (shift.estimates, shift.log_prior) = (exact("rows", by as f64), UNUSUAL);
+            }
+        }
+    }
+
+    /// The zero of a joint by any angle, which the poses must say; of the first joint the base may
+    /// have turned instead, and of the last one the tip.
+    fn steps(&mut self) {
+        let count = self.draft.joint_count;
+        for joint in 1..count.saturating_sub(1) {
+            let name = self.column(joint);
+            let change = Change::Zero { joint, by: 0.0 };
+            self.add(&OFFSET_MISTAKE, &name, change, "", "the joint's zero is another one there").log_prior =
+                ANY_ANGLE;
+        }
+    }
+
+    /// A single column of a measured point in another unit.
+    fn single_units(&mut self) {
+        if self.draft.has_sockets() {
+            return;
+        }
+        for (axis, name) in AXES.into_iter().enumerate() {
+            for (factor, unit) in [(1e3, "metres"), (25.4, "inches"), (1e-3, "micrometres")] {
+                let mut matrix = Matrix3::identity();
+                matrix[(axis, axis)] = factor;
+                let by = if factor < 1.0 {
+                    format!("Divide {name} by {}", 1.0 / factor)
+                } else {
+                    format!("Multiply {name} by {factor}")
+                };
+                let why = format!("it is in {unit}, not in millimetres");
+                let unit = self.add(&UNIT_MISTAKE, name, Change::Seen(matrix), &by, &why);
+                (unit.estimates, unit.log_prior) = (exact("factor", factor), UNUSUAL);
+            }
+        }
+    }
+
+    /// Clamps or sockets that were named the other way round.
+    fn exchanged(&mut self) {
         let names: Vec<String> =
             self.campaign.measurements.groups.iter().map(|group| group.name.clone()).collect();
         let count = names.len();
@@ -358,6 +450,13 @@ impl List<'_> {
                 );
             }
         }
+    }
+
+    fn clamps(&mut self) {
+        self.exchanged();
+        let names: Vec<String> =
+            self.campaign.measurements.groups.iter().map(|group| group.name.clone()).collect();
+        let count = names.len();
         if self.draft.has_sockets() || names.iter().any(String::is_empty) {
             return;
         }

@@ -328,6 +328,18 @@ fn residuals(
     state: &State,
     torque: &[f64],
     deflection: &[Vector3<f64>],
+    columns: Option<(&[Parameter], &mut DMatrix<f64>)>,
+) -> Vec<Vector3<f64>> {
+    let off = offsets(draft, state, torque, deflection, columns);
+    minus_means(&off, draft, &vec![1.0; off.len()])
+}
+
+/// The same before the means of sockets are taken off.
+fn offsets(
+    draft: &Draft,
+    state: &State,
+    torque: &[f64],
+    deflection: &[Vector3<f64>],
     mut columns: Option<(&[Parameter], &mut DMatrix<f64>)>,
 ) -> Vec<Vector3<f64>> {
     let count = draft.joint_count;
@@ -353,7 +365,7 @@ fn residuals(
             }
         }
     }
-    minus_means(&off, draft, &vec![1.0; off.len()])
+    off
 }
 
 /// One Gauss–Newton step, by the columns of the state.
@@ -469,11 +481,17 @@ impl Fit {
 
     /// Distances of the tip of every row of `draft` from its point, m.
     pub fn lengths(&self, draft: &Draft, body: &Body) -> Vec<f64> {
+        let off = self.offsets(draft, body);
+        minus_means(&off, draft, &vec![1.0; off.len()]).iter().map(|off| off.norm()).collect()
+    }
+
+    /// From the point of every row of `draft` to its tip, in {W}, m; with sockets the tip in {0}.
+    pub fn offsets(&self, draft: &Draft, body: &Body) -> Vec<Vector3<f64>> {
         let state = State { setup: self.setup(body), bases: self.bases.clone() };
         let mut torque = vec![0.0; draft.joints.len()];
         let mut deflection = vec![Vector3::zeros(); draft.len()];
         load(draft, body, &state, &mut torque, &mut deflection);
         load(draft, body, &state, &mut torque, &mut deflection);
-        residuals(draft, &state, &torque, &deflection, None).iter().map(|off| off.norm()).collect()
+        offsets(draft, &state, &torque, &deflection, None)
     }
 }

@@ -20,8 +20,10 @@ use crate::statistics::median;
 const NU: f64 = 4.0;
 /// A fit of some rows may be off where it knows nothing, as a share of the reach.
 const ELSEWHERE: f64 = 1e-3;
-/// Rows that are farther out than so many scales do not fit.
+/// Rows that are farther out than so many scales do not fit; of a scale that is itself generous,
+/// fewer.
 pub(super) const FAR: f64 = 8.0;
+const FAR_ELSEWHERE: f64 = 2.0;
 
 /// A joint turned by this much, rad or m, gives the direction in which it moves the tip; tips that
 /// are nearer to its axis, as a share of the reach, say nothing of its zero.
@@ -37,6 +39,8 @@ pub(super) struct Reference<'a> {
     centres: Vec<Vector3<f64>>,
     /// s, m.
     pub scale: f64,
+    /// Rows that are farther out do not fit, m.
+    pub far: f64,
 }
 
 impl<'a> Reference<'a> {
@@ -53,14 +57,14 @@ impl<'a> Reference<'a> {
                 });
             }
         }
-        Reference { fit, body, centres, scale: fit.scale }
+        Reference { fit, body, centres, scale: fit.scale, far: FAR * fit.scale }
     }
 
     /// By a fit of some rows of `draft`.
     pub fn of_some(draft: &Draft, body: &'a Body<'a>, fit: &'a Fit) -> Reference<'a> {
         let all = Reference::of_all(draft, body, fit);
-        let scale = fit.scale.max(ELSEWHERE * body.reach);
-        Reference { scale, ..all }
+        let elsewhere = ELSEWHERE * body.reach;
+        Reference { scale: fit.scale.max(elsewhere), far: all.far.max(FAR_ELSEWHERE * elsewhere), ..all }
     }
 
     /// Distances of the tips from their points, m.
@@ -75,7 +79,7 @@ impl<'a> Reference<'a> {
         let cost = |length: f64| 0.5 * (NU + 3.0) * ((length / self.scale).powi(2) / NU).ln_1p();
         let new = self.lengths(changed);
         let gain = |(row, old): (&usize, &f64)| match changed.rows.binary_search(row) {
-            Ok(at) if new[at] > FAR * self.scale => (cost(*old) - cost(new[at])).min(0.0),
+            Ok(at) if new[at] > self.far => (cost(*old) - cost(new[at])).min(0.0),
             Ok(at) => cost(*old) - cost(new[at]),
             Err(_) => 0.0,
         };

@@ -5,7 +5,7 @@
 //! (`part.rs`); the best few stretches become states, which the search compares with all others.
 
 use super::draft::{Change, Draft, Rows};
-use super::part::{FAR, Reference, most, within};
+use super::part::{Reference, most, within};
 use super::quick::{Fit, Worthwhile, fit, fit_from};
 use super::search::{Search, State, Step};
 use crate::parallel::in_parallel;
@@ -20,8 +20,11 @@ const WINDOWS: [(f64, f64); 7] = [
     (0.33, 0.67),
     (0.66, 1.0),
 ];
-/// Fewest rows that are far out before parts are looked at.
+/// Fewest rows that are so many scales out before parts are looked at; or a window that scatters so
+/// much less than all.
 const FEWEST: usize = 3;
+const FAR: f64 = 5.0;
+const UNLIKE: f64 = 0.4;
 /// Stretches that become states, of each fit.
 const MOST: usize = 3;
 
@@ -37,13 +40,14 @@ struct Place {
 impl Search<'_> {
     /// The state with a change of some rows alone, where rows do not fit.
     pub(super) fn partial(&self, from: &State) -> Vec<State> {
+        let starts = self.starts(from);
         let far = from.fit.residuals.iter().filter(|left| **left > FAR * from.fit.scale).count();
-        if far < FEWEST && !self.has_failed(from) {
+        let is_one = starts.iter().all(|start| start.scale > UNLIKE * from.fit.scale);
+        if far < FEWEST && is_one && !self.has_failed(from) {
             return Vec::new();
         }
         let draft = self.changed(&from.steps);
         let body = &self.bodies[from.thin.body];
-        let starts = self.starts(from);
         let references: Vec<Reference> = (0..starts.len())
             .map(|k| match k {
                 0 => Reference::of_all(&from.thin, body, &starts[k]),
@@ -59,7 +63,7 @@ impl Search<'_> {
                 let reference = &references[k];
                 if let Change::Zero { joint, .. } = own.change {
                     let far: Vec<usize> =
-                        (0..from.thin.len()).filter(|&at| lengths[k][at] > FAR * reference.scale).collect();
+                        (0..from.thin.len()).filter(|&at| lengths[k][at] > reference.far).collect();
                     let by = reference.zero(&from.thin, joint, &far)?;
                     let change = Change::Zero { joint, by };
                     let gains = reference.gains(&from.thin, &lengths[k], &from.thin.with(&change));

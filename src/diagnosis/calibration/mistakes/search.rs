@@ -12,6 +12,7 @@ use super::super::effects::mistakes::UNIT_MISTAKE;
 use super::draft::{Change, Draft};
 use super::motion::moved;
 use super::moves::Move;
+use super::part::FAR;
 use super::quick::{Body, Fit, Worthwhile, fit, fit_from};
 use crate::inference::Effect;
 use crate::parallel::in_parallel;
@@ -252,10 +253,23 @@ impl Search<'_> {
     /// The state with every further change, the best first; those that will not reach the score
     /// `least` may be missing.
     fn extended(&self, from: &State, least: f64) -> Vec<State> {
-        self.extended_with(from, least, self.partial(from))
+        let mut tried = self.extended_by_all(from, least);
+        // what all rows hold is no matter of some
+        if !tried.first().is_some_and(|best| self.is_cured(best, from)) {
+            tried.extend(self.partial(from));
+            tried.sort_by(|a, b| b.score.total_cmp(&a.score));
+        }
+        tried
     }
 
-    fn extended_with(&self, from: &State, least: f64, parts: Vec<State>) -> Vec<State> {
+    /// True where a change of all rows makes every one of them fit.
+    fn is_cured(&self, state: &State, from: &State) -> bool {
+        let is_of_all = matches!(state.steps.last(), Some(Step::Move(_)));
+        let fits = || state.fit.residuals.iter().all(|left| *left < FAR * state.fit.scale);
+        is_of_all && fits() && self.is_better(state, from)
+    }
+
+    fn extended_by_all(&self, from: &State, least: f64) -> Vec<State> {
         let reach = self.bodies[from.thin.body].reach;
         let most_left = (0.8 * from.fit.rough).max(DRAWN * reach);
         let mut steps: Vec<Step> = (0..self.moves.len()).map(Step::Move).collect();
@@ -276,7 +290,6 @@ impl Search<'_> {
             if is_two_bodies { None } else { self.state(&all, worthwhile) }
         });
         let mut tried: Vec<State> = tried.into_iter().flatten().collect();
-        tried.extend(parts);
         tried.sort_by(|a, b| b.score.total_cmp(&a.score));
         tried
     }
@@ -291,7 +304,7 @@ impl Search<'_> {
         };
         let first: Vec<&State> = moves().take(BEAM).chain(moves().skip(BEAM).filter(is_unit)).collect();
         let grown =
-            first.iter().flat_map(|state| self.extended_with(state, f64::NEG_INFINITY, Vec::new()).into_iter().take(1));
+            first.iter().flat_map(|state| self.extended_by_all(state, f64::NEG_INFINITY).into_iter().take(1));
         let mut grown: Vec<State> =
             grown.filter(|state| self.is_better(state, from) && !self.has_failed(state)).collect();
         grown.sort_by(|a, b| b.score.total_cmp(&a.score));

@@ -77,7 +77,7 @@ impl Search<'_> {
         let is_known = |slips: &[Slip], row: usize| {
             slips.iter().any(|slip| matches!(&slip.change, Change::Without(rows) if rows.contains(&row)))
         };
-        let mut far: Vec<usize> = (0..draft.len()).filter(|&at| lengths[at] > FAR * reference.scale).collect();
+        let mut far: Vec<usize> = (0..draft.len()).filter(|&at| lengths[at] > reference.far).collect();
         far.retain(|&at| !is_known(&slips, draft.rows[at]));
         far.sort_by(|&a, &b| lengths[b].total_cmp(&lengths[a]));
         far.truncate(MOST_ROWS);

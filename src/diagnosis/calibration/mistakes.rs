@@ -41,12 +41,12 @@ use self::search::{Found, Search, State, Step};
 use self::slips::Slip;
 use super::apply::{Applied, apply};
 use super::diagnose::{CalibrationDiagnosis, diagnose_calibrated};
-use super::effects::fixture::{BASE_SHIFT, CLAMP_POSE};
+use super::effects::fixture::{BASE_SHIFT, CLAMP_POSE, TOOL_SHIFT};
 use super::effects::mistakes::FRAME_MISTAKE;
 use crate::calibration::campaign::{Campaign, FileNames, Recording};
 use crate::calibration::{Compensation, Mode, Options, Summary, calibrate};
 use crate::error::Result;
-use crate::inference::{Description, Effect, Estimate, Finding, Location, Rival};
+use crate::inference::{Description, Effect, Estimate, Finding, Location, Part, Rival};
 use crate::robot::Robot;
 use crate::rod::Rod;
 use crate::spatial::Pose;
@@ -55,6 +55,9 @@ use crate::units::{DEG, MM, UM, significant};
 /// What a base or a tip that is not where it was said to be costs where it spoils the calibration,
 /// times what a rough guess costs.
 const NO_GUESS: f64 = 10.0;
+
+/// A calibration that fails with what was undone as well must leave less, by this factor.
+const CONFIRMED: f64 = 0.9;
 
 /// Files of the same folders that may have been meant.
 #[derive(Debug, Clone, Default)]
@@ -117,8 +120,17 @@ pub struct Mended {
 pub fn mend(campaign: &Campaign, mode: Mode, others: &Neighbours, options: &Options) -> Result<Mended> {
     let mut mended = search(campaign, mode, others)?;
     if !mended.found.is_empty() {
-        let recorded = calibrate(campaign, mode, options);
-        mended.recorded = recorded.ok().map(|calibration| Summary::of(&calibration.residuals()));
+        let recorded = calibrate(campaign, mode, options).ok();
+        let meant = || calibrate(&mended.campaign, mended.mode, options).ok();
+        // what no calibration confirms is no correction
+        if mended.is_changed
+            && let Some((recorded, meant)) = recorded.as_ref().zip(meant())
+            && !meant.is_plausible()
+            && meant.rms() > CONFIRMED * recorded.rms()
+        {
+            return Ok(Mended::unchanged(campaign, mode));
+        }
+        mended.recorded = recorded.map(|calibration| Summary::of(&calibration.residuals()));
     }
     Ok(mended)
 }
@@ -133,6 +145,19 @@ pub fn suspected(campaign: &Campaign, mode: Mode, others: &Neighbours) -> Result
 }
 
 impl Mended {
+    /// A campaign as it was recorded.
+    fn unchanged(campaign: &Campaign, mode: Mode) -> Mended {
+        Mended {
+            campaign: campaign.clone(),
+            mode,
+            found: Vec::new(),
+            suspicions: Vec::new(),
+            is_changed: false,
+            has_data: true,
+            recorded: None,
+        }
+    }
+
     /// Calibrates the mended campaign and diagnoses what is left; the mistakes stand before all
     /// else.
     ///
@@ -198,15 +223,7 @@ impl Mended {
 }
 
 fn search(campaign: &Campaign, mode: Mode, others: &Neighbours) -> Result<Mended> {
-    let mut mended = Mended {
-        campaign: campaign.clone(),
-        mode,
-        found: Vec::new(),
-        suspicions: Vec::new(),
-        is_changed: false,
-        has_data: true,
-        recorded: None,
-    };
+    let mut mended = Mended::unchanged(campaign, mode);
     let draft = Draft::of(campaign);
     let compensation = Compensation::new(campaign, mode)?;
     let mut bodies = vec![Body::new(&campaign.robot, compensation.clone(), campaign.tool, &draft)];
@@ -307,7 +324,8 @@ impl Mended {
             Step::Part(number, Change::Within(rows, change)) => {
                 let mut own = search.of_rows[*number].clone();
                 if let Change::Zero { joint, by } = **change {
-                    own.say_zero(&self.campaign.robot, joint, by);
+                    let error = search.error_of_zero(best, *rows, joint);
+                    own.say_zero(&self.campaign.robot, joint, by, error);
                 }
                 let there = place(&self.campaign.measurements, *rows);
                 let location = Location::Key(format!("{}, {there}", own.location));
@@ -329,9 +347,21 @@ impl Mended {
                 rivals.push(Rival::without_term(effect, location, odds));
             }
         }
-        // the base turned about joint 1 says the same
+        // the base turned about joint 1 says the same, and the rod about the last joint
         if matches!(&found.step, Step::Move(number) if search.moves[*number].change.is_zero_of_first()) {
             rivals.push(Rival::without_term(&FRAME_MISTAKE, Location::Key("base.rpy_deg".into()), 1.0));
+        }
+        if let Step::Part(_, Change::Within(_, change)) = &found.step {
+            let last = self.campaign.robot.joints.len().saturating_sub(1);
+            match change.joint_of_zero() {
+                Some(0) => {
+                    rivals.push(Rival::without_term(&BASE_SHIFT.effect, Location::Part(Part::Base), 1.0));
+                }
+                Some(joint) if joint == last => {
+                    rivals.push(Rival::without_term(&TOOL_SHIFT.effect, Location::Part(Part::Tip), 1.0));
+                }
+                _ => {}
+            }
         }
         if let Some(clamp) = found.may_be_clamp {
             let name = self.campaign.measurements.groups[clamp].name.clone();

@@ -110,10 +110,21 @@ impl Change {
 
     /// True for an offset of joint 1 and nothing else.
     pub fn is_zero_of_first(&self) -> bool {
-        let Change::Joints { order, factor, offset } = self else { return false };
-        order.iter().enumerate().all(|(joint, from)| joint == *from)
-            && factor.iter().all(|factor| *factor == 1.0)
-            && offset.iter().enumerate().all(|(joint, by)| (*by != 0.0) == (joint == 0))
+        self.joint_of_zero() == Some(0)
+    }
+
+    /// The joint of which nothing but the zero is another one.
+    pub fn joint_of_zero(&self) -> Option<usize> {
+        match self {
+            Change::Zero { joint, .. } => Some(*joint),
+            Change::Joints { order, factor, offset } => {
+                let is_plain = order.iter().enumerate().all(|(joint, from)| joint == *from)
+                    && factor.iter().all(|factor| *factor == 1.0);
+                let mut off = (0..offset.len()).filter(|joint| offset[*joint] != 0.0);
+                off.next().filter(|_| is_plain && off.next().is_none())
+            }
+            _ => None,
+        }
     }
 
     /// A constant on one joint, rad, after a factor.

@@ -32,6 +32,8 @@ const DISPLACEMENT: f64 = 10.0 * MM;
 const UNUSUAL: f64 = -1.0;
 const RARE: f64 = -2.0;
 
+/// Half of a 95 % interval in standard deviations.
+const COVERAGE: f64 = 1.96;
 /// Ln of the share of all angles that a step of a joint's zero agrees with.
 const ANY_ANGLE: f64 = -6.0;
 
@@ -52,18 +54,20 @@ pub(super) struct Move {
 
 impl Move {
     /// What to do where a joint's zero was found to be another one.
-    pub fn say_zero(&mut self, robot: &Robot, joint: usize, by: f64) {
+    pub fn say_zero(&mut self, robot: &Robot, joint: usize, by: f64, error: f64) {
         let (unit, symbol, name) = match robot.joints[joint].motion {
             Motion::Revolute => (DEG, "°", "deg"),
             Motion::Prismatic => (MM, " mm", "mm"),
         };
-        let value = by / unit;
-        let size = significant(value.abs(), 4);
+        let (value, half) = (by / unit, COVERAGE * error / unit);
+        let digits = (value.abs() / half.max(1e-9)).log10().ceil().clamp(1.0, 4.0) as usize + 1;
+        let size = significant(value.abs(), digits);
         self.cure = match value > 0.0 {
             true => format!("Add {size}{symbol} to {}", self.location),
             false => format!("Subtract {size}{symbol} from {}", self.location),
         };
-        self.estimates = exact(name, value);
+        self.estimates =
+            vec![Estimate { name: name.into(), unit: 1.0, value, low: value - half, high: value + half }];
     }
 
     /// What explains poses as well, at such odds.
@@ -394,11 +398,11 @@ impl List<'_> {
         }
     }
 
-    /// The zero of a joint by any angle, which the poses must say; of the first joint the base may
-    /// have turned instead, and of the last one the tip.
+    /// The zero of a joint by any angle, which the poses must say; of the last joint it is rather
+    /// the rod that turned in its mount.
     fn steps(&mut self) {
         let count = self.draft.joint_count;
-        for joint in 1..count.saturating_sub(1) {
+        for joint in 0..count.saturating_sub(1) {
             let name = self.column(joint);
             let change = Change::Zero { joint, by: 0.0 };
             self.add(&OFFSET_MISTAKE, &name, change, "", "the joint's zero is another one there").log_prior =

@@ -30,6 +30,8 @@ const FAR_ELSEWHERE: f64 = 2.0;
 const SMALL: f64 = 1e-5;
 const LEVER: f64 = 0.02;
 const STEPS_OF_NEWTON: usize = 3;
+/// Standard error of a median times √n over the median distance from it: 1.4826·√(π/2).
+const OF_A_MEDIAN: f64 = 1.858;
 
 /// Where the tips are, as some rows say.
 pub(super) struct Reference<'a> {
@@ -69,8 +71,13 @@ impl<'a> Reference<'a> {
 
     /// Distances of the tips from their points, m.
     pub fn lengths(&self, draft: &Draft) -> Vec<f64> {
+        self.offsets(draft).iter().map(|off| off.norm()).collect()
+    }
+
+    /// From the points to their tips, m.
+    pub fn offsets(&self, draft: &Draft) -> Vec<Vector3<f64>> {
         let off = self.fit.offsets(draft, self.body);
-        off.iter().zip(&draft.group).map(|(off, &group)| (off - self.centres[group]).norm()).collect()
+        off.iter().zip(&draft.group).map(|(off, &group)| off - self.centres[group]).collect()
     }
 
     /// What each row of `draft` gains by being as in `changed`; nothing where it is not there, or
@@ -86,26 +93,27 @@ impl<'a> Reference<'a> {
         draft.rows.iter().zip(lengths).map(gain).collect()
     }
 
-    /// By how much the zero of a joint is off in `rows` of `draft`, in the middle: what turns each
-    /// tip the farthest towards its point, two steps of Newton's.
-    pub fn zero(&self, draft: &Draft, joint: usize, rows: &[usize]) -> Option<f64> {
+    /// By how much the zero of a joint is off in `rows` of `draft`, in the middle, and its standard
+    /// error: what turns each tip the farthest towards its point, by a few steps of Newton's.
+    pub fn zero(&self, draft: &Draft, joint: usize, rows: &[usize]) -> Option<(f64, f64)> {
         let mut draft = draft.part(rows);
-        let mut sum = 0.0;
+        let (mut sum, mut error) = (0.0, 0.0);
         for _ in 0..STEPS_OF_NEWTON {
-            let off = self.fit.offsets(&draft, self.body);
-            let moved = self.fit.offsets(&draft.with(&Change::Zero { joint, by: SMALL }), self.body);
+            let off = self.offsets(&draft);
+            let moved = self.offsets(&draft.with(&Change::Zero { joint, by: SMALL }));
             let by = |row: usize| {
                 let along = (moved[row] - off[row]) / SMALL;
                 let square = along.norm_squared();
-                let from = off[row] - self.centres[draft.group[row]];
-                (square > (LEVER * self.body.reach).powi(2)).then(|| -along.dot(&from) / square)
+                (square > (LEVER * self.body.reach).powi(2)).then(|| -along.dot(&off[row]) / square)
             };
             let all: Vec<f64> = (0..draft.len()).filter_map(by).collect();
             let by = median(&all)?;
+            let apart: Vec<f64> = all.iter().map(|own| (own - by).abs()).collect();
+            error = OF_A_MEDIAN * median(&apart)? / (all.len() as f64).sqrt();
             draft = draft.with(&Change::Zero { joint, by });
             sum += by;
         }
-        Some(sum)
+        Some((sum, error))
     }
 }
 

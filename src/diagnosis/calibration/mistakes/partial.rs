@@ -64,7 +64,7 @@ impl Search<'_> {
                 if let Change::Zero { joint, .. } = own.change {
                     let far: Vec<usize> =
                         (0..from.thin.len()).filter(|&at| lengths[k][at] > reference.far).collect();
-                    let by = reference.zero(&from.thin, joint, &far)?;
+                    let (by, _) = reference.zero(&from.thin, joint, &far)?;
                     let change = Change::Zero { joint, by };
                     let gains = reference.gains(&from.thin, &lengths[k], &from.thin.with(&change));
                     let (rows, gain) = most(&from.thin, &gains)?;
@@ -88,6 +88,13 @@ impl Search<'_> {
                 chosen.push(place);
             }
         }
+        let is_part = |place: &Place| {
+            (from.thin.rows.iter().zip(&from.thin.group))
+                .filter(|(row, group)| place.rows.contain(**row, **group))
+                .count()
+                >= FEWEST
+        };
+        chosen.retain(is_part);
         let states = in_parallel(chosen.len(), |at| {
             let Place { start, number, rows, change, .. } = &chosen[at];
             let mut steps = from.steps.clone();
@@ -115,7 +122,7 @@ impl Search<'_> {
                 (Change::Zero { joint, .. }, Change::Zero { joint: known, .. }) if joint == known => {
                     let is_inside = |at: &usize| (*first..=*last).contains(&before.rows[*at]);
                     let rows: Vec<usize> = (0..before.len()).filter(is_inside).collect();
-                    let Some(by) = reference.zero(&before, *joint, &rows) else { continue };
+                    let Some((by, _)) = reference.zero(&before, *joint, &rows) else { continue };
                     Change::Zero { joint: *joint, by }
                 }
                 (Change::Rows { .. }, Change::Rows { .. }) => other.change.clone(),
@@ -137,6 +144,15 @@ impl Search<'_> {
             Some(next) if next.score > state.score - 2.0 => next,
             _ => state,
         }
+    }
+
+    /// The standard error of a zero that was found in some rows, rad or m.
+    pub(super) fn error_of_zero(&self, state: &State, rows: Rows, joint: usize) -> f64 {
+        let draft = self.changed(&state.steps);
+        let reference = Reference::of_all(&state.thin, &self.bodies[draft.body], &state.fit);
+        let is_inside = |at: &usize| rows.contain(draft.rows[*at], draft.group[*at]);
+        let inside: Vec<usize> = (0..draft.len()).filter(is_inside).collect();
+        reference.zero(&draft, joint, &inside).map_or(0.0, |(_, error)| error)
     }
 
     /// Ln of how many stretches a change may have concerned.

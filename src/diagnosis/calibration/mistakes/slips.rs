@@ -31,6 +31,8 @@ const NU: f64 = 4.0;
 const MIDDLE: f64 = -2.595;
 /// Rows that are far out and looked at; the farthest first.
 const MOST_ROWS: usize = 40;
+/// A slip moves a row by so many times its distance, or as much less, or it is not looked at.
+const AS_FAR: f64 = 2.0;
 /// Share of the rows that are left out at most, and their number: more are no single ones.
 const LEFT_OUT: (f64, usize) = (0.05, 2);
 /// Fewest neighbours that stand twice: single rows may agree by chance.
@@ -96,11 +98,11 @@ impl Search<'_> {
             Change::Number { of, .. } => Some(of),
             _ => None,
         };
-        let counts: Vec<usize> = (slips.iter())
-            .map(|slip| slips.iter().filter(|other| column(other) == column(slip)).count())
-            .collect();
-        let mut kept = counts.iter().zip(slips.iter().map(|slip| column(slip).is_none()).collect::<Vec<_>>());
-        slips.retain(|_| kept.next().is_some_and(|(count, is_other)| is_other || *count <= most));
+        let columns: Vec<Option<Cell>> = slips.iter().map(column).collect();
+        slips.retain(|slip| {
+            let own = column(slip);
+            own.is_none() || columns.iter().filter(|other| **other == own).count() <= most
+        });
         let reach = self.bodies[draft.body].reach;
         lost.retain(|&at| lengths[at] > FAILED * reach);
         if lost.len() <= most {
@@ -140,7 +142,6 @@ impl Search<'_> {
         let row = draft.rows[at];
         let mut suspects = self.typed(draft, at, columns, recording);
         suspects.extend(self.of_whole_row(draft, at, recording));
-        let total: f64 = suspects.iter().map(|suspect| suspect.log_prior.exp()).sum();
         let alone = |suspect: &Suspect| {
             let changed = match &suspect.change {
                 // rows beside it are where its position stands
@@ -154,17 +155,24 @@ impl Search<'_> {
             changed.rows.iter().position(|own| *own == row).map(|own| changed.part(&[own]))
         };
         let tried: Vec<Option<Draft>> = suspects.iter().map(alone).collect();
-        let mut odds: Vec<(f64, f64, usize)> = Vec::new();
+        let recorded = reference.offsets(&draft.part(&[at])).first().copied().unwrap_or_default();
+        let (mut odds, mut total): (Vec<(f64, f64, usize)>, f64) = (Vec::new(), 0.0);
         for (k, changed) in tried.iter().enumerate() {
             let Some(changed) = changed else { continue };
             // the same by another name
             if tried[..k].iter().flatten().any(|known| is_same_row(known, changed)) {
                 continue;
             }
-            let left = reference.lengths(changed).first().copied().unwrap_or(f64::INFINITY);
-            let log_odds = ln_odds(length, left, reference.scale) + suspects[k].log_prior - total.ln();
-            odds.push((log_odds, left, k));
+            let Some(off) = reference.offsets(changed).first().copied() else { continue };
+            // so far out only what moves the row about as far may have put it
+            let way = (off - recorded).norm() / length;
+            if (1.0 / AS_FAR..=AS_FAR).contains(&way) {
+                total += suspects[k].log_prior.exp();
+                let left = off.norm();
+                odds.push((ln_odds(length, left, reference.scale) + suspects[k].log_prior, left, k));
+            }
         }
+        odds.iter_mut().for_each(|odds| odds.0 -= total.max(1.0).ln());
         odds.sort_by(|a, b| b.0.total_cmp(&a.0));
         let &(log_odds, left, best) = odds.first()?;
         if log_odds < ODDS {

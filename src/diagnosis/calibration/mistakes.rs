@@ -57,7 +57,7 @@ use crate::units::{DEG, MM, UM, significant};
 const NO_GUESS: f64 = 10.0;
 
 /// A calibration that fails with what was undone as well must leave less, by this factor.
-const CONFIRMED: f64 = 0.9;
+const CONFIRMED: f64 = 0.5;
 
 /// Files of the same folders that may have been meant.
 #[derive(Debug, Clone, Default)]
@@ -121,18 +121,9 @@ pub fn mend(campaign: &Campaign, mode: Mode, others: &Neighbours, options: &Opti
     let mut mended = search(campaign, mode, others)?;
     if !mended.found.is_empty() {
         let recorded = calibrate(campaign, mode, options).ok();
-        let meant = || calibrate(&mended.campaign, mended.mode, options).ok();
-        // what no calibration confirms is no correction
-        if mended.is_changed
-            && let Some((recorded, meant)) = recorded.as_ref().zip(meant())
-            && !meant.is_plausible()
-            && meant.rms() > CONFIRMED * recorded.rms()
-        {
-            return Ok(Mended::unchanged(campaign, mode));
-        }
         mended.recorded = recorded.map(|calibration| Summary::of(&calibration.residuals()));
     }
-    Ok(mended)
+    Ok(mended.confirmed(campaign, mode, options))
 }
 
 /// One line for each mistake that `campaign` seems to hold, for those who do not ask for a
@@ -141,7 +132,13 @@ pub fn mend(campaign: &Campaign, mode: Mode, others: &Neighbours, options: &Opti
 /// # Errors
 /// As [`mend`].
 pub fn suspected(campaign: &Campaign, mode: Mode, others: &Neighbours) -> Result<Vec<Suspicion>> {
-    Ok(search(campaign, mode, others)?.suspicions)
+    let mut mended = search(campaign, mode, others)?;
+    let options = Options::default();
+    if mended.is_changed {
+        let recorded = calibrate(campaign, mode, &options).ok();
+        mended.recorded = recorded.map(|calibration| Summary::of(&calibration.residuals()));
+    }
+    Ok(mended.confirmed(campaign, mode, &options).suspicions)
 }
 
 impl Mended {
@@ -156,6 +153,16 @@ impl Mended {
             has_data: true,
             recorded: None,
         }
+    }
+
+    /// The same, or the campaign as recorded where a calibration shows that what was undone is not
+    /// what was wrong: it still fails, and leaves about as much.
+    fn confirmed(self, campaign: &Campaign, mode: Mode, options: &Options) -> Mended {
+        let (true, Some(recorded)) = (self.is_changed, self.recorded) else { return self };
+        let Ok(meant) = calibrate(&self.campaign, self.mode, options) else { return self };
+        let left = Summary::of(&meant.residuals());
+        let is_better = left.rms < CONFIRMED * recorded.rms && left.mean < recorded.mean;
+        if meant.is_plausible() || is_better { self } else { Mended::unchanged(campaign, mode) }
     }
 
     /// Calibrates the mended campaign and diagnoses what is left; the mistakes stand before all
@@ -243,9 +250,15 @@ fn search(campaign: &Campaign, mode: Mode, others: &Neighbours) -> Result<Mended
         meant.push(Other { file: file.clone(), name, is_rod: false, tip: None, body });
         bodies.push(Body::new(robot, compensation.clone(), campaign.tool, &draft));
     }
+    let mut forces = Vec::new();
+    for factor in moves::forces(campaign) {
+        let with = compensation.with_contact_force_times(factor);
+        forces.push((bodies.len(), factor));
+        bodies.push(Body::new(&campaign.robot, with, campaign.tool, &draft));
+    }
     let silent = columns::silent(campaign, &draft);
     let is_sure = silent.iter().any(|silent| !silent.only_if_failed);
-    let moves = moves::all(campaign, &draft, &meant);
+    let moves = moves::all(campaign, &draft, &meant, &forces);
     let of_rows = moves::of_rows(campaign, &draft);
     let mut search = Search { draft, bodies, moves, of_rows, guess_weight: 1.0 };
     let mut result = if is_sure { None } else { search.found() };
@@ -280,6 +293,10 @@ fn search(campaign: &Campaign, mode: Mode, others: &Neighbours) -> Result<Mended
     if !best.steps.is_empty() {
         mended.is_changed = true;
         mended.undo(campaign, others, &search, &best, &meant)?;
+        let body = search.changed(&best.steps).body;
+        if let Some((_, factor)) = forces.iter().find(|(own, _)| *own == body) {
+            mended.campaign.contact_force = campaign.contact_force.map(|force| force * *factor);
+        }
     }
     let mut order: Vec<usize> = (0..mended.found.len()).collect();
     order.sort_by(|&a, &b| mended.found[b].explains.total_cmp(&mended.found[a].explains));

@@ -118,7 +118,9 @@ fn worth(subject: &Subject) -> String {
         let (before, after) = (um(errors.before), um(errors.after));
         return match errors.after < errors.before && before != after {
             true => {
-                format!(" Once {it} corrected, the residual falls from {before} to {after} µm{averaged}; {scatter}")
+                format!(
+                    " Once {it} corrected, the residual falls from {before} to {after} µm{averaged}; {scatter}"
+                )
             }
             false => format!(" Once {it} corrected, the residual is {after} µm{averaged}; {scatter}"),
         };

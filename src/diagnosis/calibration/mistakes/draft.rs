@@ -258,8 +258,7 @@ impl Draft {
                 *self.number_mut(at, *of) = *value;
             }
             Change::Without(rows) => {
-                let kept: Vec<usize> =
-                    (0..self.len()).filter(|&at| !rows.contains(&self.rows[at])).collect();
+                let kept: Vec<usize> = (0..self.len()).filter(|&at| !rows.contains(&self.rows[at])).collect();
                 *self = self.part(&kept);
             }
         }

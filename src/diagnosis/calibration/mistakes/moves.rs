@@ -19,7 +19,7 @@ use crate::inference::{Effect, Estimate};
 use crate::robot::{Motion, Robot};
 use crate::spatial::Pose;
 use crate::statistics::median;
-use crate::units::{DEG, MM, significant};
+use crate::units::{DEG, MM, STANDARD_GRAVITY, significant};
 
 /// Farthest displacement of rows that is tried.
 const FARTHEST_ROW: isize = 3;
@@ -88,7 +88,12 @@ pub(super) struct Other {
 }
 
 /// All that these files could show.
-pub(super) fn all(campaign: &Campaign, draft: &Draft, others: &[Other]) -> Vec<Move> {
+pub(super) fn all(
+    campaign: &Campaign,
+    draft: &Draft,
+    others: &[Other],
+    forces: &[(usize, f64)],
+) -> Vec<Move> {
     let mut list = List { campaign, draft, moves: Vec::new(), is_of_rows: false };
     list.joints();
     list.positions();
@@ -97,7 +102,14 @@ pub(super) fn all(campaign: &Campaign, draft: &Draft, others: &[Other]) -> Vec<M
     list.base();
     list.tool();
     list.files(others);
+    list.contact_forces(forces);
     list.moves
+}
+
+/// What the contact force may have to be multiplied by; nothing where none is stated.
+pub(super) fn forces(campaign: &Campaign) -> Vec<f64> {
+    let is_stated = campaign.rod.is_some() && campaign.contact_force.is_some_and(|force| force.norm() > 0.0);
+    if is_stated { vec![-1.0, 0.1, 10.0, STANDARD_GRAVITY, 1.0 / STANDARD_GRAVITY] } else { Vec::new() }
 }
 
 /// All that may have gone wrong with some rows alone: what the others show decides, not how large
@@ -568,6 +580,30 @@ impl List<'_> {
                 let cure = format!("Multiply tool.xyz_mm by {factor}");
                 add(tool * factor, &UNIT_MISTAKE, cure, unit, exact("factor", factor));
             }
+        }
+    }
+
+    /// Bodies with the contact force times a factor.
+    fn contact_forces(&mut self, forces: &[(usize, f64)]) {
+        const KEY: &str = "contact_force_n";
+        for &(body, factor) in forces {
+            let (effect, cure, why) = if factor < 0.0 {
+                (
+                    &SIGN_MISTAKE,
+                    format!("Multiply {KEY} by −1"),
+                    "it is the force on the device, not on the ball",
+                )
+            } else if factor == STANDARD_GRAVITY {
+                (&UNIT_MISTAKE, format!("Multiply {KEY} by 9.80665"), "it is in kilograms, not in newtons")
+            } else if factor == 1.0 / STANDARD_GRAVITY {
+                (&UNIT_MISTAKE, format!("Divide {KEY} by 9.80665"), "it was converted to newtons twice")
+            } else {
+                let (way, by) = if factor < 1.0 { ("Divide", 1.0 / factor) } else { ("Multiply", factor) };
+                (&UNIT_MISTAKE, format!("{way} {KEY} by {by}"), "its decimal point is in the wrong place")
+            };
+            let force = self.add(effect, KEY, Change::Body(body, None), &cure, why);
+            force.log_prior = UNUSUAL;
+            force.estimates = if factor < 0.0 { Vec::new() } else { exact("factor", factor) };
         }
     }
 

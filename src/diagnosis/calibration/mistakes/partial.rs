@@ -11,15 +11,8 @@ use super::search::{Search, State, Step};
 use crate::parallel::in_parallel;
 
 /// Windows of the rows that are fitted by themselves, as shares of them.
-const WINDOWS: [(f64, f64); 7] = [
-    (0.0, 0.5),
-    (0.5, 1.0),
-    (0.0, 0.67),
-    (0.33, 1.0),
-    (0.0, 0.34),
-    (0.33, 0.67),
-    (0.66, 1.0),
-];
+const WINDOWS: [(f64, f64); 7] =
+    [(0.0, 0.5), (0.5, 1.0), (0.0, 0.67), (0.33, 1.0), (0.0, 0.34), (0.33, 0.67), (0.66, 1.0)];
 /// Fewest rows that are so many scales out before parts are looked at; or a window that scatters so
 /// much less than all.
 const FEWEST: usize = 3;

@@ -314,9 +314,7 @@ impl Search<'_> {
     /// True where `after` is beyond doubt better than `before`.
     pub(super) fn is_better(&self, after: &State, before: &State) -> bool {
         let more = after.steps.len().saturating_sub(before.steps.len()) as f64;
-        if after.score - before.score < ODDS * more.max(1.0)
-            || !self.is_far(after)
-            || !self.is_placed(after)
+        if after.score - before.score < ODDS * more.max(1.0) || !self.is_far(after) || !self.is_placed(after)
         {
             return false;
         }
@@ -331,8 +329,8 @@ impl Search<'_> {
         let touched: Vec<(f64, f64)> =
             pairs(before, after).into_iter().filter(|(old, new)| (old - new).abs() > sure).collect();
         // a part of the rows may be a small one
-        let is_part = (after.steps.iter())
-            .any(|step| matches!(step, Step::Part(..)) && !before.steps.contains(step));
+        let is_part =
+            (after.steps.iter()).any(|step| matches!(step, Step::Part(..)) && !before.steps.contains(step));
         let share = if is_part { 0.0 } else { TOUCHED.0 };
         let least = (share * after.thin.len() as f64).max(TOUCHED.1 as f64);
         let (old, new): (Vec<f64>, Vec<f64>) = touched.into_iter().unzip();

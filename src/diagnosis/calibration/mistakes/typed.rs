@@ -48,7 +48,8 @@ pub(super) fn meant(value: f64, decimals: usize) -> Vec<Meant> {
     let mut add = |text: String, why: &'static str, log_prior: f64| {
         let meant = Meant { text, why, log_prior };
         let is_new = |known: &Meant| known.value() != meant.value();
-        let leads = |text: &str| text.starts_with('0') && text.as_bytes().get(1).is_some_and(u8::is_ascii_digit);
+        let leads =
+            |text: &str| text.starts_with('0') && text.as_bytes().get(1).is_some_and(u8::is_ascii_digit);
         let is_written = !leads(meant.text.trim_start_matches('-'));
         if is_written && meant.value().is_finite() && meant.value() != value && all.iter().all(is_new) {
             all.push(meant);

@@ -11,8 +11,7 @@ fn in_rows(campaign: &Campaign, rows: std::ops::Range<usize>, change: impl Fn(&m
 /// The one finding, its cure, and the campaign that was meant.
 fn only(campaign: &Campaign) -> (&'static str, String, Campaign) {
     let mended = mended(campaign);
-    let said: Vec<&str> =
-        mended.found.iter().map(|finding| finding.description.observed.as_str()).collect();
+    let said: Vec<&str> = mended.found.iter().map(|finding| finding.description.observed.as_str()).collect();
     let [finding] = &mended.found[..] else { panic!("{said:?}") };
     assert!(mended.is_changed && mended.suspicions[0].spoils_fit);
     (finding.effect.name, finding.description.observed.clone(), mended.campaign)
@@ -129,4 +128,38 @@ fn what_counts_little_is_not_explained() {
     let found = crate::diagnosis::calibration::diagnose(&wrong, Mode::Fea, &Options::default()).unwrap();
     assert!(found.is_implausible());
     assert!(found.diagnosis.discrepancy.is_some());
+}
+
+/// Sensors show what the ball does to them; the campaign asks for what they do to the ball.
+#[test]
+fn a_contact_force_the_other_way_round() {
+    let right = tx90();
+    let wrong = Campaign { contact_force: right.contact_force.map(|force| -force), ..right.clone() };
+    let (effect, cure, meant) = only(&wrong);
+    assert_eq!((effect, cure.as_str()), ("sign_mistake", "Multiply contact_force_n by −1"));
+    assert_eq!(meant.contact_force, right.contact_force);
+}
+
+/// Half of the rows in another clamp's name and the other half shifted: no correction cures that,
+/// and what cures a part of it is not said.
+#[test]
+fn what_a_calibration_does_not_confirm_is_not_said() {
+    let mut wrong = in_rows(&tracked(60, 7), 36..60, |q| q[2] = -q[2]);
+    let count = wrong.measurements.len();
+    // every position of these rows belongs to nothing
+    let mut random = Random::seeded(5, 1);
+    for row in 30..count {
+        points(&mut wrong)[row] += Vector3::from_fn(|_, _| 0.4 * random.normal());
+    }
+    let mended = mended(&wrong);
+    assert!(!mended.is_changed, "{:?}", mended.suspicions);
+}
+
+/// The zero of the first joint steps as the base would turn, and is said so.
+#[test]
+fn a_step_of_the_first_joint_may_be_the_base() {
+    let mended = mended(&in_rows(&tracked(60, 7), 20..40, |q| q[0] += 2.0 * DEG));
+    let [finding] = &mended.found[..] else { panic!("{:?}", mended.suspicions) };
+    assert_eq!(finding.location.to_string(), "q1_deg, from pose 21 to pose 40");
+    assert!(finding.rivals.iter().any(|rival| rival.effect.name == "base_shift"));
 }

@@ -1,25 +1,28 @@
 //! Every mistake that a campaign's files may hold, as a list of what undoes each.
 
+mod bodies;
 mod conventions;
+mod of_rows;
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use nalgebra::{Matrix3, Vector3};
 
+pub(super) use self::bodies::forces;
 pub(super) use self::conventions::turn;
 use self::conventions::{SAME, Said, TURN_IN_RADIANS, is_same, readings};
+pub(super) use self::of_rows::of_rows;
 use super::super::effects::mistakes::{
-    FRAME_MISTAKE, OFFSET_MISTAKE, ROBOT_MISTAKE, ROD_MISTAKE, ROW_MISTAKE, SIGN_MISTAKE, SWAP_MISTAKE,
-    UNIT_MISTAKE,
+    FRAME_MISTAKE, OFFSET_MISTAKE, ROW_MISTAKE, SIGN_MISTAKE, SWAP_MISTAKE, UNIT_MISTAKE,
 };
-use super::draft::{Cell, Change, Draft};
+use super::draft::{Change, Draft};
 use super::names::{AXES, column};
 use crate::calibration::campaign::Campaign;
 use crate::inference::{Effect, Estimate};
-use crate::robot::{Motion, Robot};
+use crate::robot::Motion;
 use crate::spatial::Pose;
 use crate::statistics::median;
-use crate::units::{DEG, MM, STANDARD_GRAVITY, significant};
+use crate::units::{DEG, MM, significant};
 
 /// Farthest displacement of rows that is tried.
 const FARTHEST_ROW: isize = 3;
@@ -31,11 +34,6 @@ const DISPLACEMENT: f64 = 10.0 * MM;
 /// Ln of how much rarer some mistakes are.
 const UNUSUAL: f64 = -1.0;
 const RARE: f64 = -2.0;
-
-/// Half of a 95 % interval in standard deviations.
-const COVERAGE: f64 = 1.96;
-/// Ln of the share of all angles that a step of a joint's zero agrees with.
-const ANY_ANGLE: f64 = -6.0;
 
 /// A mistake that may have been made, with what is said of it.
 #[derive(Clone)]
@@ -53,23 +51,6 @@ pub(super) struct Move {
 }
 
 impl Move {
-    /// What to do where a joint's zero was found to be another one.
-    pub fn say_zero(&mut self, robot: &Robot, joint: usize, by: f64, error: f64) {
-        let (unit, symbol, name) = match robot.joints[joint].motion {
-            Motion::Revolute => (DEG, "°", "deg"),
-            Motion::Prismatic => (MM, " mm", "mm"),
-        };
-        let (value, half) = (by / unit, COVERAGE * error / unit);
-        let digits = (value.abs() / half.max(1e-9)).log10().ceil().clamp(1.0, 4.0) as usize + 1;
-        let size = significant(value.abs(), digits);
-        self.cure = match value > 0.0 {
-            true => format!("Add {size}{symbol} to {}", self.location),
-            false => format!("Subtract {size}{symbol} from {}", self.location),
-        };
-        self.estimates =
-            vec![Estimate { name: name.into(), unit: 1.0, value, low: value - half, high: value + half }];
-    }
-
     /// What explains poses as well, at such odds.
     pub fn with_odds(&self, odds: f64) -> (&'static Effect, String, f64) {
         (self.effect, self.location.clone(), odds)
@@ -106,26 +87,6 @@ pub(super) fn all(
     list.moves
 }
 
-/// What the contact force may have to be multiplied by; nothing where none is stated.
-pub(super) fn forces(campaign: &Campaign) -> Vec<f64> {
-    let is_stated = campaign.rod.is_some() && campaign.contact_force.is_some_and(|force| force.norm() > 0.0);
-    if is_stated { vec![-1.0, 0.1, 10.0, STANDARD_GRAVITY, 1.0 / STANDARD_GRAVITY] } else { Vec::new() }
-}
-
-/// All that may have gone wrong with some rows alone: what the others show decides, not how large
-/// the numbers are.
-pub(super) fn of_rows(campaign: &Campaign, draft: &Draft) -> Vec<Move> {
-    let mut list = List { campaign, draft, moves: Vec::new(), is_of_rows: true };
-    list.joints();
-    list.positions();
-    list.single_units();
-    list.rows();
-    list.exchanged();
-    list.displaced_columns();
-    list.steps();
-    list.moves
-}
-
 struct List<'a> {
     campaign: &'a Campaign,
     draft: &'a Draft,
@@ -140,7 +101,7 @@ fn exact(name: &str, value: f64) -> Vec<Estimate> {
 }
 
 impl List<'_> {
-    fn add(
+    pub(super) fn add(
         &mut self,
         effect: &'static Effect,
         location: &str,
@@ -161,11 +122,11 @@ impl List<'_> {
         &mut self.moves[last]
     }
 
-    fn column(&self, joint: usize) -> String {
+    pub(super) fn column(&self, joint: usize) -> String {
         column(&self.campaign.robot, joint)
     }
 
-    fn joints(&mut self) {
+    pub(super) fn joints(&mut self) {
         let count = self.draft.joint_count;
         let turns: Vec<usize> =
             (0..count).filter(|&j| self.campaign.robot.joints[j].motion == Motion::Revolute).collect();
@@ -290,7 +251,7 @@ impl List<'_> {
         }
     }
 
-    fn positions(&mut self) {
+    pub(super) fn positions(&mut self) {
         if self.draft.has_sockets() {
             return;
         }
@@ -367,7 +328,7 @@ impl List<'_> {
         }
     }
 
-    fn rows(&mut self) {
+    pub(super) fn rows(&mut self) {
         if self.draft.has_sockets() {
             return;
         }
@@ -392,59 +353,8 @@ impl List<'_> {
         }
     }
 
-    /// A number that was left out of a column, or stands twice there.
-    fn displaced_columns(&mut self) {
-        let joints = (0..self.draft.joint_count).map(|joint| (Cell::Joint(joint), self.column(joint)));
-        let mut cells: Vec<(Cell, String)> = joints.collect();
-        if !self.draft.has_sockets() {
-            cells.extend(AXES.into_iter().enumerate().map(|(axis, name)| (Cell::Axis(axis), name.into())));
-        }
-        for (of, name) in cells {
-            for (by, way, there) in [(1, "up", "above"), (-1, "down", "below")] {
-                let cure = format!("Move {name} 1 row {way}");
-                let why = format!("each number belongs to the row {there}");
-                let change = Change::Column { of, by };
-                let shift = self.add(&ROW_MISTAKE, &name, change, &cure, &why);
-                (shift.estimates, shift.log_prior) = (exact("rows", by as f64), UNUSUAL);
-            }
-        }
-    }
-
-    /// The zero of a joint by any angle, which the poses must say; of the last joint it is rather
-    /// the rod that turned in its mount.
-    fn steps(&mut self) {
-        let count = self.draft.joint_count;
-        for joint in 0..count.saturating_sub(1) {
-            let name = self.column(joint);
-            let change = Change::Zero { joint, by: 0.0 };
-            self.add(&OFFSET_MISTAKE, &name, change, "", "the joint's zero is another one there").log_prior =
-                ANY_ANGLE;
-        }
-    }
-
-    /// A single column of a measured point in another unit.
-    fn single_units(&mut self) {
-        if self.draft.has_sockets() {
-            return;
-        }
-        for (axis, name) in AXES.into_iter().enumerate() {
-            for (factor, unit) in [(1e3, "metres"), (25.4, "inches"), (1e-3, "micrometres")] {
-                let mut matrix = Matrix3::identity();
-                matrix[(axis, axis)] = factor;
-                let by = if factor < 1.0 {
-                    format!("Divide {name} by {}", 1.0 / factor)
-                } else {
-                    format!("Multiply {name} by {factor}")
-                };
-                let why = format!("it is in {unit}, not in millimetres");
-                let unit = self.add(&UNIT_MISTAKE, name, Change::Seen(matrix), &by, &why);
-                (unit.estimates, unit.log_prior) = (exact("factor", factor), UNUSUAL);
-            }
-        }
-    }
-
     /// Clamps or sockets that were named the other way round.
-    fn exchanged(&mut self) {
+    pub(super) fn exchanged(&mut self) {
         let names: Vec<String> =
             self.campaign.measurements.groups.iter().map(|group| group.name.clone()).collect();
         let count = names.len();
@@ -580,41 +490,6 @@ impl List<'_> {
                 let cure = format!("Multiply tool.xyz_mm by {factor}");
                 add(tool * factor, &UNIT_MISTAKE, cure, unit, exact("factor", factor));
             }
-        }
-    }
-
-    /// Bodies with the contact force times a factor.
-    fn contact_forces(&mut self, forces: &[(usize, f64)]) {
-        const KEY: &str = "contact_force_n";
-        for &(body, factor) in forces {
-            let (effect, cure, why) = if factor < 0.0 {
-                (
-                    &SIGN_MISTAKE,
-                    format!("Multiply {KEY} by −1"),
-                    "it is the force on the device, not on the ball",
-                )
-            } else if factor == STANDARD_GRAVITY {
-                (&UNIT_MISTAKE, format!("Multiply {KEY} by 9.80665"), "it is in kilograms, not in newtons")
-            } else if factor == 1.0 / STANDARD_GRAVITY {
-                (&UNIT_MISTAKE, format!("Divide {KEY} by 9.80665"), "it was converted to newtons twice")
-            } else {
-                let (way, by) = if factor < 1.0 { ("Divide", 1.0 / factor) } else { ("Multiply", factor) };
-                (&UNIT_MISTAKE, format!("{way} {KEY} by {by}"), "its decimal point is in the wrong place")
-            };
-            let force = self.add(effect, KEY, Change::Body(body, None), &cure, why);
-            force.log_prior = UNUSUAL;
-            force.estimates = if factor < 0.0 { Vec::new() } else { exact("factor", factor) };
-        }
-    }
-
-    fn files(&mut self, others: &[Other]) {
-        for other in others {
-            let Other { file, name, .. } = other;
-            let change = Change::Body(other.body, other.tip);
-            let (effect, what) = if other.is_rod { (&ROD_MISTAKE, "rod") } else { (&ROBOT_MISTAKE, "robot") };
-            let cure = format!("Write {what} = \"{file}\"");
-            let why = format!("the poses are those of {what} {name}");
-            self.add(effect, file, change, &cure, &why).log_prior = UNUSUAL;
         }
     }
 }

@@ -250,7 +250,7 @@ fn search(campaign: &Campaign, mode: Mode, others: &Neighbours) -> Result<Mended
         bodies.push(Body::new(robot, compensation.clone(), campaign.tool, &draft));
     }
     let mut forces = Vec::new();
-    for factor in moves::forces(campaign) {
+    for factor in moves::bodies::forces(campaign) {
         let with = compensation.with_contact_force_times(factor);
         forces.push((bodies.len(), factor));
         bodies.push(Body::new(&campaign.robot, with, campaign.tool, &draft));
@@ -258,7 +258,7 @@ fn search(campaign: &Campaign, mode: Mode, others: &Neighbours) -> Result<Mended
     let silent = columns::silent(campaign, &draft);
     let is_sure = silent.iter().any(|silent| !silent.only_if_failed);
     let moves = moves::all(campaign, &draft, &meant, &forces);
-    let of_rows = moves::of_rows(campaign, &draft);
+    let of_rows = moves::of_rows::of_rows(campaign, &draft);
     let mut search = Search { draft, bodies, moves, of_rows, guess_weight: 1.0 };
     let mut result = if is_sure { None } else { search.found() };
     let is_rough = |(_, best, _): &(State, State, Vec<Found>)| {

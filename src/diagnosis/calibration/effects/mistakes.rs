@@ -51,9 +51,12 @@ pub static UNIT_MISTAKE: Effect = Effect {
 /// A joint's zero by a quarter or half turn.
 pub static OFFSET_MISTAKE: Effect = Effect {
     name: "offset_mistake",
-    summary: "a joint's zero is off by a quarter or half turn",
+    summary: "a joint's zero is off by a quarter or half turn, or by any angle in some rows",
     formula: "true = recorded + constant",
-    parameters: &[("deg", "what must be added to the recorded angle")],
+    parameters: &[
+        ("deg", "what must be added to the recorded angle"),
+        ("mm", "what must be added where the joint slides"),
+    ],
     needs: "joints that move; of the first joint a stated base, of the last one a stated tool",
     cause: "a wrong zero of the joint",
     cause_at: |location| at("a wrong zero", location),
@@ -64,8 +67,8 @@ pub static OFFSET_MISTAKE: Effect = Effect {
 /// Angles and positions that do not belong together.
 pub static ROW_MISTAKE: Effect = Effect {
     name: "row_mistake",
-    summary: "positions stand some rows away from their angles",
-    formula: "position of row i = recorded position of row i + rows",
+    summary: "positions stand some rows away from their angles, or a column beside the others",
+    formula: "position (or number of a column) of row i = recorded one of row i + rows",
     parameters: &[("rows", "how many rows further down a row's position stands")],
     needs: "poses that differ from row to row",
     cause: "rows displaced",

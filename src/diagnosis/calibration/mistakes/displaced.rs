@@ -1,4 +1,5 @@
-//! Changes of some rows of a draft alone, and rows that stand some rows away from where they belong.
+//! Changes of some rows of a draft alone, and rows that stand some rows away from where they
+//! belong.
 
 use super::draft::{Cell, Change, Draft, Rows};
 

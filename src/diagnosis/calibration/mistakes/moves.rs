@@ -1,17 +1,15 @@
 //! Every mistake that a campaign's files may hold, as a list of what undoes each.
 
-mod bodies;
+pub(super) mod bodies;
 mod conventions;
-mod of_rows;
+pub(super) mod of_rows;
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use nalgebra::{Matrix3, Vector3};
 
-pub(super) use self::bodies::forces;
 pub(super) use self::conventions::turn;
 use self::conventions::{SAME, Said, TURN_IN_RADIANS, is_same, readings};
-pub(super) use self::of_rows::of_rows;
 use super::super::effects::mistakes::{
     FRAME_MISTAKE, OFFSET_MISTAKE, ROW_MISTAKE, SIGN_MISTAKE, SWAP_MISTAKE, UNIT_MISTAKE,
 };

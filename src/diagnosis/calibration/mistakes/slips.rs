@@ -221,9 +221,9 @@ impl Search<'_> {
                 });
             }
         };
-        for joint in 0..count {
+        for (joint, &places) in columns.iter().enumerate().take(count) {
             let recorded = draft.joints(at)[joint];
-            add(Cell::Joint(joint), column(robot, joint), self.unit(draft, joint), recorded, columns[joint]);
+            add(Cell::Joint(joint), column(robot, joint), self.unit(draft, joint), recorded, places);
         }
         for (axis, name) in AXES.into_iter().enumerate().filter(|_| !draft.has_sockets()) {
             add(Cell::Axis(axis), name.into(), MM, draft.seen[at][axis], columns[count + axis]);
@@ -329,7 +329,7 @@ fn ln_odds(length: f64, left: f64, scale: f64) -> f64 {
 fn copy(draft: &Draft, lengths: &[f64], run: &[(usize, usize, bool)], recording: &Recording) -> Slip {
     let named = |of: fn(&(usize, usize, bool)) -> usize| {
         let rows = || run.iter().map(of).map(|at| draft.rows[at]);
-        poses(recording, rows().next().unwrap_or(0), rows().last().unwrap_or(0))
+        poses(recording, rows().next().unwrap_or(0), rows().next_back().unwrap_or(0))
     };
     let (copies, originals) = (named(|pair| pair.0), named(|pair| pair.1));
     let square: f64 = run.iter().map(|pair| lengths[pair.0].powi(2)).sum();

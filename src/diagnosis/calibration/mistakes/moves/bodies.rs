@@ -7,7 +7,7 @@ use crate::calibration::campaign::Campaign;
 use crate::units::STANDARD_GRAVITY;
 
 /// What the contact force may have to be multiplied by; nothing where none is stated.
-pub(in super::super) fn forces(campaign: &Campaign) -> Vec<f64> {
+pub fn forces(campaign: &Campaign) -> Vec<f64> {
     let is_stated = campaign.rod.is_some() && campaign.contact_force.is_some_and(|force| force.norm() > 0.0);
     if is_stated { vec![-1.0, 0.1, 10.0, STANDARD_GRAVITY, 1.0 / STANDARD_GRAVITY] } else { Vec::new() }
 }

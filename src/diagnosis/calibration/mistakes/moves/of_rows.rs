@@ -18,7 +18,7 @@ const ANY_ANGLE: f64 = -6.0;
 
 /// All that may have gone wrong with some rows alone: what the others show decides, not how large
 /// the numbers are.
-pub(in super::super) fn of_rows(campaign: &Campaign, draft: &Draft) -> Vec<Move> {
+pub fn of_rows(campaign: &Campaign, draft: &Draft) -> Vec<Move> {
     let mut list = List { campaign, draft, moves: Vec::new(), is_of_rows: true };
     list.joints();
     list.positions();

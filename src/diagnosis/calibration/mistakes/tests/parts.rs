@@ -140,8 +140,8 @@ fn a_contact_force_the_other_way_round() {
     assert_eq!(meant.contact_force, right.contact_force);
 }
 
-/// Half of the positions belong to nothing: no correction cures that, and what helps a little is not
-/// said.
+/// Half of the positions belong to nothing: no correction cures that, and what helps a little is
+/// not said.
 #[test]
 fn what_a_calibration_does_not_confirm_is_not_said() {
     let mut wrong = in_rows(&tracked(60, 7), 36..60, |q| q[2] = -q[2]);

@@ -140,19 +140,18 @@ fn a_contact_force_the_other_way_round() {
     assert_eq!(meant.contact_force, right.contact_force);
 }
 
-/// Half of the positions belong to nothing: no correction cures that, and what helps a little is
-/// not said.
+/// A third of the positions belong to nothing, in which the calibration still fails: what is seen
+/// beside that is not sure enough to be written into a file.
 #[test]
 fn what_a_calibration_does_not_confirm_is_not_said() {
-    let mut wrong = in_rows(&tracked(60, 7), 36..60, |q| q[2] = -q[2]);
-    let count = wrong.measurements.len();
-    // every position of these rows belongs to nothing
+    let mut wrong = in_rows(&tracked(60, 7), 40..60, |q| q[4] = -q[4]);
     let mut random = Random::seeded(5, 1);
-    for row in 30..count {
+    for row in (0..60).step_by(3) {
         points(&mut wrong)[row] += Vector3::from_fn(|_, _| 0.4 * random.normal());
     }
     let mended = mended(&wrong);
     assert!(!mended.is_changed, "{:?}", mended.suspicions);
+    assert!(mended.found.is_empty());
 }
 
 /// The zero of the first joint steps as the base would turn, and is said so.

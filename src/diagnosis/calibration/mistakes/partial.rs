@@ -9,6 +9,7 @@ use super::part::{Reference, most, within};
 use super::quick::{Fit, Worthwhile, fit, fit_from};
 use super::search::{Search, State, Step};
 use crate::parallel::in_parallel;
+use crate::statistics::median;
 
 /// Windows of the rows that are fitted by themselves, as shares of them.
 const WINDOWS: [(f64, f64); 7] =
@@ -18,6 +19,9 @@ const WINDOWS: [(f64, f64); 7] =
 const FEWEST: usize = 3;
 const FAR: f64 = 5.0;
 const UNLIKE: f64 = 0.4;
+/// A displacement in a clamp is distinguished from none, or from another one, where it is so many
+/// scatters large.
+const DISTINCT: f64 = 10.0;
 /// Stretches that become states, of each fit.
 const MOST: usize = 3;
 
@@ -88,6 +92,17 @@ impl Search<'_> {
                 >= FEWEST
         };
         chosen.retain(is_part);
+        // in a clamp what makes displacements small, or exchanges them, is seen beside a small
+        // scatter alone
+        let is_small = |change: &Change| match change {
+            Change::Seen(matrix) => matrix.determinant().abs() < 1.0,
+            Change::Rows { .. } => true,
+            _ => false,
+        };
+        let blurred = DISTINCT * from.fit.scale.min(starts.iter().map(|s| s.scale).fold(f64::MAX, f64::min));
+        let sizes: Vec<f64> = from.thin.seen.iter().map(|seen| seen.norm()).collect();
+        let is_blurred = from.thin.devices.len() > 1 && median(&sizes).is_some_and(|size| size < blurred);
+        chosen.retain(|place| !is_blurred || !is_small(&place.change));
         let states = in_parallel(chosen.len(), |at| {
             let Place { start, number, rows, change, .. } = &chosen[at];
             let mut steps = from.steps.clone();

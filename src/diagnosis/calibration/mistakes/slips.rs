@@ -23,6 +23,7 @@ use super::typed::{Meant, decimals, meant};
 use crate::calibration::campaign::Recording;
 use crate::inference::{Effect, Estimate};
 use crate::robot::Motion;
+use crate::statistics::median;
 use crate::units::{DEG, MM, UM, significant};
 
 /// Degrees of freedom of the distances' distribution.
@@ -140,6 +141,7 @@ impl Search<'_> {
         recording: &Recording,
     ) -> Option<Slip> {
         let row = draft.rows[at];
+        let displacement = displacement(draft, recording);
         let mut suspects = self.typed(draft, at, columns, recording);
         suspects.extend(self.of_whole_row(draft, at, recording));
         let alone = |suspect: &Suspect| {
@@ -169,7 +171,8 @@ impl Search<'_> {
             if (1.0 / AS_FAR..=AS_FAR).contains(&way) {
                 total += suspects[k].log_prior.exp();
                 let left = off.norm();
-                odds.push((ln_odds(length, left, reference.scale) + suspects[k].log_prior, left, k));
+                let volume = ln_volume(&suspects[k].change, length, displacement);
+                odds.push((ln_odds(volume, left, reference.scale) + suspects[k].log_prior, left, k));
             }
         }
         odds.iter_mut().for_each(|odds| odds.0 -= total.max(1.0).ln());
@@ -320,10 +323,33 @@ fn is_same_row(a: &Draft, b: &Draft) -> bool {
 }
 
 /// Ln of the odds that a row was `left` from its point and a slip made it `length`, against any
-/// disturbance.
-fn ln_odds(length: f64, left: f64, scale: f64) -> f64 {
+/// disturbance that puts it anywhere in a volume (ln).
+fn ln_odds(ln_volume: f64, left: f64, scale: f64) -> f64 {
     let own = MIDDLE - 0.5 * (NU + 3.0) * ((left / scale).powi(2) / NU).ln_1p();
-    own + 3.0 * (length / scale).ln() + (4.0 * PI / 3.0).ln()
+    own + ln_volume - 3.0 * scale.ln() + (4.0 * PI / 3.0).ln()
+}
+
+/// Ln of the cube of what a disturbance may fill, m³. A displacement in a clamp is small whatever
+/// happened: one that becomes small, or a neighbour's, is near for that alone.
+fn ln_volume(change: &Change, length: f64, displacement: f64) -> f64 {
+    let small = length.min(displacement).ln();
+    match change {
+        Change::Within(_, inner) => ln_volume(inner, length, displacement),
+        Change::Seen(_) | Change::Rows { .. } => 3.0 * small,
+        Change::Number { of: Cell::Axis(_), .. } | Change::Column { of: Cell::Axis(_), .. } => {
+            2.0 * length.ln() + small
+        }
+        _ => 3.0 * length.ln(),
+    }
+}
+
+/// How large displacements in clamps are, in the middle, m; nothing limits points in {W}.
+fn displacement(draft: &Draft, recording: &Recording) -> f64 {
+    if draft.has_sockets() || recording.groups.iter().any(|group| group.name.is_empty()) {
+        return f64::INFINITY;
+    }
+    let sizes: Vec<f64> = draft.seen.iter().map(|seen| seen.norm()).collect();
+    median(&sizes).unwrap_or(f64::INFINITY).max(f64::MIN_POSITIVE)
 }
 
 fn copy(draft: &Draft, lengths: &[f64], run: &[(usize, usize, bool)], recording: &Recording) -> Slip {

@@ -162,3 +162,14 @@ fn a_step_of_the_first_joint_may_be_the_base() {
     assert_eq!(finding.location.to_string(), "q1_deg, from pose 21 to pose 40");
     assert!(finding.rivals.iter().any(|rival| rival.effect.name == "base_shift"));
 }
+
+/// In a clamp any displacement is small: a row that is far out comes near when its numbers become
+/// small, or a neighbour's, whatever happened to it.
+#[test]
+fn a_disturbed_row_in_a_clamp_is_no_other_unit_and_no_other_row() {
+    let mut wrong = tx90();
+    for (row, way) in [(20, [0.031, -0.022, 0.011]), (37, [0.004, 0.009, -0.006]), (52, [-0.02, 0.0, 0.09])] {
+        points(&mut wrong)[row] += Vector3::from(way);
+    }
+    assert!(found(&wrong).iter().all(|(effect, _)| effect == "outlier"), "{:?}", found(&wrong));
+}

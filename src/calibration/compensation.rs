@@ -65,6 +65,11 @@ pub struct Compensation {
 }
 
 impl Compensation {
+    /// The same with another contact force on the ball.
+    pub fn with_contact_force_times(&self, factor: f64) -> Self {
+        Compensation { contact_force: self.contact_force * factor, ..self.clone() }
+    }
+
     /// Of a campaign in a mode.
     ///
     /// ```

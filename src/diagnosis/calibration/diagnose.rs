@@ -14,7 +14,9 @@ use crate::calibration::campaign::Campaign;
 use crate::calibration::{Calibration, Mode, Options, calibrate};
 use crate::error::Result;
 use crate::inference::law::propose;
-use crate::inference::{Diagnosed, Finding, Limit, Location, Sketch, diagnose as infer, sketch};
+use crate::inference::{
+    Diagnosed, Discrepancy, Finding, Limit, Location, ShownBy, Sketch, diagnose as infer, sketch,
+};
 use crate::parallel::in_parallel;
 
 /// A campaign's diagnosis.
@@ -87,7 +89,14 @@ pub fn diagnose_calibrated<'c>(
     limits.extend(scatter.iter().flat_map(|noise| noisy(campaign, noise)));
     let of_neighbours = evidence.correlated_noise;
     limits.extend(of_neighbours.map(|noise| Limit::CorrelatedPoses(noise.share, noise.length)));
-    Ok(Diagnosed { model, evidence, diagnosis, not_testable, absorbed, limits, law })
+    let mut found = Diagnosed { model, evidence, diagnosis, not_testable, absorbed, limits, law };
+    if found.diagnosis.discrepancy.is_none() && found.is_implausible() {
+        let shape = found.diagnosis.after.clone();
+        let rms = found.left_by_coordinate();
+        found.diagnosis.discrepancy =
+            Some(Discrepancy { candidate: None, location: None, shown_by: ShownBy::Size, rms, shape });
+    }
+    Ok(found)
 }
 
 /// So many times a search begins anew about the robot that is left beside what was found, with the
@@ -107,6 +116,21 @@ pub struct Happened {
 }
 
 impl CalibrationDiagnosis<'_> {
+    /// True where the findings leave more than any robot's error: in the scatter, or in the poses
+    /// as they are. Clamps that scatter more than others count less in the former, and one pose
+    /// that is far out is no scatter.
+    pub fn is_implausible(&self) -> bool {
+        let Some(most) = self.evidence.most_scatter else { return false };
+        self.diagnosis.noise > most || self.left_by_coordinate() > most
+    }
+
+    /// Root mean square of a coordinate of what the findings leave of the poses, m.
+    pub fn left_by_coordinate(&self) -> f64 {
+        let rows = self.model.by_row(&self.diagnosis.after);
+        let squares: f64 = rows.iter().map(|row| row.norm_squared()).sum();
+        (squares / (3 * rows.len()).max(1) as f64).sqrt()
+    }
+
     /// All that was found of a joint's gear, joints counted from 0; `None` where nothing was.
     pub fn gear(&self, joint: usize) -> Option<Curve> {
         let mut positions = Vec::new();

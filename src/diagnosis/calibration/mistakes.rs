@@ -16,37 +16,47 @@
 //! altogether (the zero of the first joint without a stated base) is not named.
 
 mod columns;
+mod displaced;
 mod draft;
+mod elsewhere;
 mod motion;
 mod moves;
+mod names;
+mod part;
+mod partial;
 mod quick;
 mod search;
+mod slips;
 #[cfg(test)]
 mod tests;
+mod typed;
+mod undo;
 
-use nalgebra::Vector3;
-
-use self::draft::{Change, Draft, change_joints};
-use self::motion::{measure_moves, motion_estimates};
-use self::moves::{Move, Other};
-use self::quick::{Body, Worthwhile};
+use self::draft::{Change, Draft};
+use self::motion::{measure_moves, motion_estimates, moved};
+use self::moves::Other;
+use self::names::{place, pose_name};
+use self::quick::Body;
 use self::search::{Found, Search, State, Step};
+use self::slips::Slip;
 use super::apply::{Applied, apply};
 use super::diagnose::{CalibrationDiagnosis, diagnose_calibrated};
-use super::effects::fixture::{BASE_SHIFT, CLAMP_POSE};
+use super::effects::fixture::{BASE_SHIFT, CLAMP_POSE, TOOL_SHIFT};
 use super::effects::mistakes::FRAME_MISTAKE;
-use crate::calibration::campaign::{Campaign, FileNames, Recording};
+use crate::calibration::campaign::{Campaign, FileNames};
 use crate::calibration::{Compensation, Mode, Options, Summary, calibrate};
 use crate::error::Result;
-use crate::inference::{Description, Effect, Estimate, Finding, Location, Rival};
+use crate::inference::{Description, Effect, Estimate, Finding, Location, Part, Rival};
 use crate::robot::Robot;
 use crate::rod::Rod;
-use crate::spatial::Pose;
-use crate::units::{DEG, MM, UM, significant};
+use crate::units::{DEG, MM, significant};
 
 /// What a base or a tip that is not where it was said to be costs where it spoils the calibration,
 /// times what a rough guess costs.
 const NO_GUESS: f64 = 10.0;
+
+/// A calibration that fails with what was undone as well must leave less, by this factor.
+const CONFIRMED: f64 = 0.5;
 
 /// Files of the same folders that may have been meant.
 #[derive(Debug, Clone, Default)]
@@ -109,10 +119,10 @@ pub struct Mended {
 pub fn mend(campaign: &Campaign, mode: Mode, others: &Neighbours, options: &Options) -> Result<Mended> {
     let mut mended = search(campaign, mode, others)?;
     if !mended.found.is_empty() {
-        let recorded = calibrate(campaign, mode, options);
-        mended.recorded = recorded.ok().map(|calibration| Summary::of(&calibration.residuals()));
+        let recorded = calibrate(campaign, mode, options).ok();
+        mended.recorded = recorded.map(|calibration| Summary::of(&calibration.residuals()));
     }
-    Ok(mended)
+    Ok(mended.confirmed(campaign, mode, options))
 }
 
 /// One line for each mistake that `campaign` seems to hold, for those who do not ask for a
@@ -121,10 +131,39 @@ pub fn mend(campaign: &Campaign, mode: Mode, others: &Neighbours, options: &Opti
 /// # Errors
 /// As [`mend`].
 pub fn suspected(campaign: &Campaign, mode: Mode, others: &Neighbours) -> Result<Vec<Suspicion>> {
-    Ok(search(campaign, mode, others)?.suspicions)
+    let mut mended = search(campaign, mode, others)?;
+    let options = Options::default();
+    if mended.is_changed {
+        let recorded = calibrate(campaign, mode, &options).ok();
+        mended.recorded = recorded.map(|calibration| Summary::of(&calibration.residuals()));
+    }
+    Ok(mended.confirmed(campaign, mode, &options).suspicions)
 }
 
 impl Mended {
+    /// A campaign as it was recorded.
+    fn unchanged(campaign: &Campaign, mode: Mode) -> Mended {
+        Mended {
+            campaign: campaign.clone(),
+            mode,
+            found: Vec::new(),
+            suspicions: Vec::new(),
+            is_changed: false,
+            has_data: true,
+            recorded: None,
+        }
+    }
+
+    /// The same, or the campaign as recorded where a calibration shows that what was undone is not
+    /// what was wrong: it still fails, and leaves about as much.
+    fn confirmed(self, campaign: &Campaign, mode: Mode, options: &Options) -> Mended {
+        let (true, Some(recorded)) = (self.is_changed, self.recorded) else { return self };
+        let Ok(meant) = calibrate(&self.campaign, self.mode, options) else { return self };
+        let left = Summary::of(&meant.residuals());
+        let is_better = left.rms < CONFIRMED * recorded.rms && left.mean < recorded.mean;
+        if meant.is_plausible() || is_better { self } else { Mended::unchanged(campaign, mode) }
+    }
+
     /// Calibrates the mended campaign and diagnoses what is left; the mistakes stand before all
     /// else.
     ///
@@ -132,8 +171,8 @@ impl Mended {
     /// As [`super::diagnose()`].
     pub fn diagnose(&self, options: &Options) -> Result<CalibrationDiagnosis<'_>> {
         let mut found = diagnose_calibrated(&self.campaign, calibrate(&self.campaign, self.mode, options)?)?;
+        let has_failed = found.is_implausible();
         let diagnosis = &mut found.diagnosis;
-        let has_failed = found.evidence.most_scatter.is_some_and(|most| diagnosis.noise > most);
         if has_failed || !self.has_data {
             // whatever is fitted to what is no robot's error means nothing
             diagnosis.findings.clear();
@@ -190,15 +229,7 @@ impl Mended {
 }
 
 fn search(campaign: &Campaign, mode: Mode, others: &Neighbours) -> Result<Mended> {
-    let mut mended = Mended {
-        campaign: campaign.clone(),
-        mode,
-        found: Vec::new(),
-        suspicions: Vec::new(),
-        is_changed: false,
-        has_data: true,
-        recorded: None,
-    };
+    let mut mended = Mended::unchanged(campaign, mode);
     let draft = Draft::of(campaign);
     let compensation = Compensation::new(campaign, mode)?;
     let mut bodies = vec![Body::new(&campaign.robot, compensation.clone(), campaign.tool, &draft)];
@@ -218,10 +249,17 @@ fn search(campaign: &Campaign, mode: Mode, others: &Neighbours) -> Result<Mended
         meant.push(Other { file: file.clone(), name, is_rod: false, tip: None, body });
         bodies.push(Body::new(robot, compensation.clone(), campaign.tool, &draft));
     }
+    let mut forces = Vec::new();
+    for factor in moves::bodies::forces(campaign) {
+        let with = compensation.with_contact_force_times(factor);
+        forces.push((bodies.len(), factor));
+        bodies.push(Body::new(&campaign.robot, with, campaign.tool, &draft));
+    }
     let silent = columns::silent(campaign, &draft);
     let is_sure = silent.iter().any(|silent| !silent.only_if_failed);
-    let moves = moves::all(campaign, &draft, &meant);
-    let mut search = Search { draft, bodies, moves, guess_weight: 1.0 };
+    let moves = moves::all(campaign, &draft, &meant, &forces);
+    let of_rows = moves::of_rows::of_rows(campaign, &draft);
+    let mut search = Search { draft, bodies, moves, of_rows, guess_weight: 1.0 };
     let mut result = if is_sure { None } else { search.found() };
     let is_rough = |(_, best, _): &(State, State, Vec<Found>)| {
         best.steps.is_empty() && !search.has_failed(best) && search.is_rough_guess(best)
@@ -243,13 +281,21 @@ fn search(campaign: &Campaign, mode: Mode, others: &Neighbours) -> Result<Mended
             &silent.why,
         );
     }
-    let Some((_, best, found)) = result.filter(|_| mended.has_data) else { return Ok(mended) };
+    let Some((_, mut best, found)) = result.filter(|_| mended.has_data) else { return Ok(mended) };
     for found in &found {
         mended.add_found(&search, &best, found);
+    }
+    for slip in search.slips(&best, &campaign.measurements) {
+        best.steps.push(Step::Slip(slip.change.clone()));
+        mended.add_slip(slip);
     }
     if !best.steps.is_empty() {
         mended.is_changed = true;
         mended.undo(campaign, others, &search, &best, &meant)?;
+        let body = search.changed(&best.steps).body;
+        if let Some((_, factor)) = forces.iter().find(|(own, _)| *own == body) {
+            mended.campaign.contact_force = campaign.contact_force.map(|force| force * *factor);
+        }
     }
     let mut order: Vec<usize> = (0..mended.found.len()).collect();
     order.sort_by(|&a, &b| mended.found[b].explains.total_cmp(&mended.found[a].explains));
@@ -291,14 +337,25 @@ impl Mended {
                 }
             }
             Step::Elsewhere(change) => self.add_elsewhere(search, best, found, change),
+            Step::Part(number, Change::Within(rows, change)) => {
+                let mut own = search.of_rows[*number].clone();
+                if let Change::Zero { joint, by } = **change {
+                    let error = search.error_of_zero(best, *rows, joint);
+                    own.say_zero(&self.campaign.robot, joint, by, error);
+                }
+                let there = place(&self.campaign.measurements, *rows);
+                let location = Location::Key(format!("{}, {there}", own.location));
+                let cure = format!("{} {there}", own.cure);
+                self.add(own.effect, location, own.estimates, &cure, &own.why);
+            }
+            Step::Part(..) | Step::Slip(_) => return,
         }
         let Some(finding) = self.found.last_mut() else { return };
         finding.p_value = (-found.log_odds).exp();
         finding.explains = found.explains;
         let mut rivals: Vec<Rival> = Vec::new();
-        for &(number, odds) in &found.rivals {
-            let Move { effect, location, .. } = &search.moves[number];
-            let location = Location::Key(location.clone());
+        for (effect, location, odds) in &found.rivals {
+            let (location, odds) = (Location::Key(location.clone()), *odds);
             let is_it = |e: &Effect, at: &Location| e == *effect && *at == location;
             if !is_it(finding.effect, &finding.location)
                 && !rivals.iter().any(|r| is_it(r.effect, &r.location))
@@ -306,9 +363,21 @@ impl Mended {
                 rivals.push(Rival::without_term(effect, location, odds));
             }
         }
-        // the base turned about joint 1 says the same
+        // the base turned about joint 1 says the same, and the rod about the last joint
         if matches!(&found.step, Step::Move(number) if search.moves[*number].change.is_zero_of_first()) {
             rivals.push(Rival::without_term(&FRAME_MISTAKE, Location::Key("base.rpy_deg".into()), 1.0));
+        }
+        if let Step::Part(_, Change::Within(_, change)) = &found.step {
+            let last = self.campaign.robot.joints.len().saturating_sub(1);
+            match change.joint_of_zero() {
+                Some(0) => {
+                    rivals.push(Rival::without_term(&BASE_SHIFT.effect, Location::Part(Part::Base), 1.0));
+                }
+                Some(joint) if joint == last => {
+                    rivals.push(Rival::without_term(&TOOL_SHIFT.effect, Location::Part(Part::Tip), 1.0));
+                }
+                _ => {}
+            }
         }
         if let Some(clamp) = found.may_be_clamp {
             let name = self.campaign.measurements.groups[clamp].name.clone();
@@ -316,6 +385,16 @@ impl Mended {
         }
         finding.rivals = rivals;
         finding.next = finding.direct_check(&finding.rivals.iter().collect::<Vec<_>>());
+    }
+
+    /// What happened to a single row, or to a few.
+    fn add_slip(&mut self, slip: Slip) {
+        let Slip { effect, location, estimates, cure, why, log_odds, explains, rivals, .. } = slip;
+        self.add(effect, Location::Key(location), estimates, &cure, &why);
+        let Some(finding) = self.found.last_mut() else { return };
+        (finding.p_value, finding.explains) = ((-log_odds).exp(), explains);
+        let rival = |(effect, place)| Rival::without_term(effect, Location::Key(place), 1.0);
+        finding.rivals = rivals.into_iter().map(rival).collect();
     }
 
     /// A frame that moved, with how far.
@@ -335,7 +414,7 @@ impl Mended {
             _ => 0,
         };
         let (Some(from), Some(to)) = (bases.get(old), bases.get(number)) else { return };
-        let (way, angle) = search::moved(from, to);
+        let (way, angle) = moved(from, to);
         let said = format!("{} mm and {}°", significant(way / MM, 4), significant(angle / DEG, 3));
         match change {
             Change::Moved(first) => {
@@ -358,112 +437,13 @@ impl Mended {
                     "Give {name} xyz_mm = [{:.2}, {:.2}, {:.2}] and rpy_deg = [{roll}, {pitch}, {yaw}]",
                     said.x, said.y, said.z
                 );
-                let (way, _) = search::moved(&device, &there);
+                let (way, _) = moved(&device, &there);
                 let why = format!("it stands {} mm from where the campaign says", significant(way / MM, 3));
                 let estimates = motion_estimates(&device, &there);
                 self.add(&FRAME_MISTAKE, Location::Key(name), estimates, &cure, &why);
             }
             _ => {}
         }
-    }
-
-    /// The campaign that was meant.
-    fn undo(
-        &mut self,
-        recorded: &Campaign,
-        others: &Neighbours,
-        search: &Search,
-        best: &State,
-        meant: &[Other],
-    ) -> Result<()> {
-        let mut draft = search.changed(&best.steps);
-        if let Some(other) = meant.iter().find(|other| other.body == draft.body && draft.body > 0) {
-            if other.is_rod {
-                let rod = others.rods.iter().find(|(file, _)| *file == other.file);
-                self.campaign.rod = rod.map(|(_, rod)| rod.clone());
-                self.campaign.rod_file = Some(other.file.clone());
-                self.campaign.readings = None;
-                self.mode = if self.mode == Mode::Meas { Mode::Fea } else { self.mode };
-            } else if let Some((file, robot, text)) =
-                others.robots.iter().find(|(file, ..)| *file == other.file)
-            {
-                self.campaign.robot = robot.clone();
-                (self.campaign.robot_file, self.campaign.robot_text) = (file.clone(), text.clone());
-            }
-        }
-        // a clamp that stands elsewhere has another frame, not a station
-        let mut station = search.draft.stations;
-        for step in &best.steps {
-            let Step::Elsewhere(change) = step else { continue };
-            if let (Change::Apart(clamp), Some(to)) = (change, best.fit.bases.get(station)) {
-                draft.devices[*clamp] = best.fit.bases[0].then(&to.inverse()).then(&draft.devices[*clamp]);
-                draft.station.iter_mut().for_each(|own| *own = if *own == station { 0 } else { *own });
-            }
-            station += 1;
-        }
-        drop_unused(&mut draft);
-        self.campaign.measurements = draft.recording(&recorded.measurements);
-        if let Some(base) = draft.base {
-            let [roll, pitch, yaw] = base.roll_pitch_yaw();
-            self.campaign.base = [base.origin.x, base.origin.y, base.origin.z, roll, pitch, yaw];
-        }
-        if let Some(tool) = draft.tool {
-            self.campaign.tool_is_given |=
-                (tool - self.campaign.rod.as_ref().map_or(tool, Rod::tip)).norm() > UM;
-            self.campaign.tool = tool;
-        }
-        let [x, y, z, roll, pitch, yaw] = self.campaign.base;
-        let base = Pose::from_xyz_rpy([x, y, z], [roll, pitch, yaw]);
-        let (robot, tool) = (self.campaign.robot.clone(), self.campaign.tool);
-        self.campaign.measurements.align_stations(&robot, base, tool)?;
-        if let Some(validation) = &mut self.campaign.validation {
-            turn_joints(validation, &robot, tool, &draft.joint_changes);
-        }
-        Ok(())
-    }
-}
-
-/// Stations in the order of their rows, without those that have none.
-fn drop_unused(draft: &mut Draft) {
-    let mut known: Vec<usize> = Vec::new();
-    for station in &mut draft.station {
-        let at = known.iter().position(|old| old == station).unwrap_or_else(|| {
-            known.push(*station);
-            known.len() - 1
-        });
-        *station = at;
-    }
-    draft.stations = known.len();
-}
-
-/// The joints of a validation as they are meant, where it holds the mistake too: where the robot
-/// fits it better so.
-fn turn_joints(validation: &mut Recording, robot: &Robot, tool: Vector3<f64>, changes: &[Change]) {
-    if changes.is_empty() {
-        return;
-    }
-    let count = validation.joint_count;
-    let mut turned = validation.clone();
-    for row in turned.joint_values.chunks_mut(count.max(1)) {
-        changes.iter().for_each(|change| change_joints(change, row));
-    }
-    let left = |recording: &Recording| {
-        let alone = Campaign::new(robot.clone(), recording.clone()).ok()?.with_tool(tool);
-        let draft = Draft::of(&alone).thinned(100);
-        let body = Body::new(robot, Compensation::bare(), tool, &draft);
-        quick::fit(&draft, &body, Worthwhile::ANY).map(|fit| fit.log_likelihood)
-    };
-    if left(&turned) > left(validation) {
-        *validation = turned;
-    }
-}
-
-/// `pose 7`, with its clamp where several poses have that name.
-fn pose_name(recording: &Recording, row: usize) -> String {
-    let own = &recording.rows[row].pose;
-    match recording.rows.iter().filter(|other| &other.pose == own).count() {
-        1 => format!("pose {own}"),
-        _ => format!("pose {}", recording.pose_name(row)),
     }
 }
 

@@ -303,7 +303,7 @@ fn remainder(found: &CalibrationDiagnosis) -> Option<Remainder> {
         _ => (location, words),
     };
     let rows = found.model.by_row(&left.shape);
-    let is_no_scatter = found.evidence.most_scatter.is_some_and(|most| found.diagnosis.noise > most);
+    let is_no_scatter = found.is_implausible();
     let (location, words) = match left.location.is_none() && is_no_scatter {
         true => ("all poses".to_owned(), "The calibrated robot does not explain the poses".to_owned()),
         false => (location, words),

@@ -116,9 +116,14 @@ fn worth(subject: &Subject) -> String {
     if findings.is_empty() {
         let it = if mistakes.len() > 1 { "they are" } else { "it is" };
         let (before, after) = (um(errors.before), um(errors.after));
-        return format!(
-            " Once {it} corrected, the residual falls from {before} to {after} µm{averaged}; {scatter}"
-        );
+        return match errors.after < errors.before && before != after {
+            true => {
+                format!(
+                    " Once {it} corrected, the residual falls from {before} to {after} µm{averaged}; {scatter}"
+                )
+            }
+            false => format!(" Once {it} corrected, the residual is {after} µm{averaged}; {scatter}"),
+        };
     }
     // with mistakes, what was held out is that of the corrected recording
     let it = match (mistakes.is_empty(), findings.len()) {

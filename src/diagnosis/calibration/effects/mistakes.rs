@@ -51,9 +51,12 @@ pub static UNIT_MISTAKE: Effect = Effect {
 /// A joint's zero by a quarter or half turn.
 pub static OFFSET_MISTAKE: Effect = Effect {
     name: "offset_mistake",
-    summary: "a joint's zero is off by a quarter or half turn",
+    summary: "a joint's zero is off by a quarter or half turn, or by any angle in some rows",
     formula: "true = recorded + constant",
-    parameters: &[("deg", "what must be added to the recorded angle")],
+    parameters: &[
+        ("deg", "what must be added to the recorded angle"),
+        ("mm", "what must be added where the joint slides"),
+    ],
     needs: "joints that move; of the first joint a stated base, of the last one a stated tool",
     cause: "a wrong zero of the joint",
     cause_at: |location| at("a wrong zero", location),
@@ -64,8 +67,8 @@ pub static OFFSET_MISTAKE: Effect = Effect {
 /// Angles and positions that do not belong together.
 pub static ROW_MISTAKE: Effect = Effect {
     name: "row_mistake",
-    summary: "positions stand some rows away from their angles",
-    formula: "position of row i = recorded position of row i + rows",
+    summary: "positions stand some rows away from their angles, or a column beside the others",
+    formula: "position (or number of a column) of row i = recorded one of row i + rows",
     parameters: &[("rows", "how many rows further down a row's position stands")],
     needs: "poses that differ from row to row",
     cause: "rows displaced",
@@ -131,5 +134,30 @@ pub static COPIED_COLUMN: Effect = Effect {
     cause: "one column stands twice",
     cause_at: |location| at("a column that stands twice", location),
     written_to: WrittenTo::Nowhere,
+    ..NONE
+};
+
+/// One number of one row.
+pub static TYPING_MISTAKE: Effect = Effect {
+    name: "typing_mistake",
+    summary: "one number of one row was typed wrongly",
+    formula: "true = recorded with another sign, decimal point or digit",
+    prior: "one of some hundred slips of that row, at odds of 1000 against any disturbance",
+    parameters: &[("meant", "the number that was meant, in the unit of its column")],
+    needs: "a row that is far out, and others that fit",
+    cause: "a number that was typed wrongly",
+    cause_at: |location| at("a number that was typed wrongly", location),
+    ..NONE
+};
+
+/// Rows that stand twice.
+pub static COPIED_ROWS: Effect = Effect {
+    name: "copied_rows",
+    summary: "rows repeat other rows, or their positions",
+    formula: "row i = row k, to the last digit",
+    prior: "digits that are five times finer than the scatter; three neighbours, or a row that is far out",
+    needs: "measured points",
+    cause: "rows that stand twice",
+    cause_at: |location| at("rows that stand twice", location),
     ..NONE
 };

@@ -44,7 +44,7 @@ pub static ALL: [&CalibrationEffect; 23] = [
 
 /// Every mistake that the diagnosis of a calibration knows. They are no terms of a model: they are
 /// undone before there is one.
-pub static MISTAKES: [&Effect; 10] = [
+pub static MISTAKES: [&Effect; 12] = [
     &mistakes::SIGN_MISTAKE,
     &mistakes::SWAP_MISTAKE,
     &mistakes::UNIT_MISTAKE,
@@ -55,6 +55,8 @@ pub static MISTAKES: [&Effect; 10] = [
     &mistakes::ROBOT_MISTAKE,
     &mistakes::STUCK_SENSOR,
     &mistakes::COPIED_COLUMN,
+    &mistakes::TYPING_MISTAKE,
+    &mistakes::COPIED_ROWS,
 ];
 
 /// What pulls on the arm as a whole: preferred to what a single joint does.

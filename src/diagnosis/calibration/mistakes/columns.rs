@@ -2,6 +2,7 @@
 
 use super::super::effects::mistakes::{COPIED_COLUMN, STUCK_SENSOR};
 use super::draft::Draft;
+use super::names::{AXES, column};
 use crate::calibration::campaign::Campaign;
 use crate::inference::{Effect, Estimate};
 use crate::robot::Motion;
@@ -41,7 +42,7 @@ fn positions(draft: &Draft) -> Vec<Silent> {
     if draft.has_sockets() {
         return Vec::new();
     }
-    let names = ["x_mm", "y_mm", "z_mm"];
+    let names = AXES;
     let of = |axis: usize| -> Vec<f64> { draft.seen.iter().map(|seen| seen[axis]).collect() };
     let columns: Vec<Vec<f64>> = (0..3).map(of).collect();
     let still: Vec<usize> = (0..3).filter(|&axis| is_constant(&columns[axis])).collect();
@@ -69,10 +70,7 @@ fn positions(draft: &Draft) -> Vec<Silent> {
 
 fn joints(campaign: &Campaign, draft: &Draft) -> Vec<Silent> {
     let count = draft.joint_count;
-    let name = |joint: usize| match campaign.robot.joints[joint].motion {
-        Motion::Revolute => format!("q{}_deg", joint + 1),
-        Motion::Prismatic => format!("q{}_mm", joint + 1),
-    };
+    let name = |joint: usize| column(&campaign.robot, joint);
     let of = |joint: usize| -> Vec<f64> { draft.joints.iter().skip(joint).step_by(count).copied().collect() };
     let columns: Vec<Vec<f64>> = (0..count).map(of).collect();
     let mut all = Vec::new();

@@ -58,6 +58,42 @@ pub(super) enum Change {
     Moved(usize),
     /// A clamp stands somewhere else.
     Apart(usize),
+    /// Another change, of some rows alone.
+    Within(Rows, Box<Change>),
+    /// true joint = recorded + by, an angle (or a length) that the poses must say.
+    Zero { joint: usize, by: f64 },
+    /// The number of row i is the one that stands in row i + k.
+    Column { of: Cell, by: isize },
+    /// Another number in one row of the recording, rad or m.
+    Number { row: usize, of: Cell, value: f64 },
+    /// Rows of the recording that are left out.
+    Without(Vec<usize>),
+}
+
+/// Some rows, by their numbers in the recording.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Rows {
+    /// From one to another, both included.
+    Between(usize, usize),
+    /// Those of a clamp.
+    OfClamp(usize),
+}
+
+impl Rows {
+    pub fn contain(&self, row: usize, group: usize) -> bool {
+        match *self {
+            Rows::Between(first, last) => (first..=last).contains(&row),
+            Rows::OfClamp(clamp) => clamp == group,
+        }
+    }
+}
+
+/// A number of a row.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Cell {
+    Joint(usize),
+    /// Along an axis of the device.
+    Axis(usize),
 }
 
 impl Change {
@@ -74,10 +110,21 @@ impl Change {
 
     /// True for an offset of joint 1 and nothing else.
     pub fn is_zero_of_first(&self) -> bool {
-        let Change::Joints { order, factor, offset } = self else { return false };
-        order.iter().enumerate().all(|(joint, from)| joint == *from)
-            && factor.iter().all(|factor| *factor == 1.0)
-            && offset.iter().enumerate().all(|(joint, by)| (*by != 0.0) == (joint == 0))
+        self.joint_of_zero() == Some(0)
+    }
+
+    /// The joint of which nothing but the zero is another one.
+    pub fn joint_of_zero(&self) -> Option<usize> {
+        match self {
+            Change::Zero { joint, .. } => Some(*joint),
+            Change::Joints { order, factor, offset } => {
+                let is_plain = order.iter().enumerate().all(|(joint, from)| joint == *from)
+                    && factor.iter().all(|factor| *factor == 1.0);
+                let mut off = (0..offset.len()).filter(|joint| offset[*joint] != 0.0);
+                off.next().filter(|_| is_plain && off.next().is_none())
+            }
+            _ => None,
+        }
     }
 
     /// A constant on one joint, rad, after a factor.
@@ -153,7 +200,7 @@ impl Draft {
         draft
     }
 
-    fn apply(&mut self, change: &Change) {
+    pub(super) fn apply(&mut self, change: &Change) {
         match change {
             Change::Joints { .. } => {
                 for row in self.joints.chunks_mut(self.joint_count) {
@@ -198,6 +245,22 @@ impl Draft {
                 }
                 self.stations += 1;
             }
+            Change::Within(rows, change) => self.apply_within(*rows, change),
+            Change::Zero { joint, by } => {
+                self.joints.iter_mut().skip(*joint).step_by(self.joint_count).for_each(|q| *q += by);
+            }
+            Change::Column { of, by } => {
+                let all: Vec<usize> = (0..self.len()).collect();
+                self.displace_column(&all, *of, *by);
+            }
+            Change::Number { row, of, value } => {
+                let Some(at) = self.rows.iter().position(|known| known == row) else { return };
+                *self.number_mut(at, *of) = *value;
+            }
+            Change::Without(rows) => {
+                let kept: Vec<usize> = (0..self.len()).filter(|&at| !rows.contains(&self.rows[at])).collect();
+                *self = self.part(&kept);
+            }
         }
     }
 
@@ -205,16 +268,6 @@ impl Draft {
     fn station_at(&self, row: usize) -> usize {
         let at = self.rows.iter().position(|&known| known >= row);
         at.map_or(0, |at| self.station[at])
-    }
-
-    fn displace(&mut self, by: isize, with_clamps: bool) {
-        let count = self.len() as isize;
-        let kept: Vec<usize> =
-            (0..count).filter(|i| (0..count).contains(&(i + by))).map(|i| i as usize).collect();
-        let there = |&row: &usize| (row as isize + by) as usize;
-        let seen = kept.iter().map(|row| self.seen[there(row)]).collect();
-        let group = kept.iter().map(|row| self.group[if with_clamps { there(row) } else { *row }]).collect();
-        *self = Draft { seen, group, ..self.part(&kept) };
     }
 
     /// Some of the rows.

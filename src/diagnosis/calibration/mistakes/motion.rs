@@ -3,6 +3,7 @@
 use nalgebra::Rotation3;
 
 use super::super::effects::fixture::BASE_SHIFT;
+use super::moves::turn;
 use crate::calibration::Calibration;
 use crate::calibration::campaign::Recording;
 use crate::inference::{Estimate, Finding, Location};
@@ -61,4 +62,9 @@ pub(super) fn motion_estimates(from: &Pose, to: &Pose) -> Vec<Estimate> {
         Estimate { name: (*name).into(), unit, value: values[k], low: values[k], high: values[k] }
     };
     names.iter().enumerate().map(estimate).collect()
+}
+
+/// How far, m, and by which angle, rad, a base moved.
+pub(super) fn moved(from: &Pose, to: &Pose) -> (f64, f64) {
+    ((to.origin - from.origin).norm(), turn(&from.rotation, &to.rotation))
 }

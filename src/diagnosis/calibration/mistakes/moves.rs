@@ -1,6 +1,8 @@
 //! Every mistake that a campaign's files may hold, as a list of what undoes each.
 
+pub(super) mod bodies;
 mod conventions;
+pub(super) mod of_rows;
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -9,10 +11,10 @@ use nalgebra::{Matrix3, Vector3};
 pub(super) use self::conventions::turn;
 use self::conventions::{SAME, Said, TURN_IN_RADIANS, is_same, readings};
 use super::super::effects::mistakes::{
-    FRAME_MISTAKE, OFFSET_MISTAKE, ROBOT_MISTAKE, ROD_MISTAKE, ROW_MISTAKE, SIGN_MISTAKE, SWAP_MISTAKE,
-    UNIT_MISTAKE,
+    FRAME_MISTAKE, OFFSET_MISTAKE, ROW_MISTAKE, SIGN_MISTAKE, SWAP_MISTAKE, UNIT_MISTAKE,
 };
 use super::draft::{Change, Draft};
+use super::names::{AXES, column};
 use crate::calibration::campaign::Campaign;
 use crate::inference::{Effect, Estimate};
 use crate::robot::Motion;
@@ -46,6 +48,13 @@ pub(super) struct Move {
     pub why: String,
 }
 
+impl Move {
+    /// What explains poses as well, at such odds.
+    pub fn with_odds(&self, odds: f64) -> (&'static Effect, String, f64) {
+        (self.effect, self.location.clone(), odds)
+    }
+}
+
 /// A robot or rod of another file.
 pub(super) struct Other {
     pub file: String,
@@ -58,8 +67,13 @@ pub(super) struct Other {
 }
 
 /// All that these files could show.
-pub(super) fn all(campaign: &Campaign, draft: &Draft, others: &[Other]) -> Vec<Move> {
-    let mut list = List { campaign, draft, moves: Vec::new() };
+pub(super) fn all(
+    campaign: &Campaign,
+    draft: &Draft,
+    others: &[Other],
+    forces: &[(usize, f64)],
+) -> Vec<Move> {
+    let mut list = List { campaign, draft, moves: Vec::new(), is_of_rows: false };
     list.joints();
     list.positions();
     list.rows();
@@ -67,6 +81,7 @@ pub(super) fn all(campaign: &Campaign, draft: &Draft, others: &[Other]) -> Vec<M
     list.base();
     list.tool();
     list.files(others);
+    list.contact_forces(forces);
     list.moves
 }
 
@@ -74,6 +89,8 @@ struct List<'a> {
     campaign: &'a Campaign,
     draft: &'a Draft,
     moves: Vec<Move>,
+    /// True for what some rows hold and others do not.
+    is_of_rows: bool,
 }
 
 /// An exact number.
@@ -82,7 +99,7 @@ fn exact(name: &str, value: f64) -> Vec<Estimate> {
 }
 
 impl List<'_> {
-    fn add(
+    pub(super) fn add(
         &mut self,
         effect: &'static Effect,
         location: &str,
@@ -103,14 +120,11 @@ impl List<'_> {
         &mut self.moves[last]
     }
 
-    fn column(&self, joint: usize) -> String {
-        match self.campaign.robot.joints[joint].motion {
-            Motion::Revolute => format!("q{}_deg", joint + 1),
-            Motion::Prismatic => format!("q{}_mm", joint + 1),
-        }
+    pub(super) fn column(&self, joint: usize) -> String {
+        column(&self.campaign.robot, joint)
     }
 
-    fn joints(&mut self) {
+    pub(super) fn joints(&mut self) {
         let count = self.draft.joint_count;
         let turns: Vec<usize> =
             (0..count).filter(|&j| self.campaign.robot.joints[j].motion == Motion::Revolute).collect();
@@ -206,8 +220,9 @@ impl List<'_> {
             of_joint.fold(0.0, |most: f64, q| most.max(q.abs())) / DEG
         };
         let largest: Vec<f64> = (0..count).map(largest).collect();
-        let are_small = |joints: &[usize]| joints.iter().all(|&j| largest[j] < TURN_IN_RADIANS);
-        let are_huge = |joints: &[usize]| joints.iter().any(|&j| largest[j] > 720.0);
+        let is_of_rows = self.is_of_rows;
+        let are_small = |joints: &[usize]| is_of_rows || joints.iter().all(|&j| largest[j] < TURN_IN_RADIANS);
+        let are_huge = |joints: &[usize]| is_of_rows || joints.iter().any(|&j| largest[j] > 720.0);
         let mut all = Vec::new();
         if turns.len() > 1 {
             all.push((turns.to_vec(), every.to_owned(), UNUSUAL + 1.0));
@@ -234,7 +249,7 @@ impl List<'_> {
         }
     }
 
-    fn positions(&mut self) {
+    pub(super) fn positions(&mut self) {
         if self.draft.has_sockets() {
             return;
         }
@@ -250,7 +265,7 @@ impl List<'_> {
             (1e-3, "micrometres", UNUSUAL),
             (0.1, "tenths of a millimetre", RARE),
         ] {
-            if factor < 1.0 && !is_far {
+            if factor < 1.0 && !is_far && !self.is_of_rows {
                 continue;
             }
             let by = if factor < 1.0 {
@@ -263,7 +278,7 @@ impl List<'_> {
                 self.add(&UNIT_MISTAKE, ALL, change, &by, &format!("they are in {unit}, not in millimetres"));
             (unit.estimates, unit.log_prior) = (exact("factor", factor), log_prior);
         }
-        let names = ["x_mm", "y_mm", "z_mm"];
+        let names = AXES;
         for order in [[0, 1, 2], [1, 0, 2], [0, 2, 1], [2, 1, 0], [1, 2, 0], [2, 0, 1]] {
             for signs in 0..8u8 {
                 let sign = [0, 1, 2].map(|axis| if signs >> axis & 1 == 1 { -1.0 } else { 1.0 });
@@ -311,7 +326,7 @@ impl List<'_> {
         }
     }
 
-    fn rows(&mut self) {
+    pub(super) fn rows(&mut self) {
         if self.draft.has_sockets() {
             return;
         }
@@ -336,7 +351,8 @@ impl List<'_> {
         }
     }
 
-    fn clamps(&mut self) {
+    /// Clamps or sockets that were named the other way round.
+    pub(super) fn exchanged(&mut self) {
         let names: Vec<String> =
             self.campaign.measurements.groups.iter().map(|group| group.name.clone()).collect();
         let count = names.len();
@@ -358,6 +374,13 @@ impl List<'_> {
                 );
             }
         }
+    }
+
+    fn clamps(&mut self) {
+        self.exchanged();
+        let names: Vec<String> =
+            self.campaign.measurements.groups.iter().map(|group| group.name.clone()).collect();
+        let count = names.len();
         if self.draft.has_sockets() || names.iter().any(String::is_empty) {
             return;
         }
@@ -465,17 +488,6 @@ impl List<'_> {
                 let cure = format!("Multiply tool.xyz_mm by {factor}");
                 add(tool * factor, &UNIT_MISTAKE, cure, unit, exact("factor", factor));
             }
-        }
-    }
-
-    fn files(&mut self, others: &[Other]) {
-        for other in others {
-            let Other { file, name, .. } = other;
-            let change = Change::Body(other.body, other.tip);
-            let (effect, what) = if other.is_rod { (&ROD_MISTAKE, "rod") } else { (&ROBOT_MISTAKE, "robot") };
-            let cure = format!("Write {what} = \"{file}\"");
-            let why = format!("the poses are those of {what} {name}");
-            self.add(effect, file, change, &cure, &why).log_prior = UNUSUAL;
         }
     }
 }

@@ -34,6 +34,8 @@ const TOOL: f64 = 0.5;
 const LEAST_SCALE: f64 = 1e-5;
 const MOST_STEPS: usize = 12;
 const MOST_TURNS: usize = 12;
+/// Times that the middle of a socket is looked for roughly.
+const ROUGH_MEANS: usize = 4;
 /// After so many steps what one gains tells the rest, which is so many times as much at most.
 const SETTLING: usize = 2;
 const AHEAD: f64 = 10.0;
@@ -132,9 +134,14 @@ fn rough(draft: &Draft, body: &Body) -> Option<Rough> {
     if draft.has_sockets() {
         let tool = draft.tool.unwrap_or_default();
         let tips: Vec<Vector3<f64>> = flanges.iter().map(|flange| flange.point(&tool)).collect();
-        let weight = vec![1.0; tips.len()];
-        let left: Vec<f64> = minus_means(&tips, draft, &weight).iter().map(|r| r.norm()).collect();
-        return Some(Rough { bases: Vec::new(), tool, median: median(&left)? });
+        let mut weight = vec![1.0; tips.len()];
+        let mut middle = f64::INFINITY;
+        for _ in 0..ROUGH_MEANS {
+            let left: Vec<f64> = minus_means(&tips, draft, &weight).iter().map(|r| r.norm()).collect();
+            middle = median(&left)?;
+            weight = left.iter().map(|left| weight_of(left / (middle / MEDIAN).max(1e-9))).collect();
+        }
+        return Some(Rough { bases: Vec::new(), tool, median: middle });
     }
     let points: Vec<Vector3<f64>> = (0..draft.len()).map(|row| draft.point(row)).collect();
     let mut best: Option<Rough> = None;
@@ -245,9 +252,12 @@ fn refined<'a>(
     let nominal: Vec<f64> = body.free.iter().map(|&p| as_drawn.get(p)).collect();
     let least = LEAST_SCALE * body.reach;
     let mut best: Option<(f64, f64, State, Vec<Vector3<f64>>)> = None;
+    // rows that a mistake touches hardly count in the middle of a socket either
+    let mut weight = vec![1.0; draft.len()];
     for taken in 0..MOST_STEPS {
         let mut block = DMatrix::zeros(3 * draft.len(), body.free.len() + 6 * state.bases.len());
-        let off = residuals(draft, &state, &torque, &deflection, Some((&body.free, &mut block)));
+        let columns = Some((&body.free[..], &mut block));
+        let off = residuals(draft, &state, &torque, &deflection, columns, &weight);
         let lengths: Vec<f64> = off.iter().map(|off| off.norm()).collect();
         let scale = t_scale(&lengths, least);
         let log_likelihood = density(&lengths, scale) - moved(body, &state, &nominal, &sd);
@@ -265,6 +275,8 @@ fn refined<'a>(
         if taken >= SETTLING && log_likelihood + AHEAD * gained < worthwhile {
             return None;
         }
+        without_means(&mut block, draft, &weight);
+        weight = lengths.iter().map(|length| weight_of(length / scale)).collect();
         state = step(draft, body, &state, (&off, &lengths, scale), (&nominal, &sd), block)?;
         load(draft, body, &state, &mut torque, &mut deflection);
     }
@@ -328,6 +340,19 @@ fn residuals(
     state: &State,
     torque: &[f64],
     deflection: &[Vector3<f64>],
+    columns: Option<(&[Parameter], &mut DMatrix<f64>)>,
+    weight: &[f64],
+) -> Vec<Vector3<f64>> {
+    let off = offsets(draft, state, torque, deflection, columns);
+    minus_means(&off, draft, weight)
+}
+
+/// The same before the means of sockets are taken off.
+fn offsets(
+    draft: &Draft,
+    state: &State,
+    torque: &[f64],
+    deflection: &[Vector3<f64>],
     mut columns: Option<(&[Parameter], &mut DMatrix<f64>)>,
 ) -> Vec<Vector3<f64>> {
     let count = draft.joint_count;
@@ -353,7 +378,7 @@ fn residuals(
             }
         }
     }
-    minus_means(&off, draft, &vec![1.0; off.len()])
+    off
 }
 
 /// One Gauss–Newton step, by the columns of the state.
@@ -366,7 +391,6 @@ fn step<'a>(
     mut block: DMatrix<f64>,
 ) -> Option<State<'a>> {
     let (free, columns) = (body.free.len(), block.ncols());
-    without_means(&mut block, draft);
     let mut right = DVector::zeros(3 * draft.len());
     for (row, (off, length)) in off.iter().zip(lengths).enumerate() {
         let root = weight_of(length / scale).sqrt() / scale;
@@ -401,20 +425,20 @@ fn step<'a>(
 }
 
 /// Columns of displacements less the means of their sockets, or of the clamps whose place is free.
-fn without_means(block: &mut DMatrix<f64>, draft: &Draft) {
+fn without_means(block: &mut DMatrix<f64>, draft: &Draft, weight: &[f64]) {
     if !draft.has_sockets() && draft.loose.is_empty() {
         return;
     }
     let mut size = vec![0.0f64; draft.devices.len()];
-    draft.group.iter().for_each(|&group| size[group] += 1.0);
+    draft.group.iter().zip(weight).for_each(|(&group, weight)| size[group] += weight);
     for mut column in block.column_iter_mut() {
         let mut sum = vec![Vector3::zeros(); size.len()];
         for (row, &group) in draft.group.iter().enumerate() {
-            sum[group] += column.fixed_rows::<3>(3 * row);
+            sum[group] += column.fixed_rows::<3>(3 * row) * weight[row];
         }
         for (row, &group) in draft.group.iter().enumerate().filter(|(_, group)| draft.is_loose(**group)) {
             let mut own = column.fixed_rows_mut::<3>(3 * row);
-            own -= sum[group] / size[group];
+            own -= sum[group] / size[group].max(f64::MIN_POSITIVE);
         }
     }
 }
@@ -469,11 +493,17 @@ impl Fit {
 
     /// Distances of the tip of every row of `draft` from its point, m.
     pub fn lengths(&self, draft: &Draft, body: &Body) -> Vec<f64> {
+        let off = self.offsets(draft, body);
+        minus_means(&off, draft, &vec![1.0; off.len()]).iter().map(|off| off.norm()).collect()
+    }
+
+    /// From the point of every row of `draft` to its tip, in {W}, m; with sockets the tip in {0}.
+    pub fn offsets(&self, draft: &Draft, body: &Body) -> Vec<Vector3<f64>> {
         let state = State { setup: self.setup(body), bases: self.bases.clone() };
         let mut torque = vec![0.0; draft.joints.len()];
         let mut deflection = vec![Vector3::zeros(); draft.len()];
         load(draft, body, &state, &mut torque, &mut deflection);
         load(draft, body, &state, &mut torque, &mut deflection);
-        residuals(draft, &state, &torque, &deflection, None).iter().map(|off| off.norm()).collect()
+        offsets(draft, &state, &torque, &deflection, None)
     }
 }

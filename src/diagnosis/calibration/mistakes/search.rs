@@ -8,21 +8,21 @@
 //! what is left to the effects: a small move of base or tracker, a clamp that is not quite in its
 //! place.
 
-use nalgebra::{Matrix3, Vector3};
-
 use super::super::effects::mistakes::UNIT_MISTAKE;
 use super::draft::{Change, Draft};
-use super::moves::{Move, turn};
+use super::motion::moved;
+use super::moves::Move;
+use super::part::FAR;
 use super::quick::{Body, Fit, Worthwhile, fit, fit_from};
+use crate::inference::Effect;
 use crate::parallel::in_parallel;
-use crate::spatial::Pose;
 use crate::statistics::median;
 use crate::units::{DEG, MM};
 
 /// A change is made at these odds against what there is without it: ln 1000.
-const ODDS: f64 = 6.907_755;
+pub(super) const ODDS: f64 = 6.907_755;
 /// Another change within these odds explains alike: ln 20.
-const ALIKE: f64 = 2.995_732;
+pub(super) const ALIKE: f64 = 2.995_732;
 /// How rare any one of some hundred mistakes is: ln.
 const RARE: f64 = -4.0;
 /// The price of a frame that moved: half of ln 150 for each of its six numbers, and which row.
@@ -33,27 +33,18 @@ const NEARER: f64 = 3.0;
 const TOUCHED: (f64, usize) = (0.05, 3);
 /// Rows that a fit sees.
 const ROWS: usize = 120;
-/// Rows after which a move of the base is tried first.
-const PLACES: usize = 24;
 /// The price of a clamp that is not quite in its place: the same for its three numbers.
 const DISPLACED: f64 = -7.5;
-/// Fewest rows of a station.
-const LEAST_ROWS: usize = 4;
 const MOST_CHANGES: usize = 6;
 const BEAM: usize = 5;
 /// What a robot as drawn leaves, as a share of the reach: what is tried must not be far worse.
 const DRAWN: f64 = 0.02;
 /// A fit that leaves more, as a share of the reach, fails.
-const FAILED: f64 = 5e-3;
+pub(super) const FAILED: f64 = 5e-3;
 /// How sure a stated base is: share of the reach, rad; and a stated tip: m and share of its length.
 /// Then what it costs at most that it was a rough guess, ln.
 const BASE: (f64, f64, f64) = (0.03, 2.0 * DEG, 24.0);
 const TOOL: (f64, f64, f64) = (5.0 * MM, 0.03, 12.0);
-/// Width of the points of a station, as a share of the reach; see [`width`].
-const WIDTH: f64 = 0.02;
-/// The least that is called a move of the base: smaller ones are left to the effects, which
-/// distinguish them from drift.
-const LEAST_MOVE: (f64, f64) = (2.0 * MM, 2e-3);
 
 /// One of the changes that make a state.
 #[derive(Debug, Clone, PartialEq)]
@@ -62,6 +53,10 @@ pub(super) enum Step {
     Move(usize),
     /// Tracker or base, or a clamp, stands elsewhere.
     Elsewhere(Change),
+    /// A change of some rows, by its number among those of rows.
+    Part(usize, Change),
+    /// One row, or a few: no fit depends on it.
+    Slip(Change),
 }
 
 /// A draft with some changes, fitted.
@@ -69,9 +64,9 @@ pub(super) enum Step {
 pub(super) struct State {
     pub steps: Vec<Step>,
     /// Some of the rows.
-    thin: Draft,
+    pub thin: Draft,
     pub fit: Fit,
-    score: f64,
+    pub score: f64,
     /// The part of the score that first guesses make.
     guess: f64,
 }
@@ -83,7 +78,7 @@ pub(super) struct Found {
     /// Root mean square of what it explains, m.
     pub explains: f64,
     /// Moves that explain as much in its place, with the odds against them.
-    pub rivals: Vec<(usize, f64)>,
+    pub rivals: Vec<(&'static Effect, String, f64)>,
     /// True where a clamp, instead, may stand elsewhere from the same row on.
     pub may_be_clamp: Option<usize>,
 }
@@ -93,6 +88,8 @@ pub(super) struct Search<'a> {
     pub draft: Draft,
     pub bodies: Vec<Body<'a>>,
     pub moves: Vec<Move>,
+    /// What may have gone wrong with some rows alone.
+    pub of_rows: Vec<Move>,
     /// Times that it costs more than usual that base or tip was a rough guess: where a calibration
     /// that begins with it does not arrive, it was no guess.
     pub guess_weight: f64,
@@ -126,7 +123,7 @@ impl Search<'_> {
                 best = again;
                 continue;
             }
-            best = self.sharpened(next);
+            best = self.sharpened_part(self.sharpened(next));
         }
         // what a later one made needless goes
         loop {
@@ -158,14 +155,14 @@ impl Search<'_> {
         steps.iter().fold(self.draft.clone(), |draft, step| draft.with(self.change(step)))
     }
 
-    fn change<'s>(&'s self, step: &'s Step) -> &'s Change {
+    pub(super) fn change<'s>(&'s self, step: &'s Step) -> &'s Change {
         match step {
             Step::Move(number) => &self.moves[*number].change,
-            Step::Elsewhere(change) => change,
+            Step::Elsewhere(change) | Step::Part(_, change) | Step::Slip(change) => change,
         }
     }
 
-    fn state(&self, steps: &[Step], worthwhile: Worthwhile) -> Option<State> {
+    pub(super) fn state(&self, steps: &[Step], worthwhile: Worthwhile) -> Option<State> {
         let thin = self.thinned(&self.changed(steps));
         let body = &self.bodies[thin.body];
         let fit = fit(&thin, body, worthwhile)?;
@@ -176,22 +173,26 @@ impl Search<'_> {
     /// and where the frames of clamps are changed their places.
     fn of_effects(&self, changed: &State, from: &State, tried: &[State]) -> f64 {
         let small = tried.iter().filter(|state| !self.is_far(state)).map(|state| state.score);
-        let turned: Vec<usize> = match changed.steps.last().map(|step| self.change(step)) {
-            Some(Change::Devices(frames)) => frames
-                .iter()
-                .filter(|(clamp, frame)| frame.origin == from.thin.devices[*clamp].origin)
-                .map(|(clamp, _)| *clamp)
-                .collect(),
+        let turned: Vec<Vec<usize>> = match changed.steps.last().map(|step| self.change(step)) {
+            Some(Change::Devices(frames)) => vec![
+                (frames.iter())
+                    .filter(|(clamp, frame)| frame.origin == from.thin.devices[*clamp].origin)
+                    .map(|(clamp, _)| *clamp)
+                    .collect(),
+            ],
+            Some(Change::Moved(_)) if self.draft.devices.len() > 1 => {
+                (0..self.draft.devices.len()).map(|clamp| vec![clamp]).collect()
+            }
             _ => Vec::new(),
         };
-        let displaced = || {
+        let displaced = turned.into_iter().filter(|turned| !turned.is_empty()).filter_map(|turned| {
             let mut thin = from.thin.clone();
-            thin.loose = turned.clone();
+            thin.loose = turned;
+            let price = DISPLACED * thin.loose.len() as f64;
             let fit = fit(&thin, &self.bodies[thin.body], Worthwhile::ANY)?;
             let loose = self.restarted(self.scored(from.steps.clone(), thin, fit), changed);
-            Some(loose.score + DISPLACED * turned.len() as f64)
-        };
-        let displaced = if turned.is_empty() { None } else { displaced() };
+            Some(loose.score + price)
+        });
         small.chain(displaced).fold(f64::NEG_INFINITY, f64::max)
     }
 
@@ -219,7 +220,7 @@ impl Search<'_> {
     }
 
     /// Always the same rows of the recording, so that states can be compared row by row.
-    fn thinned(&self, draft: &Draft) -> Draft {
+    pub(super) fn thinned(&self, draft: &Draft) -> Draft {
         let count = self.draft.len();
         let is_kept = |row: usize| count <= ROWS || (row * ROWS) % count < ROWS;
         let rows: Vec<usize> = (0..draft.len()).filter(|&row| is_kept(draft.rows[row])).collect();
@@ -231,11 +232,13 @@ impl Search<'_> {
         let price = |step: &Step| match step {
             Step::Move(number) => RARE + self.moves[*number].log_prior,
             Step::Elsewhere(_) => MOVED,
+            Step::Part(number, change) => RARE + self.of_rows[*number].log_prior - self.log_stretches(change),
+            Step::Slip(_) => 0.0,
         };
         steps.iter().map(price).sum()
     }
 
-    fn scored(&self, steps: Vec<Step>, thin: Draft, fit: Fit) -> State {
+    pub(super) fn scored(&self, steps: Vec<Step>, thin: Draft, fit: Fit) -> State {
         let prior = self.log_prior(&steps);
         let reach = self.bodies[thin.body].reach;
         // where nothing fits, base and tip are anywhere
@@ -250,6 +253,23 @@ impl Search<'_> {
     /// The state with every further change, the best first; those that will not reach the score
     /// `least` may be missing.
     fn extended(&self, from: &State, least: f64) -> Vec<State> {
+        let mut tried = self.extended_by_all(from, least);
+        // what all rows hold is no matter of some
+        if !tried.first().is_some_and(|best| self.is_cured(best, from)) {
+            tried.extend(self.partial(from));
+            tried.sort_by(|a, b| b.score.total_cmp(&a.score));
+        }
+        tried
+    }
+
+    /// True where a change of all rows makes every one of them fit.
+    fn is_cured(&self, state: &State, from: &State) -> bool {
+        let is_of_all = matches!(state.steps.last(), Some(Step::Move(_)));
+        let fits = || state.fit.residuals.iter().all(|left| *left < FAR * state.fit.scale);
+        is_of_all && fits() && self.is_better(state, from)
+    }
+
+    fn extended_by_all(&self, from: &State, least: f64) -> Vec<State> {
         let reach = self.bodies[from.thin.body].reach;
         let most_left = (0.8 * from.fit.rough).max(DRAWN * reach);
         let mut steps: Vec<Step> = (0..self.moves.len()).map(Step::Move).collect();
@@ -274,33 +294,6 @@ impl Search<'_> {
         tried
     }
 
-    /// Where tracker, base or a clamp may have been elsewhere.
-    fn elsewhere(&self, from: &State) -> Vec<Change> {
-        if self.draft.has_sockets() {
-            return Vec::new();
-        }
-        let rows = &from.thin.rows;
-        let count = rows.len();
-        let mut places: Vec<usize> = (1..PLACES).map(|k| k * count / PLACES).collect();
-        places.dedup();
-        let reach = self.bodies[from.thin.body].reach;
-        let is_placed = |rows: &[usize]| rows.len() >= LEAST_ROWS && width(&from.thin, rows) > WIDTH * reach;
-        let is_two = |&at: &usize| {
-            let station = from.thin.station[at];
-            let (before, after): (Vec<usize>, Vec<usize>) =
-                (0..count).filter(|&row| from.thin.station[row] == station).partition(|&row| row < at);
-            is_placed(&before) && is_placed(&after)
-        };
-        let mut all: Vec<Change> =
-            places.into_iter().filter(is_two).map(|at| Change::Moved(rows[at])).collect();
-        let clamps = self.draft.devices.len();
-        if clamps > 2 {
-            let of = |k: usize| (0..count).filter(move |&row| from.thin.group[row] == k).collect::<Vec<_>>();
-            all.extend((0..clamps).filter(|&k| is_placed(&of(k))).map(Change::Apart));
-        }
-        all
-    }
-
     /// Two changes at once, from the best few.
     fn pair(&self, from: &State, tried: &[State]) -> Option<State> {
         let moves = || tried.iter().filter(|state| matches!(state.steps.last(), Some(Step::Move(_))));
@@ -311,7 +304,7 @@ impl Search<'_> {
         };
         let first: Vec<&State> = moves().take(BEAM).chain(moves().skip(BEAM).filter(is_unit)).collect();
         let grown =
-            first.iter().flat_map(|state| self.extended(state, f64::NEG_INFINITY).into_iter().take(1));
+            first.iter().flat_map(|state| self.extended_by_all(state, f64::NEG_INFINITY).into_iter().take(1));
         let mut grown: Vec<State> =
             grown.filter(|state| self.is_better(state, from) && !self.has_failed(state)).collect();
         grown.sort_by(|a, b| b.score.total_cmp(&a.score));
@@ -319,9 +312,10 @@ impl Search<'_> {
     }
 
     /// True where `after` is beyond doubt better than `before`.
-    fn is_better(&self, after: &State, before: &State) -> bool {
+    pub(super) fn is_better(&self, after: &State, before: &State) -> bool {
         let more = after.steps.len().saturating_sub(before.steps.len()) as f64;
-        if after.score - before.score < ODDS * more.max(1.0) || !self.is_far(after) {
+        if after.score - before.score < ODDS * more.max(1.0) || !self.is_far(after) || !self.is_placed(after)
+        {
             return false;
         }
         // a first guess that agrees now where it did not, with a fit that is good both times
@@ -334,68 +328,16 @@ impl Search<'_> {
         let sure = 3.0 * after.fit.scale;
         let touched: Vec<(f64, f64)> =
             pairs(before, after).into_iter().filter(|(old, new)| (old - new).abs() > sure).collect();
-        let least = (TOUCHED.0 * after.thin.len() as f64).max(TOUCHED.1 as f64);
+        // a part of the rows may be a small one
+        let is_part =
+            (after.steps.iter()).any(|step| matches!(step, Step::Part(..)) && !before.steps.contains(step));
+        let share = if is_part { 0.0 } else { TOUCHED.0 };
+        let least = (share * after.thin.len() as f64).max(TOUCHED.1 as f64);
         let (old, new): (Vec<f64>, Vec<f64>) = touched.into_iter().unzip();
-        let (old_middle, new_middle) = (median(&old), median(&new));
-        old.len() as f64 >= least && old_middle.zip(new_middle).is_some_and(|(old, new)| old > NEARER * new)
-    }
-
-    /// False where a base moved by so little that the effects find it.
-    fn is_far(&self, state: &State) -> bool {
-        match state.steps.last() {
-            Some(Step::Elsewhere(_)) => match &state.fit.bases[..] {
-                [first, .., last] => {
-                    let (way, angle) = moved(first, last);
-                    way > LEAST_MOVE.0 || angle > LEAST_MOVE.1
-                }
-                _ => true,
-            },
-            _ => true,
-        }
-    }
-
-    /// A move of the base at the very row.
-    fn sharpened(&self, state: State) -> State {
-        let mut state = state;
-        for _ in 0..3 {
-            let Some(Step::Elsewhere(Change::Moved(first))) = state.steps.last().cloned() else {
-                return state;
-            };
-            let draft = self.changed(&state.steps);
-            let new = draft.stations - 1;
-            let before = self.changed(&state.steps[..state.steps.len() - 1]);
-            let at = before.rows.iter().position(|&row| row >= first).unwrap_or(0);
-            let old = before.station[at];
-            let body = &self.bodies[draft.body];
-            let rows: Vec<usize> = (0..draft.len()).filter(|&row| before.station[row] == old).collect();
-            let part = draft.part(&rows);
-            let cost = |lengths: Vec<f64>| -> Vec<f64> {
-                lengths.iter().map(|r| (r / state.fit.scale).powi(2).ln_1p()).collect()
-            };
-            let (here, there) =
-                (cost(state.fit.lengths_at(&part, body, old)), cost(state.fit.lengths_at(&part, body, new)));
-            let mut sum: f64 = there.iter().sum();
-            let (mut least, mut best) = (f64::INFINITY, 0);
-            for k in 0..rows.len() {
-                if sum < least && k >= LEAST_ROWS && k + LEAST_ROWS <= rows.len() {
-                    (least, best) = (sum, k);
-                }
-                sum += here[k] - there[k];
-            }
-            let row = part.rows[best];
-            if row == first {
-                return state;
-            }
-            let mut steps = state.steps.clone();
-            if let Some(last) = steps.last_mut() {
-                *last = Step::Elsewhere(Change::Moved(row));
-            }
-            match self.state(&steps, Worthwhile::ANY) {
-                Some(next) if next.score > state.score => state = next,
-                _ => return state,
-            }
-        }
-        state
+        let (Some(old_middle), Some(new_middle)) = (median(&old), median(&new)) else { return false };
+        // what a part of the rows holds makes them as good as the others
+        let is_good = !is_part || median(&after.fit.residuals).is_some_and(|all| new_middle < NEARER * all);
+        old.len() as f64 >= least && old_middle > NEARER * new_middle && is_good
     }
 
     /// One change of a state against the state without it.
@@ -410,9 +352,16 @@ impl Search<'_> {
             .into_iter()
             .filter(|state| best.score - state.score < ALIKE && state.steps.last() != Some(&step))
             .collect();
-        let rivals = alike.iter().filter_map(|state| match state.steps.last() {
-            Some(Step::Move(number)) => Some((*number, (best.score - state.score).max(0.0).exp())),
-            _ => None,
+        let rivals = alike.iter().filter_map(|state| {
+            let odds = (best.score - state.score).max(0.0).exp();
+            let own = match (state.steps.last()?, &step) {
+                (Step::Move(number), _) => return Some(self.moves[*number].with_odds(odds)),
+                (Step::Part(number, _), Step::Part(known, _)) if number != known => &self.of_rows[*number],
+                (Step::Part(number, _), Step::Elsewhere(_)) => &self.of_rows[*number],
+                _ => return None,
+            };
+            let (effect, location, odds) = own.with_odds(odds);
+            Some((effect, format!("{location}, in these poses"), odds))
         });
         let may_be_clamp = match &step {
             Step::Elsewhere(Change::Moved(_)) => alike.iter().find_map(|state| match state.steps.last() {
@@ -425,18 +374,6 @@ impl Search<'_> {
     }
 }
 
-/// How far apart some points lie at least, across their longest direction, m (root mean square): no
-/// frame can be placed on points in one spot or on one line.
-fn width(draft: &Draft, rows: &[usize]) -> f64 {
-    let points = || rows.iter().map(|&row| draft.point(row));
-    let mean = points().sum::<Vector3<f64>>() / rows.len().max(1) as f64;
-    let spread: Matrix3<f64> = points().map(|p| (p - mean) * (p - mean).transpose()).sum();
-    let mut values: Vec<f64> =
-        (spread / rows.len().max(1) as f64).symmetric_eigenvalues().iter().copied().collect();
-    values.sort_by(f64::total_cmp);
-    values.get(1).map_or(0.0, |second| second.max(0.0).sqrt())
-}
-
 fn is_failed(fit: &Fit, reach: f64) -> bool {
     median(&fit.residuals).is_some_and(|left| left > FAILED * reach)
 }
@@ -446,11 +383,6 @@ fn pairs(before: &State, after: &State) -> Vec<(f64, f64)> {
     let of = |row: usize| before.thin.rows.binary_search(&row).ok().map(|at| before.fit.residuals[at]);
     let rows = after.thin.rows.iter().zip(&after.fit.residuals);
     rows.filter_map(|(&row, &new)| Some((of(row)?, new))).collect()
-}
-
-/// How far, m, and by which angle, rad, a base moved.
-pub(super) fn moved(from: &Pose, to: &Pose) -> (f64, f64) {
-    ((to.origin - from.origin).norm(), turn(&from.rotation, &to.rotation))
 }
 
 /// Ln of how well the stated base and tip agree with those found; `most` is what each may cost.

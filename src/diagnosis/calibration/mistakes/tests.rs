@@ -1,3 +1,5 @@
+mod parts;
+
 use nalgebra::Vector3;
 
 use super::{Mended, Neighbours, mend, suspected};

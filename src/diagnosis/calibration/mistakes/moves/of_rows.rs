@@ -1,0 +1,103 @@
+//! What may have gone wrong with some rows alone.
+
+use nalgebra::Matrix3;
+
+use super::super::super::effects::mistakes::{OFFSET_MISTAKE, ROW_MISTAKE, UNIT_MISTAKE};
+use super::super::draft::{Cell, Change, Draft};
+use super::super::names::AXES;
+use super::{List, Move, UNUSUAL, exact};
+use crate::calibration::campaign::Campaign;
+use crate::inference::Estimate;
+use crate::robot::{Motion, Robot};
+use crate::units::{DEG, MM, significant};
+
+/// Half of a 95 % interval in standard deviations.
+const COVERAGE: f64 = 1.96;
+/// Ln of the share of all angles that a step of a joint's zero agrees with.
+const ANY_ANGLE: f64 = -6.0;
+
+/// All that may have gone wrong with some rows alone: what the others show decides, not how large
+/// the numbers are.
+pub fn of_rows(campaign: &Campaign, draft: &Draft) -> Vec<Move> {
+    let mut list = List { campaign, draft, moves: Vec::new(), is_of_rows: true };
+    list.joints();
+    list.positions();
+    list.single_units();
+    list.rows();
+    list.exchanged();
+    list.displaced_columns();
+    list.steps();
+    list.moves
+}
+
+impl List<'_> {
+    /// A number that was left out of a column, or stands twice there.
+    pub fn displaced_columns(&mut self) {
+        let joints = (0..self.draft.joint_count).map(|joint| (Cell::Joint(joint), self.column(joint)));
+        let mut cells: Vec<(Cell, String)> = joints.collect();
+        if !self.draft.has_sockets() {
+            cells.extend(AXES.into_iter().enumerate().map(|(axis, name)| (Cell::Axis(axis), name.into())));
+        }
+        for (of, name) in cells {
+            for (by, way, there) in [(1, "up", "above"), (-1, "down", "below")] {
+                let cure = format!("Move {name} 1 row {way}");
+                let why = format!("each number belongs to the row {there}");
+                let change = Change::Column { of, by };
+                let shift = self.add(&ROW_MISTAKE, &name, change, &cure, &why);
+                (shift.estimates, shift.log_prior) = (exact("rows", by as f64), UNUSUAL);
+            }
+        }
+    }
+
+    /// The zero of a joint by any angle, which the poses must say; of the last joint it is rather
+    /// the rod that turned in its mount.
+    pub fn steps(&mut self) {
+        let count = self.draft.joint_count;
+        for joint in 0..count.saturating_sub(1) {
+            let name = self.column(joint);
+            let change = Change::Zero { joint, by: 0.0 };
+            self.add(&OFFSET_MISTAKE, &name, change, "", "the joint's zero is another one there").log_prior =
+                ANY_ANGLE;
+        }
+    }
+
+    /// A single column of a measured point in another unit.
+    pub fn single_units(&mut self) {
+        if self.draft.has_sockets() {
+            return;
+        }
+        for (axis, name) in AXES.into_iter().enumerate() {
+            for (factor, unit) in [(1e3, "metres"), (25.4, "inches"), (1e-3, "micrometres")] {
+                let mut matrix = Matrix3::identity();
+                matrix[(axis, axis)] = factor;
+                let by = if factor < 1.0 {
+                    format!("Divide {name} by {}", 1.0 / factor)
+                } else {
+                    format!("Multiply {name} by {factor}")
+                };
+                let why = format!("it is in {unit}, not in millimetres");
+                let unit = self.add(&UNIT_MISTAKE, name, Change::Seen(matrix), &by, &why);
+                (unit.estimates, unit.log_prior) = (exact("factor", factor), UNUSUAL);
+            }
+        }
+    }
+}
+
+impl Move {
+    /// What to do where a joint's zero was found to be another one.
+    pub fn say_zero(&mut self, robot: &Robot, joint: usize, by: f64, error: f64) {
+        let (unit, symbol, name) = match robot.joints[joint].motion {
+            Motion::Revolute => (DEG, "°", "deg"),
+            Motion::Prismatic => (MM, " mm", "mm"),
+        };
+        let (value, half) = (by / unit, COVERAGE * error / unit);
+        let digits = (value.abs() / half.max(1e-9)).log10().ceil().clamp(1.0, 4.0) as usize + 1;
+        let size = significant(value.abs(), digits);
+        self.cure = match value > 0.0 {
+            true => format!("Add {size}{symbol} to {}", self.location),
+            false => format!("Subtract {size}{symbol} from {}", self.location),
+        };
+        self.estimates =
+            vec![Estimate { name: name.into(), unit: 1.0, value, low: value - half, high: value + half }];
+    }
+}

@@ -1,0 +1,175 @@
+//! Mistakes that concern some rows alone.
+
+use super::*;
+
+fn in_rows(campaign: &Campaign, rows: std::ops::Range<usize>, change: impl Fn(&mut [f64])) -> Campaign {
+    let mut wrong = campaign.clone();
+    wrong.measurements.joint_values.chunks_mut(6).skip(rows.start).take(rows.len()).for_each(change);
+    wrong
+}
+
+/// The one finding, its cure, and the campaign that was meant.
+fn only(campaign: &Campaign) -> (&'static str, String, Campaign) {
+    let mended = mended(campaign);
+    let said: Vec<&str> = mended.found.iter().map(|finding| finding.description.observed.as_str()).collect();
+    let [finding] = &mended.found[..] else { panic!("{said:?}") };
+    assert!(mended.is_changed && mended.suspicions[0].spoils_fit);
+    (finding.effect.name, finding.description.observed.clone(), mended.campaign)
+}
+
+#[test]
+fn joints_in_another_unit_or_sign_from_some_row_on() {
+    let right = tracked(60, 7);
+    let wrong = in_rows(&right, 40..60, |q| q.iter_mut().for_each(|q| *q *= DEG));
+    let (effect, cure, meant) = only(&wrong);
+    assert_eq!(effect, "unit_mistake");
+    assert_eq!(cure, "Multiply q1_deg … q6_deg by 180/π from pose 41 to pose 60");
+    let off = meant.measurements.joint_values.iter().zip(&right.measurements.joint_values);
+    assert!(off.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) < 1e-12);
+    // and in the middle, where both ends are right
+    let wrong = in_rows(&right, 25..40, |q| q[4] = -q[4]);
+    let (effect, cure, meant) = only(&wrong);
+    assert_eq!((effect, cure.as_str()), ("sign_mistake", "Multiply q5_deg by −1 from pose 26 to pose 40"));
+    assert_eq!(meant.measurements.joint_values, right.measurements.joint_values);
+}
+
+#[test]
+fn rows_displaced_from_some_row_on() {
+    let right = tracked(60, 7);
+    let mut wrong = right.clone();
+    // the position of row 35 was recorded twice
+    points(&mut wrong)[36..].copy_from_slice(&points(&mut right.clone())[35..59]);
+    let (effect, cure, meant) = only(&wrong);
+    assert_eq!(effect, "row_mistake");
+    assert_eq!(cure, "Move x_mm, y_mm and z_mm 1 row up from pose 37 to pose 59");
+    assert_eq!(meant.measurements.len(), 59);
+    // a cell was left out of one column
+    let wrong = (35..59).rev().fold(right.clone(), |mut wrong, row| {
+        let q = &mut wrong.measurements.joint_values;
+        q[6 * (row + 1) + 2] = q[6 * row + 2];
+        wrong
+    });
+    let (effect, cure, _) = only(&wrong);
+    assert_eq!(effect, "row_mistake");
+    assert_eq!(cure, "Move q3_deg 1 row up from pose 37 to pose 59");
+}
+
+#[test]
+fn a_zero_that_stepped_is_no_drift_and_no_slip() {
+    let wrong = in_rows(&tracked(60, 7), 38..60, |q| q[3] += 0.5 * DEG);
+    let mended = mended(&wrong);
+    assert_eq!(mended.found.len(), 1);
+    assert_eq!(mended.found[0].effect.name, "offset_mistake");
+    assert_eq!(mended.found[0].location.to_string(), "q4_deg, from pose 39 to pose 60");
+    assert!((mended.found[0].estimates[0].value + 0.5).abs() < 0.005, "{:?}", mended.found[0].estimates);
+}
+
+#[test]
+fn one_number_that_was_typed_wrongly() {
+    let right = tracked(60, 7);
+    let mut wrong = right.clone();
+    let at = 6 * 22 + 1;
+    let degrees = (right.measurements.joint_values[at] / DEG * 100.0).round() / 100.0;
+    // files have decimals: the pose was sent to these
+    let mut right = right;
+    right.measurements.joint_values[at] = degrees * DEG;
+    wrong.measurements.joint_values[at] = -degrees * DEG;
+    let (effect, cure, meant) = only(&wrong);
+    assert_eq!(effect, "typing_mistake");
+    assert!(cure.ends_with(" as q2_deg of pose 23"), "{cure}");
+    assert!((meant.measurements.joint_values[at] - right.measurements.joint_values[at]).abs() < 1e-9);
+    // the point of another pose, to the last digit
+    let mut wrong = right.clone();
+    let other = points(&mut wrong)[30];
+    points(&mut wrong)[44] = other;
+    let (effect, cure, meant) = only(&wrong);
+    assert_eq!((effect, cure.as_str()), ("copied_rows", "Leave out pose 45, or measure anew"));
+    assert_eq!(meant.measurements.len(), 59);
+    // nobody knows what this one was
+    let mut wrong = right.clone();
+    points(&mut wrong)[44] += Vector3::new(0.217, -0.131, 0.089);
+    assert_eq!(only(&wrong).0, "outlier");
+}
+
+#[test]
+fn rows_that_stand_twice_are_left_out() {
+    let right = tracked(60, 7);
+    let rows: Vec<usize> = (0..60).chain(10..20).collect();
+    let mut wrong = right.clone();
+    wrong.measurements = right.measurements.subset(&rows);
+    for (number, row) in wrong.measurements.rows.iter_mut().enumerate() {
+        row.pose = (number + 1).to_string();
+    }
+    let (effect, cure, meant) = only(&wrong);
+    assert_eq!((effect, cure.as_str()), ("copied_rows", "Leave out pose 61 to pose 70, or measure anew"));
+    assert_eq!(meant.measurements.joint_values, right.measurements.joint_values);
+}
+
+/// A clamp that stands 1 mm beside its place in the campaign pulls a base along that may move.
+#[test]
+fn a_clamp_beside_its_place_is_no_base_that_moved() {
+    let mut wrong = tx90();
+    let last = wrong.measurements.groups.len() - 1;
+    let rows: Vec<usize> =
+        (0..wrong.measurements.len()).filter(|&row| wrong.measurements.rows[row].group == last).collect();
+    let aside = wrong.measurements.device(rows[0]).rotation * Vector3::new(MM, 0.0, 0.0);
+    rows.into_iter().for_each(|row| points(&mut wrong)[row] += aside);
+    assert_eq!(found(&wrong), []);
+}
+
+/// Rows in the wrong clamp scatter by centimetres: however little they count, nothing is explained.
+#[test]
+fn what_counts_little_is_not_explained() {
+    let mut wrong = tx90();
+    let rows: Vec<usize> = (0..wrong.measurements.len()).step_by(3).collect();
+    wrong.measurements = wrong.measurements.subset(&rows);
+    points(&mut wrong)[3] += Vector3::new(0.5, 0.2, 0.1);
+    points(&mut wrong)[4] += Vector3::new(-0.3, 0.2, 0.4);
+    let found = crate::diagnosis::calibration::diagnose(&wrong, Mode::Fea, &Options::default()).unwrap();
+    assert!(found.is_implausible());
+    assert!(found.diagnosis.discrepancy.is_some());
+}
+
+/// Sensors show what the ball does to them; the campaign asks for what they do to the ball.
+#[test]
+fn a_contact_force_the_other_way_round() {
+    let right = tx90();
+    let wrong = Campaign { contact_force: right.contact_force.map(|force| -force), ..right.clone() };
+    let (effect, cure, meant) = only(&wrong);
+    assert_eq!((effect, cure.as_str()), ("sign_mistake", "Multiply contact_force_n by −1"));
+    assert_eq!(meant.contact_force, right.contact_force);
+}
+
+/// A third of the positions belong to nothing, in which the calibration still fails: what is seen
+/// beside that is not sure enough to be written into a file.
+#[test]
+fn what_a_calibration_does_not_confirm_is_not_said() {
+    let mut wrong = in_rows(&tracked(60, 7), 40..60, |q| q[4] = -q[4]);
+    let mut random = Random::seeded(5, 1);
+    for row in (0..60).step_by(3) {
+        points(&mut wrong)[row] += Vector3::from_fn(|_, _| 0.4 * random.normal());
+    }
+    let mended = mended(&wrong);
+    assert!(!mended.is_changed, "{:?}", mended.suspicions);
+    assert!(mended.found.is_empty());
+}
+
+/// The zero of the first joint steps as the base would turn, and is said so.
+#[test]
+fn a_step_of_the_first_joint_may_be_the_base() {
+    let mended = mended(&in_rows(&tracked(60, 7), 20..40, |q| q[0] += 2.0 * DEG));
+    let [finding] = &mended.found[..] else { panic!("{:?}", mended.suspicions) };
+    assert_eq!(finding.location.to_string(), "q1_deg, from pose 21 to pose 40");
+    assert!(finding.rivals.iter().any(|rival| rival.effect.name == "base_shift"));
+}
+
+/// In a clamp any displacement is small: a row that is far out comes near when its numbers become
+/// small, or a neighbour's, whatever happened to it.
+#[test]
+fn a_disturbed_row_in_a_clamp_is_no_other_unit_and_no_other_row() {
+    let mut wrong = tx90();
+    for (row, way) in [(20, [0.031, -0.022, 0.011]), (37, [0.004, 0.009, -0.006]), (52, [-0.02, 0.0, 0.09])] {
+        points(&mut wrong)[row] += Vector3::from(way);
+    }
+    assert!(found(&wrong).iter().all(|(effect, _)| effect == "outlier"), "{:?}", found(&wrong));
+}

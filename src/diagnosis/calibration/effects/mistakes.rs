@@ -151,8 +151,8 @@ pub static TYPING_MISTAKE: Effect = Effect {
 };
 
 /// Rows that stand twice.
-pub static COPIED_ROWS: Effect = Effect {
-    name: "copied_rows",
+pub static COPY_MISTAKE: Effect = Effect {
+    name: "copy_mistake",
     summary: "rows repeat other rows, or their positions",
     formula: "row i = row k, to the last digit",
     prior: "digits that are five times finer than the scatter; three neighbours, or a row that is far out",

@@ -56,7 +56,7 @@ pub static MISTAKES: [&Effect; 12] = [
     &mistakes::STUCK_SENSOR,
     &mistakes::COPIED_COLUMN,
     &mistakes::TYPING_MISTAKE,
-    &mistakes::COPIED_ROWS,
+    &mistakes::COPY_MISTAKE,
 ];
 
 /// What pulls on the arm as a whole: preferred to what a single joint does.

@@ -14,7 +14,7 @@
 use std::f64::consts::PI;
 
 use super::super::effects::events::OUTLIER;
-use super::super::effects::mistakes::{COPIED_ROWS, TYPING_MISTAKE};
+use super::super::effects::mistakes::{COPY_MISTAKE, TYPING_MISTAKE};
 use super::draft::{Cell, Change, Draft, Rows};
 use super::names::{AXES, column, place, pose_name, poses};
 use super::part::{FAR, Reference, within};
@@ -366,7 +366,7 @@ fn copy(draft: &Draft, lengths: &[f64], run: &[(usize, usize, bool)], recording:
     };
     Slip {
         change: Change::Without(run.iter().map(|pair| draft.rows[pair.0]).collect()),
-        effect: &COPIED_ROWS,
+        effect: &COPY_MISTAKE,
         location: copies.clone(),
         estimates: Vec::new(),
         cure: format!("Leave out {copies}, or measure anew"),

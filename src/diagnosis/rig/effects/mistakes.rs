@@ -73,8 +73,8 @@ pub static INCREMENT_MISTAKE: Effect = Effect {
 };
 
 /// A load that was typed wrongly in one row.
-pub static ENTRY_MISTAKE: Effect = Effect {
-    name: "entry_mistake",
+pub static TYPING_MISTAKE: Effect = Effect {
+    name: "typing_mistake",
     summary: "the load of a row is not the one that all its readings show",
     formula: "load = Σ w·s·(y − a)/Σ w·s² of the row's readings",
     parameters: &[("n", "the load by its readings")],

@@ -33,7 +33,7 @@ pub static MISTAKES: [&Effect; 11] = [
     &mistakes::SWAP_MISTAKE,
     &mistakes::ROW_MISTAKE,
     &mistakes::INCREMENT_MISTAKE,
-    &mistakes::ENTRY_MISTAKE,
+    &mistakes::TYPING_MISTAKE,
     &mistakes::COPY_MISTAKE,
     &mistakes::OFFSET_MISTAKE,
     &mistakes::ROD_MISTAKE,

@@ -15,7 +15,7 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use super::super::datum::Datum;
-use super::super::effects::mistakes::ENTRY_MISTAKE;
+use super::super::effects::mistakes::TYPING_MISTAKE;
 use super::change::exact;
 use super::lines::{Line, fit};
 use super::moves::{column, load_column};
@@ -112,7 +112,7 @@ pub(super) fn found(data: &[Datum], lines: &[Line], unit: LoadColumn) -> Vec<Ent
         let verb = if readings.len() == 1 { "is" } else { "are" };
         found.push(Entry {
             part: Part {
-                effect: &ENTRY_MISTAKE,
+                effect: &TYPING_MISTAKE,
                 observed: format!(
                     "The load in row {row} (line {line}) is {written} {unit_name}, but {} {verb} of {is} {unit_name}: write that instead, or leave the row out",
                     readings.join(", ")

@@ -83,7 +83,7 @@ fn one_number_that_was_typed_wrongly() {
     let other = points(&mut wrong)[30];
     points(&mut wrong)[44] = other;
     let (effect, cure, meant) = only(&wrong);
-    assert_eq!((effect, cure.as_str()), ("copied_rows", "Leave out pose 45, or measure anew"));
+    assert_eq!((effect, cure.as_str()), ("copy_mistake", "Leave out pose 45, or measure anew"));
     assert_eq!(meant.measurements.len(), 59);
     // nobody knows what this one was
     let mut wrong = right.clone();
@@ -101,7 +101,7 @@ fn rows_that_stand_twice_are_left_out() {
         row.pose = (number + 1).to_string();
     }
     let (effect, cure, meant) = only(&wrong);
-    assert_eq!((effect, cure.as_str()), ("copied_rows", "Leave out pose 61 to pose 70, or measure anew"));
+    assert_eq!((effect, cure.as_str()), ("copy_mistake", "Leave out pose 61 to pose 70, or measure anew"));
     assert_eq!(meant.measurements.joint_values, right.measurements.joint_values);
 }
 

@@ -142,7 +142,7 @@ fn a_load_that_was_typed_wrongly_is_corrected() {
         let mut wrong = clean.clone();
         wrong.rows[z].load = typed;
         let mended = mended(&wrong, Some(&file), &[]).unwrap();
-        assert_eq!(names(&mended), [format!("entry_mistake load_n, row {}", z + 1)], "{typed}");
+        assert_eq!(names(&mended), [format!("typing_mistake load_n, row {}", z + 1)], "{typed}");
         assert_eq!(mended.readings.rows[z].load, 15.0, "{typed}");
     }
     // one channel alone: as likely a misread value

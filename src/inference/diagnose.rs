@@ -191,6 +191,9 @@ fn suspects_at_most(count: usize) -> usize {
 ///
 /// Where a curve would then be left that is less likely than what it takes the place of, by the
 /// odds of a name, the names stay: something is there, and this is likelier.
+///
+/// Nor has a name what most searches without a fold do not find again, where these predict no
+/// better than nothing: something is there, and not the same to all of them.
 fn confirmed(
     model: &Linearised<'_>,
     search: &Search,
@@ -214,6 +217,18 @@ fn confirmed(
             held_out.independent_loss(own) > 0.0 && !needless.iter().any(|themes| themes.contains(&own));
         candidate.effect.kind == Kind::Event || is_needed || takes_numbers_place(own)
     };
+    let is_found_again = |term: &Term| {
+        let candidate = &model.candidates()[term.candidate];
+        let found = held_out.found(model.candidates(), Theme::new(candidate));
+        is_reproduced(candidate.effect.kind, held_out.gain, found)
+    };
+    let again: Vec<Term> = hypothesis.terms.iter().filter(|term| is_found_again(term)).cloned().collect();
+    if again.len() < hypothesis.terms.len() {
+        let shorter = search.fit(&again);
+        if let Some(left_over) = search.remains(&shorter) {
+            return (shorter, Some(left_over));
+        }
+    }
     let kept: Vec<Term> = hypothesis.terms.iter().filter(|term| is_confirmed(term)).cloned().collect();
     if kept.len() == hypothesis.terms.len() {
         return (hypothesis, before_that);
@@ -228,6 +243,12 @@ fn confirmed(
         return (hypothesis, None);
     }
     (shorter, left_over)
+}
+
+/// True of what happened once, of what predicts held-out data, and of what more than half of the
+/// searches without a fold find again.
+fn is_reproduced(kind: Kind, gain: f64, (found, of): (usize, usize)) -> bool {
+    kind != Kind::Physics || gain > 0.0 || 2 * found > of
 }
 
 /// A hypothesis without effects of which, with all else that may be there, nothing is as good an
@@ -366,5 +387,18 @@ fn beside(left_over: &Option<DiscrepancyModel>) -> Option<&Hypothesis> {
     match left_over {
         Some(DiscrepancyModel::Curve(longer)) => Some(longer),
         _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_neither_predicts_nor_comes_back_has_no_name() {
+        assert!(!is_reproduced(Kind::Physics, -0.1, (2, 4)));
+        assert!(is_reproduced(Kind::Physics, -0.1, (3, 4)));
+        assert!(is_reproduced(Kind::Physics, 0.01, (0, 4)));
+        assert!(is_reproduced(Kind::Event, -0.1, (0, 4)) && is_reproduced(Kind::Mistake, -0.1, (0, 4)));
     }
 }

@@ -19,6 +19,9 @@ use crate::statistics::median;
 /// Scatter that hardly any display rounds away, in steps.
 const STEPS: f64 = 0.5;
 
+/// So many other trials show how far readings scatter.
+const COMPARED: usize = 20;
+
 /// What a trial shows: direction, stations, load, phase and channel of each reading, in turn, with
 /// the reading, m.
 type Key = (i8, usize, [u64; 2], u64, bool, usize);
@@ -41,7 +44,8 @@ pub(super) fn found(data: &[Datum]) -> Vec<Part> {
     let mut found = Vec::new();
     for (t, own) in trials.iter().enumerate() {
         let Some(first) = (0..t).find(|&other| same[other] == same[t]) else { continue };
-        let others = (0..trials.len()).filter(|&o| protocols[o] == protocols[t] && same[o] != same[t]);
+        let others =
+            (0..trials.len()).filter(|&o| protocols[o] == protocols[t] && same[o] != same[t]).take(COMPARED);
         let scatters: Vec<f64> = others.flat_map(|other| scatters(data, own, trials[other])).collect();
         let scatter = median(&scatters).unwrap_or(0.0);
         let step = resolution(&own.iter().map(|&i| data[i].clone()).collect::<Vec<_>>());

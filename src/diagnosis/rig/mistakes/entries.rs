@@ -188,12 +188,17 @@ fn said(data: &[Datum], lines: &[Line], line_of: &[Option<usize>], own: &[usize]
 
 /// A line, without a datum whose load is so far beyond all others that it would follow that.
 fn without<'a>(data: &[Datum], line: &'a Line, own: usize) -> Cow<'a, Line> {
+    // only the largest load of all is beyond the others
+    if data[own].load < line.largest_load {
+        return Cow::Borrowed(line);
+    }
+    let is_near = |&i: &usize| data[i].order != data[own].order && BEYOND * data[i].load > data[own].load;
+    if line.data.iter().any(is_near) {
+        return Cow::Borrowed(line);
+    }
     let others: Vec<usize> =
         line.data.iter().copied().filter(|&i| data[i].order != data[own].order).collect();
     let largest = others.iter().fold(0.0, |most: f64, &i| most.max(data[i].load));
-    if data[own].load < BEYOND * largest {
-        return Cow::Borrowed(line);
-    }
     let points: Vec<(f64, f64)> = others.iter().map(|&i| (data[i].signed_load(), data[i].measured)).collect();
     let has_slope = points.iter().any(|(load, _)| (load - points[0].0).abs() > 1e-6 * largest);
     Cow::Owned(Line { fit: fit(&points), largest_load: largest, has_slope, data: others, ..line.clone() })

@@ -12,7 +12,7 @@ use super::super::effects::mistakes::COPY_MISTAKE;
 use super::super::evidence::resolution;
 use super::super::numbering::numbered;
 use super::lines::fit;
-use super::part::Part;
+use super::part::{Part, rows_name, trial_name};
 use super::search::ODDS;
 use crate::statistics::median;
 
@@ -88,12 +88,8 @@ fn scatters(data: &[Datum], first: &[usize], second: &[usize]) -> Vec<f64> {
 
 /// `trial 3`, `rows 7 to 12`.
 fn name(data: &[Datum], own: &[usize]) -> String {
-    let rows =
-        own.iter().fold((usize::MAX, 0), |(low, high), &i| (low.min(data[i].row), high.max(data[i].row)));
-    let first = &data[own[0]];
-    match (&first.trial, &first.session) {
-        (Some(trial), Some(session)) => format!("trial {trial} of session {session}"),
-        (Some(trial), None) => format!("trial {trial}"),
-        _ => format!("rows {} to {}", rows.0, rows.1),
+    match trial_name(&data[own[0]]) {
+        Some(trial) => format!("trial {trial}"),
+        None => rows_name(own.iter().map(|&i| &data[i])),
     }
 }

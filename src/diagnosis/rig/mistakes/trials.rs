@@ -18,7 +18,7 @@ use super::super::numbering::numbered;
 use super::change::{Change, Move};
 use super::groups::group;
 use super::lines::{Fit, Line};
-use super::part::Part;
+use super::part::{Part, rows_name, trial_name};
 use super::search::{ALIKE as NO_WORSE, ODDS, RARE};
 use crate::statistics::median;
 
@@ -114,6 +114,7 @@ impl<'a> Table<'a> {
         self.classes.len() < 2
     }
 
+    /// Of `data` and the `lines` that they are on.
     pub fn of(data: &'a [Datum], lines: &'a [Line]) -> Table<'a> {
         let visit = visits(data);
         let trial = numbered(data.iter().zip(&visit).map(|(datum, visit)| {
@@ -292,16 +293,7 @@ impl<'a> Table<'a> {
             .iter()
             .filter_map(|trial| Some(&self.data[self.trial.iter().position(|of| of == trial)?]))
             .collect();
-        let names: Option<Vec<String>> = own
-            .iter()
-            .map(|datum| {
-                let trial = datum.trial.as_ref()?;
-                Some(match &datum.session {
-                    Some(session) => format!("{trial} of session {session}"),
-                    None => trial.clone(),
-                })
-            })
-            .collect();
+        let names: Option<Vec<String>> = own.iter().map(|datum| trial_name(datum)).collect();
         match names {
             Some(names) if names.len() == 1 => format!("trial {}", names[0]),
             Some(names) => {
@@ -309,11 +301,8 @@ impl<'a> Table<'a> {
                 format!("trials {} and {last}", first.join(", "))
             }
             None => {
-                let rows = self.data.iter().zip(&self.trial).filter(|(_, of)| class.contains(of));
-                let rows = rows.fold((usize::MAX, 0), |(low, high), (datum, _)| {
-                    (low.min(datum.row), high.max(datum.row))
-                });
-                format!("rows {} to {}", rows.0, rows.1)
+                let is_own = |(datum, of): (&'a Datum, &usize)| class.contains(of).then_some(datum);
+                rows_name(self.data.iter().zip(&self.trial).filter_map(is_own))
             }
         }
     }

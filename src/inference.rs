@@ -69,7 +69,7 @@ pub(crate) use self::{
     pruning::infer,
     selection::{DiscrepancyModel, Pairs},
 };
-pub use compared::log_odds;
+pub use compared::Compared;
 pub use correlated_noise::CorrelatedNoise;
 pub use description::Description;
 pub use diagnose::diagnose;

@@ -12,29 +12,47 @@ use super::selection::{DiscrepancyModel, Pairs};
 use super::whitening::Whitening;
 use super::{Evidence, ForwardModel};
 
-/// Ln of how many times more probable a recording is by the best hypothesis of the second model,
-/// what it leaves unexplained included, than by that of the first. Both evidences hold the same
-/// data.
-pub fn log_odds(
-    (first, own): (&dyn ForwardModel, &Evidence),
-    (second, other): (&dyn ForwardModel, &Evidence),
-) -> f64 {
-    let plain = |evidence: &Evidence| Evidence {
+/// The first model with its recording, which others are compared with.
+pub struct Compared {
+    /// Of shared and own errors, as the best hypothesis leaves them.
+    ratio: f64,
+    correlation: f64,
+    /// Ln of the probability that the recording then has.
+    log_probability: f64,
+}
+
+impl Compared {
+    /// The best hypothesis of a model, what it leaves unexplained included.
+    pub fn new(model: &dyn ForwardModel, evidence: &Evidence) -> Compared {
+        let own = plain(evidence);
+        let before = best(model, &own);
+        // what the best hypothesis leaves is scatter
+        let whitening = Whitening::new(&background::folded(&own).evidence, &before.left);
+        let (ratio, correlation) = (whitening.ratio, whitening.correlation);
+        let unsettled = Compared { ratio, correlation, log_probability: 0.0 };
+        let log_probability = best(model, &unsettled.alike(own)).log_probability;
+        Compared { log_probability, ..unsettled }
+    }
+
+    /// Ln of how many times more probable the recording is by the best hypothesis of another
+    /// model. Both evidences hold the same data.
+    pub fn log_odds(&self, other: &dyn ForwardModel, evidence: &Evidence) -> f64 {
+        best(other, &self.alike(plain(evidence))).log_probability - self.log_probability
+    }
+
+    /// The same data with errors that scatter alike.
+    fn alike(&self, evidence: Evidence) -> Evidence {
+        Evidence { shared_ratio: Some(self.ratio), correlation: Some(self.correlation), ..evidence }
+    }
+}
+
+fn plain(evidence: &Evidence) -> Evidence {
+    Evidence {
         is_robust: false,
         weight: vec![1.0; evidence.residual.len()],
         information: 1.0,
         ..evidence.clone()
-    };
-    let (own, other) = (plain(own), plain(other));
-    let before = best(first, &own);
-    // what the best hypothesis leaves is scatter
-    let whitening = Whitening::new(&background::folded(&own).evidence, &before.left);
-    let alike = |evidence: &Evidence| Evidence {
-        shared_ratio: Some(whitening.ratio),
-        correlation: Some(whitening.correlation),
-        ..evidence.clone()
-    };
-    best(second, &alike(&other)).log_probability - best(first, &alike(&own)).log_probability
+    }
 }
 
 struct Best {

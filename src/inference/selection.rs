@@ -17,6 +17,8 @@ const AS_WELL: (f64, f64) = (20.0, 1.01);
 const CHANCE: f64 = 3.0;
 /// Most effects in one hypothesis.
 const MOST: usize = 10;
+/// Most effects that are exchanged on the way to one hypothesis.
+const MOST_EXCHANGES: usize = 2 * MOST;
 /// Of how many candidates, the likeliest by their columns at neutral values, the values are fitted.
 const REFITTED: usize = 6;
 /// And how many of them may be of one effect, of the forms of a law with as many parameters.
@@ -48,6 +50,35 @@ pub enum DiscrepancyModel {
     Curve(Hypothesis),
     /// No curve, but the repeats agree on it.
     Replicates,
+}
+
+/// Where adding effects one by one has led.
+struct Way {
+    /// The best hypothesis on it.
+    hypothesis: Hypothesis,
+    /// What that leaves.
+    left_over: Option<DiscrepancyModel>,
+    /// Ln of the probability of both.
+    log_probability: f64,
+    /// All hypotheses on it.
+    visited: Vec<Visited>,
+}
+
+/// A hypothesis that was come by: its candidates, sorted, and its ln of a probability.
+struct Visited(Vec<usize>, f64);
+
+impl Visited {
+    fn new(hypothesis: &Hypothesis) -> Visited {
+        let mut candidates: Vec<usize> = hypothesis.terms.iter().map(|term| term.candidate).collect();
+        candidates.sort_unstable();
+        Visited(candidates, hypothesis.log_probability)
+    }
+
+    /// The same, but for how near its values are to the best ones?
+    fn is_same(&self, hypothesis: &Hypothesis) -> bool {
+        let other = Visited::new(hypothesis);
+        self.0 == other.0 && (self.1 - other.1).abs() < NO_GAIN
+    }
 }
 
 impl Search<'_> {
@@ -83,16 +114,19 @@ impl Search<'_> {
             Pairs::Screened => self.best_pair(&none, additions),
             Pairs::LeftOut => None,
         };
-        // a pair that the steps have found is theirs
+        // a pair that the steps have come by leads where they have led
         let is_new = |pair: &Hypothesis| {
-            by_steps.0.log_probability + 1e-6 < pair.log_probability || by_steps.1.is_some()
+            let is_likelier = by_steps.hypothesis.log_probability + 1e-6 < pair.log_probability;
+            (is_likelier || by_steps.left_over.is_some())
+                && !by_steps.visited.iter().any(|visited| visited.is_same(pair))
         };
-        let Some(pair) = pair.filter(is_new) else { return (by_steps.0, by_steps.1) };
+        let Some(pair) = pair.filter(is_new) else { return (by_steps.hypothesis, by_steps.left_over) };
         let by_pair = self.along(vec![none, pair]);
-        match by_pair.2 > by_steps.2 + 1e-6 {
-            true => (by_pair.0, by_pair.1),
-            false => (by_steps.0, by_steps.1),
-        }
+        let better = match by_pair.log_probability > by_steps.log_probability + 1e-6 {
+            true => by_pair,
+            false => by_steps,
+        };
+        (better.hypothesis, better.left_over)
     }
 
     /// Effects that are named beside a curve, the last of `longer`: what is hidden by something
@@ -124,9 +158,8 @@ impl Search<'_> {
         (hypothesis, longer)
     }
 
-    /// The best hypothesis on the way on from the last of `path`, what it leaves, and the ln of the
-    /// probability of both.
-    fn along(&self, mut path: Vec<Hypothesis>) -> (Hypothesis, Option<DiscrepancyModel>, f64) {
+    /// The best hypothesis on the way on from the last of `path`.
+    fn along(&self, mut path: Vec<Hypothesis>) -> Way {
         let mut remainders: Vec<Option<(f64, DiscrepancyModel)>> = Vec::new();
         for hypothesis in &path[..path.len() - 1] {
             remainders.push(self.remainder(hypothesis, &self.additions(hypothesis)));
@@ -145,6 +178,7 @@ impl Search<'_> {
                 None => break,
             }
         }
+        let visited = path.iter().map(Visited::new).collect();
         // one of the names may be that of something unknown, which the others hid on the way
         for rest in self.with_one_name_less(&path[path.len() - 1]) {
             let last = path.len() - 1;
@@ -163,7 +197,8 @@ impl Search<'_> {
             && path[last].log_probability + AS_WELL.0.ln() > most
             && self.leaves_as_little(&path[last], longer)
         {
-            return (path.swap_remove(last), None, most);
+            let hypothesis = path.swap_remove(last);
+            return Way { hypothesis, left_over: None, log_probability: most, visited };
         }
         // beside something unknown a name needs its odds like any other
         let has_less = |&k: &usize| {
@@ -173,8 +208,8 @@ impl Search<'_> {
                 && path[k].terms.len() < path[named].terms.len()
         };
         let named = (0..path.len()).filter(has_less).min_by_key(|&k| path[k].terms.len()).unwrap_or(named);
-        let remainder = remainders.swap_remove(named).map(|(_, remainder)| remainder);
-        (path.swap_remove(named), remainder, most)
+        let left_over = remainders.swap_remove(named).map(|(_, remainder)| remainder);
+        Way { hypothesis: path.swap_remove(named), left_over, log_probability: most, visited }
     }
 
     /// A hypothesis of several effects without each of those that are physics.
@@ -329,26 +364,25 @@ impl Search<'_> {
             .reduce(|best, other| if other.log_probability > best.log_probability { other } else { best })
     }
 
-    /// Single effects exchanged for others and taken away while the hypothesis gets more probable.
+    /// Single effects exchanged for others and taken away while the hypothesis gets more probable:
+    /// one after the other, until none of them in turn is better exchanged.
     fn exchanged(&self, mut hypothesis: Hypothesis) -> Hypothesis {
+        let (mut position, mut kept, mut exchanges) = (0, 0, 0);
         // a single effect is the best there is
-        for _ in 0..if hypothesis.terms.len() > 1 { MOST } else { 0 } {
-            let mut better: Option<Hypothesis> = None;
-            for position in 0..hypothesis.terms.len() {
-                let rest = self.without(&hypothesis, position);
-                let least = |better: &Option<Hypothesis>| {
-                    better.as_ref().map_or(hypothesis.log_probability + NO_GAIN, |b| b.log_probability)
-                };
-                let best = self.longer_than(least(&better), &rest, &self.additions(&rest), false);
-                for other in [Some(rest), best].into_iter().flatten() {
-                    if other.log_probability > least(&better) {
-                        better = Some(other);
-                    }
+        while hypothesis.terms.len() > 1 && kept < hypothesis.terms.len() && exchanges < MOST_EXCHANGES {
+            position %= hypothesis.terms.len();
+            let least = hypothesis.log_probability + NO_GAIN;
+            let rest = self.without(&hypothesis, position);
+            let other = self.longer_than(least, &rest, &self.additions(&rest), false);
+            let likelier = |a: &Hypothesis, b: &Hypothesis| a.log_probability.total_cmp(&b.log_probability);
+            let best = [Some(rest), other].into_iter().flatten().max_by(likelier);
+            match best.filter(|best| best.log_probability > least) {
+                Some(better) => {
+                    // what is new is the last, and the best there is beside the others
+                    kept = usize::from(better.terms.len() == hypothesis.terms.len());
+                    (hypothesis, exchanges) = (better, exchanges + 1);
                 }
-            }
-            match better {
-                Some(other) => hypothesis = other,
-                None => break,
+                None => (position, kept) = (position + 1, kept + 1),
             }
         }
         hypothesis

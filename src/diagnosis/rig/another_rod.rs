@@ -9,7 +9,7 @@ use super::mistakes::{Mended, ODDS, RARE};
 use super::model::RigModel;
 use super::wanted::Wanted;
 use crate::error::Result;
-use crate::inference::{Diagnosis, Evidence, Finding, Kind, Location, Rival, log_odds, rms};
+use crate::inference::{Compared, Diagnosis, Evidence, Finding, Kind, Location, Rival, rms};
 
 /// Ln of the odds within which two rods are indistinguishable: 20.
 const ALIKE: f64 = 2.995_732;
@@ -45,13 +45,17 @@ pub(super) fn others(
     {
         return Ok(found);
     }
+    if mended.others.is_empty() {
+        return Ok(found);
+    }
+    let compared = Compared::new(model, evidence);
     for (number, meant) in mended.others.iter().enumerate() {
         let (other, of_other, _) =
             RigModel::with_effects(&mended.readings, Some(&meant.rod), &Wanted::AllAnd(&model.own))?;
         if of_other.residual.len() != evidence.residual.len() {
             continue;
         }
-        let log_odds = log_odds((model, evidence), (&other, &of_other)) + meant.log_prior + RARE;
+        let log_odds = compared.log_odds(&other, &of_other) + meant.log_prior + RARE;
         let explains = rms(&(&evidence.residual - &of_other.residual));
         found.push(Other { number, log_odds, explains });
     }

@@ -82,6 +82,8 @@ pub enum Reported {
     Alone,
     /// All at one place (its form left out): the waves of one joint's gear.
     ByPlace,
+    /// All that happened after one row: what a knock does to each channel.
+    ByRow,
     /// All of them: misread poses.
     Together,
 }

@@ -171,6 +171,15 @@ pub enum RunName {
 }
 
 impl Location {
+    /// True of what is after the same row of the same run, of whatever channel.
+    pub(super) fn is_after_row_of(&self, other: &Location) -> bool {
+        let row = |location: &Location| match location {
+            Location::AfterRow { run, row, .. } => Some((run.clone(), *row)),
+            _ => None,
+        };
+        row(self).is_some() && row(self) == row(other)
+    }
+
     /// The place without the form of the law there: how a joint errs is not where.
     pub fn place(&self) -> Location {
         match self {

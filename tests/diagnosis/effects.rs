@@ -169,6 +169,25 @@ fn thermal_drift_with_time() {
     assert!(low <= 50.0 && 50.0 <= high, "{low} … {high}");
 }
 
+/// A knock moves the rod in all directions at once: one finding, with the shift of each channel.
+#[test]
+fn a_knock_that_two_channels_show_is_one_slip() {
+    let order = Order::default();
+    let shifts = [(1, -40.0 * UM), (2, 30.0 * UM)];
+    let effects = shifts.map(|(channel, by)| Effect::Slip { loading: 10, channel, by });
+    let answer = Answer::made(&order, &effects, SEED);
+    assert_eq!(answer.effects(), ["slip"], "{}", answer.json["headline"]);
+    let finding = answer.finding("slip");
+    let strongest = finding["place"]["channel"].as_str().map_or(1, |_| 2);
+    let names = if strongest == 1 { ["um", "dz_um"] } else { ["dy_um", "um"] };
+    for (name, (_, truth)) in names.into_iter().zip(shifts) {
+        let [low, _, high] = interval(finding, name);
+        let truth = truth / UM;
+        assert!(low <= truth && truth <= high, "{name}: {truth} is not in {low} … {high}");
+    }
+    assert_eq!(finding["parts"].as_array().unwrap().len(), 2);
+}
+
 #[test]
 fn slip() {
     let loading = 10;

@@ -14,6 +14,9 @@ use crate::inference::{Compared, Diagnosis, Evidence, Finding, Kind, Location, R
 /// Ln of the odds within which two rods are indistinguishable: 20.
 const ALIKE: f64 = 2.995_732;
 
+/// What is left is little: as a share of what a rod explains.
+const LITTLE: f64 = 0.1;
+
 /// One of the other rods beside the given one.
 pub(super) struct Other {
     /// Its number among [`Mended::others`].
@@ -29,6 +32,13 @@ impl Other {
     pub fn is_meant(&self) -> bool {
         self.log_odds > ODDS
     }
+}
+
+/// Does `diagnosis`, that of the readings with another rod, leave nothing unexplained, or little
+/// beside what that rod explains, m (rms)? Of two rods that both leave more, neither is the right
+/// one beyond doubt: odds are no better than the best of the hypotheses that they compare.
+pub(super) fn is_all_but_little(explains: f64, diagnosis: &Diagnosis) -> bool {
+    diagnosis.discrepancy.as_ref().is_none_or(|left| left.rms < LITTLE * explains)
 }
 
 /// The other rods that the readings may be of, the likeliest first; none where they agree with the

@@ -72,16 +72,24 @@ pub fn diagnose_with(
         Ok::<_, Error>((model, evidence, not_testable, diagnosis))
     };
     let (mut model, mut evidence, mut not_testable, mut diagnosis) = inferred(&mended, None)?;
+    // the slopes are those of another rod, but nothing else is
+    if mended.other_rod().is_some_and(|rod| !another_rod::is_all_but_little(rod.explains, &diagnosis)) {
+        mended = mistakes::mended(readings, rod, &[])?;
+        (model, evidence, not_testable, diagnosis) = inferred(&mended, None)?;
+    }
     if mended.take_zeros_back(&diagnosis.findings) {
         (model, evidence, not_testable, diagnosis) = inferred(&mended, None)?;
     }
     let others = another_rod::others(&mended, &model, &evidence, &diagnosis)?;
-    match others.first() {
-        Some(meant) if meant.is_meant() => {
-            mended.take(meant.number, meant.log_odds, meant.explains);
-            (model, evidence, not_testable, diagnosis) = inferred(&mended, None)?;
+    another_rod::add_rivals(&mended, &others, &model, &mut diagnosis);
+    if let Some(meant) = others.first().filter(|meant| meant.is_meant()) {
+        let mut taken = mended.clone();
+        taken.take(meant.number, meant.log_odds, meant.explains);
+        let as_other = inferred(&taken, None)?;
+        if another_rod::is_all_but_little(meant.explains, &as_other.3) {
+            mended = taken;
+            (model, evidence, not_testable, diagnosis) = as_other;
         }
-        _ => another_rod::add_rivals(&mended, &others, &model, &mut diagnosis),
     }
     // a rod that yields much more than its file bends much farther, which may change what was found
     let mut bent = model.rod.clone();

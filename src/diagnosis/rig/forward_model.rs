@@ -6,6 +6,7 @@ use std::sync::Arc;
 use nalgebra::{DMatrix, DVector};
 
 use super::action::{Action, State};
+use super::effects::events::by_channel;
 use super::effects::registry;
 use super::effects::zeros::ZERO_NOT_TAKEN;
 use super::model::{Body, RigModel, STATION, is_dependent};
@@ -139,7 +140,9 @@ impl ForwardModel for RigModel {
     /// Of a joint that nobody declared the interval also holds what the joint would be at the other
     /// stations that the readings cannot separate from its own.
     fn estimates(&self, parts: &[FindingPart], _: &Hypothesis) -> Vec<Estimate> {
-        parts.iter().flat_map(|part| self.widened(part)).collect()
+        let mut estimates: Vec<Estimate> = parts.iter().flat_map(|part| self.widened(part)).collect();
+        by_channel(parts, &mut estimates);
+        estimates
     }
 
     fn describe(&self, finding: &Finding) -> Description {

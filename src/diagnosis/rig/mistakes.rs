@@ -45,7 +45,7 @@ use self::search::{Found, Search, Trial};
 pub(super) use self::search::{ODDS, RARE};
 use self::sensors::Expected;
 use super::datum;
-use super::effects::mistakes::OFFSET_MISTAKE;
+use super::effects::mistakes::{OFFSET_MISTAKE, ROD_MISTAKE};
 use super::structure::check_stations;
 use crate::error::Result;
 use crate::inference::{Description, Effect, Estimate, Finding, Location, Rival};
@@ -348,6 +348,11 @@ impl Mended {
             p_value: (-log_odds).exp(),
             ..finding(effect, location, Vec::new(), words, Vec::new())
         });
+    }
+
+    /// That the readings are of another file's rod, where that was found.
+    pub fn other_rod(&self) -> Option<&Finding> {
+        self.found.iter().find(|found| *found.effect == ROD_MISTAKE)
     }
 
     fn add_part(&mut self, part: Part) {

@@ -7,7 +7,7 @@ use super::entry::{Context, Entry, RigEffect, UNBOUNDED, entry, of, parameter};
 use super::places::runs_by_sensor;
 use crate::diagnosis::rig::action::Action;
 use crate::diagnosis::rig::datum::Datum;
-use crate::inference::{Effect, Kind, Location, Reported, Run, Variable, WrittenTo};
+use crate::inference::{Effect, Estimate, FindingPart, Kind, Location, Reported, Run, Variable, WrittenTo};
 use crate::spatial::Axis;
 use crate::units::UM;
 
@@ -25,12 +25,17 @@ pub static SLIP: RigEffect = RigEffect {
         summary: "all readings after one of them are shifted",
         formula: "y + s for the rest of a run",
         prior: "5 % of the largest reading: a bond or a clamp that slips; a knock may be more",
-        parameters: &[("um", "shift")],
+        parameters: &[
+            ("um", "shift"),
+            ("dx_um", "shift of dx, at the same row"),
+            ("dy_um", "shift of dy, at the same row"),
+            ("dz_um", "shift of dz, at the same row"),
+        ],
         needs: "runs with two readings on either side",
         cause: "a slip of the clamp or of a sensor",
         cause_at: |location| format!("a slip ({location})"),
         written_to: WrittenTo::Recording,
-        reported: Reported::Alone,
+        reported: Reported::ByRow,
         seen_along: |_| vec![Variable::Order],
         direct_check: None,
     },
@@ -38,9 +43,28 @@ pub static SLIP: RigEffect = RigEffect {
     candidates: slips,
     missing: |_| "no run has two readings on either side of a slip",
     observed: |finding, _| {
-        format!("The readings jump by {} ({})", of(finding, "um").say("µm"), finding.location)
+        let besides = |channel: Axis| {
+            let shift = finding.quantity(channel_um(channel))?;
+            Some(format!(", d{channel} by {}", shift.say("µm")))
+        };
+        let besides: String = Axis::ALL.into_iter().filter_map(besides).collect();
+        format!("The readings jump by {} ({}){besides}", of(finding, "um").say("µm"), finding.location)
     },
 };
+
+/// The shift of a channel beside that of another one, at the same row.
+fn channel_um(channel: Axis) -> &'static str {
+    ["dx_um", "dy_um", "dz_um"][channel.index()]
+}
+
+/// Estimates of the slips that are one finding: all but the first are those of their channels.
+pub(in crate::diagnosis::rig) fn by_channel(parts: &[FindingPart], estimates: &mut [Estimate]) {
+    for (part, estimate) in parts.iter().zip(estimates).skip(1) {
+        if let Location::AfterRow { run, channel, .. } = &part.location {
+            estimate.name = channel_um(channel.unwrap_or(run.axis)).into();
+        }
+    }
+}
 
 /// A slip between any two rows of a run, with two rows at least on either side (one row would be a
 /// suspect), which the next zero takes out; and one between two runs, or within one, that no later

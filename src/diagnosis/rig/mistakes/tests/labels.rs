@@ -166,6 +166,36 @@ fn keys_of_the_rod_and_other_rods_are_found() {
     cases.check();
 }
 
+/// A clamp that lifts off under half of the loads bends the lines until their slopes are those of
+/// another rod, which leaves a third of what it explains: neither rod is the right one.
+#[test]
+fn another_rod_that_leaves_as_much_is_not_named() {
+    let file = rod(ROD_2);
+    let others: Vec<(String, Rod)> = (1..=6)
+        .map(|k| (format!("{k}.toml"), Rod::read(format!("rods/{k}.toml").as_ref()).unwrap()))
+        .collect();
+    let mut text = "axis,load_n,phase,dx_um,dy_um,dz_um\n".to_owned();
+    let lines = [
+        ("x", [-1.0, 1.0, 3.0, 5.0, 7.0, 5.0, 3.0, -0.0, 0.0], ",,"),
+        ("y", [23.0, 48.0, 87.0, 146.0, 204.0, 146.0, 87.0, 46.0, 23.0], ","),
+        ("z", [22.0, 44.0, 80.0, 135.0, 190.0, 136.0, 80.0, 43.0, 21.0], ""),
+    ];
+    for (axis, read, after) in lines {
+        let before = &",,"[after.len()..];
+        for (k, (load, read)) in [4, 8, 12, 16, 20, 16, 12, 8, 4].into_iter().zip(read).enumerate() {
+            let phase = if k < 5 { "load" } else { "unload" };
+            text += &format!("{axis},{load},{phase},{before}{read}{after}\n");
+        }
+    }
+    let readings = Readings::from_text("readings", &text).unwrap();
+    let by_slopes = mended(&readings, Some(&file), &others).unwrap();
+    assert!(by_slopes.other_rod().is_some(), "the slopes are those of another rod");
+    let found = crate::diagnosis::rig::diagnose_among(&readings, Some(&file), &others).unwrap();
+    let findings: Vec<&str> = found.diagnosis.findings.iter().map(|finding| finding.effect.name).collect();
+    assert!(!findings.contains(&"rod_mistake"), "{findings:?}");
+    assert!(found.diagnosis.discrepancy.is_some(), "{findings:?}");
+}
+
 #[test]
 fn radii_are_named_on_a_straight_rod_that_is_read_along_one_line() {
     let right = straight();

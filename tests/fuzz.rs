@@ -18,6 +18,7 @@ use std::time::{Duration, Instant};
 
 use rodcal::calibration::Campaign;
 use rodcal::design::Wish;
+use rodcal::diagnosis::rig::OwnEffect;
 use rodcal::files::text_of_bytes;
 use rodcal::report::runs::Run;
 use rodcal::rig::readings::Readings;
@@ -31,7 +32,7 @@ use self::mutation::mutated;
 /// A reader by its name: what it says of bytes.
 type Reader = (&'static str, fn(Vec<u8>) -> Result<()>);
 
-const READERS: [Reader; 8] = [
+const READERS: [Reader; 11] = [
     ("rod", |bytes| {
         let rod = Rod::from_toml("f", &text_of_bytes("f", bytes)?)?;
         let written = rod.to_toml(&[]);
@@ -72,6 +73,16 @@ const READERS: [Reader; 8] = [
     ("design", |bytes| {
         let open = |name: &str| Ok((name.to_owned(), corpus::TUBES.to_owned()));
         Wish::from_toml("f", &text_of_bytes("f", bytes)?, &open).map(drop)
+    }),
+    ("catalogue", |bytes| {
+        let text = text_of_bytes("f", bytes)?;
+        Wish::from_toml("d", corpus::DESIGN, &|_| Ok(("f".to_owned(), text.clone()))).map(drop)
+    }),
+    ("effects", |bytes| OwnEffect::from_toml("f", &text_of_bytes("f", bytes)?).map(drop)),
+    ("poses", |bytes| {
+        let (_, tx90) = Robot::builtin("tx90").unwrap();
+        let robot = Robot::from_text("r", tx90, None, None)?;
+        robot.poses_from_csv("f", &text_of_bytes("f", bytes)?).map(drop)
     }),
     ("corrections", |bytes| corrections_from_csv("f", &text_of_bytes("f", bytes)?, 6).map(drop)),
     ("result", |bytes| Run::from_text("d", "f", &text_of_bytes("f", bytes)?).map(drop)),

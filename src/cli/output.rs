@@ -86,6 +86,8 @@ pub struct Outcome {
     pub commit: Option<Commit>,
     /// Exit status.
     pub status: u8,
+    /// What all random numbers came from, where there were any.
+    pub seed: Option<u64>,
 }
 
 /// What is left to be done after the result has been said; dropped, nothing has been written.
@@ -109,7 +111,13 @@ impl Outcome {
             warnings: Vec::new(),
             commit: None,
             status: 0,
+            seed: None,
         }
+    }
+
+    /// The same, its random numbers from this seed.
+    pub fn seeded(self, seed: u64) -> Self {
+        Outcome { seed: Some(seed), ..self }
     }
 
     /// A result without one.
@@ -125,8 +133,17 @@ impl Outcome {
 /// # Errors
 /// [`Error::File`] where a file cannot be written, [`Error::InTheWay`] where one would be lost.
 pub fn deliver(options: &Options, started: Instant, outcome: Outcome) -> Result<ExitCode> {
-    let Outcome { mut json, mut report, text, default_directory, files: more, warnings, commit, status } =
-        outcome;
+    let Outcome {
+        mut json,
+        mut report,
+        text,
+        default_directory,
+        files: more,
+        warnings,
+        commit,
+        status,
+        seed,
+    } = outcome;
     let directory = options.out.clone().or(default_directory);
     let note = |line: &dyn Fn() -> String| {
         if options.verbose {
@@ -150,6 +167,7 @@ pub fn deliver(options: &Options, started: Instant, outcome: Outcome) -> Result<
         json["warnings"] = report.warnings.as_slice().into();
         if directory.is_some() || options.verbose {
             let mut provenance = Provenance::of(std::env::args().skip(1));
+            provenance.seed = seed;
             provenance.time = options.stamp.then(stamp::time).transpose()?;
             for (file, hash) in &provenance.inputs {
                 note(&|| format!("read {file}, SHA-256 {hash}"));

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::delimited::{Row, Table, nearest_name};
 use crate::error::{Error, Result};
-use crate::material::{Material, MaterialUncertainty};
+use crate::material::{Material, MaterialUncertainty, listed};
 use crate::rod::Pipe;
 use crate::section::Round;
 use crate::units::MM;
@@ -109,7 +109,7 @@ fn tube(row: &Row<'_>, materials: &BTreeMap<String, Material>) -> Result<Tube> {
         let hint = nearest_name(material, &names).map(|near| format!("did you mean {near}?"));
         let expected = format!(
             "one of {}, or a section [material.NAME] of that name in the design file",
-            names.join(", ")
+            listed(&names)
         );
         return Err(row.error("material", expected, hint));
     };

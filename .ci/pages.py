@@ -4,7 +4,8 @@
     .ci/pages.py PAGE.html ...
 
 A page fails where the console has an error, something is fetched, the page is wider than the window, a text lies
-over another one in any unit, or a text has less contrast than WCAG AA asks for. Without Chromium it says so and passes.
+over another one in any unit, a picture or a card stays in its unit, or a text has less contrast than WCAG AA asks
+for. Without Chromium it says so and passes.
 """
 
 import json
@@ -88,6 +89,12 @@ CHECK = r"""
       select.dispatchEvent(new Event('change'));
     }
     look();
+  }
+  // in the last unit of all nothing is left in the first
+  const left = units.map(select => select.options[0].value);
+  for (const part of document.querySelectorAll('.cards, figcaption, svg text')) {
+    const words = part.textContent.match(new RegExp(`(\\d\\s|/ )(${left.join('|')})(?![\\p{L}²³·])`, 'gu'));
+    if (left.length > 0 && words && shown(part)) complaints.push(`"${part.textContent.trim().slice(0, 60)}" stays in its unit`);
   }
   return [...new Set(complaints)];
 })()

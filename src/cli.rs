@@ -16,6 +16,7 @@ mod progress;
 mod provenance;
 mod rig;
 mod simulate;
+mod stamp;
 pub mod suggestions;
 mod trial;
 mod values;

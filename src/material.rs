@@ -146,6 +146,18 @@ pub fn isotropic_poisson_ratio(youngs_modulus: f64, shear_modulus: f64) -> f64 {
     youngs_modulus / (2.0 * shear_modulus) - 1.0
 }
 
+/// Names that a file gave to its materials, as many and as long as a message takes: "a", "b" …
+pub(crate) fn listed(names: &[&str]) -> String {
+    const MOST: usize = 12;
+    const LONGEST: usize = 40;
+    let short = |name: &&str| match name.char_indices().nth(LONGEST) {
+        Some((end, _)) => format!("\"{}…\"", &name[..end]),
+        None => format!("\"{name}\""),
+    };
+    let listed = names.iter().take(MOST).map(short).collect::<Vec<_>>().join(", ");
+    if names.len() > MOST { format!("{listed} …") } else { listed }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -18,6 +18,7 @@ use std::time::{Duration, Instant};
 
 use rodcal::calibration::Campaign;
 use rodcal::design::Wish;
+use rodcal::diagnosis::rig::OwnEffect;
 use rodcal::files::text_of_bytes;
 use rodcal::report::runs::Run;
 use rodcal::rig::readings::Readings;
@@ -31,7 +32,7 @@ use self::mutation::mutated;
 /// A reader by its name: what it says of bytes.
 type Reader = (&'static str, fn(Vec<u8>) -> Result<()>);
 
-const READERS: [Reader; 8] = [
+const READERS: [Reader; 11] = [
     ("rod", |bytes| {
         let rod = Rod::from_toml("f", &text_of_bytes("f", bytes)?)?;
         let written = rod.to_toml(&[]);
@@ -73,18 +74,28 @@ const READERS: [Reader; 8] = [
         let open = |name: &str| Ok((name.to_owned(), corpus::TUBES.to_owned()));
         Wish::from_toml("f", &text_of_bytes("f", bytes)?, &open).map(drop)
     }),
+    ("catalogue", |bytes| {
+        let text = text_of_bytes("f", bytes)?;
+        Wish::from_toml("d", corpus::DESIGN, &|_| Ok(("f".to_owned(), text.clone()))).map(drop)
+    }),
+    ("effects", |bytes| OwnEffect::from_toml("f", &text_of_bytes("f", bytes)?).map(drop)),
+    ("poses", |bytes| {
+        let (_, tx90) = Robot::builtin("tx90").unwrap();
+        let robot = Robot::from_text("r", tx90, None, None)?;
+        robot.poses_from_csv("f", &text_of_bytes("f", bytes)?).map(drop)
+    }),
     ("corrections", |bytes| corrections_from_csv("f", &text_of_bytes("f", bytes)?, 6).map(drop)),
     ("result", |bytes| Run::from_text("d", "f", &text_of_bytes("f", bytes)?).map(drop)),
 ];
 
-/// Reads input number `n`; what is said of it lies in a file that it names.
-fn read(n: u64) {
-    let bytes = mutated(&CORPUS, n);
+/// Every reader reads an input; what is said of it lies in a file that it names.
+fn read(name_of_input: &str, bytes: &[u8]) {
     let lines = bytes.iter().filter(|&&byte| byte == b'\n').count() + 1;
     for (name, read) in READERS {
         let start = Instant::now();
-        let result = catch_unwind(AssertUnwindSafe(|| read(bytes.clone())));
-        let what = || format!("input {n} to the reader of a {name}: {}", String::from_utf8_lossy(&bytes));
+        let result = catch_unwind(AssertUnwindSafe(|| read(bytes.to_vec())));
+        let what =
+            || format!("{name_of_input} to the reader of a {name}: {}", String::from_utf8_lossy(bytes));
         let Ok(result) = result else { panic!("{}", what()) };
         assert!(start.elapsed() < Duration::from_secs(5), "{:?} for {}", start.elapsed(), what());
         if let Err(error) = result {
@@ -106,10 +117,27 @@ fn whatever_a_file_holds_it_is_read_or_refused() {
     let (start, mut n) = (Instant::now(), number("RODCAL_FUZZ_FROM").unwrap_or(0));
     let (first, most) = (n, number("RODCAL_FUZZ_INPUTS").unwrap_or(u64::MAX));
     while start.elapsed() < time && n - first < most {
-        read(n);
+        read(&format!("input {n}"), &mutated(&CORPUS, n));
         n += 1;
     }
     assert!(n - first > 20, "only {} inputs", n - first);
+}
+
+/// What is a book's length in place of a word is not repeated in what is said of it.
+#[test]
+fn no_word_of_a_file_makes_a_message_long() {
+    let long = "x".repeat(5000);
+    for text in CORPUS {
+        let is_end = |c: char| !c.is_alphanumeric() && c != '_';
+        let mut at = 0;
+        for word in text.split(is_end) {
+            if !word.is_empty() {
+                read("a long word", [&text[..at], &long, &text[at + word.len()..]].concat().as_bytes());
+            }
+            at += word.len();
+            at += text[at..].chars().next().map_or(0, char::len_utf8);
+        }
+    }
 }
 
 /// The corpus itself is read: mutations begin at what goes deep.

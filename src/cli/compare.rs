@@ -72,7 +72,7 @@ impl Compare {
         let progress = Progress::new("comparing modes", self.draws);
         let answer = answer::compare(&campaign, &options, &|_| progress.one_more())?;
         progress.finish();
-        Ok(answer.into())
+        Ok(Outcome::from(answer).seeded(self.seed))
     }
 
     fn run_forecast(&self) -> Result<Outcome> {
@@ -81,6 +81,6 @@ impl Compare {
         let budget = Budget { seed: self.seed, ..self.expected.budget(&campaign)? };
         let at = self.expected.place()?;
         let count = self.count.map(|count| count as usize);
-        Ok(answer::forecast(&campaign, &rods, budget, &at, count)?.into())
+        Ok(Outcome::from(answer::forecast(&campaign, &rods, budget, &at, count)?).seeded(self.seed))
     }
 }

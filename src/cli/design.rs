@@ -162,6 +162,6 @@ impl DesignRod {
             ("program".into(), concat!("rodcal ", env!("CARGO_PKG_VERSION")).into()),
         ];
         provenance.extend(campaign.map(|campaign| ("campaign".into(), campaign.file)));
-        Ok(answer.into())
+        Ok(Outcome::from(answer).seeded(self.seed))
     }
 }

@@ -15,6 +15,7 @@ use rodcal::{Error, Result};
 use serde_json::Value;
 
 use super::provenance::{Provenance, RESULT};
+use super::stamp;
 
 /// Where the result goes: options of every command.
 #[derive(Debug, Args)]
@@ -41,6 +42,11 @@ pub struct Options {
     /// Say on stderr what was read (with its SHA-256), how long it took and what was written.
     #[arg(short, long, global = true, help_heading = OUTPUT)]
     pub verbose: bool,
+
+    /// With --out: write the time into the report. Without it the same input gives the same bytes.
+    /// SOURCE_DATE_EPOCH (seconds since 1970), where it is set, is the time.
+    #[arg(long, global = true, help_heading = OUTPUT)]
+    pub stamp: bool,
 
     /// Replace files that rodcal did not write, or that were changed since.
     #[arg(long, global = true, help_heading = OUTPUT)]
@@ -80,6 +86,8 @@ pub struct Outcome {
     pub commit: Option<Commit>,
     /// Exit status.
     pub status: u8,
+    /// What all random numbers came from, where there were any.
+    pub seed: Option<u64>,
 }
 
 /// What is left to be done after the result has been said; dropped, nothing has been written.
@@ -103,7 +111,13 @@ impl Outcome {
             warnings: Vec::new(),
             commit: None,
             status: 0,
+            seed: None,
         }
+    }
+
+    /// The same, its random numbers from this seed.
+    pub fn seeded(self, seed: u64) -> Self {
+        Outcome { seed: Some(seed), ..self }
     }
 
     /// A result without one.
@@ -119,8 +133,17 @@ impl Outcome {
 /// # Errors
 /// [`Error::File`] where a file cannot be written, [`Error::InTheWay`] where one would be lost.
 pub fn deliver(options: &Options, started: Instant, outcome: Outcome) -> Result<ExitCode> {
-    let Outcome { mut json, mut report, text, default_directory, files: more, warnings, commit, status } =
-        outcome;
+    let Outcome {
+        mut json,
+        mut report,
+        text,
+        default_directory,
+        files: more,
+        warnings,
+        commit,
+        status,
+        seed,
+    } = outcome;
     let directory = options.out.clone().or(default_directory);
     let note = |line: &dyn Fn() -> String| {
         if options.verbose {
@@ -137,10 +160,15 @@ pub fn deliver(options: &Options, started: Instant, outcome: Outcome) -> Result<
         if options.png && directory.is_none() {
             report.warnings.push("--png has no effect without --out".into());
         }
+        if options.stamp && directory.is_none() {
+            report.warnings.push("--stamp has no effect without --out".into());
+        }
         // the same words on stderr, on the page and in the JSON
         json["warnings"] = report.warnings.as_slice().into();
         if directory.is_some() || options.verbose {
-            let provenance = Provenance::of(std::env::args().skip(1));
+            let mut provenance = Provenance::of(std::env::args().skip(1));
+            provenance.seed = seed;
+            provenance.time = options.stamp.then(stamp::time).transpose()?;
             for (file, hash) in &provenance.inputs {
                 note(&|| format!("read {file}, SHA-256 {hash}"));
             }
@@ -222,6 +250,9 @@ pub fn check(options: &Options, directory: Option<&Path>) -> Result<()> {
             why: "this build of rodcal writes SVG only".into(),
             hint: "build one that can: cargo install --path . --features png".into(),
         });
+    }
+    if options.stamp {
+        stamp::time()?;
     }
     match directory {
         Some(directory) if options.out.is_some() && directory.exists() && !directory.is_dir() => {

@@ -19,6 +19,10 @@ pub struct Provenance {
     pub command: String,
     /// Input files with the SHA-256 of their content.
     pub inputs: Vec<(String, String)>,
+    /// What all random numbers came from, where there were any.
+    pub seed: Option<u64>,
+    /// When; only where it was asked for.
+    pub time: Option<String>,
 }
 
 impl Provenance {
@@ -53,23 +57,32 @@ impl Provenance {
             let content = files::read_bytes(&path).ok()?;
             Some((path.display().to_string(), files::sha256(&content)))
         };
-        Provenance { command, inputs: found.into_iter().filter_map(hash).collect() }
+        Provenance { command, inputs: found.into_iter().filter_map(hash).collect(), seed: None, time: None }
     }
 
     /// As JSON.
     pub fn json(&self) -> serde_json::Value {
         let input = |(file, sha256): &(String, String)| serde_json::json!({ "file": file, "sha256": sha256 });
-        serde_json::json!({
+        let mut json = serde_json::json!({
             "command": self.command,
             "program": concat!("rodcal ", env!("CARGO_PKG_VERSION")),
             "inputs": self.inputs.iter().map(input).collect::<Vec<_>>(),
-        })
+        });
+        if let Some(seed) = self.seed {
+            json["seed"] = seed.into();
+        }
+        if let Some(time) = &self.time {
+            json["time"] = time.as_str().into();
+        }
+        json
     }
 
     /// As lines of a report.
     pub fn lines(&self) -> impl Iterator<Item = (String, String)> + '_ {
         let inputs = self.inputs.iter().map(|(file, hash)| (format!("SHA-256 of {file}"), hash.clone()));
-        std::iter::once(("command".to_owned(), self.command.clone())).chain(inputs)
+        let seed = self.seed.iter().map(|seed| ("seed".to_owned(), seed.to_string()));
+        let time = self.time.iter().map(|time| ("time".to_owned(), time.clone()));
+        std::iter::once(("command".to_owned(), self.command.clone())).chain(seed).chain(time).chain(inputs)
     }
 }
 

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::delimited::{Row, Table, nearest_name};
 use crate::error::{Error, Result};
-use crate::material::{Material, MaterialUncertainty};
+use crate::material::{Material, MaterialUncertainty, listed};
 use crate::rod::Pipe;
 use crate::section::Round;
 use crate::units::MM;
@@ -107,8 +107,10 @@ fn tube(row: &Row<'_>, materials: &BTreeMap<String, Material>) -> Result<Tube> {
     let Some(known) = materials.get(material) else {
         let names: Vec<&str> = materials.keys().map(String::as_str).collect();
         let hint = nearest_name(material, &names).map(|near| format!("did you mean {near}?"));
-        let expected =
-            format!("one of {}, or a section [material.{material}] in the design file", names.join(", "));
+        let expected = format!(
+            "one of {}, or a section [material.NAME] of that name in the design file",
+            listed(&names)
+        );
         return Err(row.error("material", expected, hint));
     };
     let (outer, inner) =

@@ -214,6 +214,8 @@ pub enum Mark {
         text: String,
         /// Where the text is, seen from its point.
         align: Align,
+        /// It is a number on an axis: on a page it changes with the unit of x.
+        is_number: bool,
     },
     /// An arrow, for example a force, with a note at its tail.
     Arrow {

@@ -389,7 +389,7 @@ mod tests {
             .with(Mark::Stretch { from: b, to: c, text: label() })
             .with(Mark::Event { at: c, text: label() })
             .with(Mark::Area { label: label(), corners: vec![[a, b], [b, c], [c, a]], style })
-            .with(Mark::Text { at: [b, a], text: label(), align: Align::Left })
+            .with(Mark::Text { at: [b, a], text: label(), align: Align::Left, is_number: true })
             .with(Mark::Note { at: [a, c], text: label() })
             .with(Mark::Arrow { from: [a, b], to: [b, c], text: label(), style })
     }

@@ -133,13 +133,14 @@ pub(super) fn draw(canvas: &mut Canvas, frame: &Frame, marks: &[Mark], labels: &
     event_labels::draw(canvas, frame, marks, labels);
     for mark in marks {
         match mark {
-            Mark::Text { at, text, align } if frame.places(*at) => {
+            Mark::Text { at, text, align, is_number } if frame.places(*at) => {
                 let anchor = match align {
                     Align::Left => Anchor::Right,
                     Align::Middle => Anchor::Middle,
                     Align::Right => Anchor::Left,
                 };
-                canvas.text(frame.px(*at), text, Lettering { anchor, ..NOTE }, Rgb::INK);
+                let unit = if *is_number { &frame.units[0] } else { "" };
+                canvas.number(frame.px(*at), text, unit, Lettering { anchor, ..NOTE });
             }
             Mark::Note { at, text } => note(canvas, frame, *at, text, labels),
             Mark::Arrow { from, text, .. } => note(canvas, frame, *from, text, labels),
@@ -413,14 +414,7 @@ fn whole_bar(
         Direction::Up => &frame.units[1],
         Direction::Right => &frame.units[0],
     };
-    let is_number = !unit.is_empty() && !b.text.is_empty();
-    if is_number {
-        canvas.begin_number(unit);
-    }
-    canvas.text(at, &b.text, Lettering { anchor, ..NOTE }, Rgb::INK);
-    if is_number {
-        canvas.end_group();
-    }
+    canvas.number(at, &b.text, unit, Lettering { anchor, ..NOTE });
     labels.add_text(area);
     let width = text_width_px(&b.text, NOTE.size_px);
     let left = match anchor {

@@ -125,9 +125,14 @@ impl Canvas {
         self.body += &format!("<g data-of=\"{first}\" data-unit=\"{unit}\"{hidden}>");
     }
 
-    /// What follows is one text, a number in this unit, which changes with it.
-    pub(super) fn begin_number(&mut self, unit: &str) {
+    /// A number in a unit, with which it changes; where that is empty, a text like any other.
+    pub(super) fn number(&mut self, at: Px, text: &str, unit: &str, lettering: Lettering) {
+        if unit.is_empty() || text.is_empty() {
+            return self.text(at, text, lettering, Rgb::INK);
+        }
         self.body += &format!("<g data-number=\"{}\">", attribute(unit));
+        self.text(at, text, lettering, Rgb::INK);
+        self.end_group();
     }
 
     /// Ends what was begun last.

@@ -131,7 +131,7 @@ impl Table {
         let cells: Vec<Vec<String>> =
             (0..self.columns.len()).map(|i| self.padded(i, '\u{2007}', '\u{2008}')).collect();
         html! {
-            div.wide { table {
+            div.wide tabindex="0" role="region" aria-label=(format!("Table {number}")) { table {
                 caption { b { "Table " (number) } ". " (self.caption) }
                 thead { tr { @for column in &self.columns {
                     th class=(class(column)) scope="col" {

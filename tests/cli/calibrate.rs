@@ -212,4 +212,9 @@ fn a_report_names_its_command_and_the_content_of_its_files() {
     assert!(inputs.iter().all(|input| input["sha256"].as_str().unwrap().len() == 64), "{provenance}");
     let page = sandbox.read("made/index.html");
     assert!(page.contains("rodcal calibrate sim/campaign.toml --mode fea"));
+    // a seed that nobody stated too
+    sandbox.run("compare sim/campaign.toml --draws 50 --out drawn").succeeded();
+    assert!(sandbox.read("drawn/index.html").contains("<dt>seed</dt><dd>1</dd>"));
+    let json: Value = serde_json::from_str(&sandbox.read("drawn/result.json")).unwrap();
+    assert_eq!((&json["provenance"]["seed"], &provenance["seed"]), (&1.into(), &Value::Null));
 }

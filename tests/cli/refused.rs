@@ -27,7 +27,7 @@ const CASES: [(&str, &str, &str); 31] = [
     ("completions tcsh", "invalid value 'tcsh'", "fish"),
     // files
     ("compliance nowhere.toml", "cannot read nowhere.toml: ", "No such file"),
-    ("compliance rods", "cannot read rods: ", "directory"),
+    ("compliance rods", "cannot read rods: ", "name the file that is meant"),
     ("rig fit rods/5.toml nowhere.csv", "cannot read nowhere.csv: ", "No such file"),
     ("compliance bad.toml", "bad.toml:3:9: `geometry.l1_mm` is -150", "> 0"),
     ("compliance stiffness_data/5.csv", "stiffness_data/5.csv:", "="),

@@ -113,3 +113,25 @@ fn a_result_that_gets_lost_is_an_error() {
     let stderr = String::from_utf8_lossy(&output.stderr);
     assert!(stderr.starts_with("error: cannot write stdout: "), "{stderr}");
 }
+
+/// The time stands in a report that asks for it, and in no other.
+#[test]
+fn a_report_has_a_time_where_it_is_asked_for() {
+    let sandbox = Sandbox::new();
+    let stamped = |line: &str, epoch: &str| {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let output = sandbox.command(&words).env("SOURCE_DATE_EPOCH", epoch).output().unwrap();
+        (output.status.code(), String::from_utf8(output.stderr).unwrap())
+    };
+    assert_eq!(stamped("compliance rods/5.toml --stamp --out made", "1767225599").0, Some(0));
+    let json: serde_json::Value = serde_json::from_str(&sandbox.read("made/result.json")).unwrap();
+    assert_eq!(json["provenance"]["time"], "2025-12-31 23:59:59 UTC");
+    assert!(sandbox.read("made/index.html").contains("<dt>time</dt><dd>2025-12-31 23:59:59 UTC</dd>"));
+    assert_eq!(stamped("compliance rods/5.toml --out plain", "1767225599").0, Some(0));
+    assert!(!sandbox.read("plain/result.json").contains("\"time\""));
+    let (status, said) = stamped("compliance rods/5.toml --stamp --out none", "today");
+    assert!(status == Some(2) && said.contains("`SOURCE_DATE_EPOCH` is \"today\""), "{said}");
+    assert!(!sandbox.path().join("none").exists());
+    let idle = sandbox.run("compliance rods/5.toml --stamp").succeeded();
+    assert!(idle.stderr.contains("--stamp has no effect without --out"), "{}", idle.stderr);
+}

@@ -3,7 +3,7 @@
 pub const ROD: &str = include_str!("../bad_rods/good.toml");
 const ROBOT: &str = include_str!("../bad_robots/good.toml");
 const URDF: &str = include_str!("../bad_robots/good.urdf");
-const DESIGN: &str = "[geometry]\nl1_mm = { from = 100, to = 120, step = 10 }\nl2_mm = [300, 400]\n\
+pub const DESIGN: &str = "[geometry]\nl1_mm = { from = 100, to = 120, step = 10 }\nl2_mm = [300, 400]\n\
     gamma_deg = 90\n[catalogue]\nfile = \"t.csv\"\n[tip]\nmass_g = 20\n[constraints]\nmax_mass_g = 700\n\
     [objectives]\nminimise = [\"c_rod_um\"]\nmaximise = [\"reach_mm\"]\n";
 pub const TUBES: &str =
@@ -19,6 +19,9 @@ pub const POSES: &str = "pose,q1_deg,q2_deg,q3_deg,q4_deg,q5_deg,q6_deg,x_mm,y_m
 const CORRECTIONS: &str = "joint,angle_deg,correction_urad\n1,0,5\n1,90,-5\n2,0,1\n2,10,2\n";
 const RESULT: &str = "{\"provenance\": {\"command\": \"rodcal rig fit a b\", \"program\": \"rodcal 0.1.0\", \
     \"inputs\": [{\"file\": \"a\", \"sha256\": \"00\"}]}, \"slopes\": [], \"warnings\": []}";
+const EFFECTS: &str = "[[effect]]\nname = \"foot\"\nwords = \"a rubber foot\"\nplace = \"clamp\"\nvariable = \"load\"\n\
+    law = \"a_um*(1 - exp(-F/b_n))\"\nparameter = [{ name = \"a_um\", size = 20 }, \
+    { name = \"b_n\", neutral = 5, size = 2, low = 0.5 }]\n";
 
-pub const CORPUS: [&str; 10] =
-    [ROD, ROBOT, URDF, DESIGN, TUBES, READINGS, CAMPAIGN, POSES, CORRECTIONS, RESULT];
+pub const CORPUS: [&str; 11] =
+    [ROD, ROBOT, URDF, DESIGN, TUBES, READINGS, CAMPAIGN, POSES, CORRECTIONS, RESULT, EFFECTS];

@@ -123,6 +123,11 @@ impl Error {
         match self {
             Error::Input { hint, .. } => hint.as_deref(),
             Error::NotApplicable { hint, .. } => Some(hint),
+            Error::File { source, action: "read", .. }
+                if source.kind() == std::io::ErrorKind::IsADirectory =>
+            {
+                Some("name the file that is meant in this directory")
+            }
             Error::InTheWay { whose: Whose::Kept, .. } => {
                 Some("take another name: what stands there is written once, and --force does not replace it")
             }

@@ -203,6 +203,6 @@ impl DesignPoses {
         let answer = answer::design_poses(&campaign, wanted, budget, &tell)?;
         progress.finish();
         choosing.finish();
-        Ok(answer.into())
+        Ok(Outcome::from(answer).seeded(self.seed))
     }
 }

@@ -127,11 +127,16 @@ pub(super) fn placement(campaign: &Campaign, calibration: &Calibration) -> Table
     let mut table = Table::new(
         "placement",
         "Base and tip as calibrated.",
-        ["of", "x / mm", "y / mm", "z / mm", "roll / °", "pitch / °", "yaw / °"]
-            .map(|name| Column::number(name, ""))
-            .to_vec(),
+        vec![
+            Column::text(""),
+            Column::number("x", "mm"),
+            Column::number("y", "mm"),
+            Column::number("z", "mm"),
+            Column::number("roll", "°"),
+            Column::number("pitch", "°"),
+            Column::number("yaw", "°"),
+        ],
     );
-    table.columns[0] = Column::text("");
     if matches!(campaign.measurements.targets, Targets::Points(_)) {
         let base = calibration.setup.base();
         let place = (base.origin / MM).iter().map(|x| format!("{x:.4}")).collect::<Vec<_>>();

@@ -38,17 +38,32 @@
   const factor = unit => unit.split('/').map(part => choice(part)[1]).reduce((above, below) => above / below);
   const bases = unit => unit.split('/').filter(part => UNITS[part]);
   // every number of a text, with as many digits as it had
-  const inUnit = (text, unit) => factor(unit) === 1 ? text
+  const inUnit = (text, unit, least = 1) => factor(unit) === 1 ? text
     : text.replace(/\d[\d\u2009]*(\.\d+)?(e[-\u2212]?\d+)?/gi, found => {
       const digits = found.replace(/e.*$/i, '').replace(/[^\d]/g, '').replace(/^0+/, '').length || 1;
       const value = Number(found.replaceAll('\u2009', '').replace('\u2212', '-')) * factor(unit);
-      const short = value.toPrecision(Math.min(digits, 15));
+      const short = value.toPrecision(Math.min(Math.max(digits, least), 15));
       return (/e/.test(short) ? String(Number(short)) : short).replace('e-', 'e\u2212');
     });
   const switched = [];
   const changes = (element, unit) => {
     const text = element.textContent;
     switched.push(() => { element.textContent = inUnit(text, unit); });
+  };
+  // within words: "14 to 3.0 µm", "Ø 32 × 1 mm" (where 1 is exact), "x / mm"
+  const [NUMBER, BETWEEN] = ['\\d[\\d\u2009]*(?:\\.\\d+)?', '\\s(?:±|→|×|–|to|and)\\s'];
+  const UNIT = `((?:${Object.keys(UNITS).join('|')})(?:/[\\p{L}µ]+)?)(?![\\p{L}\\d²³·/]|\\sm\\b)`;
+  const QUANTITY = new RegExp(`((?:${NUMBER}${BETWEEN})*${NUMBER})(\\s)${UNIT}`, 'gu');
+  const LABEL = new RegExp(` / ${UNIT}(?=\\s*$)`, 'gu');
+  const inWords = text => text
+    .replace(QUANTITY, (_, numbers, space, unit) => inUnit(numbers, unit, 3) + space + now(unit))
+    .replace(LABEL, (_, unit) => ` / ${now(unit)}`);
+  const present = new Set();
+  const switches = node => {
+    const text = node.data;
+    const units = [...text.matchAll(QUANTITY), ...text.matchAll(LABEL)].flatMap(found => bases(found.at(-1)));
+    units.forEach(unit => present.add(unit));
+    if (units.length) switched.push(() => { node.data = inWords(text); });
   };
   const choose = (unit, at) => {
     chosen[unit] = at % UNITS[unit].length;
@@ -96,8 +111,14 @@
   }
   for (const group of document.querySelectorAll('g[data-number]')) changes(group.firstElementChild, group.dataset.number);
 
+  for (const part of document.querySelectorAll('.cards, figcaption, svg text')) {
+    if (part.closest('g[data-of], g[data-number]')) continue;
+    const texts = document.createTreeWalker(part, NodeFilter.SHOW_TEXT);
+    while (texts.nextNode()) switches(texts.currentNode);
+  }
+
   // one choice for each unit of the page, after its contents
-  const present = new Set([...document.querySelectorAll('button.unit')].flatMap(unit => bases(unit.textContent)));
+  for (const unit of document.querySelectorAll('button.unit')) bases(unit.textContent).forEach(one => present.add(one));
   for (const group of document.querySelectorAll('g[data-of]')) bases(group.dataset.of).forEach(unit => present.add(unit));
   if (present.size) {
     const bar = make('p', 'Units ', 'units');

@@ -9,6 +9,7 @@ use super::check::Check;
 use super::materials::Checked;
 use crate::delimited::nearest_name;
 use crate::error::{Error, Result};
+use crate::material::listed;
 use crate::rod::{Joint, LumpedMass, Pipe, Warning};
 use crate::toml_text::Number;
 use crate::units::{GRAM, MM, URAD_PER_NM};
@@ -84,7 +85,7 @@ impl Check<'_> {
         let known: Vec<&str> = materials.keys().copied().collect();
         let expected = match known.as_slice() {
             [] => "a material with a section [material.NAME]; the file has none".to_owned(),
-            known => format!("one of the file's materials: \"{}\"", known.join("\", \"")),
+            known => format!("one of the file's materials: {}", listed(known)),
         };
         let hint = nearest_name(name.get_ref(), &known).map(|near| format!("did you mean \"{near}\"?"));
         self.toml.is(key, name, &expected).with_hint(hint)

@@ -118,11 +118,14 @@ fn of_raw(toml: TomlText, text: &str, raw: &RawEffect) -> Result<OwnEffect> {
     let name = raw.name.get_ref();
     let is_word = |name: &str| {
         let mut bytes = name.bytes();
-        bytes.next().is_some_and(|b| b.is_ascii_lowercase())
+        name.len() <= limits::NAME_BYTES
+            && bytes.next().is_some_and(|b| b.is_ascii_lowercase())
             && bytes.all(|b| b.is_ascii_lowercase() || b.is_ascii_digit() || b == b'_')
     };
-    if !is_word(name) || name.len() > limits::NAME_BYTES {
-        return Err(toml.is("name", &raw.name, "lower-case letters, digits and _, a letter first"));
+    if !is_word(name) {
+        let most = limits::NAME_BYTES;
+        let expected = format!("lower-case letters, digits and _, a letter first, {most} at most");
+        return Err(toml.is("name", &raw.name, &expected));
     }
     let known = registry::ALL.iter().map(|known| &known.effect).chain(registry::MISTAKES).chain([&UNKNOWN]);
     if known.into_iter().any(|known| known.name == name) {

@@ -81,7 +81,8 @@ impl IsometricBox {
 
     /// An empty chart with floor, walls, ticks and the names of the axes.
     pub(super) fn chart(&self, title: String) -> Chart {
-        let mut chart = Chart::new(title, "", "");
+        // the drawing has axes of its own; by these a page knows the unit of their numbers
+        let mut chart = Chart::new(title, "x / mm", "z / mm");
         (chart.equal_aspect, chart.frameless) = (true, true);
         let ([xl, yl, zl], [xh, yh, zh]) = (self.low, self.high);
         let grid = Style::nth(0).colour(Colour::Grey).dash(Dash::Solid).width(0.4);
@@ -107,21 +108,25 @@ impl IsometricBox {
             [u + by * self.size() * dx, v + by * self.size() * dy]
         };
         let (left_down, right_down, left) = ([-0.5, -0.75f64.sqrt()], [0.5, -0.75f64.sqrt()], [-1.0, 0.0]);
-        let mut text =
-            |at: [f64; 2], text: String, align: Align| chart.marks.push(Mark::Text { at, text, align });
+        let mut number = |at: [f64; 2], label: &String, align: Align| {
+            chart.marks.push(Mark::Text { at, text: label.clone(), align, is_number: true });
+        };
         for (x, label) in xs {
-            text(away(TICK_AWAY, left_down, [*x, yl, zl]), label.clone(), Align::Left);
+            number(away(TICK_AWAY, left_down, [*x, yl, zl]), label, Align::Left);
         }
         for (y, label) in ys {
-            text(away(TICK_AWAY, right_down, [xh, *y, zl]), label.clone(), Align::Right);
+            number(away(TICK_AWAY, right_down, [xh, *y, zl]), label, Align::Right);
         }
         for (z, label) in zs {
-            text(away(0.3 * TICK_AWAY, left, [xl, yl, *z]), label.clone(), Align::Left);
+            number(away(0.3 * TICK_AWAY, left, [xl, yl, *z]), label, Align::Left);
         }
+        let mut name = |at: [f64; 2], text: &str| {
+            chart.marks.push(Mark::Text { at, text: text.into(), align: Align::Middle, is_number: false });
+        };
         let middle = |a: f64, b: f64| 0.5 * a + 0.5 * b;
-        text(away(LABEL_AWAY, left_down, [middle(xl, xh), yl, zl]), "x / mm".into(), Align::Middle);
-        text(away(LABEL_AWAY, right_down, [xh, middle(yl, yh), zl]), "y / mm".into(), Align::Middle);
-        text(away(LABEL_AWAY, left, [xl, yl, middle(zl, zh)]), "z / mm".into(), Align::Middle);
+        name(away(LABEL_AWAY, left_down, [middle(xl, xh), yl, zl]), "x / mm");
+        name(away(LABEL_AWAY, right_down, [xh, middle(yl, yh), zl]), "y / mm");
+        name(away(LABEL_AWAY, left, [xl, yl, middle(zl, zh)]), "z / mm");
         chart
     }
 }

@@ -5,7 +5,7 @@
 //! the given one with its lengths or pipes exchanged, are compared in full: each with all effects,
 //! by the probability that the recording then has.
 
-use super::mistakes::{Mended, ODDS, RARE};
+use super::mistakes::{Mended, ODDS, OtherRod, RARE};
 use super::model::RigModel;
 use super::wanted::Wanted;
 use crate::error::Result;
@@ -19,8 +19,8 @@ const LITTLE: f64 = 0.1;
 
 /// One of the other rods beside the given one.
 pub(super) struct Other {
-    /// Its number among [`Mended::others`].
-    pub number: usize,
+    /// What it is.
+    pub rod: OtherRod,
     /// Ln of the odds for it.
     pub log_odds: f64,
     /// How far what it says of the readings is from what the given one says, m (rms).
@@ -35,8 +35,8 @@ impl Other {
 }
 
 /// Does `diagnosis`, that of the readings with another rod, leave nothing unexplained, or little
-/// beside what that rod explains, m (rms)? Of two rods that both leave more, neither is the right
-/// one beyond doubt: odds are no better than the best of the hypotheses that they compare.
+/// beside what that rod explains, m (rms)? Slopes are odds between rods, whatever else is wrong with
+/// both.
 pub(super) fn is_all_but_little(explains: f64, diagnosis: &Diagnosis) -> bool {
     diagnosis.discrepancy.as_ref().is_none_or(|left| left.rms < LITTLE * explains)
 }
@@ -59,7 +59,7 @@ pub(super) fn others(
         return Ok(found);
     }
     let compared = Compared::new(model, evidence);
-    for (number, meant) in mended.others.iter().enumerate() {
+    for meant in &mended.others {
         let (other, of_other, _) =
             RigModel::with_effects(&mended.readings, Some(&meant.rod), &Wanted::AllAnd(&model.own))?;
         if of_other.residual.len() != evidence.residual.len() {
@@ -67,21 +67,20 @@ pub(super) fn others(
         }
         let log_odds = compared.log_odds(&other, &of_other) + meant.log_prior + RARE;
         let explains = rms(&(&evidence.residual - &of_other.residual));
-        found.push(Other { number, log_odds, explains });
+        found.push(Other { rod: meant.clone(), log_odds, explains });
     }
     found.sort_by(|a, b| b.log_odds.total_cmp(&a.log_odds));
     Ok(found)
 }
 
 /// Where two rods are indistinguishable, what makes the given one fit has the other as its rival.
-pub(super) fn add_rivals(mended: &Mended, others: &[Other], model: &RigModel, diagnosis: &mut Diagnosis) {
+pub(super) fn add_rivals(others: &[Other], model: &RigModel, diagnosis: &mut Diagnosis) {
     for finding in diagnosis.findings.iter_mut().filter(|finding| is_of_the_rod(model, finding)) {
         for other in others.iter().filter(|other| other.log_odds > -ALIKE) {
-            let meant = &mended.others[other.number];
-            let location = Location::Key(meant.location.clone());
+            let location = Location::Key(other.rod.location.clone());
             let odds = (-other.log_odds).exp().max(1.0);
             // a file is sooner looked at than anything is measured
-            finding.rivals.insert(0, Rival::without_term(meant.effect, location, odds));
+            finding.rivals.insert(0, Rival::without_term(other.rod.effect, location, odds));
         }
     }
 }

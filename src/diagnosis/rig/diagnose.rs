@@ -80,15 +80,18 @@ pub fn diagnose_with(
     if mended.take_zeros_back(&diagnosis.findings) {
         (model, evidence, not_testable, diagnosis) = inferred(&mended, None)?;
     }
-    let others = another_rod::others(&mended, &model, &evidence, &diagnosis)?;
-    another_rod::add_rivals(&mended, &others, &model, &mut diagnosis);
+    let mut others = another_rod::others(&mended, &model, &evidence, &diagnosis)?;
+    another_rod::add_rivals(&others, &model, &mut diagnosis);
     if let Some(meant) = others.first().filter(|meant| meant.is_meant()) {
         let mut taken = mended.clone();
-        taken.take(meant.number, meant.log_odds, meant.explains);
+        taken.take(meant.rod.clone(), meant.log_odds, meant.explains);
         let as_other = inferred(&taken, None)?;
-        if another_rod::is_all_but_little(meant.explains, &as_other.3) {
+        // of two rods that both leave something unexplained neither is the right one beyond doubt
+        if as_other.3.discrepancy.is_none() {
             mended = taken;
             (model, evidence, not_testable, diagnosis) = as_other;
+            // that is decided
+            others.clear();
         }
     }
     // a rod that yields much more than its file bends much farther, which may change what was found
@@ -96,7 +99,7 @@ pub fn diagnose_with(
     for _ in 0..MOST_BENT {
         let Some(found) = bends_farther(&model, bent.as_ref(), &diagnosis)? else { break };
         (model, evidence, not_testable, diagnosis) = inferred(&mended, Some(&found))?;
-        another_rod::add_rivals(&mended, &others, &model, &mut diagnosis);
+        another_rod::add_rivals(&others, &model, &mut diagnosis);
         bent = Some(found);
     }
     as_measured::resize(&model, &evidence, &mut diagnosis);

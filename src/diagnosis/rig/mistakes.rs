@@ -339,8 +339,8 @@ impl Mended {
 
     /// Takes another rod for the one that was meant: what it says of the readings is `explains` (m,
     /// rms) from what was said before.
-    pub fn take(&mut self, number: usize, log_odds: f64, explains: f64) {
-        let OtherRod { rod, effect, location, words, .. } = self.others.swap_remove(number);
+    pub fn take(&mut self, meant: OtherRod, log_odds: f64, explains: f64) {
+        let OtherRod { rod, effect, location, words, .. } = meant;
         self.rod = Some(rod);
         self.others.clear();
         self.found.push(Finding {

@@ -3,7 +3,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::action::{Action, State};
+use super::action::Action;
 use super::cases::Cases;
 use super::datum::Datum;
 use super::effects::entry::{Context, Entry};
@@ -12,6 +12,7 @@ use super::effects::zeros::ZERO_NOT_TAKEN;
 use super::model::{Body, RigModel, is_dependent};
 use super::numbering::numbered;
 use super::slide::Course;
+use super::state::State;
 use super::structure::Structure;
 use super::wanted::Wanted;
 use super::{

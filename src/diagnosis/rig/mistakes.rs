@@ -45,7 +45,7 @@ use self::search::{Found, Search, Trial};
 pub(super) use self::search::{ODDS, RARE};
 use self::sensors::Expected;
 use super::datum;
-use super::effects::mistakes::OFFSET_MISTAKE;
+use super::effects::mistakes::{OFFSET_MISTAKE, UNIT_MISTAKE};
 use super::structure::check_stations;
 use crate::error::Result;
 use crate::inference::{Description, Effect, Estimate, Finding, Location, Rival};
@@ -367,7 +367,7 @@ impl Mended {
         let own = &moves[found.number];
         let times = found.log_scale_before.abs().exp();
         let softer = if found.log_scale_before > 0.0 { "softer" } else { "stiffer" };
-        let why = match times > 2.0 && own.effect.name == "unit_mistake" {
+        let why = match times > 2.0 && own.effect == &UNIT_MISTAKE {
             true => format!(": the rod seems {} times {softer} than its file", significant(times, 2)),
             false => String::new(),
         };

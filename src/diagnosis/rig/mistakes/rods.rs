@@ -87,12 +87,12 @@ pub(super) fn all(rod: &Rod, others: &[(String, Rod)], has_stations: [bool; 2]) 
                    observed: String,
                    factor: Option<f64>,
                    prior: f64| {
-        let looks_like = match effect.name {
-            "unit_mistake" if location.contains(',') => {
+        let looks_like = match effect {
+            effect if effect == &UNIT_MISTAKE && location.contains(',') => {
                 format!("{location} look as if they were in another unit")
             }
-            "unit_mistake" => format!("{location} looks as if it were in another unit"),
-            "swap_mistake" => format!("{location} look swapped"),
+            effect if effect == &UNIT_MISTAKE => format!("{location} looks as if it were in another unit"),
+            effect if effect == &SWAP_MISTAKE => format!("{location} look swapped"),
             _ => format!("the readings look like those of {location}"),
         };
         let change = Change::body(found.len() + 1);

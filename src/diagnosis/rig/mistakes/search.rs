@@ -3,6 +3,7 @@
 //! A beam search: one mistake, then a second beside each of the best, then a third. A state is kept
 //! where it is a thousand times more probable than the one that it grew from.
 
+use super::super::effects::mistakes::{SIGN_MISTAKE, SWAP_MISTAKE, UNIT_MISTAKE};
 use super::change::{Change, Move};
 use super::lines::Line;
 use super::physics::{Physics, Seen, Verdict, View};
@@ -251,15 +252,14 @@ impl Trial<'_> {
                 let left = self.search.left(&part, &old, 0.0);
                 let leaves = self.search.left(&part, &expected, best.log_scale);
                 let effect = self.moves[number].effect;
-                let is_name =
-                    ["sign_mistake", "swap_mistake"].contains(&effect.name) && best.change.body == 0;
+                let is_name = [&SIGN_MISTAKE, &SWAP_MISTAKE].contains(&effect) && best.change.body == 0;
                 let most = if is_name { LEFT_BY_NAME } else { LEFT_BY_FACTOR };
                 let change =
                     |k: &usize| ((expected[*k] - old[*k]) * self.search.lines[*k].largest_load).powi(2);
                 let rms = (part.iter().map(change).sum::<f64>() / part.len().max(1) as f64).sqrt();
                 let leaves = leaves + self.search.scattered(&part, &expected, best.log_scale);
                 // walls and lengths are off by a third in many a file: a unit is more than that
-                let is_key = effect.name == "unit_mistake" && best.change.body != before.change.body;
+                let is_key = effect == &UNIT_MISTAKE && best.change.body != before.change.body;
                 let least = if is_key { FAR_OFF } else { IMPLAUSIBLE };
                 (left > least && leaves < most && leaves < CURED * left, rms)
             }

@@ -13,8 +13,8 @@ impl Robot {
         own.map(|law| law.turn(q, torque, 1.0)).sum()
     }
 
-    /// How far the axis of a joint is off, in the frame that carries it, m; `None` where no law says
-    /// so.
+    /// How far the axis of a joint is off, in the frame that carries it, m; `None` where no law
+    /// says so.
     pub(super) fn axis_shift(&self, joint: usize, q: &[f64]) -> Option<Vector3<f64>> {
         self.shift(LawPlace::Axis(joint), q, &[])
     }

@@ -232,10 +232,10 @@ impl Mended {
         let Some(rod) = &self.rod else { return Ok(None) };
         let (pairs, pair) = pairs(lines);
         let physics = Physics::new(rod, &pairs)?;
-        let of = |(line, &pair): (&Line, &usize)| {
+        let of_line = |(line, &pair): (&Line, &usize)| {
             physics.compliance(pair)[(line.channel.index(), line.axis.index())]
         };
-        let expected: Vec<f64> = lines.iter().zip(&pair).map(of).collect();
+        let expected: Vec<f64> = lines.iter().zip(&pair).map(of_line).collect();
         let most = lines.iter().zip(&expected).map(|(l, e)| e.abs() * l.largest_load).fold(0.0, f64::max);
         let mut scales: Vec<f64> = Vec::new();
         for (line, expected) in lines.iter().zip(&expected) {

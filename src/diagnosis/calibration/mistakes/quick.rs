@@ -314,11 +314,11 @@ fn step<'a>(
 
 /// ½·Σ((ρ − nominal)/sd)², the tip excepted.
 fn moved(body: &Body, state: &State, nominal: &[f64], sd: &[f64]) -> f64 {
-    let of = |k: usize| match body.free[k] {
+    let square = |k: usize| match body.free[k] {
         Parameter::Tool(_) => 0.0,
         parameter => ((state.setup.get(parameter) - nominal[k]) / sd[k]).powi(2),
     };
-    0.5 * (0..body.free.len()).map(of).sum::<f64>()
+    0.5 * (0..body.free.len()).map(square).sum::<f64>()
 }
 
 impl Fit {

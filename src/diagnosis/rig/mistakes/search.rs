@@ -81,14 +81,15 @@ impl Search<'_> {
             let shown = part.iter().map(|&k| self.deflection(k, expected[k])).fold(0.0, f64::max);
             shown > SHOWN * most && self.left(part, &expected, 0.0) > IMPLAUSIBLE
         };
-        let of = |is_of: &dyn Fn(&Line) -> bool| -> Vec<usize> {
+        let lines_where = |is_of: &dyn Fn(&Line) -> bool| -> Vec<usize> {
             all.iter().copied().filter(|&k| is_of(&self.lines[k])).collect()
         };
         !self.is_possible
             || seen.against_the_load() > 0
             || is_off(&all)
             || Axis::ALL.into_iter().any(|axis| {
-                is_off(&of(&|line| line.channel == axis)) || is_off(&of(&|line| line.axis == axis))
+                is_off(&lines_where(&|line| line.channel == axis))
+                    || is_off(&lines_where(&|line| line.axis == axis))
             })
     }
 
@@ -297,7 +298,7 @@ impl Trial<'_> {
 
 /// The physics of each body; `None` where the readings cannot be on it.
 pub(super) fn physics(bodies: &[Body], pairs: &[[Option<f64>; 2]]) -> Vec<Option<Physics>> {
-    let of = |body: &Body| {
+    let of_body = |body: &Body| {
         let pairs: Vec<[Option<f64>; 2]> = pairs
             .iter()
             .map(|[load, read]| [load.map(|s| s * body.stations[0]), read.map(|s| s * body.stations[1])])
@@ -307,5 +308,5 @@ pub(super) fn physics(bodies: &[Body], pairs: &[[Option<f64>; 2]]) -> Vec<Option
         let physics = Physics::new(&body.rod, &pairs).ok().filter(|_| is_on_it)?;
         (0..pairs.len()).all(|pair| physics.compliance(pair).iter().all(|c| c.is_finite())).then_some(physics)
     };
-    bodies.iter().map(of).collect()
+    bodies.iter().map(of_body).collect()
 }

@@ -35,8 +35,8 @@ pub(super) fn t_scale(lengths: &[f64], least: f64) -> f64 {
 
 /// Ln of the density of all rows, as many as count.
 pub(super) fn density(lengths: &[f64], scale: f64) -> f64 {
-    let of = |r: &f64| -3.0 * scale.ln() - 0.5 * (NU + 3.0) * ((r / scale).powi(2) / NU).ln_1p();
-    let sum: f64 = lengths.iter().map(of).sum();
+    let ln_density = |r: &f64| -3.0 * scale.ln() - 0.5 * (NU + 3.0) * ((r / scale).powi(2) / NU).ln_1p();
+    let sum: f64 = lengths.iter().map(ln_density).sum();
     let count = lengths.len().max(1) as f64;
     sum / count * count.min(MOST_ROWS) * ROW
 }

@@ -1,5 +1,5 @@
-//! Without what the places of sockets, or of clamps that may be anywhere, take up: the mean of their
-//! rows.
+//! Without what the places of sockets, or of clamps that may be anywhere, take up: the mean of
+//! their rows.
 
 use nalgebra::{DMatrix, Vector3};
 

@@ -201,8 +201,8 @@ fn simulated(runs: &[Run], variant: usize) -> Vec<String> {
             format!("{} ({:.3})", told(all.iter().map(|s| s.mean / MM), 4), mean(&worst).unwrap())
         })
         .collect();
-    let of = |run: &Run, mode: usize| run.judged[variant].errors[mode].unwrap().mean / MM;
-    cells.push(told(runs.iter().map(|run| of(run, 0) - of(run, 3)), 4));
+    let of_run = |run: &Run, mode: usize| run.judged[variant].errors[mode].unwrap().mean / MM;
+    cells.push(told(runs.iter().map(|run| of_run(run, 0) - of_run(run, 3)), 4));
     cells
 }
 

@@ -220,9 +220,9 @@ fn trials_share_no_model_with_what_they_try() {
 fn python_costs_rust_nothing() {
     assert_eq!(members_needed("python/Cargo.toml"), ["rodcal"]);
     let workspace: toml::Table = fs::read_to_string(root().join("Cargo.toml")).unwrap().parse().unwrap();
-    let of = |key: &str| workspace["workspace"][key].as_array().unwrap();
-    assert!(of("members").iter().any(|member| member.as_str() == Some("python")));
-    assert!(of("default-members").iter().all(|member| member.as_str() != Some("python")));
+    let of_key = |key: &str| workspace["workspace"][key].as_array().unwrap();
+    assert!(of_key("members").iter().any(|member| member.as_str() == Some("python")));
+    assert!(of_key("default-members").iter().all(|member| member.as_str() != Some("python")));
     for package in
         ["Cargo.toml", "crates/base/Cargo.toml", "crates/trial/Cargo.toml", "crates/png/Cargo.toml"]
     {

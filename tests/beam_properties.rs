@@ -118,10 +118,10 @@ fn rod() -> impl Strategy<Value = Rod> {
 fn a_bend_of_a_nanometre_is_a_sharp_corner() {
     let text = include_str!("../rods/5.toml");
     let rod = |radius: &str| Rod::from_toml("rod", &text.replace("bend_radius_mm = 0.0", radius)).unwrap();
-    let of = |rod: &Rod| Compliance::of_model(rod, &Physics::default(), 20).unwrap();
-    let sharp = of(&rod("bend_radius_mm = 0.0"));
+    let of_rod = |rod: &Rod| Compliance::of_model(rod, &Physics::default(), 20).unwrap();
+    let sharp = of_rod(&rod("bend_radius_mm = 0.0"));
     for radius in ["1e-7", "1e-6", "1e-5", "1e-4", "1e-3"] {
-        let bent = of(&rod(&format!("bend_radius_mm = {radius}")));
+        let bent = of_rod(&rod(&format!("bend_radius_mm = {radius}")));
         assert!((bent.force - sharp.force).amax() < 1e-5 * sharp.force.amax(), "bend radius {radius} mm");
     }
 }

@@ -244,11 +244,15 @@ fn cross_channels_are_two_measurements_of_one_number() {
     let measured = fit.measured.unwrap();
     let names: Vec<String> = measured.ratios.iter().map(|r| r.name()).collect();
     assert_eq!(names, ["11", "31", "22", "13", "33"]);
-    let of = |name: &str| measured.ratios.iter().find(|r| r.name() == name).unwrap().value;
-    assert!(distance(of("31"), 1.3) < 3.0 && distance(of("13"), 1.1) < 3.0 && distance(of("11"), 1.2) < 3.0);
-    let weight = |name: &str| of(name).std_error.unwrap().powi(-2);
-    let pooled =
-        (weight("13") * of("13").value + weight("31") * of("31").value) / (weight("13") + weight("31"));
+    let of_name = |name: &str| measured.ratios.iter().find(|r| r.name() == name).unwrap().value;
+    assert!(
+        distance(of_name("31"), 1.3) < 3.0
+            && distance(of_name("13"), 1.1) < 3.0
+            && distance(of_name("11"), 1.2) < 3.0
+    );
+    let weight = |name: &str| of_name(name).std_error.unwrap().powi(-2);
+    let pooled = (weight("13") * of_name("13").value + weight("31") * of_name("31").value)
+        / (weight("13") + weight("31"));
     assert!(weight("31") > 2.0 * weight("13"));
     let cf = measured.compliance.force;
     assert_relative_eq!(cf[(0, 2)], pooled * measured.model.force[(0, 2)], max_relative = 1e-12);

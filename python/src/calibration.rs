@@ -70,8 +70,9 @@ pub fn calibrate<'py>(
         None => answer::calibrate(campaign, mode, &options, folds, &neighbours(own)),
         Some(predicted) => {
             let predicted = predicted.iter().map(|(row, m)| (*row, Vector3::from(*m))).collect::<Vec<_>>();
-            let of = |_: &Calibration, folds| CrossValidation::of(campaign, folds, predicted.clone());
-            answer::calibrate_held_out(campaign, mode, &options, folds, &neighbours(own), &of)
+            let of_calibration =
+                |_: &Calibration, folds| CrossValidation::of(campaign, folds, predicted.clone());
+            answer::calibrate_held_out(campaign, mode, &options, folds, &neighbours(own), &of_calibration)
         }
     })?;
     let arrays = PyDict::new(py);

@@ -191,15 +191,15 @@ impl<T: Number> Chain<T> {
         let mut moved = DMatrix::zeros(forces.nrows(), forces.ncols());
         let mut carried = vec![[Vector3::zeros(); 2]; self.elements.len()];
         for column in 0..forces.ncols() {
-            let of = |matrix: &DMatrix<T>, row: usize| {
+            let of_matrix = |matrix: &DMatrix<T>, row: usize| {
                 Vector3::new(matrix[(row, column)], matrix[(row + 1, column)], matrix[(row + 2, column)])
             };
             // from the tip: force, and moment about the element's reference point
             let [mut force, mut moment] = [Vector3::zeros(); 2];
             for (k, element) in self.elements.iter().enumerate().rev() {
                 let far = self.nodes[k + 1].position;
-                force += of(forces, 6 * (k + 1));
-                moment += of(forces, 6 * (k + 1) + 3);
+                force += of_matrix(forces, 6 * (k + 1));
+                moment += of_matrix(forces, 6 * (k + 1) + 3);
                 let at_reference = moment + (far - element.reference).cross(&force);
                 carried[k] = [force, at_reference];
                 moment += (far - self.nodes[k].position).cross(&force);

@@ -52,20 +52,23 @@ pub(super) fn priors(
         return Vec::new();
     }
     let plausible = plausible_compliances(nominal, payload);
-    let of = |(index, parameter): (usize, &Parameter)| match parameter {
-        Parameter::Compliance(joint) if !stated.contains(parameter) => {
-            Some(Prior { parameter: index, value: nominal.get(*parameter), sd: plausible[*joint] })
+    let mut priors = Vec::new();
+    for (index, parameter) in free.iter().enumerate() {
+        if let Parameter::Compliance(joint) = parameter
+            && !stated.contains(parameter)
+        {
+            let (value, sd) = (nominal.get(*parameter), plausible[*joint]);
+            priors.push(Prior { parameter: index, value, sd });
         }
-        _ => None,
-    };
-    free.iter().enumerate().filter_map(of).collect()
+    }
+    priors
 }
 
 /// No drive turns against its load; what a file says already may stay.
 pub(super) fn least(setup: &Setup, parameter: Parameter) -> f64 {
-    match parameter {
-        Parameter::Compliance(_) => setup.get(parameter).min(0.0),
-        _ => f64::NEG_INFINITY,
+    match matches!(parameter, Parameter::Compliance(_)) {
+        true => setup.get(parameter).min(0.0),
+        false => f64::NEG_INFINITY,
     }
 }
 

@@ -36,7 +36,14 @@ impl Observability {
         match parameter {
             Parameter::Compliance(_) => URAD_PER_NM,
             // a millimetre or a milliradian
-            _ => MM,
+            Parameter::BasePosition(_)
+            | Parameter::BaseRotation(_)
+            | Parameter::Theta(_)
+            | Parameter::D(_)
+            | Parameter::A(_)
+            | Parameter::Alpha(_)
+            | Parameter::Beta(_)
+            | Parameter::Tool(_) => MM,
         }
     }
 

@@ -120,11 +120,11 @@ impl Calibration<'_> {
     /// What brings the points of each station of another `recording` into {W}, by the stations of
     /// the same name in that which was calibrated on; the identity for a station that is not there.
     pub fn motions(&self, calibrated: &Recording, recording: &Recording) -> Vec<Pose> {
-        let of = |name: &str| {
+        let of_name = |name: &str| {
             let known = calibrated.stations.iter().position(|known| known.name == name);
             known.and_then(|known| self.stations.get(known).copied()).unwrap_or(Pose::IDENTITY)
         };
-        recording.stations.iter().map(|station| of(&station.name)).collect()
+        recording.stations.iter().map(|station| of_name(&station.name)).collect()
     }
 
     /// False for a fit that did not converge, or that leaves more than a robot's error can be:

@@ -51,11 +51,11 @@ impl Drawing {
     /// user's.
     pub fn new(nominal: &Setup, free: &[Parameter], stated: &[Parameter]) -> Self {
         let uncertainty = &nominal.robot.standard_uncertainty;
-        let of = |&parameter: &Parameter| {
+        let of_parameter = |&parameter: &Parameter| {
             let sd = uncertainty.of(parameter).filter(|_| !stated.contains(&parameter))?;
             Some((nominal.get(parameter), sd))
         };
-        let known: Vec<_> = free.iter().map(of).collect();
+        let known: Vec<_> = free.iter().map(of_parameter).collect();
         let determined = known.iter().flatten().count() as f64;
         Drawing { known, scale: FIRST, determined }
     }

@@ -27,10 +27,10 @@ impl Recording {
         if count < 2 {
             return Ok(());
         }
-        let of = |station: usize| -> Vec<usize> {
+        let of_station = |station: usize| -> Vec<usize> {
             (0..self.len()).filter(|&row| self.rows[row].station == station).collect()
         };
-        let rows: Vec<Vec<usize>> = (0..count).map(of).collect();
+        let rows: Vec<Vec<usize>> = (0..count).map(of_station).collect();
         let largest = rows.iter().max_by_key(|rows| rows.len()).map_or(&[][..], Vec::as_slice);
         let (_, tool) = rough_start(robot, &self.subset(largest), base, tool)?;
         let mut bases = Vec::with_capacity(count);

@@ -130,12 +130,12 @@ pub fn run() -> Result<Outcome> {
 
 /// All pages, as each of them links them.
 fn links() -> Vec<PageLink> {
-    let of = |(page, title, answer): (&str, &str, &str)| PageLink {
+    let of_page = |(page, title, answer): (&str, &str, &str)| PageLink {
         file: format!("{page}.html"),
         title: title.into(),
         answer: answer.into(),
     };
-    PAGES.into_iter().map(of).collect()
+    PAGES.into_iter().map(of_page).collect()
 }
 
 /// The sections that have one of these pictures, with the first of each and with their tables,

@@ -107,17 +107,18 @@ impl StaticLaws {
 
     /// The largest load at the tip (N) that the laws were recorded with, each by its own variable.
     pub fn recorded_load(&self) -> Option<f64> {
-        let of = |acting: &Acting| match acting.levers {
+        let of_acting = |acting: &Acting| match acting.levers {
             Some([lever, _]) => acting.law.range.1 / lever.norm(),
             None => acting.law.range.1,
         };
-        self.acting.iter().map(of).filter(|load| load.is_finite()).reduce(f64::max)
+        self.acting.iter().map(of_acting).filter(|load| load.is_finite()).reduce(f64::max)
     }
 
     /// Those that a load and gravity take beyond what was recorded: law and value of its variable.
     pub fn beyond(&self, force: &Vector3<f64>, gravity: &Vector3<f64>) -> Vec<(&RodLaw, f64)> {
-        let of = |acting: &'_ Acting| acting.variable(force, gravity).filter(|&x| acting.law.is_beyond(x));
-        self.acting.iter().filter_map(|acting| Some((&acting.law, of(acting)?))).collect()
+        let beyond_of =
+            |acting: &'_ Acting| acting.variable(force, gravity).filter(|&x| acting.law.is_beyond(x));
+        self.acting.iter().filter_map(|acting| Some((&acting.law, beyond_of(acting)?))).collect()
     }
 }
 
@@ -215,13 +216,14 @@ mod tests {
                 bending: compliance,
                 torsion: compliance,
             };
-            let of = |rod: &Rod| Compliance::of_model(rod, &Physics::default(), DEFAULT_ELEMENTS).unwrap();
+            let of_rod =
+                |rod: &Rod| Compliance::of_model(rod, &Physics::default(), DEFAULT_ELEMENTS).unwrap();
             let (plain, soft) = (rod().with_joint(joint(0.0)), rod().with_joint(joint(20e-6)));
             let mut with_law = plain.clone();
             with_law.laws.push(proportional(place, LawVariable::Moment, 20.0));
             let laws = StaticLaws::of_tip(&with_law);
             let (force, gravity) = (Vector3::new(1.0, -2.0, 3.0), Vector3::new(0.3, 0.5, -0.8));
-            let (before, after) = (of(&plain), of(&soft));
+            let (before, after) = (of_rod(&plain), of_rod(&soft));
             let expected = (after.force - before.force) * force + (after.gravity - before.gravity) * gravity;
             let found = laws.displacement(&before.force, &force, &gravity);
             assert!((found - expected).norm() < 1e-6 * expected.norm(), "{found} for {expected}");

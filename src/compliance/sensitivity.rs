@@ -43,10 +43,10 @@ pub struct Sensitivity {
 ///
 /// let rod = Rod::read("rods/5.toml".as_ref())?;
 /// let all = sensitivities(&rod, &Physics::default(), paper_contact_force())?;
-/// let of = |name: &str| all.iter().find(|one| one.number.to_string() == name).expect("5# has it");
+/// let number = |name: &str| all.iter().find(|one| one.number.to_string() == name).expect("5# has it");
 /// let index = Compliance::of_model(&rod, &Physics::default(), 10)?.index(paper_contact_force());
 /// // 1 % more of L2: c_rod grows by 2.8 %
-/// let share = of("l2").index * rod.l2 / index;
+/// let share = number("l2").index * rod.l2 / index;
 /// assert!((share - 2.8).abs() < 0.1, "{share}");
 /// # Ok::<(), rodcal::Error>(())
 /// ```

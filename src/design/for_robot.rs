@@ -150,17 +150,17 @@ mod tests {
     #[test]
     fn orders_are_compared_by_their_ranks() {
         assert_eq!(ranks(&[3.0, 1.0, 3.0, 9.0]), [1.5, 0.0, 1.5, 3.0]);
-        let of = |y: [f64; 6]| {
+        let value_at = |y: [f64; 6]| {
             let pairs: Vec<(f64, f64)> = (1..7).map(f64::from).zip(y).collect();
             proxy(Mode::Fea, &pairs).unwrap()
         };
-        assert!((of([1.0, 4.0, 9.0, 16.0, 25.0, 36.0]).r - 1.0).abs() < 1e-12);
+        assert!((value_at([1.0, 4.0, 9.0, 16.0, 25.0, 36.0]).r - 1.0).abs() < 1e-12);
         // 1 − 6·Σd²/(n(n² − 1)) with d = 1, 1, 1, 1, 1, 1
-        let swapped = of([2.0, 1.0, 4.0, 3.0, 6.0, 5.0]);
+        let swapped = value_at([2.0, 1.0, 4.0, 3.0, 6.0, 5.0]);
         assert!((swapped.r - (1.0 - 36.0 / 210.0)).abs() < 1e-12);
         let half = 1.959964 * (1.06f64 / 3.0).sqrt();
         assert!((swapped.interval[0] - (swapped.r.atanh() - half).tanh()).abs() < 1e-12);
-        assert_eq!(of([5.0; 6]).r, 0.0);
+        assert_eq!(value_at([5.0; 6]).r, 0.0);
         assert!(proxy(Mode::Fea, &[(1.0, 2.0); 4]).is_none());
     }
 }

@@ -72,8 +72,8 @@ pub fn indistinguishable(designs: &[Design], intervals: &[Intervals], goals: &[G
         })
     };
     let count = designs.len().min(intervals.len());
-    let of = |a: usize| (0..count).filter(|&b| b != a && is_same(a, b)).collect();
-    (0..count).map(of).collect()
+    let equals_of = |a: usize| (0..count).filter(|&b| b != a && is_same(a, b)).collect();
+    (0..count).map(equals_of).collect()
 }
 
 #[cfg(test)]
@@ -92,11 +92,11 @@ mod tests {
 
     fn of(wish: &Wish) -> (Vec<Design>, Vec<Intervals>) {
         let designs = search(wish, Searched::All, &|_| {}).unwrap().front;
-        let of = |design: &Design| {
+        let of_design = |design: &Design| {
             let rod = wish.rod(design.index).unwrap();
             Intervals::of(&rod, &Figures::slopes(&rod).unwrap())
         };
-        let intervals = designs.iter().map(of).collect();
+        let intervals = designs.iter().map(of_design).collect();
         (designs, intervals)
     }
 

@@ -259,8 +259,8 @@ mod tests {
         let (any, bought) = (refined.continuous.unwrap(), refined.catalogue.unwrap());
         assert!(any.gained >= bought.gained && bought.gained > 0.002, "{} {}", any.gained, bought.gained);
         for better in [&any, &bought] {
-            let of = |figure: Figure| better.figures.get(figure).unwrap();
-            assert!(of(Figure::Reach) >= start.figures.get(Figure::Reach).unwrap() * (1.0 - 1e-9));
+            let of_figure = |figure: Figure| better.figures.get(figure).unwrap();
+            assert!(of_figure(Figure::Reach) >= start.figures.get(Figure::Reach).unwrap() * (1.0 - 1e-9));
             assert!(wish.limits.iter().all(|limit| limit.is_kept(&better.figures)));
             let again = Figures::of(&better.rod, &mut TipSolver::default()).unwrap();
             assert_eq!(again.get(Figure::CRod), better.figures.get(Figure::CRod));

@@ -434,11 +434,11 @@ c,carbon-wrapped,30,28,60
     fn a_sample_is_spread_evenly_and_always_the_same() {
         let mut wish = wish(TEXT);
         wish.goals.truncate(1);
-        let of = |samples, seed| search(&wish, Searched::Samples(samples, seed), &|_| {}).unwrap();
-        let (one, two) = (of(200, 1), of(200, 1));
+        let searched = |samples, seed| search(&wish, Searched::Samples(samples, seed), &|_| {}).unwrap();
+        let (one, two) = (searched(200, 1), searched(200, 1));
         assert_eq!((one.evaluated, &one.front), (200, &two.front));
-        assert!(one.feasible != of(200, 2).feasible || one.front != of(200, 2).front);
-        assert_eq!(of(1_000_000, 1).evaluated, wish.combinations());
+        assert!(one.feasible != searched(200, 2).feasible || one.front != searched(200, 2).front);
+        assert_eq!(searched(1_000_000, 1).evaluated, wish.combinations());
         assert!(search(&wish, Searched::Samples(0, 1), &|_| {}).is_err());
     }
 

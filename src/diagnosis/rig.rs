@@ -54,6 +54,7 @@ mod recovery;
 mod response;
 mod sites;
 mod slide;
+mod state;
 mod structure;
 #[cfg(test)]
 mod tests;

@@ -322,11 +322,11 @@ mod tests {
         let sequences =
             (0..count).step_by(8).map(|first| (first..(first + 8).min(count)).collect::<Vec<_>>());
         let sequences: Vec<Arc<[usize]>> = sequences.map(Arc::from).collect();
-        let of = |sequence: &Arc<[usize]>| {
+        let steps_of = |sequence: &Arc<[usize]>| {
             let data = Arc::clone(sequence);
             (0..sequence.len()).map(move |from| Step { data: Arc::clone(&data), from })
         };
-        let steps: Vec<Step> = sequences.iter().flat_map(of).collect();
+        let steps: Vec<Step> = sequences.iter().flat_map(steps_of).collect();
         let parameter = Parameter {
             name: "size".into(),
             unit: 1.0,

@@ -112,8 +112,8 @@ mod tests {
 
     /// Two courses that alternate, with a gap and a datum of none.
     fn places() -> Vec<Option<(usize, f64)>> {
-        let of = |k: usize| (k != 5).then_some((k % 2, if k > 7 { k as f64 + 4.5 } else { k as f64 }));
-        (0..14).map(of).collect()
+        let course_of = |k: usize| (k != 5).then_some((k % 2, if k > 7 { k as f64 + 4.5 } else { k as f64 }));
+        (0..14).map(course_of).collect()
     }
 
     fn covariance(correlated_noise: CorrelatedNoise) -> DMatrix<f64> {

@@ -291,7 +291,7 @@ fn given_others(
     evidence: &Evidence,
     hypothesis: &Hypothesis,
 ) -> Vec<Option<Structure>> {
-    let of = |(index, covariate): (usize, &Covariate)| {
+    let of_index = |(index, covariate): (usize, &Covariate)| {
         let is_other = |term: &&Term| {
             let effect = model.candidates()[term.candidate].effect;
             !(effect.seen_along)(&model.location(term)).contains(&covariate.variable)
@@ -304,7 +304,7 @@ fn given_others(
         let left = &evidence.residual - search.predicted(&rest, evidence, &model.response(&rest.terms));
         Some(along(covariate, &left, index as u64))
     };
-    evidence.covariates.iter().enumerate().map(of).collect()
+    evidence.covariates.iter().enumerate().map(of_index).collect()
 }
 
 /// χ² of what is left against the noise that was stated.

@@ -88,27 +88,27 @@ impl Search<'_> {
 
     /// Of each term, how many numbers of one unit follow one another.
     fn alike(&self, terms: &[Term]) -> Vec<Vec<usize>> {
-        let of = |term: &Term| {
+        let of_term = |term: &Term| {
             let parameters = &self.model.candidates()[term.candidate].parameters;
             parameters.chunk_by(|a, b| a.unit == b.unit).map(<[_]>::len).collect()
         };
-        terms.iter().map(of).collect()
+        terms.iter().map(of_term).collect()
     }
 
     /// Values less neutral values, in sizes.
     pub(super) fn offsets(&self, terms: &[Term]) -> DVector<f64> {
-        let of = |c: &Term| -> Vec<f64> {
+        let from_neutral = |c: &Term| -> Vec<f64> {
             let parameters = &self.model.candidates()[c.candidate].parameters;
             parameters.iter().zip(&c.values).map(|(p, value)| (value - p.neutral) / p.size).collect()
         };
-        DVector::from_vec(terms.iter().flat_map(of).collect())
+        DVector::from_vec(terms.iter().flat_map(from_neutral).collect())
     }
 
     pub(super) fn sizes(&self, terms: &[Term]) -> DVector<f64> {
-        let of = |c: &Term| -> Vec<f64> {
+        let in_sizes = |c: &Term| -> Vec<f64> {
             self.model.candidates()[c.candidate].parameters.iter().map(|p| p.size).collect()
         };
-        DVector::from_vec(terms.iter().flat_map(of).collect())
+        DVector::from_vec(terms.iter().flat_map(in_sizes).collect())
     }
 
     /// Puts the estimates of a score, in sizes from the neutral values, into a hypothesis, within

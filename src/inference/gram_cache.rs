@@ -55,7 +55,7 @@ impl GramCache {
         compute: &dyn Fn(usize) -> Table,
     ) -> impl Fn(&[usize]) -> DMatrix<f64> + use<'a> {
         let kept = || self.effects.lock().unwrap_or_else(PoisonError::into_inner);
-        let of = |&effect: &usize| {
+        let of_effect = |&effect: &usize| {
             let known = kept().of.get(&effect).cloned();
             known.unwrap_or_else(|| {
                 // not while others wait
@@ -75,7 +75,7 @@ impl GramCache {
                 found
             })
         };
-        let parts: Vec<Kept> = effects.iter().map(of).collect();
+        let parts: Vec<Kept> = effects.iter().map(of_effect).collect();
         move |candidates| {
             let mut tables = vec![&self.background];
             tables.extend(parts.iter().map(Arc::as_ref));

@@ -286,12 +286,13 @@ mod tests {
 
     #[test]
     fn what_may_undo_each_other_is_left_out_together() {
-        let of = |effect: &'static str, kind| {
+        let of_effect = |effect: &'static str, kind| {
             let effect = Box::leak(Box::new(Effect { name: effect, kind, ..UNKNOWN }));
             Theme { effect, joints: None }
         };
-        let (a, b, c) = (of("a", Kind::Physics), of("b", Kind::Physics), of("c", Kind::Physics));
-        let event = of("event", Kind::Event);
+        let (a, b, c) =
+            (of_effect("a", Kind::Physics), of_effect("b", Kind::Physics), of_effect("c", Kind::Physics));
+        let event = of_effect("event", Kind::Event);
         let sets = left_out_together([a, event, b, a].into_iter());
         assert_eq!(sets, [vec![a], vec![event], vec![b], vec![a, b]]);
         let sets = left_out_together([a, b, c].into_iter());
@@ -301,14 +302,18 @@ mod tests {
 
     #[test]
     fn what_two_are_worth_is_summed_over_the_folds() {
-        let of = |effect: &'static str| Theme {
+        let theme_of = |effect: &'static str| Theme {
             effect: Box::leak(Box::new(Effect { name: effect, ..UNKNOWN })),
             joints: None,
         };
-        let (a, b) = (of("a"), of("b"));
-        let of = |share: f64| Loss { plain: 2.0 * share, independent: share };
-        let losses =
-            vec![(vec![a], of(0.5)), (vec![a, b], of(0.1)), (vec![a], of(0.2)), (vec![a, b], of(-0.3))];
+        let (a, b) = (theme_of("a"), theme_of("b"));
+        let of_share = |share: f64| Loss { plain: 2.0 * share, independent: share };
+        let losses = vec![
+            (vec![a], of_share(0.5)),
+            (vec![a, b], of_share(0.1)),
+            (vec![a], of_share(0.2)),
+            (vec![a, b], of_share(-0.3)),
+        ];
         let held_out = HeldOut {
             before: 1.0,
             after: 1.0,

@@ -26,8 +26,8 @@ pub struct Structure {
 
 /// The structure of `residual` along each covariate of the evidence.
 pub fn locate(evidence: &Evidence, residual: &DVector<f64>) -> Vec<Structure> {
-    let of = |(index, covariate): (usize, &Covariate)| along(covariate, residual, index as u64);
-    evidence.covariates.iter().enumerate().map(of).collect()
+    let of_index = |(index, covariate): (usize, &Covariate)| along(covariate, residual, index as u64);
+    evidence.covariates.iter().enumerate().map(of_index).collect()
 }
 
 /// The same along one covariate; `stream` numbers it, so that its random orders are its own.
@@ -44,10 +44,10 @@ pub(super) fn along(covariate: &Covariate, residual: &DVector<f64>, stream: u64)
     }
     let strength = |values: &[f64]| match PER_VALUE * groups.len() <= values.len() {
         true => {
-            let of = |group: &std::ops::Range<usize>| {
+            let of_group = |group: &std::ops::Range<usize>| {
                 values[group.clone()].iter().sum::<f64>().powi(2) / group.len() as f64
             };
-            groups.iter().map(of).sum::<f64>() / square
+            groups.iter().map(of_group).sum::<f64>() / square
         }
         false => values.windows(2).map(|pair| pair[0] * pair[1]).sum::<f64>() / square,
     };

@@ -74,7 +74,7 @@ impl Search<'_> {
             let mut with_residual = own.resize_horizontally(count + 1, 0.0);
             with_residual.set_column(count, &r);
             let products = self.model.products(self.whitening.transposed(&with_residual));
-            let of = move |candidates: &[usize]| {
+            let products_with = move |candidates: &[usize]| {
                 let background: Vec<&Table> = self.beside_background.iter().collect();
                 let mut cross = stacked(&background, candidates);
                 let (first, all) = (cross.nrows(), candidates.iter().map(|&k| self.grams[k].ncols()).sum());
@@ -88,7 +88,7 @@ impl Search<'_> {
                 }
                 (cross, product)
             };
-            return (moments, Box::new(of));
+            return (moments, Box::new(products_with));
         };
         let effects: Vec<usize> = terms.iter().map(|c| c.candidate).collect();
         let cross = kept.hypothesis(&effects, &|effect| self.beside_effect(effect));

@@ -137,7 +137,7 @@ impl<'a> Search<'a> {
             let (cross, product) = products(part);
             let solved = before.solved(&cross);
             let mut next = 0;
-            let of = |&index: &usize| {
+            let of_index = |&index: &usize| {
                 let gram = &self.grams[index];
                 let own = next..next + gram.ncols();
                 next = own.end;
@@ -150,7 +150,7 @@ impl<'a> Search<'a> {
                 };
                 present.about(&before, &more) + self.prior[index]
             };
-            part.iter().map(of).collect()
+            part.iter().map(of_index).collect()
         };
         let parts: Vec<&[usize]> = open.chunks(AT_ONCE).collect();
         let of_parts = in_parallel_outside_of_jobs(parts.len(), |k| about(parts[k]));

@@ -195,12 +195,12 @@ mod tests {
     fn errors_in_common_are_no_effect_and_hide_none_that_is_larger() {
         let model = model();
         let named = |drift: f64, is_course: bool| -> usize {
-            let of = |seed: u64| {
+            let of_seed = |seed: u64| {
                 let found = sketch(&model, &evidence(seed, drift, is_course));
                 assert!(is_course || found.correlated_noise.is_none());
                 usize::from(!found.hypothesis.terms.is_empty())
             };
-            (0..40).map(of).sum()
+            (0..40).map(of_seed).sum()
         };
         // taken for independent they are moves and drifts
         assert!(named(0.0, false) >= 4, "{}", named(0.0, false));

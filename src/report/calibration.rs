@@ -125,7 +125,7 @@ pub fn json(
 fn stations_json(recording: &Recording, calibration: &Calibration) -> Vec<Value> {
     let frames =
         recording.stations.iter().zip(&calibration.stations).filter(|(known, _)| !known.name.is_empty());
-    let of = |(station, motion): (&Station, &Pose)| {
+    let of_station = |(station, motion): (&Station, &Pose)| {
         let frame = motion.then(&station.frame);
         json!({
             "name": station.name,
@@ -133,7 +133,7 @@ fn stations_json(recording: &Recording, calibration: &Calibration) -> Vec<Value>
             "rpy_deg": frame.roll_pitch_yaw().map(|angle| angle / DEG),
         })
     };
-    frames.map(of).collect()
+    frames.map(of_station).collect()
 }
 
 fn accuracy_json(campaign: &Campaign, judged: &Accuracy) -> Value {

@@ -109,10 +109,11 @@ const COUNTED: [Figure; 7] = [
 ];
 
 fn one_percent_more(shown: &Shown) -> Vec<OnePercent> {
-    let of = |figures: &Figures| COUNTED.map(|figure| figures.get(figure).unwrap_or(f64::NAN)).to_vec();
+    let of_figures =
+        |figures: &Figures| COUNTED.map(|figure| figures.get(figure).unwrap_or(f64::NAN)).to_vec();
     let slopes: Vec<(NominalNumber, Vec<f64>)> =
-        shown.slopes.iter().map(|(number, slopes)| (number.clone(), of(slopes))).collect();
-    sensitivities::one_percent_more(&shown.rod, &slopes, &of(&shown.design.figures))
+        shown.slopes.iter().map(|(number, slopes)| (number.clone(), of_figures(slopes))).collect();
+    sensitivities::one_percent_more(&shown.rod, &slopes, &of_figures(&shown.design.figures))
 }
 
 /// What 1 % more of each number does to the first, the middle and the last design that are shown.

@@ -200,10 +200,13 @@ fn places(study: &PoseStudy) -> Table {
     );
     let mut table = Table::new("places", &caption, heads);
     for (place, group) in study.places.iter().enumerate() {
-        let of = |poses: &[(usize, Vec<f64>)]| poses.iter().filter(|(own, _)| *own == place).count();
+        let of_poses = |poses: &[(usize, Vec<f64>)]| poses.iter().filter(|(own, _)| *own == place).count();
         let name = if group.name.is_empty() { "anywhere" } else { &group.name };
-        let mut cells =
-            vec![name.to_owned(), of(&study.chosen).to_string(), of(&study.candidates.poses).to_string()];
+        let mut cells = vec![
+            name.to_owned(),
+            of_poses(&study.chosen).to_string(),
+            of_poses(&study.candidates.poses).to_string(),
+        ];
         cells.extend(
             met.iter().map(|obstacle| study.candidates.refused[place][*obstacle as usize].to_string()),
         );

@@ -166,8 +166,9 @@ fn tips_of(
         }
     }
     let sd = robot.tip.and_then(|tip| tip.sd);
-    let of = |own: &Vector3<f64>| sd.map(|sd| own.map(|own| (sd * sd + own).sqrt()));
-    let tips = predicted.iter().zip(&variance).map(|(predicted, own)| (predicted.tip, of(own))).collect();
+    let with_noise = |own: &Vector3<f64>| sd.map(|sd| own.map(|own| (sd * sd + own).sqrt()));
+    let tips =
+        predicted.iter().zip(&variance).map(|(predicted, own)| (predicted.tip, with_noise(own))).collect();
     let laws = predicted.iter().flat_map(|predicted| predicted.laws_beyond.iter().copied()).collect();
     Ok((tips, ratios, laws))
 }

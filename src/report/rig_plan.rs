@@ -187,7 +187,7 @@ fn picture(plan: &RigPlan, rod: &Rod) -> Option<super::chart::Figure> {
         let (axis, sign) = (one.loads.direction.axis.index(), f64::from(one.loads.direction.sign));
         let largest = one.loads.loads.iter().copied().fold(0.0, f64::max) * sign;
         let label = format!("{} N along {}", significant(largest.abs(), 3), one.loads.direction);
-        let of = |node: usize| -> Matrix3<f64> { response.motion(node, 0).translation };
+        let of_node = |node: usize| -> Matrix3<f64> { response.motion(node, 0).translation };
         let near = |p: nalgebra::Vector3<f64>| {
             (0..=with_load.chain.end())
                 .min_by(|&a, &b| {
@@ -197,7 +197,7 @@ fn picture(plan: &RigPlan, rod: &Rod) -> Option<super::chart::Figure> {
                 .unwrap_or(0)
         };
         if cases.iter().all(|case| case.label != label) {
-            let moved = places().map(|p| (of(near(p)).column(axis) * (largest / UM)).into());
+            let moved = places().map(|p| (of_node(near(p)).column(axis) * (largest / UM)).into());
             cases.push(ShapeCase { label, deflection_um: moved.collect() });
         }
     }

@@ -37,8 +37,8 @@ impl Runs {
             return Err(refused(found, "the folders of two runs or more, as --out writes them".into()));
         }
         if let Some(other) = others.iter().find(|other| other.subcommand != first.subcommand) {
-            let of = |run: &Run| format!("{} (rodcal {})", run.folder, run.subcommand);
-            let found = format!("{} and {}", of(first), of(other));
+            let of_run = |run: &Run| format!("{} (rodcal {})", run.folder, run.subcommand);
+            let found = format!("{} and {}", of_run(first), of_run(other));
             return Err(refused(found, "runs of one command".into()));
         }
         let differences =

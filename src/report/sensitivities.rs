@@ -24,7 +24,7 @@ pub struct OnePercent {
 /// are `slopes`. Numbers of 0 are left out. Of a tube these are its wall and its outer diameter at
 /// that wall; where both pipes are one tube, of both.
 pub fn one_percent_more(rod: &Rod, slopes: &[(NominalNumber, Vec<f64>)], figures: &[f64]) -> Vec<OnePercent> {
-    let of = |number: &NominalNumber| {
+    let of_number = |number: &NominalNumber| {
         let known = slopes.iter().find(|(known, _)| known == number);
         known.map_or(vec![0.0; figures.len()], |(_, slopes)| slopes.clone())
     };
@@ -59,12 +59,12 @@ pub fn one_percent_more(rod: &Rod, slopes: &[(NominalNumber, Vec<f64>)], figures
                 let both = is_one_tube && *part == Part::Pipe1;
                 let other = Part::Pipe2;
                 let with_other = |of_part: Vec<f64>, number: fn(Part) -> NominalNumber| match both {
-                    true => sum(of_part, of(&number(other)), 1.0),
+                    true => sum(of_part, of_number(&number(other)), 1.0),
                     false => of_part,
                 };
                 let outer = with_other(slopes.clone(), NominalNumber::OuterDiameter);
                 let inner =
-                    with_other(of(&NominalNumber::InnerDiameter(*part)), NominalNumber::InnerDiameter);
+                    with_other(of_number(&NominalNumber::InnerDiameter(*part)), NominalNumber::InnerDiameter);
                 let place = if both { "both pipes".to_owned() } else { part.to_string() };
                 if round.inner_diameter == 0.0 {
                     rows.push(row(format!("diameter of {place}"), in_file(value), value, outer));
@@ -157,7 +157,7 @@ pub fn bars(title: impl Into<String>, rows: &[OnePercent], picked: &[(usize, &st
 
 /// The rows by figure, `c_rod_um_percent` and so on: `keys` names the figures.
 pub fn json(rows: &[OnePercent], keys: &[&str]) -> Value {
-    let of = |row: &OnePercent| {
+    let of_row = |row: &OnePercent| {
         let mut object = Map::new();
         object.insert("number".into(), row.number.clone().into());
         let percents =
@@ -165,7 +165,7 @@ pub fn json(rows: &[OnePercent], keys: &[&str]) -> Value {
         object.extend(percents);
         Value::Object(object)
     };
-    rows.iter().map(of).collect()
+    rows.iter().map(of_row).collect()
 }
 
 /// Which number: its words, table, key and value in the rod file.
@@ -188,7 +188,7 @@ mod tests {
     #[test]
     fn a_wall_of_one_tube_is_that_of_both_pipes_at_its_outer_diameter() {
         let rod = Rod::read("rods/5.toml".as_ref()).unwrap();
-        let of = |rod: &Rod| {
+        let of_rod = |rod: &Rod| {
             let figures = Figures::of(rod, &mut Default::default()).unwrap();
             figures.get(Figure::CRod).unwrap()
         };
@@ -197,12 +197,12 @@ mod tests {
             .into_iter()
             .map(|(number, figures)| (number, vec![figures.get(Figure::CRod).unwrap()]))
             .collect();
-        let rows = one_percent_more(&rod, &slopes, &[of(&rod)]);
+        let rows = one_percent_more(&rod, &slopes, &[of_rod(&rod)]);
         let row = rows.iter().find(|row| row.number == "wall of both pipes").unwrap();
         let wall = rod.pipe1.section.wall().unwrap();
         let with = |wall: f64| {
             let first = rod.with(&NominalNumber::Wall(Part::Pipe1), wall);
-            of(&first.with(&NominalNumber::Wall(Part::Pipe2), wall))
+            of_rod(&first.with(&NominalNumber::Wall(Part::Pipe2), wall))
         };
         let expected = (with(1.001 * wall) / with(0.999 * wall) - 1.0) / 0.002;
         assert!((row.percent[0] - expected).abs() < 2e-3 * expected.abs(), "{row:?} {expected}");

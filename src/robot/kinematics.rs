@@ -124,7 +124,9 @@ impl<'s> Kinematics<'s> {
         let mut frame = self.root;
         let mut carrier = self.base.rotation;
         for (j, frames) in self.joints.iter_mut().enumerate() {
-            frame.origin += carrier * setup.robot.axis_shift(j, q);
+            if let Some(shift) = setup.robot.axis_shift(j, q) {
+                frame.origin += carrier * shift;
+            }
             // θ = offset + q + c·τ + effects
             let compliant_turn = torque.get(j).map_or(0.0, |torque| setup.compliance[j] * torque);
             let by_weights = turns.get(j).copied().unwrap_or(0.0);
@@ -147,9 +149,13 @@ impl<'s> Kinematics<'s> {
             carrier = frame.rotation;
         }
         self.flange = frame.then(&setup.robot.flange);
-        let gravity = self.base.rotation * (setup.robot.gravity / STANDARD_GRAVITY);
-        let shift = setup.robot.tool_shift(q, &(self.flange.rotation.transpose() * gravity));
-        self.tip = self.flange.point(&(setup.tool + shift));
+        let mut tool = setup.tool;
+        if !setup.robot.laws.is_empty() {
+            let gravity = self.base.rotation * (setup.robot.gravity / STANDARD_GRAVITY);
+            let weight = self.flange.rotation.transpose() * gravity;
+            tool += setup.robot.tool_shift(q, &weight).unwrap_or_default();
+        }
+        self.tip = self.flange.point(&tool);
     }
 
     /// ∂tip/∂parameter in {W}, m per unit of the parameter (SI). `torque` as for
@@ -227,6 +233,10 @@ impl Robot {
     /// How much farther a joint turns than it reads by its effects and laws, rad; see
     /// [`super::Effect::turn`].
     pub fn correction(&self, joint: usize, q: &[f64], torque: &[f64]) -> f64 {
+        // most robots have none, and kinematics do little else
+        if self.effects.is_empty() && self.laws.is_empty() {
+            return 0.0;
+        }
         let own = self.effects.iter().filter(|effect| effect.joint() == Some(joint));
         own.map(|effect| effect.turn(q, torque)).sum::<f64>() + self.law_turn(joint, q, torque)
     }
@@ -237,7 +247,9 @@ impl Robot {
         let mut frame = self.root;
         let mut carrier = Matrix3::identity();
         for (j, joint) in self.joints.iter().enumerate().take(q.len()) {
-            frame.origin += carrier * self.axis_shift(j, q);
+            if let Some(shift) = self.axis_shift(j, q) {
+                frame.origin += carrier * shift;
+            }
             frame = joint.link.moved(joint.motion, value(j)).beyond(&frame);
             if let Some(turn) = self.link_turn(j, q) {
                 frame.rotation *= turn;

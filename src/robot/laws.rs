@@ -13,24 +13,27 @@ impl Robot {
         own.map(|law| law.turn(q, torque, 1.0)).sum()
     }
 
-    /// How far the axis of a joint is off, in the frame that carries it, m.
-    pub(super) fn axis_shift(&self, joint: usize, q: &[f64]) -> Vector3<f64> {
+    /// How far the axis of a joint is off, in the frame that carries it, m; `None` where no law
+    /// says so.
+    pub(super) fn axis_shift(&self, joint: usize, q: &[f64]) -> Option<Vector3<f64>> {
         self.shift(LawPlace::Axis(joint), q, &[])
     }
 
     /// How the link that a joint moves is turned, about its own axes; `None` where no law says so.
     pub(super) fn link_turn(&self, joint: usize, q: &[f64]) -> Option<Matrix3<f64>> {
-        let turn = self.shift(LawPlace::Link(joint), q, &[]);
+        let turn = self.shift(LawPlace::Link(joint), q, &[])?;
         (turn != Vector3::zeros()).then(|| exponential(&turn))
     }
 
-    /// How far the tip is off in {T}, where `weight` (in g) is along its axes, m.
-    pub(super) fn tool_shift(&self, q: &[f64], weight: &Vector3<f64>) -> Vector3<f64> {
+    /// How far the tip is off in {T}, where `weight` (in g) is along its axes, m; `None` where no
+    /// law says so.
+    pub(super) fn tool_shift(&self, q: &[f64], weight: &Vector3<f64>) -> Option<Vector3<f64>> {
         self.shift(LawPlace::Tool, q, weight.as_slice())
     }
 
-    fn shift(&self, place: LawPlace, q: &[f64], weight: &[f64]) -> Vector3<f64> {
-        self.laws_at(place).map(|law| Vector3::from(law.along(q, &[], weight, 1.0))).sum()
+    fn shift(&self, place: LawPlace, q: &[f64], weight: &[f64]) -> Option<Vector3<f64>> {
+        let own = self.laws_at(place).map(|law| Vector3::from(law.along(q, &[], weight, 1.0)));
+        own.reduce(|sum, more| sum + more)
     }
 
     fn laws_at(&self, place: LawPlace) -> impl Iterator<Item = &RobotLaw> {

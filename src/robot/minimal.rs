@@ -168,7 +168,9 @@ impl<'s> Samples<'s> {
                 }
                 self.reach * self.largest[j]
             }
-            _ => self.reach,
+            Parameter::BaseRotation(_) | Parameter::Theta(_) | Parameter::Alpha(_) | Parameter::Beta(_) => {
+                self.reach
+            }
         };
         let tips = self.kinematics.iter().zip(&self.torques);
         let entries: Vec<f64> = tips

@@ -80,7 +80,9 @@ impl Parameter {
         match self {
             Parameter::BasePosition(_) | Parameter::D(_) | Parameter::A(_) | Parameter::Tool(_) => MILLIMETRE,
             Parameter::Compliance(_) => COMPLIANCE,
-            _ => DEGREE,
+            Parameter::BaseRotation(_) | Parameter::Theta(_) | Parameter::Alpha(_) | Parameter::Beta(_) => {
+                DEGREE
+            }
         }
     }
 

@@ -91,15 +91,15 @@ fn held_out_errors_are_those_of_the_fit_without_them() {
     let calibration = calibrate(&campaign, Mode::None, &options).unwrap();
     let found = cross_validate(&campaign, &calibration, &compensation, FOLDS, &options).unwrap();
     let recording = &campaign.measurements;
-    let of = |fold: usize, held_out: bool| -> Vec<usize> {
+    let of_fold = |fold: usize, held_out: bool| -> Vec<usize> {
         (0..recording.len()).filter(|&row| (found.fold[row] == fold) == held_out).collect()
     };
     let free: Vec<_> = calibration.parameters.iter().map(|p| p.parameter).collect();
-    let training = recording.subset(&of(2, false));
+    let training = recording.subset(&of_fold(2, false));
     let start = calibration.start.clone();
     let trained = calibrate_from(&campaign, &training, start, &free, &compensation, &options).unwrap();
     let Targets::Points(points) = &recording.targets else { panic!("clamps measure points") };
-    for row in of(2, true) {
+    for row in of_fold(2, true) {
         let mut kinematics = Kinematics::new(&trained.setup);
         let mut torque = vec![0.0; 6];
         let loads = rodcal::robot::Loads {
@@ -147,8 +147,9 @@ fn chance_is_not_called_a_difference() {
         let options = CompareOptions { draws: 60, ..CompareOptions::default() };
         let comparison = compare(&campaign, &options, &|_| ()).unwrap();
         assert!(comparison.cross_validations.is_some());
-        let of = |d: &&rodcal::calibration::Difference| d.mode == Mode::Meas && d.against == Mode::Fea;
-        let d = *comparison.differences.iter().find(of).unwrap();
+        let of_difference =
+            |d: &&rodcal::calibration::Difference| d.mode == Mode::Meas && d.against == Mode::Fea;
+        let d = *comparison.differences.iter().find(of_difference).unwrap();
         assert!(d.mean != 0.0 && d.interval.0 < d.interval.1, "{d:?}");
         d.is_significant
     });

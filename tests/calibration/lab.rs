@@ -147,11 +147,11 @@ impl Lab {
             q[j] += by;
             self.work(&q, push)
         };
-        let of = |j: usize| match self.robot.joints[j].motion {
+        let entry = |j: usize| match self.robot.joints[j].motion {
             Motion::Revolute => (at(j, FRAC_PI_2) - at(j, -FRAC_PI_2)) / 2.0,
             Motion::Prismatic => at(j, 0.5) - at(j, -0.5),
         };
-        (0..q.len()).map(of).collect()
+        (0..q.len()).map(entry).collect()
     }
 
     /// Where the ball really is, in {W}, while the device whose axes are given pushes it.

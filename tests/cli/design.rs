@@ -176,10 +176,10 @@ fn a_design_is_refined_and_its_rod_is_written() {
     assert!(beyond.status == Some(2) && beyond.stderr.contains("designs of the front"), "{}", beyond.stderr);
     // and what counts: 1 % more of E and G is 1 % less of C^F
     let counts = json["front"][0]["one_percent_more"].as_array().unwrap();
-    let of = |name: &str| {
+    let of_name = |name: &str| {
         let row = counts.iter().find(|row| row["number"].as_str().unwrap().starts_with(name)).unwrap();
         number(row, "cf_max_um_per_n_percent")
     };
-    assert!((of("E of") + of("G of") + 1.0).abs() < 1e-9, "{counts:?}");
+    assert!((of_name("E of") + of_name("G of") + 1.0).abs() < 1e-9, "{counts:?}");
     assert!(sandbox.run("design rod design.toml").succeeded().stdout.contains("wall of both pipes"));
 }

@@ -14,11 +14,11 @@ fn number(json: &Value) -> f64 {
 
 /// The joint values of each pose with its clamp.
 fn poses(json: &Value) -> Vec<(String, Vec<f64>)> {
-    let of = |pose: &Value| {
+    let of_pose = |pose: &Value| {
         let q = (1..=6).map(|joint| number(&pose[format!("q{joint}_deg")])).collect();
         (pose["clamp"].as_str().unwrap().to_owned(), q)
     };
-    json["poses"].as_array().unwrap().iter().map(of).collect()
+    json["poses"].as_array().unwrap().iter().map(of_pose).collect()
 }
 
 #[test]
@@ -66,8 +66,8 @@ fn every_criterion_is_best_in_its_own_value_and_threads_change_nothing() {
     let line = |criterion: &str| {
         format!("design poses {TX90} --count 20 --generate 150 --criterion {criterion} --json")
     };
-    let of = |criterion: &str| sandbox.run(&line(criterion)).json();
-    let (o1, o4, forecast) = (of("o1"), of("o4"), of("forecast"));
+    let of_criterion = |criterion: &str| sandbox.run(&line(criterion)).json();
+    let (o1, o4, forecast) = (of_criterion("o1"), of_criterion("o4"), of_criterion("forecast"));
     assert!(number(&o1["observability"]["o1"]) > number(&o4["observability"]["o1"]));
     assert!(number(&o4["observability"]["o4"]) > number(&o1["observability"]["o4"]));
     let noise = |json: &Value| number(&json["forecast_um"]["parts"]["noise_um"]);
@@ -95,15 +95,15 @@ fn a_campaign_that_is_not_recorded_yet_can_be_planned_and_not_calibrated() {
     let line =
         "compare campaigns/tx90-5/plan.toml --forecast --rods rods/4.toml rods/6.toml --count 20 --json";
     let json = sandbox.run(line).json();
-    let of = |rod: usize, mode: &str, part: &str| {
+    let of_rod = |rod: usize, mode: &str, part: &str| {
         let modes = json["forecasts"][rod]["modes"].as_array().unwrap();
         number(&modes.iter().find(|one| one["mode"] == mode).unwrap()["parts"][part])
     };
     // 6# bends 2.5 times as much as 4#; most of that base, tool and links take up
-    assert!(of(1, "none", "rod_bias_um") > 1.5 * of(0, "none", "rod_bias_um"));
-    assert!(of(0, "none", "rod_bias_um") > 5.0 * of(0, "fea", "rod_uncertainty_um"));
-    assert_eq!(of(1, "fea", "rod_bias_um"), 0.0);
-    assert!(of(1, "fea", "rod_uncertainty_um") > 2.0 * of(1, "meas", "rod_uncertainty_um"));
+    assert!(of_rod(1, "none", "rod_bias_um") > 1.5 * of_rod(0, "none", "rod_bias_um"));
+    assert!(of_rod(0, "none", "rod_bias_um") > 5.0 * of_rod(0, "fea", "rod_uncertainty_um"));
+    assert_eq!(of_rod(1, "fea", "rod_bias_um"), 0.0);
+    assert!(of_rod(1, "fea", "rod_uncertainty_um") > 2.0 * of_rod(1, "meas", "rod_uncertainty_um"));
 }
 
 #[test]

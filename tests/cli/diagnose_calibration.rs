@@ -134,7 +134,7 @@ fn what_is_applied_makes_the_robot_as_accurate_as_promised() {
     let sandbox = Sandbox::new();
     let nominal = sandbox.read("robots/tx90.toml");
     sandbox.write("true.toml", &(nominal.clone() + ERROR));
-    let made = sandbox.run("simulate made --rod rods/5.toml --robot true.toml --seed 3 --poses 24");
+    let made = sandbox.run("simulate made --rod rods/5.toml --robot true.toml --seed 3 --poses 16");
     assert_eq!(made.status, Some(0), "{}", made.stderr);
     sandbox.write("made/robot.toml", &nominal);
     let found = sandbox.run("diagnose calibration made/campaign.toml --apply --out out --json");

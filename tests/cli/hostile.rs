@@ -61,7 +61,9 @@ fn hostile_names_are_data_everywhere() {
             "name,material,outer_diameter_mm,inner_diameter_mm\n{quoted},{quoted},32,30\nb,steel,20,16\n"
         ),
     );
+    // fewer rods: nothing here depends on how many there are
     let design = sandbox.read("examples/design.toml").replace("\"builtin\"", "\"tubes.csv\"");
+    let design = design.replace("step = 20", "step = 100").replace("step = 25", "step = 125");
     sandbox.write(
         "design.toml",
         &format!(

@@ -149,8 +149,8 @@ fn is_read_by(line: &str, commands: &[String]) -> bool {
 #[test]
 fn every_command_of_the_docs_runs() {
     let project = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let of = |name: &Path| commands(&std::fs::read_to_string(name).unwrap());
-    let of_readme = of(&project.join("README.md"));
+    let of_name = |name: &Path| commands(&std::fs::read_to_string(name).unwrap());
+    let of_readme = of_name(&project.join("README.md"));
     let mut documents: Vec<_> =
         std::fs::read_dir(project.join("docs")).unwrap().map(|entry| entry.unwrap().path()).collect();
     documents.retain(|path| path.extension().is_some_and(|extension| extension == "md"));
@@ -158,7 +158,7 @@ fn every_command_of_the_docs_runs() {
     let mut ran = 0;
     for document in documents {
         let sandbox = Sandbox::new();
-        let typed = of(&document);
+        let typed = of_name(&document);
         for (synopsis, following) in typed.iter().zip(1..) {
             // examples/regenerate.rs makes the pages of docs/; it is no command of the program
             if synopsis.contains("--example") {

@@ -15,10 +15,10 @@ fn a_trial_is_made_answered_in_pieces_and_scored() {
     assert_eq!((&answered["answered"], &answered["answered_before"]), (&1.into(), &2.into()));
     assert_eq!(sandbox.read("t/answers.jsonl").lines().count(), 3);
     let score = sandbox.run("trial score t t.key.jsonl --json").json();
-    let of = |kind: &str| score[kind]["n"].as_u64().unwrap();
+    let count = |kind: &str| score[kind]["n"].as_u64().unwrap();
     let rate = |of: &str, rate: &str| score[of][rate]["of"].as_u64().unwrap();
     let files = rate("mistakes", "named") + rate("suspects", "remarked");
-    assert_eq!(of("clean") + of("single") + of("pairs") + of("unknown") + files, 3);
+    assert_eq!(count("clean") + count("single") + count("pairs") + count("unknown") + files, 3);
     for key in ["coverage", "gain_over_oracle", "counterfactual_over_oracle", "next_measurement_ok"] {
         assert!(score.get(key).is_some(), "{key}");
     }

@@ -85,7 +85,7 @@ fn of_two_laws_one_comes_after_the_other() {
     let ripple = Effect::Ripple { channel: 1, amplitude: 12.0 * UM, period: 130.0 * UM, phase: 0.4 };
     let order = Order { loads: (1..=20).map(|k| 0.5 * f64::from(k)).collect(), ..order() };
     let mut found = Vec::new();
-    for seed in 31..37 {
+    for seed in 31..34 {
         let Made { rod, readings, .. } =
             order.made(&[Effect::GapCloses { load: 5.6, share: 0.7 }, ripple.clone()], seed);
         let first = Answer::of(Some(&rod), &readings);
@@ -102,6 +102,6 @@ fn of_two_laws_one_comes_after_the_other() {
         (a == "load" && b == "ripple") || (a == "ripple" && b == "load")
     };
     assert!(found.iter().all(|(a, b, _)| a != "another" && b != "another"), "{found:?}");
-    assert!(found.iter().filter(is_right).count() >= 4, "{found:?}");
+    assert!(found.iter().filter(is_right).count() >= 3, "{found:?}");
     assert!(found.iter().filter(is_right).all(|(_, _, is_said)| *is_said), "{found:?}");
 }

@@ -148,11 +148,11 @@ fn oracle(hidden: &Hidden, rod: &str, readings: &str, truth: &str) -> f64 {
     let (recorded, asked) = (rows(readings, rod), rows(truth, rod));
     let n = recorded.len();
     let columns = |all: &[(Row, f64)], s: f64| {
-        let of = |(row, _): &(Row, f64)| {
+        let of_row = |(row, _): &(Row, f64)| {
             let own = (hidden.functions)(row, s);
             own.into_iter().chain([0.01 * row.predicted]).collect::<Vec<f64>>()
         };
-        let values: Vec<Vec<f64>> = all.iter().map(of).collect();
+        let values: Vec<Vec<f64>> = all.iter().map(of_row).collect();
         DMatrix::from_fn(all.len(), values[0].len(), |i, k| values[i][k])
     };
     let fitted = |k: usize| {

@@ -50,7 +50,7 @@ fn clean_recordings_stay_clean() {
 fn a_number_far_from_that_of_the_file_is_no_agreement() {
     let order = Order { axes: vec![0, 1, 2], ..Order::default() };
     let made = order.made(&[], 5);
-    let of = |times: f64| {
+    let of_times = |times: f64| {
         let scaled = |line: &str| match line.strip_prefix("youngs_modulus_gpa = ") {
             Some(value) => format!("youngs_modulus_gpa = {}\n", times * value.parse::<f64>().unwrap()),
             None => format!("{line}\n"),
@@ -58,9 +58,9 @@ fn a_number_far_from_that_of_the_file_is_no_agreement() {
         let rod: String = made.rod.lines().map(scaled).collect();
         Answer::of(Some(&rod), &made.readings)
     };
-    let near = of(0.97);
+    let near = of_times(0.97);
     assert!(near.is_consistent() && near.json["nominal"][0]["parameter"] == "E of steel", "{}", near.json);
-    let far = of(0.6);
+    let far = of_times(0.6);
     assert!(!far.is_consistent(), "{}", far.json["headline"]);
 }
 
@@ -82,11 +82,11 @@ fn zeros_that_differ_far_more_than_readings_are_said() {
     let shifted = lines.map(|line| {
         let cells: Vec<&str> = line.split(',').collect();
         let run = 2 * cells[trial].parse::<usize>().unwrap() - 2 + usize::from(cells[axis].ends_with('z'));
-        let of = |(column, cell): (&&str, &&str)| match column.ends_with("_um") {
+        let of_column = |(column, cell): (&&str, &&str)| match column.ends_with("_um") {
             true => (cell.parse::<f64>().unwrap() + ZEROS[run % ZEROS.len()]).to_string(),
             false => (*cell).to_owned(),
         };
-        columns.iter().zip(&cells).map(of).collect::<Vec<_>>().join(",") + "\n"
+        columns.iter().zip(&cells).map(of_column).collect::<Vec<_>>().join(",") + "\n"
     });
     let readings = format!("{head}\n{}", shifted.collect::<String>());
     let answer = Answer::of(Some(&made.rod), &readings);

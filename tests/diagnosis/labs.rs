@@ -204,7 +204,7 @@ fn damper(seed: u64, friction: f64, play: f64, stiffness: f64) -> String {
     let mut lab = Lab::new(seed);
     let mut text = "# driven = \"displacement\"\naxis,load_n,time_s,dx_um\n".to_owned();
     let (mut before, mut slider) = (0.0f64, 0.0f64);
-    for k in 1..=200 {
+    for k in 1..=120 {
         let u = 20e-3 * (2.0 * std::f64::consts::PI * f64::from(k) / 40.0).sin();
         let moved = slider.max(u - play).min(u + play);
         let rubs = if play > 0.0 && moved == slider { 0.0 } else { (u - before).signum() };
@@ -422,9 +422,10 @@ fn one_row_per_station_or_channel_is_the_same_recording() {
             if has_time { "time_s," } else { "" }
         );
         let cells = |row: &[f64; 6], y: bool, z: bool| {
-            let of = |is_read: bool, value: f64| if is_read { format!("{value:.2}") } else { String::new() };
+            let cell =
+                |is_read: bool, value: f64| if is_read { format!("{value:.2}") } else { String::new() };
             let [trial, load, _, station, dy, dz] = *row;
-            format!("{trial},y,{load},{}{station},{},{}\n", time(row), of(y, dy), of(z, dz))
+            format!("{trial},y,{load},{}{station},{},{}\n", time(row), cell(y, dy), cell(z, dz))
         };
         let all: String = readings.iter().map(|row| cells(row, true, true)).collect();
         let per_channel: String =

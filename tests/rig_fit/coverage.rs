@@ -62,16 +62,16 @@ fn long(rig: Rig) -> Rig {
 /// or not. Trial offsets of 2 to 10 µm stand beside a noise of 3 µm; slope errors of 0.05 to 0.5 %
 /// are 1 to 12 µm at 20 N.
 fn designs() -> Vec<(&'static str, Rig)> {
-    let of = |trial_offset, trial_slope| Rig { trial_offset, trial_slope, ..Rig::default() };
+    let rig = |trial_offset, trial_slope| Rig { trial_offset, trial_slope, ..Rig::default() };
     vec![
-        ("4 × 5, independent", of(0.0, 0.0)),
-        ("4 × 5, trial offset", of(6.0, 0.0)),
-        ("4 × 5, trial slope", of(0.0, 0.001)),
-        ("4 × 5, both, small", of(2.0, 0.0005)),
-        ("4 × 5, both, large", of(10.0, 0.005)),
-        ("8 × 6, independent", long(of(0.0, 0.0))),
-        ("8 × 6, trial offset", long(of(6.0, 0.0))),
-        ("8 × 6, both, large", long(of(10.0, 0.005))),
+        ("4 × 5, independent", rig(0.0, 0.0)),
+        ("4 × 5, trial offset", rig(6.0, 0.0)),
+        ("4 × 5, trial slope", rig(0.0, 0.001)),
+        ("4 × 5, both, small", rig(2.0, 0.0005)),
+        ("4 × 5, both, large", rig(10.0, 0.005)),
+        ("8 × 6, independent", long(rig(0.0, 0.0))),
+        ("8 × 6, trial offset", long(rig(6.0, 0.0))),
+        ("8 × 6, both, large", long(rig(10.0, 0.005))),
     ]
 }
 

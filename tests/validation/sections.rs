@@ -96,12 +96,15 @@ fn a_rectangular_bar_bends_by_its_two_second_moments() {
 fn each_second_moment_has_its_plane() {
     let general = General { area: 2e-4, iy: 6e-9, iz: 2e-9, torsion_constant: 4e-9, shear_coefficient: 0.85 };
     for radius in [0.0, 0.06] {
-        let of = |general: General| {
+        let compliance_of = |general: General| {
             let rod = rod_of(general).with_bend(radius, BendFlexibility::Factor(1.3));
             compliance(&rod.checked().unwrap()).force
         };
-        let (as_is, iy, iz) =
-            (of(general), of(General { iy: 9e-9, ..general }), of(General { iz: 3e-9, ..general }));
+        let (as_is, iy, iz) = (
+            compliance_of(general),
+            compliance_of(General { iy: 9e-9, ..general }),
+            compliance_of(General { iz: 3e-9, ..general }),
+        );
         for in_plane in [(0, 0), (0, 2), (2, 2)] {
             assert_relative_eq!(as_is[in_plane], iz[in_plane], max_relative = 1e-14);
             assert!((iy[in_plane] / as_is[in_plane]).abs() < 0.7, "{in_plane:?}");

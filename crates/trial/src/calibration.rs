@@ -174,7 +174,7 @@ fn effects(
         let share = log_uniform(random, CONFLICT[0], CONFLICT[1]) * oracle.limit(&largest);
         return vec![if conflict.is_scaled() { largest.scaled(share.min(1.0)) } else { largest }];
     }
-    let of = |&number: &usize| {
+    let of_number = |&number: &usize| {
         let mut draw = || match kind {
             Kind::Unknown => beyond::beyond(number, site, random),
             _ => draw::library(number, site, random),
@@ -195,7 +195,7 @@ fn effects(
         };
         Some(largest.scaled(log_uniform(random, least, most)))
     };
-    numbers.iter().filter_map(of).collect()
+    numbers.iter().filter_map(of_number).collect()
 }
 
 fn truth(case: String, drawn: &Drawn, asked: &Question) -> Truth {
@@ -205,7 +205,7 @@ fn truth(case: String, drawn: &Drawn, asked: &Question) -> Truth {
         oracle.compare(effects);
     }
     let sd = site.scatter.sd.hypot(site.scatter.step / 12f64.sqrt());
-    let of = |(which, effect): (usize, &Effect)| {
+    let concealed_effect = |(which, effect): (usize, &Effect)| {
         let alone = site.added(std::slice::from_ref(effect), &[]);
         let place = draw::place(effect, site);
         Some(Concealed {
@@ -217,7 +217,7 @@ fn truth(case: String, drawn: &Drawn, asked: &Question) -> Truth {
             detectability: oracle.as_ref()?.detectability(effects, which),
         })
     };
-    let mut concealed: Vec<Concealed> = effects.iter().enumerate().filter_map(of).collect();
+    let mut concealed: Vec<Concealed> = effects.iter().enumerate().filter_map(concealed_effect).collect();
     concealed.sort_by(|a, b| b.size_over_noise.total_cmp(&a.size_over_noise));
     concealed.extend(drawn.mistake.as_ref().map(|mistake| {
         Concealed::mistake(mistake.name(), mistake.place(site), parameters(mistake.parameters()))

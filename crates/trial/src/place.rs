@@ -95,7 +95,7 @@ impl fmt::Display for Place {
             }
             _ => String::new(),
         };
-        let of = |text: &Option<String>| text.clone().unwrap_or_default();
+        let or_nothing = |text: &Option<String>| text.clone().unwrap_or_default();
         if let Some(part) = &self.part {
             f.write_str(part)?;
             return if axes.is_empty() { Ok(()) } else { write!(f, ", loads along {axes}") };
@@ -124,9 +124,9 @@ impl fmt::Display for Place {
             return write!(f, "{axes} about {about}");
         }
         if let Some(towards) = &self.towards {
-            return write!(f, "{}{axes} towards {towards}", of(&self.channel));
+            return write!(f, "{}{axes} towards {towards}", or_nothing(&self.channel));
         }
-        let Some(row) = self.after_row else { return f.write_str(&of(&self.channel)) };
+        let Some(row) = self.after_row else { return f.write_str(&or_nothing(&self.channel)) };
         f.write_str(&axes)?;
         match (&self.trial, self.run) {
             (Some(trial), _) => write!(f, ", trial {trial}")?,

@@ -156,7 +156,7 @@ fn drawn(seed: Seed, number: usize, residuals: &[f64]) -> Drawn {
         Kind::Clean | Kind::Mistake => Vec::new(),
         Kind::Suspect => misread(&bench, &noise, random),
         Kind::Single | Kind::Pair | Kind::Unknown => {
-            let of = |&number: &usize| {
+            let of_number = |&number: &usize| {
                 let largest = match kind {
                     Kind::Unknown => beyond::draw(number, &bench, random),
                     _ => draw::library(number, &bench, random),
@@ -170,7 +170,7 @@ fn drawn(seed: Seed, number: usize, residuals: &[f64]) -> Drawn {
                 };
                 largest.scaled(log_uniform(random, least, most))
             };
-            numbers.iter().map(of).collect()
+            numbers.iter().map(of_number).collect()
         }
     };
     if has_companion {
@@ -215,11 +215,11 @@ fn misread(bench: &Bench, noise: &Noise, random: &mut Random) -> Vec<Effect> {
             chosen.push(cell);
         }
     }
-    let of = |cell: usize| {
+    let of_cell = |cell: usize| {
         let sign = if happens(random, 0.5) { -1.0 } else { 1.0 };
         Effect::Outlier(vec![(cell, sign * log_uniform(random, MISREAD[0], MISREAD[1]) * sd)])
     };
-    chosen.into_iter().map(of).collect()
+    chosen.into_iter().map(of_cell).collect()
 }
 
 fn truth(case: String, mut drawn: Drawn, asked: &Bench) -> Truth {
@@ -230,7 +230,7 @@ fn truth(case: String, mut drawn: Drawn, asked: &Bench) -> Truth {
     let protocol = &bench.protocol;
     let variance = noise.variance(protocol.quantum);
     let clean = bench.readings(&[]);
-    let of = |(which, effect): (usize, &Effect)| {
+    let concealed_effect = |(which, effect): (usize, &Effect)| {
         let alone = bench.readings(std::slice::from_ref(effect));
         let mut detectability = oracle.detectability(effects, which);
         if *kind == Kind::Unknown {
@@ -246,7 +246,7 @@ fn truth(case: String, mut drawn: Drawn, asked: &Bench) -> Truth {
             detectability,
         }
     };
-    let mut concealed: Vec<Concealed> = effects.iter().enumerate().map(of).collect();
+    let mut concealed: Vec<Concealed> = effects.iter().enumerate().map(concealed_effect).collect();
     let companions = concealed.split_off(concealed.len() - drawn.companions);
     concealed.sort_by(|a, b| b.size_over_noise.total_cmp(&a.size_over_noise));
     concealed.extend(drawn.mistake.as_ref().map(|mistake| mistaken(&drawn, mistake)));
@@ -294,8 +294,8 @@ fn parameters(bench: &Bench, effect: &Effect, with: &[f64]) -> Vec<Parameter> {
         }
         _ => None,
     };
-    let of = |(name, value): (&str, f64)| Parameter { name: name.into(), value, with_numbers: of_all };
-    effect.parameters().into_iter().map(of).collect()
+    let of_name = |(name, value): (&str, f64)| Parameter { name: name.into(), value, with_numbers: of_all };
+    effect.parameters().into_iter().map(of_name).collect()
 }
 
 /// A mistake as it is concealed.

@@ -164,8 +164,8 @@ fn an_l_swings_in_its_plane_as_its_two_beams_together() {
 fn finer_meshes_agree_on_a_rod_with_everything_on_it() {
     let rod = Rod::read("rods/2.toml".as_ref()).unwrap();
     let rod = rod.with_bend(0.05, crate::rod::BendFlexibility::VonKarman);
-    let of = |elements| RodModel::new(&rod, &Physics::WHOLE, elements, &[]).unwrap().chain;
-    let (coarse, fine) = (frequencies(&of(ELEMENTS), 4), frequencies(&of(400), 4));
+    let of_elements = |elements| RodModel::new(&rod, &Physics::WHOLE, elements, &[]).unwrap().chain;
+    let (coarse, fine) = (frequencies(&of_elements(ELEMENTS), 4), frequencies(&of_elements(400), 4));
     for (coarse, fine) in coarse.iter().zip(&fine) {
         assert!((coarse / fine - 1.0).abs() < 1e-4, "{coarse} {fine}");
     }

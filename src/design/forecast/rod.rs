@@ -56,11 +56,11 @@ impl Loads {
         let mut unknown = Vec::new();
         for nominal in rod.nominal_numbers() {
             let u = nominal.standard_uncertainty;
-            let of = |by: f64| {
+            let value_at = |by: f64| {
                 let rod = rod.with(&nominal.number, nominal.value + by);
                 Compliance::of_model(&rod, &Physics::default(), ELEMENTS)
             };
-            let (more, less) = (of(u)?, of(-u)?);
+            let (more, less) = (value_at(u)?, value_at(-u)?);
             unknown.push(Compliance {
                 force: (more.force - less.force) * 0.5,
                 gravity: (more.gravity - less.gravity) * 0.5,
@@ -73,9 +73,9 @@ impl Loads {
         let actual = planned.deflections(&self.truth);
         let taken = planned.deflections(&self.mode);
         let bias = actual.iter().zip(&taken).map(|(actual, taken)| actual - taken).collect();
-        let of = |compliance: &Compliance| {
+        let of_compliance = |compliance: &Compliance| {
             planned.deflections(&Compensation { compliance: Some(*compliance), ..self.truth.clone() })
         };
-        Ok(Errors { bias, unknown: self.unknown.iter().map(of).collect() })
+        Ok(Errors { bias, unknown: self.unknown.iter().map(of_compliance).collect() })
     }
 }

@@ -116,7 +116,7 @@ fn generated(
 ) -> Result<Candidates> {
     let places = around.places.len();
     let quota = count.div_ceil(places);
-    let of = |place: usize, from: usize, to: usize, trials: usize| {
+    let of_place = |place: usize, from: usize, to: usize, trials: usize| {
         let found = in_parallel(to - from, |k| {
             let found = posture(around, place, seed, from + k, trials);
             progress(1);
@@ -126,7 +126,7 @@ fn generated(
         (found.into_iter().filter_map(|(q, _)| q).collect::<Vec<_>>(), tally)
     };
     let probes = quota.clamp(1, PROBES);
-    let first: Vec<_> = (0..places).map(|place| of(place, 0, probes, FIRST_TRIALS)).collect();
+    let first: Vec<_> = (0..places).map(|place| of_place(place, 0, probes, FIRST_TRIALS)).collect();
     let unreached: Vec<String> = (0..places)
         .filter(|&place| first[place].0.is_empty())
         .map(|place| why_not(around, place, &first[place].1))
@@ -140,7 +140,7 @@ fn generated(
     }
     let mut candidates = Candidates { poses: Vec::new(), tried: 0, refused: Vec::new(), alike: 0 };
     for (place, (mut poses, tally)) in first.into_iter().enumerate() {
-        let (more, rest) = of(place, probes, quota.max(probes), MOST_TRIALS);
+        let (more, rest) = of_place(place, probes, quota.max(probes), MOST_TRIALS);
         poses.extend(more);
         let tally = tally.and(&rest);
         candidates.tried += tally.tried;

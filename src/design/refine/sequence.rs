@@ -136,7 +136,7 @@ impl Search<'_> {
         let slopes = Figures::slopes_by(rod, &numbers, swings)?;
         // ∂ln f/∂ln x
         let slope = |figure: Figure, variable: &Variable| {
-            let of = |(number, by): &(NominalNumber, f64)| {
+            let of_number = |(number, by): &(NominalNumber, f64)| {
                 let known = slopes.iter().find(|(known, _)| known == number);
                 let slope = match (figure, number) {
                     (Figure::Price, NominalNumber::LengthL1) => self.price[0],
@@ -147,7 +147,7 @@ impl Search<'_> {
                 by * slope
             };
             let value = figures.get(figure).unwrap_or(f64::NAN);
-            let slope = variable.moves.iter().map(of).sum::<f64>() * variable.value(rod) / value;
+            let slope = variable.moves.iter().map(of_number).sum::<f64>() * variable.value(rod) / value;
             if slope.is_finite() { slope } else { 0.0 }
         };
         let row = |figure: Figure, is_large: bool| -> Vec<f64> {

@@ -64,7 +64,7 @@ pub(super) fn lengths(wish: &Wish, rod: &Rod) -> Vec<Variable> {
 
 /// Outer diameter (at its wall) and wall (at its outer diameter) of the tubes.
 pub(super) fn diameters(wish: &Wish, rod: &Rod) -> Vec<Variable> {
-    let of = |parts: &[Part], material: &str| -> Vec<Variable> {
+    let of_parts = |parts: &[Part], material: &str| -> Vec<Variable> {
         let rounds: Vec<&Round> = (wish.tubes.iter())
             .filter(|tube| tube.pipe.material.name == material)
             .filter_map(|tube| tube.pipe.section.as_round())
@@ -90,10 +90,10 @@ pub(super) fn diameters(wish: &Wish, rod: &Rod) -> Vec<Variable> {
         return Vec::new();
     }
     match wish.is_one_tube {
-        true => of(&[Part::Pipe1, Part::Pipe2], &rod.pipe1.material.name),
+        true => of_parts(&[Part::Pipe1, Part::Pipe2], &rod.pipe1.material.name),
         false => [(Part::Pipe1, &rod.pipe1), (Part::Pipe2, &rod.pipe2)]
             .iter()
-            .flat_map(|(part, pipe)| of(&[*part], &pipe.material.name))
+            .flat_map(|(part, pipe)| of_parts(&[*part], &pipe.material.name))
             .collect(),
     }
 }

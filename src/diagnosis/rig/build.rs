@@ -3,7 +3,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::action::{Action, State};
+use super::action::Action;
 use super::cases::Cases;
 use super::datum::Datum;
 use super::effects::entry::{Context, Entry};
@@ -12,6 +12,7 @@ use super::effects::zeros::ZERO_NOT_TAKEN;
 use super::model::{Body, RigModel, is_dependent};
 use super::numbering::numbered;
 use super::slide::Course;
+use super::state::State;
 use super::structure::Structure;
 use super::wanted::Wanted;
 use super::{
@@ -145,7 +146,7 @@ impl RigModel {
     pub(super) fn large_deflections(&self, rod: &Rod) -> Result<DVector<f64>> {
         let Body::Rod(structure) = &self.body else { return Ok(DVector::zeros(self.data.len())) };
         let second = structure.second_order(rod)?;
-        let of = |(d, &place): (&Datum, &usize)| {
+        let of_datum = |(d, &place): (&Datum, &usize)| {
             let more = second[place][(d.channel.index(), d.direction.axis.index())] * d.load.powi(2);
             // an imposed displacement needs so much less load
             match d.imposed {
@@ -153,7 +154,7 @@ impl RigModel {
                 _ => more,
             }
         };
-        Ok(DVector::from_iterator(self.data.len(), self.data.iter().zip(&self.place).map(of)))
+        Ok(DVector::from_iterator(self.data.len(), self.data.iter().zip(&self.place).map(of_datum)))
     }
 
     /// Fills in the effects and their nonparametric rivals, without what can do nothing to these

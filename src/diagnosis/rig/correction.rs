@@ -95,11 +95,11 @@ impl RigDiagnosis {
         };
         let numbers = rod.nominal_numbers();
         let known = self.evidence.nominal_numbers.iter().zip(factors.iter());
-        let of = |(own, factor): (&NominalParameter, &f64)| {
+        let of_own = |(own, factor): (&NominalParameter, &f64)| {
             let number = numbers.iter().find(|number| number.number.to_string() == own.name)?;
             (factor.abs() > TRACE).then(|| (number.number.clone(), factor * own.standard_uncertainty))
         };
-        known.filter_map(of).collect()
+        known.filter_map(of_own).collect()
     }
 }
 
@@ -294,7 +294,7 @@ fn without(
             *offset = ((*offset - change) / NM).round() * NM;
         }
     }
-    let of = |what: &str, list: &[String]| match list {
+    let listed = |what: &str, list: &[String]| match list {
         [] => format!("{what}: nothing."),
         list => format!("{what}: {}.", list.join("; ")),
     };
@@ -304,9 +304,9 @@ fn without(
             "CORRECTED, not as recorded: the readings of {} without the effects of a diagnosis",
             readings.file
         ),
-        of("Mistakes undone", undone),
-        of("Removed, effects of the rig", removed),
-        of("Removed, so that the compliance at small loads directly after loading remains", left_out),
+        listed("Mistakes undone", undone),
+        listed("Removed, effects of the rig", removed),
+        listed("Removed, so that the compliance at small loads directly after loading remains", left_out),
     ];
     above.extend(source);
     readings.to_csv(&above)

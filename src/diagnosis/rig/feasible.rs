@@ -152,7 +152,7 @@ impl<'a> Rig<'a> {
     /// Loads that have been used along the axis, four of them at most; those of the other axes
     /// where there are none.
     fn levels(&self, axis: Axis) -> Vec<f64> {
-        let of = |is_of: &dyn Fn(&Reading) -> bool| {
+        let loads_of = |is_of: &dyn Fn(&Reading) -> bool| {
             let mut loads: Vec<f64> = self
                 .readings
                 .rows
@@ -164,9 +164,9 @@ impl<'a> Rig<'a> {
             loads.dedup();
             loads
         };
-        let mut loads = of(&|row| row.direction.axis == axis);
+        let mut loads = loads_of(&|row| row.direction.axis == axis);
         if loads.is_empty() {
-            loads = of(&|_| true);
+            loads = loads_of(&|_| true);
         }
         let last = loads.len().saturating_sub(1);
         let mut picked: Vec<f64> = (0..4).filter_map(|k| loads.get(k * last / 3).copied()).collect();

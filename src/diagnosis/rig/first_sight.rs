@@ -16,13 +16,13 @@ const SMALL: f64 = 0.2;
 pub(super) fn stiffness(data: &[Datum]) -> f64 {
     let is_along = |d: &&Datum| d.channel == d.direction.axis && d.predicted != 0.0;
     let largest = data.iter().filter(is_along).fold(0.0, |most: f64, d| most.max(d.predicted.abs()));
-    let of = |d: &Datum| {
+    let of_datum = |d: &Datum| {
         let ratio = d.predicted / d.measured;
         // of an imposed displacement the load is read
         if d.imposed.is_some() { ratio.recip() } else { ratio }
     };
     let large = data.iter().filter(is_along).filter(|d| d.predicted.abs() > SMALL * largest);
-    let mut ratios: Vec<f64> = large.map(of).filter(|ratio| ratio.is_finite()).collect();
+    let mut ratios: Vec<f64> = large.map(of_datum).filter(|ratio| ratio.is_finite()).collect();
     if ratios.is_empty() {
         return 1.0;
     }

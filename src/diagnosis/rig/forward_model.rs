@@ -5,11 +5,12 @@ use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::action::{Action, State};
+use super::action::Action;
 use super::effects::events::by_channel;
 use super::effects::registry;
 use super::effects::zeros::ZERO_NOT_TAKEN;
 use super::model::{Body, RigModel, STATION, is_dependent};
+use super::state::State;
 use crate::inference::{
     Candidate, DERIVATIVE_STEP, Description, Estimate, Finding, FindingPart, ForwardModel, Hypothesis, Kind,
     Location, Step, Term,

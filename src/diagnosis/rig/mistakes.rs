@@ -45,7 +45,7 @@ use self::search::{Found, Search, Trial};
 pub(super) use self::search::{ODDS, RARE};
 use self::sensors::Expected;
 use super::datum;
-use super::effects::mistakes::{OFFSET_MISTAKE, ROD_MISTAKE};
+use super::effects::mistakes::{OFFSET_MISTAKE, ROD_MISTAKE, UNIT_MISTAKE};
 use super::structure::check_stations;
 use crate::error::Result;
 use crate::inference::{Description, Effect, Estimate, Finding, Location, Rival};
@@ -232,10 +232,10 @@ impl Mended {
         let Some(rod) = &self.rod else { return Ok(None) };
         let (pairs, pair) = pairs(lines);
         let physics = Physics::new(rod, &pairs)?;
-        let of = |(line, &pair): (&Line, &usize)| {
+        let of_line = |(line, &pair): (&Line, &usize)| {
             physics.compliance(pair)[(line.channel.index(), line.axis.index())]
         };
-        let expected: Vec<f64> = lines.iter().zip(&pair).map(of).collect();
+        let expected: Vec<f64> = lines.iter().zip(&pair).map(of_line).collect();
         let most = lines.iter().zip(&expected).map(|(l, e)| e.abs() * l.largest_load).fold(0.0, f64::max);
         let mut scales: Vec<f64> = Vec::new();
         for (line, expected) in lines.iter().zip(&expected) {
@@ -372,7 +372,7 @@ impl Mended {
         let own = &moves[found.number];
         let times = found.log_scale_before.abs().exp();
         let softer = if found.log_scale_before > 0.0 { "softer" } else { "stiffer" };
-        let why = match times > 2.0 && own.effect.name == "unit_mistake" {
+        let why = match times > 2.0 && own.effect == &UNIT_MISTAKE {
             true => format!(": the rod seems {} times {softer} than its file", significant(times, 2)),
             false => String::new(),
         };

@@ -138,12 +138,13 @@ fn coordinates(data: &[Datum]) -> Vec<(Along, Coordinate, bool)> {
     if !follows_load {
         found.push((POSITION, scaled(&position), true));
     }
-    let of = |value: &dyn Fn(&Datum) -> Option<f64>| scaled(&data.iter().map(value).collect::<Coordinate>());
+    let coordinate_of =
+        |value: &dyn Fn(&Datum) -> Option<f64>| scaled(&data.iter().map(value).collect::<Coordinate>());
     if of_runs.len() > 1 {
-        found.push((ORDER, of(&|d| Some(d.order as f64)), false));
+        found.push((ORDER, coordinate_of(&|d| Some(d.order as f64)), false));
     }
-    found.push((TIME, of(&|d| d.time), false));
-    found.push((TEMPERATURE, of(&|d| d.temperature), false));
+    found.push((TIME, coordinate_of(&|d| d.time), false));
+    found.push((TEMPERATURE, coordinate_of(&|d| d.temperature), false));
     found
 }
 

@@ -338,8 +338,10 @@ impl Menu {
     fn log_odds(&self, counts: &[usize]) -> Vec<f64> {
         let others = self.between.len();
         let gram = self.information.of(counts);
-        let of = |i: usize| self.candidates[i].columns.clone();
-        let shared = |j: usize, i: usize| gram.view((of(j).start, of(i).start), (of(j).len(), of(i).len()));
+        let columns_of = |i: usize| self.candidates[i].columns.clone();
+        let shared = |j: usize, i: usize| {
+            gram.view((columns_of(j).start, columns_of(i).start), (columns_of(j).len(), columns_of(i).len()))
+        };
         let alone: Vec<Alone> =
             (0..self.candidates.len()).map(|i| Alone::new(shared(i, i).into_owned())).collect();
         let mut log_odds = Vec::with_capacity(self.candidates.len() * others);

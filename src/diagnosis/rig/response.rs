@@ -2,10 +2,10 @@
 
 use nalgebra::DVector;
 
-use super::action::State;
 use super::cases::Shown;
 use super::datum::Datum;
 use super::model::{Body, RigModel};
+use super::state::State;
 use super::structure::{Parts, Structure};
 
 impl RigModel {

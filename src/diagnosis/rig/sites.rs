@@ -230,7 +230,7 @@ impl Recording<'_> {
     fn drifts(&self) -> Vec<Site> {
         let channels: Vec<Axis> =
             Axis::ALL.into_iter().filter(|axis| self.data.iter().any(|d| d.channel == *axis)).collect();
-        let of = |common: Common| {
+        let site_of = |common: Common| {
             let direction = |&channel: &Axis| {
                 let name = if channels.len() > 1 { format!("d{channel}") } else { String::new() };
                 let weight = |d: &Datum| f64::from(u8::from(d.channel == channel));
@@ -248,7 +248,7 @@ impl Recording<'_> {
                 forms: common.forms,
             }
         };
-        self.common().into_iter().map(of).collect()
+        self.common().into_iter().map(site_of).collect()
     }
 
     /// What all data have in common, as far as the recording has it: time, temperature, order.

@@ -86,8 +86,8 @@ impl Nodes {
     fn weights(&self, station: f64) -> [f64; 3] {
         let [before, at, behind] = self.stations;
         // Lagrange's polynomials
-        let of = |own: f64, a: f64, b: f64| (station - a) * (station - b) / ((own - a) * (own - b));
-        [of(before, at, behind), of(at, before, behind), of(behind, before, at)]
+        let lagrange = |own: f64, a: f64, b: f64| (station - a) * (station - b) / ((own - a) * (own - b));
+        [lagrange(before, at, behind), lagrange(at, before, behind), lagrange(behind, before, at)]
     }
 
     /// Moves what `softening` has of the joint in the middle to `station`.

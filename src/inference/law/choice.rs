@@ -85,9 +85,16 @@ impl Choice {
         let (followed, sign) = self.memory.remembered(site, s);
         let (largest, count) = (site.largest(), self.form.count());
         let acts = |i: usize| site.directions.iter().any(|(_, weights)| weights[i] != 0.0);
-        let at = |(i, x): (usize, &f64)| match x.is_finite() && acts(i) {
-            true => self.form.functions(x / largest, s),
-            false => [0.0; 3],
+        // data of one moment follow each other: their value is the same
+        let (mut before, mut functions_there) = (f64::NAN, [0.0; 3]);
+        let at = |(i, &x): (usize, &f64)| {
+            if !x.is_finite() || !acts(i) {
+                return [0.0; 3];
+            }
+            if x != before {
+                (before, functions_there) = (x, self.form.functions(x / largest, s));
+            }
+            functions_there
         };
         let functions: Vec<[f64; 3]> = followed.iter().enumerate().map(at).collect();
         let mut columns = DMatrix::zeros(followed.len(), site.directions.len() * count);

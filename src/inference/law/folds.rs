@@ -59,20 +59,21 @@ pub(super) fn hold_out(
         let remainder = Remainder::new(model, evidence, terms, kept(folds[k]), sigma);
         let found = scan_some(&remainder, sites, size, |choice| tried.contains(choice)).laws;
         let none = remainder.fit(&DMatrix::zeros(n, 0)).predicted;
-        let of = |law: &Scanned| {
+        let predicted_by = |law: &Scanned| {
             let columns = law.choice.columns(&sites[law.choice.site], law.at, size);
             remainder.fit(&columns.columns).predicted
         };
         let best = found.first().map_or(f64::NEG_INFINITY, |law| law.log_odds);
         let with = match best > NAMED.ln() {
-            true => {
-                averaged(found.iter().take(TOGETHER).take_while(|law| law.log_odds > best - APART.ln()), of)
-            }
+            true => averaged(
+                found.iter().take(TOGETHER).take_while(|law| law.log_odds > best - APART.ln()),
+                predicted_by,
+            ),
             false => none.clone(),
         };
         let own = choices.iter().map(|choice| {
             let law = found.iter().find(|law| law.choice == *choice);
-            law.map_or_else(|| none.clone(), of)
+            law.map_or_else(|| none.clone(), predicted_by)
         });
         let own = own.collect();
         (none, with, own)

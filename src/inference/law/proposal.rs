@@ -320,11 +320,11 @@ fn comparable(law: &Law) -> impl Iterator<Item = (usize, &LawRival)> {
 fn apart(law: &Law, rival: &LawRival, x: f64) -> f64 {
     let per_result =
         law.site.directions.iter().flat_map(|(_, w)| w).fold(0.0, |most: f64, w| most.max(w.abs()));
-    let of = |direction: usize| {
+    let of_direction = |direction: usize| {
         let (level, slope) = taken_up(law, rival, direction);
         (law.at(direction, x) - rival.at(direction, x) - level - slope * x).abs() * per_result
     };
-    (0..law.site.directions.len()).map(of).fold(0.0, f64::max)
+    (0..law.site.directions.len()).map(of_direction).fold(0.0, f64::max)
 }
 
 /// What zeros and stiffnesses take up of the difference of two laws: the straight line through it

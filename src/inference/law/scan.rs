@@ -92,11 +92,11 @@ pub(super) fn scan_some(
     };
     let by_site = in_parallel(sites.len(), |number| {
         let choices = &all[number];
-        let of = |&choice: &Choice| {
+        let of_choice = |&choice: &Choice| {
             let posterior = Posterior::new(&choice.grid(&sites[number]), &|us| evidence(choice, us));
             (choice, posterior)
         };
-        let laws: Vec<(Choice, Posterior)> = choices.iter().filter(|c| is_tried(c)).map(of).collect();
+        let laws: Vec<(Choice, Posterior)> = choices.iter().filter(|c| is_tried(c)).map(of_choice).collect();
         let curve =
             (!laws.is_empty()).then(|| remainder.gain(&curve(&sites[number], size)) + prior(places, 1));
         (laws, curve)

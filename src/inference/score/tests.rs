@@ -59,12 +59,13 @@ fn what_is_out_of_bounds_is_no_explanation() {
     let (r, c) = (noise(60, 4), noise(60, 5));
     let r = r - &c * 2.0;
     let columns = DMatrix::from_columns(&[c]);
-    let of = |bounds| Moments::new(&r, &columns, vec![bounds], Vec::new(), 60, 0.0).score().log_evidence;
+    let of_bounds =
+        |bounds| Moments::new(&r, &columns, vec![bounds], Vec::new(), 60, 0.0).score().log_evidence;
     let without = score(&r, &DMatrix::zeros(60, 0)).log_evidence;
-    assert!(of(FREE) > without + 20.0);
-    assert!(of((0.0, f64::INFINITY)) < without);
+    assert!(of_bounds(FREE) > without + 20.0);
+    assert!(of_bounds((0.0, f64::INFINITY)) < without);
     // the other half of the prior is twice as dense
-    assert!((of((f64::NEG_INFINITY, 0.0)) - of(FREE) - std::f64::consts::LN_2).abs() < 1e-6);
+    assert!((of_bounds((f64::NEG_INFINITY, 0.0)) - of_bounds(FREE) - std::f64::consts::LN_2).abs() < 1e-6);
 }
 
 #[test]

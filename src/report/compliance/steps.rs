@@ -48,10 +48,10 @@ pub(super) fn figure(study: &Study) -> Figure {
         ("C^g 22", "µm/g", |c| c.gravity[(1, 1)]),
         ("C^g 33", "µm/g", |c| c.gravity[(2, 2)]),
     ];
-    let of = |(title, unit, entry): (&str, &str, Entry)| {
+    let of_title = |(title, unit, entry): (&str, &str, Entry)| {
         ladder(title, unit, &study.steps, |c| in_um(entry(c)), None)
     };
-    waterfall(&quantities.map(of))
+    waterfall(&quantities.map(of_title))
 }
 
 /// One quantity: by Calc, what each term adds to it, by FEA, and where it was measured what the

@@ -50,9 +50,9 @@ pub fn for_robot_section(found: &ForRobot) -> Section {
                    first; poses chosen by O1 for each rod.";
     let mut table = Table::new("for-robot", caption, heads);
     for one in &found.ranked {
-        let of = |mode: Mode| one.of(mode).map_or("–".to_owned(), |forecast| um(forecast.rms));
+        let of_mode = |mode: Mode| one.of(mode).map_or("–".to_owned(), |forecast| um(forecast.rms));
         let mut cells = vec![one.name.clone(), um(one.c_rod)];
-        cells.extend([Mode::None, Mode::Fea, Mode::Meas].map(of));
+        cells.extend([Mode::None, Mode::Fea, Mode::Meas].map(of_mode));
         cells.push(one.forecast.as_ref().err().cloned().unwrap_or_default());
         table.row(cells);
     }

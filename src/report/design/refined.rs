@@ -12,7 +12,7 @@ use crate::units::{MM, significant};
 
 /// What the JSON has of it.
 pub fn json(wish: &Wish, found: &Refined) -> Value {
-    let of = |better: &Option<Better>| {
+    let of_better = |better: &Option<Better>| {
         better.as_ref().map(|better| {
             let mut object = figures_json(&Design { index: 0, figures: better.figures });
             let rod: Value = toml::from_str(&better.rod.to_toml(&[])).unwrap_or(Value::Null);
@@ -31,8 +31,8 @@ pub fn json(wish: &Wish, found: &Refined) -> Value {
         "starts": found.starts.0,
         "starts_that_led_there": found.starts.1,
         "every_tube_tried": found.is_every_tube,
-        "continuous": of(&found.continuous),
-        "catalogue": of(&found.catalogue),
+        "continuous": of_better(&found.continuous),
+        "catalogue": of_better(&found.catalogue),
     })
 }
 

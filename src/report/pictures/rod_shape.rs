@@ -406,11 +406,11 @@ mod tests {
         rod.stations = vec![at([200.0, 0.0, 150.0]), at([525.0, 0.0, 150.0])];
         let figure = rod_shape(&rod);
         let areas = |panel: usize, name: &str| -> Vec<Vec<[f64; 2]>> {
-            let of = |mark: &Mark| match mark {
+            let of_mark = |mark: &Mark| match mark {
                 Mark::Area { label, corners, .. } if label == name => Some(corners.clone()),
                 _ => None,
             };
-            figure.panels[panel].marks.iter().filter_map(of).collect()
+            figure.panels[panel].marks.iter().filter_map(of_mark).collect()
         };
         // the wall of pipe I's left side: 1 mm thick, mitred at the corner
         assert_eq!(areas(0, "wall")[0], [[-16.0, 0.0], [-16.0, 166.0], [-15.0, 165.0], [-15.0, 0.0]]);

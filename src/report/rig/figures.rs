@@ -109,10 +109,10 @@ struct Uncertainty {
 
 impl Uncertainty {
     fn of(fit: &Fit, rod: Option<&Rod>) -> Self {
-        let of = |physics: &Physics| standard_uncertainty(rod?, physics).ok();
-        let fea = fit.measured.as_ref().and_then(|measured| of(&measured.physics));
+        let of_physics = |physics: &Physics| standard_uncertainty(rod?, physics).ok();
+        let fea = fit.measured.as_ref().and_then(|measured| of_physics(&measured.physics));
         // Calc is the beam in bending and torsion alone
-        Uncertainty { calc: fea.and_then(|_| of(&Physics::BENDING_AND_TORSION)), fea }
+        Uncertainty { calc: fea.and_then(|_| of_physics(&Physics::BENDING_AND_TORSION)), fea }
     }
 }
 

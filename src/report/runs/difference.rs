@@ -226,16 +226,16 @@ mod tests {
     /// has P = 0.046.
     #[test]
     fn significance_is_that_of_student_and_of_all_numbers_together() {
-        let of = |slope: f64, file: &str| {
+        let of_slope = |slope: f64, file: &str| {
             let other = run(&[("b.csv", file)], slope);
             Difference::between(&run(&[("a.csv", "1")], 40.0), &other).unwrap()
         };
-        let far = of(41.5, "2");
+        let far = of_slope(41.5, "2");
         assert!((far.parameters[0].ratio().unwrap() - 3.5355).abs() < 1e-4);
         assert_eq!((far.significant(), far.tested()), (1, 2));
-        assert_eq!((of(41.0, "2").significant(), of(40.0, "2").significant()), (0, 0));
+        assert_eq!((of_slope(41.0, "2").significant(), of_slope(40.0, "2").significant()), (0, 0));
         // the same recording: there is a ratio and no test
-        let same = of(41.5, "1");
+        let same = of_slope(41.5, "1");
         assert_eq!((same.significant(), same.tested()), (0, 0));
         assert_eq!(same.shared_recordings, ["a.csv"]);
     }

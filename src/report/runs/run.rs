@@ -171,12 +171,12 @@ fn scatter(slope: &Value) -> Option<Quantity> {
 
 /// r of each axis, and r_rod.
 fn ratios(json: &Value) -> impl Iterator<Item = Quantity> + '_ {
-    let of = |name: String, value: &Value, error: &Value| {
+    let of_name = |name: String, value: &Value, error: &Value| {
         Some(Quantity { std_error: error.as_f64(), ..plain(name, "", value.as_f64()?) })
     };
     let each = json["r"].as_object().into_iter().flatten();
-    let each = each.filter_map(move |(axis, r)| of(format!("r{axis}"), r, &json["r_std_error"][axis]));
-    each.chain(of("r_rod".into(), &json["r_rod"], &json["r_rod_std_error"]))
+    let each = each.filter_map(move |(axis, r)| of_name(format!("r{axis}"), r, &json["r_std_error"][axis]));
+    each.chain(of_name("r_rod".into(), &json["r_rod"], &json["r_rod_std_error"]))
 }
 
 /// C^F and C^g of a model; what a rig measured stands in its slopes already.

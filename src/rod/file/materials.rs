@@ -46,10 +46,10 @@ impl MaterialTable {
     /// As [`Rod::from_toml`](crate::rod::Rod::from_toml).
     pub fn checked(&self, check: &mut Check) -> Result<BTreeMap<String, Material>> {
         let usual = RawUncertainty::default();
-        let of = |(name, raw): (&String, &Spanned<RawMaterial>)| {
+        let of_name = |(name, raw): (&String, &Spanned<RawMaterial>)| {
             Ok((name.clone(), check.material(name, raw, &usual)?.material))
         };
-        self.0.iter().map(of).collect()
+        self.0.iter().map(of_name).collect()
     }
 }
 

@@ -37,35 +37,35 @@ impl Rod {
 
     /// The same rod in numbers of another kind.
     pub fn lifted<T: Number>(&self) -> Rod<T> {
-        let of = |x: f64| T::from(x);
+        let value_at = |x: f64| T::from(x);
         let joint = |joint: &Joint| Joint {
             name: joint.name.clone(),
-            station: of(joint.station),
-            bending: of(joint.bending),
-            torsion: of(joint.torsion),
+            station: value_at(joint.station),
+            bending: value_at(joint.bending),
+            torsion: value_at(joint.torsion),
         };
         let mass = |mass: &LumpedMass| LumpedMass {
             name: mass.name.clone(),
-            station: of(mass.station),
-            mass: of(mass.mass),
+            station: value_at(mass.station),
+            mass: value_at(mass.mass),
         };
         Rod {
             name: self.name.clone(),
             source: self.source.clone(),
-            l1: of(self.l1),
-            l2: of(self.l2),
-            gamma: of(self.gamma),
-            bend_radius: of(self.bend_radius),
+            l1: value_at(self.l1),
+            l2: value_at(self.l2),
+            gamma: value_at(self.gamma),
+            bend_radius: value_at(self.bend_radius),
             bend_flexibility: match self.bend_flexibility {
                 BendFlexibility::Beam => BendFlexibility::Beam,
                 BendFlexibility::VonKarman => BendFlexibility::VonKarman,
                 BendFlexibility::AsmeB313 => BendFlexibility::AsmeB313,
-                BendFlexibility::Factor(k) => BendFlexibility::Factor(of(k)),
+                BendFlexibility::Factor(k) => BendFlexibility::Factor(value_at(k)),
             },
             pipe1: self.pipe1.lifted(),
             bend: self.bend.lifted(),
             pipe2: self.pipe2.lifted(),
-            tip_mass: of(self.tip_mass),
+            tip_mass: value_at(self.tip_mass),
             masses: self.masses.iter().map(mass).collect(),
             joints: self.joints.iter().map(joint).collect(),
             laws: self.laws.clone(),

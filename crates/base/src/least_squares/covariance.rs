@@ -106,8 +106,8 @@ impl Covariance {
                 matrix[(i, j)] = match known {
                     // Cᵢⱼ = s²·Σₖ (Vᵢₖ/σₖ)·(Vⱼₖ/σₖ) / (Dᵢ·Dⱼ)
                     true => {
-                        let of = |row: usize, k: usize| s * svd.v[(row, k)] / svd.singular_values[k];
-                        (0..rank).map(|k| of(a, k) * of(b, k)).sum::<f64>() / (scale[i] * scale[j])
+                        let of_row = |row: usize, k: usize| s * svd.v[(row, k)] / svd.singular_values[k];
+                        (0..rank).map(|k| of_row(a, k) * of_row(b, k)).sum::<f64>() / (scale[i] * scale[j])
                     }
                     false if i == j => f64::INFINITY,
                     false => f64::NAN,

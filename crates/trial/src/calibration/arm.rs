@@ -74,8 +74,8 @@ fn behind(frame: &Matrix4<f64>, numbers: &[f64; 5], q: f64) -> Matrix4<f64> {
     if beta != 0.0 {
         turn(&mut z, &mut x, beta);
     }
-    let of = |v: Vector3<f64>, last: f64| Vector4::new(v.x, v.y, v.z, last);
-    Matrix4::from_columns(&[of(x, 0.0), of(y, 0.0), of(z, 0.0), of(at, 1.0)])
+    let of_vector3 = |v: Vector3<f64>, last: f64| Vector4::new(v.x, v.y, v.z, last);
+    Matrix4::from_columns(&[of_vector3(x, 0.0), of_vector3(y, 0.0), of_vector3(z, 0.0), of_vector3(at, 1.0)])
 }
 
 /// The base and the frame behind every link.

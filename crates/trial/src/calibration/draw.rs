@@ -233,8 +233,8 @@ pub fn place(effect: &Effect, site: &Site) -> Place {
         Effect::Lag { .. } | Effect::Memory(_) => Place { joint: Some("all".into()), ..Place::default() },
         Effect::Rod(_) => Place::part("rod"),
         Effect::Outlier(rows) => {
-            let of = |(row, _): &(usize, _)| Place { row: Some(row + 1), ..Place::default() };
-            Place { all: rows.iter().map(of).collect(), ..Place::default() }
+            let of_row = |(row, _): &(usize, _)| Place { row: Some(row + 1), ..Place::default() };
+            Place { all: rows.iter().map(of_row).collect(), ..Place::default() }
         }
         Effect::LinkTorsion { link, joints: [a, b], .. } => {
             Place::part(&format!("link {}, joints {} and {}", link + 1, a + 1, b + 1))

@@ -47,10 +47,10 @@ fn of_geometry(site: &Site, drives: &[f64]) -> Vec<Number> {
     }
     known.extend([(ANYWHERE, 0.0); 9]);
     let columns = of_robot(site).into_iter().zip(known);
-    let of = |(column, (u, off)): (DVector<f64>, (f64, f64))| {
+    let of_column = |(column, (u, off)): (DVector<f64>, (f64, f64))| {
         (u > 0.0).then(|| Number { column: column * u, off: off / u })
     };
-    columns.filter_map(of).collect()
+    columns.filter_map(of_column).collect()
 }
 
 /// How compliant the drives may be, rad/(N·m): none is rated for less than those beyond it.
@@ -101,24 +101,24 @@ fn of_links(site: &Site) -> Vec<Number> {
 
 fn of_rod(site: &Site, rod: &Rod) -> Vec<Number> {
     let at_rest = ball(site);
-    let of = |which: usize| {
+    let number_moved = |which: usize| {
         let other = Rod::of(rod.drawing.clone(), rod.actual.moved(which, 1.0));
         // what is a rig's only concerns no rod
         let is_felt = other.per_force != rod.per_force;
         let other = Site { rod: Some(other), ..site.clone() };
         is_felt.then(|| Number { column: changed(&at_rest, &other), off: -rod.actual.error(which) })
     };
-    (0..rod.actual.len()).filter_map(of).collect()
+    (0..rod.actual.len()).filter_map(number_moved).collect()
 }
 
 fn of_clamps(site: &Site, sd: f64) -> Vec<Number> {
     let Devices::Clamps(clamps) = &site.devices else { return Vec::new() };
-    let of = |(group, axis): (usize, usize)| {
+    let of_group = |(group, axis): (usize, usize)| {
         let column = site.each(|row, _| match site.rows[row].group == group {
             true => -Vector3::ith(axis, sd),
             false => Vector3::zeros(),
         });
         Number { column, off: -site.clamps_off[group][axis] / sd }
     };
-    (0..clamps.len()).flat_map(|group| (0..3).map(move |axis| (group, axis))).map(of).collect()
+    (0..clamps.len()).flat_map(|group| (0..3).map(move |axis| (group, axis))).map(of_group).collect()
 }

@@ -125,7 +125,7 @@ impl Bench {
 
     /// What hangs there: the nominal load and what is wrong with it, N.
     fn hanging(&self, effects: &[Effect]) -> Vec<f64> {
-        let of = |loading: &Loading| {
+        let of_loading = |loading: &Loading| {
             let offsets = effects.iter().map(|effect| match *effect {
                 Effect::LoadOffset { axis, force } if is_of(axis, loading) => force,
                 _ => 0.0,
@@ -134,7 +134,7 @@ impl Bench {
             let scale = self.actual.load_scale();
             if loading.load > 0.0 { scale * loading.load + offsets.sum::<f64>() } else { 0.0 }
         };
-        self.protocol.loadings.iter().map(of).collect()
+        self.protocol.loadings.iter().map(of_loading).collect()
     }
 
     /// Friction takes its share of the loads on the way up and holds them on the way down.
@@ -165,8 +165,8 @@ impl Bench {
     /// True where a load hangs on an empty hanger: the first of a run, or each one in any order.
     fn is_first(&self, index: usize) -> bool {
         let loadings = &self.protocol.loadings;
-        let of = |index: usize| loadings.get(index).map(|l| (l.run, l.sign));
-        index == 0 || of(index - 1) != of(index) || self.protocol.is_shuffled
+        let of_index = |index: usize| loadings.get(index).map(|l| (l.run, l.sign));
+        index == 0 || of_index(index - 1) != of_index(index) || self.protocol.is_shuffled
     }
 
     /// A part of each change of the load is still to come when the display is read.

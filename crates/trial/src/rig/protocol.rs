@@ -110,11 +110,11 @@ pub struct Cell {
 impl Protocol {
     /// Everything that is read, in the order of the file.
     pub fn cells(&self) -> Vec<Cell> {
-        let of = |(loading, read): (usize, &[bool; 3])| {
+        let of_loading = |(loading, read): (usize, &[bool; 3])| {
             let read = *read;
             (0..3).filter(move |&channel| read[channel]).map(move |channel| Cell { loading, channel })
         };
-        self.channels.iter().enumerate().flat_map(of).collect()
+        self.channels.iter().enumerate().flat_map(of_loading).collect()
     }
 
     /// Temperature of the room, °C.

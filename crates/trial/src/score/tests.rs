@@ -289,18 +289,19 @@ fn a_class_is_right_where_the_oracle_cannot_distinguish_it() {
 fn places_are_compared_as_data() {
     let truth = truth(1, Kind::Single, vec![]);
     let at = |value: Value| serde_json::from_value::<Place>(value).unwrap();
-    let of = |effect: &str, place: Place| Concealed { place, ..concealed(effect, "", ("um", 1.0), 9.0) };
+    let of_effect =
+        |effect: &str, place: Place| Concealed { place, ..concealed(effect, "", ("um", 1.0), 9.0) };
     let is_same = |concealed: &Concealed, place: &Place| place::is_same(&truth, concealed, Some(place));
-    let slip = of("slip", at(json!({"loads_along": "y", "trial": "2", "after_row": 7})));
+    let slip = of_effect("slip", at(json!({"loads_along": "y", "trial": "2", "after_row": 7})));
     assert!(is_same(&slip, &at(json!({"loads_along": "y", "trial": "2", "after_row": 9, "channel": null}))));
     assert!(!is_same(&slip, &at(json!({"loads_along": "y", "trial": "1", "after_row": 7}))));
     let between = at(json!({"loads_along": "y", "trial": "2", "after_row": 7, "channel": "dz"}));
-    let slip = of("slip", between.clone());
+    let slip = of_effect("slip", between.clone());
     assert!(is_same(&slip, &between) && !is_same(&slip, &Place { channel: None, ..between }));
-    let frame = of("load_misalignment", Place::part("load frame"));
+    let frame = of_effect("load_misalignment", Place::part("load frame"));
     assert!(is_same(&frame, &at(json!({"loads_along": ["y", "z"], "about": "x"}))));
     assert!(!is_same(&frame, &at(json!({"loads_along": "y", "towards": "z"}))));
-    let zero = of("offset_mistake", Place::key("dy_um"));
+    let zero = of_effect("offset_mistake", Place::key("dy_um"));
     assert!(is_same(&zero, &Place::key("dy_um, axis y, trial 2")));
     assert!(!is_same(&zero, &Place::key("dy_um and dz_um")));
     // nothing that could be read is no place

@@ -43,8 +43,8 @@ fn positions(draft: &Draft) -> Vec<Silent> {
         return Vec::new();
     }
     let names = AXES;
-    let of = |axis: usize| -> Vec<f64> { draft.seen.iter().map(|seen| seen[axis]).collect() };
-    let columns: Vec<Vec<f64>> = (0..3).map(of).collect();
+    let of_axis = |axis: usize| -> Vec<f64> { draft.seen.iter().map(|seen| seen[axis]).collect() };
+    let columns: Vec<Vec<f64>> = (0..3).map(of_axis).collect();
     let still: Vec<usize> = (0..3).filter(|&axis| is_constant(&columns[axis])).collect();
     let shown = |axis: usize| columns[axis][0] / MM;
     let mut all = Vec::new();
@@ -71,8 +71,9 @@ fn positions(draft: &Draft) -> Vec<Silent> {
 fn joints(campaign: &Campaign, draft: &Draft) -> Vec<Silent> {
     let count = draft.joint_count;
     let name = |joint: usize| column(&campaign.robot, joint);
-    let of = |joint: usize| -> Vec<f64> { draft.joints.iter().skip(joint).step_by(count).copied().collect() };
-    let columns: Vec<Vec<f64>> = (0..count).map(of).collect();
+    let of_joint =
+        |joint: usize| -> Vec<f64> { draft.joints.iter().skip(joint).step_by(count).copied().collect() };
+    let columns: Vec<Vec<f64>> = (0..count).map(of_joint).collect();
     let mut all = Vec::new();
     for a in 0..count {
         if is_constant(&columns[a]) {

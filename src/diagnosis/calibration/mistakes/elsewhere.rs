@@ -41,8 +41,9 @@ impl Search<'_> {
             places.into_iter().filter(is_two).map(|at| Change::Moved(rows[at])).collect();
         let clamps = self.draft.devices.len();
         if clamps > 2 {
-            let of = |k: usize| (0..count).filter(move |&row| from.thin.group[row] == k).collect::<Vec<_>>();
-            all.extend((0..clamps).filter(|&k| is_placed(&of(k))).map(Change::Apart));
+            let rows_of =
+                |k: usize| (0..count).filter(move |&row| from.thin.group[row] == k).collect::<Vec<_>>();
+            all.extend((0..clamps).filter(|&k| is_placed(&rows_of(k))).map(Change::Apart));
         }
         all
     }

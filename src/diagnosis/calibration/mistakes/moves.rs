@@ -398,12 +398,12 @@ impl List<'_> {
         if count > 1 {
             let kinds: Vec<Said> = readings.iter().flatten().map(|(_, said)| *said).collect();
             for (_, said) in kinds.iter().enumerate().filter(|(k, said)| !kinds[..*k].contains(said)) {
-                let of = |k: usize| {
+                let entry = |k: usize| {
                     let rotation =
                         readings[k].iter().find(|(_, own)| own == said).map(|(rotation, _)| *rotation);
                     rotation.map(|rotation| of_clamp(k, rotation))
                 };
-                let change = Change::Devices((0..count).filter_map(of).collect());
+                let change = Change::Devices((0..count).filter_map(entry).collect());
                 let place = "clamp rpy_deg (all)";
                 self.add(&FRAME_MISTAKE, place, change, &said.cure("rpy_deg of all clamps"), said.why)
                     .log_prior = UNUSUAL;

@@ -56,7 +56,7 @@ impl Search<'_> {
         let places = in_parallel(self.of_rows.len(), |number| {
             let own = &self.of_rows[number];
             let changed = self.thinned(&draft.with(&own.change));
-            let of = |k: usize| {
+            let entry = |k: usize| {
                 let reference = &references[k];
                 if let Change::Zero { joint, .. } = own.change {
                     let far: Vec<usize> =
@@ -71,7 +71,7 @@ impl Search<'_> {
                 let (rows, gain) = most(&from.thin, &gains)?;
                 Some(Place { start: k, number, rows, gain, change: own.change.clone() })
             };
-            (0..starts.len()).filter_map(of).collect::<Vec<_>>()
+            (0..starts.len()).filter_map(entry).collect::<Vec<_>>()
         });
         let mut all: Vec<Place> = places.into_iter().flatten().collect();
         all.sort_by(|a, b| b.gain.total_cmp(&a.gain));

@@ -10,18 +10,22 @@
 //! Gauss–Newton with the weights (ν + 3)/(ν + (r/s)²) of that density: rows that a mistake touches
 //! hardly count, as long as they are the fewer ones. Neither covariance nor uncertainty comes out.
 
-use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
+mod density;
+mod means;
+mod rough;
 
+use nalgebra::{DMatrix, DVector, Vector3};
+
+use self::density::{density, t_scale, weight_of};
+use self::means::{minus_means, without_means};
+use self::rough::rough;
 use super::draft::Draft;
 use crate::calibration::Compensation;
 use crate::linalg::transposed_product;
 use crate::robot::{Kinematics, Loads, Parameter, Robot, Setup, minimal_parameters};
 use crate::spatial::{Pose, exponential, skew, times};
-use crate::statistics::median;
 use crate::units::{DEG, MM, STANDARD_GRAVITY};
 
-/// Degrees of freedom of the residuals' distribution.
-const NU: f64 = 4.0;
 /// Standard deviations of a robot as built, twice the usual: lengths, twists, zeros of joints.
 const LENGTH: f64 = 2.0 * MM;
 const TWIST: f64 = 0.2 * DEG;
@@ -33,18 +37,9 @@ const TOOL: f64 = 0.5;
 /// Scatter that no file goes below, as a share of the reach: 10 µm per metre.
 const LEAST_SCALE: f64 = 1e-5;
 const MOST_STEPS: usize = 12;
-const MOST_TURNS: usize = 12;
-/// Times that the middle of a socket is looked for roughly.
-const ROUGH_MEANS: usize = 4;
 /// After so many steps what one gains tells the rest, which is so many times as much at most.
 const SETTLING: usize = 2;
 const AHEAD: f64 = 10.0;
-/// More rows than these add no evidence, for they share the same unknown physics; and what the
-/// three coordinates of one row count.
-const MOST_ROWS: f64 = 150.0;
-const ROW: f64 = 1.0 / 3.0;
-/// The median length of a normal vector in space.
-const MEDIAN: f64 = 1.538;
 
 /// A robot with what hangs on it.
 pub(super) struct Body<'a> {
@@ -86,13 +81,6 @@ impl<'a> Body<'a> {
     }
 }
 
-/// Base and tool by the nominal robot, with the median length of what is left, m.
-struct Rough {
-    bases: Vec<Pose>,
-    tool: Vector3<f64>,
-    median: f64,
-}
-
 /// What a fit that is worth its time comes to.
 #[derive(Clone, Copy)]
 pub(super) struct Worthwhile {
@@ -109,7 +97,7 @@ impl Worthwhile {
 
 /// Fits a draft; `None` where that is not worthwhile, or nothing can be computed.
 pub(super) fn fit(draft: &Draft, body: &Body, worthwhile: Worthwhile) -> Option<Fit> {
-    let rough = rough(draft, body)?;
+    let rough = rough(draft, body.robot, body.reach)?;
     if rough.median > worthwhile.most_left {
         return None;
     }
@@ -127,107 +115,6 @@ pub(super) fn fit_from(draft: &Draft, body: &Body, start: &Fit, rough: f64) -> O
         return None;
     }
     refined(draft, body, State { setup: start.setup(body), bases }, rough, f64::NEG_INFINITY)
-}
-
-fn rough(draft: &Draft, body: &Body) -> Option<Rough> {
-    let flanges: Vec<Pose> = (0..draft.len()).map(|row| body.robot.flange_at(draft.joints(row))).collect();
-    if draft.has_sockets() {
-        let tool = draft.tool.unwrap_or_default();
-        let tips: Vec<Vector3<f64>> = flanges.iter().map(|flange| flange.point(&tool)).collect();
-        let mut weight = vec![1.0; tips.len()];
-        let mut middle = f64::INFINITY;
-        for _ in 0..ROUGH_MEANS {
-            let left: Vec<f64> = minus_means(&tips, draft, &weight).iter().map(|r| r.norm()).collect();
-            middle = median(&left)?;
-            weight = left.iter().map(|left| weight_of(left / (middle / MEDIAN).max(1e-9))).collect();
-        }
-        return Some(Rough { bases: Vec::new(), tool, median: middle });
-    }
-    let points: Vec<Vector3<f64>> = (0..draft.len()).map(|row| draft.point(row)).collect();
-    let mut best: Option<Rough> = None;
-    let guess = draft.tool.unwrap_or_default();
-    for start in [guess, Vector3::zeros(), Vector3::x() * 0.1, Vector3::z() * 0.1] {
-        let mut tool = start;
-        let mut weight = vec![1.0; points.len()];
-        let mut before = f64::INFINITY;
-        for _ in 0..MOST_TURNS {
-            let tips: Vec<Vector3<f64>> = flanges.iter().map(|flange| flange.point(&tool)).collect();
-            let bases: Vec<Pose> = (0..draft.stations)
-                .map(|station| placed(&tips, &points, &weight, |row| draft.station[row] == station))
-                .collect::<Option<_>>()?;
-            let mut sum = (Vector3::zeros(), 0.0);
-            let mut left = Vec::with_capacity(points.len());
-            for (row, flange) in flanges.iter().enumerate() {
-                let base = &bases[draft.station[row]];
-                let off = points[row] - base.point(&tips[row]);
-                sum.0 += flange.rotation.tr_mul(&base.rotation.tr_mul(&off)) * weight[row];
-                sum.1 += weight[row];
-                left.push(off.norm());
-            }
-            let median = median(&left)?;
-            if !median.is_finite() {
-                return None;
-            }
-            if best.as_ref().is_none_or(|best| median < best.median) {
-                best = Some(Rough { bases, tool, median });
-            }
-            if median > 0.9 * before {
-                break;
-            }
-            before = median;
-            tool += sum.0 / f64::max(sum.1, f64::MIN_POSITIVE);
-            weight = left.iter().map(|left| weight_of(left / (median / MEDIAN).max(1e-9))).collect();
-        }
-        if best.as_ref().is_some_and(|best| best.median < 3e-3 * body.reach) {
-            break;
-        }
-    }
-    best
-}
-
-/// (ν + 3)/(ν + u²).
-fn weight_of(u: f64) -> f64 {
-    (NU + 3.0) / (NU + u * u)
-}
-
-/// The motion of some tips that brings them closest to their points (Kabsch), weighted.
-fn placed(
-    tips: &[Vector3<f64>],
-    points: &[Vector3<f64>],
-    weight: &[f64],
-    is_of: impl Fn(usize) -> bool,
-) -> Option<Pose> {
-    let rows: Vec<usize> = (0..tips.len()).filter(|&row| is_of(row)).collect();
-    let total: f64 = rows.iter().map(|&row| weight[row]).sum::<f64>().max(f64::MIN_POSITIVE);
-    let mean =
-        |of: &[Vector3<f64>]| rows.iter().map(|&row| of[row] * weight[row]).sum::<Vector3<f64>>() / total;
-    let (centre, goal) = (mean(tips), mean(points));
-    let spread: Matrix3<f64> =
-        rows.iter().map(|&row| (points[row] - goal) * (tips[row] - centre).transpose() * weight[row]).sum();
-    if spread.iter().any(|x| !x.is_finite()) {
-        return None;
-    }
-    let svd = spread.svd(true, true);
-    let (u, v_t) = (svd.u?, svd.v_t?);
-    let handed = (u.determinant() * v_t.determinant()).signum();
-    // the smallest singular value is the last
-    let rotation = u * Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, handed)) * v_t;
-    Some(Pose { rotation, origin: goal - rotation * centre })
-}
-
-/// Vectors less the weighted means of their sockets, or of the clamps whose place is free.
-fn minus_means(vectors: &[Vector3<f64>], draft: &Draft, weight: &[f64]) -> Vec<Vector3<f64>> {
-    let mut sum = vec![(Vector3::zeros(), 0.0f64); draft.devices.len()];
-    for (row, vector) in vectors.iter().enumerate() {
-        let (total, weights) = &mut sum[draft.group[row]];
-        *total += vector * weight[row];
-        *weights += weight[row];
-    }
-    let mean = |group: usize| match draft.is_loose(group) {
-        true => sum[group].0 / sum[group].1.max(f64::MIN_POSITIVE),
-        false => Vector3::zeros(),
-    };
-    vectors.iter().zip(&draft.group).map(|(vector, &group)| vector - mean(group)).collect()
 }
 
 /// A state of the fit.
@@ -328,7 +215,8 @@ fn sizes(draft: &Draft, body: &Body, torque: &[f64]) -> Vec<f64> {
         Parameter::Alpha(_) | Parameter::Beta(_) => TWIST,
         Parameter::Theta(_) => ZERO,
         Parameter::Compliance(j) => YIELDS / largest(*j),
-        _ => TOOL,
+        // a base has columns of its own
+        Parameter::BasePosition(_) | Parameter::BaseRotation(_) | Parameter::Tool(_) => TOOL,
     };
     body.free.iter().map(size).collect()
 }
@@ -424,56 +312,13 @@ fn step<'a>(
     Some(next)
 }
 
-/// Columns of displacements less the means of their sockets, or of the clamps whose place is free.
-fn without_means(block: &mut DMatrix<f64>, draft: &Draft, weight: &[f64]) {
-    if !draft.has_sockets() && draft.loose.is_empty() {
-        return;
-    }
-    let mut size = vec![0.0f64; draft.devices.len()];
-    draft.group.iter().zip(weight).for_each(|(&group, weight)| size[group] += weight);
-    for mut column in block.column_iter_mut() {
-        let mut sum = vec![Vector3::zeros(); size.len()];
-        for (row, &group) in draft.group.iter().enumerate() {
-            sum[group] += column.fixed_rows::<3>(3 * row) * weight[row];
-        }
-        for (row, &group) in draft.group.iter().enumerate().filter(|(_, group)| draft.is_loose(**group)) {
-            let mut own = column.fixed_rows_mut::<3>(3 * row);
-            own -= sum[group] / size[group].max(f64::MIN_POSITIVE);
-        }
-    }
-}
-
 /// ½·Σ((ρ − nominal)/sd)², the tip excepted.
 fn moved(body: &Body, state: &State, nominal: &[f64], sd: &[f64]) -> f64 {
-    let of = |k: usize| match body.free[k] {
+    let square = |k: usize| match body.free[k] {
         Parameter::Tool(_) => 0.0,
         parameter => ((state.setup.get(parameter) - nominal[k]) / sd[k]).powi(2),
     };
-    0.5 * (0..body.free.len()).map(of).sum::<f64>()
-}
-
-/// The scale that is likeliest, by the fixed point s² = Σ w·r²/3n.
-fn t_scale(lengths: &[f64], least: f64) -> f64 {
-    let start = median(lengths).unwrap_or(0.0) / MEDIAN;
-    let mut scale = start.max(least);
-    for _ in 0..30 {
-        let sum: f64 = lengths.iter().map(|r| weight_of(r / scale) * r * r).sum();
-        let next = (sum / (3.0 * lengths.len().max(1) as f64)).sqrt().max(least);
-        let has_arrived = (next / scale - 1.0).abs() < 1e-4;
-        scale = next;
-        if has_arrived {
-            break;
-        }
-    }
-    scale
-}
-
-/// Ln of the density of all rows, as many as count.
-fn density(lengths: &[f64], scale: f64) -> f64 {
-    let of = |r: &f64| -3.0 * scale.ln() - 0.5 * (NU + 3.0) * ((r / scale).powi(2) / NU).ln_1p();
-    let sum: f64 = lengths.iter().map(of).sum();
-    let count = lengths.len().max(1) as f64;
-    sum / count * count.min(MOST_ROWS) * ROW
+    0.5 * (0..body.free.len()).map(square).sum::<f64>()
 }
 
 impl Fit {

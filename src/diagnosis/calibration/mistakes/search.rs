@@ -380,9 +380,9 @@ fn is_failed(fit: &Fit, reach: f64) -> bool {
 
 /// Residuals of the rows that two states have in common.
 fn pairs(before: &State, after: &State) -> Vec<(f64, f64)> {
-    let of = |row: usize| before.thin.rows.binary_search(&row).ok().map(|at| before.fit.residuals[at]);
+    let of_row = |row: usize| before.thin.rows.binary_search(&row).ok().map(|at| before.fit.residuals[at]);
     let rows = after.thin.rows.iter().zip(&after.fit.residuals);
-    rows.filter_map(|(&row, &new)| Some((of(row)?, new))).collect()
+    rows.filter_map(|(&row, &new)| Some((of_row(row)?, new))).collect()
 }
 
 /// Ln of how well the stated base and tip agree with those found; `most` is what each may cost.

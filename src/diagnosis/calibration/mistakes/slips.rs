@@ -238,7 +238,7 @@ impl Search<'_> {
     fn of_whole_row(&self, draft: &Draft, at: usize, recording: &Recording) -> Vec<Suspect> {
         let row = draft.rows[at];
         let rows = Rows::Between(row, row);
-        let of = |own: &super::moves::Move| Suspect {
+        let of_own = |own: &super::moves::Move| Suspect {
             effect: own.effect,
             change: within(rows, &own.change),
             location: format!("{} of {}", own.location, pose_name(recording, row)),
@@ -257,7 +257,7 @@ impl Search<'_> {
             Change::Zero { .. } => false,
             _ => true,
         };
-        self.of_rows.iter().filter(may_be).map(of).collect()
+        self.of_rows.iter().filter(may_be).map(of_own).collect()
     }
 
     /// Rows that repeat others to the last digit: neighbours that stand twice, and rows that are
@@ -292,7 +292,7 @@ impl Search<'_> {
             let pairs = draft.joints(a).iter().zip(draft.joints(b));
             pairs.fold(0.0f64, |most, (a, b)| most.max((a - b).abs())) < SAME
         };
-        let of = |at: usize| match first[at] {
+        let copy_at = |at: usize| match first[at] {
             other if other == at => None,
             other if angles(at, other) => {
                 (draft.group[at] == draft.group[other]).then_some((at, other, true))
@@ -302,7 +302,7 @@ impl Search<'_> {
             other if is_far(other) && !is_far(at) => Some((other, at, false)),
             _ => None,
         };
-        let mut pairs: Vec<(usize, usize, bool)> = (0..draft.len()).filter_map(of).collect();
+        let mut pairs: Vec<(usize, usize, bool)> = (0..draft.len()).filter_map(copy_at).collect();
         pairs.sort_unstable();
         let runs = pairs.chunk_by(|a, b| a.0 + 1 == b.0 && a.1 + 1 == b.1 && a.2 == b.2);
         let counts = |run: &&[(usize, usize, bool)]| !run[0].2 || run.len() >= FEWEST_COPIES;

@@ -123,7 +123,7 @@ pub(super) fn windows(
     let places: Vec<(f64, f64)> =
         WIDTHS.into_iter().filter(|width| high - low > 2.0 * width).flat_map(of_width).collect();
     let share = 1.0 / places.len().max(1) as f64;
-    let of = |(middle, width): (f64, f64)| {
+    let around = |(middle, width): (f64, f64)| {
         let column = context.turn(joint, |row, there| {
             let away = (there.joints[joint] - middle).abs() / width;
             if away < 1.0 { sign(row) * 0.5 * (1.0 + (PI * away).cos()) } else { 0.0 }
@@ -137,7 +137,7 @@ pub(super) fn windows(
         entry.candidate.weight = share;
         entry
     };
-    places.into_iter().map(of).collect()
+    places.into_iter().map(around).collect()
 }
 
 #[cfg(test)]

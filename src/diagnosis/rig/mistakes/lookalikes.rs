@@ -25,13 +25,18 @@ const ONE_FACTOR: f64 = 0.1;
 
 /// The units of the loads that the finding of this number may be as well.
 pub fn lookalikes(model: &RigModel, evidence: &Evidence, findings: &[Finding], number: usize) -> Vec<Rival> {
-    let of = |finding: &Finding| finding.parts.iter().map(|part| part.term.clone()).collect::<Vec<Term>>();
-    let own = of(&findings[number]);
+    let terms_of =
+        |finding: &Finding| finding.parts.iter().map(|part| part.term.clone()).collect::<Vec<Term>>();
+    let own = terms_of(&findings[number]);
     if own.is_empty() || model.rod.is_none() {
         return Vec::new();
     }
-    let others: Vec<Term> =
-        findings.iter().enumerate().filter(|(k, _)| *k != number).flat_map(|(_, other)| of(other)).collect();
+    let others: Vec<Term> = findings
+        .iter()
+        .enumerate()
+        .filter(|(k, _)| *k != number)
+        .flat_map(|(_, other)| terms_of(other))
+        .collect();
     let (column, units) = like_physics(model.readings.load_column);
     let predicted = DVector::from_iterator(model.data.len(), model.data.iter().map(|datum| datum.predicted));
     let fitted = factor_of(&predicted, &model.response(&own));
@@ -54,8 +59,8 @@ pub fn lookalikes(model: &RigModel, evidence: &Evidence, findings: &[Finding], n
 /// True where the readings as they were `recorded`, beside the rod file as it is, are one factor of
 /// what that rod would show: then a rod that is softer or stiffer by that factor explains them too.
 pub fn is_one_factor(recorded: &RigModel, evidence: &Evidence) -> bool {
-    let of = recorded.data.iter().map(|datum| datum.predicted);
-    let predicted = DVector::from_iterator(recorded.data.len(), of);
+    let predicted = recorded.data.iter().map(|datum| datum.predicted);
+    let predicted = DVector::from_iterator(recorded.data.len(), predicted);
     recorded.rod.is_some() && factor_of(&predicted, &evidence.residual).is_some()
 }
 

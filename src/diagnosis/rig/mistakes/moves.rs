@@ -97,13 +97,13 @@ pub(super) struct Labels {
 
 impl Labels {
     pub fn of(lines: &[Line], column: LoadColumn) -> Labels {
-        let of = |is_of: &dyn Fn(&Line, Axis) -> bool| -> Vec<Axis> {
+        let axes_where = |is_of: &dyn Fn(&Line, Axis) -> bool| -> Vec<Axis> {
             Axis::ALL.into_iter().filter(|&axis| lines.iter().any(|line| is_of(line, axis))).collect()
         };
         Labels {
             column,
-            axes: of(&|line, axis| line.axis == axis),
-            channels: of(&|line, axis| line.channel == axis),
+            axes: axes_where(&|line, axis| line.axis == axis),
+            channels: axes_where(&|line, axis| line.channel == axis),
             has_cross: lines.iter().any(|line| line.axis != line.channel),
         }
     }

@@ -59,7 +59,7 @@ pub(in crate::diagnosis::rig) struct OtherRod {
 
 /// The given rod with its lengths, or its pipes, exchanged.
 fn exchanged(rod: &Rod) -> Vec<OtherRod> {
-    let of = |location: &str, meant: Rod, log_prior: f64| OtherRod {
+    let of_location = |location: &str, meant: Rod, log_prior: f64| OtherRod {
         rod: meant,
         effect: &SWAP_MISTAKE,
         location: location.into(),
@@ -69,11 +69,11 @@ fn exchanged(rod: &Rod) -> Vec<OtherRod> {
     let mut found = Vec::new();
     if rod.l1 != rod.l2 {
         let meant = Rod { l1: rod.l2, l2: rod.l1, ..rod.clone() };
-        found.push(of("l1_mm and l2_mm", meant, 0.0));
+        found.push(of_location("l1_mm and l2_mm", meant, 0.0));
     }
     if rod.pipe1 != rod.pipe2 {
         let meant = Rod { pipe1: rod.pipe2.clone(), pipe2: rod.pipe1.clone(), ..rod.clone() };
-        found.push(of("pipe1 and pipe2", meant, -1.0));
+        found.push(of_location("pipe1 and pipe2", meant, -1.0));
     }
     found
 }
@@ -87,12 +87,12 @@ pub(super) fn all(rod: &Rod, others: &[(String, Rod)], has_stations: [bool; 2]) 
                    observed: String,
                    factor: Option<f64>,
                    prior: f64| {
-        let looks_like = match effect.name {
-            "unit_mistake" if location.contains(',') => {
+        let looks_like = match effect {
+            effect if effect == &UNIT_MISTAKE && location.contains(',') => {
                 format!("{location} look as if they were in another unit")
             }
-            "unit_mistake" => format!("{location} looks as if it were in another unit"),
-            "swap_mistake" => format!("{location} look swapped"),
+            effect if effect == &UNIT_MISTAKE => format!("{location} looks as if it were in another unit"),
+            effect if effect == &SWAP_MISTAKE => format!("{location} look swapped"),
             _ => format!("the readings look like those of {location}"),
         };
         let change = Change::body(found.len() + 1);
@@ -268,7 +268,7 @@ fn diameters_in_other_units(rod: &Rod) -> Vec<Meant> {
                 if outer != inner && [&rod.pipe1, &rod.pipe2].iter().any(|pipe| is_solid(pipe)) {
                     continue;
                 }
-                let of = |pipe: &Pipe| {
+                let of_pipe = |pipe: &Pipe| {
                     let mut pipe = pipe.clone();
                     if let Section::Round(round) = &mut pipe.section {
                         round.outer_diameter *= outer;
@@ -282,7 +282,7 @@ fn diameters_in_other_units(rod: &Rod) -> Vec<Meant> {
                     if !pipes[usize::from(name == "pipe2")] {
                         continue;
                     }
-                    *pipe = of(pipe);
+                    *pipe = of_pipe(pipe);
                     let wrong = [(outer, "outer"), (inner, "inner")];
                     let is_solid = is_solid(pipe);
                     let wrong =
@@ -291,7 +291,7 @@ fn diameters_in_other_units(rod: &Rod) -> Vec<Meant> {
                 }
                 // the bend is pipe 1's unless the file says otherwise
                 if pipes[0] && rod.bend.section == rod.pipe1.section {
-                    meant.bend = of(&rod.bend);
+                    meant.bend = of_pipe(&rod.bend);
                 }
                 found.push((keys.join(", "), factor, unit, prior, meant));
             }

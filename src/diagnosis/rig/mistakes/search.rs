@@ -3,6 +3,7 @@
 //! A beam search: one mistake, then a second beside each of the best, then a third. A state is kept
 //! where it is a thousand times more probable than the one that it grew from.
 
+use super::super::effects::mistakes::{SIGN_MISTAKE, SWAP_MISTAKE, UNIT_MISTAKE};
 use super::change::{Change, Move};
 use super::lines::Line;
 use super::physics::{Physics, Seen, Verdict, View};
@@ -80,14 +81,15 @@ impl Search<'_> {
             let shown = part.iter().map(|&k| self.deflection(k, expected[k])).fold(0.0, f64::max);
             shown > SHOWN * most && self.left(part, &expected, 0.0) > IMPLAUSIBLE
         };
-        let of = |is_of: &dyn Fn(&Line) -> bool| -> Vec<usize> {
+        let lines_where = |is_of: &dyn Fn(&Line) -> bool| -> Vec<usize> {
             all.iter().copied().filter(|&k| is_of(&self.lines[k])).collect()
         };
         !self.is_possible
             || seen.against_the_load() > 0
             || is_off(&all)
             || Axis::ALL.into_iter().any(|axis| {
-                is_off(&of(&|line| line.channel == axis)) || is_off(&of(&|line| line.axis == axis))
+                is_off(&lines_where(&|line| line.channel == axis))
+                    || is_off(&lines_where(&|line| line.axis == axis))
             })
     }
 
@@ -251,15 +253,14 @@ impl Trial<'_> {
                 let left = self.search.left(&part, &old, 0.0);
                 let leaves = self.search.left(&part, &expected, best.log_scale);
                 let effect = self.moves[number].effect;
-                let is_name =
-                    ["sign_mistake", "swap_mistake"].contains(&effect.name) && best.change.body == 0;
+                let is_name = [&SIGN_MISTAKE, &SWAP_MISTAKE].contains(&effect) && best.change.body == 0;
                 let most = if is_name { LEFT_BY_NAME } else { LEFT_BY_FACTOR };
                 let change =
                     |k: &usize| ((expected[*k] - old[*k]) * self.search.lines[*k].largest_load).powi(2);
                 let rms = (part.iter().map(change).sum::<f64>() / part.len().max(1) as f64).sqrt();
                 let leaves = leaves + self.search.scattered(&part, &expected, best.log_scale);
                 // walls and lengths are off by a third in many a file: a unit is more than that
-                let is_key = effect.name == "unit_mistake" && best.change.body != before.change.body;
+                let is_key = effect == &UNIT_MISTAKE && best.change.body != before.change.body;
                 let least = if is_key { FAR_OFF } else { IMPLAUSIBLE };
                 (left > least && leaves < most && leaves < CURED * left, rms)
             }
@@ -297,7 +298,7 @@ impl Trial<'_> {
 
 /// The physics of each body; `None` where the readings cannot be on it.
 pub(super) fn physics(bodies: &[Body], pairs: &[[Option<f64>; 2]]) -> Vec<Option<Physics>> {
-    let of = |body: &Body| {
+    let of_body = |body: &Body| {
         let pairs: Vec<[Option<f64>; 2]> = pairs
             .iter()
             .map(|[load, read]| [load.map(|s| s * body.stations[0]), read.map(|s| s * body.stations[1])])
@@ -307,5 +308,5 @@ pub(super) fn physics(bodies: &[Body], pairs: &[[Option<f64>; 2]]) -> Vec<Option
         let physics = Physics::new(&body.rod, &pairs).ok().filter(|_| is_on_it)?;
         (0..pairs.len()).all(|pair| physics.compliance(pair).iter().all(|c| c.is_finite())).then_some(physics)
     };
-    bodies.iter().map(of).collect()
+    bodies.iter().map(of_body).collect()
 }

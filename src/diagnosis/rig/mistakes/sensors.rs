@@ -73,10 +73,12 @@ pub(super) fn stuck(data: &[Datum], lines: &[Line], expected: Option<&Expected>)
     };
     let mut found = Vec::new();
     for channel in Axis::ALL {
-        let of = |k: &usize| lines[*k].channel == channel && lines[*k].has_slope;
+        let is_read = |k: &usize| lines[*k].channel == channel && lines[*k].has_slope;
         let own: Vec<usize> = match expected {
-            Some(_) => (0..lines.len()).filter(of).filter(|&k| deflections[k] > EXPECTED * most).collect(),
-            None => (0..lines.len()).filter(of).filter(|&k| lines[k].axis == channel).collect(),
+            Some(_) => {
+                (0..lines.len()).filter(is_read).filter(|&k| deflections[k] > EXPECTED * most).collect()
+            }
+            None => (0..lines.len()).filter(is_read).filter(|&k| lines[k].axis == channel).collect(),
         };
         // what moves under another load, or by another rod, is not stuck
         let shown = |k: usize| lines[k].fit.slope.abs() * lines[k].largest_load;
@@ -294,7 +296,7 @@ fn is_surely_flat(data: &[Datum], lines: &[Line], at: &[usize], change: f64) -> 
 fn expected(data: &[Datum], at: &[usize], without: &[usize]) -> Option<Vec<(f64, f64)>> {
     let without: HashSet<usize> = without.iter().copied().collect();
     let rest = lines(data, |i| !without.contains(&i));
-    let of = |&i: &usize| {
+    let expected_at = |&i: &usize| {
         let d = &data[i];
         let line = rest.iter().find(|line| line.is_of(d) && line.data.len() >= 2)?;
         if !line.has_slope {
@@ -304,7 +306,7 @@ fn expected(data: &[Datum], at: &[usize], without: &[usize]) -> Option<Vec<(f64,
         let scatter = line.fit.scatter.hypot(line.fit.error * d.load);
         (line.data.len() >= 3).then(|| (line.fit.at(d.signed_load()), scatter))
     };
-    at.iter().map(of).collect()
+    at.iter().map(expected_at).collect()
 }
 
 /// What the rod says of some data, in the scale of all lines; `None` where the others of their
@@ -316,7 +318,7 @@ fn expected_of_rod(
     lines: &[Line],
     by_rod: &Expected,
 ) -> Option<Vec<(f64, f64)>> {
-    let of = |&i: &usize| {
+    let expected_at = |&i: &usize| {
         let k = lines.iter().position(|line| line.is_of(&data[i]))?;
         let says = |i: usize| by_rod.slopes[k] * data[i].signed_load();
         let mut others = lines[k].data.iter().copied().filter(|i| !without.contains(i)).peekable();
@@ -324,7 +326,7 @@ fn expected_of_rod(
         let is_right = others.all(|i| (data[i].measured - says(i)).abs() < RIGHT * says(i).abs());
         is_right.then(|| (says(i), SCALE * says(i).abs()))
     };
-    at.iter().map(of).collect()
+    at.iter().map(expected_at).collect()
 }
 
 /// What readings at a single load say of another one: a line through the origin, which play and

@@ -180,14 +180,14 @@ impl<'a> Table<'a> {
     /// Each line in some trials.
     fn lines_of(&self, class: &[usize]) -> Vec<Option<Right>> {
         let of_line = |k: usize| {
-            let of = |value: &dyn Fn(&Fit) -> f64| {
+            let median_of = |value: &dyn Fn(&Fit) -> f64| {
                 let cells = class.iter().filter_map(|&trial| self.cells[trial][k]);
                 median(&cells.map(|cell| value(&cell.fit)).collect::<Vec<_>>())
             };
             Some(Right {
-                slope: of(&|fit| fit.slope)?,
-                error: of(&|fit| fit.error)?,
-                scatter: of(&|fit| fit.scatter)?,
+                slope: median_of(&|fit| fit.slope)?,
+                error: median_of(&|fit| fit.error)?,
+                scatter: median_of(&|fit| fit.scatter)?,
             })
         };
         (0..self.lines.len()).map(of_line).collect()

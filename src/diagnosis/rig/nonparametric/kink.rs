@@ -135,7 +135,7 @@ fn seats(data: &[Datum]) -> Vec<Entry> {
         return Vec::new();
     }
     let size = (SHARE * largest).max(LEAST_SHIFT * largest_reading(data));
-    let of = |exponent: f64| {
+    let of_exponent = |exponent: f64| {
         let weight = |&i: &usize| {
             let drive = data[i].drive();
             drive.signum() * (drive.abs() / most).powf(exponent)
@@ -151,7 +151,7 @@ fn seats(data: &[Datum]) -> Vec<Entry> {
         candidate.weight = 1.0 / EXPONENTS.len() as f64;
         (candidate, vec![Action::Shift(weights)])
     };
-    EXPONENTS.into_iter().map(of).collect()
+    EXPONENTS.into_iter().map(of_exponent).collect()
 }
 
 #[cfg(test)]

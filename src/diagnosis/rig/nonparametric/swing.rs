@@ -49,7 +49,7 @@ pub(super) fn all(along: Along, coordinate: &Coordinate, data: &[Datum]) -> Vec<
     let started = starts(coordinate, data);
     let swings = |(half, since): (usize, Since)| {
         let turns = half as f64 / FOR_EACH as f64;
-        let of = |(own, wave): (&Arc<[usize]>, Wave)| {
+        let of_own = |(own, wave): (&Arc<[usize]>, Wave)| {
             let at = |&i: &usize| {
                 let now = coordinate[i].map_or(0.0, |x| wave(TAU * turns * x));
                 match since {
@@ -62,7 +62,7 @@ pub(super) fn all(along: Along, coordinate: &Coordinate, data: &[Datum]) -> Vec<
         };
         let waves: [Wave; 2] = [f64::cos, f64::sin];
         let all = own.iter().flat_map(|own| waves.map(|wave| (own, wave)));
-        let (parameters, actions) = all.map(of).unzip();
+        let (parameters, actions) = all.map(of_own).unzip();
         let place = match since {
             Since::Always => format!("{turns} swings, all sensors"),
             Since::Zero => format!("{turns} swings, all sensors, since the zero of each run"),

@@ -46,12 +46,12 @@ pub fn plan_ratio(rod: &Rod, width: f64, bench: &Bench) -> Result<RigPlan> {
     let loads: Vec<f64> = (1..=LOADS).map(|k| bench.largest_load * k as f64 / LOADS as f64).collect();
     let mean = loads.iter().sum::<f64>() / LOADS as f64;
     let spread: f64 = loads.iter().map(|load| (load - mean).powi(2)).sum();
-    let of = |repeats: usize| -> Result<f64> {
+    let of_repeats = |repeats: usize| -> Result<f64> {
         let t = LARGER * student_t_quantile(0.975, 2.0 * (LOADS - 2) as f64)?;
         let slope = bench.noise * bench.noise / (repeats as f64 * spread);
         Ok(2.0 * t * (2.0 * slope).sqrt() / sum)
     };
-    let needed = (of(MOST_REPEATS)? / width).powi(2) * MOST_REPEATS as f64;
+    let needed = (of_repeats(MOST_REPEATS)? / width).powi(2) * MOST_REPEATS as f64;
     if needed > MOST_REPEATS as f64 {
         return Err(Error::NotApplicable {
             what: format!("an interval of r_rod of {} %", significant(100.0 * width, 3)),
@@ -64,7 +64,7 @@ pub fn plan_ratio(rod: &Rod, width: f64, bench: &Bench) -> Result<RigPlan> {
         });
     }
     let mut repeats = FEWEST;
-    while of(repeats)? > width && repeats < MOST_REPEATS {
+    while of_repeats(repeats)? > width && repeats < MOST_REPEATS {
         repeats += 1;
     }
     let list: Vec<String> = loads.iter().map(|load| significant(*load, 3)).collect();
@@ -96,7 +96,7 @@ pub fn plan_ratio(rod: &Rod, width: f64, bench: &Bench) -> Result<RigPlan> {
         is_least: true,
         wanted: f64::NAN,
         distinguished: Vec::new(),
-        ratio: Some(Ratio { asked: width, expected: of(repeats)? }),
+        ratio: Some(Ratio { asked: width, expected: of_repeats(repeats)? }),
     })
 }
 

@@ -46,12 +46,12 @@ z,5,unload,600,25,1,2,3
 
 /// The column of a law: what it does to the data, but for its size.
 fn column(site: &Site, form: Form, s: f64, sides: bool) -> DVector<f64> {
-    let of = |i: usize| {
+    let entry = |i: usize| {
         let side = if sides { site.moves[i] } else { 1.0 };
         let x = site.values[i] / site.largest();
         site.directions[0].1[i] * side * form.functions(x, s)[form.count() - 1]
     };
-    DVector::from_fn(site.values.len(), |i, _| of(i))
+    DVector::from_fn(site.values.len(), |i, _| entry(i))
 }
 
 /// Existing effects are points of the grammar: their columns are those of a law, but for the size.

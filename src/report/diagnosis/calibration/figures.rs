@@ -125,11 +125,10 @@ pub fn vectors(found: &CalibrationDiagnosis) -> Figure {
     let poses = |data| {
         let rows = found.model.by_row(data);
         let tips = found.model.calibration.tips.iter().zip(&found.model.calibration.deflections);
-        let of = |(residual, (tip, bent)): (&Vector3<f64>, (&Vector3<f64>, &Vector3<f64>))| PoseVector {
-            at_mm: ((tip + bent) / MM).into(),
-            residual_um: (residual / UM).into(),
+        let of_residual = |(residual, (tip, bent)): (&Vector3<f64>, (&Vector3<f64>, &Vector3<f64>))| {
+            PoseVector { at_mm: ((tip + bent) / MM).into(), residual_um: (residual / UM).into() }
         };
-        rows.iter().zip(tips).map(of).collect::<Vec<_>>()
+        rows.iter().zip(tips).map(of_residual).collect::<Vec<_>>()
     };
     let before = poses(&found.diagnosis.before);
     match found.diagnosis.findings.is_empty() {

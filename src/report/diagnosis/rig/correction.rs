@@ -11,7 +11,7 @@ use crate::report::{Block, Section};
 use crate::units::{UM, significant};
 
 pub fn json(correction: &Correction) -> Value {
-    let of = |compliance: &Compliance| {
+    let of_compliance = |compliance: &Compliance| {
         json!({
             "cf_um_per_n": rows(&compliance.force, UM),
             "cg_um_per_g": rows(&compliance.gravity, UM),
@@ -19,10 +19,10 @@ pub fn json(correction: &Correction) -> Value {
         })
     };
     json!({
-        "fea": of(&correction.before),
-        "corrected": of(&correction.after),
+        "fea": of_compliance(&correction.before),
+        "corrected": of_compliance(&correction.after),
         "r_rod": correction.by_ratio.as_ref().map(|(ratio, _)| ratio),
-        "r_rod_times_fea": correction.by_ratio.as_ref().map(|(_, compliance)| of(compliance)),
+        "r_rod_times_fea": correction.by_ratio.as_ref().map(|(_, compliance)| of_compliance(compliance)),
         "entered": correction.entered,
         "removed": correction.removed,
         "left_out": correction.left_out,

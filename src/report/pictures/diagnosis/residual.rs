@@ -297,8 +297,9 @@ mod tests {
     fn apart(events: Vec<Event>) -> BeforeAfter {
         let points: Vec<ResidualPoint> =
             (0..100).map(|k| point(f64::from(k), if k < 50 { 1.0 } else { 90.0 }, 1.0)).collect();
-        let of = |label: &str| Residual { label: label.into(), points: points.clone(), is_context: false };
-        let series = ["x", "y", "z"].map(of).to_vec();
+        let of_label =
+            |label: &str| Residual { label: label.into(), points: points.clone(), is_context: false };
+        let series = ["x", "y", "z"].map(of_label).to_vec();
         BeforeAfter { series, noise_um: 1.0, is_apart: true, events, ..BeforeAfter::default() }
     }
 

@@ -35,8 +35,8 @@ impl Other {
 }
 
 /// Does `diagnosis`, that of the readings with another rod, leave nothing unexplained, or little
-/// beside what that rod explains, m (rms)? Slopes are odds between rods, whatever else is wrong with
-/// both.
+/// beside what that rod explains, m (rms)? Slopes are odds between rods, whatever else is wrong
+/// with both.
 pub(super) fn is_all_but_little(explains: f64, diagnosis: &Diagnosis) -> bool {
     diagnosis.discrepancy.as_ref().is_none_or(|left| left.rms < LITTLE * explains)
 }

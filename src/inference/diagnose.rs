@@ -317,7 +317,8 @@ fn noise_test(stated: Option<f64>, estimated: f64, degrees_of_freedom: f64) -> N
 }
 
 /// Parts as they are reported, the strongest first: the waves of one gear, what one knock did to
-/// each channel, all misread poses, are one finding. `base` is the root mean square that the base model leaves.
+/// each channel, all misread poses, are one finding. `base` is the root mean square that the base
+/// model leaves.
 fn findings(
     model: &Linearised<'_>,
     search: &Search,

@@ -48,6 +48,26 @@ fn one_axis_is_said_to_tell_little() {
     assert!(answer.found.limits.contains(&Limit::OneAxis(Axis::Y)), "{:?}", answer.found.limits);
 }
 
+/// A clamp that takes up load beyond 9 N, at four loads: a parabola fits them all, and predicts
+/// none that it has not seen.
+#[test]
+fn what_only_describes_is_confirmed_only_in_part() {
+    let mut readings = "trial,axis,load_n,dz_um\n".to_owned();
+    for (trial, at_least) in [(1, "20"), (2, "21")] {
+        readings += &format!("{trial},z,3.75,{at_least}\n{trial},z,7.5,40\n");
+        readings += &format!("{trial},z,11.25,{}\n{trial},z,15,70\n", 59 - trial);
+    }
+    let answer = Answer::of(Some(include_str!("../../rods/2.toml")), &readings);
+    assert_eq!(answer.effects(), ["nonlinear_stiffness"]);
+    let number = |key: &str| answer.json[key].as_f64().unwrap();
+    assert!(number("heldout_after_um") > 2.0 * number("rms_after_um"));
+    let said = answer.json["headline"].as_str().unwrap();
+    assert!(said.contains("times the residual of the fit") && said.contains("confirm it only in part"));
+    // what other readings confirm is said without
+    let clear = Answer::made(&Order::default(), &[Effect::StiffnessScale(0.9)], 3);
+    assert!(!clear.json["headline"].as_str().unwrap().contains("in part"));
+}
+
 #[test]
 fn without_repeats_every_claim_is_weaker() {
     let order = Order { trials: 1, ..Order::default() };

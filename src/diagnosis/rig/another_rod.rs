@@ -14,7 +14,9 @@ use crate::inference::{Compared, Diagnosis, Evidence, Finding, Kind, Location, R
 /// Ln of the odds within which two rods are indistinguishable: 20.
 const ALIKE: f64 = 2.995_732;
 
-/// What is left is little: as a share of what a rod explains.
+/// What another rod leaves at most, as a share of what it explains: to all effects together, and to
+/// none.
+const CURED: f64 = 0.5;
 const LITTLE: f64 = 0.1;
 
 /// One of the other rods beside the given one.
@@ -34,11 +36,12 @@ impl Other {
     }
 }
 
-/// Does `diagnosis`, that of the readings with another rod, leave nothing unexplained, or little
-/// beside what that rod explains, m (rms)? Slopes are odds between rods, whatever else is wrong
-/// with both.
-pub(super) fn is_all_but_little(explains: f64, diagnosis: &Diagnosis) -> bool {
-    diagnosis.discrepancy.as_ref().is_none_or(|left| left.rms < LITTLE * explains)
+/// Does another rod, whose diagnosis this is and which explains `explains` (m, rms), cure a
+/// recording: is what it leaves half of that at most before anything else is added, and little
+/// where nothing explains it? Slopes are odds between rods, whatever else is wrong with both.
+pub(super) fn is_cured(explains: f64, diagnosis: &Diagnosis) -> bool {
+    let left = diagnosis.discrepancy.as_ref().map_or(0.0, |left| left.rms);
+    rms(&diagnosis.before) < CURED * explains && left < LITTLE * explains
 }
 
 /// The other rods that the readings may be of, the likeliest first; none where they agree with the

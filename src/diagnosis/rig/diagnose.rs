@@ -73,7 +73,7 @@ pub fn diagnose_with(
     };
     let (mut model, mut evidence, mut not_testable, mut diagnosis) = inferred(&mended, None)?;
     // the slopes are those of another rod, but nothing else is
-    if mended.other_rod().is_some_and(|rod| !another_rod::is_all_but_little(rod.explains, &diagnosis)) {
+    if mended.other_rod().is_some_and(|rod| !another_rod::is_cured(rod.explains, &diagnosis)) {
         mended = mistakes::mended(readings, rod, &[])?;
         (model, evidence, not_testable, diagnosis) = inferred(&mended, None)?;
     }
@@ -87,7 +87,7 @@ pub fn diagnose_with(
         taken.take(meant.rod.clone(), meant.log_odds, meant.explains);
         let as_other = inferred(&taken, None)?;
         // of two rods that both leave something unexplained neither is the right one beyond doubt
-        if as_other.3.discrepancy.is_none() {
+        if as_other.3.discrepancy.is_none() && another_rod::is_cured(meant.explains, &as_other.3) {
             mended = taken;
             (model, evidence, not_testable, diagnosis) = as_other;
             // that is decided

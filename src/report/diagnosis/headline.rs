@@ -10,6 +10,10 @@ const IN_FULL: usize = 2;
 const NAMED: usize = 3;
 /// From so many times the scatter of readings on the scatter of zeros is said.
 const FAR_APART: f64 = 4.0;
+/// Held-out data are predicted so many times worse than others are fitted, and with at least this
+/// share of the error without any finding: that confirms hardly more than that something is there.
+const MUCH_WORSE: f64 = 2.0;
+const HARDLY_BETTER: f64 = 0.5;
 /// So many rivals are said at once.
 pub const RIVALS_SAID: usize = 2;
 
@@ -141,9 +145,10 @@ fn worth(subject: &Subject) -> String {
     match errors.held_out {
         _ if are_events => fitted(""),
         Some((before, after)) if um(after) != um(before) && after < before => format!(
-            " With {it}, the held-out error falls from {} to {} µm{averaged}; {scatter}",
+            " With {it}, the held-out error falls from {} to {} µm{averaged}{}; {scatter}",
             um(before),
-            um(after)
+            um(after),
+            only_in_part(subject, it, (before, after))
         ),
         Some((before, after)) => format!(
             " Held-out {} do not confirm {it}: their error is {} µm before and {} µm after{averaged}.",
@@ -153,6 +158,24 @@ fn worth(subject: &Subject) -> String {
         ),
         None => fitted(" (nothing could be held out)"),
     }
+}
+
+/// Said where held-out data, which `it` predicts better than nothing does, are predicted much worse
+/// than the fit explains the others, and nothing else says that something is missing. What happened
+/// once is held out with the data that show it.
+fn only_in_part(subject: &Subject, it: &str, (before, after): (f64, f64)) -> String {
+    let fitted = subject.errors.after;
+    let findings = &subject.diagnosis.findings;
+    let is_said = subject.diagnosis.discrepancy.is_some()
+        || findings.iter().any(|finding| finding.kind() == Kind::Event);
+    if is_said || after < MUCH_WORSE * fitted || after < HARDLY_BETTER * before {
+        return String::new();
+    }
+    let (times, noun) = (significant(after / fitted, 2), subject.noun);
+    format!(
+        ", {times} times the residual of the fit ({} µm): held-out {noun} confirm {it} only in part",
+        um(fitted)
+    )
 }
 
 /// A finding with what these data cannot distinguish from it.

@@ -1,5 +1,7 @@
 //! Every effect of the library, injected by itself, is named, located and measured.
 
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
 use rodcal::diagnosis::rig::RigModel;
 use rodcal::inference::Evidence;
 use rodcal::rig::readings::Readings;
@@ -167,6 +169,39 @@ fn thermal_drift_with_time() {
     assert_eq!(answer.effects(), ["thermal_drift"], "{}", answer.json["headline"]);
     let [low, _, high] = interval(&answer.findings()[0], "um_per_h");
     assert!(low <= 50.0 && 50.0 <= high, "{low} … {high}");
+}
+
+/// What warms up for a quarter of an hour after it was switched on: at no constant rate, and no
+/// zero that was not taken.
+#[test]
+fn a_drift_that_settles() {
+    let mut readings = "trial,axis,load_n,time_s,dy_um,dz_um\n".to_owned();
+    let (mut time, mut random) = (0.0_f64, ChaCha8Rng::seed_from_u64(SEED));
+    for trial in 1..=4 {
+        for (axis, compliance) in [("y", [45.609, 0.0]), ("z", [0.0, 39.776])] {
+            for load in [4.0, 8.0, 12.0, 16.0, 20.0] {
+                let warm = 1.0 - (-time / 300.0).exp();
+                let read = [0, 1].map(|channel| {
+                    let noise: f64 = random.random_range(-1.0..1.0);
+                    compliance[channel] * load + [-30.0, 60.0][channel] * warm + noise
+                });
+                readings += &format!("{trial},{axis},{load},{time:.0},{:.1},{:.1}\n", read[0], read[1]);
+                time += 40.0;
+            }
+        }
+    }
+    let answer = Answer::of(Some(include_str!("../../rods/5.toml")), &readings);
+    let said = answer.json["headline"].as_str().unwrap();
+    assert_eq!(answer.effects(), ["thermal_drift"], "{said}");
+    assert!(
+        said.contains("of the recording: thermal drift") && answer.json["unexplained"].is_null(),
+        "{said}"
+    );
+    for (name, truth) in [("dy_um", -30.0), ("dz_um", 60.0)] {
+        let [low, found, high] = interval(answer.finding("thermal_drift"), name);
+        // the nearest of the paces settles a tenth sooner or later
+        assert!((found / truth - 1.0_f64).abs() < 0.1, "{name}: {low} … {found} … {high}");
+    }
 }
 
 /// A knock moves the rod in all directions at once: one finding, with the shift of each channel.

@@ -2,12 +2,14 @@
 
 use std::collections::HashMap;
 
-use super::entry::{Context, Entry, RigEffect, UNBOUNDED, along_the_load, candidate, entry, of, parameter};
+use super::entry::{
+    Context, Entry, RigEffect, UNBOUNDED, along_the_load, alternative, candidate, entry, of, parameter,
+};
 use super::load::{ALIGNMENT, TURNS, WIDEST, misalignment, pairs, whole_turn};
 use super::places::measured_channels;
 use crate::diagnosis::rig::action::Action;
 use crate::diagnosis::rig::datum::Datum;
-use crate::inference::{Effect, Finding, Kind, Location, Part, Reported, Variable, WrittenTo};
+use crate::inference::{Candidate, Effect, Finding, Kind, Location, Part, Reported, Variable, WrittenTo};
 use crate::spatial::Axis;
 use crate::units::{DEG, UM};
 
@@ -18,6 +20,26 @@ const NO_UNIT: (f64, f64) = (0.5, 2.0);
 /// Drift over the whole recording as a share of its largest reading.
 const DRIFT: f64 = 0.02;
 const HOUR: f64 = 3600.0;
+/// Within which share of a recording a drift settles, and what is said of it since the first
+/// reading of the file and since that of each run.
+const SETTLING: [(f64, [&str; 2]); 6] = [
+    (0.1, ["within a tenth of the recording", "within a tenth of the recording, from zero to zero"]),
+    (0.18, ["within a fifth of the recording", "within a fifth of the recording, from zero to zero"]),
+    (0.32, ["within a third of the recording", "within a third of the recording, from zero to zero"]),
+    (0.56, ["within half of the recording", "within half of the recording, from zero to zero"]),
+    (1.0, ["over the recording until it settles", "over the recording until it settles, from zero to zero"]),
+    (
+        1.8,
+        [
+            "over the recording, more slowly towards its end",
+            "over the recording, more slowly towards its end, from zero to zero",
+        ],
+    ),
+];
+/// So many time constants to the end of it: 5 % are left.
+const SETTLED: f64 = 3.0;
+/// How often a drift settles within a recording, in one of these forms, for one at one rate.
+const RARELY_SETTLES: f64 = 0.15;
 
 /// A sensor that shows too much or too little.
 pub static SENSOR_SCALE: RigEffect = RigEffect {
@@ -118,17 +140,22 @@ pub static THERMAL_DRIFT: RigEffect = RigEffect {
         name: "thermal_drift",
         kind: Kind::Physics,
         summary: "the readings follow temperature or time",
-        formula: "y + d·(T − T₀), or y + d·(t − t₀); zero at the first reading of file or run",
+        formula: "y + d·(T − T₀), y + d·(t − t₀), or y + d·(1 − e^(−(t − t₀)/τ)); zero at the first reading \
+            of file or run",
         prior: "2 % of the largest reading over the recording: steel of 0.5 m grows by 6 µm/K",
         parameters: &[
             ("um_per_k", "drift per kelvin"),
             ("um_per_h", "drift per hour"),
+            ("um", "drift until it has settled"),
             ("dx_um_per_k", "the same for each sensor where all drift"),
             ("dy_um_per_k", ""),
             ("dz_um_per_k", ""),
             ("dx_um_per_h", ""),
             ("dy_um_per_h", ""),
             ("dz_um_per_h", ""),
+            ("dx_um", ""),
+            ("dy_um", ""),
+            ("dz_um", ""),
         ],
         needs: "temperatures or times (columns `temperature_c`, `time_s`)",
         cause: "thermal drift",
@@ -148,7 +175,11 @@ pub static THERMAL_DRIFT: RigEffect = RigEffect {
         }
     },
     observed: |finding: &Finding, _| {
-        let per = |name: &str| if name.ends_with("um_per_k") { "µm per kelvin" } else { "µm per hour" };
+        let per = |name: &str| match name {
+            name if name.ends_with("um_per_k") => "µm per kelvin",
+            name if name.ends_with("um_per_h") => "µm per hour",
+            _ => "µm",
+        };
         let each = finding.estimates.iter().map(|estimate| {
             let channel = estimate.name.split_once('_').map_or("", |(channel, _)| channel);
             let channel = if channel == "um" { String::new() } else { format!("{channel} ") };
@@ -166,9 +197,21 @@ pub static THERMAL_DRIFT: RigEffect = RigEffect {
     },
 };
 
-/// Of each channel: since the first reading of the file, and since the first of each run, for a run
-/// begins with a new zero.
-fn drifts(context: &mut Context) -> Vec<Entry> {
+/// What readings drift with, and how far they drift by it.
+struct Course {
+    /// Of each datum.
+    values: Vec<f64>,
+    suffix: &'static str,
+    unit: f64,
+    size: f64,
+    /// Since the first reading of the file, and since that of each run.
+    forms: [Option<&'static str>; 2],
+    /// True for one of several forms with the same parameters.
+    is_settling: bool,
+}
+
+/// With temperature, or else with time: at one rate, and ever more slowly until it has settled.
+fn courses(context: &Context) -> Vec<Course> {
     let data = context.data;
     let known = |value: &dyn Fn(&Datum) -> Option<f64>| data.iter().map(value).collect::<Option<Vec<f64>>>();
     let (values, suffix, unit) = match (known(&|d| d.temperature), known(&|d| d.time)) {
@@ -181,42 +224,84 @@ fn drifts(context: &mut Context) -> Vec<Entry> {
     if most <= least {
         return Vec::new();
     }
-    let size = DRIFT * context.largest_reading() / (most - least);
+    let drift = DRIFT * context.largest_reading();
+    let settling = |(share, forms): (f64, [&'static str; 2])| Course {
+        values: values.iter().map(|t| -(-SETTLED * (t - least) / (share * (most - least))).exp()).collect(),
+        suffix: "um",
+        unit: UM,
+        size: drift,
+        forms: forms.map(Some),
+        is_settling: true,
+    };
+    let settling: Vec<Course> = match suffix {
+        "um_per_h" => SETTLING.into_iter().map(settling).collect(),
+        _ => Vec::new(),
+    };
+    let forms = [None, Some("since the zero of each run")];
+    let at_one_rate =
+        Course { suffix, unit, size: drift / (most - least), forms, is_settling: false, values };
+    std::iter::once(at_one_rate).chain(settling).collect()
+}
+
+/// Of each channel, and of all of them: since the first reading of the file, and since the first of
+/// each run, for a run begins with a new zero.
+fn drifts(context: &mut Context) -> Vec<Entry> {
+    let data = context.data;
     // a sensor that is read elsewhere has a zero of its own
     let zero_of = |d: &Datum| (d.run, d.stations()[1]);
     let mut first_of_run: HashMap<(usize, u64), usize> = HashMap::new();
     for (i, datum) in data.iter().enumerate() {
         first_of_run.entry(zero_of(datum)).or_insert(i);
     }
-    let course = |channel: Axis, zero: &dyn Fn(&Datum) -> usize| {
+    let of_file = |_: &Datum| 0;
+    let of_run = |d: &Datum| first_of_run[&zero_of(d)];
+    let has_runs = data.iter().any(|d| d.run != data[0].run);
+    let channels = measured_channels(data);
+    let mut entries = Vec::new();
+    for course in courses(context) {
+        let zeros: [&dyn Fn(&Datum) -> usize; 2] = [&of_file, &of_run];
+        for (form, zero) in course.forms.into_iter().zip(zeros).take(1 + usize::from(has_runs)) {
+            entries.extend(drifts_since(data, &channels, &course, form, zero));
+        }
+    }
+    entries
+}
+
+/// Drifts of one course since some zero.
+fn drifts_since(
+    data: &[Datum],
+    channels: &[Axis],
+    course: &Course,
+    form: Option<&'static str>,
+    zero: &dyn Fn(&Datum) -> usize,
+) -> Vec<Entry> {
+    let Course { values, suffix, unit, size, .. } = course;
+    let shift = |channel: Axis| {
         let own = data.iter().enumerate().filter(|(_, d)| d.channel == channel);
         Action::Shift(own.map(|(i, d)| (i, values[i] - values[zero(d)])).collect())
     };
-    let channels = measured_channels(data);
-    let mut entries = Vec::new();
-    let mut add = |form: Option<&'static str>, zero: &dyn Fn(&Datum) -> usize| {
-        for &channel in &channels {
-            let drift = parameter(suffix, unit, 0.0, size, UNBOUNDED);
-            let location = Location::Channel { channel, form };
-            entries.push(entry(&THERMAL_DRIFT, location, drift, course(channel, zero)));
-        }
-        if channels.len() > 1 {
-            // what warms up moves the tip in some direction
-            let vector = channels.iter().map(|&channel| {
-                let name = format!("d{channel}_{suffix}");
-                (parameter(&name, unit, 0.0, size, UNBOUNDED), course(channel, zero))
-            });
-            let (parameters, actions) = vector.unzip();
-            let location = match form {
-                None => Location::Part(Part::Sensors),
-                Some(form) => Location::Form { part: Part::Sensors, form: form.into() },
-            };
-            entries.push((candidate(&THERMAL_DRIFT.effect, location, parameters), actions));
-        }
+    let of_channel = |&channel: &Axis| {
+        let drift = parameter(suffix, *unit, 0.0, *size, UNBOUNDED);
+        entry(&THERMAL_DRIFT, Location::Channel { channel, form }, drift, shift(channel))
     };
-    add(None, &|_| 0);
-    if data.iter().any(|d| d.run != data[0].run) {
-        add(Some("since the zero of each run"), &|d| first_of_run[&zero_of(d)]);
+    let mut entries: Vec<Entry> = channels.iter().map(of_channel).collect();
+    if channels.len() > 1 {
+        // what warms up moves the tip in some direction
+        let vector = channels.iter().map(|&channel| {
+            let name = format!("d{channel}_{suffix}");
+            (parameter(&name, *unit, 0.0, *size, UNBOUNDED), shift(channel))
+        });
+        let (parameters, actions) = vector.unzip();
+        let location = match form {
+            None => Location::Part(Part::Sensors),
+            Some(form) => Location::Form { part: Part::Sensors, form: form.into() },
+        };
+        entries.push((candidate(&THERMAL_DRIFT.effect, location, parameters), actions));
+    }
+    if course.is_settling {
+        let rarer =
+            |(candidate, actions)| alternative((Candidate { weight: RARELY_SETTLES, ..candidate }, actions));
+        return entries.into_iter().map(rarer).collect();
     }
     entries
 }

@@ -223,6 +223,27 @@ fn a_knock_that_two_channels_show_is_one_slip() {
     assert_eq!(finding["parts"].as_array().unwrap().len(), 2);
 }
 
+/// A knock in the middle of a run that no later zero takes out: not two slips, of the rest of the
+/// run and of the runs behind it, nor scatter of their zeros.
+#[test]
+fn a_knock_that_stays_is_one_slip() {
+    let order = Order { trials: 4, ..Order::default() };
+    let shifts = [(1, -40.0 * UM), (2, 30.0 * UM)];
+    // the sixth of seven of the fourth run
+    let effects = shifts.map(|(channel, by)| Effect::Shift { loading: 26, channel, by });
+    let answer = Answer::made(&order, &effects, SEED);
+    assert_eq!(answer.effects(), ["slip"], "{}", answer.json["headline"]);
+    let finding = answer.finding("slip");
+    assert_eq!(finding["place"]["after_row"], 26, "{}", answer.json["headline"]);
+    for channel in ["dy", "dz"] {
+        let truth = shifts[usize::from(channel == "dz")].1 / UM;
+        let is_first = finding["place"]["channel"] == channel;
+        let name = if is_first { "um".to_owned() } else { format!("{channel}_um") };
+        let [low, _, high] = interval(finding, &name);
+        assert!(low <= truth && truth <= high && high - low < 10.0, "{channel}: {low} … {high}");
+    }
+}
+
 #[test]
 fn slip() {
     let loading = 10;

@@ -17,13 +17,16 @@ const STEP: f64 = 0.05;
 /// Most places in a run that are tried; of a longer run every second one, or fewer.
 const MOST_SLIPS: usize = 200;
 
+/// Of a longer recording a shift for good is looked for between runs only.
+const MOST_ROWS_WITHIN: usize = 1000;
+
 /// Everything after one row of a run is shifted.
 pub static SLIP: RigEffect = RigEffect {
     effect: Effect {
         name: "slip",
         kind: Kind::Event,
         summary: "all readings after one of them are shifted",
-        formula: "y + s for the rest of a run",
+        formula: "y + s for the rest of a run, or of the file",
         prior: "5 % of the largest reading: a bond or a clamp that slips; a knock may be more",
         parameters: &[
             ("um", "shift"),
@@ -85,13 +88,13 @@ fn slips(context: &mut Context) -> Vec<Entry> {
         })
     };
     let within: Vec<Entry> = runs_by_sensor(data).into_iter().flat_map(of_run).collect();
-    within.into_iter().chain(between_runs(data, size)).collect()
+    within.into_iter().chain(for_good(data, size)).collect()
 }
 
-/// Everything after a run is shifted: of each sensor, between any two runs with runs on either
-/// side. A channel that is read at one place in each run is one sensor, which is moved from place
+/// Everything after a row is shifted for good: of each sensor, between any two runs with runs on
+/// either side, and within a run, with two rows of it on either side and a run behind it. A channel that is read at one place in each run is one sensor, which is moved from place
 /// to place, and with it goes what shifted it.
-fn between_runs(data: &[Datum], size: f64) -> Vec<Entry> {
+fn for_good(data: &[Datum], size: f64) -> Vec<Entry> {
     let mut entries = Vec::new();
     let mut place_in_run: BTreeMap<(Axis, usize), u64> = BTreeMap::new();
     let is_moved: Vec<Axis> = Axis::ALL
@@ -114,9 +117,17 @@ fn between_runs(data: &[Datum], size: f64) -> Vec<Entry> {
         let last_of_run: BTreeMap<usize, usize> = sequence.iter().map(|&i| (data[i].run, i)).collect();
         let mut last_of_run: Vec<usize> = last_of_run.into_values().collect();
         last_of_run.sort_by_key(|&last| data[last].order);
+        let mut rows: Vec<usize> = last_of_run.iter().skip(1).rev().skip(2).copied().collect();
+        if sequence.len() <= MOST_ROWS_WITHIN {
+            let last_run = sequence.last().map(|&i| data[i].run);
+            let is_within = |rows: &&[usize]| {
+                rows.iter().all(|&i| data[i].run == data[rows[0]].run) && Some(data[rows[0]].run) != last_run
+            };
+            rows.extend(sequence.windows(4).filter(is_within).map(|rows| rows[1]));
+        }
         let sequence: Arc<[usize]> = sequence.into();
-        for &last in last_of_run.iter().skip(1).rev().skip(2) {
-            let before = &data[last];
+        for row in rows {
+            let before = &data[row];
             let from = sequence.partition_point(|&i| data[i].order <= before.order);
             let run = Run { axis: before.direction.axis, name: before.run_name() };
             let location = Location::AfterRow { run, row: before.row, channel: Some(channel) };

@@ -79,6 +79,8 @@ pub enum Location {
         row: usize,
         /// The channel, where it is not the one along the load.
         channel: Option<Axis>,
+        /// True where everything behind the run is shifted too.
+        for_good: bool,
     },
     /// One offset of one row of the file.
     Reading {
@@ -222,9 +224,10 @@ impl fmt::Display for Location {
             Location::SensorTurn { from, towards } => write!(f, "d{from} towards d{towards}"),
             Location::LoadTurn { from, towards } => write!(f, "{from} towards {towards}"),
             Location::LoadFrame { axes: [a, b], about } => write!(f, "{a} and {b} about {about}"),
-            Location::AfterRow { run, row, channel } => {
+            Location::AfterRow { run, row, channel, for_good } => {
                 write!(f, "{run}, after row {row}")?;
-                channel.map_or(Ok(()), |channel| write!(f, ", d{channel}"))
+                channel.map_or(Ok(()), |channel| write!(f, ", d{channel}"))?;
+                if *for_good { write!(f, ", for good") } else { Ok(()) }
             }
             Location::Reading { row, channel } => write!(f, "row {row} d{channel}"),
             Location::Joint { joint, form: None } => write!(f, "joint {}", joint + 1),

@@ -32,7 +32,7 @@ pub fn place(location: &Location) -> Value {
             "loads_along": [a.to_string(), b.to_string()],
             "about": about.to_string(),
         }),
-        Location::AfterRow { run, row, channel } => {
+        Location::AfterRow { run, row, channel, .. } => {
             let (trial, number) = match &run.name {
                 Some(RunName::Trial(name)) => (Some(name), None),
                 Some(RunName::Number(number)) => (None, Some(number)),

@@ -82,7 +82,7 @@ fn slips(context: &mut Context) -> Vec<Entry> {
             let before = &data[rows[first - 1]];
             let is_other = before.channel != before.direction.axis;
             let channel = is_other.then_some(before.channel);
-            let location = Location::AfterRow { run: run.clone(), row: before.row, channel };
+            let location = Location::AfterRow { run: run.clone(), row: before.row, channel, for_good: false };
             let um = parameter("um", UM, 0.0, size, UNBOUNDED);
             entry(&SLIP, location, um, Action::Step(Arc::clone(&sequence), first))
         })
@@ -92,8 +92,9 @@ fn slips(context: &mut Context) -> Vec<Entry> {
 }
 
 /// Everything after a row is shifted for good: of each sensor, between any two runs with runs on
-/// either side, and within a run, with two rows of it on either side and a run behind it. A channel that is read at one place in each run is one sensor, which is moved from place
-/// to place, and with it goes what shifted it.
+/// either side, and within a run, with two rows of it and a run on either side. A channel that is
+/// read at one place in each run is one sensor, which is moved from place to place, and with it
+/// goes what shifted it.
 fn for_good(data: &[Datum], size: f64) -> Vec<Entry> {
     let mut entries = Vec::new();
     let mut place_in_run: BTreeMap<(Axis, usize), u64> = BTreeMap::new();
@@ -119,9 +120,10 @@ fn for_good(data: &[Datum], size: f64) -> Vec<Entry> {
         last_of_run.sort_by_key(|&last| data[last].order);
         let mut rows: Vec<usize> = last_of_run.iter().skip(1).rev().skip(2).copied().collect();
         if sequence.len() <= MOST_ROWS_WITHIN {
-            let last_run = sequence.last().map(|&i| data[i].run);
+            let ends = [sequence.first(), sequence.last()].map(|end| end.map(|&i| data[i].run));
             let is_within = |rows: &&[usize]| {
-                rows.iter().all(|&i| data[i].run == data[rows[0]].run) && Some(data[rows[0]].run) != last_run
+                let run = data[rows[0]].run;
+                rows.iter().all(|&i| data[i].run == run) && !ends.contains(&Some(run))
             };
             rows.extend(sequence.windows(4).filter(is_within).map(|rows| rows[1]));
         }
@@ -130,7 +132,8 @@ fn for_good(data: &[Datum], size: f64) -> Vec<Entry> {
             let before = &data[row];
             let from = sequence.partition_point(|&i| data[i].order <= before.order);
             let run = Run { axis: before.direction.axis, name: before.run_name() };
-            let location = Location::AfterRow { run, row: before.row, channel: Some(channel) };
+            let for_good = !last_of_run.contains(&row);
+            let location = Location::AfterRow { run, row: before.row, channel: Some(channel), for_good };
             let um = parameter("um", UM, 0.0, size, UNBOUNDED);
             entries.push(entry(&SLIP, location, um, Action::Step(Arc::clone(&sequence), from)));
         }

@@ -116,9 +116,9 @@ impl StaticLaws {
 
     /// Those that a load and gravity take beyond what was recorded: law and value of its variable.
     pub fn beyond(&self, force: &Vector3<f64>, gravity: &Vector3<f64>) -> Vec<(&RodLaw, f64)> {
-        let beyond_of =
+        let beyond =
             |acting: &'_ Acting| acting.variable(force, gravity).filter(|&x| acting.law.is_beyond(x));
-        self.acting.iter().filter_map(|acting| Some((&acting.law, beyond_of(acting)?))).collect()
+        self.acting.iter().filter_map(|acting| Some((&acting.law, beyond(acting)?))).collect()
     }
 }
 

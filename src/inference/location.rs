@@ -79,7 +79,7 @@ pub enum Location {
         row: usize,
         /// The channel, where it is not the one along the load.
         channel: Option<Axis>,
-        /// True where everything behind the run is shifted too.
+        /// True where the runs behind this one are shifted too, to the end of the file.
         for_good: bool,
     },
     /// One offset of one row of the file.
@@ -173,13 +173,15 @@ pub enum RunName {
 }
 
 impl Location {
-    /// True of what is after the same row of the same run, of whatever channel.
+    /// True of what begins after the same row and lasts as long, of whatever channel.
     pub(super) fn is_after_row_of(&self, other: &Location) -> bool {
-        let row = |location: &Location| match location {
-            Location::AfterRow { run, row, .. } => Some((run.clone(), *row)),
-            _ => None,
-        };
-        row(self).is_some() && row(self) == row(other)
+        match (self, other) {
+            (
+                Location::AfterRow { run, row, for_good, .. },
+                Location::AfterRow { run: other_run, row: other_row, for_good: other_lasts, .. },
+            ) => (run, row, for_good) == (other_run, other_row, other_lasts),
+            _ => false,
+        }
     }
 
     /// The place without the form of the law there: how a joint errs is not where.

@@ -192,6 +192,35 @@ fn a_place_is_found_and_two_effects_are_two() {
     assert!(both >= 24, "{both} of 30");
 }
 
+/// Two that nearly undo each other: neither is worth a step, and nothing but the pair leads to
+/// them.
+#[test]
+fn two_effects_that_hide_each_other_are_found_as_a_pair() {
+    let mut model = Columns::new(COUNT);
+    let wave = |x: f64, k: u32| (f64::from(k) * std::f64::consts::PI * x).cos();
+    // among many effects of many places each is unlikely at any of them
+    let others = ["a", "b", "c", "d", "e", "f", "g", "h", "i", "j", "k", "l", "m", "n", "o", "p", "q", "r"];
+    for (effect, hidden) in
+        [("one", 0.02), ("other", -0.02)].into_iter().chain(others.map(|name| (name, 0.0)))
+    {
+        if hidden != 0.0 {
+            model.add(effect, "here", column(|x| 1.0 + hidden * wave(x, 3)), false);
+        }
+        for k in 5..15 {
+            model.add(effect, &format!("{k}"), column(move |x| wave(x, k) + hidden), false);
+        }
+    }
+    let evidence = evidence(3, |x| 1.5 * wave(x, 3));
+    let linear = Linearised::new(&model);
+    let search = Search::new(&linear, &evidence, &[]);
+    let names = |pairs: Pairs| -> Vec<&str> {
+        let (hypothesis, _) = search.best(pairs);
+        hypothesis.terms.iter().map(|term| model.candidates[term.candidate].effect.name).collect()
+    };
+    assert_eq!(names(Pairs::Screened), ["one", "other"]);
+    assert_eq!(names(Pairs::LeftOut), [""; 0]);
+}
+
 #[test]
 fn a_shape_from_outside_the_library_is_not_given_a_name() {
     let model = model();

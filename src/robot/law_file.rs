@@ -188,41 +188,33 @@ unit = "°"
     /// Each with line and column, and what would be right.
     #[test]
     fn what_is_no_law_is_refused_where_it_stands() {
-        let of_place = |place: &str, variable: &str, rest: &str| {
+        let law = |place: &str, variable: &str, rest: &str| {
             format!("[[law]]\nplace = \"{place}\"\nvariable = \"{variable}\"\n{rest}\nrange = [-90, 90]\n")
         };
         let cases = [
-            (of_place("joint 4", "angle of joint 1", "formula = \"q\""), ":2:9", "N from 1 to 3"),
-            (of_place("base", "angle of joint 1", "formula = \"q\""), ":2:9", "\"tool\""),
-            (of_place("joint 1", "torque of joint 2", "formula = \"τ\""), ":3:12", "\"torque of joint 1\""),
-            (of_place("joint 1", "angle of joint 3", "formula = \"q\""), ":3:12", "prismatic"),
-            (of_place("joint 1", "time", "formula = \"t\""), ":3:12", "angle of joint N"),
-            (of_place("tool", "angle of joint 1", "formula_x = \"q\""), ":3:12", "weight along x"),
-            (of_place("joint 1", "angle of joint 1", "formula = \"3*(q\""), ":4:16", ")"),
-            (of_place("joint 1", "angle of joint 1", "formula = \"3*k\""), ":4:14", "\"k\" in the formula"),
-            (of_place("joint 1", "angle of joint 1", "formula = \"1/q\""), ":4:11", "no number at q = 0"),
-            (of_place("joint 1", "angle of joint 2", "formula = \"side*q\""), ":4:11", "own angle"),
-            (of_place("joint 1", "angle of joint 2", "formula_y = \"q\""), ":4:13", "a joint has one"),
-            (of_place("link 1", "angle of joint 2", "formula = \"q\""), ":4:11", "one for each axis"),
-            (of_place("link 1", "angle of joint 2", ""), ":1:1", "formula_x"),
+            (law("joint 4", "angle of joint 1", "formula = \"q\""), ":2:9", "N from 1 to 3"),
+            (law("base", "angle of joint 1", "formula = \"q\""), ":2:9", "\"tool\""),
+            (law("joint 1", "torque of joint 2", "formula = \"τ\""), ":3:12", "\"torque of joint 1\""),
+            (law("joint 1", "angle of joint 3", "formula = \"q\""), ":3:12", "prismatic"),
+            (law("joint 1", "time", "formula = \"t\""), ":3:12", "angle of joint N"),
+            (law("tool", "angle of joint 1", "formula_x = \"q\""), ":3:12", "weight along x"),
+            (law("joint 1", "angle of joint 1", "formula = \"3*(q\""), ":4:16", ")"),
+            (law("joint 1", "angle of joint 1", "formula = \"3*k\""), ":4:14", "\"k\" in the formula"),
+            (law("joint 1", "angle of joint 1", "formula = \"1/q\""), ":4:11", "no number at q = 0"),
+            (law("joint 1", "angle of joint 2", "formula = \"side*q\""), ":4:11", "own angle"),
+            (law("joint 1", "angle of joint 2", "formula_y = \"q\""), ":4:13", "a joint has one"),
+            (law("link 1", "angle of joint 2", "formula = \"q\""), ":4:11", "one for each axis"),
+            (law("link 1", "angle of joint 2", ""), ":1:1", "formula_x"),
+            (law("joint 1", "angle of joint 2", "formula = \"q\"\nper_joint = 4"), ":5:13", "from 1 to 3"),
+            (law("tool", "weight along x of the tool", "formula_x = \"g\"\nper_joint = 1"), ":5:13", "alone"),
+            (law("joint 1", "angle of joint 2", "formula = \"q\"\nrang = 3"), ":5:1", "rang"),
             (
-                of_place("joint 1", "angle of joint 2", "formula = \"q\"\nper_joint = 4"),
-                ":5:13",
-                "from 1 to 3",
-            ),
-            (
-                of_place("tool", "weight along x of the tool", "formula_x = \"g\"\nper_joint = 1"),
-                ":5:13",
-                "alone",
-            ),
-            (of_place("joint 1", "angle of joint 2", "formula = \"q\"\nrang = 3"), ":5:1", "rang"),
-            (
-                of_place("joint 1", "angle of joint 2", "formula = \"q\"").replace("-90, 90", "9, 9"),
+                law("joint 1", "angle of joint 2", "formula = \"q\"").replace("-90, 90", "9, 9"),
                 ":5:9",
                 "[from, to]",
             ),
             (
-                of_place("joint 1", "angle of joint 2", "formula = \"q\"")
+                law("joint 1", "angle of joint 2", "formula = \"q\"")
                     + "[[law.constant]]\nname = \"q\"\nvalue = 1\n",
                 ":7:8",
                 "a name of its own",

@@ -221,6 +221,7 @@ fn a_knock_that_two_channels_show_is_one_slip() {
         assert!(low <= truth && truth <= high, "{name}: {truth} is not in {low} … {high}");
     }
     assert_eq!(finding["parts"].as_array().unwrap().len(), 2);
+    assert_eq!(finding["place"]["for_good"], false);
 }
 
 /// A knock in the middle of a run that no later zero takes out: not two slips, of the rest of the
@@ -231,10 +232,12 @@ fn a_knock_that_stays_is_one_slip() {
     let shifts = [(1, -40.0 * UM), (2, 30.0 * UM)];
     // the sixth of seven of the fourth run
     let effects = shifts.map(|(channel, by)| Effect::Shift { loading: 26, channel, by });
-    let answer = Answer::made(&order, &effects, SEED);
+    let made = order.made(&effects, SEED);
+    let answer = Answer::of_made(&made);
     assert_eq!(answer.effects(), ["slip"], "{}", answer.json["headline"]);
     let finding = answer.finding("slip");
     assert_eq!(finding["place"]["after_row"], 26, "{}", answer.json["headline"]);
+    assert_eq!(finding["place"]["for_good"], true);
     for channel in ["dy", "dz"] {
         let truth = shifts[usize::from(channel == "dz")].1 / UM;
         let is_first = finding["place"]["channel"] == channel;
@@ -242,6 +245,20 @@ fn a_knock_that_stays_is_one_slip() {
         let [low, _, high] = interval(finding, &name);
         assert!(low <= truth && truth <= high && high - low < 10.0, "{channel}: {low} … {high}");
     }
+    // beside a mistake, what the error falls from is that of the readings as they were recorded
+    let mut rows = made.readings.lines().filter(|line| !line.starts_with('#'));
+    let names = rows.next().unwrap();
+    let dz = names.split(',').position(|name| name == "dz_um").unwrap();
+    let flipped = rows.map(|row| {
+        let mut cells: Vec<String> = row.split(',').map(str::to_owned).collect();
+        cells[dz] = (-cells[dz].parse::<f64>().unwrap()).to_string();
+        cells.join(",")
+    });
+    let flipped: Vec<String> = std::iter::once(names.to_owned()).chain(flipped).collect();
+    let answer = Answer::of(Some(&made.rod), &(flipped.join("\n") + "\n"));
+    let said = answer.json["headline"].as_str().unwrap();
+    assert_eq!(answer.effects(), ["sign_mistake", "slip"], "{said}");
+    assert!(said.contains("With the correction and the other finding, the error falls from"), "{said}");
 }
 
 #[test]

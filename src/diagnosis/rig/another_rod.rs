@@ -14,8 +14,8 @@ use crate::inference::{Compared, Diagnosis, Evidence, Finding, Kind, Location, R
 /// Ln of the odds within which two rods are indistinguishable: 20.
 const ALIKE: f64 = 2.995_732;
 
-/// What another rod leaves at most, as a share of what it explains: to all effects together, and to
-/// none.
+/// What another rod leaves at most, as a share of what it explains: before any effect is added, and
+/// unexplained beside all of them.
 const CURED: f64 = 0.5;
 const LITTLE: f64 = 0.1;
 

@@ -72,7 +72,7 @@ pub fn diagnose_with(
         Ok::<_, Error>((model, evidence, not_testable, diagnosis))
     };
     let (mut model, mut evidence, mut not_testable, mut diagnosis) = inferred(&mended, None)?;
-    // the slopes are those of another rod, but nothing else is
+    // the slopes are those of another rod, but the readings are not
     if mended.other_rod().is_some_and(|rod| !another_rod::is_cured(rod.explains, &diagnosis)) {
         mended = mistakes::mended(readings, rod, &[])?;
         (model, evidence, not_testable, diagnosis) = inferred(&mended, None)?;
@@ -85,11 +85,12 @@ pub fn diagnose_with(
     if let Some(meant) = others.first().filter(|meant| meant.is_meant()) {
         let mut taken = mended.clone();
         taken.take(meant.rod.clone(), meant.log_odds, meant.explains);
-        let as_other = inferred(&taken, None)?;
+        let of_other = inferred(&taken, None)?;
+        let (.., left) = &of_other;
         // of two rods that both leave something unexplained neither is the right one beyond doubt
-        if as_other.3.discrepancy.is_none() && another_rod::is_cured(meant.explains, &as_other.3) {
+        if left.discrepancy.is_none() && another_rod::is_cured(meant.explains, left) {
             mended = taken;
-            (model, evidence, not_testable, diagnosis) = as_other;
+            (model, evidence, not_testable, diagnosis) = of_other;
             // that is decided
             others.clear();
         }

@@ -136,9 +136,13 @@ fn worth(subject: &Subject) -> String {
         (false, 1) => "the other finding",
         (false, _) => "the other findings",
     };
+    // this error is that of the readings as they were recorded
+    let correction = if mistakes.is_empty() { "" } else { "the correction and " };
     let fitted = |why: &str| {
         let (before, after) = (um(errors.before), um(errors.after));
-        format!(" With {it}, the error falls from {before} to {after} µm{averaged}{why}; {scatter}")
+        format!(
+            " With {correction}{it}, the error falls from {before} to {after} µm{averaged}{why}; {scatter}"
+        )
     };
     // a single event says nothing about data that were held out
     let are_events = findings.iter().all(|finding| finding.kind() == Kind::Event);
@@ -171,7 +175,12 @@ fn only_in_part(subject: &Subject, it: &str, (before, after): (f64, f64)) -> Str
     if is_said || after < MUCH_WORSE * fitted || after < HARDLY_BETTER * before {
         return String::new();
     }
-    let (times, noun) = (significant(after / fitted, 2), subject.noun);
+    let noun = subject.noun;
+    // of a fit that leaves as good as nothing no number says more
+    let times = match after / fitted {
+        times if times < 1e3 => significant(times, 2),
+        _ => "over 1000".to_owned(),
+    };
     format!(
         ", {times} times the residual of the fit ({} µm): held-out {noun} confirm {it} only in part",
         um(fitted)

@@ -32,7 +32,7 @@ pub fn place(location: &Location) -> Value {
             "loads_along": [a.to_string(), b.to_string()],
             "about": about.to_string(),
         }),
-        Location::AfterRow { run, row, channel, .. } => {
+        Location::AfterRow { run, row, channel, for_good } => {
             let (trial, number) = match &run.name {
                 Some(RunName::Trial(name)) => (Some(name), None),
                 Some(RunName::Number(number)) => (None, Some(number)),
@@ -44,6 +44,7 @@ pub fn place(location: &Location) -> Value {
                 "run": number,
                 "after_row": row,
                 "channel": channel.map(|channel| format!("d{channel}")),
+                "for_good": for_good,
             })
         }
         Location::Reading { row, channel } => {

@@ -132,8 +132,8 @@ fn for_good(data: &[Datum], size: f64) -> Vec<Entry> {
             let before = &data[row];
             let from = sequence.partition_point(|&i| data[i].order <= before.order);
             let run = Run { axis: before.direction.axis, name: before.run_name() };
-            let for_good = !last_of_run.contains(&row);
-            let location = Location::AfterRow { run, row: before.row, channel: Some(channel), for_good };
+            let (row, channel) = (before.row, Some(channel));
+            let location = Location::AfterRow { run, row, channel, for_good: true };
             let um = parameter("um", UM, 0.0, size, UNBOUNDED);
             entries.push(entry(&SLIP, location, um, Action::Step(Arc::clone(&sequence), from)));
         }

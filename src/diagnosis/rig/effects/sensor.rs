@@ -23,16 +23,28 @@ const HOUR: f64 = 3600.0;
 /// Within which share of a recording a drift settles, and what is said of it since the first
 /// reading of the file and since that of each run.
 const SETTLING: [(f64, [&str; 2]); 6] = [
-    (0.1, ["within a tenth of the recording", "within a tenth of the recording, from zero to zero"]),
-    (0.18, ["within a fifth of the recording", "within a fifth of the recording, from zero to zero"]),
-    (0.32, ["within a third of the recording", "within a third of the recording, from zero to zero"]),
-    (0.56, ["within half of the recording", "within half of the recording, from zero to zero"]),
-    (1.0, ["over the recording until it settles", "over the recording until it settles, from zero to zero"]),
+    (0.1, ["within a tenth of the recording", "within a tenth of the recording, each run from its own zero"]),
+    (
+        0.18,
+        ["within a fifth of the recording", "within a fifth of the recording, each run from its own zero"],
+    ),
+    (
+        0.32,
+        ["within a third of the recording", "within a third of the recording, each run from its own zero"],
+    ),
+    (0.56, ["within half of the recording", "within half of the recording, each run from its own zero"]),
+    (
+        1.0,
+        [
+            "over the recording until it settles",
+            "over the recording until it settles, each run from its own zero",
+        ],
+    ),
     (
         1.8,
         [
             "over the recording, more slowly towards its end",
-            "over the recording, more slowly towards its end, from zero to zero",
+            "over the recording, more slowly towards its end, each run from its own zero",
         ],
     ),
 ];
@@ -140,22 +152,22 @@ pub static THERMAL_DRIFT: RigEffect = RigEffect {
         name: "thermal_drift",
         kind: Kind::Physics,
         summary: "the readings follow temperature or time",
-        formula: "y + d·(T − T₀), y + d·(t − t₀), or y + d·(1 − e^(−(t − t₀)/τ)); zero at the first reading \
-            of file or run",
+        formula: "y + d·(T − T₀), y + d·(t − t₀), or y + d·(1 − e^(−(t − t₀)/τ))/(1 − e^(−D/τ)) over the \
+            duration D; zero at the first reading of file or run",
         prior: "2 % of the largest reading over the recording: steel of 0.5 m grows by 6 µm/K",
         parameters: &[
             ("um_per_k", "drift per kelvin"),
             ("um_per_h", "drift per hour"),
-            ("um", "drift until it has settled"),
-            ("dx_um_per_k", "the same for each sensor where all drift"),
-            ("dy_um_per_k", ""),
-            ("dz_um_per_k", ""),
-            ("dx_um_per_h", ""),
-            ("dy_um_per_h", ""),
-            ("dz_um_per_h", ""),
-            ("dx_um", ""),
-            ("dy_um", ""),
-            ("dz_um", ""),
+            ("um", "drift over the recording"),
+            ("dx_um_per_k", "drift of dx per kelvin"),
+            ("dy_um_per_k", "drift of dy per kelvin"),
+            ("dz_um_per_k", "drift of dz per kelvin"),
+            ("dx_um_per_h", "drift of dx per hour"),
+            ("dy_um_per_h", "drift of dy per hour"),
+            ("dz_um_per_h", "drift of dz per hour"),
+            ("dx_um", "drift of dx over the recording"),
+            ("dy_um", "drift of dy over the recording"),
+            ("dz_um", "drift of dz over the recording"),
         ],
         needs: "temperatures or times (columns `temperature_c`, `time_s`)",
         cause: "thermal drift",
@@ -225,13 +237,18 @@ fn courses(context: &Context) -> Vec<Course> {
         return Vec::new();
     }
     let drift = DRIFT * context.largest_reading();
-    let settling = |(share, forms): (f64, [&'static str; 2])| Course {
-        values: values.iter().map(|t| -(-SETTLED * (t - least) / (share * (most - least))).exp()).collect(),
-        suffix: "um",
-        unit: UM,
-        size: drift,
-        forms: forms.map(Some),
-        is_settling: true,
+    let settling = |(share, forms): (f64, [&'static str; 2])| {
+        // e^(−(t − t₀)/τ)
+        let left = |t: f64| (-SETTLED * (t - least) / (share * (most - least))).exp();
+        let whole = 1.0 - left(most);
+        Course {
+            values: values.iter().map(|&t| -left(t) / whole).collect(),
+            suffix: "um",
+            unit: UM,
+            size: drift,
+            forms: forms.map(Some),
+            is_settling: true,
+        }
     };
     let settling: Vec<Course> = match suffix {
         "um_per_h" => SETTLING.into_iter().map(settling).collect(),

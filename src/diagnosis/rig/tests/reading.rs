@@ -40,6 +40,31 @@ z,5,1,23,0,200
     assert_eq!(model.candidates().iter().filter(|c| c.effect.name == "slip").count(), 2);
 }
 
+/// However slowly: what is said is how far the readings have drifted by the end, since the first of
+/// the file or, run by run, since their own.
+#[test]
+fn a_drift_that_settles_has_come_as_far_as_is_said() {
+    let text = "axis,load_n,trial,time_s,dy_um\ny,5,1,0,230\ny,10,1,300,460\ny,5,2,600,230\ny,10,2,900,460\n";
+    let model = model(text, &rod(""));
+    for (pace, share) in
+        [("within half of the recording", 0.56), ("over the recording, more slowly towards its end", 1.8)]
+    {
+        let warm =
+            |time: f64| (1.0 - f64::exp(-3.0 * time / (share * 900.0))) / (1.0 - f64::exp(-3.0 / share));
+        let [second, third] = [300.0, 600.0].map(|time| 40.0 * UM * warm(time));
+        let of_file = one(&model, "thermal_drift", &format!("dy, {pace}"), 40.0 * UM, Axis::Y);
+        assert_all(&of_file, &[0.0, second, third, 40.0 * UM]);
+        let of_runs = one(
+            &model,
+            "thermal_drift",
+            &format!("dy, {pace}, each run from its own zero"),
+            40.0 * UM,
+            Axis::Y,
+        );
+        assert_all(&of_runs, &[0.0, second, 0.0, 40.0 * UM - third]);
+    }
+}
+
 /// A sensor that shows almost twice as much may do so, beside the shear of rod 5#, which its dy
 /// follows; one that shows nearly three times as much is in another unit, or shows something else.
 #[test]

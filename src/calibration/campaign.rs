@@ -176,6 +176,20 @@ pub struct Station {
     pub frame: Pose,
 }
 
+impl Campaign {
+    /// θₙ where it takes the turn of a tool whose place is a guess.
+    pub(crate) fn guessed(&self) -> Option<Parameter> {
+        let is_guess = self.tool_is_given && self.rod.is_none();
+        self.robot.joints.len().checked_sub(1).filter(|_| is_guess).map(Parameter::Theta)
+    }
+
+    /// Parameters of which the robot's drawing says nothing: those that the user knows, and the
+    /// guessed one.
+    pub(crate) fn not_drawn(&self) -> Vec<Parameter> {
+        self.wishes.priors.iter().map(|&(parameter, ..)| parameter).chain(self.guessed()).collect()
+    }
+}
+
 impl Station {
     /// The only one, or the first.
     pub fn first(name: &str) -> Station {

@@ -35,6 +35,7 @@ pub(super) fn all(campaign: &Campaign, recording: &Recording, calibration: &Cali
         warnings.push(Warning::Outliers { poses, count_in_full });
     }
     warnings.extend(unequal_noise(recording, calibration));
+    let guessed = campaign.guessed();
     warnings.extend(calibration.parameters.iter().filter_map(|estimate| {
         let correction = estimate.value - estimate.nominal;
         let is_link = !matches!(
@@ -45,10 +46,11 @@ pub(super) fn all(campaign: &Campaign, recording: &Recording, calibration: &Cali
                 | Parameter::Compliance(_)
         );
         let range = plausible_range(estimate.parameter, 0.0);
+        let is_link = is_link && guessed != Some(estimate.parameter);
         (is_link && estimate.identifiable && correction.abs() > range)
             .then_some(Warning::Implausible { parameter: estimate.parameter, correction })
     }));
-    warnings.extend(far_from_drawing(calibration));
+    warnings.extend(far_from_drawing(calibration, guessed));
     warnings
 }
 
@@ -57,11 +59,12 @@ const FAR: f64 = 10.0;
 
 /// Numbers that the data put far from where the robot file has them, but not farther than a robot
 /// can be.
-fn far_from_drawing(calibration: &Calibration) -> impl Iterator<Item = Warning> {
+fn far_from_drawing(calibration: &Calibration, guessed: Option<Parameter>) -> impl Iterator<Item = Warning> {
     let known = &calibration.setup.robot.standard_uncertainty;
-    calibration.parameters.iter().filter_map(|estimate| {
+    calibration.parameters.iter().filter_map(move |estimate| {
         let parameter = estimate.parameter;
-        let standard_uncertainty = known.of(parameter).filter(|sd| *sd > 0.0)?;
+        let is_drawn = |sd: &f64| *sd > 0.0 && guessed != Some(parameter);
+        let standard_uncertainty = known.of(parameter).filter(is_drawn)?;
         let correction = estimate.value - estimate.nominal;
         let is_far = correction.abs() > FAR * standard_uncertainty
             && correction.abs() <= plausible_range(parameter, 0.0);

@@ -72,8 +72,7 @@ impl<'a, 'c> Run<'a, 'c> {
             None => Noise::assumed(ASSUMED_NOISE, recording, false),
         };
         let pass = Pass { weight: noise.row_weights(recording), ..Pass::at_rest(recording) };
-        let stated: Vec<Parameter> =
-            campaign.wishes.priors.iter().map(|&(parameter, ..)| parameter).collect();
+        let stated = campaign.not_drawn();
         let drawing = Drawing::new(&setup, free, &stated);
         let drives = drives::priors(&setup, free, &stated, compensation.payload);
         Run {

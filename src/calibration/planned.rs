@@ -38,7 +38,7 @@ pub fn known_before(
     payload: Option<Body>,
     scale: f64,
 ) -> Vec<f64> {
-    let stated: Vec<Parameter> = campaign.wishes.priors.iter().map(|&(parameter, ..)| parameter).collect();
+    let stated = campaign.not_drawn();
     let mut drawing = Drawing::new(setup, free, &stated);
     drawing.scale = scale;
     let body = payload.unwrap_or(Body { mass: 0.0, centre: setup.tool });

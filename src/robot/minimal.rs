@@ -15,9 +15,11 @@ use crate::spatial::Pose;
 /// 10°.
 const NEARLY_PARALLEL: f64 = 10.0 * crate::units::DEG;
 /// What must remain of a column, in metres of tip per metre or per radian times the robot's reach.
-/// Less is no direction of its own but the curvature of another one, or a tip that happens to lie
-/// within a percent of an axis.
-const OWN: f64 = 0.01;
+/// Less is no direction of its own: what a robot may be off by, half a degree, then moves the tip
+/// by a hundred thousandth of the reach. Which of the rest a recording shows its noise decides.
+const OWN: f64 = 0.001;
+/// A tip so near the last axis, as a share of the reach, is on it.
+const ON_AXIS: f64 = 0.01;
 /// Configurations that the columns are compared over.
 const CONFIGURATIONS: usize = 80;
 /// Torque, relative to the largest of the robot, below which a joint has none.
@@ -54,7 +56,8 @@ pub fn minimal_parameters(
     let samples = Samples::new(&setup, payload);
     let mut basis: Vec<DVector<f64>> = Vec::new();
     let mut kept = Vec::new();
-    for candidate in candidates(robot, is_beside_last_axis(robot, drawn, samples.reach)) {
+    let around = around_last_axis(robot, drawn, samples.reach);
+    for candidate in candidates(robot, around) {
         let Some(column) = samples.column(candidate) else { continue };
         let mut own = column;
         // twice is enough (Kahan, Parlett)
@@ -72,8 +75,9 @@ pub fn minimal_parameters(
     kept
 }
 
-/// In order of preference. The last link's a, α and d do what the tool does.
-fn candidates(robot: &Robot, turns_tool: bool) -> Vec<Parameter> {
+/// In order of preference. The last link's a, α and d do what the tool does; `around` is which way
+/// θₙ moves it, where θₙ does.
+fn candidates(robot: &Robot, around: Option<Vector3<f64>>) -> Vec<Parameter> {
     let n = robot.joints.len();
     let mut list: Vec<Parameter> = (0..3).map(Parameter::BasePosition).collect();
     list.extend((0..3).map(Parameter::BaseRotation));
@@ -82,7 +86,7 @@ fn candidates(robot: &Robot, turns_tool: bool) -> Vec<Parameter> {
         if !is_last {
             list.extend([Parameter::A(j), Parameter::Alpha(j)]);
         }
-        if !is_last || turns_tool {
+        if !is_last || around.is_some() {
             list.push(Parameter::Theta(j));
         }
         if !is_last {
@@ -92,7 +96,10 @@ fn candidates(robot: &Robot, turns_tool: bool) -> Vec<Parameter> {
             }
         }
     }
-    list.extend([0, 2, 1].map(Parameter::Tool));
+    // what θₙ does is the last of them
+    let last = around.map_or(1, |around| around.iamax());
+    list.extend([0, 2, 1].into_iter().filter(|&axis| axis != last).map(Parameter::Tool));
+    list.push(Parameter::Tool(last));
     if robot.has_masses() {
         let turns = |&j: &usize| robot.joints[j].motion == Motion::Revolute;
         list.extend((0..n).filter(turns).map(Parameter::Compliance));
@@ -100,14 +107,15 @@ fn candidates(robot: &Robot, turns_tool: bool) -> Vec<Parameter> {
     list
 }
 
-/// True where the tip lies farther from the last axis than what counts as on it.
-fn is_beside_last_axis(robot: &Robot, tool: Vector3<f64>, reach: f64) -> bool {
+/// How the last joint moves a tip at `tool`, m/rad in {T}; `None` where the tip is as good as on
+/// its axis.
+fn around_last_axis(robot: &Robot, tool: Vector3<f64>, reach: f64) -> Option<Vector3<f64>> {
     let setup = Setup::new(robot, Pose::IDENTITY, tool);
     let mut kinematics = Kinematics::new(&setup);
     kinematics.update(&vec![0.0; robot.joints.len()], &[]);
-    let arm =
-        kinematics.joints.last().map_or(0.0, |last| last.axis.cross(&(kinematics.tip - last.origin)).norm());
-    arm > OWN * reach
+    let last = kinematics.joints.last()?;
+    let lever = last.axis.cross(&(kinematics.tip - last.origin));
+    (lever.norm() > ON_AXIS * reach).then(|| kinematics.flange.rotation.tr_mul(&lever))
 }
 
 /// Configurations over the workspace.

@@ -142,3 +142,29 @@ fn the_last_offset_goes_where_the_tool_lies_on_the_axis() {
     assert!(!ahead.contains(&Parameter::Theta(5)), "{ahead:?}");
     assert!(ahead.contains(&Parameter::Tool(0)) && ahead.contains(&Parameter::Tool(1)), "{ahead:?}");
 }
+
+/// What θ₆ does is left out of the tool's three coordinates, and no other: a tip along y is moved
+/// along x.
+#[test]
+fn the_last_offset_takes_what_it_moves() {
+    let (_, robot) = arms::tx90();
+    for (tool, expected) in
+        [([0.005, -0.15, 0.1], [false, true, true]), ([0.15, 0.005, 0.1], [true, false, true])]
+    {
+        let minimal = minimal_parameters(&robot, tool.into(), tool.into(), None);
+        assert!(minimal.contains(&Parameter::Theta(5)), "{minimal:?}");
+        let own: Vec<bool> = (0..3).map(|axis| minimal.contains(&Parameter::Tool(axis))).collect();
+        assert_eq!(own, expected);
+    }
+}
+
+/// A tip 14 mm beside the last axis shows how that axis is tilted, both ways.
+#[test]
+fn a_tip_near_the_last_axis_shows_its_tilt() {
+    let robot = arms::robot(UR5);
+    let tool = Vector3::new(0.011, 0.009, 0.1);
+    let minimal = minimal_parameters(&robot, tool, tool, None);
+    for parameter in [Parameter::Theta(4), Parameter::Alpha(4)] {
+        assert!(minimal.contains(&parameter), "{minimal:?}");
+    }
+}

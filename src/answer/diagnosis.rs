@@ -100,7 +100,7 @@ pub fn diagnose_calibration(
             }
         }
     }
-    answer.status = u8::from(found.diagnosis.is_mismatch());
+    answer.status = u8::from(answer.json["verdict"] != "consistent");
     Ok(answer)
 }
 

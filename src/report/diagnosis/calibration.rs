@@ -345,3 +345,24 @@ fn remainder(found: &CalibrationDiagnosis) -> Option<Remainder> {
         samples: samples.collect(),
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Vector3;
+
+    use super::*;
+    use crate::inference::Limit;
+
+    /// What residuals of a fit that stopped anywhere seem to say is no agreement.
+    #[test]
+    fn a_calibration_that_did_not_converge_is_said_first_and_agrees_with_nothing() {
+        figures::tests::with_diagnosed(&|_| Vector3::zeros(), |_, found| {
+            assert_eq!(json(found)["verdict"], "consistent");
+            let mut stopped = found.clone();
+            stopped.limits.push(Limit::NotConverged);
+            let said = json(&stopped);
+            assert_eq!(said["verdict"], "mismatch");
+            assert_eq!(said["headline"], Limit::NotConverged.to_string());
+        });
+    }
+}

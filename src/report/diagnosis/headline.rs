@@ -1,7 +1,7 @@
 //! The first lines of a diagnosis: what was found, and what it is worth.
 
 use super::subject::Subject;
-use crate::inference::{Diagnosis, Finding, Kind};
+use crate::inference::{Diagnosis, Finding, Kind, Limit};
 use crate::units::{UM, significant};
 
 /// So many findings are said in full; more are named.
@@ -19,6 +19,16 @@ pub const RIVALS_SAID: usize = 2;
 
 /// What was found, and what it does to the errors.
 pub fn headline(subject: &Subject) -> String {
+    // residuals of a fit that stopped somewhere say little, and agree with nothing
+    match subject.limits.contains(&Limit::NotConverged) {
+        true if !subject.diagnosis.is_mismatch() => Limit::NotConverged.to_string(),
+        true => format!("{} {}", Limit::NotConverged, answer(subject)),
+        false => answer(subject),
+    }
+}
+
+/// What is said of residuals.
+fn answer(subject: &Subject) -> String {
     let diagnosis = subject.diagnosis;
     let findings = &diagnosis.findings;
     let remains = subject.remainder.as_ref().map(|left| left.sentence.clone());

@@ -53,7 +53,7 @@ pub fn json(subject: &Subject) -> Value {
     let mut all: Map<String, Value> = head.collect();
     let mut main = json!({
         "headline": headline(subject),
-        "verdict": if diagnosis.is_mismatch() { "mismatch" } else { "consistent" },
+        "verdict": if subject.is_consistent() { "consistent" } else { "mismatch" },
         "noise_um": um(diagnosis.noise),
         "noise": {
             "stated_um": diagnosis.noise_test.stated.map(um),

@@ -57,6 +57,9 @@ pub fn place(location: &Location) -> Value {
         Location::Shift { what, row, after } => {
             json!({ "name": what, "after_row": row + 1, "after": after })
         }
+        Location::JointAfter { joint, row, after } => {
+            json!({ "joint": joint + 1, "after_row": row + 1, "after": after })
+        }
         Location::Pose { row, name } => json!({ "row": row + 1, "pose": name }),
         Location::Several(all) => json!({ "all": all.iter().map(place).collect::<Vec<_>>() }),
         Location::Curve { label, along, .. } => {

@@ -71,6 +71,11 @@ pub struct Subject<'a> {
 }
 
 impl Subject<'_> {
+    /// True where nothing is left out of the model, as far as it could be seen.
+    pub fn is_consistent(&self) -> bool {
+        !self.diagnosis.is_mismatch() && !self.limits.contains(&Limit::NotConverged)
+    }
+
     /// Its own warnings, and the limits of the search.
     pub fn all_warnings(&self) -> Vec<String> {
         let limits = self.limits.iter().map(ToString::to_string);

@@ -22,6 +22,8 @@ use crate::units::URAD;
 
 /// Step of the scan for a curve's strongest wave, cycles per revolution.
 const WAVE_STEP: f64 = 0.25;
+/// So many cycles within the joint's range make a wave of one frequency.
+const WHOLE: f64 = 1.5;
 
 /// What a transmission error is made of.
 #[derive(Debug, Clone, PartialEq)]
@@ -139,6 +141,8 @@ impl Gear {
                 let square = |q: &f64| ((q - middle) * half_step).powi(2);
                 let mean = angles.iter().map(square).sum::<f64>() / angles.len().max(1) as f64;
                 let half = Length { value: cycles, gradient }.half_interval(part);
+                // a part of a wave is one of a wave of another frequency too
+                let half = if cycles * turns(angles) < WHOLE { half.max(resolved(cycles).1) } else { half };
                 ((cycles, half), weighted_length(values, &[1.0, 1.0, mean, mean]))
             }
             Gear::Curve { .. } => {

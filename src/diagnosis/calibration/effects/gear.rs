@@ -202,7 +202,12 @@ fn observed(finding: &Finding, model: &CalibrationModel) -> String {
     let named = capital(&finding.location);
     let up_to = if let Law::Gear(Gear::Curve { .. }) = law(finding, model) { "up to about" } else { "up to" };
     let wave = |k: usize| {
-        let (cycles, amplitude) = (cycles(nth(finding, 2 * k).value), nth(finding, 2 * k + 1).say("µrad"));
+        let (frequency, amplitude) = (nth(finding, 2 * k), nth(finding, 2 * k + 1).say("µrad"));
+        let is_rough = frequency.high - frequency.value > ROUGH * frequency.value;
+        let cycles = match law(finding, model) {
+            Law::Gear(Gear::Wave { .. }) if is_rough => format!("{} times per revolution", frequency.say("")),
+            _ => cycles(frequency.value),
+        };
         match law(finding, model) {
             Law::Gear(Gear::Curve { .. }) if k == 0 => format!("{amplitude}, mostly {cycles}"),
             _ if k == 0 => format!("{amplitude}, {cycles}"),
@@ -212,6 +217,9 @@ fn observed(finding: &Finding, model: &CalibrationModel) -> String {
     let waves: Vec<String> = (0..finding.estimates.len() / 2).map(wave).collect();
     format!("{named} has an angle error of {up_to} {}", waves.join(", and "))
 }
+
+/// A frequency that is not known to this share of it is said with its interval.
+const ROUGH: f64 = 0.1;
 
 /// `once per revolution`, `18.5 times per revolution`.
 fn cycles(cycles: f64) -> String {

@@ -116,6 +116,15 @@ pub enum Location {
         /// The same for people: `pose 7`, `row 12`.
         after: String,
     },
+    /// A joint of the robot after one row of the recording.
+    JointAfter {
+        /// Number from 0.
+        joint: usize,
+        /// The last row before, from 0.
+        row: usize,
+        /// The same for people: `pose 7`.
+        after: String,
+    },
     /// One pose.
     Pose {
         /// Row, from 0.
@@ -149,6 +158,7 @@ pub enum Part {
     Tip,
     Flange,
     Tool,
+    Arm,
     Base,
     Sensors,
     LoadFrame,
@@ -195,7 +205,7 @@ impl Location {
     /// The joint, from 0, where the place is one joint of the robot.
     pub fn joint(&self) -> Option<usize> {
         match self {
-            Location::Joint { joint, .. } => Some(*joint),
+            Location::Joint { joint, .. } | Location::JointAfter { joint, .. } => Some(*joint),
             _ => None,
         }
     }
@@ -239,6 +249,7 @@ impl fmt::Display for Location {
             Location::AllClamps => f.write_str("all clamps"),
             Location::Shift { what: Some(what), after, .. } => write!(f, "{what}, after {after}"),
             Location::Shift { what: None, after, .. } => write!(f, "after {after}"),
+            Location::JointAfter { joint, after, .. } => write!(f, "joint {}, after {after}", joint + 1),
             Location::Pose { name, .. } => f.write_str(name),
             Location::Several(all) => {
                 for (k, one) in all.iter().enumerate() {
@@ -264,6 +275,7 @@ impl fmt::Display for Part {
             Part::Tip => "tip",
             Part::Flange => "flange",
             Part::Tool => "tool",
+            Part::Arm => "arm",
             Part::Base => "base",
             Part::Sensors => "sensors",
             Part::LoadFrame => "load frame",

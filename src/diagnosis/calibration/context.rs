@@ -45,6 +45,8 @@ pub(super) struct Context<'a> {
     /// Share of `deflection` that the calibration took into account: 1, or 0 where it took the rod
     /// for rigid.
     pub accounted: f64,
+    /// Rows, from 0, after which a first look has seen something move.
+    pub moved_after: Vec<usize>,
 }
 
 impl<'a> Context<'a> {
@@ -75,6 +77,11 @@ impl<'a> Context<'a> {
             self.off[row] *= weight.sqrt();
         }
         self
+    }
+
+    /// The same where a first look has seen something move after these rows.
+    pub fn moved_after(self, rows: &[usize]) -> Self {
+        Context { moved_after: rows.to_vec(), ..self }
     }
 
     /// Of poses that nobody measured, in a recording that came after that of `campaign`.
@@ -121,6 +128,7 @@ impl<'a> Context<'a> {
                 .map_or_else(Matrix3::zeros, |rod| rod.gravity / crate::units::STANDARD_GRAVITY),
             deflection: configurations.iter().enumerate().filter_map(deflection).collect(),
             accounted,
+            moved_after: Vec::new(),
             softest,
             modelled_mass: modelled_mass(campaign),
             patterns: Patterns::new(&configurations),
@@ -149,14 +157,34 @@ impl<'a> Context<'a> {
 
     /// A column of a displacement along one of the patterns, by row.
     pub fn along(&self, pattern: &Pattern, weight: impl Fn(usize, &Configuration) -> f64) -> Column {
+        self.along_from(pattern, 0, weight)
+    }
+
+    /// One that is zero before a row.
+    fn along_from(
+        &self,
+        pattern: &Pattern,
+        first: usize,
+        weight: impl Fn(usize, &Configuration) -> f64,
+    ) -> Column {
         let at = |row: usize| weight(row, &self.configurations[row]) * self.scale[row];
-        let values = (0..self.configurations.len()).map(at).collect();
-        Column { first: 0, values, pattern: Some(pattern.clone()) }
+        let values = (first..self.configurations.len()).map(at).collect();
+        Column { first, values, pattern: Some(pattern.clone()) }
     }
 
     /// A turn of a joint by so much at each row, rad per unit of the parameter.
     pub fn turn(&self, joint: usize, angle: impl Fn(usize, &Configuration) -> f64) -> Column {
-        self.along(&self.patterns.joint[joint], angle)
+        self.turn_from(joint, 0, angle)
+    }
+
+    /// The same from a row on.
+    pub fn turn_from(
+        &self,
+        joint: usize,
+        first: usize,
+        angle: impl Fn(usize, &Configuration) -> f64,
+    ) -> Column {
+        self.along_from(&self.patterns.joint[joint], first, angle)
     }
 
     /// How far a row is off, in noises of its group.

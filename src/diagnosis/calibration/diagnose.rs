@@ -1,13 +1,13 @@
 //! What a campaign says about its calibration.
 
 use super::beside::{calibrated_beside, unequal};
-use super::effects::registry;
+use super::effects::{EVERY_ROW, registry};
 use super::gear::Curve;
 use super::limits::{limits, noisy};
 use super::memory::check_memory;
 use super::model::CalibrationModel;
 use super::next::next_poses;
-use super::prepared::Prepared;
+use super::prepared::{FirstLook, Prepared};
 use super::sites::sites;
 use super::tails;
 use crate::calibration::campaign::Campaign;
@@ -15,7 +15,8 @@ use crate::calibration::{Calibration, Mode, Options, calibrate};
 use crate::error::Result;
 use crate::inference::law::propose;
 use crate::inference::{
-    Diagnosed, Discrepancy, Finding, Limit, Location, ShownBy, Sketch, diagnose as infer, sketch,
+    Diagnosed, Discrepancy, Finding, Hypothesis, Limit, Location, ShownBy, Sketch, Term, diagnose as infer,
+    sketch,
 };
 use crate::parallel::in_parallel;
 
@@ -57,23 +58,23 @@ pub fn diagnose_calibrated<'c>(
 ) -> Result<CalibrationDiagnosis<'c>> {
     check_memory(campaign)?;
     let mut prepared = Prepared::new(campaign, calibration)?;
-    let mut scatter = None;
-    let mut weights: Option<Vec<f64>> = None;
+    let mut look = FirstLook::default();
     for _ in 0..ROUNDS {
         let Sketch { hypothesis, left, correlated_noise, .. } = sketch(&prepared.model, &prepared.evidence);
         prepared.evidence.correlated_noise = correlated_noise;
         let about = calibrated_beside(&prepared, &hypothesis, &left)?;
         let noise = unequal(&prepared, &hypothesis, &left)?;
-        let is_equal = noise.is_none() == scatter.is_none();
-        let tails = if weights.is_none() { tails::weights(&prepared, &hypothesis, &left) } else { None };
-        if about.is_none() && is_equal && tails.is_none() {
+        let is_equal = noise.is_none() == look.scatter.is_none();
+        let tails = if look.weights.is_none() { tails::weights(&prepared, &hypothesis, &left) } else { None };
+        let moved_after = moved_after(&prepared, &hypothesis);
+        let is_in_place = moved_after.iter().all(|row| look.moved_after.contains(row));
+        if about.is_none() && is_equal && tails.is_none() && is_in_place {
             break;
         }
-        scatter = noise;
-        weights = weights.or(tails);
+        look = FirstLook { scatter: noise, weights: look.weights.or(tails), moved_after };
         let about = about.unwrap_or(prepared.about);
         let calibration = prepared.model.calibration;
-        prepared = Prepared::about(campaign, calibration, about, scatter.as_ref(), weights.as_deref())?;
+        prepared = Prepared::about(campaign, calibration, about, &look)?;
         prepared.evidence.correlated_noise = correlated_noise;
     }
     let mut diagnosis = infer(&prepared.model, &prepared.evidence);
@@ -86,7 +87,7 @@ pub fn diagnose_calibrated<'c>(
     }
     let law = propose(&model, &diagnosis, &|change| sites(&context, change.len()));
     let mut limits = limits(&context, &model.calibration, &evidence);
-    limits.extend(scatter.iter().flat_map(|noise| noisy(campaign, noise)));
+    limits.extend(look.scatter.iter().flat_map(|noise| noisy(campaign, noise)));
     let of_neighbours = evidence.correlated_noise;
     limits.extend(of_neighbours.map(|noise| Limit::CorrelatedPoses(noise.share, noise.length)));
     let mut found = Diagnosed { model, evidence, diagnosis, not_testable, absorbed, limits, law };
@@ -99,9 +100,22 @@ pub fn diagnose_calibrated<'c>(
     Ok(found)
 }
 
+/// Rows, from 0, after which something has moved, where not every row was looked at.
+fn moved_after(prepared: &Prepared, hypothesis: &Hypothesis) -> Vec<usize> {
+    if prepared.context.configurations.len() <= EVERY_ROW {
+        return Vec::new();
+    }
+    let location = |term: &Term| &prepared.model.terms.candidates[term.candidate].location;
+    let row = |location: &Location| match location {
+        Location::Shift { row, .. } | Location::JointAfter { row, .. } => Some(*row),
+        _ => None,
+    };
+    hypothesis.terms.iter().map(location).filter_map(row).collect()
+}
+
 /// So many times a search begins anew about the robot that is left beside what was found, with the
-/// scatter that its clamps show then, and with what poses count that are no farther out than the
-/// tails of the others.
+/// scatter that its clamps show then, with what poses count that are no farther out than the tails
+/// of the others, and with every row near to one after which something moved.
 const ROUNDS: usize = 2;
 
 /// Something that happened while the poses were recorded.
@@ -161,7 +175,7 @@ impl CalibrationDiagnosis<'_> {
             let effect = self.model.terms.candidates[part.term.candidate].effect;
             let words = registry::record(effect).and_then(|effect| (effect.event)(&part.location));
             let row = self.model.first_row(&part.term);
-            let stays = matches!(part.location, Location::Shift { .. });
+            let stays = matches!(part.location, Location::Shift { .. } | Location::JointAfter { .. });
             happened.extend(row.zip(words).map(|(row, words)| Happened { row, stays, words }));
         }
         happened

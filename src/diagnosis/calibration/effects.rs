@@ -40,8 +40,11 @@ pub(super) const JOINT_ANGLE: f64 = 150e-6;
 /// What a knock does, m and rad: millimetres when one sees it, tenths when one does not.
 const KNOCK: (f64, f64) = (0.5 * MM, 0.5e-3);
 /// Most rows of a clamp or socket after which a shift is looked for (of longer ones every second,
-/// third …), and most rows that may be outliers.
+/// third …, then the very row), and most rows that may be outliers.
 const MOST_PLACES: usize = 200;
+/// In a recording of no more rows each may be that after which base or joint moved; of a longer one
+/// every second, third …, then the very row.
+pub(super) const EVERY_ROW: usize = 100;
 /// Names of the parameters of a displacement and of a turn.
 const SHIFT: [&str; 3] = ["dx_um", "dy_um", "dz_um"];
 const TURN: [&str; 3] = ["rx_urad", "ry_urad", "rz_urad"];

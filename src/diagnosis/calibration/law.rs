@@ -28,7 +28,7 @@ pub enum Law {
     Rod(RodLoad),
     /// Drift.
     Drift(Course, Frame),
-    /// Drift of a joint or its link.
+    /// Drift of a joint or its link, or growth of the arm.
     Warms(Course, Warmed),
 }
 
@@ -83,13 +83,15 @@ pub enum Frame {
     Tool,
 }
 
-/// What of a joint drifts.
+/// What of a joint drifts, or of all of them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Warmed {
     /// Its zero.
     Zero,
     /// The length of the link that it moves.
     Length,
+    /// The lengths of all links, by one share.
+    Arm,
 }
 
 impl Law {
@@ -145,6 +147,15 @@ impl Course {
             Course::Time => ("urad_per_h", "µrad per hour", URAD / HOUR),
         }
     }
+
+    /// The same of lengths that grow by a share.
+    pub fn share_unit(self) -> (&'static str, &'static str, f64) {
+        match self {
+            Course::Order | Course::WarmUp(_) => ("um_per_m", "µm/m", UM),
+            Course::Temperature => ("um_per_m_per_k", "µm/m per kelvin", UM),
+            Course::Time => ("um_per_m_per_h", "µm/m per hour", UM / HOUR),
+        }
+    }
 }
 
 impl fmt::Display for Course {
@@ -176,6 +187,7 @@ impl Warmed {
         match self {
             Warmed::Zero => format!("zero, with {course}"),
             Warmed::Length => format!("length of its link, with {course}"),
+            Warmed::Arm => format!("with {course}"),
         }
     }
 }

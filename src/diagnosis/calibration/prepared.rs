@@ -25,30 +25,40 @@ pub(super) struct Prepared<'c> {
     pub context: Context<'c>,
 }
 
+/// What a first look at the residuals has shown.
+#[derive(Default)]
+pub(super) struct FirstLook {
+    /// How groups scatter, where they do so unequally.
+    pub scatter: Option<Noise>,
+    /// What each row counts, where tails are heavy.
+    pub weights: Option<Vec<f64>>,
+    /// Rows, from 0, after which something has moved.
+    pub moved_after: Vec<usize>,
+}
+
 impl<'c> Prepared<'c> {
     /// Data are rows × (x, y, z), in {W}, then what is known besides; see `evidence.rs`.
     pub fn new(campaign: &'c Campaign, calibration: Calibration<'c>) -> Result<Prepared<'c>> {
-        Prepared::about(campaign, calibration.clone(), calibration, None, None)
+        Prepared::about(campaign, calibration.clone(), calibration, &FirstLook::default())
     }
 
-    /// The same of effects that are linear about another robot, of groups that scatter unequally,
-    /// and whose rows count by `weights`.
+    /// The same of effects that are linear about another robot, after a first look.
     pub fn about(
         campaign: &'c Campaign,
         calibration: Calibration<'c>,
         about: Calibration<'c>,
-        noise: Option<&Noise>,
-        weights: Option<&[f64]>,
+        look: &FirstLook,
     ) -> Result<Prepared<'c>> {
         let context = Context::new(campaign, &about)?;
-        let context = match noise {
+        let context = match &look.scatter {
             Some(noise) => context.scattered(&noise.of_group),
             None => context,
         };
-        let context = match weights {
+        let context = match &look.weights {
             Some(weights) => context.weighted(weights),
             None => context,
         };
+        let context = context.moved_after(&look.moved_after);
         let evidence = evidence::evidence_of(campaign, &about, &context);
         let (mut entries, not_testable) = registry::candidates(&context);
         entries.extend(nonparametric::all(&context));

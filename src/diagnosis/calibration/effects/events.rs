@@ -1,13 +1,18 @@
-//! What happened at single poses.
+//! What happened at single poses, and to a joint after one of them.
 
+use super::fixture::places_of_all;
 use super::{
-    CalibrationEffect, Context, Entry, MOST_PLACES, SHIFT, Transfer, capital, out_of_the_points,
-    own_parameters, three, unit,
+    CalibrationEffect, Context, EVERY_ROW, Entry, KNOCK, MOST_PLACES, SHIFT, Transfer, capital, first,
+    out_of_the_points, own_parameters, single, three, unit,
 };
+use crate::diagnosis::calibration::entry::linear;
+use crate::diagnosis::calibration::law::Law;
 use crate::diagnosis::calibration::model::CalibrationModel;
 use crate::diagnosis::calibration::vector;
-use crate::inference::{Effect, Finding, FindingPart, Kind, Location, NotTestable, Reported, WrittenTo};
-use crate::units::{MM, UM};
+use crate::inference::{
+    Candidate, Effect, Finding, FindingPart, Kind, Location, NotTestable, Reported, WrittenTo,
+};
+use crate::units::{MM, UM, URAD};
 
 /// A pose that was read wrongly, m.
 pub(in crate::diagnosis::calibration) const MISREAD: f64 = 0.5 * MM;
@@ -69,4 +74,59 @@ fn misread(finding: &Finding, _: &CalibrationModel) -> String {
         more => format!(" and {more} more {} off", if more == 1 { "is" } else { "are" }),
     };
     reported.join(", ") + &more
+}
+
+/// A joint whose zero is another one from some pose on.
+pub static JOINT_SHIFT: CalibrationEffect = CalibrationEffect {
+    effect: Effect {
+        name: "joint_shift",
+        kind: Kind::Event,
+        summary: "the zero of a joint moved after one pose",
+        formula: "Jⱼ·δ from some row on: δ is by how much more the joint turns than it shows",
+        prior: "0.5 mrad: a slip of an encoder's coupling that nobody sees; degrees are a mistake in some rows",
+        parameters: &[("zero_urad", "shift of the joint's zero")],
+        needs: "measured points, poses in the order of recording",
+        cause: "a slip of the joint or of its encoder",
+        cause_at: |location| format!("a shift of a joint's zero ({location})"),
+        written_to: WrittenTo::Recording,
+        reported: Reported::Alone,
+        seen_along: |_| Vec::new(),
+        direct_check: Some("Drive the joint to its mark, or calibrate once more."),
+    },
+    candidates: slipped_joints,
+    estimates: own_parameters,
+    observed: |finding, _| match &finding.location {
+        Location::JointAfter { joint, after, .. } => {
+            format!("The zero of joint {} moved by {} after {after}", joint + 1, first(finding).say("µrad"))
+        }
+        other => format!("The zero of a joint moved by {}, {other}", first(finding).say("µrad")),
+    },
+    write: out_of_the_points,
+    transfer: Transfer::Made(stays_slipped),
+    event: |location| location.joint().map(|joint| format!("joint {} slipped", joint + 1)),
+};
+
+fn slipped_joints(context: &Context, _: &mut Vec<NotTestable>) -> Vec<Entry> {
+    if context.has_sockets() {
+        return Vec::new();
+    }
+    let places = places_of_all(context, EVERY_ROW);
+    let after = |joint: usize, before: usize| {
+        let row = before - 1;
+        slipped(context, joint, before, Location::JointAfter { joint, row, after: context.pose_name(row) })
+    };
+    let of_joint = |joint: usize| places.iter().map(move |&before| after(joint, before));
+    context.revolute().into_iter().flat_map(of_joint).collect()
+}
+
+/// A joint with another zero from some row on.
+fn slipped(context: &Context, joint: usize, from: usize, location: Location) -> Entry {
+    let column = context.turn_from(joint, from, |_, _| 1.0);
+    single(&JOINT_SHIFT, location, linear("zero_urad", URAD, KNOCK.1), column)
+}
+
+/// The joint keeps the zero that it slipped to.
+fn stays_slipped(context: &Context, candidate: &Candidate, _: &Law) -> Entry {
+    let joint = candidate.location.joint().unwrap_or_default();
+    slipped(context, joint, 0, candidate.location.clone())
 }

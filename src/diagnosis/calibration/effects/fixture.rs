@@ -7,8 +7,8 @@ use std::ops::Range;
 use nalgebra::Vector3;
 
 use super::{
-    CalibrationEffect, Context, Entry, KNOCK, MOST_PLACES, SHIFT, TURN, Transfer, capital, lack, no_event,
-    out_of_the_points, own_parameters, size, three, unit,
+    CalibrationEffect, Context, EVERY_ROW, Entry, KNOCK, MOST_PLACES, SHIFT, TURN, Transfer, capital, lack,
+    no_event, out_of_the_points, own_parameters, size, three, unit,
 };
 use crate::calibration::campaign::Campaign;
 use crate::diagnosis::calibration::configuration::Configuration;
@@ -22,8 +22,6 @@ use crate::units::{DEG, MM, UM, URAD};
 
 /// Error of a clamp's place, m and rad.
 const MISPLACED: (f64, f64) = (100.0 * UM, 0.5e-3);
-/// Most rows after which the base may have moved: with its six parameters each of them is dear.
-const MOST_OF_BASE: usize = 100;
 /// Angle by which a knock turns a plate of sockets, rad: 0.5 mm over its width.
 const PLATE: f64 = 3e-3;
 /// Distance of the ball from the flange below which no rotation moves it, m.
@@ -177,12 +175,20 @@ fn rows_of(context: &Context, is_of: impl Fn(usize) -> bool) -> Vec<usize> {
     rows.filter(|&row| is_of(context.recording.rows[row].group)).collect()
 }
 
-/// At most `most` positions in `count` rows after which a shift is looked for: the number of rows
-/// before it.
-fn places(count: usize, most: usize) -> impl Iterator<Item = usize> {
-    let places: Range<usize> = 2..count.saturating_sub(1);
-    let stride = places.len().div_ceil(most).max(1);
-    places.step_by(stride)
+/// Numbers of `rows` before a shift: at most `most` over all of them, and every one near to what a
+/// first look has seen.
+pub(super) fn places(context: &Context, rows: &[usize], most: usize) -> Vec<usize> {
+    let places: Range<usize> = 2..rows.len().saturating_sub(1);
+    let (first, stride) = (places.start, places.len().div_ceil(most).max(1));
+    let seen: Vec<usize> =
+        context.moved_after.iter().map(|&last| rows.partition_point(|&row| row <= last)).collect();
+    let is_near = |before: usize| seen.iter().any(|&seen| before.abs_diff(seen) < stride);
+    places.filter(|&before| (before - first).is_multiple_of(stride) || is_near(before)).collect()
+}
+
+/// The same of all rows.
+pub(super) fn places_of_all(context: &Context, most: usize) -> Vec<usize> {
+    places(context, &(0..context.configurations.len()).collect::<Vec<_>>(), most)
 }
 
 /// A clamp or a socket that moved, or the whole plate of a placement, which may have turned as
@@ -245,7 +251,7 @@ fn moved(
         let location = Location::Shift { what: Some(name.to_owned()), row, after };
         Entry::new(&effect.effect, location, columns)
     };
-    places(rows.len(), MOST_PLACES).map(after).collect()
+    places(context, &rows, MOST_PLACES).into_iter().map(after).collect()
 }
 
 /// A robot that moved on its base.
@@ -280,13 +286,16 @@ pub static BASE_SHIFT: CalibrationEffect = CalibrationEffect {
 };
 
 fn bases(context: &Context, _: &mut Vec<NotTestable>) -> Vec<Entry> {
-    let count = if context.has_sockets() { 0 } else { context.configurations.len() };
+    if context.has_sockets() {
+        return Vec::new();
+    }
+    let count = context.configurations.len();
     let after = |before: usize| {
         let row = before - 1;
         let location = Location::Shift { what: None, row, after: context.pose_name(row) };
         base_moved(context, before..count, location)
     };
-    places(count, MOST_OF_BASE).map(after).collect()
+    places_of_all(context, EVERY_ROW).into_iter().map(after).collect()
 }
 
 /// The robot on a base that is displaced at some rows.
@@ -342,7 +351,7 @@ fn tools(context: &Context, _: &mut Vec<NotTestable>) -> Vec<Entry> {
         let location = Location::Shift { what: Some("tool".into()), row, after: context.pose_name(row) };
         tool_moved(context, before..count, location)
     };
-    places(count, MOST_PLACES).map(after).collect()
+    places_of_all(context, MOST_PLACES).into_iter().map(after).collect()
 }
 
 /// The ball elsewhere in {T} at some rows.

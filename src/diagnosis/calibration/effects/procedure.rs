@@ -12,7 +12,7 @@ use crate::diagnosis::calibration::entry::{Column, linear};
 use crate::diagnosis::calibration::law::{Course, Frame, Law, Warmed};
 use crate::diagnosis::calibration::model::CalibrationModel;
 use crate::inference::{
-    Effect, Finding, JointVariable, Kind, Location, NotTestable, Reported, Variable, WrittenTo,
+    Effect, Finding, JointVariable, Kind, Location, NotTestable, Part, Reported, Variable, WrittenTo,
 };
 use crate::robot;
 use crate::units::{MM, UM};
@@ -96,16 +96,18 @@ pub static THERMAL_DRIFT: CalibrationEffect = CalibrationEffect {
         kind: Kind::Physics,
         summary: "the arm drifts with temperature, time or order",
         formula: "d·(T − T̄), d·(t − t̄) or d·e^(−t/t₁), of the robot in {W} or of its tool in {T}; the same of \
-                  a joint's zero, Jⱼ·d, or of the length of its link",
+                  a joint's zero, Jⱼ·d, or of the length of its link; d·(flange − base) where all links grow",
         prior: "10 µm/K (an arm of steel of 1 m grows by 12); 20 µm/h, as in a room that warms by \
                 2 K in an hour, or over a recording without a clock; 50 µm for a cold robot (a UR5 \
-                starts a recording some 60 µm off); of a joint as many µrad, of a link as many µm",
+                starts a recording some 60 µm off); of a joint as many µrad, of a link as many µm, of \
+                the arm as many µm/m",
         parameters: &[
             ("x_um_per_k, y_um_per_k, z_um_per_k", "displacement per kelvin"),
             ("x_um_per_h, y_um_per_h, z_um_per_h", "displacement per hour"),
             ("x_um, y_um, z_um", "displacement over the recording, or of the cold robot"),
             ("zero_urad_per_k, zero_urad_per_h, zero_urad", "the same of a joint's zero"),
             ("length_um_per_k, length_um_per_h, length_um", "the same of a link's length"),
+            ("growth_um_per_m_per_k, growth_um_per_m_per_h, growth_um_per_m", "growth of all links"),
         ],
         needs: "temperatures or times of the rows; without them only the order of the rows",
         cause: "thermal drift",
@@ -145,11 +147,21 @@ fn drifts(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
         let mut entries = vec![
             drifting(Frame::World, &|_, axis| unit(axis)),
             drifting(Frame::Tool, &|there, axis| there.flange.rotation.column(axis).into()),
+            of_arm(context, course, &values),
         ];
         entries.extend(of_joints(context, course, &values));
         entries
     };
     courses.into_iter().flat_map(of_course).collect()
+}
+
+/// All links grow by one share, as of one material that is warm throughout: (flange − base)·d.
+fn of_arm(context: &Context, course: Course, values: &[f64]) -> Entry {
+    let (suffix, _, unit_si) = course.share_unit();
+    let column = context.column(|row, there| (there.flange.origin - there.origin[0]) * values[row]);
+    let location = Location::Form { part: Part::Arm, form: Warmed::Arm.form(course) };
+    let parameter = linear(format!("growth_{suffix}"), unit_si, usual(course));
+    single(&THERMAL_DRIFT, location, parameter, column).by(Law::Warms(course, Warmed::Arm))
 }
 
 /// A joint's zero, or the length of its link, that follows what a drift follows.
@@ -238,6 +250,10 @@ fn drift_observed(finding: &Finding, model: &CalibrationModel) -> String {
         Law::Warms(course, Warmed::Length) => {
             let by = first(finding).say(course.unit().1);
             format!("The link of {} grows by {by} with {course}", finding.location)
+        }
+        Law::Warms(course, Warmed::Arm) => {
+            let by = first(finding).say(course.share_unit().1);
+            format!("The arm grows by {by} with {course}, all its links alike")
         }
         Law::Only | Law::Gear(_) | Law::Play(_) | Law::Nonlinear(_) | Law::MassesUnknown | Law::Rod(_) => {
             format!("Drift by {} at {}", size.say("µm"), finding.location)

@@ -1,7 +1,7 @@
 //! The list of all effects of a calibration: the only source of their names.
 
 use super::contact::{CONTACT_FORCE_VARIATION, CONTACT_SPRING};
-use super::events::OUTLIER;
+use super::events::{JOINT_SHIFT, OUTLIER};
 use super::fixture::{BASE_SHIFT, CLAMP_POSE, CLAMP_SHIFT, SOCKET_SHIFT, TOOL_SHIFT};
 use super::gear::TRANSMISSION_ERROR;
 use super::joints::{
@@ -16,7 +16,7 @@ use crate::diagnosis::calibration::law::{Law, TakenUp};
 use crate::inference::{Effect, NotTestable};
 
 /// All of them, as they are listed wherever they are.
-pub static ALL: [&CalibrationEffect; 23] = [
+pub static ALL: [&CalibrationEffect; 24] = [
     &ROD_STIFFNESS,
     &TIP_MASS,
     &PAYLOAD_MASS,
@@ -38,6 +38,7 @@ pub static ALL: [&CalibrationEffect; 23] = [
     &SOCKET_SHIFT,
     &BASE_SHIFT,
     &TOOL_SHIFT,
+    &JOINT_SHIFT,
     &THERMAL_DRIFT,
     &OUTLIER,
 ];

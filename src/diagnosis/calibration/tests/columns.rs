@@ -146,6 +146,21 @@ fn columns_are_what_a_changed_robot_does() {
             }),
         ),
         (
+            "joint_shift",
+            "joint 4, after pose 3",
+            Box::new(|r, row, v| r.q[3] += if row >= 3 { v } else { 0.0 }),
+        ),
+        (
+            "thermal_drift",
+            "arm, with order",
+            Box::new(|r, row, v| {
+                let by = v * (row as f64 / 59.0 - 0.5);
+                for parameter in (0..6).flat_map(|j| [Parameter::A(j), Parameter::D(j)]) {
+                    r.setup.set(parameter, r.setup.get(parameter) * (1.0 + by));
+                }
+            }),
+        ),
+        (
             "thermal_drift",
             "tool, with order",
             Box::new(|r, row, v| {

@@ -122,6 +122,16 @@ fn sentences_are_those_of_the_laws() {
             "Clamp 2 is 346 ± 20 µm away from its position in the campaign: a wrong clamp position in \
              the campaign",
         ),
+        (
+            "joint_shift",
+            "joint 4, after pose 20",
+            "The zero of joint 4 moved by 1000 ± 100 µrad after pose 20: a slip of the joint or of its encoder",
+        ),
+        (
+            "thermal_drift",
+            "arm, with temperature",
+            "The arm grows by 20 ± 2 µm/m per kelvin with temperature, all its links alike: thermal drift",
+        ),
         ("outlier", "pose 7", "Pose 7 is off by 1732 ± 100 µm: a misread or disturbed pose"),
         (
             "wrist_coupling",
@@ -164,8 +174,8 @@ fn a_record_says_everything_of_its_effect() {
         }
         assert!(!parameters.is_empty() && !cause.contains('_'), "{name}");
         assert_eq!(registry::record(&known.effect).map(|own| own.effect.name), Some(*name));
-        // what happened at one pose is marked there, and only that
-        let place = Location::Pose { row: 0, name: "pose 1".into() };
+        // what happened after one pose is marked there, and only that
+        let place = Location::JointAfter { joint: 0, row: 0, after: "pose 1".into() };
         assert_eq!((known.event)(&place).is_some(), known.effect.kind == Kind::Event, "{name}");
     }
 }

@@ -103,6 +103,34 @@ fn a_tool_that_slipped_is_no_drift() {
     }
 }
 
+/// After a row that a first look passes over.
+#[test]
+fn a_joint_that_slipped_is_no_drift() {
+    let campaign = clamps(30);
+    let off = turned(&campaign, |row, q| q[3] += if row < 75 { 0.0 } else { 400e-6 });
+    for seed in 0..2 {
+        let recorded = recorded(&campaign, &|row| off[row], NOISE, seed);
+        let found = diagnose(&recorded, Mode::Fea, &Options::default()).unwrap();
+        let places: Vec<String> = found.diagnosis.findings.iter().map(|f| f.location.to_string()).collect();
+        assert_eq!(places, ["joint 4, after pose 75"]);
+    }
+}
+
+#[test]
+fn an_arm_that_grows_is_one_cause() {
+    let campaign = clamps(30);
+    let calibration = calibrate(&campaign, Mode::Fea, &Options::default()).unwrap();
+    let context = Context::new(&campaign, &calibration).unwrap();
+    let grown = |row: usize| {
+        let there = &context.configurations[row];
+        (there.flange.origin - there.origin[0]) * (250e-6 * row as f64 / 149.0)
+    };
+    for seed in 0..2 {
+        let (effects, _) = found(&recorded(&campaign, &grown, NOISE, seed));
+        assert_eq!(effects, ["thermal_drift: arm, with order"]);
+    }
+}
+
 #[test]
 fn a_readback_lag_is_no_backlash() {
     let campaign = clamps(30);

@@ -2,7 +2,7 @@
 
 use super::fixture::places_of_all;
 use super::{
-    CalibrationEffect, Context, EVERY_ROW, Entry, KNOCK, MOST_PLACES, SHIFT, Transfer, capital, first,
+    CalibrationEffect, Context, Entry, KNOCK, MOST_PLACES, SHIFT, Transfer, capital, first,
     out_of_the_points, own_parameters, single, three, unit,
 };
 use crate::diagnosis::calibration::entry::linear;
@@ -110,7 +110,7 @@ fn slipped_joints(context: &Context, _: &mut Vec<NotTestable>) -> Vec<Entry> {
     if context.has_sockets() {
         return Vec::new();
     }
-    let places = places_of_all(context, EVERY_ROW);
+    let places = places_of_all(context);
     let after = |joint: usize, before: usize| {
         let row = before - 1;
         slipped(context, joint, before, Location::JointAfter { joint, row, after: context.pose_name(row) })

@@ -7,8 +7,8 @@ use std::ops::Range;
 use nalgebra::Vector3;
 
 use super::{
-    CalibrationEffect, Context, EVERY_ROW, Entry, KNOCK, MOST_PLACES, SHIFT, TURN, Transfer, capital, lack,
-    no_event, out_of_the_points, own_parameters, size, three, unit,
+    CalibrationEffect, Context, EVERY_ROW, Entry, KNOCK, SHIFT, TURN, Transfer, capital, lack, no_event,
+    out_of_the_points, own_parameters, size, three, unit,
 };
 use crate::calibration::campaign::Campaign;
 use crate::diagnosis::calibration::configuration::Configuration;
@@ -22,6 +22,9 @@ use crate::units::{DEG, MM, UM, URAD};
 
 /// Error of a clamp's place, m and rad.
 const MISPLACED: (f64, f64) = (100.0 * UM, 0.5e-3);
+/// Places in a longer recording after which a first look tries what may have moved: a shift some
+/// rows off explains nearly as much, and its columns are dear.
+const AT_FIRST_SIGHT: usize = 50;
 /// Angle by which a knock turns a plate of sockets, rad: 0.5 mm over its width.
 const PLATE: f64 = 3e-3;
 /// Distance of the ball from the flange below which no rotation moves it, m.
@@ -175,10 +178,11 @@ fn rows_of(context: &Context, is_of: impl Fn(usize) -> bool) -> Vec<usize> {
     rows.filter(|&row| is_of(context.recording.rows[row].group)).collect()
 }
 
-/// Numbers of `rows` before a shift: at most `most` over all of them, and every one near to what a
-/// first look has seen.
-pub(super) fn places(context: &Context, rows: &[usize], most: usize) -> Vec<usize> {
+/// Numbers of `rows` before a shift: of a short recording each, of a longer one so many over all of
+/// it, and every one near to what a first look has seen.
+fn places(context: &Context, rows: &[usize]) -> Vec<usize> {
     let places: Range<usize> = 2..rows.len().saturating_sub(1);
+    let most = if rows.len() > EVERY_ROW { AT_FIRST_SIGHT } else { EVERY_ROW };
     let (first, stride) = (places.start, places.len().div_ceil(most).max(1));
     let seen: Vec<usize> =
         context.moved_after.iter().map(|&last| rows.partition_point(|&row| row <= last)).collect();
@@ -187,8 +191,8 @@ pub(super) fn places(context: &Context, rows: &[usize], most: usize) -> Vec<usiz
 }
 
 /// The same of all rows.
-pub(super) fn places_of_all(context: &Context, most: usize) -> Vec<usize> {
-    places(context, &(0..context.configurations.len()).collect::<Vec<_>>(), most)
+pub(super) fn places_of_all(context: &Context) -> Vec<usize> {
+    places(context, &(0..context.configurations.len()).collect::<Vec<_>>())
 }
 
 /// A clamp or a socket that moved, or the whole plate of a placement, which may have turned as
@@ -251,7 +255,7 @@ fn moved(
         let location = Location::Shift { what: Some(name.to_owned()), row, after };
         Entry::new(&effect.effect, location, columns)
     };
-    places(context, &rows, MOST_PLACES).into_iter().map(after).collect()
+    places(context, &rows).into_iter().map(after).collect()
 }
 
 /// A robot that moved on its base.
@@ -295,7 +299,7 @@ fn bases(context: &Context, _: &mut Vec<NotTestable>) -> Vec<Entry> {
         let location = Location::Shift { what: None, row, after: context.pose_name(row) };
         base_moved(context, before..count, location)
     };
-    places_of_all(context, EVERY_ROW).into_iter().map(after).collect()
+    places_of_all(context).into_iter().map(after).collect()
 }
 
 /// The robot on a base that is displaced at some rows.
@@ -351,7 +355,7 @@ fn tools(context: &Context, _: &mut Vec<NotTestable>) -> Vec<Entry> {
         let location = Location::Shift { what: Some("tool".into()), row, after: context.pose_name(row) };
         tool_moved(context, before..count, location)
     };
-    places_of_all(context, MOST_PLACES).into_iter().map(after).collect()
+    places_of_all(context).into_iter().map(after).collect()
 }
 
 /// The ball elsewhere in {T} at some rows.

@@ -5,9 +5,9 @@
 //! limits are kept. What the design file gives as a range may take any value between its ends, what
 //! it gives as a list stays; outer diameter and wall may take any value between those of the
 //! catalogue's tubes of that material (`variable`). A sequence of linear programs leads to a local
-//! optimum (`sequence`), from this and from other designs of the front: the best is taken, and how
-//! many came to it is said. Then the tubes of the catalogue are tried in turn, and everything else
-//! once more with each.
+//! optimum (`sequence`), from this and other designs of the front and from rods all over the grid:
+//! the best is taken, and how many came to it is said. Then the tubes of the catalogue are tried in
+//! turn, and everything else once more with each.
 
 mod sequence;
 mod variable;
@@ -26,6 +26,8 @@ use crate::section::Section;
 
 /// Other designs of the front that the search starts from, evenly from end to end.
 const STARTS: usize = 15;
+/// Rods all over the grid that it starts from too: a front of one goal is a single design.
+const SCATTERED: usize = 32;
 /// So many tubes are all tried; of more the nearest ones, of pairs of tubes the nearest to each.
 const ALL_TUBES: usize = 200;
 const TUBES: usize = 8;
@@ -64,8 +66,8 @@ pub struct Refined {
     pub continuous: Option<Better>,
     /// The best with tubes of the catalogue; none where nothing is gained.
     pub catalogue: Option<Better>,
-    /// Designs of the front from which the best with any tube was looked for, and how many of them
-    /// led to it.
+    /// Rods of the grid from which the best with any tube was looked for, and how many of them led
+    /// to it.
     pub starts: (usize, usize),
     /// Whether every tube of the catalogue was tried.
     pub is_every_tube: bool,
@@ -96,8 +98,11 @@ pub fn refine(wish: &Wish, front: &[Design], place: usize, weights: &[f64]) -> R
         let (new, known) = (worth(&front[k].figures), worth(&front[best].figures));
         if new > known { k } else { best }
     });
-    let starts = starts(front, [place, of_grid]);
-    let found = in_parallel(starts.len(), |k| from_design(wish, &front[starts[k]], &search));
+    let mut starts: Vec<u64> =
+        starts(front, [place, of_grid]).into_iter().map(|place| front[place].index).collect();
+    let others: Vec<u64> = scattered(wish).filter(|index| !starts.contains(index)).collect();
+    starts.extend(others);
+    let found = in_parallel(starts.len(), |k| from_grid(wish, starts[k], &search));
     let mut ends = Vec::new();
     for found in found {
         ends.extend(found?);
@@ -158,13 +163,9 @@ struct End {
     is_of_catalogue: bool,
 }
 
-fn from_design<'a>(
-    wish: &Wish,
-    design: &Design,
-    search: &impl Fn([usize; 2]) -> Search<'a>,
-) -> Result<Option<End>> {
-    let Ok(rod) = wish.rod(design.index) else { return Ok(None) };
-    let tubes = wish.choice(design.index).tubes;
+fn from_grid<'a>(wish: &Wish, index: u64, search: &impl Fn([usize; 2]) -> Search<'a>) -> Result<Option<End>> {
+    let Ok(rod) = wish.rod(index) else { return Ok(None) };
+    let tubes = wish.choice(index).tubes;
     let mut all = lengths(wish, &rod);
     // a tube that nobody sells has no price
     if !wish.goals.iter().any(|goal| goal.figure == Figure::Price) {
@@ -186,6 +187,15 @@ fn starts(front: &[Design], first: [usize; 2]) -> Vec<usize> {
     all.extend(others.into_iter().filter(|other| !first.contains(other)));
     all.dedup();
     all
+}
+
+/// Combinations all over the grid, whether they keep the limits or not: multiples of the golden
+/// section leave no gap in what varies slowest (tubes, angles), nor in what varies fastest.
+fn scattered(wish: &Wish) -> impl Iterator<Item = u64> {
+    let golden = (5f64.sqrt() - 1.0) / 2.0;
+    let count = wish.combinations();
+    let most = (SCATTERED as u64).min(count);
+    (1..=most).map(move |k| ((k as f64 * golden).fract() * count as f64) as u64)
 }
 
 fn names(wish: &Wish, tubes: [usize; 2]) -> Vec<String> {
@@ -332,6 +342,32 @@ mod tests {
             let error = weights(&wish, Some(wrong)).unwrap_err().to_string();
             assert!(error.contains("refine-goal"), "{error}");
         }
+    }
+
+    /// A front of one goal is one design, and from there alone the search ends at a worse optimum
+    /// than from a grid ten times as fine: it has to begin elsewhere too.
+    #[test]
+    fn a_coarse_grid_leads_to_the_optimum_of_a_fine_one() {
+        let text = |step: f64, gamma: f64| {
+            format!(
+                "[geometry]\nl1_mm = {{ from = 65, to = 265, step = {step} }}\nl2_mm = {{ from = 250, to = 550, step = {step} \
+                 }}\ngamma_deg = {{ from = 90, to = 150, step = {gamma} }}\n[catalogue]\nfile = \"t.csv\"\n[tip]\nmass_g = \
+                 60\n[constraints]\nmax_mass_g = 700\nmax_flange_moment_nm = 1.5\nmin_reach_mm = 480\n[objectives]\nminimise = \
+                 [\"c_rod_um\"]\n",
+            )
+        };
+        let tubes = "name,material,outer_diameter_mm,inner_diameter_mm\na,steel,20,16\nb,steel,30,27\nc,steel,50,48\n";
+        let best = |step: f64, gamma: f64| {
+            let read = |name: &str| Ok((name.to_owned(), tubes.to_owned()));
+            let wish = Wish::from_toml("d.toml", &text(step, gamma), &read).unwrap();
+            let front = search(&wish, Searched::All, &|_| {}).unwrap().front;
+            let refined = refine(&wish, &front, 0, &[1.0]).unwrap().unwrap();
+            assert!(front.len() == 1 && refined.starts.0 > 1, "{:?}", refined.starts);
+            let figures = refined.continuous.map_or(front[0].figures, |better| better.figures);
+            figures.get(Figure::CRod).unwrap()
+        };
+        let (coarse, fine) = (best(50.0, 20.0), best(5.0, 5.0));
+        assert!(coarse <= fine * (1.0 + 1e-3), "{coarse} {fine}");
     }
 
     #[test]

@@ -211,8 +211,13 @@ impl Table {
             if align == Align::Left { cell } else { typeset(&cell) }
         });
         let cells: Vec<String> = cells.collect();
-        // Everything from the point on, or nothing; words are not numbers and stand as they are.
-        let behind = |cell: &str| cell.find('.').map_or(0, |at| cell[at..].chars().count());
+        // Everything behind the whole number that it begins with, "±" and what follows included;
+        // words are not numbers and stand as they are.
+        let behind = |cell: &str| {
+            let whole = cell.trim_start_matches(['\u{2212}', '+']);
+            let is_whole = |c: char| c.is_ascii_digit() || c == '\u{2009}';
+            if whole.starts_with(is_whole) { whole.trim_start_matches(is_whole).chars().count() } else { 0 }
+        };
         let is_number = |cell: &str| cell.chars().any(|c| c.is_ascii_digit());
         let longest = cells.iter().filter(|c| is_number(c)).map(|c| behind(c)).max().unwrap_or(0);
         if align != Align::Point {
@@ -259,6 +264,23 @@ mod tests {
         2# carbon | <b>   7.81  27
         unknown            n/a
           C22: along y under a force along y.
+        ");
+    }
+
+    #[test]
+    fn a_number_with_its_uncertainty_is_aligned_at_its_own_point() {
+        let mut table = Table::new("t", "", vec![Column::number("c_rod", "µm")]);
+        for cell in ["88.92 ± 1.9", "1101 ± 105", "-3", "–"] {
+            table.row([cell]);
+        }
+        insta::assert_snapshot!(table.text(), @r"
+                c_rod
+                   µm
+        ─────────────
+          88.92 ± 1.9
+        1101 ± 105
+          −3
+                    –
         ");
     }
 

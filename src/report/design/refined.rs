@@ -122,8 +122,10 @@ fn proven(study: &Study, found: &Refined) -> String {
     };
     let (count, led) = found.starts;
     let starts = match count {
-        1 => "The search began at this design alone".to_owned(),
-        _ => format!("The search began at {count} rods all over the grid, and {led} of them led to this rod"),
+        1 => "It was looked for from this design alone".to_owned(),
+        _ => format!(
+            "Of {count} searches, from all over the grid and from the ends of the ranges, {led} led to this rod"
+        ),
     };
     format!("{grid} {starts}: that no better one exists between the grid's values is not proven.")
 }

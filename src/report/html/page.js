@@ -84,7 +84,8 @@
       button.title = 'Sort';
       button.addEventListener('click', () => sort(table, column, button));
       cell.firstChild?.remove();
-      cell.prepend(button);
+      // a heading is repeated on every sheet of paper, but no button is
+      cell.prepend(button, make('span', button.textContent, 'printed'));
       const [base] = bases(unit?.textContent ?? '');
       if (base) {
         const own = make('button', unit.textContent, 'unit');
@@ -92,7 +93,9 @@
         own.addEventListener('click', () => choose(base, (chosen[base] ?? 0) + 1));
         switched.push(() => { own.textContent = now(unit.textContent); });
         for (const row of table.tBodies[0].rows) if (row.cells[column]) changes(row.cells[column], unit.textContent);
-        unit.replaceWith(own);
+        const printed = make('span', unit.textContent, 'unit printed');
+        switched.push(() => { printed.textContent = own.textContent; });
+        unit.replaceWith(own, printed);
       }
     });
     // units by row: a button where the unit stands, for the numbers of its row

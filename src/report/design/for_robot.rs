@@ -148,7 +148,8 @@ fn picture(found: &ForRobot) -> Option<Figure> {
                 chart.with(Mark::Points { label, points, style: Style::nth(mode as usize).marker(marker) });
         }
     }
-    let caption = "What is to be expected of the robot with each rod, against how compliant the rod is.";
+    let caption = "What is to be expected of the robot with each rod, against how compliant the rod is. Where modes are as good, \
+                   one mark hides the others.";
     (!chart.marks.is_empty()).then(|| Figure::from(chart).named("for-robot").captioned(caption))
 }
 

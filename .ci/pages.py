@@ -92,7 +92,7 @@ CHECK = r"""
   }
   // in the last unit of all nothing is left in the first
   const left = units.map(select => select.options[0].value);
-  for (const part of document.querySelectorAll('.cards, figcaption, svg text')) {
+  for (const part of document.querySelectorAll('.headline, .cards, aside li, section > p, section > ul, summary, .note, figcaption, svg text')) {
     const words = part.textContent.match(new RegExp(`(\\d\\s|/ )(${left.join('|')})(?![\\p{L}²³·])`, 'gu'));
     if (left.length > 0 && words && shown(part)) complaints.push(`"${part.textContent.trim().slice(0, 60)}" stays in its unit`);
   }

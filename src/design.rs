@@ -49,6 +49,6 @@ pub use poses::{
 pub use refine::{Better, Refined, refine, weights};
 pub use rods_and_modes::{RodForecast, rods_and_modes};
 pub use search::{Found, PART, Search, Searched, search};
-pub use study::{Base, Shown, Study};
+pub use study::{Base, KnownDesign, Shown, Study};
 pub use values::MOST_VALUES;
 pub use wish::{MOST_RODS, Wish};

@@ -64,6 +64,8 @@ pub fn design_rod(wish: Wish, found: Found, asked: &DesignRod<'_>) -> Result<Ans
         // before what was looked at
         let place = answer.report.sections.len().saturating_sub(1);
         answer.report.sections.insert(place, report::design::for_robot_section(&found));
+        answer.report.headline += &format!(" {}", report::design::for_robot_headline(&found));
+        answer.report.cards.extend(report::design::for_robot_card(&found));
     }
     Ok(answer)
 }

@@ -5,16 +5,17 @@
 //! limits are kept. What the design file gives as a range may take any value between its ends, what
 //! it gives as a list stays; outer diameter and wall may take any value between those of the
 //! catalogue's tubes of that material (`variable`). A sequence of linear programs leads to a local
-//! optimum (`sequence`), from this and from other designs of the front: the best is taken, and how
-//! many came to it is said. Then the tubes of the catalogue are tried in turn, and everything else
-//! once more with each.
+//! optimum (`sequence`), from this and other designs of the front, from rods all over the grid and,
+//! once these have ended, from the ends of every range: the best is taken, and how many searches
+//! came to it is said. Then the tubes of the catalogue are tried in
+//! turn, and everything else once more with each.
 
 mod sequence;
 mod variable;
 mod weights;
 
 use self::sequence::Search;
-use self::variable::{diameters, lengths};
+use self::variable::{Variable, diameters, lengths, moved};
 pub use self::weights::weights;
 use super::figure::{Figure, Figures};
 use super::front::Design;
@@ -26,6 +27,10 @@ use crate::section::Section;
 
 /// Other designs of the front that the search starts from, evenly from end to end.
 const STARTS: usize = 15;
+/// Rods all over the grid that it starts from too: a front of one goal is a single design.
+const SCATTERED: usize = 32;
+/// Times that it goes from the best so far to the ends of all ranges.
+const MOST_ROUNDS: usize = 3;
 /// So many tubes are all tried; of more the nearest ones, of pairs of tubes the nearest to each.
 const ALL_TUBES: usize = 200;
 const TUBES: usize = 8;
@@ -64,8 +69,8 @@ pub struct Refined {
     pub continuous: Option<Better>,
     /// The best with tubes of the catalogue; none where nothing is gained.
     pub catalogue: Option<Better>,
-    /// Designs of the front from which the best with any tube was looked for, and how many of them
-    /// led to it.
+    /// Searches for the best with any tube, from rods all over the grid and from the ends of
+    /// ranges, and how many of them led to it.
     pub starts: (usize, usize),
     /// Whether every tube of the catalogue was tried.
     pub is_every_tube: bool,
@@ -96,11 +101,29 @@ pub fn refine(wish: &Wish, front: &[Design], place: usize, weights: &[f64]) -> R
         let (new, known) = (worth(&front[k].figures), worth(&front[best].figures));
         if new > known { k } else { best }
     });
-    let starts = starts(front, [place, of_grid]);
-    let found = in_parallel(starts.len(), |k| from_design(wish, &front[starts[k]], &search));
+    let mut starts: Vec<u64> =
+        starts(front, [place, of_grid]).into_iter().map(|place| front[place].index).collect();
+    let others: Vec<u64> = scattered(wish).filter(|index| !starts.contains(index)).collect();
+    starts.extend(others);
+    let found = in_parallel(starts.len(), |k| from_grid(wish, starts[k], &search));
     let mut ends = Vec::new();
     for found in found {
         ends.extend(found?);
+    }
+    // from the best of them to the ends of every range, as long as that betters
+    for _ in 0..MOST_ROUNDS {
+        let gain = |end: &End| worth(&end.figures);
+        let Some(best) = ends.iter().max_by(|a, b| gain(a).total_cmp(&gain(b))) else { break };
+        let (known, variables) = (gain(best), variables(wish, &best.rod));
+        let found = in_parallel(2 * variables.len(), |k| {
+            from_end_of_range(best, &variables, k / 2, k % 2 == 1, &search(best.tubes))
+        });
+        let found: Vec<End> = found.into_iter().collect::<Result<_>>()?;
+        let is_better = found.iter().any(|end| gain(end) > known + SAME);
+        ends.extend(found);
+        if !is_better {
+            break;
+        }
     }
     // the first of equal ones is the design's own
     let gains: Vec<f64> = ends.iter().map(|end: &End| worth(&end.figures)).collect();
@@ -158,21 +181,42 @@ struct End {
     is_of_catalogue: bool,
 }
 
-fn from_design<'a>(
-    wish: &Wish,
-    design: &Design,
-    search: &impl Fn([usize; 2]) -> Search<'a>,
-) -> Result<Option<End>> {
-    let Ok(rod) = wish.rod(design.index) else { return Ok(None) };
-    let tubes = wish.choice(design.index).tubes;
-    let mut all = lengths(wish, &rod);
-    // a tube that nobody sells has no price
-    if !wish.goals.iter().any(|goal| goal.figure == Figure::Price) {
-        all.extend(diameters(wish, &rod));
-    }
-    let (best, figures) = search(tubes).best(&rod, &all)?;
+fn from_grid<'a>(wish: &Wish, index: u64, search: &impl Fn([usize; 2]) -> Search<'a>) -> Result<Option<End>> {
+    let Ok(rod) = wish.rod(index) else { return Ok(None) };
+    let tubes = wish.choice(index).tubes;
+    let (best, figures) = search(tubes).best(&rod, &variables(wish, &rod))?;
     let is_kept = best.pipe1.section == rod.pipe1.section && best.pipe2.section == rod.pipe2.section;
     Ok(Some(End { rod: best, figures, tubes, is_of_catalogue: is_kept }))
+}
+
+/// What may vary of a rod.
+fn variables(wish: &Wish, rod: &Rod) -> Vec<Variable> {
+    let mut all = lengths(wish, rod);
+    // a tube that nobody sells has no price
+    if !wish.goals.iter().any(|goal| goal.figure == Figure::Price) {
+        all.extend(diameters(wish, rod));
+    }
+    all
+}
+
+/// The best rod with one variable at an end of its range, then with it free again: that lies
+/// beyond the ridge between two optima where any there is.
+fn from_end_of_range(
+    from: &End,
+    variables: &[Variable],
+    which: usize,
+    is_upper: bool,
+    search: &Search<'_>,
+) -> Result<End> {
+    let variable = &variables[which];
+    let to = if is_upper { variable.high } else { variable.low };
+    let there = moved(&from.rod, std::slice::from_ref(variable), &[(to / variable.value(&from.rod)).ln()]);
+    let others: Vec<Variable> =
+        variables.iter().enumerate().filter(|(k, _)| *k != which).map(|(_, other)| other.clone()).collect();
+    let (held, _) = search.best(&there, &others)?;
+    let (rod, figures) = search.best(&held, variables)?;
+    let is_kept = rod.pipe1.section == from.rod.pipe1.section && rod.pipe2.section == from.rod.pipe2.section;
+    Ok(End { rod, figures, tubes: from.tubes, is_of_catalogue: from.is_of_catalogue && is_kept })
 }
 
 /// Places on the front: these, then others evenly from end to end.
@@ -186,6 +230,15 @@ fn starts(front: &[Design], first: [usize; 2]) -> Vec<usize> {
     all.extend(others.into_iter().filter(|other| !first.contains(other)));
     all.dedup();
     all
+}
+
+/// Combinations all over the grid, whether they keep the limits or not: multiples of the golden
+/// section leave no gap in what varies slowest (tubes, angles), nor in what varies fastest.
+fn scattered(wish: &Wish) -> impl Iterator<Item = u64> {
+    let golden = (5f64.sqrt() - 1.0) / 2.0;
+    let count = wish.combinations();
+    let most = (SCATTERED as u64).min(count);
+    (1..=most).map(move |k| ((k as f64 * golden).fract() * count as f64) as u64)
 }
 
 fn names(wish: &Wish, tubes: [usize; 2]) -> Vec<String> {
@@ -332,6 +385,58 @@ mod tests {
             let error = weights(&wish, Some(wrong)).unwrap_err().to_string();
             assert!(error.contains("refine-goal"), "{error}");
         }
+    }
+
+    /// A front of one goal is one design, and from there alone the search ends at a worse optimum
+    /// than from a grid ten times as fine: it has to begin elsewhere too.
+    #[test]
+    fn a_coarse_grid_leads_to_the_optimum_of_a_fine_one() {
+        let text = |step: f64, gamma: f64| {
+            format!(
+                "[geometry]\nl1_mm = {{ from = 65, to = 265, step = {step} }}\nl2_mm = {{ from = 250, to = 550, step = {step} \
+                 }}\ngamma_deg = {{ from = 90, to = 150, step = {gamma} }}\n[catalogue]\nfile = \"t.csv\"\n[tip]\nmass_g = \
+                 60\n[constraints]\nmax_mass_g = 700\nmax_flange_moment_nm = 1.5\nmin_reach_mm = 480\n[objectives]\nminimise = \
+                 [\"c_rod_um\"]\n",
+            )
+        };
+        let tubes = "name,material,outer_diameter_mm,inner_diameter_mm\na,steel,20,16\nb,steel,30,27\nc,steel,50,48\n";
+        let best = |step: f64, gamma: f64| {
+            let read = |name: &str| Ok((name.to_owned(), tubes.to_owned()));
+            let wish = Wish::from_toml("d.toml", &text(step, gamma), &read).unwrap();
+            let front = search(&wish, Searched::All, &|_| {}).unwrap().front;
+            let refined = refine(&wish, &front, 0, &[1.0]).unwrap().unwrap();
+            assert!(front.len() == 1 && refined.starts.0 > 1, "{:?}", refined.starts);
+            let figures = refined.continuous.map_or(front[0].figures, |better| better.figures);
+            figures.get(Figure::CRod).unwrap()
+        };
+        let (coarse, fine) = (best(50.0, 20.0), best(5.0, 5.0));
+        assert!(coarse <= fine * (1.0 + 1e-3), "{coarse} {fine}");
+    }
+
+    /// A wide angle lets L2 be short, a right one lets the rod be stiff: between the two is a
+    /// ridge.
+    #[test]
+    fn no_end_of_a_range_is_better_than_what_is_found_within() {
+        // the aluminium of the built-in catalogue
+        let is_of_it = |line: &&str| line.starts_with("name") || line.contains(",aluminium,");
+        let tubes: Vec<&str> = crate::design::catalogue::BUILT_IN_TEXT.lines().filter(is_of_it).collect();
+        let tubes = tubes.join("\n");
+        let best = |gamma: &str| {
+            let text = format!(
+                "[geometry]\nl1_mm = {{ from = 71, to = 311, step = 30 }}\nl2_mm = {{ from = 389, to = 549, step = 20 }}\ngamma_deg \
+                 = {gamma}\n[catalogue]\nfile = \"t.csv\"\n[tip]\nmass_g = 23\n[constraints]\nmax_mass_g = 408\nmin_reach_mm = \
+                 514\n[objectives]\nminimise = [\"c_rod_um\"]\n"
+            );
+            let wish =
+                Wish::from_toml("d.toml", &text, &|name| Ok((name.to_owned(), tubes.clone()))).unwrap();
+            let front = search(&wish, Searched::All, &|_| {}).unwrap().front;
+            let refined = refine(&wish, &front, 0, &[1.0]).unwrap().unwrap();
+            let figures = refined.continuous.map_or(front[0].figures, |better| better.figures);
+            figures.get(Figure::CRod).unwrap()
+        };
+        let (right, wide) = (best("90"), best("133"));
+        let both = best("{ from = 90, to = 133, step = 10.75 }");
+        assert!(both <= right.min(wide) * (1.0 + 1e-4), "{both}: {right} {wide}");
     }
 
     #[test]

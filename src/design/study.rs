@@ -11,9 +11,10 @@ use crate::error::{Error, Result};
 use crate::parallel::in_parallel;
 use crate::rod::{NominalNumber, Rod};
 
-/// Designs of a front whose intervals are looked at: of a longer one so many, evenly from end to
-/// end.
+/// Designs of a front that are shown: of a longer one so many, evenly from end to end.
 const MOST_SHOWN: usize = 48;
+/// The intervals of so many are looked at; of a longer front those of the designs that are shown.
+const MOST_KNOWN: usize = 500;
 
 /// The designs of a front that are shown, and a rod to compare them with.
 #[derive(Debug, Clone)]
@@ -25,10 +26,25 @@ pub struct Study {
     pub found: Found,
     /// The designs that are shown, best in the first goal first.
     pub shown: Vec<Shown>,
+    /// How well designs of the front are known: all of them, of a very long front those that are
+    /// shown.
+    pub known: Vec<KnownDesign>,
     /// The rod that others are to better.
     pub base: Option<Base>,
     /// What became of one design between the grid's values, where that was asked for.
     pub refined: Option<Refined>,
+}
+
+/// How well the figures of one design of the front are known.
+#[derive(Debug, Clone)]
+#[non_exhaustive]
+pub struct KnownDesign {
+    /// Its place on the front, from 0.
+    pub place: usize,
+    /// How well.
+    pub intervals: Intervals,
+    /// Places on the front of designs that cannot be distinguished from it.
+    pub indistinguishable: Vec<usize>,
 }
 
 /// A design that is shown.
@@ -47,7 +63,7 @@ pub struct Shown {
     pub slopes: Vec<(NominalNumber, Figures)>,
     /// How well its figures are known.
     pub intervals: Intervals,
-    /// Places on the front of shown designs that cannot be distinguished from it.
+    /// Places on the front of designs that cannot be distinguished from it.
     pub indistinguishable: Vec<usize>,
 }
 
@@ -91,34 +107,46 @@ impl Study {
             count if count <= MOST_SHOWN => (0..count).collect(),
             _ => (0..MOST_SHOWN).map(|k| k * last / (MOST_SHOWN - 1)).collect(),
         };
-        let designs: Vec<Design> = places.iter().map(|&place| found.front[place]).collect();
-        let closer = in_parallel(designs.len(), |k| {
-            let Ok(rod) = wish.rod(designs[k].index) else { return Ok(None) };
+        let of_interest: Vec<usize> = match found.front.len() {
+            count if count <= MOST_KNOWN => (0..count).collect(),
+            _ => places.clone(),
+        };
+        let closer = in_parallel(of_interest.len(), |k| {
+            let Ok(rod) = wish.rod(found.front[of_interest[k]].index) else { return Ok(None) };
             let slopes = Figures::slopes(&rod)?;
-            Ok(Some((rod, slopes)))
+            Ok(Some((Intervals::of(&rod, &slopes), rod, slopes)))
         });
-        let mut shown = Vec::new();
-        for (closer, (&place, design)) in closer.into_iter().zip(places.iter().zip(&designs)) {
-            let Some((rod, slopes)) = closer? else { continue };
-            shown.push(Shown {
-                place,
-                design: *design,
-                intervals: Intervals::of(&rod, &slopes),
-                rod: Rod { name: format!("design {}", place + 1), ..rod },
-                slopes,
-                tubes: wish.tubes_of(design.index),
-                indistinguishable: Vec::new(),
-            });
+        let (mut shown, mut known) = (Vec::new(), Vec::new());
+        for (closer, place) in closer.into_iter().zip(of_interest) {
+            let Some((intervals, rod, slopes)) = closer? else { continue };
+            let design = found.front[place];
+            if places.contains(&place) {
+                shown.push(Shown {
+                    place,
+                    design,
+                    intervals: intervals.clone(),
+                    rod: Rod { name: format!("design {}", place + 1), ..rod },
+                    slopes,
+                    tubes: wish.tubes_of(design.index),
+                    indistinguishable: Vec::new(),
+                });
+            }
+            known.push(KnownDesign { place, intervals, indistinguishable: Vec::new() });
         }
-        let intervals: Vec<Intervals> = shown.iter().map(|shown| shown.intervals.clone()).collect();
-        let designs: Vec<Design> = shown.iter().map(|shown| shown.design).collect();
-        let same = indistinguishable(&designs, &intervals, &wish.goals);
-        let places: Vec<usize> = shown.iter().map(|shown| shown.place).collect();
-        for (shown, same) in shown.iter_mut().zip(same) {
-            shown.indistinguishable = same.into_iter().map(|k| places[k]).collect();
+        let same = {
+            let designs: Vec<Design> = known.iter().map(|known| found.front[known.place]).collect();
+            let intervals: Vec<Intervals> = known.iter().map(|known| known.intervals.clone()).collect();
+            indistinguishable(&designs, &intervals, &wish.goals)
+        };
+        let all: Vec<usize> = known.iter().map(|known| known.place).collect();
+        for (known, same) in known.iter_mut().zip(same) {
+            known.indistinguishable = same.into_iter().map(|k| all[k]).collect();
+            if let Some(shown) = shown.iter_mut().find(|shown: &&mut Shown| shown.place == known.place) {
+                shown.indistinguishable.clone_from(&known.indistinguishable);
+            }
         }
         let base = base.map(|rod| Base::new(rod, &wish, &found)).transpose()?;
-        Ok(Study { wish, found, shown, base, refined: None })
+        Ok(Study { wish, found, shown, known, base, refined: None })
     }
 
     /// Refines the design at `place` of the front, from 0, for `goal`: as [`weights`] reads it.
@@ -133,7 +161,10 @@ impl Study {
             None => Err(Error::Argument {
                 name: "refine",
                 found: format!("design {}", place + 1),
-                expected: format!("one of the {} designs of the front", self.found.front.len()),
+                expected: match self.found.front.len() {
+                    1 => "design 1: the front has no other".to_owned(),
+                    count => format!("one of the {count} designs of the front"),
+                },
             }),
         }
     }

@@ -6,6 +6,7 @@ use toml::Spanned;
 use crate::error::Result;
 use crate::rod::file::Check;
 use crate::toml_text::{Number, TomlText};
+use crate::units::significant;
 
 /// Most values of one key.
 pub const MOST_VALUES: usize = 100_000;
@@ -14,7 +15,7 @@ const SLACK: f64 = 1e-9;
 
 /// Values of a key as the file has them.
 #[derive(Debug, Deserialize)]
-#[serde(untagged, expecting = "a number, a list of numbers, or a range {from, to, step}")]
+#[serde(untagged, expecting = "expected a number, a list of numbers, or a range {from, to, step}")]
 pub(super) enum Raw {
     One(f64),
     List(Vec<f64>),
@@ -82,8 +83,10 @@ pub(super) fn values(check: &mut Check, key: &str, raw: &Spanned<Raw>, bounds: B
         Raw::One(value) => vec![*value],
         Raw::List(values) => values.clone(),
         Raw::Range(Range { from, to, step }) => {
-            let is_finite = [from, to, step].into_iter().all(|number| number.is_finite());
-            if !is_finite || *step <= 0.0 {
+            if !from.is_finite() || !to.is_finite() {
+                return Err(toml.is(key, raw, "a range between two finite numbers"));
+            }
+            if !step.is_finite() || *step <= 0.0 {
                 return Err(toml.is(key, raw, "a range whose step is > 0"));
             }
             if to < from {
@@ -91,7 +94,13 @@ pub(super) fn values(check: &mut Check, key: &str, raw: &Spanned<Raw>, bounds: B
             }
             let steps = (to - from) / step + SLACK;
             if steps >= MOST_VALUES as f64 {
-                return Err(toml.is(key, raw, &format!("at most {MOST_VALUES} values: take larger steps")));
+                let count = match steps < 1e15 {
+                    true => (steps as u64 + 1).to_string(),
+                    false => significant(steps, 3),
+                };
+                let expected =
+                    format!("at most {MOST_VALUES} values where these are {count}: take larger steps");
+                return Err(toml.is(key, raw, &expected));
             }
             (0..=steps as usize).map(|k| from + k as f64 * step).collect()
         }
@@ -161,8 +170,9 @@ mod tests {
             ("{ from = 2, to = 1, step = 1 }", "expected a range whose `to` is not below its `from`"),
             ("{ from = 1, to = 2, step = 0 }", "expected a range whose step is > 0"),
             ("{ from = 1, to = 2, step = nan }", "expected a range whose step is > 0"),
-            ("{ from = 1, to = 2e6, step = 1 }", "expected at most 100000 values"),
-            ("\"long\"", "a number, a list of numbers, or a range {from, to, step}"),
+            ("{ from = 1, to = nan, step = 1 }", "expected a range between two finite numbers"),
+            ("{ from = 1, to = 2e6, step = 1 }", "expected at most 100000 values where these are 2000000"),
+            ("\"long\"", "expected a number, a list of numbers, or a range {from, to, step}"),
         ] {
             let error = read(text).unwrap_err().to_string();
             assert!(error.starts_with("d.toml:1:5: ") && error.contains(expected), "{error}");

@@ -242,7 +242,7 @@ fn swing(study: &Study) -> Option<Section> {
         cases: cases.collect(),
         ..drawing(rod)
     });
-    let words = "Exact flexibilities, consistent mass of Timoshenko beams with rotary inertia; the robot is taken as rigid. \
+    let words = "Exact flexibilities, consistent mass of Timoshenko beams with rotary inertia; the robot is assumed rigid. \
          Readings within the settling time of a move are readings of a swing.";
     Some(Section::new(
         format!("How rod {} swings", rod.name),

@@ -2,21 +2,26 @@
 
 mod cells;
 mod figures;
+mod files;
 mod for_robot;
+mod overview;
 mod refined;
 
 use serde_json::{Map, Value, json};
 
-use self::cells::{DIGITS, columns, figures_json, shape_cells, shape_columns};
-pub use self::for_robot::{for_robot_json, for_robot_section};
+use self::cells::{
+    DIGITS, columns, count, figures_json, half_of, known_at, limit_name, limit_words, shape_cells,
+    shape_columns, tube_of,
+};
+pub use self::files::files;
+pub use self::for_robot::{for_robot_card, for_robot_headline, for_robot_json, for_robot_section};
 use super::chart::Figure as Picture;
 use super::sensitivities::{self, OnePercent};
 use super::table::{Column, Table};
 use super::{Block, Report, Section};
 use crate::design::{Design, Figure, Figures, Goal, Impossible, Limit, Shown, Study};
-use crate::error::Result;
 use crate::rod::NominalNumber;
-use crate::units::{DEG, GRAM, MM, significant};
+use crate::units::{MM, significant};
 
 /// The JSON of `rodcal design rod --json`.
 pub fn json(study: &Study) -> Value {
@@ -66,17 +71,19 @@ fn front_json(study: &Study, place: usize, design: &Design) -> Value {
     let mut object = Map::new();
     object.insert("rod".into(), rod_json(study, design.index));
     object.append(&mut figures_json(design));
-    if let Some(shown) = study.shown.iter().find(|shown| shown.place == place) {
-        object.insert("tubes".into(), shown.tubes.clone().into());
+    object.insert("tubes".into(), study.wish.tubes_of(design.index).into());
+    if let Some(known) = known_at(study, place) {
         let interval = |figure: Figure| {
-            let (value, half) = (design.figures.get(figure)?, shown.intervals.half.get(figure)?);
-            (figure != Figure::Price).then(|| (figure.key().to_owned(), json!([value - half, value + half])))
+            let (value, half) = (design.figures.get(figure)?, half_of(known, figure)?);
+            Some((figure.key().to_owned(), json!([value - half, value + half])))
         };
         object.insert(
             "intervals".into(),
             Figure::ALL.into_iter().filter_map(interval).collect::<Map<_, _>>().into(),
         );
-        object.insert("indistinguishable_from".into(), shown.indistinguishable.clone().into());
+        object.insert("indistinguishable_from".into(), known.indistinguishable.clone().into());
+    }
+    if let Some(shown) = study.shown.iter().find(|shown| shown.place == place) {
         object.insert("sensitivities".into(), shown.slopes.iter().map(slopes_json(shown)).collect());
         let keys = COUNTED.map(|figure| format!("{}_percent", figure.key()));
         let keys: Vec<&str> = keys.iter().map(String::as_str).collect();
@@ -168,7 +175,8 @@ pub fn report(study: &Study) -> Report {
     Report {
         title: format!("Rods for {}", study.wish.file),
         headline: headline(study),
-        warnings: warnings(study),
+        cards: overview::cards(study),
+        warnings: overview::warnings(study),
         sections,
         ..Report::default()
     }
@@ -207,34 +215,11 @@ fn verb(feasible: u64) -> String {
     if feasible == 1 { "1 keeps".into() } else { format!("{feasible} keep") }
 }
 
-fn count(number: u64, noun: &str) -> String {
-    format!("{number} {noun}{}", if number == 1 { "" } else { "s" })
-}
-
 /// A limit that would do, rounded to the safe side.
 fn needed(limit: &Limit, to: f64) -> String {
     let step = 10f64.powf(to.abs().log10().floor() - 3.0);
     let safe = if limit.is_least { (to / step).floor() } else { (to / step).ceil() } * step;
     significant(safe, DIGITS)
-}
-
-fn warnings(study: &Study) -> Vec<String> {
-    let mut warnings: Vec<String> = study.wish.warnings.iter().map(ToString::to_string).collect();
-    if study.found.evaluated < study.wish.combinations() {
-        warnings.push(format!(
-            "{} of {} combinations were looked at: better rods may be among the others",
-            study.found.evaluated,
-            study.wish.combinations()
-        ));
-    }
-    if study.shown.len() < study.found.front.len() {
-        warnings.push(format!(
-            "{} of {} designs are shown, evenly from end to end; designs.csv and the JSON have all",
-            study.shown.len(),
-            study.found.front.len()
-        ));
-    }
-    warnings
 }
 
 fn front(study: &Study) -> Vec<Block> {
@@ -247,12 +232,32 @@ fn front(study: &Study) -> Vec<Block> {
         "No other rod that was looked at is as good in every goal ({} is better) and better in one.",
         goals.join(", ")
     ))];
+    if study.shown.len() < study.found.front.len() {
+        let known = match study.known.len() == study.found.front.len() {
+            true => ", with the intervals of each",
+            false => "",
+        };
+        let only = match study.known.len() == study.found.front.len() {
+            true => "",
+            false => {
+                " Intervals are those of the designs that are shown, which are compared with each other alone."
+            }
+        };
+        blocks.push(Block::Paragraph(format!(
+            "{} of {} designs are shown, evenly from end to end; all of them{known} stand in designs.csv and in the JSON.{only}",
+            study.shown.len(),
+            study.found.front.len()
+        )));
+    }
     blocks.extend(figures::front(study).map(Block::Figure));
     blocks.push(Block::Table(front_table(study)));
     if let Some(base) = &study.base {
         let breaks = match base.broken.is_empty() {
             true => "It keeps all limits.".to_owned(),
-            false => format!("It breaks {}.", base.broken.join(" and ")),
+            false => {
+                let broken = study.wish.limits.iter().filter(|limit| base.broken.contains(&limit.key));
+                format!("It breaks: {}.", broken.map(limit_words).collect::<Vec<_>>().join("; "))
+            }
         };
         let better = match base.bettered_by {
             0 => "no design of the front is better in every goal".to_owned(),
@@ -317,16 +322,22 @@ fn places(all: &[usize]) -> String {
 
 fn nearest(study: &Study) -> Vec<Block> {
     let Some(nearest) = &study.found.nearest else { return Vec::new() };
-    let mut heads = vec![Column::text("limit"), Column::number("stated", ""), Column::number("needed", "")];
+    let mut heads = vec![
+        Column::text("limit"),
+        Column::in_row_unit("stated"),
+        Column::in_row_unit("needed"),
+        Column::units(),
+    ];
     heads.extend(shape_columns());
     let caption =
         "Limits that stand in the way alone: with what is needed here, the rod beside it keeps all others.";
     let mut table = Table::new("relax", caption, heads);
     for relaxed in &nearest.one_limit {
         let mut cells = vec![
-            relaxed.limit.key.to_owned(),
+            limit_name(&relaxed.limit),
             significant(relaxed.limit.value, DIGITS),
             needed(&relaxed.limit, relaxed.to),
+            relaxed.limit.figure.words().1.to_owned(),
         ];
         if let Ok(rod) = study.wish.rod(relaxed.design.index) {
             cells.extend(shape_cells(&rod));
@@ -360,10 +371,6 @@ fn nearest(study: &Study) -> Vec<Block> {
     blocks
 }
 
-fn tube_of(study: &Study, design: &Design) -> String {
-    study.wish.tubes_of(design.index).join(" + ")
-}
-
 fn looked_at(study: &Study) -> Vec<Block> {
     let found = &study.found;
     let caption = "Rods by what they break. A rod counts for every limit that it breaks; its frequency is looked at only \
@@ -371,7 +378,7 @@ fn looked_at(study: &Study) -> Vec<Block> {
     let mut table =
         Table::new("infeasible", caption, vec![Column::text("because of"), Column::number("rods", "")]);
     for (limit, count) in study.wish.limits.iter().zip(&found.broken) {
-        table.row(vec![format!("{} = {}", limit.key, significant(limit.value, DIGITS)), count.to_string()]);
+        table.row(vec![limit_words(limit), count.to_string()]);
     }
     for (why, count) in Impossible::ALL.iter().zip(found.impossible).filter(|(_, count)| *count > 0) {
         table.row(vec![why.words().to_owned(), count.to_string()]);
@@ -387,44 +394,4 @@ fn looked_at(study: &Study) -> Vec<Block> {
         blocks.push(Block::Table(table));
     }
     blocks
-}
-
-/// `designs.csv`: every design of the front, and the shown rods as rod files.
-///
-/// # Errors
-/// What the writer of tables refuses.
-pub fn files(study: &Study) -> Result<Vec<(String, Vec<u8>)>> {
-    let mut heads = vec![Column::text("tube")];
-    heads.extend(
-        ["l1_mm", "l2_mm", "gamma_deg", "bend_radius_mm", "tip_mass_g"].map(|key| Column::number(key, "")),
-    );
-    let figures: Vec<Figure> = Figure::ALL
-        .into_iter()
-        .filter(|figure| study.found.front.iter().any(|design| design.figures.get(*figure).is_some()))
-        .collect();
-    heads.extend(figures.iter().map(|figure| Column::number(figure.key(), "")));
-    let mut table = Table::new("front", "", heads);
-    for design in &study.found.front {
-        let Ok(rod) = study.wish.rod(design.index) else { continue };
-        let mut cells = vec![tube_of(study, design)];
-        let shape = [rod.l1 / MM, rod.l2 / MM, rod.gamma / DEG, rod.bend_radius / MM, rod.tip_mass / GRAM];
-        cells.extend(shape.map(|value| significant(value, 9)));
-        cells.extend(
-            figures.iter().map(|figure| {
-                design.figures.get(*figure).map_or(String::new(), |value| significant(value, 9))
-            }),
-        );
-        table.row(cells);
-    }
-    let mut files = vec![("designs.csv".to_owned(), table.csv()?.into_bytes())];
-    let above = [format!(
-        "A design for {}; its numbers are those of the design file and its catalogue.",
-        study.wish.file
-    )];
-    let of_rod = |shown: &Shown| {
-        (format!("design-{:03}.toml", shown.place + 1), shown.rod.to_toml(&above).into_bytes())
-    };
-    files.extend(study.shown.iter().map(of_rod));
-    files.extend(study.refined.iter().flat_map(|found| refined::files(found, &above)));
-    Ok(files)
 }

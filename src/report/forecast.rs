@@ -75,7 +75,7 @@ pub fn stacked(all: &[(String, &Forecast)]) -> Figure {
         (Colour::Blue, Dash::Solid),
         (Colour::SkyBlue, Dash::Dashed),
         (Colour::Green, Dash::DashDot),
-        (Colour::Vermilion, Dash::Solid),
+        (Colour::Vermilion, Dash::LongDash),
         (Colour::Orange, Dash::Dashed),
         (Colour::Grey, Dash::Solid),
         (Colour::Purple, Dash::Dotted),

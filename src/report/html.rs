@@ -116,7 +116,21 @@ fn warnings(warnings: &[String]) -> Markup {
     html! {
         aside.warnings aria-label="Warnings" {
             h2 { @if warnings.len() == 1 { "Warning" } @else { "Warnings" } }
-            ul { @for warning in warnings { li { (warning) } } }
+            ul { @for warning in warnings { li { (with_code(warning)) } } }
+        }
+    }
+}
+
+/// Words between backticks, which a terminal shows, as code.
+fn with_code(text: &str) -> Markup {
+    let parts: Vec<&str> = text.split('`').collect();
+    // an odd one stands for itself
+    if parts.len().is_multiple_of(2) {
+        return html! { (text) };
+    }
+    html! {
+        @for (k, part) in parts.into_iter().enumerate() {
+            @if k % 2 == 1 { code { (part) } } @else { (part) }
         }
     }
 }
@@ -175,8 +189,10 @@ fn section_markup(
     let (mut words, mut pictures, mut folded) = (Vec::new(), Vec::new(), Vec::new());
     for block in &section.blocks {
         match block {
-            Block::Paragraph(text) => words.push(html! { p { (text) } }),
-            Block::List(points) => words.push(html! { ul { @for point in points { li { (point) } } } }),
+            Block::Paragraph(text) => words.push(html! { p { (with_code(text)) } }),
+            Block::List(points) => {
+                words.push(html! { ul { @for point in points { li { (with_code(point)) } } } })
+            }
             Block::Figure(figure) => {
                 *figures += 1;
                 pictures.push(figure_markup(beside, figure, *figures));
@@ -271,6 +287,13 @@ mod tests {
         let page = page(&report);
         assert_eq!(page.matches("<script").count(), 1);
         assert!(page.ends_with("</script></body></html>"), "{}", &page[page.len() - 80..]);
+    }
+
+    #[test]
+    fn nobody_sees_a_backtick() {
+        let html = |text: &str| with_code(text).into_string();
+        assert_eq!(html("no column `time_s` <x>"), "no column <code>time_s</code> &lt;x&gt;");
+        assert_eq!(html("a ` b"), "a ` b");
     }
 
     #[test]

@@ -133,6 +133,9 @@ pub(super) fn draw(canvas: &mut Canvas, frame: &Frame, marks: &[Mark], labels: &
     event_labels::draw(canvas, frame, marks, labels);
     for mark in marks {
         match mark {
+            Mark::Bars { bars, direction, .. } => {
+                bars.iter().for_each(|b| bar_number(canvas, frame, b, *direction));
+            }
             Mark::Text { at, text, align, is_number } if frame.places(*at) => {
                 let anchor = match align {
                     Align::Left => Anchor::Right,
@@ -154,6 +157,8 @@ pub(super) fn draw(canvas: &mut Canvas, frame: &Frame, marks: &[Mark], labels: &
 /// A bar, filled so that different dashes also differ on a grey print.
 pub(super) fn bar(canvas: &mut Canvas, area: &Area, style: &Style) {
     let colour = Rgb::from(style.colour);
+    // nothing of what lies below shows between the strokes
+    canvas.fill(&area.corners(), Rgb::WHITE);
     let mut hatch = |gap_px: f64, rising: bool| {
         let height = area.height();
         let mut x = area.left - height;
@@ -383,8 +388,18 @@ fn whole_bar(
     style: &Style,
     labels: &mut LabelPlacer,
 ) {
+    let Some(area) = bar_area(frame, b, direction) else { return };
+    bar(canvas, &area, style);
+    labels.add_text(area);
+    if !b.text.is_empty() {
+        labels.add_text(number_area(frame, b, &area, direction).2);
+    }
+}
+
+/// Where a bar stands.
+fn bar_area(frame: &Frame, b: &Bar, direction: Direction) -> Option<Area> {
     if !is_drawable(&[b.from, b.to, b.base]) {
-        return;
+        return None;
     }
     // A value that is not finite has no bar, but its text still says so at the foot.
     let value = if drawable(b.value) { b.value } else { b.base };
@@ -394,38 +409,48 @@ fn whole_bar(
     };
     let within = |v: f64, low: f64, high: f64| v.clamp(low, high);
     let a = frame.area;
-    let area = Area {
+    Some(Area {
         left: within(one[0].min(other[0]), a.left, a.right),
         right: within(one[0].max(other[0]), a.left, a.right),
         top: within(one[1].min(other[1]), a.top, a.bottom),
         bottom: within(one[1].max(other[1]), a.top, a.bottom),
-    };
-    bar(canvas, &area, style);
+    })
+}
+
+/// Where a bar's number stands: its point, its anchor, what it covers.
+fn number_area(frame: &Frame, b: &Bar, area: &Area, direction: Direction) -> (Px, Anchor, Area) {
+    let value = if drawable(b.value) { b.value } else { b.base };
+    let width = text_width_px(&b.text, NOTE.size_px);
     let [middle_x, middle_y] = area.centre();
     // what would stand on the names of the axis stands on the other side
-    let has_room = area.left - 5.0 - text_width_px(&b.text, NOTE.size_px) > a.left;
+    let has_room = area.left - 5.0 - width > frame.area.left;
     let (at, anchor) = match direction {
         Direction::Up if value < 0.0 => ([middle_x, area.bottom + 9.0], Anchor::Middle),
         Direction::Up => ([middle_x, area.top - 9.0], Anchor::Middle),
         Direction::Right if value < 0.0 && has_room => ([area.left - 5.0, middle_y], Anchor::Right),
         Direction::Right => ([area.right + 5.0, middle_y], Anchor::Left),
     };
-    let unit = match direction {
-        Direction::Up => &frame.units[1],
-        Direction::Right => &frame.units[0],
-    };
-    canvas.number(at, &b.text, unit, Lettering { anchor, ..NOTE });
-    labels.add_text(area);
-    let width = text_width_px(&b.text, NOTE.size_px);
     let left = match anchor {
         Anchor::Left => at[0],
         Anchor::Middle => at[0] - 0.5 * width,
         Anchor::Right => at[0] - width,
     };
     let (top, bottom) = (at[1] - 0.5 * NOTE_LINE_PX, at[1] + 0.5 * NOTE_LINE_PX);
-    if !b.text.is_empty() {
-        labels.add_text(Area { left, top, right: left + width, bottom });
-    }
+    (at, anchor, Area { left, top, right: left + width, bottom })
+}
+
+/// A bar's number: on white, for a reference line may pass there.
+fn bar_number(canvas: &mut Canvas, frame: &Frame, b: &Bar, direction: Direction) {
+    const PLATE_PX: f64 = 2.0;
+    let Some(area) = bar_area(frame, b, direction).filter(|_| !b.text.is_empty()) else { return };
+    let (at, anchor, covered) = number_area(frame, b, &area, direction);
+    let plate = Area { top: covered.top + PLATE_PX, bottom: covered.bottom - PLATE_PX, ..covered };
+    canvas.fill(&plate.corners(), Rgb::WHITE);
+    let unit = match direction {
+        Direction::Up => &frame.units[1],
+        Direction::Right => &frame.units[0],
+    };
+    canvas.number(at, &b.text, unit, Lettering { anchor, ..NOTE });
 }
 
 /// A note beside its point, with a thin leader where it had to move away from it.

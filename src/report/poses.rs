@@ -5,7 +5,7 @@ mod figures;
 use serde_json::{Map, Value, json};
 
 use super::table::{Column, Table};
-use super::{Block, Report, Section, forecast};
+use super::{Block, Card, Report, Section, Tone, forecast};
 use crate::delimited::cell;
 use crate::design::{Known, Obstacle, PoseCriterion, PoseStudy, Source};
 use crate::robot::Motion;
@@ -143,17 +143,44 @@ pub fn report(study: &PoseStudy) -> Report {
     Report {
         title: format!("Poses for {}", study.campaign.file),
         headline: headline(study),
+        cards: cards(study),
         warnings: study.campaign.warnings.iter().map(ToString::to_string).collect(),
         sections,
         ..Report::default()
     }
 }
 
+/// What there is to measure, what it is worth, and what to expect.
+fn cards(study: &PoseStudy) -> Vec<Card> {
+    let um = |size: f64| format!("{} µm", significant(size / UM, 3));
+    let detail = match study.places.len() {
+        1 => format!("of {} candidates", study.candidates.poses.len()),
+        count => format!("at {count} places, of {} candidates", study.candidates.poses.len()),
+    };
+    let (worth, tone) = match study.worth {
+        Some(times) if times >= 1.02 => (format!("{} times", significant(times, 2)), Tone::Good),
+        Some(_) => ("no more".to_owned(), Tone::Attention),
+        None => ("over 20 times".to_owned(), Tone::Good),
+    };
+    let criterion = study.wanted.criterion.name();
+    let mode = format!("after calibration in mode {}", study.forecast.mode.name());
+    vec![
+        Card::new("Poses", study.chosen.len().to_string(), detail),
+        Card::new("Worth in random poses", worth, format!("by {criterion}")).toned(tone),
+        Card::new("Mean error to be expected", um(study.forecast.mean), mode),
+        Card::new(
+            "95 % of unseen poses are better than",
+            um(study.forecast.p95),
+            "where the robot will be used",
+        ),
+    ]
+}
+
 /// How much better the chosen poses are than random ones, and what to expect of them.
 pub fn headline(study: &PoseStudy) -> String {
     let places = match study.places.len() {
         1 => String::new(),
-        count => format!(" on {count} places"),
+        count => format!(" at {count} places"),
     };
     let worth = match study.worth {
         Some(times) if times >= 1.02 => {
@@ -165,9 +192,9 @@ pub fn headline(study: &PoseStudy) -> String {
     let um = |size: f64| significant(size / UM, 3);
     format!(
         "{} poses{places}, chosen by {} from {} candidates, are {worth}. Forecast after calibration in mode {}: the tip is \
-         wrong by {} µm in the mean, by less than {} µm at 95 % of unseen poses.",
+         wrong by {} µm on average, by less than {} µm at 95 % of unseen poses.",
         study.chosen.len(),
-        study.wanted.criterion.key(),
+        study.wanted.criterion.name(),
         study.candidates.poses.len(),
         study.forecast.mode.name(),
         um(study.forecast.mean),
@@ -251,9 +278,9 @@ fn worth(study: &PoseStudy) -> Vec<Block> {
     known.sort_by(|a, b| (b.after / b.before).total_cmp(&(a.after / a.before)));
     let heads = vec![
         Column::text("parameter"),
-        Column::text("unit"),
-        Column::number("before", ""),
-        Column::number("after", ""),
+        Column::units(),
+        Column::in_row_unit("before"),
+        Column::in_row_unit("after"),
         Column::number("left", "%"),
     ];
     let caption = "Standard uncertainty of parameters before the calibration (robot file, class of the drives, range of a rough \

@@ -7,8 +7,9 @@ use serde_json::{Value, json};
 use super::diagnosis::load_plan;
 use super::pictures::{RodShape, ShapeCase, Station, StationKind, rod_shape};
 use super::rod_drawing::drawing;
+use super::scale::superscript;
 use super::table::{Column, Table};
-use super::{Block, Report, Section};
+use super::{Block, Card, Report, Section, Tone};
 use crate::beam::{Load, Physics, RodModel};
 use crate::diagnosis::rig::planned::{Bench, Distinguished, PlannedLoads, RigPlan};
 use crate::inference::LoadPlan;
@@ -67,9 +68,67 @@ pub fn report(plan: &RigPlan, rod: &Rod, bench: &Bench) -> Report {
     Report {
         title: format!("Rig measurements for rod {}", rod.name),
         headline: headline(plan),
+        cards: cards(plan),
         warnings: not_distinguished(plan),
         sections,
         ..Report::default()
+    }
+}
+
+/// What it takes, what it gives, and whether less would do.
+fn cards(plan: &RigPlan) -> Vec<Card> {
+    if plan.measurements.is_empty() {
+        return Vec::new();
+    }
+    let readings: usize = plan.measurements.iter().map(|one| readings(&one.loads)).sum();
+    let effort = match plan.measurements.len() {
+        1 => "1 measurement".to_owned(),
+        count => format!("{count} measurements"),
+    };
+    let mut cards =
+        vec![Card::new("Time", format!("{:.0} min", plan.minutes), format!("{effort}, {readings} readings"))];
+    cards.push(match plan.ratio {
+        Some(ratio) => Card::new(
+            "95 % interval of r_rod",
+            format!("{} %", significant(100.0 * ratio.expected, 2)),
+            format!("asked for: {} %", significant(100.0 * ratio.asked, 3)),
+        ),
+        None => {
+            let (count, short) = comparisons(plan);
+            let tone = if short == 0 { Tone::Good } else { Tone::Attention };
+            let detail = format!("odds of {} : 1 or more to be expected", odds_wanted(plan));
+            Card::new("Distinguished", format!("{} of {count}", count - short), detail).toned(tone)
+        }
+    });
+    if plan.ratio.is_none() {
+        let (value, detail) = match plan.is_least {
+            true => ("proven", "no plan of less time is enough"),
+            false => ("not proven", "nothing of it can be left out"),
+        };
+        cards.push(Card::new("Least effort", value, detail));
+    }
+    cards
+}
+
+/// Readings that a measurement takes, all sensors of one moment as one.
+fn readings(plan: &LoadPlan) -> usize {
+    plan.repeats * steps(plan).len() * plan.waits.len().max(1)
+}
+
+/// Comparisons of effects at places, and those that fall short of the odds wanted.
+fn comparisons(plan: &RigPlan) -> (usize, usize) {
+    let all = plan.distinguished.iter().flat_map(|one| &one.places);
+    all.fold((0, 0), |(count, short), (_, now, _)| {
+        (count + 1, short + usize::from(*now < plan.wanted * (1.0 - 1e-9)))
+    })
+}
+
+/// `20`: what was typed has no zeros behind.
+fn odds_wanted(plan: &RigPlan) -> String {
+    let text = significant(plan.wanted.exp(), 3);
+    match text.contains('.') && !text.contains('e') {
+        true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
+        false => text,
     }
 }
 
@@ -86,18 +145,16 @@ fn headline(plan: &RigPlan) -> String {
             significant(100.0 * ratio.asked, 3)
         );
     }
-    let odds = significant(plan.wanted.exp(), 3);
-    let all = plan.distinguished.iter().flat_map(|one| &one.places);
-    let (count, short) = all.fold((0, 0), |(count, short), (_, now, _)| {
-        (count + 1, short + usize::from(*now < plan.wanted * (1.0 - 1e-9)))
-    });
+    let odds = odds_wanted(plan);
+    let (count, short) = comparisons(plan);
     let distinguish = if plan.measurements.len() == 1 { "distinguishes" } else { "distinguish" };
     match short {
         0 => format!("{effort} {distinguish} these effects, with odds of {odds} : 1 or more to be expected."),
         _ => format!(
-            "{effort} {distinguish} these effects in {} of {count} comparisons of places, with odds of {odds} : 1 or more to be \
-             expected; the others would take more than reasonable effort.",
-            count - short
+            "{effort} {distinguish} these effects in {} of {count} comparisons (effect, place, what else), with odds of {odds} : 1 or \
+             more to be expected; {} would take more than reasonable effort.",
+            count - short,
+            if short == 1 { "the other one" } else { "the others" }
         ),
     }
 }
@@ -149,7 +206,7 @@ fn measurements(plan: &RigPlan, rod: &Rod) -> Vec<Block> {
         _ if plan.measurements.is_empty() => "",
         (Some(_), _) => "Fewer repeats would not be enough.",
         (None, true) => {
-            "Proven to be the least effort: no plan of less, of the measurements that were thought of, is enough."
+            "Proven to be the least effort: of the measurements that were considered, no plan of less time is enough."
         }
         (None, false) => {
             "Nothing of this can be left out. That no other plan takes less effort is not proven: there are too many to try."
@@ -234,8 +291,8 @@ fn will_tell(plan: &RigPlan) -> Vec<Block> {
     let mut table = Table::new("odds", caption, heads);
     // no model of noise is right so far out
     let odds = |ln: f64| match ln / std::f64::consts::LN_10 {
-        powers if powers > 6.0 => "over 10^6".to_owned(),
-        powers if powers > 4.0 => format!("10^{powers:.0}"),
+        powers if powers > 6.0 => "over 10⁶".to_owned(),
+        powers if powers > 4.0 => format!("10{}", superscript(powers.round() as i32)),
         _ => significant(ln.exp(), 2),
     };
     for one in &plan.distinguished {

@@ -334,7 +334,7 @@ fn difference_picture(parameters: &[Change]) -> Option<Figure> {
         from: row(k) - 0.33,
         to: row(k) + 0.33,
         value: *ratio,
-        text: typeset(&signed(Some(*ratio), 1)),
+        text: typeset(&two_digits(*ratio)),
         ..Bar::default()
     };
     let chart = chart.with(Mark::Bars {
@@ -352,19 +352,20 @@ fn difference_picture(parameters: &[Change]) -> Option<Figure> {
     Some(Figure::from(chart).named("parameter-differences").captioned(caption))
 }
 
+/// "+12", "−0.064": two digits and a sign.
+fn two_digits(ratio: f64) -> String {
+    let text = significant(ratio, 2);
+    if ratio > 0.0 { format!("+{text}") } else { text }
+}
+
 /// Numbers of two runs; where none has a standard error, nothing is said of significance.
 fn changes(name: &str, caption: String, names: [&String; 2], changes: &[Change]) -> Table {
-    let right = |header: &str| Column { header: header.into(), unit: String::new(), align: Align::Right };
-    let mut columns = vec![
-        Column::text("number"),
-        right(names[0]),
-        right(names[1]),
-        Column::text("unit"),
-        right("difference"),
-    ];
+    let right = |header: &str| Column { align: Align::Right, ..Column::in_row_unit(header) };
+    let mut columns =
+        vec![Column::text("number"), right(names[0]), right(names[1]), Column::units(), right("difference")];
     let has_ratios = changes.iter().any(|change| change.std_error.is_some());
     if has_ratios {
-        columns.extend([right("ratio"), Column::text("significant")]);
+        columns.extend([Column::number("ratio", ""), Column::text("significant")]);
     }
     let mut table = Table::new(name, caption, columns);
     for change in changes {
@@ -377,7 +378,8 @@ fn changes(name: &str, caption: String, names: [&String; 2], changes: &[Change])
             vec![change.name.clone(), a, b, change.unit.clone(), signed(change.difference, decimals)];
         if has_ratios {
             let is_significant = change.is_significant.map(|is| if is { "yes" } else { "no" });
-            row.extend([signed(change.ratio(), 1), is_significant.unwrap_or("not tested").into()]);
+            let ratio = change.ratio().map_or_else(|| "–".into(), two_digits);
+            row.extend([ratio, is_significant.unwrap_or("not tested").into()]);
         }
         table.row(row);
     }
@@ -425,7 +427,7 @@ mod tests {
         let figure = difference_picture(&all).expect("there are ratios");
         let names: Vec<&str> = figure.panels[0].y.names.iter().map(|(_, name)| name.as_str()).collect();
         assert_eq!((names.len(), names[0], names[15]), (MOST_SHOWN, "p20", "p5"));
-        assert!(figure.svg().contains("−10.0") && figure.caption.contains("16 largest of 19"));
+        assert!(figure.svg().contains("−10") && figure.caption.contains("16 largest of 19"));
         assert!(difference_picture(&all[2..3]).is_none());
     }
 }

@@ -231,7 +231,7 @@ fn power_of_ten(exponent: i32) -> f64 {
     if exponent < 0 { 1.0 / 10f64.powi(-exponent) } else { 10f64.powi(exponent) }
 }
 
-fn superscript(number: i32) -> String {
+pub(super) fn superscript(number: i32) -> String {
     let digit = |c| match c {
         '-' => '⁻',
         '1' => '¹',

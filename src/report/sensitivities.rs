@@ -80,6 +80,9 @@ pub fn one_percent_more(rod: &Rod, slopes: &[(NominalNumber, Vec<f64>)], figures
                 ));
                 rows.push(row(format!("wall of {place}"), in_file(wall), wall, of_wall));
             }
+            // a small l is a one
+            NominalNumber::LengthL1 => rows.push(row("L1".into(), in_file(value), value, slopes.clone())),
+            NominalNumber::LengthL2 => rows.push(row("L2".into(), in_file(value), value, slopes.clone())),
             _ => rows.push(row(number.to_string(), in_file(value), value, slopes.clone())),
         }
     }

@@ -36,6 +36,21 @@ pub struct Column {
     pub unit: String,
     /// Where its cells stand.
     pub align: Align,
+    /// What it has to do with a unit that each row has of its own.
+    pub row_unit: RowUnit,
+}
+
+/// Units by row: one column names them, others have numbers in them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RowUnit {
+    /// Nothing.
+    #[default]
+    No,
+    /// It names the unit.
+    Names,
+    /// Its numbers are in it.
+    Has,
 }
 
 /// Where the cells of a column stand.
@@ -52,12 +67,22 @@ pub enum Align {
 impl Column {
     /// A column of texts.
     pub fn text(header: impl Into<String>) -> Self {
-        Column { header: header.into(), unit: String::new(), align: Align::Left }
+        Column { header: header.into(), unit: String::new(), align: Align::Left, row_unit: RowUnit::No }
     }
 
     /// A column of numbers in a unit.
     pub fn number(header: impl Into<String>, unit: impl Into<String>) -> Self {
-        Column { header: header.into(), unit: unit.into(), align: Align::Point }
+        Column { header: header.into(), unit: unit.into(), align: Align::Point, row_unit: RowUnit::No }
+    }
+
+    /// A column that names the unit of each row.
+    pub fn units() -> Self {
+        Column { row_unit: RowUnit::Names, ..Column::text("unit") }
+    }
+
+    /// A column of numbers in the unit of their row.
+    pub fn in_row_unit(header: impl Into<String>) -> Self {
+        Column { row_unit: RowUnit::Has, ..Column::number(header, "") }
     }
 }
 
@@ -130,11 +155,17 @@ impl Table {
         let class = |column: &Column| if column.align == Align::Left { "left" } else { "number" };
         let cells: Vec<Vec<String>> =
             (0..self.columns.len()).map(|i| self.padded(i, '\u{2007}', '\u{2008}')).collect();
+        // the page's script switches units
+        let row_unit = |column: &Column| match column.row_unit {
+            RowUnit::No => None,
+            RowUnit::Names => Some("names"),
+            RowUnit::Has => Some("has"),
+        };
         html! {
             div.wide tabindex="0" role="region" aria-label=(format!("Table {number}")) { table {
                 caption { b { "Table " (number) } ". " (self.caption) }
                 thead { tr { @for column in &self.columns {
-                    th class=(class(column)) scope="col" {
+                    th class=(class(column)) scope="col" data-row-unit=[row_unit(column)] {
                         (column.header)
                         @if !column.unit.is_empty() { span.unit { (column.unit) } }
                     }
@@ -180,8 +211,13 @@ impl Table {
             if align == Align::Left { cell } else { typeset(&cell) }
         });
         let cells: Vec<String> = cells.collect();
-        // Everything from the point on, or nothing; words are not numbers and stand as they are.
-        let behind = |cell: &str| cell.find('.').map_or(0, |at| cell[at..].chars().count());
+        // Everything behind the whole number that it begins with, "±" and what follows included;
+        // words are not numbers and stand as they are.
+        let behind = |cell: &str| {
+            let whole = cell.trim_start_matches(['\u{2212}', '+']);
+            let is_whole = |c: char| c.is_ascii_digit() || c == '\u{2009}';
+            if whole.starts_with(is_whole) { whole.trim_start_matches(is_whole).chars().count() } else { 0 }
+        };
         let is_number = |cell: &str| cell.chars().any(|c| c.is_ascii_digit());
         let longest = cells.iter().filter(|c| is_number(c)).map(|c| behind(c)).max().unwrap_or(0);
         if align != Align::Point {
@@ -232,6 +268,23 @@ mod tests {
     }
 
     #[test]
+    fn a_number_with_its_uncertainty_is_aligned_at_its_own_point() {
+        let mut table = Table::new("t", "", vec![Column::number("c_rod", "µm")]);
+        for cell in ["88.92 ± 1.9", "1101 ± 105", "-3", "–"] {
+            table.row([cell]);
+        }
+        insta::assert_snapshot!(table.text(), @r"
+                c_rod
+                   µm
+        ─────────────
+          88.92 ± 1.9
+        1101 ± 105
+          −3
+                    –
+        ");
+    }
+
+    #[test]
     fn markdown_escapes_its_bars() {
         insta::assert_snapshot!(table().markdown(), @r"
         **Compliance at the tip**
@@ -260,6 +313,16 @@ mod tests {
     fn html_escapes_its_cells_and_sets_a_minus() {
         let html = table().html(1).into_string();
         assert!(html.contains("| &lt;b&gt;") && html.contains("−1.2") && !html.contains("<b>|"), "{html}");
+    }
+
+    #[test]
+    fn html_says_which_numbers_are_in_the_unit_of_their_row() {
+        let columns = vec![Column::text("of"), Column::in_row_unit("value"), Column::units()];
+        let html = Table::new("t", "", columns).html(1).into_string();
+        assert_eq!(html.matches("data-row-unit").count(), 2);
+        assert!(
+            html.contains("data-row-unit=\"has\">value") && html.contains("data-row-unit=\"names\">unit")
+        );
     }
 
     #[test]

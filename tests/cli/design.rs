@@ -55,7 +55,39 @@ fn the_front_has_the_promised_keys_and_its_rods_are_rods() {
     let close = |a: f64, b: f64| (a / b - 1.0).abs() < 1e-9;
     assert!(close(number(&rod, "c_rod_um"), number(&front[0], "c_rod_um")), "{rod}");
     assert!(close(number(&rod, "mass_g"), number(&front[0], "mass_g")));
-    assert_eq!(sandbox.read("o/designs.csv").lines().count(), front.len() + 1);
+    let table = sandbox.read("o/designs.csv");
+    assert_eq!(table.lines().count(), front.len() + 1);
+    // each has its intervals there, as in the JSON
+    let cell = |line: &str, name: &str| {
+        let at = table.lines().next().unwrap().split(',').position(|head| head == name).expect("a column");
+        line.split(',').nth(at).unwrap().parse::<f64>().unwrap()
+    };
+    for (line, design) in table.lines().skip(1).zip(front) {
+        let [low, high] = [0, 1].map(|end| design["intervals"]["c_rod_um"][end].as_f64().unwrap());
+        assert!((cell(line, "c_rod_um_half_95") / (0.5 * (high - low)) - 1.0).abs() < 1e-2, "{line}");
+    }
+    // in words, and not by the keys of a file
+    let page = sandbox.read("o/index.html");
+    assert!(page.contains("mass, at most 900.0 g") && !page.contains("max_mass_g ="));
+    for card in ["Keep all limits", "On the front", "c_rod, smallest", "reach, largest", "Rod 5#"] {
+        assert!(page.contains(&format!("<span class=\"label\">{card}")), "{card}");
+    }
+}
+
+/// 30 mm that became 30 µm: a beam of this size is none.
+#[test]
+fn a_rod_that_bends_beyond_belief_is_remarked() {
+    let sandbox = sandbox();
+    let soft = TUBES.replace("32,28", "32,31.9999");
+    sandbox.write("tubes.csv", &soft);
+    sandbox.write("design.toml", &DESIGN.replace("min_first_frequency_hz = 20\n", ""));
+    let said = |sandbox: &Sandbox| sandbox.run("design rod design.toml").succeeded().stderr;
+    assert!(!said(&sandbox).contains("linear model"));
+    sandbox.write(
+        "tubes.csv",
+        &soft.replace("thin,steel,32,30,12\n", "").replace("light,aluminium,40,36,14\n", ""),
+    );
+    assert!(said(&sandbox).contains("by more than 10 % of the length"), "{}", said(&sandbox));
 }
 
 #[test]
@@ -75,7 +107,13 @@ fn designs_are_ranked_by_the_accuracy_that_a_robot_will_have() {
     assert!(ranked.windows(2).all(|two| rms(&two[0], "fea") <= rms(&two[1], "fea")));
     // what is compensated is as good as a rigid rod; what is not is worse
     assert!(ranked.iter().all(|one| rms(one, "fea") <= rms(one, "none")));
-    assert!(sandbox.run(line).succeeded().stdout.contains("For this robot"));
+    let said = sandbox.run(line).succeeded().stdout.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(said.contains("For this robot"));
+    // the answer comes first
+    let least = ranked.iter().flat_map(|one| ["none", "fea", "meas"].map(|mode| rms(one, mode)));
+    let least = rodcal::units::significant(least.fold(f64::INFINITY, f64::min), 3);
+    let at = said.find(&format!("This robot will be wrong by {least} µm rms at best")).expect("it is said");
+    assert!(at < said.find("The front").unwrap());
     let half = sandbox.run("design rod design.toml --campaign campaigns/tx90-5/campaign.toml");
     assert!(half.status == Some(2) && half.stderr.contains("--objective"), "{}", half.stderr);
 }
@@ -116,7 +154,17 @@ fn a_wish_that_cannot_be_granted_is_refused_and_nothing_is_written() {
     };
     let run = "design rod design.toml --out o";
     refused(&DESIGN.replace("to = 600", "to = 300"), run, "design.toml:3:9: `geometry.l2_mm` is");
-    refused(&DESIGN.replace("tubes.csv", "pipes.csv"), run, "pipes.csv");
+    refused(
+        &DESIGN.replace("tubes.csv", "pipes.csv"),
+        run,
+        "design.toml:6:8: `catalogue.file` is \"pipes.csv\"",
+    );
+    refused(
+        &DESIGN.replace("[90, 120]", "\"right\""),
+        run,
+        "design.toml:4:13: `geometry.gamma_deg` is \"right\"",
+    );
+    refused(DESIGN, "design rod design.toml --refine 99 --out o", "designs of the front");
     let huge = DESIGN
         .replace("step = 25", "step = 0.01")
         .replace("[100, 150, 200]", "{ from = 100, to = 900, step = 0.01 }");

@@ -31,14 +31,14 @@ pub struct DesignPoses {
     #[arg(long, value_name = "N", default_value_t = 3000, conflicts_with = "candidates", value_parser = clap::value_parser!(u32).range(1..=200_000))]
     generate: u32,
     /// Largest angle between the rod at its ball and the axis of the clamp, in degrees.
-    #[arg(long, value_name = "ANGLE", default_value_t = 75.0, value_parser = angle)]
+    #[arg(long, value_name = "ANGLE", default_value_t = 75.0, value_parser = angle, allow_negative_numbers = true)]
     cone_deg: f64,
     /// Arm and rod stay so far away from every clamp, in mm; the end of the rod may enter its own.
-    #[arg(long, value_name = "RADIUS", default_value_t = 60.0, value_parser = size)]
+    #[arg(long, value_name = "RADIUS", default_value_t = 60.0, value_parser = size, allow_negative_numbers = true)]
     clear_mm: f64,
     /// Least change of at least one joint between two poses of a clamp, in degrees (mm of a
     /// prismatic joint: 17 times as many).
-    #[arg(long, value_name = "ANGLE", default_value_t = 5.0, value_parser = angle)]
+    #[arg(long, value_name = "ANGLE", default_value_t = 5.0, value_parser = angle, allow_negative_numbers = true)]
     change_deg: f64,
     /// Height of the table in {W} in mm, or `none`: the arm stays 50 mm above it [default: that of
     /// the base or of the lowest clamp].
@@ -60,15 +60,15 @@ pub struct DesignPoses {
 pub struct Expected {
     /// Noise of one measured coordinate in µm [default: as the campaign states it, or as its
     /// recording shows it, else 17.6].
-    #[arg(long, value_name = "SIZE", value_parser = positive)]
+    #[arg(long, value_name = "SIZE", value_parser = positive, allow_negative_numbers = true)]
     noise_um: Option<f64>,
     /// Repeatability of the robot in µm, root mean square of the distance [default: as the
     /// recording shows it, else 30].
-    #[arg(long, value_name = "SIZE", value_parser = size)]
+    #[arg(long, value_name = "SIZE", value_parser = size, allow_negative_numbers = true)]
     repeatability_um: Option<f64>,
     /// Root mean square of the distance by which the instrument of a validation is wrong, in µm; 0
     /// forecasts the robot itself.
-    #[arg(long, value_name = "SIZE", default_value_t = 0.0, value_parser = size)]
+    #[arg(long, value_name = "SIZE", default_value_t = 0.0, value_parser = size, allow_negative_numbers = true)]
     instrument_um: f64,
     /// Poses where the robot will be used: a table (CSV) with joint columns [default: the
     /// campaign's validation, else all over the workspace].

@@ -20,16 +20,16 @@ pub struct DesignRig {
     #[arg(long, value_name = "EFFECTS", value_delimiter = ',')]
     between: Vec<String>,
     /// Or: how wide the 95 % interval of r_rod may be, in %.
-    #[arg(long, value_name = "PERCENT", value_parser = positive)]
+    #[arg(long, value_name = "PERCENT", value_parser = positive, allow_negative_numbers = true)]
     r_rod_width_percent: Option<f64>,
     /// Odds to be expected against what it is not.
-    #[arg(long, value_name = "ODDS", default_value_t = 20.0, value_parser = more_than_one)]
+    #[arg(long, value_name = "ODDS", default_value_t = 20.0, value_parser = more_than_one, allow_negative_numbers = true)]
     odds: f64,
     /// Largest load that rod and rig bear, in N.
-    #[arg(long, value_name = "N", default_value_t = 10.0, value_parser = positive)]
+    #[arg(long, value_name = "N", default_value_t = 10.0, value_parser = positive, allow_negative_numbers = true)]
     max_load: f64,
     /// Standard deviation of a reading, in µm.
-    #[arg(long, value_name = "UM", default_value_t = 2.0, value_parser = positive)]
+    #[arg(long, value_name = "UM", default_value_t = 2.0, value_parser = positive, allow_negative_numbers = true)]
     noise_um: f64,
     /// Loads hang and sensors stand at the tip only.
     #[arg(long)]

@@ -11,7 +11,7 @@ use crate::design::catalogue::{self, BUILT_IN, Tube, built_in_materials};
 use crate::design::figure::{Figure, Goal};
 use crate::design::limits::{self, Limit};
 use crate::design::values::{Bounds, Raw, limit, values};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::files;
 use crate::material::Material;
 use crate::rod::Joint;
@@ -223,7 +223,16 @@ fn tubes(
     if name.is_empty() {
         return Err(toml.is("catalogue.file", &raw.file, "a table of tubes, or \"builtin\""));
     }
-    let (file, text) = find(name).map_err(|error| catalogue::unreadable(error, "[catalogue] file"))?;
+    let (file, text) = find(name).map_err(|error| match error {
+        Error::File { path, source, .. } => {
+            let expected = format!(
+                "a table of tubes, its path as seen from the design file, or \"{BUILT_IN}\"; {} cannot be read: {source}",
+                path.display()
+            );
+            toml.is("catalogue.file", &raw.file, &expected)
+        }
+        other => catalogue::unreadable(other, "[catalogue] file"),
+    })?;
     let tubes = catalogue::read(&file, &text, materials)?;
     Ok((text, tubes))
 }

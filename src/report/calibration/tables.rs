@@ -75,11 +75,11 @@ pub(super) fn parameters(calibration: &Calibration) -> Table {
         "Calibrated parameters.",
         vec![
             Column::text("parameter"),
-            Column::text("unit"),
-            Column::number("nominal", ""),
-            Column::number("value", ""),
-            Column::number("correction", ""),
-            Column::number("std error", ""),
+            Column::units(),
+            Column::in_row_unit("nominal"),
+            Column::in_row_unit("value"),
+            Column::in_row_unit("correction"),
+            Column::in_row_unit("std error"),
             Column::text(""),
         ],
     );

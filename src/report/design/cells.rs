@@ -1,11 +1,11 @@
-//! What all tables and the JSON of designs share: figures, shapes, digits.
+//! What all tables and the JSON of designs share: figures, shapes, limits, digits.
 
 use serde_json::{Map, Value, json};
 
-use crate::design::{Design, Figure, Study};
+use crate::design::{Design, Figure, KnownDesign, Limit, Study};
 use crate::report::table::Column;
 use crate::rod::Rod;
-use crate::units::{DEG, GRAM, MM};
+use crate::units::{DEG, GRAM, MM, significant};
 
 /// Digits of a figure in a table.
 pub const DIGITS: usize = 4;
@@ -42,4 +42,37 @@ pub fn shape_cells(rod: &Rod) -> Vec<String> {
     [rod.l1 / MM, rod.l2 / MM, rod.gamma / DEG, rod.bend_radius / MM, rod.tip_mass / GRAM]
         .map(|value| ((value * 1e3).round() / 1e3).to_string())
         .to_vec()
+}
+
+/// What is known of the design at a place of the front; they stand in its order.
+pub fn known_at(study: &Study, place: usize) -> Option<&KnownDesign> {
+    let at = study.known.binary_search_by(|known| known.place.cmp(&place)).ok()?;
+    study.known.get(at)
+}
+
+/// Half of a figure's 95 % interval; a price has none.
+pub fn half_of(known: &KnownDesign, figure: Figure) -> Option<f64> {
+    known.intervals.half.get(figure).filter(|_| figure != Figure::Price)
+}
+
+/// The names of a design's tubes.
+pub fn tube_of(study: &Study, design: &Design) -> String {
+    study.wish.tubes_of(design.index).join(" + ")
+}
+
+/// `mass, at most`.
+pub fn limit_name(limit: &Limit) -> String {
+    let name = limit.figure.words().0;
+    format!("{name}, at {}", if limit.is_least { "least" } else { "most" })
+}
+
+/// `mass, at most 900.0 g`.
+pub fn limit_words(limit: &Limit) -> String {
+    let (value, unit) = (significant(limit.value, DIGITS), limit.figure.words().1);
+    format!("{} {value} {unit}", limit_name(limit))
+}
+
+/// `1 rod`, `3 rods`.
+pub fn count(number: u64, noun: &str) -> String {
+    format!("{number} {noun}{}", if number == 1 { "" } else { "s" })
 }

@@ -52,6 +52,17 @@ pub fn front(study: &Study) -> Option<Figure> {
         points: shown.collect(),
         style: Style::nth(2).size(3.0),
     });
+    // the first goal is uncertain too
+    for shown in &study.shown {
+        let (x, y) = (at(first, &shown.design), at(second, &shown.design));
+        let half = shown.intervals.half.get(first.figure).filter(|_| first.figure != Number::Price);
+        let Some(half) = half.filter(|half| *half > 0.0) else { continue };
+        chart = chart.with(Mark::Line {
+            label: String::new(),
+            points: vec![[x - half, y], [x + half, y]],
+            style: Style::nth(2).dash(Dash::Solid).width(1.2),
+        });
+    }
     if let Some(base) = &study.base {
         let [x, y] = [first, second].map(|goal| base.figures.get(goal.figure).unwrap_or(f64::NAN));
         chart = chart.with(Mark::Points {
@@ -68,7 +79,7 @@ pub fn front(study: &Study) -> Option<Figure> {
     };
     Some(
         Figure::from(chart).named("front").captioned(format!(
-            "Designs that none betters: {x} against {y}. Bars: 95 % interval of {y} from the standard uncertainties of the \
+            "Designs that none betters: {x} against {y}. Bars: 95 % intervals from the standard uncertainties of the \
              rod's numbers.{more}"
         )),
     )

@@ -3,9 +3,10 @@
 use serde_json::{Map, Value, json};
 
 use crate::calibration::Mode;
-use crate::design::ForRobot;
+use crate::design::{ForRobot, Proxy};
+use crate::report::chart::{Chart, Figure, Mark, Marker, Point, Style};
 use crate::report::table::{Column, Table};
-use crate::report::{Block, Section, forecast};
+use crate::report::{Block, Card, Section, Tone, forecast};
 use crate::units::{UM, significant};
 
 /// What the JSON has of the designs for one robot.
@@ -59,29 +60,103 @@ pub fn for_robot_section(found: &ForRobot) -> Section {
     let mut blocks = Vec::new();
     let proxies = found.proxies.iter().map(|proxy| {
         let [low, high] = proxy.rms;
-        let what = match (high <= low * EQUAL, proxy.interval) {
+        let what = match (is_alike(proxy), proxy.interval) {
             (true, _) => "no rod is better than another by 5 %, so that c_rod need not be looked at",
             (_, [from, _]) if from > 0.5 => "c_rod is a good proxy",
             (_, [_, to]) if to < 0.5 => "c_rod is no proxy",
             _ => "these rods do not tell whether c_rod is a proxy",
         };
+        let r = |r: f64| format!("{r:.2}").replace('-', "−");
         format!(
-            "Mode {}: {what}. Error {} to {} µm; it follows c_rod with a rank correlation of {:.2} ({:.2} to {:.2}).",
+            "Mode {}: {what}. Error {} to {} µm; it follows c_rod with a rank correlation of {} ({} to {}).",
             proxy.mode.name(),
             um(low),
             um(high),
-            proxy.r,
-            proxy.interval[0],
-            proxy.interval[1]
+            r(proxy.r),
+            r(proxy.interval[0]),
+            r(proxy.interval[1])
         )
     });
     let proxies: Vec<String> = proxies.collect();
     if !proxies.is_empty() {
         blocks.push(Block::List(proxies));
     }
+    blocks.extend(picture(found).map(Block::Figure));
     blocks.push(Block::Table(table));
     Section::new("For this robot", blocks)
 }
 
+/// The least error that any of the rods leaves, its rod and its mode.
+fn best(found: &ForRobot) -> Option<(&str, Mode, f64)> {
+    let all = found.ranked.iter().flat_map(|one| {
+        Mode::ALL.into_iter().filter_map(move |mode| Some((one.name.as_str(), mode, one.of(mode)?.rms)))
+    });
+    all.min_by(|a, b| a.2.total_cmp(&b.2))
+}
+
+/// What is to be expected of the robot, for the headline: nothing where no rod can be measured.
+pub fn for_robot_headline(found: &ForRobot) -> String {
+    let Some((name, mode, rms)) = best(found) else {
+        return "None of these rods can be measured with this robot.".into();
+    };
+    let um = |size: f64| significant(size / UM, 3);
+    let best = format!(
+        "This robot will be wrong by {} µm rms at best, with {name} in mode {}",
+        um(rms),
+        mode.name()
+    );
+    let (alike, apart): (Vec<&Proxy>, Vec<&Proxy>) = found.proxies.iter().partition(|proxy| is_alike(proxy));
+    let apart = apart.iter().map(|proxy| {
+        let [low, high] = proxy.rms;
+        format!("; in mode {} it depends on the rod: {} to {} µm", proxy.mode.name(), um(low), um(high))
+    });
+    let names: Vec<&str> = alike.iter().map(|proxy| proxy.mode.name()).collect();
+    let alike = match names.len() {
+        0 => String::new(),
+        1 => format!(". In mode {} no rod is better than another by 5 %", names[0]),
+        _ => format!(". In modes {} no rod is better than another by 5 %", names.join(" and ")),
+    };
+    format!("{best}{}{alike}.", apart.collect::<String>())
+}
+
+/// The least error as a card.
+pub fn for_robot_card(found: &ForRobot) -> Option<Card> {
+    let (name, mode, rms) = best(found)?;
+    let detail = format!("{name}, mode {}", mode.name());
+    let refused = found.ranked.iter().filter(|one| one.forecast.is_err()).count();
+    let card =
+        Card::new("Least error of this robot, rms", format!("{} µm", significant(rms / UM, 3)), detail);
+    Some(if refused > 0 { card.toned(Tone::Attention) } else { card })
+}
+
+/// Error against c_rod, a mark for each mode.
+fn picture(found: &ForRobot) -> Option<Figure> {
+    const MARKERS: [Marker; 4] = [Marker::Circle, Marker::Plus, Marker::Triangle, Marker::Diamond];
+    let mut chart = Chart::new("", "c_rod / µm", "root mean square error / µm");
+    let indices = || found.ranked.iter().map(|one| one.c_rod);
+    let (low, high) = indices().fold((f64::INFINITY, 0.0f64), |(a, b), c| (a.min(c), b.max(c)));
+    if low > 0.0 && high > 20.0 * low {
+        chart.x = chart.x.log();
+    }
+    for (mode, marker) in Mode::ALL.into_iter().zip(MARKERS) {
+        let at = |rms: f64, c_rod: f64| Point { x: c_rod / UM, y: rms / UM, error: 0.0 };
+        let points = found.ranked.iter().filter_map(|one| Some(at(one.of(mode)?.rms, one.c_rod)));
+        let points: Vec<Point> = points.collect();
+        if !points.is_empty() {
+            let label = format!("mode {}", mode.name());
+            chart =
+                chart.with(Mark::Points { label, points, style: Style::nth(mode as usize).marker(marker) });
+        }
+    }
+    let caption = "What is to be expected of the robot with each rod, against how compliant the rod is. Where modes are as good, \
+                   one mark hides the others.";
+    (!chart.marks.is_empty()).then(|| Figure::from(chart).named("for-robot").captioned(caption))
+}
+
 /// Errors up to so many times the least are as good as that.
 const EQUAL: f64 = 1.05;
+
+/// Whether no rod is better than another in a mode.
+fn is_alike(proxy: &Proxy) -> bool {
+    proxy.rms[1] <= proxy.rms[0] * EQUAL
+}

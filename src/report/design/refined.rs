@@ -6,8 +6,7 @@ use super::cells::{DIGITS, columns, figures_json, shape_cells, shape_columns};
 use crate::design::{Better, Design, Figures, Goal, Refined, Study, Wish};
 use crate::report::table::{Column, Table};
 use crate::report::{Block, Section};
-use crate::rod::Rod;
-use crate::section::Section as Shape;
+use crate::rod::{Pipe, Rod};
 use crate::units::{MM, significant};
 
 /// What the JSON has of it.
@@ -123,21 +122,26 @@ fn proven(study: &Study, found: &Refined) -> String {
     };
     let (count, led) = found.starts;
     let starts = match count {
-        1 => "The search began at this design alone".to_owned(),
-        _ => format!("The search began at {count} designs of the front, and {led} of them led to this rod"),
+        1 => "It was looked for from this design alone".to_owned(),
+        _ => format!(
+            "Of {count} searches, from all over the grid and from the ends of the ranges, {led} led to this rod"
+        ),
     };
     format!("{grid} {starts}: that no better one exists between the grid's values is not proven.")
 }
 
-/// `32.4x1.13`: outer diameter and wall of the tubes, mm.
+/// `steel 32.4x1.13`: material, outer diameter and wall of the tubes, mm.
 fn sizes(rod: &Rod) -> String {
-    let size = |section: &Shape| match (section.as_round(), section.wall()) {
-        (Some(round), Some(wall)) => {
-            format!("{}x{}", significant(round.outer_diameter / MM, 4), significant(wall / MM, 3))
-        }
+    let size = |pipe: &Pipe| match (pipe.section.as_round(), pipe.section.wall()) {
+        (Some(round), Some(wall)) => format!(
+            "{} {}x{}",
+            pipe.material.name,
+            significant(round.outer_diameter / MM, 4),
+            significant(wall / MM, 3)
+        ),
         _ => "–".to_owned(),
     };
-    let mut sizes = vec![size(&rod.pipe1.section), size(&rod.pipe2.section)];
+    let mut sizes = vec![size(&rod.pipe1), size(&rod.pipe2)];
     sizes.dedup();
     sizes.join(" + ")
 }

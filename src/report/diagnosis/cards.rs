@@ -38,11 +38,13 @@ fn answer(subject: &Subject) -> Card {
 }
 
 fn errors(subject: &Subject) -> Card {
-    let (errors, per) = (subject.errors, subject.per);
+    let errors = subject.errors;
     let value = |before: f64, after: f64| format!("{} → {} µm", um(before), um(after));
     match errors.held_out {
         _ if subject.diagnosis.findings.is_empty() => {
-            Card::new("Residual", format!("{} µm{per}", um(errors.before)), "")
+            // what the headline has per coordinate is here of the whole distance
+            let of = if errors.averaged.is_empty() { "root mean square" } else { "mean distance of the tip" };
+            Card::new("Residual", format!("{} µm", um(errors.before)), of)
         }
         Some((before, after)) => {
             let tone = if after < before { Tone::Good } else { Tone::Attention };

@@ -11,6 +11,7 @@ use super::subject::LawSubject;
 use crate::inference::law::{Constant, Law, LawRival, Memory, Proposed, Refusal, Site};
 use crate::inference::{Location, Quantity, WrittenTo};
 use crate::report::pictures::diagnosis::{LawPanel, law_picture};
+use crate::report::scale::superscript;
 use crate::report::table::{Column, Table};
 use crate::report::{Block, Section};
 use crate::units::{UM, significant};
@@ -266,7 +267,7 @@ fn refused(refusal: Refusal, subject: &LawSubject) -> String {
             "a smooth curve is {} more probable than any form that was tried, so that none of them is the law",
             match by.exp() {
                 times if times < 1e4 => format!("{} times", significant(times, 2)),
-                _ => format!("10^{:.0} times", by / std::f64::consts::LN_10),
+                _ => format!("10{} times", superscript((by / std::f64::consts::LN_10).round() as i32)),
             }
         ),
         Refusal::HeldOut => format!("held-out {noun} are predicted no better with it, or hardly"),

@@ -4,7 +4,7 @@ use super::headline::{RIVALS_SAID, sentence, um};
 use super::hidden::hidden;
 use super::law;
 use super::subject::Subject;
-use super::tables::{alternatives, evidence, locate, parameters, proof, replication};
+use super::tables::{alternatives, evidence, locate, named, parameters, proof, replication};
 use crate::inference::{Finding, Kind};
 use crate::report::{Block, Section};
 
@@ -95,7 +95,7 @@ fn remains(subject: &Subject) -> Section {
 /// What the base model hides, and what the files have no data for.
 fn not_seen(subject: &Subject) -> Option<Section> {
     let hidden = hidden(subject).into_iter().map(|(effect, places)| {
-        format!("{} ({}): the parameters of the calibration absorb it.", effect.spoken(), places.join(", "))
+        format!("{} ({}): the parameters of the calibration absorb it.", named(effect), places.join(", "))
     });
     let lacking = subject.not_testable.iter().map(|not| format!("{}: {}", not.effect.spoken(), not.reason));
     let points: Vec<String> = hidden.chain(lacking).collect();

@@ -4,7 +4,7 @@
 use super::headline::um;
 use super::subject::Subject;
 use crate::inference::{
-    Evidence, Finding, HeldOut as HeldOutErrors, LackOfFit, Location, NAMED, Rank, Ranked, Structure,
+    Effect, Evidence, Finding, HeldOut as HeldOutErrors, LackOfFit, Location, NAMED, Rank, Ranked, Structure,
     UNKNOWN, ranking,
 };
 use crate::report::chart::Figure;
@@ -23,16 +23,22 @@ fn chance(p: f64) -> String {
     if p < 1e-12 { "< 1e-12".into() } else { significant(p, 1) }
 }
 
+/// What an effect is called among others.
+pub fn named(effect: &Effect) -> String {
+    // it explains much because it may be anything: no cause
+    if effect == &UNKNOWN { "any smooth curve".into() } else { effect.spoken() }
+}
+
 /// All numbers that were found; effect, place and chance stand in the first row of each finding.
 pub fn parameters(findings: &[Finding]) -> Table {
     let columns = vec![
         Column::text("effect"),
         Column::text("where"),
         Column::text("parameter"),
-        Column::text("unit"),
-        Column::number("value", ""),
-        Column::number("from", ""),
-        Column::number("to", ""),
+        Column::units(),
+        Column::in_row_unit("value"),
+        Column::in_row_unit("from"),
+        Column::in_row_unit("to"),
         Column::number("p", ""),
     ];
     let caption =
@@ -290,7 +296,7 @@ pub fn evidence(subject: &Subject) -> Section {
             Rank::Rejected => "rejected",
         };
         let odds = if odds.is_finite() { to_one(odds) } else { "–".into() };
-        table.row([ranked.effect.spoken(), ranked.location.to_string(), odds, verdict.into()]);
+        table.row([named(ranked.effect), ranked.location.to_string(), odds, verdict.into()]);
     }
     let blocks = vec![Block::Figure(candidates(&ranked)), Block::Table(table)];
     Section::new("What else it might be", blocks)
@@ -299,7 +305,7 @@ pub fn evidence(subject: &Subject) -> Section {
 /// How likely each effect is by itself.
 fn candidates(ranked: &[Ranked]) -> Figure {
     let candidate = |ranked: &Ranked| Candidate {
-        name: ranked.effect.spoken(),
+        name: named(ranked.effect),
         log10_odds: ranked.log_odds / std::f64::consts::LN_10,
         class: match ranked.rank {
             Rank::Adopted => Class::Adopted,

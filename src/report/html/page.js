@@ -51,13 +51,14 @@
     switched.push(() => { element.textContent = inUnit(text, unit); });
   };
   // within words: "14 to 3.0 µm", "Ø 32 × 1 mm" (where 1 is exact), "x / mm"
-  const [NUMBER, BETWEEN] = ['\\d[\\d\u2009]*(?:\\.\\d+)?', '\\s(?:±|→|×|–|to|and)\\s'];
+  const [NUMBER, BETWEEN] = ['\\d[\\d\u2009]*(?:\\.\\d+)?', '(?:,\\s|\\s(?:±|→|×|–|to|and|or)\\s)'];
   const UNIT = `((?:${Object.keys(UNITS).join('|')})(?:/[\\p{L}µ]+)?)(?![\\p{L}\\d²³·/]|\\sm\\b)`;
   const QUANTITY = new RegExp(`((?:${NUMBER}${BETWEEN})*${NUMBER})(\\s)${UNIT}`, 'gu');
   const LABEL = new RegExp(` / ${UNIT}(?=\\s*$)`, 'gu');
   const inWords = text => text
     .replace(QUANTITY, (_, numbers, space, unit) => inUnit(numbers, unit, 3) + space + now(unit))
     .replace(LABEL, (_, unit) => ` / ${now(unit)}`);
+  const WORDS = '.headline, .cards, aside li, section > p, section > ul, summary, .note, td.left';
   const present = new Set();
   const switches = node => {
     const text = node.data;
@@ -83,7 +84,8 @@
       button.title = 'Sort';
       button.addEventListener('click', () => sort(table, column, button));
       cell.firstChild?.remove();
-      cell.prepend(button);
+      // a heading is repeated on every sheet of paper, but no button is
+      cell.prepend(button, make('span', button.textContent, 'printed'));
       const [base] = bases(unit?.textContent ?? '');
       if (base) {
         const own = make('button', unit.textContent, 'unit');
@@ -91,9 +93,25 @@
         own.addEventListener('click', () => choose(base, (chosen[base] ?? 0) + 1));
         switched.push(() => { own.textContent = now(unit.textContent); });
         for (const row of table.tBodies[0].rows) if (row.cells[column]) changes(row.cells[column], unit.textContent);
-        unit.replaceWith(own);
+        const printed = make('span', unit.textContent, 'unit printed');
+        switched.push(() => { printed.textContent = own.textContent; });
+        unit.replaceWith(own, printed);
       }
     });
+    // units by row: a button where the unit stands, for the numbers of its row
+    const heads = [...table.tHead.rows[0].cells];
+    const names = heads.findIndex(head => head.dataset.rowUnit === 'names');
+    for (const row of names < 0 ? [] : table.tBodies[0].rows) {
+      const unit = row.cells[names].textContent;
+      const [base] = bases(unit);
+      if (!base) continue;
+      const own = make('button', unit, 'unit');
+      own.title = 'Another unit';
+      own.addEventListener('click', () => choose(base, (chosen[base] ?? 0) + 1));
+      switched.push(() => { own.textContent = now(unit); });
+      row.cells[names].replaceChildren(own);
+      heads.forEach((head, column) => { if (head.dataset.rowUnit === 'has') changes(row.cells[column], unit); });
+    }
     const files = table.closest('details')?.querySelector('.files');
     if (files && navigator.clipboard) {
       const copy = make('button', 'copy as CSV');
@@ -111,10 +129,11 @@
   }
   for (const group of document.querySelectorAll('g[data-number]')) changes(group.firstElementChild, group.dataset.number);
 
-  for (const part of document.querySelectorAll('.cards, figcaption, svg text')) {
+  // what is said and shown; a command is as it was typed
+  for (const part of document.querySelectorAll(`${WORDS}, figcaption, svg text`)) {
     if (part.closest('g[data-of], g[data-number]')) continue;
     const texts = document.createTreeWalker(part, NodeFilter.SHOW_TEXT);
-    while (texts.nextNode()) switches(texts.currentNode);
+    while (texts.nextNode()) if (!texts.currentNode.parentElement.closest('code, .files, .units')) switches(texts.currentNode);
   }
 
   // one choice for each unit of the page, after its contents

@@ -12,7 +12,7 @@ pub use residual::{BeforeAfter, Event, Residual, ResidualPoint, before_after};
 use serde::Serialize;
 
 use super::super::chart::{Axis, Bar, Chart, Colour, Dash, Direction, Figure, Mark, Range, Style};
-use super::super::scale::{drawable, typeset};
+use super::super::scale::{drawable, superscript, typeset};
 use crate::units::significant;
 
 /// More points of one series are drawn small.
@@ -54,7 +54,9 @@ pub fn ranking(candidates: &[Candidate], named_from: f64) -> Figure {
     let mut chart = Chart::new("how likely each effect is by itself", "odds against noise alone", "");
     let row = |i: usize| -(i as f64);
     let names = candidates.iter().enumerate().map(|(i, c)| (row(i), c.name.clone())).collect();
-    chart.y = Axis { names, ..Axis::default() };
+    // above the bars stands what their names are given from
+    let range = Range::Fixed(row(candidates.len()) + 0.4, 1.4);
+    chart.y = Axis { names, range, ..Axis::default() };
     chart.height_px = Some(40.0 + 19.0 * candidates.len() as f64);
     let looks = [
         (Class::Adopted, "adopted", Style::nth(0).colour(Colour::Vermilion)),
@@ -83,12 +85,12 @@ pub fn ranking(candidates: &[Candidate], named_from: f64) -> Figure {
     Figure::from(chart).named("ranking")
 }
 
-/// Odds by their power of ten: `20 : 1`, `1 : 160`, `10^31 : 1`.
+/// Odds by their power of ten: `20 : 1`, `1 : 160`, `10³¹ : 1`.
 pub fn to_one(log10_odds: f64) -> String {
     let size = log10_odds.abs();
     let number = match size < 4.0 {
         true => significant(10f64.powf(size), 2),
-        false => format!("10^{size:.0}"),
+        false => format!("10{}", superscript(size.round() as i32)),
     };
     if log10_odds >= 0.0 { format!("{number} : 1") } else { format!("1 : {number}") }
 }
@@ -99,7 +101,8 @@ fn powers(candidates: &[Candidate]) -> Vec<(f64, String)> {
     let (low, high) = of.fold((0.0f64, 2.0f64), |(low, high), odds| (low.min(odds), high.max(odds)));
     let step = ((high - low) / 6.0).ceil().max(1.0);
     // the axis ends at its outer ticks: beyond every bar and its number
-    let ticks = (low / step).floor() as i64..=(1.1 * high / step).ceil() as i64;
+    let room = if low < 0.0 { 0.15 * (high - low) } else { 0.0 };
+    let ticks = ((low - room) / step).floor() as i64..=(1.1 * high / step).ceil() as i64;
     ticks.map(|k| (k as f64 * step, to_one(k as f64 * step))).collect()
 }
 
@@ -154,6 +157,7 @@ pub fn held_out(noun: &str, data: &HeldOut) -> Figure {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::report::draw::{Medium, draw};
 
     #[test]
     fn a_candidate_without_odds_has_no_bar_but_a_name() {
@@ -162,20 +166,25 @@ mod tests {
         assert!(ranking(&[candidate], 20.0).svg().contains("creep"));
     }
 
-    /// A bar to the left edge has its number on the right: on the left are the names.
+    /// A bar that leaves no room on the left, where the names are, has its number on the right.
     #[test]
     fn a_number_never_stands_on_a_name() {
         let candidate = |log10_odds| Candidate { name: "creep".into(), log10_odds, class: Class::Rejected };
-        let svg = ranking(&[candidate(-132.0), candidate(-40.0)], 20.0).svg();
-        let document = roxmltree::Document::parse(&svg).expect("is XML");
+        let figure = ranking(&[candidate(-132.0), candidate(-40.0)], 20.0);
         // of two texts that say so one is the tick
-        let anchors = |text: &str| -> Vec<Option<&str>> {
+        let anchors = |svg: &str, text: &str| -> Vec<Option<String>> {
+            let document = roxmltree::Document::parse(svg).expect("is XML");
             let is_it =
                 |node: &roxmltree::Node| node.is_element() && node.text().is_some_and(|t| t.trim() == text);
-            document.descendants().filter(is_it).map(|node| node.attribute("text-anchor")).collect()
+            let anchor = |node: roxmltree::Node| node.attribute("text-anchor").map(str::to_owned);
+            document.descendants().filter(is_it).map(anchor).collect()
         };
-        assert!(!anchors(&to_one(-132.0)).contains(&Some("end")), "{:?}", anchors(&to_one(-132.0)));
-        assert_eq!(anchors(&to_one(-40.0)), [Some("end")]);
+        let end = Some("end".to_owned());
+        // a wide axis goes on beyond the bar, a narrow one cannot
+        let (wide, narrow) = (figure.svg(), draw(&figure, Medium::Telephone));
+        assert!(anchors(&wide, &to_one(-132.0)).contains(&end), "{:?}", anchors(&wide, &to_one(-132.0)));
+        assert!(!anchors(&narrow, &to_one(-132.0)).contains(&end), "{:?}", anchors(&narrow, &to_one(-132.0)));
+        assert_eq!(anchors(&wide, &to_one(-40.0)), [end]);
     }
 
     #[test]

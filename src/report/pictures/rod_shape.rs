@@ -355,7 +355,8 @@ fn look(kind: StationKind) -> (&'static str, Style) {
         StationKind::Joint => {
             ("joint", style.marker(Marker::Square).colour(Colour::Orange).dash(Dash::Dashed).width(2.0))
         }
-        StationKind::Load => ("load", style.marker(Marker::Triangle).colour(Colour::Blue)),
+        // larger than the gauge that may stand at the same place
+        StationKind::Load => ("load", style.marker(Marker::Triangle).colour(Colour::Blue).size(8.0)),
         StationKind::Reading => ("gauge", style.marker(Marker::Diamond).colour(Colour::Green)),
         StationKind::Located => ("located mismatch", style.marker(Marker::Ring).colour(Colour::Vermilion)),
     }

@@ -52,7 +52,9 @@ pub static STIFFNESS_SCALE: RigEffect = RigEffect {
         vec![entry(&STIFFNESS_SCALE, Location::Part(Part::Rod), factor, Action::Stiffness)]
     },
     missing: |_| NOT_YIELDING,
-    observed: |finding, _| format!("The whole rod is {} than its model", softer(of(finding, "factor"))),
+    observed: |finding, _| {
+        format!("All tubes of the rod are {} than in the model", softer(of(finding, "factor")))
+    },
 };
 
 /// The shear modulus of the whole rod.

@@ -239,7 +239,7 @@ fn drift_observed(finding: &Finding, model: &CalibrationModel) -> String {
             let by = first(finding).say(course.unit().1);
             format!("The link of {} grows by {by} with {course}", finding.location)
         }
-        Law::Only | Law::Gear(_) | Law::Play(_) | Law::Nonlinear(_) | Law::MassesUnknown | Law::Rod(_) => {
+        Law::Only | Law::Gear(_) | Law::Play(_) | Law::Nonlinear(_) | Law::MassesUnknown(_) | Law::Rod(_) => {
             format!("Drift by {} at {}", size.say("µm"), finding.location)
         }
     }

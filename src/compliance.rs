@@ -25,7 +25,11 @@ use crate::error::{Error, Result};
 use crate::rod::Rod;
 use crate::units::STANDARD_GRAVITY;
 
-/// Size of the paper's contact force, N.
+/// Size of the paper's contact force, √(1.10² + 1.25² + 1.05²) N (§ 5.2).
+///
+/// ```
+/// assert!((rodcal::prelude::paper_contact_force() - 1.969).abs() < 1e-3);
+/// ```
 pub fn paper_contact_force() -> f64 {
     let [x, y, z] = PAPER_CONTACT_FORCE;
     (x * x + y * y + z * z).sqrt()
@@ -37,7 +41,8 @@ pub const PAPER_CONTACT_FORCE: [f64; 3] = [1.10, 1.25, 1.05];
 /// Enough for a smooth picture; the numbers do not depend on it.
 pub const DEFAULT_ELEMENTS: usize = 200;
 
-/// Compliance matrices of the tip in {T}.
+/// Compliance matrices of the tip in {T}, 3 × 3: a force F on the tip, N, and gravity g, in g,
+/// displace the ball by Δx = C^F·F + C^g·g, m.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Compliance<T = f64> {
     /// C^F, m/N; symmetric.

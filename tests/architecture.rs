@@ -121,6 +121,15 @@ fn files(directory: &str) -> Vec<Source> {
     sources(&source).into_iter().map(read).collect()
 }
 
+/// What of a file is no test: all of it before tests at its end, nothing of a file of tests. A line
+/// that only names the file of its tests ends nothing.
+fn of_the_program<'t>(file: &str, text: &'t str) -> &'t str {
+    if file.ends_with("/tests.rs") || file.contains("/tests/") {
+        return "";
+    }
+    text.split("#[cfg(test)]\nmod tests {").next().unwrap()
+}
+
 /// All files of the project's crates.
 fn everything() -> Vec<Source> {
     ROOMS.iter().chain(&[TRIAL, PNG, PYTHON]).flat_map(|directory| files(directory)).collect()
@@ -247,7 +256,7 @@ fn inference_knows_no_physics() {
                 "{file} imports from `{named}`"
             );
         }
-        let code = text.split("#[cfg(test)]").next().unwrap();
+        let code = of_the_program(&file, &text);
         let is_vocabulary = ["location.rs", "variable.rs", "limit.rs"].iter().any(|own| file.ends_with(own));
         for word in ["friction", "backlash", "gear", "clamp", "slide", "creep"] {
             let is_said = code
@@ -271,7 +280,7 @@ fn no_effect_is_compared_by_its_name() {
     assert!(names.len() > 30);
     let is_asked = |file: &str| file.contains("diagnosis") || file.contains("inference");
     for Source { file, text, .. } in files("src").into_iter().filter(|source| is_asked(&source.file)) {
-        let code = text.split("#[cfg(test)]").next().unwrap();
+        let code = of_the_program(&file, &text);
         let is_family = file.contains("/effects/") || file.contains("/tests");
         for name in &names {
             let literal = format!("\"{name}\"");
@@ -296,7 +305,7 @@ fn every_room_in_the_plan_exists() {
 #[test]
 fn heavy_dependencies_have_one_door_each() {
     for Source { file, text, .. } in everything() {
-        let code = text.split("#[cfg(test)]").next().unwrap();
+        let code = of_the_program(&file, &text);
         for (name, door) in DOORS {
             let uses = code
                 .lines()

@@ -87,6 +87,16 @@ impl Rod {
     /// The first natural frequency, Hz, within some millionths of [`Rod::natural_modes`] and in a
     /// tenth of the time; `None` where nothing has mass.
     ///
+    /// ```
+    /// use rodcal::prelude::*;
+    ///
+    /// let rod = Rod::read("rods/5.toml".as_ref())?;
+    /// let whole = rod.natural_modes(1)?[0].frequency;
+    /// let first = rod.first_frequency()?.expect("steel has mass");
+    /// assert!((first / whole - 1.0).abs() < 1e-4 && first > 10.0, "{first} {whole}");
+    /// # Ok::<(), rodcal::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// As [`Rod::natural_modes`].
     pub fn first_frequency(&self) -> Result<Option<f64>> {

@@ -10,6 +10,7 @@ use super::passes::Run;
 use super::problem::Residuals;
 use super::result::{Calibration, Estimated};
 use crate::error::{Error, Place, Result};
+use crate::least_squares::Fit;
 use crate::robot::{Kinematics, Parameter, Setup};
 
 /// Calibrates `free` parameters on a recording, from a given start, without validation: for folds
@@ -25,11 +26,8 @@ pub fn calibrate_from<'c>(
     compensation: &Compensation,
     options: &Options,
 ) -> Result<Calibration<'c>> {
-    check_count(recording, free)?;
     let nominal = start.clone();
-    let mut run = Run::new(campaign, recording, start, free, compensation);
-    run.fit_base_and_tool()?;
-    let fit = run.compensate(options)?;
+    let (run, fit) = fitted(campaign, recording, start, free, compensation, options)?;
     let (priors, drawing_scale) = (run.priors(), run.drawing.scale);
     let Run { setup, pass, noise, held, passes, is_converged, .. } = run;
 
@@ -96,6 +94,36 @@ pub fn calibrate_from<'c>(
     };
     calibration.warnings = super::checks::all(campaign, recording, &calibration);
     Ok(calibration)
+}
+
+/// The calibrated robot alone, for draws that ask for nothing else.
+///
+/// # Errors
+/// As [`calibrate_from`].
+pub(super) fn setup_from<'c>(
+    campaign: &'c Campaign,
+    recording: &Recording,
+    start: Setup<'c>,
+    free: &[Parameter],
+    compensation: &Compensation,
+    options: &Options,
+) -> Result<Setup<'c>> {
+    Ok(fitted(campaign, recording, start, free, compensation, options)?.0.setup)
+}
+
+fn fitted<'a, 'c>(
+    campaign: &'c Campaign,
+    recording: &'a Recording,
+    start: Setup<'c>,
+    free: &'a [Parameter],
+    compensation: &'a Compensation,
+    options: &Options,
+) -> Result<(Run<'a, 'c>, Fit)> {
+    check_count(recording, free)?;
+    let mut run = Run::new(campaign, recording, start, free, compensation);
+    run.fit_base_and_tool()?;
+    let fit = run.compensate(options)?;
+    Ok((run, fit))
 }
 
 /// Largest distance of the nominal tip from the first joint, m.

@@ -9,7 +9,7 @@
 use std::ops::Range;
 
 use super::calibrate::calibrate;
-use super::calibrate_from::calibrate_from;
+use super::calibrate_from::setup_from;
 use super::campaign::Campaign;
 use super::compensation::{Compensation, Mode, modes};
 use super::cross_validation::{CrossValidation, cross_validate};
@@ -231,7 +231,7 @@ fn mean_errors(
         .zip(compensations)
         .map(|(calibration, compensation)| {
             let free: Vec<_> = calibration.parameters.iter().map(|p| p.parameter).collect();
-            let again = calibrate_from(
+            let setup = setup_from(
                 campaign,
                 &measured,
                 calibration.setup.clone(),
@@ -240,7 +240,7 @@ fn mean_errors(
                 &options.calibration,
             )?;
             let start = calibration.validation.as_ref().and_then(|v| v.placement);
-            Ok(validate_from(&again.setup, &judged, campaign.refit, start)?.summary.mean)
+            Ok(validate_from(&setup, &judged, campaign.refit, start)?.summary.mean)
         })
         .collect()
 }

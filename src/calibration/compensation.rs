@@ -238,6 +238,16 @@ pub fn modes(campaign: &Campaign) -> Vec<Mode> {
 }
 
 /// The mode without `--mode`: meas with rig readings, else fea with a rod, else none.
+///
+/// ```
+/// use rodcal::prelude::*;
+///
+/// let mut campaign = Campaign::read("campaigns/tx90-5/campaign.toml".as_ref())?;
+/// assert_eq!(default_mode(&campaign), Mode::Meas);
+/// campaign.readings = None;
+/// assert_eq!(default_mode(&campaign), Mode::Fea);
+/// # Ok::<(), rodcal::Error>(())
+/// ```
 pub fn default_mode(campaign: &Campaign) -> Mode {
     match (&campaign.rod, &campaign.readings) {
         (Some(_), Some(_)) => Mode::Meas,

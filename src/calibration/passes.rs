@@ -10,7 +10,7 @@ use super::options::Options;
 use super::problem::{Pass, Residuals};
 use super::shrinkage::Drawing;
 use crate::error::Result;
-use crate::least_squares::{self, Fit, Prior, Problem as _};
+use crate::least_squares::{self, Fit, Found, Prior, Problem as _};
 use crate::robot::{Parameter, Setup};
 
 /// Noise of a coordinate that is assumed until there are residuals, m.
@@ -105,9 +105,10 @@ impl<'a, 'c> Run<'a, 'c> {
             pass: &self.pass,
             held: &[],
         };
-        let fit = least_squares::fit(&problem, &problem.start(), &known_noise())?;
+        let options = known_noise();
+        let fit = least_squares::search(&problem, &problem.start(), &options)?;
         if fit.is_converged() {
-            let found = problem.setup_at(&fit.parameters);
+            let found = problem.setup_at(fit.parameters());
             for &parameter in &placed {
                 self.setup.set(parameter, found.get(parameter));
             }
@@ -123,13 +124,14 @@ impl<'a, 'c> Run<'a, 'c> {
             if self.passes.len() < 2 {
                 self.hold_unidentified()?;
             }
-            let fit = self.fit()?;
+            let fit_options = self.fit_options();
+            let fit = self.fit(&fit_options)?;
             for (k, &parameter) in self.free.iter().enumerate() {
-                self.setup.set(parameter, fit.parameters[k]);
+                self.setup.set(parameter, fit.parameters()[k]);
             }
             let problem = self.problem();
-            let deviations = problem.deviations(&fit.parameters);
-            let parameters = fit.covariance.rank.saturating_sub(self.held.len());
+            let deviations = problem.deviations(fit.parameters());
+            let parameters = fit.rank().saturating_sub(self.held.len());
             let rank = parameters.saturating_sub(self.drawing.undetermined() as usize);
             // one weighting as least squares first, so that the robust ones start from a fit
             let robust = if self.passes.is_empty() { Robust::None } else { options.robust };
@@ -141,8 +143,8 @@ impl<'a, 'c> Run<'a, 'c> {
             // then the scale stays, lest it and the weights go on chasing each other
             let rescaled = match self.passes.len() < RESCALING_PASSES {
                 true => {
-                    let root = self.problem().information_root(&fit.parameters);
-                    self.drawing.rescale(&root, &fit.parameters)?
+                    let root = self.problem().information_root(fit.parameters());
+                    self.drawing.rescale(&root, fit.parameters())?
                 }
                 false => 0.0,
             };
@@ -155,7 +157,7 @@ impl<'a, 'c> Run<'a, 'c> {
                 && self.passes.len() > 1;
             self.is_converged = has_settled && fit.is_converged();
             if has_settled || self.passes.len() >= MOST_PASSES || !fit.is_converged() {
-                return Ok(fit);
+                return fit.judged();
             }
             self.pass.weight = weight;
         }
@@ -182,15 +184,17 @@ impl<'a, 'c> Run<'a, 'c> {
         priors
     }
 
-    fn fit(&self) -> Result<Fit> {
+    fn fit<'o>(&self, options: &'o least_squares::Options) -> Result<Found<'o>> {
         let problem = self.problem();
-        let start = problem.start();
-        let mut bounds = vec![(f64::NEG_INFINITY, f64::INFINITY); start.len()];
+        least_squares::search(&problem, &problem.start(), options)
+    }
+
+    fn fit_options(&self) -> least_squares::Options {
+        let mut bounds = vec![(f64::NEG_INFINITY, f64::INFINITY); self.problem().parameter_count()];
         for (bound, &parameter) in bounds.iter_mut().zip(self.free) {
             bound.0 = drives::least(&self.start, parameter);
         }
-        let options = least_squares::Options { priors: self.priors(), bounds, ..known_noise() };
-        least_squares::fit(&problem, &start, &options)
+        least_squares::Options { priors: self.priors(), bounds, ..known_noise() }
     }
 
     /// Finds the directions that the data do not identify where the robot stands now.

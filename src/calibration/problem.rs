@@ -212,7 +212,7 @@ impl Residuals<'_> {
             self.pass.deflect(&mut kinematics, self.recording, row);
             for (k, &parameter) in self.free.iter().enumerate() {
                 let column = kinematics.column(parameter, torque) * weight;
-                block.view_mut((3 * at, k), (3, 1)).copy_from(&column);
+                block.fixed_view_mut::<3, 1>(3 * at, k).copy_from(&column);
             }
             if self.socket_count() > 0 {
                 let first = self.free.len() + 3 * self.recording.rows[row].group;

@@ -102,8 +102,8 @@ impl Estimated {
 }
 
 impl Calibration<'_> {
-    /// Pairs of free parameters whose estimates correlate by more than `limit` in size, strongest
-    /// first.
+    /// Pairs of free parameters whose estimates correlate, Cᵢⱼ/√(Cᵢᵢ·Cⱼⱼ), by more than `limit` in
+    /// size, strongest first: dimensionless, −1 to 1.
     pub fn correlations_above(&self, limit: f64) -> Vec<(Parameter, Parameter, f64)> {
         let matrix = self.fit.covariance.correlation();
         let count = self.parameters.len();

@@ -144,11 +144,11 @@ pub(super) fn validate_from(
             bare.update(&setup, recording, &mut pass);
             let problem = Residuals { setup: setup.clone(), free: &free, recording, pass: &pass, held: &[] };
             let options = least_squares::Options::default();
-            let fit = least_squares::fit(&problem, &problem.start(), &options)?;
+            let fit = least_squares::search(&problem, &problem.start(), &options)?;
             is_converged = fit.is_converged();
-            motions = problem.motions(&fit.parameters);
+            motions = problem.motions(fit.parameters());
             for (k, &parameter) in free.iter().enumerate() {
-                setup.set(parameter, fit.parameters[k]);
+                setup.set(parameter, fit.parameters()[k]);
             }
         }
         placement = Some((setup.base(), setup.tool));

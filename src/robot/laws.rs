@@ -31,7 +31,12 @@ impl Robot {
         self.shift(LawPlace::Tool, q, weight.as_slice())
     }
 
+    #[inline]
     fn shift(&self, place: LawPlace, q: &[f64], weight: &[f64]) -> Option<Vector3<f64>> {
+        // most robots have none, and kinematics do little else
+        if self.laws.is_empty() {
+            return None;
+        }
         let own = self.laws_at(place).map(|law| Vector3::from(law.along(q, &[], weight, 1.0)));
         own.reduce(|sum, more| sum + more)
     }

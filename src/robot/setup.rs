@@ -56,7 +56,7 @@ impl<'r> Setup<'r> {
         Pose { rotation: exponential(&self.base_turn) * self.base_guess.rotation, origin: self.base_position }
     }
 
-    /// The value of a parameter, SI.
+    /// The value of a parameter, SI: m, rad, or rad/(N·m) of a compliance.
     pub fn get(&self, parameter: Parameter) -> f64 {
         match parameter {
             Parameter::BasePosition(axis) => self.base_position[axis],

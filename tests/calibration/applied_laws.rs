@@ -8,7 +8,7 @@ use std::sync::LazyLock;
 use nalgebra::Vector3;
 use rodcal::calibration::campaign::Refit;
 use rodcal::calibration::{Calibration, Campaign, Mode, Options, calibrate};
-use rodcal::diagnosis::calibration::{Applied, CalibrationDiagnosis, apply, diagnose};
+use rodcal::diagnosis::calibration::{Applied, CalibrationDiagnosis, apply, diagnose, diagnose_calibrated};
 use rodcal::inference::law::Form;
 use rodcal::prelude::*;
 use rodcal::report::{self, Block};
@@ -20,8 +20,9 @@ use super::lab::Dice;
 
 const NOISE: f64 = 20e-6;
 const TOOL: Vector3<f64> = Vector3::new(0.08, 0.0, 0.25);
-const SEEN: usize = 150;
-const UNSEEN: usize = 60;
+/// Poses that are seen, and others of the validation: fewer where nothing is said of intervals.
+const MANY: (usize, usize) = (150, 60);
+const FEW: (usize, usize) = (100, 40);
 
 /// Where the tip is at the joint values, being pose number so many.
 type Truth<'a> = &'a dyn Fn(&Robot, &[f64], usize) -> Vector3<f64>;
@@ -31,13 +32,8 @@ fn robot() -> Robot {
     Robot::from_text(file, text, None, None).unwrap()
 }
 
-/// Seen by a tracker, validated at other poses.
-fn tracked(seed: u64, truth: Truth) -> Campaign {
-    tracked_at(seed, (SEEN, UNSEEN), truth)
-}
-
-/// At so many poses, and so many others.
-fn tracked_at(seed: u64, (seen, unseen): (usize, usize), truth: Truth) -> Campaign {
+/// Seen by a tracker at so many poses, validated at others.
+fn tracked(seed: u64, (seen, unseen): (usize, usize), truth: Truth) -> Campaign {
     let nominal = robot();
     let mut built = nominal.clone();
     built.joints[1].link.a += 0.4e-3;
@@ -86,7 +82,7 @@ fn assert_settled(
     let noise = 3.0f64.sqrt() * NOISE;
     assert!(validated(&after) < 1.15 * noise, "{} for {noise}", validated(&after));
     assert!(validated(&after) < 0.6 * validated(before), "{} {}", validated(&after), validated(before));
-    let second = diagnosed(&again);
+    let second = diagnose_calibrated(&again, after).unwrap();
     assert!(second.diagnosis.findings.is_empty(), "{:?}", second.diagnosis.findings);
     assert!(second.law.is_none() && second.diagnosis.discrepancy.is_none());
     // the calibrated robot is for `predict`
@@ -101,7 +97,7 @@ fn twisted(built: &Robot, q: &[f64], _: usize) -> Vector3<f64> {
     there.flange_at(q).point(&TOOL)
 }
 
-static TWISTED: LazyLock<Campaign> = LazyLock::new(|| tracked(7, &twisted));
+static TWISTED: LazyLock<Campaign> = LazyLock::new(|| tracked(7, MANY, &twisted));
 static FOUND_TWISTED: LazyLock<CalibrationDiagnosis> = LazyLock::new(|| diagnosed(&TWISTED));
 
 #[test]
@@ -117,7 +113,7 @@ fn a_hose_that_gets_taut_is_written_and_read() {
         there[3] += 1500e-6 * (q[1] + q[2] - 0.2).max(0.0);
         built.flange_at(&there).point(&TOOL)
     };
-    let campaign = tracked_at(8, (100, 40), &taut);
+    let campaign = tracked(8, FEW, &taut);
     assert_settled(&diagnosed(&campaign), LawPlace::Joint(3), None, JointLawVariable::Sum(1));
 }
 
@@ -128,7 +124,7 @@ fn a_loose_tool_is_written_and_read() {
         let flange = built.flange_at(q);
         flange.point(&(TOOL + Vector3::x() * (100e-6 * -flange.rotation.column(0).z.signum())))
     };
-    let campaign = tracked(9, &loose);
+    let campaign = tracked(9, MANY, &loose);
     assert_settled(&diagnosed(&campaign), LawPlace::Tool, None, JointLawVariable::Weight(0));
 }
 
@@ -139,7 +135,7 @@ fn a_wave_in_time_leaves_the_measurements_alone() {
         let by = Vector3::new(0.1e-3, 0.15e-3, 0.0) * (TAU * k as f64 / 13.0).sin();
         built.flange_at(q).point(&TOOL) + by
     };
-    let mut campaign = tracked(10, &wave);
+    let mut campaign = tracked(10, FEW, &wave);
     // the wave of the validation's poses is theirs
     campaign.validation = None;
     let found = diagnosed(&campaign);
@@ -232,7 +228,7 @@ fn of_two_laws_one_comes_after_the_other() {
         let loose = flange.rotation * Vector3::x() * (100e-6 * -flange.rotation.column(0).z.signum());
         twisted(built, q, k) + loose
     };
-    let campaign = tracked(11, &both);
+    let campaign = tracked(11, FEW, &both);
     let found = diagnosed(&campaign);
     let law = found.law.as_ref().unwrap().law.as_ref().unwrap();
     assert!(law.more.is_some());

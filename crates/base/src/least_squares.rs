@@ -26,7 +26,7 @@ mod termination;
 mod trust_region;
 
 pub use covariance::{Covariance, Standing};
-pub use fit::{Fit, fit};
+pub use fit::{Fit, Found, fit, search};
 pub use linear::linear;
 pub use options::{Noise, Options, Prior};
 pub use problem::{Problem, assembled, central_differences};

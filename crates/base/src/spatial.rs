@@ -104,12 +104,14 @@ impl Pose {
     }
 
     /// This frame followed by `next`, which is given in it.
+    #[inline]
     pub fn then(&self, next: &Pose) -> Pose {
         let columns = next.rotation.data.0.map(|column| times(&self.rotation, &column.into()));
         Pose { rotation: Matrix3::from_columns(&columns), origin: self.point(&next.origin) }
     }
 
     /// A point given in this frame, in the frame that this one is given in.
+    #[inline]
     pub fn point(&self, p: &Vector3<f64>) -> Vector3<f64> {
         times(&self.rotation, p) + self.origin
     }
@@ -159,6 +161,7 @@ pub fn left_jacobian(v: &Vector3<f64>) -> Matrix3<f64> {
 }
 
 /// m·v in plain numbers: the general product of matrices takes ten times as long for three columns.
+#[inline]
 pub fn times(m: &Matrix3<f64>, v: &Vector3<f64>) -> Vector3<f64> {
     let [x, y, z] = m.data.0;
     Vector3::new(
@@ -169,22 +172,26 @@ pub fn times(m: &Matrix3<f64>, v: &Vector3<f64>) -> Vector3<f64> {
 }
 
 /// R·Rz(angle), the angle given by its sine and cosine.
+#[inline]
 pub fn turned_about_z(r: &Matrix3<f64>, turn: (f64, f64)) -> Matrix3<f64> {
     with_turned_columns::<0, 1>(r, turn)
 }
 
 /// R·Rx(angle), the angle given by its sine and cosine.
+#[inline]
 pub fn turned_about_x(r: &Matrix3<f64>, turn: (f64, f64)) -> Matrix3<f64> {
     with_turned_columns::<1, 2>(r, turn)
 }
 
 /// R·Ry(angle), the angle given by its sine and cosine.
+#[inline]
 pub fn turned_about_y(r: &Matrix3<f64>, turn: (f64, f64)) -> Matrix3<f64> {
     with_turned_columns::<2, 0>(r, turn)
 }
 
 /// Column a·c + b·s in the place of a, and b·c − a·s in that of b: in plain numbers, for kinematics
 /// do little else.
+#[inline]
 fn with_turned_columns<const A: usize, const B: usize>(r: &Matrix3<f64>, (s, c): (f64, f64)) -> Matrix3<f64> {
     let mut turned = *r;
     let (a, b) = (r.data.0[A], r.data.0[B]);

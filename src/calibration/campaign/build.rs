@@ -109,6 +109,20 @@ impl Campaign {
     /// With poses that the calibrated robot is judged by, measured in {W} without deflection, and
     /// what is fitted again on them.
     ///
+    /// ```
+    /// use rodcal::prelude::*;
+    ///
+    /// let arm = || Robot::new("arm", vec![Joint::new("one", Motion::Revolute, Hayati::default())]);
+    /// let mut measured = Recording::new(1);
+    /// measured.add(&[0.5], [0.1, 0.2, 0.3].into())?;
+    /// let campaign = Campaign::new(arm(), measured.clone())?;
+    /// let judged = campaign.clone().with_validation(measured, Refit::Nothing)?;
+    /// assert_eq!(judged.validation.map(|poses| poses.len()), Some(1));
+    /// // poses of another robot are refused
+    /// assert!(campaign.with_validation(Recording::new(2), Refit::Nothing).is_err());
+    /// # Ok::<(), rodcal::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// As [`Campaign::new`].
     pub fn with_validation(self, validation: Recording, refit: Refit) -> Result<Campaign> {

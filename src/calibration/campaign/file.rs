@@ -1,12 +1,14 @@
 //! The reader of campaign files: the keys, and the files that they name.
 
+mod keys;
+
 use std::path::Path;
 
 use nalgebra::Vector3;
-use serde::Deserialize;
 use toml::Spanned;
 
-use super::constraints::{RawParameters, RawPrior, parameter_constraints};
+use self::keys::{REQUIRED, RawAccuracy, RawBase, RawCampaign, RawClamp, Recorded, above_the_sections};
+use super::constraints::parameter_constraints;
 use super::layout::{Clamp, Role, Seen, Sockets};
 use super::{AccuracyLimits, Campaign, Refit, Warning, checks, recording};
 use crate::error::{Error, Result};
@@ -15,7 +17,7 @@ use crate::rig::readings::Readings;
 use crate::robot::{Robot, is_urdf};
 use crate::rod::Rod;
 use crate::spatial::Pose;
-use crate::toml_text::{Number, Required, TomlText};
+use crate::toml_text::{Number, TomlText};
 use crate::units::{DEG, MM, UM};
 
 /// Bytes of the name of a file, at most.
@@ -107,121 +109,6 @@ impl Campaign {
         let toml = TomlText::new(file, text);
         let raw: RawCampaign = toml.parse(REQUIRED).map_err(above_the_sections)?;
         Reader { file, toml, open, warnings: Vec::new(), is_plan: true }.campaign(&raw)
-    }
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RawCampaign {
-    robot: Spanned<String>,
-    effects: Option<Spanned<String>>,
-    rod: Option<Spanned<String>>,
-    rig: Option<Spanned<String>>,
-    contact_force_n: Option<Spanned<Vec<Number>>>,
-    measurements: Option<Spanned<String>>,
-    validation: Option<Spanned<String>>,
-    base_link: Option<String>,
-    tip_link: Option<String>,
-    validation_refit: Option<Spanned<String>>,
-    tool: Option<RawTool>,
-    base: Option<RawBase>,
-    #[serde(default)]
-    clamp: Vec<RawClamp>,
-    sockets: Option<RawSockets>,
-    noise: Option<RawNoise>,
-    accuracy: Option<RawAccuracy>,
-    #[serde(default)]
-    parameters: RawParameters,
-    #[serde(default)]
-    prior: Vec<RawPrior>,
-}
-
-/// What a campaign has beyond a plan.
-#[derive(Deserialize)]
-struct Recorded {
-    #[serde(rename = "measurements")]
-    _measurements: Spanned<String>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields, expecting = "a section [tool] with xyz_mm")]
-struct RawTool {
-    xyz_mm: Spanned<Vec<Number>>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields, expecting = "a section [base] with xyz_mm and rpy_deg")]
-struct RawBase {
-    xyz_mm: Option<Spanned<Vec<Number>>>,
-    rpy_deg: Option<Spanned<Vec<Number>>>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields, expecting = "a section [[clamp]] with id, xyz_mm, rpy_deg")]
-struct RawClamp {
-    id: Spanned<String>,
-    xyz_mm: Spanned<Vec<Number>>,
-    rpy_deg: Option<Spanned<Vec<Number>>>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields, expecting = "a section [sockets] with distance_mm")]
-struct RawSockets {
-    distance_mm: Number,
-    distance_sd_mm: Option<Number>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields, expecting = "a section [noise] with position_um, clamp_um")]
-struct RawNoise {
-    position_um: Option<Number>,
-    clamp_um: Option<Number>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields, expecting = "a section [accuracy] with mean_um, max_um")]
-struct RawAccuracy {
-    mean_um: Option<Number>,
-    max_um: Option<Number>,
-}
-
-/// What a campaign file cannot do without, in words.
-const REQUIRED: &Required = &[
-    ("robot", "`robot = \"FILE\"` in the first lines: a URDF, a robot in TOML, or \"builtin:tx90\""),
-    ("measurements", "`measurements = \"FILE\"` in the first lines: the CSV file of the recorded poses"),
-    ("xyz_mm", "a position [x, y, z] in mm"),
-    ("id", "the clamp's name in quotes, as in the column clamp of the measurements"),
-    ("distance_mm", "the distance between the sockets 0 and 1 of a placement in mm"),
-    ("parameter", "the name of a parameter with its unit, such as \"a2_mm\""),
-    ("value", "what the parameter is known to be, in the unit that its name ends with"),
-    ("sd", "the standard deviation of that knowledge, in the unit that the parameter's name ends with"),
-];
-
-/// A key of the file itself that stands below a `[section]` belongs to that section, in TOML, not
-/// to the file.
-fn above_the_sections(error: Error) -> Error {
-    const KEYS: [&str; 10] = [
-        "robot",
-        "effects",
-        "rod",
-        "rig",
-        "contact_force_n",
-        "measurements",
-        "validation",
-        "base_link",
-        "tip_link",
-        "validation_refit",
-    ];
-    let stray = match &error {
-        Error::Input { found, .. } => found.strip_prefix("unknown key `").and_then(|f| f.strip_suffix('`')),
-        _ => None,
-    };
-    match stray.filter(|key| KEYS.contains(key)) {
-        Some(key) => {
-            let hint = format!("write {key} above the first [section]");
-            error.with_hint(Some(hint))
-        }
-        None => error,
     }
 }
 

@@ -73,11 +73,13 @@ impl Entry {
     pub fn felt(self) -> Option<Entry> {
         // the terms of a gear's error are distinguished by their number
         let keeps_all = self.law.gear().is_some() && self.columns.iter().any(|column| !column.is_zero());
-        let parameters = self.candidate.parameters.into_iter().zip(self.columns);
+        let is_kept: Vec<bool> = self.columns.iter().map(|column| keeps_all || !column.is_zero()).collect();
+        let law = self.law.of_parameters(&is_kept);
+        let parameters = self.candidate.parameters.into_iter().zip(self.columns).zip(is_kept);
         let (parameters, columns): (Vec<_>, Vec<_>) =
-            parameters.filter(|(_, column)| keeps_all || !column.is_zero()).unzip();
+            parameters.filter(|(_, is_kept)| *is_kept).map(|(own, _)| own).unzip();
         let candidate = Candidate { parameters, ..self.candidate };
-        (!columns.is_empty()).then_some(Entry { candidate, columns, law: self.law })
+        (!columns.is_empty()).then_some(Entry { candidate, columns, law })
     }
 }
 

@@ -22,8 +22,9 @@ pub enum Law {
     Play(TakenUp),
     /// A stiffness that depends on the load.
     Nonlinear(Power),
-    /// Compliance of a joint whose loads nobody knows: one parameter for every frame beyond it.
-    MassesUnknown,
+    /// Compliance of a joint whose loads nobody knows: one parameter for every frame beyond it
+    /// where a weight may sit, by its joint; `None` is the flange.
+    MassesUnknown(Vec<Option<usize>>),
     /// A rod of another stiffness.
     Rod(RodLoad),
     /// Drift.
@@ -102,10 +103,29 @@ impl Law {
             Law::Only
             | Law::Play(_)
             | Law::Nonlinear(_)
-            | Law::MassesUnknown
+            | Law::MassesUnknown(_)
             | Law::Rod(_)
             | Law::Drift(..)
             | Law::Warms(..) => None,
+        }
+    }
+}
+
+impl Law {
+    /// The law of those parameters that are kept, of as many as `is_kept` has.
+    pub fn of_parameters(self, is_kept: &[bool]) -> Law {
+        match self {
+            Law::MassesUnknown(frames) => {
+                let kept = frames.into_iter().zip(is_kept).filter(|(_, is_kept)| **is_kept);
+                Law::MassesUnknown(kept.map(|(frame, _)| frame).collect())
+            }
+            Law::Only
+            | Law::Gear(_)
+            | Law::Play(_)
+            | Law::Nonlinear(_)
+            | Law::Rod(_)
+            | Law::Drift(..)
+            | Law::Warms(..) => self,
         }
     }
 }

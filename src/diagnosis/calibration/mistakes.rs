@@ -19,6 +19,7 @@ mod columns;
 mod displaced;
 mod draft;
 mod elsewhere;
+mod found;
 mod motion;
 mod moves;
 mod names;
@@ -32,24 +33,19 @@ mod tests;
 mod typed;
 mod undo;
 
-use self::draft::{Change, Draft};
-use self::motion::{measure_moves, motion_estimates, moved};
+use self::draft::Draft;
+use self::motion::measure_moves;
 use self::moves::Other;
-use self::names::{place, pose_name};
 use self::quick::Body;
 use self::search::{Found, Search, State, Step};
-use self::slips::Slip;
 use super::apply::{Applied, apply};
 use super::diagnose::{CalibrationDiagnosis, diagnose_calibrated};
-use super::effects::fixture::{BASE_SHIFT, CLAMP_POSE, TOOL_SHIFT};
-use super::effects::mistakes::FRAME_MISTAKE;
 use crate::calibration::campaign::{Campaign, FileNames};
 use crate::calibration::{Compensation, Mode, Options, Summary, calibrate};
 use crate::error::Result;
-use crate::inference::{Description, Effect, Estimate, Finding, Location, Part, Rival};
+use crate::inference::{Finding, Location};
 use crate::robot::Robot;
 use crate::rod::Rod;
-use crate::units::{DEG, MM, significant};
 
 /// What a base or a tip that is not where it was said to be costs where it spoils the calibration,
 /// times what a rough guess costs.
@@ -302,152 +298,4 @@ fn search(campaign: &Campaign, mode: Mode, others: &Neighbours) -> Result<Mended
     mended.found = order.iter().map(|&k| mended.found[k].clone()).collect();
     mended.suspicions = order.iter().map(|&k| mended.suspicions[k].clone()).collect();
     Ok(mended)
-}
-
-impl Mended {
-    fn add(
-        &mut self,
-        effect: &'static Effect,
-        location: Location,
-        estimates: Vec<Estimate>,
-        cure: &str,
-        why: &str,
-    ) {
-        let lower = lower(cure);
-        let words =
-            format!("likely mistake in {location}: {why}; {lower} (`rodcal diagnose calibration` says more)");
-        self.suspicions.push(Suspicion { words, spoils_fit: true });
-        let description = Description { observed: cure.to_owned(), cause: why.to_owned() };
-        self.found.push(Finding::without_terms(effect, location, estimates, description));
-    }
-
-    fn add_found(&mut self, search: &Search, best: &State, found: &Found) {
-        match &found.step {
-            Step::Move(number) => {
-                let own = &search.moves[*number];
-                self.add(
-                    own.effect,
-                    Location::Key(own.location.clone()),
-                    own.estimates.clone(),
-                    &own.cure,
-                    &own.why,
-                );
-                if let Some(last) = self.suspicions.last_mut() {
-                    last.spoils_fit = !own.change.is_guess();
-                }
-            }
-            Step::Elsewhere(change) => self.add_elsewhere(search, best, found, change),
-            Step::Part(number, Change::Within(rows, change)) => {
-                let mut own = search.of_rows[*number].clone();
-                if let Change::Zero { joint, by } = **change {
-                    let error = search.error_of_zero(best, *rows, joint);
-                    own.say_zero(&self.campaign.robot, joint, by, error);
-                }
-                let there = place(&self.campaign.measurements, *rows);
-                let location = Location::Key(format!("{}, {there}", own.location));
-                let cure = format!("{} {there}", own.cure);
-                self.add(own.effect, location, own.estimates, &cure, &own.why);
-            }
-            Step::Part(..) | Step::Slip(_) => return,
-        }
-        let Some(finding) = self.found.last_mut() else { return };
-        finding.p_value = (-found.log_odds).exp();
-        finding.explains = found.explains;
-        let mut rivals: Vec<Rival> = Vec::new();
-        for (effect, location, odds) in &found.rivals {
-            let (location, odds) = (Location::Key(location.clone()), *odds);
-            let is_it = |e: &Effect, at: &Location| e == *effect && *at == location;
-            if !is_it(finding.effect, &finding.location)
-                && !rivals.iter().any(|r| is_it(r.effect, &r.location))
-            {
-                rivals.push(Rival::without_term(effect, location, odds));
-            }
-        }
-        // the base turned about joint 1 says the same, and the rod about the last joint
-        if matches!(&found.step, Step::Move(number) if search.moves[*number].change.is_zero_of_first()) {
-            rivals.push(Rival::without_term(&FRAME_MISTAKE, Location::Key("base.rpy_deg".into()), 1.0));
-        }
-        if let Step::Part(_, Change::Within(_, change)) = &found.step {
-            let last = self.campaign.robot.joints.len().saturating_sub(1);
-            match change.joint_of_zero() {
-                Some(0) => {
-                    rivals.push(Rival::without_term(&BASE_SHIFT.effect, Location::Part(Part::Base), 1.0));
-                }
-                Some(joint) if joint == last => {
-                    rivals.push(Rival::without_term(&TOOL_SHIFT.effect, Location::Part(Part::Tip), 1.0));
-                }
-                _ => {}
-            }
-        }
-        if let Some(clamp) = found.may_be_clamp {
-            let name = self.campaign.measurements.groups[clamp].name.clone();
-            rivals.push(Rival::without_term(&CLAMP_POSE.effect, Location::Named(name), 1.0));
-        }
-        finding.rivals = rivals;
-        finding.next = finding.direct_check(&finding.rivals.iter().collect::<Vec<_>>());
-    }
-
-    /// What happened to a single row, or to a few.
-    fn add_slip(&mut self, slip: Slip) {
-        let Slip { effect, location, estimates, cure, why, log_odds, explains, rivals, .. } = slip;
-        self.add(effect, Location::Key(location), estimates, &cure, &why);
-        let Some(finding) = self.found.last_mut() else { return };
-        (finding.p_value, finding.explains) = ((-log_odds).exp(), explains);
-        let rival = |(effect, place)| Rival::without_term(effect, Location::Key(place), 1.0);
-        finding.rivals = rivals.into_iter().map(rival).collect();
-    }
-
-    /// A frame that moved, with how far.
-    fn add_elsewhere(&mut self, search: &Search, best: &State, found: &Found, change: &Change) {
-        // its number among the stations: those of the file, then one for each such step
-        let earlier = best.steps.iter().take_while(|step| **step != found.step);
-        let number =
-            search.draft.stations + earlier.filter(|step| matches!(step, Step::Elsewhere(_))).count();
-        let bases = &best.fit.bases;
-        let recording = &self.campaign.measurements;
-        let old = match change {
-            Change::Moved(first) => {
-                let before = search.changed(&best.steps);
-                let at = before.rows.iter().position(|&row| row >= *first).unwrap_or(0);
-                before.station[at.saturating_sub(1)]
-            }
-            _ => 0,
-        };
-        let (Some(from), Some(to)) = (bases.get(old), bases.get(number)) else { return };
-        let (way, angle) = moved(from, to);
-        let said = format!("{} mm and {}°", significant(way / MM, 4), significant(angle / DEG, 3));
-        match change {
-            Change::Moved(first) => {
-                let row = first.saturating_sub(1);
-                let after = pose_name(recording, row);
-                let cure = format!(
-                    "Tracker or base moved by {said} after {after}: give the later rows another name in a column station"
-                );
-                let location = Location::Shift { what: None, row, after };
-                let estimates = motion_estimates(from, to);
-                self.add(&BASE_SHIFT.effect, location, estimates, &cure, "it stood in two places");
-            }
-            Change::Apart(clamp) => {
-                let name = recording.groups[*clamp].name.clone();
-                let device = recording.groups[*clamp].device;
-                let there = from.then(&to.inverse()).then(&device);
-                let said = there.origin / MM;
-                let [roll, pitch, yaw] = there.roll_pitch_yaw().map(|angle| significant(angle / DEG, 5));
-                let cure = format!(
-                    "Give {name} xyz_mm = [{:.2}, {:.2}, {:.2}] and rpy_deg = [{roll}, {pitch}, {yaw}]",
-                    said.x, said.y, said.z
-                );
-                let (way, _) = moved(&device, &there);
-                let why = format!("it stands {} mm from where the campaign says", significant(way / MM, 3));
-                let estimates = motion_estimates(&device, &there);
-                self.add(&FRAME_MISTAKE, Location::Key(name), estimates, &cure, &why);
-            }
-            _ => {}
-        }
-    }
-}
-
-fn lower(words: &str) -> String {
-    let mut letters = words.chars();
-    letters.next().map_or_else(String::new, |first| first.to_lowercase().chain(letters).collect())
 }

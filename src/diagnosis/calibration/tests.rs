@@ -14,9 +14,10 @@ mod transfer;
 mod turned;
 mod unnamed;
 
-use nalgebra::Vector3;
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-use nalgebra::DVector;
+use nalgebra::{DVector, Vector3};
 
 use super::context::Context;
 use super::effects::registry;
@@ -39,8 +40,14 @@ use crate::units::UM;
 const ROBOT: &str = include_str!("../../../robots/tx90.toml");
 const ROD: &str = include_str!("../../../rods/5.toml");
 
-/// A TX90 with rod 5# on five clamps, without any noise.
+/// A TX90 with rod 5# on five clamps, without any noise: of each size one, which is made once.
 fn clamps(poses_per_clamp: usize) -> Campaign {
+    static MADE: Mutex<BTreeMap<usize, Arc<OnceLock<Campaign>>>> = Mutex::new(BTreeMap::new());
+    let own = MADE.lock().unwrap_or_else(PoisonError::into_inner).entry(poses_per_clamp).or_default().clone();
+    own.get_or_init(|| simulated(poses_per_clamp)).clone()
+}
+
+fn simulated(poses_per_clamp: usize) -> Campaign {
     let robot = Robot::from_text("tx90.toml", ROBOT, None, None).unwrap();
     let rod = Rod::from_toml("rod", ROD).unwrap();
     let model = Compliance::of_model(&rod, &crate::beam::Physics::default(), DEFAULT_ELEMENTS).unwrap();

@@ -99,19 +99,22 @@ impl Covariance {
             null_space.row_mut(j).copy_from(&(unnoticed / scale[j]));
         }
         let s = residual_sd.unwrap_or(f64::NAN);
+        // s·Vᵢₖ/σₖ
+        let root = DMatrix::from_fn(rank, free.len(), |k, a| s * svd.v[(a, k)] / svd.singular_values[k]);
         let mut matrix = DMatrix::zeros(n, n);
         for (a, &i) in free.iter().enumerate() {
-            for (b, &j) in free.iter().enumerate() {
+            for (b, &j) in free.iter().enumerate().take(a + 1) {
                 let known = standing[i] == Standing::Estimated && standing[j] == Standing::Estimated;
-                matrix[(i, j)] = match known {
+                let covariance = match known {
                     // Cᵢⱼ = s²·Σₖ (Vᵢₖ/σₖ)·(Vⱼₖ/σₖ) / (Dᵢ·Dⱼ)
                     true => {
-                        let of_row = |row: usize, k: usize| s * svd.v[(row, k)] / svd.singular_values[k];
-                        (0..rank).map(|k| of_row(a, k) * of_row(b, k)).sum::<f64>() / (scale[i] * scale[j])
+                        let (a, b) = (root.column(a), root.column(b));
+                        a.iter().zip(&b).map(|(a, b)| a * b).sum::<f64>() / (scale[i] * scale[j])
                     }
                     false if i == j => f64::INFINITY,
                     false => f64::NAN,
                 };
+                (matrix[(i, j)], matrix[(j, i)]) = (covariance, covariance);
             }
         }
         Covariance {

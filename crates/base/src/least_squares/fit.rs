@@ -48,22 +48,13 @@ pub struct Fit {
 /// residuals or Jacobian have another shape than it says; [`Error::Numerical`] where the singular
 /// value decomposition fails.
 pub fn fit(problem: &dyn Problem, start: &DVector<f64>, options: &Options) -> Result<Fit> {
-    check(problem, start, options)?;
-    let m = problem.residual_count();
-    let unweighted = Stacked::new(problem, DVector::from_element(m, 1.0), options);
-    let minimum = minimise(&unweighted, start, options)?;
-    if options.robust == Robust::None || !minimum.reason.is_converged() {
-        let tangent = tangent_plane(&minimum.reduced, &minimum.held, options)?;
-        let dof = (m + options.priors.len()).saturating_sub(tangent.rank);
-        let residual_sd = (dof > 0).then(|| (minimum.residuals.norm_squared() / dof as f64).sqrt());
-        let sigma = match options.noise {
-            Noise::Known(sigma) => Some(sigma),
-            Noise::Estimated => residual_sd,
-        };
-        let covariance = Covariance::new(&tangent, &minimum.held, sigma);
-        return Ok(Fit::new(problem, minimum, unweighted.weights(), covariance, residual_sd));
+    let found = search(problem, start, options)?;
+    if options.robust == Robust::None || !found.is_converged() {
+        return found.judged();
     }
-    let (minimum, weights, scale) = reweighted(problem, minimum, options)?;
+    let m = found.residual_count;
+    let unweighted = Stacked::new(problem, DVector::from_element(m, 1.0), options);
+    let (minimum, weights, scale) = reweighted(problem, found.minimum, options)?;
     // J without weights is finite, for J with weights was
     let stacked = unweighted.residuals(&minimum.parameters);
     let reduced = unweighted.linearise(&minimum.parameters, &stacked, &mut unweighted.store())?;
@@ -72,7 +63,63 @@ pub fn fit(problem: &dyn Problem, start: &DVector<f64>, options: &Options) -> Re
     let residuals = problem.residuals(&minimum.parameters);
     let residual_sd = scale.and_then(|tau| options.robust.residual_sd(&residuals, tau, tangent.rank));
     let covariance = Covariance::new(&tangent, &minimum.held, residual_sd);
-    Ok(Fit::new(problem, minimum, weights, covariance, residual_sd))
+    Ok(Fit::new(residuals, minimum, weights, covariance, residual_sd))
+}
+
+/// Where a fit without robust weights ends, before anybody asks how well it knows it: for fits that
+/// others follow, because the covariance takes as long as an iteration.
+///
+/// # Errors
+/// As [`fit`].
+pub fn search<'o>(problem: &dyn Problem, start: &DVector<f64>, options: &'o Options) -> Result<Found<'o>> {
+    let at_start = check(problem, start, options)?;
+    let residual_count = problem.residual_count();
+    let unweighted = Stacked::new(problem, DVector::from_element(residual_count, 1.0), options);
+    let minimum = minimise(&unweighted, start, &at_start, options)?;
+    Ok(Found { options, residual_count, minimum })
+}
+
+/// What [`search`] found.
+pub struct Found<'o> {
+    options: &'o Options,
+    residual_count: usize,
+    minimum: Minimum,
+}
+
+impl Found<'_> {
+    /// Estimates, n.
+    pub fn parameters(&self) -> &DVector<f64> {
+        &self.minimum.parameters
+    }
+
+    /// Number of combinations of the free parameters that the data determine.
+    pub fn rank(&self) -> usize {
+        self.minimum.rank
+    }
+
+    /// As [`Fit::is_converged`].
+    pub fn is_converged(&self) -> bool {
+        self.minimum.reason.is_converged()
+    }
+
+    /// The same with its covariance.
+    ///
+    /// # Errors
+    /// [`Error::Numerical`] where the singular value decomposition fails.
+    pub fn judged(self) -> Result<Fit> {
+        let Found { options, residual_count: m, minimum } = self;
+        let tangent = tangent_plane(&minimum.reduced, &minimum.held, options)?;
+        let dof = (m + options.priors.len()).saturating_sub(tangent.rank);
+        let residual_sd = (dof > 0).then(|| (minimum.residuals.norm_squared() / dof as f64).sqrt());
+        let sigma = match options.noise {
+            Noise::Known(sigma) => Some(sigma),
+            Noise::Estimated => residual_sd,
+        };
+        let covariance = Covariance::new(&tangent, &minimum.held, sigma);
+        // nothing is weighted, and priors follow
+        let residuals = minimum.residuals.rows(0, m).into_owned();
+        Ok(Fit::new(residuals, minimum, DVector::from_element(m, 1.0), covariance, residual_sd))
+    }
 }
 
 impl Fit {
@@ -88,14 +135,14 @@ impl Fit {
     }
 
     fn new(
-        problem: &dyn Problem,
+        residuals: DVector<f64>,
         minimum: Minimum,
         weights: DVector<f64>,
         covariance: Covariance,
         residual_sd: Option<f64>,
     ) -> Self {
         Fit {
-            residuals: problem.residuals(&minimum.parameters),
+            residuals,
             weights,
             sum_of_squares: minimum.residuals.norm_squared(),
             degrees_of_freedom: minimum.residuals.len().saturating_sub(covariance.rank),
@@ -138,7 +185,7 @@ fn reweighted(
             weights = stage.weights(&residuals, tau);
             let (iterations, evaluations) = (minimum.iterations, minimum.evaluations);
             let system = Stacked::new(problem, weights.clone(), options);
-            minimum = minimise(&system, &minimum.parameters, options)?;
+            minimum = minimise(&system, &minimum.parameters, &residuals, options)?;
             settled = minimum.stood_still && pass >= PASSES_WITH_NEW_SCALE;
             minimum.iterations += iterations;
             minimum.evaluations += evaluations + 1;
@@ -157,7 +204,8 @@ fn reweighted(
     Ok((minimum, weights, scale))
 }
 
-fn check(problem: &dyn Problem, start: &DVector<f64>, options: &Options) -> Result<()> {
+/// Refuses what makes no sense; the residuals at the start otherwise.
+fn check(problem: &dyn Problem, start: &DVector<f64>, options: &Options) -> Result<DVector<f64>> {
     let n = problem.parameter_count();
     let require = |holds: bool, name, found: &dyn std::fmt::Display, expected: String| match holds {
         true => Ok(()),
@@ -206,5 +254,6 @@ fn check(problem: &dyn Problem, start: &DVector<f64>, options: &Options) -> Resu
     require(r.len() == m, "problem", &format!("{} residuals", r.len()), format!("{m}, as it says"))?;
     let radius = options.first_radius;
     require(radius > 0.0, "first_radius", &radius, "a number > 0".into())?;
-    require(options.max_iterations > 0, "max_iterations", &0, "at least 1".into())
+    require(options.max_iterations > 0, "max_iterations", &0, "at least 1".into())?;
+    Ok(r)
 }

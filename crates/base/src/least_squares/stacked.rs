@@ -26,15 +26,14 @@ impl<'a> Stacked<'a> {
         Stacked { problem, root_weights: weights.map(f64::sqrt), priors: &options.priors, sigma }
     }
 
-    /// wᵢ, m.
-    pub fn weights(&self) -> DVector<f64> {
-        self.root_weights.map(|w| w * w)
-    }
-
     /// m residuals, then the priors.
     pub fn residuals(&self, p: &DVector<f64>) -> DVector<f64> {
+        self.stacked(p, &self.problem.residuals(p))
+    }
+
+    /// The same where the residuals rᵢ of the problem are known.
+    pub fn stacked(&self, p: &DVector<f64>, r: &DVector<f64>) -> DVector<f64> {
         let m = self.root_weights.len();
-        let r = self.problem.residuals(p);
         DVector::from_fn(m + self.priors.len(), |i, _| match i.checked_sub(m) {
             None => self.root_weights[i] * r[i],
             Some(k) => {

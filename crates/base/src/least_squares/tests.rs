@@ -309,3 +309,22 @@ fn questions_without_sense_are_refused() {
     let options = Options { priors: vec![prior], ..defaults() };
     assert_eq!(refused(dvector![0.5, 2.0], options), "`priors` is parameter 7, expected an index below 2");
 }
+
+#[test]
+fn a_search_knows_the_rank_that_its_fit_finds() {
+    // the second column twice: three parameters, rank two
+    let twice = DMatrix::from_fn(4, 3, |i, j| if j == 0 { 1.0 } else { i as f64 });
+    for (design, rank) in [(line(&[1.0, 2.0, 3.0, 4.0]), 2), (twice, 2)] {
+        let n = design.ncols();
+        let y = dvector![6.0, 5.0, 7.0, 10.0];
+        let (residuals, jacobian) = (|p: &DVector<f64>| &design * p - &y, |_: &DVector<f64>| design.clone());
+        let problem = Closures { n, m: 4, r: residuals, j: jacobian };
+        let options = Options::default();
+        let start = DVector::zeros(n);
+        let found = search(&problem, &start, &options).unwrap();
+        let fit = fit(&problem, &start, &options).unwrap();
+        assert_eq!((found.rank(), fit.covariance.rank, found.is_converged()), (rank, rank, true));
+        assert_eq!((found.parameters(), &fit.residuals), (&fit.parameters, &residuals(&fit.parameters)));
+        assert_eq!(found.judged().unwrap().sum_of_squares, fit.sum_of_squares);
+    }
+}

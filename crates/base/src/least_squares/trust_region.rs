@@ -51,6 +51,8 @@ pub(super) struct Minimum {
     pub reduced: Reduced,
     /// The bound each parameter rests on and is pushed against.
     pub held: Vec<Option<Side>>,
+    /// Number of combinations of the parameters that are not held which the residuals notice.
+    pub rank: usize,
     /// Cosine between residuals and plane.
     pub cosine: f64,
     /// True where the start was a stationary point already.
@@ -60,8 +62,14 @@ pub(super) struct Minimum {
     pub reason: TerminationReason,
 }
 
-/// Searches a minimum of the stacked sum of squares from `start`, which must lie within the bounds.
-pub(super) fn minimise(system: &Stacked, start: &DVector<f64>, options: &Options) -> Result<Minimum> {
+/// Searches a minimum of the stacked sum of squares from `start`, which must lie within the bounds
+/// and where the problem's residuals are `at_start`.
+pub(super) fn minimise(
+    system: &Stacked,
+    start: &DVector<f64>,
+    at_start: &DVector<f64>,
+    options: &Options,
+) -> Result<Minimum> {
     let mut search = Search {
         system,
         options,
@@ -71,7 +79,7 @@ pub(super) fn minimise(system: &Stacked, start: &DVector<f64>, options: &Options
         evaluations: 0,
         iterations: 0,
     };
-    let Some(mut here) = search.evaluate(start.clone()) else {
+    let Some(mut here) = search.point(start.clone(), system.stacked(start, at_start)) else {
         return Ok(search.nowhere(start, TerminationReason::NonFiniteStart));
     };
     let Some(mut view) = search.linearise(&here)? else {
@@ -117,6 +125,7 @@ pub(super) fn minimise(system: &Stacked, start: &DVector<f64>, options: &Options
         residuals: here.r,
         reduced: view.reduced,
         held: view.held,
+        rank: view.full.rank,
         cosine: view.cosine,
         stood_still,
         iterations: search.iterations,
@@ -230,8 +239,13 @@ struct Search<'a> {
 impl Search<'_> {
     /// The residuals at `p`, if they are finite.
     fn evaluate(&mut self, p: DVector<f64>) -> Option<Point> {
-        self.evaluations += 1;
         let r = self.system.residuals(&p);
+        self.point(p, r)
+    }
+
+    /// A point by its stacked residuals, if they are finite.
+    fn point(&mut self, p: DVector<f64>, r: DVector<f64>) -> Option<Point> {
+        self.evaluations += 1;
         let square = r.norm_squared();
         square.is_finite().then_some(Point { p, r, square })
     }
@@ -370,6 +384,7 @@ impl Search<'_> {
             residuals: self.system.residuals(start),
             reduced: Reduced::unknown(start.len()),
             held: vec![None; start.len()],
+            rank: 0,
             cosine: f64::NAN,
             stood_still: false,
             iterations: self.iterations,

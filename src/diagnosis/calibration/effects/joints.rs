@@ -1,4 +1,4 @@
-//! What a joint and its link do besides their geometry, and the base below them.
+//! What gives way under the weight of the arm: drives, links, and the base below them.
 //!
 //! Where a robot's masses are unknown its torques are a sum over its links, τⱼ = Σ_k m_k·zⱼ·((p_k −
 //! oⱼ) × g), and the compliance has one parameter for every frame beyond the joint: c·m_k·g, rad
@@ -25,16 +25,10 @@ use crate::units::{URAD, URAD_PER_NM};
 /// Angle by which a joint or a link yields to its largest torque beyond what is modelled, rad: a
 /// tenth to a half of what industrial drives yield by altogether (0.5 mrad).
 const YIELDING: f64 = 200e-6;
-/// Scale of an encoder, rad per rad.
-const SCALE: f64 = 1e-4;
-/// What a wrist joint takes along of its neighbour, rad per rad.
-const COUPLED: f64 = 1e-4;
 /// Torque relative to the robot's largest below which a joint counts as unloaded.
 const NO_TORQUE: f64 = 1e-3;
 /// Distance below which frames are at one point and weights have no lever, m.
 const ONE_POINT: f64 = 0.01;
-/// Joints of a wrist.
-const WRIST: usize = 3;
 /// What is said where torques are unknown.
 pub(super) const NO_MASSES: &str = "the robot file has no masses, so that no torque is known";
 
@@ -110,7 +104,7 @@ fn compliance_without_masses(context: &Context, j: usize) -> Option<Entry> {
     };
     let frames =
         beyond.iter().enumerate().filter(|&(at, frame)| differs((at, frame))).map(|(_, frame)| *frame);
-    let parameters: Vec<(Parameter, Column)> = frames
+    let (frames, parameters): (Vec<Option<usize>>, Vec<(Parameter, Column)>) = frames
         .filter_map(|frame| {
             // horizontal lever of a force down at the frame, m
             let arm = |there: &Configuration| there.torque_of(j, &point(there, frame), &down);
@@ -120,18 +114,18 @@ fn compliance_without_masses(context: &Context, j: usize) -> Option<Entry> {
             let mut yielding = linear(name, URAD, YIELDING / largest.max(ONE_POINT));
             // drives yield with their torque, never against it
             yielding.bounds.0 = 0.0;
-            (largest > ONE_POINT).then_some((yielding, column))
+            (largest > ONE_POINT).then_some((frame, (yielding, column)))
         })
-        .collect();
+        .unzip();
     let location = joint_by(j, "masses unknown");
-    let entry = || Entry::new(&JOINT_COMPLIANCE.effect, location, parameters.clone());
-    (!parameters.is_empty()).then(|| entry().by(Law::MassesUnknown))
+    let entry = |parameters| Entry::new(&JOINT_COMPLIANCE.effect, location, parameters);
+    (!parameters.is_empty()).then(|| entry(parameters).by(Law::MassesUnknown(frames)))
 }
 
 fn compliance_observed(finding: &Finding, model: &CalibrationModel) -> String {
     let named = capital(&finding.location);
     match law(finding, model) {
-        Law::MassesUnknown => {
+        Law::MassesUnknown(_) => {
             format!("{named} gives way to the weight beyond it (the robot file has no masses)")
         }
         Law::Only
@@ -156,14 +150,11 @@ fn write_compliance(finding: &Finding, model: &CalibrationModel, extended: &mut 
             extended.robot.joints[joint].compliance = known + first_value(finding);
             WrittenTo::Model
         }
-        (Some(joint), Law::MassesUnknown) => {
+        (Some(joint), Law::MassesUnknown(frames)) => {
             let Some(part) = finding.parts.first() else { return WrittenTo::Nowhere };
-            let names = &model.terms.candidates[part.term.candidate].parameters;
-            for (known, value) in names.iter().zip(&part.term.values).filter(|(_, value)| **value != 0.0) {
-                // `joint_5_urad_per_m`, `flange_urad_per_m`
-                let number = known.name.strip_prefix("joint_").and_then(|name| name.split('_').next());
-                let at = number.and_then(|number| number.parse::<usize>().ok()).map(|number| number - 1);
-                extended.robot.effects.push(robot::Effect::Weight { joint, at, per_metre: *value });
+            for (&at, &per_metre) in frames.iter().zip(&part.term.values).filter(|(_, value)| **value != 0.0)
+            {
+                extended.robot.effects.push(robot::Effect::Weight { joint, at, per_metre });
             }
             WrittenTo::Model
         }
@@ -226,7 +217,7 @@ fn nonlinear_observed(finding: &Finding, model: &CalibrationModel) -> String {
         | Law::Only
         | Law::Gear(_)
         | Law::Play(_)
-        | Law::MassesUnknown
+        | Law::MassesUnknown(_)
         | Law::Rod(_)
         | Law::Drift(..)
         | Law::Warms(..) => ("µrad/(N·m)²", "the square of"),
@@ -327,110 +318,4 @@ fn tilt(context: &Context) -> Option<Entry> {
     let size = YIELDING / largest.max(f64::MIN_POSITIVE);
     let tilting = linear("tilt_urad_per_nm", URAD_PER_NM, size);
     (largest > 0.0).then(|| single(&GRAVITY_TILT, Location::Part(Part::Base), tilting, column))
-}
-
-/// A joint that turns more or less than its encoder says.
-pub static ENCODER_SCALE: CalibrationEffect = CalibrationEffect {
-    effect: Effect {
-        name: "encoder_scale",
-        kind: Kind::Physics,
-        summary: "a joint turns more or less than its encoder shows",
-        formula: "Jⱼ·(s − 1)·qⱼ",
-        prior: "1e-4: 1 count in 10⁴, the share of an eccentric disc read over part of a turn",
-        parameters: &[("factor", "s: angle turned over angle shown")],
-        needs: "a joint that turns",
-        cause: "the scale of its encoder",
-        cause_at: |location| format!("the encoder's scale of {location}"),
-        written_to: WrittenTo::Model,
-        reported: Reported::Alone,
-        seen_along: |location| along(location, JointVariable::Angle),
-        direct_check: None,
-    },
-    candidates: scales,
-    estimates: own_parameters,
-    observed: scale_observed,
-    write: write_scale,
-    transfer: Transfer::Candidate,
-    event: no_event,
-};
-
-fn scales(context: &Context, _: &mut Vec<NotTestable>) -> Vec<Entry> {
-    let of_joint = |j: usize| {
-        let mut factor = linear("factor", 1.0, SCALE);
-        factor.neutral = 1.0;
-        single(&ENCODER_SCALE, joint(j), factor, context.turn(j, |_, there| there.joints[j]))
-    };
-    context.revolute().into_iter().map(of_joint).collect()
-}
-
-fn scale_observed(finding: &Finding, _: &CalibrationModel) -> String {
-    let excess = first(finding).map(|factor| 1e6 * (factor - 1.0));
-    let word = if excess.value >= 0.0 { "more" } else { "less" };
-    let (named, excess) = (capital(&finding.location), excess.size().say(""));
-    format!("{named} turns {excess} µrad per radian {word} than its encoder shows")
-}
-
-fn write_scale(finding: &Finding, _: &CalibrationModel, extended: &mut Campaign) -> WrittenTo {
-    let Some(joint) = finding.location.joint() else { return WrittenTo::Nowhere };
-    let factor = first_value(finding);
-    extended.robot.effects.push(robot::Effect::EncoderScale { joint, factor });
-    WrittenTo::Model
-}
-
-/// A wrist joint that takes its neighbour along.
-pub static WRIST_COUPLING: CalibrationEffect = CalibrationEffect {
-    effect: Effect {
-        name: "wrist_coupling",
-        kind: Kind::Physics,
-        summary: "a wrist joint drives its neighbour",
-        formula: "J_J·k·q_I: joint I drives joint J, neighbours among the last three",
-        prior: "1e-4 rad per rad",
-        parameters: &[("fraction", "rotation of the driven joint per rotation of the driving one")],
-        needs: "neighbouring joints of a wrist that turn",
-        cause: "coupled wrist gears",
-        cause_at: |location| format!("coupling of {location}"),
-        written_to: WrittenTo::Model,
-        reported: Reported::Alone,
-        seen_along: |_| Vec::new(),
-        direct_check: None,
-    },
-    candidates: couplings,
-    estimates: own_parameters,
-    observed: coupling_observed,
-    write: write_coupling,
-    transfer: Transfer::Candidate,
-    event: no_event,
-};
-
-/// Neighbours among the last joints, either driving the other.
-fn couplings(context: &Context, _: &mut Vec<NotTestable>) -> Vec<Entry> {
-    let count = context.joint_count();
-    let turning = context.revolute();
-    let neighbours = count.saturating_sub(WRIST)..count.saturating_sub(1);
-    let pairs = neighbours.flat_map(|k| [(k, k + 1), (k + 1, k)]);
-    let both = pairs.filter(|(i, j)| turning.contains(i) && turning.contains(j));
-    both.map(|(from, to)| {
-        let column = context.turn(to, |_, there| there.joints[from]);
-        let fraction = linear("fraction", 1.0, COUPLED);
-        single(&WRIST_COUPLING, Location::Coupling { from, to }, fraction, column)
-    })
-    .collect()
-}
-
-fn coupling_observed(finding: &Finding, _: &CalibrationModel) -> String {
-    let share = first(finding).map(|share| 1e6 * share).say("µrad");
-    match finding.location {
-        Location::Coupling { from, to } => {
-            let (from, to) = (from + 1, to + 1);
-            format!("Joint {to} turns by {share} for every radian of joint {from}")
-        }
-        _ => format!("{}: {share} per radian", finding.location),
-    }
-}
-
-fn write_coupling(finding: &Finding, _: &CalibrationModel, extended: &mut Campaign) -> WrittenTo {
-    let Location::Coupling { from, to } = finding.location else { return WrittenTo::Nowhere };
-    let fraction = first_value(finding);
-    extended.robot.effects.push(robot::Effect::Coupling { from, joint: to, fraction });
-    WrittenTo::Model
 }

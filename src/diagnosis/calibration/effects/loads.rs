@@ -106,7 +106,7 @@ fn rod_observed(finding: &Finding, model: &CalibrationModel) -> String {
         | Law::Gear(_)
         | Law::Play(_)
         | Law::Nonlinear(_)
-        | Law::MassesUnknown
+        | Law::MassesUnknown(_)
         | Law::Drift(..)
         | Law::Warms(..) => None,
     };

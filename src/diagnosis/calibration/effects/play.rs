@@ -69,7 +69,7 @@ fn play_observed(finding: &Finding, model: &CalibrationModel) -> String {
         | Law::Only
         | Law::Gear(_)
         | Law::Nonlinear(_)
-        | Law::MassesUnknown
+        | Law::MassesUnknown(_)
         | Law::Rod(_)
         | Law::Drift(..)
         | Law::Warms(..) => "taken up on the side that its load pulls to",

@@ -1,13 +1,11 @@
 //! The list of all effects of a calibration: the only source of their names.
 
 use super::contact::{CONTACT_FORCE_VARIATION, CONTACT_SPRING};
+use super::encoders::{ENCODER_SCALE, WRIST_COUPLING};
 use super::events::{JOINT_SHIFT, OUTLIER};
 use super::fixture::{BASE_SHIFT, CLAMP_POSE, CLAMP_SHIFT, SOCKET_SHIFT, TOOL_SHIFT};
 use super::gear::TRANSMISSION_ERROR;
-use super::joints::{
-    ENCODER_SCALE, GRAVITY_TILT, JOINT_COMPLIANCE, JOINT_NONLINEAR_STIFFNESS, LINK_FLEXIBILITY,
-    WRIST_COUPLING,
-};
+use super::joints::{GRAVITY_TILT, JOINT_COMPLIANCE, JOINT_NONLINEAR_STIFFNESS, LINK_FLEXIBILITY};
 use super::loads::{GRAVITY_DIRECTION, PAYLOAD_MASS, ROD_STIFFNESS, TIP_MASS};
 use super::play::{BACKLASH, JOINT_FRICTION};
 use super::procedure::{READBACK_LAG, THERMAL_DRIFT};

@@ -13,7 +13,7 @@
 use nalgebra::Vector3;
 
 use super::draft::{Change, Draft, Rows};
-use super::quick::{Body, Fit};
+use super::quick::{Body, Fit, from_points};
 use crate::statistics::median;
 
 /// Degrees of freedom of the distances' distribution.
@@ -37,6 +37,8 @@ const OF_A_MEDIAN: f64 = 1.858;
 pub(super) struct Reference<'a> {
     fit: &'a Fit,
     body: &'a Body<'a>,
+    /// A draft, and its tips.
+    known: (&'a Draft, Vec<Vector3<f64>>),
     /// Of each socket the middle of its tips in {0}; zero where the points were measured.
     centres: Vec<Vector3<f64>>,
     /// s, m.
@@ -47,10 +49,10 @@ pub(super) struct Reference<'a> {
 
 impl<'a> Reference<'a> {
     /// By a fit of all rows of `draft`.
-    pub fn of_all(draft: &Draft, body: &'a Body<'a>, fit: &'a Fit) -> Reference<'a> {
+    pub fn of_all(draft: &'a Draft, body: &'a Body<'a>, fit: &'a Fit) -> Reference<'a> {
         let mut centres = vec![Vector3::zeros(); draft.devices.len()];
+        let tips = fit.tips(draft, body);
         if draft.has_sockets() {
-            let tips = fit.offsets(draft, body);
             for (group, centre) in centres.iter_mut().enumerate() {
                 let own = || draft.group.iter().zip(&tips).filter(|(own, _)| **own == group);
                 *centre = Vector3::from_fn(|axis, _| {
@@ -59,11 +61,11 @@ impl<'a> Reference<'a> {
                 });
             }
         }
-        Reference { fit, body, centres, scale: fit.scale, far: FAR * fit.scale }
+        Reference { fit, body, known: (draft, tips), centres, scale: fit.scale, far: FAR * fit.scale }
     }
 
     /// By a fit of some rows of `draft`.
-    pub fn of_some(draft: &Draft, body: &'a Body<'a>, fit: &'a Fit) -> Reference<'a> {
+    pub fn of_some(draft: &'a Draft, body: &'a Body<'a>, fit: &'a Fit) -> Reference<'a> {
         let all = Reference::of_all(draft, body, fit);
         let elsewhere = ELSEWHERE * body.reach;
         Reference { scale: fit.scale.max(elsewhere), far: all.far.max(FAR_ELSEWHERE * elsewhere), ..all }
@@ -76,8 +78,25 @@ impl<'a> Reference<'a> {
 
     /// From the points to their tips, m.
     pub fn offsets(&self, draft: &Draft) -> Vec<Vector3<f64>> {
-        let off = self.fit.offsets(draft, self.body);
+        let off = from_points(draft, self.tips(draft));
         off.iter().zip(&draft.group).map(|(off, &group)| off - self.centres[group]).collect()
+    }
+
+    /// The tip of every row of `draft`: most changes leave those of most rows where they are.
+    fn tips(&self, draft: &Draft) -> Vec<Vector3<f64>> {
+        let (known, tips) = &self.known;
+        let is_known = |&at: &usize| {
+            at < known.len()
+                && known.joints(at) == draft.joints(at)
+                && known.station[at] == draft.station[at]
+                && known.devices[known.group[at]] == draft.devices[draft.group[at]]
+        };
+        let others: Vec<usize> = (0..draft.len()).filter(|at| !is_known(at)).collect();
+        let mut there: Vec<Vector3<f64>> = tips.clone();
+        there.resize(draft.len(), Vector3::zeros());
+        let moved = self.fit.tips(&draft.part(&others), self.body);
+        others.iter().zip(moved).for_each(|(&at, tip)| there[at] = tip);
+        there
     }
 
     /// What each row of `draft` gains by being as in `changed`; nothing where it is not there, or

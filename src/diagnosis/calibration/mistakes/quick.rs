@@ -231,12 +231,20 @@ fn residuals(
     columns: Option<(&[Parameter], &mut DMatrix<f64>)>,
     weight: &[f64],
 ) -> Vec<Vector3<f64>> {
-    let off = offsets(draft, state, torque, deflection, columns);
+    let off = from_points(draft, tips(draft, state, torque, deflection, columns));
     minus_means(&off, draft, weight)
 }
 
-/// The same before the means of sockets are taken off.
-fn offsets(
+/// From the point of every row to its tip; with sockets the tip itself.
+pub(super) fn from_points(draft: &Draft, mut tips: Vec<Vector3<f64>>) -> Vec<Vector3<f64>> {
+    if !draft.has_sockets() {
+        tips.iter_mut().enumerate().for_each(|(row, tip)| *tip -= draft.point(row));
+    }
+    tips
+}
+
+/// The tips of the rows, and the columns as [`residuals`] has them.
+fn tips(
     draft: &Draft,
     state: &State,
     torque: &[f64],
@@ -245,14 +253,14 @@ fn offsets(
 ) -> Vec<Vector3<f64>> {
     let count = draft.joint_count;
     let mut kinematics = Kinematics::new(&state.setup);
-    let mut off = Vec::with_capacity(draft.len());
+    let mut tips = Vec::with_capacity(draft.len());
     for row in 0..draft.len() {
         let torque = &torque[row * count..][..count];
         kinematics.update(draft.joints(row), torque);
         kinematics.tip += times(&kinematics.flange.rotation, &deflection[row]);
         let base = state.bases.get(draft.station[row]).copied().unwrap_or(Pose::IDENTITY);
         let tip = base.point(&kinematics.tip);
-        off.push(if draft.has_sockets() { tip } else { tip - draft.point(row) });
+        tips.push(tip);
         if let Some((free, block)) = &mut columns {
             for (k, &parameter) in free.iter().enumerate() {
                 let column = times(&base.rotation, &kinematics.column(parameter, torque));
@@ -266,7 +274,7 @@ fn offsets(
             }
         }
     }
-    off
+    tips
 }
 
 /// One Gauss–Newton step, by the columns of the state.
@@ -344,11 +352,17 @@ impl Fit {
 
     /// From the point of every row of `draft` to its tip, in {W}, m; with sockets the tip in {0}.
     pub fn offsets(&self, draft: &Draft, body: &Body) -> Vec<Vector3<f64>> {
+        from_points(draft, self.tips(draft, body))
+    }
+
+    /// The tip of every row of `draft`, in {W} (with sockets in {0}), m: a row's depends on its
+    /// joints, its station and its device.
+    pub fn tips(&self, draft: &Draft, body: &Body) -> Vec<Vector3<f64>> {
         let state = State { setup: self.setup(body), bases: self.bases.clone() };
         let mut torque = vec![0.0; draft.joints.len()];
         let mut deflection = vec![Vector3::zeros(); draft.len()];
         load(draft, body, &state, &mut torque, &mut deflection);
         load(draft, body, &state, &mut torque, &mut deflection);
-        offsets(draft, &state, &torque, &deflection, None)
+        tips(draft, &state, &torque, &deflection, None)
     }
 }

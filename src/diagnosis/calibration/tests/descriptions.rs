@@ -78,7 +78,7 @@ fn every_effect_has_words_and_its_number() {
         let effect = candidate.effect;
         let finding = as_if(&model, index);
         let words = finding.description.to_string();
-        let is_bare = *model.law(index) == Law::MassesUnknown;
+        let is_bare = matches!(model.law(index), Law::MassesUnknown(_));
         assert!(is_bare || words.contains('±') || words.contains(" to "), "{effect}: {words}");
         assert!(!words.contains("NaN") && !words.contains('_'), "{effect}: {words}");
         assert!(!(effect.cause_at)(&candidate.location).contains('_'));
@@ -198,4 +198,36 @@ fn findings_go_where_their_record_says() {
         let is_same_recording = extended.measurements == campaign.measurements;
         assert_eq!(is_same_recording, written != WrittenTo::Recording, "{}", candidate.effect);
     }
+}
+
+/// Weights that nobody knows: each number is written at the frame that its name says, and frames
+/// go with their parameters where one does nothing.
+#[test]
+fn a_weight_is_written_at_the_frame_of_its_number() {
+    let mut campaign = clamps(12);
+    campaign.robot.joints.iter_mut().for_each(|joint| joint.body = None);
+    let (model, _) = modelled(&campaign, Mode::None);
+    let mut count = 0;
+    for (index, candidate) in model.candidates().iter().enumerate() {
+        let Law::MassesUnknown(frames) = model.law(index) else { continue };
+        let named = |at: &Option<usize>| {
+            at.map_or("flange_urad_per_m".to_owned(), |k| format!("joint_{}_urad_per_m", k + 1))
+        };
+        let names: Vec<String> = candidate.parameters.iter().map(|known| known.name.clone()).collect();
+        assert_eq!(frames.iter().map(named).collect::<Vec<_>>(), names);
+        let mut extended = campaign.clone();
+        let record = registry::record(candidate.effect).unwrap();
+        (record.write)(&as_if(&model, index), &model, &mut extended);
+        let at = |effect: &crate::robot::Effect| match effect {
+            crate::robot::Effect::Weight { joint, at, .. } if Some(*joint) == candidate.location.joint() => {
+                *at
+            }
+            other => panic!("{other:?}"),
+        };
+        assert_eq!(&extended.robot.effects.iter().map(at).collect::<Vec<_>>(), frames);
+        count += frames.len();
+    }
+    assert!(count > 3, "{count}");
+    let law = Law::MassesUnknown(vec![Some(3), Some(4), None]);
+    assert_eq!(law.of_parameters(&[true, false, true]), Law::MassesUnknown(vec![Some(3), None]));
 }

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use super::*;
 use crate::diagnosis::calibration::Neighbours;
+use crate::diagnosis::calibration::prepared::Prepared;
 use crate::inference::{Effect, Linearised, UNKNOWN, infer};
 use crate::units::MM;
 
@@ -42,8 +43,8 @@ static PLACEBO: Effect = Effect { name: "placebo", ..UNKNOWN };
 fn the_gears_of_a_ur5_predict_other_poses_and_a_placebo_is_refused() {
     let Some(campaign) = ur5() else { return };
     let calibration = calibrate(&campaign, Mode::None, &Options::default()).unwrap();
-    let mut context = Context::new(&campaign, &calibration).unwrap();
-    let evidence = super::super::evidence::evidence_of(&campaign, &calibration, &context);
+    let prepared = Prepared::new(&campaign, calibration).unwrap();
+    let Prepared { model, evidence, mut context, .. } = prepared;
     let mut entries = entries(&context);
     let joints: Vec<Vec<f64>> =
         context.configurations.iter().map(|configuration| configuration.joints.clone()).collect();
@@ -61,7 +62,6 @@ fn the_gears_of_a_ur5_predict_other_poses_and_a_placebo_is_refused() {
         entry
     });
     entries.extend(placebos);
-    let (model, _) = CalibrationModel::new(&campaign, calibration).unwrap();
     let (terms, _) = LinearTerms::new(entries, &evidence);
     let model = CalibrationModel { terms, ..model };
     let whole = Linearised::new(&model);

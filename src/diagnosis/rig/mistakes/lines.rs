@@ -114,16 +114,27 @@ pub(super) fn fit(points: &[(f64, f64)]) -> Fit {
     let floor = FLOOR * largest.max(f64::MIN_POSITIVE);
     let mut scatter = (FIRST_GUESS * largest).max(floor);
     let mut weights = vec![1.0; points.len()];
+    // loads in units of the largest, so that the matrix is well conditioned
+    let row = |&(x, _): &(f64, f64)| {
+        let sign = if x == 0.0 || !has_both { 0.0 } else { x.signum() };
+        [x / load, 1.0, sign]
+    };
+    let rows: Vec<[f64; 3]> = points.iter().map(row).collect();
     let mut found = nothing;
     for _ in 0..ROUNDS {
-        // loads in units of the largest, so that the matrix is well conditioned
+        // Σ w·row·rowᵀ and Σ row·w·y in plain numbers: trials of mistakes do little else
         let mut normal = Matrix3::zeros();
         let mut right = Vector3::zeros();
-        for (&(x, y), weight) in points.iter().zip(&weights) {
-            let sign = if x == 0.0 || !has_both { 0.0 } else { x.signum() };
-            let row = Vector3::new(x / load, 1.0, sign);
-            normal += row * row.transpose() * *weight;
-            right += row * (weight * y);
+        for ((row, (_, y)), weight) in rows.iter().zip(points).zip(&weights) {
+            for i in 0..3 {
+                for j in 0..=i {
+                    normal[(i, j)] += row[i] * row[j] * weight;
+                }
+                right[i] += row[i] * (weight * y);
+            }
+        }
+        for (i, j) in [(1, 0), (2, 0), (2, 1)] {
+            normal[(j, i)] = normal[(i, j)];
         }
         let prior = (scatter / (AWAY_FROM_ORIGIN * largest).max(floor)).powi(2);
         normal[(1, 1)] += prior;

@@ -192,10 +192,30 @@ fn clean_recordings_have_no_mistakes() {
     cases.check();
 }
 
+/// One bench each, so that they run side by side.
 #[test]
-fn no_physics_is_a_mistake_however_large() {
+fn no_physics_is_a_mistake_however_large_in_all_channels() {
+    no_physics_is_a_mistake_however_large(Bench::Full);
+}
+
+#[test]
+fn no_physics_is_a_mistake_however_large_in_the_loads_own_channels() {
+    no_physics_is_a_mistake_however_large(Bench::Own);
+}
+
+#[test]
+fn no_physics_is_a_mistake_however_large_under_one_axis() {
+    no_physics_is_a_mistake_however_large(Bench::OneAxis);
+}
+
+#[test]
+fn no_physics_is_a_mistake_however_large_on_one_line() {
+    no_physics_is_a_mistake_however_large(Bench::OneLine);
+}
+
+fn no_physics_is_a_mistake_however_large(bench: Bench) {
     let mut wrong = Vec::new();
-    recordings(&BENCHES, 1, |what, file, clean| {
+    recordings(&[bench], 1, |what, file, clean| {
         let model = RigModel::new(&clean, Some(file)).unwrap().0;
         for (index, candidate) in model.candidates().iter().enumerate() {
             // an effect with many places acts alike at neighbouring ones

@@ -1,0 +1,137 @@
+//! What may be wrong with the columns of the joints: signs, zeros, orders, units.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use super::super::super::effects::mistakes::{OFFSET_MISTAKE, SIGN_MISTAKE, SWAP_MISTAKE, UNIT_MISTAKE};
+use super::super::draft::Change;
+use super::conventions::TURN_IN_RADIANS;
+use super::{List, RARE, UNUSUAL, exact};
+use crate::robot::Motion;
+use crate::units::DEG;
+
+impl List<'_> {
+    pub(super) fn joints(&mut self) {
+        let count = self.draft.joint_count;
+        let turns: Vec<usize> =
+            (0..count).filter(|&j| self.campaign.robot.joints[j].motion == Motion::Revolute).collect();
+        let all: Vec<usize> = (0..count).collect();
+        let every = match count {
+            1 => self.column(0),
+            _ => format!("{} … {}", self.column(0), self.column(count - 1)),
+        };
+        for j in 0..count {
+            let name = self.column(j);
+            let change = Change::factors(&[j], count, -1.0);
+            self.add(&SIGN_MISTAKE, &name, change, &format!("Multiply {name} by −1"), "its sign is wrong");
+        }
+        if count > 1 {
+            let change = Change::factors(&all, count, -1.0);
+            self.add(
+                &SIGN_MISTAKE,
+                &every,
+                change,
+                &format!("Multiply {every} by −1"),
+                "their signs are wrong",
+            )
+            .log_prior = UNUSUAL;
+        }
+        for &j in &turns {
+            let name = self.column(j);
+            for quarter in [1.0, -1.0, 2.0] {
+                let degrees = 90.0 * quarter;
+                let said = if degrees > 0.0 {
+                    format!("Add {degrees}° to")
+                } else {
+                    format!("Subtract {}° from", -degrees)
+                };
+                let change = Change::offset(j, count, 1.0, FRAC_PI_2 * quarter);
+                let why = format!("the joint's zero is off by {}°", degrees.abs());
+                self.add(&OFFSET_MISTAKE, &name, change, &format!("{said} {name}"), &why).estimates =
+                    exact("deg", degrees);
+                let change = Change::offset(j, count, -1.0, FRAC_PI_2 * quarter);
+                let cure = format!("Replace {name} by {degrees}° − {name}");
+                let mirrored =
+                    self.add(&OFFSET_MISTAKE, &name, change, &cure, "its sign and its zero are wrong");
+                mirrored.estimates = exact("deg", degrees);
+                mirrored.log_prior = RARE;
+            }
+        }
+        self.orders(count);
+        self.angle_units(&turns, &every);
+    }
+
+    fn orders(&mut self, count: usize) {
+        let same =
+            |a: usize, b: usize| self.campaign.robot.joints[a].motion == self.campaign.robot.joints[b].motion;
+        let pairs: Vec<(usize, usize)> = (0..count)
+            .flat_map(|a| (a + 1..count).map(move |b| (a, b)))
+            .filter(|&(a, b)| same(a, b))
+            .collect();
+        for (a, b) in pairs {
+            let mut order: Vec<usize> = (0..count).collect();
+            order.swap(a, b);
+            let (first, second) = (self.column(a), self.column(b));
+            let place = format!("{first} and {second}");
+            let cure = format!("Exchange the columns {first} and {second}");
+            self.add(&SWAP_MISTAKE, &place, Change::order(order), &cure, "each holds the other joint");
+        }
+        if count < 3
+            || (1..count)
+                .any(|j| self.campaign.robot.joints[j].motion != self.campaign.robot.joints[0].motion)
+        {
+            return;
+        }
+        let every = format!("{} … {}", self.column(0), self.column(count - 1));
+        let mut add = |order: Vec<usize>, cure: &str, why: &str| {
+            self.add(&SWAP_MISTAKE, &every, Change::order(order), cure, why).log_prior = UNUSUAL;
+        };
+        let cure = "Turn the order of the joint columns round";
+        add((0..count).rev().collect(), cure, "they run from the flange to the base");
+        let cure = "Name each joint column by the joint after it, and the last one by the first";
+        add(
+            (0..count).map(|j| (j + count - 1) % count).collect(),
+            cure,
+            "the columns are displaced by one joint",
+        );
+        let cure = "Name each joint column by the joint before it, and the first one by the last";
+        add((0..count).map(|j| (j + 1) % count).collect(), cure, "the columns are displaced by one joint");
+    }
+
+    /// Radians are small, and degrees that were converted once more are huge: an arm that hardly
+    /// moves would fit anything that does not move.
+    fn angle_units(&mut self, turns: &[usize], every: &str) {
+        let count = self.draft.joint_count;
+        let largest = |j: usize| {
+            let of_joint = self.draft.joints.iter().skip(j).step_by(count);
+            of_joint.fold(0.0, |most: f64, q| most.max(q.abs())) / DEG
+        };
+        let largest: Vec<f64> = (0..count).map(largest).collect();
+        let is_of_rows = self.is_of_rows;
+        let are_small = |joints: &[usize]| is_of_rows || joints.iter().all(|&j| largest[j] < TURN_IN_RADIANS);
+        let are_huge = |joints: &[usize]| is_of_rows || joints.iter().any(|&j| largest[j] > 720.0);
+        let mut all = Vec::new();
+        if turns.len() > 1 {
+            all.push((turns.to_vec(), every.to_owned(), UNUSUAL + 1.0));
+        }
+        all.extend(turns.iter().map(|&j| (vec![j], self.column(j), UNUSUAL)));
+        for (joints, name, log_prior) in all {
+            let it = if joints.len() > 1 { "they are" } else { "it is" };
+            if are_small(&joints) {
+                let change = Change::factors(&joints, count, 180.0 / PI);
+                let why = format!("{it} in radians, not in degrees");
+                let radians =
+                    self.add(&UNIT_MISTAKE, &name, change, &format!("Multiply {name} by 180/π"), &why);
+                radians.estimates = exact("factor", 180.0 / PI);
+                radians.log_prior = log_prior;
+            }
+            if are_huge(&joints) {
+                let change = Change::factors(&joints, count, PI / 180.0);
+                let why = format!("{it} degrees that were converted to degrees once more");
+                let twice =
+                    self.add(&UNIT_MISTAKE, &name, change, &format!("Multiply {name} by π/180"), &why);
+                twice.estimates = exact("factor", PI / 180.0);
+                twice.log_prior = log_prior + UNUSUAL;
+            }
+        }
+    }
+}

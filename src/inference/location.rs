@@ -210,6 +210,14 @@ impl Location {
         }
     }
 
+    /// The last row, from 0, before something moved that stayed there.
+    pub fn moved_after(&self) -> Option<usize> {
+        match self {
+            Location::Shift { row, .. } | Location::JointAfter { row, .. } => Some(*row),
+            _ => None,
+        }
+    }
+
     /// One place of several.
     pub fn and(self, other: Location) -> Location {
         match self {

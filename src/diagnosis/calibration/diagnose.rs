@@ -106,11 +106,7 @@ fn moved_after(prepared: &Prepared, hypothesis: &Hypothesis) -> Vec<usize> {
         return Vec::new();
     }
     let location = |term: &Term| &prepared.model.terms.candidates[term.candidate].location;
-    let row = |location: &Location| match location {
-        Location::Shift { row, .. } | Location::JointAfter { row, .. } => Some(*row),
-        _ => None,
-    };
-    hypothesis.terms.iter().map(location).filter_map(row).collect()
+    hypothesis.terms.iter().map(location).filter_map(Location::moved_after).collect()
 }
 
 /// So many times a search begins anew about the robot that is left beside what was found, with the
@@ -175,7 +171,7 @@ impl CalibrationDiagnosis<'_> {
             let effect = self.model.terms.candidates[part.term.candidate].effect;
             let words = registry::record(effect).and_then(|effect| (effect.event)(&part.location));
             let row = self.model.first_row(&part.term);
-            let stays = matches!(part.location, Location::Shift { .. } | Location::JointAfter { .. });
+            let stays = part.location.moved_after().is_some();
             happened.extend(row.zip(words).map(|(row, words)| Happened { row, stays, words }));
         }
         happened

@@ -42,8 +42,8 @@ pub(super) const JOINT_ANGLE: f64 = 150e-6;
 const KNOCK: (f64, f64) = (0.5 * MM, 0.5e-3);
 /// Most rows that may be outliers.
 const MOST_PLACES: usize = 200;
-/// In a recording of no more rows each may be that after which something moved; of a longer one every
-/// third, fourth …, then the very row.
+/// In a recording of no more rows each may be that after which something moved; of a longer one
+/// every third, fourth …, then the very row.
 pub(super) const EVERY_ROW: usize = 100;
 /// Names of the parameters of a displacement and of a turn.
 const SHIFT: [&str; 3] = ["dx_um", "dy_um", "dz_um"];

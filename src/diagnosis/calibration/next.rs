@@ -63,9 +63,10 @@ pub(super) fn next_poses(
     let odds: Vec<f64> = rivals.iter().map(|rival| rival.odds).collect();
     let mut design = ExperimentDesign::default();
     let hypotheses: Vec<&Named> = std::iter::once(&own).chain(&others).collect();
+    let moved_after: Vec<usize> = hypotheses.iter().flat_map(|hypothesis| hypothesis.moved_after()).collect();
     for poses in feasible(campaign, &context.configurations) {
         let (campaign, calibration) = poses.measured(campaign, calibration);
-        let context = Context::new(&campaign, &calibration)?;
+        let context = Context::new(&campaign, &calibration)?.moved_after(&moved_after);
         let evidence = evidence::evidence_of(&campaign, &calibration, &context);
         let evidence = evidence::unknown_beforehand(&evidence);
         let (mut entries, _) = registry::candidates(&context);
@@ -74,7 +75,7 @@ pub(super) fn next_poses(
         let Some(then) = distances(&terms, &evidence) else { continue };
         let gained = |(then, now): (&Option<f64>, &Option<f64>)| match (then, now) {
             (Some(then), Some(now)) => then - now,
-            // the scan of another number of rows has no place for this rival: nothing is known
+            // other poses have no place for this rival: nothing is known
             _ => 0.0,
         };
         design.offer(poses, then.iter().zip(&now).map(gained).collect(), &odds);
@@ -116,6 +117,11 @@ impl Named {
             (candidate.effect, candidate.location.clone(), term.values.clone())
         };
         Named(hypothesis.iter().map(named).collect())
+    }
+
+    /// Rows, from 0, after which something moved.
+    fn moved_after(&self) -> impl Iterator<Item = usize> {
+        self.0.iter().filter_map(|(_, location, _)| location.moved_after())
     }
 
     /// `None` where one of them is not there, or has other parameters.

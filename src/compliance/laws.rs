@@ -14,6 +14,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::Compliance;
+use crate::rod::constants::covariance;
 use crate::rod::{LawVariable, Rod, RodLaw};
 use crate::units::{STANDARD_GRAVITY, UM};
 
@@ -103,6 +104,47 @@ impl StaticLaws {
             secant.gravity.set_column(axis, &(linear.gravity.column(axis) + under_weight));
         }
         secant
+    }
+
+    /// Standard uncertainty of [`StaticLaws::secant`] that the constants of the laws bring with
+    /// them, to first order:
+    ///
+    /// ```text
+    /// u² = J·Σ·Jᵀ       Σ = covariance of a law's constants, J by central differences over ±u
+    /// ```
+    pub fn secant_uncertainty(&self, linear: &Compliance, load: f64) -> Compliance {
+        let zero = Compliance { force: Matrix3::zeros(), gravity: Matrix3::zeros() };
+        let mut square = zero;
+        for (number, acting) in self.acting.iter().enumerate() {
+            let constants = &acting.law.constants;
+            let by_unit: Vec<Compliance> = constants
+                .iter()
+                .enumerate()
+                .map(|(k, own)| {
+                    let u = own.standard_uncertainty;
+                    let shifted = |sign: f64| {
+                        let mut laws = self.clone();
+                        laws.acting[number].law.constants[k].value += sign * u;
+                        laws.secant(linear, load)
+                    };
+                    let [more, less] = [1.0, -1.0].map(shifted);
+                    let slope = |a: f64, b: f64| if u > 0.0 { 0.5 * (a - b) / u } else { 0.0 };
+                    Compliance {
+                        force: more.force.zip_map(&less.force, slope),
+                        gravity: more.gravity.zip_map(&less.gravity, slope),
+                    }
+                })
+                .collect();
+            let covariance = covariance(constants);
+            for (i, a) in by_unit.iter().enumerate() {
+                for (j, b) in by_unit.iter().enumerate() {
+                    square.force += a.force.component_mul(&b.force) * covariance[(i, j)];
+                    square.gravity += a.gravity.component_mul(&b.gravity) * covariance[(i, j)];
+                }
+            }
+        }
+        let root = |entry: f64| entry.max(0.0).sqrt();
+        Compliance { force: square.force.map(root), gravity: square.gravity.map(root) }
     }
 
     /// The largest load at the tip (N) that the laws were recorded with, each by its own variable.
@@ -200,8 +242,13 @@ mod tests {
     }
 
     fn proportional(place: &str, variable: LawVariable, slope: f64) -> RodLaw {
-        let constant =
-            LawConstant { name: "c".into(), value: slope, standard_uncertainty: 0.0, unit: String::new() };
+        let constant = LawConstant {
+            name: "c".into(),
+            value: slope,
+            standard_uncertainty: 0.1 * slope,
+            correlation: Vec::new(),
+            unit: String::new(),
+        };
         let formula = format!("c*{}", variable.symbol());
         RodLaw::new(place, variable, formula, vec![constant], (0.0, 10.0)).unwrap()
     }
@@ -240,6 +287,14 @@ mod tests {
         let laws = StaticLaws::of_tip(&with_law);
         let found = laws.displacement(&compliance, &force, &Vector3::zeros());
         assert!((found - compliance * force * 0.1).norm() < 1e-15);
+        // each constant to a tenth of it
+        let linear = Compliance { force: compliance, gravity: Matrix3::zeros() };
+        let u = laws.secant_uncertainty(&linear, 2.0);
+        assert!(
+            (u.force - compliance.abs() * 0.01).amax() < 1e-12 && u.gravity.amax() < 1e-15,
+            "{}",
+            u.force
+        );
         assert!(laws.beyond(&force, &Vector3::zeros()).is_empty());
         assert_eq!(laws.beyond(&(force * 4.0), &Vector3::zeros())[0].1, 12.0);
         // of the rig 5 µm/N along the load besides

@@ -39,13 +39,13 @@ pub(super) fn formula(law: &Law, x: &str, is_signed: bool, direction: usize) -> 
     };
     match law.memory {
         Memory::Side => format!("side*({plain})"),
-        _ => plain,
+        Memory::None | Memory::Stop | Memory::BoucWen(_) | Memory::Lag => plain,
     }
 }
 
 /// The constants of a law.
 pub(super) fn constants(law: &Law) -> Vec<LawConstant> {
-    let own = |constant: &Constant| LawConstant {
+    let own = |(k, constant): (usize, &Constant)| LawConstant {
         name: constant.symbol.clone(),
         value: digits(constant.value),
         // several values apart have no standard deviation: the source says which they are
@@ -53,9 +53,10 @@ pub(super) fn constants(law: &Law) -> Vec<LawConstant> {
             true => rounded((constant.high - constant.low) / (2.0 * HALF)),
             false => 0.0,
         },
+        correlation: (0..k).filter_map(|j| law.correlation.get((k, j)).copied().map(thousandths)).collect(),
         unit: constant.unit.clone(),
     };
-    law.amplitudes.iter().chain(law.constant.iter().map(|(_, constant)| constant)).map(own).collect()
+    law.constants().enumerate().map(own).collect()
 }
 
 /// From where to where its variable was recorded, in its unit.
@@ -83,4 +84,10 @@ fn digits(value: f64) -> f64 {
 /// Two digits, as uncertainties have (GUM 7.2.6).
 fn rounded(value: f64) -> f64 {
     format!("{value:.1e}").parse().unwrap_or(value)
+}
+
+/// As exactly as a correlation is known; towards 0, so that those of several constants stay
+/// possible.
+fn thousandths(value: f64) -> f64 {
+    (value * 1000.0).trunc() / 1000.0
 }

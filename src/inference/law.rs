@@ -8,10 +8,10 @@
 //!
 //! w what one unit of the law does to a datum (the place says it), x the variable, X its largest
 //! size, g the functions of the form, s its one number that is not linear (an exponent, a corner,
-//! a period, a lag). The amplitudes a are integrated in closed form (`score.rs`), s on a grid
-//! with its prior, both beside the findings, the numbers of the files and the zeros, which are
-//! fitted anew with every law. What a form costs is in that integral; its prior is the share that
-//! its place and its fellows leave it.
+//! a period, a lag; of a Bouc–Wen loop three). The amplitudes a are integrated in closed form
+//! (`score.rs`), s on a grid with its prior, both beside the findings, the numbers of the files
+//! and the zeros, which are fitted anew with every law. What a form costs is in that integral; its
+//! prior is the share that its place and its fellows leave it.
 //!
 //! ```text
 //! sites (forward model) → remainder → smooth curves → forms → held out → a law, or why there is none
@@ -19,12 +19,15 @@
 //!
 //! A law is a proposal beside what is unexplained. It changes no finding.
 
+mod bouc_wen;
 mod choice;
+mod described;
 mod folds;
 mod form;
 mod left;
 mod measured;
 mod memory;
+mod peak;
 mod posterior;
 mod proposal;
 mod proposed;
@@ -35,8 +38,9 @@ mod site;
 #[cfg(test)]
 mod tests;
 
+pub use bouc_wen::LoopShape;
 pub use form::{Constant, Form, FormConstant};
 pub use memory::Memory;
 pub use proposal::propose;
-pub use proposed::{Beside, Law, LawRival, NextRecord, Point, Proposed, Refusal};
-pub use site::{Course, Measure, Site};
+pub use proposed::{Beside, Law, LawRival, NextRecord, Point, Proposed, Refusal, Second};
+pub use site::{Course, Instant, Measure, Site};

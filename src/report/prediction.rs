@@ -135,8 +135,24 @@ fn tips_of(
         predicted.iter().map(|predicted| predicted.slopes.as_ref()).collect();
     let own = slopes.zip(robot.uncertainty.as_ref());
     let rows = 3 * predicted.len();
-    let mut variance = vec![Vector3::zeros(); predicted.len()];
     let mut ratios = None;
+    let of_laws = robot.law_covariance();
+    let mut jacobian = DMatrix::zeros(rows, of_laws.nrows());
+    for (row, predicted) in predicted.iter().enumerate() {
+        jacobian.rows_mut(3 * row, 3).copy_from(&predicted.law_slopes);
+    }
+    // of nothing to align there is nothing to take out
+    let mut taken_up = DMatrix::zeros(rows, 0);
+    if is_aligned {
+        let mut placement = DMatrix::zeros(rows, 9);
+        for (row, predicted) in predicted.iter().enumerate() {
+            placement.rows_mut(3 * row, 3).copy_from(&predicted.placement);
+        }
+        let svd = thin_svd(&placement)?;
+        taken_up = svd.u.columns(0, svd.rank(1e-9)).into_owned();
+    }
+    let aligned = |jacobian: DMatrix<f64>| &jacobian - &taken_up * transposed_product(&taken_up, &jacobian);
+    let mut variance = variances(&aligned(jacobian), &of_laws);
     if let Some((slopes, known)) = own {
         let mut jacobian = DMatrix::zeros(rows, known.parameters.len());
         for (row, slopes) in slopes.iter().enumerate() {
@@ -148,16 +164,8 @@ fn tips_of(
         let by_row = variances(&jacobian.select_columns(&of_robot), &covariance);
         let at_ease = robot.calibrated.as_ref().map(|range| range.sd).filter(|sd| *sd > 0.0);
         ratios = at_ease.map(|sd| by_row.iter().map(|of| of.sum().sqrt() / sd).collect());
-        if is_aligned {
-            let mut placement = DMatrix::zeros(rows, 9);
-            for (row, predicted) in predicted.iter().enumerate() {
-                placement.rows_mut(3 * row, 3).copy_from(&predicted.placement);
-            }
-            let svd = thin_svd(&placement)?;
-            let basis = svd.u.columns(0, svd.rank(1e-9)).into_owned();
-            jacobian -= &basis * transposed_product(&basis, &jacobian);
-        }
-        variance = variances(&jacobian, &known.covariance);
+        let of_parameters = variances(&aligned(jacobian), &known.covariance);
+        variance.iter_mut().zip(of_parameters).for_each(|(sum, own)| *sum += own);
     }
     // a gear is known where it was seen turn
     let sizes = robot.effect_sizes();

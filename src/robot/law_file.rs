@@ -170,7 +170,8 @@ unit = "µrad"
 [[law.constant]]
 name = "q_0"
 value = 20.0
-standard_uncertainty = 0.0
+standard_uncertainty = 0.2
+correlation = [-0.5]
 unit = "°"
 "#;
 
@@ -218,6 +219,20 @@ unit = "°"
                     + "[[law.constant]]\nname = \"q\"\nvalue = 1\n",
                 ":7:8",
                 "a name of its own",
+            ),
+            (
+                law("joint 1", "angle of joint 2", "formula = \"q\"")
+                    + "[[law.constant]]\nname = \"k\"\nvalue = 1\ncorrelation = [0.1]\n",
+                ":9:15",
+                "0 numbers",
+            ),
+            (
+                law("joint 1", "angle of joint 2", "formula = \"q\"")
+                    + "[[law.constant]]\nname = \"k\"\nvalue = 1\n\
+                       [[law.constant]]\nname = \"l\"\nvalue = 1\ncorrelation = [0.9]\n\
+                       [[law.constant]]\nname = \"m\"\nvalue = 1\ncorrelation = [0.9, -0.9]\n",
+                ":16:15",
+                "can have with each other",
             ),
         ];
         for (text, place, words) in cases {

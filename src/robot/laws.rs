@@ -49,7 +49,8 @@ impl Robot {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::robot::{Effect, Hayati, Joint, JointLawVariable, Motion};
+    use crate::robot::{Effect, Hayati, Joint, JointLawVariable, Motion, Tip};
+    use crate::rod::LawConstant;
 
     fn arm(gravity: [f64; 3]) -> Robot {
         let link = |a: f64, alpha: f64| Hayati { a, alpha, ..Hayati::default() };
@@ -87,6 +88,39 @@ mod tests {
         let mut turned = Q;
         turned[0] += 300e-6 * Q[0] * Q[1];
         assert!((tip(&product) - arm([0.0; 3]).tip_at(TOOL, &turned).0).norm() < 1e-15);
+    }
+
+    /// What a law of two constants adds is known as well as their covariance says.
+    #[test]
+    fn the_uncertainty_of_a_law_is_that_of_its_constants() {
+        let constant = |name: &str, u: f64, correlation: Vec<f64>| LawConstant {
+            name: name.into(),
+            value: 3.0,
+            standard_uncertainty: u,
+            correlation,
+            unit: String::new(),
+        };
+        let constants = vec![constant("a", 2.0, vec![]), constant("b", 30.0, vec![-0.8])];
+        let formulas = vec!["a*q + b".to_owned()];
+        let variable = JointLawVariable::Angle(1);
+        let law = RobotLaw::new(LawPlace::Joint(0), None, variable, formulas, constants, (-90.0, 90.0));
+        let mut known = arm([0.0; 3]);
+        known.laws = vec![law.unwrap()];
+        let moved = |turn: f64| {
+            let q = [Q[0] + turn, Q[1]];
+            arm([0.0; 3]).tip_at(TOOL, &q).0
+        };
+        let per_urad = (moved(1e-6) - moved(-1e-6)) / 2.0;
+        let q = Q[1].to_degrees();
+        let variance = 4.0 * q * q + 900.0 - 2.0 * 0.8 * 2.0 * 30.0 * q;
+        let predicted = known.predicted_at(TOOL, &Q);
+        let found = &predicted.law_slopes * known.law_covariance() * predicted.law_slopes.transpose();
+        let expected = per_urad.component_mul(&per_urad) * variance;
+        assert!((found.diagonal() - expected).amax() < 1e-4 * expected.amax(), "{found} {expected}");
+        // beside the error of poses that were held out
+        known.tip = Some(Tip { at: TOOL, sd: Some(1e-5) });
+        let sd = known.tip_at(TOOL, &Q).1.unwrap();
+        assert!((sd.y.powi(2) - 1e-10 - expected.y).abs() < 1e-4 * expected.amax(), "{sd} {expected}");
     }
 
     /// A link that turns about its x is one with another twist α.

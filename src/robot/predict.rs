@@ -1,10 +1,11 @@
 //! Where a calibrated robot's tip is, at any joint values, and the file that they come from.
 
-use nalgebra::{Matrix3xX, Vector3};
+use nalgebra::{DMatrix, Matrix3xX, Vector3};
 
 use super::{Effect, Kinematics, Loads, Parameter, Robot, RobotLaw, Setup};
 use crate::delimited::Table;
 use crate::error::{Error, Place, Result};
+use crate::rod::constants::covariance;
 use crate::spatial::Pose;
 use crate::units::STANDARD_GRAVITY;
 
@@ -27,6 +28,8 @@ pub struct PredictedTip {
     pub tip: Vector3<f64>,
     /// ∂tip/∂parameter of the parameters whose uncertainty the file states, SI.
     pub slopes: Option<Matrix3xX<f64>>,
+    /// ∂tip/∂constant of the laws, in the order of [`Robot::law_covariance`].
+    pub law_slopes: Matrix3xX<f64>,
     /// ∂tip/∂(base and tool), which a user may align anew.
     pub placement: Matrix3xX<f64>,
     /// ∂tip/∂q, m/rad or m/m.
@@ -39,7 +42,7 @@ impl Robot {
     /// The tip at `tool` (m, in {T}), in {0}, m: joints deflect under the robot's own weight, the
     /// tool is rigid. With it the standard deviation of each coordinate, m, where the robot's file
     /// says what it takes: √(sd² + diag J·Σ·Jᵀ), sd the error of poses that were held out and Σ the
-    /// covariance of the parameters.
+    /// covariance of the parameters and of the laws' constants.
     ///
     /// ```
     /// use rodcal::prelude::*;
@@ -61,6 +64,8 @@ impl Robot {
             let variance = own.map_or_else(Vector3::zeros, |(slopes, known)| {
                 (slopes * &known.covariance * slopes.transpose()).diagonal()
             });
+            let of_laws = &predicted.law_slopes * self.law_covariance() * predicted.law_slopes.transpose();
+            let variance = variance + of_laws.diagonal();
             variance.map(|own| (sd * sd + own).sqrt())
         });
         (predicted.tip, sd)
@@ -70,13 +75,7 @@ impl Robot {
     pub fn predicted_at(&self, tool: Vector3<f64>, q: &[f64]) -> PredictedTip {
         let setup = Setup::new(self, Pose::IDENTITY, tool);
         let mut kinematics = Kinematics::new(&setup);
-        let mut torque = vec![0.0; self.joints.len()];
-        let loads = Loads { gravity: self.gravity, payload: None, tip_force: Vector3::zeros() };
-        for _ in 0..ROUNDS {
-            kinematics.update(q, &torque);
-            kinematics.torques(&loads, &mut torque);
-        }
-        kinematics.update(q, &torque);
+        let torque = self.settle(&mut kinematics, q);
         let column = |&parameter: &Parameter| kinematics.column(parameter, &torque);
         let slopes = self.uncertainty.as_ref().filter(|known| !known.parameters.is_empty());
         let slopes = slopes
@@ -92,7 +91,70 @@ impl Robot {
             law.is_beyond(x).then_some((k, x))
         };
         let laws_beyond = self.laws.iter().enumerate().filter_map(beyond).collect();
-        PredictedTip { tip: kinematics.tip, slopes, placement, joints, laws_beyond }
+        let law_slopes = self.law_slopes(tool, q);
+        PredictedTip { tip: kinematics.tip, slopes, law_slopes, placement, joints, laws_beyond }
+    }
+
+    /// The tip alone.
+    fn tip_of(&self, tool: Vector3<f64>, q: &[f64]) -> Vector3<f64> {
+        let setup = Setup::new(self, Pose::IDENTITY, tool);
+        let mut kinematics = Kinematics::new(&setup);
+        self.settle(&mut kinematics, q);
+        kinematics.tip
+    }
+
+    /// Joints and the torques that turn them; the torques.
+    fn settle(&self, kinematics: &mut Kinematics, q: &[f64]) -> Vec<f64> {
+        let mut torque = vec![0.0; self.joints.len()];
+        let loads = Loads { gravity: self.gravity, payload: None, tip_force: Vector3::zeros() };
+        for _ in 0..ROUNDS {
+            kinematics.update(q, &torque);
+            kinematics.torques(&loads, &mut torque);
+        }
+        kinematics.update(q, &torque);
+        torque
+    }
+
+    /// Central differences over ±u of each constant that has one.
+    fn law_slopes(&self, tool: Vector3<f64>, q: &[f64]) -> Matrix3xX<f64> {
+        let constants = self.uncertain_constants();
+        if constants.is_empty() {
+            return Matrix3xX::zeros(0);
+        }
+        let mut robot = self.clone();
+        let slope = |&(law, k): &(usize, usize)| {
+            let own = &self.laws[law].constants[k];
+            let mut at = |value: f64| {
+                robot.laws[law].constants[k].value = value;
+                robot.tip_of(tool, q)
+            };
+            let u = own.standard_uncertainty;
+            let difference = at(own.value + u) - at(own.value - u);
+            at(own.value);
+            difference / (2.0 * u)
+        };
+        Matrix3xX::from_columns(&constants.iter().map(slope).collect::<Vec<Vector3<f64>>>())
+    }
+
+    /// Covariance of the constants of laws that have an uncertainty, law after law; laws are
+    /// independent of each other. What follows the way that a joint came is in its values.
+    pub fn law_covariance(&self) -> DMatrix<f64> {
+        let constants = self.uncertain_constants();
+        let by_law: Vec<DMatrix<f64>> = self.laws.iter().map(|law| covariance(&law.constants)).collect();
+        let entry = |i: usize, j: usize| {
+            let ((law, k), (other, l)) = (constants[i], constants[j]);
+            if law == other { by_law[law][(k, l)] } else { 0.0 }
+        };
+        DMatrix::from_fn(constants.len(), constants.len(), entry)
+    }
+
+    /// Law and number of each.
+    fn uncertain_constants(&self) -> Vec<(usize, usize)> {
+        let of_law = |(law, own): (usize, &RobotLaw)| {
+            let is_uncertain = |k: &usize| own.constants[*k].standard_uncertainty > 0.0 && !own.is_sided();
+            (0..own.constants.len()).filter(is_uncertain).map(|k| (law, k)).collect::<Vec<_>>()
+        };
+        self.laws.iter().enumerate().flat_map(of_law).collect()
     }
 
     /// Root mean square of what the effects of each joint's own angle add over its calibrated

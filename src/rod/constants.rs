@@ -1,5 +1,6 @@
 //! The constants of a law in a file: `[[law.constant]]`.
 
+use nalgebra::DMatrix;
 use serde::Deserialize;
 use toml::Spanned;
 
@@ -15,6 +16,7 @@ pub(crate) struct RawConstant {
     name: Spanned<String>,
     value: Number,
     standard_uncertainty: Option<Number>,
+    correlation: Option<Spanned<Vec<Number>>>,
     #[serde(default)]
     unit: String,
 }
@@ -38,10 +40,58 @@ pub(crate) fn read(toml: &TomlText, raw: &[RawConstant], symbol: &str) -> Result
                 Some(number) => toml.not_negative("law.constant.standard_uncertainty", number)?,
                 None => 0.0,
             },
+            correlation: match &own.correlation {
+                Some(row) => correlation(toml, row, constants.len())?,
+                None => Vec::new(),
+            },
             unit: own.unit.clone(),
         });
+        if let Some(row) = own.correlation.as_ref().filter(|_| !is_possible(&constants)) {
+            let expected = "correlations that constants can have with each other";
+            return Err(toml.is("law.constant.correlation", row, expected));
+        }
     }
     Ok(constants)
+}
+
+/// A constant's correlations with those before it.
+fn correlation(toml: &TomlText, row: &Spanned<Vec<Number>>, before: usize) -> Result<Vec<f64>> {
+    if row.get_ref().len() != before {
+        let expected = format!("{before} numbers: one for each constant before it");
+        return Err(toml.is("law.constant.correlation", row, &expected));
+    }
+    let one = |number: &Number| {
+        let value = toml.finite("law.constant.correlation", number)?;
+        match value.abs() <= 1.0 {
+            true => Ok(value),
+            false => Err(toml.is("law.constant.correlation", number, "numbers from -1 to 1")),
+        }
+    };
+    row.get_ref().iter().map(one).collect()
+}
+
+/// True where no combination of the constants has a negative variance, but for rounding.
+fn is_possible(constants: &[LawConstant]) -> bool {
+    const ROUNDING: f64 = 1e-3;
+    correlations(constants).symmetric_eigenvalues().iter().all(|value| *value > -ROUNDING)
+}
+
+fn correlations(constants: &[LawConstant]) -> DMatrix<f64> {
+    let count = constants.len();
+    DMatrix::from_fn(count, count, |i, j| match i == j {
+        true => 1.0,
+        false => constants[i.max(j)].correlation.get(i.min(j)).copied().unwrap_or(0.0),
+    })
+}
+
+/// The covariance of a law's constants, each in its unit.
+pub(crate) fn covariance(constants: &[LawConstant]) -> DMatrix<f64> {
+    let mut covariance = correlations(constants);
+    for (k, own) in constants.iter().enumerate() {
+        covariance.row_mut(k).scale_mut(own.standard_uncertainty);
+        covariance.column_mut(k).scale_mut(own.standard_uncertainty);
+    }
+    covariance
 }
 
 /// From where to where a law was recorded.
@@ -64,6 +114,9 @@ pub(crate) fn written(range: (f64, f64), source: Option<&str>, constants: &[LawC
         lines.push(format!("[[law.constant]]\nname = {}", quoted(&own.name)));
         lines.push(format!("value = {:?}", own.value));
         lines.push(format!("standard_uncertainty = {:?}", own.standard_uncertainty));
+        if own.correlation.iter().any(|value| *value != 0.0) {
+            lines.push(format!("correlation = {:?}", own.correlation));
+        }
         lines.push(format!("unit = {}", quoted(&own.unit)));
     }
     lines

@@ -44,9 +44,39 @@ pub enum LawMemory {
     /// The formula's variable is what a play leaves of it; the constant `r` is half the play's
     /// width, in the unit of the variable.
     Stop,
+    /// The formula's variable is z of a Bouc–Wen loop, dz/dx = 1 − (s·sgn(z·dx) + 1 − s)·|z/r|ⁿ;
+    /// the constants `r`, in the unit of the variable, `n` and `s` = β/(β + γ).
+    BoucWen,
     /// The formula's variable is what it lacks of its lagged self; the constant `tau` is the lag's
     /// time, s.
     Lag,
+}
+
+/// A constant that a memory needs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MemoryConstant {
+    /// In files.
+    pub name: &'static str,
+    /// Its least and largest value; nothing where all above 0 are possible.
+    pub range: Option<(f64, f64)>,
+}
+
+impl MemoryConstant {
+    /// True for a value that it can have.
+    pub fn may_be(&self, value: f64) -> bool {
+        match self.range {
+            None => value > 0.0,
+            Some((low, high)) => low <= value && value <= high,
+        }
+    }
+
+    /// `r > 0`, `n from 1 to 8`.
+    pub fn words(&self) -> String {
+        match self.range {
+            None => format!("{} > 0", self.name),
+            Some((low, high)) => format!("{} from {low} to {high}", self.name),
+        }
+    }
 }
 
 /// A number of a law.
@@ -58,6 +88,9 @@ pub struct LawConstant {
     pub value: f64,
     /// In the unit; 0 is exact.
     pub standard_uncertainty: f64,
+    /// Its correlation coefficients with the constants before it (GUM 5.2.2); nothing where it has
+    /// none.
+    pub correlation: Vec<f64>,
     /// For people: the formula's own units say what it is.
     pub unit: String,
 }
@@ -176,19 +209,28 @@ impl LawVariable {
 }
 
 impl LawMemory {
+    /// All of them.
+    pub const ALL: [LawMemory; 3] = [LawMemory::Stop, LawMemory::BoucWen, LawMemory::Lag];
+
     /// In files.
     pub fn key(self) -> &'static str {
         match self {
             LawMemory::Stop => "stop",
+            LawMemory::BoucWen => "bouc_wen",
             LawMemory::Lag => "lag",
         }
     }
 
-    /// The constant that is its own.
-    pub fn constant(self) -> &'static str {
+    /// The constants that are its own.
+    pub fn constants(self) -> &'static [MemoryConstant] {
+        const fn own(name: &'static str, range: Option<(f64, f64)>) -> MemoryConstant {
+            MemoryConstant { name, range }
+        }
+        const R: MemoryConstant = own("r", None);
         match self {
-            LawMemory::Stop => "r",
-            LawMemory::Lag => "tau",
+            LawMemory::Stop => &[R],
+            LawMemory::BoucWen => const { &[R, own("n", Some((1.0, 8.0))), own("s", Some((0.5, 1.0)))] },
+            LawMemory::Lag => const { &[own("tau", None)] },
         }
     }
 }
@@ -271,6 +313,7 @@ impl RodLaw {
         let significant = |x: f64| crate::units::significant(x, 3);
         let memory = match self.memory {
             Some(LawMemory::Stop) => ", of what a play leaves of it",
+            Some(LawMemory::BoucWen) => ", of what a Bouc–Wen loop makes of it",
             Some(LawMemory::Lag) => ", of what it lacks of its lagged self",
             None => "",
         };
@@ -303,7 +346,13 @@ mod tests {
     use super::*;
 
     fn constant(name: &str, value: f64) -> LawConstant {
-        LawConstant { name: name.into(), value, standard_uncertainty: 0.0, unit: String::new() }
+        LawConstant {
+            name: name.into(),
+            value,
+            standard_uncertainty: 0.0,
+            correlation: Vec::new(),
+            unit: String::new(),
+        }
     }
 
     #[test]

@@ -219,10 +219,9 @@ fn a_law_of_a_robot_is_said_with_its_units() {
     });
 }
 
-/// Both a link that twists and a loose tool: one is proposed and says that it is not all, the other
-/// is found once that one is written.
+/// Both a link that twists and a loose tool: both are proposed together, and written together.
 #[test]
-fn of_two_laws_one_comes_after_the_other() {
+fn two_laws_are_proposed_together() {
     let both = |built: &Robot, q: &[f64], k: usize| {
         let flange = built.flange_at(q);
         let loose = flange.rotation * Vector3::x() * (100e-6 * -flange.rotation.column(0).z.signum());
@@ -231,24 +230,23 @@ fn of_two_laws_one_comes_after_the_other() {
     let campaign = tracked(11, FEW, &both);
     let found = diagnosed(&campaign);
     let law = found.law.as_ref().unwrap().law.as_ref().unwrap();
-    assert!(law.more.is_some());
-    assert!(
-        section(&found).contains("It may not be all: beside it something follows the "),
-        "{}",
-        section(&found)
-    );
+    let second = law.second.as_ref().unwrap();
+    assert!(law.more.is_none() && second.held_out.1 < 0.95 * second.held_out.0, "{:?}", second.held_out);
+    assert!(section(&found).contains("Beside it a second law is proposed: "), "{}", section(&found));
     let json = report::diagnosis::calibration::json(&found);
-    assert!(json["law"]["more_left"]["variable"].is_string(), "{}", json["law"]);
-    let first = written(&applied(&found), "");
-    let then = diagnosed(&first);
-    let law = then.law.as_ref().unwrap().law.as_ref().unwrap();
-    assert!(law.more.is_none(), "{:?}", law.more);
-    let last = written(&applied(&then), "");
+    assert!(json["law"]["second"]["expression"]["text"].is_string(), "{}", json["law"]);
+    let last = written(&applied(&found), "");
     let mut laws: Vec<(LawPlace, JointLawVariable)> =
         last.robot.laws.iter().map(|law| (law.place, law.variable)).collect();
     laws.sort_by_key(|(place, _)| *place == LawPlace::Tool);
     let truth =
         [(LawPlace::Link(2), JointLawVariable::Angle(4)), (LawPlace::Tool, JointLawVariable::Weight(0))];
     assert_eq!(laws, truth);
+    // what is written carries how well it is known, and predict says so
+    let q = vec![0.4; last.robot.joints.len()];
+    let predicted = last.robot.predicted_at(Vector3::zeros(), &q);
+    let of_laws = &predicted.law_slopes * last.robot.law_covariance() * predicted.law_slopes.transpose();
+    let sd = of_laws.diagonal().sum().sqrt();
+    assert!(1e-8 < sd && sd < 50e-6, "{sd}");
     assert!(diagnosed(&last).diagnosis.discrepancy.is_none());
 }

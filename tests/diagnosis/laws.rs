@@ -142,6 +142,40 @@ fn friction_that_falls_with_the_load() {
     }
 }
 
+/// A clamp that slips little by little, by the equation of Bouc and Wen: found as that, or as a
+/// stop or friction that these readings do not distinguish from it.
+#[test]
+fn a_clamp_that_slips_little_by_little() {
+    let slips = Effect::SlippingClamp { per_newton: 9.0 * UM, yields: 2.5, sharpness: 2.0, balance: 0.6 };
+    let mut named = 0;
+    for seed in 51..54 {
+        let order = Order { unloading: true, ..order() };
+        let answer = Answer::made(&order, std::slice::from_ref(&slips), seed);
+        let said = &answer.json["law"];
+        if said["proposed"] != true {
+            continue;
+        }
+        assert_confirmed(said);
+        // what gives way at a clamp, at a root and at a joint is nearly the same
+        let is_there = |law: &Value| law["location"] == "clamp" && law["memory"] == "Bouc–Wen loop";
+        let rivals = said["rivals"].as_array().unwrap();
+        assert!(is_there(said) || rivals.iter().any(is_there), "{said}");
+        if said["memory"] != "Bouc–Wen loop" {
+            continue;
+        }
+        named += 1;
+        if is_there(said) {
+            let [low, _, high] = constant(said, "r");
+            assert!(0.9 * low < 2.5 && 2.5 < 1.1 * high, "{said}");
+        }
+        let correction = answer.found.correction().unwrap().unwrap();
+        let again = Answer::of(Some(&correction.rod_toml), &correction.readings_csv);
+        assert!(again.is_consistent(), "{}", again.json["headline"]);
+        assert!(correction.rod_toml.contains("memory = \"bouc_wen\""), "{}", correction.rod_toml);
+    }
+    assert!(named >= 1);
+}
+
 /// A contact of curved bodies with a gap before it: 30 µm·(F/10 N)^(2/3) after 6 µm.
 #[test]
 fn a_contact_with_a_gap_is_never_another_exponent() {

@@ -123,3 +123,39 @@ fn errors_name_line_and_column() {
     let error = refused("exp(-F/b_n)", "ln(-F/b_n)");
     assert!(error.starts_with("mine.toml:6:7: `law` is no number"), "{error}");
 }
+
+/// By Euler's method in small steps, up and down again.
+#[test]
+fn a_clamp_that_slips() {
+    let (r, n, s) = (2.5, 2.0, 0.7);
+    let state = std::cell::Cell::new((0.0, 0.0, 1.0));
+    let order = Order { unloading: true, axes: vec![1], ..order() };
+    let json = answer(&example(3), &order, |row| {
+        // a run begins on the way up
+        let (mut z, before): (f64, f64) = match state.get() {
+            (z, before, side) if side >= row.side => (z, before),
+            _ => (0.0, 0.0),
+        };
+        let step = (row.load - before) / 1000.0;
+        for _ in 0..1000 {
+            let along = if z * step < 0.0 { 1.0 - 2.0 * s } else { 1.0 };
+            z += step * (1.0 - along * (z / r).abs().powf(n));
+        }
+        state.set((z, row.load, row.side));
+        8.0 * z
+    });
+    let own = finding(&json, "slipping_clamp");
+    assert_near(own, "a_um", 8.0);
+    assert_near(own, "r", 2.5);
+}
+
+/// A memory needs its constants among the parameters.
+#[test]
+fn a_memory_without_its_constants_is_refused() {
+    let text = example(3).replace("name = \"n\", neutral = 2", "name = \"n\", neutral = 0.5");
+    let error = OwnEffect::from_toml("mine.toml", &text.replace("low = 1, high = 8", "low = 0")).unwrap_err();
+    assert!(
+        error.to_string().contains("mine.toml:6:10") && error.to_string().contains("n from 1 to 8"),
+        "{error}"
+    );
+}

@@ -16,7 +16,7 @@ use super::written_law::written;
 use crate::calibration::campaign::{Campaign, FileNames, Recording};
 use crate::calibration::{Options, Summary, calibrate, write_back_with, write_beside};
 use crate::error::Result;
-use crate::inference::law::Law;
+use crate::inference::law::{Law, Proposed};
 use crate::inference::{Finding, WrittenTo};
 use crate::robot::{Effect, Robot, corrections_csv, is_urdf};
 use crate::units::UM;
@@ -108,7 +108,7 @@ pub fn apply(found: &CalibrationDiagnosis, names: &FileNames, above: &[String]) 
         let finding = beside(law, finding);
         put(write(&finding, model, &mut extended), words);
     }
-    if let Some(law) = law {
+    for law in law.into_iter().flat_map(Law::all) {
         let (destination, words) = write_law(law, model, &mut extended);
         put(destination, words);
     }
@@ -121,7 +121,7 @@ pub fn apply(found: &CalibrationDiagnosis, names: &FileNames, above: &[String]) 
     let calibration = calibrate(&extended, model.calibration.mode, &Options::default())?;
     let held_out = found.diagnosis.held_out.as_ref();
     let sd = held_out.map_or(found.diagnosis.noise, |held_out| held_out.after);
-    let sd = proposed.and_then(|proposed| proposed.held_out).map_or(sd, |(_, with_law)| with_law);
+    let sd = proposed.and_then(Proposed::held_out_with).unwrap_or(sd);
     let mut comments = Vec::new();
     let mut say = |what: &str, list: &[String]| {
         if !list.is_empty() {

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::datum::Datum;
+use super::display::Display;
 use super::load_history::{History, Memory, Onset};
 use super::own_law::OwnLaw;
 use super::structure::Nodes;
@@ -50,6 +51,8 @@ pub(super) enum Action {
     TurnSensors(Axis, Axis),
     /// Play of the clamp under these loads, m \[0\].
     Play(Scope),
+    /// Play of a display, m, or the share of a change that it does not show yet \[0\].
+    Display(Arc<Display>),
     /// Adds to readings \[0\].
     Shift(Weights),
     /// Adds to the readings of this sequence of data, from one of them on \[0\].
@@ -107,6 +110,7 @@ impl Action {
         match self {
             Action::Shift(weights) => weights.iter().for_each(|(i, weight)| readings[i] += weight * value),
             Action::Step(data, from) => data[*from..].iter().for_each(|&i| readings[i] += value),
+            Action::Display(display) => display.add_to(readings, value),
             _ => {}
         }
     }

@@ -7,11 +7,12 @@
 use nalgebra::DVector;
 
 use super::model::RigModel;
+use super::remembered::remembered;
 use super::sites::sites;
-use crate::inference::law::{Memory, Site};
+use crate::inference::law::Site;
 use crate::inference::{Evidence, Location, NominalParameter};
 use crate::rod::law::should_show;
-use crate::rod::{LawConstant, LawMemory, Rod, RodLaw};
+use crate::rod::{LawConstant, Rod, RodLaw};
 
 /// Takes what the laws of the rod's file add out of the data; which of them these readings have no
 /// data for, in words.
@@ -90,15 +91,8 @@ fn added(law: &RodLaw, site: &Site, value: &dyn Fn(usize, &LawConstant) -> f64, 
         };
         law.with(x, side, named) * site.result.si
     };
-    let own = |memory: LawMemory| {
-        law.constants.iter().position(|own| own.name == memory.constant()).map_or(0.0, |k| values[k])
-    };
-    let si = site.variable.si;
-    let followed = match law.memory {
-        None => site.values.clone(),
-        Some(memory @ LawMemory::Stop) => Memory::Stop.remembered(site, own(memory) * si / site.largest()).0,
-        Some(memory @ LawMemory::Lag) => Memory::Lag.remembered(site, own(memory)).0,
-    };
+    let own = |name: &str| law.constants.iter().position(|own| own.name == name).map_or(0.0, |k| values[k]);
+    let (si, followed) = (site.variable.si, remembered(law.memory, site, own));
     let weights = &site.directions[0].1;
     let at_datum = |i: usize| {
         let side = site.moves.get(i).copied().unwrap_or(1.0);

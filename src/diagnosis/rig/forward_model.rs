@@ -77,6 +77,23 @@ impl ForwardModel for RigModel {
                 }
                 continue;
             }
+            if let Action::Display(display) = action
+                && is_sum
+            {
+                // at nothing it can only go one way, and what stays within its play is seen once
+                // that has a size
+                let (value, h) = (term.values[k], DERIVATIVE_STEP * parameter.size);
+                let (less, more) = match value > h {
+                    true => (value - h, value + h),
+                    false => (0.0, value.max(0.0) + 0.5 * parameter.size),
+                };
+                let mut shown = DVector::zeros(self.data.len());
+                display.add_to(shown.as_mut_slice(), more);
+                let mut before = DVector::zeros(self.data.len());
+                display.add_to(before.as_mut_slice(), less);
+                column.copy_from(&((shown - before) * (parameter.size / (more - less))));
+                continue;
+            }
             let mut moved = terms.to_vec();
             if is_dependent(action) && term.values[0] == parameters[0].neutral {
                 moved[position].values[0] += parameters[0].size;

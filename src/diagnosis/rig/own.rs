@@ -48,7 +48,9 @@ pub(super) fn entry(effect: &OwnEffect, model: &RigModel) -> Result<Option<Entry
         (i, site.values[i] / site.variable.si, side, weights[i] * site.result.si)
     });
     let neutral = effect.parameters.iter().map(|parameter| parameter.neutral).collect();
-    let law = Arc::new(OwnLaw { law: effect.law.clone(), neutral, data: data.collect() });
+    let names = effect.parameters.iter().map(|parameter| parameter.name.clone());
+    let memory = effect.memory.map(|memory| (memory, site.clone(), names.collect()));
+    let law = Arc::new(OwnLaw { law: effect.law.clone(), neutral, data: data.collect(), memory });
     check(effect, &law)?;
     let location = Location::Key(format!("{}, {}", effect.effect.name, effect.place));
     let actions = (0..effect.parameters.len()).map(|k| Action::Own(Arc::clone(&law), k)).collect();

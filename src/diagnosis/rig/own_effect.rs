@@ -5,6 +5,7 @@ mod file;
 use crate::error::Place;
 use crate::expression::Expression;
 use crate::inference::{Effect, Finding, Parameter};
+use crate::rod::LawMemory;
 
 /// An effect that a lab describes itself.
 #[derive(Debug, Clone)]
@@ -14,6 +15,8 @@ pub struct OwnEffect {
     /// As the sites call it.
     pub(super) variable: &'static str,
     pub(super) law: Expression,
+    /// What its variable is instead of the recorded one.
+    pub(super) memory: Option<LawMemory>,
     pub(super) parameters: Vec<Parameter>,
     /// Where place and law stand in the file.
     pub(super) at: (Place, Place),

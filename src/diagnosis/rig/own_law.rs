@@ -1,6 +1,9 @@
 //! What a lab's own effect does to the data of a recording.
 
+use super::remembered::remembered;
 use crate::expression::Expression;
+use crate::inference::law::Site;
+use crate::rod::LawMemory;
 
 /// A formula at a place.
 #[derive(Debug)]
@@ -12,6 +15,8 @@ pub(super) struct OwnLaw {
     /// Of each datum that it concerns: its number, variable, side, and weight, m per unit of the
     /// result.
     pub data: Vec<(usize, f64, f64, f64)>,
+    /// What the variable is instead, where it remembers: how, where, and names of the parameters.
+    pub memory: Option<(LawMemory, Site, Vec<String>)>,
 }
 
 impl OwnLaw {
@@ -20,8 +25,13 @@ impl OwnLaw {
         let mut values = vec![0.0; 2 + self.neutral.len()];
         values[2..].copy_from_slice(&self.neutral);
         given.for_each(|(k, value)| values[2 + k] = value);
+        let followed = self.memory.as_ref().map(|(memory, site, names)| {
+            let own = |name: &str| names.iter().position(|own| own == name).map_or(0.0, |k| values[2 + k]);
+            let si = site.variable.si;
+            remembered(Some(*memory), site, own).into_iter().map(|x| x / si).collect::<Vec<f64>>()
+        });
         for &(i, x, side, weight) in &self.data {
-            (values[0], values[1]) = (x, side);
+            (values[0], values[1]) = (followed.as_ref().map_or(x, |followed| followed[i]), side);
             let change = times * weight * self.law.at(&values);
             // what is not a number at some values of its parameters is no effect there
             readings[i] += if change.is_finite() { change } else { 0.0 };

@@ -10,13 +10,15 @@
 //! | sensor | what a channel shows | what it should show |
 //! | sensors | offsets of all channels | time, temperature, order |
 
+use std::collections::BTreeMap;
+
 use nalgebra::{DVector, Vector3};
 
 use super::datum::Datum;
 use super::load_history::{instants, runs};
 use super::model::{Body, RigModel};
 use super::nonparametric::Before;
-use crate::inference::law::{Course, Form, Measure, Site};
+use crate::inference::law::{Course, Form, Instant, Measure, Site};
 use crate::inference::{Location, Part};
 use crate::rod::Rod;
 use crate::spatial::Axis;
@@ -45,8 +47,7 @@ pub(super) fn sites(model: &RigModel, change: &DVector<f64>) -> Vec<Site> {
     let bare = model.deflections();
     // what each datum shows by what is known
     let known: Vec<f64> = bare.iter().zip(change.iter()).map(|(u, more)| u + more).collect();
-    let slope = |i: usize| if data[i].load > 0.0 { known[i] / data[i].load } else { 0.0 };
-    let slopes: Vec<f64> = (0..data.len()).map(slope).collect();
+    let slopes = slopes(data, &bare, change);
     let loads: Vec<f64> = data.iter().map(|d| d.load).collect();
     let recording = Recording { data, moves: moves(data), by_load: courses(data, |_| 0.0) };
     let mut sites = vec![recording.of_load(
@@ -109,13 +110,39 @@ fn turned(datum: &Datum, rod: &Rod, station: f64) -> (f64, f64) {
         return (0.0, 0.0);
     }
     let lever = |s: f64| rod.point(s) - rod.point(station);
-    let force = Vector3::ith(datum.direction.axis.index(), datum.signed_load());
-    let moment = lever(load).cross(&force);
+    // at no load, that of the load that hung there or will
+    let newton = Vector3::ith(datum.direction.axis.index(), f64::from(datum.direction.sign));
+    let moment = lever(load).cross(&newton);
     let size = moment.norm();
     match size > 0.0 {
-        true => ((moment / size).cross(&lever(read))[datum.channel.index()], size),
+        true => ((moment / size).cross(&lever(read))[datum.channel.index()], size * datum.load),
         false => (0.0, 0.0),
     }
+}
+
+/// What a newton that bends the rod moves each datum by, m/N: what it shows without findings and
+/// nominal numbers at this load, and on average what these `change` of that. Friction, loops and
+/// offsets among them are no compliance.
+fn slopes(data: &[Datum], bare: &[f64], change: &DVector<f64>) -> Vec<f64> {
+    type Place = (Axis, Axis, [u64; 2]);
+    let place = |d: &Datum| -> Place { (d.direction.axis, d.channel, d.stations()) };
+    // bare·F, change·F and F² of each
+    let mut sums: BTreeMap<Place, [f64; 3]> = BTreeMap::new();
+    for (i, d) in data.iter().enumerate() {
+        let (load, sum) = (d.signed_load(), sums.entry(place(d)).or_default());
+        sum[0] += bare[i] * load;
+        sum[1] += change[i] * load;
+        sum[2] += load * load;
+    }
+    let slope = |(i, d): (usize, &Datum)| {
+        let [own, more, square] = sums[&place(d)];
+        if square == 0.0 {
+            return 0.0;
+        }
+        let own = if d.load > 0.0 { bare[i] / d.signed_load() } else { own / square };
+        f64::from(d.direction.sign) * (own + more / square)
+    };
+    data.iter().enumerate().map(slope).collect()
 }
 
 /// 1 for what was reached on the way up, −1 on the way down.
@@ -137,7 +164,7 @@ fn courses(data: &[Datum], start: impl Fn(&[usize]) -> f64) -> Vec<Course> {
                 None => waits.as_ref().map_or(f64::NAN, |waits| waits[own]),
             };
             before = Some(own);
-            (instant, elapsed)
+            Instant { data: instant, elapsed, sense: f64::from(data[own].direction.sign) }
         });
         let instants = instants.collect();
         Course { instants, start: start(&run) }
@@ -161,11 +188,11 @@ impl Recording<'_> {
         (weights, values): (Vec<f64>, Vec<f64>),
         forms: &'static [Form],
     ) -> Site {
-        // loads that change their direction have no common course
+        // loads along several axes have no common course
         let of_run = |course: &Course| {
-            let mut signs = course.instants.iter().map(|(data, _)| self.data[data[0]].direction);
-            let first = signs.next();
-            signs.all(|direction| Some(direction) == first)
+            let mut axes = course.instants.iter().map(|instant| self.data[instant.data[0]].direction.axis);
+            let first = axes.next();
+            axes.all(|axis| Some(axis) == first)
         };
         let courses = if self.by_load.iter().all(of_run) { self.by_load.clone() } else { Vec::new() };
         Site {
@@ -280,7 +307,7 @@ impl Recording<'_> {
             let now = part[0].time?;
             let elapsed = before.map_or(0.0, |before| now - before);
             before = Some(now);
-            Some((own, elapsed))
+            Some(Instant { data: own, elapsed, sense: 1.0 })
         };
         Some(Course { instants: by_instant.map(instant).collect::<Option<_>>()?, start })
     }

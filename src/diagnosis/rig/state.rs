@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! load       F = m·d    m = nominal + offset, less friction on the way up (not below zero), more on the way down
+//!                       (not more than was felt at the turn)
 //!                       d = nominal direction, turned
 //! structure  u = C·d·(m·(1 + k₂m²)(1 + k₁|m|)Π(1 + v·w) + Σ v·W)     C by the structure; w, W by the history of loads
 //! reading    y = s·e·(u + play·d) + shifts                            e = channel, turned; s its scale
@@ -118,7 +119,7 @@ impl<'a> State<'a> {
 
     /// Adds what `action` does at `value`. Turns are done in the order in which they are added.
     pub(super) fn act(&mut self, action: &'a Action, value: f64) {
-        self.is_changed |= !action.only_adds() && !matches!(action, Action::Own(..));
+        self.is_changed |= !action.only_adds() && !matches!(action, Action::Own(..) | Action::Display(_));
         match action {
             Action::Friction(scope) => self.friction.0.push((*scope, value)),
             Action::Presliding => self.presliding += value,
@@ -151,7 +152,7 @@ impl<'a> State<'a> {
             }
             Action::Play(scope) => self.play.0.push((*scope, value)),
             Action::Own(law, k) => self.own.push((law, *k, value)),
-            Action::Shift(_) | Action::Step(..) => self.additions.push((action, value)),
+            Action::Shift(_) | Action::Step(..) | Action::Display(_) => self.additions.push((action, value)),
         }
     }
 
@@ -214,7 +215,11 @@ impl<'a> State<'a> {
         let (hanging, friction) = (self.hanging(datum), self.friction.of(datum));
         let acting = match hung {
             Some(hung) => sign * hung.force,
-            None if datum.is_unloading() => hanging + friction,
+            // a slide that turns round holds no more than was felt before
+            None if datum.is_unloading() => {
+                let felt = (datum.peak + self.load_offset.of(datum) - friction).max(hanging);
+                (hanging + friction).min(felt)
+            }
             // a slide that holds the whole load leaves nothing, and turns nothing round
             None => hanging.signum() * (hanging.abs() - friction).max(0.0),
         };

@@ -30,6 +30,9 @@ pub fn remark(law: &Law) -> Option<String> {
         (_, Memory::Lag, _) => {
             "A first-order lag is what a spring with a dashpot beside it does (Kelvin and Voigt)."
         }
+        (_, Memory::BoucWen(_), _) => {
+            "A loop of Bouc and Wen is what many small slips do together that begin one after the other."
+        }
         (_, Memory::Stop, _) => {
             "A stop operator is what a spring with a dry slider in series does (Jenkins)."
         }

@@ -1,9 +1,10 @@
 //! A proposed law as one of the rod's file.
 
 use super::super::law_formula::{constants, formula, range, source};
+use super::remembered::in_file;
 use crate::inference::Location;
-use crate::inference::law::{Law, Memory};
-use crate::rod::{LawMemory, LawVariable, RodLaw};
+use crate::inference::law::Law;
+use crate::rod::{LawVariable, RodLaw};
 
 /// The law as the rod's file holds it; `None` for one that only this recording has: over its time,
 /// its order, its temperatures.
@@ -17,11 +18,7 @@ pub(super) fn written(law: &Law, from: &str) -> Option<RodLaw> {
     // functions of a variable with two signs are odd
     let formula = formula(law, variable.symbol(), variable == LawVariable::Reading, 0);
     let mut written = RodLaw::new(place, variable, formula, constants(law), range(law)).ok()?;
-    written.memory = match law.memory {
-        Memory::Stop => Some(LawMemory::Stop),
-        Memory::Lag => Some(LawMemory::Lag),
-        _ => None,
-    };
+    written.memory = in_file(law.memory);
     written.source = Some(source(law, from));
     Some(written)
 }

@@ -2,15 +2,19 @@
 
 use nalgebra::DMatrix;
 
+use super::bouc_wen::LoopShape;
 use super::form::{Form, FormConstant};
 use super::memory::Memory;
 use super::site::Site;
 
 /// Points of a first look at the number of a memory.
-const POINTS: usize = 13;
+const POINTS: usize = 21;
+/// Shapes of a first look at a loop.
+const SHARPNESSES: [f64; 3] = [1.0, 2.0, 5.0];
+const BALANCES: [f64; 2] = [0.55, 0.9];
 
 /// One law among all.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy)]
 pub(super) struct Choice {
     /// Number of the site.
     pub site: usize,
@@ -37,7 +41,7 @@ impl Choice {
                 let is_of = match memory {
                     Memory::None => true,
                     Memory::Side => !matches!(form, Form::Threshold | Form::Harmonic),
-                    Memory::Stop | Memory::Lag => form == Form::Polynomial(1),
+                    Memory::Stop | Memory::BoucWen(_) | Memory::Lag => form == Form::Polynomial(1),
                 };
                 let choice = Choice { site: number, form, memory };
                 if is_of && !choice.grid(site).is_empty() {
@@ -48,10 +52,16 @@ impl Choice {
         all
     }
 
+    /// True for the same law, whatever its numbers.
+    pub fn is(&self, other: &Choice) -> bool {
+        self.site == other.site && self.form == other.form && self.memory.is(other.memory)
+    }
+
     /// What its number that is not linear is.
     pub fn constant(self) -> Option<FormConstant> {
         match self.memory {
             Memory::Stop => Some(FormConstant::Play),
+            Memory::BoucWen(_) => Some(FormConstant::Yield),
             Memory::Lag => Some(FormConstant::Lag),
             Memory::None | Memory::Side => self.form.constant(),
         }
@@ -72,6 +82,20 @@ impl Choice {
                 self.form.grid((low / largest, high / largest), site.levels())
             }
         }
+    }
+
+    /// Shapes of a first look at a loop, if it has one.
+    pub fn shapes(self) -> Vec<LoopShape> {
+        let of_sharpness = |sharpness: f64| BALANCES.map(|balance| LoopShape { sharpness, balance });
+        match self.memory.shape() {
+            None => Vec::new(),
+            Some(_) => SHARPNESSES.into_iter().flat_map(of_sharpness).collect(),
+        }
+    }
+
+    /// The same with a loop of this shape.
+    pub fn shaped(self, shape: LoopShape) -> Choice {
+        Choice { memory: Memory::BoucWen(shape), ..self }
     }
 
     /// The number at a coordinate, in the form's scale.

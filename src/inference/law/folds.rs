@@ -6,11 +6,11 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::choice::Choice;
+use super::described::Data;
 use super::remainder::Remainder;
 use super::scan::{Scanned, scan_some};
 use super::site::Site;
 use crate::inference::selection::{APART, NAMED};
-use crate::inference::{Evidence, ForwardModel, Term};
 use crate::parallel::in_parallel;
 
 /// By this share of its square a held-out error is lowered at least.
@@ -42,12 +42,9 @@ type Predicted = (DVector<f64>, DVector<f64>, Vec<DVector<f64>>);
 /// Predicts each fold; `None` where nothing could be held out. Each fold's own search is among
 /// `tried`; `choices` are compared besides.
 pub(super) fn hold_out(
-    model: &dyn ForwardModel,
-    evidence: &Evidence,
-    terms: &[Term],
+    &Data { model, evidence, terms, size, sigma }: &Data,
     sites: &[Site],
     (choices, tried): (&[Choice], &[Choice]),
-    (size, sigma): (f64, f64),
 ) -> Option<Folds> {
     let folds = evidence.folds();
     if folds.len() < 2 {
@@ -57,7 +54,7 @@ pub(super) fn hold_out(
     let kept = |fold: usize| (0..n).filter(|&row| evidence.fold[row] != fold).collect::<Vec<_>>();
     let by_fold: Vec<Predicted> = in_parallel(folds.len(), |k| {
         let remainder = Remainder::new(model, evidence, terms, kept(folds[k]), sigma);
-        let found = scan_some(&remainder, sites, size, |choice| tried.contains(choice)).laws;
+        let found = scan_some(&remainder, sites, size, |choice| tried.iter().any(|own| own.is(choice))).laws;
         let none = remainder.fit(&DMatrix::zeros(n, 0)).predicted;
         let predicted_by = |law: &Scanned| {
             let columns = law.choice.columns(&sites[law.choice.site], law.at, size);
@@ -72,7 +69,7 @@ pub(super) fn hold_out(
             false => none.clone(),
         };
         let own = choices.iter().map(|choice| {
-            let law = found.iter().find(|law| law.choice == *choice);
+            let law = found.iter().find(|law| law.choice.is(choice));
             law.map_or_else(|| none.clone(), predicted_by)
         });
         let own = own.collect();

@@ -40,6 +40,8 @@ pub enum FormConstant {
     Period,
     /// Half the width of a play, of the variable.
     Play,
+    /// Where a loop yields, of the variable.
+    Yield,
     /// Time of a lag, s.
     Lag,
 }

@@ -1,46 +1,188 @@
-//! What is left beside a law: a second one.
+//! What is left beside a law: a second one, and both fitted together.
 
 use nalgebra::{DMatrix, DVector};
 
 use super::choice::Choice;
+use super::described::{Data, Known, alike, described};
 use super::folds::hold_out;
+use super::proposed::{Law, Second};
 use super::remainder::Remainder;
-use super::scan::{Scanned, scan_as_recorded};
+use super::scan::{Scan, Scanned, refit, scan_as_recorded};
 use super::site::{Measure, Site};
 use crate::inference::selection::NAMED;
-use crate::inference::{Evidence, ForwardModel, Location, Term};
+use crate::inference::{Evidence, Location};
 
 /// A law's amplitudes are known to so many times what is left.
 const WIDE: f64 = 3.0;
 /// So many laws, the likeliest, are tried without each fold.
 const TRIED: usize = 64;
+/// Times that two laws are fitted, each beside the other.
+const ROUNDS: usize = 2;
 
-/// A model with what is known of its data: evidence, findings, how large what is left is and the
-/// noise.
-pub(super) type Data<'a> = (&'a dyn ForwardModel, &'a Evidence, &'a [Term], (f64, f64));
+/// What is left beside a law.
+pub(super) enum Left {
+    Nothing,
+    /// Where, and along which variable, most is left of which no law was made.
+    Something(Location, Measure),
+    /// The law as it is beside another one, and that.
+    Laws(Box<Law>, Box<Second>),
+}
 
-/// Where, and along which variable, most is left beside a law: all laws are tried once more, each
-/// at its full price; `None` where none is likelier than chance by the odds of a name, or where the
-/// search without each fold does not lower the held-out error by as much as a law has to.
-/// `sites_with` are all places given what the law adds to each datum.
-pub(super) fn most_left(
-    (model, evidence, terms, (size, sigma)): Data,
-    sites: &[Site],
-    law: &Scanned,
+/// A law as it was found alone: with those that the data do not distinguish from it, their held-out
+/// errors, and the ln odds of the likeliest smooth curve.
+pub(super) struct Alone<'a> {
+    pub class: &'a [&'a Scanned],
+    pub held_out: &'a [f64],
+    pub curve: f64,
+}
+
+/// All laws are tried once more beside a law, each at its full price. Nothing is left where none is
+/// likelier than chance by the odds of a name, or where the search without each fold does not lower
+/// the held-out error by as much as a law has to. A second one is proposed as the first one is:
+/// it is likelier than every smooth curve, and lowers the held-out error by itself. `sites_with`
+/// are all places given what laws add to each datum.
+pub(super) fn left_beside(
+    known: &Known,
+    first: &Alone,
     sites_with: impl Fn(&DVector<f64>) -> Vec<Site>,
-) -> Option<(Location, Measure)> {
-    let rows = || (0..evidence.residual.len()).collect();
-    let columns = law.choice.columns(&sites[law.choice.site], law.at, WIDE * size).columns;
-    let own = Remainder::new(model, evidence, terms, rows(), sigma).fit(&columns).own;
+) -> Left {
+    let Some(law) = first.class.first() else { return Left::Nothing };
+    let Data { model, evidence, terms, size, sigma } = known.data;
+    let columns = columns(known, law, known.sites);
     let with = with_columns(evidence, &columns);
-    let mut beside = sites_with(&own);
-    let remainder = Remainder::new(model, &with, terms, rows(), sigma);
-    let scan = scan_as_recorded(&remainder, &mut beside, (size, sigma));
-    let second = scan.laws.first().filter(|law| law.log_odds > NAMED.ln())?;
-    let tried: Vec<Choice> = scan.laws.iter().take(TRIED).map(|law| law.choice).collect();
-    let folds = hold_out(model, &with, terms, &beside, (&[], &tried), (size, sigma))?;
-    let site = &beside[second.choice.site];
-    folds.is_lower(folds.with).then(|| (site.location.clone(), site.variable.clone()))
+    let mut beside = sites_with(&known.remainder.fit(&columns).own);
+    let remainder = Remainder::new(model, &with, terms, rows(evidence), sigma);
+    let mut found = scan_as_recorded(&remainder, &mut beside, (size, sigma), |_| true);
+    let tried: Vec<Choice> = found.laws.iter().take(TRIED).map(|law| law.choice).collect();
+    refit(&mut found, &remainder, &beside, size);
+    let Some(best) = found.laws.first().filter(|law| law.log_odds > NAMED.ln()) else {
+        return Left::Nothing;
+    };
+    let class = alike(&found, best);
+    let choices: Vec<Choice> = class.iter().map(|law| law.choice).collect();
+    let data = Data { evidence: &with, ..known.data };
+    let Some(folds) = hold_out(&data, &beside, (&choices, &tried)) else { return Left::Nothing };
+    if !folds.is_lower(folds.with) {
+        return Left::Nothing;
+    }
+    let site = &beside[best.choice.site];
+    let something = Left::Something(site.location.clone(), site.variable.clone());
+    let curve = found.curve.map_or(f64::NEG_INFINITY, |(_, odds)| odds);
+    if best.log_odds < curve || !folds.is_lower(folds.of[0]) {
+        return something;
+    }
+    let second = Alone { class: &class, held_out: &folds.of, curve };
+    let is_enough = |both: &Both| law.log_odds > first.curve || !both.is_more_left(known, &sites_with);
+    match together(known, [first, &second], &beside, &sites_with, is_enough) {
+        Some([mut one, other]) => {
+            // together they are so much likelier than the curve that draws both
+            one.log_odds.1 = law.log_odds + other.log_odds.0 - first.curve;
+            let (first, law) = (one, other);
+            Left::Laws(Box::new(first), Box::new(Second { law, held_out: (folds.without, folds.with) }))
+        }
+        None => something,
+    }
+}
+
+/// Columns of two laws.
+struct Both([DMatrix<f64>; 2]);
+
+/// Two laws, each as it is beside the other; `None` where they are not `enough`. Beside the other a
+/// law may have another form: all are tried once more.
+fn together(
+    known: &Known,
+    alone: [&Alone; 2],
+    beside: &[Site],
+    sites_with: &dyn Fn(&DVector<f64>) -> Vec<Site>,
+    enough: impl Fn(&Both) -> bool,
+) -> Option<[Law; 2]> {
+    let laws = [*alone[0].class.first()?, *alone[1].class.first()?];
+    let mut both = Both([columns(known, laws[0], known.sites), columns(known, laws[1], beside)]);
+    let mut tried: [Option<Vec<Choice>>; 2] = [None, None];
+    for _ in 0..ROUNDS {
+        for free in [0, 1] {
+            let (choices, columns) =
+                both.beside(known, free, tried[free].as_deref(), sites_with, |known, found| {
+                    let best = found.laws.first()?;
+                    let choices = alike(found, best).iter().map(|law| law.choice).collect();
+                    Some((choices, columns(known, best, known.sites)))
+                })?;
+            both.0[free] = columns;
+            tried[free].get_or_insert(choices);
+        }
+    }
+    if !enough(&both) {
+        return None;
+    }
+    let described = |free: usize| {
+        let Alone { class: before, held_out, curve } = *alone[free];
+        both.beside(known, free, tried[free].as_deref(), sites_with, |known, found| {
+            let class = alike(found, found.laws.first()?);
+            let error = |law: &&Scanned| {
+                let number = before.iter().position(|own| own.choice.is(&law.choice))?;
+                held_out.get(number).copied()
+            };
+            let held_out: Vec<Option<f64>> = class.iter().map(error).collect();
+            described(known, &class, &held_out, curve)
+        })
+    };
+    Some([described(0)?, described(1)?])
+}
+
+impl Both {
+    /// What is found for one of them, of some laws or of all, while the columns of the other are
+    /// free.
+    fn beside<T>(
+        &self,
+        known: &Known,
+        free: usize,
+        tried: Option<&[Choice]>,
+        sites_with: &dyn Fn(&DVector<f64>) -> Vec<Site>,
+        then: impl FnOnce(&Known, &Scan) -> Option<T>,
+    ) -> Option<T> {
+        let Data { model, evidence, terms, size, sigma } = known.data;
+        let mut sites = sites_with(&self.adds(known)[1 - free]);
+        let with = with_columns(evidence, &self.0[1 - free]);
+        let remainder = Remainder::new(model, &with, terms, rows(evidence), sigma);
+        let is_tried = |choice: &Choice| tried.is_none_or(|tried| tried.iter().any(|own| own.is(choice)));
+        let mut found = scan_as_recorded(&remainder, &mut sites, (size, sigma), is_tried);
+        refit(&mut found, &remainder, &sites, size);
+        let data = Data { evidence: &with, ..known.data };
+        let beside = Known { data, sites: &sites, remainder: &remainder, background: known.background };
+        then(&beside, &found)
+    }
+
+    /// What each adds to each datum.
+    fn adds(&self, known: &Known) -> [DVector<f64>; 2] {
+        let [one, other] = &self.0;
+        let (count, more) = (one.ncols(), other.ncols());
+        let mut side_by_side = one.clone().resize_horizontally(count + more, 0.0);
+        side_by_side.columns_mut(count, more).copy_from(other);
+        let factors = known.remainder.fit(&side_by_side).factors;
+        [one * factors.rows(0, count), other * factors.rows(count, more)]
+    }
+
+    /// True where beside both another law, or a smooth curve, is likelier than chance by the odds
+    /// of a name.
+    fn is_more_left(&self, known: &Known, sites_with: &dyn Fn(&DVector<f64>) -> Vec<Site>) -> bool {
+        let Data { model, evidence, terms, size, sigma } = known.data;
+        let [one, other] = self.adds(known);
+        let mut sites = sites_with(&(one + other));
+        let with = with_columns(&with_columns(evidence, &self.0[0]), &self.0[1]);
+        let remainder = Remainder::new(model, &with, terms, rows(evidence), sigma);
+        let found = scan_as_recorded(&remainder, &mut sites, (size, sigma), |_| true);
+        let of_laws = found.laws.first().map_or(f64::NEG_INFINITY, |law| law.log_odds);
+        of_laws.max(found.curve.map_or(f64::NEG_INFINITY, |(_, odds)| odds)) > NAMED.ln()
+    }
+}
+
+/// Columns of a law at its numbers.
+fn columns(known: &Known, law: &Scanned, sites: &[Site]) -> DMatrix<f64> {
+    law.choice.columns(&sites[law.choice.site], law.at, WIDE * known.data.size).columns
+}
+
+fn rows(evidence: &Evidence) -> Vec<usize> {
+    (0..evidence.residual.len()).collect()
 }
 
 /// An evidence in which columns stand among what else may be there, their amplitudes free.

@@ -1,9 +1,11 @@
 //! The numbers of a law with their intervals.
 
+use nalgebra::{DMatrix, DVector};
+
 use super::choice::LawColumns;
 use super::form::{Constant, Form, FormConstant};
 use super::remainder::Remainder;
-use super::scan::Scanned;
+use super::scan::{SAME, Scanned};
 use super::site::Site;
 use crate::inference::selection::APART;
 use crate::statistics::student_t_quantile;
@@ -17,6 +19,10 @@ const MOST_OTHERS: usize = 5;
 pub(super) struct Measured {
     pub amplitudes: Vec<Constant>,
     pub constant: Option<(FormConstant, Constant)>,
+    /// Of the shape of its loop.
+    pub of_loop: Vec<Constant>,
+    /// Of all of them, in this order.
+    pub correlation: DMatrix<f64>,
     pub values: (Vec<f64>, f64),
 }
 
@@ -28,38 +34,15 @@ impl Measured {
     /// ```
     pub fn of(remainder: &Remainder, site: &Site, law: &Scanned, size: f64) -> Measured {
         let (choice, best) = (law.choice, law.at);
-        let draws = match choice.constant() {
-            Some(_) => law.posterior.even(DRAWS),
-            None => vec![best],
-        };
-        let at = |u: f64| {
-            let LawColumns { columns, amplitudes } = choice.columns(site, u, size);
-            let (factors, covariance) = remainder.factors(&columns);
-            let value = |k: usize| factors[k] * amplitudes[k];
-            let variance = |k: usize| covariance[(k, k)] * amplitudes[k].powi(2);
-            let count = amplitudes.len();
-            let values: Vec<f64> = (0..count).map(value).collect();
-            let variances: Vec<f64> = (0..count).map(variance).collect();
-            (values, variances)
-        };
+        let names = names(site, choice.form);
         let columns = choice.columns(site, best, size);
         let fitted = remainder.fit(&columns.columns);
         let mode: Vec<f64> = fitted.factors.iter().zip(&columns.amplitudes).map(|(f, a)| f * a).collect();
-        let freedom = fitted.degrees_of_freedom;
-        let (mut mean, mut square) = (vec![0.0; mode.len()], vec![0.0; mode.len()]);
-        let share = 1.0 / draws.len() as f64;
-        for u in draws {
-            let (values, variances) = at(u);
-            for (k, (value, variance)) in values.into_iter().zip(variances).enumerate() {
-                mean[k] += share * value;
-                square[k] += share * (variance + value.powi(2));
-            }
-        }
-        let factor = student_t_quantile(0.975, freedom).unwrap_or(1.96);
-        let names = names(site, choice.form);
+        let (mean, covariance) = moments(remainder, site, law, size);
+        let factor = student_t_quantile(0.975, fitted.degrees_of_freedom).unwrap_or(1.96);
         let amplitude = |k: usize| {
             let (symbol, name, unit, si) = names[k].clone();
-            let half = factor * (square[k] - mean[k].powi(2)).max(0.0).sqrt();
+            let half = factor * covariance[(k, k)].max(0.0).sqrt();
             let (value, low, high) = (mode[k] / si, (mean[k] - half) / si, (mean[k] + half) / si);
             let (low, high) = (low.min(value), high.max(value));
             Constant { symbol, name, unit, value, low, high, also: Vec::new() }
@@ -68,8 +51,61 @@ impl Measured {
         Measured {
             amplitudes: (0..mode.len()).map(amplitude).collect(),
             constant,
+            of_loop: of_loop(law),
+            correlation: correlation(&covariance),
             values: (mode, choice.at(best)),
         }
+    }
+}
+
+/// Mean and covariance of amplitudes (SI), the number that is not linear (in its unit) and those of
+/// the shape of a loop.
+fn moments(remainder: &Remainder, site: &Site, law: &Scanned, size: f64) -> (DVector<f64>, DMatrix<f64>) {
+    let draws = law.even(DRAWS);
+    let share = 1.0 / draws.len() as f64;
+    let mut sums: Option<(DVector<f64>, DMatrix<f64>)> = None;
+    for (choice, u) in draws {
+        let LawColumns { columns, amplitudes } = choice.columns(site, u, size);
+        let (factors, of_factors) = remainder.factors(&columns);
+        let count = amplitudes.len();
+        let mut values: Vec<f64> = factors.iter().zip(&amplitudes).map(|(f, a)| f * a).collect();
+        values.extend(choice.constant().map(|what| along(site, what, choice.at(u))));
+        values.extend(choice.memory.shape().into_iter().flat_map(|own| [own.sharpness, own.balance]));
+        let values = DVector::from_vec(values);
+        let mut square = &values * values.transpose();
+        for i in 0..count {
+            for j in 0..count {
+                square[(i, j)] += of_factors[(i, j)] * amplitudes[i] * amplitudes[j];
+            }
+        }
+        let (mean, whole) = sums.get_or_insert_with(|| {
+            (DVector::zeros(values.len()), DMatrix::zeros(values.len(), values.len()))
+        });
+        *mean += values * share;
+        *whole += square * share;
+    }
+    let (mean, whole) = sums.unwrap_or_else(|| (DVector::zeros(0), DMatrix::zeros(0, 0)));
+    let covariance = whole - &mean * mean.transpose();
+    (mean, covariance)
+}
+
+/// Correlation coefficients of a covariance.
+fn correlation(covariance: &DMatrix<f64>) -> DMatrix<f64> {
+    let sd: Vec<f64> = covariance.diagonal().iter().map(|variance| variance.max(0.0).sqrt()).collect();
+    DMatrix::from_fn(sd.len(), sd.len(), |i, j| {
+        let product = sd[i] * sd[j];
+        let is_known = product > 0.0 && product.is_finite();
+        if is_known { (covariance[(i, j)] / product).clamp(-1.0, 1.0) } else { 0.0 }
+    })
+}
+
+/// The number that is not linear in its unit for people.
+fn along(site: &Site, what: FormConstant, s: f64) -> f64 {
+    let scale = site.largest() / site.variable.si;
+    match what {
+        FormConstant::Exponent | FormConstant::Lag => s,
+        FormConstant::Corner | FormConstant::Scale | FormConstant::Play | FormConstant::Yield => s * scale,
+        FormConstant::Period => scale / s,
     }
 }
 
@@ -119,31 +155,50 @@ fn bracketed(unit: &str) -> String {
     if unit.contains('·') || unit.contains('/') { format!("({unit})") } else { unit.to_owned() }
 }
 
+/// The numbers of the shape of a loop.
+fn of_loop(law: &Scanned) -> Vec<Constant> {
+    let Some((peak, shape)) = law.peak.as_ref().zip(law.choice.memory.shape()) else { return Vec::new() };
+    let own = |symbol: &str, name: &str, value: f64, (low, high): (f64, f64)| Constant {
+        symbol: symbol.into(),
+        name: name.into(),
+        unit: String::new(),
+        value,
+        low: low.min(value),
+        high: high.max(value),
+        also: Vec::new(),
+    };
+    let (low, high) = peak.interval(1);
+    vec![
+        own("n", "sharpness", shape.sharpness, (low.exp(), high.exp())),
+        own("s", "share of β", shape.balance, peak.interval(2)),
+    ]
+}
+
 /// The number that is not linear, in units for people.
 fn shape(site: &Site, law: &Scanned, what: FormConstant) -> Constant {
-    let (largest, unit) = (site.largest(), &site.variable);
-    let along = |s: f64| s * largest / unit.si;
-    let at = |u: f64| {
-        let s = law.choice.at(u);
-        match what {
-            FormConstant::Exponent | FormConstant::Lag => s,
-            FormConstant::Corner | FormConstant::Scale | FormConstant::Play => along(s),
-            FormConstant::Period => along(1.0 / s),
-        }
-    };
+    let unit = &site.variable;
+    let at = |u: f64| along(site, what, law.choice.at(u));
     let variable = unit.symbol;
     let (symbol, name, unit) = match what {
         FormConstant::Exponent => ("p".to_owned(), "exponent", ""),
         FormConstant::Corner => (format!("{variable}_0"), "corner", unit.unit),
         FormConstant::Scale => (format!("{variable}_0"), "scale", unit.unit),
         FormConstant::Play => ("r".to_owned(), "half width", unit.unit),
+        FormConstant::Yield => ("r".to_owned(), "yield", unit.unit),
         FormConstant::Period => ("P".to_owned(), "period", unit.unit),
         FormConstant::Lag => ("tau".to_owned(), "time constant", "s"),
     };
     let ends = [law.posterior.quantile(0.025), law.posterior.quantile(0.975)].map(at);
     let value = at(law.at);
-    let peaks = law.posterior.peaks(APART).into_iter().map(|(u, _)| u);
-    let others = peaks.filter(|u| *u != law.at);
+    // of numbers together there is one peak
+    let modes = if law.peak.is_none() { law.posterior.modes(APART) } else { Vec::new() };
+    let mut others: Vec<f64> = Vec::new();
+    for u in modes.into_iter().chain(law.also.iter().copied()) {
+        let is_known = |known: &f64| (u - known).abs() < SAME;
+        if !is_known(&law.at) && !others.iter().any(is_known) {
+            others.push(u);
+        }
+    }
     Constant {
         symbol,
         name: name.into(),
@@ -151,6 +206,6 @@ fn shape(site: &Site, law: &Scanned, what: FormConstant) -> Constant {
         value,
         low: ends[0].min(ends[1]).min(value),
         high: ends[0].max(ends[1]).max(value),
-        also: others.take(MOST_OTHERS).map(at).collect(),
+        also: others.into_iter().take(MOST_OTHERS).map(at).collect(),
     }
 }

@@ -1,9 +1,10 @@
 //! What a law remembers: the way the variable went before.
 
-use super::site::{Course, Site};
+use super::bouc_wen::{Loop, LoopShape};
+use super::site::{Course, Instant, Site};
 
 /// How what went before acts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Memory {
     /// It does not.
@@ -13,13 +14,16 @@ pub enum Memory {
     /// A stop operator: the law follows x − P_r\[x\], P_r a play of half width r (A. Visintin,
     /// *Differential Models of Hysteresis*, Springer 1994, ch. III).
     Stop,
+    /// z of a Bouc–Wen loop that yields at r: see [`LoopShape`].
+    BoucWen(LoopShape),
     /// What a first-order lag of time τ still lacks: x − x̃, dx̃/dt = (x − x̃)/τ.
     Lag,
 }
 
 impl Memory {
     /// All of them.
-    pub const ALL: [Memory; 4] = [Memory::None, Memory::Side, Memory::Stop, Memory::Lag];
+    pub const ALL: [Memory; 5] =
+        [Memory::None, Memory::Side, Memory::Stop, Memory::BoucWen(LoopShape::MIDDLE), Memory::Lag];
 
     /// For people and JSON.
     pub fn name(self) -> &'static str {
@@ -27,13 +31,30 @@ impl Memory {
             Memory::None => "none",
             Memory::Side => "sign of the last move",
             Memory::Stop => "stop operator",
+            Memory::BoucWen(_) => "Bouc–Wen loop",
             Memory::Lag => "first-order lag",
         }
     }
 
     /// True for one with a number of its own.
     pub fn has_constant(self) -> bool {
-        matches!(self, Memory::Stop | Memory::Lag)
+        match self {
+            Memory::None | Memory::Side => false,
+            Memory::Stop | Memory::BoucWen(_) | Memory::Lag => true,
+        }
+    }
+
+    /// The shape of its loop, where it has one.
+    pub fn shape(self) -> Option<LoopShape> {
+        match self {
+            Memory::BoucWen(shape) => Some(shape),
+            Memory::None | Memory::Side | Memory::Stop | Memory::Lag => None,
+        }
+    }
+
+    /// True for the same, whatever the shape of its loop.
+    pub fn is(self, other: Memory) -> bool {
+        std::mem::discriminant(&self) == std::mem::discriminant(&other)
     }
 
     /// Range of its number at a site, r in units of X or τ in s; `None` where it cannot be seen.
@@ -42,11 +63,14 @@ impl Memory {
             Memory::None => Some((0.0, 0.0)),
             Memory::Side => site.moves.iter().any(|way| *way < 0.0).then_some((0.0, 0.0)),
             // what never turns round remembers nothing that the variable itself does not say
-            Memory::Stop | Memory::Lag if !site.moves.is_empty() && !turns(site) => None,
-            Memory::Stop if site.moves.is_empty() => None,
+            Memory::Stop | Memory::BoucWen(_) | Memory::Lag if !site.moves.is_empty() && !turns(site) => None,
+            Memory::Stop | Memory::BoucWen(_) if site.moves.is_empty() => None,
             Memory::Stop => Some((0.02, 0.5)),
+            // it is nearly a straight line up to r, and bends from half of that on
+            Memory::BoucWen(_) => Some((0.02, 1.0)),
             Memory::Lag => {
-                let waits = || site.courses.iter().flat_map(|course| course.instants.iter().map(|i| i.1));
+                let waits =
+                    || site.courses.iter().flat_map(|course| course.instants.iter().map(|i| i.elapsed));
                 let known = waits().filter(|wait| *wait > 0.0);
                 let shortest = known.fold(f64::INFINITY, f64::min);
                 let longest = waits().fold(0.0, f64::max);
@@ -68,7 +92,16 @@ impl Memory {
                     *state = state.clamp(x - half, x + half);
                     x - *state
                 };
-                (along(site, stop), None)
+                (along(site, |start| start, stop), None)
+            }
+            Memory::BoucWen(shape) => {
+                let (yielding, of_shape) = (constant * site.largest(), Loop::new(shape));
+                let follow = |state: &mut (f64, f64), x: f64, _: f64| {
+                    let (before, zeta) = *state;
+                    *state = (x, of_shape.after(zeta, (x - before) / yielding));
+                    yielding * state.1
+                };
+                (along(site, |start| (start, 0.0), follow), None)
             }
             Memory::Lag => {
                 let lag = |state: &mut f64, x: f64, elapsed: f64| {
@@ -77,7 +110,7 @@ impl Memory {
                     *state = x - lacks;
                     lacks
                 };
-                (along(site, lag), None)
+                (along(site, |start| start, lag), None)
             }
         }
     }
@@ -86,23 +119,34 @@ impl Memory {
 /// True where the variable goes up and down along some course.
 fn turns(site: &Site) -> bool {
     let turns = |course: &Course| {
-        let values = course.instants.iter().filter_map(|(data, _)| data.first().map(|&i| site.values[i]));
-        let all: Vec<f64> = std::iter::once(course.start).chain(values.filter(|x| x.is_finite())).collect();
+        let values = course.instants.iter().filter_map(|instant| signed(site, instant));
+        let all: Vec<f64> = std::iter::once(course.start).chain(values).collect();
         let goes = |sign: f64| all.windows(2).any(|pair| sign * (pair[1] - pair[0]) > 0.0);
         goes(1.0) && goes(-1.0)
     };
     site.courses.iter().any(turns)
 }
 
-/// What an operator makes of the variable along each course.
-fn along(site: &Site, operator: impl Fn(&mut f64, f64, f64) -> f64) -> Vec<f64> {
+/// The variable at an instant, along its course.
+fn signed(site: &Site, instant: &Instant) -> Option<f64> {
+    let value = instant.data.first().map(|&i| instant.sense * site.values[i]);
+    value.filter(|x| x.is_finite())
+}
+
+/// What an operator makes of the variable along each course, from the state that belongs to its
+/// start on.
+fn along<State>(
+    site: &Site,
+    start: impl Fn(f64) -> State,
+    operator: impl Fn(&mut State, f64, f64) -> f64,
+) -> Vec<f64> {
     let mut followed = vec![f64::NAN; site.values.len()];
-    for Course { instants, start } in &site.courses {
-        let mut state = *start;
-        for (data, elapsed) in instants {
-            let Some(x) = data.first().map(|&i| site.values[i]).filter(|x| x.is_finite()) else { continue };
-            let value = operator(&mut state, x, *elapsed);
-            data.iter().for_each(|&i| followed[i] = value);
+    for course in &site.courses {
+        let mut state = start(course.start);
+        for instant in &course.instants {
+            let Some(x) = signed(site, instant) else { continue };
+            let value = instant.sense * operator(&mut state, x, instant.elapsed);
+            instant.data.iter().for_each(|&i| followed[i] = value);
         }
     }
     followed
@@ -125,7 +169,9 @@ mod tests {
             recorded: None,
             moves: vec![1.0; values.len()],
             courses: vec![Course {
-                instants: (0..values.len()).map(|i| (vec![i], 2.0)).collect(),
+                instants: (0..values.len())
+                    .map(|i| Instant { data: vec![i], elapsed: 2.0, sense: 1.0 })
+                    .collect(),
                 start: 0.0,
             }],
             forms: &Form::ALL,
@@ -138,6 +184,21 @@ mod tests {
         let (followed, _) = Memory::Stop.remembered(&site, 0.25);
         assert_eq!(followed, [1.0, 1.0, 1.0, 0.0, -1.0]);
         assert_eq!(Memory::Side.range(&site), None);
+    }
+
+    /// What points the other way goes through zero.
+    #[test]
+    fn a_stop_goes_on_across_zero() {
+        let mut site = site(&[2.0, 2.0, 2.0]);
+        site.courses[0].instants[1].sense = -1.0;
+        let (followed, _) = Memory::Stop.remembered(&site, 0.25);
+        assert_eq!(followed, [0.5, 0.5, 0.5]);
+        // nothing is left of where it was
+        let shape = LoopShape { sharpness: 1.0, balance: 0.5 };
+        let (followed, _) = Memory::BoucWen(shape).remembered(&site, 0.25);
+        let first = 0.5 * (1.0 - (-4.0f64).exp());
+        let second = 0.5 * (1.0 - (-8.0 + first / 0.5).exp());
+        assert!((followed[0] - first).abs() < 1e-5 && (followed[1] - second).abs() < 1e-5, "{followed:?}");
     }
 
     #[test]

@@ -10,6 +10,8 @@ const NOTHING: f64 = 5.0;
 const STEP: f64 = 0.2;
 /// For so many rounds every peak counts that is so far below the highest.
 const FLANKS: (usize, f64) = (3, 40.0);
+/// Part of the whole from which on a peak counts, however low it is.
+const MANY: f64 = 0.05;
 /// Parts that a stretch is cut into.
 const PARTS: usize = 3;
 
@@ -24,6 +26,21 @@ impl Posterior {
     /// On a grid, ascending; `evidence` of many coordinates at once.
     pub fn new(grid: &[f64], evidence: &dyn Fn(&[f64]) -> Vec<f64>) -> Posterior {
         Posterior { points: grid.iter().copied().zip(evidence(grid)).collect() }
+    }
+
+    /// A normal one within its ends.
+    pub fn normal(mean: f64, sd: f64, (low, high): (f64, f64)) -> Posterior {
+        let at = |k: i32| mean + f64::from(k) / 8.0 * sd;
+        let inside = (-40..=40).map(at).filter(|u| low < *u && *u < high);
+        let all = std::iter::once(low).chain(inside).chain([high]);
+        let point = |u: f64| (u, -0.5 * ((u - mean) / sd.max(f64::MIN_POSITIVE)).powi(2));
+        Posterior { points: all.map(point).collect() }
+    }
+
+    /// Between what.
+    pub fn ends(&self) -> (f64, f64) {
+        let end = |point: Option<&(f64, f64)>| point.map_or(0.0, |point| point.0);
+        (end(self.points.first()), end(self.points.last()))
     }
 
     /// The likeliest coordinate and the ln of the evidence there.
@@ -99,12 +116,33 @@ impl Posterior {
     /// Peaks that are at most `times` lower than the highest, each apart from higher ones by a
     /// valley `times` below its own height; the highest first. Coordinate and ln of the evidence.
     pub fn peaks(&self, times: f64) -> Vec<(f64, f64)> {
+        let peaks = self.peaks_down_to(times.ln(), times.ln());
+        peaks.into_iter().map(|k| self.points[k]).collect()
+    }
+
+    /// Coordinates of peaks that count: at most `times` lower than the highest, or with more than
+    /// 5 % of the whole about them.
+    pub fn modes(&self, times: f64) -> Vec<f64> {
+        let (_, most) = self.best();
         let deep = times.ln();
+        let whole: f64 = self.masses().map(|(_, mass)| mass).sum();
+        let is_high = |k: &usize| self.points[*k].1 > most - deep || self.mass_about(*k, deep) > MANY * whole;
+        let peaks = self.peaks_down_to(NOTHING.max(deep), deep).into_iter().filter(is_high);
+        peaks.map(|k| self.points[k].0).collect()
+    }
+
+    /// The highest so many peaks down to `below` under the highest one, each apart from higher ones
+    /// by a valley `deep` under it.
+    pub fn highest(&self, count: usize, (below, deep): (f64, f64)) -> Vec<f64> {
+        self.peaks_down_to(below, deep).into_iter().take(count).map(|k| self.points[k].0).collect()
+    }
+
+    fn peaks_down_to(&self, below: f64, deep: f64) -> Vec<usize> {
         let (_, most) = self.best();
         let mut by_height: Vec<usize> = (0..self.points.len()).collect();
         by_height.sort_by(|&a, &b| self.points[b].1.total_cmp(&self.points[a].1));
         let mut peaks: Vec<usize> = Vec::new();
-        for k in by_height.into_iter().take_while(|&k| self.points[k].1 > most - deep) {
+        for k in by_height.into_iter().take_while(|&k| self.points[k].1 > most - below) {
             let is_apart = |&other: &usize| {
                 let between = &self.points[k.min(other)..=k.max(other)];
                 between.iter().any(|point| point.1 < self.points[k].1 - deep)
@@ -113,7 +151,16 @@ impl Posterior {
                 peaks.push(k);
             }
         }
-        peaks.into_iter().map(|k| self.points[k]).collect()
+        peaks
+    }
+
+    /// The mass about a point, as far as the density is no more than `deep` lower.
+    fn mass_about(&self, k: usize, deep: f64) -> f64 {
+        let is_in = |i: usize| self.points[i].1 > self.points[k].1 - deep;
+        let first = (0..k).rev().take_while(|&i| is_in(i)).last().unwrap_or(k);
+        let last = (k..self.points.len()).take_while(|&i| is_in(i)).last().unwrap_or(k);
+        let within = self.masses().skip(first).take(last - first);
+        within.map(|(_, mass)| mass).sum()
     }
 
     /// So many coordinates, each of which stands for as much of the posterior.

@@ -1,5 +1,7 @@
 //! A law that is proposed, as data, or why none is.
 
+use nalgebra::DMatrix;
+
 use super::form::{Constant, Form, FormConstant};
 use super::memory::Memory;
 use super::site::{Measure, Site};
@@ -49,6 +51,10 @@ pub struct Law {
     pub amplitudes: Vec<Constant>,
     /// Its number that is not linear.
     pub constant: Option<(FormConstant, Constant)>,
+    /// Of the shape of its loop, where it remembers by one.
+    pub of_loop: Vec<Constant>,
+    /// Correlation coefficients of all constants, in their order.
+    pub correlation: DMatrix<f64>,
     /// The same as numbers: amplitudes (SI) of each direction's functions, s.
     pub values: (Vec<f64>, f64),
     /// Ln of its odds against nothing, and against the likeliest smooth curve.
@@ -77,6 +83,19 @@ pub struct Law {
     pub curve: Vec<Point>,
     /// Where, and along which variable, another law is named beside it.
     pub more: Option<(Location, Measure)>,
+    /// Another law, where two are proposed: each is then as it is beside the other.
+    pub second: Option<Box<Second>>,
+}
+
+/// A law that is proposed beside another one.
+#[derive(Debug, Clone)]
+#[non_exhaustive]
+pub struct Second {
+    /// The law.
+    pub law: Law,
+    /// Held-out error with the first law, and with what the search for another one finds without
+    /// each fold besides, m.
+    pub held_out: (f64, f64),
 }
 
 /// Findings and numbers of files as they are beside a law.
@@ -133,6 +152,19 @@ pub struct Point {
     pub value: f64,
 }
 
+impl Proposed {
+    /// Those that are proposed, in their order.
+    pub fn laws(&self) -> impl Iterator<Item = &Law> {
+        self.law.iter().flat_map(Law::all)
+    }
+
+    /// Held-out error with all laws that are proposed.
+    pub fn held_out_with(&self) -> Option<f64> {
+        let of_second = self.law.as_ref().ok().and_then(|law| law.second.as_ref());
+        of_second.map(|second| second.held_out.1).or(self.held_out.map(|(_, with)| with))
+    }
+}
+
 impl Law {
     /// Of its numbers alone, for tests of what is made of them.
     #[cfg(test)]
@@ -148,6 +180,8 @@ impl Law {
             memory: Memory::None,
             amplitudes,
             constant,
+            of_loop: Vec::new(),
+            correlation: DMatrix::zeros(0, 0),
             values,
             log_odds: (0.0, 0.0),
             held_out: None,
@@ -161,7 +195,19 @@ impl Law {
             points: Vec::new(),
             curve: Vec::new(),
             more: None,
+            second: None,
         }
+    }
+
+    /// It, and the one that is proposed beside it.
+    pub fn all(&self) -> impl Iterator<Item = &Law> {
+        std::iter::once(self).chain(self.second.iter().map(|second| &second.law))
+    }
+
+    /// All of its constants.
+    pub fn constants(&self) -> impl Iterator<Item = &Constant> {
+        let of_form = self.constant.iter().map(|(_, constant)| constant);
+        self.amplitudes.iter().chain(of_form).chain(&self.of_loop)
     }
 
     /// The law at x (SI) in a direction, SI; what a memory makes of the variable is x.

@@ -132,6 +132,11 @@ impl<'a> Remainder<'a> {
         self.whitening.without_shared(residual)
     }
 
+    /// Numbers of what was recorded under the same conditions.
+    pub fn repeats(&self) -> &[usize] {
+        &self.whole.replicate_group
+    }
+
     fn own(&self, columns: &DMatrix<f64>) -> DMatrix<f64> {
         self.whitening.apply_columns(&columns.select_rows(&self.rows))
     }

@@ -1,10 +1,13 @@
 //! All laws at all sites, each by its evidence, and the smooth curves that they compete with.
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, Vector3};
+use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
+use super::bouc_wen::LoopShape;
 use super::choice::Choice;
 use super::form::Form;
+use super::peak::Peak;
 use super::posterior::Posterior;
 use super::remainder::Remainder;
 use super::site::Site;
@@ -18,8 +21,15 @@ const ABOVE_NOISE: f64 = 30.0;
 const CURVE: usize = 6;
 /// Laws whose evidence at the best point is so far (ln) behind the best need no closer look.
 const BEHIND: f64 = 12.0;
-/// Part of the evidence of a wave that a first look may miss: its peak is narrow.
+/// Part of the evidence of a law that a first look may miss: the peak of its number is narrow.
 const MISSED: f64 = 0.25;
+/// Values of the number that is not linear, at most, that are tried with the variable as it is with
+/// each; how far (ln) behind the likeliest they may be at least; how near two of them are the same.
+const MOST_TRIED: usize = 6;
+const FAR: f64 = 30.0;
+pub(super) const SAME: f64 = 0.01;
+/// Of so many laws, the likeliest, all else is fitted anew.
+const REFITTED: usize = 16;
 
 /// A law with what data say of it.
 #[derive(Debug, Clone)]
@@ -28,8 +38,30 @@ pub(super) struct Scanned {
     pub posterior: Posterior,
     /// Coordinate of the number that is not linear where most of its posterior is.
     pub at: f64,
+    /// Other coordinates that explain as much, of a variable as it is with the law there.
+    pub also: Vec<f64>,
+    /// Its numbers together, where it has several.
+    pub peak: Option<Peak>,
     /// Ln of its odds against nothing, prior included.
     pub log_odds: f64,
+}
+
+impl Scanned {
+    /// Laws that stand for as much of its posterior each.
+    pub fn even(&self, count: usize) -> Vec<(Choice, f64)> {
+        match &self.peak {
+            Some(peak) => peak.even(count).into_iter().map(|point| at_point(self.choice, &point)).collect(),
+            None if self.choice.constant().is_some() => {
+                self.posterior.even(count).into_iter().map(|u| (self.choice, u)).collect()
+            }
+            None => vec![(self.choice, self.at)],
+        }
+    }
+}
+
+/// A loop with its numbers: coordinate of where it yields, ln n, σ.
+fn at_point(choice: Choice, point: &Vector3<f64>) -> (Choice, f64) {
+    (choice.shaped(LoopShape { sharpness: point[1].exp(), balance: point[2] }), point[0])
 }
 
 /// Everything that was tried, the likeliest first.
@@ -62,19 +94,84 @@ pub(super) fn scan(remainder: &Remainder, sites: &[Site], size: f64) -> Scan {
 
 /// The same where the likeliest law may be a function of what was recorded: that stands, without
 /// the law, in the place of what was predicted then, unless noise would be as large as the
-/// variable: it would explain itself.
-pub(super) fn scan_as_recorded(remainder: &Remainder, sites: &mut [Site], (size, sigma): (f64, f64)) -> Scan {
-    let found = scan(remainder, sites, size);
+/// variable.
+pub(super) fn scan_as_recorded(
+    remainder: &Remainder,
+    sites: &mut [Site],
+    (size, sigma): (f64, f64),
+    is_tried: impl Fn(&Choice) -> bool + Sync,
+) -> Scan {
+    let found = scan_some(remainder, sites, size, &is_tried);
     let Some(best) = found.laws.first() else { return found };
     let site = &sites[best.choice.site];
     let (low, high) = site.range();
     let Some(recorded) = site.recorded.as_ref().filter(|_| high - low > ABOVE_NOISE * sigma) else {
         return found;
     };
-    let own = remainder.fit(&best.choice.columns(site, best.at, size).columns).own;
-    sites[best.choice.site].values =
-        recorded.iter().zip(own.iter()).map(|(value, own)| value - own).collect();
-    scan(remainder, sites, size)
+    // with each of its values the variable is another: each is tried with its own
+    let (number, choice) = (best.choice.site, best.choice);
+    let as_recorded = |u: f64| {
+        let own = remainder.fit(&choice.columns(site, u, size).columns).own;
+        let without = recorded.iter().zip(own.iter()).map(|(value, own)| value - own);
+        by_others(without, site, remainder.repeats())
+    };
+    let below = FAR.max(MISSED * best.posterior.best().1);
+    let tried = best.posterior.highest(MOST_TRIED, (below, APART.ln()));
+    let mut each: Vec<(Vec<f64>, Scanned)> = in_parallel(tried.len(), |k| {
+        let mut own = sites.to_vec();
+        own[number].values = as_recorded(tried[k]);
+        let found = scan_some(remainder, &own, size, |other| other.is(&choice)).laws.into_iter().next()?;
+        Some((own.swap_remove(number).values, found))
+    })
+    .into_iter()
+    .flatten()
+    .collect();
+    each.sort_by(|a, b| b.1.log_odds.total_cmp(&a.1.log_odds));
+    let mut each = each.into_iter();
+    let Some((values, likeliest)) = each.next() else { return found };
+    let is_other = |law: &Scanned| {
+        law.log_odds > likeliest.log_odds - APART.ln() && (law.at - likeliest.at).abs() > SAME
+    };
+    let others = each.map(|(_, law)| law).filter(is_other).map(|law| law.at).collect();
+    sites[number].values = values;
+    let mut found = scan_some(remainder, sites, size, is_tried);
+    if let Some(law) = found.laws.iter_mut().find(|law| law.choice.is(&choice)) {
+        law.also = others;
+    }
+    found
+}
+
+/// What each datum should show, by what the others of its repeats were off from the prediction. By
+/// what it was off itself its own noise would be explained: a wave that all loads meet at the same
+/// phase is a straight line of it. What was recorded once is as it is predicted.
+fn by_others(recorded: impl Iterator<Item = f64>, site: &Site, repeats: &[usize]) -> Vec<f64> {
+    let off: Vec<f64> =
+        recorded.zip(&site.values).map(|(recorded, predicted)| recorded - predicted).collect();
+    let mut sums: BTreeMap<usize, (f64, f64)> = BTreeMap::new();
+    for i in site.concerned() {
+        let sum = sums.entry(repeats[i]).or_default();
+        *sum = (sum.0 + off[i], sum.1 + 1.0);
+    }
+    let mut values = site.values.clone();
+    for i in site.concerned() {
+        let (sum, count) = sums[&repeats[i]];
+        values[i] += if count > 1.0 { (sum - off[i]) / (count - 1.0) } else { 0.0 };
+    }
+    values
+}
+
+/// The likeliest laws and the curve, all else fitted anew with each at its best; the others go.
+pub(super) fn refit(found: &mut Scan, remainder: &Remainder, sites: &[Site], size: f64) {
+    found.laws.truncate(REFITTED);
+    for law in &mut found.laws {
+        let columns = law.choice.columns(&sites[law.choice.site], law.at, size).columns;
+        law.log_odds += remainder.fit(&columns).gain - remainder.gain(&columns);
+    }
+    found.laws.sort_by(|a, b| b.log_odds.total_cmp(&a.log_odds));
+    if let Some((site, log_odds)) = &mut found.curve {
+        let columns = curve(&sites[*site], size);
+        *log_odds += remainder.fit(&columns).gain - remainder.gain(&columns);
+    }
 }
 
 /// The same of some laws, each with the prior that it has among all.
@@ -93,8 +190,11 @@ pub(super) fn scan_some(
     let by_site = in_parallel(sites.len(), |number| {
         let choices = &all[number];
         let of_choice = |&choice: &Choice| {
-            let posterior = Posterior::new(&choice.grid(&sites[number]), &|us| evidence(choice, us));
-            (choice, posterior)
+            let grid = choice.grid(&sites[number]);
+            let own = |choice: Choice| (choice, Posterior::new(&grid, &|us| evidence(choice, us)));
+            let shaped = choice.shapes().into_iter().map(|shape| own(choice.shaped(shape)));
+            let likeliest = shaped.reduce(|a, b| if b.1.best().1 > a.1.best().1 { b } else { a });
+            likeliest.unwrap_or_else(|| own(choice))
         };
         let laws: Vec<(Choice, Posterior)> = choices.iter().filter(|c| is_tried(c)).map(of_choice).collect();
         let curve =
@@ -113,7 +213,7 @@ pub(super) fn scan_some(
     // at most so much its odds may be
     let peak = |(choice, posterior, prior): &(Choice, Posterior, f64)| {
         let most = posterior.best().1;
-        let missed = if choice.form == Form::Harmonic { MISSED * most.max(0.0) } else { 0.0 };
+        let missed = if choice.constant().is_some() { MISSED * most.max(0.0) } else { 0.0 };
         most + missed + prior
     };
     let sure = |law: &(Choice, Posterior, f64)| law.1.best().1 + law.2;
@@ -122,12 +222,35 @@ pub(super) fn scan_some(
     let closer: Vec<bool> = first.iter().map(|law| peak(law) > (highest - BEHIND).max(0.0)).collect();
     let mut laws = in_parallel(first.len(), |k| {
         let (choice, mut posterior, prior) = first[k].clone();
+        if let Some(shape) = choice.memory.shape().filter(|_| closer[k]) {
+            let (low, high) = posterior.ends();
+            let (sharp, balance) = (LoopShape::SHARPNESS, LoopShape::BALANCE);
+            let ranges = [(low, high), (sharp.0.ln(), sharp.1.ln()), balance];
+            let start = Vector3::new(posterior.best().0, shape.sharpness.ln(), shape.balance);
+            let peak = Peak::from(start, ranges, &|points| {
+                remainder.gains(points.len(), |k| {
+                    let (choice, u) = at_point(choice, &points[k]);
+                    choice.columns(&sites[choice.site], u, size).columns
+                })
+            });
+            let (choice, at) = at_point(choice, &peak.at);
+            let (mean, sd) = peak.moments(0);
+            let posterior = Posterior::normal(mean, sd, (low, high));
+            return Scanned {
+                choice,
+                posterior,
+                at,
+                log_odds: peak.log_evidence + prior,
+                also: Vec::new(),
+                peak: Some(peak),
+            };
+        }
         if closer[k] {
             posterior.refine(&|us| evidence(choice, us));
         }
         let log_odds = posterior.log_evidence() + prior;
         let at = middle(choice, &posterior);
-        Scanned { choice, posterior, at, log_odds }
+        Scanned { choice, posterior, at, log_odds, also: Vec::new(), peak: None }
     });
     laws.retain(|law| law.log_odds > f64::NEG_INFINITY);
     laws.sort_by(|a, b| b.log_odds.total_cmp(&a.log_odds));

@@ -19,11 +19,21 @@ pub struct Measure {
 /// Data that follow one another, for laws that remember.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Course {
-    /// The data of each instant, and the time since the variable was changed to what it is, s; NaN
-    /// where nobody knows.
-    pub instants: Vec<(Vec<usize>, f64)>,
+    /// In their order.
+    pub instants: Vec<Instant>,
     /// The variable before the first of them.
     pub start: f64,
+}
+
+/// What was read at once.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Instant {
+    /// Its data.
+    pub data: Vec<usize>,
+    /// Time since the variable was changed to what it is, s; NaN where nobody knows.
+    pub elapsed: f64,
+    /// −1 where the variable is the size of what points against its course, or else 1.
+    pub sense: f64,
 }
 
 /// A place with a variable.

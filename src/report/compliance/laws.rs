@@ -21,6 +21,7 @@ pub fn json(study: &Study) -> Value {
             "name": own.name,
             "value": own.value,
             "standard_uncertainty": own.standard_uncertainty,
+            "correlation": own.correlation,
             "unit": own.unit,
         })
     };
@@ -41,6 +42,7 @@ pub fn json(study: &Study) -> Value {
         json!({
             "load_n": load,
             "cf_um_per_n": rows(&secant.force, UM),
+            "u_cf_um_per_n": rows(&study.laws.secant_uncertainty(&study.linear, load).force, UM),
             "beyond_what_was_recorded": is_beyond(study, load),
         })
     };
@@ -68,12 +70,18 @@ pub fn blocks(study: &Study) -> Vec<Block> {
     let columns = ["11", "22", "33"].map(|entry| Column::number(format!("C^F {entry}"), "µm/N"));
     let mut columns: Vec<Column> = std::iter::once(Column::number("load", "N")).chain(columns).collect();
     columns.push(Column::text(""));
-    let caption = "Deflection over load along each axis of the tool frame, by the size of the load.";
+    let caption = "Deflection over load along each axis of the tool frame, by the size of the load, ± the standard \
+                   uncertainty that the constants of the laws bring with them.";
     let mut table = Table::new("compliance-over-load", caption, columns);
     for load in loads(study) {
         let secant = study.laws.secant(&study.linear, load);
         let mut cells = vec![significant(load, 3)];
-        cells.extend(secant.force.diagonal().iter().map(|entry| number(*entry)));
+        let u = study.laws.secant_uncertainty(&study.linear, load).force.diagonal();
+        let with_u = |(entry, u): (&f64, &f64)| match *u > 0.0 {
+            true => format!("{} ± {}", number(*entry), number(*u)),
+            false => number(*entry),
+        };
+        cells.extend(secant.force.diagonal().iter().zip(u.iter()).map(with_u));
         cells.push(if is_beyond(study, load) { "beyond what was recorded".into() } else { String::new() });
         table.row(cells);
     }

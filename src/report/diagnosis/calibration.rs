@@ -10,7 +10,7 @@ use self::distances::{Distances, distances_json, mean};
 use self::joints::gear_of;
 use super::headline::um;
 use super::remainder::{Remainder, Sample};
-use super::subject::{Errors, LawSubject, Subject};
+use super::subject::{Errors, LawNote, LawSubject, Subject};
 use super::{json as whole_json, report as whole_report};
 use crate::calibration::campaign::Targets;
 use crate::calibration::{MOST_SCATTER, Warning};
@@ -103,9 +103,11 @@ fn subject<'a>(found: &'a CalibrationDiagnosis<'_>) -> Subject<'a> {
         }),
         law: found.law.as_ref().map(|proposed| LawSubject {
             proposed,
-            remark: proposed.law.as_ref().ok().and_then(remark),
             noun: "poses",
-            written_to: proposed.law.as_ref().map_or(WrittenTo::Nowhere, |law| law_destination(law, model)),
+            notes: proposed
+                .laws()
+                .map(|law| LawNote { written_to: law_destination(law, model), remark: remark(law) })
+                .collect(),
             files: ["robot", "measurements"],
         }),
         remainder: remainder(found),
@@ -200,7 +202,7 @@ pub fn announced(report: &mut Report, found: &CalibrationDiagnosis) {
             None => format!("Nowhere, because no file has a place for it: {what}"),
         }
     };
-    let law = found.law.as_ref().and_then(|proposed| proposed.law.as_ref().ok()).map(|law| {
+    let laws = found.law.iter().flat_map(|proposed| proposed.laws()).map(|law| {
         let what = format!("the law of the {} over the {}", law.site.result.name, law.site.variable.name);
         match law_destination(law, &found.model) {
             WrittenTo::Model if is_urdf => {
@@ -214,7 +216,7 @@ pub fn announced(report: &mut Report, found: &CalibrationDiagnosis) {
             WrittenTo::Nowhere => format!("Nowhere, because no file has a place for it: {what}"),
         }
     });
-    let lines: Vec<String> = found.diagnosis.findings.iter().map(line).chain(law).collect();
+    let lines: Vec<String> = found.diagnosis.findings.iter().map(line).chain(laws).collect();
     if !lines.is_empty() {
         report.sections.push(Section::new("What --apply would write", vec![Block::List(lines)]));
     }

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use self::expression::{Expression, expression};
 use super::headline::um;
 use super::place::place;
-use super::subject::LawSubject;
+use super::subject::{LawNote, LawSubject};
 use crate::inference::law::{Constant, Law, LawRival, Memory, Proposed, Refusal, Site};
 use crate::inference::{Location, Quantity, WrittenTo};
 use crate::report::pictures::diagnosis::{LawPanel, law_picture};
@@ -32,15 +32,19 @@ pub fn section(subject: &LawSubject) -> Section {
         }
         Ok(law) => law,
     };
-    let mut points = vec![summary(law, subject.proposed)];
-    points.extend(alternatives(law, subject));
-    points.extend(next(law));
-    points.extend(subject.remark.clone());
-    points.extend(more(law, subject));
-    points.push(range(law, subject));
-    let blocks =
-        vec![Block::List(points), Block::Table(table(law)), Block::Figure(picture(law, subject.noun))];
-    Section::new(heading, blocks)
+    let of_law = |(k, law): (usize, &Law)| {
+        let note = subject.notes.get(k)?;
+        let mut points = vec![summary(law, k, subject.proposed)];
+        points.extend(alternatives(law, subject));
+        points.extend(next(law));
+        points.extend(note.remark.clone());
+        points.extend(more(law, note));
+        points.push(range(law, subject, note));
+        let name = if k == 0 { "law" } else { "second-law" };
+        let figure = picture(law, name, subject.noun);
+        Some(vec![Block::List(points), Block::Table(table(law, name)), Block::Figure(figure)])
+    };
+    Section::new(heading, law.all().enumerate().filter_map(of_law).flatten().collect())
 }
 
 /// The key `law` of the JSON; null where nothing is left to look for one in.
@@ -58,12 +62,30 @@ pub fn json(subject: Option<&LawSubject>) -> Value {
         "heldout_without_um": proposed.held_out.map(|(without, _)| um(without)),
         "heldout_with_um": proposed.held_out.map(|(_, with)| um(with)),
     });
-    let Ok(law) = &proposed.law else { return json };
+    let (Ok(law), Some(note)) = (&proposed.law, subject.notes.first()) else { return json };
+    let second = law.second.as_ref().zip(subject.notes.get(1)).map(|(second, note)| {
+        let (without, with) = second.held_out;
+        let mut json = of_law(&second.law, 1, subject, note);
+        json["heldout_without_um"] = json!(um(without));
+        json["heldout_with_um"] = json!(um(with));
+        json
+    });
+    let mut more = of_law(law, 0, subject, note);
+    more["second"] = json!(second);
+    if let (Value::Object(json), Value::Object(more)) = (&mut json, more) {
+        json.extend(more);
+    }
+    json
+}
+
+/// A law that is proposed.
+fn of_law(law: &Law, number: usize, subject: &LawSubject, note: &LawNote) -> Value {
+    let um = |error: f64| error / UM;
     let Expression { text, latex } = expression(&law.site, law.form, law.memory);
     let (low, high) = law.site.range();
     let variable = &law.site.variable;
-    let more = json!({
-        "words": summary(law, proposed),
+    json!({
+        "words": summary(law, number, subject.proposed),
         "expression": { "text": text, "latex": latex },
         "location": law.site.location.to_string(),
         "place": place(&law.site.location),
@@ -71,7 +93,8 @@ pub fn json(subject: Option<&LawSubject>) -> Value {
         "variable": { "symbol": variable.symbol, "name": variable.name, "unit": variable.unit },
         "form": law.form.name(),
         "memory": law.memory.name(),
-        "constants": constants(law).map(constant).collect::<Vec<_>>(),
+        "constants": law.constants().map(constant).collect::<Vec<_>>(),
+        "correlation": law.correlation.row_iter().map(|row| row.iter().copied().collect()).collect::<Vec<Vec<f64>>>(),
         "range": [low / variable.si, high / variable.si],
         "explains_rms_um": um(law.explains),
         "heldout_um": law.held_out.map(um),
@@ -87,21 +110,13 @@ pub fn json(subject: Option<&LawSubject>) -> Value {
         "more_left": law.more.as_ref().map(|(location, variable)| {
             json!({ "location": location.to_string(), "place": place(location), "variable": variable.name, "unit": variable.unit })
         }),
-        "remark": subject.remark,
-        "written_to": match subject.written_to {
+        "remark": note.remark,
+        "written_to": match note.written_to {
             WrittenTo::Model => Some(subject.files[0]),
             WrittenTo::Recording => Some(subject.files[1]),
             WrittenTo::Nowhere => None,
         },
-    });
-    if let (Value::Object(json), Value::Object(more)) = (&mut json, more) {
-        json.extend(more);
-    }
-    json
-}
-
-fn constants(law: &Law) -> impl Iterator<Item = &Constant> {
-    law.amplitudes.iter().chain(law.constant.iter().map(|(_, constant)| constant))
+    })
 }
 
 fn constant(constant: &Constant) -> Value {
@@ -151,17 +166,24 @@ fn with_unit(number: String, unit: &str) -> String {
     if unit.is_empty() { number } else { format!("{number} {unit}") }
 }
 
-/// The law, its numbers and what it is worth.
-fn summary(law: &Law, proposed: &Proposed) -> String {
+/// The law, its numbers and what it is worth; the second one stands beside the first.
+fn summary(law: &Law, number: usize, proposed: &Proposed) -> String {
     let Expression { text, .. } = expression(&law.site, law.form, law.memory);
     let numbers: Vec<String> =
-        constants(law).map(|own| format!("{} = {}", own.symbol, quantity(own))).collect();
-    let worth = proposed.held_out.map_or_else(String::new, |(without, with)| {
-        format!(" With it, the held-out error falls from {} to {} µm.", um(without), um(with))
+        law.constants().map(|own| format!("{} = {}", own.symbol, quantity(own))).collect();
+    let first = proposed.law.as_ref().ok();
+    let (start, with, worth) = match number {
+        0 => ("A law is proposed for the unexplained error", "it", proposed.held_out),
+        _ => {
+            let second = first.and_then(|first| first.second.as_ref());
+            ("Beside it a second law is proposed", "both", second.map(|second| second.held_out))
+        }
+    };
+    let worth = worth.map_or_else(String::new, |(before, after)| {
+        format!(" With {with}, the held-out error falls from {} to {} µm.", um(before), um(after))
     });
     format!(
-        "A law is proposed for the unexplained error: {text}, the {} as a function of the {}, {}, with {}. It \
-         explains {} µm rms.{worth}",
+        "{start}: {text}, the {} as a function of the {}, {}, with {}. It explains {} µm rms.{worth}",
         law.site.result.name,
         law.site.variable.name,
         at(&law.site),
@@ -215,10 +237,10 @@ fn next(law: &Law) -> Option<String> {
     ))
 }
 
-fn range(law: &Law, subject: &LawSubject) -> String {
+fn range(law: &Law, subject: &LawSubject, note: &LawNote) -> String {
     let ((low, high), variable) = (law.site.range(), &law.site.variable);
     let show = |value: f64| significant(value / variable.si, 3);
-    let written = match subject.written_to {
+    let written = match note.written_to {
         WrittenTo::Model => "; --apply writes it".to_owned(),
         WrittenTo::Recording => format!(
             "; --apply takes it out of the {}, and no file gets it: its {} is known in this recording only",
@@ -244,9 +266,9 @@ fn range(law: &Law, subject: &LawSubject) -> String {
 }
 
 /// What may be left beside it.
-fn more(law: &Law, subject: &LawSubject) -> Option<String> {
+fn more(law: &Law, note: &LawNote) -> Option<String> {
     let (location, variable) = law.more.as_ref()?;
-    let advice = match subject.written_to {
+    let advice = match note.written_to {
         WrittenTo::Nowhere => "",
         WrittenTo::Model | WrittenTo::Recording => {
             " Write this law with --apply and diagnose again: that says whether there is another."
@@ -280,7 +302,7 @@ fn refused(refusal: Refusal, subject: &LawSubject) -> String {
     format!("No law is proposed for the unexplained error: {why}.{lives}")
 }
 
-fn table(law: &Law) -> Table {
+fn table(law: &Law, name: &str) -> Table {
     let columns = vec![
         Column::text("constant"),
         Column::text(""),
@@ -289,8 +311,8 @@ fn table(law: &Law) -> Table {
         Column::number("to", ""),
         Column::text("unit"),
     ];
-    let mut table = Table::new("law", "The constants of the proposed law.", columns);
-    for own in constants(law) {
+    let mut table = Table::new(name, "The constants of the proposed law.", columns);
+    for own in law.constants() {
         let show = |value: f64| shown(value, 0.5 * (own.high - own.low));
         let unit = own.unit.clone();
         table.row([
@@ -317,7 +339,7 @@ fn shown(value: f64, half: f64) -> String {
 }
 
 /// Data, smooth curve and law, direction by direction.
-fn picture(law: &Law, noun: &str) -> crate::report::chart::Figure {
+fn picture(law: &Law, name: &str, noun: &str) -> crate::report::chart::Figure {
     let (variable, result) = (&law.site.variable, &law.site.result);
     let label = |name: &str, unit: &str| {
         if unit.is_empty() { name.to_owned() } else { format!("{name} / {unit}") }
@@ -352,7 +374,7 @@ fn picture(law: &Law, noun: &str) -> crate::report::chart::Figure {
         }
     };
     let panels: Vec<LawPanel> = law.site.directions.iter().enumerate().map(panel).collect();
-    law_picture(&panels, noun).captioned(format!(
+    law_picture(&panels, name, noun).captioned(format!(
         "What the findings leave, as the law sees it. Points: {noun}; dashed: a smooth curve through them; \
          solid: the law; dotted: the law beyond the {noun}."
     ))

@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 use self::lines::{branch_name, line_name};
 use super::headline::um;
 use super::remainder::{Remainder, Sample};
-use super::subject::{Errors, LawSubject, Subject};
+use super::subject::{Errors, LawNote, LawSubject, Subject};
 use super::{json as whole_json, report as whole_report};
 use crate::diagnosis::rig::{Correction, Datum, RigDiagnosis, remark};
 use crate::inference::{
@@ -73,9 +73,11 @@ fn subject<'a>(found: &'a RigDiagnosis, correction: Option<&Correction>) -> Subj
         remainder: remainder(found),
         law: found.law.as_ref().map(|proposed| LawSubject {
             proposed,
-            remark: proposed.law.as_ref().ok().and_then(remark),
             noun: "readings",
-            written_to: found.law_destination(),
+            notes: proposed
+                .laws()
+                .map(|law| LawNote { written_to: found.law_destination(law), remark: remark(law) })
+                .collect(),
             files: ["rod", "readings"],
         }),
         warnings: of_rod.chain(of_readings).chain(unused).collect(),

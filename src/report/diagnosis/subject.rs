@@ -89,10 +89,16 @@ pub struct LawSubject<'a> {
     pub proposed: &'a Proposed,
     /// What was recorded: `readings`.
     pub noun: &'static str,
-    /// Where --apply writes a law.
-    pub written_to: WrittenTo,
+    /// Of each law that is proposed.
+    pub notes: Vec<LawNote>,
     /// What the model's file and the recording's are called.
     pub files: [&'static str; 2],
+}
+
+/// What is known of a law besides itself.
+pub struct LawNote {
+    /// Where --apply writes it.
+    pub written_to: WrittenTo,
     /// The nearest mechanism of a textbook, in a sentence.
     pub remark: Option<String>,
 }

@@ -65,14 +65,16 @@ impl Check<'_> {
             .map_err(|fault| toml.in_formula(&raw.formula, fault))?;
         law.source.clone_from(&raw.source);
         if let Some(memory) = &raw.memory {
-            let known = [LawMemory::Stop, LawMemory::Lag].into_iter();
-            let Some(of_key) = known.clone().find(|known| known.key() == memory.get_ref()) else {
-                return Err(toml.is("law.memory", memory, "\"stop\" or \"lag\""));
+            let known = |own: &LawMemory| own.key() == memory.get_ref();
+            let Some(of_key) = LawMemory::ALL.into_iter().find(known) else {
+                return Err(toml.is("law.memory", memory, "\"stop\", \"bouc_wen\" or \"lag\""));
             };
-            let own = law.constants.iter().find(|own| own.name == of_key.constant());
-            if own.is_none_or(|own| own.value <= 0.0) {
-                let expected = format!("with it a constant {} > 0", of_key.constant());
-                return Err(toml.is("law.memory", memory, &expected));
+            for needed in of_key.constants() {
+                let own = law.constants.iter().find(|own| own.name == needed.name);
+                if !own.is_some_and(|own| needed.may_be(own.value)) {
+                    let expected = format!("with it a constant {}", needed.words());
+                    return Err(toml.is("law.memory", memory, &expected));
+                }
             }
             law.memory = Some(of_key);
         }

@@ -13,8 +13,8 @@ use crate::expression::{Expression, is_reserved};
 use crate::files;
 use crate::inference::{Effect, Kind, Parameter, Reported, UNKNOWN, Variable, WrittenTo};
 use crate::limits;
-use crate::rod::LawVariable;
 use crate::rod::law::SIDE;
+use crate::rod::{LawMemory, LawVariable};
 use crate::toml_text::{Number, Required, TomlText};
 
 /// Variables of a recording that no rod has: name of the file, symbol, name of the site.
@@ -41,6 +41,7 @@ struct RawEffect {
     place: Spanned<String>,
     variable: Spanned<String>,
     law: Spanned<String>,
+    memory: Option<Spanned<String>>,
     parameter: Spanned<Vec<RawParameter>>,
 }
 
@@ -156,6 +157,7 @@ fn of_raw(toml: TomlText, text: &str, raw: &RawEffect) -> Result<OwnEffect> {
         parameters.push(parameter(toml, own)?);
     }
     let law = Expression::new(raw.law.get_ref(), &names).map_err(|fault| toml.in_formula(&raw.law, fault))?;
+    let memory = raw.memory.as_ref().map(|own| memory(toml, own, &parameters)).transpose()?;
     let seen_along: fn(&crate::inference::Location) -> Vec<Variable> = match symbol {
         "t" => |_| vec![Variable::Time, Variable::TimeInRun],
         "T" => |_| vec![Variable::Temperature],
@@ -167,9 +169,24 @@ fn of_raw(toml: TomlText, text: &str, raw: &RawEffect) -> Result<OwnEffect> {
         place: raw.place.get_ref().clone(),
         variable,
         law,
+        memory,
         parameters,
         at: (at(&raw.place), at(&raw.law)),
     })
+}
+
+fn memory(toml: TomlText, raw: &Spanned<String>, parameters: &[Parameter]) -> Result<LawMemory> {
+    let Some(memory) = LawMemory::ALL.into_iter().find(|memory| memory.key() == raw.get_ref()) else {
+        return Err(toml.is("memory", raw, "\"stop\", \"bouc_wen\" or \"lag\""));
+    };
+    for needed in memory.constants() {
+        let own = parameters.iter().find(|own| own.name == needed.name);
+        if !own.is_some_and(|own| needed.may_be(own.neutral)) {
+            let expected = format!("with it a parameter whose neutral value is {}", needed.words());
+            return Err(toml.is("memory", raw, &expected));
+        }
+    }
+    Ok(memory)
 }
 
 fn parameter(toml: TomlText, raw: &RawParameter) -> Result<Parameter> {

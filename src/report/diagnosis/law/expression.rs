@@ -14,6 +14,7 @@ pub fn expression(site: &Site, form: Form, memory: Memory) -> Expression {
     let (result, variable) = (site.result.symbol, site.variable.symbol);
     let argument = match memory {
         Memory::Stop => format!("({variable} − P_r[{variable}])"),
+        Memory::BoucWen(_) => "z".to_owned(),
         Memory::Lag => format!("({variable} − {variable}_lag)"),
         _ => variable.to_owned(),
     };
@@ -42,6 +43,7 @@ pub fn expression(site: &Site, form: Form, memory: Memory) -> Expression {
     };
     let x = match memory {
         Memory::Stop => format!(r"\left({0} - \mathcal{{P}}_r[{0}]\right)", latex_of(variable)),
+        Memory::BoucWen(_) => "z".to_owned(),
         Memory::Lag => format!(r"\left({0} - \tilde{{{0}}}_{{\tau}}\right)", latex_of(variable)),
         _ => latex_of(variable),
     };
@@ -67,8 +69,18 @@ pub fn expression(site: &Site, form: Form, memory: Memory) -> Expression {
         true => of,
         false => format!("{side}[{of}]"),
     };
+    let (where_text, where_latex) = match memory {
+        Memory::BoucWen(_) => (
+            format!(", dz/d{variable} = 1 − (s·sgn(z·d{variable}) + 1 − s)·|z/r|^n"),
+            format!(
+                r",\quad \frac{{dz}}{{d{0}}} = 1 - \left(s\,\operatorname{{sgn}}(z\,d{0}) + 1 - s\right)\left|\frac{{z}}{{r}}\right|^{{n}}",
+                latex_of(variable)
+            ),
+        ),
+        Memory::None | Memory::Side | Memory::Stop | Memory::Lag => (String::new(), String::new()),
+    };
     Expression {
-        text: format!("{result} = {}", bracketed(side.0, text)),
-        latex: format!("{} = {}", latex_of(result), bracketed(side.1, latex)),
+        text: format!("{result} = {}{where_text}", bracketed(side.0, text)),
+        latex: format!("{} = {}{where_latex}", latex_of(result), bracketed(side.1, latex)),
     }
 }

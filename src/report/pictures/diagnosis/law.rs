@@ -27,7 +27,7 @@ pub struct LawPanel {
 const COLUMNS: usize = 2;
 
 /// All directions of a law; `noun` is what the data are called.
-pub fn law_picture(panels: &[LawPanel], noun: &str) -> Figure {
+pub fn law_picture(panels: &[LawPanel], name: &str, noun: &str) -> Figure {
     let chart = |panel: &LawPanel| {
         let line = |label: &str, points: &[[f64; 2]], dash: Dash, colour: Colour| Mark::Line {
             label: label.into(),
@@ -54,5 +54,5 @@ pub fn law_picture(panels: &[LawPanel], noun: &str) -> Figure {
         shared_legend: panels.len() > 1,
         ..Figure::default()
     };
-    figure.named("law")
+    figure.named(name)
 }

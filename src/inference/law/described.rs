@@ -1,0 +1,251 @@
+//! A law that was found, with its numbers, its rivals, its picture and what would settle it.
+
+use std::f64::consts::PI;
+
+use nalgebra::{DMatrix, DVector};
+
+use super::choice::Choice;
+use super::form::FormConstant;
+use super::measured::Measured;
+use super::proposed::{Beside, Law, LawRival, NextRecord, Point};
+use super::remainder::Remainder;
+use super::scan::{Scan, Scanned};
+use super::site::Site;
+use crate::inference::evidence::rms;
+use crate::inference::selection::APART;
+use crate::inference::{Evidence, ForwardModel, Term};
+use crate::linalg::least_squares;
+
+/// How far beyond the data a law is asked to part from its rivals.
+const BEYOND: f64 = 2.0;
+/// How far beyond the data it is said how far laws are apart.
+const FURTHER: f64 = 1.5;
+/// How far apart they have to be, in standard deviations of a reading.
+const PARTED: f64 = 4.0;
+/// Points between nothing and [`BEYOND`].
+const STEPS: usize = 80;
+/// Cosines of a smooth curve in a picture.
+const CURVE: usize = 6;
+/// Points of a curve in a picture.
+const POINTS: usize = 60;
+/// Data that the law moves by less than this share of the largest are not drawn.
+const DRAWN: f64 = 0.2;
+/// Most rivals that are reported.
+const MOST_RIVALS: usize = 8;
+
+/// A model with what is known of its data.
+#[derive(Clone, Copy)]
+pub(super) struct Data<'a> {
+    pub model: &'a dyn ForwardModel,
+    pub evidence: &'a Evidence,
+    /// The findings.
+    pub terms: &'a [Term],
+    /// How large, about, what is left is, m.
+    pub size: f64,
+    /// Noise of a datum, about, m.
+    pub sigma: f64,
+}
+
+/// All that a law is described by.
+pub(super) struct Known<'a> {
+    pub data: Data<'a>,
+    pub sites: &'a [Site],
+    pub remainder: &'a Remainder<'a>,
+    /// Columns of the background that are no law's.
+    pub background: usize,
+}
+
+/// The first of laws that the data do not distinguish, the others as its rivals; `held_out` are
+/// their errors, `curve` the ln odds of the likeliest smooth curve.
+pub(super) fn described(
+    known: &Known,
+    class: &[&Scanned],
+    held_out: &[Option<f64>],
+    curve: f64,
+) -> Option<Law> {
+    let (all, remainder) = (known.sites, known.remainder);
+    let Data { evidence, size, .. } = known.data;
+    let best = class.first()?;
+    let measured: Vec<Measured> =
+        class.iter().map(|law| Measured::of(remainder, &all[law.choice.site], law, size)).collect();
+    let rivals = class.iter().zip(&measured).zip(held_out).skip(1);
+    let rivals: Vec<LawRival> = rivals
+        .map(|((law, measured), &held_out)| LawRival {
+            site: all[law.choice.site].clone(),
+            form: law.choice.form,
+            memory: law.choice.memory,
+            constant: measured.constant.clone(),
+            values: measured.values.clone(),
+            odds: (best.log_odds - law.log_odds).exp(),
+            held_out,
+        })
+        .collect();
+    let site = all[best.choice.site].clone();
+    let columns = best.choice.columns(&site, best.at, size);
+    let fitted = remainder.fit(&columns.columns);
+    let Measured { amplitudes, constant, of_loop, correlation, values } = measured.into_iter().next()?;
+    let mut law = Law {
+        form: best.choice.form,
+        memory: best.choice.memory,
+        amplitudes,
+        constant,
+        of_loop,
+        correlation,
+        values,
+        log_odds: (best.log_odds, best.log_odds - curve),
+        held_out: held_out.first().copied().flatten(),
+        explains: rms(&fitted.own),
+        noise: fitted.sigma,
+        adds: fitted.own.iter().copied().collect(),
+        beside: beside(known, &fitted.base),
+        rivals,
+        next: None,
+        further: None,
+        points: Vec::new(),
+        curve: Vec::new(),
+        more: None,
+        second: None,
+        site,
+    };
+    let residual = &evidence.residual - &fitted.predicted;
+    law.points = points(&law, best.choice, &residual);
+    law.curve = smooth(&law.points, law.site.directions.len());
+    law.next = next(&law);
+    law.further = further(&law);
+    Some(law)
+}
+
+/// Findings and background once a law stands beside them: x = neutral + size × factor, within its
+/// bounds.
+fn beside(known: &Known, base: &DVector<f64>) -> Beside {
+    let Data { model, evidence, terms, .. } = known.data;
+    let mut next = evidence.background.ncols();
+    let background = base.rows(0, known.background).iter().copied().collect();
+    let mut terms = terms.to_vec();
+    for term in &mut terms {
+        let parameters = &model.candidates()[term.candidate].parameters;
+        for (value, parameter) in term.values.iter_mut().zip(parameters) {
+            let (low, high) = parameter.bounds;
+            *value = (parameter.neutral + parameter.size * base[next]).clamp(low, high);
+            next += 1;
+        }
+    }
+    Beside { terms, background }
+}
+
+/// The best law and all that are not 20 times less likely.
+pub(super) fn alike<'a>(found: &'a Scan, best: &Scanned) -> Vec<&'a Scanned> {
+    let near = found.laws.iter().take_while(|law| law.log_odds > best.log_odds - APART.ln());
+    near.take(1 + MOST_RIVALS).collect()
+}
+
+/// What the law follows, and what each datum says of its result there.
+fn points(law: &Law, choice: Choice, residual: &DVector<f64>) -> Vec<Point> {
+    let (followed, sign) = choice.memory.remembered(&law.site, law.values.1);
+    let mut points = Vec::new();
+    for (direction, (_, weights)) in law.site.directions.iter().enumerate() {
+        let largest = weights.iter().fold(0.0, |most: f64, w| most.max(w.abs()));
+        for (i, &x) in followed.iter().enumerate() {
+            let weight = weights[i] * sign.map_or(1.0, |moves| moves[i]);
+            if x.is_finite() && weight.abs() > DRAWN * largest && weight != 0.0 {
+                points.push(Point { direction, x, value: law.at(direction, x) + residual[i] / weight });
+            }
+        }
+    }
+    points
+}
+
+/// A smooth curve through the points of each direction: Σ a_j·cos(πjx) by least squares.
+fn smooth(points: &[Point], directions: usize) -> Vec<Point> {
+    let mut curve = Vec::new();
+    for direction in 0..directions {
+        let own: Vec<&Point> = points.iter().filter(|point| point.direction == direction).collect();
+        let ends = own.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), p| (a.min(p.x), b.max(p.x)));
+        let wave = |x: f64, j: usize| (PI * j as f64 * (x - ends.0) / (ends.1 - ends.0)).cos();
+        let mut xs: Vec<f64> = own.iter().map(|point| point.x).collect();
+        xs.sort_by(f64::total_cmp);
+        xs.dedup();
+        let count = xs.len().min(CURVE);
+        let columns = DMatrix::from_fn(own.len(), count, |i, j| wave(own[i].x, j));
+        let values = DVector::from_iterator(own.len(), own.iter().map(|point| point.value));
+        let Ok(factors) = least_squares(&columns, &values) else { continue };
+        for k in 0..=POINTS {
+            let x = ends.0 + (ends.1 - ends.0) * k as f64 / POINTS as f64;
+            let value = (0..count).map(|j| factors[j] * wave(x, j)).sum();
+            curve.push(Point { direction, x, value });
+        }
+    }
+    curve
+}
+
+/// Where the law and a rival at its place part first, what zeros and stiffnesses take up apart:
+/// between the data if they do, or else beyond them.
+fn next(law: &Law) -> Option<NextRecord> {
+    let (low, high) = law.site.range();
+    let (number, rival) = comparable(law).next()?;
+    let apart = |x: f64| apart(law, rival, x);
+    let least = low.min(0.0);
+    let x = |k: usize| least + (BEYOND * high - least) * k as f64 / STEPS as f64;
+    let within = (0..=STEPS).map(x).filter(|x| *x <= high).max_by(|a, b| apart(*a).total_cmp(&apart(*b)));
+    let far = |x: &f64| apart(*x) > PARTED * law.noise;
+    let at = within.filter(far).or_else(|| (0..=STEPS).map(x).filter(|x| *x > high).find(far))?;
+    Some(NextRecord { rival: number, at, is_beyond: at > high, apart: apart(at) })
+}
+
+/// How far the law is apart beyond the data from its rivals at its place, and a wave from itself
+/// with another period: the variable there, and the largest distance, m.
+fn further(law: &Law) -> Option<(f64, f64)> {
+    let at = FURTHER * law.site.range().1;
+    let distances = comparable(law).map(|(_, rival)| apart(law, rival, at));
+    distances.chain(out_of_step(law)).reduce(f64::max).map(|most| (at, most))
+}
+
+/// How far a wave may be from what goes on half again beyond its data, m. Its phase is known in
+/// their middle: from there on it is out of step by φ = 2π·X·(1/P_low − 1/P_high)/2, and by a
+/// distance 2·A·sin(φ/2); of several periods by as much as there is.
+fn out_of_step(law: &Law) -> Option<f64> {
+    let Some((FormConstant::Period, period)) = &law.constant else { return None };
+    let count = law.form.count();
+    let amplitudes = law.values.0.chunks(count).zip(&law.site.directions).map(|(own, (_, weights))| {
+        let largest = weights.iter().fold(0.0, |most: f64, w| most.max(w.abs()));
+        own.iter().map(|a| a * a).sum::<f64>().sqrt() * largest
+    });
+    let largest = law.site.largest() / law.site.variable.si;
+    let phase = match period.also.is_empty() {
+        true => PI * largest * (1.0 / period.low - 1.0 / period.high),
+        false => PI,
+    };
+    amplitudes.reduce(f64::max).map(|amplitude| 2.0 * amplitude * (0.5 * phase.min(PI)).sin())
+}
+
+/// Rivals with their numbers that differ from the law in nothing but form and constants.
+fn comparable(law: &Law) -> impl Iterator<Item = (usize, &LawRival)> {
+    let is_alike = |rival: &LawRival| {
+        rival.memory.is(law.memory)
+            && rival.site.location == law.site.location
+            && rival.site.result == law.site.result
+            && rival.site.variable == law.site.variable
+    };
+    law.rivals.iter().enumerate().filter(move |(_, rival)| is_alike(rival))
+}
+
+/// How far two laws are apart at x, m, but for what zeros and stiffnesses take up.
+fn apart(law: &Law, rival: &LawRival, x: f64) -> f64 {
+    let per_result =
+        law.site.directions.iter().flat_map(|(_, w)| w).fold(0.0, |most: f64, w| most.max(w.abs()));
+    let of_direction = |direction: usize| {
+        let (level, slope) = taken_up(law, rival, direction);
+        (law.at(direction, x) - rival.at(direction, x) - level - slope * x).abs() * per_result
+    };
+    (0..law.site.directions.len()).map(of_direction).fold(0.0, f64::max)
+}
+
+/// What zeros and stiffnesses take up of the difference of two laws: the straight line through it
+/// at the data. Level and slope.
+fn taken_up(law: &Law, rival: &LawRival, direction: usize) -> (f64, f64) {
+    let own: Vec<f64> = law.points.iter().filter(|p| p.direction == direction).map(|p| p.x).collect();
+    let columns = DMatrix::from_fn(own.len(), 2, |i, j| if j == 0 { 1.0 } else { own[i] });
+    let differences = own.iter().map(|&x| law.at(direction, x) - rival.at(direction, x));
+    let values = DVector::from_iterator(own.len(), differences);
+    least_squares(&columns, &values).map_or((0.0, 0.0), |line| (line[0], line[1]))
+}

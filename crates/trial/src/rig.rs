@@ -21,21 +21,24 @@ mod memory;
 mod mistake;
 pub(crate) mod noise;
 mod oracle;
+mod part;
 mod protocol;
 pub mod residuals;
 mod setup;
 mod sizes;
 pub(crate) mod tube;
 mod uncertainty;
+mod written;
 
 pub use self::again::{Again, Proposed, again};
 use self::bench::Bench;
 pub use self::effect::Effect;
 pub use self::made::{Made, Order};
-use self::mistake::{Mistake, Written};
+use self::mistake::Mistake;
 use self::noise::Noise;
 use self::oracle::Oracle;
 pub use self::protocol::Columns;
+use self::written::Written;
 use super::Case;
 use crate::Seed;
 use crate::chance::{happens, log_uniform};
@@ -139,8 +142,8 @@ fn drawn(seed: Seed, number: usize, residuals: &[f64]) -> Drawn {
             (vec![number], beyond::needs(number))
         }
         Kind::Mistake => {
-            let number = random.index(mistake::MISTAKES);
-            (vec![number], mistake::needs(number))
+            let number = random.index(part::MISTAKES);
+            (vec![number], part::needs(number))
         }
     };
     // friction and what looks like it are sought by themselves
@@ -188,7 +191,7 @@ fn drawn(seed: Seed, number: usize, residuals: &[f64]) -> Drawn {
             .to_vec();
     }
     let other = |random: &mut Random| setup::drawing(setup::Needs::default(), random);
-    let mistake = (kind == Kind::Mistake).then(|| mistake::draw(numbers[0], &right, other, random));
+    let mistake = (kind == Kind::Mistake).then(|| part::draw(numbers[0], &right, other, random));
     let companions = usize::from(has_companion);
     Drawn { kind, bench, noise, times, effects, companions, mistake, oracle, readings, right }
 }

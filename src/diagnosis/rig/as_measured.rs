@@ -87,6 +87,7 @@ impl RigModel {
             | Action::JointIn(..)
             | Action::Station(_)
             | Action::Play(_)
+            | Action::Display(_)
             | Action::Shift(_)
             | Action::Step(..)
             | Action::Own(..) => false,

@@ -188,7 +188,7 @@ impl RigModel {
             of_own.iter().filter(is_without).map(|(effect, _)| *effect).collect();
         entries.extend(of_own.into_iter().filter_map(|(_, entry)| entry));
         if wanted.includes(&UNKNOWN) {
-            entries.extend(nonparametric::all(&self.data, &deflections, has_rod));
+            entries.extend(nonparametric::all(&self.data, &deflections, (&self.body, &self.place)));
             nonparametric::retain_predictive(&mut entries, &self.data, &deflections);
         }
         entries.retain(|(candidate, _)| wanted.has(candidate));

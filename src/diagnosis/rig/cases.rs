@@ -15,7 +15,10 @@ pub(super) struct Cases {
 impl Cases {
     pub(super) fn of(data: &[Datum], place: &[usize]) -> Cases {
         let key = |(d, place): (&Datum, &usize)| {
-            (d.direction, d.load.to_bits(), d.is_unloading(), d.channel, *place, d.session_number)
+            (
+                (d.direction, d.load.to_bits(), d.is_unloading(), d.peak.to_bits()),
+                (d.channel, *place, d.session_number),
+            )
         };
         let of_datum = numbered(data.iter().zip(place).map(key));
         let first = firsts(&of_datum);

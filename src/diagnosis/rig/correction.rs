@@ -74,13 +74,12 @@ impl RigDiagnosis {
         }
     }
 
-    /// Where `--apply` writes the law: into the rod file where that knows its variable, or out of
+    /// Where `--apply` writes a law: into the rod file where that knows its variable, or out of
     /// the readings.
-    pub fn law_destination(&self) -> WrittenTo {
-        let law = self.law.as_ref().and_then(|proposed| proposed.law.as_ref().ok());
-        match law.filter(|_| self.model.rod().is_some()) {
+    pub fn law_destination(&self, law: &Law) -> WrittenTo {
+        match self.model.rod() {
             None => WrittenTo::Nowhere,
-            Some(law) if written(law, "").is_some() => WrittenTo::Model,
+            Some(_) if written(law, "").is_some() => WrittenTo::Model,
             Some(_) => WrittenTo::Recording,
         }
     }
@@ -161,7 +160,7 @@ fn corrected(model: &RigModel, rod: &Rod, found: &Found) -> Result<Correction> {
         entered.push(format!("{number}, within its standard uncertainty"));
     }
     let mut of_rig = DVector::zeros(model.data().len());
-    if let Some(law) = found.law {
+    for law in found.law.into_iter().flat_map(Law::all) {
         match written(law, &format!("diagnose rig, {}", readings.file)) {
             Some(law) => {
                 entered.push(format!("law, {}", law.words()));

@@ -5,6 +5,8 @@
 //! channel, so that rows in another order, one row per station and one row per channel are the same
 //! recording: see [`chronicle`](super::chronicle).
 
+use std::collections::HashMap;
+
 use super::chronicle::{Chronicle, Motion};
 use super::numbering::numbered;
 use crate::inference::RunName;
@@ -27,6 +29,9 @@ pub struct Datum {
     /// Whether the load was reached by loading or by unloading; where no row says so and the loads
     /// go up and down, by the direction of motion.
     pub phase: Option<Phase>,
+    /// The largest load that hung before in its run, the same way, N, of a load that was reached by
+    /// unloading from there; infinity of all others.
+    pub(super) peak: f64,
     /// Which way the load or the displacement went, where that is known without a phase.
     pub(super) motion: Option<Motion>,
     /// Name of the session, where the file has one.
@@ -180,6 +185,7 @@ fn of_rows(rows: &[Reading], driven: Driven) -> Vec<Datum> {
                 channel,
                 load: row.load,
                 phase: row.phase.or(own.motion.map(|motion| motion.phase)),
+                peak: f64::INFINITY,
                 motion: own.motion,
                 session: row.session.clone(),
                 session_number: own.session,
@@ -209,7 +215,20 @@ fn of_rows(rows: &[Reading], driven: Driven) -> Vec<Datum> {
     for ((datum, run), order) in data.iter_mut().zip(runs).zip(orders) {
         (datum.run, datum.order) = (run, order);
     }
+    find_peaks(&mut data);
     data
+}
+
+/// Fills in from which load each one was reached by unloading.
+fn find_peaks(data: &mut [Datum]) {
+    let mut peaks: HashMap<(usize, Direction), f64> = HashMap::new();
+    for datum in data {
+        let peak = peaks.entry((datum.run, datum.direction)).or_default();
+        if datum.is_unloading() && datum.load < *peak {
+            datum.peak = *peak;
+        }
+        *peak = peak.max(datum.load);
+    }
 }
 
 #[cfg(test)]
@@ -228,6 +247,15 @@ mod tests {
         let names: Vec<String> = data.iter().map(Datum::name).collect();
         assert_eq!(names, ["row 1 dx", "row 2 dx", "row 2 dz", "row 3 dz"]);
         assert_eq!(data[3].line, 6);
+    }
+
+    #[test]
+    fn a_load_on_the_way_down_knows_from_where() {
+        let text =
+            "axis,load_n,trial,phase,dy_um\ny,5,a,load,0\ny,9,a,load,0\ny,5,a,unload,0\ny,9,b,unload,0\n";
+        let data = all(&Readings::from_text("f", text).unwrap().rows);
+        let peaks: Vec<f64> = data.iter().map(|d| d.peak).collect();
+        assert_eq!(peaks, [f64::INFINITY, f64::INFINITY, 9.0, f64::INFINITY]);
     }
 
     #[test]

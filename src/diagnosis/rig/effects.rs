@@ -9,6 +9,7 @@
 //! ten times as large, has the same answer. "The paper": Improved
 //! MultiCal, Sensors 2023, 23(12), 5717.
 
+pub(super) mod display;
 pub mod entry;
 pub(super) mod events;
 pub(super) mod history;

@@ -14,6 +14,8 @@
 //! that acts on all lines alike, such as relaxation with one time constant or a seat that gives
 //! way, is one rival and not many.
 //!
+//! What yields along the rod more here than there is a curve over its stations ([`station`]).
+//!
 //! What sets in at a load, or acts one way, has rivals of one number ([`kink`]). What comes and
 //! goes in time has finer curves besides, of [`FINE`] columns of which the first
 //! half are of one size.
@@ -21,6 +23,7 @@
 mod along;
 mod before;
 mod kink;
+mod station;
 mod swing;
 
 use std::f64::consts::PI;
@@ -36,12 +39,12 @@ use super::action::{Action, Weights};
 use super::datum::Datum;
 use super::effects::entry::Entry;
 use super::load_history::runs;
+use super::model::Body;
 use super::numbering::numbered;
 use crate::inference::{Candidate, Location, Parameter, Variable};
 use crate::spatial::Axis;
 use crate::units::UM;
 
-const MOST_COLUMNS: usize = 6;
 /// Columns of a curve in time that swings: six periods in a recording.
 const FINE: usize = 14;
 /// Loads that are hung are at most so many different ones.
@@ -52,7 +55,7 @@ const SLOPE: (f64, f64) = (0.27, 0.02);
 
 /// All curves for these readings. `deflections`: how far the rod yields at each datum by the base
 /// model, m.
-pub(super) fn all(data: &[Datum], deflections: &[f64], has_rod: bool) -> Vec<Entry> {
+pub(super) fn all(data: &[Datum], deflections: &[f64], (body, place): (&Body, &[usize])) -> Vec<Entry> {
     let everything: Vec<usize> = (0..data.len()).collect();
     let lines = groups(data, &numbered(data.iter().map(Datum::line_key)), &|d| {
         format!("d{} under loads along {}{}", d.channel, d.direction.axis, places(d))
@@ -96,8 +99,9 @@ pub(super) fn all(data: &[Datum], deflections: &[f64], has_rod: bool) -> Vec<Ent
     }
     entries.extend(along_the_load(data));
     entries.extend(kink::all(data, deflections));
-    if has_rod {
+    if let Body::Rod(structure) = body {
         entries.extend(slopes(data, deflections, &lines));
+        entries.extend(station::along_the_rod(data, structure, place));
     }
     entries
 }

@@ -18,7 +18,7 @@ use super::actual::Actual;
 use super::cosserat::{Body, Hinge};
 use super::drawing::{Deviation, Drawing};
 use super::effect::Effect;
-use super::memory::{Plays, creep_compliance, friction_after};
+use super::memory::{Plays, creep_compliance, friction_after, slipped_after};
 use super::protocol::{Loading, Protocol};
 
 /// A rod at a rig with what was done there.
@@ -169,6 +169,17 @@ impl Bench {
         index == 0 || of_index(index - 1) != of_index(index) || self.protocol.is_shuffled
     }
 
+    /// How far what slips little by little has come at a loading since its run began, N.
+    fn slipped(&self, index: usize, numbers: (f64, f64, f64)) -> f64 {
+        let first = (0..=index).rev().find(|&k| self.is_first(k)).unwrap_or(0);
+        let (mut z, mut hung) = (0.0, 0.0);
+        for loading in &self.protocol.loadings[first..=index] {
+            z = slipped_after(z, loading.load - hung, numbers);
+            hung = loading.load;
+        }
+        z
+    }
+
     /// A part of each change of the load is still to come when the display is read.
     fn damp(&self, felt: &mut [f64], share: f64, time: f64) {
         let hanging = felt.to_vec();
@@ -238,6 +249,9 @@ impl Bench {
                 Effect::LooseClamp(share) if loading.sign < 0.0 => u *= 1.0 + share,
                 Effect::Backlash { axis, play } if is_of(axis, loading) && loading.load > 0.0 => {
                     u += along * play
+                }
+                Effect::SlippingClamp { per_newton, yields, sharpness, balance } => {
+                    u += along * (per_newton * self.slipped(index, (yields, sharpness, balance)));
                 }
                 Effect::Seat(depth) => {
                     let relative = force.norm() / self.full_scale;

@@ -81,6 +81,9 @@ pub enum Effect {
     LoadBefore(f64),
     /// A damped slide: this share of a change of the load comes late, with this time constant, s.
     Damping { share: f64, time: f64 },
+    /// A clamp that slips little by little: `per_newton`·z, m, along the load, z (N) by the
+    /// equation of Bouc and Wen. Made to order only.
+    SlippingClamp { per_newton: f64, yields: f64, sharpness: f64, balance: f64 },
 }
 
 impl Effect {
@@ -114,6 +117,7 @@ impl Effect {
             Effect::Waviness { .. } => "wall that varies along the rod",
             Effect::LoadBefore(_) => "memory of the load before",
             Effect::Damping { .. } => "damped slide",
+            Effect::SlippingClamp { .. } => "clamp that slips little by little",
         }
     }
 
@@ -229,6 +233,9 @@ impl Effect {
                 vec![("share", *amplitude), ("period_mm", period / MM)]
             }
             Effect::Damping { share, time } => vec![("share", *share), ("time_s", *time)],
+            Effect::SlippingClamp { per_newton, yields, .. } => {
+                vec![("um_per_n", per_newton / UM), ("yield_n", *yields)]
+            }
         }
     }
 

@@ -10,6 +10,20 @@ pub fn friction_after(z: f64, force: f64, travel: f64, presliding: f64) -> f64 {
     if travel == 0.0 { z } else { goal + (z - goal) * (-travel.abs() / presliding).exp() }
 }
 
+/// z of the equation of R. Bouc (1967) and Y.-K. Wen (J. Eng. Mech. Div. ASCE 102, 1976) after a
+/// change of x, by Euler's method in small steps:
+///
+/// dz/dx = 1 − (s·sgn(z·dx) + 1 − s)·|z/r|ⁿ
+pub fn slipped_after(mut z: f64, change: f64, (r, n, s): (f64, f64, f64)) -> f64 {
+    const STEPS: usize = 2000;
+    let step = change / STEPS as f64;
+    for _ in 0..STEPS {
+        let along = if z * change < 0.0 { 1.0 - 2.0 * s } else { 1.0 };
+        z += step * (1.0 - along * (z / r).abs().powf(n));
+    }
+    z
+}
+
 /// Decades of relaxation times in the chain, and elements in each.
 const DECADES: usize = 6;
 const PER_DECADE: usize = 2;

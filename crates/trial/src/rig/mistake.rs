@@ -1,28 +1,16 @@
 //! Mistakes of whoever writes things down: units, signs, names, zeros, sensors, files. The rod and
-//! what was done with it are right; the files are not.
+//! what was done with it are right; the files are not. In a third of the cases it is a part of the
+//! rows that is wrong (`part.rs`).
 
 use super::actual::Actual;
 use super::bench::Bench;
 use super::drawing::{Drawing, rounded};
-use super::protocol::{AXES, Cell, Protocol};
-use super::setup::Needs;
+use super::protocol::{AXES, Cell};
+use super::written::{self, Written};
 use crate::chance::{happens, one_of};
 use crate::place::Place;
 use rodcal_base::statistics::Random;
 use rodcal_base::units::{STANDARD_GRAVITY, UM};
-
-/// A recording as it is written down.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Written {
-    /// The rod of `rod.toml`.
-    pub drawing: Drawing,
-    /// Rods whose files stand beside it, by their names.
-    pub others: Vec<(String, Drawing)>,
-    /// Loads and columns.
-    pub protocol: Protocol,
-    /// The numbers of the cells, m.
-    pub shown: Vec<f64>,
-}
 
 /// What is written wrongly; factors are true over written.
 #[derive(Debug, Clone, PartialEq)]
@@ -50,56 +38,31 @@ pub enum Mistake {
     Zero { channel: usize, run: Option<usize>, by: f64 },
     /// Another rod's file; the right one stands beside it under this name.
     Rod { file: String, drawn: Box<Drawing> },
+    /// One of the others, in these trials alone.
+    InTrials { trials: Vec<usize>, what: Box<Mistake> },
+    /// A load that was typed wrongly, N, and the right one.
+    Typed { loading: usize, load: f64, right: f64 },
+    /// The readings of a trial stand in the place of those of another one.
+    Copied { from: usize, to: usize },
 }
 
-/// Kinds of mistakes, by number.
-pub const MISTAKES: usize = 13;
+/// Kinds of mistakes of the whole recording, or of one zero, by number.
+pub(super) const WHOLE: usize = 13;
 /// What readings of the rod of the file must be off by, of their size, for a mistake to show.
 const VISIBLE: f64 = 0.3;
-/// Draws before the next kind is tried.
-const TRIES: usize = 20;
 /// What a sensor shows of the largest deflection of the recording, at least, for what it does to
 /// matter.
 const MOVES: f64 = 0.05;
 /// Readings that a sensor cuts off at least.
 const CUT: usize = 4;
 
-const POUND_FORCE: f64 = 4.448_221_615_260_5;
+pub(super) const POUND_FORCE: f64 = 4.448_221_615_260_5;
 const POUND: f64 = 0.453_592_37;
 /// mm, inches and thousandths of an inch, in µm.
-const LENGTHS: [f64; 3] = [1e3, 25.4e3, 25.4];
+pub(super) const LENGTHS: [f64; 3] = [1e3, 25.4e3, 25.4];
 
-/// What a protocol must have for a mistake of this number to show.
-pub fn needs(number: usize) -> Needs {
-    let needs = Needs::default();
-    match number {
-        5 | 6 => Needs { two_channels: true, two_axes: true, ..needs },
-        // along one axis another unit of the loads, or another rod, is a rod of another stiffness
-        0 | 12 => Needs { two_axes: true, ..needs },
-        10 => Needs { trials: true, ..needs },
-        _ => needs,
-    }
-}
-
-/// A mistake of a kind, or of one of the next where that does not show; `other` draws another rod.
-pub fn draw(
-    number: usize,
-    written: &Written,
-    mut other: impl FnMut(&mut Random) -> Drawing,
-    random: &mut Random,
-) -> Mistake {
-    for number in number..number + MISTAKES {
-        for _ in 0..TRIES {
-            let drawn = of_kind(number % MISTAKES, written, &mut other, random);
-            if let Some(mistake) = drawn.filter(|mistake| mistake.shows(written)) {
-                return mistake;
-            }
-        }
-    }
-    Mistake::Readings { channels: written.protocol.read_channels(), factor: LENGTHS[0] }
-}
-
-fn of_kind(
+/// A mistake of this number; nothing where the recording has no place for it.
+pub(super) fn of_kind(
     number: usize,
     written: &Written,
     other: &mut dyn FnMut(&mut Random) -> Drawing,
@@ -107,12 +70,6 @@ fn of_kind(
 ) -> Option<Mistake> {
     let protocol = &written.protocol;
     let (axes, channels) = (protocol.axes(), protocol.read_channels());
-    let pair = |of: &[usize], random: &mut Random| -> Option<[usize; 2]> {
-        let first = random.index(of.len());
-        let second = (first + 1 + random.index(of.len().checked_sub(1)?)) % of.len();
-        let (a, b) = (*of.get(first)?, *of.get(second)?);
-        (a != b).then_some([a.min(b), a.max(b)])
-    };
     // a channel along a load: the others may have nothing to show
     let along = |random: &mut Random| one_of(random, &axes, 0);
     let largest = |channel: usize| {
@@ -161,6 +118,14 @@ fn of_kind(
     })
 }
 
+/// Two of these, in their order.
+pub(super) fn pair(of: &[usize], random: &mut Random) -> Option<[usize; 2]> {
+    let first = random.index(of.len());
+    let second = (first + 1 + random.index(of.len().checked_sub(1)?)) % of.len();
+    let (a, b) = (*of.get(first)?, *of.get(second)?);
+    (a != b).then_some([a.min(b), a.max(b)])
+}
+
 impl Mistake {
     /// Its name.
     pub fn name(&self) -> &'static str {
@@ -172,6 +137,9 @@ impl Mistake {
             Mistake::Saturated { .. } => "saturated_sensor",
             Mistake::Zero { .. } => "offset_mistake",
             Mistake::Rod { .. } => "rod_mistake",
+            Mistake::InTrials { what, .. } => what.name(),
+            Mistake::Typed { .. } => "typing_mistake",
+            Mistake::Copied { .. } => "copy_mistake",
         }
     }
 
@@ -192,6 +160,15 @@ impl Mistake {
             Mistake::Legs => "l1_mm and l2_mm".into(),
             Mistake::Radii => format!("{}, {}", pipe("pipe1"), pipe("pipe2")),
             Mistake::Rod { file, .. } => file.clone(),
+            Mistake::InTrials { trials, what } => {
+                let whole = what.place(written).key.unwrap_or_default();
+                written::in_trials(&whole, trials, &written.protocol)
+            }
+            Mistake::Typed { loading, .. } => {
+                let column = if written.protocol.columns.kilograms { "load_kg" } else { "load_n" };
+                format!("{column}, row {}", loading + 1)
+            }
+            Mistake::Copied { to, .. } => format!("trial {}", to + 1),
         })
     }
 
@@ -203,6 +180,8 @@ impl Mistake {
             Mistake::Zero { by, .. } => vec![("um", by / UM)],
             Mistake::Stuck { at, .. } => vec![("um", at / UM)],
             Mistake::Saturated { limit, .. } => vec![("um", limit / UM)],
+            Mistake::InTrials { what, .. } => what.parameters(),
+            Mistake::Typed { right, .. } => vec![("n", *right)],
             _ => Vec::new(),
         }
     }
@@ -264,12 +243,18 @@ impl Mistake {
                 wrong.others.retain(|(name, _)| name != file);
                 wrong.others.push((file.clone(), right));
             }
+            Mistake::InTrials { trials, what } => {
+                let is_of = |k: usize| trials.contains(&written.protocol.loadings[k].trial);
+                wrong = written::merged(written, &what.made(written), is_of);
+            }
+            Mistake::Typed { loading, load, .. } => wrong.protocol.loadings[*loading].load = *load,
+            Mistake::Copied { from, to } => wrong = written::copy(written, *from, *to),
         }
         wrong
     }
 
     /// True where the files do not fit each other: the readings of the rod of the file are far off.
-    fn shows(&self, written: &Written) -> bool {
+    pub(super) fn shows(&self, written: &Written) -> bool {
         let wrong = self.made(written);
         let tip = wrong.drawing.length();
         let cells = written.protocol.cells();
@@ -289,7 +274,10 @@ impl Mistake {
             let is_cut = |(cell, shown): &(&Cell, &f64)| cell.channel == *channel && shown.abs() > *limit;
             return cells.iter().zip(&written.shown).filter(is_cut).count() >= CUT;
         }
-        if matches!(self, Mistake::Zero { .. } | Mistake::Stuck { .. }) {
+        if matches!(
+            self,
+            Mistake::Zero { .. } | Mistake::Stuck { .. } | Mistake::Typed { .. } | Mistake::Copied { .. }
+        ) {
             return true;
         }
         if !wrong.drawing.is_possible() || !wrong.protocol.stations().iter().all(|station| *station < tip) {
@@ -304,10 +292,21 @@ impl Mistake {
             sticking,
             full_scale,
         };
-        let norm = |values: &mut dyn Iterator<Item = f64>| values.map(|x| x * x).sum::<f64>().sqrt();
-        let readings = expected.readings(&[]);
-        let off = norm(&mut readings.iter().zip(&wrong.shown).map(|(a, b)| a - b));
-        off > VISIBLE * norm(&mut wrong.shown.iter().copied()).max(norm(&mut readings.iter().copied()))
+        let norm = |values: &dyn Fn(f64, f64) -> f64, of: &[(f64, f64)]| {
+            of.iter().map(|&(a, b)| values(a, b).powi(2)).sum::<f64>().sqrt()
+        };
+        // in some trials it must show in these
+        let is_wrong = |cell: &Cell| match self {
+            Mistake::InTrials { trials, .. } => {
+                trials.contains(&expected.protocol.loadings[cell.loading].trial)
+            }
+            _ => true,
+        };
+        let readings = expected.readings(&[]).into_iter().zip(wrong.shown);
+        let of_cells = expected.protocol.cells().into_iter().zip(readings);
+        let own: Vec<(f64, f64)> =
+            of_cells.filter(|(cell, _)| is_wrong(cell)).map(|(_, pair)| pair).collect();
+        norm(&|a, b| a - b, &own) > VISIBLE * norm(&|a, _| a, &own).max(norm(&|_, b| b, &own))
     }
 }
 
@@ -315,36 +314,11 @@ impl Mistake {
 mod tests {
     use super::*;
     use crate::rig::bench::tests::bench;
-    use crate::rig::drawing::tests::l_shape;
 
     fn written() -> Written {
         let bench = bench();
         let shown = bench.readings(&[]);
         Written { drawing: bench.drawing, others: Vec::new(), protocol: bench.protocol, shown }
-    }
-
-    #[test]
-    fn a_mistake_of_every_kind_shows_and_changes_the_files() {
-        let written = written();
-        let other = |_: &mut Random| Drawing { legs: [0.3, 0.3], ..l_shape(0.0) };
-        let mut names = std::collections::BTreeSet::new();
-        for number in 0..MISTAKES {
-            for seed in 0..8 {
-                let mistake = draw(number, &written, other, &mut Random::seeded(seed, number as u64));
-                assert!(mistake.shows(&written) && mistake.made(&written) != written, "{mistake:?}");
-                assert!(!mistake.place(&written).is_nowhere());
-                names.insert(mistake.name());
-            }
-        }
-        assert_eq!(names.len(), 7, "{names:?}");
-        // undone by its factor
-        let wrong = Mistake::Loads { factor: STANDARD_GRAVITY }.made(&written);
-        let ratio = written.protocol.loadings[0].load / wrong.protocol.loadings[0].load;
-        assert!((ratio - STANDARD_GRAVITY).abs() < 1e-12);
-        // legs of one length may be exchanged
-        let equal = Bench { drawing: other(&mut Random::seeded(0, 0)), ..bench() };
-        let shown = equal.readings(&[]);
-        assert!(!Mistake::Legs.shows(&Written { drawing: equal.drawing, shown, ..written }));
     }
 
     #[test]

@@ -110,7 +110,8 @@ impl Effect {
             | Effect::LooseClamp(size)
             | Effect::Waviness { amplitude: size, .. }
             | Effect::LoadBefore(size)
-            | Effect::Damping { share: size, .. } => *size *= share,
+            | Effect::Damping { share: size, .. }
+            | Effect::SlippingClamp { per_newton: size, .. } => *size *= share,
             Effect::SensorBlock(sizes)
             | Effect::LoadFrame(sizes)
             | Effect::DriftOfAll { rates: sizes, .. }

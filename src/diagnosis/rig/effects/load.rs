@@ -41,7 +41,8 @@ pub static FRICTION: RigEffect = RigEffect {
         name: "friction",
         kind: Kind::Physics,
         summary: "friction in the slide holds back part of each load",
-        formula: "F = load − f while loading (not below zero), load + f while unloading",
+        formula: "F = load − f while loading (not below zero), load + f while unloading (not above what was felt \
+            at the turn)",
         prior: "5 % of the largest load: the paper's lines cross the load axis at 0.9 to 1.1 of 20 N",
         parameters: &[
             ("force_n", "friction force"),

@@ -79,7 +79,7 @@ pub static TYPING_MISTAKE: Effect = Effect {
     formula: "load = Σ w·s·(y − a)/Σ w·s² of the row's readings",
     parameters: &[("n", "the load by its readings")],
     prior: "in rows where that is 8 σ and a tenth of a usual load away",
-    needs: "six readings of a line; two channels that show the load",
+    needs: "six readings of a line; two channels that show the load, or a load that no other row has",
     cause: "a number typed wrongly",
     cause_at: |location| at("a number typed wrongly", location),
     direct_check: Some("Compare the row with the protocol that was written at the rig."),

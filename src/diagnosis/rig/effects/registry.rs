@@ -1,11 +1,11 @@
 //! All effects of a rig, in the order of preference among equals: the single source of names.
 
 use super::entry::RigEffect;
-use super::{events, history, load, mistakes, sensor, structure};
+use super::{display, events, history, load, mistakes, sensor, structure};
 use crate::inference::Effect;
 
 /// Every effect that the diagnosis of a rig knows.
-pub static ALL: [&RigEffect; 17] = [
+pub static ALL: [&RigEffect; 18] = [
     &load::FRICTION,
     &load::LOAD_OFFSET,
     &load::BACKLASH,
@@ -17,6 +17,7 @@ pub static ALL: [&RigEffect; 17] = [
     &sensor::SENSOR_MISALIGNMENT,
     &load::LOAD_MISALIGNMENT,
     &sensor::SENSOR_SCALE,
+    &display::SENSOR_LAG,
     &history::NONLINEAR_STIFFNESS,
     &history::CREEP,
     &history::HYSTERESIS,

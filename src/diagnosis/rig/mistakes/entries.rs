@@ -8,7 +8,8 @@
 //!
 //! s, a and σ slope, zero and scatter of the line of each channel. Where that is far from the load
 //! in the file, two channels or more contradict the file and all agree with it, the load is wrong
-//! and not a reading; a single channel is a suspect reading like any other. Which number was
+//! and not a reading; a single channel is a suspect reading like any other, but where the load in
+//! the file is in no other row and the one that it shows is. Which number was
 //! meant: another load of the recording, its digits exchanged, or its decimal point elsewhere.
 
 use std::borrow::Cow;
@@ -82,7 +83,7 @@ pub(super) fn found(data: &[Datum], lines: &[Line], unit: LoadColumn) -> Vec<Ent
         let row = datum.row;
         let apart = (said.load - datum.signed_load()).abs();
         let is_wrong = apart > FAR * usual && apart > SCATTERS * said.error;
-        if !is_wrong || said.off > AGREE || said.against[0] < SCATTERS || said.against[1] < AGREE {
+        if !is_wrong || said.off > AGREE || said.against[0] < SCATTERS {
             continue;
         }
         let along = f64::from(datum.direction.sign) * said.load;
@@ -95,6 +96,16 @@ pub(super) fn found(data: &[Datum], lines: &[Line], unit: LoadColumn) -> Vec<Ent
         let meant =
             meant.into_iter().map(|load| load * in_file).filter(|load| (load - along).abs() < tolerance);
         let meant = meant.min_by(|a, b| (a - along).abs().total_cmp(&(b - along).abs()));
+        // one channel alone may be misread, but for a load that nobody else hung where it shows one
+        // that was hung elsewhere
+        let is_elsewhere = |load: f64| {
+            let is_same = |d: &&Datum| d.order != datum.order && (d.load - load).abs() < 1e-6 * usual;
+            data.iter().any(|d| is_same(&d))
+        };
+        let is_alone = said.against[1] < AGREE;
+        if is_alone && (is_elsewhere(datum.load) || !meant.is_some_and(is_elsewhere)) {
+            continue;
+        }
         let name = load_column(unit);
         let unit_name = if unit == LoadColumn::Newtons { "N" } else { "kg" };
         let written = number(datum.load / in_file);

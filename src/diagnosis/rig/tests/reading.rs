@@ -98,3 +98,54 @@ fn a_sensor_has_no_scale_beyond_two() {
     };
     assert!(may_be_scale(1.8) && !may_be_scale(2.7));
 }
+
+/// Two axes up and down, three times; what is shown of a displacement, by the displacement before.
+fn shown(compliance: &nalgebra::Matrix3<f64>, mut show: impl FnMut(f64, f64) -> f64) -> String {
+    let mut text = "axis,load_n,trial,phase,dy_um,dz_um\n".to_owned();
+    let mut count = 0.0f64;
+    for trial in 1..=3 {
+        for (axis, k) in [("y", 1), ("z", 2)] {
+            let mut before = 0.0;
+            for load in [2.0, 4.0, 7.0, 9.0, 12.0, 9.0, 7.0, 4.0, 2.0, 0.0] {
+                let u = compliance[(k, k)] * load / UM;
+                let phase = if u < before || load == 0.0 { "unload" } else { "load" };
+                count += 1.0;
+                // a hundredth of a step of noise, and the other channel at rest
+                let (own, other) = (show(u, before) + (7.3 * count).sin(), (5.1 * count).sin());
+                let (y, z) = if k == 1 { (own, other) } else { (other, own) };
+                before = u;
+                if load > 0.0 {
+                    text += &format!("{axis},{load},{trial},{phase},{y:.2},{z:.2}\n");
+                }
+            }
+        }
+    }
+    text
+}
+
+#[test]
+fn play_of_the_displays_is_no_friction_and_friction_is_no_play() {
+    let rod = rod("");
+    let c = compliance(&rod);
+    let named = |text: &str| {
+        let found = crate::diagnosis::rig::diagnose(&readings(text), Some(&rod)).unwrap();
+        let findings = &found.diagnosis.findings;
+        assert_eq!(findings.len(), 1, "{text}");
+        let size = findings[0].estimates[0].quantity();
+        (findings[0].effect.name, size)
+    };
+    // each display stays 10 µm behind on either side
+    let play = |u: f64, before: f64| if u > before { u - 10.0 } else { u + 10.0 };
+    let (name, size) = named(&shown(&c, play));
+    assert_eq!(name, "sensor_lag");
+    assert!(size.low < 20.0 && 20.0 < size.high && size.high - size.low < 4.0, "{size:?}");
+    // 0.3 N of friction: more along y, where the rod is softer
+    let rubbing = |u: f64, before: f64| if u > before { -0.3 } else { 0.3 };
+    let mut axis = 0;
+    let friction = |u: f64, before: f64| {
+        let k = 1 + axis / 10 % 2;
+        axis += 1;
+        u + rubbing(u, before) * c[(k, k)] / UM
+    };
+    assert_eq!(named(&shown(&c, friction)).0, "friction");
+}

@@ -151,6 +151,23 @@ fn a_load_that_was_typed_wrongly_is_corrected() {
     assert_eq!(found(&misread, Some(&file)), [""; 0]);
 }
 
+/// Where a single channel is read, a load that no other row has was typed wrongly if it shows one
+/// that others have; one that others have is as likely a misread value.
+#[test]
+fn one_channel_alone_corrects_a_load_that_nobody_hung() {
+    let file = rod(ROD_5);
+    let clean = recorded(&file, Bench::Own, 7);
+    let z = clean.rows.iter().position(|row| row.direction.axis == Axis::Z && row.load == 15.0).unwrap();
+    for (typed, is_named) in [(150.0, true), (51.0, true), (5.0, false)] {
+        let mut wrong = clean.clone();
+        wrong.rows[z].load = typed;
+        let named = found(&wrong, Some(&file));
+        let expected =
+            if is_named { vec![format!("typing_mistake load_n, row {}", z + 1)] } else { Vec::new() };
+        assert_eq!(named, expected, "{typed}");
+    }
+}
+
 #[test]
 fn a_trial_that_repeats_another_one_is_a_copy() {
     let mut cases = Cases::default();

@@ -1,0 +1,102 @@
+//! What a display makes of a displacement that came by another one: play of a stylus, lag.
+
+use super::entry::{Context, Entry, RigEffect, alternative, candidate, of, parameter, said};
+use super::places::measured_channels;
+use crate::diagnosis::rig::action::Action;
+use crate::diagnosis::rig::display::{Display, Follows};
+use crate::inference::{Candidate, Effect, Kind, Location, Part, Reported, Variable, WrittenTo};
+use crate::spatial::Axis;
+use crate::units::UM;
+
+/// Play of a stylus, a lever or a dial as a share of the largest reading.
+const PLAY: f64 = 0.01;
+/// And at most.
+const MOST_PLAY: f64 = 0.5;
+/// Share of a change that is still to come when a display is read.
+const LAG: f64 = 0.03;
+/// What lacks a third of each change was not read.
+const MOST_LAG: f64 = 0.3;
+/// How often displays have a play, as it was at the zero or as the run before has left it, and how
+/// often they are read too soon, for another effect of the library: friction, which that looks like
+/// where loads go in even steps, is in every slide.
+const OFTEN: [f64; 3] = [0.08, 0.08, 0.04];
+/// Words for the second and the third of these.
+const FORMS: [&str; 2] = ["play on the side where the run before has left it", "read too soon"];
+
+/// A display that follows late.
+pub static SENSOR_LAG: RigEffect = RigEffect {
+    effect: Effect {
+        name: "sensor_lag",
+        kind: Kind::Physics,
+        summary: "a display follows late: after its play, or read before it has settled",
+        formula: "y ← min(max(y, u − p/2), u + p/2) along a run, p the whole play; or y = u − λ·(u − u′), u′ before",
+        prior: "play of 1 % of the largest reading: dial gauges reverse to 1 to 5 µm; or λ 3 %",
+        parameters: &[("play_um", "whole play"), ("fraction", "share of each change that is not shown yet")],
+        needs: "a rod file; loads that go up and down (column `phase`)",
+        cause: "a display that follows late",
+        cause_at: |location| format!("a display that follows late ({location})"),
+        written_to: WrittenTo::Recording,
+        reported: Reported::Alone,
+        seen_along: |_| vec![Variable::Phase, Variable::Load],
+        direct_check: None,
+    },
+    needs_rod: true,
+    candidates: displays,
+    missing: |context| match context.data.iter().any(|d| d.imposed.is_some()) {
+        true => "the displacement was imposed",
+        false => "no unloading was recorded",
+    },
+    observed: |finding, _| {
+        let display = match &finding.location {
+            Location::Channel { channel, .. } => format!("Display d{channel}"),
+            _ => "Every display".to_owned(),
+        };
+        match finding.quantity("play_um") {
+            Some(_) => {
+                let play = said(finding, "play_um", "µm");
+                format!("{display} follows the rod only after a play of {play}")
+            }
+            None => {
+                let share = of(finding, "fraction").map(|share| 100.0 * share).say("%");
+                format!("{display} lags: {share} of each change of the load is not shown yet when it is read")
+            }
+        }
+    },
+};
+
+/// All displays alike, and each by itself, in each form. Nothing where no load is taken off again:
+/// what is missing then is an offset.
+fn displays(context: &mut Context) -> Vec<Entry> {
+    let data = context.data;
+    if data.iter().any(|d| d.imposed.is_some()) || !data.iter().any(|d| d.is_unloading()) {
+        return Vec::new();
+    }
+    let largest = context.largest_reading();
+    let play = || parameter("play_um", UM, 0.0, PLAY * largest, (0.0, MOST_PLAY * largest));
+    let lag = || parameter("fraction", 1.0, 0.0, LAG, (0.0, MOST_LAG));
+    let forms = [
+        (None, Follows::BehindPlay, play()),
+        (Some(FORMS[0]), Follows::BehindPlayOfBefore, play()),
+        (Some(FORMS[1]), Follows::Later, lag()),
+    ];
+    let channels = measured_channels(data);
+    let mut entries = Vec::new();
+    for ((form, follows, size), often) in forms.into_iter().zip(OFTEN) {
+        let mut add = |location: Location, weight: f64, is_of: &dyn Fn(Axis) -> bool| {
+            let display = Display::of(data, follows, |d| is_of(d.channel));
+            let candidate = candidate(&SENSOR_LAG.effect, location, vec![size.clone()]);
+            let candidate = Candidate { weight, ..candidate };
+            entries.push(alternative((candidate, vec![Action::Display(display.into())])));
+        };
+        let all = match form {
+            None => Location::Part(Part::Sensors),
+            Some(form) => Location::Form { part: Part::Sensors, form: form.into() },
+        };
+        add(all, often, &|_| true);
+        for &channel in channels.iter().filter(|_| channels.len() > 1) {
+            let weight = often / channels.len() as f64;
+            add(Location::Channel { channel, form }, weight, &|other| other == channel);
+        }
+    }
+    entries
+}

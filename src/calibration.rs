@@ -12,6 +12,7 @@ mod compensation;
 mod cross_validation;
 mod drives;
 mod extrapolation;
+pub(crate) mod growth;
 mod identifiability;
 mod noise;
 mod observability;

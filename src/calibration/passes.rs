@@ -4,6 +4,7 @@
 use super::campaign::{Campaign, Recording, Targets};
 use super::compensation::Compensation;
 use super::drives;
+use super::growth::growth;
 use super::identifiability::{self, UnidentifiedDirection};
 use super::noise::{Noise, Robust};
 use super::options::Options;
@@ -73,7 +74,11 @@ impl<'a, 'c> Run<'a, 'c> {
         };
         let pass = Pass { weight: noise.row_weights(recording), ..Pass::at_rest(recording) };
         let stated = campaign.not_drawn();
-        let drawing = Drawing::new(&setup, free, &stated);
+        let mut drawing = Drawing::new(&setup, free, &stated);
+        if matches!(recording.targets, Targets::Sockets(_)) {
+            drawing =
+                drawing.with_slopes(growth(&setup, free, &recording.joint_values, recording.joint_count));
+        }
         let drives = drives::priors(&setup, free, &stated, compensation.payload);
         Run {
             campaign,

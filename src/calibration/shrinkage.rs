@@ -14,8 +14,8 @@
 //! ln p(y | s) = −½·Σₖ [ ln(1 + s²dₖ²) + zₖ²/(1 + s²dₖ²) ] + const        D. J. C. MacKay, Neural Computation 4 (1992) 415–447
 //! ```
 //!
-//! At an estimate t̂ = U⁻¹(ρ̂ − ρ₀) with the scale s₀, where the gradient vanishes, z = (d +
-//! 1/(s₀²d))·Vᵀt̂.
+//! At an estimate t̂ = U⁻¹(ρ̂ − ρ₀) with the scale s₀, where the gradient vanishes, z = d·Vᵀt̂ +
+//! Vᵀ(t̂/s₀² − U·h)/d, h the slope of what the density of the data has besides their squares.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -31,6 +31,8 @@ const LOG_SD: f64 = 1.0;
 /// Range in which the scale is looked for, and how finely, ln.
 const LOG_RANGE: (f64, f64) = (-4.0, 7.0);
 const LOG_STEP: f64 = 0.05;
+/// A slope holds as far as so many times what the drawing is known to.
+const AS_FAR: f64 = 10.0;
 /// Singular values below this, in standard deviations of the noise per u, say nothing.
 const NOTHING: f64 = 1e-6;
 
@@ -40,6 +42,8 @@ pub(super) struct Drawing {
     /// Of each free parameter: nominal value and standard uncertainty, SI; `None` where no drawing
     /// says anything of it.
     known: Vec<Option<(f64, f64)>>,
+    /// What the density of the data has besides their squares: its slope by each free parameter.
+    slopes: Vec<f64>,
     /// s.
     pub scale: f64,
     /// How many of the numbers of the geometry the data determine; the drawing does the rest.
@@ -57,14 +61,31 @@ impl Drawing {
         };
         let known: Vec<_> = free.iter().map(of_parameter).collect();
         let determined = known.iter().flatten().count() as f64;
-        Drawing { known, scale: FIRST, determined }
+        Drawing { slopes: vec![0.0; known.len()], known, scale: FIRST, determined }
     }
 
-    /// A prior for each number that the drawing has.
+    /// The same where the density of the data has such slopes besides ([`super::growth`]).
+    pub fn with_slopes(self, slopes: Vec<f64>) -> Self {
+        Drawing { slopes, ..self }
+    }
+
+    /// A prior for each number that the drawing has: N(ρ₀, σ²) times a slope h is N(ρ₀ + σ²h, σ²).
     pub fn priors(&self) -> impl Iterator<Item = Prior> {
-        self.known.iter().enumerate().filter_map(|(parameter, known)| {
-            known.map(|(value, sd)| Prior { parameter, value, sd: self.scale * sd })
+        let share = self.share_of_slopes();
+        self.known.iter().zip(&self.slopes).enumerate().filter_map(move |(parameter, (known, slope))| {
+            let (nominal, sd) = (*known)?;
+            let sd = self.scale * sd;
+            Some(Prior { parameter, value: nominal + sd * sd * share * slope, sd })
         })
+    }
+
+    /// As much of the slopes as moves no number farther than they hold.
+    fn share_of_slopes(&self) -> f64 {
+        let of_number = |(known, slope): (&Option<(f64, f64)>, &f64)| {
+            known.map_or(0.0, |(_, sd)| self.scale.powi(2) * sd * slope.abs())
+        };
+        let farthest = self.known.iter().zip(&self.slopes).map(of_number).fold(0.0, f64::max);
+        if farthest > AS_FAR { AS_FAR / farthest } else { 1.0 }
     }
 
     /// Numbers that the drawing determines rather than the data.
@@ -87,16 +108,20 @@ impl Drawing {
             .iter()
             .filter_map(|&k| self.known[k].map(|(nominal, sd)| (sd, (p[k] - nominal) / sd)))
             .unzip();
+        let share = self.share_of_slopes();
+        let slopes = own.iter().zip(&unit).map(|(&k, unit)| share * self.slopes[k] * unit);
+        let slope = DVector::from_iterator(own.len(), slopes);
         let columns = geometry(root, &own, &unit)?;
         let svd = thin_svd(&columns)?;
         let along = svd.v.transpose() * DVector::from_vec(offset);
+        let slope = svd.v.transpose() * slope;
         let precision = self.scale.powi(-2);
         let parts: Vec<(f64, f64)> = svd
             .singular_values
             .iter()
-            .zip(along.iter())
+            .zip(along.iter().zip(slope.iter()))
             .filter(|(d, _)| **d > NOTHING)
-            .map(|(&d, &t)| (d, (d + precision / d) * t))
+            .map(|(&d, (&t, slope))| (d, d * t + (precision * t - slope) / d))
             .collect();
         let log_likelihood = |log_scale: f64| {
             let square = (2.0 * log_scale).exp();
@@ -155,8 +180,8 @@ mod tests {
                 (true, _) => 0.05,
                 _ => 0.0,
             });
-            let mut drawing =
-                Drawing { known: vec![Some((3.0, 1.0)); count], scale: FIRST, determined: count as f64 };
+            let (known, slopes) = (vec![Some((3.0, 1.0)); count], vec![0.0; count]);
+            let mut drawing = Drawing { known, slopes, scale: FIRST, determined: count as f64 };
             let actual: Vec<f64> = (0..count).map(|_| truth * random.normal()).collect();
             let noise: Vec<f64> = (0..count).map(|_| random.normal()).collect();
             for _ in 0..20 {

@@ -43,6 +43,7 @@ mod tests;
 mod textbook;
 mod torque_uncertainty;
 mod transfer;
+mod unfollowed;
 mod vector;
 mod written_law;
 

@@ -45,6 +45,8 @@ const ROUGHLY: f64 = 0.05;
 const ROUNDING: f64 = 1e-9;
 /// Numbers of cross products below which they are few.
 const FEW: usize = 96;
+/// Columns from which on blocks are faster than one product after the other.
+const SEVERAL: usize = 8;
 /// Times that a diagonal is made ten times larger.
 const TRIES: usize = 12;
 
@@ -354,8 +356,12 @@ impl Moments {
     /// Inner products of `more` columns with each other and with r, the hypothesis's columns out of
     /// them.
     fn reduced(&self, score: &Score, more: &ColumnBlock) -> (DMatrix<f64>, DVector<f64>) {
-        let gram = more.gram - more.cross.tr_mul(&more.solved);
-        (gram, more.product - more.cross.tr_mul(&score.estimate))
+        let shared = match more.cross.ncols() < SEVERAL {
+            true => more.cross.tr_mul(&more.solved),
+            // a curve's columns are sooner copied and multiplied in blocks
+            false => transposed_product(&more.cross.clone_owned(), &more.solved.clone_owned()),
+        };
+        (more.gram - shared, more.product - more.cross.tr_mul(&score.estimate))
     }
 
     /// What a hypothesis of this score leaves, as a problem of its own: its columns are taken out

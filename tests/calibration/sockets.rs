@@ -2,7 +2,9 @@
 //! times.
 
 use nalgebra::{Isometry3, Vector3};
+use rodcal::calibration::campaign::Targets;
 use rodcal::calibration::{Calibration, Campaign, Mode, Options, calibrate};
+use rodcal::diagnosis::calibration::{Mended, Neighbours, mend};
 
 use super::arms::{self, SEVEN};
 use super::lab::{Dice, Lab, read};
@@ -41,8 +43,27 @@ fn recorded() -> (Lab, String) {
 }
 
 fn campaign(csv: &str) -> Campaign {
-    let text = "robot = \"robot.urdf\"\nmeasurements = \"m.csv\"\n[sockets]\ndistance_mm = 50\n";
-    read(&[("campaign.toml", text), ("robot.urdf", SEVEN), ("m.csv", csv)])
+    apart(50.0, csv)
+}
+
+/// The campaign with a distance of the sockets, mm.
+fn apart(distance: f64, csv: &str) -> Campaign {
+    let text =
+        format!("robot = \"robot.urdf\"\nmeasurements = \"m.csv\"\n[sockets]\ndistance_mm = {distance}\n");
+    read(&[("campaign.toml", &text), ("robot.urdf", SEVEN), ("m.csv", csv)])
+}
+
+/// Mistakes and where they are.
+fn mistakes(campaign: &Campaign) -> (Mended, Vec<(String, String)>) {
+    let mended = mend(campaign, Mode::None, &Neighbours::default(), &Options::default()).unwrap();
+    let named =
+        |finding: &rodcal::inference::Finding| (finding.effect.name.to_owned(), finding.location.to_string());
+    let found = mended.found.iter().map(named).collect();
+    (mended, found)
+}
+
+fn one(effect: &str, location: &str) -> Vec<(String, String)> {
+    vec![(effect.to_owned(), location.to_owned())]
 }
 
 fn calibrated(campaign: &Campaign) -> Calibration<'_> {
@@ -104,4 +125,44 @@ fn without_a_distance_the_size_of_the_robot_is_unknown() {
     }
     assert!(found.parameters[index("theta4")].identifiable);
     assert!(held.relative_error > 100.0, "{}", held.relative_error);
+}
+
+#[test]
+fn a_distance_of_the_sockets_in_another_unit_is_a_mistake_and_the_right_one_is_none() {
+    let (_, csv) = recorded();
+    assert_eq!(mistakes(&campaign(&csv)).1, []);
+    for (stated, factor) in [(5.0, 10.0), (0.05, 1000.0), (1.9685, 25.4)] {
+        let (mended, found) = mistakes(&apart(stated, &csv));
+        assert_eq!(found, one("unit_mistake", "sockets.distance_mm"), "{stated} mm");
+        assert_eq!(mended.found[0].estimates[0].value, factor);
+        let Targets::Sockets(distances) = &mended.campaign.measurements.targets else { panic!("sockets") };
+        assert!(distances.iter().all(|own| (own.value - DISTANCE).abs() < 1e-5), "{distances:?}");
+    }
+}
+
+#[test]
+fn another_distance_of_the_sockets_is_named_with_the_one_that_drawing_and_angles_say() {
+    let (_, csv) = recorded();
+    let (mended, found) = mistakes(&apart(45.0, &csv));
+    assert_eq!(found, one("distance_mistake", "sockets.distance_mm"));
+    let mm = &mended.found[0].estimates[0];
+    assert!(mm.low < 50.0 && 50.0 < mm.high && mm.high - mm.low < 1.5, "{mm:?}");
+    // within what the drawing leaves open nothing is said
+    assert_eq!(mistakes(&apart(49.8, &csv)).1, []);
+}
+
+#[test]
+fn names_of_sockets_a_row_away_from_their_angles_are_rows_displaced() {
+    let (_, csv) = recorded();
+    let rows: Vec<Vec<&str>> = csv.lines().map(|line| line.splitn(4, ',').collect()).collect();
+    for by in [1usize, 2] {
+        let mut displaced = csv.lines().next().unwrap().to_owned() + "\n";
+        for (pose, cells) in rows[1..].iter().enumerate().skip(by) {
+            let named = &rows[1 + pose - by];
+            displaced += &format!("{},{},{},{}\n", cells[0], named[1], named[2], cells[3]);
+        }
+        let (mended, found) = mistakes(&campaign(&displaced));
+        assert_eq!(found, one("row_mistake", "placement, socket"), "by {by}");
+        assert_eq!(mended.found[0].estimates[0].value, by as f64);
+    }
 }

@@ -108,11 +108,12 @@ impl fmt::Display for Place {
             return write!(f, "station {station:.1} mm");
         }
         if let Some(joint) = &self.joint {
-            return match (joint.as_u64(), self.driven_by) {
-                (Some(joint), Some(from)) => write!(f, "joint {from} to {joint}"),
-                (Some(joint), None) => write!(f, "joint {joint}"),
-                _ => f.write_str("all joints"),
-            };
+            match (joint.as_u64(), self.driven_by) {
+                (Some(joint), Some(from)) => write!(f, "joint {from} to {joint}")?,
+                (Some(joint), None) => write!(f, "joint {joint}")?,
+                _ => f.write_str("all joints")?,
+            }
+            return self.after_row.map_or(Ok(()), |row| write!(f, ", after row {row}"));
         }
         if let Some(row) = self.row {
             return match &self.channel {

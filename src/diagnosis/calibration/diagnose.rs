@@ -6,7 +6,7 @@ use super::gear::Curve;
 use super::limits::{limits, noisy};
 use super::memory::check_memory;
 use super::model::CalibrationModel;
-use super::next::next_poses;
+use super::next::next_measurements;
 use super::prepared::{FirstLook, Prepared};
 use super::sites::sites;
 use super::tails;
@@ -18,7 +18,6 @@ use crate::inference::{
     Diagnosed, Discrepancy, Finding, Hypothesis, Limit, Location, ShownBy, Sketch, Term, diagnose as infer,
     sketch,
 };
-use crate::parallel::in_parallel;
 
 /// A campaign's diagnosis.
 pub type CalibrationDiagnosis<'c> = Diagnosed<CalibrationModel<'c>>;
@@ -79,11 +78,9 @@ pub fn diagnose_calibrated<'c>(
     }
     let mut diagnosis = infer(&prepared.model, &prepared.evidence);
     let Prepared { model, evidence, absorbed, not_testable, context, .. } = prepared;
-    let next = in_parallel(diagnosis.findings.len(), |k| {
-        next_poses(&model, &context, &evidence, &diagnosis, &diagnosis.findings[k])
-    });
+    let next = next_measurements(&model, &context, &evidence, &diagnosis)?;
     for (finding, next) in diagnosis.findings.iter_mut().zip(next) {
-        finding.next = next?;
+        finding.next = next;
     }
     let law = propose(&model, &diagnosis, &|change| sites(&context, change.len()));
     let mut limits = limits(&context, &model.calibration, &evidence);

@@ -17,6 +17,7 @@
 
 mod columns;
 mod displaced;
+mod distance;
 mod draft;
 mod elsewhere;
 mod found;
@@ -26,6 +27,7 @@ mod names;
 mod part;
 mod partial;
 mod quick;
+mod relabelled;
 mod search;
 mod slips;
 #[cfg(test)]
@@ -293,6 +295,7 @@ fn search(campaign: &Campaign, mode: Mode, others: &Neighbours) -> Result<Mended
             mended.campaign.contact_force = campaign.contact_force.map(|force| force * *factor);
         }
     }
+    mended.add_distance(&search, &best);
     let mut order: Vec<usize> = (0..mended.found.len()).collect();
     order.sort_by(|&a, &b| mended.found[b].explains.total_cmp(&mended.found[a].explains));
     mended.found = order.iter().map(|&k| mended.found[k].clone()).collect();

@@ -10,77 +10,120 @@
 //! both ways round. Of all feasible poses those are proposed that leave least of the rivals
 //! ([`ExperimentDesign`]). What can be weighed or gauged needs no poses.
 
-use nalgebra::DMatrix;
-
 use super::context::Context;
 use super::effects::registry;
 use super::evidence;
 use super::feasible_poses::{FeasiblePoses, feasible};
 use super::linear_terms::LinearTerms;
 use super::model::CalibrationModel;
+use super::unfollowed::Unfollowed;
 use crate::error::Result;
 use crate::inference::{
     Candidate, Diagnosis, Effect, Evidence, ExperimentDesign, Finding, Location, Plan, Proposal, Rival, Term,
-    Whitening, separates,
+    separates,
 };
+use crate::parallel::in_parallel;
 
 /// Rivals that poses have to separate the finding from: the likeliest ones.
 const MOST_RIVALS: usize = 3;
 
-/// The poses that best separate `finding` from its rivals; `None` where it has none, or where no
+/// For each finding what best separates it from its rivals; `None` where it has none, or where no
 /// feasible poses can.
-pub(super) fn next_poses(
+///
+/// # Errors
+/// As [`Context::new`].
+pub(super) fn next_measurements(
     model: &CalibrationModel,
     context: &Context,
     present: &Evidence,
     diagnosis: &Diagnosis,
-    finding: &Finding,
-) -> Result<Option<Proposal>> {
-    let rivals = apart(finding);
-    if rivals.is_empty() {
-        return Ok(None);
-    }
-    if let Some(check) = finding.direct_check(&rivals) {
-        return Ok(Some(check));
-    }
-    let (campaign, calibration) = (model.campaign, &model.calibration);
+) -> Result<Vec<Option<Proposal>>> {
     let own = Named::new(&model.terms, &diagnosis.hypothesis.terms);
-    let named = |rival: &&Rival| Named::new(&model.terms, &rival.hypothesis.terms);
-    let others: Vec<Named> = rivals.iter().map(named).collect();
+    let mut next: Vec<Option<Proposal>> = Vec::new();
+    let mut questions = Vec::new();
+    for finding in &diagnosis.findings {
+        let rivals = apart(finding);
+        if rivals.is_empty() {
+            next.push(None);
+            continue;
+        }
+        let check = finding.direct_check(&rivals);
+        if check.is_none() {
+            let named = |rival: &&Rival| Named::new(&model.terms, &rival.hypothesis.terms);
+            let others = rivals.iter().map(named).collect();
+            questions.push(Question { finding: next.len(), rivals, others });
+        }
+        next.push(check);
+    }
+    let hypotheses: Vec<&Named> =
+        std::iter::once(&own).chain(questions.iter().flat_map(|q| &q.others)).collect();
     let variance = diagnosis.hypothesis.sigma.powi(2);
-    let distances = |terms: &LinearTerms, evidence: &Evidence| -> Option<Vec<Option<f64>>> {
-        let own = own.found_in(terms)?;
-        let apart = |other: &Named| {
-            let other = other.found_in(terms)?;
-            let one_way = unfollowed(terms, evidence, &own, &other);
-            let other_way = unfollowed(terms, evidence, &other, &own);
-            Some(one_way.min(other_way) / (2.0 * variance))
-        };
-        Some(others.iter().map(apart).collect())
+    let separations = |terms: &LinearTerms, evidence: &Evidence| {
+        let evidence = evidence::unknown_beforehand(evidence);
+        let found = hypotheses.iter().filter_map(|hypothesis| hypothesis.found_in(terms)).flatten();
+        let unfollowed = Unfollowed::new(terms, &evidence, found.map(|term| term.candidate));
+        separations(&unfollowed, &own, &questions, variance)
     };
-    let present = &evidence::unknown_beforehand(present);
-    let Some(now) = distances(&model.terms, present) else { return Ok(None) };
-    let odds: Vec<f64> = rivals.iter().map(|rival| rival.odds).collect();
-    let mut design = ExperimentDesign::default();
-    let hypotheses: Vec<&Named> = std::iter::once(&own).chain(&others).collect();
+    if questions.is_empty() {
+        return Ok(next);
+    }
+    let Some(now) = separations(&model.terms, present) else { return Ok(next) };
     let moved_after: Vec<usize> = hypotheses.iter().flat_map(|hypothesis| hypothesis.moved_after()).collect();
-    for poses in feasible(campaign, &context.configurations) {
-        let (campaign, calibration) = poses.measured(campaign, calibration);
+    let (campaign, calibration) = (model.campaign, &model.calibration);
+    let plans = feasible(campaign, &context.configurations);
+    let measured = in_parallel(plans.len(), |k| -> Result<_> {
+        let (campaign, calibration) = plans[k].measured(campaign, calibration);
         let context = Context::new(&campaign, &calibration)?.moved_after(&moved_after);
         let evidence = evidence::evidence_of(&campaign, &calibration, &context);
-        let evidence = evidence::unknown_beforehand(&evidence);
         let (mut entries, _) = registry::candidates(&context);
         entries.retain(|entry| hypotheses.iter().any(|hypothesis| hypothesis.holds(&entry.candidate)));
         let (terms, _) = LinearTerms::new(entries, &evidence);
-        let Some(then) = distances(&terms, &evidence) else { continue };
-        let gained = |(then, now): (&Option<f64>, &Option<f64>)| match (then, now) {
-            (Some(then), Some(now)) => then - now,
-            // other poses have no place for this rival: nothing is known
-            _ => 0.0,
-        };
-        design.offer(poses, then.iter().zip(&now).map(gained).collect(), &odds);
+        Ok(separations(&terms, &evidence))
+    });
+    let mut designs: Vec<ExperimentDesign<&FeasiblePoses>> = Vec::new();
+    designs.resize_with(questions.len(), ExperimentDesign::default);
+    for (poses, then) in plans.iter().zip(measured) {
+        let Some(then) = then? else { continue };
+        for (k, question) in questions.iter().enumerate() {
+            let gained = |(then, now): (&Option<f64>, &Option<f64>)| match (then, now) {
+                (Some(then), Some(now)) => then - now,
+                // other poses have no place for this rival: nothing is known
+                _ => 0.0,
+            };
+            let odds: Vec<f64> = question.rivals.iter().map(|rival| rival.odds).collect();
+            designs[k].offer(poses, then[k].iter().zip(&now[k]).map(gained).collect(), &odds);
+        }
     }
-    Ok(design.best().map(|(poses, gained)| proposal(poses, &gained, &rivals)))
+    for (question, design) in questions.iter().zip(designs) {
+        let best = design.best();
+        next[question.finding] =
+            best.map(|(poses, gained)| proposal(poses.clone(), &gained, &question.rivals));
+    }
+    Ok(next)
+}
+
+/// A finding, by its number, that poses have to separate from its rivals.
+struct Question<'a> {
+    finding: usize,
+    rivals: Vec<&'a Rival>,
+    others: Vec<Named>,
+}
+
+/// The expected ln of the odds of every question between the finding and each of its rivals; `None`
+/// where these poses have no place for the findings, or for one rival.
+fn separations(
+    unfollowed: &Unfollowed,
+    own: &Named,
+    questions: &[Question],
+    variance: f64,
+) -> Option<Vec<Vec<Option<f64>>>> {
+    let own = own.found_in(unfollowed.terms)?;
+    let apart = |other: &Named| {
+        let other = other.found_in(unfollowed.terms)?;
+        let less = unfollowed.of(&own, &other).min(unfollowed.of(&other, &own));
+        Some(less / (2.0 * variance))
+    };
+    Some(questions.iter().map(|question| question.others.iter().map(apart).collect()).collect())
 }
 
 /// The likeliest rivals that are called something else than the finding.
@@ -142,20 +185,4 @@ impl Named {
         };
         self.0.iter().any(is_it)
     }
-}
-
-/// ‖M_B·ηA‖², m².
-fn unfollowed(model: &LinearTerms, evidence: &Evidence, a: &[Term], b: &[Term]) -> f64 {
-    let own: Vec<DMatrix<f64>> = b.iter().map(|term| model.columns(term.candidate)).collect();
-    let columns: Vec<_> = std::iter::once(&evidence.nuisance)
-        .chain(&own)
-        .flat_map(|matrix| matrix.column_iter().map(|column| column.into_owned()).collect::<Vec<_>>())
-        .collect();
-    let absorbed = match columns.is_empty() {
-        true => DMatrix::zeros(evidence.residual.len(), 0),
-        false => DMatrix::from_columns(&columns),
-    };
-    let evidence = Evidence { nuisance: absorbed, ..evidence.clone() };
-    let whitening = Whitening::new(&evidence, &evidence.residual);
-    whitening.apply(&model.response(a)).norm_squared()
 }

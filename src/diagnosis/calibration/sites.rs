@@ -16,7 +16,7 @@ use super::context::Context;
 use super::law_measures::{changes, location, variable};
 use crate::inference::Location;
 use crate::inference::Part;
-use crate::inference::law::{Course, Form, Measure, Site};
+use crate::inference::law::{Course, Form, Instant, Measure, Site};
 use crate::robot::{JointLawVariable, LawPlace, Motion};
 use crate::units::{MM, STANDARD_GRAVITY, UM};
 
@@ -294,7 +294,7 @@ impl Robot<'_> {
                 instants: (0..rows.len())
                     .map(|row| {
                         let elapsed = if row == 0 { 0.0 } else { times[row] - times[row - 1] };
-                        (vec![3 * row, 3 * row + 1, 3 * row + 2], elapsed)
+                        Instant { data: vec![3 * row, 3 * row + 1, 3 * row + 2], elapsed, sense: 1.0 }
                     })
                     .collect(),
                 start: values.first().copied().unwrap_or_default(),

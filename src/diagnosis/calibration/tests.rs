@@ -12,6 +12,7 @@ mod next;
 mod recorded;
 mod transfer;
 mod turned;
+mod unfollowed;
 mod unnamed;
 
 use std::collections::BTreeMap;

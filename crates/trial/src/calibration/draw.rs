@@ -17,6 +17,8 @@
 //! | `payload_mass`, `tip_mass` | kg, g | 5, 300 |
 //! | `rod_stiffness` | departure of the factor from 1 | 60 % |
 //! | `contact_spring`, `contact_force_variation` | N/mm, N | 0.3, 1 |
+//! | `thermal_drift` of the whole arm | µm/m per kelvin or per hour | 100 |
+//! | `joint_shift` | µrad | 2000 |
 //! | `gravity_direction`, `gravity_tilt` | degrees, µrad/(N·m) | 5, 5 |
 //! | `outlier` | noises, one or two rows | 100 |
 //!
@@ -33,7 +35,7 @@ use rodcal_base::statistics::Random;
 use rodcal_base::units::{DEG, GRAM, UM, URAD};
 
 /// Effects that a library may have, by number for [`library`].
-pub const LIBRARY: usize = 24;
+pub const LIBRARY: usize = 26;
 /// Range of the largest size, of the end in the table.
 const LARGEST: (f64, f64) = (0.5, 1.0);
 
@@ -45,7 +47,7 @@ pub fn needs(effect: usize) -> Needs {
         2 | 4 | 10 | 20 | 21 | 23 => Needs { masses: Some(true), ..none },
         7 => Needs { fixture: true, ..none },
         8 => Needs { device: Some(0), ..none },
-        9 | 22 => Needs { clock: true, ..none },
+        9 | 22 | 25 => Needs { clock: true, ..none },
         11 | 14 => Needs { rod: true, ..none },
         17 => Needs { points: true, ..none },
         18 | 19 => Needs { device: Some(0), rod: true, ..none },
@@ -156,6 +158,14 @@ pub fn library(effect: usize, site: &Site, random: &mut Random) -> Effect {
             let (joint, largest) = loaded(site, random);
             Effect::Friction { joint, per: large(random, 500.0) * URAD / largest }
         }
+        24 => {
+            let by = either(random) * large(random, 2000.0) * URAD;
+            Effect::JointShift { joint: any, from: within(site, random), by }
+        }
+        25 => {
+            let (per, by_time) = (either(random) * large(random, 100.0) * UM, !site.has_temperature);
+            Effect::Growth { per: if by_time { per / 3600.0 } else { per }, by_time }
+        }
         _ => {
             let count = if happens(random, 0.7) { 1 } else { 2 };
             let first = random.index(site.rows.len());
@@ -222,6 +232,8 @@ pub fn place(effect: &Effect, site: &Site) -> Place {
         Effect::ClampPose { group, .. } => Place::named(&site.group_name(*group)),
         Effect::Shift { group, from, .. } => shift_place(site, *group, *from),
         Effect::Drift { .. } | Effect::Level(_) | Effect::BaseTilt(_) => Place::part("base"),
+        Effect::JointShift { joint, from, .. } => Place { after_row: Some(*from), ..Place::joint(*joint) },
+        Effect::Growth { .. } => Place::part("arm"),
         Effect::ToolShift { from, .. } => Place { after_row: Some(*from), ..Place::named("tool") },
         Effect::BaseShift { from, .. } => Place { after_row: Some(*from), ..Place::default() },
         Effect::Spring { group, .. } | Effect::Force { group, .. } => match group {

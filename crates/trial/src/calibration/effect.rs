@@ -54,6 +54,10 @@ pub enum Effect {
     BaseTilt(f64),
     /// A joint's zero that follows temperature or time, rad/K or rad/s.
     ZeroDrift { joint: usize, per: f64, by_time: bool },
+    /// A joint whose zero is another one from a row on, rad.
+    JointShift { joint: usize, from: usize, by: f64 },
+    /// An arm all of whose links grow with temperature or time, 1/K or 1/s.
+    Growth { per: f64, by_time: bool },
     /// A joint that stops apart, by its load and the way it came, rad/(N·m).
     Friction { joint: usize, per: f64 },
     // ---- physics that no library has ----
@@ -106,6 +110,8 @@ impl Effect {
             Effect::Level(_) => "gravity_direction",
             Effect::BaseTilt(_) => "gravity_tilt",
             Effect::ZeroDrift { .. } => "thermal_drift",
+            Effect::JointShift { .. } => "joint_shift",
+            Effect::Growth { .. } => "thermal_drift",
             Effect::Friction { .. } => "joint_friction",
             Effect::LinkTorsion { .. } => "link twists with two joints",
             Effect::Ball(_) => "ball out of round",
@@ -156,6 +162,9 @@ impl Effect {
             Effect::BaseTilt(per) => vec![("tilt_urad_per_nm", per / URAD_PER_NM)],
             Effect::ZeroDrift { per, by_time: true, .. } => vec![("zero_urad_per_h", per * 3600.0 / URAD)],
             Effect::ZeroDrift { per, .. } => vec![("zero_urad_per_k", per / URAD)],
+            Effect::JointShift { by, .. } => vec![("zero_urad", by / URAD)],
+            Effect::Growth { per, by_time: true } => vec![("growth_um_per_m_per_h", per * 3600.0 / UM)],
+            Effect::Growth { per, .. } => vec![("growth_um_per_m_per_k", per / UM)],
             Effect::Friction { per, .. } => vec![("urad_per_nm", per / URAD_PER_NM)],
             Effect::Drift { by, by_time: true } => {
                 three(["x_um_per_h", "y_um_per_h", "z_um_per_h"], by, UM / 3600.0)
@@ -192,7 +201,11 @@ impl Effect {
     pub fn is_of_one_run(&self) -> bool {
         matches!(
             self,
-            Effect::Shift { .. } | Effect::Outlier(_) | Effect::ToolShift { .. } | Effect::BaseShift { .. }
+            Effect::Shift { .. }
+                | Effect::Outlier(_)
+                | Effect::ToolShift { .. }
+                | Effect::BaseShift { .. }
+                | Effect::JointShift { .. }
         )
     }
 
@@ -208,6 +221,7 @@ impl Effect {
             | Effect::Force { .. } => None,
             Effect::ToolShift { by, .. } => Some(Effect::ToolShift { from: 0, by }),
             Effect::BaseShift { by, turn, .. } => Some(Effect::BaseShift { from: 0, by, turn }),
+            Effect::JointShift { joint, by, .. } => Some(Effect::JointShift { joint, from: 0, by }),
             other => Some(other),
         }
     }
@@ -247,6 +261,8 @@ impl Effect {
             | Effect::Lag { share: size, .. }
             | Effect::Spring { rate: size, .. }
             | Effect::ZeroDrift { per: size, .. }
+            | Effect::JointShift { by: size, .. }
+            | Effect::Growth { per: size, .. }
             | Effect::Friction { per: size, .. }
             | Effect::LinkTorsion { per: size, .. }
             | Effect::Wear { play: size, .. }

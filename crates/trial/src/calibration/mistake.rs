@@ -5,6 +5,7 @@
 //! of the points by a thirtieth of its reach, by a tenth where only a first guess is wrong.
 
 use std::f64::consts::{FRAC_PI_2, PI};
+use std::ops::Range;
 
 use nalgebra::{Matrix4, Vector3};
 
@@ -19,7 +20,10 @@ use rodcal_base::statistics::Random;
 use rodcal_base::units::DEG;
 
 /// Kinds of mistakes that are drawn alike often.
-const KINDS: usize = 15;
+const KINDS: usize = 17;
+/// Share of the mistakes of rows that only some rows hold, and how large a share of the rows.
+const OF_SOME: f64 = 0.4;
+const STRETCH: (f64, f64) = (0.15, 0.5);
 /// Tries until one shows.
 const TRIES: usize = 200;
 /// Share of the points that are missed, and by how much of the reach; and by how much where only a
@@ -65,6 +69,16 @@ pub enum Mistake {
     Rod(Box<Drawing>),
     /// A position that was not recorded.
     Stuck(usize),
+    /// The distance of the sockets must be multiplied by so much.
+    Distance(f64),
+    /// A joint of one row, typed ten or twenty degrees too large or too small, rad.
+    Typed {
+        row: usize,
+        joint: usize,
+        by: f64,
+    },
+    /// One of the above in some rows alone: the first, and the first that is right again.
+    Part(Box<Mistake>, [usize; 2]),
 }
 
 /// One that shows in what was written rightly.
@@ -75,8 +89,10 @@ pub fn draw(right: &Written, random: &mut Random) -> Mistake {
         let second = (first + 1 + random.index(count.max(2) - 1)) % count.max(1);
         [first.min(second), first.max(second)]
     };
+    let rows = right.site.rows.len();
     for _ in 0..TRIES {
-        let mistake = match random.index(KINDS) {
+        let kind = random.index(KINDS);
+        let mistake = match kind {
             0 => Mistake::JointSign(happens(random, 0.8).then(|| random.index(n))),
             1 => Mistake::JointOrder(happens(random, 0.8).then(|| two(n, random))),
             2 => {
@@ -97,11 +113,29 @@ pub fn draw(right: &Written, random: &mut Random) -> Mistake {
             11 => Mistake::BaseOrder,
             12 => Mistake::BaseInMetres,
             13 => Mistake::ToolOrder(two(3, random)),
-            14 if right.site.rod.is_some() => Mistake::Rod(Box::new(Rod::drawing(random))),
+            14 => Mistake::Distance([10.0, 1000.0, 25.4, 1.1, 0.9][random.index(5)]),
+            15 => {
+                let by = [10.0, -10.0, 20.0, -20.0][random.index(4)] * DEG;
+                Mistake::Typed { row: random.index(rows), joint: random.index(n), by }
+            }
+            16 if right.site.rod.is_some() => Mistake::Rod(Box::new(Rod::drawing(random))),
             _ => Mistake::Stuck(random.index(3)),
         };
+        let mistake = match mistake.is_of_rows() && happens(random, OF_SOME) {
+            true => {
+                let count = ((rows as f64 * random.uniform(STRETCH.0, STRETCH.1)) as usize).max(3);
+                let first = random.index(rows.saturating_sub(count).max(1));
+                Mistake::Part(Box::new(mistake), [first, (first + count).min(rows)])
+            }
+            false => mistake,
+        };
         let least = if mistake.is_guess() { GUESS } else { SHOWS.1 };
-        if mistake.is_possible(&right.site) && shows(&mistake.made(right), right, least) {
+        let is_shown = || match mistake {
+            // what no pose shows by itself
+            Mistake::Distance(_) => true,
+            _ => shows(&mistake.made(right), right, mistake.rows(rows), least),
+        };
+        if mistake.is_possible(&right.site) && is_shown() {
             return mistake;
         }
     }
@@ -125,7 +159,34 @@ impl Mistake {
             Mistake::Rows { with_clamps, .. } => !site.has_sockets() && (has_clamps || !with_clamps),
             Mistake::Groups(_) | Mistake::ClampsInMetres => has_clamps,
             Mistake::ToolOrder(_) => site.rod.is_none() && !site.has_sockets(),
+            Mistake::Distance(_) => site.has_sockets(),
+            // a last joint that turns the tip about itself, or a first one, may be anywhere
+            Mistake::Typed { joint, .. } => (1..n - 1).contains(joint),
+            Mistake::Part(whole, _) => whole.is_possible(site),
             _ => true,
+        }
+    }
+
+    /// True for what acts on rows one by one.
+    fn is_of_rows(&self) -> bool {
+        matches!(
+            self,
+            Mistake::JointSign(_)
+                | Mistake::JointOrder(_)
+                | Mistake::Zero { .. }
+                | Mistake::Radians
+                | Mistake::AxisSign(_)
+                | Mistake::AxisOrder(_)
+                | Mistake::Positions(_)
+        )
+    }
+
+    /// The rows that hold it, of so many.
+    fn rows(&self, count: usize) -> Range<usize> {
+        match self {
+            Mistake::Typed { row, .. } => *row..row + 1,
+            Mistake::Part(_, [first, end]) => *first..*end,
+            _ => 0..count,
         }
     }
 
@@ -185,6 +246,19 @@ impl Mistake {
                     site.drawn_tool = rod.tip();
                 }
             }
+            Mistake::Distance(factor) => {
+                if let Devices::Sockets(_, distance) = &mut site.devices {
+                    *distance /= factor;
+                }
+            }
+            Mistake::Typed { row, joint, by } => site.rows[*row].q[*joint] += by,
+            Mistake::Part(whole, [first, end]) => {
+                let all = whole.made(right);
+                for row in *first..*end {
+                    site.rows[row] = all.site.rows[row].clone();
+                    wrong.read[row] = all.read[row];
+                }
+            }
             Mistake::Stuck(axis) => {
                 let first = right.read.first().map_or(0.0, |read| read[*axis]);
                 wrong.read.iter_mut().for_each(|read| read[*axis] = first);
@@ -206,11 +280,18 @@ impl Mistake {
             Mistake::BaseInverse | Mistake::BaseOrder | Mistake::ToolOrder(_) => "frame_mistake",
             Mistake::Rod(_) => "rod_mistake",
             Mistake::Stuck(_) => "stuck_sensor",
+            Mistake::Distance(factor) if is_unit(*factor) => "unit_mistake",
+            Mistake::Distance(_) => "distance_mistake",
+            Mistake::Typed { .. } => "typing_mistake",
+            Mistake::Part(whole, _) => whole.name(),
         }
     }
 
     /// The columns, ids or keys that it concerns.
     pub fn place(&self, site: &Site) -> Place {
+        if let Mistake::Part(whole, _) = self {
+            return whole.place(site);
+        }
         const AXES: [&str; 3] = ["x_mm", "y_mm", "z_mm"];
         let n = site.nominal.len();
         let joint = |joint: usize| format!("q{}_deg", joint + 1);
@@ -230,6 +311,9 @@ impl Mistake {
             Mistake::BaseInMetres => "base.xyz_mm".into(),
             Mistake::ToolOrder(_) => "tool.xyz_mm".into(),
             Mistake::Rod(_) => "rod-2.toml".into(),
+            Mistake::Distance(_) => "sockets.distance_mm".into(),
+            Mistake::Typed { row, joint: of, .. } => format!("{} of pose {}", joint(*of), row + 1),
+            Mistake::Part(..) => String::new(),
         })
     }
 
@@ -241,9 +325,16 @@ impl Mistake {
             Mistake::ClampsInMetres | Mistake::BaseInMetres => vec![("factor", 1000.0)],
             Mistake::Zero { quarters, .. } => vec![("deg", 90.0 * f64::from(*quarters))],
             Mistake::Rows { by, .. } => vec![("rows", *by as f64)],
+            Mistake::Distance(factor) if is_unit(*factor) => vec![("factor", *factor)],
+            Mistake::Part(whole, _) => whole.parameters(),
             _ => Vec::new(),
         }
     }
+}
+
+/// True for a factor between two units.
+fn is_unit(factor: f64) -> bool {
+    factor > 2.0
 }
 
 fn scale(frame: &mut Matrix4<f64>, by: f64) {
@@ -263,9 +354,9 @@ fn displace(wrong: &mut Written, by: isize, with_clamps: bool) {
     wrong.site.rows = kept.iter().map(row).collect();
 }
 
-/// True where the robot of the files misses many of the points that they state: with sockets, of
-/// those that it reached when nothing was written wrongly.
-fn shows(wrong: &Written, right: &Written, least: f64) -> bool {
+/// True where the robot of the files misses many of the points that these rows state: with sockets,
+/// of those that it reached when nothing was written wrongly.
+fn shows(wrong: &Written, right: &Written, rows: Range<usize>, least: f64) -> bool {
     let reach: f64 = right.site.nominal.iter().map(|l| l.numbers[1].abs() + l.numbers[2].abs()).sum();
     let stated = |written: &Written, row: usize| {
         let own = &written.site;
@@ -278,13 +369,15 @@ fn shows(wrong: &Written, right: &Written, least: f64) -> bool {
         };
         (tip, seen)
     };
-    let count = wrong.site.rows.len();
+    // where rows were displaced some are gone
+    let rows = rows.start..rows.end.min(wrong.site.rows.len());
+    let count = rows.len();
     let misses = |row: usize| {
         let (tip, seen) = stated(wrong, row);
         let goal: Vector3<f64> = seen.unwrap_or_else(|| stated(right, row).0);
         (tip - goal).norm() > least * reach
     };
-    (0..count).filter(|&row| misses(row)).count() as f64 > SHOWS.0 * count as f64
+    rows.filter(|&row| misses(row)).count() as f64 > SHOWS.0 * count as f64
 }
 
 #[cfg(test)]
@@ -307,16 +400,30 @@ mod tests {
         let mut names = std::collections::BTreeSet::new();
         for device in 0..3 {
             let right = right(device, 4);
-            assert!(!shows(&right, &right, SHOWS.1));
+            let rows = right.site.rows.len();
+            assert!(!shows(&right, &right, 0..rows, SHOWS.1));
             let files = crate::calibration::text::files(&right);
             for seed in 0..30 {
                 let mistake = draw(&right, &mut Random::seeded(seed, 1));
                 let wrong = mistake.made(&right);
-                assert!(shows(&wrong, &right, SHOWS.1) && crate::calibration::text::files(&wrong) != files);
+                let is_shown = shows(&wrong, &right, mistake.rows(rows), SHOWS.1);
+                assert!(is_shown || matches!(mistake, Mistake::Distance(_)), "{mistake:?}");
+                assert!(crate::calibration::text::files(&wrong) != files);
                 names.insert(mistake.name());
             }
         }
         assert!(names.len() >= 6, "{names:?}");
+    }
+
+    #[test]
+    fn what_some_rows_hold_leaves_the_others_alone() {
+        let right = right(0, 3);
+        let part = Mistake::Part(Box::new(Mistake::JointSign(Some(2))), [4, 9]);
+        let wrong = part.made(&right);
+        for (row, (own, other)) in wrong.site.rows.iter().zip(&right.site.rows).enumerate() {
+            assert_eq!(own.q[2] == other.q[2], !(4..9).contains(&row), "row {row}");
+        }
+        assert_eq!((part.name(), part.place(&right.site)), ("sign_mistake", Place::key("q3_deg")));
     }
 
     #[test]

@@ -168,6 +168,10 @@ fn of_drift(list: &mut List<'_>) {
         list.add("thermal_drift", Place::part("base"), world);
         let own = list.three(|row, axis| arm::turned(list.flange(row), axis) * (DRIFT * course(row)));
         list.add("thermal_drift", Place::part("tool"), own);
+        let base = arm::column(&site.base, 3);
+        let longer = |row: usize| arm::column(list.flange(row), 3) - base;
+        let growth = list.column(|row| longer(row) * (DRIFT * course(row)));
+        list.add("thermal_drift", Place::part("arm"), vec![growth]);
         for j in 0..site.nominal.len() {
             let zero = list.column(|row| list.lever(row, j) * (TURN * course(row)));
             list.add("thermal_drift", Place::joint(j), vec![zero]);
@@ -214,6 +218,7 @@ fn of_moves(list: &mut List<'_>, effects: &[Effect]) {
     let (site, rows) = (list.site, list.site.rows.len());
     let moves_tool = effects.iter().any(|effect| matches!(effect, Effect::ToolShift { .. }));
     let moves_base = effects.iter().any(|effect| matches!(effect, Effect::BaseShift { .. }));
+    let slips = effects.iter().any(|effect| matches!(effect, Effect::JointShift { .. }));
     let is_tried = |from: usize, is_fine: bool| is_fine || from.is_multiple_of(COARSE);
     let base = arm::column(&site.base, 3);
     for from in 2..rows.saturating_sub(1) {
@@ -226,6 +231,14 @@ fn of_moves(list: &mut List<'_>, effects: &[Effect]) {
         if is_tried(from, moves_tool) {
             let columns = list.three(|row, axis| later(row, arm::turned(list.flange(row), axis)));
             list.add("tool_shift", after(Some("tool")), columns);
+        }
+        if is_tried(from, slips) {
+            for j in 0..site.nominal.len() {
+                let turned =
+                    list.column(|row| if row >= from { list.lever(row, j) * TURN } else { Vector3::zeros() });
+                let place = Place { after_row: Some(from), ..Place::joint(j) };
+                list.add("joint_shift", place, vec![turned]);
+            }
         }
         if is_tried(from, moves_base) && !site.has_sockets() {
             let mut six = list.three(|row, axis| later(row, *axis));

@@ -132,7 +132,7 @@ impl Site {
     /// Where the ball is, as the fixture and its file would have it: position in the world, m.
     pub fn ball(&self, row: usize, q: &[f64], effects: &[Effect]) -> Vector3<f64> {
         let mut arm = self.real.clone();
-        self.twist(&mut arm, q, effects);
+        self.twist(&mut arm, row, q, effects);
         let joints = self.driven(row, q, effects);
         let (yielded, torque) = self.yielded(&arm, row, &joints, effects);
         let mut joints = yielded;
@@ -192,11 +192,15 @@ impl Site {
         tip + (level * per).cross(&(tip - at))
     }
 
-    fn twist(&self, arm: &mut Arm, q: &[f64], effects: &[Effect]) {
+    fn twist(&self, arm: &mut Arm, row: usize, q: &[f64], effects: &[Effect]) {
         for effect in effects {
             match *effect {
                 Effect::LinkTorsion { link, joints: [a, b], per } => {
                     arm[link].numbers[3] += per * q[a] * q[b];
+                }
+                Effect::Growth { per, by_time } => {
+                    let times = 1.0 + per * self.since(row, by_time);
+                    arm.iter_mut().for_each(|link| (1..3).for_each(|k| link.numbers[k] *= times));
                 }
                 Effect::Runout { joint, by, phase } => {
                     arm[joint].numbers[2] += by * (2.0 * q[joint] + phase).cos();
@@ -223,6 +227,7 @@ impl Site {
                     joints[*joint] += 0.5 * play * self.approach(row, *joint);
                 }
                 Effect::EncoderScale { joint, more } => joints[*joint] += more * q[*joint],
+                Effect::JointShift { joint, from, by } if row >= *from => joints[*joint] += by,
                 Effect::ZeroDrift { joint, per, by_time } => {
                     joints[*joint] += per * self.since(row, *by_time);
                 }

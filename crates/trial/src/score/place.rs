@@ -11,7 +11,9 @@ const SCAN_MM: f64 = 10.0;
 /// not.
 ///
 /// Of joints of a rod the station counts, by name or by number; of a slip its run; of what is
-/// several things at once any of them; of a key also what is said more closely (`dy_um, axis y`);
+/// several things at once any of them; of a key
+/// also what is said more closely (`dy_um, axis y`, or `dy_um, axis y, trial 2` of `dy_um, trial
+/// 2`);
 /// of all others the place itself or one that nobody could distinguish from it.
 pub fn is_same(truth: &Truth, concealed: &Concealed, place: Option<&Place>) -> bool {
     let Some(place) = place.filter(|place| !place.is_nowhere()) else { return false };
@@ -43,7 +45,10 @@ pub fn is_same(truth: &Truth, concealed: &Concealed, place: Option<&Place>) -> b
         "sensor_misalignment" | "load_misalignment" => is_frame(place) && known().any(is_frame),
         _ => match (&place.key, &concealed.place.key) {
             (Some(said), Some(key)) => {
-                said.strip_prefix(key.as_str()).is_some_and(|more| more.starts_with(','))
+                let is_closer = said.strip_prefix(key.as_str()).is_some_and(|more| more.starts_with(','));
+                let mut parts = key.split(", ");
+                let said: Vec<&str> = said.split(", ").collect();
+                is_closer || parts.next() == said.first().copied() && parts.all(|part| said.contains(&part))
             }
             _ => false,
         },

@@ -2,9 +2,10 @@
 
 use super::fixture::places_of_all;
 use super::{
-    CalibrationEffect, Context, Entry, KNOCK, MOST_PLACES, SHIFT, Transfer, capital, first,
+    CalibrationEffect, Context, Entry, KNOCK, MOST_PLACES, SHIFT, Transfer, capital, first, first_value,
     out_of_the_points, own_parameters, single, three, unit,
 };
+use crate::calibration::Campaign;
 use crate::diagnosis::calibration::entry::linear;
 use crate::diagnosis::calibration::law::Law;
 use crate::diagnosis::calibration::model::CalibrationModel;
@@ -12,10 +13,12 @@ use crate::diagnosis::calibration::vector;
 use crate::inference::{
     Candidate, Effect, Finding, FindingPart, Kind, Location, NotTestable, Reported, WrittenTo,
 };
-use crate::units::{MM, UM, URAD};
+use crate::units::{DEG, MM, UM, URAD};
 
 /// A pose that was read wrongly, m.
 pub(in crate::diagnosis::calibration) const MISREAD: f64 = 0.5 * MM;
+/// A joint that slips by more is a mistake in some rows, or something else, rad.
+const FARTHEST_SLIP: f64 = DEG;
 /// Most outliers that are reported one by one.
 const REPORTED: usize = 3;
 
@@ -85,7 +88,7 @@ pub static JOINT_SHIFT: CalibrationEffect = CalibrationEffect {
         formula: "Jⱼ·δ from some row on: δ is by how much more the joint turns than it shows",
         prior: "0.5 mrad: a slip of an encoder's coupling that nobody sees; degrees are a mistake in some rows",
         parameters: &[("zero_urad", "shift of the joint's zero")],
-        needs: "measured points, poses in the order of recording",
+        needs: "poses in the order of recording",
         cause: "a slip of the joint or of its encoder",
         cause_at: |location| format!("a shift of a joint's zero ({location})"),
         written_to: WrittenTo::Recording,
@@ -101,15 +104,12 @@ pub static JOINT_SHIFT: CalibrationEffect = CalibrationEffect {
         }
         other => format!("The zero of a joint moved by {}, {other}", first(finding).say("µrad")),
     },
-    write: out_of_the_points,
+    write: into_the_angles,
     transfer: Transfer::Made(stays_slipped),
     event: |location| location.joint().map(|joint| format!("joint {} slipped", joint + 1)),
 };
 
 fn slipped_joints(context: &Context, _: &mut Vec<NotTestable>) -> Vec<Entry> {
-    if context.has_sockets() {
-        return Vec::new();
-    }
     let places = places_of_all(context);
     let after = |joint: usize, before: usize| {
         let row = before - 1;
@@ -119,10 +119,24 @@ fn slipped_joints(context: &Context, _: &mut Vec<NotTestable>) -> Vec<Entry> {
     context.revolute().into_iter().flat_map(of_joint).collect()
 }
 
+/// The recorded angles of that joint as they were meant: also in sockets, which have no points.
+fn into_the_angles(finding: &Finding, _: &CalibrationModel, extended: &mut Campaign) -> WrittenTo {
+    let Location::JointAfter { joint, row, .. } = finding.location else { return WrittenTo::Nowhere };
+    let recording = &mut extended.measurements;
+    let count = recording.joint_count.max(1);
+    for angles in std::iter::once(&mut recording.joint_values).chain(&mut recording.joints_read) {
+        let later = angles.chunks_exact_mut(count).skip(row + 1);
+        later.for_each(|angles| angles[joint] += first_value(finding));
+    }
+    WrittenTo::Recording
+}
+
 /// A joint with another zero from some row on.
 fn slipped(context: &Context, joint: usize, from: usize, location: Location) -> Entry {
     let column = context.turn_from(joint, from, |_, _| 1.0);
-    single(&JOINT_SHIFT, location, linear("zero_urad", URAD, KNOCK.1), column)
+    let mut zero = linear("zero_urad", URAD, KNOCK.1);
+    zero.bounds = (-FARTHEST_SLIP, FARTHEST_SLIP);
+    single(&JOINT_SHIFT, location, zero, column)
 }
 
 /// The joint keeps the zero that it slipped to.

@@ -255,7 +255,14 @@ fn moved(
         let location = Location::Shift { what: Some(name.to_owned()), row, after };
         Entry::new(&effect.effect, location, columns)
     };
-    places(context, &rows).into_iter().map(after).collect()
+    // a plate of which only one socket was visited from then on is that socket
+    let group = |row: usize| context.recording.rows[row].group;
+    let is_of_one = |before: &usize| {
+        let own = group(rows[*before]);
+        let is_own = |row: &usize| group(*row) == own;
+        members.len() > 1 && rows[*before..].iter().all(is_own) && rows[..*before].iter().any(is_own)
+    };
+    places(context, &rows).into_iter().filter(|before| !is_of_one(before)).map(after).collect()
 }
 
 /// A robot that moved on its base.

@@ -48,6 +48,20 @@ pub static UNIT_MISTAKE: Effect = Effect {
     ..NONE
 };
 
+/// Sockets that are not as far apart as the campaign says.
+pub static DISTANCE_MISTAKE: Effect = Effect {
+    name: "distance_mistake",
+    summary: "the sockets are not as far apart as the campaign says",
+    formula: "d = |mean tip in socket 1 − mean tip in socket 0|, by the robot's drawing",
+    prior: "six standard deviations that drawing and poses leave of the distance, and 2 % of it",
+    parameters: &[("mm", "the distance by angles and drawing")],
+    needs: "a placement with both sockets",
+    cause: "a wrong distance of the sockets",
+    cause_at: |location| at("a wrong distance", location),
+    direct_check: Some("Measure with a caliper how far apart the sockets are."),
+    ..NONE
+};
+
 /// A joint's zero by a quarter or half turn.
 pub static OFFSET_MISTAKE: Effect = Effect {
     name: "offset_mistake",

@@ -43,11 +43,12 @@ pub static ALL: [&CalibrationEffect; 24] = [
 
 /// Every mistake that the diagnosis of a calibration knows. They are no terms of a model: they are
 /// undone before there is one.
-pub static MISTAKES: [&Effect; 12] = [
+pub static MISTAKES: [&Effect; 13] = [
     &mistakes::SIGN_MISTAKE,
     &mistakes::SWAP_MISTAKE,
     &mistakes::UNIT_MISTAKE,
     &mistakes::OFFSET_MISTAKE,
+    &mistakes::DISTANCE_MISTAKE,
     &mistakes::ROW_MISTAKE,
     &mistakes::FRAME_MISTAKE,
     &mistakes::ROD_MISTAKE,

@@ -63,7 +63,10 @@ impl Draft {
         from.iter_mut().enumerate().filter(is_elsewhere).for_each(|(_, from)| *from = None);
         let kept: Vec<usize> = (0..self.len()).filter(|&at| from[at].is_some()).collect();
         let there = |&at: &usize| from[at].unwrap_or(at);
-        let seen = kept.iter().map(|at| self.seen[there(at)]).collect();
+        let seen = match self.has_sockets() {
+            true => Vec::new(),
+            false => kept.iter().map(|at| self.seen[there(at)]).collect(),
+        };
         let group = kept.iter().map(|at| self.group[if with_clamps { there(at) } else { *at }]).collect();
         *self = Draft { seen, group, ..self.part(&kept) };
     }
@@ -74,7 +77,10 @@ impl Draft {
         let kept: Vec<usize> =
             (0..count).filter(|i| (0..count).contains(&(i + by))).map(|i| i as usize).collect();
         let there = |&row: &usize| (row as isize + by) as usize;
-        let seen = kept.iter().map(|row| self.seen[there(row)]).collect();
+        let seen = match self.has_sockets() {
+            true => Vec::new(),
+            false => kept.iter().map(|row| self.seen[there(row)]).collect(),
+        };
         let group = kept.iter().map(|row| self.group[if with_clamps { there(row) } else { *row }]).collect();
         *self = Draft { seen, group, ..self.part(&kept) };
     }

@@ -80,7 +80,7 @@ struct List<'a> {
 }
 
 /// An exact number.
-fn exact(name: &str, value: f64) -> Vec<Estimate> {
+pub(super) fn exact(name: &str, value: f64) -> Vec<Estimate> {
     vec![Estimate { name: name.into(), unit: 1.0, value, low: value, high: value }]
 }
 

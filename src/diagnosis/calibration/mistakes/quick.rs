@@ -11,6 +11,7 @@
 //! hardly count, as long as they are the fewer ones. Neither covariance nor uncertainty comes out.
 
 mod density;
+mod distance;
 mod means;
 mod rough;
 
@@ -19,8 +20,9 @@ use nalgebra::{DMatrix, DVector, Vector3};
 use self::density::{density, t_scale, weight_of};
 use self::means::{minus_means, without_means};
 use self::rough::rough;
-use super::draft::Draft;
+use super::draft::{Change, Draft};
 use crate::calibration::Compensation;
+use crate::calibration::growth::log_volume;
 use crate::linalg::transposed_product;
 use crate::robot::{Kinematics, Loads, Parameter, Robot, Setup, minimal_parameters};
 use crate::spatial::{Pose, exponential, skew, times};
@@ -221,6 +223,12 @@ fn sizes(draft: &Draft, body: &Body, torque: &[f64]) -> Vec<f64> {
     body.free.iter().map(size).collect()
 }
 
+/// What the normal matrix has of the priors: those of the free parameters, and a ridge of the
+/// bases.
+fn prior_precision(sd: &[f64], columns: usize) -> Vec<f64> {
+    (0..columns).map(|k| sd.get(k).map_or(1e-6, |sd| sd.powi(-2))).collect()
+}
+
 /// By row, in {W} of its station (with sockets in {0}); the columns of the free parameters and, by
 /// station, of its base, are filled in where they are asked for.
 fn residuals(
@@ -295,16 +303,13 @@ fn step<'a>(
     }
     let mut normal = transposed_product(&block, &block);
     let mut gradient = block.tr_mul(&right);
-    for k in 0..free {
-        let precision = sd[k].powi(-2);
+    let precision = prior_precision(sd, columns);
+    for (k, precision) in precision.iter().enumerate() {
         normal[(k, k)] += precision;
         // the tip has a ridge only: it is where it fits
-        if !matches!(body.free[k], Parameter::Tool(_)) {
+        if k < free && !matches!(body.free[k], Parameter::Tool(_)) {
             gradient[k] += precision * (state.setup.get(body.free[k]) - nominal[k]);
         }
-    }
-    for k in free..columns {
-        normal[(k, k)] += 1e-6;
     }
     let change = normal.cholesky()?.solve(&gradient);
     let mut next = state.clone();
@@ -334,6 +339,21 @@ impl Fit {
         let mut setup = Setup::new(body.robot, Pose::IDENTITY, self.tool);
         self.links.iter().for_each(|&(parameter, value)| setup.set(parameter, value));
         setup
+    }
+
+    /// Ln of the volume that the recorded angles span ([`log_volume`]), in which a change of them
+    /// all counts; nothing where points were measured.
+    pub fn log_volume(&self, draft: &Draft, body: &Body) -> f64 {
+        if !draft.has_sockets() {
+            return 0.0;
+        }
+        let mut factor = vec![1.0; draft.joint_count];
+        for change in &draft.joint_changes {
+            if let Change::Joints { factor: by, .. } = change {
+                factor.iter_mut().zip(by).for_each(|(factor, by)| *factor *= by);
+            }
+        }
+        log_volume(&self.setup(body), &draft.joints, &factor)
     }
 
     /// Distances of the tip of every row of `draft` from its point, m, if its station were

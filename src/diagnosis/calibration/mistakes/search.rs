@@ -69,6 +69,9 @@ pub(super) struct State {
     pub score: f64,
     /// The part of the score that first guesses make.
     guess: f64,
+    /// That of the volume which the recorded angles span: with sockets angles of a smaller unit
+    /// scatter less, and say nothing by it.
+    volume: f64,
 }
 
 /// A change that was found necessary.
@@ -247,7 +250,8 @@ impl Search<'_> {
             true => -most[0] - most[1],
             false => guess(&thin, &fit, reach, most),
         };
-        State { score: fit.log_likelihood + guess + prior, steps, thin, fit, guess }
+        let volume = fit.log_volume(&thin, &self.bodies[thin.body]);
+        State { score: fit.log_likelihood + guess + prior + volume, steps, thin, fit, guess, volume }
     }
 
     /// The state with every further change, the best first; those that will not reach the score
@@ -285,7 +289,10 @@ impl Search<'_> {
             }
             let is_two_bodies = matches!(self.change(&steps[k]), Change::Body(..)) && from.thin.body != 0;
             // a score is the likelihood, less what is paid
-            let log_likelihood = least - self.log_prior(&all);
+            let log_likelihood = match self.draft.has_sockets() {
+                true => f64::NEG_INFINITY,
+                false => least - self.log_prior(&all),
+            };
             let worthwhile = Worthwhile { most_left, log_likelihood };
             if is_two_bodies { None } else { self.state(&all, worthwhile) }
         });
@@ -325,9 +332,14 @@ impl Search<'_> {
 
     /// True where what differs between two states lies so many times nearer, and is enough.
     fn is_nearer(&self, after: &State, before: &State) -> bool {
-        let sure = 3.0 * after.fit.scale;
-        let touched: Vec<(f64, f64)> =
-            pairs(before, after).into_iter().filter(|(old, new)| (old - new).abs() > sure).collect();
+        // in what the angles span before
+        let unit = ((before.volume - after.volume) / (3 * after.thin.len().max(1)) as f64).exp();
+        let sure = 3.0 * after.fit.scale * unit;
+        let touched: Vec<(f64, f64)> = pairs(before, after)
+            .into_iter()
+            .map(|(old, new)| (old, new * unit))
+            .filter(|(old, new)| (old - new).abs() > sure)
+            .collect();
         // a part of the rows may be a small one
         let is_part =
             (after.steps.iter()).any(|step| matches!(step, Step::Part(..)) && !before.steps.contains(step));
@@ -336,7 +348,8 @@ impl Search<'_> {
         let (old, new): (Vec<f64>, Vec<f64>) = touched.into_iter().unzip();
         let (Some(old_middle), Some(new_middle)) = (median(&old), median(&new)) else { return false };
         // what a part of the rows holds makes them as good as the others
-        let is_good = !is_part || median(&after.fit.residuals).is_some_and(|all| new_middle < NEARER * all);
+        let is_good =
+            !is_part || median(&after.fit.residuals).is_some_and(|all| new_middle < NEARER * all * unit);
         old.len() as f64 >= least && old_middle > NEARER * new_middle && is_good
     }
 

@@ -73,10 +73,16 @@ impl Search<'_> {
         if self.has_failed(best) {
             return Vec::new();
         }
-        let draft = self.changed(&best.steps);
+        let mut draft = self.changed(&best.steps);
         let reference = Reference::of_all(&best.thin, &self.bodies[draft.body], &best.fit);
-        let lengths = reference.lengths(&draft);
+        let mut lengths = reference.lengths(&draft);
+        let displaced = self.displaced_names(&draft, &reference, &lengths);
+        if let Some(displaced) = &displaced {
+            draft.apply(&displaced.change);
+            lengths = reference.lengths(&draft);
+        }
         let mut slips = self.copies(&draft, &lengths, reference.scale, recording);
+        slips.extend(displaced);
         let is_known = |slips: &[Slip], row: usize| {
             slips.iter().any(|slip| matches!(&slip.change, Change::Without(rows) if rows.contains(&row)))
         };

@@ -67,15 +67,15 @@ fn a_small_trial_is_answered_as_well_as_ever() {
     assert_eq!((count("clean", "n"), score["failed"].as_u64()), (3, Some(0)));
     assert!(count("clean", "false_names") + count("clean", "false_unexplained") == 0, "{}", score["clean"]);
     let single = &score["single"];
-    assert!(count("single", "identifiable") == 1 && count("single", "location_ok") == 1, "{single}");
+    assert!(count("single", "identifiable") == 2 && count("single", "location_ok") == 2, "{single}");
     // in the class wherever something is named
     let rate = |of: &str, rate: &str| {
         let rate = &score[of][rate];
         (rate["count"].as_u64().unwrap(), rate["of"].as_u64().unwrap())
     };
-    assert_eq!(rate("single", "in_class_rate"), (2, 2), "{single}");
+    assert_eq!(rate("single", "in_class_rate"), (3, 3), "{single}");
     // what nobody could detect is passed over in silence, or right
-    assert_eq!(rate("below", "silent_or_right"), (2, 2), "{}", score["below"]);
+    assert_eq!(rate("below", "silent_or_right"), (1, 1), "{}", score["below"]);
     assert!(count("pairs", "identifiable") == 1 && count("pairs", "both_found") == 1, "{}", score["pairs"]);
     assert!(count("unknown", "identifiable") == 1 && count("unknown", "wrongly_named") == 0);
     // at the rig and of calibrations
@@ -97,7 +97,7 @@ fn poses_that_are_proposed_are_measured_by_the_same_robot() {
     // play that may be a read-back lag (a tracker), a clamp's place that may be a move of the base
     let cases = [
         ("t", "--seed 102 --case-range 1..1 --conflicts"),
-        ("u", "--seed 3883240206 --case-range 43..43 --calibration"),
+        ("u", "--seed 424243 --case-range 28..28 --calibration"),
     ];
     for (directory, drawn) in cases {
         sandbox.run(&format!("trial make {directory} {drawn}")).succeeded();

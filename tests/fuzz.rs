@@ -113,7 +113,7 @@ fn read(name_of_input: &str, bytes: &[u8]) {
 #[test]
 fn whatever_a_file_holds_it_is_read_or_refused() {
     let number = |name: &str| std::env::var(name).ok().and_then(|text| text.parse::<u64>().ok());
-    let time = Duration::from_secs(number("RODCAL_FUZZ_SECONDS").unwrap_or(2));
+    let time = Duration::from_secs(number("RODCAL_FUZZ_SECONDS").unwrap_or(1));
     let (start, mut n) = (Instant::now(), number("RODCAL_FUZZ_FROM").unwrap_or(0));
     let (first, most) = (n, number("RODCAL_FUZZ_INPUTS").unwrap_or(u64::MAX));
     while start.elapsed() < time && n - first < most {

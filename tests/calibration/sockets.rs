@@ -18,7 +18,7 @@ const RHO: &str = "a1 alpha1 theta2 d2 a2 alpha2 c2 theta3 d3 a3 alpha3 c3 theta
 /// Where the plate was put down, m.
 const PLACES: [[f64; 3]; 4] = [[0.45, 0.1, 0.3], [0.3, -0.45, 0.4], [-0.35, 0.4, 0.6], [0.5, 0.3, 0.8]];
 
-/// A robot of seven joints with its ball in each socket 18 times.
+/// A robot of seven joints with its ball in each socket 12 times.
 fn recorded() -> (Lab, String) {
     let mut dice = Dice(29);
     let mut lab = Lab::new(arms::robot(SEVEN), Isometry3::identity(), Vector3::zeros());
@@ -30,7 +30,7 @@ fn recorded() -> (Lab, String) {
         for (socket, side) in [1.0, -1.0].into_iter().enumerate() {
             let target = Vector3::from(middle) + along * side;
             let mut found = 0;
-            while found < 18 {
+            while found < 12 {
                 let start = lab.anywhere(&mut dice);
                 let Some(q) = lab.reach(&target, &start) else { continue };
                 csv += &format!("{pose},{placement},{socket}{}\n", lab.cells(&q));

@@ -20,7 +20,9 @@ mod displaced;
 mod distance;
 mod draft;
 mod elsewhere;
+mod fixtures;
 mod found;
+mod left_to_effects;
 mod motion;
 mod moves;
 mod names;
@@ -249,9 +251,8 @@ fn search(campaign: &Campaign, mode: Mode, others: &Neighbours) -> Result<Mended
     }
     let mut forces = Vec::new();
     for factor in moves::bodies::forces(campaign) {
-        let with = compensation.with_contact_force_times(factor);
         forces.push((bodies.len(), factor));
-        bodies.push(Body::new(&campaign.robot, with, campaign.tool, &draft));
+        bodies.push(bodies[0].with_contact_force_times(factor));
     }
     let silent = columns::silent(campaign, &draft);
     let is_sure = silent.iter().any(|silent| !silent.only_if_failed);

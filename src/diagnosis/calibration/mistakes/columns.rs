@@ -38,6 +38,11 @@ fn is_constant(values: &[f64]) -> bool {
     values.iter().all(|value| (value - values[0]).abs() <= SAME)
 }
 
+/// Positions have been turned into {W} and back.
+fn are_same(first: &[f64], second: &[f64]) -> bool {
+    first.iter().zip(second).all(|(first, second)| (first - second).abs() <= SAME)
+}
+
 fn positions(draft: &Draft) -> Vec<Silent> {
     if draft.has_sockets() {
         return Vec::new();
@@ -60,7 +65,7 @@ fn positions(draft: &Draft) -> Vec<Silent> {
             all.push(stuck(names[axis].into(), vec![estimate], names[axis], what, false));
         }
         for (a, b) in [(0, 1), (0, 2), (1, 2)] {
-            if columns[a] == columns[b] && !is_constant(&columns[a]) {
+            if are_same(&columns[a], &columns[b]) && !is_constant(&columns[a]) {
                 all.push(copied(names[a], names[b]));
             }
         }
@@ -89,7 +94,7 @@ fn joints(campaign: &Campaign, draft: &Draft) -> Vec<Silent> {
             continue;
         }
         for b in a + 1..count {
-            if columns[a] == columns[b] {
+            if are_same(&columns[a], &columns[b]) {
                 all.push(copied(&name(a), &name(b)));
             }
         }

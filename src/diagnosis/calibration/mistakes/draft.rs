@@ -56,8 +56,10 @@ pub(super) enum Change {
     Body(usize, Option<Vector3<f64>>),
     /// From this row on tracker or base stood elsewhere.
     Moved(usize),
-    /// A clamp stands somewhere else.
+    /// A clamp stands somewhere else, and turned.
     Apart(usize),
+    /// The place of a clamp is the one that its poses say.
+    Placed(usize),
     /// Another change, of some rows alone.
     Within(Rows, Box<Change>),
     /// true joint = recorded + by, an angle (or a length) that the poses must say.
@@ -100,6 +102,11 @@ impl Change {
     /// True where only a first guess is another one, which no fit depends on.
     pub fn is_guess(&self) -> bool {
         matches!(self, Change::Base(_) | Change::Tool(_))
+    }
+
+    /// True where some rows get a frame of their own.
+    pub fn adds_station(&self) -> bool {
+        matches!(self, Change::Moved(_) | Change::Apart(_))
     }
 
     /// A factor on some joints.
@@ -245,6 +252,7 @@ impl Draft {
                 }
                 self.stations += 1;
             }
+            Change::Placed(clamp) => self.loose.push(*clamp),
             Change::Within(rows, change) => self.apply_within(*rows, change),
             Change::Zero { joint, by } => {
                 self.joints.iter_mut().skip(*joint).step_by(self.joint_count).for_each(|q| *q += by);

@@ -12,9 +12,9 @@ use crate::units::MM;
 /// Rows after which a move of the base is tried first.
 const PLACES: usize = 24;
 /// Fewest rows of a station.
-const LEAST_ROWS: usize = 4;
+pub(super) const LEAST_ROWS: usize = 4;
 /// Width of the points of a station, as a share of the reach; see [`width`].
-const WIDTH: f64 = 0.02;
+pub(super) const WIDTH: f64 = 0.02;
 /// The least that is called a move of the base: smaller ones are left to the effects, which
 /// distinguish them from drift.
 const LEAST_MOVE: (f64, f64) = (2.0 * MM, 2e-3);
@@ -51,6 +51,8 @@ impl Search<'_> {
     /// False where a base moved by so little that the effects find it.
     pub(super) fn is_far(&self, state: &State) -> bool {
         match state.steps.last() {
+            Some(Step::Elsewhere(Change::Placed(clamp))) => self.is_displaced(state, *clamp),
+            Some(Step::Elsewhere(Change::Devices(_))) => true,
             Some(Step::Elsewhere(_)) => match &state.fit.bases[..] {
                 [first, .., last] => {
                     let (way, angle) = moved(first, last);
@@ -64,7 +66,10 @@ impl Search<'_> {
 
     /// False where a frame of its own does not make the rows fit that stood elsewhere.
     pub(super) fn is_placed(&self, state: &State) -> bool {
-        let Some(Step::Elsewhere(_)) = state.steps.last() else { return true };
+        let Some(Step::Elsewhere(change)) = state.steps.last() else { return true };
+        if !change.adds_station() {
+            return true;
+        }
         let station = state.thin.stations - 1;
         let rows = state.thin.station.iter().zip(&state.fit.residuals);
         let own: Vec<f64> = rows.filter(|(own, _)| **own == station).map(|(_, left)| *left).collect();
@@ -73,7 +78,7 @@ impl Search<'_> {
 
     /// A move of the base at the very row.
     pub(super) fn sharpened(&self, state: State) -> State {
-        let mut state = state;
+        let mut state = self.turned_again(&state).unwrap_or(state);
         for _ in 0..3 {
             let Some(Step::Elsewhere(Change::Moved(first))) = state.steps.last().cloned() else {
                 return state;
@@ -118,7 +123,7 @@ impl Search<'_> {
 
 /// How far apart some points lie at least, across their longest direction, m (root mean square): no
 /// frame can be placed on points in one spot or on one line.
-fn width(draft: &Draft, rows: &[usize]) -> f64 {
+pub(super) fn width(draft: &Draft, rows: &[usize]) -> f64 {
     let points = || rows.iter().map(|&row| draft.point(row));
     let mean = points().sum::<Vector3<f64>>() / rows.len().max(1) as f64;
     let spread: Matrix3<f64> = points().map(|p| (p - mean) * (p - mean).transpose()).sum();

@@ -43,6 +43,7 @@ impl Mended {
                     last.spoils_fit = !own.change.is_guess();
                 }
             }
+            Step::Elsewhere(change) if !change.adds_station() => self.add_fixture(search, best, change),
             Step::Elsewhere(change) => self.add_elsewhere(search, best, found, change),
             Step::Part(number, Change::Within(rows, change)) => {
                 let mut own = search.of_rows[*number].clone();
@@ -108,8 +109,8 @@ impl Mended {
     fn add_elsewhere(&mut self, search: &Search, best: &State, found: &Found, change: &Change) {
         // its number among the stations: those of the file, then one for each such step
         let earlier = best.steps.iter().take_while(|step| **step != found.step);
-        let number =
-            search.draft.stations + earlier.filter(|step| matches!(step, Step::Elsewhere(_))).count();
+        let has_own = |step: &&Step| matches!(step, Step::Elsewhere(change) if change.adds_station());
+        let number = search.draft.stations + earlier.filter(has_own).count();
         let bases = &best.fit.bases;
         let recording = &self.campaign.measurements;
         let old = match change {

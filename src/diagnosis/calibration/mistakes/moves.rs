@@ -27,6 +27,8 @@ pub(super) struct Move {
     pub location: String,
     pub change: Change,
     pub log_prior: f64,
+    /// What the contact force is multiplied by, where that is all.
+    pub force: Option<f64>,
     pub estimates: Vec<Estimate>,
     /// What to do: `Multiply q4_deg by −1`.
     pub cure: String,
@@ -98,6 +100,7 @@ impl List<'_> {
             location: location.into(),
             change,
             log_prior: 0.0,
+            force: None,
             estimates: Vec::new(),
             cure: cure.into(),
             why: why.into(),

@@ -17,8 +17,9 @@ mod rough;
 
 use nalgebra::{DMatrix, DVector, Vector3};
 
-use self::density::{density, t_scale, weight_of};
+pub(super) use self::density::{density, t_scale, weight_of};
 use self::means::{minus_means, without_means};
+pub(super) use self::rough::placed;
 use self::rough::rough;
 use super::draft::{Change, Draft};
 use crate::calibration::Compensation;
@@ -80,6 +81,12 @@ impl<'a> Body<'a> {
         let reach = |row: usize| (robot.flange_at(draft.joints(row)).point(&tool) - from).norm();
         let reach = (0..draft.len()).map(reach).fold(0.0, f64::max);
         Body { robot, compensation, free, reach }
+    }
+
+    /// The same under a contact force that is `factor` times as large.
+    pub fn with_contact_force_times(&self, factor: f64) -> Body<'a> {
+        let compensation = self.compensation.with_contact_force_times(factor);
+        Body { compensation, free: self.free.clone(), ..*self }
     }
 }
 

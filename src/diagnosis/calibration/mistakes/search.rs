@@ -27,14 +27,14 @@ pub(super) const ALIKE: f64 = 2.995_732;
 const RARE: f64 = -4.0;
 /// The price of a frame that moved: half of ln 150 for each of its six numbers, and which row.
 const MOVED: f64 = -20.0;
+/// That of a clamp that stands elsewhere, or is turned: its three numbers, and which.
+const FIXTURE: f64 = -12.0;
 /// What a change touches must come so many times nearer.
 const NEARER: f64 = 3.0;
 /// Share of the rows that it touches at least, and their number.
 const TOUCHED: (f64, usize) = (0.05, 3);
 /// Rows that a fit sees.
 const ROWS: usize = 120;
-/// The price of a clamp that is not quite in its place: the same for its three numbers.
-const DISPLACED: f64 = -7.5;
 const MOST_CHANGES: usize = 6;
 const BEAM: usize = 5;
 /// What a robot as drawn leaves, as a share of the reach: what is tried must not be far worse.
@@ -172,37 +172,10 @@ impl Search<'_> {
         Some(self.scored(steps.to_vec(), thin, fit))
     }
 
-    /// The score of what is left to the effects and acts on what a change acts on too: small moves,
-    /// and where the frames of clamps are changed their places.
-    fn of_effects(&self, changed: &State, from: &State, tried: &[State]) -> f64 {
-        let small = tried.iter().filter(|state| !self.is_far(state)).map(|state| state.score);
-        let turned: Vec<Vec<usize>> = match changed.steps.last().map(|step| self.change(step)) {
-            Some(Change::Devices(frames)) => vec![
-                (frames.iter())
-                    .filter(|(clamp, frame)| frame.origin == from.thin.devices[*clamp].origin)
-                    .map(|(clamp, _)| *clamp)
-                    .collect(),
-            ],
-            Some(Change::Moved(_)) if self.draft.devices.len() > 1 => {
-                (0..self.draft.devices.len()).map(|clamp| vec![clamp]).collect()
-            }
-            _ => Vec::new(),
-        };
-        let displaced = turned.into_iter().filter(|turned| !turned.is_empty()).filter_map(|turned| {
-            let mut thin = from.thin.clone();
-            thin.loose = turned;
-            let price = DISPLACED * thin.loose.len() as f64;
-            let fit = fit(&thin, &self.bodies[thin.body], Worthwhile::ANY)?;
-            let loose = self.restarted(self.scored(from.steps.clone(), thin, fit), changed);
-            Some(loose.score + price)
-        });
-        small.chain(displaced).fold(f64::NEG_INFINITY, f64::max)
-    }
-
     /// The state, or what it becomes where its fit begins with that of another one, whichever is
     /// more probable: rows that a mistake or a move touches pull at a fit, and one that has let
     /// them go is the better one with any reading of them.
-    fn restarted(&self, state: State, start: &State) -> State {
+    pub(super) fn restarted(&self, state: State, start: &State) -> State {
         if state.thin.body != start.thin.body {
             return state;
         }
@@ -234,6 +207,7 @@ impl Search<'_> {
     fn log_prior(&self, steps: &[Step]) -> f64 {
         let price = |step: &Step| match step {
             Step::Move(number) => RARE + self.moves[*number].log_prior,
+            Step::Elsewhere(Change::Placed(_) | Change::Devices(_)) => FIXTURE,
             Step::Elsewhere(_) => MOVED,
             Step::Part(number, change) => RARE + self.of_rows[*number].log_prior - self.log_stretches(change),
             Step::Slip(_) => 0.0,
@@ -278,7 +252,8 @@ impl Search<'_> {
         let most_left = (0.8 * from.fit.rough).max(DRAWN * reach);
         let mut steps: Vec<Step> = (0..self.moves.len()).map(Step::Move).collect();
         steps.retain(|step| !from.steps.contains(step));
-        steps.extend(self.elsewhere(from).into_iter().map(Step::Elsewhere));
+        let elsewhere = self.elsewhere(from).into_iter().chain(self.fixtures(from));
+        steps.extend(elsewhere.map(Step::Elsewhere));
         let tried = in_parallel(steps.len(), |k| {
             let mut all = from.steps.clone();
             all.push(steps[k].clone());
@@ -327,7 +302,12 @@ impl Search<'_> {
         }
         // a first guess that agrees now where it did not, with a fit that is good both times
         let agrees = !self.has_failed(before) && after.guess - before.guess > ODDS;
-        agrees || self.is_nearer(after, before)
+        // no physics makes a force so much larger or smaller
+        agrees || self.is_of_force(after) || self.is_nearer(after, before)
+    }
+
+    fn is_of_force(&self, state: &State) -> bool {
+        matches!(state.steps.last(), Some(Step::Move(number)) if self.moves[*number].force.is_some())
     }
 
     /// True where what differs between two states lies so many times nearer, and is enough.

@@ -111,7 +111,11 @@ impl Search<'_> {
             own.is_none() || columns.iter().filter(|other| **other == own).count() <= most
         });
         let reach = self.bodies[draft.body].reach;
-        lost.retain(|&at| lengths[at] > FAILED * reach);
+        // apart from all others: what an effect does most to one pose it does to others nearly as
+        // much
+        let stays = |at: &usize| !lost.contains(at) && !is_known(&slips, draft.rows[*at]);
+        let farthest = (0..draft.len()).filter(stays).map(|at| lengths[at]).fold(0.0, f64::max);
+        lost.retain(|&at| lengths[at] > FAILED * reach && lengths[at] > AS_FAR * farthest);
         if lost.len() <= most {
             slips.extend(lost.into_iter().map(|at| left_out(&draft, at, lengths[at], recording)));
         }
@@ -320,7 +324,7 @@ impl Search<'_> {
 const SAME: f64 = 1e-12;
 
 /// A number of the file without what converting it to rad or m and back has left.
-fn tidy(value: f64) -> f64 {
+pub(super) fn tidy(value: f64) -> f64 {
     format!("{value:.12e}").parse().unwrap_or(value)
 }
 

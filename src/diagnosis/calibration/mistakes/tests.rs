@@ -1,3 +1,4 @@
+mod fixtures;
 mod parts;
 
 use nalgebra::Vector3;

@@ -44,6 +44,10 @@ impl Mended {
         let mut station = search.draft.stations;
         for step in &best.steps {
             let Step::Elsewhere(change) = step else { continue };
+            if let Some((clamp, frame)) = search.frame_meant(best, change) {
+                draft.devices[clamp] = frame;
+                continue;
+            }
             if let (Change::Apart(clamp), Some(to)) = (change, best.fit.bases.get(station)) {
                 draft.devices[*clamp] = best.fit.bases[0].then(&to.inverse()).then(&draft.devices[*clamp]);
                 draft.station.iter_mut().for_each(|own| *own = if *own == station { 0 } else { *own });

@@ -6,10 +6,17 @@ use super::{List, Other, UNUSUAL, exact};
 use crate::calibration::campaign::Campaign;
 use crate::units::STANDARD_GRAVITY;
 
+/// A pound, a gram and a thousandth of a newton, N.
+const POUND: f64 = 4.448_222;
+const GRAM: f64 = STANDARD_GRAVITY / 1e3;
+const MILLINEWTON: f64 = 1e-3;
+const FACTORS: [f64; 8] =
+    [-1.0, 0.1, 10.0, STANDARD_GRAVITY, 1.0 / STANDARD_GRAVITY, POUND, GRAM, MILLINEWTON];
+
 /// What the contact force may have to be multiplied by; nothing where none is stated.
 pub fn forces(campaign: &Campaign) -> Vec<f64> {
     let is_stated = campaign.rod.is_some() && campaign.contact_force.is_some_and(|force| force.norm() > 0.0);
-    if is_stated { vec![-1.0, 0.1, 10.0, STANDARD_GRAVITY, 1.0 / STANDARD_GRAVITY] } else { Vec::new() }
+    if is_stated { FACTORS.to_vec() } else { Vec::new() }
 }
 
 impl List<'_> {
@@ -25,6 +32,12 @@ impl List<'_> {
                 )
             } else if factor == STANDARD_GRAVITY {
                 (&UNIT_MISTAKE, format!("Multiply {KEY} by 9.80665"), "it is in kilograms, not in newtons")
+            } else if factor == POUND {
+                (&UNIT_MISTAKE, format!("Multiply {KEY} by 4.448"), "it is in pounds, not in newtons")
+            } else if factor == GRAM {
+                (&UNIT_MISTAKE, format!("Divide {KEY} by 102"), "it is in grams, not in newtons")
+            } else if factor == MILLINEWTON {
+                (&UNIT_MISTAKE, format!("Divide {KEY} by 1000"), "it is in millinewtons, not in newtons")
             } else if factor == 1.0 / STANDARD_GRAVITY {
                 (&UNIT_MISTAKE, format!("Divide {KEY} by 9.80665"), "it was converted to newtons twice")
             } else {
@@ -32,7 +45,7 @@ impl List<'_> {
                 (&UNIT_MISTAKE, format!("{way} {KEY} by {by}"), "its decimal point is in the wrong place")
             };
             let force = self.add(effect, KEY, Change::Body(body, None), &cure, why);
-            force.log_prior = UNUSUAL;
+            (force.log_prior, force.force) = (UNUSUAL, Some(factor));
             force.estimates = if factor < 0.0 { Vec::new() } else { exact("factor", factor) };
         }
     }

@@ -72,7 +72,9 @@ impl List<'_> {
                     .log_prior = UNUSUAL;
             }
         }
-        for (factor, unit) in [(1e3, "metres"), (25.4, "inches"), (1e-3, "micrometres")] {
+        for (factor, unit) in
+            [(1e3, "metres"), (25.4, "inches"), (10.0, "centimetres"), (1e-3, "micrometres")]
+        {
             let scaled =
                 |(k, device): (usize, &Pose)| (k, Pose { origin: device.origin * factor, ..*device });
             let change = Change::Devices(devices.iter().enumerate().map(scaled).collect());

@@ -13,12 +13,12 @@ const ROW: f64 = 1.0 / 3.0;
 pub(super) const MEDIAN: f64 = 1.538;
 
 /// What a residual of u times the scale counts: (ν + 3)/(ν + u²).
-pub(super) fn weight_of(u: f64) -> f64 {
+pub fn weight_of(u: f64) -> f64 {
     (NU + 3.0) / (NU + u * u)
 }
 
 /// The scale that is likeliest, by the fixed point s² = Σ w·r²/3n.
-pub(super) fn t_scale(lengths: &[f64], least: f64) -> f64 {
+pub fn t_scale(lengths: &[f64], least: f64) -> f64 {
     let start = median(lengths).unwrap_or(0.0) / MEDIAN;
     let mut scale = start.max(least);
     for _ in 0..30 {
@@ -34,7 +34,7 @@ pub(super) fn t_scale(lengths: &[f64], least: f64) -> f64 {
 }
 
 /// Ln of the density of all rows, as many as count.
-pub(super) fn density(lengths: &[f64], scale: f64) -> f64 {
+pub fn density(lengths: &[f64], scale: f64) -> f64 {
     let ln_density = |r: &f64| -3.0 * scale.ln() - 0.5 * (NU + 3.0) * ((r / scale).powi(2) / NU).ln_1p();
     let sum: f64 = lengths.iter().map(ln_density).sum();
     let count = lengths.len().max(1) as f64;

@@ -40,9 +40,12 @@ pub(super) fn rough(draft: &Draft, robot: &Robot, reach: f64) -> Option<Rough> {
     let points: Vec<Vector3<f64>> = (0..draft.len()).map(|row| draft.point(row)).collect();
     let mut best: Option<Rough> = None;
     let guess = draft.tool.unwrap_or_default();
+    // a clamp whose place is free places nothing
+    let counts: Vec<f64> =
+        draft.group.iter().map(|group| f64::from(u8::from(!draft.is_loose(*group)))).collect();
     for start in [guess, Vector3::zeros(), Vector3::x() * 0.1, Vector3::z() * 0.1] {
         let mut tool = start;
-        let mut weight = vec![1.0; points.len()];
+        let mut weight = counts.clone();
         let mut before = f64::INFINITY;
         for _ in 0..MOST_TURNS {
             let tips: Vec<Vector3<f64>> = flanges.iter().map(|flange| flange.point(&tool)).collect();
@@ -58,7 +61,8 @@ pub(super) fn rough(draft: &Draft, robot: &Robot, reach: f64) -> Option<Rough> {
                 sum.1 += weight[row];
                 left.push(off.norm());
             }
-            let median = median(&left)?;
+            let counted = left.iter().zip(&counts).filter(|(_, counts)| **counts > 0.0);
+            let median = median(&counted.map(|(left, _)| *left).collect::<Vec<_>>())?;
             if !median.is_finite() {
                 return None;
             }
@@ -70,7 +74,9 @@ pub(super) fn rough(draft: &Draft, robot: &Robot, reach: f64) -> Option<Rough> {
             }
             before = median;
             tool += sum.0 / f64::max(sum.1, f64::MIN_POSITIVE);
-            weight = left.iter().map(|left| weight_of(left / (median / MEDIAN).max(1e-9))).collect();
+            let scale = (median / MEDIAN).max(1e-9);
+            weight =
+                left.iter().zip(&counts).map(|(left, counts)| counts * weight_of(left / scale)).collect();
         }
         if best.as_ref().is_some_and(|best| best.median < 3e-3 * reach) {
             break;
@@ -80,7 +86,7 @@ pub(super) fn rough(draft: &Draft, robot: &Robot, reach: f64) -> Option<Rough> {
 }
 
 /// The motion of some tips that brings them closest to their points (Kabsch), weighted.
-fn placed(
+pub fn placed(
     tips: &[Vector3<f64>],
     points: &[Vector3<f64>],
     weight: &[f64],

@@ -1,0 +1,216 @@
+//! Where a clamp stands and how it is turned, as its own poses say.
+//!
+//! With the place of one clamp free, the others place the robot, and the middle of its residuals is
+//! how far it stands from where the file has it. How it is turned is the rotation D that brings
+//! what its device showed closest to where the tips were (W. Kabsch, *Acta Cryst.* A32 (1976) 922):
+//!
+//! ```text
+//! min Σ |tipᵢ − mean tip − D·(uᵢ − mean u)|²
+//! ```
+//!
+//! A number that was typed wrongly is looked for behind both; where there is none, the place or the
+//! rotation that was found is the frame that was meant.
+
+use nalgebra::Vector3;
+
+use super::super::effects::mistakes::{FRAME_MISTAKE, TYPING_MISTAKE};
+use super::Mended;
+use super::draft::Change;
+use super::elsewhere::{LEAST_ROWS, WIDTH, width};
+use super::motion::{motion_estimates, moved};
+use super::moves::{exact, turn};
+use super::quick::{placed, weight_of};
+use super::search::{Search, State, Step};
+use super::slips::tidy;
+use super::typed::{Meant, decimals, meant};
+use crate::inference::Location;
+use crate::spatial::Pose;
+use crate::statistics::median;
+use crate::units::{DEG, MM, significant};
+
+/// Fewest clamps of which one may stand elsewhere: three place the robot.
+const FEWEST: usize = 4;
+/// A place or a rotation of its own is tried where the rows of a clamp do not fit: so many scales
+/// off in the middle, or in a fit that leaves such a share of the reach.
+const UNLIKE: f64 = 2.0;
+const POOR: f64 = 1e-3;
+/// The least that is called another place, m, and another rotation, rad: less is left to the
+/// effects. A number that was meant lies within them too.
+const LEAST: (f64, f64) = (2.0 * MM, 2.0 * DEG);
+/// So many standard deviations are a rotation.
+const SURE: f64 = 4.0;
+
+/// A frame of a clamp as it was meant.
+struct Meaning {
+    clamp: usize,
+    frame: Pose,
+    /// Which of its three numbers was another one.
+    typed: Option<(usize, Meant)>,
+}
+
+impl Search<'_> {
+    /// Other places and rotations of clamps.
+    pub(super) fn fixtures(&self, from: &State) -> Vec<Change> {
+        let thin = &from.thin;
+        let count = thin.devices.len();
+        if self.draft.has_sockets() || count < FEWEST {
+            return Vec::new();
+        }
+        let reach = self.bodies[thin.body].reach;
+        let is_poor = from.fit.scale > POOR * reach;
+        let mut all = Vec::new();
+        for clamp in 0..count {
+            let rows = rows_of(from, clamp);
+            let others: Vec<usize> = (0..thin.len()).filter(|&at| thin.group[at] != clamp).collect();
+            let left: Vec<f64> = rows.iter().map(|&at| from.fit.residuals[at]).collect();
+            let is_unlike = median(&left).is_some_and(|left| left > UNLIKE * from.fit.scale);
+            if rows.len() < LEAST_ROWS || width(thin, &others) < WIDTH * reach || !(is_unlike || is_poor) {
+                continue;
+            }
+            if thin.loose.is_empty() {
+                all.push(Change::Placed(clamp));
+            }
+            all.extend(self.turned(from, clamp).map(|frame| Change::Devices(vec![(clamp, frame)])));
+        }
+        all
+    }
+
+    /// A clamp turned as its poses say, where that is another rotation than it has.
+    pub(super) fn turned(&self, from: &State, clamp: usize) -> Option<Pose> {
+        let (thin, body) = (&from.thin, &self.bodies[from.thin.body]);
+        let tips = from.fit.tips(thin, body);
+        let weight = vec![1.0; thin.len()];
+        let found = placed(&thin.seen, &tips, &weight, |at| thin.group[at] == clamp)?;
+        let stated = thin.devices[clamp];
+        let rows = rows_of(from, clamp);
+        let middle = rows.iter().map(|&at| thin.seen[at]).sum::<Vector3<f64>>() / rows.len() as f64;
+        let spread: f64 = rows.iter().map(|&at| (thin.seen[at] - middle).norm_squared()).sum();
+        let sd = from.fit.scale / (spread / 3.0).sqrt().max(f64::MIN_POSITIVE);
+        let angle = turn(&stated.rotation, &found.rotation);
+        (angle > LEAST.1.max(SURE * sd)).then_some(Pose { rotation: found.rotation, ..stated })
+    }
+
+    /// False where a clamp stands so near its place that the effects find it.
+    pub(super) fn is_displaced(&self, state: &State, clamp: usize) -> bool {
+        self.displacement(state, clamp).norm() > LEAST.0
+    }
+
+    /// How far a clamp whose place is free stands from where the draft has it, m, in {W}.
+    pub(super) fn displacement(&self, state: &State, clamp: usize) -> Vector3<f64> {
+        let off = state.fit.offsets(&state.thin, &self.bodies[state.thin.body]);
+        let rows = rows_of(state, clamp);
+        let weights: Vec<f64> =
+            rows.iter().map(|&at| weight_of(state.fit.residuals[at] / state.fit.scale)).collect();
+        let sum: Vector3<f64> = rows.iter().zip(&weights).map(|(&at, weight)| off[at] * *weight).sum();
+        sum / weights.iter().sum::<f64>().max(f64::MIN_POSITIVE)
+    }
+
+    /// A rotation once more, by the fit that it made.
+    pub(super) fn turned_again(&self, state: &State) -> Option<State> {
+        let Some(Step::Elsewhere(Change::Devices(frames))) = state.steps.last() else { return None };
+        let &(clamp, frame) = frames.first()?;
+        let (tips, thin) = (state.fit.tips(&state.thin, &self.bodies[state.thin.body]), &state.thin);
+        let found = placed(&thin.seen, &tips, &vec![1.0; thin.len()], |at| thin.group[at] == clamp)?;
+        let mut steps = state.steps.clone();
+        *steps.last_mut()? =
+            Step::Elsewhere(Change::Devices(vec![(clamp, Pose { rotation: found.rotation, ..frame })]));
+        self.state(&steps, super::quick::Worthwhile::ANY).filter(|again| again.score > state.score)
+    }
+
+    /// What a frame that was found was meant to be.
+    fn meaning(&self, best: &State, change: &Change) -> Option<Meaning> {
+        match change {
+            Change::Placed(clamp) => {
+                let mm = |pose: &Pose| [0, 1, 2].map(|axis| tidy(pose.origin[axis] / MM));
+                let stated = self.draft.devices[*clamp];
+                let mut frame = stated;
+                frame.origin += self.displacement(best, *clamp);
+                let places = decimals(self.draft.devices.iter().flat_map(mm));
+                let typed = typed(mm(&stated), mm(&frame), LEAST.0 / MM, places);
+                if let Some((axis, meant)) = &typed {
+                    frame.origin = stated.origin;
+                    frame.origin[*axis] = meant.value() * MM;
+                }
+                Some(Meaning { clamp: *clamp, frame, typed })
+            }
+            Change::Devices(frames) => {
+                let &(clamp, frame) = frames.first()?;
+                let degrees = |pose: &Pose| pose.roll_pitch_yaw().map(|angle| tidy(angle / DEG));
+                let stated = self.draft.devices[clamp];
+                let (old, mut new) = (degrees(&stated), degrees(&frame));
+                // the nearest of all that are the same
+                (0..3).for_each(|k| new[k] -= 360.0 * ((new[k] - old[k]) / 360.0).round());
+                let places = decimals(old.iter().copied());
+                let typed = typed(old, new, LEAST.1 / DEG, places);
+                let frame = match &typed {
+                    None => frame,
+                    Some((axis, meant)) => {
+                        let mut angles = old;
+                        angles[*axis] = meant.value();
+                        Pose::from_xyz_rpy(stated.origin.into(), angles.map(|angle| angle * DEG))
+                    }
+                };
+                Some(Meaning { clamp, frame, typed })
+            }
+            _ => None,
+        }
+    }
+
+    /// The frame of a clamp that a change gives it.
+    pub(super) fn frame_meant(&self, best: &State, change: &Change) -> Option<(usize, Pose)> {
+        self.meaning(best, change).map(|meaning| (meaning.clamp, meaning.frame))
+    }
+}
+
+impl Mended {
+    /// A clamp that stands elsewhere, or is turned.
+    pub(super) fn add_fixture(&mut self, search: &Search, best: &State, change: &Change) {
+        let Some(Meaning { clamp, frame, typed }) = search.meaning(best, change) else { return };
+        let stated = search.draft.devices[clamp];
+        let name = &self.campaign.measurements.groups[clamp].name;
+        let is_place = matches!(change, Change::Placed(_));
+        let (key, letters) = match is_place {
+            true => ("xyz_mm", ["x_mm", "y_mm", "z_mm"]),
+            false => ("rpy_deg", ["roll_deg", "pitch_deg", "yaw_deg"]),
+        };
+        let numbers = |pose: &Pose| match is_place {
+            true => [0, 1, 2].map(|axis| pose.origin[axis] / MM),
+            false => pose.roll_pitch_yaw().map(|angle| angle / DEG),
+        };
+        let location = Location::Key(format!("{name} {key}"));
+        if let Some((axis, meant)) = typed {
+            let (old, new, why) = (tidy(numbers(&stated)[axis]), tidy(meant.value()), meant.why);
+            let label = letters[axis].split('_').next().unwrap_or_default();
+            let cure = format!("Write {new} for {old} as {label} in {key} of {name}");
+            let estimates = exact(letters[axis], numbers(&frame)[axis]);
+            self.add(&TYPING_MISTAKE, location, estimates, &cure, why);
+            return;
+        }
+        let [first, second, third] = numbers(&frame).map(|number| significant(number, 5));
+        let cure = format!("Write {key} = [{first}, {second}, {third}] for {name}");
+        let (way, angle) = moved(&stated, &frame);
+        let why = match is_place {
+            true => format!("it stands {} mm from where the campaign says", significant(way / MM, 3)),
+            false => {
+                format!("it is turned by {}° against what the campaign says", significant(angle / DEG, 3))
+            }
+        };
+        self.add(&FRAME_MISTAKE, location, motion_estimates(&stated, &frame), &cure, &why);
+    }
+}
+
+fn rows_of(state: &State, clamp: usize) -> Vec<usize> {
+    (0..state.thin.len()).filter(|&at| state.thin.group[at] == clamp).collect()
+}
+
+/// Which of three numbers was typed wrongly, and what was meant, where the other two are what was
+/// found; of several the most usual slip.
+fn typed(stated: [f64; 3], found: [f64; 3], near: f64, decimals: usize) -> Option<(usize, Meant)> {
+    let mut off = (0..3).filter(|&axis| (stated[axis] - found[axis]).abs() > near);
+    let axis = off.next().filter(|_| off.next().is_none())?;
+    let distance = |meant: &Meant| (meant.value() - found[axis]).abs();
+    let near = meant(stated[axis], decimals).into_iter().filter(|meant| distance(meant) < near);
+    let best =
+        near.max_by(|a, b| a.log_prior.total_cmp(&b.log_prior).then(distance(b).total_cmp(&distance(a))))?;
+    Some((axis, best))
+}

@@ -1,0 +1,80 @@
+//! Clamps that stand or are turned otherwise than the campaign says, and contact forces in another
+//! unit.
+
+use super::*;
+
+/// The campaign of the TX90 with another frame of one of its five clamps; what the devices showed
+/// stays.
+fn with_frame(clamp: usize, change: impl Fn([f64; 3], [f64; 3]) -> ([f64; 3], [f64; 3])) -> Campaign {
+    let mut wrong = tx90();
+    let devices: Vec<Pose> =
+        (0..wrong.measurements.len()).map(|row| wrong.measurements.device(row)).collect();
+    let stated = wrong.measurements.groups[clamp].device;
+    let degrees = stated.roll_pitch_yaw().map(|angle| angle / DEG);
+    let (xyz, rpy) = change((stated.origin / MM).into(), degrees);
+    let frame = Pose::from_xyz_rpy(xyz.map(|x| x * MM), rpy.map(|angle| angle * DEG));
+    let rows = wrong.measurements.rows.clone();
+    let seen = points(&mut wrong).iter_mut().zip(rows).zip(devices);
+    for ((point, _), device) in seen.filter(|((_, row), _)| row.group == clamp) {
+        *point = frame.point(&device.inverse().point(point));
+    }
+    wrong.measurements.groups[clamp].device = frame;
+    wrong
+}
+
+/// The one cure that is given.
+fn cure(campaign: &Campaign) -> String {
+    let said: Vec<String> =
+        mended(campaign).found.iter().map(|finding| finding.description.observed.clone()).collect();
+    let [cure] = &said[..] else { panic!("{said:?}") };
+    cure.clone()
+}
+
+#[test]
+fn a_number_of_a_clamp_that_was_typed_wrongly() {
+    let digit = with_frame(1, |[_, y, z], rpy| ([-110.0, y, z], rpy));
+    assert_eq!(cure(&digit), "Write -120 for -110 as x in xyz_mm of clamp 2");
+    let mended = mended(&digit);
+    assert_eq!(mended.found[0].effect.name, "typing_mistake");
+    assert!((mended.campaign.measurements.groups[1].device.origin.x + 0.12).abs() < 1e-9);
+    let exchanged = with_frame(1, |xyz, [r, p, _]| (xyz, [r, p, 152.0]));
+    assert_eq!(cure(&exchanged), "Write 125 for 152 as yaw in rpy_deg of clamp 2");
+}
+
+/// 300 mm: the others alone must place the robot, from the first step of the fit on.
+#[test]
+fn a_clamp_that_is_far_from_its_place_places_nothing() {
+    let sign = with_frame(3, |[x, y, z], rpy| ([x, y, -z], rpy));
+    assert_eq!(cure(&sign), "Write 150 for -150 as z in xyz_mm of clamp 4");
+}
+
+#[test]
+fn a_clamp_that_stands_elsewhere_is_written_where_its_poses_say() {
+    let wrong = with_frame(1, |[x, y, z], rpy| ([x + 6.9, y + 6.2, z + 4.4], rpy));
+    let mended = mended(&wrong);
+    assert_eq!(mended.found.len(), 1);
+    assert_eq!(mended.found[0].effect.name, "frame_mistake");
+    assert_eq!(mended.found[0].location.to_string(), "clamp 2 xyz_mm");
+    let off = mended.campaign.measurements.groups[1].device.origin - Vector3::new(-0.12, 0.12, 0.0);
+    assert!(off.norm() < 0.2 * MM, "{off}");
+    // so little is left to the effects
+    assert_eq!(found(&with_frame(1, |[x, y, z], rpy| ([x + 0.2, y, z], rpy))), []);
+}
+
+#[test]
+fn a_contact_force_in_another_unit() {
+    for (by, cure_of) in [
+        (1.0 / 9.80665, "Multiply contact_force_n by 9.80665"),
+        (1.0 / 4.448_222, "Multiply contact_force_n by 4.448"),
+        (1e3 / 9.80665, "Divide contact_force_n by 102"),
+        (1e3, "Divide contact_force_n by 1000"),
+    ] {
+        let right = tx90();
+        let wrong = Campaign { contact_force: right.contact_force.map(|force| force * by), ..right };
+        assert_eq!(cure(&wrong), cure_of);
+    }
+    // physics may double it: no unit does
+    let right = tx90();
+    let twice = Campaign { contact_force: right.contact_force.map(|force| force * 2.0), ..right };
+    assert_eq!(found(&twice), []);
+}

@@ -85,7 +85,7 @@ pub use hypothesis::{Hypothesis, Term};
 pub use lack_of_fit::LackOfFit;
 pub use limit::Limit;
 pub use locate::Structure;
-pub use location::{Location, Part, Run, RunName};
+pub use location::{Key, Location, Part, Run, RunName};
 pub use nominal::{NominalEstimate, NominalParameter};
 pub use proposal::{LoadPlan, Plan, PlannedPose, PosePlan, Proposal};
 pub use quantity::Quantity;

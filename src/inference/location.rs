@@ -39,8 +39,8 @@ pub enum Location {
     },
     /// A joint of the rod, a clamp, a socket: what the user's file names.
     Named(String),
-    /// Columns, keys, axes or files as the user's files name them: `dy_um and dz_um`.
-    Key(String),
+    /// What stands in the user's files: `dy_um and dz_um`.
+    Key(Key),
     /// A place along the rod without a name, m from the flange.
     Station(f64),
     /// A sensor.
@@ -145,6 +145,15 @@ pub enum Location {
     },
 }
 
+/// What stands in the user's files, by the names that it has there.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Key {
+    /// Columns, keys, ids or files: `q4_deg`, `dy_um and dz_um`, `clamps 1 and 2`, `5.toml`.
+    pub names: String,
+    /// Which rows of them, from the widest to the narrowest: `axis y`, `trial 2`. Empty for all.
+    pub rows: Vec<String>,
+}
+
 /// A part of rig, rod or robot that every file of its kind has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[allow(missing_docs)]
@@ -182,7 +191,31 @@ pub enum RunName {
     Number(usize),
 }
 
+impl Key {
+    /// All rows of what has these names.
+    pub fn new(names: impl Into<String>) -> Key {
+        Key { names: names.into(), rows: Vec::new() }
+    }
+
+    /// Of these rows alone.
+    pub fn rows(mut self, rows: impl Into<String>) -> Key {
+        self.rows.push(rows.into());
+        self
+    }
+}
+
+impl From<Key> for Location {
+    fn from(key: Key) -> Location {
+        Location::Key(key)
+    }
+}
+
 impl Location {
+    /// What stands in the user's files, all rows of it.
+    pub fn key(names: impl Into<String>) -> Location {
+        Location::Key(Key::new(names))
+    }
+
     /// True of what begins after the same row and lasts as long, of whatever channel.
     pub(super) fn is_after_row_of(&self, other: &Location) -> bool {
         match (self, other) {
@@ -237,7 +270,8 @@ impl fmt::Display for Location {
             Location::UnderLoads { part, axis } => write!(f, "{part}, loads along {axis}"),
             Location::InSession { part, session } => write!(f, "{part}, session {session}"),
             Location::Form { part, form } => write!(f, "{part}, {form}"),
-            Location::Named(name) | Location::Key(name) => f.write_str(name),
+            Location::Named(name) => f.write_str(name),
+            Location::Key(key) => write!(f, "{key}"),
             Location::Station(station) => write!(f, "station {:.1} mm", station / MM),
             Location::Channel { channel, form: None } => write!(f, "d{channel}"),
             Location::Channel { channel, form: Some(form) } => write!(f, "d{channel}, {form}"),
@@ -268,6 +302,13 @@ impl fmt::Display for Location {
             }
             Location::Curve { label, .. } => f.write_str(label),
         }
+    }
+}
+
+impl fmt::Display for Key {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.names)?;
+        self.rows.iter().try_for_each(|rows| write!(f, ", {rows}"))
     }
 }
 

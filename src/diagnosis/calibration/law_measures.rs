@@ -10,7 +10,7 @@ use crate::units::{UM, URAD};
 pub(super) fn location(place: LawPlace) -> Location {
     match place {
         LawPlace::Joint(joint) | LawPlace::Axis(joint) => Location::Joint { joint, form: None },
-        LawPlace::Link(_) => Location::Key(place.to_string()),
+        LawPlace::Link(_) => Location::key(place.to_string()),
         LawPlace::Tool => Location::Part(Part::Tool),
     }
 }

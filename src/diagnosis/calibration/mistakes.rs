@@ -274,7 +274,7 @@ fn search(campaign: &Campaign, mode: Mode, others: &Neighbours) -> Result<Mended
         mended.has_data = false;
         mended.add(
             silent.effect,
-            Location::Key(silent.location),
+            Location::key(silent.location),
             silent.estimates,
             &silent.cure,
             &silent.why,

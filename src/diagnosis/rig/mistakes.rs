@@ -314,7 +314,7 @@ impl Mended {
                 before.push((row, channel, *offset));
                 *offset = offset.map(|offset| offset - zero);
             }
-            self.zeros.push(Zero { location: Location::Key(part.location.clone()), before });
+            self.zeros.push(Zero { location: Location::key(part.location.clone()), before });
             self.add_part(part);
         }
     }
@@ -360,7 +360,7 @@ impl Mended {
         let rivals = part
             .rivals
             .into_iter()
-            .map(|(effect, at)| Rival::without_term(effect, Location::Key(at), 1.0))
+            .map(|(effect, at)| Rival::without_term(effect, Location::key(at), 1.0))
             .collect();
         self.found.push(Finding {
             explains: part.explains,
@@ -380,7 +380,7 @@ impl Mended {
         let mut rivals: Vec<Rival> = Vec::new();
         for &(number, odds) in &found.rivals {
             let other = &moves[number];
-            let location = Location::Key(other.location.clone());
+            let location = Location::key(other.location.clone());
             let is_known =
                 rivals.iter().any(|known| known.effect == other.effect && known.location == location);
             if !is_known && (other.effect, &other.location) != (own.effect, &own.location) {
@@ -420,7 +420,7 @@ fn finding(
 ) -> Finding {
     // the correction says what it is
     let description = Description { observed, cause: String::new() };
-    let mut finding = Finding::without_terms(effect, Location::Key(location), estimates, description);
+    let mut finding = Finding::without_terms(effect, Location::key(location), estimates, description);
     finding.next = finding.direct_check(&rivals.iter().collect::<Vec<_>>());
     Finding { rivals, ..finding }
 }

@@ -52,7 +52,7 @@ pub(super) fn entry(effect: &OwnEffect, model: &RigModel) -> Result<Option<Entry
     let memory = effect.memory.map(|memory| (memory, site.clone(), names.collect()));
     let law = Arc::new(OwnLaw { law: effect.law.clone(), neutral, data: data.collect(), memory });
     check(effect, &law)?;
-    let location = Location::Key(format!("{}, {}", effect.effect.name, effect.place));
+    let location = Location::key(format!("{}, {}", effect.effect.name, effect.place));
     let actions = (0..effect.parameters.len()).map(|k| Action::Own(Arc::clone(&law), k)).collect();
     Ok(Some((candidate(effect.effect, location, effect.parameters.clone()), actions)))
 }

@@ -17,7 +17,11 @@ pub fn place(location: &Location) -> Value {
         }
         Location::Form { part, form } => json!({ "part": part.to_string(), "form": form }),
         Location::Named(name) => json!({ "name": name }),
-        Location::Key(key) => json!({ "key": key }),
+        Location::Key(key) => json!({
+            "key": key.to_string(),
+            "names": key.names,
+            "rows": key.rows,
+        }),
         Location::Station(station) => json!({ "station_mm": station / MM }),
         Location::Channel { channel, form } => {
             json!({ "channel": format!("d{channel}"), "form": form })

@@ -57,7 +57,7 @@ impl Mended {
         let (said, uncertain) = (significant(value / MM, 4), significant(half / MM, 2));
         let number = (stated.value / MM * 1e6).round() / 1e6;
         let there = format!("by angles and drawing the sockets are {said} ± {uncertain} mm apart");
-        let key = Location::Key(KEY.into());
+        let key = Location::key(KEY);
         let meant = match UNITS.iter().find(|(factor, _)| fits(*factor)) {
             Some((factor, unit)) => {
                 let cure = format!("Multiply {KEY} by {factor}");

@@ -177,7 +177,7 @@ impl Mended {
             true => [0, 1, 2].map(|axis| pose.origin[axis] / MM),
             false => pose.roll_pitch_yaw().map(|angle| angle / DEG),
         };
-        let location = Location::Key(format!("{name} {key}"));
+        let location = Location::key(format!("{name} {key}"));
         if let Some((axis, meant)) = typed {
             let (old, new, why) = (tidy(numbers(&stated)[axis]), tidy(meant.value()), meant.why);
             let label = letters[axis].split('_').next().unwrap_or_default();

@@ -34,7 +34,7 @@ impl Mended {
                 let own = &search.moves[*number];
                 self.add(
                     own.effect,
-                    Location::Key(own.location.clone()),
+                    Location::key(own.location.clone()),
                     own.estimates.clone(),
                     &own.cure,
                     &own.why,
@@ -52,7 +52,7 @@ impl Mended {
                     own.say_zero(&self.campaign.robot, joint, by, error);
                 }
                 let there = place(&self.campaign.measurements, *rows);
-                let location = Location::Key(format!("{}, {there}", own.location));
+                let location = Location::key(format!("{}, {there}", own.location));
                 let cure = format!("{} {there}", own.cure);
                 self.add(own.effect, location, own.estimates, &cure, &own.why);
             }
@@ -63,7 +63,7 @@ impl Mended {
         finding.explains = found.explains;
         let mut rivals: Vec<Rival> = Vec::new();
         for (effect, location, odds) in &found.rivals {
-            let (location, odds) = (Location::Key(location.clone()), *odds);
+            let (location, odds) = (Location::key(location.clone()), *odds);
             let is_it = |e: &Effect, at: &Location| e == *effect && *at == location;
             if !is_it(finding.effect, &finding.location)
                 && !rivals.iter().any(|r| is_it(r.effect, &r.location))
@@ -73,7 +73,7 @@ impl Mended {
         }
         // the base turned about joint 1 says the same, and the rod about the last joint
         if matches!(&found.step, Step::Move(number) if search.moves[*number].change.is_zero_of_first()) {
-            rivals.push(Rival::without_term(&FRAME_MISTAKE, Location::Key("base.rpy_deg".into()), 1.0));
+            rivals.push(Rival::without_term(&FRAME_MISTAKE, Location::key("base.rpy_deg"), 1.0));
         }
         if let Step::Part(_, Change::Within(_, change)) = &found.step {
             let last = self.campaign.robot.joints.len().saturating_sub(1);
@@ -98,10 +98,10 @@ impl Mended {
     /// What happened to a single row, or to a few.
     pub(super) fn add_slip(&mut self, slip: Slip) {
         let Slip { effect, location, estimates, cure, why, log_odds, explains, rivals, .. } = slip;
-        self.add(effect, Location::Key(location), estimates, &cure, &why);
+        self.add(effect, Location::key(location), estimates, &cure, &why);
         let Some(finding) = self.found.last_mut() else { return };
         (finding.p_value, finding.explains) = ((-log_odds).exp(), explains);
-        let rival = |(effect, place)| Rival::without_term(effect, Location::Key(place), 1.0);
+        let rival = |(effect, place)| Rival::without_term(effect, Location::key(place), 1.0);
         finding.rivals = rivals.into_iter().map(rival).collect();
     }
 
@@ -148,7 +148,7 @@ impl Mended {
                 let (way, _) = moved(&device, &there);
                 let why = format!("it stands {} mm from where the campaign says", significant(way / MM, 3));
                 let estimates = motion_estimates(&device, &there);
-                self.add(&FRAME_MISTAKE, Location::Key(name), estimates, &cure, &why);
+                self.add(&FRAME_MISTAKE, Location::key(name), estimates, &cure, &why);
             }
             _ => {}
         }

@@ -36,7 +36,7 @@ fn offsets(context: &mut Context) -> Vec<Entry> {
     let zero = |place: String, of: Vec<usize>| {
         let readings: Weights = of.into_iter().map(|i| (i, 1.0)).collect();
         let um = parameter("um", UM, 0.0, size, UNBOUNDED);
-        entry(&ZERO_NOT_TAKEN, Location::Key(place), um, Action::Shift(readings))
+        entry(&ZERO_NOT_TAKEN, Location::key(place), um, Action::Shift(readings))
     };
     let of_channel = |channel| {
         let of = (0..data.len()).filter(|&i| data[i].channel == channel).collect();

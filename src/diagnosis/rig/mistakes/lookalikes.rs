@@ -51,7 +51,7 @@ pub fn lookalikes(model: &RigModel, evidence: &Evidence, findings: &[Finding], n
     };
     let near = units.into_iter().filter(|(_, factor)| is_near(*factor));
     near.map(|(unit, _)| {
-        Rival::without_term(&UNIT_MISTAKE, Location::Key(format!("{column} in {unit}")), 1.0)
+        Rival::without_term(&UNIT_MISTAKE, Location::key(format!("{column} in {unit}")), 1.0)
     })
     .collect()
 }

@@ -305,7 +305,7 @@ fn a_zero_that_the_model_undoes_was_none() {
     let readings = Readings::from_text("f", &text).unwrap();
     let mut mended = mended(&readings, Some(&rod), &[]).unwrap();
     let [zero] = &mended.found[..] else { panic!("{:?}", mended.found) };
-    let elsewhere = Finding { location: Location::Key("dx_um".into()), ..zero.clone() };
+    let elsewhere = Finding { location: Location::key("dx_um"), ..zero.clone() };
     let undone = zero.clone();
     assert!(!mended.take_zeros_back(&[elsewhere]) && mended.found.len() == 1);
     assert!(mended.readings.rows != readings.rows);

@@ -44,7 +44,7 @@ fn a_unit_that_looks_like_physics_is_its_rival() {
     let found = crate::diagnosis::rig::diagnose(&in_pounds, Some(&file)).unwrap();
     let first = &found.diagnosis.findings[0];
     assert_eq!(first.effect.name, "stiffness_scale");
-    let location = Location::Key("load_kg in pounds (lb)".into());
+    let location = Location::key("load_kg in pounds (lb)");
     assert!(first.others().iter().any(|(_, place)| *place == location), "{:?}", first.others());
     let next = first.next.as_ref().unwrap();
     assert!(next.plan.is_none() && next.separates_from.iter().any(|(_, place)| *place == location));

@@ -7,7 +7,7 @@
 
 use nalgebra::DVector;
 
-use super::{Covariate, Evidence};
+use crate::inference::{Covariate, Evidence};
 use crate::statistics::{Random, mean, standard_deviation};
 
 /// Random orders.

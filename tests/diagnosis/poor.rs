@@ -1,6 +1,6 @@
 //! Poor readings: what they cannot say is said, and nothing breaks.
 
-use rodcal::inference::Limit;
+use rodcal::diagnosis::Limitation;
 use rodcal::rig::readings::{Axis, Readings};
 use rodcal::units::UM;
 use rodcal_trial::rig::{Columns, Effect, Order};
@@ -45,7 +45,7 @@ fn assert_whole(answer: &Answer, what: &str) {
 fn one_axis_is_said_to_tell_little() {
     let order = Order { axes: vec![1], ..Order::default() };
     let answer = Answer::made(&order, &[], 3);
-    assert!(answer.found.limits.contains(&Limit::OneAxis(Axis::Y)), "{:?}", answer.found.limits);
+    assert!(answer.found.limits.contains(&Limitation::OneAxis(Axis::Y)), "{:?}", answer.found.limits);
 }
 
 /// A clamp that takes up load beyond 9 N, at four loads: a parabola fits them all, and predicts
@@ -72,7 +72,7 @@ fn what_only_describes_is_confirmed_only_in_part() {
 fn without_repeats_every_claim_is_weaker() {
     let order = Order { trials: 1, ..Order::default() };
     let answer = Answer::made(&order, &[Effect::StiffnessScale(0.9)], 3);
-    assert!(answer.found.limits.contains(&Limit::NoRepeats), "{:?}", answer.found.limits);
+    assert!(answer.found.limits.contains(&Limitation::NoRepeats), "{:?}", answer.found.limits);
     assert_eq!(answer.effects(), ["stiffness_scale"]);
     assert!(answer.json["lack_of_fit_before"].is_null());
 }
@@ -179,6 +179,6 @@ fn hardly_any_readings_are_no_reason_to_break() {
 fn fewer_readings_than_folds_need_are_said_to_be_few() {
     let answer = Answer::of(Some(ROD), "axis,load_n,dy_um\ny,5,620\ny,10,1240\n");
     let limits = &answer.found.limits;
-    assert!(limits.contains(&Limit::NoRepeats), "{limits:?}");
-    assert!(limits.contains(&Limit::FewReadings(2)), "{limits:?}");
+    assert!(limits.contains(&Limitation::NoRepeats), "{limits:?}");
+    assert!(limits.contains(&Limitation::FewReadings(2)), "{limits:?}");
 }

@@ -7,10 +7,11 @@ use super::model::{AsRecorded, RigDiagnosis, RigModel};
 use super::own_effect::OwnEffect;
 use super::wanted::Wanted;
 use super::{another_rod, as_measured, correction, limits, mistakes, next, sites};
+use crate::diagnosis::Diagnosed;
 use crate::error::{Error, Place, Result};
 use crate::inference::law::propose;
 use crate::inference::{
-    Diagnosed, Diagnosis, Evidence, Finding, Location, Part, Rival, ShownBy, diagnose as infer, rms,
+    Diagnosis, Evidence, Finding, Location, Part, Rival, ShownBy, diagnose as infer, rms,
 };
 use crate::rig::readings::Readings;
 use crate::rod::Rod;

@@ -2,7 +2,8 @@
 
 use super::datum::Datum;
 use super::model::{Body, RigModel};
-use crate::inference::{Evidence, Limit};
+use crate::diagnosis::Limitation;
+use crate::inference::Evidence;
 use crate::rig::readings::Driven;
 use crate::spatial::Axis;
 
@@ -36,32 +37,32 @@ fn jumps_at_turns(data: &[Datum]) -> bool {
     })
 }
 
-pub(super) fn limits(model: &RigModel, evidence: &Evidence) -> Vec<Limit> {
+pub(super) fn limits(model: &RigModel, evidence: &Evidence) -> Vec<Limitation> {
     let data = model.data();
     let mut limits = Vec::new();
     let groups = evidence.replicate_group.iter().max().map_or(0, |last| last + 1);
     if groups == data.len() {
-        limits.push(Limit::NoRepeats);
+        limits.push(Limitation::NoRepeats);
     }
     let axes: Vec<Axis> =
         Axis::ALL.into_iter().filter(|axis| data.iter().any(|d| d.direction.axis == *axis)).collect();
     if let ([axis], Body::Rod(_)) = (&axes[..], &model.body) {
-        limits.push(Limit::OneAxis(*axis));
+        limits.push(Limitation::OneAxis(*axis));
     }
     let mut loads: Vec<f64> = data.iter().map(|d| d.load).filter(|load| *load > 0.0).collect();
     loads.sort_by(f64::total_cmp);
     loads.dedup();
     if loads.len() < 2 {
-        limits.push(Limit::OneLoad);
+        limits.push(Limitation::OneLoad);
     }
     if model.readings().header.driven == Driven::Load && jumps_at_turns(data) {
-        limits.push(Limit::JumpsAtTurns);
+        limits.push(Limitation::JumpsAtTurns);
     }
     if data.len() < FEW {
-        limits.push(Limit::FewReadings(data.len()));
+        limits.push(Limitation::FewReadings(data.len()));
     }
     if evidence.fold.iter().max().is_none_or(|last| *last == 0) {
-        limits.push(Limit::NoFoldsOfReadings);
+        limits.push(Limitation::NoFoldsOfReadings);
     }
     limits
 }

@@ -7,7 +7,8 @@ use super::datum::Datum;
 use super::own_effect::OwnEffect;
 use super::slide::Course;
 use super::structure::Structure;
-use crate::inference::{Candidate, Diagnosed};
+use crate::diagnosis::Diagnosed;
+use crate::inference::Candidate;
 use crate::rig::readings::Readings;
 use crate::rod::Rod;
 

@@ -1,129 +1,33 @@
 //! One answer beside its truth.
 
-use serde::{Deserialize, Deserializer};
+use serde::Deserialize;
 use serde_json::Value;
 
 use super::counterfactual::Counterfactual;
+use super::diagnosis::{Diagnosis, Finding, Suspect};
 use super::place;
+use super::verdict::Verdict;
 use crate::answers::Answer;
+use crate::effect_name::EffectName;
+use crate::ground_truth::{Concealed, GroundTruth, Parameter};
 use crate::place::Place;
-use crate::truth::{Concealed, Truth};
-
-/// What an answer found.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
-pub struct Finding {
-    /// Name of the effect.
-    pub effect: String,
-    /// `physics`, `event` or `mistake`.
-    #[serde(default)]
-    pub kind: String,
-    /// Where, for people, and as data.
-    #[serde(default)]
-    pub location: String,
-    #[serde(default)]
-    #[allow(missing_docs)]
-    pub place: Option<Place>,
-    /// Its numbers.
-    #[serde(default)]
-    pub parameters: Vec<Interval>,
-    /// Effects that it might be as well.
-    #[serde(default)]
-    pub indistinguishable_from: Vec<String>,
-    /// What might stand in its place, and where.
-    #[serde(default)]
-    pub rivals: Vec<Rival>,
-    /// What would decide, in words and as numbers.
-    #[serde(default)]
-    pub next_measurement: Option<String>,
-    #[serde(default)]
-    #[allow(missing_docs)]
-    pub next_measurement_plan: Option<Value>,
-}
-
-/// What might stand in the place of a finding.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
-pub struct Rival {
-    /// Name of the effect.
-    pub effect: String,
-    /// Where.
-    #[serde(default)]
-    pub place: Option<Place>,
-}
-
-impl Finding {
-    /// Other places of the same effect.
-    pub fn other_places(&self) -> impl Iterator<Item = &Place> {
-        self.rivals
-            .iter()
-            .filter(|rival| rival.effect == self.effect)
-            .filter_map(|rival| rival.place.as_ref())
-    }
-
-    /// A mistake in the files.
-    pub fn is_mistake(&self) -> bool {
-        self.kind == "mistake"
-    }
-}
-
-/// A number with its 95 % interval; an end that JSON has no number for is at infinity.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
-#[allow(missing_docs)]
-pub struct Interval {
-    pub name: String,
-    #[serde(deserialize_with = "below")]
-    pub lo: f64,
-    #[serde(deserialize_with = "above")]
-    pub hi: f64,
-}
-
-fn below<'de, D: Deserializer<'de>>(end: D) -> Result<f64, D::Error> {
-    Ok(Option::deserialize(end)?.unwrap_or(f64::NEG_INFINITY))
-}
-
-fn above<'de, D: Deserializer<'de>>(end: D) -> Result<f64, D::Error> {
-    Ok(Option::deserialize(end)?.unwrap_or(f64::INFINITY))
-}
-
-/// A single reading that an answer calls suspect.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
-struct Remark {
-    #[serde(default)]
-    row: Option<usize>,
-    #[serde(default)]
-    channel: Option<String>,
-}
-
-/// What of an answer is scored.
-#[derive(Debug, Clone, Default, PartialEq, Deserialize)]
-struct Said {
-    #[serde(default)]
-    findings: Vec<Finding>,
-    #[serde(default)]
-    unexplained: Option<Value>,
-    #[serde(default)]
-    suspects: Vec<Remark>,
-    #[serde(default)]
-    heldout_before_um: Option<f64>,
-    #[serde(default)]
-    heldout_after_um: Option<f64>,
-}
 
 /// What the errors of the files' numbers come to.
-const OF_NUMBERS: [&str; 2] = ["stiffness_scale", "shear_modulus"];
+const OF_NUMBERS: [EffectName; 2] = [EffectName::StiffnessScale, EffectName::ShearModulus];
 /// Two factors of a mistake that are one.
 const SAME_FACTOR: f64 = 0.03;
 
 /// A case with its answer.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Judged<'a> {
+pub struct ScoredCase<'a> {
     /// What was concealed.
-    pub truth: &'a Truth,
+    pub truth: &'a GroundTruth,
     /// What was found, strongest first.
     pub findings: Vec<Finding>,
     /// True where a remainder was called unexplained.
     pub is_unexplained: bool,
     /// Single readings that were called suspect.
-    suspects: Vec<Remark>,
+    suspects: Vec<Suspect>,
     /// 1 − after²/before² of the held-out errors.
     pub gain: Option<f64>,
     /// Errors of the readings that were asked for.
@@ -132,27 +36,27 @@ pub struct Judged<'a> {
     pub failed: bool,
 }
 
-impl<'a> Judged<'a> {
+impl<'a> ScoredCase<'a> {
     /// Reads an answer.
-    pub fn new(truth: &'a Truth, answer: &Answer) -> Self {
+    pub fn new(truth: &'a GroundTruth, answer: &Answer) -> Self {
         let counterfactual = Counterfactual::new(truth, answer);
-        Judged { counterfactual, ..Judged::of_diagnosis(truth, &answer.answer) }
+        ScoredCase { counterfactual, ..ScoredCase::of_diagnosis(truth, &answer.answer) }
     }
 
     /// Reads a diagnosis. What is none has found nothing.
-    pub fn of_diagnosis(truth: &'a Truth, answer: &Value) -> Self {
-        let said = Said::deserialize(answer);
-        let failed = said.is_err() || answer.get("verdict").is_none();
-        let said = said.unwrap_or_default();
-        let gain = match (said.heldout_before_um, said.heldout_after_um) {
+    pub fn of_diagnosis(truth: &'a GroundTruth, answer: &Value) -> Self {
+        let diagnosis = Diagnosis::deserialize(answer);
+        let failed = diagnosis.is_err() || answer.get("verdict").is_none();
+        let diagnosis = diagnosis.unwrap_or_default();
+        let gain = match (diagnosis.heldout_before_um, diagnosis.heldout_after_um) {
             (Some(before), Some(after)) if before > 0.0 => Some(1.0 - (after / before).powi(2)),
             _ => None,
         };
-        Judged {
+        ScoredCase {
             truth,
-            findings: said.findings,
-            is_unexplained: said.unexplained.is_some(),
-            suspects: said.suspects,
+            findings: diagnosis.findings,
+            is_unexplained: diagnosis.unexplained.is_some(),
+            suspects: diagnosis.suspects,
             gain,
             counterfactual: None,
             failed,
@@ -166,10 +70,10 @@ impl<'a> Judged<'a> {
     }
 
     /// Friction beside the effect; a stiffness that is off by more than the file states.
-    fn is_companion(&self, name: &str) -> bool {
+    fn is_companion(&self, name: &EffectName) -> bool {
         let truth = self.truth;
-        let is_of_numbers = truth.numbers_off > 1.0 && OF_NUMBERS.contains(&name);
-        let is_it = |concealed: &Concealed| concealed.effect == name;
+        let is_of_numbers = truth.numbers_off > 1.0 && OF_NUMBERS.contains(name);
+        let is_it = |concealed: &Concealed| concealed.effect == *name;
         !truth.effects.iter().any(is_it) && (is_of_numbers || truth.companions.iter().any(is_it))
     }
 
@@ -187,8 +91,8 @@ impl<'a> Judged<'a> {
     }
 
     /// An effect of this name is concealed, or accompanies one that is.
-    pub fn is_concealed(&self, name: &str) -> bool {
-        self.truth.effects.iter().any(|concealed| concealed.effect == name) || self.is_companion(name)
+    pub fn is_concealed(&self, name: &EffectName) -> bool {
+        self.truth.effects.iter().any(|concealed| concealed.effect == *name) || self.is_companion(name)
     }
 
     /// The strongest finding is concealed, or its class holds an effect that is, and the oracle
@@ -197,8 +101,7 @@ impl<'a> Judged<'a> {
         let Some(first) = self.findings.first() else { return false };
         let class = self.class();
         let is_inseparable = |concealed: &Concealed| {
-            class.contains(&concealed.effect.as_str())
-                && concealed.detectability.class.contains(&first.effect)
+            class.contains(&&concealed.effect) && concealed.detectability.class.contains(&first.effect)
         };
         self.is_concealed(&first.effect) || self.truth.effects.iter().any(is_inseparable)
     }
@@ -237,9 +140,9 @@ impl<'a> Judged<'a> {
         let concealed = self.truth.effects.first()?;
         let factor = concealed.parameters.iter().find(|p| p.name == "factor").map(|p| p.value);
         let is_factor = |finding: &Finding| {
-            let said = finding.parameters.iter().find(|p| p.name == "factor");
-            match (factor, said) {
-                (Some(factor), Some(said)) => (said.lo / factor - 1.0).abs() < SAME_FACTOR,
+            let answered = finding.parameters.iter().find(|p| p.name == "factor");
+            match (factor, answered) {
+                (Some(factor), Some(answered)) => (answered.lo / factor - 1.0).abs() < SAME_FACTOR,
                 (None, _) => true,
                 (Some(_), None) => false,
             }
@@ -269,11 +172,11 @@ impl<'a> Judged<'a> {
     }
 
     /// What the strongest finding may be.
-    pub fn class(&self) -> Vec<&str> {
+    pub fn class(&self) -> Vec<&EffectName> {
         let first = self.sought().next().or(self.findings.first());
         let Some(first) = first else { return Vec::new() };
-        let others = first.indistinguishable_from.iter().map(|name| first_word(name));
-        let mut class: Vec<&str> = others.chain([first.effect.as_str()]).collect();
+        let mut class: Vec<&EffectName> =
+            first.indistinguishable_from.iter().chain([&first.effect]).collect();
         class.sort_unstable();
         class.dedup();
         class
@@ -281,7 +184,7 @@ impl<'a> Judged<'a> {
 
     /// The concealed effect is in the class.
     pub fn in_class(&self) -> bool {
-        self.truth.effects.first().is_some_and(|concealed| self.class().contains(&concealed.effect.as_str()))
+        self.truth.effects.first().is_some_and(|concealed| self.class().contains(&&concealed.effect))
     }
 
     /// For each number of a concealed effect that was found at its place: whether the interval
@@ -292,30 +195,25 @@ impl<'a> Judged<'a> {
         };
         // of several outliers the one at this cell
         let cell = concealed.place.all.iter().position(|cell| Some(cell) == finding.place.as_ref());
-        let truths: Vec<&crate::truth::Parameter> = match concealed.effect.as_str() {
-            "outlier" => concealed.parameters.get(cell.unwrap_or(0)).into_iter().collect(),
+        let truths: Vec<&Parameter> = match concealed.effect {
+            EffectName::Outlier => concealed.parameters.get(cell.unwrap_or(0)).into_iter().collect(),
             _ => concealed.parameters.iter().collect(),
         };
-        let covered = |truth: &crate::truth::Parameter| {
-            let said = finding.parameters.iter().find(|p| p.name == truth.name)?;
-            let holds = |value: f64| (said.lo..=said.hi).contains(&value);
+        let covered = |truth: &Parameter| {
+            let interval = finding.parameters.iter().find(|p| p.name == truth.name)?;
+            let holds = |value: f64| (interval.lo..=interval.hi).contains(&value);
             Some((truth.name.clone(), holds(truth.value) || truth.with_numbers.is_some_and(holds)))
         };
         truths.into_iter().filter_map(covered).collect()
     }
 
-    /// For a table: the strongest finding's name, `unexplained` or `nothing`.
-    pub fn said(&self) -> &str {
+    /// What it comes to.
+    pub fn verdict(&self) -> Verdict {
         match (self.sought().next(), self.is_unexplained) {
-            _ if self.failed => "failed",
-            (Some(first), _) => &first.effect,
-            (None, true) => "unexplained",
-            (None, false) => "nothing",
+            _ if self.failed => Verdict::Failed,
+            (Some(first), _) => Verdict::Named(first.effect.clone()),
+            (None, true) => Verdict::Unexplained,
+            (None, false) => Verdict::Nothing,
         }
     }
-}
-
-/// `friction (slide)` is friction.
-pub(super) fn first_word(name: &str) -> &str {
-    name.split(|c: char| !(c.is_alphanumeric() || c == '_')).next().unwrap_or(name)
 }

@@ -1,4 +1,4 @@
-//! The sealed envelope: cases in one directory, what they conceal in a file of its own.
+//! The archive of a trial, sealed: cases in one directory, what they conceal in a file of its own.
 //!
 //! ```text
 //! DIR/manifest.json              how many cases, SHA-256 of every file of them and of the key; nothing of the seed
@@ -23,9 +23,9 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-pub use self::make::{Made, Plan, make};
+pub use self::make::{Plan, StagedTrial, make};
 
-use super::truth::Truth;
+use super::ground_truth::GroundTruth;
 use rodcal_base::error::{Error, Place, Result};
 use rodcal_base::files;
 use rodcal_base::limits;
@@ -33,7 +33,7 @@ use rodcal_base::limits;
 /// Name of the manifest in a trial's directory.
 pub const MANIFEST: &str = "manifest.json";
 /// The folders of cases in it.
-const HALVES: [&str; 2] = ["rig", "calibration"];
+const SUITES: [&str; 2] = ["rig", "calibration"];
 
 /// What a trial's directory says about itself.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -180,10 +180,10 @@ impl Manifest {
     /// [`Error::Input`].
     pub fn check_directory(&self, directory: &Path) -> Result<()> {
         let sealed = self.case_names();
-        HALVES.iter().try_for_each(|half| {
-            let mut there = files::names_in(&directory.join(half));
-            there.retain(|name| !sealed.contains(&format!("{half}/{name}")));
-            self.refuse_unsealed(&directory.join(half), &there)
+        SUITES.iter().try_for_each(|suite| {
+            let mut there = files::names_in(&directory.join(suite));
+            there.retain(|name| !sealed.contains(&format!("{suite}/{name}")));
+            self.refuse_unsealed(&directory.join(suite), &there)
         })
     }
 
@@ -202,7 +202,7 @@ impl Manifest {
     ///
     /// # Errors
     /// [`Error::File`], [`Error::Input`] for another key or other cases, [`Error::Syntax`].
-    pub fn read_key(&self, directory: &Path, key: &Path) -> Result<(Vec<Truth>, bool)> {
+    pub fn read_key(&self, directory: &Path, key: &Path) -> Result<(Vec<GroundTruth>, bool)> {
         let name = key.display().to_string();
         let text = files::text_of_bytes(&name, files::read_bytes(key)?)?;
         let (first, rest) = text.split_once('\n').unwrap_or((&text, ""));
@@ -221,7 +221,7 @@ impl Manifest {
         }
         let above = usize::from(head.is_some());
         let truths = cases.lines().enumerate().map(|(number, line)| parsed(key, number + 1 + above, line));
-        let truths: Vec<Truth> = truths.collect::<Result<_>>()?;
+        let truths: Vec<GroundTruth> = truths.collect::<Result<_>>()?;
         let mut named: Vec<&str> = truths.iter().map(|truth| truth.case.as_str()).collect();
         named.sort_unstable();
         if named != self.case_names() {
@@ -236,10 +236,10 @@ impl Manifest {
 /// `rig/case-0001/rod.toml`.
 fn is_of_a_case(name: &str) -> bool {
     let parts: Vec<&str> = name.split('/').collect();
-    let [half, case, file] = parts[..] else { return false };
+    let [suite, case, file] = parts[..] else { return false };
     let is_number = |text: &str| !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "._-".contains(c);
-    HALVES.contains(&half)
+    SUITES.contains(&suite)
         && case.strip_prefix("case-").is_some_and(is_number)
         && !file.is_empty()
         && !file.starts_with('.')

@@ -5,11 +5,12 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use crate::Seed;
+use crate::effect_name::EffectName;
 use crate::place::Place;
 
 /// One case of the key. Units are those of the names.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Truth {
+pub struct GroundTruth {
     /// `rig/case-0001`.
     pub case: String,
     /// What sort of case.
@@ -52,14 +53,14 @@ pub struct Truth {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub residuals: Vec<f64>,
     /// What belongs into the readings that are asked for.
-    #[serde(default)]
-    pub asked: Option<Asked>,
+    #[serde(default, rename = "asked")]
+    pub query: Option<PredictionQuery>,
 }
 
-/// Readings, or coordinates x, y, z of balls, that are asked for and not given, in the order of the
-/// file that asks, µm.
+/// A prediction query: readings, or coordinates x, y, z of balls, that are asked for and not given,
+/// in the order of the file that asks, µm.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Asked {
+pub struct PredictionQuery {
     /// What would be read without noise.
     pub true_um: Vec<f64>,
     /// What an oracle says that knows the law and the place of every effect and finds its size out
@@ -94,7 +95,7 @@ pub enum Kind {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Concealed {
     /// Its name.
-    pub effect: String,
+    pub effect: EffectName,
     /// Where, for people.
     pub location: String,
     /// Where.
@@ -109,9 +110,9 @@ pub struct Concealed {
 
 impl Concealed {
     /// A mistake: files that do not fit each other leave nothing to detect.
-    pub fn mistake(effect: &str, place: Place, parameters: Vec<Parameter>) -> Concealed {
+    pub fn mistake(effect: EffectName, place: Place, parameters: Vec<Parameter>) -> Concealed {
         Concealed {
-            effect: effect.into(),
+            effect,
             location: place.to_string(),
             parameters,
             size_over_noise: f64::MAX,
@@ -153,10 +154,10 @@ pub struct Detectability {
     /// Of physics that no library has: against the best two effects of it.
     #[serde(default)]
     pub against_pair: Option<f64>,
-    /// The best effect of another name.
+    /// The best effect of another name, for people; empty where there is none.
     pub best_rival: String,
     /// Effects of other names less than 5 away: nobody could distinguish them.
-    pub class: Vec<String>,
+    pub class: Vec<EffectName>,
     /// Places of the same effect less than 3 away.
     pub places: Vec<Place>,
     /// For joints: the stations that cannot be distinguished, mm.

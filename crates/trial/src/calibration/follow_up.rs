@@ -8,7 +8,7 @@ use super::arm;
 use super::effect::Effect;
 use super::site::{Devices, Row, Site};
 use super::text::Written;
-use super::{AGAIN, Drawn, drawn, setup, text};
+use super::{Drawn, FOLLOW_UP, drawn, setup, text};
 use crate::Source;
 use rodcal_base::statistics::Random;
 use rodcal_base::units::{DEG, MM};
@@ -42,7 +42,7 @@ pub struct NewClamp {
 
 /// The files of a campaign, as they were sealed and with what was measured next.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Again {
+pub struct FollowUp {
     /// Name and text of each.
     pub before: Vec<(String, String)>,
     /// The same with the new rows below.
@@ -59,7 +59,7 @@ const PACE: f64 = 30.0;
 
 /// Case `number` of a trial with what is `proposed`. Refuses, with the reason, what this robot
 /// cannot do.
-pub fn again(source: &Source, number: usize, proposed: &Proposed) -> Result<Again, &'static str> {
+pub fn follow_up(source: &Source, number: usize, proposed: &Proposed) -> Result<FollowUp, &'static str> {
     let Drawn { mut site, effects, right, mistake, .. } = drawn(source, number);
     if mistake.is_some() {
         return Err("files with a mistake");
@@ -67,10 +67,10 @@ pub fn again(source: &Source, number: usize, proposed: &Proposed) -> Result<Agai
     let before = text::files(&right);
     let known = site.rows.len();
     append(&mut site, &effects, proposed)?;
-    let noise = site.errors(known, &mut Random::of_seed(source.seed.0, AGAIN + number as u64));
+    let noise = site.errors(known, &mut Random::of_seed(source.seed.0, FOLLOW_UP + number as u64));
     let more = setup::measured(&mut site, &effects, known, &noise);
     let read: Vec<Vector3<f64>> = right.read.iter().copied().chain(more).collect();
-    Ok(Again { before, after: text::files(&Written { site, read, ..right }) })
+    Ok(FollowUp { before, after: text::files(&Written { site, read, ..right }) })
 }
 
 /// The rows that are proposed, after the others.
@@ -126,7 +126,7 @@ mod tests {
     use crate::calibration::case;
 
     fn source(seed: u64) -> Source {
-        Source { seed: crate::Seed(seed.into()), half: crate::Half::Calibration, residuals: Vec::new() }
+        Source { seed: crate::Seed(seed.into()), suite: crate::Suite::Calibration, residuals: Vec::new() }
     }
 
     fn has_clamps(drawn: &Drawn) -> bool {
@@ -148,14 +148,14 @@ mod tests {
     fn the_files_are_the_sealed_ones_and_the_new_rows_are_below() {
         for number in (1..7).filter(|&number| drawn(&source(5), number).mistake.is_none()) {
             let proposed = proposed(5, number);
-            let again = again(&source(5), number, &proposed).unwrap();
+            let measured = follow_up(&source(5), number, &proposed).unwrap();
             let sealed = case(&source(5), number).files;
-            assert!(again.before.iter().all(|file| sealed.contains(file)));
+            assert!(measured.before.iter().all(|file| sealed.contains(file)));
             let rows = |files: &[(String, String)]| files[2].1.clone();
-            let (before, after) = (rows(&again.before), rows(&again.after));
+            let (before, after) = (rows(&measured.before), rows(&measured.after));
             assert_eq!(after.lines().count(), before.lines().count() + 2);
             assert!(after.starts_with(&before), "{after}");
-            assert_eq!(again, super::again(&source(5), number, &proposed).unwrap());
+            assert_eq!(measured, super::follow_up(&source(5), number, &proposed).unwrap());
         }
     }
 
@@ -166,7 +166,7 @@ mod tests {
         let refused = |change: &dyn Fn(&mut Proposed)| {
             let mut other = good.clone();
             change(&mut other);
-            again(&source(5), number, &other).unwrap_err()
+            follow_up(&source(5), number, &other).unwrap_err()
         };
         assert_eq!(refused(&|p| p.poses.clear()), "no poses, or too many");
         assert_eq!(refused(&|p| p.poses[0].joints[2] = 200.0), "joints beyond their range");
@@ -188,8 +188,8 @@ mod tests {
         let name = "new clamp".to_owned();
         proposed.poses[0].group = Some(name.clone());
         proposed.new_fixture = Some(NewClamp { name, xyz_mm: at.into(), rpy_deg: [10.0, 20.0, 30.0] });
-        let again = again(&source(5), number, &proposed).unwrap();
+        let measured = follow_up(&source(5), number, &proposed).unwrap();
         let clamps = |files: &[(String, String)]| files[0].1.matches("[[clamp]]").count();
-        assert_eq!(clamps(&again.after), clamps(&again.before) + 1);
+        assert_eq!(clamps(&measured.after), clamps(&measured.before) + 1);
     }
 }

@@ -12,7 +12,7 @@ use super::effect::Effect;
 use super::oracle::Oracle;
 use super::protocol::{Columns, Protocol, Run, steps};
 use crate::chance::happens;
-use crate::truth::Asked;
+use crate::ground_truth::PredictionQuery;
 use rodcal_base::statistics::Random;
 use rodcal_base::units::{MM, STANDARD_GRAVITY, UM};
 
@@ -77,7 +77,7 @@ pub fn csv(asked: &Bench) -> String {
 
 /// What would be read, and what the oracle says: `oracle` knows the effects and where they are, and
 /// finds their sizes out from `shown`.
-pub fn truth(asked: &Bench, effects: &[Effect], oracle: &Oracle, shown: &[f64]) -> Asked {
+pub fn truth(asked: &Bench, effects: &[Effect], oracle: &Oracle, shown: &[f64]) -> PredictionQuery {
     let happen_again: Vec<Effect> =
         effects.iter().filter(|effect| !effect.is_of_one_run()).cloned().collect();
     // as far as anybody reads them, m → µm
@@ -85,7 +85,7 @@ pub fn truth(asked: &Bench, effects: &[Effect], oracle: &Oracle, shown: &[f64]) 
     let is_known = !effects.is_empty()
         && happen_again.len() == effects.len()
         && effects.iter().all(|effect| !effect.sizes(asked).is_empty());
-    Asked {
+    PredictionQuery {
         true_um: um(asked.readings(&happen_again)),
         oracle_um: is_known.then(|| oracle.predicted(effects, shown, asked)).flatten().map(um),
         is_any_frame: false,

@@ -15,9 +15,9 @@ use super::numbers::{drives, numbers};
 use super::rod::Rod;
 use super::setup::pose;
 use super::site::{Devices, Row, Site};
-use super::{taken_up, text};
+use super::{nuisance, text};
+use crate::ground_truth::PredictionQuery;
 use crate::rig::drawing::{Drawing, rounded};
-use crate::truth::Asked;
 use rodcal_base::linalg::transposed_product;
 use rodcal_base::statistics::Random;
 use rodcal_base::units::UM;
@@ -33,7 +33,7 @@ const WARMER: f64 = 3.0;
 const ANY_SIZE: f64 = 1e4;
 
 /// What is asked.
-pub struct Question {
+pub struct Query {
     /// The first recorded row, and all that are asked for.
     site: Site,
     /// Force on the ball as the file states it, N: in the world, or in {0} where nobody knows that.
@@ -41,7 +41,7 @@ pub struct Question {
 }
 
 /// What is asked of whoever recorded at `recorded`.
-pub fn draw(recorded: &Site, random: &mut Random) -> Question {
+pub fn draw(recorded: &Site, random: &mut Random) -> Query {
     let force = (direction(random) * random.uniform(FORCE.0, FORCE.1)).map(|f| rounded(f, 2));
     let heavier = rounded(random.uniform(HEAVIER.0, HEAVIER.1), 3);
     let rod = recorded.rod.as_ref().map(|rod| {
@@ -72,25 +72,25 @@ pub fn draw(recorded: &Site, random: &mut Random) -> Question {
             site.rows[k + 1].q = pose(&site, k + 1, random);
         }
     }
-    Question { site, force }
+    Query { site, force }
 }
 
-impl Question {
+impl Query {
     /// The files that ask.
     pub fn files(&self) -> Vec<(String, String)> {
-        text::question(&self.site, &self.force)
+        text::query(&self.site, &self.force)
     }
 
     /// Where the ball would be, and what an oracle says that knows which effects there are and
     /// where, and fits their numbers, together with all that the calibration is free to change and
     /// the numbers of the files, each known as these state, to a recording with this `noise`: to
     /// first order, from the truth.
-    pub fn truth(&self, recorded: &Site, effects: &[Effect], noise: &[Vector3<f64>]) -> Asked {
-        let truth = self.asked(&afterwards(effects));
+    pub fn truth(&self, recorded: &Site, effects: &[Effect], noise: &[Vector3<f64>]) -> PredictionQuery {
+        let truth = self.queried(&afterwards(effects));
         let is_known = !effects.is_empty() && !effects.iter().any(Effect::is_beyond);
         let error = is_known.then(|| self.error(recorded, effects, noise)).flatten();
         let um = |all: DVector<f64>| -> Vec<f64> { all.iter().map(|m| rounded(m / UM, 5)).collect() };
-        Asked {
+        PredictionQuery {
             oracle_um: error.map(|error| um(&truth + error)),
             true_um: um(truth),
             is_any_frame: recorded.has_sockets(),
@@ -98,22 +98,22 @@ impl Question {
     }
 
     /// Coordinates of the rows that are asked for, m.
-    fn asked(&self, effects: &[Effect]) -> DVector<f64> {
-        of_asked(&self.site.each(|row, q| self.site.ball(row, q, effects)))
+    fn queried(&self, effects: &[Effect]) -> DVector<f64> {
+        of_query(&self.site.each(|row, q| self.site.ball(row, q, effects)))
     }
 
     /// J′·(AᵀA + 1)⁻¹·(Aᵀn + o): by how much the noise n, and the files' numbers that are off by o,
     /// mislead the oracle, m. A, J′: what its parameters do to the recorded and to these rows.
     fn error(&self, recorded: &Site, effects: &[Effect], noise: &[Vector3<f64>]) -> Option<DVector<f64>> {
-        let (absorbed, mut off) = taken_up::columns(recorded);
+        let (absorbed, mut off) = nuisance::columns(recorded);
         let rows = absorbed.nrows();
         let mut columns: Vec<DVector<f64>> = absorbed.column_iter().map(Into::into).collect();
         let numbers = numbers(&self.site, &drives(recorded));
-        let mut asked: Vec<DVector<f64>> =
-            numbers.into_iter().map(|number| of_asked(&number.column)).collect();
+        let mut queried: Vec<DVector<f64>> =
+            numbers.into_iter().map(|number| of_query(&number.column)).collect();
         // where clamps and sockets are concerns no other pose
-        asked.resize(columns.len(), DVector::zeros(3 * COUNT));
-        let known = self.asked(&afterwards(effects));
+        queried.resize(columns.len(), DVector::zeros(3 * COUNT));
+        let known = self.queried(&afterwards(effects));
         for (which, effect) in effects.iter().enumerate() {
             for larger in effect.larger() {
                 let own = recorded.added(std::slice::from_ref(&larger), std::slice::from_ref(effect));
@@ -125,7 +125,7 @@ impl Question {
                 let mut all = effects.to_vec();
                 all[which] = larger;
                 columns.push(own * scale);
-                asked.push((self.asked(&afterwards(&all)) - &known) * scale);
+                queried.push((self.queried(&afterwards(&all)) - &known) * scale);
                 off.push(0.0);
             }
         }
@@ -138,7 +138,7 @@ impl Question {
         let right = columns.tr_mul(&noise) + DVector::from_vec(off);
         let parameters = normal.cholesky()?.solve(&right);
         let mut error = DVector::zeros(3 * COUNT);
-        for (column, parameter) in asked.iter().zip(parameters.iter()) {
+        for (column, parameter) in queried.iter().zip(parameters.iter()) {
             error += column * *parameter;
         }
         Some(error)
@@ -151,7 +151,7 @@ fn afterwards(effects: &[Effect]) -> Vec<Effect> {
 }
 
 /// Without the first row, which was recorded.
-fn of_asked(all: &DVector<f64>) -> DVector<f64> {
+fn of_query(all: &DVector<f64>) -> DVector<f64> {
     all.rows(3, all.len() - 3).into_owned()
 }
 
@@ -187,15 +187,15 @@ mod tests {
     fn what_is_asked_was_not_recorded() {
         for seed in 0..4 {
             let (site, _) = site(11, seed);
-            let question = draw(&site, &mut Random::seeded(seed, 1));
-            let rows = &question.site.rows[1..];
+            let query = draw(&site, &mut Random::seeded(seed, 1));
+            let rows = &query.site.rows[1..];
             assert_eq!((rows.len(), &rows[0].q), (COUNT, &site.rows[0].q));
             assert!(rows[1..].iter().all(|row| site.rows.iter().all(|known| known.q != row.q)));
             assert!(rows[0].time > site.rows.last().unwrap().time);
-            assert!(question.site.contact.norm() > 0.9 && question.site.contact != site.contact);
+            assert!(query.site.contact.norm() > 0.9 && query.site.contact != site.contact);
             let mass = |site: &Site| site.rod.as_ref().unwrap().drawing.tip_mass;
-            assert!(mass(&question.site) > mass(&site) + 0.04);
-            let files = question.files();
+            assert!(mass(&query.site) > mass(&site) + 0.04);
+            let files = query.files();
             assert_eq!(files.len(), 3);
             assert!(files.iter().all(|(_, text)| text.starts_with("# SIMULATED")));
         }
@@ -206,12 +206,12 @@ mod tests {
         // every third effect: 15 is the one that shows in no position
         for effect in (0..LIBRARY).step_by(3).filter(|effect| *effect != 15) {
             let (mut site, effect) = site(effect, 3);
-            let question = draw(&site, &mut Random::seeded(3, 1));
+            let query = draw(&site, &mut Random::seeded(3, 1));
             let effects = [effect];
             let noise = site.errors(0, &mut Random::seeded(4, 0));
             let says = |site: &Site, times: f64| {
                 let noise: Vec<_> = noise.iter().map(|n| n * times).collect();
-                question.truth(site, &effects, &noise)
+                query.truth(site, &effects, &noise)
             };
             let [none, once, twice] = [0.0, 1.0, 2.0].map(|times| says(&site, times).oracle_um.unwrap());
             let moved = norm(&once, &none);
@@ -234,7 +234,7 @@ mod tests {
             .unwrap();
         site.scatter.sd = 1e-6;
         site = as_its_files(site);
-        let question = draw(&site, &mut Random::seeded(3, 1));
+        let query = draw(&site, &mut Random::seeded(3, 1));
         let mut other = site.clone();
         other.real[2].numbers[0] += 2e-5;
         other.tool.y += 3e-5;
@@ -246,12 +246,12 @@ mod tests {
         };
         let noise: Vec<Vector3<f64>> =
             (0..site.rows.len()).map(|row| ball(&other, row, &larger) - ball(&site, row, &effect)).collect();
-        let truth = question.truth(&site, &[effect], &noise);
-        let asked = Question {
-            site: Site { real: other.real, tool: other.tool, ..question.site.clone() },
-            force: question.force,
+        let truth = query.truth(&site, &[effect], &noise);
+        let other_query = Query {
+            site: Site { real: other.real, tool: other.tool, ..query.site.clone() },
+            force: query.force,
         };
-        let others = asked.truth(&site, &[larger], &noise).true_um;
+        let others = other_query.truth(&site, &[larger], &noise).true_um;
         let moved = norm(&truth.true_um, &others);
         let left = norm(&truth.oracle_um.unwrap(), &others);
         assert!(moved > 100.0 && left < 0.01 * moved, "{left} of {moved}");

@@ -8,26 +8,28 @@ use std::path::Path;
 use serde::{Deserialize, Serialize, Serializer};
 use serde_json::{Value, json};
 
-use super::judged::{Finding, Judged, first_word};
+use super::diagnosis::Finding;
 use super::place;
 use super::rate::Rate;
+use super::scored_case::ScoredCase;
+use crate::effect_name::EffectName;
+use crate::ground_truth::{Concealed, GroundTruth, Kind};
 use crate::place::Place;
-use crate::truth::{Concealed, Kind, Truth};
-use crate::{Half, Seed, Source, calibration, rig};
+use crate::{Seed, Source, Suite, calibration, rig};
 use rodcal_base::error::Result;
 use rodcal_base::files;
 
 /// A case whose answer is ambiguous and holds the truth.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Due {
+pub struct PendingFollowUp {
     /// `rig/case-0001`.
     pub case: String,
     seed: Option<Seed>,
     residuals: Vec<f64>,
     /// True for a case with effects that imitate each other.
     is_conflict: bool,
-    /// What the answer proposes, in words and as numbers; `None` where it proposes nothing.
-    words: Option<String>,
+    /// What the answer proposes, for people and as numbers; `None` where it proposes nothing.
+    description: Option<String>,
     proposed: Option<Value>,
 }
 
@@ -42,16 +44,16 @@ pub enum Outcome {
     Diagnosed(Value),
 }
 
-impl Due {
+impl PendingFollowUp {
     /// Of an answer that asks for it.
-    pub(super) fn of(case: &Judged<'_>) -> Option<Due> {
+    pub(super) fn of(case: &ScoredCase<'_>) -> Option<PendingFollowUp> {
         let (finding, _) = ambiguous(case)?;
-        Some(Due {
+        Some(PendingFollowUp {
             case: case.truth.case.clone(),
             seed: case.truth.seed,
             residuals: case.truth.residuals.clone(),
             is_conflict: case.truth.conflict.is_some(),
-            words: finding.next_measurement.clone(),
+            description: finding.next_measurement.clone(),
             proposed: finding.next_measurement_plan.clone().filter(|plan| !plan.is_null()),
         })
     }
@@ -63,20 +65,20 @@ impl Due {
     /// [`rodcal_base::Error::File`] where a sealed file cannot be read.
     pub fn files(&self, directory: &Path) -> Result<std::result::Result<Files, Outcome>> {
         let not = |why: &str| Ok(Err(Outcome::NotDone(why.to_owned())));
-        let proposed = match (&self.proposed, &self.words) {
+        let proposed = match (&self.proposed, &self.description) {
             (Some(proposed), _) => proposed,
             (None, Some(_)) => return not("it needs no recording"),
             (None, None) => return Ok(Err(Outcome::NotProposed)),
         };
-        let (half, number) = self.case.split_once("/case-").unwrap_or_default();
+        let (folder, number) = self.case.split_once("/case-").unwrap_or_default();
         let (Some(seed), Ok(number)) = (self.seed, number.parse()) else { return not("the key has no seed") };
-        let half_drawn = match (half, self.is_conflict) {
-            (_, true) => Half::Conflicts,
-            ("calibration", _) => Half::Calibration,
-            _ => Half::Rig,
+        let suite = match (folder, self.is_conflict) {
+            (_, true) => Suite::Conflicts,
+            ("calibration", _) => Suite::Calibration,
+            _ => Suite::Rig,
         };
-        let source = Source { seed, half: half_drawn, residuals: self.residuals.clone() };
-        let [before, after] = match once_more(&source, number, proposed) {
+        let source = Source { seed, suite, residuals: self.residuals.clone() };
+        let [before, after] = match follow_up(&source, number, proposed) {
             Ok(files) => files,
             Err(why) => return not(why),
         };
@@ -94,46 +96,45 @@ impl Due {
 pub type Files = Vec<(String, String)>;
 
 /// The files of a case as they were and with what is proposed.
-fn once_more(
+fn follow_up(
     source: &Source,
     number: usize,
     proposed: &Value,
 ) -> std::result::Result<[Files; 2], &'static str> {
     const NONE: &str = "not a measurement";
-    if source.half != Half::Rig {
+    if source.suite != Suite::Rig {
         let proposed = calibration::Proposed::deserialize(proposed).map_err(|_| NONE)?;
-        let again = calibration::again(source, number, &proposed)?;
-        return Ok([again.before, again.after]);
+        let measured = calibration::follow_up(source, number, &proposed)?;
+        return Ok([measured.before, measured.after]);
     }
     let proposed = rig::Proposed::deserialize(proposed).map_err(|_| NONE)?;
-    let again = rig::again(source.seed, number, &source.residuals, &proposed)?;
-    Ok([again.before, again.after].map(|text| vec![("readings.csv".to_owned(), text)]))
+    let measured = rig::follow_up(source.seed, number, &source.residuals, &proposed)?;
+    Ok([measured.before, measured.after].map(|text| vec![("readings.csv".to_owned(), text)]))
 }
 
 /// The strongest finding, where it is ambiguous and its class holds the truth, with that truth.
-fn ambiguous<'a>(case: &'a Judged<'_>) -> Option<(&'a Finding, &'a Concealed)> {
+fn ambiguous<'a>(case: &'a ScoredCase<'_>) -> Option<(&'a Finding, &'a Concealed)> {
     let is_of_library = matches!(case.truth.kind, Kind::Single | Kind::Pair);
     let finding = case.sought().next().filter(|_| is_of_library)?;
     let is_ambiguous = !finding.indistinguishable_from.is_empty() || finding.other_places().next().is_some();
     let class = case.class();
-    let concealed = case.truth.effects.iter().find(|e| class.contains(&e.effect.as_str()))?;
+    let concealed = case.truth.effects.iter().find(|e| class.contains(&&e.effect))?;
     is_ambiguous.then_some((finding, concealed))
 }
 
 /// True where the truth is now a finding, at its place, that none of its former rivals can stand
 /// for.
-fn is_settled(truth: &Truth, before: &Finding, concealed: &Concealed, after: &Judged<'_>) -> bool {
+fn is_settled(truth: &GroundTruth, before: &Finding, concealed: &Concealed, after: &ScoredCase<'_>) -> bool {
     let named: Vec<&Finding> = match truth.kind {
         Kind::Single => after.sought().take(1).collect(),
         _ => after.sought().collect(),
     };
     let is_right = |place: &Place| place::is_same(truth, concealed, Some(place));
-    let was_rival = |name: &str| {
-        name == before.effect || before.indistinguishable_from.iter().any(|known| first_word(known) == name)
-    };
+    let was_rival =
+        |name: &EffectName| *name == before.effect || before.indistinguishable_from.contains(name);
     named.into_iter().any(|finding| {
-        let others = finding.indistinguishable_from.iter().map(|name| first_word(name));
-        let is_apart = others.filter(|name| *name != concealed.effect).all(|name| !was_rival(name));
+        let others = finding.indistinguishable_from.iter();
+        let is_apart = others.filter(|name| **name != concealed.effect).all(|name| !was_rival(name));
         // places matter where they were what was ambiguous
         let was_wrong = |place: &Place| before.other_places().any(|known| known == place) && !is_right(place);
         let is_there = before.effect != concealed.effect
@@ -167,11 +168,11 @@ pub struct Open {
     /// What was concealed, and where.
     pub truth: String,
     /// The ambiguous finding.
-    pub before: Said,
+    pub before: FindingSummary,
     /// What it proposed.
     pub next_measurement: Option<String>,
     /// The findings after that measurement.
-    pub after: Vec<Said>,
+    pub after: Vec<FindingSummary>,
     /// A remainder was called unexplained.
     pub unexplained: bool,
 }
@@ -179,16 +180,16 @@ pub struct Open {
 /// Name and place of a finding, and what it may be as well.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[allow(missing_docs)]
-pub struct Said {
-    pub effect: String,
+pub struct FindingSummary {
+    pub effect: EffectName,
     pub location: String,
-    pub indistinguishable_from: Vec<String>,
+    pub indistinguishable_from: Vec<EffectName>,
     pub places: Vec<String>,
 }
 
-impl Said {
-    fn of(finding: &Finding) -> Said {
-        Said {
+impl FindingSummary {
+    fn of(finding: &Finding) -> FindingSummary {
+        FindingSummary {
             effect: finding.effect.clone(),
             location: finding.location.clone(),
             indistinguishable_from: finding.indistinguishable_from.clone(),
@@ -198,7 +199,7 @@ impl Said {
 }
 
 /// Counts what the proposals led to.
-pub fn next_measurement(cases: &[Judged<'_>], outcomes: &BTreeMap<&str, &Outcome>) -> NextMeasurement {
+pub fn next_measurement(cases: &[ScoredCase<'_>], outcomes: &BTreeMap<&str, &Outcome>) -> NextMeasurement {
     let mut next = NextMeasurement::default();
     for case in cases {
         let Some((finding, concealed)) = ambiguous(case) else { continue };
@@ -207,7 +208,7 @@ pub fn next_measurement(cases: &[Judged<'_>], outcomes: &BTreeMap<&str, &Outcome
             Some(Outcome::NotProposed) => next.not_proposed += 1,
             Some(Outcome::NotDone(why)) => *next.not_done.entry(why.clone()).or_default() += 1,
             Some(Outcome::Diagnosed(answer)) => {
-                let after = Judged::of_diagnosis(case.truth, answer);
+                let after = ScoredCase::of_diagnosis(case.truth, answer);
                 let is_ok = is_settled(case.truth, finding, concealed, &after);
                 next.settled.add(is_ok);
                 let is_of_places = finding.indistinguishable_from.is_empty();
@@ -217,9 +218,9 @@ pub fn next_measurement(cases: &[Judged<'_>], outcomes: &BTreeMap<&str, &Outcome
                     next.open.push(Open {
                         case: case.truth.case.clone(),
                         truth: format!("{} at {}", concealed.effect, concealed.location),
-                        before: Said::of(finding),
+                        before: FindingSummary::of(finding),
                         next_measurement: finding.next_measurement.clone(),
-                        after: after.findings.iter().map(Said::of).collect(),
+                        after: after.findings.iter().map(FindingSummary::of).collect(),
                         unexplained: after.is_unexplained,
                     });
                 }
@@ -232,7 +233,7 @@ pub fn next_measurement(cases: &[Judged<'_>], outcomes: &BTreeMap<&str, &Outcome
 impl Serialize for NextMeasurement {
     fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
         json!({
-            "n": self.settled.of, "ok": self.settled.count, "rate": self.settled,
+            "n": self.settled.total, "ok": self.settled.count, "rate": self.settled,
             "effects": self.effects, "places": self.places,
             "not_proposed": self.not_proposed, "not_done": self.not_done, "open": self.open,
         })

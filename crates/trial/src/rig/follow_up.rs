@@ -8,7 +8,7 @@ use serde::Deserialize;
 use super::bench::Bench;
 use super::drawing::rounded;
 use super::protocol::{AXES, Columns, Loading, Protocol, Run, steps};
-use super::{AGAIN, drawn};
+use super::{FOLLOW_UP, drawn};
 use crate::Seed;
 use rodcal_base::statistics::Random;
 use rodcal_base::units::MM;
@@ -36,8 +36,8 @@ pub struct Proposed {
 
 /// A recording, and with what was measured next below it: two files.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Again {
-    /// As it was made for the envelope.
+pub struct FollowUp {
+    /// As it stands in the archive.
     pub before: String,
     /// The same with the new rows.
     pub after: String,
@@ -54,16 +54,16 @@ const DWELL: f64 = 30.0;
 /// Case `number` of the trial that belongs to `seed` with what is `proposed`; the numbers of before
 /// are the same, the new ones have a noise of their own. Refuses, with the reason, what this rig
 /// cannot do.
-pub fn again(
+pub fn follow_up(
     seed: Seed,
     number: usize,
     residuals: &[f64],
     proposed: &Proposed,
-) -> Result<Again, &'static str> {
+) -> Result<FollowUp, &'static str> {
     let drawn = drawn(seed, number, residuals);
     let recorded = &drawn.bench.protocol;
     let new = planned(&drawn.bench, proposed)?;
-    let mut random = Random::of_seed(seed.0, AGAIN + number as u64);
+    let mut random = Random::of_seed(seed.0, FOLLOW_UP + number as u64);
     let more = new.loadings.iter().map(|_| random.uniform(-1.0, 1.0));
     let whole = Bench {
         protocol: Protocol {
@@ -80,7 +80,7 @@ pub fn again(
     let shown = drawn.noise.shown(&alone, readings, &mut random);
     let before = recorded.csv(&drawn.right.shown);
     let after = joined(&before, &alone.protocol.csv(&shown));
-    Ok(Again { before, after })
+    Ok(FollowUp { before, after })
 }
 
 /// What is done, after what was done.
@@ -113,7 +113,8 @@ fn planned(bench: &Bench, proposed: &Proposed) -> Result<Protocol, &'static str>
     }
     let steps = steps(&proposed.loads_n, proposed.unloading);
     let last = recorded.loadings.last();
-    let next = |of: fn(&Loading) -> usize| recorded.loadings.iter().map(|l| of(l) + 1).max().unwrap_or(0);
+    let next =
+        |number: fn(&Loading) -> usize| recorded.loadings.iter().map(|l| number(l) + 1).max().unwrap_or(0);
     let (trial, run) = (next(|l| l.trial), next(|l| l.run));
     let mut time = last.map_or(0.0, |l| l.time);
     let mut loadings = Vec::new();
@@ -164,8 +165,8 @@ fn joined(above: &str, below: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ground_truth::Kind;
     use crate::rig::case;
-    use crate::truth::Kind;
 
     fn proposed() -> Proposed {
         Proposed {
@@ -189,19 +190,19 @@ mod tests {
                 continue;
             }
             let sealed = sealed.files[1].1.clone();
-            let again = again(Seed(5), number, &[], &proposed()).unwrap();
-            assert_eq!(again.before, sealed);
+            let measured = follow_up(Seed(5), number, &[], &proposed()).unwrap();
+            assert_eq!(measured.before, sealed);
             let rows = |text: &str| text.lines().filter(|line| !line.starts_with('#')).count();
-            assert_eq!(rows(&again.after), rows(&sealed) + 12);
-            let last = again.after.lines().last().unwrap();
+            assert_eq!(rows(&measured.after), rows(&sealed) + 12);
+            let last = measured.after.lines().last().unwrap();
             assert!(last.starts_with("-x,") && last.contains("unload") && last.contains("60"), "{last}");
-            assert_eq!(again, super::again(Seed(5), number, &[], &proposed()).unwrap());
+            assert_eq!(measured, super::follow_up(Seed(5), number, &[], &proposed()).unwrap());
         }
     }
 
     #[test]
     fn what_no_rig_can_do_is_refused_with_the_reason() {
-        let refused = |proposed: Proposed| again(Seed(5), 1, &[], &proposed).unwrap_err();
+        let refused = |proposed: Proposed| follow_up(Seed(5), 1, &[], &proposed).unwrap_err();
         assert_eq!(refused(Proposed { direction: "up".into(), ..proposed() }), "no such direction");
         assert_eq!(refused(Proposed { channels: vec![], ..proposed() }), "not a measurement");
         assert_eq!(refused(Proposed { loads_n: vec![f64::NAN], ..proposed() }), "not a measurement");

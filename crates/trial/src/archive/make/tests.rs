@@ -4,13 +4,13 @@ use super::super::default_key;
 use super::*;
 
 fn plan(seed: u128) -> Plan {
-    Plan { seed: Some(Seed(seed)), half: Half::Rig, residuals: Vec::new(), range: 1..4 }
+    Plan { seed: Some(Seed(seed)), suite: Suite::Rig, residuals: Vec::new(), range: 1..4 }
 }
 
 fn sealed(directory: &Path, plan: &Plan) -> Result<Manifest> {
-    let made = make(&directory.join("t"), &directory.join("t.key.jsonl"), plan, || {})?;
-    let manifest = made.manifest.clone();
-    made.seal()?;
+    let staged = make(&directory.join("t"), &directory.join("t.key.jsonl"), plan, || {})?;
+    let manifest = staged.manifest.clone();
+    staged.seal()?;
     Ok(manifest)
 }
 
@@ -53,12 +53,12 @@ fn a_fault_at_any_operation_leaves_nothing_or_what_is_gone_on_with() {
     for kind in [Fault::Once, Fault::From] {
         for count in 1.. {
             let directory = tempfile::tempdir().unwrap();
-            let (made, is_struck) = with(kind(count), || sealed(directory.path(), &plan));
-            if kind(count) == Fault::Once(count) && made.is_err() {
+            let (staged, is_struck) = with(kind(count), || sealed(directory.path(), &plan));
+            if kind(count) == Fault::Once(count) && staged.is_err() {
                 let left = files::names_in(directory.path());
                 assert!(left.is_empty(), "{count}: {left:?}");
             }
-            if made.is_err() {
+            if staged.is_err() {
                 // whoever goes on need not know the seed
                 let begun = files::names_in(directory.path()).iter().any(|name| name == "t.key.jsonl.part");
                 let plan = Plan { seed: plan.seed.filter(|_| !begun), ..plan.clone() };
@@ -82,9 +82,9 @@ fn a_trial_goes_on_case_by_case_and_no_other_in_its_place() {
     let (whole, directory) = (whole.path(), directory.path());
     sealed(whole, &plan(5)).unwrap();
     // two cases and half of the third
-    let made = make(&directory.join("t"), &directory.join("t.key.jsonl"), &plan(5), || {}).unwrap();
-    let kept = files::read_text(&made.part.truths).unwrap();
-    std::mem::forget(made);
+    let staged = make(&directory.join("t"), &directory.join("t.key.jsonl"), &plan(5), || {}).unwrap();
+    let kept = files::read_text(&staged.part.truths).unwrap();
+    std::mem::forget(staged);
     let cut = kept.rfind("{\"case\"").unwrap() + 30;
     files::write_whole(&directory.join("t.key.jsonl.part"), &kept.as_bytes()[..cut]).unwrap();
     files::write_whole(&directory.join("t.part/rig/case-0003/rod.toml"), b"half").unwrap();

@@ -1,5 +1,5 @@
-//! What a rig remembers: friction that has to turn round, creep by a chain of springs and dampers,
-//! hysteresis by plays.
+//! What a rig remembers of its loads: friction that has to turn round, creep by a chain of springs
+//! and dampers, hysteresis by plays.
 
 /// Friction by P. R. Dahl's model (*A solid friction model*, TOR-0158(3107–18)-1, 1968): on its way
 /// the slide's resistance goes to ±f exponentially with the distance travelled since it turned,

@@ -4,12 +4,12 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::arm;
 use super::effect::Effect;
-use super::site::{Site, lever};
+use super::site::{Site, tip_jacobian};
 
 impl Site {
     /// Turns the joints of a row, as little as may be, until the ball is at a point; `None` where
     /// it does not get there.
-    pub fn reach(
+    pub fn joints_at(
         &self,
         row: usize,
         q: &[f64],
@@ -25,12 +25,13 @@ impl Site {
             }
             // what joints do by their loads and gears is too little to lead astray
             let frames = arm::frames(&self.real, &self.base, &q);
-            let levers: Vec<Vector3<f64>> = frames[..q.len()].iter().map(|joint| lever(joint, &at)).collect();
-            let square: Matrix3<f64> = levers.iter().map(|lever| lever * lever.transpose()).sum();
+            let jacobian: Vec<Vector3<f64>> =
+                frames[..q.len()].iter().map(|joint| tip_jacobian(joint, &at)).collect();
+            let square: Matrix3<f64> = jacobian.iter().map(|column| column * column.transpose()).sum();
             let stride = off * (0.4 / off.norm()).min(1.0);
             let solved = (square + Matrix3::identity() * 1e-9).cholesky()?.solve(&stride);
-            for (q, lever) in q.iter_mut().zip(&levers) {
-                *q += lever.dot(&solved).clamp(-0.5, 0.5);
+            for (q, column) in q.iter_mut().zip(&jacobian) {
+                *q += column.dot(&solved).clamp(-0.5, 0.5);
             }
         }
         None

@@ -13,8 +13,8 @@ use std::path::{Component, Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use super::{MANIFEST, Manifest, key_of, line, parsed, text_of};
-use crate::truth::Truth;
-use crate::{Half, Seed, Source};
+use crate::ground_truth::GroundTruth;
+use crate::{Seed, Source, Suite};
 use rodcal_base::error::{Error, Place, Result, Whose};
 use rodcal_base::files::{self, Created, Existing};
 use rodcal_base::parallel::in_parallel;
@@ -28,7 +28,7 @@ pub struct Plan {
     /// Nothing: one that nobody guesses, or that of the run that is gone on with.
     pub seed: Option<Seed>,
     /// What is tried.
-    pub half: Half,
+    pub suite: Suite,
     /// As [`Source::residuals`].
     pub residuals: Vec<f64>,
     /// Numbers of the cases.
@@ -45,16 +45,18 @@ struct Begun {
 struct Of {
     made_by: String,
     seed: Seed,
-    half: String,
+    #[serde(rename = "half")]
+    suite: String,
     first: usize,
     end: usize,
     residuals_sha256: String,
 }
 
-/// A trial that is complete and not yet in its place; dropped without [`Made::seal`] it is gone.
+/// A trial that is complete and not yet in its place; dropped without [`StagedTrial::seal`] it is
+/// gone.
 #[derive(Debug)]
 #[must_use]
-pub struct Made {
+pub struct StagedTrial {
     /// What its directory will say.
     pub manifest: Manifest,
     /// From which its cases were drawn.
@@ -81,7 +83,7 @@ impl Drop for Part {
     }
 }
 
-impl Made {
+impl StagedTrial {
     /// Puts cases and key in their places.
     ///
     /// # Errors
@@ -102,7 +104,7 @@ impl Made {
 /// [`Error::Argument`] where the key would be in the trial's directory; [`Error::InTheWay`] where a
 /// trial or a key is there already; [`Error::Input`] where another one has been begun;
 /// [`Error::File`].
-pub fn make(directory: &Path, key: &Path, plan: &Plan, made: impl Fn() + Sync + Send) -> Result<Made> {
+pub fn make(directory: &Path, key: &Path, plan: &Plan, made: impl Fn() + Sync + Send) -> Result<StagedTrial> {
     if inside(&normal(key), &normal(directory)) {
         return Err(Error::Argument {
             name: "--key",
@@ -138,7 +140,7 @@ pub fn make(directory: &Path, key: &Path, plan: &Plan, made: impl Fn() + Sync + 
     if lines.is_empty() {
         files::write_whole(&part.truths, line(&Begun { begun: plan.of(seed) })?.as_bytes())?;
     }
-    let source = Source { seed, half: plan.half, residuals: plan.residuals.clone() };
+    let source = Source { seed, suite: plan.suite, residuals: plan.residuals.clone() };
     let mut next = plan.range.start + lines.lines().count();
     (plan.range.start..next).for_each(|_| made());
     while next < plan.range.end {
@@ -161,13 +163,13 @@ pub fn make(directory: &Path, key: &Path, plan: &Plan, made: impl Fn() + Sync + 
         lines += &new;
         next += block;
     }
-    let truths: Vec<Truth> = lines
+    let truths: Vec<GroundTruth> = lines
         .lines()
         .enumerate()
         .map(|(k, line)| parsed(&part.truths, k + 2, line))
         .collect::<Result<_>>()?;
     let mut hashes = BTreeMap::new();
-    for Truth { case, .. } in &truths {
+    for GroundTruth { case, .. } in &truths {
         for name in files::names_in(&part.folder.join(case)) {
             let name = format!("{case}/{name}");
             hashes.insert(name.clone(), files::sha256(&files::read_inside(&part.folder, &name)?));
@@ -180,7 +182,7 @@ pub fn make(directory: &Path, key: &Path, plan: &Plan, made: impl Fn() + Sync + 
         files: hashes,
     };
     files::write_whole(&part.folder.join(MANIFEST), text_of(&manifest)?.as_bytes())?;
-    Ok(Made { key_text: key_of(&manifest, &lines)?, manifest, seed, part })
+    Ok(StagedTrial { key_text: key_of(&manifest, &lines)?, manifest, seed, part })
 }
 
 const PROGRAM: &str = concat!("rodcal ", env!("CARGO_PKG_VERSION"));
@@ -191,7 +193,7 @@ impl Plan {
         Of {
             made_by: PROGRAM.into(),
             seed,
-            half: format!("{:?}", self.half),
+            suite: format!("{:?}", self.suite),
             first: self.range.start,
             end: self.range.end,
             residuals_sha256: files::sha256(&bytes),

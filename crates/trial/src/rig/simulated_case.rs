@@ -1,4 +1,4 @@
-//! A recording that is made to order: one rod, one protocol, the effects that are asked for.
+//! A simulated case to a specification: one rod, one protocol, the effects that are asked for.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -15,7 +15,7 @@ use rodcal_base::units::{MM, UM};
 /// A steel rod in the shape of an L, 16 × 12 mm, with a declared joint `sleeve`, and what is done
 /// with it. SI.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Order {
+pub struct CaseSpec {
     /// Radius of the bend, m; 0 is a sharp corner.
     pub bend_radius: f64,
     /// Axes of {T} along which it is loaded, 0 to 2.
@@ -38,9 +38,9 @@ pub struct Order {
     pub quantum: f64,
 }
 
-impl Default for Order {
+impl Default for CaseSpec {
     fn default() -> Self {
-        Order {
+        CaseSpec {
             bend_radius: 0.0,
             axes: vec![0, 1, 2],
             loads: vec![2.5, 5.0, 7.5, 10.0],
@@ -55,9 +55,9 @@ impl Default for Order {
     }
 }
 
-/// What was made.
+/// A recording as its files have it.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Made {
+pub struct SimulatedCase {
     /// The rod file.
     pub rod: String,
     /// The readings.
@@ -69,9 +69,9 @@ pub struct Made {
 /// Seconds from a load to its reading, and from a run to the next.
 const TIMES: (f64, f64) = (40.0, 300.0);
 
-impl Order {
+impl CaseSpec {
     /// The recording with `effects`, and the noise of `seed`.
-    pub fn made(&self, effects: &[Effect], seed: u64) -> Made {
+    pub fn simulated(&self, effects: &[Effect], seed: u64) -> SimulatedCase {
         let mut random = Random::seeded(seed, 0);
         let drawing = self.drawing();
         let protocol = self.protocol(drawing.length());
@@ -80,7 +80,7 @@ impl Order {
         let bench = Bench { drawing, actual: Actual::default(), protocol, sticking, full_scale };
         let noise = Noise::normal(self.noise);
         let shown = noise.shown(&bench, &bench.readings(effects), &mut random);
-        Made {
+        SimulatedCase {
             rod: bench.drawing.toml("made"),
             readings: bench.protocol.csv(&shown),
             places: effects.iter().map(|effect| effect.place(&bench.protocol).to_string()).collect(),

@@ -6,7 +6,7 @@ use std::path::Path;
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::Wish;
+use super::DesignSpace;
 use crate::design::catalogue::{self, BUILT_IN, Tube, built_in_materials};
 use crate::design::figure::{Figure, Goal};
 use crate::design::limits::{self, Limit};
@@ -91,27 +91,27 @@ const REQUIRED: &Required = &[
     ("station_mm", "the distance from the flange along the centreline in mm"),
 ];
 
-impl Wish {
+impl DesignSpace {
     /// Reads and checks a design file and the catalogue that it names, whose path is seen from the
     /// file's folder.
     ///
     /// # Errors
-    /// [`crate::Error::File`] where one of them cannot be read; else as [`Wish::from_toml`].
-    pub fn read(path: &Path) -> Result<Wish> {
+    /// [`crate::Error::File`] where one of them cannot be read; else as [`DesignSpace::from_toml`].
+    pub fn read(path: &Path) -> Result<DesignSpace> {
         let file = path.display().to_string();
         let folder = path.parent().unwrap_or(Path::new(""));
         let catalogue = |name: &str| {
             let path = folder.join(name);
             Ok((path.display().to_string(), files::read_text(&path)?))
         };
-        Wish::from_toml(&file, &files::read_text(path)?, &catalogue)
+        DesignSpace::from_toml(&file, &files::read_text(path)?, &catalogue)
     }
 
     /// Reads and checks the text of a design file; `catalogue` finds the name and the text of a
     /// catalogue by what the file calls it.
     ///
     /// ```
-    /// use rodcal::design::Wish;
+    /// use rodcal::design::DesignSpace;
     ///
     /// let text = "
     ///     [geometry]
@@ -124,8 +124,8 @@ impl Wish {
     ///     [objectives]
     ///     minimise = [\"c_rod_um\", \"mass_g\"]
     /// ";
-    /// let wish = Wish::from_toml("design.toml", text, &|_| unreachable!())?;
-    /// assert_eq!(wish.combinations(), 31 * 3 * wish.tubes.len() as u64);
+    /// let space = DesignSpace::from_toml("design.toml", text, &|_| unreachable!())?;
+    /// assert_eq!(space.combinations(), 31 * 3 * space.tubes.len() as u64);
     /// # Ok::<(), rodcal::Error>(())
     /// ```
     ///
@@ -138,7 +138,7 @@ impl Wish {
         file: &str,
         text: &str,
         catalogue: &dyn Fn(&str) -> Result<(String, String)>,
-    ) -> Result<Wish> {
+    ) -> Result<DesignSpace> {
         let toml = TomlText::new(file, text);
         let raw: RawWish = toml.parse(REQUIRED)?;
         let geometry = &raw.geometry;
@@ -146,18 +146,18 @@ impl Wish {
         let mut materials = built_in_materials();
         materials.extend(raw.material.checked(&mut check)?);
         let (of_catalogue, tubes) = tubes(&toml, &raw.catalogue, &materials, catalogue)?;
-        let mut of = |key: &str, raw: Option<&Spanned<Raw>>, unit: f64, bounds, otherwise: f64| match raw {
+        let mut range = |key: &str, raw: Option<&Spanned<Raw>>, unit: f64, bounds, otherwise: f64| match raw {
             Some(raw) => {
                 Ok(values(&mut check, key, raw, bounds)?.into_iter().map(|value| value * unit).collect())
             }
             None => Ok(vec![otherwise * unit]),
         };
-        let l1 = of("geometry.l1_mm", Some(&geometry.l1_mm), MM, Bounds::LENGTH, 0.0)?;
-        let l2 = of("geometry.l2_mm", Some(&geometry.l2_mm), MM, Bounds::LENGTH, 0.0)?;
-        let gamma = of("geometry.gamma_deg", geometry.gamma_deg.as_ref(), DEG, Bounds::ANGLE, 90.0)?;
+        let l1 = range("geometry.l1_mm", Some(&geometry.l1_mm), MM, Bounds::LENGTH, 0.0)?;
+        let l2 = range("geometry.l2_mm", Some(&geometry.l2_mm), MM, Bounds::LENGTH, 0.0)?;
+        let gamma = range("geometry.gamma_deg", geometry.gamma_deg.as_ref(), DEG, Bounds::ANGLE, 90.0)?;
         let bend_radius =
-            of("geometry.bend_radius_mm", geometry.bend_radius_mm.as_ref(), MM, Bounds::RADIUS, 0.0)?;
-        let tip_mass = of("tip.mass_g", raw.tip.as_ref().map(|tip| &tip.mass_g), GRAM, Bounds::MASS, 0.0)?;
+            range("geometry.bend_radius_mm", geometry.bend_radius_mm.as_ref(), MM, Bounds::RADIUS, 0.0)?;
+        let tip_mass = range("tip.mass_g", raw.tip.as_ref().map(|tip| &tip.mass_g), GRAM, Bounds::MASS, 0.0)?;
         let flexibility =
             geometry.bend_flexibility.as_ref().map(|raw| check.bend_flexibility(raw)).transpose()?;
         // which rods are long enough is found out one by one
@@ -174,7 +174,7 @@ impl Wish {
             raw.tip.as_ref().map(|tip| &tip.mass_g),
         ];
         let is_range = keys.map(|raw| raw.is_some_and(|raw| matches!(raw.get_ref(), Raw::Range(_))));
-        let wish = Wish {
+        let space = DesignSpace {
             file: file.to_owned(),
             content: format!("{text}\n{of_catalogue}"),
             l1,
@@ -192,13 +192,13 @@ impl Wish {
             goals: goals(&toml, &raw.objectives)?,
             warnings: Vec::new(),
         };
-        let mut diameters = wish.tubes.iter().map(|tube| tube.pipe.section.height() / MM);
+        let mut diameters = space.tubes.iter().map(|tube| tube.pipe.section.height() / MM);
         if let Some(diameter) = diameters.find(|diameter| !(1.0..=1000.0).contains(diameter)) {
             check.usual("outer_diameter_mm of the catalogue", diameter, "mm", 1.0, 1000.0);
         }
-        let wish = Wish { warnings: check.warnings, ..wish };
-        let price = wish.goals.iter().any(|goal| goal.figure == Figure::Price);
-        if let (true, Some(tube)) = (price, catalogue::without_price(&wish.tubes)) {
+        let space = DesignSpace { warnings: check.warnings, ..space };
+        let price = space.goals.iter().any(|goal| goal.figure == Figure::Price);
+        if let (true, Some(tube)) = (price, catalogue::without_price(&space.tubes)) {
             let found = format!("\"price\" is a goal, but tube {tube} has no price_per_m");
             return Err(toml.wrong(
                 &raw.objectives,
@@ -206,7 +206,7 @@ impl Wish {
                 "a catalogue with a column price_per_m, filled in",
             ));
         }
-        Ok(wish)
+        Ok(space)
     }
 }
 
@@ -296,8 +296,8 @@ max_mass_g = 500
 minimise = [\"c_rod_um\"]
 ";
 
-    fn read(text: &str) -> Result<Wish> {
-        Wish::from_toml("d.toml", text, &|name| {
+    fn read(text: &str) -> Result<DesignSpace> {
+        DesignSpace::from_toml("d.toml", text, &|name| {
             Ok((
                 name.to_owned(),
                 "name,material,outer_diameter_mm,inner_diameter_mm\na,own,30,28\n".to_owned(),
@@ -306,7 +306,7 @@ minimise = [\"c_rod_um\"]
     }
 
     #[test]
-    fn what_is_no_wish_is_refused_where_it_stands() {
+    fn what_is_no_design_space_is_refused_where_it_stands() {
         for (from, to, expected) in [
             ("c_rod_um", "c_rod", "d.toml:9:13: `objectives` is \"c_rod\", expected one of c_rod_um,"),
             ("minimise = [\"c_rod_um\"]", "", "d.toml:8:1: there is no goal"),
@@ -323,15 +323,15 @@ minimise = [\"c_rod_um\"]
             assert!(error.starts_with(expected), "{error}");
         }
         let own = "[material.own]\nyoungs_modulus_gpa = 100\npoisson_ratio = 0.3\ndensity_kg_m3 = 2000\n";
-        let wish = read(&(TEXT.replace("builtin", "t.csv") + own)).unwrap();
-        assert_eq!((wish.combinations(), wish.rod(1).unwrap().pipe2.material.youngs_modulus), (2, 100e9));
+        let space = read(&(TEXT.replace("builtin", "t.csv") + own)).unwrap();
+        assert_eq!((space.combinations(), space.rod(1).unwrap().pipe2.material.youngs_modulus), (2, 100e9));
     }
 
     #[test]
     fn what_is_most_likely_in_another_unit_is_said() {
         let said = |from: &str, to: &str| {
-            let wish = read(&TEXT.replace(from, to)).unwrap();
-            wish.warnings.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")
+            let space = read(&TEXT.replace(from, to)).unwrap();
+            space.warnings.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")
         };
         assert_eq!(said("150", "150"), "");
         assert!(said("150", "[0.15, 0.2]").contains("geometry.l1_mm"), "{}", said("150", "[0.15, 0.2]"));
@@ -344,9 +344,9 @@ minimise = [\"c_rod_um\"]
     #[test]
     fn what_would_take_days_says_how_many() {
         let range = "{ from = 100, to = 1000, step = 0.01 }";
-        let wish =
+        let space =
             read(&TEXT.replace("l1_mm = 150", &format!("l1_mm = {range}")).replace("[400, 500]", range));
-        let much = wish.unwrap().is_too_much().unwrap();
+        let much = space.unwrap().is_too_much().unwrap();
         assert!(much.ends_with("days of computing"), "{much}");
         assert_eq!(read(TEXT).unwrap().is_too_much(), None);
     }
@@ -355,12 +355,12 @@ minimise = [\"c_rod_um\"]
     fn every_combination_has_its_number() {
         let text =
             TEXT.replace("150", "[100, 150]").replace("[constraints]", "same_tube = false\n[constraints]");
-        let wish = read(&text).unwrap();
+        let space = read(&text).unwrap();
         let mut all: Vec<String> =
-            (0..wish.combinations()).map(|k| format!("{:?}", wish.choice(k))).collect();
+            (0..space.combinations()).map(|k| format!("{:?}", space.choice(k))).collect();
         all.sort();
         all.dedup();
-        assert_eq!(all.len() as u64, wish.combinations());
-        assert_eq!(wish.choice(1).l2, 0.5); // L2 varies fastest
+        assert_eq!(all.len() as u64, space.combinations());
+        assert_eq!(space.choice(1).l2, 0.5); // L2 varies fastest
     }
 }

@@ -1,4 +1,4 @@
-//! What a designer asks for: a design file, checked.
+//! The design space: a design file, checked.
 
 mod file;
 
@@ -15,7 +15,7 @@ const USUAL_SPEED: f64 = 1e6;
 /// What may vary, what must hold, what counts.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
-pub struct Wish {
+pub struct DesignSpace {
     /// Name of the file.
     pub file: String,
     /// Texts of the file and of its catalogue.
@@ -62,7 +62,7 @@ pub(super) struct Choice {
     pub l2: f64,
 }
 
-impl Wish {
+impl DesignSpace {
     /// Number of combinations.
     pub fn combinations(&self) -> u64 {
         let tubes = self.tubes.len() as u128;
@@ -85,7 +85,7 @@ impl Wish {
         })
     }
 
-    /// The combination of a number below [`Wish::combinations`].
+    /// The combination of a number below [`DesignSpace::combinations`].
     pub(super) fn choice(&self, index: u64) -> Choice {
         let mut rest = index;
         let mut next = |count: usize| {

@@ -44,8 +44,8 @@ impl Extrapolation {
     /// `asked` against the `recording` of a calibration.
     pub(super) fn new(known: &Known, recording: &Recording, asked: &Recording) -> Self {
         let joints = known.setup.robot.joints.len();
-        let range = |of: &Recording, joint: usize| {
-            let values = (0..of.len()).map(|row| of.joints(row)[joint]);
+        let range = |recording: &Recording, joint: usize| {
+            let values = (0..recording.len()).map(|row| recording.joints(row)[joint]);
             values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), q| (a.min(q), b.max(q)))
         };
         let ranges: Vec<_> = (0..joints).map(|j| [range(asked, j), range(recording, j)]).collect();

@@ -233,7 +233,8 @@ impl RobotLaw {
     ) -> Result<RobotLaw, (usize, Fault)> {
         let names = [variable.symbol(), SIDE].into_iter();
         let names: Vec<&str> = names.chain(constants.iter().map(|own| own.name.as_str())).collect();
-        let read = |(k, formula): (usize, &String)| Expression::new(formula, &names).map_err(|of| (k, of));
+        let read =
+            |(k, formula): (usize, &String)| Expression::new(formula, &names).map_err(|fault| (k, fault));
         let expressions = formulas.iter().enumerate().map(read).collect::<Result<_, _>>()?;
         let mut law = RobotLaw {
             place,

@@ -137,5 +137,5 @@ fn not_independent(measurements: &Recording, validation: &Recording) -> Option<W
     let mut same =
         (0..validation.len()).filter(|&row| known.contains(&rounded(validation.joints(row)))).peekable();
     let pose = validation.rows[*same.peek()?].pose.clone();
-    Some(Warning::NotIndependent { count: same.count(), of: validation.len(), pose })
+    Some(Warning::NotIndependent { count: same.count(), total: validation.len(), pose })
 }

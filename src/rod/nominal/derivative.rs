@@ -78,33 +78,33 @@ impl Rod {
 
 impl Pipe {
     fn lifted<T: Number>(&self) -> Pipe<T> {
-        let (of, material) = (|x: f64| T::from(x), &self.material);
+        let (constant, material) = (|x: f64| T::from(x), &self.material);
         let section = match self.section {
             Section::Round(round) => Section::Round(Round {
-                outer_diameter: of(round.outer_diameter),
-                inner_diameter: of(round.inner_diameter),
+                outer_diameter: constant(round.outer_diameter),
+                inner_diameter: constant(round.inner_diameter),
             }),
             Section::Rectangle(rectangle) => Section::Rectangle(Rectangle {
-                width: of(rectangle.width),
-                height: of(rectangle.height),
-                wall: rectangle.wall.map(of),
+                width: constant(rectangle.width),
+                height: constant(rectangle.height),
+                wall: rectangle.wall.map(constant),
             }),
             Section::General(general) => Section::General(General {
-                area: of(general.area),
-                iy: of(general.iy),
-                iz: of(general.iz),
-                torsion_constant: of(general.torsion_constant),
-                shear_coefficient: of(general.shear_coefficient),
+                area: constant(general.area),
+                iy: constant(general.iy),
+                iz: constant(general.iz),
+                torsion_constant: constant(general.torsion_constant),
+                shear_coefficient: constant(general.shear_coefficient),
             }),
         };
         let material = Material {
             name: material.name.clone(),
-            youngs_modulus: of(material.youngs_modulus),
-            shear_modulus: of(material.shear_modulus),
-            density: of(material.density),
-            poisson_ratio: of(material.poisson_ratio),
-            yield_strength: material.yield_strength.map(of),
-            shear_coefficient_factor: of(material.shear_coefficient_factor),
+            youngs_modulus: constant(material.youngs_modulus),
+            shear_modulus: constant(material.shear_modulus),
+            density: constant(material.density),
+            poisson_ratio: constant(material.poisson_ratio),
+            yield_strength: material.yield_strength.map(constant),
+            shear_coefficient_factor: constant(material.shear_coefficient_factor),
             standard_uncertainty: material.standard_uncertainty,
         };
         Pipe { section, material }

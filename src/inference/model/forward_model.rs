@@ -13,6 +13,7 @@ pub const DERIVATIVE_STEP: f64 = 1e-4;
 
 /// One effect at one place.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Candidate {
     /// The effect. Candidates of one effect share its prior probability.
     pub effect: &'static Effect,

@@ -7,6 +7,7 @@ use crate::inference::{Description, Effect, Hypothesis, Kind, Location, Proposal
 
 /// An effect that was adopted: one term of the hypothesis, or several that are reported as one.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Finding {
     /// What it is.
     pub effect: &'static Effect,
@@ -35,6 +36,7 @@ pub struct Finding {
 
 /// One term of a finding.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct FindingPart {
     /// The candidate with its values.
     pub term: Term,
@@ -58,6 +60,7 @@ pub struct FindingPart {
 
 /// A number with its 95 % interval, SI.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Estimate {
     /// Name with its unit, for example `force_n`.
     pub name: String,
@@ -73,6 +76,7 @@ pub struct Estimate {
 
 /// An effect that may stand in the place of a part of a finding.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Rival {
     /// What it is.
     pub effect: &'static Effect,

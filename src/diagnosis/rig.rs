@@ -39,6 +39,7 @@ mod feasible;
 mod file_laws;
 mod first_sight;
 mod forward_model;
+mod law_measures;
 mod limits;
 mod load_history;
 mod mistakes;

@@ -7,7 +7,7 @@ use crate::beam::{Physics, RodModel};
 use crate::compliance::StaticLaws;
 use crate::error::Result;
 use crate::rod::law::should_show;
-use crate::rod::{LawVariable, Rod, RodLaw};
+use crate::rod::{Rod, RodLaw, RodLawPlace};
 use crate::units::UM;
 
 /// The readings less all laws that the load alone decides on.
@@ -47,5 +47,5 @@ pub fn without_laws(readings: &Readings, rod: &Rod, physics: &Physics, elements:
 }
 
 fn is_of(law: &RodLaw, channel: Axis) -> bool {
-    law.variable == LawVariable::Reading && law.is_static() && law.place == format!("d{channel}")
+    law.place == RodLawPlace::Sensor(channel) && law.is_static()
 }

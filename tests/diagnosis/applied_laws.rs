@@ -2,7 +2,7 @@
 
 use rodcal::rig;
 use rodcal::rig::readings::Readings;
-use rodcal::rod::Rod;
+use rodcal::rod::{Rod, RodLawPlace};
 use rodcal::units::UM;
 use rodcal_trial::rig::{Effect, Made, Order};
 use serde_json::Value;
@@ -35,8 +35,8 @@ fn a_gap_that_closes_is_written_and_read() {
     let (before, after, again) = applied(&rod, &readings);
     assert_settled(&before, &after, 1.0);
     let [law] = &again.laws[..] else { panic!("{:?}", again.laws) };
-    assert_eq!((law.place.as_str(), law.unit()), ("rod", "N"));
-    assert!(law.at(4.0, 1.0) == 0.0 && (law.at(10.0, 1.0) + 0.3 * 4.4).abs() < 0.1, "{}", law.words());
+    assert_eq!((&law.place, law.unit()), (&RodLawPlace::Rod, "N"));
+    assert!(law.at(4.0, 1.0) == 0.0 && (law.at(10.0, 1.0) + 0.3 * 4.4).abs() < 0.1, "{law}");
     let fit = |rod: &Rod| {
         let readings = Readings::from_text("f", &readings).unwrap();
         rig::fit(&readings, Some(rod), &rig::Options::default()).unwrap()

@@ -163,7 +163,7 @@ fn corrected(model: &RigModel, rod: &Rod, found: &Found) -> Result<Correction> {
     for law in found.law.into_iter().flat_map(Law::all) {
         match written(law, &format!("diagnose rig, {}", readings.file)) {
             Some(law) => {
-                entered.push(format!("law, {}", law.words()));
+                entered.push(format!("law, {}", law));
                 corrected.laws.push(law);
             }
             // another recording has another time

@@ -6,26 +6,29 @@
 
 use nalgebra::DVector;
 
+use super::law_measures::{SiteVariable, place_in_file};
 use super::model::RigModel;
 use super::remembered::remembered;
 use super::sites::sites;
 use crate::inference::law::Site;
-use crate::inference::{Evidence, Location, NominalParameter};
+use crate::inference::{Evidence, NominalParameter};
 use crate::rod::law::should_show;
 use crate::rod::{LawConstant, Rod, RodLaw};
 
 /// Takes what the laws of the rod's file add out of the data; which of them these readings have no
-/// data for, in words.
-pub(super) fn take_out(model: &mut RigModel, evidence: &mut Evidence, rod: &Rod) -> Vec<String> {
+/// data for.
+pub(super) fn take_out(model: &mut RigModel, evidence: &mut Evidence, rod: &Rod) -> Vec<RodLaw> {
     let all = sites(model, &DVector::zeros(model.data.len()));
     let mut unused = Vec::new();
     let mut adds = DVector::zeros(model.data.len());
     let mut predicted = adds.clone();
     for law in &rod.laws {
-        let is_its =
-            |site: &&Site| is_at(&law.place, &site.location) && site.variable.name == law.variable.words();
+        let variable = SiteVariable::OfFile(law.variable).measure();
+        let is_its = |site: &&Site| {
+            place_in_file(&site.location).as_ref() == Some(&law.place) && site.variable == variable
+        };
         let Some(site) = all.iter().find(is_its) else {
-            unused.push(law.words());
+            unused.push(law.clone());
             continue;
         };
         let added = |changed: Option<(usize, f64)>, of: Of| {
@@ -43,7 +46,7 @@ pub(super) fn take_out(model: &mut RigModel, evidence: &mut Evidence, rod: &Rod)
             if column.iter().all(|value| value.is_finite()) && column.amax() > 0.0 {
                 let unit = if own.unit.is_empty() { String::new() } else { format!(", {}", own.unit) };
                 evidence.nominal_numbers.push(NominalParameter {
-                    name: format!("{} of the law at {}{unit}", own.name, law.at_place()),
+                    name: format!("{} of the law at {}{unit}", own.name, law.place.spoken()),
                     unit: "",
                     si: 1.0,
                     value: own.value,
@@ -73,13 +76,6 @@ enum Of {
     Recorded,
     /// What is predicted.
     Predicted,
-}
-
-fn is_at(place: &str, location: &Location) -> bool {
-    match location {
-        Location::Channel { channel, .. } => place == format!("d{channel}"),
-        other => place == other.to_string(),
-    }
 }
 
 /// What a law adds to each datum, m.

@@ -9,7 +9,7 @@ use super::slide::Course;
 use super::structure::Structure;
 use crate::inference::{Candidate, Diagnosed};
 use crate::rig::readings::Readings;
-use crate::rod::Rod;
+use crate::rod::{Rod, RodLaw};
 
 /// The parameter of a joint that may be anywhere.
 pub(super) const STATION: &str = "station_mm";
@@ -39,8 +39,8 @@ pub struct RigModel {
     pub(super) actions: Vec<Vec<Action>>,
     /// What laws of the rod's file add to each datum as predicted, m; nothing without any.
     pub(super) law_adds: Vec<f64>,
-    /// Laws of the rod's file that the readings have no data for, in words.
-    pub(super) unused_laws: Vec<String>,
+    /// Laws of the rod's file that the readings have no data for.
+    pub(super) unused_laws: Vec<RodLaw>,
     /// Effects that the lab describes itself.
     pub(super) own: Vec<OwnEffect>,
 }
@@ -95,9 +95,8 @@ impl RigModel {
         self.as_recorded.as_ref().map_or(self.rod.as_ref(), |given| given.rod.as_ref())
     }
 
-    /// Laws of the rod's file that are not used, because the readings have no data for them, in
-    /// words.
-    pub fn unused_laws(&self) -> &[String] {
+    /// Laws of the rod's file that are not used, because the readings have no data for them.
+    pub fn unused_laws(&self) -> &[RodLaw] {
         &self.unused_laws
     }
 

@@ -13,13 +13,16 @@ use nalgebra::DVector;
 
 use super::action::Action;
 use super::effects::entry::{Entry, candidate};
+use super::effects::places::measured_channels;
+use super::law_measures::place_in_file;
 use super::model::RigModel;
 use super::own_effect::OwnEffect;
 use super::own_law::OwnLaw;
 use super::sites::sites;
 use crate::error::{Error, Place, Result};
 use crate::inference::law::Site;
-use crate::inference::{Location, Part};
+use crate::inference::{Key, Location, Part};
+use crate::rod::RodLawPlace;
 
 /// The candidate that an effect is for a recording; `None` where the recording has no data for it.
 ///
@@ -28,19 +31,28 @@ use crate::inference::{Location, Part};
 /// at its neutral values, or no number beside them.
 pub(super) fn entry(effect: &OwnEffect, model: &RigModel) -> Result<Option<Entry>> {
     let all = sites(model, &DVector::zeros(model.data().len()));
-    let at_place = |site: &&Site| is_at(effect, &site.location);
+    let channels = measured_channels(model.data());
+    let at_place = |site: &&Site| is_at(&effect.place, &site.location);
     if !all.iter().any(|site| at_place(&site)) && !all.is_empty() {
-        let mut known: Vec<String> = all.iter().map(|site| site.location.to_string()).collect();
-        // its channels are places, each by itself
-        known.retain(|place| *place != Part::Sensors.to_string());
+        let mut known: Vec<String> = all
+            .iter()
+            .filter_map(|site| place_in_file(&site.location))
+            .map(|place| place.to_string())
+            .collect();
         known.sort();
         known.dedup();
         return Err(wrong(&effect.at.0, format!("`place` is \"{}\"", effect.place), known.join(", ")));
     }
-    let own = all.iter().filter(at_place).find_map(|site| {
-        let is_its = |(name, _): &&(String, Vec<f64>)| name.is_empty() || *name == effect.place;
-        let direction = site.directions.iter().find(is_its)?;
-        (site.variable.name == effect.variable).then_some((site, &direction.1))
+    let variable = effect.variable.measure();
+    let own = all.iter().filter(at_place).filter(|site| site.variable == variable).find_map(|site| {
+        // a law of all sensors has a direction for each that was read
+        let direction = match (&site.location, &effect.place) {
+            (Location::Part(Part::Sensors), RodLawPlace::Sensor(own)) => {
+                channels.iter().position(|channel| channel == own)?
+            }
+            _ => 0,
+        };
+        Some((site, &site.directions.get(direction)?.1))
     });
     let Some((site, weights)) = own else { return Ok(None) };
     let data = site.concerned().filter(|&i| weights[i] != 0.0).map(|i| {
@@ -52,17 +64,16 @@ pub(super) fn entry(effect: &OwnEffect, model: &RigModel) -> Result<Option<Entry
     let memory = effect.memory.map(|memory| (memory, site.clone(), names.collect()));
     let law = Arc::new(OwnLaw { law: effect.law.clone(), neutral, data: data.collect(), memory });
     check(effect, &law)?;
-    let location = Location::key(format!("{}, {}", effect.effect.name, effect.place));
+    let location = Location::from(Key::new(effect.effect.name).rows(effect.place.to_string()));
     let actions = (0..effect.parameters.len()).map(|k| Action::Own(Arc::clone(&law), k)).collect();
     Ok(Some((candidate(effect.effect, location, effect.parameters.clone()), actions)))
 }
 
-fn is_at(effect: &OwnEffect, location: &Location) -> bool {
+fn is_at(place: &RodLawPlace, location: &Location) -> bool {
     match location {
         // offsets of all channels, each by itself
-        Location::Part(Part::Sensors) => ["dx", "dy", "dz"].contains(&effect.place.as_str()),
-        Location::Channel { channel, .. } => effect.place == format!("d{channel}"),
-        other => effect.place == other.to_string(),
+        Location::Part(Part::Sensors) => matches!(place, RodLawPlace::Sensor(_)),
+        other => place_in_file(other).as_ref() == Some(place),
     }
 }
 

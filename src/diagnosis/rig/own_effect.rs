@@ -2,18 +2,18 @@
 
 mod file;
 
+use super::law_measures::SiteVariable;
 use crate::error::Place;
 use crate::expression::Expression;
 use crate::inference::{Effect, Finding, Parameter};
-use crate::rod::LawMemory;
+use crate::rod::{LawMemory, RodLawPlace};
 
 /// An effect that a lab describes itself.
 #[derive(Debug, Clone)]
 pub struct OwnEffect {
     pub(super) effect: &'static Effect,
-    pub(super) place: String,
-    /// As the sites call it.
-    pub(super) variable: &'static str,
+    pub(super) place: RodLawPlace,
+    pub(super) variable: SiteVariable,
     pub(super) law: Expression,
     /// What its variable is instead of the recorded one.
     pub(super) memory: Option<LawMemory>,

@@ -15,12 +15,13 @@ use std::collections::BTreeMap;
 use nalgebra::{DVector, Vector3};
 
 use super::datum::Datum;
+use super::law_measures::{SiteVariable, measure};
 use super::load_history::{instants, runs};
 use super::model::{Body, RigModel};
 use super::nonparametric::Before;
 use crate::inference::law::{Course, Form, Instant, Measure, Site};
 use crate::inference::{Location, Part};
-use crate::rod::Rod;
+use crate::rod::{LawVariable, Rod};
 use crate::spatial::Axis;
 use crate::units::UM;
 
@@ -52,14 +53,14 @@ pub(super) fn sites(model: &RigModel, change: &DVector<f64>) -> Vec<Site> {
     let recording = Recording { data, moves: moves(data), by_load: courses(data, |_| 0.0) };
     let mut sites = vec![recording.of_load(
         (Location::Part(Part::Rod), measure("ΔF", "effective load", "N", 1.0)),
-        measure("F", "load", "N", 1.0),
+        LawVariable::Load,
         (slopes, loads.clone()),
         OF_A_LOAD,
     )];
     let sign = |d: &Datum| if d.channel == d.direction.axis { f64::from(d.direction.sign) } else { 0.0 };
     sites.push(recording.of_load(
         (Location::Part(Part::Clamp), measure("Δu", "displacement along the load", "µm", UM)),
-        measure("F", "load", "N", 1.0),
+        LawVariable::Load,
         (data.iter().map(sign).collect(), loads),
         OF_A_CONTACT,
     ));
@@ -70,7 +71,7 @@ pub(super) fn sites(model: &RigModel, change: &DVector<f64>) -> Vec<Site> {
             let (weights, moments) = data.iter().map(|d| turned(d, rod, station)).unzip();
             sites.push(recording.of_load(
                 (location, measure("Δθ", "turn", "µrad", 1e-6)),
-                measure("M", "moment", "N·m", 1.0),
+                LawVariable::Moment,
                 (weights, moments),
                 OF_A_CONTACT,
             ));
@@ -82,7 +83,7 @@ pub(super) fn sites(model: &RigModel, change: &DVector<f64>) -> Vec<Site> {
         let site = Site {
             location: Location::Channel { channel, form: None },
             result: measure("Δy", "reading", "µm", UM),
-            variable: measure("y", "reading", "µm", UM),
+            variable: SiteVariable::OfFile(LawVariable::Reading).measure(),
             directions: vec![(String::new(), data.iter().map(weight).collect())],
             values: known.clone(),
             recorded: Some(data.iter().map(|d| d.measured).collect()),
@@ -94,10 +95,6 @@ pub(super) fn sites(model: &RigModel, change: &DVector<f64>) -> Vec<Site> {
     }
     sites.extend(recording.drifts());
     sites
-}
-
-fn measure(symbol: &'static str, name: &str, unit: &'static str, si: f64) -> Measure {
-    Measure { symbol, name: name.into(), unit, si }
 }
 
 /// How far a datum moves by a turn of 1 rad at a station about the moment there, and that moment,
@@ -184,7 +181,7 @@ impl Recording<'_> {
     fn of_load(
         &self,
         (location, result): (Location, Measure),
-        variable: Measure,
+        variable: LawVariable,
         (weights, values): (Vec<f64>, Vec<f64>),
         forms: &'static [Form],
     ) -> Site {
@@ -198,7 +195,7 @@ impl Recording<'_> {
         Site {
             location,
             result,
-            variable,
+            variable: SiteVariable::OfFile(variable).measure(),
             directions: vec![(String::new(), weights)],
             values,
             recorded: None,
@@ -213,10 +210,10 @@ impl Recording<'_> {
     fn shares(&self, known: &[f64]) -> Vec<Site> {
         let data = self.data;
         let before = Before::of(data);
-        let share = |part: Part, variable: Measure, weights: Vec<f64>, values: Vec<f64>, forms| Site {
+        let share = |part: Part, variable: SiteVariable, weights: Vec<f64>, values: Vec<f64>, forms| Site {
             location: Location::Part(part),
             result: measure("Δu/u", "deflection", "%", 0.01),
-            variable,
+            variable: variable.measure(),
             directions: vec![(String::new(), weights)],
             values,
             recorded: None,
@@ -228,22 +225,20 @@ impl Recording<'_> {
         let mut sites = Vec::new();
         if data.iter().any(|d| d.drive() < 0.0) && data.iter().any(|d| d.drive() > 0.0) {
             // what is softer one way may be so either way
-            for (sign, symbol, name) in
-                [(1.0, "F", "load along the positive axes"), (-1.0, "F", "load along the negative axes")]
-            {
+            for (sign, variable) in [(1.0, LawVariable::AlongPositive), (-1.0, LawVariable::AlongNegative)] {
                 let values = data.iter().map(|d| sign * d.drive()).collect();
-                sites.push(share(Part::Rod, measure(symbol, name, "N", 1.0), own(), values, OF_A_SIDE));
+                sites.push(share(Part::Rod, SiteVariable::OfFile(variable), own(), values, OF_A_SIDE));
             }
         }
         if before.loads(data).is_some() {
-            let variable = measure("F'", "load that hung before", "N", 1.0);
+            let variable = SiteVariable::OfFile(LawVariable::LoadBefore);
             let values = before.load.iter().map(|load| load.abs()).collect();
             sites.push(share(Part::Rod, variable, own(), values, OF_A_LOAD));
         }
         if let (Some(wait), Some(_)) = (&before.wait, before.waits()) {
-            let variable = measure("t", "time since the load was changed", "s", 1.0);
+            let variable = SiteVariable::OfFile(LawVariable::SinceChange);
             let changes = before.changes(data, known);
-            sites.push(share(Part::Slide, variable.clone(), changes, wait.clone(), FADING));
+            sites.push(share(Part::Slide, variable, changes, wait.clone(), FADING));
             sites.push(share(Part::Rod, variable, own(), wait.clone(), FADING));
         }
         for common in self.common() {
@@ -266,7 +261,7 @@ impl Recording<'_> {
             Site {
                 location: Location::Part(Part::Sensors),
                 result: measure("Δy", "reading", "µm", UM),
-                variable: common.variable,
+                variable: common.variable.measure(),
                 directions: channels.iter().map(direction).collect(),
                 values: common.values,
                 recorded: None,
@@ -286,12 +281,12 @@ impl Recording<'_> {
             Some(values.into_iter().map(|value| value - least).collect())
         };
         let plain = |variable, values, forms| Common { variable, values, forms, courses: Vec::new() };
-        let time = all(&|d| d.time).map(|t| plain(measure("t", "time", "s", 1.0), t, OF_TIME));
+        let time = all(&|d| d.time).map(|t| plain(SiteVariable::Time, t, OF_TIME));
         let order = all(&|d| Some(d.order as f64));
-        let order = order.map(|n| plain(measure("n", "number of readings before", "", 1.0), n, OF_TIME));
+        let order = order.map(|n| plain(SiteVariable::Order, n, OF_TIME));
         let temperature = all(&|d| d.temperature).map(|values| Common {
             courses: self.whole(values.first().copied().unwrap_or_default()).into_iter().collect(),
-            ..plain(measure("T", "temperature above the lowest", "K", 1.0), values, OF_A_LEVEL)
+            ..plain(SiteVariable::Temperature, values, OF_A_LEVEL)
         });
         time.into_iter().chain(order).chain(temperature).collect()
     }
@@ -315,7 +310,7 @@ impl Recording<'_> {
 
 /// What all data have in common.
 struct Common {
-    variable: Measure,
+    variable: SiteVariable,
     values: Vec<f64>,
     forms: &'static [Form],
     courses: Vec<Course>,

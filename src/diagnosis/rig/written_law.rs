@@ -1,20 +1,18 @@
 //! A proposed law as one of the rod's file.
 
 use super::super::law_formula::{constants, formula, range, source};
+use super::law_measures::{SiteVariable, place_in_file};
 use super::remembered::in_file;
-use crate::inference::Location;
 use crate::inference::law::Law;
 use crate::rod::{LawVariable, RodLaw};
 
 /// The law as the rod's file holds it; `None` for one that only this recording has: over its time,
 /// its order, its temperatures.
 pub(super) fn written(law: &Law, from: &str) -> Option<RodLaw> {
-    let place = match &law.site.location {
-        Location::Channel { channel, .. } => format!("d{channel}"),
-        other => other.to_string(),
-    };
-    let name = &law.site.variable.name;
-    let variable = LawVariable::ALL.into_iter().find(|v| v.words() == name && v.is_at(&place))?;
+    let place = place_in_file(&law.site.location)?;
+    let is_its =
+        |own: &LawVariable| own.is_at(&place) && SiteVariable::OfFile(*own).measure() == law.site.variable;
+    let variable = LawVariable::ALL.into_iter().find(is_its)?;
     // functions of a variable with two signs are odd
     let formula = formula(law, variable.symbol(), variable == LawVariable::Reading, 0);
     let mut written = RodLaw::new(place, variable, formula, constants(law), range(law)).ok()?;
@@ -26,6 +24,7 @@ pub(super) fn written(law: &Law, from: &str) -> Option<RodLaw> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::inference::Location;
     use crate::inference::law::{Constant, Form, FormConstant, Measure, Site};
 
     /// Each form, written and read as a formula, is the law itself.

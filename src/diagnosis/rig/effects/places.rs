@@ -23,7 +23,7 @@ pub(super) fn loaded_axes(data: &[Datum]) -> Vec<Axis> {
 }
 
 /// The channels that were read.
-pub(super) fn measured_channels(data: &[Datum]) -> Vec<Axis> {
+pub(in crate::diagnosis::rig) fn measured_channels(data: &[Datum]) -> Vec<Axis> {
     Axis::ALL.into_iter().filter(|channel| data.iter().any(|d| d.channel == *channel)).collect()
 }
 

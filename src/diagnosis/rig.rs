@@ -29,6 +29,7 @@ mod as_measured;
 mod build;
 mod cases;
 mod chronicle;
+mod columns;
 mod correction;
 mod datum;
 mod diagnose;

@@ -80,7 +80,7 @@ pub(super) fn others(
 pub(super) fn add_rivals(others: &[Other], model: &RigModel, diagnosis: &mut Diagnosis) {
     for finding in diagnosis.findings.iter_mut().filter(|finding| is_of_the_rod(model, finding)) {
         for other in others.iter().filter(|other| other.log_odds > -ALIKE) {
-            let location = Location::key(other.rod.location.clone());
+            let location = Location::from(other.rod.location.clone());
             let odds = (-other.log_odds).exp().max(1.0);
             // a file is sooner looked at than anything is measured
             finding.rivals.insert(0, Rival::without_term(other.rod.effect, location, odds));

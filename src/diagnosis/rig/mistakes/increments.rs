@@ -9,11 +9,13 @@
 
 use std::collections::BTreeMap;
 
+use super::super::columns::columns;
 use super::super::datum::Datum;
 use super::super::effects::mistakes::INCREMENT_MISTAKE;
 use super::lines::Line;
-use super::moves::column;
 use super::part::Part;
+use crate::inference::Key;
+use crate::spatial::Axis;
 
 /// Share of the squares that increments may leave, and that offsets must.
 const LEFT: f64 = 0.03;
@@ -57,11 +59,11 @@ pub(super) fn found(data: &[Datum], lines: &[Line], by_rod: &[f64]) -> Option<In
     if shown.is_empty() || !are_all {
         return None;
     }
-    let mut columns: Vec<String> = data.iter().map(|datum| column(datum.channel)).collect();
-    columns.sort();
-    columns.dedup();
-    let location = columns.join(", ");
-    let verb = if columns.len() == 1 { "is" } else { "are" };
+    let mut channels: Vec<Axis> = data.iter().map(|datum| datum.channel).collect();
+    channels.sort();
+    channels.dedup();
+    let location = Key::new(columns(&channels));
+    let verb = if channels.len() == 1 { "is" } else { "are" };
     let part = Part {
         effect: &INCREMENT_MISTAKE,
         observed: format!(
@@ -69,7 +71,7 @@ pub(super) fn found(data: &[Datum], lines: &[Line], by_rod: &[f64]) -> Option<In
         ),
         looks_like: format!(
             "{location} {} like increments",
-            if columns.len() == 1 { "looks" } else { "look" }
+            if channels.len() == 1 { "looks" } else { "look" }
         ),
         location,
         estimates: Vec::new(),

@@ -2,13 +2,13 @@
 
 use std::collections::HashSet;
 
+use super::super::columns::{column, rows_between};
 use super::super::datum::Datum;
 use super::super::effects::mistakes::{SATURATED_SENSOR, STUCK_SENSOR};
 use super::super::evidence::resolution;
 use super::lines::{Line, lines};
-use super::moves::column;
 use super::part::Part;
-use crate::inference::{Estimate, Quantity};
+use crate::inference::{Estimate, Key, Quantity};
 use crate::spatial::Axis;
 use crate::units::{UM, significant};
 
@@ -110,7 +110,7 @@ pub(super) fn stuck(data: &[Datum], lines: &[Line], expected: Option<&Expected>)
         let name = column(channel);
         found.push(Part {
             effect: &STUCK_SENSOR,
-            location: name.clone(),
+            location: Key::new(&name),
             estimates: vec![Estimate { name: "um".into(), unit: UM, value, low, high }],
             observed: format!(
                 "{name} shows {} whatever the load: leave the column out, and look at its sensor",
@@ -173,7 +173,7 @@ pub(super) fn saturated(data: &[Datum], lines: &[Line], by_rod: Option<&Expected
             let shown = side * limit / UM;
             found.push(Part {
                 effect: &SATURATED_SENSOR,
-                location: name.clone(),
+                location: Key::new(&name),
                 estimates: vec![Estimate { name: "um".into(), unit: UM, value: side * limit, low: side * limit, high: side * limit }],
                 observed: format!(
                     "{name} is cut off at {} µm in {} readings: leave them out, or use a sensor of a longer range",
@@ -251,17 +251,16 @@ pub(super) fn frozen(data: &[Datum]) -> Vec<Part> {
             if range.1 - range.0 < least {
                 continue;
             }
-            let (name, rows) = (column(channel), (data[at[0]].row, data[at[same - 1]].row));
+            let (name, rows) = (column(channel), rows_between(data[at[0]].row, data[at[same - 1]].row));
             let shown = significant(value / UM, 4);
             found.push(Part {
                 effect: &STUCK_SENSOR,
-                location: format!("{name}, rows {} to {}", rows.0, rows.1),
+                location: Key::new(&name).rows(&rows),
                 estimates: vec![Estimate { name: "um".into(), unit: UM, value, low: value, high: value }],
                 observed: format!(
-                    "{name} stays at {shown} µm in the rows {} to {} while the loads change: leave these readings out",
-                    rows.0, rows.1
+                    "{name} stays at {shown} µm in the {rows} while the loads change: leave these readings out"
                 ),
-                looks_like: format!("{name} looks stuck in the rows {} to {}", rows.0, rows.1),
+                looks_like: format!("{name} looks stuck in the {rows}"),
                 explains: range.1 - range.0,
                 data: at.to_vec(),
                 rivals: Vec::new(),

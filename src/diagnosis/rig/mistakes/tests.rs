@@ -5,10 +5,11 @@ mod named;
 mod parts;
 mod sensors;
 
+use super::mended::Mended;
 use super::*;
 use crate::diagnosis::rig::model::RigModel;
 use crate::diagnosis::rig::wanted::Wanted;
-use crate::inference::{ForwardModel, Term};
+use crate::inference::{Finding, ForwardModel, Location, Term};
 use crate::rig::readings::{Axis, Direction, Phase, Reading};
 use crate::section::Round;
 use crate::statistics::Random;
@@ -327,6 +328,6 @@ fn a_rod_is_known_by_the_lines_that_show_it() {
     let others = [("straight.toml".to_owned(), meant)];
     let known = mended(&readings, Some(&file), &others).unwrap();
     let named = known.found.iter().map(|found| found.location.to_string());
-    let tried = known.others.iter().map(|other| other.location.clone());
+    let tried = known.others.iter().map(|other| other.location.to_string());
     assert!(named.chain(tried).any(|at| at == "straight.toml"), "{:?}", known.found);
 }

@@ -1,15 +1,14 @@
-//! What a mistake did to a file, as something that can be undone.
+//! What mistakes of units, signs and names did to a file, as something that can be undone.
 
-use crate::inference::{Effect, Estimate};
 use crate::rig::readings::{Reading, Readings};
 use crate::spatial::Axis;
 
-/// What undoes mistakes; everything by the labels of the file.
+/// What undoes mistakes: factors, and what axes and channels really are, by the labels of the file.
 ///
 /// Mistakes commute: factors belong to the columns as they are named, and the names are exchanged
 /// after that.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Change {
+pub(super) struct Relabelling {
     /// By axis of the load: true over recorded.
     pub load: [f64; 3],
     /// By axis of the load and channel: true over recorded.
@@ -22,31 +21,33 @@ pub(super) struct Change {
     pub body: usize,
 }
 
-impl Default for Change {
+impl Default for Relabelling {
     fn default() -> Self {
-        Change { load: [1.0; 3], reading: [[1.0; 3]; 3], channel: [0, 1, 2], axis: [0, 1, 2], body: 0 }
+        Relabelling { load: [1.0; 3], reading: [[1.0; 3]; 3], channel: [0, 1, 2], axis: [0, 1, 2], body: 0 }
     }
 }
 
-impl Change {
+impl Relabelling {
     /// A factor on the loads along some axes.
-    pub fn load(axes: [bool; 3], factor: f64) -> Change {
-        Change { load: axes.map(|is_of| if is_of { factor } else { 1.0 }), ..Change::default() }
+    pub fn load(axes: [bool; 3], factor: f64) -> Relabelling {
+        let load = axes.map(|is_its| if is_its { factor } else { 1.0 });
+        Relabelling { load, ..Relabelling::default() }
     }
 
     /// A factor on the readings of some channels under loads along some axes.
-    pub fn reading(axes: [bool; 3], channels: [bool; 3], factor: f64) -> Change {
-        let reading = axes.map(|of_axis| channels.map(|of| if of && of_axis { factor } else { 1.0 }));
-        Change { reading, ..Change::default() }
+    pub fn reading(axes: [bool; 3], channels: [bool; 3], factor: f64) -> Relabelling {
+        let by_channel = |is_axis: bool| channels.map(|is_its| if is_its && is_axis { factor } else { 1.0 });
+        let reading = axes.map(by_channel);
+        Relabelling { reading, ..Relabelling::default() }
     }
 
     /// Another rod.
-    pub fn body(body: usize) -> Change {
-        Change { body, ..Change::default() }
+    pub fn body(body: usize) -> Relabelling {
+        Relabelling { body, ..Relabelling::default() }
     }
 
     /// Both; `None` for two rods at once.
-    pub fn and(&self, other: &Change) -> Option<Change> {
+    pub fn and(&self, other: &Relabelling) -> Option<Relabelling> {
         if self.body != 0 && other.body != 0 {
             return None;
         }
@@ -85,47 +86,23 @@ impl Change {
     }
 }
 
-/// A mistake that may have been made.
-#[derive(Debug, Clone)]
-pub(super) struct Move {
-    pub effect: &'static Effect,
-    /// Columns, keys and names as they stand in the file.
-    pub location: String,
-    pub change: Change,
-    /// How usual it is: ln of odds against the most usual one.
-    pub log_prior: f64,
-    pub estimates: Vec<Estimate>,
-    /// What is wrong, with the correction: a full sentence without its full stop.
-    pub observed: String,
-    /// What it looks like, for one line: `load_n looks like kilograms`.
-    pub looks_like: String,
-    /// How far the factor that all lines still have in common may be from 1, as a ratio: a unit's
-    /// factor counts only near it.
-    pub within: f64,
-}
-
-/// An estimate without a unit.
-pub(super) fn exact(name: &str, value: f64) -> Estimate {
-    Estimate { name: name.into(), unit: 1.0, value, low: value, high: value }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn changes_combine_and_undo_what_was_done() {
+    fn relabellings_combine_and_undo_what_was_done() {
         let text = "axis,load_n,dx_um,dy_um,dz_um\ny,1,1,2,\nz,2,3,,5\nz,3,3,,6\n";
         let mut readings = Readings::from_text("f", text).unwrap();
-        let swapped = Change { channel: [0, 2, 1], ..Change::default() };
-        let flipped = Change::reading([true; 3], [false, true, false], -1.0);
-        let axis = Change::load([false, false, true], -2.0);
+        let swapped = Relabelling { channel: [0, 2, 1], ..Relabelling::default() };
+        let flipped = Relabelling::reading([true; 3], [false, true, false], -1.0);
+        let axis = Relabelling::load([false, false, true], -2.0);
         let all = swapped.and(&flipped).and_then(|both| both.and(&axis)).unwrap();
         all.undo(&mut readings);
         let row = &readings.rows[0];
         let um = |offset: Option<f64>| offset.map(|offset| (offset / 1e-6).round());
         assert_eq!(row.offset.map(um), [Some(1.0), None, Some(-2.0)]);
         assert_eq!((row.signed_load(), readings.rows[1].signed_load()), (1.0, -4.0));
-        assert_eq!(Change::body(1).and(&Change::body(2)), None);
+        assert_eq!(Relabelling::body(1).and(&Relabelling::body(2)), None);
     }
 }

@@ -8,16 +8,13 @@ use super::cases::Cases;
 use super::datum::Datum;
 use super::effects::entry::{Context, Entry};
 use super::effects::registry;
-use super::effects::zeros::ZERO_NOT_TAKEN;
 use super::model::{Body, RigModel, is_dependent};
 use super::numbering::numbered;
 use super::slide::Course;
 use super::state::State;
 use super::structure::Structure;
 use super::wanted::Wanted;
-use super::{
-    correction, datum, evidence, file_laws, first_sight, nominal, nonparametric, own, slide, structure,
-};
+use super::{datum, evidence, file_laws, first_sight, nominal, nonparametric, own, slide, structure};
 use crate::error::Result;
 use crate::inference::{Candidate, Effect, Evidence, NotTestable, Parameter, UNKNOWN};
 use crate::rig::readings::Readings;
@@ -85,6 +82,7 @@ impl RigModel {
             rod: rod.cloned(),
             as_recorded: None,
             bent: Vec::new(),
+            known_numbers: Vec::new(),
             cases: Cases::of(&data, &place),
             data,
             body,
@@ -105,7 +103,7 @@ impl RigModel {
         };
         let stiffness = first_sight::stiffness(&model.data);
         let bent = bent.map(|bent| match rod {
-            Some(rod) if bent == rod && stiffness != 1.0 => correction::scaled(rod, stiffness),
+            Some(rod) if bent == rod && stiffness != 1.0 => structure::with_moduli(rod, stiffness, stiffness),
             _ => bent.clone(),
         });
         let large = bent.as_ref().map(|bent| model.large_deflections(bent)).transpose()?;
@@ -118,10 +116,9 @@ impl RigModel {
                 (at(d.load_station), at(d.read_station))
             };
             let bent = bent.as_ref().unwrap_or(rod);
-            let (numbers, columns, deflections) =
-                nominal::all(&model.data, rod, bent, &readings.header, &stations)?;
-            model.bent = deflections;
-            (evidence.nominal_numbers, evidence.nominal) = (numbers, columns);
+            let numbers = nominal::all(&model.data, rod, bent, &readings.header, &stations)?;
+            (model.bent, model.known_numbers) = (numbers.deflections, numbers.known);
+            (evidence.nominal_numbers, evidence.nominal) = (numbers.parameters, numbers.columns);
             model.unused_laws = file_laws::take_out(&mut model, &mut evidence, rod);
         }
         let not_testable = model.add_candidates(wanted)?;
@@ -173,8 +170,7 @@ impl RigModel {
             Context { data: &self.data, body: &mut self.body, rod: self.rod.as_ref(), stiffness };
         let has_rod = context.rod.is_some();
         let mut entries = Vec::new();
-        let all = registry::ALL.into_iter().chain([&ZERO_NOT_TAKEN]);
-        for effect in all.filter(|effect| has_rod || !effect.needs_rod) {
+        for effect in registry::terms().filter(|effect| has_rod || !effect.needs_rod) {
             if wanted.includes(&effect.effect) {
                 entries.extend((effect.candidates)(&mut context));
             }

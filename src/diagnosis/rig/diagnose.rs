@@ -6,7 +6,8 @@ use super::mistakes::Mended;
 use super::model::{AsRecorded, RigDiagnosis, RigModel};
 use super::own_effect::OwnEffect;
 use super::wanted::Wanted;
-use super::{another_rod, as_measured, correction, limits, mistakes, next, sites};
+use super::write_back::as_found;
+use super::{another_rod, as_measured, limits, mistakes, next, sites};
 use crate::error::{Error, Place, Result};
 use crate::inference::law::propose;
 use crate::inference::{
@@ -144,7 +145,7 @@ pub fn diagnose_with(
 /// readings show.
 fn bends_farther(model: &RigModel, bent: Option<&Rod>, diagnosis: &Diagnosis) -> Result<Option<Rod>> {
     let (Some(rod), Some(bent)) = (model.rod(), bent) else { return Ok(None) };
-    let found = correction::as_found(model, rod, &diagnosis.findings);
+    let found = as_found(model, rod, &diagnosis.findings);
     if found == *bent {
         return Ok(None);
     }

@@ -8,6 +8,7 @@ use nalgebra::DVector;
 
 use super::law_measures::{SiteVariable, place_in_file};
 use super::model::RigModel;
+use super::nominal::KnownNumber;
 use super::remembered::remembered;
 use super::sites::sites;
 use crate::inference::law::Site;
@@ -22,7 +23,7 @@ pub(super) fn take_out(model: &mut RigModel, evidence: &mut Evidence, rod: &Rod)
     let mut unused = Vec::new();
     let mut adds = DVector::zeros(model.data.len());
     let mut predicted = adds.clone();
-    for law in &rod.laws {
+    for (number, law) in rod.laws.iter().enumerate() {
         let variable = SiteVariable::OfFile(law.variable).measure();
         let is_its = |site: &&Site| {
             place_in_file(&site.location).as_ref() == Some(&law.place) && site.variable == variable
@@ -45,6 +46,7 @@ pub(super) fn take_out(model: &mut RigModel, evidence: &mut Evidence, rod: &Rod)
             let column = 0.5 * (added(Some((k, u)), Of::Recorded) - added(Some((k, -u)), Of::Recorded));
             if column.iter().all(|value| value.is_finite()) && column.amax() > 0.0 {
                 let unit = if own.unit.is_empty() { String::new() } else { format!(", {}", own.unit) };
+                model.known_numbers.push(KnownNumber::LawConstant(number, k));
                 evidence.nominal_numbers.push(NominalParameter {
                     name: format!("{} of the law at {}{unit}", own.name, law.place.spoken()),
                     unit: "",

@@ -8,7 +8,6 @@ use nalgebra::{DMatrix, DVector};
 use super::action::Action;
 use super::effects::events::by_channel;
 use super::effects::registry;
-use super::effects::zeros::ZERO_NOT_TAKEN;
 use super::model::{Body, RigModel, STATION, is_dependent};
 use super::state::State;
 use crate::inference::{
@@ -167,9 +166,7 @@ impl ForwardModel for RigModel {
         if let Some(own) = self.own.iter().find(|own| own.effect == finding.effect) {
             return Description { observed: own.observed(finding), cause: finding.effect.cause.to_owned() };
         }
-        let mut all = registry::ALL.into_iter().chain([&ZERO_NOT_TAKEN]);
-        let own = all.find(|known| &known.effect == finding.effect);
-        let observed = own.map_or_else(
+        let observed = registry::record(finding.effect).map_or_else(
             || format!("{} at {}", finding.effect.spoken(), finding.location),
             |effect| (effect.observed)(finding, self),
         );

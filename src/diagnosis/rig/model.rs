@@ -4,6 +4,7 @@
 use super::action::Action;
 use super::cases::Cases;
 use super::datum::Datum;
+use super::nominal::KnownNumber;
 use super::own_effect::OwnEffect;
 use super::slide::Course;
 use super::structure::Structure;
@@ -27,6 +28,8 @@ pub struct RigModel {
     /// What the rod as it bends would show, without the rig's effects, m: what the columns of the
     /// nominal numbers are shares of.
     pub(super) bent: Vec<f64>,
+    /// What each of the nominal numbers is.
+    pub(super) known_numbers: Vec<KnownNumber>,
     pub(super) body: Body,
     /// For each datum the pair of stations (with a rod) or the line (without).
     pub(super) place: Vec<usize>,

@@ -16,11 +16,36 @@ use super::structure::responses;
 use crate::error::Result;
 use crate::inference::NominalParameter;
 use crate::rig::readings::RigHeader;
-use crate::rod::Rod;
+use crate::rod::{NominalNumber, Rod};
 use crate::spatial::Axis;
 use crate::units::MM;
 
 const PERCENT: f64 = 0.01;
+
+/// What a number that is known to a standard uncertainty is.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum KnownNumber {
+    /// A number of the rod's file.
+    OfRod(NominalNumber),
+    /// The scale of all loads.
+    LoadScale,
+    /// The scale of the sensor of a channel.
+    SensorScale(Axis),
+    /// A station that the readings state, m.
+    Station(f64),
+    /// A constant of a law of the rod's file: numbers of both.
+    LawConstant(usize, usize),
+}
+
+/// All such numbers, with what each does.
+pub(super) struct KnownNumbers {
+    pub known: Vec<KnownNumber>,
+    pub parameters: Vec<NominalParameter>,
+    /// For each of them its column.
+    pub columns: DMatrix<f64>,
+    /// What the rod as it bends would show, m.
+    pub deflections: Vec<f64>,
+}
 
 /// The numbers of `rod`, their columns by the rod as it bends (`bent`), and what that one would
 /// show, m; `stations` are the load and read stations of a datum on a rod.
@@ -30,12 +55,13 @@ pub(super) fn all(
     bent: &Rod,
     header: &RigHeader,
     stations: &dyn Fn(&Rod, &Datum) -> (f64, f64),
-) -> Result<(Vec<NominalParameter>, DMatrix<f64>, Vec<f64>)> {
-    let mut numbers = Vec::new();
+) -> Result<KnownNumbers> {
+    let (mut known, mut parameters) = (Vec::new(), Vec::new());
     let mut columns: Vec<Vec<f64>> = Vec::new();
-    let mut add = |number: NominalParameter, column: Vec<f64>| {
+    let mut add = |number: KnownNumber, parameter: NominalParameter, column: Vec<f64>| {
         if column.iter().any(|value| *value != 0.0) && column.iter().all(|value| value.is_finite()) {
-            numbers.push(number);
+            known.push(number);
+            parameters.push(parameter);
             columns.push(column);
         }
     };
@@ -58,10 +84,9 @@ pub(super) fn all(
         };
         let column = changed[0].iter().zip(&changed[1]).map(|(more, less)| 0.5 * (more - less));
         let (unit, si, value) = nominal.for_people();
-        add(
-            NominalParameter { name: nominal.number.to_string(), unit, si, value, standard_uncertainty: u },
-            column.collect(),
-        );
+        let name = nominal.number.to_string();
+        let parameter = NominalParameter { name, unit, si, value, standard_uncertainty: u };
+        add(KnownNumber::OfRod(nominal.number), parameter, column.collect());
     }
     let scale = |name: String, standard_uncertainty: f64| NominalParameter {
         name,
@@ -72,21 +97,23 @@ pub(super) fn all(
     };
     let (loads, sensors) = (header.load_scale, header.sensor_scale);
     let column = deflections.iter().map(|bent| loads * bent).collect();
-    add(scale("scale of the loads".into(), loads), column);
+    add(KnownNumber::LoadScale, scale("scale of the loads".into(), loads), column);
     for channel in Axis::ALL {
         let of_channel = |(d, bent): (&Datum, &f64)| if d.channel == channel { sensors * bent } else { 0.0 };
-        let name = format!("scale of sensor d{channel}");
-        add(scale(name, sensors), data.iter().zip(&deflections).map(of_channel).collect());
+        let parameter = scale(format!("scale of sensor d{channel}"), sensors);
+        let column = data.iter().zip(&deflections).map(of_channel).collect();
+        add(KnownNumber::SensorScale(channel), parameter, column);
     }
     let length = rod.standard_uncertainty.length;
     for station in pairs.stated(data) {
         let Some(column) = pairs.moved(data, bent, station, length) else { continue };
         let name = format!("station {:.1} mm", station / MM);
         let (unit, si) = ("mm", MM);
-        add(NominalParameter { name, unit, si, value: station, standard_uncertainty: length }, column);
+        let parameter = NominalParameter { name, unit, si, value: station, standard_uncertainty: length };
+        add(KnownNumber::Station(station), parameter, column);
     }
-    let matrix = DMatrix::from_fn(data.len(), columns.len(), |i, k| columns[k][i]);
-    Ok((numbers, matrix, deflections))
+    let columns = DMatrix::from_fn(data.len(), columns.len(), |i, k| columns[k][i]);
+    Ok(KnownNumbers { known, parameters, columns, deflections })
 }
 
 /// Which pair of load and read station each datum has.

@@ -40,12 +40,27 @@ pub(super) struct Structure {
     arc: Option<Parts>,
     /// The rod file's flexibility factor of the bend.
     pub bend_factor: f64,
-    /// Per rad/(N·m), in the order in which they were added.
-    joints: Vec<Parts>,
-    /// Where each of them is, m.
-    stations: Vec<f64>,
+    /// In the order in which they were added.
+    joints: Vec<Hinge>,
     pairs: Vec<(f64, f64)>,
     rod: Rod,
+}
+
+/// How a joint gives way.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Deformation {
+    /// About the axes across the rod.
+    Bending,
+    /// About the rod's own axis.
+    Torsion,
+}
+
+/// A joint that gives way in one of these ways.
+#[derive(Debug, Clone)]
+struct Hinge {
+    deformation: Deformation,
+    /// Per rad/(N·m).
+    parts: Parts,
 }
 
 /// What is wrong with a structure.
@@ -112,7 +127,7 @@ impl Structure {
         let bend_factor = rod.bend_flexibility.factor(&rod.bend.section, rod.bend_radius);
         let pipes = responses(&without_joints, &pairs)?;
         // G twice as high halves what G is responsible for
-        let stiffer = responses(&with_shear_modulus(&without_joints, 2.0), &pairs)?;
+        let stiffer = responses(&with_moduli(&without_joints, 1.0, 2.0), &pairs)?;
         let arc = match rod.arc_length() > 0.0 {
             true => {
                 let flexible = BendFlexibility::Factor(bend_factor + 1.0);
@@ -129,7 +144,6 @@ impl Structure {
             arc: arc.filter(|parts| parts.iter().any(|part| part.amax() > 0.0)),
             bend_factor,
             joints: Vec::new(),
-            stations: Vec::new(),
             pairs,
             rod: without_joints,
         })
@@ -140,7 +154,8 @@ impl Structure {
         let first = self.joints.len();
         let (at, tangent) = (self.rod.point(station), tangent(&self.rod, station));
         let along = tangent * tangent.transpose();
-        for axes in [Matrix3::identity() - along, along] {
+        let bending = (Deformation::Bending, Matrix3::identity() - along);
+        for (deformation, axes) in [bending, (Deformation::Torsion, along)] {
             let of_pair = |&(load, read): &(f64, f64)| match station <= load.min(read) {
                 true => {
                     let lever = |station| skew(&(self.rod.point(station) - at));
@@ -149,8 +164,7 @@ impl Structure {
                 false => Matrix3::zeros(),
             };
             let parts = self.pairs.iter().map(of_pair).collect();
-            self.stations.push(station);
-            self.joints.push(parts);
+            self.joints.push(Hinge { deformation, parts });
         }
         [first, first + 1]
     }
@@ -219,16 +233,16 @@ impl Structure {
             }
             let mut whole = self.whole[pair] + (pipes / softening.stiffness - self.pipes[pair]);
             for &(joint, change) in &softening.joints {
-                whole += self.joints[joint][pair] * change;
+                whole += self.joints[joint].parts[pair] * change;
             }
             whole
         };
         (0..self.whole.len()).map(of_pair).collect()
     }
 
-    /// Where the joint of this number was added, m.
-    pub(super) fn station(&self, joint: usize) -> f64 {
-        self.stations[joint]
+    /// How the joint of this number gives way.
+    pub(super) fn deformation(&self, joint: usize) -> Deformation {
+        self.joints[joint].deformation
     }
 
     /// What large deflections of `rod`, this one or one that yields more, add to the displacement
@@ -318,10 +332,12 @@ fn difference(a: &[Matrix3<f64>], b: &[Matrix3<f64>], factor: f64) -> Parts {
     a.iter().zip(b).map(|(a, b)| (a - b) * factor).collect()
 }
 
-fn with_shear_modulus(rod: &Rod, factor: f64) -> Rod {
+/// A rod with other moduli: factors on E and G of all pipes.
+pub(super) fn with_moduli(rod: &Rod, e: f64, g: f64) -> Rod {
     let mut rod = rod.clone();
     for pipe in [&mut rod.pipe1, &mut rod.bend, &mut rod.pipe2] {
-        pipe.material.shear_modulus *= factor;
+        pipe.material.youngs_modulus *= e;
+        pipe.material.shear_modulus *= g;
     }
     rod
 }
@@ -359,10 +375,7 @@ mod tests {
     fn everything_wrong_at_once_is_the_beam_model_of_that_rod() {
         let rod = rod("bend_radius_mm = 40\nbend_flexibility = 1.3");
         let mut structure = Structure::new(&rod, pairs(&rod)).unwrap();
-        let mut wrong = with_shear_modulus(&rod, 0.7 * 1.2);
-        for pipe in [&mut wrong.pipe1, &mut wrong.bend, &mut wrong.pipe2] {
-            pipe.material.youngs_modulus *= 0.7;
-        }
+        let mut wrong = with_moduli(&rod, 0.7, 0.7 * 1.2);
         wrong.bend_flexibility = BendFlexibility::Factor(2.1);
         // on pipe I, within the bend and at its end
         let middle = (rod.bend_start() + rod.bend_end()) / 2.0;

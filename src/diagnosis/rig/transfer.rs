@@ -3,12 +3,12 @@
 
 use nalgebra::DVector;
 
-use super::correction;
 use super::datum::Datum;
 use super::model::{RigDiagnosis, RigModel};
 use super::wanted::{Wanted, is_same};
+use super::write_back::as_found;
 use crate::error::Result;
-use crate::inference::{Candidate, Evidence, ForwardModel, Term};
+use crate::inference::{Candidate, ForwardModel, Term};
 use crate::rig::readings::Readings;
 
 /// Terms in a model that is not their own.
@@ -82,9 +82,9 @@ impl RigDiagnosis {
             RigModel::with_effects(asked, Some(rod), &Wanted::LikeAnd(&found_ones, &self.model.own))?;
         let change = model.response(&model.transferred(&self.model, &found).terms);
         // what large deflections add is known of the rod as it was found: nobody fits it
-        let as_found = correction::as_found(&self.model, rod, &self.diagnosis.findings);
+        let as_found = as_found(&self.model, rod, &self.diagnosis.findings);
         let large = model.large_deflections(&as_found)?;
-        let nominal = &evidence.nominal * self.nominal_factors(&evidence);
+        let nominal = &evidence.nominal * self.nominal_factors(&model);
         let law = |i: usize| model.law_adds.get(i).copied().unwrap_or(0.0);
         let of_datum =
             |(i, datum): (usize, &Datum)| datum.predicted + large[i] + nominal[i] + change[i] + law(i);
@@ -96,14 +96,11 @@ impl RigDiagnosis {
 
     /// Factors of the nominal numbers of `asked` as these readings gave them, in standard
     /// uncertainties; 0 for a number that they have not.
-    fn nominal_factors(&self, asked: &Evidence) -> DVector<f64> {
+    fn nominal_factors(&self, asked: &RigModel) -> DVector<f64> {
         let (factors, _) = &self.diagnosis.nominal_factors;
-        let known = &self.evidence.nominal_numbers;
-        let factor = |name: &str| known.iter().position(|own| own.name == name).map_or(0.0, |k| factors[k]);
-        DVector::from_iterator(
-            asked.nominal_numbers.len(),
-            asked.nominal_numbers.iter().map(|number| factor(&number.name)),
-        )
+        let known = &self.model.known_numbers;
+        let factor = |number| known.iter().position(|own| own == number).map_or(0.0, |k| factors[k]);
+        DVector::from_iterator(asked.known_numbers.len(), asked.known_numbers.iter().map(factor))
     }
 }
 

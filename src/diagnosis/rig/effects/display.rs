@@ -1,6 +1,8 @@
 //! What a display makes of a displacement that came by another one: play of a stylus, lag.
 
-use super::entry::{Context, Entry, RigEffect, alternative, candidate, of, parameter, said};
+use super::entry::{
+    Context, Entry, RigEffect, alternative, candidate, of, out_of_the_readings, parameter, said,
+};
 use super::places::measured_channels;
 use crate::diagnosis::rig::action::Action;
 use crate::diagnosis::rig::display::{Display, Follows};
@@ -62,6 +64,7 @@ pub static SENSOR_LAG: RigEffect = RigEffect {
             }
         }
     },
+    write: out_of_the_readings,
 };
 
 /// All displays alike, and each by itself, in each form. Nothing where no load is taken off again:

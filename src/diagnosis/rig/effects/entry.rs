@@ -3,7 +3,9 @@
 use crate::diagnosis::rig::action::Action;
 use crate::diagnosis::rig::datum::Datum;
 use crate::diagnosis::rig::model::{Body, RigModel};
-use crate::inference::{Candidate, Effect, Finding, Location, Parameter, Quantity, Variable};
+use crate::inference::{
+    Candidate, Effect, Finding, Location, Parameter, Quantity, Term, Variable, WrittenTo,
+};
 use crate::rod::Rod;
 
 /// An effect with what it does on a rig.
@@ -18,6 +20,8 @@ pub struct RigEffect {
     pub(in crate::diagnosis::rig) missing: fn(&Context) -> &'static str,
     /// What the readings show, with numbers: `Loads are felt 1.02 ± 0.04 N too small`.
     pub(in crate::diagnosis::rig) observed: fn(&Finding, &RigModel) -> String,
+    /// Writes a term of it into the rod, where that is its place; the answer is where it belongs.
+    pub(in crate::diagnosis::rig) write: fn(&Term, &RigModel, &mut Rod) -> WrittenTo,
 }
 
 /// What effects see of readings.
@@ -98,6 +102,16 @@ pub(super) fn preferring(mut entries: Vec<Entry>, is_main: impl Fn(&Candidate) -
 /// Marks one of several forms of the same thing.
 pub(super) fn alternative((candidate, actions): Entry) -> Entry {
     (Candidate { is_alternative: true, ..candidate }, actions)
+}
+
+/// It is the rig's: taken out of the readings.
+pub(super) fn out_of_the_readings(_: &Term, _: &RigModel, _: &mut Rod) -> WrittenTo {
+    WrittenTo::Recording
+}
+
+/// Neither file has a key for it.
+pub(super) fn nowhere(_: &Term, _: &RigModel, _: &mut Rod) -> WrittenTo {
+    WrittenTo::Nowhere
 }
 
 /// What follows a load is best seen along it.

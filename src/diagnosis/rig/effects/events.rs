@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use super::entry::{Context, Entry, RigEffect, UNBOUNDED, entry, of, parameter};
+use super::entry::{Context, Entry, RigEffect, UNBOUNDED, entry, of, out_of_the_readings, parameter};
 use super::places::runs_by_sensor;
 use crate::diagnosis::rig::action::Action;
 use crate::diagnosis::rig::datum::Datum;
@@ -53,6 +53,7 @@ pub static SLIP: RigEffect = RigEffect {
         let besides: String = Axis::ALL.into_iter().filter_map(besides).collect();
         format!("The readings jump by {} ({}){besides}", of(finding, "um").say("µm"), finding.location)
     },
+    write: out_of_the_readings,
 };
 
 /// The shift of a channel beside that of another one, at the same row.

@@ -1,6 +1,6 @@
 //! What the rod makes of its loads and of their history: curvature, creep, hysteresis.
 
-use super::entry::{Context, Entry, RigEffect, along_the_load, alternative, entry, of, parameter};
+use super::entry::{Context, Entry, RigEffect, along_the_load, alternative, entry, nowhere, of, parameter};
 use crate::diagnosis::rig::action::Action;
 use crate::diagnosis::rig::load_history::{
     Clock, History, Loop, Memory, Onset, creep, hysteresis, is_stated, onsets, warmth,
@@ -47,6 +47,7 @@ pub static NONLINEAR_STIFFNESS: RigEffect = RigEffect {
     candidates: curvature,
     missing: |_| "only one size of load was applied",
     observed: observed_curvature,
+    write: nowhere,
 };
 
 /// The deflection grows under a constant load.
@@ -85,6 +86,7 @@ pub static CREEP: RigEffect = RigEffect {
             false => format!("The deflections grow by {growth} per decade of time {since}"),
         }
     },
+    write: nowhere,
 };
 
 /// A rod that is softer when it is warm.
@@ -119,6 +121,7 @@ pub static THERMAL_SOFTENING: RigEffect = RigEffect {
         let growth = of(finding, "per_k").map(|share| 100.0 * share).say("%");
         format!("The deflections grow by {growth} per kelvin")
     },
+    write: nowhere,
 };
 
 /// The way down is not the way up.
@@ -147,6 +150,7 @@ pub static HYSTERESIS: RigEffect = RigEffect {
         let share = of(finding, "fraction").map(|share| 100.0 * share).say("%");
         format!("The unloading curve lies above the loading curve, by {share} of full scale at {at}")
     },
+    write: nowhere,
 };
 
 /// Quadratic as a symmetric body's is, and linear as a load cell's (its curvature has a direction).

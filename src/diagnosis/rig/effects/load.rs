@@ -1,7 +1,8 @@
 //! What happens to a load before the rod feels it: friction, offset, play, direction.
 
 use super::entry::{
-    Context, Entry, RigEffect, along_the_load, candidate, entry, of, parameter, preferring, said,
+    Context, Entry, RigEffect, along_the_load, candidate, entry, of, out_of_the_readings, parameter,
+    preferring, said,
 };
 use super::places::{loaded_axes, sessions};
 use crate::diagnosis::rig::action::{Action, Scope};
@@ -91,6 +92,7 @@ pub static FRICTION: RigEffect = RigEffect {
             false => format!("About {force} of {load} does not reach the rod (no unloading was recorded)"),
         }
     },
+    write: out_of_the_readings,
 };
 
 /// A hanger that was not counted, or a tare that is off.
@@ -130,6 +132,7 @@ pub static LOAD_OFFSET: RigEffect = RigEffect {
         let force = said(finding, "force_n", "N");
         format!("The true value of {} is {force} {word} than stated", each_load(finding))
     },
+    write: out_of_the_readings,
 };
 
 /// Play of the clamp.
@@ -163,6 +166,7 @@ pub static BACKLASH: RigEffect = RigEffect {
         let (under, play) = (under(&finding.location), said(finding, "play_um", "µm"));
         format!("The rod moves freely by {play} before it bends{under}")
     },
+    write: out_of_the_readings,
 };
 
 /// A load that is not square to {T}.
@@ -203,6 +207,7 @@ pub static LOAD_MISALIGNMENT: RigEffect = RigEffect {
             _ => format!("All load directions are rotated together by {}", whole_turn(finding)),
         }
     },
+    write: out_of_the_readings,
 };
 
 /// Friction of loads that are measured while the displacement goes to and fro: one that turns round

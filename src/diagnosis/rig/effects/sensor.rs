@@ -3,7 +3,8 @@
 use std::collections::HashMap;
 
 use super::entry::{
-    Context, Entry, RigEffect, UNBOUNDED, along_the_load, alternative, candidate, entry, of, parameter,
+    Context, Entry, RigEffect, UNBOUNDED, along_the_load, alternative, candidate, entry, of,
+    out_of_the_readings, parameter,
 };
 use super::load::{ALIGNMENT, TURNS, WIDEST, misalignment, pairs, whole_turn};
 use super::places::measured_channels;
@@ -88,6 +89,7 @@ pub static SENSOR_SCALE: RigEffect = RigEffect {
         };
         format!("Sensor {} reads {words}", finding.location)
     },
+    write: out_of_the_readings,
 };
 
 /// A sensor that is not square to {T}.
@@ -144,6 +146,7 @@ pub static SENSOR_MISALIGNMENT: RigEffect = RigEffect {
         };
         format!("Sensor {from} is rotated by {} {word} {towards}", angle.size().say("°"))
     },
+    write: out_of_the_readings,
 };
 
 /// Readings that follow temperature, or time where no temperature was read.
@@ -207,6 +210,7 @@ pub static THERMAL_DRIFT: RigEffect = RigEffect {
             _ => format!("The sensors drift by {drift}"),
         }
     },
+    write: out_of_the_readings,
 };
 
 /// What readings drift with, and how far they drift by it.

@@ -7,11 +7,11 @@ use super::entry::{
 use super::places::{sessions, stations};
 use crate::diagnosis::rig::action::Action;
 use crate::diagnosis::rig::model::{Body, RigModel, STATION};
-use crate::diagnosis::rig::structure::Structure;
+use crate::diagnosis::rig::structure::{Deformation, Structure, with_moduli};
 use crate::inference::{
-    Candidate, Effect, Finding, ForwardModel, Kind, Location, Part, Quantity, Reported, WrittenTo,
+    Candidate, Effect, Finding, ForwardModel, Kind, Location, Part, Quantity, Reported, Term, WrittenTo,
 };
-use crate::rod::BendFlexibility;
+use crate::rod::{self, BendFlexibility, Rod};
 use crate::units::{MM, URAD_PER_NM, significant};
 
 /// Share by which a rod is softer than its model: 1 − 1/r is 0.27 rms over the r_rod of the paper's
@@ -55,6 +55,10 @@ pub static STIFFNESS_SCALE: RigEffect = RigEffect {
     observed: |finding, _| {
         format!("All tubes of the rod are {} than in the model", softer(of(finding, "factor")))
     },
+    write: |term, _, rod| {
+        *rod = with_moduli(rod, term.values[0], term.values[0]);
+        WrittenTo::Model
+    },
 };
 
 /// The shear modulus of the whole rod.
@@ -82,6 +86,10 @@ pub static SHEAR_MODULUS: RigEffect = RigEffect {
     missing: |_| "the loads neither twist nor shear the rod",
     observed: |finding, _| {
         format!("In torsion and shear the rod is {} than its model", softer(of(finding, "factor")))
+    },
+    write: |term, _, rod| {
+        *rod = with_moduli(rod, 1.0, term.values[0]);
+        WrittenTo::Model
     },
 };
 
@@ -132,6 +140,7 @@ pub static JOINT_COMPLIANCE: RigEffect = RigEffect {
         };
         format!("{what} gives way by {}", amount(finding, model))
     },
+    write: write_joint,
 };
 
 /// Flange or adapter.
@@ -163,6 +172,7 @@ pub static ROOT_COMPLIANCE: RigEffect = RigEffect {
         }
         _ => format!("The rod's root gives way by {}", amount(finding, model)),
     },
+    write: write_joint,
 };
 
 /// The pipe of the bend becomes oval.
@@ -202,6 +212,10 @@ pub static BEND_FLEXIBILITY: RigEffect = RigEffect {
         false => "the rod's corner is sharp: no arc could become oval",
     },
     observed: |finding, _| format!("The bend is {} times as flexible as a beam", said(finding, "factor", "")),
+    write: |term, _, rod| {
+        rod.bend_flexibility = BendFlexibility::Factor(term.values[0]);
+        WrittenTo::Model
+    },
 };
 
 /// The root, and that of each session, in which the rod was mounted anew.
@@ -286,6 +300,33 @@ fn joint(
         actions.push(Action::Station(nodes));
     }
     (candidate(&effect.effect, location, parameters), actions)
+}
+
+/// Writes a connection as the joint of its name, or as one that the rod's file did not have.
+fn write_joint(term: &Term, model: &RigModel, rod: &mut Rod) -> WrittenTo {
+    let Body::Rod(structure) = &model.body else { return WrittenTo::Nowhere };
+    let place = &model.candidates[term.candidate].location;
+    // a rod file has no sessions
+    if matches!(place, Location::InSession { .. }) {
+        return WrittenTo::Recording;
+    }
+    let declared = rod.joints.iter().position(|joint| *place == Location::Named(joint.name.clone()));
+    let index = declared.unwrap_or_else(|| {
+        let place = model.location(term);
+        let station = if let Location::Station(station) = place { station } else { 0.0 };
+        rod.joints.push(rod::Joint { name: place.to_string(), station, bending: 0.0, torsion: 0.0 });
+        rod.joints.len() - 1
+    });
+    // what these loads cannot show of a declared joint stays as it is
+    for (action, &value) in model.actions[term.candidate].iter().zip(&term.values) {
+        if let Action::Joint(number, _) = action {
+            match structure.deformation(*number) {
+                Deformation::Bending => rod.joints[index].bending = value,
+                Deformation::Torsion => rod.joints[index].torsion = value,
+            }
+        }
+    }
+    WrittenTo::Model
 }
 
 /// Where along the rod a joint that nobody declared may be, m; `None` for everything else.

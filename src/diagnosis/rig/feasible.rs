@@ -15,8 +15,8 @@ const WAITS: [f64; 4] = [0.0, 60.0, 600.0, 3600.0];
 /// Something that could be measured next.
 #[derive(Debug, Clone)]
 pub(super) struct Measurement {
-    /// What to do; a full sentence.
-    pub words: String,
+    /// What to do once: `Load the tip along z with 5, 10 and 15 N`.
+    pub task: String,
     /// The same as numbers.
     pub plan: LoadPlan,
     /// A few of the present readings, so that nothing that they show is forgotten, then those to
@@ -24,6 +24,19 @@ pub(super) struct Measurement {
     pub readings: Readings,
     /// How many rows are present ones.
     pub known_rows: usize,
+    has_rod: bool,
+}
+
+impl Measurement {
+    /// What to do, how often, and what to read; a full sentence.
+    pub fn description(&self) -> String {
+        let task = &self.task;
+        // waiting takes long enough once
+        let is_waiting = self.plan.waits.iter().any(|wait| *wait > 0.0);
+        let repeats = if is_waiting { "" } else { ", three times, each from a new zero" };
+        let channels = if self.has_rod { "dx, dy and dz" } else { "the offset" };
+        format!("{task}{repeats}; read {channels}.")
+    }
 }
 
 /// What is hung and read, one after the other.
@@ -85,7 +98,7 @@ pub(super) fn feasible(readings: &Readings, rod: Option<&Rod>) -> Vec<Measuremen
             ));
         }
     }
-    all.into_iter().map(|(words, plan)| rig.measurement(words, plan)).collect()
+    all.into_iter().map(|(task, plan)| rig.measurement(task, plan)).collect()
 }
 
 /// One pass of a plan.
@@ -152,12 +165,12 @@ impl<'a> Rig<'a> {
     /// Loads that have been used along the axis, four of them at most; those of the other axes
     /// where there are none.
     fn levels(&self, axis: Axis) -> Vec<f64> {
-        let loads_of = |is_of: &dyn Fn(&Reading) -> bool| {
+        let loads_of = |is_wanted: &dyn Fn(&Reading) -> bool| {
             let mut loads: Vec<f64> = self
                 .readings
                 .rows
                 .iter()
-                .filter(|row| row.load > 0.0 && is_of(row))
+                .filter(|row| row.load > 0.0 && is_wanted(row))
                 .map(|row| row.load)
                 .collect();
             loads.sort_by(f64::total_cmp);
@@ -189,7 +202,7 @@ impl<'a> Rig<'a> {
         }
     }
 
-    fn measurement(&self, words: String, plan: LoadPlan) -> Measurement {
+    fn measurement(&self, task: String, plan: LoadPlan) -> Measurement {
         let steps = steps(&plan);
         let has_time = self.readings.rows.iter().all(|row| row.time.is_some());
         let has_phase = steps.iter().any(|step| step.phase == Phase::Unload)
@@ -220,11 +233,10 @@ impl<'a> Rig<'a> {
                 });
             }
         }
-        let many = if is_waiting { "" } else { ", three times, each from a new zero" };
-        let channels = if self.has_rod { "dx, dy and dz" } else { "the offset" };
         Measurement {
-            words: format!("{words}{many}; read {channels}."),
+            task,
             plan,
+            has_rod: self.has_rod,
             known_rows: self.known.len(),
             readings: Readings { rows, ..self.readings.clone() },
         }

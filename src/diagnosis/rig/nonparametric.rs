@@ -22,6 +22,7 @@
 
 mod along;
 mod before;
+mod cycles;
 mod kink;
 mod station;
 mod swing;
@@ -29,19 +30,16 @@ mod swing;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use std::collections::HashMap;
-
-use nalgebra::{DMatrix, DVector};
-
 use self::along::*;
 pub(super) use self::before::Before;
+use self::cycles::Cycles;
 use super::action::{Action, Weights};
 use super::datum::Datum;
 use super::effects::entry::Entry;
 use super::load_history::runs;
 use super::model::Body;
 use super::numbering::numbered;
-use crate::inference::{Candidate, Location, Parameter, Variable};
+use crate::inference::{Location, Parameter, Variable};
 use crate::spatial::Axis;
 use crate::units::UM;
 
@@ -63,21 +61,27 @@ pub(super) fn all(data: &[Datum], deflections: &[f64], (body, place): (&Body, &[
     let channels = groups(data, &numbered(data.iter().map(|d| d.channel)), &|d| format!("d{}", d.channel));
     let clock = if data.iter().any(|d| d.time.is_some()) { Variable::Time } else { Variable::Order };
     let mut entries = Vec::new();
+    let cycles = Cycles::of(data, deflections);
     for (along, coordinate, is_of_line) in coordinates(data) {
-        entries.extend(curve(along, ALL_DEFLECTIONS, &coordinate, &everything, PERCENT, SHARE, |i| {
+        let mut curves: Vec<Entry> = Vec::new();
+        curves.extend(curve(along, ALL_DEFLECTIONS, &coordinate, &everything, PERCENT, SHARE, |i| {
             deflections[i]
         }));
         if along.variable == clock && !is_of_line {
-            entries.extend(swing::all(along, &coordinate, data));
+            curves.extend(swing::all(along, &coordinate, data));
         }
         for (place, group) in if is_of_line { &lines } else { &channels } {
             let largest = group.iter().fold(0.0, |max: f64, &i| max.max(data[i].measured.abs()));
             let size = (SHARE * largest).max(LEAST_SHIFT * largest_reading(data));
-            entries.extend(curve(along, place, &coordinate, group, UM, size, |_| 1.0));
+            curves.extend(curve(along, place, &coordinate, group, UM, size, |_| 1.0));
             if along.variable == clock && !is_of_line {
-                entries.extend(fine(along, place, &coordinate, group, size));
+                curves.extend(fine(along, place, &coordinate, group, size));
             }
         }
+        if let Some(cycles) = cycles.as_ref().filter(|_| along.is_recording) {
+            curves.retain(|(candidate, actions)| cycles.are_predicted(candidate, actions));
+        }
+        entries.extend(curves);
     }
     let before = Before::of(data);
     if let Some(waits) = before.waits() {
@@ -152,78 +156,27 @@ fn coordinates(data: &[Datum]) -> Vec<(Along, Coordinate, bool)> {
     found
 }
 
-/// Rank of the load, as `of` counts it, among those along its axis, for the data that `is_of`
-/// admits. Of more than [`MOST_LEVELS`] loads the size instead: where a measured load trembles
+/// Rank of the load among those along its axis, for the data that are wanted. Of more than [`MOST_LEVELS`] loads the size instead: where a measured load trembles
 /// about its levels, its rank is a better load.
-fn by_axis(data: &[Datum], of: impl Fn(&Datum) -> f64, is_of: impl Fn(&Datum) -> bool) -> Coordinate {
+fn by_axis(data: &[Datum], load: impl Fn(&Datum) -> f64, is_wanted: impl Fn(&Datum) -> bool) -> Coordinate {
     let levels = Axis::ALL.map(|axis| {
-        let along = data.iter().filter(|d| is_of(d) && d.direction.axis == axis);
-        let mut levels: Vec<f64> = along.map(&of).collect();
+        let along = data.iter().filter(|d| is_wanted(d) && d.direction.axis == axis);
+        let mut levels: Vec<f64> = along.map(&load).collect();
         levels.sort_by(f64::total_cmp);
         levels.dedup();
         levels
     });
     let rank = |datum: &Datum| {
-        is_of(datum).then_some(())?;
+        is_wanted(datum).then_some(())?;
         let levels = &levels[datum.direction.axis.index()];
         if levels.len() > MOST_LEVELS {
             let (least, most) = (levels[0], levels[levels.len() - 1]);
-            return Some((of(datum) - least) / (most - least));
+            return Some((load(datum) - least) / (most - least));
         }
-        let rank = levels.partition_point(|&level| level < of(datum));
+        let rank = levels.partition_point(|&level| level < load(datum));
         Some((rank as f64 + 0.5) / levels.len() as f64)
     };
     data.iter().map(rank).collect()
-}
-
-/// Takes away, of a load that goes up and down again and again, curves along the recording that do
-/// not predict the next cycle: a curve through neighbours follows anything that a law repeats.
-///
-/// Each cycle in turn is predicted from the others, by the curve with its prior; a curve stays if
-/// it lowers the squares.
-pub(super) fn retain_predictive(entries: &mut Vec<Entry>, data: &[Datum], deflections: &[f64]) {
-    let is_cyclic = data.iter().any(|d| d.motion.is_some_and(|motion| motion.cycle > 0));
-    if !is_cyclic {
-        return;
-    }
-    let cycle = numbered(data.iter().map(|d| (d.run, d.motion.map(|motion| motion.cycle))));
-    let left = DVector::from_iterator(data.len(), data.iter().zip(deflections).map(|(d, u)| d.measured - u));
-    let is_along_recording = |candidate: &Candidate| {
-        matches!(&candidate.location, Location::Curve { label, .. }
-            if [POSITION, ORDER, TIME].iter().any(|along| label.starts_with(&format!("{}, ", along.name))))
-    };
-    entries.retain(|(candidate, actions)| {
-        !is_along_recording(candidate) || predicts(candidate, actions, &left, &cycle)
-    });
-}
-
-/// True where a curve that is fitted to all other cycles lowers the squares of each cycle, all of
-/// them together.
-fn predicts(candidate: &Candidate, actions: &[Action], left: &DVector<f64>, cycle: &[usize]) -> bool {
-    let mut columns = DMatrix::zeros(left.len(), actions.len());
-    for (k, (action, parameter)) in actions.iter().zip(&candidate.parameters).enumerate() {
-        let Action::Shift(weights) = action else { continue };
-        weights.iter().for_each(|(i, weight)| columns[(i, k)] = weight * parameter.size);
-    }
-    let mut rows: HashMap<usize, Vec<usize>> = HashMap::new();
-    for (i, &cycle) in cycle.iter().enumerate() {
-        rows.entry(cycle).or_default().push(i);
-    }
-    let all = (columns.tr_mul(&columns), columns.tr_mul(left));
-    let noise = left.norm_squared() / left.len().max(1) as f64;
-    let (mut before, mut after) = (0.0, 0.0);
-    let mut numbers: Vec<&usize> = rows.keys().collect();
-    numbers.sort_unstable();
-    for number in numbers {
-        let of_cycle = &rows[number];
-        let (own, own_left) = (columns.select_rows(of_cycle), left.select_rows(of_cycle));
-        let gram = &all.0 - own.tr_mul(&own) + DMatrix::identity(actions.len(), actions.len()) * noise;
-        let Some(root) = gram.cholesky() else { return false };
-        let values = root.solve(&(&all.1 - own.tr_mul(&own_left)));
-        before += own_left.norm_squared();
-        after += (own_left - own * values).norm_squared();
-    }
-    after < before
 }
 
 /// From 0 to 1; nothing where the values do not differ.

@@ -51,7 +51,7 @@ enum Way {
 }
 
 impl Way {
-    fn is_of(self, drive: f64) -> bool {
+    fn includes(self, drive: f64) -> bool {
         match self {
             Way::Both => drive != 0.0,
             Way::Along => drive > 0.0,
@@ -59,7 +59,7 @@ impl Way {
         }
     }
 
-    fn words(self) -> &'static str {
+    fn in_sentences(self) -> &'static str {
         match self {
             Way::Both => "",
             Way::Along => " along the axis",
@@ -70,7 +70,7 @@ impl Way {
 
 /// Other slopes of some of the data; together they have the prior of one curve.
 fn kinks(data: &[Datum], deflections: &[f64], place: &str, group: &[usize]) -> Vec<Entry> {
-    let loaded = |way: Way| group.iter().copied().filter(move |&i| way.is_of(data[i].drive()));
+    let loaded = |way: Way| group.iter().copied().filter(move |&i| way.includes(data[i].drive()));
     let is_two_sided = loaded(Way::Along).next().is_some() && loaded(Way::Against).next().is_some();
     let ways = if is_two_sided { vec![Way::Both, Way::Along, Way::Against] } else { vec![Way::Both] };
     let mut found = Vec::new();
@@ -85,13 +85,13 @@ fn kinks(data: &[Datum], deflections: &[f64], place: &str, group: &[usize]) -> V
             if weights.data.is_empty() {
                 continue;
             }
-            let at = said(data, group, knot);
+            let at = with_unit(data, group, knot);
             let readings = if place == ALL_DEFLECTIONS { "all readings alike" } else { place };
             let location = Location::Curve {
-                label: format!("load{} beyond {at}, {place}", way.words()),
+                label: format!("load{} beyond {at}, {place}", way.in_sentences()),
                 follows: match knot {
                     0.0 => format!("is other for loads against the axis ({readings})"),
-                    _ => format!("changes its slope at a load of {at}{} ({readings})", way.words()),
+                    _ => format!("changes its slope at a load of {at}{} ({readings})", way.in_sentences()),
                 },
                 along: Some(if way == Way::Both { Variable::Load } else { Variable::SignedLoad }),
             };
@@ -117,7 +117,7 @@ fn knots(mut levels: Vec<f64>) -> Vec<f64> {
 }
 
 /// A load, or a displacement that is imposed, with its unit.
-fn said(data: &[Datum], group: &[usize], knot: f64) -> String {
+fn with_unit(data: &[Datum], group: &[usize], knot: f64) -> String {
     match group.iter().any(|&i| data[i].imposed.is_some()) {
         true => format!("{:.3} mm", knot * 1e3),
         false => format!("{knot:.2} N"),

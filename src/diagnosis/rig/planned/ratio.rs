@@ -5,7 +5,8 @@
 //! slopes and modelled compliances, its 95 % interval is 2·t·√(Var s₂₂ + Var s₃₃)/(c₂₂ + c₃₃) wide,
 //! t of the degrees of freedom that two lines leave.
 
-use super::{Bench, FEWEST, PlannedLoads, Ratio, RigPlan, minutes};
+use super::effort::{FEWEST, minutes};
+use super::rig_plan::{Bench, PlannedLoads, Ratio, RigPlan};
 use crate::beam::{Physics, RodModel};
 use crate::error::{Error, Result};
 use crate::inference::LoadPlan;
@@ -80,7 +81,7 @@ pub fn plan_ratio(rod: &Rod, width: f64, bench: &Bench) -> Result<RigPlan> {
             channels: Axis::ALL.to_vec(),
         };
         PlannedLoads {
-            words: format!(
+            description: format!(
                 "Load the tip along {axis} with {} N, {repeats} times, each time from a new zero; read dx, dy and dz.",
                 list.join(", ")
             ),

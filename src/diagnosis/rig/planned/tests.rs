@@ -1,5 +1,7 @@
 use super::*;
 use crate::diagnosis::rig::diagnose;
+use crate::diagnosis::rig::feasible::Measurement;
+use crate::inference::LoadPlan;
 use crate::units::UM;
 
 const BENCH: Bench = Bench { largest_load: 10.0, noise: 1e-6, is_at_tip: false };

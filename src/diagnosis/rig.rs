@@ -31,6 +31,7 @@ mod cases;
 mod chronicle;
 mod columns;
 mod datum;
+mod derivative;
 mod diagnose;
 mod display;
 pub mod effects;
@@ -64,6 +65,7 @@ mod tests;
 mod textbook;
 mod transfer;
 mod wanted;
+mod widened;
 mod write_back;
 mod written_law;
 

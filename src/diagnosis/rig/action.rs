@@ -55,10 +55,21 @@ pub(super) enum Action {
     Display(Arc<Display>),
     /// Adds to readings \[0\].
     Shift(Weights),
+    /// The same of a channel, in the course of a recording \[0\].
+    Drift(Axis, DriftPer, Weights),
     /// Adds to the readings of this sequence of data, from one of them on \[0\].
     Step(Arc<[usize]>, usize),
     /// The parameter of this number of a lab's own effect, which adds to readings \[its own\].
     Own(Arc<OwnLaw>, usize),
+}
+
+/// What a drift is counted by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum DriftPer {
+    Kelvin,
+    Hour,
+    /// From the first reading to the last.
+    Recording,
 }
 
 /// What is added to readings per unit of a parameter.
@@ -102,13 +113,28 @@ impl Action {
 
     /// True for what adds to the readings whatever else there is.
     pub(super) fn only_adds(&self) -> bool {
-        matches!(self, Action::Shift(_) | Action::Step(..))
+        matches!(self, Action::Shift(_) | Action::Drift(..) | Action::Step(..))
+    }
+
+    /// True for a gap that an imposed displacement crosses.
+    pub(super) fn is_play(&self) -> bool {
+        matches!(self, Action::Play(_) | Action::SliderPlay | Action::Presliding)
+    }
+
+    /// Which parameter of a lab's own effect it is.
+    pub(super) fn number_of_own(&self) -> Option<usize> {
+        match self {
+            Action::Own(_, number) => Some(*number),
+            _ => None,
+        }
     }
 
     /// Adds what it does at `value` to readings, m.
     pub(super) fn add_to(&self, readings: &mut [f64], value: f64) {
         match self {
-            Action::Shift(weights) => weights.iter().for_each(|(i, weight)| readings[i] += weight * value),
+            Action::Shift(weights) | Action::Drift(_, _, weights) => {
+                weights.iter().for_each(|(i, weight)| readings[i] += weight * value);
+            }
             Action::Step(data, from) => data[*from..].iter().for_each(|&i| readings[i] += value),
             Action::Display(display) => display.add_to(readings, value),
             _ => {}
@@ -118,7 +144,7 @@ impl Action {
     /// The largest that it adds to a reading per unit of its parameter.
     pub(super) fn largest_addition(&self) -> Option<f64> {
         match self {
-            Action::Shift(weights) => {
+            Action::Shift(weights) | Action::Drift(_, _, weights) => {
                 Some(weights.values.iter().fold(0.0, |most: f64, weight| most.max(weight.abs())))
             }
             Action::Step(data, from) => Some(if *from < data.len() { 1.0 } else { 0.0 }),

@@ -89,6 +89,7 @@ impl RigModel {
             | Action::Play(_)
             | Action::Display(_)
             | Action::Shift(_)
+            | Action::Drift(..)
             | Action::Step(..)
             | Action::Own(..) => false,
         })

@@ -185,7 +185,6 @@ impl RigModel {
         entries.extend(of_own.into_iter().filter_map(|(_, entry)| entry));
         if wanted.includes(&UNKNOWN) {
             entries.extend(nonparametric::all(&self.data, &deflections, (&self.body, &self.place)));
-            nonparametric::retain_predictive(&mut entries, &self.data, &deflections);
         }
         entries.retain(|(candidate, _)| wanted.has(candidate));
         let scale = self.data.iter().fold(0.0, |s: f64, d| s.max(d.measured.abs()).max(d.predicted.abs()));

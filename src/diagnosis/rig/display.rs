@@ -10,8 +10,11 @@
 //! at all, is the same for a rod that is a little softer. A display was set to zero without a load,
 //! in the middle of its play, or on that side of it where the run before has left it.
 
+use nalgebra::DVector;
+
 use super::datum::Datum;
 use super::numbering::numbered;
+use crate::inference::DERIVATIVE_STEP;
 
 /// How a display follows.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -54,6 +57,27 @@ impl Display {
             }
         }
         Display { follows, sensors }
+    }
+
+    /// How it follows.
+    pub(super) fn follows(&self) -> Follows {
+        self.follows
+    }
+
+    /// What each of `count` readings changes by per `size` of the value, at `value`. At nothing it
+    /// can only go one way, and what stays within its play is seen once that has a size.
+    pub(super) fn derivative(&self, count: usize, value: f64, size: f64) -> DVector<f64> {
+        let h = DERIVATIVE_STEP * size;
+        let (less, more) = match value > h {
+            true => (value - h, value + h),
+            false => (0.0, value.max(0.0) + 0.5 * size),
+        };
+        let [less_shown, more_shown] = [less, more].map(|value| {
+            let mut added = DVector::zeros(count);
+            self.add_to(added.as_mut_slice(), value);
+            added
+        });
+        (more_shown - less_shown) * (size / (more - less))
     }
 
     /// Adds what a display shows too much at `value`, m or a share.

@@ -12,9 +12,6 @@ use crate::inference::{Candidate, Diagnosed};
 use crate::rig::readings::Readings;
 use crate::rod::{Rod, RodLaw};
 
-/// The parameter of a joint that may be anywhere.
-pub(super) const STATION: &str = "station_mm";
-
 /// A rig's diagnosis.
 pub type RigDiagnosis = Diagnosed<RigModel>;
 

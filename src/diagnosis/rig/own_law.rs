@@ -1,7 +1,10 @@
 //! What a lab's own effect does to the data of a recording.
 
+use nalgebra::DVector;
+
 use super::remembered::remembered;
 use crate::expression::Expression;
+use crate::inference::DERIVATIVE_STEP;
 use crate::inference::law::Site;
 use crate::rod::LawMemory;
 
@@ -20,6 +23,18 @@ pub(super) struct OwnLaw {
 }
 
 impl OwnLaw {
+    /// What each of `count` readings changes by per `size` of the k-th of the `given` parameters:
+    /// numbers and values.
+    pub fn derivative(&self, count: usize, given: &[(usize, f64)], k: usize, size: f64) -> DVector<f64> {
+        let mut column = DVector::zeros(count);
+        for sign in [1.0, -1.0] {
+            let mut moved = given.to_vec();
+            moved[k].1 += sign * DERIVATIVE_STEP * size;
+            self.add_to(column.as_mut_slice(), moved.into_iter(), 0.5 * sign / DERIVATIVE_STEP);
+        }
+        column
+    }
+
     /// Adds what it does with these of its parameters, the others at their neutral values.
     pub fn add_to(&self, readings: &mut [f64], given: impl Iterator<Item = (usize, f64)>, times: f64) {
         let mut values = vec![0.0; 2 + self.neutral.len()];

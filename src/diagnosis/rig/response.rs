@@ -52,6 +52,30 @@ impl RigModel {
         self.cases.first.iter().map(of_case).collect()
     }
 
+    /// By how much the readings of a rod by its cases differ between two states, without shifts, m.
+    pub(super) fn difference_by_case(
+        &self,
+        structure: &Structure,
+        more: &State<'_>,
+        less: &State<'_>,
+    ) -> DVector<f64> {
+        let shown = [more, less].map(|state| self.shown(structure, state));
+        let of_case = |case: usize, loads: [f64; 2]| {
+            shown[0][case].reading(loads[0]) - shown[1][case].reading(loads[1])
+        };
+        let plain = |case: usize| [shown[0][case].load, shown[1][case].load];
+        let cases = self.cases.of_datum.iter().enumerate();
+        if more.remembers() {
+            let of_datum = |(i, &case): (usize, &usize)| {
+                let [with_more, with_less] = plain(case);
+                of_case(case, [more.with_history(with_more, i), less.with_history(with_less, i)])
+            };
+            return DVector::from_iterator(self.data.len(), cases.map(of_datum));
+        }
+        let differences: Vec<f64> = (0..shown[0].len()).map(|case| of_case(case, plain(case))).collect();
+        DVector::from_iterator(self.data.len(), cases.map(|(_, &case)| differences[case]))
+    }
+
     /// The readings of a rod by its cases, without shifts, m.
     pub(super) fn displaced_by_case(&self, structure: &Structure, state: &State<'_>) -> Vec<f64> {
         let shown = self.shown(structure, state);

@@ -152,7 +152,9 @@ impl<'a> State<'a> {
             }
             Action::Play(scope) => self.play.0.push((*scope, value)),
             Action::Own(law, k) => self.own.push((law, *k, value)),
-            Action::Shift(_) | Action::Step(..) | Action::Display(_) => self.additions.push((action, value)),
+            Action::Shift(_) | Action::Drift(..) | Action::Step(..) | Action::Display(_) => {
+                self.additions.push((action, value));
+            }
         }
     }
 

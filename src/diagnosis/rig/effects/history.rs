@@ -1,6 +1,8 @@
 //! What the rod makes of its loads and of their history: curvature, creep, hysteresis.
 
-use super::entry::{Context, Entry, RigEffect, along_the_load, alternative, entry, nowhere, of, parameter};
+use super::entry::{
+    Context, Entry, RigEffect, Usual, along_the_load, alternative, entry, nowhere, of, of_action, parameter,
+};
 use crate::diagnosis::rig::action::Action;
 use crate::diagnosis::rig::load_history::{
     Clock, History, Loop, Memory, Onset, creep, hysteresis, is_stated, onsets, warmth,
@@ -43,6 +45,7 @@ pub static NONLINEAR_STIFFNESS: RigEffect = RigEffect {
         seen_along: along_the_load,
         direct_check: None,
     },
+    usual: &[Usual::Share(CURVATURE)],
     needs_rod: false,
     candidates: curvature,
     missing: |_| "only one size of load was applied",
@@ -70,6 +73,7 @@ pub static CREEP: RigEffect = RigEffect {
         seen_along: |_| vec![Variable::TimeInRun],
         direct_check: None,
     },
+    usual: &[Usual::Share(PER_DECADE)],
     needs_rod: false,
     candidates: creeping,
     missing: |_| "no times were recorded (column `time_s`), or they do not differ",
@@ -106,6 +110,7 @@ pub static THERMAL_SOFTENING: RigEffect = RigEffect {
         seen_along: |_| vec![Variable::Temperature],
         direct_check: None,
     },
+    usual: &[Usual::Share(PER_KELVIN)],
     needs_rod: false,
     candidates: |context| {
         // a laminate may stiffen: ten times the usual either way
@@ -141,6 +146,7 @@ pub static HYSTERESIS: RigEffect = RigEffect {
         seen_along: along_the_load,
         direct_check: None,
     },
+    usual: &[Usual::Share(LOOP)],
     needs_rod: false,
     candidates: lagging,
     missing: |_| "no readings were taken while unloading (column `phase`)",
@@ -173,8 +179,10 @@ fn curvature(context: &mut Context) -> Vec<Entry> {
 fn observed_curvature(finding: &Finding, model: &RigModel) -> String {
     let largest = super::entry::largest_load(model.data());
     // deflection over that of the linear rod
-    let quadratic = finding.quantity("per_n2").map(|k| k.map(|k| 1.0 + k * largest * largest));
-    let linear = finding.quantity("per_n").map(|k| k.map(|k| 1.0 + k * largest));
+    let quadratic = of_action(finding, model, |action| matches!(action, Action::PerLoadSquared));
+    let quadratic = quadratic.map(|k| k.map(|k| 1.0 + k * largest * largest));
+    let linear = of_action(finding, model, |action| matches!(action, Action::PerLoad));
+    let linear = linear.map(|k| k.map(|k| 1.0 + k * largest));
     let body = match model.body {
         Body::Rod(_) => "The rod",
         Body::Lines(_) => "The loaded part",

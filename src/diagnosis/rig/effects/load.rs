@@ -1,8 +1,8 @@
 //! What happens to a load before the rod feels it: friction, offset, play, direction.
 
 use super::entry::{
-    Context, Entry, RigEffect, along_the_load, candidate, entry, of, out_of_the_readings, parameter,
-    preferring, said,
+    Context, Entry, RigEffect, Usual, along_the_load, candidate, entry, of, of_action, out_of_the_readings,
+    parameter, preferring, size,
 };
 use super::places::{loaded_axes, sessions};
 use crate::diagnosis::rig::action::{Action, Scope};
@@ -58,6 +58,7 @@ pub static FRICTION: RigEffect = RigEffect {
         seen_along: along_the_load,
         direct_check: None,
     },
+    usual: &[Usual::Share(SLIDE)],
     needs_rod: false,
     candidates: |context| {
         let largest = context.largest_load();
@@ -74,12 +75,12 @@ pub static FRICTION: RigEffect = RigEffect {
     },
     missing: |_| "no load was applied",
     observed: |finding, model| {
-        let (load, force) = (each_load(finding), said(finding, "force_n", "N"));
+        let (load, force) = (each_load(finding), size(finding, "force_n", "N"));
         if model.data().iter().any(|d| d.imposed.is_some()) {
-            let over = finding
-                .quantity("presliding_um")
+            let over = of_action(finding, model, |action| matches!(action, Action::Presliding))
                 .map_or_else(String::new, |travel| format!(" over {} of travel", travel.size().say("µm")));
-            let play = finding.quantity("play_um").map_or_else(String::new, |play| {
+            let play = of_action(finding, model, |action| matches!(action, Action::SliderPlay));
+            let play = play.map_or_else(String::new, |play| {
                 format!(", behind a play of {} on either side", play.size().say("µm"))
             });
             return format!("Friction of {force} resists the motion and turns round with it{over}{play}");
@@ -113,6 +114,7 @@ pub static LOAD_OFFSET: RigEffect = RigEffect {
         seen_along: along_the_load,
         direct_check: None,
     },
+    usual: &[Usual::Share(TARE)],
     needs_rod: false,
     candidates: |context| {
         let largest = context.largest_load();
@@ -129,7 +131,7 @@ pub static LOAD_OFFSET: RigEffect = RigEffect {
             return format!("The load cell shows {error} too much{}", under(&finding.location));
         }
         let word = if of(finding, "force_n").value >= 0.0 { "larger" } else { "smaller" };
-        let force = said(finding, "force_n", "N");
+        let force = size(finding, "force_n", "N");
         format!("The true value of {} is {force} {word} than stated", each_load(finding))
     },
     write: out_of_the_readings,
@@ -152,6 +154,7 @@ pub static BACKLASH: RigEffect = RigEffect {
         seen_along: along_the_load,
         direct_check: None,
     },
+    usual: &[Usual::Share(PLAY)],
     needs_rod: false,
     candidates: |context| {
         let largest = context.largest_reading();
@@ -163,7 +166,7 @@ pub static BACKLASH: RigEffect = RigEffect {
     },
     missing: |_| "no channel was read along a load",
     observed: |finding, _| {
-        let (under, play) = (under(&finding.location), said(finding, "play_um", "µm"));
+        let (under, play) = (under(&finding.location), size(finding, "play_um", "µm"));
         format!("The rod moves freely by {play} before it bends{under}")
     },
     write: out_of_the_readings,
@@ -191,6 +194,7 @@ pub static LOAD_MISALIGNMENT: RigEffect = RigEffect {
         seen_along: along_the_load,
         direct_check: None,
     },
+    usual: &[Usual::Angle(ALIGNMENT)],
     needs_rod: true,
     candidates: load_turns,
     missing: |_| "no measured channel would show it",

@@ -1,12 +1,12 @@
 //! What the rod is: moduli, joints, root, bend.
 
 use super::entry::{
-    Context, Entry, NOT_NEGATIVE, RigEffect, SCALES, along_the_load, candidate, entry, of, parameter,
-    preferring, said,
+    Context, Entry, NOT_NEGATIVE, RigEffect, SCALES, Usual, along_the_load, by_action, candidate, entry, of,
+    parameter, preferring, size,
 };
 use super::places::{sessions, stations};
 use crate::diagnosis::rig::action::Action;
-use crate::diagnosis::rig::model::{Body, RigModel, STATION};
+use crate::diagnosis::rig::model::{Body, RigModel};
 use crate::diagnosis::rig::structure::{Deformation, Structure, with_moduli};
 use crate::inference::{
     Candidate, Effect, Finding, ForwardModel, Kind, Location, Part, Quantity, Reported, Term, WrittenTo,
@@ -42,6 +42,7 @@ pub static STIFFNESS_SCALE: RigEffect = RigEffect {
         seen_along: along_the_load,
         direct_check: None,
     },
+    usual: &[Usual::Share(SOFTNESS)],
     needs_rod: true,
     candidates: |context| {
         // a share of the stiffness that there is: a rod is softer or stiffer by a factor
@@ -78,6 +79,7 @@ pub static SHEAR_MODULUS: RigEffect = RigEffect {
         seen_along: along_the_load,
         direct_check: None,
     },
+    usual: &[Usual::Share(SOFTNESS)],
     needs_rod: true,
     candidates: |_| {
         let factor = parameter("factor", 1.0, 1.0, SOFTNESS, SCALES);
@@ -117,12 +119,13 @@ pub static JOINT_COMPLIANCE: RigEffect = RigEffect {
         seen_along: along_the_load,
         direct_check: None,
     },
+    usual: &[Usual::Share(JOINT)],
     needs_rod: true,
     candidates: joints,
     missing: |_| NOT_YIELDING,
     observed: |finding, model| {
         let place = &finding.location;
-        let what = match (stretch(finding), place) {
+        let what = match (stretch(finding, model), place) {
             (Some((low, high)), _) => {
                 let declared: String = finding
                     .rivals
@@ -163,6 +166,7 @@ pub static ROOT_COMPLIANCE: RigEffect = RigEffect {
         seen_along: along_the_load,
         direct_check: None,
     },
+    usual: &[Usual::Share(JOINT)],
     needs_rod: true,
     candidates: roots,
     missing: |_| NOT_YIELDING,
@@ -192,6 +196,7 @@ pub static BEND_FLEXIBILITY: RigEffect = RigEffect {
         seen_along: along_the_load,
         direct_check: None,
     },
+    usual: &[Usual::Number(BEND)],
     needs_rod: true,
     candidates: |context| {
         let Body::Rod(structure) = &*context.body else { return Vec::new() };
@@ -211,7 +216,7 @@ pub static BEND_FLEXIBILITY: RigEffect = RigEffect {
         true => NOT_YIELDING,
         false => "the rod's corner is sharp: no arc could become oval",
     },
-    observed: |finding, _| format!("The bend is {} times as flexible as a beam", said(finding, "factor", "")),
+    observed: |finding, _| format!("The bend is {} times as flexible as a beam", size(finding, "factor", "")),
     write: |term, _, rod| {
         rod.bend_flexibility = BendFlexibility::Factor(term.values[0]);
         WrittenTo::Model
@@ -296,7 +301,7 @@ fn joint(
         let [before, _, behind] = nodes.stations;
         // as likely anywhere
         let size = (behind - before) / 12.0f64.sqrt();
-        parameters.push(parameter(STATION, MM, station, size, (before, behind)));
+        parameters.push(parameter("station_mm", MM, station, size, (before, behind)));
         actions.push(Action::Station(nodes));
     }
     (candidate(&effect.effect, location, parameters), actions)
@@ -330,32 +335,33 @@ fn write_joint(term: &Term, model: &RigModel, rod: &mut Rod) -> WrittenTo {
 }
 
 /// Where along the rod a joint that nobody declared may be, m; `None` for everything else.
-pub(in crate::diagnosis::rig) fn stretch(finding: &Finding) -> Option<(f64, f64)> {
-    let station = finding.estimates.iter().find(|estimate| estimate.name == STATION)?;
+fn stretch(finding: &Finding, model: &RigModel) -> Option<(f64, f64)> {
+    let actions = &model.actions[finding.parts.first()?.term.candidate];
+    let mut numbers = actions.iter().zip(&finding.estimates);
+    let (_, station) = numbers.find(|(action, _)| matches!(action, Action::Station(_)))?;
     Some((station.low, station.high))
 }
 
-/// How much a joint yields; only what differs from the rod file, unless nothing does for sure.
+/// By how much a joint gives way; only what differs from the rod file, unless nothing does for sure.
 fn amount(finding: &Finding, model: &RigModel) -> String {
-    let Some(part) = finding.parts.first() else { return String::new() };
-    let parameters = &model.candidates()[part.term.candidate].parameters;
-    let mut sure = Vec::new();
-    let mut all = Vec::new();
-    for (name, word) in [("bending_urad_per_nm", "in bending"), ("torsion_urad_per_nm", "in torsion")] {
-        let Some(parameter) = parameters.iter().find(|parameter| parameter.name == name) else {
-            continue;
+    let Body::Rod(structure) = &model.body else { return String::new() };
+    let (mut sure, mut all) = (Vec::new(), Vec::new());
+    for (action, parameter, compliance) in by_action(finding, model) {
+        let (Action::Joint(number, _) | Action::JointIn(_, number)) = action else { continue };
+        let how = match structure.deformation(*number) {
+            Deformation::Bending => "in bending",
+            Deformation::Torsion => "in torsion",
         };
-        let Some(yields) = finding.quantity(name) else { continue };
         let of_file = parameter.neutral / parameter.unit;
         let instead = match of_file > 0.0 {
             true => format!(" instead of {}", significant(of_file, 3)),
             false => String::new(),
         };
-        let words = format!("{} {word}{instead}", yields.say("µrad/(N·m)"));
-        if yields.low > of_file || yields.high < of_file {
-            sure.push(words.clone());
+        let one = format!("{} {how}{instead}", compliance.say("µrad/(N·m)"));
+        if compliance.low > of_file || compliance.high < of_file {
+            sure.push(one.clone());
         }
-        all.push(words);
+        all.push(one);
     }
     if sure.is_empty() { all } else { sure }.join(" and ")
 }

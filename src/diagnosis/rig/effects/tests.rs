@@ -2,7 +2,9 @@
 
 use crate::diagnosis::rig::RigModel;
 use crate::diagnosis::rig::effects::registry;
-use crate::inference::{Estimate, Finding, FindingPart, ForwardModel, Kind, Location, Reported};
+use crate::inference::{
+    Estimate, Finding, FindingPart, ForwardModel, Kind, Location, Reported, Term, WrittenTo,
+};
 use crate::rig::readings::Readings;
 use crate::rod::Rod;
 use crate::units::UM;
@@ -60,7 +62,7 @@ fn finding(model: &RigModel, index: usize) -> Finding {
 }
 
 #[test]
-fn every_effect_of_the_registry_is_met_and_has_words_with_its_number() {
+fn every_effect_of_the_registry_is_met_and_described_with_its_number() {
     let model = everything();
     let mut met = Vec::new();
     for (index, candidate) in model.candidates().iter().enumerate().filter(|(_, c)| !c.is_nonparametric) {
@@ -101,8 +103,40 @@ fn every_record_is_complete() {
     }
 }
 
+/// The prior in words has the number that candidates are made with.
 #[test]
-fn the_words_say_what_a_mechanic_would() {
+fn a_prior_says_its_number() {
+    for known in registry::ALL {
+        assert!(!known.usual.is_empty(), "{}", known.effect);
+        for usual in known.usual.iter().map(ToString::to_string) {
+            let prior = known.effect.prior;
+            let ends_a_number = |at: usize| prior[..at].ends_with(|c: char| c.is_ascii_digit() || c == '.');
+            let is_said = prior.match_indices(&usual).any(|(at, _)| !ends_a_number(at));
+            assert!(is_said, "{}: {usual} in \"{prior}\"", known.effect);
+        }
+    }
+}
+
+/// Each term goes where its record says; what is the rod's own changes the rod.
+#[test]
+fn what_is_written_back_goes_where_the_record_says() {
+    let model = everything();
+    let rod = model.rod().unwrap();
+    let named = model.candidates().iter().enumerate().filter(|(_, candidate)| !candidate.is_nonparametric);
+    for (index, candidate) in named {
+        let values = candidate.parameters.iter().map(|p| (p.neutral + p.size).min(p.bounds.1)).collect();
+        let mut written = rod.clone();
+        let destination = registry::write(&Term { candidate: index, values }, &model, &mut written);
+        // a rod file has no sessions
+        let is_of_session = matches!(candidate.location, Location::InSession { .. });
+        let expected = if is_of_session { WrittenTo::Recording } else { candidate.effect.written_to };
+        assert_eq!(destination, expected, "{} {}", candidate.effect, candidate.location);
+        assert_eq!(written != *rod, destination == WrittenTo::Model, "{}", candidate.effect);
+    }
+}
+
+#[test]
+fn the_descriptions_say_what_a_mechanic_would() {
     let model = everything();
     let say = |effect: &str, location: &str| {
         let is_it =

@@ -22,6 +22,7 @@ const FEWEST_RUNS: usize = 3;
 /// A constant on all readings of a channel, or of a channel in a run.
 pub static ZERO_NOT_TAKEN: RigEffect = RigEffect {
     effect: OFFSET_MISTAKE,
+    usual: &[],
     needs_rod: true,
     candidates: offsets,
     missing: |_| "nothing was read",

@@ -1,13 +1,19 @@
 //! From readings to findings: mistakes first, then the physics of what is left.
 
+mod another_rod;
+mod as_measured;
+mod limits;
+
 use super::effects::mistakes::UNIT_MISTAKE;
 use super::effects::structure::STIFFNESS_SCALE;
+use super::laws::sites;
+use super::measurements::next;
+use super::mistakes;
 use super::mistakes::Mended;
+use super::model::wanted::Wanted;
 use super::model::{AsRecorded, RigDiagnosis, RigModel};
 use super::own_effect::OwnEffect;
-use super::wanted::Wanted;
 use super::write_back::as_found;
-use super::{another_rod, as_measured, limits, mistakes, next, sites};
 use crate::error::{Error, Place, Result};
 use crate::inference::law::propose;
 use crate::inference::{

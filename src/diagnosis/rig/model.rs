@@ -1,13 +1,24 @@
 //! Readings of a rig as the engine sees them: data, what turns forces into displacements,
 //! candidates.
 
-use super::action::Action;
-use super::cases::Cases;
-use super::datum::Datum;
-use super::nominal::KnownNumber;
+mod build;
+mod cases;
+mod derivative;
+mod first_sight;
+mod forward_model;
+pub(super) mod nominal;
+mod response;
+pub(super) mod transfer;
+pub(super) mod wanted;
+mod widened;
+
+use self::cases::Cases;
+use self::nominal::KnownNumber;
+use super::mechanics::action::Action;
+use super::mechanics::slide::Course;
+use super::mechanics::structure::Structure;
 use super::own_effect::OwnEffect;
-use super::slide::Course;
-use super::structure::Structure;
+use super::recording::datum::Datum;
 use crate::inference::{Candidate, Diagnosed};
 use crate::rig::readings::Readings;
 use crate::rod::{Rod, RodLaw};

@@ -33,12 +33,12 @@ use std::sync::Arc;
 use self::along::*;
 pub(super) use self::before::Before;
 use self::cycles::Cycles;
-use super::action::{Action, Weights};
-use super::datum::Datum;
 use super::effects::entry::Entry;
-use super::load_history::runs;
+use super::mechanics::action::{Action, Weights};
+use super::mechanics::load_history::runs;
 use super::model::Body;
 use super::numbering::numbered;
+use super::recording::datum::Datum;
 use crate::inference::{Location, Parameter, Variable};
 use crate::spatial::Axis;
 use crate::units::UM;
@@ -311,7 +311,7 @@ fn places(datum: &Datum) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnosis::rig::datum;
+    use crate::diagnosis::rig::recording::datum;
     use crate::rig::readings::Readings;
 
     fn along(text: &str) -> Option<Entry> {

@@ -1,8 +1,10 @@
 //! Effects that a lab describes itself, as its file has them.
 
+pub(super) mod candidate;
 mod file;
+pub(super) mod law;
 
-use super::law_measures::SiteVariable;
+use super::laws::measures::SiteVariable;
 use crate::error::Place;
 use crate::expression::Expression;
 use crate::inference::{Effect, Finding, Parameter};

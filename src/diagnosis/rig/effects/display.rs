@@ -4,8 +4,8 @@ use super::entry::{
     Context, Entry, RigEffect, Usual, alternative, candidate, of_action, out_of_the_readings, parameter, size,
 };
 use super::places::measured_channels;
-use crate::diagnosis::rig::action::Action;
-use crate::diagnosis::rig::display::{Display, Follows};
+use crate::diagnosis::rig::mechanics::action::Action;
+use crate::diagnosis::rig::mechanics::display::{Display, Follows};
 use crate::inference::{Candidate, Effect, Kind, Location, Part, Reported, Variable, WrittenTo};
 use crate::spatial::Axis;
 use crate::units::UM;

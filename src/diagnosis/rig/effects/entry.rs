@@ -2,9 +2,9 @@
 
 use std::fmt;
 
-use crate::diagnosis::rig::action::Action;
-use crate::diagnosis::rig::datum::Datum;
+use crate::diagnosis::rig::mechanics::action::Action;
 use crate::diagnosis::rig::model::{Body, RigModel};
+use crate::diagnosis::rig::recording::datum::Datum;
 use crate::inference::{
     Candidate, Effect, Finding, Location, Parameter, Quantity, Term, Variable, WrittenTo,
 };

@@ -5,9 +5,9 @@ use std::sync::Arc;
 
 use super::entry::{Context, Entry, RigEffect, UNBOUNDED, Usual, entry, of, out_of_the_readings, parameter};
 use super::places::runs_by_sensor;
-use crate::diagnosis::rig::action::Action;
-use crate::diagnosis::rig::columns::column;
-use crate::diagnosis::rig::datum::Datum;
+use crate::diagnosis::rig::mechanics::action::Action;
+use crate::diagnosis::rig::recording::columns::column;
+use crate::diagnosis::rig::recording::datum::Datum;
 use crate::inference::{
     Effect, Estimate, FindingPart, Kind, Location, Quantity, Reported, Run, Variable, WrittenTo,
 };

@@ -3,12 +3,12 @@
 use super::entry::{
     Context, Entry, RigEffect, Usual, along_the_load, alternative, entry, nowhere, of, of_action, parameter,
 };
-use crate::diagnosis::rig::action::Action;
-use crate::diagnosis::rig::load_history::{
+use crate::diagnosis::rig::mechanics::action::Action;
+use crate::diagnosis::rig::mechanics::load_history::{
     Clock, History, Loop, Memory, Onset, creep, hysteresis, is_stated, onsets, warmth,
 };
+use crate::diagnosis::rig::mechanics::recovery::recovery;
 use crate::diagnosis::rig::model::{Body, RigModel};
-use crate::diagnosis::rig::recovery::recovery;
 use crate::inference::{Effect, Finding, Kind, Location, Part, Reported, Variable, WrittenTo};
 use crate::units::significant;
 

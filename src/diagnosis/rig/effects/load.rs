@@ -5,8 +5,8 @@ use super::entry::{
     parameter, preferring, size,
 };
 use super::places::{loaded_axes, sessions};
-use crate::diagnosis::rig::action::{Action, Scope};
-use crate::diagnosis::rig::datum::Datum;
+use crate::diagnosis::rig::mechanics::action::{Action, Scope};
+use crate::diagnosis::rig::recording::datum::Datum;
 use crate::inference::{Candidate, Effect, Finding, Kind, Location, Parameter, Part, Reported, WrittenTo};
 use crate::spatial::Axis;
 use crate::units::{DEG, UM, significant};

@@ -8,8 +8,8 @@ use super::entry::{
 };
 use super::load::{ALIGNMENT, TURNS, WIDEST, misalignment, pairs, whole_turn};
 use super::places::measured_channels;
-use crate::diagnosis::rig::action::{Action, DriftPer};
-use crate::diagnosis::rig::datum::Datum;
+use crate::diagnosis::rig::mechanics::action::{Action, DriftPer};
+use crate::diagnosis::rig::recording::datum::Datum;
 use crate::inference::{Candidate, Effect, Finding, Kind, Location, Part, Reported, Variable, WrittenTo};
 use crate::spatial::Axis;
 use crate::units::{DEG, UM};

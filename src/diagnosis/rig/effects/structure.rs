@@ -5,9 +5,9 @@ use super::entry::{
     parameter, preferring, size,
 };
 use super::places::{sessions, stations};
-use crate::diagnosis::rig::action::Action;
+use crate::diagnosis::rig::mechanics::action::Action;
+use crate::diagnosis::rig::mechanics::structure::{Deformation, Structure, with_moduli};
 use crate::diagnosis::rig::model::{Body, RigModel};
-use crate::diagnosis::rig::structure::{Deformation, Structure, with_moduli};
 use crate::inference::{
     Candidate, Effect, Finding, ForwardModel, Kind, Location, Part, Quantity, Reported, Term, WrittenTo,
 };

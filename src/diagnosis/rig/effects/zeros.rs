@@ -7,8 +7,8 @@
 use super::entry::{Context, Entry, RigEffect, UNBOUNDED, entry, of, out_of_the_readings, parameter};
 use super::mistakes::OFFSET_MISTAKE;
 use super::places::{measured_channels, runs_by_sensor};
-use crate::diagnosis::rig::action::{Action, Weights};
-use crate::diagnosis::rig::columns::{column, sensor_in_run};
+use crate::diagnosis::rig::mechanics::action::{Action, Weights};
+use crate::diagnosis::rig::recording::columns::{column, sensor_in_run};
 use crate::inference::{Key, Location};
 use crate::units::UM;
 

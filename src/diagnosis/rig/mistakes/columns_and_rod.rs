@@ -8,9 +8,9 @@ use super::possible::PossibleMistake;
 use super::rods::{self, Body};
 use super::search::{self, LinesOnRod, MistakeSearch};
 use super::sensors::Expected;
-use crate::diagnosis::rig::datum;
+use crate::diagnosis::rig::mechanics::structure::check_stations;
 use crate::diagnosis::rig::numbering::numbered;
-use crate::diagnosis::rig::structure::check_stations;
+use crate::diagnosis::rig::recording::datum;
 use crate::error::Result;
 use crate::rod::Rod;
 

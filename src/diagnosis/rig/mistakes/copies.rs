@@ -7,14 +7,14 @@
 
 use std::collections::BTreeMap;
 
-use super::super::columns::{rows_of, trial_name};
-use super::super::datum::Datum;
 use super::super::effects::mistakes::COPY_MISTAKE;
-use super::super::evidence::resolution;
 use super::super::numbering::numbered;
 use super::lines::fit;
 use super::part::Part;
 use super::search::ODDS;
+use crate::diagnosis::rig::recording::columns::{rows_of, trial_name};
+use crate::diagnosis::rig::recording::datum::Datum;
+use crate::diagnosis::rig::recording::evidence::resolution;
 use crate::inference::Key;
 use crate::statistics::median;
 

@@ -17,13 +17,13 @@
 
 use std::collections::BTreeMap;
 
-use super::super::columns::{columns, load_column, rows_between};
 use super::super::effects::mistakes::ROW_MISTAKE;
 use super::super::numbering::numbered;
 use super::lines::{Fit, fit};
 use super::part::Part;
 use super::possible::exact;
 use super::search::ODDS;
+use crate::diagnosis::rig::recording::columns::{columns, load_column, rows_between};
 use crate::inference::Key;
 use crate::rig::readings::{LoadColumn, Phase, Reading};
 use crate::spatial::Axis;

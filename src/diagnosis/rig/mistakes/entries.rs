@@ -15,12 +15,12 @@
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
-use super::super::columns::{columns, load_column};
-use super::super::datum::Datum;
 use super::super::effects::mistakes::TYPING_MISTAKE;
 use super::lines::{Line, fit};
 use super::part::Part;
 use super::possible::exact;
+use crate::diagnosis::rig::recording::columns::{columns, load_column};
+use crate::diagnosis::rig::recording::datum::Datum;
 use crate::inference::{Estimate, Key};
 use crate::rig::readings::LoadColumn;
 use crate::spatial::Axis;

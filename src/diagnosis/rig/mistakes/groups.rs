@@ -2,12 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use super::super::columns::{axis_rows, column, columns, rows_of, sensor_in_run};
-use super::super::datum::Datum;
 use super::super::effects::events::SLIP;
 use super::super::effects::mistakes::{OFFSET_MISTAKE, SIGN_MISTAKE};
 use super::lines::{Fit, Line, fit};
 use super::part::Part;
+use crate::diagnosis::rig::recording::columns::{axis_rows, column, columns, rows_of, sensor_in_run};
+use crate::diagnosis::rig::recording::datum::Datum;
 use crate::inference::{Estimate, Key, Quantity};
 use crate::spatial::{Axis, Direction};
 use crate::statistics::median;

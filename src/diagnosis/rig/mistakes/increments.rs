@@ -9,11 +9,11 @@
 
 use std::collections::BTreeMap;
 
-use super::super::columns::columns;
-use super::super::datum::Datum;
 use super::super::effects::mistakes::INCREMENT_MISTAKE;
 use super::lines::Line;
 use super::part::Part;
+use crate::diagnosis::rig::recording::columns::columns;
+use crate::diagnosis::rig::recording::datum::Datum;
 use crate::inference::Key;
 use crate::spatial::Axis;
 

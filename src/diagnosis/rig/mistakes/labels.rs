@@ -11,7 +11,7 @@ use self::units::{decimals, load_units, reading_units};
 use super::lines::Line;
 use super::possible::PossibleMistake;
 use super::relabelling::Relabelling;
-use crate::diagnosis::rig::columns::columns;
+use crate::diagnosis::rig::recording::columns::columns;
 use crate::inference::{Effect, Key};
 use crate::rig::readings::LoadColumn;
 use crate::spatial::Axis;

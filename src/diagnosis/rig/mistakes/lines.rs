@@ -10,7 +10,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::super::datum::Datum;
+use crate::diagnosis::rig::recording::datum::Datum;
 use crate::spatial::Axis;
 
 /// Prior of what a line does not pass through the origin by, as a share of its largest reading.

@@ -14,10 +14,10 @@
 
 use nalgebra::DVector;
 
-use super::super::columns::load_column;
 use super::super::effects::mistakes::UNIT_MISTAKE;
 use super::super::model::RigModel;
 use super::labels::{HARDLY_BESIDE, like_physics};
+use crate::diagnosis::rig::recording::columns::load_column;
 use crate::inference::{Evidence, Finding, ForwardModel, Location, Rival, Term};
 use crate::linalg::least_squares;
 

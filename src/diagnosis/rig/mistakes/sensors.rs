@@ -2,12 +2,12 @@
 
 use std::collections::HashSet;
 
-use super::super::columns::{column, rows_between};
-use super::super::datum::Datum;
 use super::super::effects::mistakes::{SATURATED_SENSOR, STUCK_SENSOR};
-use super::super::evidence::resolution;
 use super::lines::{Line, lines};
 use super::part::Part;
+use crate::diagnosis::rig::recording::columns::{column, rows_between};
+use crate::diagnosis::rig::recording::datum::Datum;
+use crate::diagnosis::rig::recording::evidence::resolution;
 use crate::inference::{Estimate, Key, Quantity};
 use crate::spatial::Axis;
 use crate::units::{UM, significant};

@@ -4,7 +4,7 @@ use super::labels::Labels;
 use super::lines::lines;
 use super::mended::{Mended, Zero};
 use super::{copies, displaced, entries, groups, increments, sensors, trials};
-use crate::diagnosis::rig::datum;
+use crate::diagnosis::rig::recording::datum;
 use crate::error::Result;
 use crate::inference::Location;
 

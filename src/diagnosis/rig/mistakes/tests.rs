@@ -8,7 +8,7 @@ mod sensors;
 use super::mended::Mended;
 use super::*;
 use crate::diagnosis::rig::model::RigModel;
-use crate::diagnosis::rig::wanted::Wanted;
+use crate::diagnosis::rig::model::wanted::Wanted;
 use crate::inference::{Finding, ForwardModel, Location, Term};
 use crate::rig::readings::{Axis, Direction, Phase, Reading};
 use crate::section::Round;

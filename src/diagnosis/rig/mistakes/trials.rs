@@ -12,8 +12,6 @@
 //! it, in the trials that are right; r_max the largest under the same load. The scatter about the
 //! lines counts too: it is that of the others times the factor on the readings.
 
-use super::super::columns::{rows_of, trial_name};
-use super::super::datum::Datum;
 use super::super::effects::mistakes::SIGN_MISTAKE;
 use super::super::numbering::numbered;
 use super::groups::group;
@@ -22,6 +20,8 @@ use super::part::Part;
 use super::possible::PossibleMistake;
 use super::relabelling::Relabelling;
 use super::search::{ALIKE as NO_WORSE, ODDS, RARE};
+use crate::diagnosis::rig::recording::columns::{rows_of, trial_name};
+use crate::diagnosis::rig::recording::datum::Datum;
 use crate::statistics::median;
 
 /// Slopes that differ by less than this share, or by so many standard errors, may be one.

@@ -1,6 +1,6 @@
 //! What curves run along, and what they have in common.
 
-use crate::diagnosis::rig::datum::Datum;
+use crate::diagnosis::rig::recording::datum::Datum;
 use crate::inference::{Candidate, Location, Parameter, UNKNOWN, Variable};
 
 /// Columns of a curve.

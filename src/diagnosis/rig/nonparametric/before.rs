@@ -10,10 +10,10 @@
 //!
 //! and what remembers otherwise shows C·F·h(F′). Both g and h are curves of no law.
 
-use super::super::datum::Datum;
-use super::super::load_history::{dwell, instants, runs};
 use super::super::numbering::numbered;
 use super::along::Coordinate;
+use crate::diagnosis::rig::mechanics::load_history::{dwell, instants, runs};
+use crate::diagnosis::rig::recording::datum::Datum;
 
 /// Waiting times that differ by less than this factor are the same.
 const SAME_WAIT: f64 = 1.1;
@@ -86,7 +86,7 @@ impl Before {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnosis::rig::datum;
+    use crate::diagnosis::rig::recording::datum;
     use crate::rig::readings::Readings;
 
     #[test]

@@ -6,9 +6,9 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::diagnosis::rig::action::Action;
-use crate::diagnosis::rig::datum::Datum;
+use crate::diagnosis::rig::mechanics::action::Action;
 use crate::diagnosis::rig::numbering::numbered;
+use crate::diagnosis::rig::recording::datum::Datum;
 use crate::inference::Candidate;
 
 /// The cycles of a recording, with what the base model leaves of it.

@@ -11,10 +11,10 @@
 
 use std::sync::Arc;
 
-use super::super::action::{Action, Weights};
-use super::super::datum::Datum;
 use super::along::{ALL_DEFLECTIONS, LEAST_SHIFT, LOAD, PERCENT, SHARE, largest_reading, rival};
 use crate::diagnosis::rig::effects::entry::{Entry, UNBOUNDED, parameter};
+use crate::diagnosis::rig::mechanics::action::{Action, Weights};
+use crate::diagnosis::rig::recording::datum::Datum;
 use crate::inference::{Location, Variable};
 use crate::spatial::Axis;
 use crate::units::UM;
@@ -157,7 +157,7 @@ fn seats(data: &[Datum]) -> Vec<Entry> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnosis::rig::datum;
+    use crate::diagnosis::rig::recording::datum;
     use crate::rig::readings::Readings;
 
     fn of(text: &str, deflection: impl Fn(&Datum) -> f64) -> Vec<Entry> {

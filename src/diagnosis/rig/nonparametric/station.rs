@@ -9,11 +9,11 @@
 
 use std::f64::consts::PI;
 
-use super::super::action::Action;
-use super::super::datum::Datum;
-use super::super::structure::Structure;
 use super::along::{MOST_COLUMNS, PERCENT, rival};
 use crate::diagnosis::rig::effects::entry::{Entry, UNBOUNDED, parameter};
+use crate::diagnosis::rig::mechanics::action::Action;
+use crate::diagnosis::rig::mechanics::structure::Structure;
+use crate::diagnosis::rig::recording::datum::Datum;
 use crate::inference::{Candidate, Location, Variable};
 
 /// By what share the flexibility varies: walls of drawn tubes vary by 10 %.

@@ -14,11 +14,11 @@
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-use super::super::action::{Action, Weights};
-use super::super::datum::Datum;
 use super::super::numbering::numbered;
 use super::along::{Along, Coordinate, LEAST_SHIFT, SHARE, largest_reading, rival};
 use crate::diagnosis::rig::effects::entry::{Entry, UNBOUNDED, parameter};
+use crate::diagnosis::rig::mechanics::action::{Action, Weights};
+use crate::diagnosis::rig::recording::datum::Datum;
 use crate::inference::Location;
 use crate::units::UM;
 
@@ -105,7 +105,7 @@ fn starts(coordinate: &Coordinate, data: &[Datum]) -> Coordinate {
 mod tests {
     use super::super::TIME;
     use super::*;
-    use crate::diagnosis::rig::datum;
+    use crate::diagnosis::rig::recording::datum;
     use crate::rig::readings::Readings;
 
     #[test]

@@ -8,7 +8,7 @@ use toml::Spanned;
 
 use super::OwnEffect;
 use crate::diagnosis::rig::effects::registry;
-use crate::diagnosis::rig::law_measures::SiteVariable;
+use crate::diagnosis::rig::laws::measures::SiteVariable;
 use crate::error::{Place, Result};
 use crate::expression::{Expression, is_reserved};
 use crate::files;

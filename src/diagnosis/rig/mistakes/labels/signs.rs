@@ -1,10 +1,10 @@
 //! Channels and loads with the wrong sign.
 
 use super::{ALL, Labels, UNUSUAL, mask, relabelled};
-use crate::diagnosis::rig::columns::{axis_rows, column};
 use crate::diagnosis::rig::effects::mistakes::SIGN_MISTAKE;
 use crate::diagnosis::rig::mistakes::possible::PossibleMistake;
 use crate::diagnosis::rig::mistakes::relabelling::Relabelling;
+use crate::diagnosis::rig::recording::columns::{axis_rows, column};
 use crate::inference::Key;
 
 pub(super) fn signs(labels: &Labels) -> Vec<PossibleMistake> {

@@ -1,10 +1,10 @@
 //! Columns and axes whose names are exchanged.
 
 use super::{Labels, UNUSUAL, relabelled};
-use crate::diagnosis::rig::columns::column;
 use crate::diagnosis::rig::effects::mistakes::SWAP_MISTAKE;
 use crate::diagnosis::rig::mistakes::possible::PossibleMistake;
 use crate::diagnosis::rig::mistakes::relabelling::Relabelling;
+use crate::diagnosis::rig::recording::columns::column;
 use crate::inference::Key;
 use crate::spatial::Axis;
 

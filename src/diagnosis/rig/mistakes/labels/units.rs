@@ -1,10 +1,10 @@
 //! Columns in another unit than their names say.
 
 use super::{ALL, Labels, ONE_AXIS, UNUSUAL, mask};
-use crate::diagnosis::rig::columns::{axis_rows, columns, load_column};
 use crate::diagnosis::rig::effects::mistakes::UNIT_MISTAKE;
 use crate::diagnosis::rig::mistakes::possible::{PossibleMistake, exact};
 use crate::diagnosis::rig::mistakes::relabelling::Relabelling;
+use crate::diagnosis::rig::recording::columns::{axis_rows, columns, load_column};
 use crate::inference::Key;
 use crate::rig::readings::LoadColumn;
 use crate::spatial::Axis;

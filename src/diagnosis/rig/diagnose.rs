@@ -102,7 +102,7 @@ pub fn diagnose_with(
             others.clear();
         }
     }
-    // a rod that yields much more than its file bends much farther, which may change what was found
+    // a rod that is much softer than its file bends much farther, which may change what was found
     let mut bent = model.rod.clone();
     for _ in 0..MOST_BENT {
         let Some(found) = bends_farther(&model, bent.as_ref(), &diagnosis)? else { break };

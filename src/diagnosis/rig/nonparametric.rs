@@ -14,7 +14,7 @@
 //! that acts on all lines alike, such as relaxation with one time constant or a seat that gives
 //! way, is one rival and not many.
 //!
-//! What yields along the rod more here than there is a curve over its stations ([`station`]).
+//! What is softer along the rod here than there is a curve over its stations ([`station`]).
 //!
 //! What sets in at a load, or acts one way, has rivals of one number ([`kink`]). What comes and
 //! goes in time has finer curves besides, of [`FINE`] columns of which the first
@@ -51,7 +51,7 @@ const MOST_LEVELS: usize = 30;
 /// flat one may have: as large as the known effects on a rod.
 const SLOPE: (f64, f64) = (0.27, 0.02);
 
-/// All curves for these readings. `deflections`: how far the rod yields at each datum by the base
+/// All curves for these readings. `deflections`: how far the rod deflects at each datum by the base
 /// model, m.
 pub(super) fn all(data: &[Datum], deflections: &[f64], (body, place): (&Body, &[usize])) -> Vec<Entry> {
     let everything: Vec<usize> = (0..data.len()).collect();
@@ -319,7 +319,7 @@ mod tests {
     }
 
     #[test]
-    fn what_yields_along_the_load_does_so_wherever_that_pulls() {
+    fn what_gives_way_along_the_load_does_so_wherever_that_pulls() {
         let (candidate, actions) =
             along("axis,load_n,dy_um,dz_um\n-y,0,0,0\n-y,5,-9,1\n-y,10,-18,2\nz,10,3,30\n").unwrap();
         assert_eq!(candidate.location.to_string(), "load, readings along the load");

@@ -27,11 +27,11 @@ pub struct OwnEffect {
 impl OwnEffect {
     /// `A rubber foot under the clamp: a_um = 12 ± 2, b_n = 4.0 ± 0.5`.
     pub(super) fn observed(&self, finding: &Finding) -> String {
-        let said = |parameter: &Parameter| {
+        let stated = |parameter: &Parameter| {
             let quantity = finding.quantity(&parameter.name)?;
             Some(format!("{} = {}", parameter.name, quantity.say("")))
         };
-        let numbers: Vec<String> = self.parameters.iter().filter_map(said).collect();
+        let numbers: Vec<String> = self.parameters.iter().filter_map(stated).collect();
         let mut letters = self.effect.summary.chars();
         let first: String = letters.next().into_iter().flat_map(char::to_uppercase).collect();
         format!("{first}{} ({}): {}", letters.as_str(), self.place, numbers.join(", "))

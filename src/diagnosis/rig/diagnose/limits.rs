@@ -21,8 +21,9 @@ fn jumps_at_turns(data: &[Datum]) -> bool {
     Axis::ALL.into_iter().any(|axis| {
         let line: Vec<&Datum> =
             data.iter().filter(|d| d.direction.axis == axis && d.channel == axis).collect();
-        let steps = |of: &dyn Fn(&Datum) -> f64| {
-            let mut steps: Vec<f64> = line.windows(2).map(|pair| (of(pair[1]) - of(pair[0])).abs()).collect();
+        let steps = |value: &dyn Fn(&Datum) -> f64| {
+            let mut steps: Vec<f64> =
+                line.windows(2).map(|pair| (value(pair[1]) - value(pair[0])).abs()).collect();
             steps.retain(|step| *step > 0.0);
             steps.sort_by(f64::total_cmp);
             steps

@@ -90,8 +90,8 @@ fn displays(context: &mut Context) -> Vec<Entry> {
     let channels = measured_channels(data);
     let mut entries = Vec::new();
     for ((form, follows, usual), often) in forms.into_iter().zip(OFTEN) {
-        let mut add = |location: Location, weight: f64, is_of: &dyn Fn(Axis) -> bool| {
-            let display = Display::of(data, follows, |d| is_of(d.channel));
+        let mut add = |location: Location, weight: f64, is_its: &dyn Fn(Axis) -> bool| {
+            let display = Display::of(data, follows, |d| is_its(d.channel));
             let candidate = candidate(&SENSOR_LAG.effect, location, vec![usual.clone()]);
             let candidate = Candidate { weight, ..candidate };
             entries.push(alternative((candidate, vec![Action::Display(display.into())])));

@@ -169,12 +169,12 @@ pub(super) fn of_action(
 }
 
 /// A number of a finding in the unit of its name; NaN where it has none of that name.
-pub(super) fn of(finding: &Finding, name: &str) -> Quantity {
+pub(super) fn number(finding: &Finding, name: &str) -> Quantity {
     let nothing = Quantity { value: f64::NAN, low: f64::NAN, high: f64::NAN };
     finding.quantity(name).unwrap_or(nothing)
 }
 
 /// The size of one, as people write it.
 pub(super) fn size(finding: &Finding, name: &str, unit: &str) -> String {
-    of(finding, name).size().say(unit)
+    number(finding, name).size().say(unit)
 }

@@ -3,7 +3,9 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use super::entry::{Context, Entry, RigEffect, UNBOUNDED, Usual, entry, of, out_of_the_readings, parameter};
+use super::entry::{
+    Context, Entry, RigEffect, UNBOUNDED, Usual, entry, number, out_of_the_readings, parameter,
+};
 use super::places::runs_by_sensor;
 use crate::diagnosis::rig::mechanics::action::Action;
 use crate::diagnosis::rig::recording::columns::column;
@@ -57,7 +59,7 @@ pub static SLIP: RigEffect = RigEffect {
         others.sort_by_key(|(channel, _)| *channel);
         let one = |(channel, shift): &(Axis, Quantity)| format!(", d{channel} by {}", shift.say("µm"));
         let besides: String = others.iter().map(one).collect();
-        format!("The readings jump by {} ({}){besides}", of(finding, "um").say("µm"), finding.location)
+        format!("The readings jump by {} ({}){besides}", number(finding, "um").say("µm"), finding.location)
     },
     write: out_of_the_readings,
 };

@@ -1,7 +1,8 @@
 //! What the rod makes of its loads and of their history: curvature, creep, hysteresis.
 
 use super::entry::{
-    Context, Entry, RigEffect, Usual, along_the_load, alternative, entry, nowhere, of, of_action, parameter,
+    Context, Entry, RigEffect, Usual, along_the_load, alternative, entry, nowhere, number, of_action,
+    parameter,
 };
 use crate::diagnosis::rig::mechanics::action::Action;
 use crate::diagnosis::rig::mechanics::load_history::{
@@ -82,7 +83,7 @@ pub static CREEP: RigEffect = RigEffect {
             Some(History::Creep(clock, _)) => clock.name(),
             _ => "under load",
         };
-        let growth = of(finding, "per_decade").map(|share| 100.0 * share).say("%");
+        let growth = number(finding, "per_decade").map(|share| 100.0 * share).say("%");
         match model.data().iter().any(|d| d.imposed.is_some()) {
             true => {
                 format!("Under a held displacement the load falls by {growth} per decade of time {since}")
@@ -123,7 +124,7 @@ pub static THERMAL_SOFTENING: RigEffect = RigEffect {
     },
     missing: |_| "no temperatures were recorded (column `temperature_c`), or they do not differ",
     observed: |finding, _| {
-        let growth = of(finding, "per_k").map(|share| 100.0 * share).say("%");
+        let growth = number(finding, "per_k").map(|share| 100.0 * share).say("%");
         format!("The deflections grow by {growth} per kelvin")
     },
     write: nowhere,
@@ -153,7 +154,7 @@ pub static HYSTERESIS: RigEffect = RigEffect {
     observed: |finding, model| {
         let is_open = matches!(history(finding, model), Some(History::Loop(Loop::Remanent)));
         let at = if is_open { "zero load" } else { "half load" };
-        let share = of(finding, "fraction").map(|share| 100.0 * share).say("%");
+        let share = number(finding, "fraction").map(|share| 100.0 * share).say("%");
         format!("The unloading curve lies above the loading curve, by {share} of full scale at {at}")
     },
     write: nowhere,

@@ -1,8 +1,8 @@
 //! What happens to a load before the rod feels it: friction, offset, play, direction.
 
 use super::entry::{
-    Context, Entry, RigEffect, Usual, along_the_load, candidate, entry, of, of_action, out_of_the_readings,
-    parameter, preferring, size,
+    Context, Entry, RigEffect, Usual, along_the_load, candidate, entry, number, of_action,
+    out_of_the_readings, parameter, preferring, size,
 };
 use super::places::{loaded_axes, sessions};
 use crate::diagnosis::rig::mechanics::action::{Action, Scope};
@@ -127,10 +127,10 @@ pub static LOAD_OFFSET: RigEffect = RigEffect {
     missing: |_| "no load was applied",
     observed: |finding, model| {
         if model.data().iter().any(|d| d.imposed.is_some()) {
-            let error = of(finding, "force_n").map(|force| -force).say("N");
+            let error = number(finding, "force_n").map(|force| -force).say("N");
             return format!("The load cell shows {error} too much{}", under(&finding.location));
         }
-        let word = if of(finding, "force_n").value >= 0.0 { "larger" } else { "smaller" };
+        let word = if number(finding, "force_n").value >= 0.0 { "larger" } else { "smaller" };
         let force = size(finding, "force_n", "N");
         format!("The true value of {} is {force} {word} than stated", each_load(finding))
     },
@@ -199,7 +199,7 @@ pub static LOAD_MISALIGNMENT: RigEffect = RigEffect {
     candidates: load_turns,
     missing: |_| "no measured channel would show it",
     observed: |finding, _| {
-        let angle = of(finding, "angle_deg");
+        let angle = number(finding, "angle_deg");
         match &finding.location {
             Location::LoadTurn { from, towards } => {
                 let word = if angle.value >= 0.0 { "towards" } else { "away from" };

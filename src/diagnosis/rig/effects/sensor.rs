@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use super::entry::{
     Context, Entry, RigEffect, UNBOUNDED, Usual, along_the_load, alternative, by_action, candidate, entry,
-    of, out_of_the_readings, parameter,
+    number, out_of_the_readings, parameter,
 };
 use super::load::{ALIGNMENT, TURNS, WIDEST, misalignment, pairs, whole_turn};
 use super::places::measured_channels;
@@ -83,12 +83,12 @@ pub static SENSOR_SCALE: RigEffect = RigEffect {
     },
     missing: |_| "no readings were taken",
     observed: |finding, _| {
-        let factor = of(finding, "factor");
-        let words = match factor.value < 1.0 && factor.value > 0.5 {
+        let factor = number(finding, "factor");
+        let how = match factor.value < 1.0 && factor.value > 0.5 {
             true => factor.map(|factor| 100.0 * (1.0 - factor)).say("%") + " too low",
             false => factor.compared("too high", "too low"),
         };
-        format!("Sensor {} reads {words}", finding.location)
+        format!("Sensor {} reads {how}", finding.location)
     },
     write: out_of_the_readings,
 };
@@ -140,7 +140,7 @@ pub static SENSOR_MISALIGNMENT: RigEffect = RigEffect {
         if finding.location == Location::Part(Part::Sensors) {
             return format!("All sensors are rotated together by {}", whole_turn(finding));
         }
-        let angle = of(finding, "angle_deg");
+        let angle = number(finding, "angle_deg");
         let word = if angle.value >= 0.0 { "towards" } else { "away from" };
         let (from, towards) = match &finding.location {
             Location::SensorTurn { from, towards } => (format!("d{from}"), format!("d{towards}")),

@@ -1,8 +1,8 @@
 //! What the rod is: moduli, joints, root, bend.
 
 use super::entry::{
-    Context, Entry, NOT_NEGATIVE, RigEffect, SCALES, Usual, along_the_load, by_action, candidate, entry, of,
-    parameter, preferring, size,
+    Context, Entry, NOT_NEGATIVE, RigEffect, SCALES, Usual, along_the_load, by_action, candidate, entry,
+    number, parameter, preferring, size,
 };
 use super::places::{sessions, stations};
 use crate::diagnosis::rig::mechanics::action::Action;
@@ -54,7 +54,7 @@ pub static STIFFNESS_SCALE: RigEffect = RigEffect {
     },
     missing: |_| NOT_YIELDING,
     observed: |finding, _| {
-        format!("All tubes of the rod are {} than in the model", softer(of(finding, "factor")))
+        format!("All tubes of the rod are {} than in the model", softer(number(finding, "factor")))
     },
     write: |term, _, rod| {
         *rod = with_moduli(rod, term.values[0], term.values[0]);
@@ -87,7 +87,7 @@ pub static SHEAR_MODULUS: RigEffect = RigEffect {
     },
     missing: |_| "the loads neither twist nor shear the rod",
     observed: |finding, _| {
-        format!("In torsion and shear the rod is {} than its model", softer(of(finding, "factor")))
+        format!("In torsion and shear the rod is {} than its model", softer(number(finding, "factor")))
     },
     write: |term, _, rod| {
         *rod = with_moduli(rod, 1.0, term.values[0]);

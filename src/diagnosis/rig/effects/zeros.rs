@@ -4,7 +4,7 @@
 //! What is larger than the rod's own deflection is undone before there is a model:
 //! `diagnosis/rig/mistakes`.
 
-use super::entry::{Context, Entry, RigEffect, UNBOUNDED, entry, of, out_of_the_readings, parameter};
+use super::entry::{Context, Entry, RigEffect, UNBOUNDED, entry, number, out_of_the_readings, parameter};
 use super::mistakes::OFFSET_MISTAKE;
 use super::places::{measured_channels, runs_by_sensor};
 use crate::diagnosis::rig::mechanics::action::{Action, Weights};
@@ -27,7 +27,7 @@ pub static ZERO_NOT_TAKEN: RigEffect = RigEffect {
     candidates: offsets,
     missing: |_| "nothing was read",
     observed: |finding, _| {
-        let zero = of(finding, "um").say("µm");
+        let zero = number(finding, "um").say("µm");
         format!("A zero was not taken ({}): subtract {zero} from these readings", finding.location)
     },
     write: out_of_the_readings,

@@ -32,18 +32,19 @@ pub fn take_out(model: &mut RigModel, evidence: &mut Evidence, rod: &Rod) -> Vec
             unused.push(law.clone());
             continue;
         };
-        let added = |changed: Option<(usize, f64)>, of: Of| {
+        let added = |changed: Option<(usize, f64)>, argument: Argument| {
             let value = |k: usize, own: &LawConstant| match changed {
                 Some((other, by)) if other == k => own.value + by,
                 _ => own.value,
             };
-            added(law, site, &value, of)
+            added(law, site, &value, argument)
         };
-        adds += added(None, Of::Recorded);
-        predicted += added(None, Of::Predicted);
+        adds += added(None, Argument::Recorded);
+        predicted += added(None, Argument::Predicted);
         for (k, own) in law.constants.iter().enumerate().filter(|(_, own)| own.standard_uncertainty > 0.0) {
             let u = own.standard_uncertainty;
-            let column = 0.5 * (added(Some((k, u)), Of::Recorded) - added(Some((k, -u)), Of::Recorded));
+            let column =
+                0.5 * (added(Some((k, u)), Argument::Recorded) - added(Some((k, -u)), Argument::Recorded));
             if column.iter().all(|value| value.is_finite()) && column.amax() > 0.0 {
                 let unit = if own.unit.is_empty() { String::new() } else { format!(", {}", own.unit) };
                 model.known_numbers.push(KnownNumber::LawConstant(number, k));
@@ -73,7 +74,7 @@ pub fn take_out(model: &mut RigModel, evidence: &mut Evidence, rod: &Rod) -> Vec
 
 /// What a sensor's law is a function of.
 #[derive(Clone, Copy, PartialEq)]
-enum Of {
+enum Argument {
     /// What was recorded, without the law itself.
     Recorded,
     /// What is predicted.
@@ -81,7 +82,12 @@ enum Of {
 }
 
 /// What a law adds to each datum, m.
-fn added(law: &RodLaw, site: &Site, value: &dyn Fn(usize, &LawConstant) -> f64, of: Of) -> DVector<f64> {
+fn added(
+    law: &RodLaw,
+    site: &Site,
+    value: &dyn Fn(usize, &LawConstant) -> f64,
+    argument: Argument,
+) -> DVector<f64> {
     let values: Vec<f64> = law.constants.iter().enumerate().map(|(k, own)| value(k, own)).collect();
     let at = |x: f64, side: f64| {
         let named = |own: &LawConstant| {
@@ -97,7 +103,7 @@ fn added(law: &RodLaw, site: &Site, value: &dyn Fn(usize, &LawConstant) -> f64, 
         if weights[i] == 0.0 || !followed[i].is_finite() {
             return 0.0;
         }
-        match site.recorded.as_ref().filter(|_| of == Of::Recorded) {
+        match site.recorded.as_ref().filter(|_| argument == Argument::Recorded) {
             // y of y + Δy(y) = what was recorded
             Some(recorded) => {
                 let y = should_show(recorded[i] / si, |y| weights[i] * at(y, side) / si);

@@ -275,8 +275,8 @@ impl Recording<'_> {
 
     /// What all data have in common, as far as the recording has it: time, temperature, order.
     fn common(&self) -> Vec<Common> {
-        let all = |of: &dyn Fn(&Datum) -> Option<f64>| -> Option<Vec<f64>> {
-            let values: Vec<f64> = self.data.iter().map(of).collect::<Option<_>>()?;
+        let all = |value: &dyn Fn(&Datum) -> Option<f64>| -> Option<Vec<f64>> {
+            let values: Vec<f64> = self.data.iter().map(value).collect::<Option<_>>()?;
             let least = values.iter().copied().fold(f64::INFINITY, f64::min);
             Some(values.into_iter().map(|value| value - least).collect())
         };

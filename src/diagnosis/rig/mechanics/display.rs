@@ -37,9 +37,9 @@ pub struct Display {
 }
 
 impl Display {
-    /// Of the data that `is_of` admits.
-    pub fn of(data: &[Datum], follows: Follows, is_of: impl Fn(&Datum) -> bool) -> Display {
-        let own: Vec<usize> = (0..data.len()).filter(|&i| is_of(&data[i])).collect();
+    /// Of the data that are its own.
+    pub fn of(data: &[Datum], follows: Follows, is_its: impl Fn(&Datum) -> bool) -> Display {
+        let own: Vec<usize> = (0..data.len()).filter(|&i| is_its(&data[i])).collect();
         let sensor = numbered(own.iter().map(|&i| (data[i].session_number, data[i].sensor())));
         let mut sensors: Vec<Vec<Vec<(usize, f64)>>> = Vec::new();
         let mut last: Vec<usize> = Vec::new();

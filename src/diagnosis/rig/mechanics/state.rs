@@ -37,7 +37,7 @@ use crate::spatial::Axis;
 struct Scoped(Vec<(Scope, f64)>);
 
 impl Scoped {
-    fn of(&self, datum: &Datum) -> f64 {
+    fn on(&self, datum: &Datum) -> f64 {
         self.0.iter().filter(|(scope, _)| scope.holds(datum)).map(|(_, value)| value).sum()
     }
 }
@@ -127,7 +127,9 @@ impl<'a> State<'a> {
             Action::LoadOffset(scope) => self.load_offset.0.push((*scope, value)),
             Action::TurnLoad(axes, from, towards) => {
                 let turn = turn(*from, *towards, value);
-                for (direction, _) in self.load_direction.iter_mut().zip(axes).filter(|(_, is_of)| **is_of) {
+                for (direction, _) in
+                    self.load_direction.iter_mut().zip(axes).filter(|(_, is_turned)| **is_turned)
+                {
                     *direction = turn * *direction;
                 }
             }
@@ -167,7 +169,7 @@ impl<'a> State<'a> {
             for instant in run {
                 let first = &data[instant[0]];
                 let sign = f64::from(first.direction.sign);
-                hung = hung.next(sign * self.hanging(first), self.friction.of(first));
+                hung = hung.next(sign * self.hanging(first), self.friction.on(first));
                 for &i in instant {
                     pulls[i] = self.pull(i, &data[i], Some(hung));
                 }
@@ -191,7 +193,7 @@ impl<'a> State<'a> {
     }
 
     fn hanging(&self, datum: &Datum) -> f64 {
-        if datum.load > 0.0 { datum.load + self.load_offset.of(datum) } else { 0.0 }
+        if datum.load > 0.0 { datum.load + self.load_offset.on(datum) } else { 0.0 }
     }
 
     /// Of one datum; `hung` where its course is known.
@@ -214,12 +216,12 @@ impl<'a> State<'a> {
     /// Of one datum, without history.
     pub fn bare(&self, datum: &Datum, hung: Option<Hung>) -> Pull {
         let (axis, sign) = (datum.direction.axis.index(), f64::from(datum.direction.sign));
-        let (hanging, friction) = (self.hanging(datum), self.friction.of(datum));
+        let (hanging, friction) = (self.hanging(datum), self.friction.on(datum));
         let acting = match hung {
             Some(hung) => sign * hung.force,
             // a slide that turns round holds no more than was felt before
             None if datum.is_unloading() => {
-                let felt = (datum.peak + self.load_offset.of(datum) - friction).max(hanging);
+                let felt = (datum.peak + self.load_offset.on(datum) - friction).max(hanging);
                 (hanging + friction).min(felt)
             }
             // a slide that holds the whole load leaves nothing, and turns nothing round
@@ -228,7 +230,7 @@ impl<'a> State<'a> {
         let mut load = acting * (1.0 + self.per_load_squared * acting * acting);
         load *= 1.0 + self.per_load * acting.abs();
         let side = hung.map_or(if datum.load > 0.0 { 1.0 } else { 0.0 }, |hung| sign * hung.side);
-        Pull { direction: self.load_direction[axis] * sign, load, play: side * self.play.of(datum) }
+        Pull { direction: self.load_direction[axis] * sign, load, play: side * self.play.on(datum) }
     }
 
     /// Π(1 + v·w).
@@ -274,8 +276,8 @@ impl<'a> State<'a> {
             let mut met = Met::default();
             for &i in line {
                 let datum = &data[i];
-                let play = self.play.of(datum).max(0.0);
-                let held = (self.friction.of(datum) * compliance(i)).abs();
+                let play = self.play.on(datum).max(0.0);
+                let held = (self.friction.on(datum) * compliance(i)).abs();
                 let (slider_play, presliding) = (self.slider_play.max(0.0), self.presliding.max(0.0));
                 let slide = Slide { play, slider_play, presliding, held, step };
                 let direction = datum.motion.map_or(0.0, |motion| motion.direction);
@@ -294,8 +296,8 @@ impl<'a> State<'a> {
         let lingering = self.lingering(index) * f64::from(datum.direction.sign) * per_newton / compliance;
         let elastic = self.without_curvature(linear) * self.relaxed(index) - lingering;
         // a load cell's zero does not know which way the load pulls
-        let tare = self.load_offset.of(datum);
-        met.contact * (elastic + self.friction.of(datum) * met.friction) - tare
+        let tare = self.load_offset.on(datum);
+        met.contact * (elastic + self.friction.on(datum) * met.friction) - tare
     }
 
     /// The load φ with φ(1 + k₂φ²)(1 + k₁|φ|) = F, by Newton's method from F.

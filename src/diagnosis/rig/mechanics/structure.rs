@@ -158,12 +158,12 @@ impl Structure {
             let along = tangent * tangent.transpose();
             let bending = pipe.material.youngs_modulus * pipe.section.second_moment();
             let torsion = pipe.material.shear_modulus * pipe.section.torsion_constant();
-            let yields =
+            let flexibility =
                 ((Matrix3::identity() - along) / bending + along / torsion) * (share(station) * step);
             for (part, &(load, read)) in parts.iter_mut().zip(&self.pairs) {
                 if station <= load.min(read) {
                     let lever = |station| skew(&(rod.point(station) - at));
-                    *part += lever(read) * yields * lever(load).transpose();
+                    *part += lever(read) * flexibility * lever(load).transpose();
                 }
             }
         }
@@ -193,7 +193,7 @@ impl Structure {
         self.joints[joint].deformation
     }
 
-    /// What large deflections of `rod`, this one or one that yields more, add to the displacement
+    /// What large deflections of `rod`, this one or a softer one, add to the displacement
     /// per square of the load along each axis, m/N² (columns: axes), for each pair of stations: to
     /// the second order, which is even in the load.
     pub fn second_order(&self, rod: &Rod) -> Result<Parts> {
@@ -209,9 +209,9 @@ impl Structure {
                 known.push((load, [along(0)?, along(1)?, along(2)?]));
             }
             let node = model.node_at(read);
-            let columns = known.iter().find(|(station, _)| *station == load).map(|(_, of)| of);
-            parts.push(columns.map_or_else(Matrix3::zeros, |of| {
-                Matrix3::from_columns(&[of[0][node], of[1][node], of[2][node]])
+            let columns = known.iter().find(|(station, _)| *station == load).map(|(_, along)| along);
+            parts.push(columns.map_or_else(Matrix3::zeros, |along| {
+                Matrix3::from_columns(&[along[0][node], along[1][node], along[2][node]])
             }));
         }
         Ok(parts)

@@ -186,7 +186,7 @@ impl<'a> Sheet<'a> {
             deflection[label] = deflection[label].max(largest);
         }
         let most = deflection.iter().copied().fold(0.0, f64::max);
-        deflection.iter_mut().for_each(|of| *of = of.max(most / 3.0));
+        deflection.iter_mut().for_each(|own| *own = own.max(most / 3.0));
         Sheet { rows, label, way, deflection, turned }
     }
 

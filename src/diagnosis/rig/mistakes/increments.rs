@@ -38,7 +38,7 @@ pub(super) fn found(data: &[Datum], lines: &[Line], by_rod: &[f64]) -> Option<In
     let mut steps = vec![0.0; data.len()];
     let mut sums = vec![0.0; data.len()];
     let mut before: BTreeMap<(usize, usize), (f64, f64)> = BTreeMap::new();
-    let line_of = |datum: &Datum| lines.iter().position(|line| line.is_of(datum));
+    let line_of = |datum: &Datum| lines.iter().position(|line| line.holds(datum));
     for (i, datum) in data.iter().enumerate() {
         let (load, sum) = before.entry((datum.run, line_of(datum)?)).or_default();
         steps[i] = datum.signed_load() - *load;

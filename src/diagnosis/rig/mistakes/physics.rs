@@ -276,7 +276,7 @@ impl Seen<'_> {
     }
 
     /// The Gaussian model of one mood, solved. What physics adds is measured by the deflections
-    /// `sizes` (ln of what they are of the rod's own): a part that yields less than nothing does
+    /// `sizes` (ln of what they are of the rod's own): a part that gives way by less than nothing does
     /// not make a rod stiff.
     fn solved(
         &self,
@@ -320,7 +320,7 @@ impl Seen<'_> {
             terms.push(weight + with.log_density + gained);
         };
         columns.joints.iter().for_each(|joint| single(joint, SINGLE_JOINT, ONE_JOINT, true));
-        // what yields in bending mostly does so in torsion
+        // what gives way in bending mostly does so in torsion
         columns.joints.chunks(2).for_each(|both| {
             single(
                 &both.iter().fold(DVector::zeros(both[0].len()), |sum, part| sum + part),

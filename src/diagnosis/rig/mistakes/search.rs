@@ -85,8 +85,8 @@ impl LinesOnRod<'_> {
             let shown = part.iter().map(|&k| self.deflection(k, expected[k])).fold(0.0, f64::max);
             shown > SHOWN * most && self.left(part, &expected, 0.0) > IMPLAUSIBLE
         };
-        let lines_where = |is_of: &dyn Fn(&Line) -> bool| -> Vec<usize> {
-            all.iter().copied().filter(|&k| is_of(&self.lines[k])).collect()
+        let lines_where = |is_met: &dyn Fn(&Line) -> bool| -> Vec<usize> {
+            all.iter().copied().filter(|&k| is_met(&self.lines[k])).collect()
         };
         !self.is_possible
             || seen.against_the_load() > 0

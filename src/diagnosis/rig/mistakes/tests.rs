@@ -231,7 +231,7 @@ fn no_physics_is_a_mistake_however_large(bench: Bench) {
             }
             for times in [if index % 2 == 0 { 3.0f64 } else { 10.0 }, -10.0] {
                 let value = |p: &crate::inference::Parameter| {
-                    // a joint that alone yields twice as much as the whole rod could not be
+                    // a joint that alone gives way twice as much as the whole rod could not be
                     // distinguished from pounds
                     let most = if candidate.effect.name == "joint_compliance" { 5.0 } else { 10.0 };
                     let value = p.neutral + times.min(most) * p.size;

@@ -145,7 +145,7 @@ impl<'a> Table<'a> {
             if self.cells[trial].iter().all(Option::is_none) {
                 continue;
             }
-            match classes.iter().position(|class| self.is_of(trial, class)) {
+            match classes.iter().position(|class| self.belongs_to(trial, class)) {
                 Some(class) => classes[class].push(trial),
                 None if classes.len() > MOST_CLASSES => break,
                 None => classes.push(vec![trial]),
@@ -154,17 +154,17 @@ impl<'a> Table<'a> {
         classes
     }
 
-    fn is_of(&self, trial: usize, class: &[usize]) -> bool {
+    fn belongs_to(&self, trial: usize, class: &[usize]) -> bool {
         let most = |trial: usize| self.cells[trial].iter().flatten().map(Cell::size).fold(0.0, f64::max);
         let is_in_class = |k: usize| class.iter().any(|&other| self.cells[other][k].is_some());
         let own = |k: &usize| self.cells[trial][*k].is_some();
         // the same loads, and other channels only
         let is_read_elsewhere = |k: usize| {
-            let is_of = |other: &usize| {
+            let has_its_loads = |other: &usize| {
                 let (line, other) = (&self.lines[k], &self.lines[*other]);
                 line.axis == other.axis && line.stations == other.stations
             };
-            let of_loads = || (0..self.lines.len()).filter(is_of);
+            let of_loads = || (0..self.lines.len()).filter(has_its_loads);
             of_loads().any(is_in_class) && !of_loads().filter(own).any(is_in_class)
         };
         if (0..self.lines.len()).filter(own).any(is_read_elsewhere) {
@@ -301,7 +301,7 @@ impl<'a> Table<'a> {
     fn place(&self, class: &[usize]) -> String {
         let own: Vec<&Datum> = class
             .iter()
-            .filter_map(|trial| Some(&self.data[self.trial.iter().position(|of| of == trial)?]))
+            .filter_map(|trial| Some(&self.data[self.trial.iter().position(|own| own == trial)?]))
             .collect();
         let names: Option<Vec<String>> = own.iter().map(|datum| trial_name(datum)).collect();
         match names {
@@ -311,7 +311,7 @@ impl<'a> Table<'a> {
                 format!("trials {} and {last}", first.join(", "))
             }
             None => {
-                let is_own = |(datum, of): (&'a Datum, &usize)| class.contains(of).then_some(datum);
+                let is_own = |(datum, trial): (&'a Datum, &usize)| class.contains(trial).then_some(datum);
                 rows_of(self.data.iter().zip(&self.trial).filter_map(is_own))
             }
         }

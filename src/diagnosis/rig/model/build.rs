@@ -51,7 +51,7 @@ impl RigModel {
         RigModel::bent_as(readings, rod, wanted, rod)
     }
 
-    /// The same, where the rod bends as `bent` does: this one with what is known to yield. Large
+    /// The same, where the rod bends as `bent` does: this one with what is known to be softer. Large
     /// deflections and what a nominal number is worth are those of that rod; where nothing is known
     /// yet, of one as stiff as the readings are at first sight.
     pub(in crate::diagnosis::rig) fn bent_as(
@@ -115,7 +115,7 @@ impl RigModel {
             _ => bent.clone(),
         });
         let large = bent.as_ref().map(|bent| model.large_deflections(bent)).transpose()?;
-        let mut evidence = evidence::of(&model.data, nuisance, large);
+        let mut evidence = evidence::of_data(&model.data, nuisance, large);
         evidence.stated_noise = model.stated_noise();
         if let Some(rod) = rod {
             let stations = |rod: &Rod, d: &Datum| {

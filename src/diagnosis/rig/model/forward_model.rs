@@ -1,4 +1,4 @@
-//! A rig as the engine sees it: responses, derivatives, places, words.
+//! A rig as the engine sees it: responses, derivatives, places, descriptions.
 
 use std::sync::Arc;
 

@@ -9,7 +9,7 @@ use crate::diagnosis::rig::mechanics::structure::{Parts, Structure};
 use crate::diagnosis::rig::recording::datum::Datum;
 
 impl RigModel {
-    /// How far the rod yields at each datum, m: the prediction, or the reading's share in a line
+    /// How far the rod deflects at each datum, m: the prediction, or the reading's share in a line
     /// through the origin.
     pub(in crate::diagnosis::rig) fn deflections(&self) -> Vec<f64> {
         match self.body {
@@ -89,12 +89,12 @@ impl RigModel {
     ) -> Vec<f64> {
         let shown = self.shown(structure, state);
         if !state.remembers() {
-            let readings: Vec<f64> = shown.iter().map(|of| of.reading(of.load)).collect();
+            let readings: Vec<f64> = shown.iter().map(|case| case.reading(case.load)).collect();
             return self.cases.of_datum.iter().map(|&case| readings[case]).collect();
         }
         let reading = |(i, &case): (usize, &usize)| {
-            let of = &shown[case];
-            of.reading(state.with_history(of.load, i))
+            let own = &shown[case];
+            own.reading(state.with_history(own.load, i))
         };
         self.cases.of_datum.iter().enumerate().map(reading).collect()
     }

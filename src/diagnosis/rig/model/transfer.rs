@@ -136,21 +136,21 @@ mod tests {
     }
 
     #[test]
-    fn what_is_found_under_one_load_is_foretold_under_another() {
+    fn what_is_found_under_one_load_is_predicted_under_another() {
         let rod = Rod::from_toml("rod", include_str!("../../../../rods/5.toml")).unwrap();
         let asked = Readings::from_text("asked", ASKED).unwrap();
         let found = diagnose(&recorded(&rod), Some(&rod)).unwrap();
         let name = |finding: &Finding| finding.effect.name;
         assert_eq!(found.diagnosis.findings.iter().map(name).collect::<Vec<_>>(), ["friction"]);
-        let said = found.predicted(&asked).unwrap();
-        assert_eq!(said.len(), 5);
+        let predicted = found.predicted(&asked).unwrap();
+        assert_eq!(predicted.len(), 5);
         let (model, _, _) = RigModel::with_effects(&asked, Some(&rod), &Wanted::Like(&[])).unwrap();
-        let share = |k: usize| said[k] / model.data()[k].predicted;
+        let share = |k: usize| predicted[k] / model.data()[k].predicted;
         // of 8 N half a newton does not arrive; friction of all loads takes its share along x too
-        assert!((share(4) - 7.5 / 8.0).abs() < 2e-3 && (share(0) - 2.5 / 3.0).abs() < 5e-3, "{said:?}");
+        assert!((share(4) - 7.5 / 8.0).abs() < 2e-3 && (share(0) - 2.5 / 3.0).abs() < 5e-3, "{predicted:?}");
         // what stands in the file that asks does not matter
         let other = Readings::from_text("asked", &ASKED.replace("x,3,0", "x,3,99")).unwrap();
-        assert_eq!(found.predicted(&other).unwrap(), said);
+        assert_eq!(found.predicted(&other).unwrap(), predicted);
     }
 
     #[test]
@@ -168,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn a_straight_line_foretells_nothing() {
+    fn a_straight_line_predicts_nothing() {
         let rod = Rod::from_toml("rod", include_str!("../../../../rods/5.toml")).unwrap();
         let found = diagnose(&recorded(&rod), None).unwrap();
         let asked = Readings::from_text("asked", ASKED).unwrap();

@@ -1,4 +1,4 @@
-//! Which curves along a recording say anything of the next cycle.
+//! Which curves along a recording predict the next cycle.
 //!
 //! Of a load that goes up and down again and again a curve through neighbours follows anything that
 //! a law repeats. Each cycle in turn is predicted from the others, by the curve with its prior; a
@@ -21,7 +21,7 @@ pub(super) struct Cycles {
 
 impl Cycles {
     /// `None` where the loads do not go up and down again and again. `deflections`: how far the rod
-    /// yields at each datum by the base model, m.
+    /// deflects at each datum by the base model, m.
     pub fn of(data: &[Datum], deflections: &[f64]) -> Option<Cycles> {
         let is_cyclic = data.iter().any(|d| d.motion.is_some_and(|motion| motion.cycle > 0));
         is_cyclic.then_some(())?;

@@ -24,7 +24,7 @@ const MOST_KNOTS: usize = 12;
 /// Exponents of a seat: of a line in contact, of Hertz's point, of a rough surface.
 const EXPONENTS: [f64; 3] = [0.9, 2.0 / 3.0, 0.5];
 
-/// All of them. `deflections`: how far the rod yields at each datum by the base model, m.
+/// All of them. `deflections`: how far the rod deflects at each datum by the base model, m.
 pub(super) fn all(data: &[Datum], deflections: &[f64]) -> Vec<Entry> {
     let along = |axis: Axis| (0..data.len()).filter(|&i| data[i].direction.axis == axis).collect::<Vec<_>>();
     let axes: Vec<(String, Vec<usize>)> = Axis::ALL
@@ -160,7 +160,7 @@ mod tests {
     use crate::diagnosis::rig::recording::datum;
     use crate::rig::readings::Readings;
 
-    fn of(text: &str, deflection: impl Fn(&Datum) -> f64) -> Vec<Entry> {
+    fn found(text: &str, deflection: impl Fn(&Datum) -> f64) -> Vec<Entry> {
         let data = datum::all(&Readings::from_text("f", text).unwrap().rows);
         let deflections: Vec<f64> = data.iter().map(deflection).collect();
         all(&data, &deflections)
@@ -175,7 +175,7 @@ mod tests {
 
     #[test]
     fn a_slope_changes_at_each_load_but_the_largest() {
-        let found = of("axis,load_n,dy_um\ny,0,0\ny,5,9\ny,10,18\ny,20,36\n", |d| 2e-6 * d.drive());
+        let found = found("axis,load_n,dy_um\ny,0,0\ny,5,9\ny,10,18\ny,20,36\n", |d| 2e-6 * d.drive());
         let labels: Vec<String> = found.iter().map(|(c, _)| c.location.to_string()).collect();
         assert_eq!(
             labels[..2],
@@ -191,7 +191,7 @@ mod tests {
 
     #[test]
     fn what_is_loose_one_way_is_so_at_every_load() {
-        let found = of("axis,load_n,dy_um\n-y,5,-9\n-y,10,-18\ny,5,9\ny,10,18\n", |d| 2e-6 * d.drive());
+        let found = found("axis,load_n,dy_um\n-y,5,-9\n-y,10,-18\ny,5,9\ny,10,18\n", |d| 2e-6 * d.drive());
         let one_way = found.iter().find(|(c, _)| match &c.location {
             Location::Curve { follows, .. } => {
                 follows == "is other for loads against the axis (all readings alike)"

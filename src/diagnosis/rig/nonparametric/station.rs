@@ -1,4 +1,4 @@
-//! A rod that yields more here than there: walls, laminates or glue that vary along it.
+//! A rod that is softer here than there: walls, laminates or glue that vary along it.
 //!
 //! ```text
 //! EI(s), GJ(s) → EI, GJ/(1 + Σ_j a_j·cos(π j s/L))      s the station, L the rod's length

@@ -133,10 +133,10 @@ mod tests {
         let coordinate: Coordinate = data.iter().map(|d| d.time.map(|t| t / 390.0)).collect();
         let entries = all(TIME, &coordinate, &data);
         assert_eq!(entries.len(), 30);
-        let label = |of: &Entry| of.0.location.to_string();
+        let label = |entry: &Entry| entry.0.location.to_string();
         let (_, actions) = entries
             .iter()
-            .find(|of| label(of) == "time, 2 swings, all sensors, since the zero of each run")
+            .find(|entry| label(entry) == "time, 2 swings, all sensors, since the zero of each run")
             .unwrap();
         let Action::Shift(weights) = &actions[1] else { panic!("a shift") };
         for (i, weight) in weights.iter() {

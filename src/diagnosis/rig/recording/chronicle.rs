@@ -127,13 +127,13 @@ fn places(rows: &[Reading]) -> Option<Vec<usize>> {
     for (i, &group) in group.iter().enumerate() {
         members[group].push(i);
     }
-    let falls_back = |of: &Vec<usize>| begins_anew(&of.iter().map(|&i| times[i]).collect::<Vec<_>>());
-    if members.iter().any(|of| falls_back(of) && reads_twice(rows, of)) {
+    let falls_back = |own: &Vec<usize>| begins_anew(&own.iter().map(|&i| times[i]).collect::<Vec<_>>());
+    if members.iter().any(|own| falls_back(own) && reads_twice(rows, own)) {
         return None;
     }
     // groups one after the other by one clock, or each by a clock of its own
-    let span = |of: &Vec<usize>| {
-        of.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), &i| (a.min(times[i]), b.max(times[i])))
+    let span = |own: &Vec<usize>| {
+        own.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), &i| (a.min(times[i]), b.max(times[i])))
     };
     let mut spans: Vec<(f64, f64)> = members.iter().map(span).collect();
     spans.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -160,9 +160,9 @@ fn begins_anew(times: &[f64]) -> bool {
 }
 
 /// True where one sensor shows two things at one time: these are two times.
-fn reads_twice(rows: &[Reading], of: &[usize]) -> bool {
+fn reads_twice(rows: &[Reading], own: &[usize]) -> bool {
     let mut known: HashMap<(u64, usize, u64), f64> = HashMap::new();
-    of.iter().any(|&i| {
+    own.iter().any(|&i| {
         let (row, time) = (&rows[i], rows[i].time.unwrap_or_default());
         let station = row.read_station.unwrap_or(f64::NAN).to_bits();
         let mut channels = row.offset.iter().enumerate().filter_map(|(k, offset)| Some((k, (*offset)?)));
@@ -184,7 +184,7 @@ fn untimed(rows: &[Reading], run: &[usize]) -> Vec<usize> {
     let mut place = vec![0; rows.len()];
     for instant in instants(rows) {
         // of rows whose clock begins anew those of one time may be of several runs
-        for run_of_instant in numbered_runs(&instant.rows, run) {
+        for run_of_instant in runs_of(&instant.rows, run) {
             let of_run: Vec<usize> =
                 instant.rows.iter().copied().filter(|&i| run[i] == run_of_instant).collect();
             let first = of_run[0];
@@ -212,8 +212,8 @@ fn untimed(rows: &[Reading], run: &[usize]) -> Vec<usize> {
 }
 
 /// The runs of some rows, each once.
-fn numbered_runs(of: &[usize], run: &[usize]) -> Vec<usize> {
-    let mut runs: Vec<usize> = of.iter().map(|&i| run[i]).collect();
+fn runs_of(rows: &[usize], run: &[usize]) -> Vec<usize> {
+    let mut runs: Vec<usize> = rows.iter().map(|&i| run[i]).collect();
     runs.dedup();
     runs
 }
@@ -252,10 +252,10 @@ fn motions(
     // ways while loading, and their instants; the same while unloading
     let mut ways = [(0.0f64, 0.0f64); 2];
     for key in keys {
-        let of = &groups[&key];
-        let drives: Vec<f64> = of.iter().filter_map(|&i| drive(&rows[i], driven)).collect();
+        let own = &groups[&key];
+        let drives: Vec<f64> = own.iter().filter_map(|&i| drive(&rows[i], driven)).collect();
         let mut before: Option<(f64, Phase)> = None;
-        for ((&i, &drive), (direction, cycle)) in of.iter().zip(&drives).zip(turns(&drives)) {
+        for ((&i, &drive), (direction, cycle)) in own.iter().zip(&drives).zip(turns(&drives)) {
             let phase = if direction * drive < 0.0 || (drive == 0.0 && before.is_some_and(|(b, _)| b != 0.0))
             {
                 Phase::Unload

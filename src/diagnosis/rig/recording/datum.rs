@@ -153,8 +153,8 @@ pub fn recorded(readings: &Readings) -> Vec<Datum> {
 /// Makes the load what was measured of all data along their loads, and the offset what was imposed.
 fn impose(data: &mut [Datum]) {
     let is_along = |datum: &Datum| datum.channel == datum.direction.axis;
-    let largest = |of: &dyn Fn(&Datum) -> f64| {
-        data.iter().filter(|d| is_along(d)).fold(0.0, |most: f64, datum| most.max(of(datum)))
+    let largest = |value: &dyn Fn(&Datum) -> f64| {
+        data.iter().filter(|d| is_along(d)).fold(0.0, |most: f64, datum| most.max(value(datum)))
     };
     let (load, displacement) = (largest(&|d| d.load), largest(&|d| d.measured.abs()));
     if load == 0.0 || displacement == 0.0 {

@@ -22,7 +22,7 @@ const SCATTER: f64 = 0.03;
 const STEPS_OF_DISPLAY: f64 = 2.0;
 
 /// The evidence of `data`, whose predictions are made.
-pub fn of(data: &[Datum], nuisance: DMatrix<f64>, large: Option<DVector<f64>>) -> Evidence {
+pub fn of_data(data: &[Datum], nuisance: DMatrix<f64>, large: Option<DVector<f64>>) -> Evidence {
     let residual = DVector::from_iterator(data.len(), data.iter().map(|d| d.measured - d.predicted));
     let (offsets, least_offset) = zeros(data);
     Evidence {
@@ -189,7 +189,7 @@ mod tests {
 
     fn evidence(text: &str) -> Evidence {
         let data = datum::all(&Readings::from_text("f", text).unwrap().rows);
-        of(&data, DMatrix::zeros(data.len(), 0), None)
+        of_data(&data, DMatrix::zeros(data.len(), 0), None)
     }
 
     fn trials(count: usize) -> String {
@@ -228,7 +228,7 @@ mod tests {
 
     #[test]
     fn the_resolution_is_the_step_of_the_display() {
-        let of =
+        let resolution =
             |a: &str, b: &str| evidence(&format!("axis,load_n,dy_um\ny,1,{a}\ny,2,{b}\n")).resolution / UM;
         for (a, b, step) in [
             ("50", "-110", 10.0),
@@ -240,7 +240,7 @@ mod tests {
             ("0", "0", 10.0),
             ("3.14159265358979", "1", 0.0),
         ] {
-            assert!((of(a, b) - step).abs() < 1e-12, "{a} {b}");
+            assert!((resolution(a, b) - step).abs() < 1e-12, "{a} {b}");
         }
     }
 

@@ -52,7 +52,7 @@ impl Information {
     }
 
     /// CᵀΣ₀⁻¹C of so many repeats of each measurement.
-    pub(super) fn of(&self, counts: &[usize]) -> DMatrix<f64> {
+    pub(super) fn of_repeats(&self, counts: &[usize]) -> DMatrix<f64> {
         let width = self.once.first().map_or(self.unknown, DMatrix::ncols);
         let mut sum = DMatrix::zeros(width, width);
         for (once, &repeats) in self.once.iter().zip(counts).filter(|(_, repeats)| **repeats > 0) {
@@ -99,7 +99,7 @@ mod tests {
                 true => DMatrix::zeros(3, 3),
                 false => c.transpose() * scatter.try_inverse().unwrap() * c,
             };
-            let found = information.of(&counts);
+            let found = information.of_repeats(&counts);
             assert!((found - &expected).norm() <= 1e-9 * expected.norm(), "{counts:?}");
         }
     }

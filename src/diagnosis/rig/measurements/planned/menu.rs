@@ -107,15 +107,15 @@ impl Menu {
             true => DMatrix::zeros(owner.len(), 0),
             false => DMatrix::from_columns(&columns),
         });
-        let of = [&owner[..], &evidence.shared[..]];
-        let information = Information::new(&unknown, &columns, bench.noise, of, measurements.len());
+        let groups = [&owner[..], &evidence.shared[..]];
+        let information = Information::new(&unknown, &columns, bench.noise, groups, measurements.len());
         Ok(Menu { measurements, between: between.to_vec(), candidates, information })
     }
 
     /// For each candidate, beside each other effect and beside nothing, the least ln of the odds.
     pub fn log_odds(&self, counts: &[usize]) -> Vec<f64> {
         let others = self.between.len();
-        let gram = self.information.of(counts);
+        let gram = self.information.of_repeats(counts);
         let columns_of = |i: usize| self.candidates[i].columns.clone();
         let shared = |j: usize, i: usize| {
             gram.view((columns_of(j).start, columns_of(i).start), (columns_of(j).len(), columns_of(i).len()))

@@ -100,7 +100,7 @@ pub(super) fn load_units(labels: &Labels, is_in_trials: bool) -> Vec<PossibleMis
     let column = || Key::new(load_column(labels.load_column));
     let mut found = Vec::new();
     for unit in units {
-        // loads along one axis cannot separate a pound from a joint that yields, nor can sensors
+        // loads along one axis cannot separate a pound from a compliant joint, nor can sensors
         // along the loads only, unless it comes very near
         let is_near_physics = unit.within < BESIDE && !is_in_trials;
         let within = if is_near_physics && !labels.has_cross { VERY_NEAR } else { unit.within };

@@ -1,4 +1,4 @@
-//! What a rod gives way by, as a sum of parts that are exactly linear in what may be wrong with
+//! The compliance of a rod as a sum of parts that are exactly linear in what may be wrong with
 //! them.
 //!
 //! A rod is an open chain: the flexibilities of its parts add up. With C the displacement at the

@@ -203,7 +203,7 @@ pub(super) fn offsets(data: &[Datum], lines: &[Line]) -> Vec<Part> {
     found
 }
 
-/// What a datum is off its line through the origin, m.
+/// How far a datum is off its line through the origin, m.
 fn off(data: &[Datum], line: &Line, i: usize) -> f64 {
     data[i].measured - line.fit.slope * data[i].signed_load()
 }
@@ -292,7 +292,7 @@ fn zeros_of_runs(data: &[Datum], line: &Line) -> Vec<RunZero> {
 }
 
 /// Runs that start elsewhere than most runs (`own`) of their line; what stays until the end has
-/// slipped. Of the last run alone nobody can say which. Where the run before or after it among all
+/// slipped; of the last run alone it may be either. Where the run before or after it among all
 /// those `of_sensor`, along whatever axis, is off as far, it is no zero of one run.
 fn of_run(data: &[Datum], own: &[RunZero], of_sensor: &[&RunZero], moved: f64) -> Vec<Part> {
     let is_far = |k: usize| own[k].distance.abs() > FAR_FOR_A_RUN * moved && moved > 0.0;

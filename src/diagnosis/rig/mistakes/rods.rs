@@ -153,7 +153,7 @@ pub(super) fn likely(
     known.into_iter().take(MOST_OTHERS).map(|(_, other)| other).collect()
 }
 
-/// Nothing that a load could tell.
+/// True where no load distinguishes the two.
 fn is_alike(a: &Rod, b: &Rod) -> bool {
     let tubes = |rod: &Rod| [rod.pipe1.clone(), rod.bend.clone(), rod.pipe2.clone()];
     (a.l1, a.l2, a.gamma, a.bend_radius) == (b.l1, b.l2, b.gamma, b.bend_radius)

@@ -1,4 +1,4 @@
-//! What the engine knows about a rig's recording besides the residual: what repeats, what hangs
+//! What the engine knows about a rig's recording besides the residual: what repeats, what belongs
 //! together, what to hold out, and along which numbers a mismatch may be structured.
 
 use nalgebra::{DMatrix, DVector};

@@ -7,7 +7,7 @@ use crate::diagnosis::rig::model::RigModel;
 use crate::spatial::Direction;
 use crate::units::UM;
 
-/// Nobody weighs less, N.
+/// Loads are written in multiples of this, N.
 const SMALLEST_LOAD: f64 = 1e-6;
 const NM: f64 = 1e-3 * UM;
 

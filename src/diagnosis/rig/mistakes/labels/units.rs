@@ -1,5 +1,6 @@
 //! Columns in another unit than their names say.
 
+use self::Cure::{Divide, Multiply};
 use super::{ALL, Labels, ONE_AXIS, UNUSUAL, mask};
 use crate::diagnosis::rig::effects::mistakes::UNIT_MISTAKE;
 use crate::diagnosis::rig::mistakes::possible::{PossibleMistake, exact};
@@ -16,12 +17,28 @@ struct Unit {
     /// True value over the one that was read.
     factor: f64,
     log_prior: f64,
-    /// What to do with the column.
-    cure: &'static str,
+    cure: Cure,
     /// What to do instead.
     or_else: Option<&'static str>,
     /// How near to the factor the readings must come, as a ratio.
     within: f64,
+}
+
+/// What to do with the column, by which number.
+#[derive(Clone, Copy)]
+enum Cure {
+    Multiply(&'static str),
+    Divide(&'static str),
+}
+
+impl Cure {
+    /// `multiply load_n by 1000`.
+    fn applied_to(self, what: &str) -> String {
+        match self {
+            Multiply(by) => format!("multiply {what} by {by}"),
+            Divide(by) => format!("divide {what} by {by}"),
+        }
+    }
 }
 
 /// The physics that remains may stand beside a unit's factor: a modulus may be 25 % off.
@@ -31,7 +48,7 @@ const BESIDE_PHYSICS: f64 = 1.2;
 pub(in super::super) const HARDLY_BESIDE: f64 = 1.1;
 const VERY_NEAR: f64 = 1.05;
 
-const fn unit(name: &'static str, factor: f64, log_prior: f64, cure: &'static str) -> Unit {
+const fn unit(name: &'static str, factor: f64, log_prior: f64, cure: Cure) -> Unit {
     Unit { name, factor, log_prior, cure, or_else: None, within: BESIDE }
 }
 
@@ -41,39 +58,36 @@ const POUND: f64 = 4.448_221_615_260_5;
 const FOR_NEWTONS: [Unit; 7] = [
     Unit {
         or_else: Some("name the column load_kg"),
-        ..unit("kilograms", STANDARD_GRAVITY, 0.0, "multiply load_n by 9.80665")
+        ..unit("kilograms", STANDARD_GRAVITY, 0.0, Multiply("9.80665"))
     },
-    unit("grams", 1e-3 * STANDARD_GRAVITY, -0.5, "multiply load_n by 0.00980665"),
-    Unit { within: BESIDE_PHYSICS, ..unit("pounds (lbf)", POUND, 0.0, "multiply load_n by 4.4482216") },
-    Unit {
-        within: HARDLY_BESIDE,
-        ..unit("ounces (ozf)", POUND / 16.0, -2.0, "multiply load_n by 0.27801385")
-    },
-    unit("kilonewtons", 1e3, -2.0, "multiply load_n by 1000"),
-    unit("millinewtons", 1e-3, -1.5, "divide load_n by 1000"),
-    unit("newtons that were converted once more", 1.0 / STANDARD_GRAVITY, -0.5, "divide load_n by 9.80665"),
+    unit("grams", 1e-3 * STANDARD_GRAVITY, -0.5, Multiply("0.00980665")),
+    Unit { within: BESIDE_PHYSICS, ..unit("pounds (lbf)", POUND, 0.0, Multiply("4.4482216")) },
+    Unit { within: HARDLY_BESIDE, ..unit("ounces (ozf)", POUND / 16.0, -2.0, Multiply("0.27801385")) },
+    unit("kilonewtons", 1e3, -2.0, Multiply("1000")),
+    unit("millinewtons", 1e-3, -1.5, Divide("1000")),
+    unit("newtons that were converted once more", 1.0 / STANDARD_GRAVITY, -0.5, Divide("9.80665")),
 ];
 
 /// Instead of kilograms.
 const FOR_KILOGRAMS: [Unit; 4] = [
     Unit {
         or_else: Some("name the column load_n"),
-        ..unit("newtons", 1.0 / STANDARD_GRAVITY, 0.0, "divide load_kg by 9.80665")
+        ..unit("newtons", 1.0 / STANDARD_GRAVITY, 0.0, Divide("9.80665"))
     },
-    unit("grams", 1e-3, -0.3, "divide load_kg by 1000"),
-    unit("tonnes", 1e3, -2.0, "multiply load_kg by 1000"),
-    unit("kilograms that were divided by g", STANDARD_GRAVITY, -1.5, "multiply load_kg by 9.80665"),
+    unit("grams", 1e-3, -0.3, Divide("1000")),
+    unit("tonnes", 1e3, -2.0, Multiply("1000")),
+    unit("kilograms that were divided by g", STANDARD_GRAVITY, -1.5, Multiply("9.80665")),
 ];
 
 /// Instead of micrometres.
 const FOR_MICROMETRES: [Unit; 7] = [
-    unit("millimetres", 1e3, 0.0, "multiply by 1000"),
-    unit("inches", 25.4e3, -1.0, "multiply by 25400"),
-    unit("thousandths of an inch (mil)", 25.4, -1.0, "multiply by 25.4"),
-    unit("nanometres", 1e-3, -1.5, "divide by 1000"),
-    unit("metres", 1e6, -1.0, "multiply by 1000000"),
-    unit("centimetres", 1e4, -2.0, "multiply by 10000"),
-    unit("hundredths of a millimetre", 10.0, -1.5, "multiply by 10"),
+    unit("millimetres", 1e3, 0.0, Multiply("1000")),
+    unit("inches", 25.4e3, -1.0, Multiply("25400")),
+    unit("thousandths of an inch (mil)", 25.4, -1.0, Multiply("25.4")),
+    unit("nanometres", 1e-3, -1.5, Divide("1000")),
+    unit("metres", 1e6, -1.0, Multiply("1000000")),
+    unit("centimetres", 1e4, -2.0, Multiply("10000")),
+    unit("hundredths of a millimetre", 10.0, -1.5, Multiply("10")),
 ];
 
 /// Pounds for kilograms are within what a rod does: joints alone make some twice as soft as their
@@ -97,7 +111,7 @@ pub(super) fn load_units(labels: &Labels, is_in_trials: bool) -> Vec<PossibleMis
         LoadColumn::Newtons => ("newtons", &FOR_NEWTONS),
         LoadColumn::Kilograms => ("kilograms", &FOR_KILOGRAMS),
     };
-    let column = || Key::new(load_column(labels.load_column));
+    let column = load_column(labels.load_column);
     let mut found = Vec::new();
     for unit in units {
         // loads along one axis cannot separate a pound from a compliant joint, nor can sensors
@@ -107,7 +121,7 @@ pub(super) fn load_units(labels: &Labels, is_in_trials: bool) -> Vec<PossibleMis
         let of_axes = |axes: [bool; 3], location: Key, whose: &str| PossibleMistake {
             effect: &UNIT_MISTAKE,
             looks_like: format!("{location} looks like {}", unit.name),
-            observed: format!("{whose} are {}, not {own}: {}", unit.name, unit.cure),
+            observed: format!("{whose} are {}, not {own}: {}", unit.name, unit.cure.applied_to(column)),
             or_else: unit.or_else,
             location,
             relabelling: Relabelling::load(axes, unit.factor),
@@ -118,11 +132,11 @@ pub(super) fn load_units(labels: &Labels, is_in_trials: bool) -> Vec<PossibleMis
         if is_near_physics && labels.axes.len() < 2 {
             continue;
         }
-        found.push(of_axes(ALL, column(), "The loads"));
+        found.push(of_axes(ALL, Key::new(column), "The loads"));
         if labels.axes.len() > 1 && !is_near_physics {
             for &axis in &labels.axes {
                 let whose = format!("The loads along {axis}");
-                let of_axis = of_axes(mask(&[axis]), column().rows(axis_rows(axis)), &whose);
+                let of_axis = of_axes(mask(&[axis]), Key::new(column).rows(axis_rows(axis)), &whose);
                 found.push(PossibleMistake {
                     observed: format!("{} in these rows", of_axis.observed_in_all_rows()),
                     or_else: None,
@@ -146,8 +160,7 @@ pub(super) fn reading_units(labels: &Labels) -> Vec<PossibleMistake> {
                 Some(axis) => (format!(" under loads along {axis}"), Key::new(&names).rows(axis_rows(axis))),
                 None => (String::new(), Key::new(&names)),
             };
-            // `multiply by 1000` → `multiply them by 1000`
-            let cure = unit.cure.replacen(" by", &format!(" {it} by"), 1);
+            let cure = unit.cure.applied_to(it);
             found.push(PossibleMistake {
                 effect: &UNIT_MISTAKE,
                 looks_like: format!(

@@ -1,7 +1,7 @@
 //! A law that was proposed, written into the rod file, and read again.
 
 use rodcal::rig;
-use rodcal::rig::readings::Readings;
+use rodcal::rig::readings::{Axis, Readings};
 use rodcal::rod::{Rod, RodLawPlace};
 use rodcal::units::UM;
 use rodcal_trial::rig::{Effect, Made, Order};
@@ -56,7 +56,7 @@ fn the_ripple_of_a_sensor_is_written_and_read() {
     let Made { rod, readings, .. } = order().made(&[ripple], 32);
     let (before, after, again) = applied(&rod, &readings);
     assert_settled(&before, &after, 1.0);
-    assert_eq!(again.laws[0].place, "dy");
+    assert_eq!(again.laws[0].place, RodLawPlace::Sensor(Axis::Y));
     assert!(again.warnings.iter().any(|warning| warning.to_string().contains("the rig's")));
 }
 

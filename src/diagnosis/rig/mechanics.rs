@@ -1,6 +1,6 @@
-//! How a load becomes a reading: what each parameter of an effect does ([`action`]) and how all of
-//! them act together ([`state`]), on the structure, in the slide, by the history of the loads and in
-//! the display.
+//! How a load becomes a reading: what each parameter of an effect does ([`action`]) and how all
+//! act together ([`state`]), on the structure, in the slide, by the history of the loads and in the
+//! display.
 
 pub mod action;
 pub mod display;

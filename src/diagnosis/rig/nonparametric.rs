@@ -156,8 +156,9 @@ fn coordinates(data: &[Datum]) -> Vec<(Along, Coordinate, bool)> {
     found
 }
 
-/// Rank of the load among those along its axis, for the data that are wanted. Of more than [`MOST_LEVELS`] loads the size instead: where a measured load trembles
-/// about its levels, its rank is a better load.
+/// Rank of the load among those along its axis, for the data that are wanted. Of more than
+/// [`MOST_LEVELS`] loads the size instead: where a measured load trembles about its levels, its
+/// rank is a better load.
 fn by_axis(data: &[Datum], load: impl Fn(&Datum) -> f64, is_wanted: impl Fn(&Datum) -> bool) -> Coordinate {
     let levels = Axis::ALL.map(|axis| {
         let along = data.iter().filter(|d| is_wanted(d) && d.direction.axis == axis);

@@ -1,7 +1,7 @@
 //! Readings that another rod explains better than the given one with all that may be wrong with it.
 //!
-//! Slopes alone tell rods apart that differ by a fifth ([`crate::diagnosis::rig::mistakes`]). Where physics had to
-//! be added to the given rod, or something is left, those of the other files that come near, and
+//! Slopes alone distinguish rods that differ by a fifth (`mistakes/`). Where physics had to be
+//! added to the given rod, or something is left, those of the other files that come near, and
 //! the given one with its lengths or pipes exchanged, are compared in full: each with all effects,
 //! by the probability that the recording then has.
 

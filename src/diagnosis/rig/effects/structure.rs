@@ -342,7 +342,8 @@ fn stretch(finding: &Finding, model: &RigModel) -> Option<(f64, f64)> {
     Some((station.low, station.high))
 }
 
-/// By how much a joint gives way; only what differs from the rod file, unless nothing does for sure.
+/// By how much a joint gives way; only what differs from the rod file, unless nothing does for
+/// sure.
 fn amount(finding: &Finding, model: &RigModel) -> String {
     let Body::Rod(structure) = &model.body else { return String::new() };
     let (mut sure, mut all) = (Vec::new(), Vec::new());

@@ -1,6 +1,6 @@
 //! What the laws of the rod's file add to a recording, and how well that is known.
 //!
-//! Places and variables are those of [`super::sites`], where laws are proposed: what a diagnosis
+//! Places and variables are those of `sites.rs`, where laws are proposed: what a diagnosis
 //! wrote is read as it was meant. Each constant is a nominal number, known to its standard
 //! uncertainty.
 

@@ -1,6 +1,6 @@
 //! Mistakes of whole columns and of the rod file: the lines of the readings against the rod.
 
-use super::labels::Labels;
+use super::labels::{self, Labels};
 use super::lines::{Line, lines};
 use super::mended::Mended;
 use super::physics::Physics;
@@ -69,7 +69,7 @@ impl Mended {
         let has = |k: usize| pairs.iter().any(|pair| pair[k].is_some());
         let (bodies, of_rod): (Vec<Body>, Vec<PossibleMistake>) =
             rods::all(&rod, others, [has(0), has(1)]).into_iter().unzip();
-        let mut possible = Labels::of(&all, self.readings.load_column).mistakes();
+        let mut possible = labels::all(&Labels::of(&all, self.readings.load_column));
         possible.extend(of_rod);
         let physics = search::physics(&bodies, on_rod.pairs);
         let search = MistakeSearch { lines: on_rod, possible: &possible, bodies: &physics };

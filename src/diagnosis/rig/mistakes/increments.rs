@@ -33,7 +33,8 @@ pub(super) struct Increments {
     pub offsets: Vec<f64>,
 }
 
-/// All readings are such where all lines that show anything are; `by_rod` are the slopes of the rod file, m/N.
+/// All readings are such where all lines that show anything are; `by_rod` are the slopes of the rod
+/// file, m/N.
 pub(super) fn found(data: &[Datum], lines: &[Line], by_rod: &[f64]) -> Option<Increments> {
     let mut steps = vec![0.0; data.len()];
     let mut sums = vec![0.0; data.len()];

@@ -276,8 +276,8 @@ impl Seen<'_> {
     }
 
     /// The Gaussian model of one mood, solved. What physics adds is measured by the deflections
-    /// `sizes` (ln of what they are of the rod's own): a part that gives way by less than nothing does
-    /// not make a rod stiff.
+    /// `sizes` (ln of what they are of the rod's own): a part that gives way by less than nothing
+    /// does not make a rod stiff.
     fn solved(
         &self,
         expected: &[f64],

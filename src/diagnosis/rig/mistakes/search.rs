@@ -1,7 +1,7 @@
 //! Which mistakes of labels, units and files turn readings that fit nothing into readings that fit.
 //!
-//! A beam search: one mistake, then a second beside each of the best, then a third. A combination is
-//! kept where it is a thousand times more probable than the one that it grew from.
+//! A beam search: one mistake, then a second beside each of the best, then a third. A combination
+//! is kept where it is a thousand times more probable than the one that it grew from.
 
 use super::super::effects::mistakes::{SIGN_MISTAKE, SWAP_MISTAKE, UNIT_MISTAKE};
 use super::lines::Line;

@@ -1,6 +1,6 @@
 //! Mistakes in some of the rows: found one after another and undone.
 
-use super::labels::Labels;
+use super::labels::{self, Labels};
 use super::lines::lines;
 use super::mended::{Mended, Zero};
 use super::{copies, displaced, entries, groups, increments, sensors, trials};
@@ -64,7 +64,7 @@ impl Mended {
         let by_rod = self.expected(&all)?;
         let by_rod: Option<Vec<f64>> =
             by_rod.map(|rod| rod.slopes.iter().map(|slope| slope / rod.scale).collect());
-        let possible = Labels::of(&all, self.readings.load_column).mistakes_in_trials();
+        let possible = labels::in_trials(&Labels::of(&all, self.readings.load_column));
         for found in trials.found(&possible, by_rod.as_deref()) {
             let mut rows: Vec<usize> = found.part.data.iter().map(|&i| data[i].row - 1).collect();
             rows.sort_unstable();

@@ -51,9 +51,9 @@ impl RigModel {
         RigModel::bent_as(readings, rod, wanted, rod)
     }
 
-    /// The same, where the rod bends as `bent` does: this one with what is known to be softer. Large
-    /// deflections and what a nominal number is worth are those of that rod; where nothing is known
-    /// yet, of one as stiff as the readings are at first sight.
+    /// The same, where the rod bends as `bent` does: this one with what is known to be softer.
+    /// Large deflections and what a nominal number is worth are those of that rod; where nothing is
+    /// known yet, of one as stiff as the readings are at first sight.
     pub(in crate::diagnosis::rig) fn bent_as(
         readings: &Readings,
         rod: Option<&Rod>,

@@ -1,5 +1,5 @@
-//! The derivative of the readings by a parameter of one term: by itself where what it does only adds
-//! to readings, else by differences of responses.
+//! The derivative of the readings by a parameter of one term: by itself where what it does only
+//! adds to readings, else by differences of responses.
 
 use std::borrow::Cow;
 

@@ -56,7 +56,8 @@ impl Before {
         (most > SAME_WAIT * least).then(|| wait.iter().map(|t| Some(t.max(least).ln())).collect())
     }
 
-    /// C·(F − F′) of each datum, m: how far the rod deflects between the reading before and this one.
+    /// C·(F − F′) of each datum, m: how far the rod deflects between the reading before and this
+    /// one.
     pub fn changes(&self, data: &[Datum], deflections: &[f64]) -> Vec<f64> {
         let line = numbered(data.iter().map(Datum::line_key));
         let mut slope = vec![0.0; line.iter().max().map_or(0, |last| last + 1)];

@@ -4,7 +4,7 @@
 //! y + w·law(x, side; parameters)      w: what one unit of the place's result does to a reading
 //! ```
 //!
-//! Places and variables are those of [`crate::diagnosis::rig::laws::sites`], so that what is proposed as a law can be
+//! Places and variables are those of `laws/sites.rs`, so that what is proposed as a law can be
 //! written down as an effect.
 
 use std::sync::Arc;

@@ -1,6 +1,6 @@
 //! Channels and loads with the wrong sign.
 
-use super::{ALL, Labels, UNUSUAL, mask, relabelled};
+use super::in_file::{ALL, Labels, UNUSUAL, mask, relabelled};
 use crate::diagnosis::rig::effects::mistakes::SIGN_MISTAKE;
 use crate::diagnosis::rig::mistakes::possible::PossibleMistake;
 use crate::diagnosis::rig::mistakes::relabelling::Relabelling;

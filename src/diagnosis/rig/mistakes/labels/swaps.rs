@@ -1,6 +1,6 @@
 //! Columns and axes whose names are exchanged.
 
-use super::{Labels, UNUSUAL, relabelled};
+use super::in_file::{Labels, UNUSUAL, relabelled};
 use crate::diagnosis::rig::effects::mistakes::SWAP_MISTAKE;
 use crate::diagnosis::rig::mistakes::possible::PossibleMistake;
 use crate::diagnosis::rig::mistakes::relabelling::Relabelling;

@@ -1,7 +1,7 @@
 //! Columns in another unit than their names say.
 
 use self::Cure::{Divide, Multiply};
-use super::{ALL, Labels, ONE_AXIS, UNUSUAL, mask};
+use super::in_file::{ALL, Labels, ONE_AXIS, UNUSUAL, mask};
 use crate::diagnosis::rig::effects::mistakes::UNIT_MISTAKE;
 use crate::diagnosis::rig::mistakes::possible::{PossibleMistake, exact};
 use crate::diagnosis::rig::mistakes::relabelling::Relabelling;
@@ -42,10 +42,10 @@ impl Cure {
 }
 
 /// The physics that remains may stand beside a unit's factor: a modulus may be 25 % off.
-pub(in super::super) const BESIDE: f64 = 1.25;
+pub const BESIDE: f64 = 1.25;
 /// Where a rod that is softer or stiffer comes near the factor itself, less may.
 const BESIDE_PHYSICS: f64 = 1.2;
-pub(in super::super) const HARDLY_BESIDE: f64 = 1.1;
+pub const HARDLY_BESIDE: f64 = 1.1;
 const VERY_NEAR: f64 = 1.05;
 
 const fn unit(name: &'static str, factor: f64, log_prior: f64, cure: Cure) -> Unit {
@@ -95,7 +95,7 @@ const FOR_MICROMETRES: [Unit; 7] = [
 const LIKE_A_ROD: [(&str, f64); 1] = [("pounds (lb)", 0.453_592_37)];
 
 /// Units of the loads, with their factors, that softer or stiffer rods look like.
-pub(in super::super) fn like_physics(column: LoadColumn) -> Vec<(&'static str, f64)> {
+pub fn like_physics(column: LoadColumn) -> Vec<(&'static str, f64)> {
     match column {
         LoadColumn::Newtons => {
             let near = FOR_NEWTONS.iter().filter(|unit| unit.within < BESIDE);

@@ -81,8 +81,8 @@ impl Mended {
         !undone.is_empty()
     }
 
-    /// Takes another rod for the one that was meant: what it says of the readings is `explains` (m,
-    /// rms) from what was said before.
+    /// Takes another rod for the one that was meant: its predictions differ by `explains` (m, rms)
+    /// from those before.
     pub fn take(&mut self, meant: OtherRod, log_odds: f64, explains: f64) {
         let OtherRod { rod, effect, location, observed, .. } = meant;
         self.rod = Some(rod);

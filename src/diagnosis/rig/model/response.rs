@@ -69,16 +69,16 @@ impl RigModel {
             shown[0][case].reading(loads[0]) - shown[1][case].reading(loads[1])
         };
         let plain = |case: usize| [shown[0][case].load, shown[1][case].load];
-        let cases = self.cases.of_datum.iter().enumerate();
+        let cases = self.cases.of_datum.iter();
         if more.remembers() {
             let of_datum = |(i, &case): (usize, &usize)| {
                 let [with_more, with_less] = plain(case);
                 of_case(case, [more.with_history(with_more, i), less.with_history(with_less, i)])
             };
-            return DVector::from_iterator(self.data.len(), cases.map(of_datum));
+            return DVector::from_iterator(self.data.len(), cases.enumerate().map(of_datum));
         }
         let differences: Vec<f64> = (0..shown[0].len()).map(|case| of_case(case, plain(case))).collect();
-        DVector::from_iterator(self.data.len(), cases.map(|(_, &case)| differences[case]))
+        DVector::from_iterator(self.data.len(), cases.map(|&case| differences[case]))
     }
 
     /// The readings of a rod by its cases, without shifts, m.

@@ -95,6 +95,16 @@ impl FromIterator<(usize, f64)> for Weights {
     }
 }
 
+/// What is added to readings.
+enum Addition<'a> {
+    /// The parameter times these.
+    Weights(&'a Weights),
+    /// The parameter, to each of these data.
+    Constant(&'a [usize]),
+    /// By which a display is late.
+    Display(&'a Display),
+}
+
 impl Action {
     /// True for what makes the rod another one.
     pub fn changes_the_rod(&self) -> bool {
@@ -111,9 +121,39 @@ impl Action {
         )
     }
 
+    /// What it adds to readings; `None` for what changes how a load becomes a reading, and for a
+    /// lab's own effects, whose parameters act together.
+    fn addition(&self) -> Option<Addition<'_>> {
+        match self {
+            Action::Shift(weights) | Action::Drift(_, _, weights) => Some(Addition::Weights(weights)),
+            Action::Step(data, from) => Some(Addition::Constant(data.get(*from..).unwrap_or_default())),
+            Action::Display(display) => Some(Addition::Display(display)),
+            Action::Friction(_)
+            | Action::Presliding
+            | Action::SliderPlay
+            | Action::LoadOffset(_)
+            | Action::TurnLoad(..)
+            | Action::Stiffness
+            | Action::ShearModulus
+            | Action::Bend(_)
+            | Action::Joint(..)
+            | Action::JointIn(..)
+            | Action::Station(_)
+            | Action::PerLoadSquared
+            | Action::PerLoad
+            | Action::Memory(..)
+            | Action::Onset(_)
+            | Action::SensorScale(_)
+            | Action::TurnSensor(..)
+            | Action::TurnSensors(..)
+            | Action::Play(_)
+            | Action::Own(..) => None,
+        }
+    }
+
     /// True for what adds to the readings whatever else there is.
     pub fn only_adds(&self) -> bool {
-        matches!(self, Action::Shift(_) | Action::Drift(..) | Action::Step(..))
+        matches!(self.addition(), Some(Addition::Weights(_) | Addition::Constant(_)))
     }
 
     /// True for a gap that an imposed displacement crosses.
@@ -131,24 +171,24 @@ impl Action {
 
     /// Adds what it does at `value` to readings, m.
     pub fn add_to(&self, readings: &mut [f64], value: f64) {
-        match self {
-            Action::Shift(weights) | Action::Drift(_, _, weights) => {
+        match self.addition() {
+            Some(Addition::Weights(weights)) => {
                 weights.iter().for_each(|(i, weight)| readings[i] += weight * value);
             }
-            Action::Step(data, from) => data[*from..].iter().for_each(|&i| readings[i] += value),
-            Action::Display(display) => display.add_to(readings, value),
-            _ => {}
+            Some(Addition::Constant(data)) => data.iter().for_each(|&i| readings[i] += value),
+            Some(Addition::Display(display)) => display.add_to(readings, value),
+            None => {}
         }
     }
 
     /// The largest that it adds to a reading per unit of its parameter.
     pub fn largest_addition(&self) -> Option<f64> {
-        match self {
-            Action::Shift(weights) | Action::Drift(_, _, weights) => {
+        match self.addition()? {
+            Addition::Weights(weights) => {
                 Some(weights.values.iter().fold(0.0, |most: f64, weight| most.max(weight.abs())))
             }
-            Action::Step(data, from) => Some(if *from < data.len() { 1.0 } else { 0.0 }),
-            _ => None,
+            Addition::Constant(data) => Some(if data.is_empty() { 0.0 } else { 1.0 }),
+            Addition::Display(_) => None,
         }
     }
 }

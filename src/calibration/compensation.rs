@@ -158,7 +158,7 @@ impl Compensation {
             let gravity = r.tr_mul(&gravity);
             most = most.max(laws.displacement(&compliance.force, &force, &gravity).norm());
             for (law, x) in laws.beyond(&force, &gravity) {
-                let (words, x) = (law.words(), x.abs());
+                let (words, x) = (law.to_string(), x.abs());
                 match beyond.iter_mut().find(|(known, _)| *known == words) {
                     Some((_, largest)) => *largest = largest.max(x),
                     None => beyond.push((words, x)),

@@ -6,6 +6,7 @@
 mod applied;
 mod applied_laws;
 mod arms;
+mod constraints;
 mod forecast;
 mod frames;
 mod groups;
@@ -22,5 +23,4 @@ mod rods;
 mod simulated;
 mod sockets;
 mod uncertainty;
-mod wishes;
 mod written;

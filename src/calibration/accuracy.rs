@@ -46,8 +46,9 @@ pub fn accuracy(
     calibration: &Calibration,
     cross_validation: Option<&CrossValidation>,
 ) -> Accuracy {
-    let validation = calibration.validation.as_ref().map(|of| ("validation", of.summary, of.is_converged));
-    let held_out = cross_validation.map(|of| ("held_out", of.summary, true));
+    let validation =
+        calibration.validation.as_ref().map(|errors| ("validation", errors.summary, errors.is_converged));
+    let held_out = cross_validation.map(|errors| ("held_out", errors.summary, true));
     let seen = validation.or(held_out);
     let is_fit = calibration.is_converged && calibration.is_plausible();
     let verdict = match (limits, seen) {

@@ -28,8 +28,8 @@ pub(super) struct RawCalibrated {
 impl CalibratedRange {
     /// The section of a robot file; `units` of the joints in SI.
     pub(super) fn written(&self, units: &[f64]) -> String {
-        let bound = |of: fn(&(f64, f64)) -> f64| -> Vec<f64> {
-            self.joints.iter().zip(units).map(|(range, unit)| in_unit(of(range), *unit)).collect()
+        let bound = |end: fn(&(f64, f64)) -> f64| -> Vec<f64> {
+            self.joints.iter().zip(units).map(|(range, unit)| in_unit(end(range), *unit)).collect()
         };
         let (low, high) = (bound(|range| range.0), bound(|range| range.1));
         let sd = in_unit(self.sd, MM);

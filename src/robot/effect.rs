@@ -106,7 +106,29 @@ impl Effect {
 
     /// True of a function of its joint's own angle, which a table of corrections can hold.
     pub fn is_of_own_angle(&self) -> bool {
-        matches!(self, Effect::Harmonic { .. } | Effect::Table { .. } | Effect::EncoderScale { .. })
+        match self {
+            Effect::Harmonic { .. } | Effect::Table { .. } | Effect::EncoderScale { .. } => true,
+            Effect::Backlash { .. }
+            | Effect::PlayByApproach { .. }
+            | Effect::Lag { .. }
+            | Effect::Compliance { .. }
+            | Effect::Weight { .. }
+            | Effect::Coupling { .. } => false,
+        }
+    }
+
+    /// True where the move that led to a pose matters.
+    pub fn follows_moves(&self) -> bool {
+        match self {
+            Effect::PlayByApproach { .. } | Effect::Lag { .. } => true,
+            Effect::Harmonic { .. }
+            | Effect::Table { .. }
+            | Effect::EncoderScale { .. }
+            | Effect::Backlash { .. }
+            | Effect::Compliance { .. }
+            | Effect::Weight { .. }
+            | Effect::Coupling { .. } => false,
+        }
     }
 
     /// Turn of its joint, rad, at the joint values `q` (rad or m) under the torques `torque` (N·m;

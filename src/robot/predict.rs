@@ -81,7 +81,7 @@ impl Robot {
         let slopes = slopes
             .map(|known| Matrix3xX::from_columns(&known.parameters.iter().map(column).collect::<Vec<_>>()));
         let placement: Vec<Parameter> =
-            Parameter::all(self.joints.len()).into_iter().filter(Parameter::is_placement).collect();
+            Parameter::all(self.joints.len()).into_iter().filter(|p| p.is_placement()).collect();
         let placement = Matrix3xX::from_columns(&placement.iter().map(column).collect::<Vec<_>>());
         let jacobian: Vec<_> = (0..self.joints.len()).map(|j| kinematics.joint_jacobian(j)).collect();
         let joints = Matrix3xX::from_columns(&jacobian);

@@ -77,7 +77,7 @@ fn assert_settled(
     assert!(applied.removed.is_empty() && applied.left_out.is_empty(), "{applied:?}");
     let again = written(&applied, "");
     let [law] = &again.robot.laws[..] else { panic!("{:?}", again.robot.laws) };
-    assert_eq!((law.place, law.per_joint, law.variable), (place, per, variable), "{}", law.words());
+    assert_eq!((law.place, law.per_joint, law.variable), (place, per, variable), "{}", law.description());
     let after = calibrate(&again, Mode::None, &Options::default()).unwrap();
     let noise = 3.0f64.sqrt() * NOISE;
     assert!(validated(&after) < 1.15 * noise, "{} for {noise}", validated(&after));

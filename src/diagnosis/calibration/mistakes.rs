@@ -37,6 +37,7 @@ mod tests;
 mod typed;
 mod undo;
 
+use self::columns::Silent;
 use self::draft::Draft;
 use self::motion::measure_moves;
 use self::moves::Other;
@@ -47,7 +48,7 @@ use super::diagnose::{CalibrationDiagnosis, diagnose_calibrated};
 use crate::calibration::campaign::{Campaign, FileNames};
 use crate::calibration::{Compensation, Mode, Options, Summary, calibrate};
 use crate::error::Result;
-use crate::inference::{Finding, Location};
+use crate::inference::Finding;
 use crate::robot::Robot;
 use crate::rod::Rod;
 
@@ -71,7 +72,7 @@ pub struct Neighbours {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Suspicion {
     /// `likely mistake in q4_deg: its sign is wrong; multiply q4_deg by −1 (…)`.
-    pub words: String,
+    pub description: String,
     /// False for a first guess of base or tip, which a calibration corrects.
     pub spoils_fit: bool,
 }
@@ -272,13 +273,8 @@ fn search(campaign: &Campaign, mode: Mode, others: &Neighbours) -> Result<Mended
     let has_failed = result.as_ref().is_none_or(|(_, best, _)| search.has_failed(best));
     for silent in silent.into_iter().filter(|silent| has_failed || !silent.only_if_failed) {
         mended.has_data = false;
-        mended.add(
-            silent.effect,
-            Location::key(silent.location),
-            silent.estimates,
-            &silent.cure,
-            &silent.why,
-        );
+        let Silent { effect, location, estimates, cure, why, log_odds, .. } = silent;
+        mended.add(effect, location.into(), estimates, (&cure, &why), log_odds);
     }
     let Some((_, mut best, found)) = result.filter(|_| mended.has_data) else { return Ok(mended) };
     for found in &found {

@@ -11,8 +11,8 @@ impl Draft {
         if let Change::Rows { by, with_clamps } = change {
             return self.displace_some(&inside, *by, *with_clamps);
         }
-        if let Change::Column { of, by } = change {
-            return self.displace_column(&inside, *of, *by);
+        if let Change::Column { cell, by } = change {
+            return self.displace_column(&inside, *cell, *by);
         }
         let mut changed = self.part(&inside);
         changed.apply(change);
@@ -25,8 +25,8 @@ impl Draft {
         }
     }
 
-    pub(super) fn number_mut(&mut self, at: usize, of: Cell) -> &mut f64 {
-        match of {
+    pub(super) fn number_mut(&mut self, at: usize, cell: Cell) -> &mut f64 {
+        match cell {
             Cell::Joint(joint) => &mut self.joints[at * self.joint_count + joint],
             Cell::Axis(axis) => &mut self.seen[at][axis],
         }
@@ -34,8 +34,8 @@ impl Draft {
 
     /// Rows whose number has none to be taken from, and rows outside whose number is another row's
     /// now, have none of their own, and go.
-    pub(super) fn displace_column(&mut self, inside: &[usize], of: Cell, by: isize) {
-        let recorded: Vec<f64> = (0..self.len()).map(|at| *self.number_mut(at, of)).collect();
+    pub(super) fn displace_column(&mut self, inside: &[usize], cell: Cell, by: isize) {
+        let recorded: Vec<f64> = (0..self.len()).map(|at| *self.number_mut(at, cell)).collect();
         let (mut is_kept, mut is_inside) = (vec![true; self.len()], vec![false; self.len()]);
         inside.iter().for_each(|&at| is_inside[at] = true);
         for &at in inside {
@@ -43,7 +43,7 @@ impl Draft {
                 is_kept[at] = false;
                 continue;
             };
-            *self.number_mut(at, of) = recorded[from];
+            *self.number_mut(at, cell) = recorded[from];
             is_kept[from] &= is_inside[from];
         }
         let kept: Vec<usize> = (0..self.len()).filter(|&at| is_kept[at]).collect();

@@ -65,9 +65,9 @@ pub(super) enum Change {
     /// true joint = recorded + by, an angle (or a length) that the poses must say.
     Zero { joint: usize, by: f64 },
     /// The number of row i is the one that stands in row i + k.
-    Column { of: Cell, by: isize },
+    Column { cell: Cell, by: isize },
     /// Another number in one row of the recording, rad or m.
-    Number { row: usize, of: Cell, value: f64 },
+    Number { row: usize, cell: Cell, value: f64 },
     /// Rows of the recording that are left out.
     Without(Vec<usize>),
 }
@@ -257,13 +257,13 @@ impl Draft {
             Change::Zero { joint, by } => {
                 self.joints.iter_mut().skip(*joint).step_by(self.joint_count).for_each(|q| *q += by);
             }
-            Change::Column { of, by } => {
+            Change::Column { cell, by } => {
                 let all: Vec<usize> = (0..self.len()).collect();
-                self.displace_column(&all, *of, *by);
+                self.displace_column(&all, *cell, *by);
             }
-            Change::Number { row, of, value } => {
+            Change::Number { row, cell, value } => {
                 let Some(at) = self.rows.iter().position(|known| known == row) else { return };
-                *self.number_mut(at, *of) = *value;
+                *self.number_mut(at, *cell) = *value;
             }
             Change::Without(rows) => {
                 let kept: Vec<usize> = (0..self.len()).filter(|&at| !rows.contains(&self.rows[at])).collect();

@@ -164,7 +164,7 @@ impl Search<'_> {
 
 impl Mended {
     /// A clamp that stands elsewhere, or is turned.
-    pub(super) fn add_fixture(&mut self, search: &Search, best: &State, change: &Change) {
+    pub(super) fn add_fixture(&mut self, search: &Search, best: &State, change: &Change, log_odds: f64) {
         let Some(Meaning { clamp, frame, typed }) = search.meaning(best, change) else { return };
         let stated = search.draft.devices[clamp];
         let name = &self.campaign.measurements.groups[clamp].name;
@@ -183,7 +183,7 @@ impl Mended {
             let label = letters[axis].split('_').next().unwrap_or_default();
             let cure = format!("Write {new} for {old} as {label} in {key} of {name}");
             let estimates = exact(letters[axis], numbers(&frame)[axis]);
-            self.add(&TYPING_MISTAKE, location, estimates, &cure, why);
+            self.add(&TYPING_MISTAKE, location, estimates, (&cure, why), log_odds);
             return;
         }
         let [first, second, third] = numbers(&frame).map(|number| significant(number, 5));
@@ -195,7 +195,7 @@ impl Mended {
                 format!("it is turned by {}° against what the campaign says", significant(angle / DEG, 3))
             }
         };
-        self.add(&FRAME_MISTAKE, location, motion_estimates(&stated, &frame), &cure, &why);
+        self.add(&FRAME_MISTAKE, location, motion_estimates(&stated, &frame), (&cure, &why), log_odds);
     }
 }
 

@@ -13,7 +13,7 @@ pub(super) use self::conventions::turn;
 use super::draft::{Change, Draft};
 use super::names::column;
 use crate::calibration::campaign::Campaign;
-use crate::inference::{Effect, Estimate};
+use crate::inference::{Effect, Estimate, Key};
 
 /// Ln of how much rarer some mistakes are.
 const UNUSUAL: f64 = -1.0;
@@ -23,8 +23,7 @@ const RARE: f64 = -2.0;
 #[derive(Clone)]
 pub(super) struct Move {
     pub effect: &'static Effect,
-    /// As in the file.
-    pub location: String,
+    pub location: Key,
     pub change: Change,
     pub log_prior: f64,
     /// What the contact force is multiplied by, where that is all.
@@ -38,7 +37,7 @@ pub(super) struct Move {
 
 impl Move {
     /// What explains poses as well, at such odds.
-    pub fn with_odds(&self, odds: f64) -> (&'static Effect, String, f64) {
+    pub fn with_odds(&self, odds: f64) -> (&'static Effect, Key, f64) {
         (self.effect, self.location.clone(), odds)
     }
 }
@@ -90,14 +89,14 @@ impl List<'_> {
     pub(super) fn add(
         &mut self,
         effect: &'static Effect,
-        location: &str,
+        location: Key,
         change: Change,
         cure: &str,
         why: &str,
     ) -> &mut Move {
         self.moves.push(Move {
             effect,
-            location: location.into(),
+            location,
             change,
             log_prior: 0.0,
             force: None,

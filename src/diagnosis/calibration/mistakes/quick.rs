@@ -25,7 +25,7 @@ use super::draft::{Change, Draft};
 use crate::calibration::Compensation;
 use crate::calibration::growth::log_volume;
 use crate::linalg::transposed_product;
-use crate::robot::{Kinematics, Loads, Parameter, Robot, Setup, minimal_parameters};
+use crate::robot::{Kinematics, Loads, Parameter, ParameterGroup, Robot, Setup, minimal_parameters};
 use crate::spatial::{Pose, exponential, skew, times};
 use crate::units::{DEG, MM, STANDARD_GRAVITY};
 
@@ -73,9 +73,8 @@ pub(super) struct Fit {
 
 impl<'a> Body<'a> {
     pub fn new(robot: &'a Robot, compensation: Compensation, tool: Vector3<f64>, draft: &Draft) -> Body<'a> {
-        let is_base = |p: &Parameter| matches!(p, Parameter::BasePosition(_) | Parameter::BaseRotation(_));
         let mut free = minimal_parameters(robot, tool, tool, compensation.payload);
-        free.retain(|p| !is_base(p) && !matches!(p, Parameter::Tool(_)));
+        free.retain(|p| !p.is_placement());
         free.extend((0..3).map(Parameter::Tool));
         let from = robot.root.origin;
         let reach = |row: usize| (robot.flange_at(draft.joints(row)).point(&tool) - from).norm();
@@ -314,7 +313,7 @@ fn step<'a>(
     for (k, precision) in precision.iter().enumerate() {
         normal[(k, k)] += precision;
         // the tip has a ridge only: it is where it fits
-        if k < free && !matches!(body.free[k], Parameter::Tool(_)) {
+        if k < free && body.free[k].group() != ParameterGroup::Tool {
             gradient[k] += precision * (state.setup.get(body.free[k]) - nominal[k]);
         }
     }
@@ -334,11 +333,8 @@ fn step<'a>(
 
 /// ½·Σ((ρ − nominal)/sd)², the tip excepted.
 fn moved(body: &Body, state: &State, nominal: &[f64], sd: &[f64]) -> f64 {
-    let square = |k: usize| match body.free[k] {
-        Parameter::Tool(_) => 0.0,
-        parameter => ((state.setup.get(parameter) - nominal[k]) / sd[k]).powi(2),
-    };
-    0.5 * (0..body.free.len()).map(square).sum::<f64>()
+    let known = (0..body.free.len()).filter(|&k| body.free[k].group() != ParameterGroup::Tool);
+    0.5 * known.map(|k| ((state.setup.get(body.free[k]) - nominal[k]) / sd[k]).powi(2)).sum::<f64>()
 }
 
 impl Fit {

@@ -9,6 +9,7 @@ use super::part::Reference;
 use super::search::Search;
 use super::slips::Slip;
 use crate::diagnosis::calibration::effects::mistakes::ROW_MISTAKE;
+use crate::inference::Key;
 
 /// Farthest displacement that is tried.
 const FARTHEST: isize = 3;
@@ -64,11 +65,11 @@ impl Search<'_> {
         let slip = Slip {
             change,
             effect: &ROW_MISTAKE,
-            location: "placement, socket".into(),
+            location: Key::new("placement, socket"),
             estimates: exact("rows", by as f64),
             cure: format!("Move placement and socket {count} {rows} {way}"),
             why: format!("each belongs to the angles {count} {rows} {there}"),
-            log_odds: f64::INFINITY,
+            log_odds: reference.gains(draft, lengths, &moved).iter().sum(),
             explains: (square.max(0.0) / draft.len().max(1) as f64).sqrt(),
             rivals: Vec::new(),
         };

@@ -14,7 +14,7 @@ use super::motion::moved;
 use super::moves::Move;
 use super::part::FAR;
 use super::quick::{Body, Fit, Worthwhile, fit, fit_from};
-use crate::inference::Effect;
+use crate::inference::{Effect, Key};
 use crate::parallel::in_parallel;
 use crate::statistics::median;
 use crate::units::{DEG, MM};
@@ -81,7 +81,7 @@ pub(super) struct Found {
     /// Root mean square of what it explains, m.
     pub explains: f64,
     /// Moves that explain as much in its place, with the odds against them.
-    pub rivals: Vec<(&'static Effect, String, f64)>,
+    pub rivals: Vec<(&'static Effect, Key, f64)>,
     /// True where a clamp, instead, may stand elsewhere from the same row on.
     pub may_be_clamp: Option<usize>,
 }
@@ -354,7 +354,7 @@ impl Search<'_> {
                 _ => return None,
             };
             let (effect, location, odds) = own.with_odds(odds);
-            Some((effect, format!("{location}, in these poses"), odds))
+            Some((effect, location.rows("in these poses"), odds))
         });
         let may_be_clamp = match &step {
             Step::Elsewhere(Change::Moved(_)) => alike.iter().find_map(|state| match state.steps.last() {

@@ -15,13 +15,14 @@ use std::f64::consts::PI;
 
 use super::super::effects::events::OUTLIER;
 use super::super::effects::mistakes::{COPY_MISTAKE, TYPING_MISTAKE};
+use super::columns::agreement;
 use super::draft::{Cell, Change, Draft, Rows};
-use super::names::{AXES, column, place, pose_name, poses};
+use super::names::{AXES, cell, column, place, pose_name, poses};
 use super::part::{FAR, Reference, within};
 use super::search::{ALIKE, FAILED, ODDS, Search, State};
 use super::typed::{Meant, decimals, meant};
 use crate::calibration::campaign::Recording;
-use crate::inference::{Effect, Estimate};
+use crate::inference::{Effect, Estimate, Key};
 use crate::robot::Motion;
 use crate::statistics::median;
 use crate::units::{DEG, MM, UM, significant};
@@ -45,7 +46,7 @@ const FINE: f64 = 5.0;
 pub(super) struct Slip {
     pub change: Change,
     pub effect: &'static Effect,
-    pub location: String,
+    pub location: Key,
     pub estimates: Vec<Estimate>,
     pub cure: String,
     pub why: String,
@@ -53,14 +54,14 @@ pub(super) struct Slip {
     /// Root mean square over all rows of what it explains, m.
     pub explains: f64,
     /// What explains the row as well.
-    pub rivals: Vec<(&'static Effect, String)>,
+    pub rivals: Vec<(&'static Effect, Key)>,
 }
 
 /// What may have happened to a row.
 struct Suspect {
     effect: &'static Effect,
     change: Change,
-    location: String,
+    location: Key,
     cure: String,
     why: String,
     estimates: Vec<Estimate>,
@@ -102,7 +103,7 @@ impl Search<'_> {
         // what many rows of a column have is no slip of one
         let most = LEFT_OUT.1.max((LEFT_OUT.0 * draft.len() as f64) as usize);
         let column = |slip: &Slip| match slip.change {
-            Change::Number { of, .. } => Some(of),
+            Change::Number { cell, .. } => Some(cell),
             _ => None,
         };
         let columns: Vec<Option<Cell>> = slips.iter().map(column).collect();
@@ -117,7 +118,8 @@ impl Search<'_> {
         let farthest = (0..draft.len()).filter(stays).map(|at| lengths[at]).fold(0.0, f64::max);
         lost.retain(|&at| lengths[at] > FAILED * reach && lengths[at] > AS_FAR * farthest);
         if lost.len() <= most {
-            slips.extend(lost.into_iter().map(|at| left_out(&draft, at, lengths[at], recording)));
+            let scale = reference.scale;
+            slips.extend(lost.into_iter().map(|at| left_out(&draft, at, lengths[at], scale, recording)));
         }
         slips
     }
@@ -194,7 +196,7 @@ impl Search<'_> {
         let is_alike = |other: &&(f64, f64, usize)| {
             log_odds - other.0 < ALIKE && suspects[other.2].location != suspects[best].location
         };
-        let mut rivals: Vec<(&'static Effect, String)> = Vec::new();
+        let mut rivals: Vec<(&'static Effect, Key)> = Vec::new();
         for other in odds[1..].iter().filter(is_alike) {
             let rival = (suspects[other.2].effect, suspects[other.2].location.clone());
             if !rivals.contains(&rival) {
@@ -213,14 +215,14 @@ impl Search<'_> {
         let pose = pose_name(recording, row);
         let robot = self.bodies[draft.body].robot;
         let mut all = Vec::new();
-        let mut add = |of: Cell, name: String, unit: f64, recorded: f64, places: usize| {
+        let mut add = |own: Cell, name: String, unit: f64, recorded: f64, places: usize| {
             let recorded = tidy(recorded / unit);
             for Meant { text, why, log_prior } in meant(recorded, places) {
                 let value = text.parse::<f64>().unwrap_or(f64::NAN);
                 all.push(Suspect {
                     effect: &TYPING_MISTAKE,
-                    change: Change::Number { row, of, value: value * unit },
-                    location: format!("{name} of {pose}"),
+                    change: Change::Number { row, cell: own, value: value * unit },
+                    location: cell(&name, &pose),
                     cure: format!("Write {text} for {recorded:.places$} as {name} of {pose}"),
                     why: why.into(),
                     estimates: vec![Estimate {
@@ -251,7 +253,7 @@ impl Search<'_> {
         let of_own = |own: &super::moves::Move| Suspect {
             effect: own.effect,
             change: within(rows, &own.change),
-            location: format!("{} of {}", own.location, pose_name(recording, row)),
+            location: cell(&own.location.names, &pose_name(recording, row)),
             cure: format!("{} {}", own.cure, place(recording, rows)),
             why: own.why.clone(),
             estimates: own.estimates.clone(),
@@ -316,7 +318,7 @@ impl Search<'_> {
         pairs.sort_unstable();
         let runs = pairs.chunk_by(|a, b| a.0 + 1 == b.0 && a.1 + 1 == b.1 && a.2 == b.2);
         let counts = |run: &&[(usize, usize, bool)]| !run[0].2 || run.len() >= FEWEST_COPIES;
-        runs.filter(counts).map(|run| copy(draft, lengths, run, recording)).collect()
+        runs.filter(counts).map(|run| copy(draft, (lengths, scale), run, recording)).collect()
     }
 }
 
@@ -339,6 +341,12 @@ fn ln_odds(ln_volume: f64, left: f64, scale: f64) -> f64 {
     own + ln_volume - 3.0 * scale.ln() + (4.0 * PI / 3.0).ln()
 }
 
+/// Ln of the odds that a row so far from its point was disturbed, against the scatter of the
+/// others; none where it lies among them.
+fn disturbance(length: f64, scale: f64) -> f64 {
+    (-ln_odds(3.0 * length.ln(), length, scale)).max(0.0)
+}
+
 /// Ln of the cube of what a disturbance may fill, m³. A displacement in a clamp is small whatever
 /// happened: one that becomes small, or a neighbour's, is near for that alone.
 fn ln_volume(change: &Change, length: f64, displacement: f64) -> f64 {
@@ -346,7 +354,7 @@ fn ln_volume(change: &Change, length: f64, displacement: f64) -> f64 {
     match change {
         Change::Within(_, inner) => ln_volume(inner, length, displacement),
         Change::Seen(_) | Change::Rows { .. } => 3.0 * small,
-        Change::Number { of: Cell::Axis(_), .. } | Change::Column { of: Cell::Axis(_), .. } => {
+        Change::Number { cell: Cell::Axis(_), .. } | Change::Column { cell: Cell::Axis(_), .. } => {
             2.0 * length.ln() + small
         }
         _ => 3.0 * length.ln(),
@@ -355,20 +363,30 @@ fn ln_volume(change: &Change, length: f64, displacement: f64) -> f64 {
 
 /// How large displacements in clamps are, in the middle, m; nothing limits points in {W}.
 fn displacement(draft: &Draft, recording: &Recording) -> f64 {
-    if draft.has_sockets() || recording.groups.iter().any(|group| group.name.is_empty()) {
+    if draft.has_sockets() || recording.groups.iter().any(|group| group.name.is_tracked()) {
         return f64::INFINITY;
     }
     let sizes: Vec<f64> = draft.seen.iter().map(|seen| seen.norm()).collect();
     median(&sizes).unwrap_or(f64::INFINITY).max(f64::MIN_POSITIVE)
 }
 
-fn copy(draft: &Draft, lengths: &[f64], run: &[(usize, usize, bool)], recording: &Recording) -> Slip {
-    let named = |of: fn(&(usize, usize, bool)) -> usize| {
-        let rows = || run.iter().map(of).map(|at| draft.rows[at]);
+fn copy(
+    draft: &Draft,
+    (lengths, scale): (&[f64], f64),
+    run: &[(usize, usize, bool)],
+    recording: &Recording,
+) -> Slip {
+    let named = |member: fn(&(usize, usize, bool)) -> usize| {
+        let rows = || run.iter().map(member).map(|at| draft.rows[at]);
         poses(recording, rows().next().unwrap_or(0), rows().next_back().unwrap_or(0))
     };
     let (copies, originals) = (named(|pair| pair.0), named(|pair| pair.1));
     let square: f64 = run.iter().map(|pair| lengths[pair.0].powi(2)).sum();
+    let (of_position, of_angles) = (agreement(3), agreement(draft.joint_count));
+    let log_odds = run.iter().map(|pair| match pair.2 {
+        true => of_position + of_angles,
+        false => of_position + disturbance(lengths[pair.0], scale),
+    });
     let what = match (run[0].2, run.len()) {
         (true, _) => format!("they repeat {originals} to the last digit"),
         (false, 1) => format!("its position is that of {originals} to the last digit"),
@@ -377,24 +395,24 @@ fn copy(draft: &Draft, lengths: &[f64], run: &[(usize, usize, bool)], recording:
     Slip {
         change: Change::Without(run.iter().map(|pair| draft.rows[pair.0]).collect()),
         effect: &COPY_MISTAKE,
-        location: copies.clone(),
+        location: Key::new(&copies),
         estimates: Vec::new(),
         cure: format!("Leave out {copies}, or measure anew"),
         why: what,
-        log_odds: f64::INFINITY,
+        log_odds: log_odds.sum(),
         explains: (square / draft.len().max(1) as f64).sqrt(),
         rivals: Vec::new(),
     }
 }
 
 /// A row that nothing explains, and that would spoil the others.
-fn left_out(draft: &Draft, at: usize, length: f64, recording: &Recording) -> Slip {
+fn left_out(draft: &Draft, at: usize, length: f64, scale: f64, recording: &Recording) -> Slip {
     let row = draft.rows[at];
     let pose = pose_name(recording, row);
     Slip {
         change: Change::Without(vec![row]),
         effect: &OUTLIER.effect,
-        location: pose.clone(),
+        location: Key::new(&pose),
         estimates: vec![Estimate {
             name: "off_um".into(),
             unit: UM,
@@ -404,7 +422,7 @@ fn left_out(draft: &Draft, at: usize, length: f64, recording: &Recording) -> Sli
         }],
         cure: format!("Leave out {pose}, or measure it anew"),
         why: format!("its angles and its position are {} mm apart", significant(length / MM, 3)),
-        log_odds: f64::INFINITY,
+        log_odds: disturbance(length, scale),
         explains: (length.powi(2) / draft.len().max(1) as f64).sqrt(),
         rivals: Vec::new(),
     }

@@ -4,6 +4,7 @@ use super::super::super::effects::mistakes::{ROBOT_MISTAKE, ROD_MISTAKE, SIGN_MI
 use super::super::draft::Change;
 use super::{List, Other, UNUSUAL, exact};
 use crate::calibration::campaign::Campaign;
+use crate::inference::Key;
 use crate::units::STANDARD_GRAVITY;
 
 /// A pound, a gram and a thousandth of a newton, N.
@@ -44,7 +45,7 @@ impl List<'_> {
                 let (way, by) = if factor < 1.0 { ("Divide", 1.0 / factor) } else { ("Multiply", factor) };
                 (&UNIT_MISTAKE, format!("{way} {KEY} by {by}"), "its decimal point is in the wrong place")
             };
-            let force = self.add(effect, KEY, Change::Body(body, None), &cure, why);
+            let force = self.add(effect, Key::new(KEY), Change::Body(body, None), &cure, why);
             (force.log_prior, force.force) = (UNUSUAL, Some(factor));
             force.estimates = if factor < 0.0 { Vec::new() } else { exact("factor", factor) };
         }
@@ -57,7 +58,7 @@ impl List<'_> {
             let (effect, what) = if other.is_rod { (&ROD_MISTAKE, "rod") } else { (&ROBOT_MISTAKE, "robot") };
             let cure = format!("Write {what} = \"{file}\"");
             let why = format!("the poses are those of {what} {name}");
-            self.add(effect, file, change, &cure, &why).log_prior = UNUSUAL;
+            self.add(effect, Key::new(file), change, &cure, &why).log_prior = UNUSUAL;
         }
     }
 }

@@ -11,8 +11,8 @@ fn in_rows(campaign: &Campaign, rows: std::ops::Range<usize>, change: impl Fn(&m
 /// The one finding, its cure, and the campaign that was meant.
 fn only(campaign: &Campaign) -> (&'static str, String, Campaign) {
     let mended = mended(campaign);
-    let said: Vec<&str> = mended.found.iter().map(|finding| finding.description.observed.as_str()).collect();
-    let [finding] = &mended.found[..] else { panic!("{said:?}") };
+    let cures: Vec<&str> = mended.found.iter().map(|finding| finding.description.observed.as_str()).collect();
+    let [finding] = &mended.found[..] else { panic!("{cures:?}") };
     assert!(mended.is_changed && mended.suspicions[0].spoils_fit);
     (finding.effect.name, finding.description.observed.clone(), mended.campaign)
 }

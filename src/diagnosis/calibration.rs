@@ -47,7 +47,7 @@ mod unfollowed;
 mod vector;
 mod written_law;
 
-pub use apply::{Applied, apply, destination, law_destination};
+pub use apply::{Applied, apply, law_destination};
 pub use diagnose::{CalibrationDiagnosis, Happened, diagnose, diagnose_calibrated};
 pub use effects::CalibrationEffect;
 pub use gear::{Curve, Gear};

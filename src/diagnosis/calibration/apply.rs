@@ -4,7 +4,7 @@
 //! all that a robot file has no key for are taken out of the measured points; a socket that moved
 //! becomes another one. The campaign that is written has the nominal robot with these effects, so
 //! that `calibrate` finds base and geometry anew beside them; the calibrated robot is for
-//! `predict`. What neither can hold is said, and before.
+//! `predict`. What neither can hold is listed, before anything is written too.
 
 use nalgebra::DVector;
 
@@ -28,7 +28,7 @@ pub struct Applied {
     pub files: Vec<(String, String)>,
     /// Mistakes that the campaign file and its recordings no longer hold.
     pub undone: Vec<String>,
-    /// What entered the model, in words.
+    /// What entered the model, for people.
     pub entered: Vec<String>,
     /// What was taken out of the measured points, or made another socket.
     pub removed: Vec<String>,
@@ -39,7 +39,7 @@ pub struct Applied {
 }
 
 /// Where a finding would be written, without doing so.
-pub fn destination(finding: &Finding, model: &CalibrationModel) -> WrittenTo {
+pub(super) fn destination(finding: &Finding, model: &CalibrationModel) -> WrittenTo {
     write(finding, model, &mut model.campaign.clone())
 }
 
@@ -58,20 +58,20 @@ pub fn law_destination(law: &Law, model: &CalibrationModel) -> WrittenTo {
     write_law(law, model, &mut model.campaign.clone()).0
 }
 
-/// The same, done; and what was done in words.
+/// The same, done; and a description of it.
 fn write_law(law: &Law, model: &CalibrationModel, extended: &mut Campaign) -> (WrittenTo, String) {
     let source = format!("diagnose calibration, {}", model.campaign.file);
     if let Some(law) = written(law, &extended.robot, &source) {
-        let words = format!("law, {}", law.words());
+        let description = format!("law, {}", law.description());
         extended.robot.laws.push(law);
-        return (WrittenTo::Model, words);
+        return (WrittenTo::Model, description);
     }
-    let words = format!(
+    let description = format!(
         "law of the {} over the {}, which this recording alone has",
         law.site.result.name, law.site.variable.name
     );
     let moved = model.by_row(&DVector::from_column_slice(&law.adds));
-    (move_points(extended, &moved), words)
+    (move_points(extended, &moved), description)
 }
 
 /// A finding as it is beside the law.
@@ -87,7 +87,7 @@ fn beside(law: Option<&Law>, finding: &Finding) -> Finding {
 }
 
 /// Robot and campaign with what `found` says; `None` where nothing of it could be written. `names`
-/// are those of the campaign's files; `above` is said on top of them.
+/// are those of the campaign's files; the comments `above` stand on top of them.
 ///
 /// # Errors
 /// As [`calibrate`] and [`crate::calibration::write_back`].
@@ -95,22 +95,22 @@ pub fn apply(found: &CalibrationDiagnosis, names: &FileNames, above: &[String]) 
     let model = &found.model;
     let mut extended = model.campaign.clone();
     let (mut entered, mut removed, mut left_out) = (Vec::new(), Vec::new(), Vec::new());
-    let mut put = |destination: WrittenTo, words: String| match destination {
-        WrittenTo::Model => entered.push(words),
-        WrittenTo::Recording => removed.push(words),
-        WrittenTo::Nowhere => left_out.push(words),
+    let mut put = |destination: WrittenTo, description: String| match destination {
+        WrittenTo::Model => entered.push(description),
+        WrittenTo::Recording => removed.push(description),
+        WrittenTo::Nowhere => left_out.push(description),
     };
     let proposed = found.law.as_ref().filter(|proposed| proposed.law.is_ok());
     let law = proposed.and_then(|proposed| proposed.law.as_ref().ok());
     // what was undone before there was a model is nothing to write into it
     for finding in found.diagnosis.findings.iter().filter(|finding| !finding.parts.is_empty()) {
-        let words = (finding.effect.cause_at)(&finding.location);
+        let cause = (finding.effect.cause_at)(&finding.location);
         let finding = beside(law, finding);
-        put(write(&finding, model, &mut extended), words);
+        put(write(&finding, model, &mut extended), cause);
     }
     for law in law.into_iter().flat_map(Law::all) {
-        let (destination, words) = write_law(law, model, &mut extended);
-        put(destination, words);
+        let (destination, description) = write_law(law, model, &mut extended);
+        put(destination, description);
     }
     if entered.is_empty() && removed.is_empty() {
         return Ok(None);
@@ -123,15 +123,15 @@ pub fn apply(found: &CalibrationDiagnosis, names: &FileNames, above: &[String]) 
     let sd = held_out.map_or(found.diagnosis.noise, |held_out| held_out.after);
     let sd = proposed.and_then(Proposed::held_out_with).unwrap_or(sd);
     let mut comments = Vec::new();
-    let mut say = |what: &str, list: &[String]| {
+    let mut comment = |what: &str, list: &[String]| {
         if !list.is_empty() {
             comments.push(format!("{what}: {}.", list.join("; ")));
         }
     };
-    say("With the findings", &entered);
-    say("Corrected in the measurements", &removed);
-    say("Not written, because no file has a key for it", &left_out);
-    let said = comments.clone();
+    comment("With the findings", &entered);
+    comment("Corrected in the measurements", &removed);
+    comment("Not written, because no file has a key for it", &left_out);
+    let corrections = comments.clone();
     let sd_um = sd / UM;
     comments.push(format!("sd: {sd_um:.1} µm per coordinate, the error of held-out poses."));
     let mut files = vec![write_back_with(&extended, &calibration, Some(sd), &comments)?];
@@ -143,7 +143,8 @@ pub fn apply(found: &CalibrationDiagnosis, names: &FileNames, above: &[String]) 
         files.push(("corrections.csv".into(), corrections_csv(&extended.robot, &angles)));
     }
     let corrected = format!("CORRECTED, not as recorded: {}.", model.campaign.file);
-    let above: Vec<String> = std::iter::once(corrected).chain(above.iter().cloned()).chain(said).collect();
+    let above: Vec<String> =
+        std::iter::once(corrected).chain(above.iter().cloned()).chain(corrections).collect();
     files.extend(campaign_files(model.campaign, &extended, names, &above)?);
     let mean = Summary::of(&calibration.residuals()).mean;
     Ok(Some(Applied { files, undone: Vec::new(), entered, removed, left_out, mean }))
@@ -191,7 +192,14 @@ fn angles(extended: &Campaign, joint: usize, recorded: &[f64]) -> Vec<f64> {
     let rows = |effect: &Effect| match effect {
         Effect::Harmonic { cycles_per_rev, .. } => correction_table::rows(recorded, *cycles_per_rev),
         Effect::Table { rows, .. } => rows.len(),
-        _ => 0,
+        // straight lines, or no functions of the joint's own angle
+        Effect::EncoderScale { .. }
+        | Effect::Backlash { .. }
+        | Effect::PlayByApproach { .. }
+        | Effect::Lag { .. }
+        | Effect::Compliance { .. }
+        | Effect::Weight { .. }
+        | Effect::Coupling { .. } => 0,
     };
     let own = extended.robot.effects.iter().filter(|effect| effect.joint() == Some(joint));
     correction_table::spaced(recorded, own.map(rows).max().unwrap_or(0)).collect()

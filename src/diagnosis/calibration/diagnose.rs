@@ -1,5 +1,6 @@
 //! What a campaign says about its calibration.
 
+use super::apply::destination;
 use super::beside::{calibrated_beside, unequal};
 use super::effects::{EVERY_ROW, registry};
 use super::gear::Curve;
@@ -15,8 +16,8 @@ use crate::calibration::{Calibration, Mode, Options, calibrate};
 use crate::error::Result;
 use crate::inference::law::propose;
 use crate::inference::{
-    Diagnosed, Discrepancy, Finding, Hypothesis, Limit, Location, ShownBy, Sketch, Term, diagnose as infer,
-    sketch,
+    Diagnosed, Discrepancy, Estimate, Finding, Hypothesis, Limit, Location, ShownBy, Sketch, Term,
+    diagnose as infer, sketch,
 };
 
 /// A campaign's diagnosis.
@@ -94,7 +95,24 @@ pub fn diagnose_calibrated<'c>(
         found.diagnosis.discrepancy =
             Some(Discrepancy { candidate: None, location: None, shown_by: ShownBy::Size, rms, shape });
     }
+    complete(&mut found);
     Ok(found)
+}
+
+/// What only the whole diagnosis knows of a finding: where it is written, and the whole error of a
+/// gear.
+fn complete(found: &mut CalibrationDiagnosis) {
+    let wholes: Vec<Vec<Estimate>> =
+        found.diagnosis.findings.iter().map(|finding| found.whole_error(finding)).collect();
+    let CalibrationDiagnosis { model, diagnosis, .. } = found;
+    for (finding, whole) in diagnosis.findings.iter_mut().zip(wholes) {
+        finding.written_to = destination(finding, model);
+        finding.estimates.extend(whole);
+        for part in &mut finding.parts {
+            let Some(gear) = model.gear_of(part) else { continue };
+            part.estimates.extend(gear.frequencies(part, &model.angles(gear.joint())));
+        }
+    }
 }
 
 /// Rows, from 0, after which something has moved, where not every row was looked at.
@@ -119,7 +137,7 @@ pub struct Happened {
     /// True for what moved before that row and stayed there; false for a single pose.
     pub stays: bool,
     /// For example `clamp 2 moved`, `pose 7`.
-    pub words: String,
+    pub label: String,
 }
 
 impl CalibrationDiagnosis<'_> {
@@ -156,6 +174,15 @@ impl CalibrationDiagnosis<'_> {
         (!parts.is_empty()).then(|| Curve::new(joint, parts, covariance, &angles))
     }
 
+    /// The size of the whole error of the gear that a finding is about; nothing of any other.
+    fn whole_error(&self, finding: &Finding) -> Vec<Estimate> {
+        let Some((joint, part)) = self.gear_joint(finding).zip(finding.parts.first()) else {
+            return Vec::new();
+        };
+        let angles = self.model.angles(joint);
+        self.gear(joint).map_or_else(Vec::new, |curve| curve.estimates(&angles, part.coverage_factor))
+    }
+
     /// The joint, from 0, whose gear a finding is about.
     pub fn gear_joint(&self, finding: &Finding) -> Option<usize> {
         self.model.gear_of(finding.parts.first()?).map(|gear| gear.joint())
@@ -166,10 +193,10 @@ impl CalibrationDiagnosis<'_> {
         let mut happened = Vec::new();
         for part in self.diagnosis.findings.iter().flat_map(|finding| &finding.parts) {
             let effect = self.model.terms.candidates[part.term.candidate].effect;
-            let words = registry::record(effect).and_then(|effect| (effect.event)(&part.location));
+            let label = registry::record(effect).and_then(|effect| (effect.event)(&part.location));
             let row = self.model.first_row(&part.term);
             let stays = part.location.moved_after().is_some();
-            happened.extend(row.zip(words).map(|(row, words)| Happened { row, stays, words }));
+            happened.extend(row.zip(label).map(|(row, label)| Happened { row, stays, label }));
         }
         happened
     }

@@ -4,7 +4,7 @@ use nalgebra::{Rotation3, Unit, Vector3};
 
 use super::configuration::Configuration;
 use crate::calibration::Calibration;
-use crate::calibration::campaign::{Campaign, Group, Row, Targets};
+use crate::calibration::campaign::{Campaign, Group, GroupName, Row, Targets};
 use crate::inference::{PlannedPose, PosePlan};
 use crate::spatial::Pose;
 
@@ -22,16 +22,16 @@ const FEWEST: usize = 6;
 /// Poses to measure beside those that were.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct FeasiblePoses {
-    /// In the user's words; a full sentence.
-    pub words: String,
+    /// What to do, a full sentence for the user.
+    pub instruction: String,
     /// The same as numbers.
     pub plan: PosePlan,
 }
 
 impl FeasiblePoses {
     /// With the clamps that are there.
-    fn in_place(words: String, poses: Vec<PlannedPose>) -> Self {
-        FeasiblePoses { words, plan: PosePlan { poses, new_fixture: None } }
+    fn in_place(instruction: String, poses: Vec<PlannedPose>) -> Self {
+        FeasiblePoses { instruction, plan: PosePlan { poses, new_fixture: None } }
     }
 
     /// The campaign and its calibration with these poses measured, without any error.
@@ -65,7 +65,7 @@ impl FeasiblePoses {
             calibration.tips.push(calibration.tips[*like]);
         }
         if let Some((name, device)) = &self.plan.new_fixture {
-            recording.groups.push(Group { name: name.clone(), device: *device });
+            recording.groups.push(Group::new(GroupName::Clamp(name.clone()), *device));
             calibration.noise.of_group.push(calibration.noise.pooled);
         }
         (campaign, calibration)
@@ -101,7 +101,7 @@ pub(super) fn feasible(campaign: &Campaign, configurations: &[Configuration]) ->
     ];
     let is_tracked = matches!(recording.targets, Targets::Points(_))
         && recording.groups.len() == 1
-        && recording.groups[0].name.is_empty();
+        && recording.groups[0].name.is_tracked();
     match (&recording.targets, is_tracked) {
         (_, true) => {
             let joints = 0..recording.joint_count;
@@ -130,13 +130,13 @@ fn alone(campaign: &Campaign, configurations: &[Configuration], joint: usize) ->
         joints[joint] = q;
         PlannedPose { joints, like: at, group: campaign.measurements.rows[at].group }
     });
-    let words = format!(
+    let instruction = format!(
         "Move joint {} alone through its range and back in {STEPS} steps each, the other joints as in pose {}, and \
          measure at every step.",
         joint + 1,
         campaign.measurements.rows[at].pose
     );
-    (high > low).then(|| FeasiblePoses::in_place(words, poses.collect()))
+    (high > low).then(|| FeasiblePoses::in_place(instruction, poses.collect()))
 }
 
 /// After some other poses the clamp with most poses once more, turned about joint 1 with all of
@@ -145,7 +145,7 @@ fn turned_clamp(
     campaign: &Campaign,
     configurations: &[Configuration],
     before: Vec<PlannedPose>,
-    said: &str,
+    first: &str,
 ) -> Option<FeasiblePoses> {
     let recording = &campaign.measurements;
     let rows_of = |group: usize| {
@@ -153,7 +153,7 @@ fn turned_clamp(
         rows.filter(move |&row| recording.rows[row].group == group)
     };
     let group = (0..recording.groups.len()).max_by_key(|&group| rows_of(group).count())?;
-    let first = configurations.first()?;
+    let there = configurations.first()?;
     let [low, high] = campaign.robot.joints.first()?.limits.unwrap_or_else(|| {
         let recorded = configurations.iter().map(|there| there.joints[0].abs());
         let widest = recorded.fold(0.0, f64::max).max(WIDEST.to_radians());
@@ -171,11 +171,11 @@ fn turned_clamp(
     if reached.len() < FEWEST {
         return None;
     }
-    let turn = Rotation3::from_axis_angle(&Unit::new_normalize(first.axis[0]), degrees.to_radians());
+    let turn = Rotation3::from_axis_angle(&Unit::new_normalize(there.axis[0]), degrees.to_radians());
     let old = &recording.groups[group].device;
     let device = Pose {
         rotation: turn.matrix() * old.rotation,
-        origin: first.origin[0] + turn * (old.origin - first.origin[0]),
+        origin: there.origin[0] + turn * (old.origin - there.origin[0]),
     };
     let some =
         if reached.len() < rows_of(group).count().min(MOST) { " as far as joint 1 reaches" } else { "" };
@@ -185,11 +185,11 @@ fn turned_clamp(
         PlannedPose { joints, like: row, group: recording.groups.len() }
     });
     let name = &recording.groups[group].name;
-    let words = format!(
-        "{said}Set up one more clamp where {name} would be if joint 1 were turned by {degrees}°, and measure the poses of \
+    let instruction = format!(
+        "{first}Set up one more clamp where {name} would be if joint 1 were turned by {degrees}°, and measure the poses of \
          {name} there{some}."
     );
     let poses = before.into_iter().chain(poses).collect();
     let new_fixture = Some(("new clamp".into(), device));
-    Some(FeasiblePoses { words, plan: PosePlan { poses, new_fixture } })
+    Some(FeasiblePoses { instruction, plan: PosePlan { poses, new_fixture } })
 }

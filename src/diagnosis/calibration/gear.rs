@@ -113,44 +113,64 @@ impl Gear {
     /// Frequencies and amplitudes of the error that a part of a finding is, over the recorded
     /// `angles`, the largest first.
     pub(super) fn estimates(&self, part: &FindingPart, angles: &[f64]) -> Vec<Estimate> {
-        let values = &part.term.values;
-        let resolved = |cycles: f64| (cycles, 0.5 / turns(angles));
-        let one = |((cycles, half_cycles), amplitude): ((f64, f64), Length)| {
-            let estimate = |name: &str, unit: f64, value: f64, half: f64| {
-                let (low, high) = ((value - half).max(0.0), value + half);
-                Estimate { name: name.into(), unit, value, low, high }
-            };
-            let half = amplitude.half_interval(part);
-            vec![
-                estimate("cycles_per_rev", 1.0, cycles, half_cycles),
-                estimate("amplitude_urad", URAD, amplitude.value, half),
+        let mut waves = self.waves(part, angles);
+        waves.sort_by(|a, b| b.amplitude.value.total_cmp(&a.amplitude.value));
+        let of_wave = |wave: Wave| {
+            let half = wave.amplitude.half_interval(part);
+            [
+                positive("cycles_per_rev", 1.0, wave.cycles, wave.half_cycles),
+                positive("amplitude_urad", URAD, wave.amplitude.value, half),
             ]
         };
-        let wave = match self {
-            Gear::Harmonics { cycles_per_rev: [n, m], .. } => {
-                let mut waves = [
-                    (resolved(*n), weighted_length(values, &[1.0, 1.0, 0.0, 0.0])),
-                    (resolved(*m), weighted_length(values, &[0.0, 0.0, 1.0, 1.0])),
-                ];
-                waves.sort_by(|(_, a), (_, b)| b.value.total_cmp(&a.value));
-                return waves.into_iter().flat_map(one).collect();
-            }
-            Gear::Harmonic { cycles_per_rev, .. } => (resolved(*cycles_per_rev), length(values)),
+        waves.into_iter().flat_map(of_wave).collect()
+    }
+
+    /// Frequencies of the waves that a part of a finding is made of, in their order; none of a
+    /// curve.
+    pub(super) fn frequencies(&self, part: &FindingPart, angles: &[f64]) -> Vec<Estimate> {
+        if let Gear::Curve { .. } = self {
+            return Vec::new();
+        }
+        let names = ["cycles_per_rev", "second_cycles_per_rev"];
+        let waves = self.waves(part, angles).into_iter().zip(names);
+        waves.map(|(wave, name)| positive(name, 1.0, wave.cycles, wave.half_cycles)).collect()
+    }
+
+    /// The waves that a part of a finding is; of a curve the strongest one.
+    fn waves(&self, part: &FindingPart, angles: &[f64]) -> Vec<Wave> {
+        let values = &part.term.values;
+        let resolved =
+            |cycles: f64, amplitude: Length| Wave { cycles, half_cycles: 0.5 / turns(angles), amplitude };
+        match self {
+            Gear::Harmonics { cycles_per_rev: [n, m], .. } => vec![
+                resolved(*n, weighted_length(values, &[1.0, 1.0, 0.0, 0.0])),
+                resolved(*m, weighted_length(values, &[0.0, 0.0, 1.0, 1.0])),
+            ],
+            Gear::Harmonic { cycles_per_rev, .. } => vec![resolved(*cycles_per_rev, length(values))],
             Gear::Wave { middle, half_step, .. } => {
                 let (cycles, gradient) = self.frequency(values);
                 let square = |q: &f64| ((q - middle) * half_step).powi(2);
                 let mean = angles.iter().map(square).sum::<f64>() / angles.len().max(1) as f64;
                 let half = Length { value: cycles, gradient }.half_interval(part);
                 // a part of a wave is one of a wave of another frequency too
-                let half = if cycles * turns(angles) < WHOLE { half.max(resolved(cycles).1) } else { half };
-                ((cycles, half), weighted_length(values, &[1.0, 1.0, mean, mean]))
+                let is_part = cycles * turns(angles) < WHOLE;
+                let half_cycles = if is_part { half.max(0.5 / turns(angles)) } else { half };
+                let amplitude = weighted_length(values, &[1.0, 1.0, mean, mean]);
+                vec![Wave { cycles, half_cycles, amplitude }]
             }
             Gear::Curve { .. } => {
                 let (cycles, amplitude) = of_curve(self, values, angles);
-                (resolved(cycles), amplitude)
+                vec![resolved(cycles, amplitude)]
             }
-        };
-        one(wave)
+        }
+    }
+
+    /// How many waves [`Gear::estimates`] names.
+    pub(super) fn wave_count(&self) -> usize {
+        match self {
+            Gear::Harmonics { .. } => 2,
+            Gear::Harmonic { .. } | Gear::Wave { .. } | Gear::Curve { .. } => 1,
+        }
     }
 
     /// Highest frequency of so many terms, cycles per revolution.
@@ -162,6 +182,18 @@ impl Gear {
             Gear::Curve { cosines, .. } => cosines.frequency(terms),
         }
     }
+}
+
+/// Cycles per revolution with half of their 95 % interval, and amplitude, rad.
+struct Wave {
+    cycles: f64,
+    half_cycles: f64,
+    amplitude: Length,
+}
+
+/// A number that is never negative, with half of its 95 % interval, SI.
+fn positive(name: &str, unit: f64, value: f64, half: f64) -> Estimate {
+    Estimate { name: name.into(), unit, value, low: (value - half).max(0.0), high: value + half }
 }
 
 /// The whole error of a joint: the sum of all that was found of it, with what is known of it.
@@ -198,9 +230,41 @@ impl Curve {
 
     /// Standard deviation of that, rad.
     pub fn sd(&self, q: f64) -> f64 {
-        let terms = self.parts.iter().flat_map(|(gear, values)| (0..values.len()).map(|k| gear.term(k, q)));
-        let terms = DVector::from_iterator(self.covariance.nrows(), terms);
+        let terms = self.terms(q);
         terms.dot(&(&self.covariance * &terms)).max(0.0).sqrt()
+    }
+
+    /// Over the recorded `angles` its root mean square, and half the way from its lowest value to
+    /// its highest.
+    pub(super) fn estimates(&self, angles: &[f64], coverage_factor: f64) -> Vec<Estimate> {
+        let count = angles.len().max(1) as f64;
+        let values: Vec<f64> = angles.iter().map(|&q| self.at(q)).collect();
+        let rms = (values.iter().map(|value| value * value).sum::<f64>() / count).sqrt();
+        let along = angles.iter().zip(&values).map(|(&q, value)| self.terms(q) * *value);
+        let slope = along.fold(DVector::zeros(self.covariance.nrows()), |sum, own| sum + own);
+        let half = |gradient: &DVector<f64>| {
+            coverage_factor * gradient.dot(&(&self.covariance * gradient)).max(0.0).sqrt()
+        };
+        let mut all = vec![positive(
+            "recorded_rms_urad",
+            URAD,
+            rms,
+            half(&(slope / (count * rms.max(f64::MIN_POSITIVE)))),
+        )];
+        let by_value = |a: &usize, b: &usize| values[*a].total_cmp(&values[*b]);
+        let ends = (0..angles.len()).min_by(by_value).zip((0..angles.len()).max_by(by_value));
+        if let Some((low, high)) = ends {
+            let gradient = (self.terms(angles[high]) - self.terms(angles[low])) * 0.5;
+            let value = 0.5 * (values[high].max(0.0) - values[low].min(0.0));
+            all.push(positive("recorded_half_peak_to_peak_urad", URAD, value, half(&gradient)));
+        }
+        all
+    }
+
+    /// What one unit of each value turns the joint by at angle q, rad.
+    fn terms(&self, q: f64) -> DVector<f64> {
+        let terms = self.parts.iter().flat_map(|(gear, values)| (0..values.len()).map(|k| gear.term(k, q)));
+        DVector::from_iterator(self.covariance.nrows(), terms)
     }
 
     /// Highest frequency, cycles per revolution.

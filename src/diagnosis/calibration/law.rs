@@ -31,6 +31,9 @@ pub enum Law {
     Drift(Course, Frame),
     /// Drift of a joint or its link, or growth of the arm.
     Warms(Course, Warmed),
+    /// A clamp, a socket or the sockets of a plate that moved, by their numbers among the groups of
+    /// the recording.
+    Moved(Vec<usize>),
 }
 
 /// What takes up the play of a joint.
@@ -106,7 +109,8 @@ impl Law {
             | Law::MassesUnknown(_)
             | Law::Rod(_)
             | Law::Drift(..)
-            | Law::Warms(..) => None,
+            | Law::Warms(..)
+            | Law::Moved(_) => None,
         }
     }
 }
@@ -125,14 +129,15 @@ impl Law {
             | Law::Nonlinear(_)
             | Law::Rod(_)
             | Law::Drift(..)
-            | Law::Warms(..) => self,
+            | Law::Warms(..)
+            | Law::Moved(_) => self,
         }
     }
 }
 
 impl RodLoad {
     /// `under its weight`; nothing for all loads.
-    pub fn words(self) -> Option<&'static str> {
+    pub fn description(self) -> Option<&'static str> {
         match self {
             RodLoad::All => None,
             RodLoad::Contact => Some("under the contact force"),

@@ -58,7 +58,7 @@ pub(super) fn noisy(campaign: &Campaign, noise: &Noise) -> Vec<Limit> {
             (0..groups.len()).filter(|&other| other != k).map(|k| noise.of_group[k]).collect();
         let usual = median(&others)?;
         let own = noise.of_group[k];
-        (own > NOISY * usual).then(|| Limit::NoisyGroup(group.name.clone(), own, usual))
+        (own > NOISY * usual).then(|| Limit::NoisyGroup(group.name.to_string(), own, usual))
     };
     groups.iter().enumerate().filter_map(of_group).collect()
 }

@@ -2,7 +2,6 @@
 
 use nalgebra::{DVector, Vector3};
 
-use super::evidence;
 use super::gear::Gear;
 use super::law::Law;
 use super::linear_terms::LinearTerms;
@@ -22,8 +21,6 @@ pub struct CalibrationModel<'c> {
     pub tip_jacobians: Vec<Vec<Vector3<f64>>>,
     /// Errors of a calibration on what was recorded, where mistakes were undone.
     pub(crate) recorded: Option<Summary>,
-    /// Name of the clamp or socket of each row.
-    pub groups: Vec<String>,
     /// What each row counts.
     pub(super) scale: Vec<f64>,
     /// How well torques are known.
@@ -72,8 +69,9 @@ impl CalibrationModel<'_> {
     }
 
     /// Name of a session: a clamp, or a placement of sockets.
-    pub fn session(&self, number: usize) -> &str {
-        evidence::session_names(&self.campaign.measurements).get(number).copied().unwrap_or("")
+    pub fn session(&self, number: usize) -> String {
+        let sessions = self.campaign.measurements.sessions();
+        sessions.get(number).map_or_else(String::new, |first| first.session())
     }
 
     /// The recorded angles of a joint, rad (or m), by row.

@@ -136,9 +136,9 @@ fn apart(finding: &Finding) -> Vec<&Rival> {
 /// Poses to measure, by what they gain against each rival.
 fn proposal(poses: FeasiblePoses, gained: &[f64], rivals: &[&Rival]) -> Proposal {
     let separated = || gained.iter().zip(rivals).filter(|(gained, _)| separates(**gained));
-    let FeasiblePoses { words, plan } = poses;
+    let FeasiblePoses { instruction, plan } = poses;
     Proposal {
-        words,
+        words: instruction,
         plan: Some(Plan::Poses(plan)),
         log_odds: separated().map(|(gained, _)| *gained).fold(f64::INFINITY, f64::min),
         separates_from: separated().map(|(_, rival)| place(rival)).collect(),

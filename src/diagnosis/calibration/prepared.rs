@@ -64,14 +64,11 @@ impl<'c> Prepared<'c> {
         entries.extend(nonparametric::all(&context));
         let (terms, absorbed) = LinearTerms::new(entries, &evidence);
         let jacobians = context.configurations.iter().map(|there| there.tip_jacobian.clone());
-        let recording = &campaign.measurements;
-        let name = |group: usize| recording.groups[group].name.clone();
         let model = CalibrationModel {
             campaign,
             calibration,
             tip_jacobians: jacobians.collect(),
             recorded: None,
-            groups: recording.rows.iter().map(|row| name(row.group)).collect(),
             scale: context.scale.clone(),
             torque_uncertainty: TorqueUncertainty::new(campaign, &context),
             terms,

@@ -57,9 +57,9 @@ pub(super) fn weights(prepared: &Prepared, hypothesis: &Hypothesis, left: &DVect
 /// Normal but for some rows.
 fn ln_misread(all: &[f64], rows: &[usize], misread: f64) -> f64 {
     let (off, others): (Vec<_>, Vec<_>) = all.iter().enumerate().partition(|(k, _)| rows.contains(&(k / 3)));
-    let squares = |of: &[(usize, &f64)]| of.iter().map(|(_, z)| *z * *z).sum::<f64>();
-    let normal = |of: &[(usize, &f64)], variance: f64| {
-        -0.5 * (of.len() as f64 * (2.0 * PI * variance).ln() + squares(of) / variance)
+    let squares = |some: &[(usize, &f64)]| some.iter().map(|(_, z)| *z * *z).sum::<f64>();
+    let normal = |some: &[(usize, &f64)], variance: f64| {
+        -0.5 * (some.len() as f64 * (2.0 * PI * variance).ln() + squares(some) / variance)
     };
     let own = squares(&others) / others.len().max(1) as f64;
     let which = rows.len() as f64 * (all.len() as f64 / 3.0).ln();

@@ -79,7 +79,7 @@ fn at_clamps(context: &Context, at: impl Fn(Location, &dyn Fn(usize) -> bool) ->
     let groups = &context.recording.groups;
     let mut entries = vec![at(Location::AllClamps, &|_| true)];
     if groups.len() > 1 {
-        let named = |k: usize| at(Location::Named(groups[k].name.clone()), &|group| group == k);
+        let named = |k: usize| at(Location::Named(groups[k].name.to_string()), &|group| group == k);
         entries.extend((0..groups.len()).map(named));
     }
     entries
@@ -140,7 +140,7 @@ fn springs(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
 }
 
 fn is_of_clamps(context: &Context) -> bool {
-    !context.has_sockets() && context.recording.groups.iter().any(|group| !group.name.is_empty())
+    !context.has_sockets() && context.recording.groups.iter().any(|group| !group.name.is_tracked())
 }
 
 fn spring_observed(finding: &Finding, _: &CalibrationModel) -> String {

@@ -7,10 +7,10 @@ use std::ops::Range;
 use nalgebra::Vector3;
 
 use super::{
-    CalibrationEffect, Context, EVERY_ROW, Entry, KNOCK, SHIFT, TURN, Transfer, capital, lack, no_event,
+    CalibrationEffect, Context, EVERY_ROW, Entry, KNOCK, SHIFT, TURN, Transfer, capital, lack, law, no_event,
     out_of_the_points, own_parameters, size, three, unit,
 };
-use crate::calibration::campaign::Campaign;
+use crate::calibration::campaign::{Campaign, GroupName};
 use crate::diagnosis::calibration::configuration::Configuration;
 use crate::diagnosis::calibration::law::Law;
 use crate::diagnosis::calibration::model::CalibrationModel;
@@ -79,7 +79,7 @@ fn clamps(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
         let centre = groups[k].device.origin;
         let turned = |axis: usize| at(&|there: &Configuration| unit(axis).cross(&(there.tip - centre)));
         six.extend(three(&TURN, URAD, MISPLACED.1, turned));
-        Entry::new(&CLAMP_POSE.effect, Location::Named(groups[k].name.clone()), six)
+        Entry::new(&CLAMP_POSE.effect, Location::Named(groups[k].name.to_string()), six)
     };
     (0..groups.len()).map(of_clamp).collect()
 }
@@ -146,12 +146,12 @@ pub static SOCKET_SHIFT: CalibrationEffect = CalibrationEffect {
 
 /// From then on it is another socket, or another plate.
 fn another_socket(finding: &Finding, model: &CalibrationModel, extended: &mut Campaign) -> WrittenTo {
-    let Location::Shift { what: Some(what), row, .. } = &finding.location else { return WrittenTo::Nowhere };
-    let is_moved = |at: usize| {
-        let own = &model.groups[at];
-        at > *row && (own == what || own.rsplit_once('/').is_some_and(|(plate, _)| plate == what))
+    let (Some(row), Law::Moved(sockets)) = (finding.location.moved_after(), law(finding, model)) else {
+        return WrittenTo::Nowhere;
     };
-    let is_plate = !model.groups.contains(what);
+    let rows = &model.campaign.measurements.rows;
+    let is_moved = |at: usize| at > row && sockets.contains(&rows[at].group);
+    let is_plate = sockets.len() > 1;
     extended.measurements.rename_groups(&is_moved, &format!("row {}", row + 2), is_plate);
     WrittenTo::Recording
 }
@@ -199,20 +199,17 @@ pub(super) fn places_of_all(context: &Context) -> Vec<usize> {
 /// well.
 fn shifts(context: &Context, effect: &'static CalibrationEffect) -> Vec<Entry> {
     let groups = &context.recording.groups;
-    let is_fixture = context.has_sockets() || groups.len() > 1 || !groups[0].name.is_empty();
+    let is_fixture = context.has_sockets() || groups.len() > 1 || !groups[0].name.is_tracked();
     let mut fixtures: Vec<(String, Vec<usize>)> = Vec::new();
     if is_fixture {
-        fixtures.extend((0..groups.len()).map(|k| (groups[k].name.clone(), vec![k])));
+        fixtures.extend((0..groups.len()).map(|k| (groups[k].name.to_string(), vec![k])));
     }
     let mut plates: Vec<(String, Vec<usize>)> = Vec::new();
     if context.has_sockets() {
-        for (k, group) in groups.iter().enumerate() {
-            let Some((placement, _)) = group.name.rsplit_once('/') else { continue };
-            match plates.iter_mut().find(|(name, _)| name == placement) {
-                Some((_, members)) => members.push(k),
-                None => plates.push((placement.to_owned(), vec![k])),
-            }
-        }
+        let session = context.recording.session_by_group();
+        let members = |number: usize| (0..groups.len()).filter(|&k| session[k] == number).collect();
+        let names = context.recording.sessions().into_iter().map(GroupName::session);
+        plates.extend(names.enumerate().map(|(number, name)| (name, members(number))));
         // a plate of one socket is that socket
         plates.retain(|(_, members)| members.len() > 1);
     }
@@ -253,7 +250,7 @@ fn moved(
             false => context.pose_name(row),
         };
         let location = Location::Shift { what: Some(name.to_owned()), row, after };
-        Entry::new(&effect.effect, location, columns)
+        Entry::new(&effect.effect, location, columns).by(Law::Moved(members.to_vec()))
     };
     // a plate of which only one socket was visited from then on is that socket
     let group = |row: usize| context.recording.rows[row].group;

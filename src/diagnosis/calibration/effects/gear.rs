@@ -63,6 +63,8 @@ pub static TRANSMISSION_ERROR: CalibrationEffect = CalibrationEffect {
             ("third_amplitude_urad", "its amplitude"),
             ("fourth_cycles_per_rev", "frequency of the fourth wave"),
             ("fourth_amplitude_urad", "its amplitude"),
+            ("recorded_rms_urad", "root mean square of the whole error over the recorded angles"),
+            ("recorded_half_peak_to_peak_urad", "half the way from its lowest value to its highest"),
         ],
         needs: "a joint that turns",
         cause: "an error of its gear or encoder",
@@ -214,7 +216,9 @@ fn observed(finding: &Finding, model: &CalibrationModel) -> String {
             _ => format!("of {amplitude}, {cycles}"),
         }
     };
-    let waves: Vec<String> = (0..finding.estimates.len() / 2).map(wave).collect();
+    let gears = finding.parts.iter().filter_map(|part| model.gear_of(part));
+    let count = gears.map(Gear::wave_count).sum::<usize>().min(NEXT.len());
+    let waves: Vec<String> = (0..count).map(wave).collect();
     format!("{named} has an angle error of {up_to} {}", waves.join(", and "))
 }
 
@@ -232,10 +236,10 @@ fn cycles(cycles: f64) -> String {
 
 /// With three digits, without zeros behind the point.
 fn three_digits(cycles: f64) -> String {
-    let said = significant(cycles, 3);
-    match said.contains('.') {
-        true => said.trim_end_matches('0').trim_end_matches('.').to_owned(),
-        false => said,
+    let digits = significant(cycles, 3);
+    match digits.contains('.') {
+        true => digits.trim_end_matches('0').trim_end_matches('.').to_owned(),
+        false => digits,
     }
 }
 

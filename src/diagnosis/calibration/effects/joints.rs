@@ -134,7 +134,8 @@ fn compliance_observed(finding: &Finding, model: &CalibrationModel) -> String {
         | Law::Nonlinear(_)
         | Law::Rod(_)
         | Law::Drift(..)
-        | Law::Warms(..) => {
+        | Law::Warms(..)
+        | Law::Moved(_) => {
             let by = first(finding);
             let word = if by.value >= 0.0 { "more" } else { "less" };
             format!("{named} gives way by {} {word} than modelled", by.size().say("µrad/(N·m)"))
@@ -220,7 +221,8 @@ fn nonlinear_observed(finding: &Finding, model: &CalibrationModel) -> String {
         | Law::MassesUnknown(_)
         | Law::Rod(_)
         | Law::Drift(..)
-        | Law::Warms(..) => ("µrad/(N·m)²", "the square of"),
+        | Law::Warms(..)
+        | Law::Moved(_) => ("µrad/(N·m)²", "the square of"),
     };
     format!("{} gives way with {power} its load, by {}", capital(&finding.location), first(finding).say(unit))
 }

@@ -77,9 +77,9 @@ fn rods(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
                 RodLoad::Weight => by_weight,
             }
         });
-        let location = match load.words() {
+        let location = match load.description() {
             None => Location::Part(Part::Rod),
-            Some(words) => Location::Form { part: Part::Rod, form: words.into() },
+            Some(load) => Location::Form { part: Part::Rod, form: load.into() },
         };
         single(&ROD_STIFFNESS, location, factor, column).by(Law::Rod(load))
     };
@@ -101,14 +101,15 @@ fn stiffness(_: &CalibrationModel, parts: &[FindingPart]) -> Vec<Estimate> {
 
 fn rod_observed(finding: &Finding, model: &CalibrationModel) -> String {
     let under = match law(finding, model) {
-        Law::Rod(load) => load.words(),
+        Law::Rod(load) => load.description(),
         Law::Only
         | Law::Gear(_)
         | Law::Play(_)
         | Law::Nonlinear(_)
         | Law::MassesUnknown(_)
         | Law::Drift(..)
-        | Law::Warms(..) => None,
+        | Law::Warms(..)
+        | Law::Moved(_) => None,
     };
     let under = under.map_or_else(String::new, |under| format!(" {under}"));
     let softer = first(finding).map(|stiffness| 1.0 / stiffness).compared("softer", "stiffer");

@@ -72,7 +72,8 @@ fn play_observed(finding: &Finding, model: &CalibrationModel) -> String {
         | Law::MassesUnknown(_)
         | Law::Rod(_)
         | Law::Drift(..)
-        | Law::Warms(..) => "taken up on the side that its load pulls to",
+        | Law::Warms(..)
+        | Law::Moved(_) => "taken up on the side that its load pulls to",
     };
     let play = first(finding).size().say("µrad");
     format!("{} has {play} of play, {by}", capital(&finding.location))

@@ -255,7 +255,13 @@ fn drift_observed(finding: &Finding, model: &CalibrationModel) -> String {
             let by = first(finding).say(course.share_unit().1);
             format!("The arm grows by {by} with {course}, all its links alike")
         }
-        Law::Only | Law::Gear(_) | Law::Play(_) | Law::Nonlinear(_) | Law::MassesUnknown(_) | Law::Rod(_) => {
+        Law::Only
+        | Law::Gear(_)
+        | Law::Play(_)
+        | Law::Nonlinear(_)
+        | Law::MassesUnknown(_)
+        | Law::Rod(_)
+        | Law::Moved(_) => {
             format!("Drift by {} at {}", size.say("µm"), finding.location)
         }
     }

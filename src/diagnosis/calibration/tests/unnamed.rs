@@ -107,7 +107,7 @@ fn places_and_ways_to_hold_the_tool_move_it() {
     let device = |row: usize| recording.groups[recording.rows[row].group].device.rotation;
     let held =
         move |r: &Row, row: usize| r.at_rest(|kinematics| kinematics.flange.rotation.tr_mul(&device(row)));
-    let is_there = |row: usize| recording.groups[recording.rows[row].group].name == "clamp 4";
+    let is_there = |row: usize| recording.groups[recording.rows[row].group].name.to_string() == "clamp 4";
     let cases: Vec<Case> = vec![
         (
             "unknown",

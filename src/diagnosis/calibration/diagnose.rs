@@ -1,16 +1,22 @@
 //! What a campaign says about its calibration.
 
-use super::apply::destination;
-use super::beside::{calibrated_beside, unequal};
+pub mod beside;
+pub mod forward_model;
+pub mod limits;
+pub mod memory;
+pub mod prepared;
+pub mod tails;
+
+use self::beside::{calibrated_beside, unequal};
+use self::limits::{limits, noisy};
+use self::memory::check_memory;
+use self::prepared::{FirstLook, Prepared};
 use super::effects::{EVERY_ROW, registry};
-use super::gear::Curve;
-use super::limits::{limits, noisy};
-use super::memory::check_memory;
+use super::laws::sites::sites;
 use super::model::CalibrationModel;
+use super::model::gear::Curve;
 use super::next::next_measurements;
-use super::prepared::{FirstLook, Prepared};
-use super::sites::sites;
-use super::tails;
+use super::write_back::destination::destination;
 use crate::calibration::campaign::Campaign;
 use crate::calibration::{Calibration, Mode, Options, calibrate};
 use crate::error::Result;

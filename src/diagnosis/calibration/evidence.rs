@@ -21,13 +21,13 @@
 //!
 //! so that what is known counts the same whatever noise a hypothesis leaves.
 
+mod nominal;
+
 use std::collections::BTreeMap;
 
 use nalgebra::{DMatrix, DVector, Vector3};
 
-use super::configuration::Configuration;
-use super::context::Context;
-use super::nominal;
+use super::model::{Configuration, Context};
 use crate::calibration::campaign::{Campaign, Recording, Targets};
 use crate::calibration::{Calibration, MOST_SCATTER};
 use crate::inference::{Covariate, Evidence, JointVariable, Variable};

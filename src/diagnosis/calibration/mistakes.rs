@@ -16,35 +16,27 @@
 //! altogether (the zero of the first joint without a stated base) is not named.
 
 mod columns;
-mod displaced;
 mod distance;
 mod draft;
-mod elsewhere;
-mod fixtures;
 mod found;
-mod left_to_effects;
 mod motion;
 mod moves;
 mod names;
-mod part;
-mod partial;
 mod quick;
-mod relabelled;
 mod search;
 mod slips;
 #[cfg(test)]
 mod tests;
 mod typed;
-mod undo;
 
 use self::columns::Silent;
 use self::draft::Draft;
 use self::motion::measure_moves;
 use self::moves::Other;
-use self::quick::Body;
-use self::search::{Found, Search, State, Step};
-use super::apply::{Applied, apply};
+use self::quick::LoadedRobot;
+use self::search::{AdoptedStep, FittedDraft, MistakeSearch, SearchStep};
 use super::diagnose::{CalibrationDiagnosis, diagnose_calibrated};
+use super::write_back::apply::{Applied, apply};
 use crate::calibration::campaign::{Campaign, FileNames};
 use crate::calibration::{Compensation, Mode, Options, Summary, calibrate};
 use crate::error::Result;
@@ -197,7 +189,7 @@ impl Mended {
     /// nothing could be written.
     ///
     /// # Errors
-    /// As [`super::apply()`].
+    /// As [`super::write_back::apply()`].
     pub fn apply(&self, found: &CalibrationDiagnosis, names: &FileNames) -> Result<Option<Applied>> {
         let undone: Vec<String> =
             self.found.iter().map(|finding| finding.description.observed.clone()).collect();
@@ -233,7 +225,7 @@ fn search(campaign: &Campaign, mode: Mode, others: &Neighbours) -> Result<Mended
     let mut mended = Mended::unchanged(campaign, mode);
     let draft = Draft::of(campaign);
     let compensation = Compensation::new(campaign, mode)?;
-    let mut bodies = vec![Body::new(&campaign.robot, compensation.clone(), campaign.tool, &draft)];
+    let mut bodies = vec![LoadedRobot::new(&campaign.robot, compensation.clone(), campaign.tool, &draft)];
     let mut meant = Vec::new();
     for (file, rod) in &others.rods {
         let with = Campaign { rod: Some(rod.clone()), readings: None, ..campaign.clone() };
@@ -242,13 +234,13 @@ fn search(campaign: &Campaign, mode: Mode, others: &Neighbours) -> Result<Mended
         let tip = (!campaign.tool_is_given).then(|| rod.tip());
         let body = bodies.len();
         meant.push(Other { file: file.clone(), name: rod.name.clone(), is_rod: true, tip, body });
-        bodies.push(Body::new(&campaign.robot, compensation, tip.unwrap_or(campaign.tool), &draft));
+        bodies.push(LoadedRobot::new(&campaign.robot, compensation, tip.unwrap_or(campaign.tool), &draft));
     }
     let is_alike = |robot: &&(String, Robot, String)| robot.1.joints.len() == campaign.robot.joints.len();
     for (file, robot, _) in others.robots.iter().filter(is_alike) {
         let (name, body) = (robot.name.clone(), bodies.len());
         meant.push(Other { file: file.clone(), name, is_rod: false, tip: None, body });
-        bodies.push(Body::new(robot, compensation.clone(), campaign.tool, &draft));
+        bodies.push(LoadedRobot::new(robot, compensation.clone(), campaign.tool, &draft));
     }
     let mut forces = Vec::new();
     for factor in moves::bodies::forces(campaign) {
@@ -259,9 +251,9 @@ fn search(campaign: &Campaign, mode: Mode, others: &Neighbours) -> Result<Mended
     let is_sure = silent.iter().any(|silent| !silent.only_if_failed);
     let moves = moves::all(campaign, &draft, &meant, &forces);
     let of_rows = moves::of_rows::of_rows(campaign, &draft);
-    let mut search = Search { draft, bodies, moves, of_rows, guess_weight: 1.0 };
+    let mut search = MistakeSearch { draft, bodies, moves, of_rows, guess_weight: 1.0 };
     let mut result = if is_sure { None } else { search.found() };
-    let is_rough = |(_, best, _): &(State, State, Vec<Found>)| {
+    let is_rough = |(_, best, _): &(FittedDraft, FittedDraft, Vec<AdoptedStep>)| {
         best.steps.is_empty() && !search.has_failed(best) && search.is_rough_guess(best)
     };
     if result.as_ref().is_some_and(is_rough)
@@ -281,7 +273,7 @@ fn search(campaign: &Campaign, mode: Mode, others: &Neighbours) -> Result<Mended
         mended.add_found(&search, &best, found);
     }
     for slip in search.slips(&best, &campaign.measurements) {
-        best.steps.push(Step::Slip(slip.change.clone()));
+        best.steps.push(SearchStep::Slip(slip.change.clone()));
         mended.add_slip(slip);
     }
     if !best.steps.is_empty() {

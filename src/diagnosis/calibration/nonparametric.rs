@@ -32,9 +32,9 @@ use std::f64::consts::TAU;
 use nalgebra::{Matrix3, Vector3};
 
 use self::curve::{SIDES, SIZE, TURN, angle_of, cosine, curve, scaled};
-use super::context::Context;
-use super::entry::{Column, Entry, linear};
-use super::law::Frame;
+use super::model::Context;
+use super::model::entry::{Column, Entry, linear};
+use super::model::law::Frame;
 use crate::inference::{Parameter, Variable};
 use crate::units::{UM, URAD};
 

@@ -2,15 +2,14 @@
 
 use nalgebra::Vector3;
 
+use super::super::model::entry::linear;
+use super::super::model::{CalibrationModel, Configuration};
 use super::loads::{gives_way, pulled};
 use super::{
     CalibrationEffect, Context, Entry, Transfer, first, lack, no_event, nowhere, out_of_the_points,
     own_parameters, single, size,
 };
 use crate::calibration::campaign::Targets;
-use crate::diagnosis::calibration::configuration::Configuration;
-use crate::diagnosis::calibration::entry::linear;
-use crate::diagnosis::calibration::model::CalibrationModel;
 use crate::inference::{Effect, Finding, Kind, Location, NotTestable, Reported, WrittenTo};
 use crate::units::MM;
 

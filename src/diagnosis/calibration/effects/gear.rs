@@ -14,16 +14,16 @@
 
 use std::f64::consts::TAU;
 
+use super::super::model::CalibrationModel;
+use super::super::model::cosines::Cosines;
+use super::super::model::entry::{Column, linear};
+use super::super::model::gear::Gear;
+use super::super::model::law::Law;
+use super::super::write_back::correction_table::table;
 use super::{
     CalibrationEffect, Context, Entry, JOINT_ANGLE, Transfer, along, capital, joint_by, law, no_event, nth,
 };
 use crate::calibration::campaign::Campaign;
-use crate::diagnosis::calibration::correction_table::table;
-use crate::diagnosis::calibration::cosines::Cosines;
-use crate::diagnosis::calibration::entry::{Column, linear};
-use crate::diagnosis::calibration::gear::Gear;
-use crate::diagnosis::calibration::law::Law;
-use crate::diagnosis::calibration::model::CalibrationModel;
 use crate::inference::{
     Candidate, Effect, Estimate, Finding, FindingPart, JointVariable, Kind, NotTestable, Reported, WrittenTo,
 };

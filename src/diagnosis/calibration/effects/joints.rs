@@ -6,16 +6,15 @@
 
 use nalgebra::Vector3;
 
+use super::super::model::entry::{Column, linear};
+use super::super::model::law::{Law, Power};
+use super::super::model::{CalibrationModel, Configuration};
 use super::per_torque::per_torque;
 use super::{
     CalibrationEffect, Context, Entry, Transfer, along, capital, first, first_value, joint, joint_by, lack,
     law, no_event, nowhere, own_parameters, single,
 };
 use crate::calibration::campaign::Campaign;
-use crate::diagnosis::calibration::configuration::Configuration;
-use crate::diagnosis::calibration::entry::{Column, linear};
-use crate::diagnosis::calibration::law::{Law, Power};
-use crate::diagnosis::calibration::model::CalibrationModel;
 use crate::inference::{
     Effect, Finding, JointVariable, Kind, Location, NotTestable, Parameter, Part, Reported, WrittenTo,
 };

@@ -6,14 +6,13 @@
 
 use nalgebra::Vector3;
 
+use super::super::model::entry::linear;
+use super::super::model::law::{Law, RodLoad};
+use super::super::model::{CalibrationModel, Configuration};
 use super::{
     CalibrationEffect, Context, Entry, Transfer, first, lack, law, no_event, nowhere, own_parameters, single,
     size,
 };
-use crate::diagnosis::calibration::configuration::Configuration;
-use crate::diagnosis::calibration::entry::linear;
-use crate::diagnosis::calibration::law::{Law, RodLoad};
-use crate::diagnosis::calibration::model::CalibrationModel;
 use crate::inference::{
     Effect, Estimate, Finding, FindingPart, Kind, Location, NotTestable, Part, Reported, WrittenTo,
 };

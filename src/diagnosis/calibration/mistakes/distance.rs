@@ -6,7 +6,7 @@
 
 use super::Mended;
 use super::moves::exact;
-use super::search::{Search, State};
+use super::search::{FittedDraft, MistakeSearch};
 use crate::calibration::campaign::{Distance, Recording, Targets};
 use crate::diagnosis::calibration::effects::mistakes::{DISTANCE_MISTAKE, UNIT_MISTAKE};
 use crate::inference::{Estimate, Location};
@@ -41,7 +41,7 @@ struct Measured {
 
 impl Mended {
     /// The distance of the sockets, where poses and drawing contradict the one stated.
-    pub(super) fn add_distance(&mut self, search: &Search, best: &State) {
+    pub(super) fn add_distance(&mut self, search: &MistakeSearch, best: &FittedDraft) {
         if search.has_failed(best) {
             return;
         }
@@ -94,7 +94,7 @@ impl Mended {
 }
 
 /// The middle of the placements, where most of them agree.
-fn measured(recording: &Recording, search: &Search, best: &State) -> Option<Measured> {
+fn measured(recording: &Recording, search: &MistakeSearch, best: &FittedDraft) -> Option<Measured> {
     let Targets::Sockets(distances) = &recording.targets else { return None };
     let stated = *distances.first()?;
     let draft = search.changed(&best.steps);

@@ -1,11 +1,15 @@
 //! What the search found, as findings: what is said of each, its rivals, and what checks it.
 
-use super::super::effects::fixture::{BASE_SHIFT, CLAMP_POSE, TOOL_SHIFT};
+mod fixtures;
+mod undo;
+
+use super::super::effects::fixture::CLAMP_POSE;
 use super::super::effects::mistakes::FRAME_MISTAKE;
-use super::draft::Change;
+use super::super::effects::mounting::{BASE_SHIFT, TOOL_SHIFT};
+use super::draft::DraftChange;
 use super::motion::{motion_estimates, moved};
 use super::names::{place, pose_name};
-use super::search::{Found, Search, State, Step};
+use super::search::{AdoptedStep, FittedDraft, MistakeSearch, SearchStep};
 use super::slips::Slip;
 use super::{Mended, Suspicion};
 use crate::inference::{Description, Effect, Estimate, Finding, Location, Part, Rival};
@@ -31,9 +35,9 @@ impl Mended {
         self.found.push(Finding { p_value, ..Finding::without_terms(effect, location, estimates, observed) });
     }
 
-    pub(super) fn add_found(&mut self, search: &Search, best: &State, found: &Found) {
+    pub(super) fn add_found(&mut self, search: &MistakeSearch, best: &FittedDraft, found: &AdoptedStep) {
         match &found.step {
-            Step::Move(number) => {
+            SearchStep::Move(number) => {
                 let own = &search.moves[*number];
                 let location = own.location.clone().into();
                 self.add(own.effect, location, own.estimates.clone(), (&own.cure, &own.why), found.log_odds);
@@ -41,13 +45,13 @@ impl Mended {
                     last.spoils_fit = !own.change.is_guess();
                 }
             }
-            Step::Elsewhere(change) if !change.adds_station() => {
+            SearchStep::Elsewhere(change) if !change.adds_station() => {
                 self.add_fixture(search, best, change, found.log_odds)
             }
-            Step::Elsewhere(change) => self.add_elsewhere(search, best, found, change),
-            Step::Part(number, Change::Within(rows, change)) => {
+            SearchStep::Elsewhere(change) => self.add_elsewhere(search, best, found, change),
+            SearchStep::Part(number, DraftChange::Within(rows, change)) => {
                 let mut own = search.of_rows[*number].clone();
-                if let Change::Zero { joint, by } = **change {
+                if let DraftChange::Zero { joint, by } = **change {
                     let error = search.error_of_zero(best, *rows, joint);
                     own.describe_zero(&self.campaign.robot, joint, by, error);
                 }
@@ -56,7 +60,7 @@ impl Mended {
                 let location = own.location.rows(there).into();
                 self.add(own.effect, location, own.estimates, (&cure, &own.why), found.log_odds);
             }
-            Step::Part(..) | Step::Slip(_) => return,
+            SearchStep::Part(..) | SearchStep::Slip(_) => return,
         }
         let Some(finding) = self.found.last_mut() else { return };
         finding.explains = found.explains;
@@ -71,10 +75,11 @@ impl Mended {
             }
         }
         // the base turned about joint 1 says the same, and the rod about the last joint
-        if matches!(&found.step, Step::Move(number) if search.moves[*number].change.is_zero_of_first()) {
+        if matches!(&found.step, SearchStep::Move(number) if search.moves[*number].change.is_zero_of_first())
+        {
             rivals.push(Rival::without_term(&FRAME_MISTAKE, Location::key("base.rpy_deg"), 1.0));
         }
-        if let Step::Part(_, Change::Within(_, change)) = &found.step {
+        if let SearchStep::Part(_, DraftChange::Within(_, change)) = &found.step {
             let last = self.campaign.robot.joints.len().saturating_sub(1);
             match change.joint_of_zero() {
                 Some(0) => {
@@ -105,15 +110,22 @@ impl Mended {
     }
 
     /// A frame that moved, with how far.
-    fn add_elsewhere(&mut self, search: &Search, best: &State, found: &Found, change: &Change) {
+    fn add_elsewhere(
+        &mut self,
+        search: &MistakeSearch,
+        best: &FittedDraft,
+        found: &AdoptedStep,
+        change: &DraftChange,
+    ) {
         // its number among the stations: those of the file, then one for each such step
         let earlier = best.steps.iter().take_while(|step| **step != found.step);
-        let has_own = |step: &&Step| matches!(step, Step::Elsewhere(change) if change.adds_station());
+        let has_own =
+            |step: &&SearchStep| matches!(step, SearchStep::Elsewhere(change) if change.adds_station());
         let number = search.draft.stations + earlier.filter(has_own).count();
         let bases = &best.fit.bases;
         let recording = &self.campaign.measurements;
         let old = match change {
-            Change::Moved(first) => {
+            DraftChange::Moved(first) => {
                 let before = search.changed(&best.steps);
                 let at = before.rows.iter().position(|&row| row >= *first).unwrap_or(0);
                 before.station[at.saturating_sub(1)]
@@ -124,7 +136,7 @@ impl Mended {
         let (way, angle) = moved(from, to);
         let distance = format!("{} mm and {}°", significant(way / MM, 4), significant(angle / DEG, 3));
         match change {
-            Change::Moved(first) => {
+            DraftChange::Moved(first) => {
                 let row = first.saturating_sub(1);
                 let after = pose_name(recording, row);
                 let cure = format!(
@@ -135,7 +147,7 @@ impl Mended {
                 let why = "it stood in two places";
                 self.add(&BASE_SHIFT.effect, location, estimates, (&cure, why), found.log_odds);
             }
-            Change::Apart(clamp) => {
+            DraftChange::Apart(clamp) => {
                 let name = recording.groups[*clamp].name.to_string();
                 let device = recording.groups[*clamp].device;
                 let there = from.then(&to.inverse()).then(&device);

@@ -10,7 +10,7 @@ mod positions;
 use nalgebra::Vector3;
 
 pub(super) use self::conventions::turn;
-use super::draft::{Change, Draft};
+use super::draft::{Draft, DraftChange};
 use super::names::column;
 use crate::calibration::campaign::Campaign;
 use crate::inference::{Effect, Estimate, Key};
@@ -21,10 +21,10 @@ const RARE: f64 = -2.0;
 
 /// A mistake that may have been made, with what is said of it.
 #[derive(Clone)]
-pub(super) struct Move {
+pub(super) struct PossibleMistake {
     pub effect: &'static Effect,
     pub location: Key,
-    pub change: Change,
+    pub change: DraftChange,
     pub log_prior: f64,
     /// What the contact force is multiplied by, where that is all.
     pub force: Option<f64>,
@@ -35,7 +35,7 @@ pub(super) struct Move {
     pub why: String,
 }
 
-impl Move {
+impl PossibleMistake {
     /// What explains poses as well, at such odds.
     pub fn with_odds(&self, odds: f64) -> (&'static Effect, Key, f64) {
         (self.effect, self.location.clone(), odds)
@@ -59,7 +59,7 @@ pub(super) fn all(
     draft: &Draft,
     others: &[Other],
     forces: &[(usize, f64)],
-) -> Vec<Move> {
+) -> Vec<PossibleMistake> {
     let mut list = List { campaign, draft, moves: Vec::new(), is_of_rows: false };
     list.joints();
     list.positions();
@@ -75,7 +75,7 @@ pub(super) fn all(
 struct List<'a> {
     campaign: &'a Campaign,
     draft: &'a Draft,
-    moves: Vec<Move>,
+    moves: Vec<PossibleMistake>,
     /// True for what some rows hold and others do not.
     is_of_rows: bool,
 }
@@ -90,11 +90,11 @@ impl List<'_> {
         &mut self,
         effect: &'static Effect,
         location: Key,
-        change: Change,
+        change: DraftChange,
         cure: &str,
         why: &str,
-    ) -> &mut Move {
-        self.moves.push(Move {
+    ) -> &mut PossibleMistake {
+        self.moves.push(PossibleMistake {
             effect,
             location,
             change,

@@ -17,10 +17,9 @@ use std::f64::consts::PI;
 
 use nalgebra::Vector3;
 
+use super::super::model::entry::{Column, Entry, linear};
+use super::super::model::{Configuration, Context};
 use super::curve::{SIDES, SIZE, TURN, angle_of, curve};
-use crate::diagnosis::calibration::configuration::Configuration;
-use crate::diagnosis::calibration::context::Context;
-use crate::diagnosis::calibration::entry::{Column, Entry, linear};
 use crate::inference::Parameter;
 use crate::units::{DEG, UM, URAD};
 

@@ -11,10 +11,10 @@
 //! by their direction  Jⱼ·Σ_k h_k·sign Δₖⱼ
 //! ```
 
+use super::super::model::Context;
+use super::super::model::configuration::STANDSTILL;
+use super::super::model::entry::{Entry, linear};
 use super::curve::curve;
-use crate::diagnosis::calibration::configuration::STANDSTILL;
-use crate::diagnosis::calibration::context::Context;
-use crate::diagnosis::calibration::entry::{Entry, linear};
 use crate::inference::Variable;
 use crate::units::URAD;
 

@@ -1,6 +1,6 @@
 //! Laws that no library has, concealed in campaigns.
 
-use super::super::configuration::Configuration;
+use super::super::model::Configuration;
 use super::*;
 use crate::inference::law::{Constant, Form, Law};
 use crate::units::DEG;

@@ -1,7 +1,7 @@
 //! Robots, rods and contact forces that may have been meant instead.
 
 use super::super::super::effects::mistakes::{ROBOT_MISTAKE, ROD_MISTAKE, SIGN_MISTAKE, UNIT_MISTAKE};
-use super::super::draft::Change;
+use super::super::draft::DraftChange;
 use super::{List, Other, UNUSUAL, exact};
 use crate::calibration::campaign::Campaign;
 use crate::inference::Key;
@@ -45,7 +45,7 @@ impl List<'_> {
                 let (way, by) = if factor < 1.0 { ("Divide", 1.0 / factor) } else { ("Multiply", factor) };
                 (&UNIT_MISTAKE, format!("{way} {KEY} by {by}"), "its decimal point is in the wrong place")
             };
-            let force = self.add(effect, Key::new(KEY), Change::Body(body, None), &cure, why);
+            let force = self.add(effect, Key::new(KEY), DraftChange::Body(body, None), &cure, why);
             (force.log_prior, force.force) = (UNUSUAL, Some(factor));
             force.estimates = if factor < 0.0 { Vec::new() } else { exact("factor", factor) };
         }
@@ -54,7 +54,7 @@ impl List<'_> {
     pub fn files(&mut self, others: &[Other]) {
         for other in others {
             let Other { file, name, .. } = other;
-            let change = Change::Body(other.body, other.tip);
+            let change = DraftChange::Body(other.body, other.tip);
             let (effect, what) = if other.is_rod { (&ROD_MISTAKE, "rod") } else { (&ROBOT_MISTAKE, "robot") };
             let cure = format!("Write {what} = \"{file}\"");
             let why = format!("the poses are those of {what} {name}");

@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::super::super::effects::mistakes::{FRAME_MISTAKE, SWAP_MISTAKE, UNIT_MISTAKE};
-use super::super::draft::Change;
+use super::super::draft::DraftChange;
 use super::conventions::{Convention, SAME, is_same, readings};
 use super::{List, UNUSUAL, exact};
 use crate::calibration::campaign::GroupName;
@@ -30,7 +30,7 @@ impl List<'_> {
                 };
                 let cure = format!("Exchange {place}");
                 let why = "each holds the poses of the other";
-                self.add(&SWAP_MISTAKE, Key::new(place), Change::Groups(a, b), &cure, why);
+                self.add(&SWAP_MISTAKE, Key::new(place), DraftChange::Groups(a, b), &cure, why);
             }
         }
     }
@@ -49,7 +49,7 @@ impl List<'_> {
         let of_clamp = |k: usize, rotation: Matrix3<f64>| (k, Pose { rotation, ..devices[k] });
         for k in 0..count {
             for (rotation, convention) in &readings[k] {
-                let change = Change::Devices(vec![of_clamp(k, *rotation)]);
+                let change = DraftChange::Devices(vec![of_clamp(k, *rotation)]);
                 let place = format!("{} rpy_deg", names[k]);
                 self.add(
                     &FRAME_MISTAKE,
@@ -72,7 +72,7 @@ impl List<'_> {
                         readings[k].iter().find(|(_, own)| own == convention).map(|(rotation, _)| *rotation);
                     rotation.map(|rotation| of_clamp(k, rotation))
                 };
-                let change = Change::Devices((0..count).filter_map(entry).collect());
+                let change = DraftChange::Devices((0..count).filter_map(entry).collect());
                 let place = Key::new("clamp rpy_deg (all)");
                 self.add(
                     &FRAME_MISTAKE,
@@ -89,7 +89,7 @@ impl List<'_> {
         {
             let scaled =
                 |(k, device): (usize, &Pose)| (k, Pose { origin: device.origin * factor, ..*device });
-            let change = Change::Devices(devices.iter().enumerate().map(scaled).collect());
+            let change = DraftChange::Devices(devices.iter().enumerate().map(scaled).collect());
             let cure = format!("Multiply xyz_mm of all clamps by {factor}");
             let why = format!("they are in {unit}, not in millimetres");
             let unit = self.add(&UNIT_MISTAKE, Key::new("clamp xyz_mm (all)"), change, &cure, &why);
@@ -105,7 +105,7 @@ impl List<'_> {
         if is_other(&inverse) {
             let cure = "Replace [base] by its inverse";
             let why = "it is {W} in {0}, not {0} in {W}";
-            self.add(&FRAME_MISTAKE, Key::new("base"), Change::Base(inverse), cure, why);
+            self.add(&FRAME_MISTAKE, Key::new("base"), DraftChange::Base(inverse), cure, why);
         }
         for (rotation, convention) in readings([roll, pitch, yaw], &base.rotation) {
             let turned = Pose { rotation, ..base };
@@ -114,7 +114,7 @@ impl List<'_> {
                 self.add(
                     &FRAME_MISTAKE,
                     Key::new("base.rpy_deg"),
-                    Change::Base(turned),
+                    DraftChange::Base(turned),
                     &cure,
                     convention.why,
                 );
@@ -126,7 +126,7 @@ impl List<'_> {
                 let cure = format!("Multiply base.xyz_mm by {}", significant(factor, 4));
                 let why = format!("it is in {unit}, not in millimetres");
                 let place = Key::new("base.xyz_mm");
-                self.add(&UNIT_MISTAKE, place, Change::Base(scaled), &cure, &why).estimates =
+                self.add(&UNIT_MISTAKE, place, DraftChange::Base(scaled), &cure, &why).estimates =
                     exact("factor", factor);
             }
         }
@@ -146,7 +146,7 @@ impl List<'_> {
                 return;
             }
             known.push(tip);
-            self.add(effect, Key::new(key), Change::Tool(tip), &cure, why).estimates = estimates;
+            self.add(effect, Key::new(key), DraftChange::Tool(tip), &cure, why).estimates = estimates;
         };
         let letters = ["x", "y", "z"];
         for order in [[0, 1, 2], [1, 0, 2], [0, 2, 1], [2, 1, 0], [1, 2, 0], [2, 0, 1]] {

@@ -3,7 +3,7 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use super::super::super::effects::mistakes::{OFFSET_MISTAKE, SIGN_MISTAKE, SWAP_MISTAKE, UNIT_MISTAKE};
-use super::super::draft::Change;
+use super::super::draft::DraftChange;
 use super::conventions::TURN_IN_RADIANS;
 use super::{List, RARE, UNUSUAL, exact};
 use crate::inference::Key;
@@ -22,7 +22,7 @@ impl List<'_> {
         };
         for j in 0..count {
             let name = self.column(j);
-            let change = Change::factors(&[j], count, -1.0);
+            let change = DraftChange::factors(&[j], count, -1.0);
             self.add(
                 &SIGN_MISTAKE,
                 Key::new(&name),
@@ -32,7 +32,7 @@ impl List<'_> {
             );
         }
         if count > 1 {
-            let change = Change::factors(&all, count, -1.0);
+            let change = DraftChange::factors(&all, count, -1.0);
             self.add(
                 &SIGN_MISTAKE,
                 Key::new(&every),
@@ -51,11 +51,11 @@ impl List<'_> {
                 } else {
                     format!("Subtract {}° from", -degrees)
                 };
-                let change = Change::offset(j, count, 1.0, FRAC_PI_2 * quarter);
+                let change = DraftChange::offset(j, count, 1.0, FRAC_PI_2 * quarter);
                 let why = format!("the joint's zero is off by {}°", degrees.abs());
                 self.add(&OFFSET_MISTAKE, Key::new(&name), change, &format!("{operation} {name}"), &why)
                     .estimates = exact("deg", degrees);
-                let change = Change::offset(j, count, -1.0, FRAC_PI_2 * quarter);
+                let change = DraftChange::offset(j, count, -1.0, FRAC_PI_2 * quarter);
                 let cure = format!("Replace {name} by {degrees}° − {name}");
                 let mirrored = self.add(
                     &OFFSET_MISTAKE,
@@ -88,7 +88,7 @@ impl List<'_> {
             self.add(
                 &SWAP_MISTAKE,
                 Key::new(place),
-                Change::order(order),
+                DraftChange::order(order),
                 &cure,
                 "each holds the other joint",
             );
@@ -101,7 +101,8 @@ impl List<'_> {
         }
         let every = format!("{} … {}", self.column(0), self.column(count - 1));
         let mut add = |order: Vec<usize>, cure: &str, why: &str| {
-            self.add(&SWAP_MISTAKE, Key::new(&every), Change::order(order), cure, why).log_prior = UNUSUAL;
+            self.add(&SWAP_MISTAKE, Key::new(&every), DraftChange::order(order), cure, why).log_prior =
+                UNUSUAL;
         };
         let cure = "Turn the order of the joint columns round";
         add((0..count).rev().collect(), cure, "they run from the flange to the base");
@@ -135,7 +136,7 @@ impl List<'_> {
         for (joints, name, log_prior) in all {
             let it = if joints.len() > 1 { "they are" } else { "it is" };
             if are_small(&joints) {
-                let change = Change::factors(&joints, count, 180.0 / PI);
+                let change = DraftChange::factors(&joints, count, 180.0 / PI);
                 let why = format!("{it} in radians, not in degrees");
                 let radians = self.add(
                     &UNIT_MISTAKE,
@@ -148,7 +149,7 @@ impl List<'_> {
                 radians.log_prior = log_prior;
             }
             if are_huge(&joints) {
-                let change = Change::factors(&joints, count, PI / 180.0);
+                let change = DraftChange::factors(&joints, count, PI / 180.0);
                 let why = format!("{it} degrees that were converted to degrees once more");
                 let twice = self.add(
                     &UNIT_MISTAKE,

@@ -3,7 +3,7 @@
 use nalgebra::Matrix3;
 
 use super::super::super::effects::mistakes::{ROW_MISTAKE, SIGN_MISTAKE, SWAP_MISTAKE, UNIT_MISTAKE};
-use super::super::draft::Change;
+use super::super::draft::DraftChange;
 use super::super::names::AXES;
 use super::{List, RARE, UNUSUAL, exact};
 use crate::inference::Key;
@@ -41,7 +41,7 @@ impl List<'_> {
             } else {
                 format!("Multiply {ALL} by {factor}")
             };
-            let change = Change::Seen(Matrix3::identity() * factor);
+            let change = DraftChange::Seen(Matrix3::identity() * factor);
             let unit = self.add(
                 &UNIT_MISTAKE,
                 Key::new(ALL),
@@ -94,7 +94,8 @@ impl List<'_> {
                         )
                     }
                 };
-                self.add(effect, Key::new(place), Change::Seen(matrix), &cure, why).log_prior = log_prior;
+                self.add(effect, Key::new(place), DraftChange::Seen(matrix), &cure, why).log_prior =
+                    log_prior;
             }
         }
     }
@@ -109,12 +110,12 @@ impl List<'_> {
                 let (count, way) = (by.unsigned_abs(), if by > 0 { "up" } else { "down" });
                 let rows = if count == 1 { "row" } else { "rows" };
                 let what = if with_clamps { "clamp, x_mm, y_mm and z_mm" } else { "x_mm, y_mm and z_mm" };
-                let cure = format!("Move {what} {count} {rows} {way}");
+                let cure = format!("PossibleMistake {what} {count} {rows} {way}");
                 let why = format!(
                     "each position belongs to the angles {count} {rows} {}",
                     if by > 0 { "above" } else { "below" }
                 );
-                let change = Change::Rows { by, with_clamps };
+                let change = DraftChange::Rows { by, with_clamps };
                 let place = if with_clamps { "clamp, x_mm, y_mm, z_mm" } else { "x_mm, y_mm, z_mm" };
                 let shift = self.add(&ROW_MISTAKE, Key::new(place), change, &cure, &why);
                 shift.estimates = exact("rows", by as f64);

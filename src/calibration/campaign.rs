@@ -105,6 +105,7 @@ pub enum Refit {
 
 /// What the user states about single parameters: fixed, free, or known beforehand.
 #[derive(Debug, Clone, Default, PartialEq)]
+#[non_exhaustive]
 pub struct ParameterConstraints {
     /// Held at their nominal values.
     pub fixed: Vec<Parameter>,
@@ -191,6 +192,7 @@ impl Station {
 
 /// What is known about the points that the tip touched.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub enum Targets {
     /// Each measured in {W}, m: one per row.
     Points(Vec<Vector3<f64>>),
@@ -200,6 +202,7 @@ pub enum Targets {
 
 /// A known distance between the sockets of a placement.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Distance {
     /// Groups of the two sockets.
     pub between: [usize; 2],
@@ -207,6 +210,13 @@ pub struct Distance {
     pub value: f64,
     /// Its standard deviation, m.
     pub sd: f64,
+}
+
+impl Distance {
+    /// Between the sockets of two groups of a recording: distance and standard deviation, m.
+    pub fn new(between: [usize; 2], value: f64, sd: f64) -> Distance {
+        Distance { between, value, sd }
+    }
 }
 
 impl Recording {

@@ -15,11 +15,12 @@ use crate::statistics::Random;
 use crate::units::{STANDARD_GRAVITY, significant};
 
 /// Times that torques and the joints that they turn are computed from each other; each time their
-/// error falls by the share by which a joint yields, below 10⁻³.
+/// error falls by the share by which a joint deflects, below 10⁻³.
 pub const TORQUE_ROUNDS: usize = 3;
 
 /// How the rod's deflection is known.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[non_exhaustive]
 pub enum Mode {
     /// It is assumed rigid.
     None,

@@ -16,7 +16,7 @@ use crate::robot::{Parameter, Setup};
 /// millimetres per metre, and that is no scatter.
 pub const MOST_SCATTER: f64 = 5e-3;
 
-/// Share of its plausible range that a parameter may owe to held directions and still count as
+/// Share of its plausible range that a parameter may have from held directions and still count as
 /// identified.
 const SHARE: f64 = 0.1;
 /// How firmly a direction is held: standard deviation relative to the plausible range.

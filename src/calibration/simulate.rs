@@ -62,7 +62,7 @@ pub struct Simulation<'r> {
 /// let robot = Robot::from_text(file, text, None, None)?;
 /// let rod = Rod::read("rods/5.toml".as_ref())?;
 /// let model = Compliance::of_model(&rod, &Physics::default(), 20)?;
-/// let plan = Plan { poses_per_clamp: 8, validation_poses: 5, ..Plan::default() };
+/// let plan = Plan::of_poses(8, 5);
 /// let simulation = simulate(&robot, &rod, &model, &plan)?;
 /// assert_eq!((simulation.measurements.len(), simulation.validation.len()), (40, 5));
 /// // the ball rests within 0.2 mm of the clamps: what is seen is errors of the robot's calibration

@@ -7,6 +7,20 @@
 //! are made once (`linear_terms.rs`). Which effects there are, with all that is said of each:
 //! `effects/`. The rivals that stand for physics nobody has named: `nonparametric.rs`.
 //!
+//! A diagnosis takes two steps: [`mend`] undoes what was written or wired wrongly, and
+//! [`Mended::diagnose`] calibrates what was meant and asks its residuals for physics.
+//!
+//! ```
+//! use rodcal::prelude::*;
+//!
+//! // simulated with nothing but noise
+//! let campaign = Campaign::read("campaigns/tx90-5/campaign.toml".as_ref())?;
+//! let mended = mend(&campaign, Mode::Meas, &Neighbours::default(), &Options::default())?;
+//! let found = mended.diagnose()?;
+//! assert!(mended.found.is_empty() && !found.diagnosis.is_mismatch());
+//! # Ok::<(), rodcal::Error>(())
+//! ```
+//!
 //! What a calibration absorbs cannot be seen: an eccentricity of the last joint is nothing where
 //! the target lies on that joint's axis. Such effects are no candidates, but
 //! [`absorbed`](crate::inference::Diagnosed::absorbed) says which they are.
@@ -31,6 +45,6 @@ pub use self::model::gear::{Curve, Gear};
 pub use self::model::law::{Course, Frame, Law, Power, RodLoad, TakenUp};
 pub use self::write_back::apply::{Applied, apply};
 pub use self::write_back::destination::law_destination;
-pub use diagnose::{CalibrationDiagnosis, Happened, diagnose, diagnose_calibrated};
+pub use diagnose::{CalibrationDiagnosis, Happened, diagnose_as_recorded, diagnose_calibrated};
 pub use effects::CalibrationEffect;
 pub use mistakes::{Mended, Neighbours, Suspicion, mend, suspected};

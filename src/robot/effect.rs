@@ -7,8 +7,8 @@
 //! backlash             ½·b·sign(τ)
 //! wrist_coupling       k·q of another joint
 //! joint_compliance     c·τ
-//! weight               c·(horizontal lever of a frame about the joint): the joint yields to a weight there
-//!                      that nobody knows
+//! weight               c·(horizontal lever of a frame about the joint): the joint deflects under a
+//!                      weight there that nobody knows
 //! ```
 
 /// An error of a joint; what follows the move before is in `moves.rs`. Joints count from 0.
@@ -61,14 +61,14 @@ pub enum Effect {
         /// Share of the last move that was still to come.
         fraction: f64,
     },
-    /// A joint that yields to its torque, in files that have no place for that at the joint.
+    /// A joint that deflects under its torque, in files that have no place for that at the joint.
     Compliance {
         /// The joint.
         joint: usize,
         /// c, rad/(N·m).
         per_nm: f64,
     },
-    /// A joint that yields to an unknown weight at a frame beyond it.
+    /// A joint that deflects under an unknown weight at a frame beyond it.
     Weight {
         /// The joint.
         joint: usize,

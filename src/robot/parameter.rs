@@ -84,6 +84,7 @@ pub enum ParameterGroup {
 
 /// The unit a parameter is shown in.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Unit {
     /// As people write it.
     pub symbol: &'static str,

@@ -15,6 +15,7 @@ use crate::toml_text::{Number, TomlText};
 
 /// Covariance of parameters of the chain {0} → joints → {T} → tip.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Uncertainty {
     /// n parameters.
     pub parameters: Vec<Parameter>,

@@ -8,7 +8,9 @@ use std::sync::LazyLock;
 use nalgebra::Vector3;
 use rodcal::calibration::campaign::Refit;
 use rodcal::calibration::{Calibration, Campaign, Mode, Options, calibrate};
-use rodcal::diagnosis::calibration::{Applied, CalibrationDiagnosis, apply, diagnose, diagnose_calibrated};
+use rodcal::diagnosis::calibration::{
+    Applied, CalibrationDiagnosis, apply, diagnose_as_recorded, diagnose_calibrated,
+};
 use rodcal::inference::law::Form;
 use rodcal::prelude::*;
 use rodcal::report::{self, Block};
@@ -53,7 +55,7 @@ fn tracked(seed: u64, (seen, unseen): (usize, usize), truth: Truth) -> Campaign 
 }
 
 fn diagnosed(campaign: &Campaign) -> CalibrationDiagnosis<'_> {
-    diagnose(campaign, Mode::None, &Options::default()).unwrap()
+    diagnose_as_recorded(campaign, Mode::None, &Options::default()).unwrap()
 }
 
 fn applied(found: &CalibrationDiagnosis) -> Applied {

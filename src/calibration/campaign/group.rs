@@ -26,6 +26,7 @@ pub struct Group {
 /// assert_eq!(GroupName::Clamp("3".into()).to_string(), "clamp 3");
 /// ```
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+#[non_exhaustive]
 pub enum GroupName {
     /// Nothing held it: a tracker saw the ball wherever it was.
     Tracked,

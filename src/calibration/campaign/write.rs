@@ -12,6 +12,7 @@ use crate::units::{DEG, MM, UM};
 
 /// Names of the files that a written campaign refers to.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct FileNames {
     /// The robot's.
     pub robot: String,
@@ -25,6 +26,14 @@ pub struct FileNames {
     pub measurements: String,
     /// The validation's, where there is one.
     pub validation: Option<String>,
+}
+
+impl FileNames {
+    /// Of a robot and its measurements; the other files are fields to be filled in.
+    pub fn new(robot: impl Into<String>, measurements: impl Into<String>) -> FileNames {
+        let (robot, measurements) = (robot.into(), measurements.into());
+        FileNames { robot, effects: None, rod: None, rig: None, measurements, validation: None }
+    }
 }
 
 impl Campaign {

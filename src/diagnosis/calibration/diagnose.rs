@@ -29,11 +29,12 @@ use crate::inference::{
 /// A campaign's diagnosis.
 pub type CalibrationDiagnosis<'c> = Diagnosed<CalibrationModel<'c>>;
 
-/// Calibrates `campaign` and diagnoses what is left.
+/// Calibrates `campaign` as it was recorded and diagnoses what is left: for one that is known to be
+/// free of mistakes, such as a simulated one. Of any other [`mend`](super::mend) undoes them first.
 ///
 /// # Errors
 /// As [`calibrate`].
-pub fn diagnose<'c>(
+pub fn diagnose_as_recorded<'c>(
     campaign: &'c Campaign,
     mode: Mode,
     options: &Options,
@@ -41,7 +42,8 @@ pub fn diagnose<'c>(
     diagnose_calibrated(campaign, calibrate(campaign, mode, options)?)
 }
 
-/// Diagnoses what a calibration of `campaign` leaves.
+/// Diagnoses what a finished calibration of `campaign` leaves. Mistakes in the files are not looked
+/// for: of a campaign that may hold some [`mend`](super::mend) undoes them first.
 ///
 /// ```
 /// use rodcal::diagnosis::calibration::diagnose_calibrated;
@@ -137,6 +139,7 @@ const ROUNDS: usize = 2;
 
 /// Something that happened while the poses were recorded.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Happened {
     /// The first row, from 0, that it changed.
     pub row: usize,

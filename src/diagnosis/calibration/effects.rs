@@ -100,7 +100,7 @@ fn joint(joint: usize) -> Location {
     Location::Joint { joint, form: None }
 }
 
-/// A joint, from 0, that errs by one of several laws.
+/// A joint, from 0, with an error by one of several laws.
 fn joint_by(joint: usize, form: impl Into<String>) -> Location {
     Location::Joint { joint, form: Some(form.into()) }
 }

@@ -53,6 +53,7 @@ const CONFIRMED: f64 = 0.5;
 
 /// Files of the same folders that may have been meant.
 #[derive(Debug, Clone, Default)]
+#[non_exhaustive]
 pub struct Neighbours {
     /// Rods, by their files.
     pub rods: Vec<(String, Rod)>,
@@ -62,6 +63,7 @@ pub struct Neighbours {
 
 /// A mistake that a campaign seems to hold, in one line.
 #[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Suspicion {
     /// `likely mistake in q4_deg: its sign is wrong; multiply q4_deg by −1 (…)`.
     pub description: String,
@@ -71,6 +73,7 @@ pub struct Suspicion {
 
 /// A campaign without the mistakes that were found in it.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Mended {
     /// The campaign that was meant.
     pub campaign: Campaign,
@@ -84,14 +87,16 @@ pub struct Mended {
     pub is_changed: bool,
     /// False where columns hold no information, so that physics cannot be seen.
     pub has_data: bool,
+    /// How it is calibrated.
+    options: Options,
     /// Errors of a calibration on what was recorded; `None` where nothing was found.
     recorded: Option<Summary>,
 }
 
-/// Looks for mistakes in a campaign and undoes them.
+/// Looks for mistakes in a campaign and undoes them: the first step of every diagnosis, of which
+/// [`Mended::diagnose`] is the second.
 ///
 /// ```
-/// use rodcal::diagnosis::calibration::{Neighbours, mend};
 /// use rodcal::prelude::*;
 ///
 /// let campaign = Campaign::read("campaigns/tx90-5/campaign.toml".as_ref())?;
@@ -104,18 +109,22 @@ pub struct Mended {
 /// assert_eq!(mended.found[0].effect.name, "sign_mistake");
 /// assert_eq!(mended.found[0].location.to_string(), "q4_deg");
 /// assert_eq!(mended.campaign.measurements.joint_values, campaign.measurements.joint_values);
+/// // with it undone the robot is calibrated, and nothing else is wrong
+/// let found = mended.diagnose()?;
+/// assert_eq!(found.diagnosis.findings.len(), 1);
+/// assert!((found.diagnosis.noise - 18e-6).abs() < 4e-6, "{}", found.diagnosis.noise);
 /// # Ok::<(), rodcal::Error>(())
 /// ```
 ///
 /// # Errors
 /// What [`Compensation::new`] refuses; what a calibration refuses.
 pub fn mend(campaign: &Campaign, mode: Mode, others: &Neighbours, options: &Options) -> Result<Mended> {
-    let mut mended = search(campaign, mode, others)?;
+    let mut mended = search(campaign, mode, others, options)?;
     if !mended.found.is_empty() {
         let recorded = calibrate(campaign, mode, options).ok();
         mended.recorded = recorded.map(|calibration| Summary::of(&calibration.residuals()));
     }
-    Ok(mended.confirmed(campaign, mode, options))
+    Ok(mended.confirmed(campaign, mode))
 }
 
 /// One line for each mistake that `campaign` seems to hold, for those who do not ask for a
@@ -124,18 +133,18 @@ pub fn mend(campaign: &Campaign, mode: Mode, others: &Neighbours, options: &Opti
 /// # Errors
 /// As [`mend`].
 pub fn suspected(campaign: &Campaign, mode: Mode, others: &Neighbours) -> Result<Vec<Suspicion>> {
-    let mut mended = search(campaign, mode, others)?;
     let options = Options::default();
+    let mut mended = search(campaign, mode, others, &options)?;
     if mended.is_changed {
         let recorded = calibrate(campaign, mode, &options).ok();
         mended.recorded = recorded.map(|calibration| Summary::of(&calibration.residuals()));
     }
-    Ok(mended.confirmed(campaign, mode, &options).suspicions)
+    Ok(mended.confirmed(campaign, mode).suspicions)
 }
 
 impl Mended {
     /// A campaign as it was recorded.
-    fn unchanged(campaign: &Campaign, mode: Mode) -> Mended {
+    fn unchanged(campaign: &Campaign, mode: Mode, options: &Options) -> Mended {
         Mended {
             campaign: campaign.clone(),
             mode,
@@ -143,27 +152,30 @@ impl Mended {
             suspicions: Vec::new(),
             is_changed: false,
             has_data: true,
+            options: *options,
             recorded: None,
         }
     }
 
     /// The same, or the campaign as recorded where a calibration shows that what was undone is not
     /// what was wrong: it still fails, and leaves about as much.
-    fn confirmed(self, campaign: &Campaign, mode: Mode, options: &Options) -> Mended {
+    fn confirmed(self, campaign: &Campaign, mode: Mode) -> Mended {
         let (true, Some(recorded)) = (self.is_changed, self.recorded) else { return self };
-        let Ok(meant) = calibrate(&self.campaign, self.mode, options) else { return self };
+        let Ok(meant) = calibrate(&self.campaign, self.mode, &self.options) else { return self };
         let left = Summary::of(&meant.residuals());
         let is_better = left.rms < CONFIRMED * recorded.rms && left.mean < recorded.mean;
-        if meant.is_plausible() || is_better { self } else { Mended::unchanged(campaign, mode) }
+        let is_confirmed = meant.is_plausible() || is_better;
+        if is_confirmed { self } else { Mended::unchanged(campaign, mode, &self.options) }
     }
 
-    /// Calibrates the mended campaign and diagnoses what is left; the mistakes stand before all
-    /// else.
+    /// Calibrates the campaign that was meant and diagnoses what is left, as
+    /// `rodcal diagnose calibration` does; the mistakes stand before all else.
     ///
     /// # Errors
-    /// As [`super::diagnose()`].
-    pub fn diagnose(&self, options: &Options) -> Result<CalibrationDiagnosis<'_>> {
-        let mut found = diagnose_calibrated(&self.campaign, calibrate(&self.campaign, self.mode, options)?)?;
+    /// As [`calibrate`] and [`diagnose_calibrated`].
+    pub fn diagnose(&self) -> Result<CalibrationDiagnosis<'_>> {
+        let calibration = calibrate(&self.campaign, self.mode, &self.options)?;
+        let mut found = diagnose_calibrated(&self.campaign, calibration)?;
         let has_failed = found.is_implausible();
         let diagnosis = &mut found.diagnosis;
         if has_failed || !self.has_data {
@@ -221,8 +233,8 @@ impl Mended {
     }
 }
 
-fn search(campaign: &Campaign, mode: Mode, others: &Neighbours) -> Result<Mended> {
-    let mut mended = Mended::unchanged(campaign, mode);
+fn search(campaign: &Campaign, mode: Mode, others: &Neighbours, options: &Options) -> Result<Mended> {
+    let mut mended = Mended::unchanged(campaign, mode, options);
     let draft = Draft::of(campaign);
     let compensation = Compensation::new(campaign, mode)?;
     let mut bodies = vec![LoadedRobot::new(&campaign.robot, compensation.clone(), campaign.tool, &draft)];

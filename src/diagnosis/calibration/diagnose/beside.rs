@@ -53,7 +53,7 @@ pub fn calibrated_beside<'c>(
     Ok(beside.is_converged.then_some(beside))
 }
 
-/// Do its drives yield otherwise than those that the columns were made with?
+/// True where its drives are otherwise compliant than those that the columns were made with.
 fn turns(context: &Context, beside: &Calibration) -> bool {
     let Some(there) = context.configurations.first() else { return false };
     let own = plausible(&beside.setup, &context.softest);

@@ -9,8 +9,8 @@
 //!
 //! Two cycles per revolution can be told apart over a range of ρ revolutions if they differ by 1/ρ
 //! or so; the scan has steps of half of that, of one half at most, up to 40; c and d reach what
-//! lies between. Beyond, only what gears in use have: a strain-wave gear of ratio i errs with i and
-//! 2·i cycles per revolution of its output, and the joint's motor with i.
+//! lies between. Beyond, only what gears in use have: a strain-wave gear of ratio i has errors of i
+//! and 2·i cycles per revolution of its output, and the joint's motor with i.
 
 use std::f64::consts::TAU;
 
@@ -45,7 +45,7 @@ const CURVES: [f64; 5] = [2.0, 4.0, 8.0, 16.0, 32.0];
 /// there one of more than this many for every pose: it would go through them all.
 const MOST_COSINES: (usize, f64) = (160, 0.5);
 
-/// A gear or an encoder that errs with its joint's own angle.
+/// A gear or an encoder with an error over its joint's own angle.
 pub static TRANSMISSION_ERROR: CalibrationEffect = CalibrationEffect {
     effect: Effect {
         name: "transmission_error",
@@ -119,7 +119,7 @@ fn harmonic(context: &Context, j: usize, cycles: f64) -> Entry {
     terms(context, gear, format!("{cycles} cycles/rev"), &["sin_urad", "cos_urad"])
 }
 
-/// An error and its first overtone: an eccentric disc that is read at one place errs with one and
+/// An error and its first overtone: an eccentric disc that is read at one place has errors of one and
 /// two cycles per revolution, a strain-wave gear with i and 2·i.
 fn harmonics(context: &Context, j: usize, cycles_per_rev: [f64; 2]) -> Entry {
     let gear = Gear::Harmonics { joint: j, cycles_per_rev };

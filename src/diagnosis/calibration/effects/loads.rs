@@ -65,7 +65,7 @@ fn rods(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
     let under = |load: RodLoad| {
         let mut factor = linear("factor", 1.0, SOFTNESS);
         factor.neutral = context.accounted;
-        // a rod that was taken for rigid bends by all of its model
+        // a rod that was assumed rigid bends by all of its model
         factor.size = factor.size.max(1.0 - context.accounted);
         factor.bounds = (0.0, 10.0);
         let column = context.column(|row, _| {
@@ -123,7 +123,7 @@ fn heavier(finding: &Finding, unit: &str) -> String {
 
 /// Displacement of the tip by one more force on it, m: the rod bends and the joints give way.
 pub(super) fn pulled(context: &Context, there: &Configuration, force: &Vector3<f64>) -> Vector3<f64> {
-    there.in_world(&context.force_compliance) * force + there.yielding(&there.tip, force)
+    there.in_world(&context.force_compliance) * force + there.joint_deflection(&there.tip, force)
 }
 
 /// True where something is known to give way to a force on the tip.
@@ -202,7 +202,7 @@ fn payload_masses(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry>
         lacks.push(lack(&PAYLOAD_MASS, "no joint has a known compliance"));
         return Vec::new();
     }
-    let column = context.column(|_, there| there.yielding(&there.flange.origin, &there.gravity));
+    let column = context.column(|_, there| there.joint_deflection(&there.flange.origin, &there.gravity));
     let mut mass = linear("mass_kg", 1.0, FORGOTTEN_AT_FLANGE);
     mass.bounds.0 = -context.modelled_mass.1;
     vec![single(&PAYLOAD_MASS, Location::Part(Part::Flange), mass, column)]
@@ -251,7 +251,7 @@ fn levels(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
     let about = |(axis, name): (usize, &str)| {
         let column = context.column(|_, there| {
             let turned = there.base.rotation.column(axis).cross(&there.gravity);
-            there.in_world(&context.weight_compliance) * turned + there.yielding_to_weight(&turned)
+            there.in_world(&context.weight_compliance) * turned + there.joint_deflection_by_weight(&turned)
         });
         (linear(name, DEG, LEVEL), column)
     };

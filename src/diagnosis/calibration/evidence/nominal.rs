@@ -58,7 +58,7 @@ fn of_links(campaign: &Campaign, context: &Context) -> Vec<(NominalParameter, Co
     let of_link = |(k, body): (usize, Body)| {
         let pulled = |there: &Configuration| {
             let centre = there.link[k].point(&body.centre);
-            there.yielding_below(k, |j| centre - there.origin[j], &there.gravity)
+            there.joint_deflection_below(k, |j| centre - there.origin[j], &there.gravity)
         };
         let mass = NominalParameter {
             name: format!("mass of link {}", k + 1),
@@ -79,7 +79,7 @@ fn of_links(campaign: &Campaign, context: &Context) -> Vec<(NominalParameter, Co
             };
             let column = context.column(|_, there| {
                 let along: Vector3<f64> = there.link[k].rotation.column(axis.index()).into();
-                there.yielding_below(k, |_| along, &(there.gravity * body.mass))
+                there.joint_deflection_below(k, |_| along, &(there.gravity * body.mass))
             });
             (centre, column)
         }));

@@ -28,7 +28,7 @@ pub struct Configuration {
     /// First moment of all masses beyond a joint about the point on its axis, kg·m: what g × has to
     /// be multiplied by for their moment.
     pub first_moment: Vec<Vector3<f64>>,
-    /// Angle or way by which each joint yields per torque, rad/(N·m).
+    /// Compliance of each joint, rad/(N·m), or m/N of a prismatic one.
     pub compliance: Vec<f64>,
     /// The frame of the link that each joint moves.
     pub link: Vec<Pose>,
@@ -47,17 +47,17 @@ pub struct Configuration {
 }
 
 impl Configuration {
-    /// Displacement of the tip by joints that yield to one more force (N) at a point (m) beyond all
+    /// Displacement of the tip by joints that deflect under one more force (N) at a point (m) beyond all
     /// of them: Σ J·c·(∂point/∂q · force).
-    pub fn yielding(&self, point: &Vector3<f64>, force: &Vector3<f64>) -> Vector3<f64> {
+    pub fn joint_deflection(&self, point: &Vector3<f64>, force: &Vector3<f64>) -> Vector3<f64> {
         let of_joint =
             |j: usize| self.tip_jacobian[j] * (self.compliance[j] * self.torque_of(j, point, force));
         (0..self.tip_jacobian.len()).map(of_joint).sum()
     }
 
-    /// Displacement of the tip by joints up to `last` that yield to a force (N) at a point of the
+    /// Displacement of the tip by joints up to `last` that deflect under a force (N) at a point of the
     /// link that joint moves: Σ J·c·z·(lever × force), the levers as each joint sees them, m.
-    pub fn yielding_below(
+    pub fn joint_deflection_below(
         &self,
         last: usize,
         lever: impl Fn(usize) -> Vector3<f64>,
@@ -70,9 +70,9 @@ impl Configuration {
         (0..=last).map(of_joint).sum()
     }
 
-    /// Displacement of the tip by joints that yield to one more acceleration of all masses (m/s²):
+    /// Displacement of the tip by joints that deflect under one more acceleration of all masses (m/s²):
     /// Σ J·c·z·(S × acceleration).
-    pub fn yielding_to_weight(&self, acceleration: &Vector3<f64>) -> Vector3<f64> {
+    pub fn joint_deflection_by_weight(&self, acceleration: &Vector3<f64>) -> Vector3<f64> {
         let of_joint = |j: usize| {
             let torque = self.axis[j].dot(&self.first_moment[j].cross(acceleration));
             self.tip_jacobian[j] * (self.compliance[j] * torque)
@@ -91,7 +91,7 @@ impl Configuration {
     }
 }
 
-/// One for every row of a recording; the joints yield by `compliance`, `deflections` are what
+/// One for every row of a recording; the joints have this `compliance`, `deflections` are what
 /// deflects the tip there, in {W}, m.
 pub fn all(
     recording: &Recording,

@@ -43,8 +43,8 @@ pub struct Context<'a> {
     pub modelled_mass: (f64, f64),
     /// Compliance beyond which the drive of each joint is not of its class, rad/(N·m).
     pub softest: Vec<f64>,
-    /// Share of `deflection` that the calibration took into account: 1, or 0 where it took the rod
-    /// for rigid.
+    /// Share of `deflection` that the calibration took into account: 1, or 0 where it assumed the
+    /// rod rigid.
     pub accounted: f64,
     /// Rows, from 0, after which a first look has seen something move.
     pub moved_after: Vec<usize>,
@@ -103,7 +103,7 @@ impl<'a> Context<'a> {
         let softest = plausible_compliances(setup, used.payload);
         let compliance = plausible(setup, &softest);
         let configurations = configuration::all(recording, setup, &compliance, deflections, &used);
-        // a rod that was taken for rigid bends as its beam model says
+        // a rod that was assumed rigid bends as its beam model says
         let (rod, accounted) = match (mode, &campaign.rod) {
             (Mode::None, Some(_)) => (Compensation::new(campaign, Mode::Fea)?.compliance, 0.0),
             _ => (used.compliance, 1.0),

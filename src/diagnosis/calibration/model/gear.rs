@@ -27,6 +27,7 @@ const WHOLE: f64 = 1.5;
 
 /// What a transmission error is made of.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub enum Gear {
     /// a·sin(n·q) + b·cos(n·q).
     Harmonic {

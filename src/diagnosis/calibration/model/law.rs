@@ -13,6 +13,7 @@ const HOUR: f64 = 3600.0;
 
 /// The law of a candidate.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub enum Law {
     /// The only one of its effect, or a curve that nobody has named.
     Only,
@@ -38,6 +39,7 @@ pub enum Law {
 
 /// What takes up the play of a joint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum TakenUp {
     /// The torque of its load.
     ByTorque,
@@ -45,8 +47,9 @@ pub enum TakenUp {
     ByApproach,
 }
 
-/// Power of the torque that a joint yields with, besides the first.
+/// Power of the torque that a joint deflects with, besides the first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Power {
     /// τ|τ|.
     Square,
@@ -56,6 +59,7 @@ pub enum Power {
 
 /// The load under which a rod's stiffness is another one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum RodLoad {
     /// All of them.
     All,
@@ -67,6 +71,7 @@ pub enum RodLoad {
 
 /// What a drift follows.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub enum Course {
     /// The share of the recording that is over.
     Order,
@@ -80,6 +85,7 @@ pub enum Course {
 
 /// Where a drift goes on in a fixed direction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Frame {
     /// In {W}: the robot drifts on its base.
     World,
@@ -89,6 +95,7 @@ pub enum Frame {
 
 /// What of a joint drifts, or of all of them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Warmed {
     /// Its zero.
     Zero,

@@ -7,7 +7,7 @@ use crate::robot::{Kinematics, Loads, Setup};
 use crate::spatial::exponential;
 
 /// Share of a size at which columns are compared, and of their largest number by which they may
-/// differ: yields are to first order.
+/// differ: deflections are to first order.
 const STEP: f64 = 0.01;
 const FIRST_ORDER: f64 = 0.01;
 

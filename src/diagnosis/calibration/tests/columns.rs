@@ -181,7 +181,7 @@ fn columns_are_what_a_changed_robot_does() {
             change(&mut there, at, 0.01 * parameter.size);
             difference = difference.max((there.tip() - before - predicted.fixed_rows::<3>(3 * at)).norm());
         }
-        // yields are to first order: a hundredth of them is lost
+        // deflections are to first order: a hundredth of them is lost
         assert!(
             difference < 0.01 * predicted.amax(),
             "{effect} {location}: {difference} of {}",

@@ -40,7 +40,7 @@ fn a_gear_acts_in_other_poses_and_a_misplaced_clamp_does_not() {
     let truth = recorded(&campaign, &turned, 0.0, 1);
     let [recorded, _] = halves(&recorded(&campaign, &stated, 10.0 * UM, 1));
     let [_, asked] = halves(&truth);
-    let found = diagnose(&recorded, Mode::Fea, &Options::default()).unwrap();
+    let found = diagnose_as_recorded(&recorded, Mode::Fea, &Options::default()).unwrap();
     let effects: Vec<&str> = found.diagnosis.findings.iter().map(|finding| finding.effect.name).collect();
     assert!(effects.contains(&"transmission_error") && effects.contains(&"clamp_pose"), "{effects:?}");
     let predicted = found.predicted(&asked).unwrap();
@@ -58,7 +58,7 @@ fn a_gear_acts_in_other_poses_and_a_misplaced_clamp_does_not() {
 fn another_force_bends_the_rod_by_its_compliance() {
     let campaign = clamps(25);
     let recorded = recorded(&campaign, &|_| Vector3::zeros(), 5.0 * UM, 2);
-    let found = diagnose(&recorded, Mode::Fea, &Options::default()).unwrap();
+    let found = diagnose_as_recorded(&recorded, Mode::Fea, &Options::default()).unwrap();
     assert!(found.diagnosis.findings.is_empty());
     let more = Vector3::new(0.0, 1.5, -2.0);
     let pushed = Campaign { contact_force: campaign.contact_force.map(|f| f + more), ..campaign.clone() };
@@ -74,7 +74,7 @@ fn another_force_bends_the_rod_by_its_compliance() {
             let configuration = &context.configurations[row];
             still[row]
                 + configuration.in_world(&compliance.force) * force
-                + configuration.yielding(&configuration.tip, &force)
+                + configuration.joint_deflection(&configuration.tip, &force)
         })
         .collect();
     let largest = moved.iter().zip(&still).map(|(a, b)| (a - b).norm() / UM).fold(0.0, f64::max);
@@ -92,7 +92,7 @@ fn a_drift_goes_on_with_its_clock_and_asks_for_it() {
     let drift = |row: usize| per_kelvin * (campaign.measurements.rows[row].temperature.unwrap() - 21.0);
     let [recorded, _] = halves(&recorded(&campaign, &drift, 5.0 * UM, 3));
     let [_, mut asked] = halves(&campaign);
-    let found = diagnose(&recorded, Mode::Fea, &Options::default()).unwrap();
+    let found = diagnose_as_recorded(&recorded, Mode::Fea, &Options::default()).unwrap();
     assert_eq!(found.diagnosis.findings[0].effect.name, "thermal_drift");
     // 4 K warmer than the mean of the recording, whatever that is with which drifts are compared
     let mean = recorded.measurements.rows.iter().filter_map(|row| row.temperature).sum::<f64>()
@@ -124,7 +124,7 @@ fn a_base_that_moved_stays_there() {
     let shifted = |row: usize| if row >= count / 2 { by } else { Vector3::zeros() };
     let [recorded, _] = halves(&recorded(&campaign, &shifted, 10.0 * UM, 4));
     let [_, asked] = halves(&campaign);
-    let found = diagnose(&recorded, Mode::Fea, &Options::default()).unwrap();
+    let found = diagnose_as_recorded(&recorded, Mode::Fea, &Options::default()).unwrap();
     assert_eq!(found.diagnosis.findings[0].effect.name, "base_shift", "{:?}", found.diagnosis.findings);
     let predicted = found.predicted(&asked).unwrap();
     let moved: Vec<Vector3<f64>> = points(&asked).iter().map(|point| point + by).collect();

@@ -19,6 +19,7 @@ use crate::units::UM;
 
 /// The robot with what was found.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Applied {
     /// Names and texts: the calibrated robot, for a URDF with a table of corrections beside it.
     pub files: Vec<(String, String)>,

@@ -10,8 +10,8 @@ use crate::units::{DEG, MM};
 const LENGTH: f64 = 2.0 * MM;
 const TWIST: f64 = 0.2 * DEG;
 const ZERO: f64 = 0.6 * DEG;
-/// How far a joint yields under its largest torque, rad.
-const YIELDS: f64 = 1e-3;
+/// How far a joint deflects under its largest torque, rad.
+const DEFLECTION: f64 = 1e-3;
 /// A step of the tip is at most so uncertain, m: a ridge, no knowledge.
 const TOOL: f64 = 0.5;
 
@@ -25,7 +25,7 @@ pub(super) fn sizes(draft: &Draft, body: &LoadedRobot, torque: &[f64]) -> Vec<f6
         Parameter::D(_) | Parameter::A(_) => LENGTH,
         Parameter::Alpha(_) | Parameter::Beta(_) => TWIST,
         Parameter::Theta(_) => ZERO,
-        Parameter::Compliance(j) => YIELDS / largest(*j),
+        Parameter::Compliance(j) => DEFLECTION / largest(*j),
         // a base has columns of its own
         Parameter::BasePosition(_) | Parameter::BaseRotation(_) | Parameter::Tool(_) => TOOL,
     };

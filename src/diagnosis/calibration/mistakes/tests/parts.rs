@@ -125,7 +125,8 @@ fn what_counts_little_is_not_explained() {
     wrong.measurements = wrong.measurements.subset(&rows);
     points(&mut wrong)[3] += Vector3::new(0.5, 0.2, 0.1);
     points(&mut wrong)[4] += Vector3::new(-0.3, 0.2, 0.4);
-    let found = crate::diagnosis::calibration::diagnose(&wrong, Mode::Fea, &Options::default()).unwrap();
+    let found =
+        crate::diagnosis::calibration::diagnose_as_recorded(&wrong, Mode::Fea, &Options::default()).unwrap();
     assert!(found.is_implausible());
     assert!(found.diagnosis.discrepancy.is_some());
 }

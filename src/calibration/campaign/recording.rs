@@ -86,7 +86,8 @@ struct Reader<'a> {
     has_stations: bool,
     /// In order of appearance.
     groups: Vec<Group>,
-    /// Names of where tracker or base stood, in order of appearance; one of name "" without the column.
+    /// Names of where tracker or base stood, in order of appearance; one of name "" without the
+    /// column.
     stations: Vec<String>,
     /// Line of each group's poses.
     lines: BTreeMap<(usize, String), usize>,

@@ -119,8 +119,8 @@ fn harmonic(context: &Context, j: usize, cycles: f64) -> Entry {
     terms(context, gear, format!("{cycles} cycles/rev"), &["sin_urad", "cos_urad"])
 }
 
-/// An error and its first overtone: an eccentric disc that is read at one place has errors of one and
-/// two cycles per revolution, a strain-wave gear with i and 2·i.
+/// An error and its first overtone: an eccentric disc that is read at one place has errors of one
+/// and two cycles per revolution, a strain-wave gear of i and 2·i.
 fn harmonics(context: &Context, j: usize, cycles_per_rev: [f64; 2]) -> Entry {
     let gear = Gear::Harmonics { joint: j, cycles_per_rev };
     let [n, m] = cycles_per_rev;

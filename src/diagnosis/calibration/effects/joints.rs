@@ -21,8 +21,8 @@ use crate::inference::{
 use crate::robot;
 use crate::units::{URAD, URAD_PER_NM};
 
-/// Angle by which a joint or a link deflects under its largest torque beyond what is modelled, rad: a
-/// tenth to a half of what industrial drives deflect by altogether (0.5 mrad).
+/// Angle by which a joint or a link deflects under its largest torque beyond what is modelled, rad:
+/// a tenth to a half of what industrial drives deflect by altogether (0.5 mrad).
 const DEFLECTION: f64 = 200e-6;
 /// Torque relative to the robot's largest below which a joint counts as unloaded.
 const NO_TORQUE: f64 = 1e-3;

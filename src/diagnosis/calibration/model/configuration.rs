@@ -47,16 +47,16 @@ pub struct Configuration {
 }
 
 impl Configuration {
-    /// Displacement of the tip by joints that deflect under one more force (N) at a point (m) beyond all
-    /// of them: Σ J·c·(∂point/∂q · force).
+    /// Displacement of the tip, m, by joints that deflect under one more force (N) at a point (m)
+    /// beyond all of them: Σ J·c·(∂point/∂q · force), in {W}.
     pub fn joint_deflection(&self, point: &Vector3<f64>, force: &Vector3<f64>) -> Vector3<f64> {
         let of_joint =
             |j: usize| self.tip_jacobian[j] * (self.compliance[j] * self.torque_of(j, point, force));
         (0..self.tip_jacobian.len()).map(of_joint).sum()
     }
 
-    /// Displacement of the tip by joints up to `last` that deflect under a force (N) at a point of the
-    /// link that joint moves: Σ J·c·z·(lever × force), the levers as each joint sees them, m.
+    /// Displacement of the tip, m, by joints up to `last` that deflect under a force (N) at a point
+    /// of the link that joint moves: Σ J·c·z·(lever × force), the levers as each joint sees them, m.
     pub fn joint_deflection_below(
         &self,
         last: usize,
@@ -70,8 +70,8 @@ impl Configuration {
         (0..=last).map(of_joint).sum()
     }
 
-    /// Displacement of the tip by joints that deflect under one more acceleration of all masses (m/s²):
-    /// Σ J·c·z·(S × acceleration).
+    /// Displacement of the tip, m, by joints that deflect under one more acceleration of all masses
+    /// (m/s²): Σ J·c·z·(S × acceleration).
     pub fn joint_deflection_by_weight(&self, acceleration: &Vector3<f64>) -> Vector3<f64> {
         let of_joint = |j: usize| {
             let torque = self.axis[j].dot(&self.first_moment[j].cross(acceleration));

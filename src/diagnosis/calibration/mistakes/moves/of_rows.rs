@@ -40,7 +40,7 @@ impl List<'_> {
         }
         for (cell, name) in cells {
             for (by, way, there) in [(1, "up", "above"), (-1, "down", "below")] {
-                let cure = format!("PossibleMistake {name} 1 row {way}");
+                let cure = format!("Move {name} 1 row {way}");
                 let why = format!("each number belongs to the row {there}");
                 let change = DraftChange::Column { cell, by };
                 let shift = self.add(&ROW_MISTAKE, Key::new(&name), change, &cure, &why);

@@ -110,7 +110,7 @@ impl List<'_> {
                 let (count, way) = (by.unsigned_abs(), if by > 0 { "up" } else { "down" });
                 let rows = if count == 1 { "row" } else { "rows" };
                 let what = if with_clamps { "clamp, x_mm, y_mm and z_mm" } else { "x_mm, y_mm and z_mm" };
-                let cure = format!("PossibleMistake {what} {count} {rows} {way}");
+                let cure = format!("Move {what} {count} {rows} {way}");
                 let why = format!(
                     "each position belongs to the angles {count} {rows} {}",
                     if by > 0 { "above" } else { "below" }

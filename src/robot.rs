@@ -42,7 +42,7 @@ pub use file::is_urdf;
 pub use kinematics::{JointFrames, Kinematics};
 pub use law::{JointLawVariable, LawPlace, RobotLaw};
 pub use minimal::minimal_parameters;
-pub use parameter::{Parameter, Unit};
+pub use parameter::{Parameter, ParameterGroup, Unit};
 pub use predict::{PredictedTip, PredictionQuery};
 pub use setup::Setup;
 pub use standard_uncertainty::StandardUncertainty;

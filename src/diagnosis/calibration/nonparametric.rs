@@ -32,9 +32,9 @@ use std::f64::consts::TAU;
 use nalgebra::{Matrix3, Vector3};
 
 use self::curve::{SIDES, SIZE, TURN, angle_of, cosine, curve, scaled};
-use super::context::Context;
-use super::entry::{Column, Entry, linear};
-use super::law::Frame;
+use super::model::Context;
+use super::model::entry::{Column, Entry, linear};
+use super::model::law::Frame;
 use crate::inference::{Parameter, Variable};
 use crate::units::{UM, URAD};
 
@@ -64,17 +64,17 @@ pub(super) fn all(context: &Context) -> Vec<Entry> {
         (Variable::Time, "the time", known(&|row| rows[row].time)),
         (Variable::Temperature, "the temperature", known(&|row| rows[row].temperature)),
     ];
-    for (variable, words, values) in clocks {
+    for (variable, name, values) in clocks {
         let label = variable.to_string();
-        let curve = |values: Vec<f64>| along(context, variable, &label, words, &values, Frame::World);
+        let curve = |values: Vec<f64>| along(context, variable, &label, name, &values, Frame::World);
         entries.extend(values.and_then(curve));
     }
     for j in 0..context.joint_count() {
         let values: Vec<f64> = context.configurations.iter().map(|there| there.joints[j]).collect();
         let label = format!("joint {}", j + 1);
-        let words = format!("the angle of {label}");
+        let angle = format!("the angle of {label}");
         for frame in [Frame::World, Frame::Tool] {
-            entries.extend(along(context, angle_of(j), &label, &words, &values, frame));
+            entries.extend(along(context, angle_of(j), &label, &angle, &values, frame));
         }
     }
     entries.extend(again_and_again(context));
@@ -124,7 +124,7 @@ fn along(
     context: &Context,
     variable: Variable,
     label: &str,
-    words: &str,
+    name: &str,
     values: &[f64],
     frame: Frame,
 ) -> Option<Entry> {
@@ -137,7 +137,7 @@ fn along(
         Frame::World => (format!("{label}, a curve in the world"), "fixed directions"),
         Frame::Tool => (format!("{label}, a curve in the tool"), "directions that turn with the tool"),
     };
-    let follows = format!("follows {words}, along {directions}");
+    let follows = format!("follows {name}, along {directions}");
     Some(curve(label, follows, Some(variable), parameters.collect()))
 }
 

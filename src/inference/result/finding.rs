@@ -3,7 +3,9 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::inference::{Description, Effect, Hypothesis, Kind, Location, Proposal, Quantity, Term};
+use crate::inference::{
+    Description, Effect, Hypothesis, Kind, Location, Proposal, Quantity, Term, WrittenTo,
+};
 
 /// An effect that was adopted: one term of the hypothesis, or several that are reported as one.
 #[derive(Debug, Clone)]
@@ -23,11 +25,15 @@ pub struct Finding {
     pub p_value: f64,
     /// Root mean square of what it explains, in the unit of the evidence.
     pub explains: f64,
-    /// How many searches without a part of the data find it again, of how many.
+    /// How many searches without a part of the data find it again, of how many. `None` without
+    /// folds, and of a mistake: it is undone before there is a model whose errors could be held
+    /// out, and its odds stand in `p_value`.
     pub found_in_folds: Option<(usize, usize)>,
     /// Share of the squares of the held-out errors before that comes back where it is left out of
-    /// what the others hold; negative where it does harm. `None` without folds.
+    /// what the others hold; negative where it does harm. `None` where `found_in_folds` is.
     pub held_out_loss: Option<f64>,
+    /// Which file holds it once it is corrected; of a mistake that which it is undone in.
+    pub written_to: WrittenTo,
     /// The measurement that would separate it from its rivals.
     pub next: Option<Proposal>,
     /// Its terms, the strongest first.
@@ -133,6 +139,7 @@ impl Finding {
             explains: 0.0,
             found_in_folds: None,
             held_out_loss: None,
+            written_to: effect.written_to,
             next: None,
             parts: vec![part],
         }
@@ -155,6 +162,7 @@ impl Finding {
             explains: 0.0,
             found_in_folds: None,
             held_out_loss: None,
+            written_to: effect.written_to,
             next: None,
             parts: Vec::new(),
         }

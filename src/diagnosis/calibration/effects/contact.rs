@@ -2,15 +2,14 @@
 
 use nalgebra::Vector3;
 
+use super::super::model::entry::linear;
+use super::super::model::{CalibrationModel, Configuration};
 use super::loads::{gives_way, pulled};
 use super::{
     CalibrationEffect, Context, Entry, Transfer, first, lack, no_event, nowhere, out_of_the_points,
     own_parameters, single, size,
 };
 use crate::calibration::campaign::Targets;
-use crate::diagnosis::calibration::configuration::Configuration;
-use crate::diagnosis::calibration::entry::linear;
-use crate::diagnosis::calibration::model::CalibrationModel;
 use crate::inference::{Effect, Finding, Kind, Location, NotTestable, Reported, WrittenTo};
 use crate::units::MM;
 
@@ -79,7 +78,7 @@ fn at_clamps(context: &Context, at: impl Fn(Location, &dyn Fn(usize) -> bool) ->
     let groups = &context.recording.groups;
     let mut entries = vec![at(Location::AllClamps, &|_| true)];
     if groups.len() > 1 {
-        let named = |k: usize| at(Location::Named(groups[k].name.clone()), &|group| group == k);
+        let named = |k: usize| at(Location::Named(groups[k].name.to_string()), &|group| group == k);
         entries.extend((0..groups.len()).map(named));
     }
     entries
@@ -140,7 +139,7 @@ fn springs(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
 }
 
 fn is_of_clamps(context: &Context) -> bool {
-    !context.has_sockets() && context.recording.groups.iter().any(|group| !group.name.is_empty())
+    !context.has_sockets() && context.recording.groups.iter().any(|group| !group.name.is_tracked())
 }
 
 fn spring_observed(finding: &Finding, _: &CalibrationModel) -> String {

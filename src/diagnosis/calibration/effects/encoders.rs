@@ -1,12 +1,12 @@
 //! What a joint turns besides what its encoder shows: a scale, and what its neighbour takes along.
 
+use super::super::model::CalibrationModel;
+use super::super::model::entry::linear;
 use super::{
     CalibrationEffect, Context, Entry, Transfer, along, capital, first, first_value, joint, no_event,
     own_parameters, single,
 };
 use crate::calibration::campaign::Campaign;
-use crate::diagnosis::calibration::entry::linear;
-use crate::diagnosis::calibration::model::CalibrationModel;
 use crate::inference::{Effect, Finding, JointVariable, Kind, Location, NotTestable, Reported, WrittenTo};
 use crate::robot;
 

@@ -1,15 +1,15 @@
 //! What happened at single poses, and to a joint after one of them.
 
+use super::super::model::CalibrationModel;
+use super::super::model::entry::linear;
+use super::super::model::law::Law;
+use super::super::model::vector;
 use super::fixture::places_of_all;
 use super::{
     CalibrationEffect, Context, Entry, KNOCK, MOST_PLACES, SHIFT, Transfer, capital, first, first_value,
     out_of_the_points, own_parameters, single, three, unit,
 };
 use crate::calibration::Campaign;
-use crate::diagnosis::calibration::entry::linear;
-use crate::diagnosis::calibration::law::Law;
-use crate::diagnosis::calibration::model::CalibrationModel;
-use crate::diagnosis::calibration::vector;
 use crate::inference::{
     Candidate, Effect, Finding, FindingPart, Kind, Location, NotTestable, Reported, WrittenTo,
 };

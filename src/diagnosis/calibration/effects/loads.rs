@@ -6,14 +6,13 @@
 
 use nalgebra::Vector3;
 
+use super::super::model::entry::linear;
+use super::super::model::law::{Law, RodLoad};
+use super::super::model::{CalibrationModel, Configuration};
 use super::{
     CalibrationEffect, Context, Entry, Transfer, first, lack, law, no_event, nowhere, own_parameters, single,
     size,
 };
-use crate::diagnosis::calibration::configuration::Configuration;
-use crate::diagnosis::calibration::entry::linear;
-use crate::diagnosis::calibration::law::{Law, RodLoad};
-use crate::diagnosis::calibration::model::CalibrationModel;
 use crate::inference::{
     Effect, Estimate, Finding, FindingPart, Kind, Location, NotTestable, Part, Reported, WrittenTo,
 };
@@ -66,7 +65,7 @@ fn rods(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
     let under = |load: RodLoad| {
         let mut factor = linear("factor", 1.0, SOFTNESS);
         factor.neutral = context.accounted;
-        // a rod that was taken for rigid bends by all of its model
+        // a rod that was assumed rigid bends by all of its model
         factor.size = factor.size.max(1.0 - context.accounted);
         factor.bounds = (0.0, 10.0);
         let column = context.column(|row, _| {
@@ -77,9 +76,9 @@ fn rods(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
                 RodLoad::Weight => by_weight,
             }
         });
-        let location = match load.words() {
+        let location = match load.description() {
             None => Location::Part(Part::Rod),
-            Some(words) => Location::Form { part: Part::Rod, form: words.into() },
+            Some(load) => Location::Form { part: Part::Rod, form: load.into() },
         };
         single(&ROD_STIFFNESS, location, factor, column).by(Law::Rod(load))
     };
@@ -101,14 +100,15 @@ fn stiffness(_: &CalibrationModel, parts: &[FindingPart]) -> Vec<Estimate> {
 
 fn rod_observed(finding: &Finding, model: &CalibrationModel) -> String {
     let under = match law(finding, model) {
-        Law::Rod(load) => load.words(),
+        Law::Rod(load) => load.description(),
         Law::Only
         | Law::Gear(_)
         | Law::Play(_)
         | Law::Nonlinear(_)
         | Law::MassesUnknown(_)
         | Law::Drift(..)
-        | Law::Warms(..) => None,
+        | Law::Warms(..)
+        | Law::Moved(_) => None,
     };
     let under = under.map_or_else(String::new, |under| format!(" {under}"));
     let softer = first(finding).map(|stiffness| 1.0 / stiffness).compared("softer", "stiffer");
@@ -123,7 +123,7 @@ fn heavier(finding: &Finding, unit: &str) -> String {
 
 /// Displacement of the tip by one more force on it, m: the rod bends and the joints give way.
 pub(super) fn pulled(context: &Context, there: &Configuration, force: &Vector3<f64>) -> Vector3<f64> {
-    there.in_world(&context.force_compliance) * force + there.yielding(&there.tip, force)
+    there.in_world(&context.force_compliance) * force + there.joint_deflection(&there.tip, force)
 }
 
 /// True where something is known to give way to a force on the tip.
@@ -202,7 +202,7 @@ fn payload_masses(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry>
         lacks.push(lack(&PAYLOAD_MASS, "no joint has a known compliance"));
         return Vec::new();
     }
-    let column = context.column(|_, there| there.yielding(&there.flange.origin, &there.gravity));
+    let column = context.column(|_, there| there.joint_deflection(&there.flange.origin, &there.gravity));
     let mut mass = linear("mass_kg", 1.0, FORGOTTEN_AT_FLANGE);
     mass.bounds.0 = -context.modelled_mass.1;
     vec![single(&PAYLOAD_MASS, Location::Part(Part::Flange), mass, column)]
@@ -251,7 +251,7 @@ fn levels(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
     let about = |(axis, name): (usize, &str)| {
         let column = context.column(|_, there| {
             let turned = there.base.rotation.column(axis).cross(&there.gravity);
-            there.in_world(&context.weight_compliance) * turned + there.yielding_to_weight(&turned)
+            there.in_world(&context.weight_compliance) * turned + there.joint_deflection_by_weight(&turned)
         });
         (linear(name, DEG, LEVEL), column)
     };

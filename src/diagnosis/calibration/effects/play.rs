@@ -1,5 +1,8 @@
 //! What a joint keeps of the way that it came: play and friction.
 
+use super::super::model::CalibrationModel;
+use super::super::model::entry::linear;
+use super::super::model::law::{Law, TakenUp};
 use super::joints::{NO_MASSES, loaded};
 use super::per_torque::per_torque;
 use super::{
@@ -7,9 +10,6 @@ use super::{
     joint_by, lack, law, no_event, own_parameters, single,
 };
 use crate::calibration::campaign::Campaign;
-use crate::diagnosis::calibration::entry::linear;
-use crate::diagnosis::calibration::law::{Law, TakenUp};
-use crate::diagnosis::calibration::model::CalibrationModel;
 use crate::inference::{Effect, Finding, JointVariable, Kind, NotTestable, Reported, WrittenTo};
 use crate::robot;
 use crate::units::{URAD, URAD_PER_NM};
@@ -72,7 +72,8 @@ fn play_observed(finding: &Finding, model: &CalibrationModel) -> String {
         | Law::MassesUnknown(_)
         | Law::Rod(_)
         | Law::Drift(..)
-        | Law::Warms(..) => "taken up on the side that its load pulls to",
+        | Law::Warms(..)
+        | Law::Moved(_) => "taken up on the side that its load pulls to",
     };
     let play = first(finding).size().say("µrad");
     format!("{} has {play} of play, {by}", capital(&finding.location))

@@ -2,15 +2,14 @@
 
 use nalgebra::Vector3;
 
+use super::super::model::entry::{Column, linear};
+use super::super::model::law::{Course, Frame, Law, Warmed};
+use super::super::model::{CalibrationModel, Configuration};
 use super::{
     CalibrationEffect, Context, Entry, Transfer, along, first, first_value, joint, joint_by, lack, law,
     no_event, out_of_the_points, own_parameters, single, size, three, unit,
 };
 use crate::calibration::campaign::{Campaign, Row};
-use crate::diagnosis::calibration::configuration::Configuration;
-use crate::diagnosis::calibration::entry::{Column, linear};
-use crate::diagnosis::calibration::law::{Course, Frame, Law, Warmed};
-use crate::diagnosis::calibration::model::CalibrationModel;
 use crate::inference::{
     Effect, Finding, JointVariable, Kind, Location, NotTestable, Part, Reported, Variable, WrittenTo,
 };
@@ -255,7 +254,13 @@ fn drift_observed(finding: &Finding, model: &CalibrationModel) -> String {
             let by = first(finding).say(course.share_unit().1);
             format!("The arm grows by {by} with {course}, all its links alike")
         }
-        Law::Only | Law::Gear(_) | Law::Play(_) | Law::Nonlinear(_) | Law::MassesUnknown(_) | Law::Rod(_) => {
+        Law::Only
+        | Law::Gear(_)
+        | Law::Play(_)
+        | Law::Nonlinear(_)
+        | Law::MassesUnknown(_)
+        | Law::Rod(_)
+        | Law::Moved(_) => {
             format!("Drift by {} at {}", size.say("µm"), finding.location)
         }
     }

@@ -2,10 +2,10 @@
 
 use nalgebra::Rotation3;
 
-use super::super::effects::fixture::BASE_SHIFT;
 use super::moves::turn;
 use crate::calibration::Calibration;
 use crate::calibration::campaign::Recording;
+use crate::diagnosis::calibration::effects::mounting::BASE_SHIFT;
 use crate::inference::{Estimate, Finding, Location};
 use crate::spatial::Pose;
 use crate::units::{UM, URAD};
@@ -15,7 +15,7 @@ const COVERAGE: f64 = 1.96;
 
 /// How far the base moved by the calibration of `recording`, with 95 % intervals: the frame of a
 /// station is six of its unknowns. Of several moves the order is that of the rows.
-pub(super) fn measure_moves(recording: &Recording, calibration: &Calibration, findings: &mut [Finding]) {
+pub fn measure_moves(recording: &Recording, calibration: &Calibration, findings: &mut [Finding]) {
     let rows = recording.rows.windows(2).filter(|pair| pair[0].station != pair[1].station);
     let places: Vec<(usize, usize)> = rows.map(|pair| (pair[0].station, pair[1].station)).collect();
     let row_of = |finding: &Finding| match (&finding.location, finding.effect == &BASE_SHIFT.effect) {
@@ -52,7 +52,7 @@ pub(super) fn measure_moves(recording: &Recording, calibration: &Calibration, fi
 }
 
 /// The way from one pose to another, and the turn.
-pub(super) fn motion_estimates(from: &Pose, to: &Pose) -> Vec<Estimate> {
+pub fn motion_estimates(from: &Pose, to: &Pose) -> Vec<Estimate> {
     let way = to.origin - from.origin;
     let turn = Rotation3::from_matrix_unchecked(to.rotation * from.rotation.transpose()).scaled_axis();
     let names = ["dx_um", "dy_um", "dz_um", "rx_urad", "ry_urad", "rz_urad"];
@@ -65,6 +65,6 @@ pub(super) fn motion_estimates(from: &Pose, to: &Pose) -> Vec<Estimate> {
 }
 
 /// How far, m, and by which angle, rad, a base moved.
-pub(super) fn moved(from: &Pose, to: &Pose) -> (f64, f64) {
+pub fn moved(from: &Pose, to: &Pose) -> (f64, f64) {
     ((to.origin - from.origin).norm(), turn(&from.rotation, &to.rotation))
 }

@@ -17,10 +17,9 @@ use std::f64::consts::PI;
 
 use nalgebra::Vector3;
 
+use super::super::model::entry::{Column, Entry, linear};
+use super::super::model::{Configuration, Context};
 use super::curve::{SIDES, SIZE, TURN, angle_of, curve};
-use crate::diagnosis::calibration::configuration::Configuration;
-use crate::diagnosis::calibration::context::Context;
-use crate::diagnosis::calibration::entry::{Column, Entry, linear};
 use crate::inference::Parameter;
 use crate::units::{DEG, UM, URAD};
 
@@ -73,8 +72,8 @@ fn bearing(context: &Context, joint: usize) -> Vec<Entry> {
     let waves =
         |name: &str, unit: f64, size: f64, n: usize, moved: &dyn Fn(&Configuration) -> Vector3<f64>| {
             let angle = move |there: &Configuration| n as f64 * there.joints[joint];
-            let wave = |label: &str, of: &dyn Fn(f64) -> f64| -> (Parameter, Column) {
-                let column = context.column(|_, there| moved(there) * of(angle(there)));
+            let wave = |label: &str, function: &dyn Fn(f64) -> f64| -> (Parameter, Column) {
+                let column = context.column(|_, there| moved(there) * function(angle(there)));
                 (linear(format!("{name}_{label}_{n}"), unit, size), column)
             };
             [wave("sin", &f64::sin), wave("cos", &f64::cos)]

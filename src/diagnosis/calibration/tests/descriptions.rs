@@ -52,6 +52,7 @@ fn as_if(model: &CalibrationModel, candidate: usize) -> Finding {
         explains: 0.0,
         found_in_folds: None,
         held_out_loss: None,
+        written_to: found.effect.written_to,
         next: None,
         parts,
     };
@@ -93,7 +94,7 @@ fn every_effect_has_words_and_its_number() {
 fn sentences_are_those_of_the_laws() {
     let campaign = clocked();
     let (model, _) = modelled(&campaign, Mode::None);
-    let said =
+    let described =
         |effect: &str, location: &str| as_if(&model, find(&model, effect, location)).description.to_string();
     let cases = [
         (
@@ -157,7 +158,7 @@ fn sentences_are_those_of_the_laws() {
         ),
     ];
     for (effect, location, expected) in cases {
-        assert_eq!(said(effect, location), expected);
+        assert_eq!(described(effect, location), expected);
     }
 }
 

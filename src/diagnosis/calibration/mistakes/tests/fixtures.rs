@@ -24,9 +24,9 @@ fn with_frame(clamp: usize, change: impl Fn([f64; 3], [f64; 3]) -> ([f64; 3], [f
 
 /// The one cure that is given.
 fn cure(campaign: &Campaign) -> String {
-    let said: Vec<String> =
+    let cures: Vec<String> =
         mended(campaign).found.iter().map(|finding| finding.description.observed.clone()).collect();
-    let [cure] = &said[..] else { panic!("{said:?}") };
+    let [cure] = &cures[..] else { panic!("{cures:?}") };
     cure.clone()
 }
 
